@@ -63,6 +63,8 @@ void *__real_realloc(void *memory, size_t size);
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t count, size_t size);
 void *__wrap_realloc(void *memory, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
 
 void *__wrap_malloc(size_t size)
 {
@@ -78,6 +80,11 @@ void *__wrap_realloc(void *memory, size_t size)
 {
     heap += size;
     return __real_realloc(memory, size);
+}
+void *__wrap_aligned_alloc(size_t alignment, size_t size)
+{
+    heap += size;
+    return __real_aligned_alloc(alignment, size);
 }
 size_t blocks_heap_bytes(void) { return heap; }
 

@@ -1,12 +1,13 @@
 /**
  * What others cost who are attached to a running program: one run at 250 us on the simulated segment, four axes turning,
- * in turns alone and with three readers of objects and one that asks for axes, slaves and statistics as fast as it can,
- * each a process of its own. Real time: the figures are those of this machine at this time.
+ * in turns alone and with three readers of objects, a screen that asks for axes, slaves and statistics, and a recorder
+ * of every cycle of all signals, each a process of its own. Real time: the figures are those of this machine at this time.
  */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -16,12 +17,14 @@
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
 
-enum { AXES = 4, READERS = 3, CLIENTS = READERS + 1, TURNS = 10, TURN_S = 3, LATE_BUCKET = 8 /* from 128 us on */ };
+enum { AXES = 4, READERS = 3, SCREEN = READERS, RECORDER, CLIENTS, SCREEN_US = 50000, RECORDER_US = 20000 };
+enum { TURNS = 10, TURN_S = 3, LATE_BUCKET = 8 /* from 128 us on */ };
 
 /** Shared with the clients. */
 typedef struct shared {
     atomic_bool go, end;
     atomic_uint requests[CLIENTS];
+    atomic_uint columns, samples, gaps; /**< of the recorder */
 } shared_t;
 
 typedef struct side {
@@ -54,6 +57,30 @@ static void ask_all(cm1e_control_t *control)
     }
 }
 
+/** A number of a reply, "name": number; 0: it has none. */
+static unsigned number_of(const char *reply, const char *name)
+{
+    const char *place = strstr(reply, name);
+    return place ? (unsigned)strtoul(place + strlen(name), NULL, 10) : 0;
+}
+
+static void record(shared_t *shared, cm1e_control_t *control, bool first)
+{
+    char *reply;
+    if (cm1e_control_ask(control, first ? "{\"request\": \"record\"}" : "{\"request\": \"samples\"}", &reply, NULL) !=
+        CM1E_OK)
+        exit(0);
+    unsigned columns = 0;
+    for (const char *at = reply; first && (at = strstr(at, "\"unit\"")) != NULL; at++)
+        columns++;
+    if (first)
+        atomic_store(&shared->columns, columns);
+    atomic_fetch_add(&shared->samples, number_of(reply, "\"samples\":{\"samples\":"));
+    atomic_fetch_add(&shared->gaps, number_of(reply, "\"lost\":") > 0);
+    free(reply);
+    usleep(RECORDER_US);
+}
+
 static void read_object(cm1e_bus_t *attached, uint16_t position)
 {
     uint8_t data[8];
@@ -72,21 +99,32 @@ static void run_client(shared_t *shared, int number, pid_t program)
     cm1e_bus_config_init(&config, NULL, 0);
     while (!atomic_load(&shared->go))
         usleep(1000);
-    if (cm1e_control_connect(&control, target, NULL, NULL) != CM1E_OK)
+    if (number != RECORDER && cm1e_control_connect(&control, target, NULL, NULL) != CM1E_OK)
         fail("a client cannot connect");
     if (number < READERS && (cm1e_bus_open_attached(&attached, &config, control, NULL) != CM1E_OK ||
                              cm1e_bus_scan(attached, NULL) != CM1E_OK))
         fail("a client cannot attach");
     while (!atomic_load(&shared->end)) {
         if (!atomic_load(&shared->go)) {
+            if (number == RECORDER) { /* a recording goes on as long as its connection */
+                cm1e_control_close(control);
+                control = NULL;
+            }
             usleep(1000);
             continue;
         }
+        const bool first = !control;
+        if (first && cm1e_control_connect(&control, target, NULL, NULL) != CM1E_OK)
+            exit(0);
         if (attached)
             read_object(attached, (uint16_t)(1 + number));
+        else if (number == RECORDER)
+            record(shared, control, first);
         else
             ask_all(control);
-        atomic_fetch_add(&shared->requests[number], attached ? 1 : 3);
+        atomic_fetch_add(&shared->requests[number], number == SCREEN ? 3 : 1);
+        if (number == SCREEN)
+            usleep(SCREEN_US);
     }
     exit(0);
 }
@@ -191,6 +229,8 @@ int main(void)
            "lost frames", "requests/s");
     print("alone", &sides[0]);
     print("attached", &sides[1]);
+    printf("recorded: %u signals, %u samples, losses in %u replies\n", atomic_load(&shared->columns), atomic_load(&shared->samples),
+           atomic_load(&shared->gaps));
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(bus);
     return 0;

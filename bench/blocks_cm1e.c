@@ -53,7 +53,7 @@ static cm1e_bus_t *start_bus(void)
     }
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
-    if (cm1e_bus_open(&bus, &config, &diag) || cm1e_bus_start(bus, &diag))
+    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
         fail(diag.text);
     cm1e_bus_config_free(&config);
     return bus;
@@ -133,7 +133,7 @@ static void make_groups(void)
     const cm1e_group_config_t config = {.name = ""};
     for (unsigned i = 0; i < BLOCKS_GROUPS; i++) {
         const size_t before = blocks_heap_bytes();
-        if (cm1e_group_create(&groups[i], &config, &diag))
+        if (cm1e_group_create(&groups[i], &config, &diag) != CM1E_OK)
             fail(diag.text);
         group_heap = blocks_heap_bytes() - before;
         lines[i].AxesGroup = arcs[i].AxesGroup = &groups[i];
@@ -149,7 +149,7 @@ static bool make(unsigned count)
         buses[i] = start_bus();
     for (unsigned i = 0; i < count; i++) {
         const size_t before = blocks_heap_bytes();
-        if (cm1e_axis_create(&axes[i], buses[i / BUS_AXES], i % BUS_AXES, &diag))
+        if (cm1e_axis_create(&axes[i], buses[i / BUS_AXES], i % BUS_AXES, &diag) != CM1E_OK)
             fail(diag.text);
         axis_heap = blocks_heap_bytes() - before;
         references[i] = cm1e_axis_reference(axes[i]);
@@ -164,7 +164,7 @@ static bool make(unsigned count)
     for (int cycle = 0; cycle < 200; cycle++) { /* the way to Operation enabled needs the frames */
         for (unsigned i = 0; i < BUSES; i++) {
             cm1e_clock_sleep_until(cm1e_bus_clock(buses[i]), cycle_now_ns + CYCLE_NS);
-            if (cm1e_bus_receive(buses[i]))
+            if (cm1e_bus_receive(buses[i]) != CM1E_OK)
                 return false;
         }
         run_whole(count, 1);

@@ -124,7 +124,7 @@ static bool update(cm1e_fb_private_t *fb, cm1e_axis_t *axis, BOOL continuous_upd
 {
     fb->continuous_update = fb->continuous_update && continuous_update;
     const cm1e_error_t error = fb->continuous_update ? cm1e_axis_update(axis, fb->command, command) : CM1E_OK;
-    if (error)
+    if (error != CM1E_OK)
         cm1e_fb_fail(fb, error);
     return error == CM1E_OK;
 }
@@ -144,7 +144,7 @@ fb_outputs_t cm1e_fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, 
     case FB_STEP_START:
         fb->command = 0;
         fb->continuous_update = continuous_update ? TRUE : FALSE;
-        cm1e_fb_started(fb, refusal ? refusal : cm1e_axis_start(axis, command, &fb->command));
+        cm1e_fb_started(fb, refusal != CM1E_OK ? refusal : cm1e_axis_start(axis, command, &fb->command));
         status = cm1e_axis_command_status(axis, fb->command);
         fb->active = status.state == CM1E_COMMAND_ACTIVE;
         break;
@@ -201,9 +201,9 @@ BOOL cm1e_fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enabl
 
 fb_reading_t cm1e_fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing)
 {
-    const bool passes = axis && passing;
+    const bool passes = axis && passing != CM1E_OK;
     return (fb_reading_t){
-        .valid = axis && !passing,
+        .valid = axis && passing == CM1E_OK,
         .busy = fb->state == FB_BUSY,
         .error = fb->state == FB_ERROR || passes,
         .error_id = passes ? cm1e_error_id(passing) : fb->error_id,

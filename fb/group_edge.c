@@ -25,7 +25,7 @@ fb_outputs_t cm1e_fb_group_act(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *re
     cm1e_group_t *group = NULL;
     if (cm1e_fb_group_execute(fb, reference, execute, &group) == FB_STEP_START) {
         const cm1e_error_t error = act(group);
-        cm1e_fb_polled(fb, error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE, error);
+        cm1e_fb_polled(fb, error != CM1E_OK ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE, error);
     }
     return cm1e_fb_outputs(fb);
 }

@@ -1,4 +1,4 @@
-#include "coupling.h"
+#include "coupling_block.h"
 
 /** TRUE in the first call after each end, also in a task that is slower than the bus cycle. */
 static void show_ends(MC_CamIn_t *fb, UDINT ends)

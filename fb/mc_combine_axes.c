@@ -1,4 +1,4 @@
-#include "coupling.h"
+#include "coupling_block.h"
 
 /** In the standard both numbers have a sign. A ratio that is out of range becomes 0, which the axis refuses. */
 static cm1e_coupling_master_t master(const AXIS_REF_t *axis, MC_SOURCE source, DINT numerator, DINT denominator)

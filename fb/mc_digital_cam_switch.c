@@ -267,7 +267,7 @@ static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, 
         return CM1E_ERROR_AXIS_OFFLINE;
     }
     const cm1e_error_t error = evaluate_all(fb, &look, &tracks);
-    return error ? error : write_output(fb, tracks, fb_lease_ns(look.now, called));
+    return error != CM1E_OK ? error : write_output(fb, tracks, fb_lease_ns(look.now, called));
 }
 
 void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb)
@@ -281,7 +281,7 @@ void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb)
         error = operate(fb, axis, called);
     }
     const fb_reading_t out = cm1e_fb_reading(&p->common, axis, error);
-    if (!out.valid && (p->running || p->output || error)) {
+    if (!out.valid && (p->running || p->output || error != CM1E_OK)) {
         outputs_off(fb);
         forget(p);
     }

@@ -1,4 +1,4 @@
-#include "coupling.h"
+#include "coupling_block.h"
 
 void MC_GearIn(MC_GearIn_t *fb)
 {

@@ -5,7 +5,7 @@ void MC_GroupReadVelocity(MC_GroupReadVelocity_t *fb)
     const cm1e_group_t *group = cm1e_fb_group_enable(&fb->Private, fb->AxesGroup, fb->Enable);
     LREAL position[CM1E_GROUP_AXES] = {0}, velocity[CM1E_GROUP_AXES] = {0}, path = 0;
     cm1e_error_t error = fb->CoordSystem == mcACS ? CM1E_OK : CM1E_ERROR_GROUP_COORD_SYSTEM;
-    if (group && !error)
+    if (group && error == CM1E_OK)
         error = cm1e_group_values(group, fb->Source, position, velocity, &path);
     const fb_reading_t out = cm1e_fb_reading(&fb->Private, group, error);
     FB_SHOW_READING(fb, out);

@@ -76,7 +76,7 @@ static cm1e_error_t start(MC_Jog_t *fb, cm1e_axis_t *axis)
     const cm1e_error_t error = choose(fb, &measures, &jog);
     fb->Private.common.command = 0;
     fb->Private.stopping = FALSE;
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_get(axis, &info);
     const double sign = fb->Private.backwards ? -1.0 : 1.0;
@@ -102,7 +102,7 @@ static void stop(MC_Jog_t *fb, cm1e_axis_t *axis)
     cm1e_axis_keep(axis, 0, 0, 0.0, 0.0);
     fb->Private.stopping = TRUE;
     const cm1e_error_t error = cm1e_axis_start(axis, &halt, &fb->Private.common.command);
-    if (error)
+    if (error != CM1E_OK)
         cm1e_fb_fail(&fb->Private.common, error);
 }
 

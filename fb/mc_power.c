@@ -1,3 +1,4 @@
+#include "axis/axis_guest.h"
 #include "core/rare.h"
 #include "edge.h"
 
@@ -43,7 +44,7 @@ static cm1e_error_t follow_inputs(MC_Power_t *fb, cm1e_axis_t *axis)
     fb->Status = cm1e_axis_powered(axis);
     if (!fb->Enable)
         return CM1E_OK;
-    return error || fb->Status ? error : reason_for_no_power(axis);
+    return error != CM1E_OK || fb->Status ? error : reason_for_no_power(axis);
 }
 
 /** Nothing has changed since the last call, which is the usual case: the outputs do not change. */
@@ -60,6 +61,8 @@ CM1E_RARE static void work(MC_Power_t *fb)
     cm1e_error_t passing = CM1E_OK;
     if (fb->Enable && !private->trigger_before)
         take(private, fb->Axis);
+    else if (!fb->Enable && fb->Axis)
+        cm1e_axis_claim_power(*fb->Axis);
     private->trigger_before = fb->Enable ? TRUE : FALSE;
     fb->Status = FALSE;
     cm1e_axis_t *axis = cm1e_fb_axis(private);
@@ -70,7 +73,7 @@ CM1E_RARE static void work(MC_Power_t *fb)
     else if (private->state == FB_BUSY && (!fb->Axis || fb->Axis->Handle != private->axis_handle))
         cm1e_fb_fail(private, axis ? CM1E_ERROR_FB_AXIS_CHANGED : CM1E_ERROR_FB_AXIS_REF);
     const bool failed = private->state == FB_ERROR;
-    fb->Error = fb->Enable && (failed || passing);
+    fb->Error = fb->Enable && (failed || passing != CM1E_OK);
     fb->Valid = fb->Enable && !fb->Error;
     fb->ErrorID = fb->Error ? (failed ? private->error_id : cm1e_error_id(passing)) : 0;
 }

@@ -7,7 +7,8 @@ void MC_SetPosition(MC_SetPosition_t *fb)
     switch (cm1e_fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
     case FB_STEP_START:
         error = fb_refuse_execution_mode(fb->ExecutionMode);
-        cm1e_fb_started(&fb->Private, error ? error : cm1e_axis_set_position(axis, fb->Position, fb->Relative));
+        cm1e_fb_started(&fb->Private, error != CM1E_OK ? error
+                                                       : cm1e_axis_set_position(axis, fb->Position, fb->Relative));
         break;
     case FB_STEP_POLL: /* done at the edge */
         cm1e_fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK);

@@ -17,7 +17,7 @@ static cm1e_error_t read_object(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT nu
     const cm1e_error_t refused = cm1e_axis_object_start(axis, number, false, 0.0, &ticket);
     if (refused == CM1E_OK)
         fb->command = ticket; /* the queue is full: try again in the next call */
-    return error ? error : refused == CM1E_ERROR_FULL ? CM1E_OK : refused;
+    return error != CM1E_OK ? error : refused == CM1E_ERROR_FULL ? CM1E_OK : refused;
 }
 
 static cm1e_error_t read(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, bool boolean, fb_parameter_t *shown)
@@ -47,8 +47,8 @@ void cm1e_fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, 
         error = read(fb, cm1e_fb_axis(fb), number, boolean, shown);
     const fb_outputs_t out = cm1e_fb_outputs(fb);
     shown->busy = out.busy;
-    shown->error = out.error || error;
-    shown->error_id = error ? cm1e_error_id(error) : out.error_id;
+    shown->error = out.error || error != CM1E_OK;
+    shown->error_id = error != CM1E_OK ? cm1e_error_id(error) : out.error_id;
     if (shown->error)
         shown->valid = FALSE;
     if (!shown->valid)
@@ -84,7 +84,7 @@ fb_outputs_t cm1e_fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *re
     const cm1e_error_t error = fb_refuse_execution_mode(mode);
     switch (cm1e_fb_execute(fb, reference, execute, &axis)) {
     case FB_STEP_START:
-        cm1e_fb_started(fb, error ? error : start(fb, axis, number, boolean, value));
+        cm1e_fb_started(fb, error != CM1E_OK ? error : start(fb, axis, number, boolean, value));
         break;
     case FB_STEP_POLL:
         if (fb->command == 0) /* parameter of the axis: done at the edge, shown in the next call, as in all blocks */

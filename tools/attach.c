@@ -1,5 +1,8 @@
 #include "attach.h"
 
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { KEY_ATTACH = 0x700 };
@@ -49,8 +52,8 @@ static cm1e_error_t attach(const common_options_t *options, const cm1e_bus_confi
                          "runs the network: leave it out.");
 }
 
-cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
-                          cm1e_diag_t *diag)
+cm1e_error_t open_unscanned(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
+                            cm1e_diag_t *diag)
 {
     cm1e_control_t *control;
     *bus = NULL;
@@ -59,6 +62,28 @@ cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config
         error = attach(options, config, control, bus, diag);
     else if (error == CM1E_ERROR_NOT_FOUND && !options->attach)
         error = cm1e_bus_open(bus, config, diag);
+    return error;
+}
+
+cm1e_error_t own_network(const common_options_t *options, const cm1e_bus_config_t *config, const char *what,
+                         cm1e_bus_t **bus, cm1e_diag_t *diag)
+{
+    *bus = NULL;
+    if (options->attach)
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "%s needs the network for itself: end the program that "
+                             "runs it, and leave --attach out.", what);
+    const cm1e_error_t error = cm1e_bus_open(bus, config, diag);
+    if (error != CM1E_ERROR_INTERFACE_IN_USE)
+        return error;
+    char owner[sizeof diag->text];
+    snprintf(owner, sizeof owner, "%s", diag->text);
+    return cm1e_diag_set(diag, error, diag->foreign_code, "%s needs the network for itself. %.400s", what, owner);
+}
+
+cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
+                          cm1e_diag_t *diag)
+{
+    cm1e_error_t error = open_unscanned(options, config, bus, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_scan(*bus, diag);
     if (error != CM1E_OK) {
@@ -67,6 +92,48 @@ cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config
     }
     return error;
 }
+
+int attach_if_running(const common_options_t *options, cm1e_bus_config_t *config, cm1e_control_t **control)
+{
+    cm1e_diag_t diag = {0};
+    *control = NULL;
+    if (!load_network(options, config))
+        return EXIT_WRONG_USE;
+    const cm1e_error_t error = connect_network(options, config, control, &diag);
+    cm1e_bus_config_free(config);
+    return error == CM1E_OK || (error == CM1E_ERROR_NOT_FOUND && !options->attach) ? EXIT_OK : fail(&diag);
+}
+
+json_t *ask_program(cm1e_control_t *control, json_t *request, const char *member, cm1e_diag_t *diag)
+{
+    char *asked = json_dumps(request, JSON_COMPACT), *told = NULL;
+    json_decref(request);
+    const cm1e_error_t error = cm1e_control_ask(control, asked ? asked : "", &told, diag);
+    json_t *reply = told ? json_loads(told, 0, NULL) : NULL;
+    free(asked);
+    free(told);
+    json_t *value = error == CM1E_OK ? json_incref(json_object_get(reply, member)) : NULL;
+    json_decref(reply);
+    return value;
+}
+
+static volatile sig_atomic_t signalled;
+
+static void on_signal(int number)
+{
+    (void)number;
+    signalled = 1;
+}
+
+void attached_catch_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+    const struct sigaction action = {.sa_handler = on_signal};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        sigaction(numbers[i], &action, NULL);
+}
+
+bool attached_signalled(void) { return signalled; }
 
 void complain_of_control(const cm1e_scheduler_t *scheduler)
 {

@@ -20,9 +20,29 @@ bool load_network(const common_options_t *options, cm1e_bus_config_t *config);
 cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
                           cm1e_diag_t *diag);
 
+/** As open_network(), but our own network is not scanned: a damaged SII stops a scan. */
+cm1e_error_t open_unscanned(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
+                            cm1e_diag_t *diag);
+/** Opens the network, but does not scan it. Refuses to attach: `what` ("Writing an SII") needs the network for itself,
+ *  and the program that has it must end before. */
+cm1e_error_t own_network(const common_options_t *options, const cm1e_bus_config_t *config, const char *what,
+                         cm1e_bus_t **bus, cm1e_diag_t *diag);
+
 /** Connects to the program that runs the network; for commands that only make sense attached. */
 cm1e_error_t connect_network(const common_options_t *options, const cm1e_bus_config_t *config,
                              cm1e_control_t **control, cm1e_diag_t *diag);
+
+/** For commands that act on axes: *control is set if a program has the network, NULL if nobody has. `config` is empty
+ *  afterwards. Returns the exit status, with a complaint. */
+int attach_if_running(const common_options_t *options, cm1e_bus_config_t *config, cm1e_control_t **control);
+
+/** Asks; takes the reference to `request`. Returns this member of the reply, which is the caller's; NULL: the program
+ *  refuses or is gone, `diag` says why. */
+json_t *ask_program(cm1e_control_t *control, json_t *request, const char *member, cm1e_diag_t *diag);
+
+/** Signals that would end this program end what it does at another one in order. */
+void attached_catch_signals(void);
+bool attached_signalled(void);
 
 /** Says why nobody could attach to a run that was to have a control socket; it is no failure of the run. */
 void complain_of_control(const cm1e_scheduler_t *scheduler);

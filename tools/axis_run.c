@@ -75,6 +75,35 @@ void progress_clear(progress_t *progress)
     fflush(stderr);
 }
 
+/* ---- the axis ---------------------------------------------------------------------------------------------------- */
+
+error_t parse_axis_word(char *arg, struct argp_state *state, const char **word)
+{
+    if (*word)
+        argp_error(state, "one axis at a time; \"%s\" is too many", arg);
+    *word = arg;
+    return 0;
+}
+
+int load_one_axis(const common_options_t *options, const char *word, cm1e_bus_config_t *config, uint32_t *number)
+{
+    const int loaded = load_axes(options, config);
+    if (loaded != EXIT_OK)
+        return loaded;
+    const int axis = find_axis(config, word ? word : "1");
+    if (axis < 0)
+        return EXIT_WRONG_USE;
+    *number = (uint32_t)axis;
+    return EXIT_OK;
+}
+
+void take_axis(cm1e_scheduler_t *scheduler, uint32_t number, AXIS_REF_t *axis, MC_Power_t *power, progress_t *progress)
+{
+    *axis = cm1e_scheduler_axis(scheduler, number);
+    *power = (MC_Power_t){.Axis = axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    progress->name = cm1e_axis_name(*axis);
+}
+
 /* ---- the run ----------------------------------------------------------------------------------------------------- */
 
 typedef struct watcher {
@@ -135,7 +164,11 @@ int run_on_axes(const axis_run_t *run, const common_options_t *options, const cm
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
     int status;
-    if (cm1e_bus_open(&bus, config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
+    const bool open = cm1e_bus_open(&bus, config, &diag) == CM1E_OK;
+    const int ready = open && run->ready ? run->ready(bus, run->context) : EXIT_OK;
+    if (ready != EXIT_OK)
+        status = ready;
+    else if (!open || cm1e_bus_start(bus, &diag) != CM1E_OK)
         status = fail(&diag);
     else
         status = run_on_bus(run, config, bus);

@@ -81,12 +81,10 @@ static int write_alias(cm1e_bus_t *bus, const alias_options_t *options, uint16_t
     return status;
 }
 
-static int show_or_write(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const alias_options_t *options)
+static int show_or_write(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
-    uint16_t position;
-    const int found = find_slave(bus, config, options->where, &position);
-    if (found != EXIT_OK)
-        return found;
+    const alias_options_t *options = context;
+    (void)config;
     if (options->alias >= 0)
         return is_free(bus, position, options->alias) ? write_alias(bus, options, position) : EXIT_FAILED;
     const unsigned alias = cm1e_bus_slave(bus, position)->alias;
@@ -113,14 +111,5 @@ int command_alias(int argc, char **argv)
     alias_options_t options = {.alias = -1};
     if (parse_options(&argp_alias, argc, argv, &options))
         return EXIT_WRONG_USE;
-    static cm1e_bus_config_t config;
-    if (!load_configuration(&options.common, &config))
-        return EXIT_WRONG_USE;
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
-        cm1e_bus_close(bus);
-        return fail(&diag);
-    }
-    return close_bus(bus, &options.common, show_or_write(bus, &config, &options));
+    return run_on_slave(&options.common, options.where, show_or_write, &options);
 }

@@ -166,7 +166,7 @@ static json_t *as_json(const session_t *session, const cm1e_cml_exchange_t *exch
     json_object_set_new(object, "strays", json_integer(exchange->strays));
     if (exchange->strays)
         json_object_set_new(object, "stray", text_as_json(exchange->stray));
-    if (diag->error)
+    if (diag->error != CM1E_OK)
         json_object_set_new(object, "error", text_as_json(diag->text));
     return object;
 }
@@ -178,7 +178,7 @@ static void print_text(const session_t *session, const cm1e_cml_exchange_t *exch
         const char *state = state_in_words(session, exchange->lines[i], words, sizeof words);
         printf("%s%s%s\n", exchange->lines[i], state[0] ? "  " : "", state);
     }
-    if (exchange->count == 0 && !diag->error)
+    if (exchange->count == 0 && diag->error == CM1E_OK)
         puts("sent");
     if (exchange->lost)
         complain("%u more lines were dropped", exchange->lost);
@@ -232,9 +232,9 @@ static int send_string(session_t *session, const char *text, json_t *results)
         print_text(session, &exchange, &diag);
     if (error == CM1E_ERROR_CML_MOTION && !session->options->common.json)
         complain("%s Use --allow-motion to send it.", diag.text);
-    else if (error)
+    else if (error != CM1E_OK)
         fail(&diag);
-    return error ? EXIT_FAILED : EXIT_OK;
+    return error != CM1E_OK ? EXIT_FAILED : EXIT_OK;
 }
 
 /* ---- all strings ------------------------------------------------------------------------------------------------- */
@@ -358,9 +358,7 @@ int command_cml(int argc, char **argv)
     end_in_order();
     cm1e_diag_t diag = {0};
     session_t session = {.options = &options};
-    if (cm1e_bus_open(&session.bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(session.bus, &diag) != CM1E_OK) {
-        cm1e_bus_close(session.bus);
-        return fail(&diag);
-    }
+    if (open_scanned(&config, &session.bus) != EXIT_OK)
+        return EXIT_FAILED;
     return close_bus(session.bus, &options.common, run_session(&session, &config, &diag));
 }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "attach.h"
 #include "cm1e/generate.h"
 #include "command.h"
 #include "files.h"
@@ -17,7 +18,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     diff_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
     case 'p': return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
     case ARGP_KEY_ARG:
         if (options->file)
@@ -87,7 +88,7 @@ static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *in
 static const struct argp_option table[] = {
     {"position", 'p', "POSITION", 0, "Compare only this slave; default: every slave that the file "
                                      "describes", 0}, {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_diff = {
     table, parse, "FILE",
     "Compares an ESI, EC_EXTEND, SII or ENI file with live devices: identity, EEPROM, mailbox, sync managers, PDO "
@@ -101,13 +102,13 @@ int command_diff(int argc, char **argv)
         return EXIT_WRONG_USE;
     static cm1e_bus_config_t config;
     input_t input;
-    if (!load_configuration(&options.common, &config) || !read_input(options.file, &input))
+    if (!load_network(&options.common, &config) || !read_input(options.file, &input))
         return EXIT_WRONG_USE;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
     json_t *json = options.common.json ? json_array() : NULL;
     int status = EXIT_WRONG_USE;
-    if (cm1e_bus_open(&bus, &config, &diag) == CM1E_OK && cm1e_bus_scan(bus, &diag) == CM1E_OK)
+    if (open_network(&options.common, &config, &bus, &diag) == CM1E_OK)
         status = run(bus, &options, &input, json);
     else
         fail(&diag);

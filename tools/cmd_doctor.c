@@ -21,7 +21,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     doctor_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
     case KEY_FIX: options->fix = true; return 0;
     case KEY_ROOT: options->root = arg; return 0;
     case KEY_SECONDS:
@@ -92,7 +92,7 @@ static bool is_network(const char *name) { return strncmp(name, "sim", 3) != 0 |
 
 static bool is_named(const doctor_options_t *options)
 {
-    return options->common.interface_name || options->common.bus_file;
+    return options->common.interface_name || options->common.bus_file || options->common.attach;
 }
 
 static void look(doctor_t *doctor, const doctor_options_t *options, const cm1e_bus_config_t *config)
@@ -105,8 +105,9 @@ static void look(doctor_t *doctor, const doctor_options_t *options, const cm1e_b
     if (!named)
         doctor_find(doctor, FINDING_NOTE, "interface", "interface",
                     "none named: -i NAME looks at it and at its slaves");
-    else if (!is_network(config->interface_name) || doctor_look_at_interface(doctor, config->interface_name))
-        doctor_look_at_bus(doctor, config);
+    else if (!config->interface_name[0] || !is_network(config->interface_name) ||
+             doctor_look_at_interface(doctor, config->interface_name))
+        doctor_look_at_bus(doctor, &options->common, config);
 }
 
 static const struct argp_option option_list[] = {
@@ -115,14 +116,15 @@ static const struct argp_option option_list[] = {
     {"seconds", KEY_SECONDS, "S", 0, "Measure the wake-up latency for so long (default 2; 0: not at all)", 0},
     {0},
 };
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_doctor = {
     option_list,
     parse,
     NULL,
     "Looks at the machine, at the network interface and at its slaves, and says what is wrong, why it matters, and "
     "what to do. Nothing is changed, and no motor moves. The slaves go to Init and back to Pre-Operational, so the "
-    "interface must not be in use. Exit status 1: there is a problem.",
+    "interface must not be in use; if a program of this library has it, that program is asked, and no slave changes "
+    "its state. Exit status 1: there is a problem.",
     children,
     NULL,
     NULL,
@@ -135,7 +137,7 @@ int command_doctor(int argc, char **argv)
         return EXIT_WRONG_USE;
     static cm1e_bus_config_t config;
     static doctor_t doctor;
-    if (is_named(&options) && !load_configuration(&options.common, &config))
+    if (is_named(&options) && !load_network(&options.common, &config))
         return EXIT_WRONG_USE;
     doctor.root = options.root;
     look(&doctor, &options, &config);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "axis_run.h"
+#include "by_hand.h"
 #include "terminal.h"
 
 enum { KEY_FOR = 0x600, LONGEST_S = 1000000 };
@@ -28,13 +29,12 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     enable_program_t *p = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &p->common; return 0;
-    case KEY_FOR: return parse_seconds(arg, LONGEST_S, &p->seconds) ? 0 : EINVAL;
-    case ARGP_KEY_ARG:
-        if (p->axis_word)
-            argp_error(state, "one axis at a time; \"%s\" is too many", arg);
-        p->axis_word = arg;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &p->common;
+        state->child_inputs[1] = &p->common;
         return 0;
+    case KEY_FOR: return parse_seconds(arg, LONGEST_S, &p->seconds) ? 0 : EINVAL;
+    case ARGP_KEY_ARG: return parse_axis_word(arg, state, &p->axis_word);
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -43,9 +43,7 @@ static void prepare(cm1e_scheduler_t *scheduler, void *context)
 {
     enable_program_t *p = context;
     p->scheduler = scheduler;
-    p->axis = cm1e_scheduler_axis(scheduler, p->axis_number);
-    p->progress.name = cm1e_axis_name(p->axis);
-    p->power = (MC_Power_t){.Axis = &p->axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    take_axis(scheduler, p->axis_number, &p->axis, &p->power, &p->progress);
 }
 
 static void end(enable_program_t *p, bool failed, WORD error_id)
@@ -134,7 +132,7 @@ static int report(void *context)
 static const struct argp_option table[] = {
     {"for", KEY_FOR, "SECONDS", 0, "End after this time instead of at a key", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_enable = {
     table, parse, "[AXIS]",
     "Enables one axis (name or number, default 1): the motor gets torque and holds its position, until a key is "
@@ -151,13 +149,16 @@ int command_enable(int argc, char **argv)
         complain("there is no terminal whose key could end it: give --for SECONDS");
         return EXIT_WRONG_USE;
     }
-    const int loaded = load_axes(&p.common, &config);
+    cm1e_control_t *control;
+    const int attached = attach_if_running(&p.common, &config, &control);
+    if (attached != EXIT_OK)
+        return attached;
+    if (control)
+        return enable_attached(&(by_hand_t){.common = &p.common, .axis_word = p.axis_word,
+                                            .seconds = p.seconds}, control);
+    const int loaded = load_one_axis(&p.common, p.axis_word, &config, &p.axis_number);
     if (loaded != EXIT_OK)
         return loaded;
-    const int axis = find_axis(&config, p.axis_word ? p.axis_word : "1");
-    if (axis < 0)
-        return EXIT_WRONG_USE;
-    p.axis_number = (uint32_t)axis;
     p.simulated = simulated_mark(&config);
     if (p.seconds == 0 && !terminal_begin())
         return EXIT_FAILED;

@@ -6,9 +6,11 @@
 #include <stdio.h>
 
 #include "axis_run.h"
+#include "by_hand.h"
+#include "jog_keys.h"
 #include "terminal.h"
 
-enum { KEY_DEAD_MAN = 0x600, ESCAPE = 0x1B, CTRL_D = 0x04, KEY_SLOW = '[', KEY_FAST = ']' };
+enum { KEY_DEAD_MAN = 0x600, KEY_MS = 5 };
 #define DEAD_MAN_S 0.2
 #define LEAST_DEAD_MAN_S 0.05
 #define LONGEST_DEAD_MAN_S 1.0
@@ -30,6 +32,7 @@ typedef struct jog_program {
     atomic_uint keys[2];              /* counted by the thread that reads them */
     atomic_bool end_wanted, enabled, moving;
     _Atomic double factor;            /* of the velocity */
+    jog_keys_t read;                  /* by that thread */
     progress_t progress;
 } jog_program_t;
 
@@ -37,7 +40,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     jog_program_t *p = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &p->common; return 0;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &p->common;
+        state->child_inputs[1] = &p->common;
+        return 0;
     case 'v': return parse_positive(arg, "the velocity", &p->velocity) ? 0 : EINVAL;
     case 'a': return parse_positive(arg, "the acceleration", &p->acceleration) ? 0 : EINVAL;
     case KEY_DEAD_MAN:
@@ -47,11 +53,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             return 0;
         complain("the dead-man time is %s s; expected %g ... %g", arg, LEAST_DEAD_MAN_S, LONGEST_DEAD_MAN_S);
         return EINVAL;
-    case ARGP_KEY_ARG:
-        if (p->axis_word)
-            argp_error(state, "one axis at a time; \"%s\" is too many", arg);
-        p->axis_word = arg;
-        return 0;
+    case ARGP_KEY_ARG: return parse_axis_word(arg, state, &p->axis_word);
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -60,9 +62,7 @@ static void prepare(cm1e_scheduler_t *scheduler, void *context)
 {
     jog_program_t *p = context;
     p->scheduler = scheduler;
-    p->axis = cm1e_scheduler_axis(scheduler, p->axis_number);
-    p->progress.name = cm1e_axis_name(p->axis);
-    p->power = (MC_Power_t){.Axis = &p->axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    take_axis(scheduler, p->axis_number, &p->axis, &p->power, &p->progress);
     p->jog = (MC_Jog_t){.Axis = &p->axis, .Mode = MC_JOGMODE_CONTINOUS, .Velocity = p->velocity,
                         .Acceleration = p->acceleration, .Deceleration = p->acceleration};
 }
@@ -125,36 +125,21 @@ static void program(void *context)
 
 /* ---- beside the cycle -------------------------------------------------------------------------------------------- */
 
-static void take_key(jog_program_t *p, int key)
-{
-    switch (key) {
-    case TERMINAL_RIGHT: case TERMINAL_UP: case '+': case 'l': p->keys[0]++; break;
-    case TERMINAL_LEFT: case TERMINAL_DOWN: case '-': case 'h': p->keys[1]++; break;
-    case KEY_FAST: p->factor = fmin(p->factor * 2, 4); break;
-    case KEY_SLOW: p->factor = fmax(p->factor / 2, 1.0 / 64); break;
-    case 'q': case TERMINAL_GONE: case ESCAPE: case CTRL_D: p->end_wanted = true; break;
-    default: break;
-    }
-}
-
 static void watch(void *context, bool last)
 {
     jog_program_t *p = context;
     if (last) {
-        progress_clear(&p->progress);
+        jog_line_clear();
         return;
     }
-    for (int key; (key = terminal_key(5)) != TERMINAL_NONE;) {
-        take_key(p, key);
-        if (key == TERMINAL_GONE)
-            break;
-    }
+    jog_keys_read(&p->read, KEY_MS);
+    p->keys[0] = p->read.forward;
+    p->keys[1] = p->read.backwards;
+    p->factor = p->read.factor;
+    if (p->read.end)
+        p->end_wanted = true;
     if (p->enabled)
-        fprintf(stderr, "\r\033[K%s: %12.6g  %s  %.4g u/s  arrow keys move, [ ] slower and faster, q ends",
-                p->progress.name,
-                p->progress.position, p->moving ? "moves " : "stands", p->velocity * p->factor);
-    p->progress.shown = true;
-    fflush(stderr);
+        jog_line(p->progress.name, p->progress.position, p->moving, p->velocity * p->factor);
 }
 
 static int report(void *context)
@@ -181,7 +166,7 @@ static const struct argp_option table[] = {
     {"dead-man", KEY_DEAD_MAN, "SECONDS", 0, "The motor stops when the key has not repeated for so long, 0.05 ... 1; "
                                              "default 0.2", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_jog = {
     table, parse, "[AXIS]",
     "Enables one axis (name or number, default 1) and moves it while an arrow key is held: right or up in positive "
@@ -196,20 +181,23 @@ int command_jog(int argc, char **argv)
 {
     static jog_program_t p;
     static cm1e_bus_config_t config;
-    p = (jog_program_t){.velocity = 0.5, .dead_man_s = DEAD_MAN_S, .factor = 1};
+    p = (jog_program_t){.velocity = 0.5, .dead_man_s = DEAD_MAN_S, .factor = 1, .read.factor = 1};
     if (parse_options(&argp_jog, argc, argv, &p))
         return EXIT_WRONG_USE;
     if (!at_a_terminal()) {
         complain("jog needs a terminal: a person must hold a key while the motor moves. `cm1e move` needs none");
         return EXIT_WRONG_USE;
     }
-    const int loaded = load_axes(&p.common, &config);
+    cm1e_control_t *control;
+    const int attached = attach_if_running(&p.common, &config, &control);
+    if (attached != EXIT_OK)
+        return attached;
+    if (control)
+        return jog_attached(&(by_hand_t){.common = &p.common, .axis_word = p.axis_word, .velocity = p.velocity,
+                                         .acceleration = p.acceleration, .dead_man_s = p.dead_man_s}, control);
+    const int loaded = load_one_axis(&p.common, p.axis_word, &config, &p.axis_number);
     if (loaded != EXIT_OK)
         return loaded;
-    const int axis = find_axis(&config, p.axis_word ? p.axis_word : "1");
-    if (axis < 0)
-        return EXIT_WRONG_USE;
-    p.axis_number = (uint32_t)axis;
     p.simulated = simulated_mark(&config);
     if (!terminal_begin())
         return EXIT_FAILED;

@@ -99,9 +99,14 @@ static void tell(const led_options_t *options, const cm1e_bus_config_t *config, 
                (unsigned)now, (unsigned)(brightness & 0xFF), simulated_mark(config));
 }
 
-static int set_led(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const led_options_t *options, uint16_t position)
+static int set_led(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
+    const led_options_t *options = context;
     cm1e_diag_t diag = {0};
+    if (cm1e_bus_slave(bus, position)->device != &cm1e_device_cm1e) {
+        complain("slave %u is not a CM1-E: only a CM1-E has an LED that can be set", position);
+        return EXIT_FAILED;
+    }
     uint32_t before, now, brightness;
     const bool find = options->colour < 0 && options->brightness < 0;
     const uint32_t colour = colours[find ? WHITE : options->colour < 0 ? MOTOR : options->colour];
@@ -143,22 +148,5 @@ int command_led(int argc, char **argv)
     led_options_t options = {.colour = -1, .brightness = -1};
     if (parse_options(&argp_led, argc, argv, &options))
         return EXIT_WRONG_USE;
-    static cm1e_bus_config_t config;
-    if (!load_configuration(&options.common, &config))
-        return EXIT_WRONG_USE;
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
-        cm1e_bus_close(bus);
-        return fail(&diag);
-    }
-    uint16_t position;
-    int status = find_slave(bus, &config, options.where, &position);
-    if (status == EXIT_OK && cm1e_bus_slave(bus, position)->device != &cm1e_device_cm1e) {
-        complain("slave %u is not a CM1-E: only a CM1-E has an LED that can be set", position);
-        status = EXIT_FAILED;
-    }
-    if (status == EXIT_OK)
-        status = set_led(bus, &config, &options, position);
-    return close_bus(bus, &options.common, status);
+    return run_on_slave(&options.common, options.where, set_led, &options);
 }

@@ -92,7 +92,7 @@ static cm1e_error_t show_more(cm1e_control_t *control, json_t *all, progress_t *
     return error;
 }
 
-/** TRUE: the program has ended, which ends --follow in order. */
+/** true: the program has ended, which ends --follow in order. */
 static bool has_ended(cm1e_error_t error) { return error == CM1E_ERROR_IO; }
 
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};

@@ -125,19 +125,27 @@ static void check_files(const motion_options_t *options, struct argp_state *stat
     }
 }
 
-static error_t parse_axis(char *arg, struct argp_state *state, motion_options_t *options)
+/** What move and home have in common. */
+static error_t parse_any(int key, char *arg, struct argp_state *state)
 {
-    if (options->axis_word)
-        argp_error(state, "one axis at a time; \"%s\" is too many", arg);
-    options->axis_word = arg;
-    return 0;
+    motion_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case KEY_RESET: options->reset = true; return 0;
+    case KEY_CSV:
+    case KEY_SVG:
+    case KEY_HTML:
+    case KEY_NPY: options->files[key - KEY_CSV] = arg; return 0;
+    case ARGP_KEY_ARG: return parse_axis_word(arg, state, &options->axis_word);
+    case ARGP_KEY_END: check_files(options, state); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
 }
 
 static error_t parse_move(int key, char *arg, struct argp_state *state)
 {
     motion_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
     case KEY_TO: return set_kind(state, options, MOTION_TO, &options->target, arg, "the target position");
     case KEY_BY: return set_kind(state, options, MOTION_BY, &options->target, arg, "the distance");
     case KEY_SPEED:
@@ -151,17 +159,8 @@ static error_t parse_move(int key, char *arg, struct argp_state *state)
     case 'a': return parse_positive(arg, "the acceleration", &options->acceleration) ? 0 : EINVAL;
     case 'd': return parse_positive(arg, "the deceleration", &options->deceleration) ? 0 : EINVAL;
     case KEY_JERK: return parse_positive(arg, "the jerk", &options->jerk) ? 0 : EINVAL;
-    case KEY_RESET: options->reset = true; return 0;
-    case KEY_CSV:
-    case KEY_SVG:
-    case KEY_HTML:
-    case KEY_NPY: options->files[key - KEY_CSV] = arg; return 0;
-    case ARGP_KEY_ARG: return parse_axis(arg, state, options);
-    case ARGP_KEY_END:
-        check_move(options, state);
-        check_files(options, state);
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
+    case ARGP_KEY_END: check_move(options, state); return parse_any(key, arg, state);
+    default: return parse_any(key, arg, state);
     }
 }
 
@@ -170,7 +169,6 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
     motion_options_t *options = state->input;
     long long method;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
     case KEY_METHOD:
         options->method_given = true;
         if (!parse_number(arg, "the homing method", -6, 4, &method))
@@ -183,14 +181,7 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
     case KEY_TORQUE: return parse_torque(arg, &options->homing.torque);
     case KEY_FOR: return parse_seconds(arg, LONGEST_S, &options->homing.timeout_s) ? 0 : EINVAL;
     case KEY_POSITION: return parse_real_option(arg, "the position", &options->home_position);
-    case KEY_RESET: options->reset = true; return 0;
-    case KEY_CSV:
-    case KEY_SVG:
-    case KEY_HTML:
-    case KEY_NPY: options->files[key - KEY_CSV] = arg; return 0;
-    case ARGP_KEY_ARG: return parse_axis(arg, state, options);
-    case ARGP_KEY_END: check_files(options, state); return 0;
-    default: return ARGP_ERR_UNKNOWN;
+    default: return parse_any(key, arg, state);
     }
 }
 
@@ -301,7 +292,6 @@ static void program(void *context)
 static void prepare(motion_program_t *p, const motion_options_t *options)
 {
     p->options = options;
-    p->power = (MC_Power_t){.Axis = &p->axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
     p->reset = (MC_Reset_t){.Axis = &p->axis};
     p->halt = (MC_Halt_t){.Axis = &p->axis, .Deceleration = options->deceleration, .Jerk = options->jerk};
     p->settle = (MC_MoveRelative_t){.Axis = &p->axis, .Velocity = fabs(options->velocity)};
@@ -372,8 +362,7 @@ static void prepare_run(cm1e_scheduler_t *scheduler, void *context)
 {
     motion_program_t *p = context;
     p->scheduler = scheduler;
-    p->axis = cm1e_scheduler_axis(scheduler, p->axis_number);
-    p->progress.name = cm1e_axis_name(p->axis);
+    take_axis(scheduler, p->axis_number, &p->axis, &p->power, &p->progress);
     prepare(p, p->options);
 }
 
@@ -458,23 +447,20 @@ static int move_or_home(motion_options_t *options, const char *what)
     static cm1e_bus_config_t config;
     if (!files_can_be_written(options))
         return EXIT_FAILED;
-    const int loaded = load_axes(&options->common, &config);
+    static motion_program_t p;
+    const int loaded = load_one_axis(&options->common, options->axis_word, &config, &p.axis_number);
     if (loaded != EXIT_OK)
         return loaded;
-    const int axis = find_axis(&config, options->axis_word ? options->axis_word : "1");
-    if (axis < 0)
-        return EXIT_WRONG_USE;
+    cm1e_axis_config_t *axis = &config.axes[p.axis_number];
     if (options->kind == MOTION_HOME)
-        complete_homing(options, &config.axes[axis].homing);
+        complete_homing(options, &axis->homing);
     else if (options->velocity == 0)
         options->velocity = 1.0;
     if (!has_homing_method(options))
         return EXIT_WRONG_USE;
-    config.axes[axis].in_position_done_waits = config.axes[axis].type == CM1E_AXIS_MOTOR;
-    options->modulo_range = config.axes[axis].modulo_range;
-    static motion_program_t p;
+    axis->in_position_done_waits = axis->type == CM1E_AXIS_MOTOR;
+    options->modulo_range = axis->modulo_range;
     p.options = options;
-    p.axis_number = (uint32_t)axis;
     p.what = what;
     p.simulated = simulated_mark(&config);
     const axis_run_t run = {.what = what, .program = program, .prepare = prepare_run, .report = report_run,
@@ -482,6 +468,14 @@ static int move_or_home(motion_options_t *options, const char *what)
                             .settings = {.trace_capacity = wants_trace(options) ? TRACE_SAMPLES : 0}};
     return run_on_axes(&run, &options->common, &config);
 }
+
+/** Options that move and home have in common. */
+#define OPTIONS_OF_BOTH \
+    {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0}, \
+    {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0}, \
+    {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0}, \
+    {"html", KEY_HTML, "FILE", 0, "Write the trace as a page for a browser: zoom, cursors, events", 0}, \
+    {"npy", KEY_NPY, "FILE", 0, "Write the trace for NumPy", 0}
 
 static const struct argp_option move_table[] = {
     {"to", KEY_TO, "POSITION", 0, "Absolute target, in units of the axis", 0},
@@ -492,11 +486,7 @@ static const struct argp_option move_table[] = {
     {"acceleration", 'a', "ACCELERATION", 0, "Units/s2; default: the axis's maximum", 0},
     {"deceleration", 'd', "DECELERATION", 0, "Units/s2; default: the axis's maximum", 0},
     {"jerk", KEY_JERK, "JERK", 0, "Units/s3; default: the axis's maximum", 0},
-    {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
-    {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
-    {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
-    {"html", KEY_HTML, "FILE", 0, "Write the trace as a page for a browser: zoom, cursors, events", 0},
-    {"npy", KEY_NPY, "FILE", 0, "Write the trace for NumPy", 0},
+    OPTIONS_OF_BOTH,
     {0}};
 static const struct argp_child move_children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_move = {move_table, parse_move, "[AXIS]",
@@ -522,11 +512,7 @@ static const struct argp_option home_table[] = {
     {"torque", KEY_TORQUE, "PERCENT", 0, "10 ... 100 % of rated torque", 0},
     {"position", KEY_POSITION, "POSITION", 0, "Position of the axis at the home position; default 0", 0},
     {"for", KEY_FOR, "SECONDS", 0, "Maximum time; default 60", 0},
-    {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
-    {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
-    {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
-    {"html", KEY_HTML, "FILE", 0, "Write the trace as a page for a browser: zoom, cursors, events", 0},
-    {"npy", KEY_NPY, "FILE", 0, "Write the trace for NumPy", 0},
+    OPTIONS_OF_BOTH,
     {0}};
 static const struct argp_child home_children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_home = {home_table, parse_home, "[AXIS]",

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "attach.h"
 #include "core/text.h"
 #include "files.h"
 #include "params.h"
@@ -42,7 +43,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     params_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
     case KEY_YES: options->yes = true; return 0;
     case KEY_DRY_RUN: options->dry_run = true; return 0;
     case KEY_OTHER_FIRMWARE: options->other_firmware = true; return 0;
@@ -160,23 +161,12 @@ static bool named(const motor_t *motor, const params_options_t *options, params_
 
 /* ---- set and restore --------------------------------------------------------------------------------------------- */
 
-/** NAME=VALUE */
 static bool parse_settings(const motor_t *motor, const params_options_t *options, params_t *params)
 {
     params->count = 0;
-    for (int i = 0; i < options->word_count; i++) {
-        char name[PARAM_NAME];
-        const char *equals = strchr(options->words[i], '=');
-        if (!equals || (size_t)(equals - options->words[i]) >= sizeof name) {
-            complain("\"%s\": expected NAME=VALUE, as K47=30", options->words[i]);
+    for (int i = 0; i < options->word_count; i++)
+        if (!param_parse_setting(&motor->params, options->words[i], &params->at[params->count++]))
             return false;
-        }
-        snprintf(name, sizeof name, "%.*s", (int)(equals - options->words[i]), options->words[i]);
-        param_t param = {.entry = param_find(&motor->params, name)};
-        if (!param.entry || !param_parse(param.entry, equals + 1, &param.value))
-            return false;
-        params->at[params->count++] = param;
-    }
     return true;
 }
 
@@ -257,17 +247,21 @@ static int write_all(const motor_t *motor, params_t *params, bool json)
     size_t written = 0;
     while (written < params->count && param_write(motor->bus, motor->position, &params->at[written], &diag))
         written++;
+    /* A program that has the network, and did not pass the value on to the motor. */
+    const bool refused = diag.error == CM1E_ERROR_AXIS_STATE || diag.error == CM1E_ERROR_PERMISSION;
     const bool good = written == params->count;
     if (!good) {
         fail(&diag);
         print_names("written and read back", params, 0, written);
-        print_names("failed, its value is to be looked at", params, written, written + 1);
-        print_names("not written", params, written + 1, params->count);
+        if (!refused)
+            print_names("failed, its value is to be looked at", params, written, written + 1);
+        print_names("not written", params, refused ? written : written + 1, params->count);
     }
     if (json)
         print_json(json_pack("{s:b, s:o, s:o, s:o}", "done", good, "written", names_as_json(params, 0, written),
-                             "failed", good ? json_null() : json_string(params->at[written].entry->name), "not_written",
-                             names_as_json(params, good ? written : written + 1, params->count)));
+                             "failed", good || refused ? json_null() : json_string(params->at[written].entry->name),
+                             "not_written", names_as_json(params, good || refused ? written : written + 1,
+                                                          params->count)));
     else if (good)
         printf("%zu value%s written to slave %u and read back\n", written, written == 1 ? "" : "s", motor->position);
     return good ? EXIT_OK : EXIT_FAILED;
@@ -399,7 +393,7 @@ static const struct argp_option table[] = {
     {"dry-run", KEY_DRY_RUN, NULL, 0, "set, restore: show what would change, write nothing", 0},
     {"other-firmware", KEY_OTHER_FIRMWARE, NULL, 0, "restore: allow a file of another firmware", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_params = {
     table, parse,
     "list POSITION|AXIS [NAME...]\nget POSITION|AXIS NAME...\nset POSITION|AXIS NAME=VALUE...\n"
@@ -408,8 +402,8 @@ const struct argp argp_params = {
     "compares. A parameter is given by name (K47, H3, \"Home offset\", home_offset) or number (0x60F6:1B). restore "
     "checks "
     "device, firmware and every range before it writes, shows what will change, reads back each value, and says what "
-    "was "
-    "written if it breaks off.", children, NULL, NULL};
+    "was written if it breaks off. If a program has the network, its motors are read through it; set and restore need "
+    "`control: maintain` in its bus file and an axis that it does not command.", children, NULL, NULL};
 
 int command_params(int argc, char **argv)
 {
@@ -418,14 +412,12 @@ int command_params(int argc, char **argv)
     options.action = -1;
     if (parse_options(&argp_params, argc, argv, &options))
         return EXIT_WRONG_USE;
-    if (!load_configuration(&options.common, &config))
+    if (!load_network(&options.common, &config))
         return EXIT_WRONG_USE;
     cm1e_diag_t diag = {0};
     static motor_t motor;
-    if (cm1e_bus_open(&motor.bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(motor.bus, &diag) != CM1E_OK) {
-        cm1e_bus_close(motor.bus);
+    if (open_network(&options.common, &config, &motor.bus, &diag) != CM1E_OK)
         return fail(&diag);
-    }
     int status = find_slave(motor.bus, &config, options.where, &motor.position);
     if (status == EXIT_OK) {
         motor.slave = cm1e_bus_slave(motor.bus, motor.position);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "axis_run.h"
+#include "by_hand.h"
 #include "device/place.h"
 
 enum { LOOK_NS = 300000000 }; /* until then a drive has shown the error that it has */
@@ -30,7 +31,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     reset_program_t *p = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &p->common; return 0;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &p->common;
+        state->child_inputs[1] = &p->common;
+        return 0;
     case ARGP_KEY_ARG:
         if (p->axis_word)
             argp_error(state, "one axis, or none for all; \"%s\" is too many", arg);
@@ -118,12 +122,13 @@ static int report(void *context)
     return status;
 }
 
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_reset = {
     NULL, parse, "[AXIS]",
     "Resets the error of one axis (name or number), or of all axes, and says what it was. The cause must be gone: "
     "`cm1e "
-    "status` shows it, `cm1e explain CODE` explains it. No motor moves or gets torque.", children, NULL, NULL};
+    "status` shows it, `cm1e explain CODE` explains it. No motor moves or gets torque; if a "
+    "program runs the network, that decides on the torque.", children, NULL, NULL};
 
 int command_reset(int argc, char **argv)
 {
@@ -131,6 +136,12 @@ int command_reset(int argc, char **argv)
     static cm1e_bus_config_t config;
     if (parse_options(&argp_reset, argc, argv, &p))
         return EXIT_WRONG_USE;
+    cm1e_control_t *control;
+    const int attached = attach_if_running(&p.common, &config, &control);
+    if (attached != EXIT_OK)
+        return attached;
+    if (control)
+        return reset_attached(&(by_hand_t){.common = &p.common, .axis_word = p.axis_word}, control);
     const int loaded = load_axes(&p.common, &config);
     if (loaded != EXIT_OK)
         return loaded;

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "attach.h"
 #include "cm1e/sii.h"
 #include "command.h"
 #include "description/sii.h"
@@ -32,7 +33,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     sii_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
     case KEY_BACKUP: options->backup = arg; return 0;
     case KEY_FORCE_CHECKSUM: options->write.force_checksum = true; return 0;
     case KEY_FORCE_IDENTITY: options->write.force_identity = true; return 0;
@@ -55,17 +56,19 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-/** Opens the bus of the options; NULL, a complaint and the exit status after an error. It does not scan, because a
- *  damaged SII stops a scan. */
+/** Opens the bus of the options, or attaches to the program that has it, unless an SII is to be written;
+ *  NULL, a complaint and the exit status after an error. It does not scan, because a damaged SII stops a scan. */
 static cm1e_bus_t *open_bus(const sii_options_t *options, int *status)
 {
     static cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
     *status = EXIT_WRONG_USE;
-    if (!load_configuration(&options->common, &config))
+    if (!load_network(&options->common, &config))
         return NULL;
-    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK)
+    const bool writes = is_verb(options, "write", 3);
+    if ((writes ? own_network(&options->common, &config, "Writing an SII", &bus, &diag)
+                : open_unscanned(&options->common, &config, &bus, &diag)) != CM1E_OK)
         *status = fail(&diag);
     return bus;
 }
@@ -182,7 +185,7 @@ static const struct argp_option table[] = {
     {"own-alias-and-serial", KEY_OWN, NULL, 0,
      "write: also write alias and serial number of the image; by default those of the slave stay", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_sii = {
     table, parse, "read POSITION FILE\nwrite POSITION FILE --backup FILE\ndecode FILE|POSITION",
     "Reads, writes or shows the SII, the EEPROM with the identity of a slave. Writing changes only the words that "

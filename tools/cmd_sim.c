@@ -9,6 +9,7 @@
 #include "cm1e/sim.h"
 #include "command.h"
 #include "files.h"
+#include "prove/prove_play.h"
 
 static volatile int stop_requested;
 
@@ -18,12 +19,13 @@ static void request_stop(int signal_number)
     stop_requested = 1;
 }
 
-enum { KEY_SII = 0x400, KEY_BRIDGE, KEY_IO };
+enum { KEY_SII = 0x400, KEY_BRIDGE, KEY_IO, KEY_PROFILE };
 
 typedef struct sim_options {
     const char *interface_name, *bus_file, *order;
     const char *sii[CM1E_MAX_SLAVES]; /* files, by place on the line */
-    uint32_t sii_count;
+    const char *profiles[CM1E_MAX_SLAVES]; /* likewise */
+    uint32_t sii_count, profile_count;
     const struct extra *extras[CM1E_MAX_SLAVES]; /* behind the other slaves, in the order of the command line */
     uint32_t extra_count;
     bool has_bridges;
@@ -75,6 +77,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
         options->sii[options->sii_count++] = arg;
         return 0;
+    case KEY_PROFILE:
+        if (options->profile_count == CM1E_MAX_SLAVES)
+            argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
+        options->profiles[options->profile_count++] = arg;
+        return 0;
     case KEY_BRIDGE:
     case KEY_IO: return take_extra(options, key, arg, state);
     case ARGP_KEY_ARG:
@@ -93,7 +100,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
-    const uint32_t axes = options->has_bridges ? 0 : options->sii_count > 0 ? options->sii_count : 1;
+    const uint32_t axes = options->has_bridges ? 0 : options->sii_count > options->profile_count ? options->sii_count
+                          : options->profile_count > 0 ? options->profile_count : 1;
     const cm1e_error_t error = options->bus_file ? cm1e_bus_config_load(config, options->bus_file, &diag)
                                                  : cm1e_bus_config_init(config, "sim", axes);
     if (error != CM1E_OK) {
@@ -143,6 +151,15 @@ static bool boot(cm1e_sim_segment_t *segment, const sim_options_t *options)
     return good;
 }
 
+/* The nth file is the profile of the nth slave. */
+static bool play(cm1e_sim_segment_t *segment, const sim_options_t *options)
+{
+    for (uint32_t i = 0; i < options->profile_count; i++)
+        if (!play_profile(segment, i + 1, options->profiles[i]))
+            return false;
+    return true;
+}
+
 static void end_by_signals(void)
 {
     static const int ends[] = {SIGINT, SIGTERM, SIGQUIT, SIGPIPE};
@@ -159,7 +176,7 @@ static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_nam
     static const cm1e_sim_streams_t console = {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO};
     cm1e_sim_server_t *server;
     const cm1e_error_t error = cm1e_sim_server_open(&server, segment, interface_name, diag);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     end_by_signals();
     printf("%u simulated slave%s on %s; `help` lists the commands\n",
@@ -176,6 +193,8 @@ static const struct argp_option table[] = {
     {"pdo-order", 'o', ORDERS, 0, "The order of objects in the PDO mappings; default ug-4.4", 0},
     {"sii", KEY_SII, "FILE", 0, "A slave boots from this SII image instead of the tables; the first option is for "
      "the first slave, the second for the second, and so on", 0},
+    {"profile", KEY_PROFILE, "FILE", 0, "A slave behaves as the device of this profile, which `cm1e prove` has "
+     "written; the first option is for the first slave, the second for the second, and so on", 0},
     {"bridge", KEY_BRIDGE, BRIDGES, 0, "A Cool MUSCLE Bridge with four motors behind the other slaves; repeat it for "
      "another one", 0},
     {"io", KEY_IO, IO_KINDS, 0, "A simple device behind the other slaves: module (8 outputs wired to 8 inputs), "
@@ -201,7 +220,7 @@ int command_sim(int argc, char **argv)
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create(&config, &diag);
     if (!segment)
         return fail(&diag);
-    if (!add_extras(segment, &options) || !boot(segment, &options)) {
+    if (!add_extras(segment, &options) || !boot(segment, &options) || !play(segment, &options)) {
         cm1e_sim_segment_destroy(segment);
         return EXIT_FAILED;
     }

@@ -164,20 +164,28 @@ static bool tell_servo_drives(const cm1e_bus_t *bus, const char *interface_name)
     return true;
 }
 
+int open_scanned(const cm1e_bus_config_t *config, cm1e_bus_t **bus)
+{
+    cm1e_diag_t diag = {0};
+    *bus = NULL;
+    if (cm1e_bus_open(bus, config, &diag) == CM1E_OK && cm1e_bus_scan(*bus, &diag) == CM1E_OK)
+        return EXIT_OK;
+    cm1e_bus_close(*bus);
+    *bus = NULL;
+    return fail(&diag);
+}
+
 int load_axes(const common_options_t *options, cm1e_bus_config_t *config)
 {
     if (!load_configuration(options, config))
         return EXIT_WRONG_USE;
     if (config->axis_count > 0)
         return EXIT_OK;
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
+    cm1e_bus_t *bus;
     cm1e_bus_config_t scanned = *config;
     scanned.pcap_file[0] = '\0';
-    if (cm1e_bus_open(&bus, &scanned, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
-        cm1e_bus_close(bus);
-        return fail(&diag);
-    }
+    if (open_scanned(&scanned, &bus) != EXIT_OK)
+        return EXIT_FAILED;
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
         if (is_one_axis(cm1e_bus_slave(bus, position))) {
             cm1e_axis_config_t *axis = cm1e_bus_config_add_axis(config, NULL);
@@ -216,6 +224,21 @@ int close_bus(cm1e_bus_t *bus, const common_options_t *options, int status)
     return status == EXIT_OK ? EXIT_FAILED : status;
 }
 
+/** "X, Y": their names, or "1 ... 3" where they have none. */
+static const char *axes_text(const cm1e_bus_config_t *config, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = 0;
+    for (uint32_t i = 0; i < config->axis_count && used < size; i++) {
+        const int n = config->axes[i].name[0] ? snprintf(text + used, size - used, "%s%s", used ? ", " : "",
+                                                         config->axes[i].name) : 0;
+        used += n > 0 ? (size_t)n : 0;
+    }
+    if (!text[0] && config->axis_count > 1)
+        snprintf(text, size, "1 ... %u", config->axis_count);
+    return text[0] ? text : config->axis_count == 1 ? "1" : "none";
+}
+
 int find_axis(const cm1e_bus_config_t *config, const char *word)
 {
     int axis = -1;
@@ -238,9 +261,9 @@ int find_axis(const cm1e_bus_config_t *config, const char *word)
     for (uint32_t i = 0; i < config->axis_count; i++)
         if (config->axes[i].name[0])
             cm1e_near_look(&near, config->axes[i].name);
-    complain("there is no axis \"%s\"; there are 1 ... %u%s%s", word, config->axis_count,
-             config->axis_count > 0 && config->axes[0].name[0] ? ", or their names in the bus file" : "",
-             cm1e_near_text(&near, text, sizeof text));
+    char axes[256];
+    complain("there is no axis \"%s\" among the axes of this network: %s%s", word,
+             axes_text(config, axes, sizeof axes), cm1e_near_text(&near, text, sizeof text));
     return -1;
 }
 
@@ -349,6 +372,21 @@ int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cha
         return EXIT_OK;
     complain("there is no slave %lld; the network has %u", number, count);
     return EXIT_FAILED;
+}
+
+int run_on_slave(const common_options_t *common, const char *where, slave_action_t action, const void *options)
+{
+    static cm1e_bus_config_t config;
+    cm1e_bus_t *bus;
+    uint16_t position;
+    if (!load_configuration(common, &config))
+        return EXIT_WRONG_USE;
+    if (open_scanned(&config, &bus) != EXIT_OK)
+        return EXIT_FAILED;
+    int status = find_slave(bus, &config, where, &position);
+    if (status == EXIT_OK)
+        status = action(bus, &config, options, position);
+    return close_bus(bus, common, status);
 }
 
 json_t *text_as_json(const char *text)

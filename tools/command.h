@@ -20,6 +20,8 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
 #define COMMANDS(X)                                                                                                 \
     X(scan, "list the slaves of a network", "")                                                                     \
     X(status, "show state, error and measurements of every drive", "")                                              \
+    X(monitor, "watch all axes on a screen, and act on one of them", "")                                             \
+    X(trace, "record the signals of a running program", "")                                                          \
     X(sdo, "read or write an object of a slave", "read write list")                                                 \
     X(params, "list, read, write, back up and compare the parameters of a motor", "list get set backup restore diff")\
     X(log, "show what has happened to a running program's axes", "")                                                \
@@ -29,14 +31,19 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
     X(move, "move one axis", "")                                                                                    \
     X(jog, "move one axis while a key is held", "")                                                                 \
     X(enable, "let one motor hold its position, until a key is pressed", "")                                        \
+    X(tune, "measure how one axis follows, before and after a change of its parameters", "step ramp sine chirp")   \
     X(reset, "reset the errors of drives", "")                                                                      \
+    X(io, "show inputs and outputs, write outputs", "")                                                             \
     X(led, "find a motor by its LED", "")                                                                           \
+    X(firmware, "write a new firmware into a motor", "update")                                                      \
     X(alias, "show or write the alias of a slave", "")                                                              \
     X(sim, "serve a simulated network on a network interface", "")                                                  \
     X(generate, "write files for other masters", "esi ec-extend sii eni")                                           \
     X(check, "check a file for other masters, from any source", "")                                                 \
     X(diff, "compare a file with the live devices that it describes", "")                                           \
     X(new, "make a project that builds and runs", "")                                                               \
+    X(init, "write a bus file from the network as it is", "")                                                       \
+    X(prove, "compare a device with what the guide says of it", "")                                                 \
     X(doctor, "look at machine, interface and network, and say what to do", "")                                     \
     X(explain, "say what an error number or name means", "")
 
@@ -90,6 +97,10 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
  *  function complains and prints a bus file to be completed. Returns the exit status. */
 int load_axes(const common_options_t *options, cm1e_bus_config_t *config);
 
+/** Opens the network of a configuration and scans it. Returns the exit status; *bus is NULL, and it has complained, if
+ *  that is not EXIT_OK. */
+int open_scanned(const cm1e_bus_config_t *config, cm1e_bus_t **bus);
+
 /** Closes the bus. Returns the exit status: EXIT_FAILED, with a complaint, if frames are missing in the pcap file. */
 int close_bus(cm1e_bus_t *bus, const common_options_t *options, int status);
 
@@ -118,6 +129,14 @@ bool parse_seconds(const char *word, int longest, double *value);
 /** The slave of a word after a scan: the name of an axis of the bus file (not behind a bridge), or a position. Returns
  *  the exit status, with a complaint: there is no such slave. */
 int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const char *word, uint16_t *position);
+
+/** What a command does to one slave of a scanned network. It complains of its errors and returns the exit status. */
+typedef int (*slave_action_t)(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *options,
+                              uint16_t position);
+
+/** Loads the configuration, opens and scans the network, finds the slave of the word `where`, acts on it with `options`,
+ *  and closes the network. Returns the exit status. */
+int run_on_slave(const common_options_t *common, const char *where, slave_action_t action, const void *options);
 
 /** A negative value looks like an option, so such a word is moved to the end, behind a "--". Words behind a "--" of the
  *  user are not moved. `sheltered` has room for MAX_WORDS + 2. Returns their number; -1 and a complaint: too many. */

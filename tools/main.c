@@ -5,7 +5,7 @@
 #include "cm1e/version.h"
 #include "command.h"
 #include "core/near.h"
-#include "describe.h"
+#include "manual.h"
 
 #define ROW(name, summary, words) {#name, summary, words, command_##name, &argp_##name},
 const command_t commands[] = {COMMANDS(ROW)};

@@ -99,7 +99,7 @@ static void add_error_ids(list_t *list)
     size_t count;
     const cm1e_error_row_t *errors = cm1e_error_rows(&count);
     for (size_t i = 0; i < count; i++) {
-        meaning_t *row = errors[i].error ? add(list, cm1e_error_id(errors[i].error), 4, NULL) : NULL;
+        meaning_t *row = errors[i].error != CM1E_OK ? add(list, cm1e_error_id(errors[i].error), 4, NULL) : NULL;
         if (!row)
             continue;
         snprintf(row->whose, sizeof row->whose, "ErrorID of this library's function blocks (error %d)",

@@ -88,6 +88,19 @@ bool param_parse(const cm1e_entry_t *entry, const char *word, int64_t *value)
     return true;
 }
 
+bool param_parse_setting(const params_t *params, const char *word, param_t *param)
+{
+    char name[PARAM_NAME];
+    const char *equals = strchr(word, '=');
+    if (!equals || (size_t)(equals - word) >= sizeof name) {
+        complain("\"%s\": expected NAME=VALUE, as K47=30", word);
+        return false;
+    }
+    snprintf(name, sizeof name, "%.*s", (int)(equals - word), word);
+    *param = (param_t){.entry = param_find(params, name)};
+    return param->entry && param_parse(param->entry, equals + 1, &param->value);
+}
+
 static bool is_signed(const cm1e_entry_t *entry)
 {
     return entry->type == CM1E_TYPE_SINT || entry->type == CM1E_TYPE_INT || entry->type == CM1E_TYPE_DINT;

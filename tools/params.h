@@ -38,6 +38,9 @@ const char *param_range(const cm1e_entry_t *entry, char *text, size_t size);
 /** A whole number within the range; false and a complaint otherwise. */
 bool param_parse(const cm1e_entry_t *entry, const char *word, int64_t *value);
 
+/** "K47=30"; false and a complaint otherwise. */
+bool param_parse_setting(const params_t *params, const char *word, param_t *param);
+
 bool param_read(cm1e_bus_t *bus, uint16_t position, const cm1e_entry_t *entry, int64_t *value, cm1e_diag_t *diag);
 /** Writes and reads back. False, with the reason in `diag`: it was refused, or the value that is read back is not what
  *  the device makes of the written one (`kept`). */

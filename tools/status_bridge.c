@@ -145,7 +145,8 @@ static const char *text_of(const cm1e_bridge_value_t *value, char *text, size_t 
         snprintf(text, size, "refused (0x%08X, %s)", (unsigned)value->abort_code,
                  cm1e_sdo_abort_text(value->abort_code));
     else
-        snprintf(text, size, "not readable (%s)", value->error ? cm1e_strerror(value->error) : "not asked for");
+        snprintf(text, size, "not readable (%s)",
+                 value->error != CM1E_OK ? cm1e_strerror(value->error) : "not asked for");
     return text;
 }
 

@@ -21,6 +21,10 @@ extern "C" {
  *  that is linked by hand calls it before cm1e_scheduler_run(). @rt init */
 CM1E_API void cm1e_control_register(void);
 
+/** true: connections from this process may do everything, whatever `control` says of others, in runs that begin from
+ *  now on. For a program that is its own control panel. @rt init */
+CM1E_API void cm1e_control_serve_own(bool serve);
+
 typedef struct cm1e_control cm1e_control_t;
 
 /** Connects to a running program. `target` is the path of its socket or the number of its process; NULL: the program

@@ -62,6 +62,49 @@ CM1E_API cm1e_error_t cm1e_sim_segment_add_io(cm1e_sim_segment_t *segment, cm1e_
  *  the image is damaged or of another device, nothing has changed. @rt init */
 CM1E_API cm1e_error_t cm1e_sim_segment_boot(cm1e_sim_segment_t *segment, uint32_t position, const uint8_t *image,
                                             size_t size, cm1e_diag_t *diag);
+
+/** One sub-index as a real device has it, for cm1e_sim_segment_play(). */
+typedef struct cm1e_sim_profile_entry {
+    uint16_t index;
+    uint8_t subindex;
+    bool missing;             /**< the device has no such entry; the other members do not count */
+    bool described;           /**< type, bits and access are valid; necessary where the tables have no such entry */
+    uint16_t data_type, bits; /**< CoE data type (ETG.1020) */
+    uint16_t access;          /**< cm1e_info_access (sdo_info.h) */
+    bool has_default, has_minimum, has_maximum, has_value;
+    int64_t default_value, minimum, maximum;
+    int64_t value;            /**< from power-on; without it the default */
+    char name[64];            /**< "": that of the tables */
+    char text[64];            /**< value of a string; "": that of the tables */
+} cm1e_sim_profile_entry_t;
+
+typedef enum cm1e_sim_code_kind {
+    CM1E_SIM_CODE_ABORT = 0,  /**< SDO abort code */
+    CM1E_SIM_CODE_AL_STATUS,
+    CM1E_SIM_CODE_ERROR,      /**< 0x603F */
+} cm1e_sim_code_kind_t;
+
+/** A code that the device answers in place of the one that the simulator would. */
+typedef struct cm1e_sim_profile_code {
+    cm1e_sim_code_kind_t kind;
+    uint32_t ours, theirs;
+} cm1e_sim_profile_code_t;
+
+/** What a real device is where it is not as the tables say. All zero: nothing differs. */
+typedef struct cm1e_sim_profile {
+    const cm1e_sim_profile_entry_t *entries; /**< in any order; of two for one sub-index the last one counts */
+    size_t entry_count;
+    const cm1e_sim_profile_code_t *codes;
+    size_t code_count;
+    const uint8_t *sii;       /**< image of its EEPROM; NULL: the one made from the tables */
+    size_t sii_size;
+} cm1e_sim_profile_t;
+
+/** Before the first frame: slave `position` (1 = first), a CM1-E or a bridge, behaves as the device of a profile, which
+ *  is copied. The mappings of a CM1-E are those of its objects 0x1600 ... 0x1A03. CM1E_ERROR_UNSUPPORTED: the slave is
+ *  another device. CM1E_ERROR_STATE: it plays one already. CM1E_ERROR_FILE: the image is too short. @rt init */
+CM1E_API cm1e_error_t cm1e_sim_segment_play(cm1e_sim_segment_t *segment, uint32_t position,
+                                            const cm1e_sim_profile_t *profile, cm1e_diag_t *diag);
 /** @rt any */
 CM1E_API uint32_t cm1e_sim_segment_slave_count(const cm1e_sim_segment_t *segment);
 

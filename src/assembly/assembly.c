@@ -13,11 +13,11 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **axis, cm1e_bus_t *bus, uint32_t inde
         cm1e_cool_muscle_add,
     };
     cm1e_error_t error = cm1e_axis_make(axis, bus, index, diag);
-    for (size_t i = 0; i < sizeof additions / sizeof additions[0] && !error; i++)
+    for (size_t i = 0; i < sizeof additions / sizeof additions[0] && error == CM1E_OK; i++)
         error = additions[i](*axis, diag);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_axis_publish(*axis, diag);
-    if (error) {
+    if (error != CM1E_OK) {
         cm1e_axis_destroy(*axis);
         *axis = NULL;
     }

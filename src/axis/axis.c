@@ -1,4 +1,4 @@
-/* The axis from its making to its cycle: inputs, then (after the programs) outputs. */
+/* The creation of an axis, and its cycle: inputs, then (after the programs) outputs. */
 #include "axis/axis.h"
 
 #include <math.h>
@@ -18,27 +18,28 @@
 #include "axis/axis_power.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_table.h"
+#include "core/cache_line.h"
 #include "core/clock.h"
 
 cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
 {
     *result = NULL;
-    cm1e_axis_t *axis = calloc(1, sizeof *axis);
+    cm1e_axis_t *axis = cm1e_cache_lines(sizeof *axis);
     if (!axis)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis %u.", (unsigned)index);
     static const axis_events_t events = {cm1e_axis_error_stop, cm1e_axis_begin_next, cm1e_axis_methods};
     axis->events = &events;
     cm1e_axis_setpoint_init(axis);
     cm1e_error_t error = cm1e_drive_init(&axis->drive, bus, index, diag);
-    if (!error) {
+    if (error == CM1E_OK) {
         axis->config = axis->drive.config;
         error = cm1e_axis_limits_init(axis, diag);
     }
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_axis_table_init(axis, diag);
     axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
-    axis->mode = !error && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
-    if (error) {
+    axis->mode = error == CM1E_OK && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
+    if (error != CM1E_OK) {
         cm1e_drive_free(&axis->drive);
         free(axis->tables);
         free(axis);
@@ -84,16 +85,17 @@ static bool powered_state(cm1e_axis_state_t state)
     return state != CM1E_AXIS_DISABLED && state != CM1E_AXIS_ERROR_STOP;
 }
 
-/* Counts. More lag than a motor has that followed the ramp while nothing was heard of it. */
-static bool was_deaf(const cm1e_axis_t *axis, double lag)
+/* Whether a lag (counts) is larger than that of a motor that followed the ramp while it was offline. */
+static bool was_offline(const cm1e_axis_t *axis, double lag)
 {
-    const double few_counts = 50.0;
+    const double tolerance_counts = 50.0;
     return fabs(lag) > 2.0 * fabs(axis->setpoint.velocity * axis->position.scale) * axis->cycle_s +
-           cm1e_axis_few(axis, few_counts);
+           cm1e_axis_tolerance_counts(axis, tolerance_counts);
 }
 
-/* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. In CSV the motor goes
- * on while nothing is heard: a ramp of ErrorStop then begins anew where it has come to. */
+/* Monitors the lag. If the motor has lost the set-point, the set-point would make it jump later. So braking begins anew
+ * at the position of the motor. In CSV an offline motor goes on, so a ramp of ErrorStop begins anew at the position
+ * that it has reached. */
 static void watch_lag(cm1e_axis_t *axis)
 {
     const bool own = axis_holds(axis) || set_points_move(axis);
@@ -104,25 +106,25 @@ static void watch_lag(cm1e_axis_t *axis)
     const double lag = own ? cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) + cm1e_axis_ran_on(axis)
                        : 0.0;
     const bool lost = fabs(lag) > axis->limits.max_lag * fabs(axis->position.scale);
-    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && axis->mode == CM1E_MODE_CSV && was_deaf(axis, lag)) {
+    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && axis->mode == CM1E_MODE_CSV && was_offline(axis, lag)) {
         cm1e_axis_brake_from_actual(axis);
-    } else if (lost && axis->state != CM1E_AXIS_ERROR_STOP) { /* in Disabled: the ramp before the torque goes */
+    } else if (lost && axis->state != CM1E_AXIS_ERROR_STOP) { /* in Disabled: the ramp before torque off */
         if (!axis->limits.lag_monitoring)
             return;
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag / axis->position.scale, axis->limits.max_lag);
-        if (!cm1e_drive_contradicts_itself(&axis->drive)) /* else it may have followed all the same: the ramp goes on */
+        if (!cm1e_drive_contradicts_itself(&axis->drive)) /* else the motor may have followed: the ramp goes on */
             cm1e_axis_brake_from_actual(axis);
     } else if (lost && cm1e_drive_contradicts_itself(&axis->drive)) {
         return;
     } else if (lost) {
-        cm1e_axis_become_free(axis); /* a last ramp that the motor does not follow either */
+        cm1e_axis_become_free(axis); /* the motor does not follow this ramp either */
     }
 }
 
 static bool asks_for_torque(const cm1e_axis_t *axis) { return axis->power.enable && !axis->power.shutting_down; }
 
-/* An axis that is neither under torque nor to be so has nothing to lose while the bus is away; one without a device
- * never has. */
+/* Whether the loss of the bus is an error of this axis. It is none for an axis that has no torque and is not to get
+ * any, nor for one without a device. */
 static bool depends_on_bus(const cm1e_axis_t *axis)
 {
     if (cm1e_drive_is_virtual(&axis->drive))
@@ -144,32 +146,32 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     if (axis->signals.probes_armed > 0 && drive->feedback.fresh)
         cm1e_axis_probe_step(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
-        cm1e_axis_set_homed(axis, false); /* it may have been without power, and count from somewhere else now */
-    /* Here, so that no program sees an axis in error whose drive has forgotten why. */
+        cm1e_axis_set_homed(axis, false); /* it may have been switched off, and its counts may have another origin */
+    /* The reset ends here, so that no program sees an axis in error whose drive has cleared its error already. */
     if (axis->power.reset_state == CM1E_COMMAND_ACTIVE)
         cm1e_axis_reset_step(axis);
     if (cm1e_drive_resetting(drive))
         return;
-    if (health && depends_on_bus(axis))
+    if (health != CM1E_OK && depends_on_bus(axis))
         cm1e_drive_fail(drive, health);
-    else if (asks_for_torque(axis) && !cm1e_drive_operational(drive)) /* its frames are good all the same */
+    else if (asks_for_torque(axis) && !cm1e_drive_operational(drive)) /* although its frames are good */
         cm1e_drive_fail(drive, drive->watch.lost ? CM1E_ERROR_AXIS_OFFLINE : CM1E_ERROR_BUS_STATE);
     else if (powered_state(axis->state) && !drive_moves(axis) && !drive->feedback.enabled)
-        cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_LOST); /* an earlier and better reason stays */
-    if (drive->fault.error) {
-        if (health && axis_led(axis))
+        cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_LOST); /* an earlier reason stays, because it says more */
+    if (drive->fault.error != CM1E_OK) {
+        if (health != CM1E_OK && axis_led(axis))
             cm1e_axis_lead_fail(axis, drive->fault.error);
         else
             cm1e_axis_fail(axis, drive->fault.error, 0.0, 0.0);
         if (axis->fault.error == drive->fault.error)
             cm1e_axis_tell_device_error(axis, drive->fault.device_code);
     }
-    if (health)
+    if (health != CM1E_OK)
         cm1e_axis_hold_unheard(axis);
     watch_lag(axis);
 }
 
-/* In most cycles of a motion nothing happens to it: the motor takes its set-points, and nobody ends that. */
+/* The common case, tested at once: a motion goes on, and nothing has happened that could change it. */
 static bool moves_on(const cm1e_axis_t *axis)
 {
     return set_points_move(axis) && axis->state != CM1E_AXIS_DISABLED && axis_acts(axis);
@@ -204,7 +206,7 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
 
 void cm1e_axis_outputs(cm1e_axis_t *axis)
 {
-    if (!axis->advanced) /* else an axis that follows it has asked for that */
+    if (!axis->advanced) /* else a slave has advanced it already */
         cm1e_axis_advance(axis);
     cm1e_axis_write_set_point(axis);
     cm1e_drive_write(&axis->drive);

@@ -1,12 +1,12 @@
 /*
- * Backlash. Between the motor and its load is a gap of `gap` counts. Pushed in the positive direction of the axis the
- * motor stands where the load is, pushed in the negative direction it stands a gap before it; `offset`, -gap ... 0, is
- * where the motor is as seen from the load. At a reversal the offset is ramped from one flank to the other, on top of
- * the axis's own motion, whose maximum velocity leaves room for it. Without set-points of ours (no torque, homing by
- * the drive) the offset follows the motor as the gap does: the load moves only when a flank is reached. At the start,
- * when nobody knows, the positive flank is taken for closed.
+ * Backlash. Between the motor and its load is a gap of `gap` counts. A motor that pushes in the positive direction of
+ * the axis is at the position of the load. One that pushes in the negative direction is a gap before it. `offset`, -gap
+ * ... 0, is the position of the motor relative to the load. At a reversal the offset is ramped from one flank to the
+ * other, in addition to the motion of the axis, whose maximum velocity leaves room for the ramp. Without our set-points
+ * (no torque, homing by the drive) the offset follows the motor: the load moves only when the motor reaches a flank. At
+ * the start the offset is unknown, and the positive flank is assumed to be closed.
  *
- * Everything else of the axis knows the load alone: its set-point, its actual position, its lag.
+ * All other parts of the axis know only the load: its set-point, its actual position, its lag.
  */
 #include <math.h>
 
@@ -14,11 +14,11 @@
 #include "axis/axis_power.h"
 #include "axis/axis_setpoint.h"
 
-/* The ramp of the compensation: its velocity within this time. */
+/* The compensation reaches its velocity in this time. */
 static const double ramp_s = 0.02;
-/* Counts; of what is left of a ramp. */
+/* Counts: tolerance of the end of a ramp. */
 static const double rounding = 1e-6;
-/* Below this the sign of a set velocity is rounding; counts/s. */
+/* Counts/s: below this the sign of a set velocity is rounding. */
 static const double least_velocity = 1e-3;
 
 void cm1e_axis_backlash_init(cm1e_axis_t *axis)
@@ -42,7 +42,7 @@ double cm1e_axis_backlash_velocity(const cm1e_axis_t *axis) { return sign(axis) 
 
 bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis) { return axis->backlash.offset_velocity == 0.0; }
 
-/* The motor goes where the drive, or nobody, wants it. */
+/* Whether the motor does not follow our set-points. */
 static bool foreign(const cm1e_axis_t *axis)
 {
     return axis_free(axis) || (drive_homes(axis) && axis->homing_hooks->is_away(axis));
@@ -55,12 +55,12 @@ void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts)
         b->offset = fmax(-b->gap, fmin(b->offset + sign(axis) * moved_counts, 0.0));
 }
 
-/* One cycle towards the target: as fast as it may, and so that it can still stop there. */
+/* Moves the offset on by a cycle: as fast as allowed, and slow enough to stop at its target. */
 static void ramp(backlash_t *b, double cycle_s)
 {
     const double rest = b->target - b->offset, way = rest < 0.0 ? -1.0 : 1.0;
     const double before = way * b->offset_velocity, change = b->acceleration * cycle_s;
-    const double left = fabs(rest) - before * cycle_s / 2.0; /* if it stopped at the end of this cycle */
+    const double left = fabs(rest) - before * cycle_s / 2.0; /* the way that is left after this cycle */
     if (left <= rounding && fabs(before) <= change * (1.0 + rounding)) {
         b->offset = b->target;
         b->offset_velocity = 0.0;
@@ -83,7 +83,7 @@ void cm1e_axis_backlash_step(cm1e_axis_t *axis)
         return;
     }
     const double velocity = axis->setpoint.velocity * fabs(axis->position.scale);
-    if (!cm1e_axis_wants_enable(axis)) /* about to lose its torque: no more than braking */
+    if (!cm1e_axis_wants_enable(axis)) /* the torque is about to be taken away: it only brakes */
         b->target = b->offset + b->offset_velocity * fabs(b->offset_velocity) / (2.0 * b->acceleration);
     else if (velocity > least_velocity)
         b->target = 0.0;

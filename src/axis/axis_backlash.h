@@ -1,6 +1,6 @@
 /**
  * @file axis_backlash.h
- * The gap between motor and load (axis_backlash.c).
+ * Backlash: the gap between motor and load (axis_backlash.c).
  */
 #ifndef CM1E_AXIS_AXIS_BACKLASH_H
 #define CM1E_AXIS_AXIS_BACKLASH_H
@@ -8,29 +8,29 @@
 #include "axis/axis_parts.h"
 
 void cm1e_axis_backlash_init(cm1e_axis_t *axis); /* @rt init; after the limits */
-/** Counts of the motor beyond its load; 0 without backlash. */
+/** Position of the motor relative to its load, in counts; 0 without backlash. */
 double cm1e_axis_backlash_offset(const cm1e_axis_t *axis);
-/** Counts/s of the motor that its load does not do. */
+/** Velocity of the motor relative to its load, in counts/s. */
 double cm1e_axis_backlash_velocity(const cm1e_axis_t *axis);
 bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis);
-/* Both only where there is a gap. */
+/* The next two are called only for an axis with a gap. */
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts);
 void cm1e_axis_backlash_step(cm1e_axis_t *axis);
 
-/** The motor has not gone on with it. */
+/** The motor did not follow the compensation: its velocity becomes 0. */
 static inline void cm1e_axis_backlash_stop(cm1e_axis_t *axis) { axis->backlash.offset_velocity = 0.0; }
-/** Where the load is while the motor is there. */
+/** The position of the load for a position of the motor. */
 static inline position_t cm1e_axis_load(const cm1e_axis_t *axis, int64_t motor_counts)
 {
     const position_t motor = {motor_counts, 0.0};
     return axis->backlash.gap > 0.0 ? cm1e_position_plus(motor, -cm1e_axis_backlash_offset(axis)) : motor;
 }
-/** Actual position, of the load. */
+/** The actual position of the axis: that of the load. */
 static inline position_t axis_actual(const cm1e_axis_t *axis)
 {
     return cm1e_axis_load(axis, axis->position.actual_counts);
 }
-/** Where the motor has to be for the set-point; whole counts. */
+/** The target position of the motor for the set-point, in whole counts. */
 static inline int64_t cm1e_axis_motor_target(const cm1e_axis_t *axis)
 {
     const position_t target = axis->backlash.gap > 0.0

@@ -1,6 +1,7 @@
 /*
- * The commands that wait (2.4.2, table 4): taking them in, how fast each one's end position is passed on the way to the
- * next, and the change from one to the next at the very moment, inside a cycle, at which the first one ends.
+ * Waiting commands (2.4.2, table 4): how they are buffered, with which velocity the end position of a command is passed
+ * on the way to the next, and the change from one command to the next. The change is at the exact time, inside a cycle,
+ * at which the first command ends.
  */
 #include <math.h>
 
@@ -11,12 +12,12 @@
 #include "axis/axis_position.h"
 #include "axis/axis_superimpose.h"
 
-/* What an exit velocity may differ by when it is asked again on the way. */
+/* Tolerance of an exit velocity that is computed again during the motion. */
 static const double same_velocity = 1e-9;
 
 /* ---- taking in --------------------------------------------------------------------------------------------------- */
 
-/* What can be known beforehand. `end`: of the command before, NULL where nobody knows that. */
+/* Checks what can be known before the command begins. `end`: end position of the command before it; NULL: unknown. */
 static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_t *end)
 {
     const from_t from = {end ? *end : axis->setpoint.position, 0.0, 0.0, axis_shares(axis)};
@@ -26,12 +27,12 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
         return CM1E_OK;
     cm1e_error_t error = cm1e_axis_limits_of(axis, &from, move, &limits);
     move->origin = from.position;
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_axis_resolve(axis, &from, move);
     double way = cm1e_position_minus(move->target, from.position) / axis->position.scale;
-    if (!error && kind->plan == PLAN_VELOCITY)
+    if (error == CM1E_OK && kind->plan == PLAN_VELOCITY)
         error = cm1e_axis_signed_velocity(axis, &from, move, &way);
-    if (error || kind->plan == PLAN_STOP)
+    if (error != CM1E_OK || kind->plan == PLAN_STOP)
         return error;
     if ((end || kind->target == TARGET_ABSOLUTE) && !cm1e_axis_limits_contain_target(axis, &from, move->target))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
@@ -41,11 +42,11 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
     return CM1E_OK;
 }
 
-/* The command that is before the waiting one of that index. */
+/* The command before the waiting command `index`. */
 static const move_t *before(cm1e_axis_t *axis, int index, const command_kind_t **kind)
 {
     const move_t *move = index > 0 ? waiting_move(axis, index - 1) : &axis->commands.move;
-    *kind = kind_row(index > 0 ? move->kind : axis->commands.kind); /* a homing that is active has no move */
+    *kind = kind_row(index > 0 ? move->kind : axis->commands.kind); /* an active homing has no move */
     return move;
 }
 
@@ -58,7 +59,7 @@ static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
     return check(axis, move, kind->target != TARGET_NONE ? &first->target : NULL);
 }
 
-/* What goes on when it has reached what it was to reach, and then lets the next command take its place. */
+/* Whether an endless command that has reached its aim lets the next command begin. */
 static bool hands_over(const cm1e_axis_t *axis)
 {
     if (kind_row(axis->commands.kind)->plan == PLAN_COUPLING)
@@ -71,11 +72,11 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
     if (axis->commands.waiting.count == CM1E_AXIS_BUFFER_DEPTH)
         return CM1E_ERROR_FULL;
     const cm1e_error_t error = check_behind(axis, axis->commands.waiting.count, move);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     move->id = cm1e_axis_next_id(axis);
     cm1e_axis_append_waiting(axis, move);
-    if (axis->setpoint.reached && hands_over(axis)) { /* the signal that it waits for is there already (table 4) */
+    if (axis->setpoint.reached && hands_over(axis)) { /* the signal that starts it (table 4) is present already */
         const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     } else if (kind_row(axis->commands.kind)->plan == PLAN_TO_TARGET) {
@@ -91,7 +92,7 @@ cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move)
             continue;
         move_t checked = *move;
         const cm1e_error_t error = check_behind(axis, i, &checked);
-        if (error)
+        if (error != CM1E_OK)
             return error;
         *waiting_move(axis, i) = checked;
         if (kind_row(axis->commands.kind)->plan == PLAN_TO_TARGET)
@@ -115,10 +116,10 @@ cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t 
     cm1e_profile_t profile;
     move->origin = from->position;
     cm1e_error_t error = cm1e_axis_resolve(axis, from, move);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     error = cm1e_axis_plan(axis, from, move, true, &profile);
-    if (!error)
+    if (error == CM1E_OK)
         cm1e_axis_take(axis, move, from, &profile, offset_s);
     return error;
 }
@@ -130,16 +131,16 @@ bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
         const command_kind_t *kind = kind_row(waiting_move(axis, 0)->kind);
         const command_method_t *method = cm1e_axis_method(axis, kind->plan);
         if (axis->superimposed.id && (axis->superimposed.alone || !kind->carries_superimposed))
-            return false; /* nothing goes on top of these, or it has all the limits: they wait for its end */
+            return false; /* these wait for the end of the superimposed motion */
         if (method->awaits && method->awaits(axis, &from, offset_s))
             return false;
         if (is_planned(waiting_move(axis, 0)->kind) && offset_s == 0.0)
             cm1e_axis_superimposed_give_way(axis, &from);
         move_t move = take_first(axis);
         cm1e_error_t error = cm1e_axis_state_refusal(axis->state, kind->trigger);
-        if (!error)
+        if (error == CM1E_OK)
             error = method->begin(axis, &move, &from, offset_s);
-        if (!error) {
+        if (error == CM1E_OK) {
             cm1e_axis_taken(axis, kind);
             return true;
         }
@@ -151,7 +152,8 @@ bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
 
 /* ---- a shift of the coordinates ---------------------------------------------------------------------------------- */
 
-/* Those that wait behind a homing are meant in the coordinates that it makes. */
+/* The number of commands before the first waiting homing. Positions of the commands after it are in the new
+ * coordinates. */
 static int before_homing(cm1e_axis_t *axis)
 {
     int count = 0;
@@ -183,7 +185,7 @@ bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift)
     if (count == 0 || !axis->limits.software_limits || !cm1e_axis_can_replan(axis) ||
         kind_row(axis->commands.kind)->plan != PLAN_TO_TARGET)
         return true;
-    /* What begins behind the target has less room now. */
+    /* The command after this one has less room to begin now. */
     const from_t from = from_base(axis);
     const double planned = axis->commands.move.exit_velocity;
     const double now = cm1e_axis_exit_velocity(axis, &from, &axis->commands.move);

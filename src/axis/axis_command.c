@@ -1,4 +1,4 @@
-/* Commands: posted by function blocks, known by number, one of them active. */
+/* Commands: function blocks post them and know them by number; one of them is active. */
 #include "axis/axis_commands.h"
 #include "axis/axis_driving.h"
 #include "axis/axis_handle.h"
@@ -29,7 +29,7 @@ void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_
     cm1e_axis_command_end(axis, state, error);
     cm1e_axis_lead_end(axis, error);
     cm1e_axis_superimposed_end(axis, state, state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
-    if (state == CM1E_COMMAND_ERROR && axis->coupling_hooks) /* else it ends when its master is left */
+    if (state == CM1E_COMMAND_ERROR && axis->coupling_hooks) /* else it ends when the axis leaves its master */
         axis->coupling_hooks->phasing_end(axis, state, CM1E_ERROR_AXIS_ERROR_STOP);
     cm1e_axis_waiting_end(axis, state);
 }
@@ -84,8 +84,8 @@ bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_comma
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */
 
-/* 3.7: most recently commanded is the position that a discrete motion goes to, or went to until it was aborted; a
- * continuous one has none. */
+/* The most recently commanded position (3.7): the target of the present discrete motion, or of the last one if it was
+ * aborted. A continuous motion has none. */
 static position_t commanded_position(const cm1e_axis_t *axis)
 {
     if (!axis_on_profile(axis) || axis->state != CM1E_AXIS_DISCRETE_MOTION)
@@ -109,21 +109,21 @@ static cm1e_error_t plan_move(cm1e_axis_t *axis, const from_t *from, const cm1e_
     *move = cm1e_axis_move_of(command);
     move->origin = move->kind == CM1E_COMMAND_MOVE_ADDITIVE ? commanded_position(axis) : from->position;
     const cm1e_error_t error = cm1e_axis_resolve(axis, from, move);
-    return error ? error : cm1e_axis_plan(axis, from, move, false, profile);
+    return error != CM1E_OK ? error : cm1e_axis_plan(axis, from, move, false, profile);
 }
 
-/* Whatever there is, it goes on from the present set-point. */
+/* Starts a profile at the present set-point, whatever moves the axis now. */
 static cm1e_error_t start_profile(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     from_t from = from_set(axis);
     move_t move;
     cm1e_profile_t profile;
     cm1e_error_t error = plan_move(axis, &from, command, &move, &profile);
-    if (error && axis->setpoint.brakes_hard) { /* a way back from a limit may need all the braking */
+    if (error != CM1E_OK && axis->setpoint.brakes_hard) { /* the way back from a limit may need all of it */
         from.acceleration = axis->setpoint.acceleration;
         error = plan_move(axis, &from, command, &move, &profile);
     }
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     *id = move.id = cm1e_axis_next_id(axis);
@@ -133,14 +133,14 @@ static cm1e_error_t start_profile(cm1e_axis_t *axis, const cm1e_axis_command_t *
     return CM1E_OK;
 }
 
-/* Only MC_Stop gets here: the drive has to stop itself first. */
+/* Stops a homing by the drive. Only MC_Stop may do that; the drive brakes by itself. */
 static cm1e_error_t stop_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);
     const move_t move = cm1e_axis_move_of(command);
     cm1e_motion_limits_t unused;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &from, &move, &unused);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     *id = axis->commands.active = cm1e_axis_next_id(axis);
@@ -150,7 +150,7 @@ static cm1e_error_t stop_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     return CM1E_OK;
 }
 
-/* The drive's own motions begin at standstill, one at a time; MC_Halt and MC_Stop end them. */
+/* Starts or ends a motion by the drive. Such a motion begins at standstill, and MC_Halt or MC_Stop ends it. */
 static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);
@@ -163,7 +163,7 @@ static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     move.origin = from.position;
     const cm1e_error_t error = stopping ? cm1e_axis_limits_of(axis, &from, &move, &unused)
                                         : cm1e_axis_drive_prepare(axis, &from, &move, &driving);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     *id = axis->commands.active = move.id = cm1e_axis_next_id(axis);
@@ -178,7 +178,7 @@ static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     return CM1E_OK;
 }
 
-/* A stop at standstill needs no drive. */
+/* Whether the drive itself has to move or to stop. A stop at standstill does not need the drive. */
 static bool by_drive(const cm1e_axis_t *axis, cm1e_command_kind_t kind)
 {
     return drive_moves(axis) || (drive_profiles(axis) && axis_holds(axis) && !kind_row(kind)->is_stop);
@@ -197,14 +197,15 @@ cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t 
 {
     move_t move = cm1e_axis_move_of(command);
     const cm1e_error_t error = cm1e_axis_buffer(axis, &move);
-    if (!error)
+    if (error == CM1E_OK)
         *id = move.id;
     return error;
 }
 
 /* ---- taking in --------------------------------------------------------------------------------------------------- */
 
-/* Whether there is something to wait for; then the state is of no matter in which the command would begin now. */
+/* Whether the command has to wait for another one. Then it does not matter whether it could begin in the present
+ * state. */
 static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     return command->buffer_mode != mcAborting && kind_row(command->kind)->has_buffer_mode &&
@@ -212,7 +213,7 @@ static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *comm
            axis->state != CM1E_AXIS_STOPPING;
 }
 
-/* What can be said without a look at the numbers. */
+/* Checks the command without its numbers. */
 static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool waits)
 {
     const command_kind_t *kind = kind_row(command->kind);
@@ -221,7 +222,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *co
         return CM1E_ERROR_AXIS_IN_GROUP;
     if (drive_profiles(axis) && !kind->drive_can)
         return CM1E_ERROR_UNSUPPORTED;
-    if (state_refusal && !waits)
+    if (state_refusal != CM1E_OK && !waits)
         return state_refusal;
     if (axis->state == CM1E_AXIS_STOPPING && axis->commands.stop_held)
         return CM1E_ERROR_AXIS_STOPPING;
@@ -239,22 +240,22 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     const command_method_t *method = cm1e_axis_method(axis, kind->plan);
     const bool waits = has_to_wait(axis, command);
     cm1e_error_t error = check(axis, command, waits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (!method->start)
         return CM1E_ERROR_UNSUPPORTED;
     if (waits)
         return method->buffer(axis, command, id);
     error = method->start(axis, command, id);
-    const bool later = cm1e_axis_find_waiting(axis, *id) != NULL; /* for its master: 4.7, note 1 */
-    if (!error && !later)
+    const bool later = cm1e_axis_find_waiting(axis, *id) != NULL; /* it waits for its master: 4.7, note 1 */
+    if (error == CM1E_OK && !later)
         cm1e_axis_taken(axis, kind);
     return error;
 }
 
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    if (axis->not_set.what == NOT_FINISHED) /* one that is taken now may end at once, and be told */
+    if (axis->not_set.what == NOT_FINISHED) /* this command may end at once, and then it is reported */
         cm1e_axis_forget_not_set(axis);
     cm1e_axis_remember_refusal(axis, command, start(axis, command, id));
     if (axis->commands.refusal && (unsigned)command->kind < CM1E_COMMAND_KIND_COUNT &&

@@ -1,4 +1,4 @@
-/* Digital inputs and the output of the motor, and the switches among them. */
+/* Digital inputs and outputs of the motor, and the switches that are wired to them. */
 #include "axis/axis_device.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_signals.h"
@@ -7,14 +7,14 @@
 
 /* ---- behind a bridge --------------------------------------------------------------------------------------------- */
 
-/* Longer than any poll that is well. */
+/* Longer than any undisturbed request takes. */
 static const int64_t input_timeout_ns = 1000 * MS_IN_NS;
-/* So long the torque waits at the end for outputs to go off. */
+/* At the end the torque stays so long until the outputs are off. */
 static const int64_t output_timeout_ns = 500 * MS_IN_NS;
 
 static bool in_process_data(const cm1e_axis_t *axis) { return cm1e_drive_signals_in_cycle(&axis->drive); }
 
-/* BR 6.5: in csp, while the motor is enabled. */
+/* Behind a bridge, signals can be read and written only in csp while the motor is enabled (BR 6.5). */
 static cm1e_error_t reachable(const cm1e_axis_t *axis)
 {
     if (in_process_data(axis) || axis_acts(axis))
@@ -39,7 +39,7 @@ static bool input_bit(const cm1e_axis_t *axis, int number)
     return axis->drive.feedback.digital_inputs >> (number - 1) & 1;
 }
 
-/* Of so many signals those in `there` are the drive's, those in `mask` can be reached. */
+/* Checks the number of a signal. The drive has the signals in `there`; those in `mask` can be reached now. */
 static cm1e_error_t check_signal(int number, int most, unsigned there, unsigned mask)
 {
     if (number < 1 || number > most || !(there >> (number - 1) & 1))
@@ -61,7 +61,7 @@ bool cm1e_axis_sees_inputs(const cm1e_axis_t *axis)
     return cm1e_drive_input_mask(&axis->drive) != 0 && in_process_data(axis);
 }
 
-/* An input that SDOs bring has been asked for, now and without a pause since inputs_since_ns. */
+/* Requests inputs by SDO. inputs_since_ns is when the requests without a pause began. */
 static cm1e_error_t ask(cm1e_axis_t *axis)
 {
     const int64_t before_ns = axis->signals.inputs_asked_ns;
@@ -72,7 +72,7 @@ static cm1e_error_t ask(cm1e_axis_t *axis)
     if (axis->drive.feedback.digital_known)
         return CM1E_OK;
     const cm1e_error_t error = reachable(axis);
-    if (error) {
+    if (error != CM1E_OK) {
         axis->signals.inputs_since_ns = axis->now_ns;
         return error;
     }
@@ -83,7 +83,7 @@ cm1e_error_t cm1e_axis_read_input(cm1e_axis_t *axis, int number, bool *value)
 {
     *value = false;
     const cm1e_error_t error = cm1e_axis_check_input(axis, number);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     *value = input_bit(axis, number);
     if (!axis->drive.feedback.online)
@@ -137,12 +137,12 @@ static cm1e_error_t check_output(const cm1e_axis_t *axis, int number)
 static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_t until_ns)
 {
     cm1e_error_t error = check_output(axis, number);
-    if (!error && !cm1e_drive_operational(&axis->drive))
+    if (error == CM1E_OK && !cm1e_drive_operational(&axis->drive))
         error = CM1E_ERROR_AXIS_OFFLINE;
-    if (!error)
+    if (error == CM1E_OK)
         error = reachable(axis);
     cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OUTPUT, .number = number});
-    if (error)
+    if (error != CM1E_OK)
         return error;
     const uint16_t bit = (uint16_t)(1u << (number - 1));
     uint16_t *outputs = &axis->drive.command.digital_outputs;
@@ -180,15 +180,15 @@ cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns)
 {
     const cm1e_error_t error = check_output(axis, number);
-    if (error || !in_process_data(axis))
-        return error ? error : CM1E_ERROR_PDO_MAPPING;
+    if (error != CM1E_OK || !in_process_data(axis))
+        return error != CM1E_OK ? error : CM1E_ERROR_PDO_MAPPING;
     return set_output(axis, number, value, axis->now_ns + keep_ns);
 }
 
 cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value)
 {
     const cm1e_error_t error = check_output(axis, number);
-    *value = !error && (axis->drive.command.digital_outputs >> (number - 1) & 1);
+    *value = error == CM1E_OK && (axis->drive.command.digital_outputs >> (number - 1) & 1);
     return error;
 }
 
@@ -199,7 +199,7 @@ cm1e_error_t cm1e_axis_read_torque(const cm1e_axis_t *axis, double *percent)
     *percent = axis->drive.feedback.torque * (axis->position.scale < 0.0 ? -0.1 : 0.1);
     if (cm1e_drive_is_virtual(&axis->drive))
         return CM1E_ERROR_AXIS_VIRTUAL;
-    if (axis->drive.in_torque.bytes == 0)
+    if (axis->drive.image.in_torque.bytes == 0)
         return CM1E_ERROR_PDO_MAPPING;
     return axis->drive.feedback.online ? CM1E_OK : CM1E_ERROR_AXIS_OFFLINE;
 }

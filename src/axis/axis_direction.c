@@ -1,4 +1,4 @@
-/* MC_Power permits a direction no longer (3.1). */
+/* MC_Power no longer permits a direction (3.1). */
 #include "axis/axis_commands.h"
 #include "axis/axis_events.h"
 #include "axis/axis_plan.h"
@@ -21,6 +21,6 @@ void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
     const from_t from = from_set(axis);
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     cm1e_axis_go(axis, ON_BROKEN_OFF);
-    if (!cm1e_axis_begin_waiting(axis, &from, 0.0)) /* 2.2.2, case 2 */
+    if (!cm1e_axis_begin_waiting(axis, &from, 0.0)) /* the next command begins (2.2.2, case 2) */
         axis->setpoint.source->stop(axis, &axis->limits.maximum, HOME_GOAL_HOLD);
 }

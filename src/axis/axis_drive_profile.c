@@ -1,9 +1,10 @@
 /*
- * Motions that the drive does by itself (`motion: drive`): MC_MoveAbsolute, MC_MoveRelative and MC_MoveAdditive in
- * profile position mode (UG 6.2.2), MC_MoveVelocity in profile velocity mode (UG 6.2.3). The steps are those of the
- * drive's homing: parameters while the axis holds its position in its own mode, the mode, the motion, and back. So a
- * motion begins at standstill, and ends there; MC_Halt and MC_Stop end it with the halt bit, which stays until the mode
- * is left, because its end would let the drive go on. The set-point of the axis is its actual position meanwhile.
+ * Motions by the drive itself (`motion: drive`): MC_MoveAbsolute, MC_MoveRelative and MC_MoveAdditive in profile
+ * position mode (UG 6.2.2), MC_MoveVelocity in profile velocity mode (UG 6.2.3). The steps are those of a homing by the
+ * drive: write the parameters while the axis holds its position in its own mode, switch the mode, move, and switch
+ * back. So a motion begins and ends at standstill. MC_Halt and MC_Stop end it with the halt bit. That bit stays until
+ * the mode is left, because clearing it would let the drive go on. Meanwhile the set-point of the axis is its actual
+ * position.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -24,10 +25,7 @@
 
 static const int64_t parameter_timeout_ns = 5000 * MS_IN_NS;
 static const int64_t acknowledge_timeout_ns = 500 * MS_IN_NS;
-static const int64_t longest_halt_ns = 10000 * MS_IN_NS;
-static const int64_t standing_ns = 50 * MS_IN_NS;
 static const int64_t stale_ns = 10 * MS_IN_NS; /* "target reached" may so long be of the velocity before, which was 0 */
-static const int32_t standing_counts = 10;
 static const int32_t there_counts = 50;
 /* Between the cycle that sees the motor and the drive that brakes it; s. */
 static const double halt_latency_s = 0.005;
@@ -42,7 +40,7 @@ static cm1e_mode_t mode_of(const driving_t *d) { return d->velocity_mode ? CM1E_
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */
 
-/* As the device keeps it, or FALSE: out of its range. */
+/* As the device keeps it, or false: out of its range. */
 static bool parameter(const cm1e_axis_t *axis, uint16_t index, double counts, uint32_t *raw)
 {
     const cm1e_entry_t *entry = cm1e_drive_entry(&axis->drive, index, 0);
@@ -75,7 +73,7 @@ static cm1e_error_t aim_velocity(const cm1e_axis_t *axis, const from_t *from, co
     double velocity;
     const cm1e_error_t error = cm1e_axis_signed_velocity(axis, from, move, &velocity);
     const double now = cm1e_axis_units(axis, axis->setpoint.position);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (velocity > 0.0 ? now >= axis->limits.upper : now <= axis->limits.lower)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
@@ -93,11 +91,11 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
     if (!d->velocity_mode && move->deceleration != 0.0 && move->deceleration != move->acceleration)
         return CM1E_ERROR_UNSUPPORTED; /* UG 6.2.2: the deceleration is the acceleration */
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_axis_resolve(axis, from, move);
-    if (!error)
+    if (error == CM1E_OK)
         error = d->velocity_mode ? aim_velocity(axis, from, move, d) : aim_position(axis, move, d);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (!cm1e_axis_direction_enabled(axis, d->way))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
@@ -117,8 +115,8 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
 static void enter(cm1e_axis_t *axis, drive_step_t step)
 {
     axis->driving.step = step;
-    axis->driving.step_ns = axis->driving.quiet_ns = axis->now_ns;
-    axis->driving.quiet_position = axis->position.raw;
+    axis->driving.step_ns = axis->now_ns;
+    cm1e_axis_watch_standstill(axis, &axis->driving.standstill);
 }
 
 void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d)
@@ -167,19 +165,6 @@ static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
     leave(axis);
 }
 
-/* Where the mapping has it, the process data carry it from now on. */
-static bool by_process_data(cm1e_axis_t *axis, uint16_t index, uint32_t raw)
-{
-    cm1e_drive_t *drive = &axis->drive;
-    if (index == OBJ_6081_PROFILE_VELOCITY && drive->out_profile_velocity.bytes)
-        drive->profile_velocity = raw;
-    else if (index == OBJ_6083_PROFILE_ACCELERATION && drive->out_profile_acceleration.bytes)
-        drive->profile_acceleration = raw;
-    else
-        return false;
-    return true;
-}
-
 static void submit(cm1e_axis_t *axis)
 {
     driving_t *d = &axis->driving;
@@ -217,7 +202,7 @@ static void step_write(cm1e_axis_t *axis)
         }
     }
     while (d->next < DRIVE_PARAMETERS &&
-           by_process_data(axis, parameters[d->velocity_mode][d->next], d->raw[d->next]))
+           cm1e_drive_carry(&axis->drive, parameters[d->velocity_mode][d->next], d->raw[d->next]))
         d->next++;
     if (d->next < DRIVE_PARAMETERS) {
         if (!d->submitted)
@@ -233,16 +218,11 @@ static void step_write(cm1e_axis_t *axis)
     enter(axis, DRIVE_SWITCH);
 }
 
-static bool acting_in(const cm1e_axis_t *axis, cm1e_mode_t mode)
-{
-    return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)mode;
-}
-
 static void step_switch(cm1e_axis_t *axis)
 {
     const driving_t *d = &axis->driving;
     cm1e_axis_set_to_actual(axis);
-    if (!acting_in(axis, mode_of(d))) /* the drive's mode timeout bounds this */
+    if (!cm1e_axis_acts_in(axis, mode_of(d))) /* the drive's mode timeout bounds this */
         return;
     if (d->goal == HOME_GOAL_DONE)
         enter(axis, d->velocity_mode ? DRIVE_MOVE : DRIVE_GO);
@@ -266,7 +246,7 @@ static void step_go(cm1e_axis_t *axis)
 {
     const driving_t *d = &axis->driving;
     cm1e_axis_set_to_actual(axis);
-    if (axis->drive.feedback.bit12 && axis->drive.set_point == d->target)
+    if (axis->drive.feedback.bit12 && axis->drive.target.set_point == d->target)
         enter(axis, DRIVE_MOVE);
     else if (axis->now_ns - d->step_ns < acknowledge_timeout_ns)
         return;
@@ -307,26 +287,13 @@ static void step_move(cm1e_axis_t *axis)
     }
 }
 
-/* As the halt of a homing (src/homing): who does not see the motor waits for the braking and takes the torque away. */
-static int64_t halt_bound_ns(const cm1e_axis_t *axis)
-{
-    const int64_t braking_ns = (int64_t)(1e9 * axis->driving.speed / axis->driving.braking);
-    const bool blind = axis->drive.fault.error != CM1E_OK;
-    const int64_t bound_ns = blind ? braking_ns + standing_ns : 2 * braking_ns + 1000 * MS_IN_NS;
-    return bound_ns < longest_halt_ns ? bound_ns : longest_halt_ns;
-}
-
 static void step_halt(cm1e_axis_t *axis)
 {
     driving_t *d = &axis->driving;
     cm1e_axis_set_to_actual(axis);
-    const int32_t moved = (int32_t)((uint32_t)axis->position.raw - (uint32_t)d->quiet_position);
-    if (!axis->drive.feedback.online || abs(moved) > standing_counts) {
-        d->quiet_ns = axis->now_ns;
-        d->quiet_position = axis->position.raw;
-    }
-    const bool expired = axis->now_ns - d->step_ns >= halt_bound_ns(axis);
-    if (!expired && axis->now_ns - d->quiet_ns < standing_ns)
+    const bool at_rest = cm1e_axis_is_at_standstill(axis, &d->standstill);
+    const bool expired = axis->now_ns - d->step_ns >= cm1e_axis_halt_bound_ns(axis, d->speed / d->braking, true);
+    if (!expired && !at_rest)
         return;
     if (off(axis))
         return;
@@ -339,7 +306,7 @@ static void step_halt(cm1e_axis_t *axis)
 static void step_return(cm1e_axis_t *axis)
 {
     axis->drive.command.mode = axis->mode;
-    if (!acting_in(axis, axis->mode))
+    if (!cm1e_axis_acts_in(axis, axis->mode))
         return;
     axis->drive.command.halt = false;
     leave(axis);
@@ -351,7 +318,7 @@ static bool step(cm1e_axis_t *axis)
         [DRIVE_WRITE] = step_write, [DRIVE_SWITCH] = step_switch, [DRIVE_GO] = step_go,
         [DRIVE_MOVE] = step_move, [DRIVE_HALT] = step_halt, [DRIVE_RETURN] = step_return,
     };
-    if (!axis->drive.feedback.enabled && axis->driving.goal == HOME_GOAL_OFF && axis->drive.fault.error) {
+    if (cm1e_axis_has_lost_torque(axis, axis->driving.goal)) {
         (void)off(axis);
         return true;
     }

@@ -1,13 +1,13 @@
 /**
  * @file axis_events.h
- * What motions tell those that command them (axis_events_t).
+ * How motions report to the commands (axis_events_t).
  */
 #ifndef CM1E_AXIS_AXIS_EVENTS_H
 #define CM1E_AXIS_AXIS_EVENTS_H
 
 #include "axis/axis_parts.h"
 
-/** At the end of a motion: see cm1e_axis_begin_next(). */
+/** Begins a waiting command at the end of a motion: see cm1e_axis_begin_next(). */
 static inline bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offset_s)
 {
     return axis->events->begin_waiting(axis, from, offset_s);
@@ -17,7 +17,7 @@ static inline void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double 
 {
     axis->events->failed(axis, error, value, bound, &axis->limits.emergency);
 }
-/** As cm1e_axis_fail(), but it brakes no harder than this, u/s2. */
+/** Like cm1e_axis_fail(), but the ramp has at most this deceleration, u/s2. */
 static inline void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration)
 {
     cm1e_motion_limits_t ramp = axis->limits.emergency;

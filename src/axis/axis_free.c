@@ -1,4 +1,4 @@
-/* No torque: the source of set-points that is none, and what it takes from others. */
+/* The source of set-points of an axis without torque: its set-point is the actual position. */
 #include "axis/axis_lead.h"
 #include "axis/axis_position.h"
 #include "axis/axis_power.h"

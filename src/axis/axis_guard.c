@@ -1,5 +1,5 @@
-/* The last look at set-points that the axis has not planned itself: one that the motor could not follow within the
- * limits of the axis is not given to it. */
+/* Checks set-points that the axis has not planned itself. A set-point that the motor could not follow within the limits
+ * of the axis is not sent to it. */
 #include <math.h>
 #include <stdio.h>
 
@@ -11,7 +11,7 @@
 #include "axis/axis_setpoint.h"
 #include "core/rare.h"
 
-/* What sums of doubles leave, relative and in counts. */
+/* Tolerances for rounding: relative, and in counts. */
 static const double slack = 1e-6;
 static const double slack_counts = 1e-5;
 
@@ -20,14 +20,14 @@ static guard_t broken(guard_limit_t limit, double asked, double allowed)
     return (guard_t){.limit = limit, .asked = asked, .allowed = allowed};
 }
 
-/* A follower keeps what the application allows at present. An axis that is led keeps what it can do: its leader planned
- * by what was allowed when it began. */
+/* The limits that apply. A follower keeps what the application allows at present. A led axis keeps the limits of motor
+ * and configuration, because its leader planned with what was allowed at the start. */
 static const cm1e_motion_limits_t *limits_of(const cm1e_axis_t *axis)
 {
     return axis_led(axis) ? &axis->limits.system : &axis->limits.maximum;
 }
 
-/* From velocity to velocity within one cycle: through zero both limits are used. */
+/* Checks the change of the velocity in a cycle. If the velocity changes its sign, both limits apply in turn. */
 static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
@@ -45,23 +45,23 @@ static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
     return broken(GUARD_KEPT, 0.0, 0.0);
 }
 
-/* What a position may do in a cycle while its velocity changes within these limits. */
+/* Checks the step of the position in a cycle, while the velocity changes within the limits. */
 static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
     const double t = axis->cycle_s;
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
     const double mean = (axis->setpoint.velocity + next->velocity) * 0.5 * t;
     const double most = fmax(limits_of(axis)->acceleration, limits_of(axis)->deceleration) * t * t /
-                        (kept_jerk ? 4.0 : 1.0); /* without, it may change at any moment of the cycle, and be noise */
-    /* A double of the whole way has this much noise. */
+                        (kept_jerk ? 4.0 : 1.0); /* without a limit of jerk it may change at any moment */
+    /* The rounding of a double that holds the whole position. */
     const double far = 1e-15 * fabs(cm1e_axis_line(axis, next->position)) + slack_counts / fabs(axis->position.scale);
     if (!(fabs(step - mean) <= most * (1.0 + slack) + slack * fabs(mean) + far))
         return broken(GUARD_STEP, step, mean);
     return broken(GUARD_KEPT, 0.0, 0.0);
 }
 
-/* An estimated master creeps, with a velocity of about none: its slave's position says where to. An axis that stands
- * outside may come back. */
+/* Whether the axis leaves its software limits. The velocity of an estimated master at rest is noise, so the positions
+ * decide the direction. An axis outside the limits may come back. */
 static bool leaves_limits(const cm1e_axis_t *axis, double line)
 {
     const double before = cm1e_axis_line(axis, axis->setpoint.position);
@@ -75,7 +75,7 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     const double v = next->velocity, a = next->acceleration, line = cm1e_axis_line(axis, next->position);
     if (!isfinite(v) || !isfinite(a))
         return broken(GUARD_FINITE, 0.0, 0.0);
-    /* What goes on accelerating so close below the maximum velocity can no longer be kept below it. */
+    /* The velocity rises by this peak before the jerk has ended the acceleration. */
     const double peak = fabs(v) + (kept_jerk && a * v > 0.0 ? a * a * axis->guarding.ease : 0.0);
     if (peak > most->velocity * (1.0 + slack))
         return broken(GUARD_VELOCITY, peak, most->velocity);
@@ -98,7 +98,7 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     return guard;
 }
 
-/* By how much the velocity can change at most from acceleration a to b in t, without going above `most`. */
+/* The largest change of the velocity in t, from acceleration a to b, without an acceleration above `most`. */
 static double largest_gain(double a, double b, double t, double jerk, double most)
 {
     const double peak = (a + b + jerk * t) / 2.0;
@@ -107,16 +107,17 @@ static double largest_gain(double a, double b, double t, double jerk, double mos
     return most * t - ((most - a) * (most - a) + (most - b) * (most - b)) / (2.0 * jerk);
 }
 
-/* Where a jerk of at most 1 can lead in a time of 1, from nothing: the acceleration x and the velocity y leave a
- * position between two limits, each reached with a jerk that changes its sign twice. */
+/* The farthest position that a jerk of at most 1 reaches in a time of 1 from rest, if it ends with acceleration x and
+ * velocity y. The jerk of that motion changes its sign twice. */
 static double farthest(double x, double y)
 {
     const double against = fmax((1.0 - x) / 2.0, slack), middle = (0.5 - y) / (2.0 * against);
     return 1.0 / 6.0 - against * (middle * middle + against * against / 12.0);
 }
 
-/* What acceleration adds to the way in the cycle, counted from its first and from its last velocity: two of these are a
- * second difference of the set positions. */
+/* Whether the second difference of the set positions keeps the limits. `early` and `late` are the ways that the
+ * acceleration adds in a cycle, counted from its first and from its last velocity; two of them are a second
+ * difference. */
 static bool keeps_second_difference(double early, double late, double up, double down, double noise)
 {
     const double most = fmax(early, late), least = fmin(early, late);
@@ -153,7 +154,7 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
         .down = most->deceleration * t,
         .acceleration = either,
         .jerk = most->jerk * t,
-        .ease = axis_led(axis) ? 0.0 : 0.5 / most->jerk, /* the path of a group has been planned as a whole */
+        .ease = axis_led(axis) ? 0.0 : 0.5 / most->jerk, /* the group has planned its path with these limits */
         .half_cycle = axis->position.scale * t / 2.0,
         .step = either * t * t / 4.0 * fabs(axis->position.scale) + slack_counts,
         .per_count = 1.0 / axis->position.scale,
@@ -168,7 +169,7 @@ void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLING_LIMIT, guard.asked, guard.allowed);
 }
 
-/* With the numbers asked and allowed. */
+/* Each sentence is followed by the numbers asked and allowed. */
 static const char *const said[GUARD_COUNT] = {
     [GUARD_KEPT] = "nothing",
     [GUARD_FINITE] = "a set-point that is not a finite number, or too far away",

@@ -1,6 +1,6 @@
 /**
  * @file axis_guard.h
- * The last look at set-points that are not of the axis's own making (axis_guard.c).
+ * The check of set-points that come from outside the axis: from masters and leaders (axis_guard.c).
  */
 #ifndef CM1E_AXIS_AXIS_GUARD_H
 #define CM1E_AXIS_AXIS_GUARD_H
@@ -8,16 +8,16 @@
 #include "axis/axis_parts.h"
 
 guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk);
-/** Whether a motion that keeps acceleration and jerk at every moment of the cycle leads to the next set-point. Then the
- *  differences of the set positions keep them too, whatever adds up in it. */
+/** Whether the next set-point can be reached with acceleration and jerk within their limits at every moment of the
+ *  cycle. Then the differences of the set positions keep these limits too. */
 bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next);
-/** When the axis begins to follow or to be led, and when its limits are written. */
+/** Computes the numbers anew. Called when the axis begins to follow or to be led, and when its limits are written. */
 void cm1e_axis_guard_renew(cm1e_axis_t *axis);
-/** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, which tells what was asked for and allowed. */
+/** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, whose text has the value asked for and the value allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
-/** Within the limits without any slack: nearly every set-point is, and this costs next to nothing. What is not a number
- *  is not. */
+/** Whether a set-point is within the limits without any tolerance. Nearly every set-point is, and this test is cheap. A
+ *  set-point that is not a number fails it. */
 static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
     const guarding_t *g = &axis->guarding;

@@ -1,11 +1,11 @@
 /*
- * In position: the set-point stands, and the motor has been within a window around it for some time. CiA 402 has
- * objects for that, 0x6067 and 0x6068, which neither the CM1-E nor the bridge has, so the axis looks itself.
+ * In position: the set-point is at rest, and the motor has been within a window around it for some time. CiA 402 has
+ * objects for that, 0x6067 and 0x6068. Neither the CM1-E nor the bridge has them, so the axis does it itself.
  *
  * PLCopen leaves open whether Done of a move means its set-point or its motor. By default it means the set-point. With
- * in_position.done_waits the commands that end at a position stay active until the motor is there, and the axis keeps
- * torque and set-point meanwhile; a motor that is not there in time is an error. Another command behind it is not kept
- * waiting: it begins when the set-point arrives, and then the one before it is Done.
+ * in_position.done_waits a command that ends at a position stays active until the motor is there. The axis keeps torque
+ * and set-point meanwhile, and it is an error if the motor is not there in time. A buffered command does not wait for
+ * the motor: it begins when the set-point arrives, and then the command before it is Done.
  */
 #include <math.h>
 #include <stdio.h>
@@ -19,16 +19,16 @@
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 
-/* Counts of a CM1-E: a fiftieth of a percent of a revolution, which a servo in good order keeps at rest. */
+/* Counts of a CM1-E: 0.02 % of a revolution. A servo in good order stays within it at rest. */
 static const double default_window_counts = 10.0;
-/* A mapping without target position has a velocity in counts/ms before V1.3.3: the position loop of the axis (20/s)
- * rounds what corrects less than 25 counts to 0. */
+/* Before V1.3.3, a mapping without target position has the velocity in counts/ms. Then the position loop of the axis
+ * (20/s) rounds the correction of less than 25 counts to 0. */
 static const double coarse_window_counts = 30.0;
 
-/* % of rated torque from which on a motor at rest pushes against something. */
+/* % of rated torque: with more, a motor at rest pushes against something. */
 static const float pushing_torque = 80.0f;
 
-/* 3600 s are less than 2^32 us. */
+/* A time in us; 3600 s are less than 2^32 us. */
 static uint32_t in_us(double seconds, double otherwise)
 {
     return (uint32_t)lround(fmin(seconds > 0.0 ? seconds : otherwise, 4000.0) * 1e6);
@@ -38,15 +38,15 @@ void cm1e_axis_in_position_init(cm1e_axis_t *axis)
 {
     const cm1e_axis_config_t *c = axis->config;
     in_position_t *p = &axis->in_position;
-    const bool coarse = axis->mode == CM1E_MODE_CSV && axis->drive.velocity_unit > 1;
-    const double window = cm1e_axis_few(axis, coarse ? coarse_window_counts : default_window_counts);
+    const bool coarse = axis->mode == CM1E_MODE_CSV && axis->drive.range.velocity_unit > 1;
+    const double window = cm1e_axis_tolerance_counts(axis, coarse ? coarse_window_counts : default_window_counts);
     p->window = c->in_position_window > 0.0 ? c->in_position_window : window / fabs(axis->position.scale);
     p->time_us = in_us(c->in_position_time_s, CM1E_IN_POSITION_TIME_S);
     p->timeout_us = in_us(c->in_position_timeout_s, CM1E_IN_POSITION_TIMEOUT_S);
     p->done_waits = c->in_position_done_waits;
 }
 
-/* u; how far the motor is beyond its set-point. */
+/* u; position of the motor minus its set-point. */
 static double deviation(const cm1e_axis_t *axis)
 {
     return cm1e_position_minus(axis_actual(axis), axis->setpoint.position) / axis->position.scale;
@@ -91,7 +91,7 @@ void cm1e_axis_settled(cm1e_axis_t *axis)
     cm1e_axis_go(axis, ON_DONE);
 }
 
-/* What the text tells is as it is now: without torque the motor will be elsewhere. */
+/* Remembers the numbers for the text, because a motor without torque may move away. */
 static void remember(cm1e_axis_t *axis)
 {
     in_position_t *p = &axis->in_position;
@@ -126,7 +126,7 @@ void cm1e_axis_in_position_step(cm1e_axis_t *axis)
     p->there = inside && passed(axis, p->inside_ns, p->time_us);
     if (!axis_settling(axis))
         return;
-    p->torque = axis->drive.in_torque.bytes > 0 ? 0.1f * (float)abs(axis->drive.feedback.torque) : NAN;
+    p->torque = axis->drive.image.in_torque.bytes > 0 ? 0.1f * (float)abs(axis->drive.feedback.torque) : NAN;
     if (axis->commands.waiting.count > 0 || p->there || !p->done_waits)
         cm1e_axis_settled(axis);
     else if (passed(axis, p->arrived_ns, p->timeout_us))

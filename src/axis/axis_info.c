@@ -1,4 +1,4 @@
-/* What an axis tells of itself. */
+/* What an axis shows of itself: values, state, warnings. */
 #include <math.h>
 
 #include "axis/axis_backlash.h"
@@ -22,10 +22,10 @@ void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
         .homed = axis->position.homed,
         .in_position = cm1e_axis_in_position(axis),
         .online = f->online,
-        .torque_known = axis->drive.in_torque.bytes > 0,
+        .torque_known = axis->drive.image.in_torque.bytes > 0,
         .digital_known = f->digital_known,
-        .temperature_known = axis->drive.in_temperature.bytes > 0,
-        .dc_link_known = axis->drive.in_dc.bytes > 0,
+        .temperature_known = axis->drive.image.in_temperature.bytes > 0,
+        .dc_link_known = axis->drive.image.in_dc.bytes > 0,
         .error = axis->fault.error,
         .device_error = axis->fault.device_error,
         .digital_inputs = f->digital_inputs,
@@ -48,7 +48,7 @@ cm1e_error_t cm1e_axis_read(AXIS_REF_t reference, cm1e_axis_info_t *info)
 
 int64_t cm1e_axis_time(const cm1e_axis_t *axis) { return axis->now_ns; }
 
-/* Whether a code says only that the drive is not enabled: that is no warning. */
+/* Whether the error code says only that the drive is not enabled, which is no warning. */
 static bool tells_only_that_it_is_off(const cm1e_drive_t *drive)
 {
     const cm1e_device_error_t *error = drive->kind->error(drive->feedback.error_code);
@@ -59,7 +59,7 @@ cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
     const char *name = cm1e_bus_configuration(axis->drive.bus)->interface_name;
-    const cm1e_device_words_t *words = axis->drive.words;
+    const cm1e_device_words_t *words = axis->drive.mode.words;
     const bool rests = words->rests_disabled && f->state == SWITCH_ON_DISABLED;
     return (cm1e_axis_condition_t){
         .simulation = cm1e_interface_is_simulated(name),
@@ -79,6 +79,7 @@ cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis)
         .resolution = 1.0 / fabs(axis->position.scale),
         .modulo_range = axis->position.modulo_range,
         .max_velocity = most,
+        .max_lag = axis->limits.max_lag,
         .lower = axis->position.modulo_range > 0.0 ? -INFINITY : axis->limits.lower,
         .upper = axis->position.modulo_range > 0.0 ? INFINITY : axis->limits.upper,
         .jog_slow = fmin(config->jog_slow > 0.0 ? config->jog_slow : 0.05 * most, most),

@@ -1,4 +1,4 @@
-/* What goes off, or halts, when it is not renewed. */
+/* Outputs and motions that end when no call renews them. */
 #include "axis/axis_device.h"
 #include "axis/axis_signals.h"
 
@@ -12,7 +12,7 @@ void cm1e_axis_keep(cm1e_axis_t *axis, cm1e_command_id_t id, int64_t keep_ns, do
 
 void cm1e_axis_signals_step(cm1e_axis_t *axis)
 {
-    /* A slave that left Operational may have been without power: nothing comes on again by itself when it is back. */
+    /* A slave that left Operational may have been switched off: its output does not come on again by itself. */
     if (!cm1e_drive_operational(&axis->drive) || axis->now_ns >= axis->signals.output_until_ns)
         axis->drive.command.digital_outputs = 0;
     if (axis->commands.kept == 0 || axis->now_ns < axis->commands.kept_until_ns)
@@ -22,9 +22,9 @@ void cm1e_axis_signals_step(cm1e_axis_t *axis)
     axis->commands.kept = 0;
     if (!moves)
         return;
-    /* Values that a person typed in and that the axis refuses are no reason to go on. */
+    /* The halt must succeed, so it does not use values from the program that the axis could refuse. */
     const cm1e_axis_command_t kept = {.kind = CM1E_COMMAND_HALT, .deceleration = axis->commands.kept_deceleration,
                                       .jerk = axis->commands.kept_jerk};
-    if (cm1e_axis_start(axis, &kept, &halt))
+    if (cm1e_axis_start(axis, &kept, &halt) != CM1E_OK)
         cm1e_axis_start(axis, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT}, &halt);
 }

@@ -1,6 +1,6 @@
 /*
- * An axis that somebody above leads: its axes group. The leader gives a set-point in every cycle; the axis looks at it
- * once more, and stops by itself when it is not one that the motor can follow, or when there is none.
+ * An axis that is led from a room above: by its axes group. The leader gives a set-point in every cycle, and the axis
+ * checks it. The axis stops by itself if the motor cannot follow a set-point, or if there is none.
  */
 #include "axis/axis_lead.h"
 #include "axis/axis_backlash.h"
@@ -69,7 +69,7 @@ static bool step(cm1e_axis_t *axis)
     const cm1e_lead_t lead =
         leader.next(leader.context, leader.index, &line, &next.velocity, &next.acceleration);
     if (lead == CM1E_LEAD_NONE) {
-        if (axis_led(axis)) /* else it was let go just now */
+        if (axis_led(axis)) /* else the leader has just let it go */
             cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLED, 0.0, 0.0);
         return false;
     }
@@ -97,7 +97,7 @@ static void begin_anew(cm1e_axis_t *axis)
 
 static void slow(cm1e_axis_t *axis, double part)
 {
-    (void)part; /* the leader asks all of them */
+    (void)part; /* the leader asks every axis for its part */
     const cm1e_axis_leader_t leader = axis->leader;
     double velocity = axis->setpoint.velocity, acceleration = axis->setpoint.acceleration;
     if (leader.slow)
@@ -105,7 +105,7 @@ static void slow(cm1e_axis_t *axis, double part)
     cm1e_axis_put_motion(axis, velocity, acceleration);
 }
 
-/* Only the leader knows its way. */
+/* The way of a led axis is unknown: only its leader knows it. */
 static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
     (void)axis;

@@ -1,6 +1,6 @@
 /**
  * @file axis_lead.h
- * Axes whose set-points somebody above gives: a group (axis_lead.c).
+ * Axes that are led from a room above: by a group (axis_lead.c).
  */
 #ifndef CM1E_AXIS_AXIS_LEAD_H
 #define CM1E_AXIS_AXIS_LEAD_H
@@ -8,9 +8,9 @@
 #include "axis/axis_parts.h"
 
 static inline bool axis_led(const cm1e_axis_t *axis) { return axis->leader.next != NULL; }
-/** What leads the axis is told that it does so no longer. */
+/** Ends the lead, and tells the leader. */
 void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error); /* axis_free.c */
-/** ErrorStop by a lost bus: in CSV all that are led together brake in the same time, which keeps them on a line. */
+/** ErrorStop by a lost bus. In CSV all axes of a leader brake in the same time, so that they stay on their line. */
 void cm1e_axis_lead_fail(cm1e_axis_t *axis, cm1e_error_t error);
 
 #endif

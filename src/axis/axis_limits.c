@@ -1,15 +1,15 @@
-/* What the axis may do: dynamics, software limits, enabled directions. */
+/* The limits of an axis: dynamics, software limits, enabled directions. */
 #include <math.h>
 
 #include "axis/axis_limits.h"
 #include "axis/axis_backlash.h"
 #include "axis/axis_position.h"
 
-/* Nobody means a difference of a hundredth of a count; sums of doubles make smaller ones. */
+/* Tolerance of positions: smaller than any useful difference, and larger than the rounding of sums of doubles. */
 static const double tolerance_counts = 0.01;
 static const double relative_tolerance = 1e-9;
 
-/* Counts of a CM1-E: 100 revolutions/s2, 2000/s3, half a revolution. */
+/* Counts of a CM1-E: 100 revolutions/s2, 2000 revolutions/s3, half a revolution. */
 static const double default_acceleration_counts = 5e6;
 static const double default_jerk_counts = 1e8;
 static const double default_lag_counts = 25000.0;
@@ -38,8 +38,8 @@ static cm1e_error_t check_configuration(const cm1e_axis_t *axis, cm1e_diag_t *di
     return CM1E_OK;
 }
 
-/* BR appendix 5: the counts in which the motor behind a bridge is told where to go have less than 32 bits. Between them
- * and ours lie whole turns of 2^32, and the gap of a backlash. */
+/* Target positions of a motor behind a bridge have less than 32 bits (BR appendix 5). Its counts differ from ours by
+ * multiples of 2^32, and by the backlash. */
 static void find_counts_limits(cm1e_axis_t *axis)
 {
     const double reach = (double)axis->limits.counts_limit - axis->backlash.gap;
@@ -76,9 +76,9 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *c = axis->config;
     const cm1e_error_t error = check_configuration(axis, diag);
-    if (error)
+    if (error != CM1E_OK)
         return error;
-    axis->limits.counts_limit = axis->drive.kind->position_limited ? axis->drive.position_most : 0;
+    axis->limits.counts_limit = axis->drive.kind->position_limited ? axis->drive.range.position_most : 0;
     const double counts = cm1e_unit_scale(c), count = cm1e_unit_count(c);
     const double backlash_velocity = c->backlash == 0.0 ? 0.0
                                      : or_default(c->backlash_velocity, cm1e_unit_backlash_velocity(c) / counts);
@@ -114,7 +114,7 @@ void cm1e_axis_steps_init(cm1e_axis_t *axis)
     command->velocity_step = whole_counts((acceleration * scale + axis->backlash.acceleration) * axis->cycle_s);
 }
 
-/* One dynamic value: 0 is the maximum; above it, cut or refused. */
+/* Chooses a dynamic value. 0 selects the maximum. A larger value is limited for a stop, and else refused. */
 static bool choose(double asked, double maximum, bool stopping, double *value)
 {
     *value = asked == 0.0 ? maximum : asked;
@@ -126,8 +126,8 @@ static bool choose(double asked, double maximum, bool stopping, double *value)
     return stopping;
 }
 
-/* An acceleration under way takes time to end, at a jerk that is smaller than it began with perhaps more than there is
- * left up to the maximum velocity. A larger one, at most that of the motion so far, keeps below it. */
+/* Keeps an acceleration under way from overshooting the maximum velocity. With a smaller jerk than before, the
+ * acceleration may take too long to end. Then the jerk is raised, at most to that of the motion so far. */
 static void keep_below_maximum_velocity(const from_t *from, double most, double system, double most_jerk,
                                         cm1e_motion_limits_t *limits)
 {
@@ -136,10 +136,10 @@ static void keep_below_maximum_velocity(const from_t *from, double most, double 
         return;
     const double needed = a * a / (2.0 * most_jerk), velocity = a > 0.0 ? from->velocity : -from->velocity;
     double room = most - velocity;
-    if (needed > room + relative_tolerance * system) /* the application's maximum has just been made smaller */
+    if (needed > room + relative_tolerance * system) /* the application has just lowered its maximum */
         room = system - velocity;
     limits->jerk = fmax(limits->jerk, fmin(a * a / (2.0 * fmax(room, 0.0)), most_jerk));
-    /* What a ramp without limit of jerk has left needs more. */
+    /* The acceleration of a ramp without a limit of jerk needs more. */
     if (needed > room + relative_tolerance * system)
         limits->jerk = a * a / (2.0 * fmax(room, relative_tolerance * system));
 }
@@ -150,7 +150,7 @@ void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, c
                                 axis->limits.maximum.jerk, limits);
 }
 
-/* What a command asks for, checked against the axis's maxima. */
+/* The dynamics that a command asks for, checked against the maximum values of the axis. */
 static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum;
@@ -164,7 +164,7 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
     limits->velocity = most->velocity;
     if (!kind->has_velocity)
         return CM1E_OK;
-    /* The sign of a velocity is a direction, and only MC_MoveVelocity's has one (3.10). */
+    /* Only the velocity of MC_MoveVelocity may be negative; its sign is a direction (3.10). */
     const double speed = kind->plan == PLAN_VELOCITY ? fabs(move->velocity) : move->velocity;
     const double largest = most->velocity * (1.0 + relative_tolerance);
     if (!(speed > 0.0) || !(speed <= largest) || !(fabs(move->end_velocity) <= largest))
@@ -173,8 +173,8 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
     return CM1E_OK;
 }
 
-/* What a superimposed motion leaves: the sums stay within the maxima, in whatever direction each of them goes. An
- * acceleration above the rest comes down as fast as that of the other can come up. */
+/* Takes the share of a superimposed motion off the limits, so that the sum of both stays within the maximum values in
+ * every direction. An acceleration above the rest falls as fast as that of the other motion can rise. */
 static void share_with_superimposed(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum, *share = &axis->superimposed.share;
@@ -191,13 +191,13 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
                                    const override_t *override, cm1e_motion_limits_t *limits)
 {
     const cm1e_error_t error = asked_limits(axis, move, limits);
-    if (!error && kind_row(move->kind)->has_override) {
-        limits->velocity *= override->velocity > 0.0 ? override->velocity : 1.0; /* 0: it waits, see axis_override.c */
+    if (error == CM1E_OK && kind_row(move->kind)->has_override) {
+        limits->velocity *= override->velocity > 0.0 ? override->velocity : 1.0; /* 0: see axis_override.c */
         limits->acceleration *= override->acceleration;
         limits->deceleration *= override->acceleration;
         limits->jerk *= override->jerk;
     }
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (from->shared)
         share_with_superimposed(axis, from, limits);
@@ -234,7 +234,7 @@ bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
     return velocity > 0.0 ? axis->power.enable_positive : velocity < 0.0 ? axis->power.enable_negative : true;
 }
 
-/* An axis that stands outside, pushed there without torque, may come back but go no farther. */
+/* An axis outside the limits, where it was pushed without torque, may come back, but not go farther. */
 bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, double lowest, double highest)
 {
     if (!axis->limits.software_limits)
@@ -263,14 +263,14 @@ bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, c
     return cm1e_axis_limits_contain_way(axis, from, lowest, highest);
 }
 
-/* In a homing in steps positions mean nothing until the move that ends it. */
+/* During a homing in steps positions are not valid until the move that ends it. */
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     const bool meaningless = axis->state == CM1E_AXIS_HOMING && !axis->homing_step.finishing;
     return meaningless || cm1e_axis_limits_keep_within(axis, from, profile);
 }
 
-/* What runs is judged as a whole, from where it began, so that a limit may be refused that lies behind the axis. */
+/* The whole profile is judged, from its begin. So a limit that the axis has already passed may be refused too. */
 bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
     const double base = axis->setpoint.base_line, now = cm1e_axis_line(axis, axis->setpoint.position);

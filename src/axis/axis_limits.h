@@ -1,6 +1,6 @@
 /**
  * @file axis_limits.h
- * What the axis may do: dynamics, software limits, directions (axis_limits.c).
+ * The limits of an axis: dynamics, software limits, directions (axis_limits.c).
  */
 #ifndef CM1E_AXIS_AXIS_LIMITS_H
 #define CM1E_AXIS_AXIS_LIMITS_H
@@ -8,35 +8,35 @@
 #include "axis/axis_parts.h"
 
 cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
-/** The dynamics of a command that begins there; MC_Halt and MC_Stop have too large ones cut to the axis's instead of
- *  refused. */
+/** The dynamics of a command that begins at `from`. Too large values are refused; for MC_Halt and MC_Stop they are
+ *  limited. */
 cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  cm1e_motion_limits_t *limits);
-/** As cm1e_axis_limits_of(), with these factors instead of the axis's override. */
+/** Like cm1e_axis_limits_of(), with these factors instead of the override of the axis. */
 cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                    const override_t *override, cm1e_motion_limits_t *limits);
-/** More jerk, where what is left of another motion's acceleration would else overshoot the maximum velocity. */
+/** Raises the jerk if the acceleration of the motion before would else overshoot the maximum velocity. */
 void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits);
-/** Those of a superimposed motion: what it asks for with these factors, cut to its share. */
+/** The dynamics of a superimposed motion: its inputs times these factors, limited to its share. */
 cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
                                      const override_t *override, cm1e_motion_limits_t *limits);
-/** A target inside the software limits, or not farther outside than where the way there begins; with a superimposed
- *  motion on top where `from` has one. */
+/** Whether a target is inside the software limits, or not farther outside than the begin of the way. A superimposed
+ *  motion of `from` is included. */
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target);
-/** As cm1e_axis_limits_contain_target(), for a way between two positions, counted from there in u. */
+/** Like cm1e_axis_limits_contain_target(), for the range between two positions, in u from `from`. */
 bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, double lowest, double highest);
-/** Whether a profile that begins there stays inside the software limits. */
+/** Whether a profile that begins at `from` stays inside the software limits. */
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
-/** As cm1e_axis_limits_contain(), also while a homing in steps makes positions mean nothing. */
+/** Like cm1e_axis_limits_contain(), but also during a homing in steps. */
 bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 
 /** source_t.keeps of a profile. */
 bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper);
 
-/** What the drive may be given in a cycle: cm1e_drive_command_t. @rt init; after the limits */
+/** Computes how far targets may change in a cycle (cm1e_drive_command_t). @rt init; after the limits */
 void cm1e_axis_steps_init(cm1e_axis_t *axis);
-/** When limits are written, and when positions get another meaning. */
+/** Puts the limits in force. Called when limits are written, and when positions get another meaning. */
 void cm1e_axis_apply_limits(cm1e_axis_t *axis);
 /** Whether the emergency ramp from `next` (its position counted from `base`, u) would end inside the software
  *  limits. */
@@ -44,7 +44,7 @@ static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double bas
 {
     if (!axis->limits.software_limits)
         return true;
-    /* Without a limit of jerk the way of a stop is known in closed form, whatever the acceleration is. */
+    /* Without a limit of jerk the way of a stop has a closed form, which does not depend on the acceleration. */
     const double end = base + next.position + next.velocity * fabs(next.velocity) * axis->limits.emergency_way;
     return next.velocity > 0.0 ? end <= axis->limits.upper + axis->limits.tolerance
            : next.velocity < 0.0 ? end >= axis->limits.lower - axis->limits.tolerance : true;

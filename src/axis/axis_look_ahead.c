@@ -1,9 +1,9 @@
 /*
- * How fast a command that waits is passed into: the velocity with which the one before it passes its end.
+ * Look-ahead: the velocity with which a command passes its end into the waiting one.
  *
- * Velocity at a junction: what the buffer mode says, at most as much as the following commands can brake from (looking
- * ahead from the last one backwards), and as much as the present one can reach without backing up. It is zero where the
- * direction turns, where the mode is mcBuffered, and before a command that begins at rest.
+ * The velocity at a junction is that of the buffer mode. It is limited to what the following commands can brake from
+ * (computed from the last one backwards), and to what the present command can reach without going back. It is zero
+ * where the direction changes, where the mode is mcBuffered, and before a command that begins at rest.
  */
 #include <float.h>
 #include <math.h>
@@ -14,14 +14,14 @@
 #include "axis/axis_position.h"
 #include "axis/axis_superimpose.h"
 
-/* A waiting command that is passed into without a stop. */
+/* A waiting command that begins without a stop before it. */
 typedef struct leg {
     cm1e_motion_limits_t limits;
-    double distance;       /* u; where it has no end: only the sign counts */
+    double distance;       /* u; if it has no end, only the sign counts */
     double exit_velocity;  /* u/s, in its own direction */
-    double room;           /* u; from where it begins to the software limit, where there is one */
-    const cm1e_motion_limits_t *most; /* of the axis */
-    bool open;             /* it has no end at which it would have to stop */
+    double room;           /* u; from its begin to the software limit; infinite: none */
+    const cm1e_motion_limits_t *most; /* maximum values of the axis */
+    bool open;             /* it has no end position */
     MC_BUFFER_MODE mode;
 } leg_t;
 
@@ -36,7 +36,7 @@ static double junction_velocity(MC_BUFFER_MODE mode, double first, double second
     }
 }
 
-/* A superimposed motion that ends before such a command begins will have moved it nearer. */
+/* The distance of a command, shortened by what a superimposed motion covers before the command begins. */
 static double nearer(const cm1e_axis_t *axis, const move_t *move, double distance)
 {
     if (!axis->superimposed.id || kind_row(move->kind)->target != TARGET_ABSOLUTE)
@@ -46,13 +46,15 @@ static double nearer(const cm1e_axis_t *axis, const move_t *move, double distanc
     return left * distance > 0.0 ? left : 0.0;
 }
 
-/* FALSE: the command before it has to stop. `end` is where that one ends, `sign` the way it goes; both are moved on. */
+/* Makes a leg of a waiting command. `end` is where the command before it ends, `sign` is its direction; both become
+ * those of this command. false: the command before it has to stop. */
 static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double sign, leg_t *leg)
 {
-    const from_t from = {*end, sign * DBL_MIN, 0.0, axis_shares(axis)}; /* only the direction is known yet */
+    const from_t from = {*end, sign * DBL_MIN, 0.0, axis_shares(axis)}; /* only the direction is known so far */
     move->origin = *end;
     if (move->buffer_mode <= mcBuffered || !is_planned(move->kind) ||
-        cm1e_axis_limits_of(axis, &from, move, &leg->limits) || cm1e_axis_resolve(axis, &from, move))
+        cm1e_axis_limits_of(axis, &from, move, &leg->limits) != CM1E_OK ||
+        cm1e_axis_resolve(axis, &from, move) != CM1E_OK)
         return false;
     leg->mode = (MC_BUFFER_MODE)move->buffer_mode;
     leg->open = false;
@@ -77,14 +79,14 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
     return leg->distance != 0.0;
 }
 
-/* How fast a leg may be entered when the command before it has this velocity and direction. With a limit of jerk the
- * way down to a stop can be shorter than the way down to a low velocity. To enter as if to stop costs the junction
- * behind its velocity, so only an axis that is already too fast does so: a command more in the buffer, which lets this
- * leg be left faster, must not ask it for a slower entry than it was planned for. */
+/* The maximum velocity with which a leg may be entered from a command of this velocity and direction. With a limit of
+ * jerk, the way down to a stop can be shorter than the way down to a low velocity. An entry that plans a stop loses the
+ * velocity at the next junction, so only an axis that is already too fast does that. Else a further command in the
+ * buffer, which lets this leg be left faster, could demand a slower entry than was planned. */
 static double entry_velocity(const leg_t *leg, double velocity_before, double sign, bool as_if_to_stop)
 {
     double velocity = junction_velocity(leg->mode, velocity_before, leg->limits.velocity);
-    if (isfinite(leg->room)) /* it may turn out not to be able to begin there: then the axis stops inside its limits */
+    if (isfinite(leg->room)) /* if it cannot begin there, the axis has to stop inside its limits */
         velocity = cm1e_profile_entry_velocity(fmax(leg->room, 0.0), velocity, 0.0, leg->most);
     if (leg->distance * sign <= 0.0)
         return 0.0;
@@ -95,13 +97,13 @@ static double entry_velocity(const leg_t *leg, double velocity_before, double si
     return as_if_to_stop ? fmax(entry, cm1e_profile_entry_velocity(distance, velocity, 0.0, &leg->limits)) : entry;
 }
 
-/* From the last leg backwards: how fast the first one is to be entered by a command of this velocity. */
+/* The velocity with which a command of this velocity may enter the first leg, computed from the last leg backwards. */
 static double look_ahead(leg_t *legs, int count, double velocity, bool as_if_to_stop)
 {
     for (int i = count - 1; i > 0; i--)
         legs[i - 1].exit_velocity = entry_velocity(&legs[i], legs[i - 1].limits.velocity,
                                                    copysign(1.0, legs[i - 1].distance), as_if_to_stop);
-    /* From which side the command gets to its target is for the profile to know. */
+    /* The direction of the first leg; the profile decides from which side the command reaches its target. */
     const double sign = copysign(1.0, legs[0].distance);
     return sign * entry_velocity(&legs[0], velocity, sign, as_if_to_stop);
 }
@@ -113,7 +115,7 @@ double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move
         return factor * move->end_velocity;
     cm1e_motion_limits_t limits;
     if (axis->commands.waiting.count == 0 || kind_row(move->kind)->plan != PLAN_TO_TARGET ||
-        cm1e_axis_limits_of(axis, from, move, &limits))
+        cm1e_axis_limits_of(axis, from, move, &limits) != CM1E_OK)
         return 0.0;
     leg_t legs[CM1E_AXIS_BUFFER_DEPTH];
     const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
@@ -133,7 +135,7 @@ double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move
         return 0.0;
     const cm1e_motion_state_t start = {0.0, from->velocity, from->acceleration};
     const double wanted = look_ahead(legs, count, limits.velocity, false);
-    if (!cm1e_axis_direction_enabled(axis, wanted)) /* braking is all that may still go that way */
+    if (!cm1e_axis_direction_enabled(axis, wanted)) /* in that direction it may only brake */
         return 0.0;
     const double velocity = cm1e_profile_passing_velocity(&start, distance, wanted, &limits);
     if (velocity == wanted)

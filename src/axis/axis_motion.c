@@ -1,4 +1,4 @@
-/* The set-point of every cycle: planned once at the command, sampled here. */
+/* The set-point of every cycle: a sample of the profile that was planned when the command began. */
 #include <math.h>
 
 #include "axis/axis_backlash.h"
@@ -12,14 +12,14 @@
 #include "axis/axis_superimpose.h"
 #include "core/rare.h"
 
-/* CSV only (a mapping without target position): the position loop is ours then. 1/s. */
+/* 1/s. In CSV (a mapping without target position) the position loop is ours. */
 static const double csv_position_gain = 20.0;
 
-/* A profile that ends so shortly after a set-point has ended with it; in cycles. */
+/* Cycles: a profile that ends so shortly after a set-point counts as ended. */
 static const double same_moment = 1e-6;
 
-/* Counts that a set-point may be away from where its profile began, before it counts from where it is: a double still
- * tells apart a millionth of a count there. */
+/* Counts: a set-point that is farther from the begin of its profile counts from a new base. At this distance a double
+ * still has a resolution of a millionth of a count. */
 static const double farthest_from_base = 0x1p32;
 
 static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
@@ -66,12 +66,12 @@ void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 
 void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
 {
-    (void)goal; /* what comes after a ramp of ours is decided when it has ended */
+    (void)goal; /* what follows is decided when the ramp has ended */
     cm1e_axis_ramp_down(axis, ramp);
 }
 
-/* Whether the running profile still goes that way: now, at its end, or in between, where each stretch of one direction
- * that begins and ends at rest has a border of two segments in it. */
+/* Whether the profile still moves in the direction `sign`: now, at its end, or in between. A stretch in one direction
+ * that begins and ends at rest contains a border of two segments, so the borders are tested. */
 bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign)
 {
     const cm1e_profile_t *profile = &axis->setpoint.profile;
@@ -113,22 +113,22 @@ static void brake_after(cm1e_axis_t *axis, const from_t *end, double late_s)
     const from_t from = from_set(axis);
     const bool on_top = axis->superimposed.id != 0;
     cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    if (on_top) /* from the last set-point, which has both in it */
+    if (on_top) /* from the last set-point, which includes both motions */
         ramp_down_from(axis, &from, &axis->limits.maximum, axis->cycle_s);
     else
         ramp_down_from(axis, end, &axis->limits.maximum, late_s);
 }
 
-/* The motion of a command goes on only while it could still be stopped before a software limit. Moves to a position
- * were checked as a whole when they were planned; velocities, and what changes on the way, meet a limit here. */
+/* Whether a command may go on: only while it can still be stopped before a software limit. Moves to a position were
+ * checked as a whole when they were planned; endless motions and changes during a motion are checked here. */
 static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
 {
     return !axis->limits.software_limits || !axis_moves_by_command(axis) ||
            cm1e_axis_limits_can_stop(axis, axis->setpoint.base_line, next);
 }
 
-/* What waits begins where the profile ended `late_s` ago, a follower with the present set-point. What begins where the
- * axis can no longer be stopped would go beyond the limit. */
+/* Whether a waiting command may begin where the profile ended `late_s` ago. It may not begin where the axis can no
+ * longer be stopped before a limit. A coupling begins at the present set-point instead. */
 static bool may_hand_over(cm1e_axis_t *axis, double late_s)
 {
     cm1e_motion_state_t begin = axis->setpoint.profile.end;
@@ -137,8 +137,8 @@ static bool may_hand_over(cm1e_axis_t *axis, double late_s)
     return may_go_on(axis, begin);
 }
 
-/* The profile ended `late_s` ago, inside the present cycle. Where its command ends with it, the next one has begun at
- * that very moment. TRUE: there is a profile to go on with. */
+/* Called when the profile ended `late_s` ago, inside the present cycle. If its command ends with it, the next command
+ * began at that moment. true: the axis goes on with a profile. */
 static bool profile_ended(cm1e_axis_t *axis, double late_s)
 {
     const bool shared = axis->superimposed.moving && !axis->superimposed.alone;
@@ -150,31 +150,31 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
         return axis_on_profile(axis);
     if (axis->commands.active && kind_row(axis->commands.kind)->is_endless) {
         if (may_hand_over(axis, late_s) && cm1e_axis_begin_waiting(axis, &end, late_s))
-            return axis_on_profile(axis); /* not what follows a master */
+            return axis_on_profile(axis); /* false if it follows a master now */
         axis->setpoint.reached = true;
-        cm1e_axis_set_passing(axis); /* the position lies behind now, whatever else changes */
+        cm1e_axis_set_passing(axis); /* the position has been passed, whatever changes later */
         return true;
     }
     if (axis->commands.active && !goes_on && cm1e_axis_settle(axis)) {
-        hold_target(axis); /* in its state of the diagram */
+        hold_target(axis); /* the state of the diagram stays */
         return false;
     }
     if (axis->commands.active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
     if (!goes_on && axis->superimposed.id)
-        axis->setpoint.stands = true; /* 3.8, figure 23: what is superimposed goes on */
+        axis->setpoint.stands = true; /* 3.8, figure 23: the superimposed motion goes on */
     else if (!goes_on)
         cm1e_axis_stand(axis);
     if (axis->state == CM1E_AXIS_STANDSTILL || axis->state == CM1E_AXIS_DISCRETE_MOTION) {
         if (cm1e_axis_begin_waiting(axis, &end, late_s))
             return axis_on_profile(axis);
-        if (goes_on) /* for a command that could not begin after all */
+        if (goes_on) /* for a command that could not begin in the end */
             brake_after(axis, &end, late_s);
     }
     return axis_on_profile(axis);
 }
 
-/* Reckoned a cycle ahead, since the set-point of a cycle waits for it. */
+/* Computes the time a cycle ahead, to keep it out of the way of the next set-point. */
 static double next_time(cm1e_axis_t *axis)
 {
     const double time_s = axis->setpoint.profile_next_s;
@@ -189,8 +189,8 @@ CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
     cm1e_profile_stretch_at(&axis->setpoint.profile, time_s, &axis->setpoint.stretch);
 }
 
-/* A velocity that goes on for weeks: from here on a profile that has ended already. At most once in 20 minutes; in long
- * double, as what is lost here would add up. */
+/* Begins to count anew in a motion that goes on for weeks: from here on the profile is one that has ended already. This
+ * happens at most once in 20 minutes. It uses long double, because its rounding would add up. */
 CM1E_RARE static void count_anew(cm1e_axis_t *axis)
 {
     const cm1e_motion_state_t end = axis->setpoint.profile.end;
@@ -223,7 +223,7 @@ static inline void follow(cm1e_axis_t *axis, double time_s)
     cm1e_motion_state_t next = cm1e_profile_stretch_state(&axis->setpoint.stretch, time_s);
     const bool on_top = axis->superimposed.id != 0;
     if (on_top) {
-        cm1e_motion_state_t sum = next; /* `next` keeps out of memory where there is none */
+        cm1e_motion_state_t sum = next; /* a copy, so that `next` can stay in registers */
         cm1e_axis_superimposed_step(axis, &sum);
         next = sum;
     }
@@ -246,7 +246,7 @@ static inline void follow(cm1e_axis_t *axis, double time_s)
                        cm1e_axis_farthest(axis));
 }
 
-/* A ramp, which is no command's, replaces the profile. */
+/* Replaces the profile by a ramp that belongs to no command. */
 static void meet_limit(cm1e_axis_t *axis, double velocity)
 {
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
@@ -261,7 +261,7 @@ static bool at_end(const cm1e_axis_t *axis, double time_s)
            !axis->setpoint.paused && !axis->setpoint.stands;
 }
 
-/* Over the end of the profile, and of as many as end within this cycle. */
+/* Passes the end of the profile, and of all further profiles that end within this cycle. */
 CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
 {
     while (at_end(axis, time_s)) {
@@ -334,14 +334,14 @@ static bool step_hold(cm1e_axis_t *axis)
 
 const source_t cm1e_source_hold = {.step = step_hold, .stop = cm1e_axis_stop_by_ramp, .holds = true};
 
-/* Such a ramp ends with a step of its acceleration. */
+/* Whether the set-point is on a ramp without a limit of jerk, which ends with a step of its acceleration. */
 static bool on_hard_ramp(const cm1e_axis_t *axis)
 {
     const cm1e_profile_t *profile = &axis->setpoint.profile;
     if (axis->setpoint.source != &cm1e_source_profile || profile->segment_count == 0)
         return false;
     const cm1e_profile_segment_t *last = &profile->segments[profile->segment_count - 1];
-    return profile->end.velocity == 0.0 && last->jerk == 0.0 && last->start.acceleration != 0.0;
+    return last->jerk == 0.0 && last->start.acceleration != 0.0;
 }
 
 void cm1e_axis_motion_step(cm1e_axis_t *axis)
@@ -350,7 +350,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
         axis->homing_hooks->step_cycle(axis);
     if (!axis_holds(axis))
         cm1e_axis_in_position_leave(axis);
-    if (axis->setpoint.source == &cm1e_source_profile) /* most motions are, and a call by pointer costs a nanosecond */
+    if (axis->setpoint.source == &cm1e_source_profile) /* the common case: it saves a call by pointer */
         cm1e_axis_profile_step(axis);
     else if (!axis->setpoint.source->step(axis) && axis_on_profile(axis))
         cm1e_axis_profile_step(axis);
@@ -359,14 +359,14 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
     if (axis->state == CM1E_AXIS_STOPPING && axis_holds(axis) && !axis->commands.stop_held &&
         !axis->homing_step.after_stop)
         cm1e_axis_go(axis, ON_STOP_RELEASED);
-    if (axis_holds(axis) && !axis->commands.active && axis->commands.waiting.count > 0) { /* behind a homing */
+    if (axis_holds(axis) && !axis->commands.active && axis->commands.waiting.count > 0) { /* after a homing */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     }
 }
 
-/* A position loop is no better than what it sees: while inputs are missing the last correction stays, and a ramp of
- * ErrorStop that nobody sees has none. Else the motor would be driven faster the longer the actual position stands. */
+/* The correction of the position loop. While inputs are missing the last correction stays, and an offline ramp of
+ * ErrorStop has none. Else an actual position that stays the same would drive the motor faster and faster. */
 static double loop_velocity(cm1e_axis_t *axis)
 {
     if (axis->drive.feedback.fresh)
@@ -377,7 +377,7 @@ static double loop_velocity(cm1e_axis_t *axis)
     return axis->setpoint.loop_velocity;
 }
 
-/* The loop catches up, but not beyond what the axis may do. Motors stay far below 2^31 counts/s. */
+/* The target velocity with the correction, at most the maximum velocity. Motors stay far below 2^31 counts/s. */
 static int32_t target_velocity(cm1e_axis_t *axis)
 {
     const double most = axis->limits.system.velocity * fabs(axis->position.scale) + axis->backlash.velocity;
@@ -389,11 +389,11 @@ static int32_t target_velocity(cm1e_axis_t *axis)
 void cm1e_axis_write_set_point(cm1e_axis_t *axis)
 {
     cm1e_drive_command_t *command = &axis->drive.command;
-    /* The drive's counts and ours differ by whole turns of 2^32 only. */
+    /* The drive's counts differ from ours only by multiples of 2^32. */
     command->target_position = (int32_t)(uint32_t)(uint64_t)cm1e_axis_motor_target(axis);
     if (axis->mode == CM1E_MODE_CSV)
         command->target_velocity = target_velocity(axis);
-    else if (cm1e_drive_is_virtual(&axis->drive)) /* shown as the actual one: positions of whole counts tell it badly */
+    else if (cm1e_drive_is_virtual(&axis->drive)) /* shown as its actual velocity; whole counts are too coarse */
         command->target_velocity = (int32_t)round(axis->setpoint.velocity * axis->position.scale);
     else if (axis->setpoint.source->write)
         axis->setpoint.source->write(axis);

@@ -1,6 +1,6 @@
 /**
  * @file axis_move.h
- * Commands as the axis keeps them, and where motions begin. What can be done with them is in axis_commands.h.
+ * Commands as the axis keeps them, and the states in which motions begin. Their functions are in axis_commands.h.
  */
 #ifndef CM1E_AXIS_AXIS_MOVE_H
 #define CM1E_AXIS_AXIS_MOVE_H
@@ -20,66 +20,66 @@ typedef struct command_record {
     uint8_t state;      /**< cm1e_command_state_t */
 } command_record_t;
 
-/** A command as it is kept: what it asks for, and what is known of its way. */
+/** A command as it is kept: its inputs, and what is known of its way. */
 typedef struct move {
     cm1e_command_id_t id;
     uint8_t kind, buffer_mode, direction; /**< cm1e_command_kind_t, MC_BUFFER_MODE, MC_DIRECTION */
-    bool passing : 1;       /**< MOVE_CONTINUOUS_*: only its end velocity is left to be reached, not its position */
-    bool paused : 1;        /**< an override of velocity 0: it brakes to a standstill and waits */
+    bool passing : 1;       /**< MOVE_CONTINUOUS_*: it has passed its position; only its end velocity is left */
+    bool paused : 1;        /**< an override of velocity 0: it brakes to standstill and waits */
     double position, velocity, end_velocity, acceleration, deceleration, jerk;
     double shift;           /**< u; how far MC_SetPosition has moved the coordinates since the position was given */
-    position_t origin;      /**< what a relative position counts from */
-    position_t target;      /**< where it ends */
-    double exit_velocity;   /**< u/s, signed: with which it passes its target, because another one goes on from there */
+    position_t origin;      /**< the position from which a relative one counts */
+    position_t target;      /**< its end position */
+    double exit_velocity;   /**< u/s, signed: velocity at its target, from which another command goes on */
 } move_t;
 
-/** Commands that wait behind the active one, in their order: a ring. */
+/** The waiting commands, in their order, as a ring. */
 typedef struct buffer {
-    move_t moves[CM1E_AXIS_BUFFER_DEPTH];
     uint8_t first, count;
+    move_t moves[CM1E_AXIS_BUFFER_DEPTH];
 } buffer_t;
 
-/** The points of a table profile as the axis keeps them until the motion begins. */
+/** The points of a table profile, kept until the motion begins. */
 typedef struct table_points {
     int count;
     bool absolute;
     cm1e_table_point_t points[CM1E_TABLE_POINTS_MAX];
 } table_points_t;
 
-/** Room for table profiles, made with the axis. */
+/** Memory for table profiles, allocated with the axis. */
 typedef struct tables {
     cm1e_table_profile_t running;
     cm1e_command_id_t waiting_id;
     table_points_t waiting;
 } tables_t;
 
-/** Factors of MC_SetOverride; acceleration: also for the deceleration. Written by axis.c, axis_override.c and, while it
- *  tries a plan without them, axis_plan.c. */
+/** Factors of MC_SetOverride. The factor of the acceleration applies to the deceleration too. Written by axis.c,
+ *  axis_override.c and, while it tries a plan without them, axis_plan.c. */
 typedef struct override {
     double velocity, acceleration, jerk;
 } override_t;
 
-/** Where a motion begins. */
+/** The state in which a motion begins. */
 typedef struct from {
     position_t position;
     double velocity, acceleration; /**< u/s, u/s2 */
-    bool shared;                   /**< a superimposed motion goes on above it and needs its part of the limits */
+    bool shared;                   /**< a superimposed motion goes on and needs its share of the limits */
 } from_t;
 
-/** A motion on top of the commanded one (3.8), which is called the base of it. Written by axis_superimpose.c. */
+/** A superimposed motion (3.8). The commanded motion is called its base. Written by axis_superimpose.c. */
 typedef struct superimposed {
-    cm1e_command_id_t id;          /**< MC_MoveSuperimposed, or MC_HaltSuperimposed; 0: none */
-    bool moving;                   /**< FALSE: it waits until the base has room for it */
+    bool moving;                   /**< false: it waits until the base has room for it */
     bool paused;                   /**< an override of velocity 0 */
-    bool alone;                    /**< began in Standstill: there is no base to share with */
-    cm1e_motion_limits_t share;    /**< what of the axis's maxima is its own; acceleration = deceleration */
-    cm1e_profile_t profile;        /**< from where the command began, in u */
+    bool alone;                    /**< it began in Standstill: no base needs a share */
+    cm1e_motion_limits_t share;    /**< its share of the maximum values; acceleration = deceleration */
+    cm1e_profile_t profile;        /**< in u from the begin of the command */
     int64_t cycles;
     cm1e_motion_state_t now;       /**< its part of the present set-point */
-    double lowest, highest;        /**< u; of all its way */
-    cm1e_command_id_t ended;       /**< the last one, and what it had covered, u */
+    double lowest, highest;        /**< u; extremes of its way */
+    cm1e_command_id_t ended;       /**< the last one that ended; below, what it covered (u) */
     double covered;
     move_t move;
+    cm1e_command_id_t id;          /**< MC_MoveSuperimposed, or MC_HaltSuperimposed; 0: none. Every cycle looks at it */
 } superimposed_t;
 
 /** The commands of an axis. Written by axis_commands.h, axis_command.c, axis_record.c, axis_buffer.c, axis_replan.c and
@@ -87,32 +87,32 @@ typedef struct superimposed {
 typedef struct commands {
     cm1e_command_id_t active;       /**< 0: none */
     cm1e_command_kind_t kind;       /**< of the active one */
-    cm1e_command_id_t last_id;      /**< of the last command that was taken */
+    cm1e_command_id_t last_id;      /**< the last command that was accepted */
     cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
-    cm1e_command_id_t stop;         /**< whose MC_Stop holds the axis in Stopping */
+    cm1e_command_id_t stop;         /**< the MC_Stop that holds the axis in Stopping */
     bool stop_held;
-    bool awaits;                    /**< the first waiting command begins at a place of its master (StartSync), until
-                                         when what runs goes on */
-    move_t move;                    /**< the active one, unless it is a homing */
+    bool awaits;                    /**< the first waiting command begins at a place of its master (StartSync);
+                                         until then the active one goes on */
     buffer_t waiting;
+    move_t move;                    /**< the active one, unless it is a homing */
     command_record_t records[COMMANDS_REMEMBERED];
     int64_t kept_until_ns;
-    double kept_deceleration, kept_jerk; /**< of that halt */
-    cm1e_axis_command_t refused;    /**< what it asked for */
+    double kept_deceleration, kept_jerk; /**< dynamics of the halt of `kept` */
+    cm1e_axis_command_t refused;    /**< the inputs of the last refused command */
     cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
 } commands_t;
 
-/** What is done with a command, by how it is planned (command_plan_t). A NULL is never called. */
+/** The functions for a command, by how it is planned (command_plan_t). A NULL is never called. */
 typedef struct command_method {
-    /** Begins at once, or refuses: then nothing has changed. */
+    /** Begins the command at once. After a refusal nothing has changed. */
     cm1e_error_t (*start)(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-    /** Waits behind others from now on; the same of a refusal. */
+    /** Buffers the command. After a refusal nothing has changed. */
     cm1e_error_t (*buffer)(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-    /** The first of those that wait goes on waiting although its turn has come. NULL: it does not. */
+    /** Whether the first waiting command, although it could begin, waits for its master. NULL: it does not. */
     bool (*awaits)(cm1e_axis_t *axis, const from_t *from, double late_s);
-    /** One that waited begins where the command before it ended, `late_s` before the present set-point. */
+    /** Begins a waiting command. `from` is the end of the command before it, `late_s` before the present set-point. */
     cm1e_error_t (*begin)(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
-    /** ContinuousUpdate. NULL: it has no inputs to change. */
+    /** Takes changed inputs over (ContinuousUpdate). NULL: the command has none. */
     cm1e_error_t (*update)(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
 } command_method_t;
 

@@ -1,5 +1,5 @@
-/* Vendor parameters: objects of the drive by number, over SDO. Requests wait in a ring and are worked on one after the
- * other, a step a cycle; who asked polls by ticket, so a block may vanish at any time. */
+/* Vendor parameters: objects of the drive by number, over SDO. Requests wait in a ring and are handled one after the
+ * other, with a step in each cycle. A block polls its request by a ticket, so it may vanish at any time. */
 #include <math.h>
 #include <stdio.h>
 
@@ -69,7 +69,7 @@ static const cm1e_axis_objects_t *row_of(int number)
 
 enum { F530_OF_DEVICE = 17 }; /* before it, sub-indexes of the four motors stand side by side (BR 7.4) */
 
-/* NULL: there is no such number, or the drive has no such object. */
+/* The entry of a parameter; NULL: no such number, or the drive has no such object. */
 static const cm1e_entry_t *entry_of(const cm1e_axis_t *axis, int number)
 {
     const cm1e_axis_objects_t *row = row_of(number);
@@ -122,7 +122,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, int number, bool write, doubl
     if (axis->drive.firmware && entry->since > axis->drive.firmware->firmware)
         return CM1E_ERROR_UNSUPPORTED;
     const cm1e_error_t error = write ? check_write(axis, entry, value) : CM1E_OK;
-    if (error)
+    if (error != CM1E_OK)
         return error;
     /* One less than there are: a result stays for a cycle at least. */
     return (uint16_t)(axis->objects.next - axis->objects.head) < OBJECT_REQUESTS - 1 ? CM1E_OK : CM1E_ERROR_FULL;
@@ -132,7 +132,7 @@ cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, d
 {
     *ticket = 0;
     const cm1e_error_t error = check(axis, number, write, value);
-    if (error) {
+    if (error != CM1E_OK) {
         if (error != CM1E_ERROR_FULL)
             cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = number, .value = value});
         return error;
@@ -164,11 +164,11 @@ static bool is_signed(const cm1e_entry_t *entry)
 static void finish(cm1e_axis_t *axis, object_request_t *request, cm1e_error_t error)
 {
     objects_t *objects = &axis->objects;
-    request->state = error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
+    request->state = error != CM1E_OK ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
     request->error = (int16_t)error;
     objects->submitted = false;
     objects->head++;
-    if (error)
+    if (error != CM1E_OK)
         cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = cm1e_axis_object_number(request->ticket),
                                                      .value = request->value, .abort_code = objects->sdo.abort_code});
 }
@@ -186,7 +186,7 @@ static void submit(cm1e_axis_t *axis, object_request_t *request, const cm1e_entr
     if (error == CM1E_OK) {
         objects->submitted = true;
         request->state = CM1E_COMMAND_ACTIVE;
-    } else if (error != CM1E_ERROR_FULL) { /* full: again in the next cycle */
+    } else if (error != CM1E_ERROR_FULL) { /* if the queue is full, it is tried again */
         finish(axis, request, error);
     }
 }
@@ -221,7 +221,7 @@ void cm1e_axis_objects_step(cm1e_axis_t *axis)
     }
 }
 
-/* What other drives have under this number. */
+/* Explains a number that only other drives have. */
 static void lacking_text(const cm1e_axis_t *axis, const cm1e_axis_objects_t *row, char *text, size_t size)
 {
     const int number = axis->not_set.number;

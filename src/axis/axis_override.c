@@ -1,7 +1,7 @@
 /*
- * MC_SetOverride (3.18): factors on the dynamics of every command but MC_Stop and homing. A change is planned in at
- * once, from the present set-point. A velocity of 0 brakes the command to a standstill in which it stays active, in its
- * state of the diagram, and from which it goes on when the factor is larger again.
+ * MC_SetOverride (3.18): factors on the dynamics of all commands except MC_Stop and homings. After a change the motion
+ * is planned anew at once, from the present set-point. A velocity factor of 0 brakes the command to standstill. There
+ * it stays active, in its state of the diagram, and goes on when the factor is larger again.
  */
 #include <string.h>
 
@@ -14,7 +14,7 @@
 
 static bool is_factor(double value) { return value > 0.0 && value <= 1.0; }
 
-/* What cannot go on after a pause ends with that error, as if it began now (2.2.2, case 2: the next one does). */
+/* Ends a command that cannot go on after a pause with that error, and begins the next one (2.2.2, case 2). */
 static void resume_failed(cm1e_axis_t *axis, cm1e_error_t error)
 {
     const from_t from = from_base(axis);
@@ -32,25 +32,25 @@ static cm1e_error_t set_override(cm1e_axis_t *axis, const override_t *asked)
         return CM1E_ERROR_AXIS_OVERRIDE;
     if (velocity == before.velocity && asked->acceleration == before.acceleration && asked->jerk == before.jerk)
         return CM1E_OK;
-    if (drive_profiles(axis)) /* they would have to be written to the drive, and it take them in motion */
+    if (drive_profiles(axis)) /* the drive would have to accept new values in motion */
         return CM1E_ERROR_UNSUPPORTED;
     axis->override = *asked;
     const bool paused = axis->setpoint.paused;
     cm1e_axis_superimposed_replan(axis);
     const cm1e_error_t error = cm1e_axis_replan(axis);
-    if (error && paused && velocity > 0.0)
+    if (error != CM1E_OK && paused && velocity > 0.0)
         resume_failed(axis, error);
     return CM1E_OK;
 }
 
-/* Factors that do not change come in every cycle: once refused, they must not hide the text of what is refused after
- * them. */
+/* A block sends its factors in every cycle. The same refused factors are remembered only once, so that they do not hide
+ * the text of a later refusal. */
 cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
 {
     const override_t asked = {velocity, acceleration, jerk};
     const cm1e_error_t error = set_override(axis, &asked);
-    if (!error || memcmp(&asked, &axis->override_refused, sizeof asked) != 0)
+    if (error == CM1E_OK || memcmp(&asked, &axis->override_refused, sizeof asked) != 0)
         cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OVERRIDE});
-    axis->override_refused = error ? asked : axis->override;
+    axis->override_refused = error != CM1E_OK ? asked : axis->override;
     return error;
 }

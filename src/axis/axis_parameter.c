@@ -1,5 +1,6 @@
-/* Parameters of table 5 (3.19, 3.20). System values are the bounds of motor and configuration, Appl values the smaller
- * ones that the application asks for; commands are held to the latter, the ramp of an error keeps the former. */
+/* Parameters of table 5 (3.19, 3.20). "System" values are the limits of motor and configuration. "Appl" values are the
+ * smaller limits that the application sets. Commands keep the Appl values, and the ramp of an error keeps the System
+ * values. */
 #include "axis/axis_parameters.h"
 
 #include <math.h>
@@ -10,18 +11,18 @@
 #include "axis/axis_limits.h"
 #include "axis/axis_text.h"
 
-/* The axis keeps positions as doubles: whole counts are exact up to 2^53. */
+/* Limits are doubles, in which whole counts are exact up to 2^53. */
 static const double farthest_limit_counts = 9e15;
 
-/* How a parameter is written. */
+/* The rule by which a parameter is written. */
 typedef enum rule { READ_ONLY = 0, LIMIT, SWITCH, LAG, APPLICATION, IN_POSITION } rule_t;
 
 typedef struct parameter {
     const char *name;
     rule_t rule;
-    size_t value;        /* in the axis; 0: none, see value_of() */
-    size_t system;       /* APPLICATION: the largest value */
-    double least_counts; /* APPLICATION: the smallest value, of a CM1-E */
+    size_t value;        /* offset of the value in the axis; 0: see value_of() */
+    size_t system;       /* APPLICATION: offset of the maximum */
+    double least_counts; /* APPLICATION: minimum, for a CM1-E */
 } parameter_t;
 
 #define AT(member) offsetof(struct cm1e_axis, member)
@@ -58,7 +59,7 @@ static const parameter_t parameters[ROWS] = {
     OUR(_DONE_WAITS) = {"InPositionDoneWaits", SWITCH, AT(in_position.done_waits), 0, 0},
 };
 
-/* NULL: the axis has none of this number. */
+/* The row of a parameter; NULL: the axis has none of this number. */
 static const parameter_t *row(int number)
 {
     const bool ours = number >= CM1E_PARAMETER_IN_POSITION && number < CM1E_PARAMETER_IN_POSITION_END;
@@ -76,7 +77,7 @@ static double double_at(const cm1e_axis_t *axis, size_t offset) { return *(const
 static bool bool_at(const cm1e_axis_t *axis, size_t offset) { return *(const bool *)at(axis, offset); }
 static double seconds_at(const cm1e_axis_t *axis, size_t us) { return *(const uint32_t *)at(axis, us) * 1e-6; }
 
-/* What the axis does not have as such. */
+/* The value of a parameter that is not stored as such. */
 static double value_of(const cm1e_axis_t *axis, int number)
 {
     cm1e_axis_info_t info;
@@ -107,7 +108,8 @@ cm1e_error_t cm1e_axis_read_parameter(const cm1e_axis_t *axis, int number, doubl
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/* Limits as they would be: in order, and kept by what runs. One who stands outside may come back but go no farther. */
+/* Changes the software limits, if they are in order and the present motion keeps them. An axis outside may come back,
+ * but not go farther. */
 static cm1e_error_t change_limits(cm1e_axis_t *axis, double positive, double negative, bool positive_enabled,
                                   bool negative_enabled)
 {
@@ -163,7 +165,7 @@ static cm1e_error_t write_number(cm1e_axis_t *axis, const parameter_t *parameter
     return CM1E_OK;
 }
 
-/* s; the bounds of the bus file, and the timeout is longer than the time. */
+/* s; the bounds as in the bus file. The timeout must also be longer than the time. */
 static void bounds_of_time(const cm1e_axis_t *axis, int number, double *least, double *largest)
 {
     const in_position_t *p = &axis->in_position;

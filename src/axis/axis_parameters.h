@@ -29,7 +29,7 @@ enum {
     CM1E_PARAMETER_MAX_JERK_SYSTEM,
     CM1E_PARAMETER_MAX_JERK_APPL,
     CM1E_PARAMETER_END,
-    CM1E_PARAMETER_VENDOR = 1000, /**< from here on: objects of the drive, except the next five */
+    CM1E_PARAMETER_VENDOR = 1000, /**< from here on objects of the drive, except the next five */
     CM1E_PARAMETER_IN_POSITION = 1800, /**< of the axis itself (axis_in_position.c) */
     CM1E_PARAMETER_IN_POSITION_WINDOW,
     CM1E_PARAMETER_IN_POSITION_TIME,
@@ -38,20 +38,20 @@ enum {
     CM1E_PARAMETER_IN_POSITION_END,
 };
 
-/** An object of the drive, read and written by transfers; else the axis has it. @rt any */
+/** Whether a parameter is an object of the drive, which is read and written by transfers. @rt any */
 static inline bool cm1e_axis_parameter_is_object(int number)
 {
     return number >= CM1E_PARAMETER_VENDOR &&
            !(number >= CM1E_PARAMETER_IN_POSITION && number < CM1E_PARAMETER_IN_POSITION_END);
 }
-/** 4, 5, 6, 1800 and 1804. @rt any */
+/** Whether a parameter is a BOOL: 4, 5, 6, 1800 and 1804. @rt any */
 bool cm1e_axis_parameter_is_bool(int number);
-/** BOOL ones as 0 and 1. CM1E_ERROR_AXIS_PARAMETER: the axis has none of this number;
- *  CM1E_ERROR_AXIS_OFFLINE: an actual value that is not known now. @rt cycle */
+/** Reads a parameter; a BOOL is 0 or 1. CM1E_ERROR_AXIS_PARAMETER: the axis has none of this number.
+ *  CM1E_ERROR_AXIS_OFFLINE: the actual value is not known now. @rt cycle */
 cm1e_error_t cm1e_axis_read_parameter(const cm1e_axis_t *axis, int number, double *value);
-/** In force for what is planned from now on; what runs goes on as it was planned. A software limit that the running
- *  motion would not keep is refused. Also CM1E_ERROR_AXIS_PARAMETER, _READ_ONLY, _RANGE; refused: nothing has changed.
- *  @rt cycle */
+/** Writes a parameter. It applies to motions that are planned from now on; the present motion goes on as planned. A
+ *  software limit that the present motion would not keep is refused. Further errors are CM1E_ERROR_AXIS_PARAMETER,
+ *  _READ_ONLY and _RANGE. After an error nothing has changed. @rt cycle */
 cm1e_error_t cm1e_axis_write_parameter(cm1e_axis_t *axis, int number, double value);
 
 /** Vendor parameters `first` ... `last` are consecutive sub-indexes of one object. */
@@ -63,15 +63,16 @@ typedef struct cm1e_axis_objects {
 /** The table; `*count` rows in order of their numbers. @rt any */
 const cm1e_axis_objects_t *cm1e_axis_object_table(size_t *count);
 
-/** Asks for a transfer of a vendor parameter; transfers of an axis are worked on one after the other. The value is the
- *  object's own number: a whole one, within the range of the dictionary. CM1E_ERROR_FULL: 7 wait already;
- *  CM1E_ERROR_UNSUPPORTED: the drive, its firmware or the motor behind a bridge does not have the object; _PARAMETER,
- *  _READ_ONLY (also while the object is process data), _RANGE as above. @rt cycle */
+/** Requests the transfer of a vendor parameter. The transfers of an axis are made one after the other. The value is the
+ *  number of the object: a whole number in the range of the dictionary. CM1E_ERROR_FULL: 7 requests wait already.
+ *  CM1E_ERROR_UNSUPPORTED: the drive, its firmware or the motor behind a bridge does not have the object. _PARAMETER,
+ *  _READ_ONLY (also while the object is process data) and _RANGE as above. @rt cycle */
 cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, double value, uint32_t *ticket);
-/** BUFFERED or ACTIVE, DONE with the value, ERROR; UNKNOWN: 7 or more others were asked for since. @rt cycle */
+/** The state of a request: BUFFERED or ACTIVE, DONE with the value, or ERROR. UNKNOWN: there were 7 or more later
+ *  requests. @rt cycle */
 cm1e_command_state_t cm1e_axis_object_state(const cm1e_axis_t *axis, uint32_t ticket, double *value,
                                             cm1e_error_t *error);
-/** The number that a ticket was asked for. */
+/** The number of the parameter of a ticket. */
 static inline int cm1e_axis_object_number(uint32_t ticket) { return (int)(ticket >> 16); }
 
 #endif

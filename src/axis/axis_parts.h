@@ -1,7 +1,7 @@
 /**
  * @file axis_parts.h
- * The data of an axis: a struct for each of its parts, and the axis, which is made of them. What can be done with a
- * part is in its own header. commands_t and superimposed_t are in axis_move.h.
+ * The data of an axis: a struct for each of its parts, and the axis, which is made of them. The functions of a part are
+ * in its own header. commands_t and superimposed_t are in axis_move.h.
  */
 #ifndef CM1E_AXIS_AXIS_PARTS_H
 #define CM1E_AXIS_AXIS_PARTS_H
@@ -15,26 +15,26 @@
 
 /* ---- set-point: axis_setpoint.h ---------------------------------------------------------------------------------- */
 
-/** Where the set-point comes from, where it is, and the profile that it is on. Written by axis_setpoint.h and
+/** The set-point: its source, its state of motion, and the profile that it follows. Written by axis_setpoint.h and
  *  axis_motion.c. */
 typedef struct setpoint {
     const source_t *source;         /**< cm1e_axis_set_source() */
     bool reached, positive_before;
-    bool synchronizing;             /**< while it follows: not yet by what was commanded */
-    bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
-    bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
-    bool brakes_hard;               /**< the set-point is one of a ramp without limit of jerk */
-    uint32_t ends;                  /**< by a cam: cm1e_command_status_t */
+    bool synchronizing;             /**< it follows, but the approach is not over */
+    bool paused;                    /**< the profile ends before the target; the command waits (MC_SetOverride) */
+    bool stands;                    /**< the base motion has ended, and only a superimposed one goes on */
+    bool brakes_hard;               /**< the set-point is on a ramp without a limit of jerk */
+    uint32_t ends;                  /**< ends of a cam that it passed; see cm1e_command_status_t */
+    uint32_t jumps;                 /**< how often it jumped to the actual position; no slave may follow a jump */
     position_t position;            /**< set position */
     double velocity, acceleration;  /**< set velocity and acceleration; u/s, u/s2 */
     double profile_next_s;          /**< time of the profile in the next cycle */
-    cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
+    cm1e_profile_stretch_t stretch; /**< the stretch of the profile that the set-point is in */
     position_t base, target;        /**< base: where the profile began; target: where it ends, exactly */
     double base_line;               /**< u; cm1e_axis_line() of base */
-    int64_t profile_cycles;         /**< since the profile began */
-    double profile_offset_s;        /**< so long before the first of these cycles it began */
+    int64_t profile_cycles;         /**< cycles since the profile began */
+    double profile_offset_s;        /**< the profile began so long before the first of these cycles */
     cm1e_slow_time_t slow;          /**< of a table over time (axis_pause.c) */
-    uint32_t jumps;                 /**< how often it was put to the actual position: nobody may follow that way */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */
 } setpoint_t;
@@ -45,54 +45,54 @@ typedef struct setpoint {
 typedef struct axis_position {
     cm1e_unit_t unit;               /**< the amount of `scale`, exactly */
     double modulo_range;            /**< u; 0: a linear axis */
-    cm1e_fraction_t turn;           /**< counts of it */
+    cm1e_fraction_t turn;           /**< counts per turn */
     double count;                   /**< counts of this motor on the way of one count of a CM1-E */
-    /* what every cycle looks at */
+    /* read in every cycle */
     double origin_units;
-    position_t origin;              /**< position origin_units is there; modulo: 0 */
+    position_t origin;              /**< where the position is origin_units; modulo axis: 0 */
     double scale;                   /**< counts per u; negative: inverted */
-    int64_t actual_counts;          /**< counts of the drive, last seen, without wrap-around */
-    int32_t raw;                    /**< counts of the drive, last seen */
+    int64_t actual_counts;          /**< last known counts of the drive, without wrap-around */
+    int32_t raw;                    /**< last known counts of the drive */
     bool known, homed;
 } axis_position_t;
 
 /* ---- limits and guard: axis_limits.h, axis_guard.h --------------------------------------------------------------- */
 
-/** What a set-point may be beside the one before it, in the numbers that are compared; made once. Written by
+/** How far a set-point may differ from the one before it, in the form that is compared. Computed once. Written by
  *  axis_guard.c. */
 typedef struct guarding {
     double velocity;         /**< u/s */
     double up, down;         /**< u/s in a cycle */
     double acceleration;     /**< u/s2 */
     double jerk;             /**< u/s2 in a cycle */
-    double ease;             /**< s3/u; by the square of an acceleration: what it adds to the velocity while it ends */
-    double half_cycle, step; /**< counts in half a cycle at 1 u/s; counts beside the mean of both velocities */
+    double ease;             /**< s3/u; times the square of an acceleration: the velocity that it adds until it ends */
+    double half_cycle, step; /**< counts in half a cycle at 1 u/s; tolerance in counts around the mean velocity */
     double per_count;        /**< u, signed */
 } guarding_t;
 
-/** What the axis may do: dynamics, software limits, directions. Written by axis_limits.c and axis_parameter.c. */
+/** The limits of the axis: dynamics, software limits, directions. Written by axis_limits.c and axis_parameter.c. */
 typedef struct limits {
-    /* what every cycle looks at */
+    /* read in every cycle */
     bool lag_monitoring;
-    bool software_limits;           /**< one of them is in force at least */
+    bool software_limits;           /**< at least one of them is in force */
     bool positive_enabled, negative_enabled;
-    int32_t counts_limit;           /**< of the motor's own counts in either direction, by its K37; 0: none */
+    int32_t counts_limit;           /**< range of the motor's counts in either direction, by K37; 0: no limit */
     double max_lag;                 /**< u */
-    double lower, upper;            /**< u, as cm1e_axis_line() counts; in force; infinite: none on that side */
-    double tolerance;               /**< u; which they are kept with */
-    double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
+    double lower, upper;            /**< u, as cm1e_axis_line() counts: limits in force; infinite: none */
+    double tolerance;               /**< u; tolerance of these limits */
+    double emergency_way;           /**< s2/u; times the square of a velocity: the way of an emergency stop */
     cm1e_motion_limits_t system;    /**< u; of motor and configuration */
-    cm1e_motion_limits_t maximum;   /**< u; what the application allows of it: the bounds of commands */
-    cm1e_motion_limits_t emergency; /**< u; the ramp of an error: that of `system` without a limit of jerk */
-    double positive, negative;      /**< u; the software limits as they are written */
-    double counts_lower, counts_upper; /**< u, as cm1e_axis_line() counts; where that limit is; infinite: none */
+    cm1e_motion_limits_t maximum;   /**< u; what the application allows: the maximum of commands */
+    cm1e_motion_limits_t emergency; /**< u; the ramp of an error: `system` without a limit of jerk */
+    double positive, negative;      /**< u; the software limits as written */
+    double counts_lower, counts_upper; /**< u, as cm1e_axis_line() counts: the ends of that range; infinite: none */
 } limits_t;
 
-/** What a set-point that is not of the axis's own making would break. */
+/** The limits that a set-point from outside the axis (a master, a leader) could break. */
 typedef enum guard_limit {
     GUARD_KEPT = 0,
     GUARD_FINITE,
-    GUARD_PAUSE,       /**< the motor has gone on without it (axis_pause.c) */
+    GUARD_PAUSE,       /**< after a pause: the motor has gone on without set-points (axis_pause.c) */
     GUARD_DIRECTION,
     GUARD_VELOCITY,
     GUARD_ACCELERATION,
@@ -103,27 +103,27 @@ typedef enum guard_limit {
     GUARD_COUNT,
 } guard_limit_t;
 
-/** What a set-point broke, and by how much. Written by axis_guard.c. */
+/** The limit that a set-point broke, and by how much. Written by axis_guard.c. */
 typedef struct guard {
     guard_limit_t limit;
     double asked, allowed; /**< in the units of the limit */
-    bool by_actual;        /**< what asked for it was the actual value of a master */
+    bool by_actual;        /**< it follows the actual value of a master */
 } guard_t;
 
 /* ---- power and errors: axis_power.h ------------------------------------------------------------------------------ */
 
-/** What MC_Power and MC_Reset ask for, and how far it has come. Written by axis_power.h, axis_power.c and
- *  axis_free.c. */
+/** What MC_Power and MC_Reset command, and its progress. Written by axis_power.h, axis_power.c and axis_free.c. */
 typedef struct power {
     const void *owner;
+    bool claimed;                   /**< the program has called MC_Power: nobody else enables (axis_guest.h) */
     bool enable, enable_positive, enable_negative;
     bool energized;                 /**< the axis has taken over the enabled drive */
     bool shutting_down;
     bool reset_sent;
     cm1e_command_state_t reset_state;
     cm1e_error_t reset_error;
-    int64_t free_ns;                /**< since when no torque is asked for */
-    int64_t brake_until_ns;         /**< so long at least the torque stays to brake */
+    int64_t free_ns;                /**< since when no torque is commanded */
+    int64_t brake_until_ns;         /**< until then the torque stays at least, to brake */
 } power_t;
 
 /** Why the axis is in ErrorStop. Written by axis_power.h and axis_power.c. */
@@ -135,55 +135,55 @@ typedef struct fault {
 
 /* ---- silence: axis_pause.h --------------------------------------------------------------------------------------- */
 
-/** A motor needs so many cycles to recover from one in which its target stood. */
+/** Cycles that a motor needs to recover from a cycle without a new target. */
 enum { CM1E_SHAKEN_BY_SILENCE = 8 };
 
-/** Cycles without an answer of the bus. Written by axis_pause.h and axis_pause.c. */
+/** Cycles in which no answer came from the bus. Written by axis_pause.h and axis_pause.c. */
 typedef struct silence {
-    uint16_t shaken;                /**< by silence not long ago: CM1E_SHAKEN_BY_SILENCE for each cycle of it, one less
-                                         with each answer */
-    uint16_t silent, silent_before; /**< cycles in a row without an answer; those that the present one has ended */
+    uint16_t shaken;                /**< recent silence: plus CM1E_SHAKEN_BY_SILENCE for each silent cycle, minus
+                                         one for each answer */
+    uint16_t silent, silent_before; /**< cycles in a row without an answer: until now; before this answer */
     bool blind;                     /**< the actual position was not fresh, and the set-point goes on */
     bool frozen;                    /**< no answer to the last frame: set-points stay in this cycle */
     bool resumed;                   /**< a pause or silence before this cycle has been dealt with */
-    bool began_anew;                /**< after it the motion began anew, with another velocity */
+    bool began_anew;                /**< the motion began anew after it, with another velocity */
 } silence_t;
 
 /* ---- backlash: axis_backlash.h ----------------------------------------------------------------------------------- */
 
-/** The gap between motor and load; counts in the direction in which u grows. Written by axis_backlash.h and
+/** The backlash between motor and load, in counts in the direction in which u grows. Written by axis_backlash.h and
  *  axis_backlash.c. */
 typedef struct backlash {
     double velocity, acceleration; /**< of its compensation; counts/s, counts/s2 */
-    double offset;                 /**< -gap ... 0: of the motor as seen from the load */
+    double offset;                 /**< -gap ... 0: position of the motor relative to the load */
     double offset_velocity, target;
-    double gap;                    /**< 0: none; every cycle looks at it */
+    double gap;                    /**< 0: no backlash; read in every cycle */
 } backlash_t;
 
 /* ---- in position: axis_in_position.h ----------------------------------------------------------------------------- */
 
-/** Whether the motor is where its set-point stands. Written by axis_in_position.h, axis_in_position.c and
+/** Whether the motor is at its set-point while that is at rest. Written by axis_in_position.h, axis_in_position.c and
  *  axis_parameter.c. */
 typedef struct in_position {
     double missed_actual, missed_by; /**< for the text; u */
     double window;              /**< u, to either side */
     uint32_t time_us, timeout_us;
-    float torque;               /**< % of rated torque, while it waited last: a fault takes it away; NAN: not known */
-    /* what every cycle looks at */
-    bool inside;                /**< where it was seen last, the motor is in the window; FALSE: the set-point moves */
-    bool there;                 /**< it has been in the window for the time */
+    float torque;               /**< % of rated torque during the last wait, before a fault cleared it; NAN: unknown */
+    /* read in every cycle */
+    bool inside;                /**< the last known position is in the window; false while the set-point moves */
+    bool there;                 /**< it has been in the window for the configured time */
     bool done_waits;
-    bool missed;                /**< an error ended a command that waited */
-    int64_t inside_ns;          /**< since when */
-    int64_t arrived_ns;         /**< since when the set-point of that command stands */
-    cm1e_command_id_t settling; /**< the command that waits for the motor while it is active and the axis holds */
+    bool missed;                /**< a command that waited for it ended with an error */
+    int64_t inside_ns;          /**< since when it is inside */
+    int64_t arrived_ns;         /**< since when the set-point is at rest */
+    cm1e_command_id_t settling; /**< the active command that waits for the motor */
 } in_position_t;
 
 /* ---- touch probes, digital signals, objects: axis_device.h ------------------------------------------------------- */
 
 enum { PROBES = 2 * 6 }; /* every input, both edges */
 
-/** A touch probe: what it waits for stands in its place in the list. */
+/** A touch probe. Its place in the list states its input and edge. */
 typedef struct probe {
     uint32_t id;
     int16_t error;      /**< cm1e_error_t */
@@ -197,7 +197,7 @@ typedef struct probe {
 
 typedef struct probe_sample {
     int64_t time_ns;
-    position_t position;            /**< of the load */
+    position_t position;            /**< position of the load */
     uint16_t inputs;
 } probe_sample_t;
 
@@ -205,15 +205,15 @@ typedef struct probe_sample {
 typedef struct signals {
     probe_t probes[PROBES];
     probe_sample_t probe_sample;    /**< the last one, while probes are armed */
-    int64_t inputs_asked_ns, inputs_since_ns; /**< where SDOs bring them: last, and without an answer since */
-    /* what every cycle looks at */
+    int64_t inputs_asked_ns, inputs_since_ns; /**< inputs by SDO: last request; since when without an answer */
+    /* read in every cycle */
     int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
     uint32_t probes_armed, probe_count;
 } signals_t;
 
 enum { OBJECT_REQUESTS = 8 };
 
-/** A vendor parameter that is asked for (axis_object.c). */
+/** A request for a vendor parameter (axis_object.c). */
 typedef struct object_request {
     uint32_t ticket; /**< number << 16 | sequence; 0: none */
     int16_t error;   /**< cm1e_error_t */
@@ -222,27 +222,34 @@ typedef struct object_request {
     double value;
 } object_request_t;
 
-/** Vendor parameters that are asked for. Written by axis_object.c. */
+/** Requests for vendor parameters. Written by axis_object.c. */
 typedef struct objects {
-    uint16_t head, next;                        /**< sequence of the one under way, and of the next to be asked for */
     bool submitted;
     object_request_t requests[OBJECT_REQUESTS]; /**< by sequence */
     uint8_t data[8];
     cm1e_sdo_t sdo;
+    /* what every cycle looks at */
+    uint16_t head, next;                        /**< sequence of the one under way, and of the next to be asked for */
 } objects_t;
 
 /* ---- motions of the drive: axis_driving.h ------------------------------------------------------------------------ */
 
 typedef enum drive_step {
-    DRIVE_WRITE = 0, /**< parameters; the axis still holds its position */
-    DRIVE_SWITCH,    /**< to the mode of the motion */
+    DRIVE_WRITE = 0, /**< writes the parameters; the axis still holds its position */
+    DRIVE_SWITCH,    /**< switches to the mode of the motion */
     DRIVE_GO,        /**< the set-point is announced */
     DRIVE_MOVE,
     DRIVE_HALT,      /**< halt bit set, until the motor stands */
-    DRIVE_RETURN,    /**< back to the axis's own mode */
+    DRIVE_RETURN,    /**< switches back to the axis's own mode */
 } drive_step_t;
 
 enum { DRIVE_PARAMETERS = 2 };
+
+/** Watches whether a motor that is not led by set-points is at standstill. */
+typedef struct standstill {
+    int64_t since_ns; /**< since when the motor has been within the tolerance of `position` */
+    int32_t position; /**< counts of the drive */
+} standstill_t;
 
 /** A motion that the drive does by itself. Written by axis_drive_profile.c. */
 typedef struct driving {
@@ -258,8 +265,8 @@ typedef struct driving {
     bool submitted;
     uint8_t data[4];
     cm1e_sdo_t sdo;
-    int64_t step_ns, quiet_ns; /**< when the step began; since when the motor stands */
-    int32_t quiet_position;
+    int64_t step_ns;         /**< when the step began */
+    standstill_t standstill;
 } driving_t;
 
 /* ---- what was not set: axis_text.h ------------------------------------------------------------------------------- */
@@ -271,10 +278,10 @@ typedef enum not_set_what {
     NOT_SET_OUTPUT,        /**< digital output `number` */
     NOT_SET_PROBE,         /**< a touch probe at input `number` */
     NOT_SET_CAM,           /**< MC_CamTableSelect; see cams_t */
-    NOT_FINISHED,          /**< a command, of the kind `number`, that was taken and ended with the error */
+    NOT_FINISHED,          /**< a command of the kind `number` was accepted and ended with the error */
 } not_set_what_t;
 
-/** What else than a command at its start was refused last, for the text. Written by axis_text.h and axis_record.c. */
+/** The last refusal that was not the start of a command, for the text. Written by axis_text.h and axis_record.c. */
 typedef struct not_set {
     cm1e_error_t error; /**< CM1E_OK: it was set */
     not_set_what_t what;
@@ -285,47 +292,48 @@ typedef struct not_set {
 
 /* ---- the axis ---------------------------------------------------------------------------------------------------- */
 
-/** Everything in its room runs in the cycle unless marked otherwise. The order is that of the memory: what every cycle
- *  looks at stands together, at the end of one part and the begin of the next. */
+/** The axis. All functions of this room run in the cycle unless marked otherwise. The order of the members keeps those
+ *  together in memory that every cycle reads: they are at the end of one part and at the beginning of the next, and an
+ *  axis begins at a cache line. */
 struct cm1e_axis {
     cm1e_drive_t drive;
+    signals_t signals;
     cm1e_axis_state_t state;        /**< cm1e_axis_go() */
-    cm1e_mode_t mode;               /**< of the set-points: CSP, or CSV where the mapping has no target position */
+    cm1e_mode_t mode;               /**< mode of the set-points: CSP, or CSV if the mapping has no target position */
     uint16_t handle;
     bool advanced;                  /**< its set-point is that of this cycle */
-    bool observed;                  /**< somebody follows its actual value, or has; an encoder always is */
+    bool observed;                  /**< a slave follows its actual value, or has followed it; an encoder: always */
     power_t power;
     silence_t silence;
     homing_step_t homing_step;
     double cycle_s;
     int64_t now_ns;
-    const axis_events_t *events;    /**< what a motion tells those that command it */
+    const axis_events_t *events;    /**< how a motion reports its end and its failure */
     const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
-    const coupling_hooks_t *coupling_hooks; /**< NULL: it cannot follow, nor be followed */
-    struct coupling *coupling;      /**< theirs */
+    const coupling_hooks_t *coupling_hooks; /**< NULL: it can neither follow nor be followed */
+    struct coupling *coupling;      /**< data of these hooks */
     commands_t commands;
-    signals_t signals;
     objects_t objects;
-    backlash_t backlash;
-    setpoint_t setpoint;
+    in_position_t in_position;
     guarding_t guarding;
     axis_position_t position;
     limits_t limits;
-    in_position_t in_position;
     superimposed_t superimposed;
+    backlash_t backlash;
+    setpoint_t setpoint;
     /* not in every cycle */
     cm1e_axis_leader_t leader;      /**< next is NULL: none */
     const cm1e_axis_config_t *config;
     fault_t fault;
     guard_t broken;                 /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
     not_set_t not_set;
-    override_t override, override_refused; /**< the latter for the text; one that is good: none was */
-    const void *group;              /**< that it belongs to; NULL: none */
+    override_t override, override_refused; /**< the second: the last refused one, for the text */
+    const void *group;              /**< the group of the axis; NULL: none */
     tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
     driving_t driving;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */
-    struct homing *homing;          /**< theirs */
-    struct cool_muscle *muscle;     /**< of the motor's hooks */
+    struct homing *homing;          /**< data of these hooks */
+    struct cool_muscle *muscle;     /**< data of motor_hooks */
 };
 
 #endif

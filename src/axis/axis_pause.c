@@ -1,21 +1,21 @@
 /*
  * Cycles in which the motor did not take part, or perhaps did not.
  *
- * Silence: frames were sent and did not come back, or not with every slave's part. Nobody knows which of them the drive
- * has heard, so the time of all set-points stands still, and the drive room repeats its last target (CSP). With the first
- * answer the target that the drive holds is known again, and its actual velocity tells whether the motor has stood
- * meanwhile: what moves goes on as it was, or begins anew from there with the velocity that is left. In CSV the motor has
- * gone on with its last velocity: after more than a few cycles what moves begins anew from where it must be. Bus-wide
- * silence stops the time of all axes alike, so that followers stay in step and groups on their path.
+ * Silence: frames were sent and did not come back, or not with the part of every slave. It is not known which of them
+ * the drive received. So the time of all set-points stops, and the drive room repeats its last target (CSP). With the
+ * first answer the target of the drive is known again, and its actual velocity shows whether the motor has stopped
+ * meanwhile. The motion goes on as before, or begins anew from there with the velocity that is left. In CSV the motor
+ * has gone on with its last velocity: after more than a few cycles the motion begins anew from where the motor must be.
+ * Silence of the bus stops the time of all axes alike, so that followers stay in step and groups stay on their path.
  *
- * A motor that was at its maximum velocity has slowed down, and would exceed it while it catches up. So what moves goes
- * on slower at first, by a part for each cycle. Where it is made of several (a path, a table over time, a superimposed
- * motion), none of them is lost: the time of a path and of a table runs slower for a while (motion/slow_time.h), and a
- * base and what is superimposed on it are both planned anew.
+ * A motor that was at its maximum velocity has slowed down, and would exceed that velocity while it catches up. So the
+ * motion goes on slower at first, by a part for each cycle. If it is made of several motions (a path, a table over
+ * time, a superimposed motion), none of them is lost: the time of a path and of a table runs slower for a while
+ * (motion/slow_time.h), and a base and its superimposed motion are both planned anew.
  *
- * A pause: frames were never sent, because the work of a cycle or a wake-up took whole cycles too long. In CSP the motor
- * stands at its last target by then, in CSV it has gone on with its last velocity. What moves begins anew from rest, or
- * from where the motor must be by now. Stops and ramps of errors end where they stand.
+ * A pause: frames were not sent, because the work of a cycle or a wake-up took whole cycles too long. In CSP the motor
+ * has stopped at its last target; in CSV it has gone on with its last velocity. The motion begins anew from rest, or
+ * from where the motor must be now. Stops and ramps of errors end where they are.
  */
 #include "axis/axis_pause.h"
 #include "axis/axis_backlash.h"
@@ -29,10 +29,10 @@
 #include "axis/axis_setpoint.h"
 #include "axis/axis_superimpose.h"
 
-/* Counts/s; resolution of the actual velocity of old firmware, and of one that is the difference of two positions. */
+/* Counts/s: the resolution of the actual velocity of old firmware, and of a velocity computed from two positions. */
 static const double velocity_noise = 3000.0;
-/* Of the maximum velocity, for each cycle of silence: a motor that has slowed down meanwhile overshoots when it gets back
- * to its speed. */
+/* The part of the maximum velocity that is kept free for each cycle of silence, because a motor that has slowed down
+ * overshoots when it gets back to its speed. */
 static const double reserve = 0.08;
 
 static cm1e_error_t stop_anew(cm1e_axis_t *axis)
@@ -42,15 +42,15 @@ static cm1e_error_t stop_anew(cm1e_axis_t *axis)
     cm1e_profile_t profile;
     cm1e_error_t error = axis->commands.active ? cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits)
                          : CM1E_OK;
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_axis_plan_stop(axis, &from, &limits, &profile);
-    if (!error)
+    if (error == CM1E_OK)
         cm1e_axis_run(axis, &from, &profile,
                       cm1e_position_plus(from.position, profile.end.position * axis->position.scale), 0.0);
     return error;
 }
 
-/* Its times have passed. The next command begins (2.2.2, case 2), or the axis stops. */
+/* Ends a table whose times have passed. The next command begins (2.2.2, case 2), or the axis stops. */
 static cm1e_error_t end_table(cm1e_axis_t *axis)
 {
     const from_t from = from_set(axis);
@@ -75,7 +75,7 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
 static void profile_anew(cm1e_axis_t *axis)
 {
     const cm1e_error_t error = move_anew(axis);
-    if (error)
+    if (error != CM1E_OK)
         cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->setpoint.position),
                        axis->setpoint.velocity > 0.0 ? axis->limits.upper : axis->limits.lower);
 }
@@ -86,7 +86,7 @@ static void lost_speed(cm1e_axis_t *axis, double velocity)
     cm1e_axis_keep_torque(axis, velocity);
 }
 
-/* Everything that moves begins at the present set-point with this velocity (u/s). */
+/* Begins the motion anew at the present set-point with this velocity (u/s). */
 static void begin_anew(cm1e_axis_t *axis, double velocity)
 {
     lost_speed(axis, axis->setpoint.velocity - velocity);
@@ -101,7 +101,7 @@ static void begin_anew(cm1e_axis_t *axis, double velocity)
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
 {
     const bool goes_on = axis->mode == CM1E_MODE_CSV;
-    if (axis->silence.resumed) /* a follower has asked for that */
+    if (axis->silence.resumed) /* a follower has caused it already */
         return;
     axis->silence.resumed = true;
     if (axis_follows(axis))
@@ -150,7 +150,7 @@ void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
     cm1e_drive_slew(&axis->drive);
 }
 
-/* In CSV it does by itself. */
+/* Whether the motor goes on by itself, as it does in CSV. */
 static bool motor_goes_on(const cm1e_axis_t *axis)
 {
     return axis->mode == CM1E_MODE_CSV || cm1e_drive_is_virtual(&axis->drive);
@@ -162,13 +162,13 @@ static double highest_after(const cm1e_axis_t *axis, int silent_cycles)
     return axis->limits.system.velocity * fmax(0.0, 1.0 - reserve * (double)silent_cycles);
 }
 
-/* Cycles of silence that the motor has not recovered from. */
+/* The cycles of silence from which the motor has not recovered. */
 static int cycles_shaken(const cm1e_axis_t *axis)
 {
     return (axis->silence.shaken + CM1E_SHAKEN_BY_SILENCE - 1) / CM1E_SHAKEN_BY_SILENCE;
 }
 
-/* u/s; what the set velocity grows to until the motor has recovered. */
+/* u/s; the velocity to which the set velocity grows until the motor has recovered. */
 static double speed_ahead(const cm1e_axis_t *axis)
 {
     const double v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
@@ -176,7 +176,7 @@ static double speed_ahead(const cm1e_axis_t *axis)
     return fmax(fabs(v), fmin(ahead, axis->limits.system.velocity));
 }
 
-/* Of the set velocity; what keeps it below that. */
+/* The part of the set velocity that stays below `highest`. */
 static double part_below(const cm1e_axis_t *axis, double highest)
 {
     static const double rounding = 1.0 + 1e-9;
@@ -189,7 +189,7 @@ double cm1e_axis_part_left(const cm1e_axis_t *axis)
     return motor_goes_on(axis) ? 1.0 : part_below(axis, highest_after(axis, cycles_shaken(axis)));
 }
 
-/* u/s; what the motor still has of the set velocity. */
+/* u/s; the velocity that the motor still has. */
 static double velocity_left(const cm1e_axis_t *axis)
 {
     const double set = axis->setpoint.velocity;
@@ -204,7 +204,7 @@ static double velocity_left(const cm1e_axis_t *axis)
     return fmax(-most, fmin(kept, most));
 }
 
-/* Made of several: begun anew, a part of it would be lost. */
+/* Whether the motion is made of several, so that a part would be lost if it began anew. */
 static bool is_composite(const cm1e_axis_t *axis)
 {
     return axis->setpoint.source->is_composite || axis->superimposed.id;
@@ -213,14 +213,14 @@ static bool is_composite(const cm1e_axis_t *axis)
 double cm1e_axis_ran_on(const cm1e_axis_t *axis)
 {
     if (axis->mode != CM1E_MODE_CSV || axis->silence.silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES ||
-        !set_points_move(axis) || axis->state == CM1E_AXIS_ERROR_STOP) /* its ramp has gone on */
+        !set_points_move(axis) || axis->state == CM1E_AXIS_ERROR_STOP) /* the ramp has gone on */
         return 0.0;
     return axis->setpoint.velocity * axis->position.scale * axis->cycle_s * (double)axis->silence.silent_before;
 }
 
 bool cm1e_axis_begins_anew(const cm1e_axis_t *axis)
 {
-    const bool in_place = axis->mode == CM1E_MODE_CSV; /* nearly, and as fast as before */
+    const bool in_place = axis->mode == CM1E_MODE_CSV; /* the motor is nearly there, and as fast as before */
     const bool shaken = !in_place && axis->silence.shaken > CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE;
     return shaken || cm1e_axis_ran_on(axis) != 0.0;
 }
@@ -232,7 +232,7 @@ static bool begins_anew(const cm1e_axis_t *axis)
     return axis_led(axis) && leader->begins_anew ? leader->begins_anew(leader->context) : cm1e_axis_begins_anew(axis);
 }
 
-/* Of a base and what is superimposed on it; FALSE: the latter cannot go on. */
+/* Slows a base and its superimposed motion down; false: the superimposed motion cannot go on. */
 static bool both_slower(cm1e_axis_t *axis, double part)
 {
     if (!cm1e_axis_superimposed_slow(axis, part))
@@ -243,7 +243,7 @@ static bool both_slower(cm1e_axis_t *axis, double part)
     return true;
 }
 
-/* What is superimposed on a slave takes all of it: its base stays in step. FALSE: it is too slow for that. */
+/* What is superimposed on a slave takes all of it: its base stays in step. false: it is too slow for that. */
 static bool only_superimposed_slower(cm1e_axis_t *axis, double part)
 {
     const cm1e_motion_state_t on_top = axis->superimposed.now;
@@ -257,7 +257,8 @@ static bool only_superimposed_slower(cm1e_axis_t *axis, double part)
     return true;
 }
 
-/* Made of several, and none of them is lost. An axis that is led goes on as slowly as all that are. */
+/* Goes on slower with a motion made of several, so that none is lost. A led axis is as slow as all axes of its
+ * leader. */
 static void go_on_slower(cm1e_axis_t *axis)
 {
     const double part = cm1e_axis_part_left(axis), before = axis->setpoint.velocity;
@@ -280,13 +281,13 @@ static void go_on_or_begin_anew(cm1e_axis_t *axis)
         return;
     }
     cm1e_axis_shift_set_point(axis, ran_on);
-    const bool led = axis_led(axis); /* the path stands for an axis at rest too */
+    const bool led = axis_led(axis); /* the path also pauses for an axis at rest */
     const double left = led && axis->mode != CM1E_MODE_CSV ? 0.0 : velocity_left(axis);
     if (left != axis->setpoint.velocity || follows_on || led || ran_on != 0.0)
         begin_anew(axis, left);
 }
 
-/* Slaves after their masters, and before any of them advances: they have to see the same place. */
+/* Slaves are handled after their masters, and before any axis advances, so that all see the same place. */
 void cm1e_axis_after_silence(cm1e_axis_t *axis)
 {
     if (axis->silence.resumed || axis->silence.silent_before == 0)

@@ -7,11 +7,12 @@
 
 #include "axis/axis_parts.h"
 
-/** At the begin of a cycle, whether an answer has come. While none comes it is not known which target the drive holds. */
+/** Called at the begin of a cycle: whether an answer has come. Without an answer it is not known which target the drive
+ *  holds. */
 void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost);
 /** Whether the actual position is not known although the set-point goes on. */
 static inline bool cm1e_axis_note_blind(cm1e_axis_t *axis, bool blind) { return axis->silence.blind = blind; }
-/** Before the set-point of the first cycle in which a frame has come back again. */
+/** Called before the set-point of the first cycle in which a frame has come back. */
 void cm1e_axis_after_silence(cm1e_axis_t *axis);
 /** Counts by which a motor has gone on in a silence that ended just now (CSV). */
 double cm1e_axis_ran_on(const cm1e_axis_t *axis);

@@ -13,16 +13,17 @@ static cm1e_motion_state_t start_of(const from_t *from)
 
 /* ---- targets ----------------------------------------------------------------------------------------------------- */
 
-/* How far the command would need to stop: on a modulo axis it says which repetition of the position is the first. */
+/* The distance that the command needs to stop. On a modulo axis it decides which repetition of the position is the
+ * first. */
 static cm1e_error_t stopping_way(const cm1e_axis_t *axis, const from_t *from, const move_t *move, double *way)
 {
     cm1e_motion_limits_t limits;
     cm1e_profile_t stop;
     const cm1e_motion_state_t start = start_of(from);
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_profile_to_velocity(&stop, &start, 0.0, &limits);
-    *way = error ? 0.0 : stop.end.position;
+    *way = error != CM1E_OK ? 0.0 : stop.end.position;
     return error;
 }
 
@@ -41,7 +42,7 @@ static cm1e_error_t resolve_absolute(const cm1e_axis_t *axis, const from_t *from
 {
     double way = 0.0;
     const cm1e_error_t error = axis->position.modulo_range > 0.0 ? stopping_way(axis, from, move, &way) : CM1E_OK;
-    return error ? error : cm1e_axis_resolve_target(axis, shifted(axis, move), (MC_DIRECTION)move->direction,
+    return error != CM1E_OK ? error : cm1e_axis_resolve_target(axis, shifted(axis, move), (MC_DIRECTION)move->direction,
                                                     from->position, from->velocity, way, &move->target);
 }
 
@@ -64,7 +65,7 @@ static cm1e_error_t resolve_none(const cm1e_axis_t *axis, const from_t *from, mo
 
 /* ---- profiles ---------------------------------------------------------------------------------------------------- */
 
-/* Whether it goes beyond a target on the way there. */
+/* Whether a profile overruns a target. */
 static bool passes(const cm1e_axis_t *axis, const cm1e_profile_t *profile, double start, double target)
 {
     double lowest, highest;
@@ -111,10 +112,10 @@ static cm1e_error_t plan_to_target(const cm1e_axis_t *axis, const from_t *from, 
     const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     const cm1e_motion_state_t start = start_of(from);
-    if (cm1e_profile_to_state(profile, &start, distance, move->exit_velocity, &limits))
+    if (cm1e_profile_to_state(profile, &start, distance, move->exit_velocity, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     return cm1e_axis_limits_check(axis, from, profile);
 }
@@ -134,14 +135,14 @@ cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *fr
     case mcCurrentDirection:
         positive = from->velocity != 0.0 ? from->velocity > 0.0 : axis->setpoint.positive_before;
         break;
-    default: /* the shortest way to a velocity is none */
+    default: /* there is no shortest way to a velocity */
         return CM1E_ERROR_AXIS_DIRECTION;
     }
     *velocity = positive ? move->velocity : -move->velocity;
     return CM1E_OK;
 }
 
-/* A velocity that goes on for ever must be allowed, and not begin too late to brake before a limit. */
+/* Checks an endless motion: its direction must be permitted, and it must be able to brake before a limit. */
 static cm1e_error_t check_endless(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     const double velocity = profile->end.velocity, now = cm1e_axis_line(axis, from->position);
@@ -160,31 +161,32 @@ static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const from_t *from, m
     cm1e_motion_limits_t limits;
     double velocity;
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_axis_signed_velocity(axis, from, move, &velocity);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     const cm1e_motion_state_t start = start_of(from);
-    if (cm1e_profile_to_velocity(profile, &start, copysign(limits.velocity, velocity), &limits))
+    if (cm1e_profile_to_velocity(profile, &start, copysign(limits.velocity, velocity), &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     return check_endless(axis, from, profile);
 }
 
-/* 3.11: through the position with the end velocity, if need be from behind it. Where the way there is only too short to
- * get to that velocity, the axis passes the position as it can and gets there later: nobody wants it to back up first
- * when the position lies ahead. */
+/* Plans a motion through the position with the end velocity (3.11); if necessary the axis goes back first. If the
+ * position lies ahead, and only the way is too short to reach the end velocity there, the axis does not go back. It
+ * passes the position with a lower velocity and reaches the end velocity later. */
 static cm1e_error_t plan_through_target(const cm1e_axis_t *axis, const from_t *from, move_t *move,
                                         cm1e_profile_t *profile)
 {
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     const cm1e_motion_state_t start = start_of(from);
     const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
-    const double end = move->exit_velocity, cruise = limits.velocity;
+    const double left = axis->limits.maximum.velocity - (from->shared ? axis->superimposed.share.velocity : 0.0);
+    const double end = fmax(-left, fmin(move->exit_velocity, left)), cruise = limits.velocity;
     limits.velocity = fmax(cruise, fabs(end));
-    if (cm1e_profile_to_velocity(profile, &start, end, &limits))
+    if (cm1e_profile_to_velocity(profile, &start, end, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     const double needed = profile->end.position;
     if (end > 0.0 ? distance > 0.0 && needed >= distance : end < 0.0 && distance < 0.0 && needed <= distance)
@@ -192,7 +194,7 @@ static cm1e_error_t plan_through_target(const cm1e_axis_t *axis, const from_t *f
     if (move->passing)
         return check_endless(axis, from, profile);
     limits.velocity = cruise;
-    if (cm1e_profile_to_state(profile, &start, distance, end, &limits))
+    if (cm1e_profile_to_state(profile, &start, distance, end, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!cm1e_axis_direction_enabled(axis, end))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
@@ -206,40 +208,41 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
     cm1e_motion_limits_t enough = *limits;
     cm1e_axis_keep_below_maximum(axis, from, &enough);
     const cm1e_error_t error = cm1e_profile_to_velocity(profile, &start, 0.0, &enough);
-    if (error || cm1e_axis_limits_contain(axis, from, profile))
+    if (error != CM1E_OK || cm1e_axis_limits_contain(axis, from, profile))
         return error;
     return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->limits.emergency);
 }
 
 static const override_t no_override = {1.0, 1.0, 1.0};
 
-/* A stop by a command: with the override as far as that keeps it inside the software limits. */
+/* Plans a stop by a command, with the override as far as the stop then keeps the software limits. */
 static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     cm1e_motion_limits_t limits;
     const cm1e_motion_state_t start = start_of(from);
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
-    /* The rest of the numbers are the axis's own: these are too small to compute with. */
-    if (cm1e_profile_to_velocity(profile, &start, 0.0, &limits))
+    /* The other numbers are the axis's own, so the inputs are too small to compute with. */
+    if (cm1e_profile_to_velocity(profile, &start, 0.0, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     if (cm1e_axis_limits_contain(axis, from, profile))
         return CM1E_OK;
     error = cm1e_axis_limits_with(axis, from, move, &no_override, &limits);
-    return error ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
+    return error != CM1E_OK ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
 }
 
-/* 4.4, 4.6: the velocity that the axis had when it left its master. */
+/* Plans the motion after a master was left: it keeps the velocity (4.4, 4.6). */
 static cm1e_error_t plan_kept(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     cm1e_motion_limits_t limits;
     const cm1e_motion_state_t start = start_of(from);
     const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
-    return cm1e_profile_to_velocity(profile, &start, move->end_velocity, &limits) ? CM1E_ERROR_AXIS_VELOCITY_RANGE
-                                                                                 : CM1E_OK;
+    if (cm1e_profile_to_velocity(profile, &start, move->end_velocity, &limits) != CM1E_OK)
+        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
+    return CM1E_OK;
 }
 
 /* ---- by kind ----------------------------------------------------------------------------------------------------- */
@@ -266,19 +269,19 @@ cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move
     return resolvers[kind_row(move->kind)->target](axis, from, move);
 }
 
-/* An override of velocity 0: down to a standstill, and there it waits. Where a position is to be passed with a velocity
- * and it is too late to stop before, it is passed, and the next command waits. */
+/* Plans an override of velocity 0: the axis brakes to standstill and waits there. If it is too late to stop before a
+ * position that has to be passed with a velocity, the position is passed, and the next command waits. */
 static bool plan_pause(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     const bool has_target = kind_row(move->kind)->plan == PLAN_TO_TARGET;
     const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
     cm1e_motion_limits_t limits;
     cm1e_profile_t stop;
-    if (plan_stop(axis, from, move, &stop))
+    if (plan_stop(axis, from, move, &stop) != CM1E_OK)
         return false;
     if (has_target && passes(axis, &stop, 0.0, distance) &&
-        (cm1e_axis_limits_with(axis, from, move, &no_override, &limits) ||
-         cm1e_axis_plan_stop(axis, from, &limits, &stop) || passes(axis, &stop, 0.0, distance)))
+        (cm1e_axis_limits_with(axis, from, move, &no_override, &limits) != CM1E_OK ||
+         cm1e_axis_plan_stop(axis, from, &limits, &stop) != CM1E_OK || passes(axis, &stop, 0.0, distance)))
         return false;
     *profile = stop;
     return true;
@@ -291,7 +294,7 @@ static cm1e_error_t plan_with_exit(const cm1e_axis_t *axis, const from_t *from, 
     const bool moves = plan != PLAN_STOP && plan != PLAN_KEEP_VELOCITY;
     move->passing = passing;
     const cm1e_error_t error = planners[plan](axis, from, move, profile);
-    move->paused = !error && moves && axis->override.velocity == 0.0 && plan_pause(axis, from, move, profile);
+    move->paused = error == CM1E_OK && moves && axis->override.velocity == 0.0 && plan_pause(axis, from, move, profile);
     return error;
 }
 
@@ -301,9 +304,9 @@ static double exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t 
     return has_exit ? cm1e_axis_exit_velocity(axis, from, move) : 0.0;
 }
 
-/* An override takes away acceleration and jerk only as far as the target is not passed by it (3.18, note 9), and the
- * axis does not go back. One that enters a way faster than it can be slowed down there now leaves it no faster than it
- * came: before the override changed, it was planned to go on like that. */
+/* Plans a command. An override reduces acceleration and jerk only so far that the axis does not overrun its target and
+ * does not go back (3.18, note 9). If the axis is too fast to slow down within the way, it leaves the way no faster
+ * than it entered it: this was its plan before the override changed. */
 cm1e_error_t cm1e_axis_plan(cm1e_axis_t *axis, const from_t *from, move_t *move, bool before_others,
                             cm1e_profile_t *profile)
 {
@@ -311,12 +314,12 @@ cm1e_error_t cm1e_axis_plan(cm1e_axis_t *axis, const from_t *from, move_t *move,
     const bool passing = move->passing;
     move->exit_velocity = exit_velocity(axis, from, move, before_others);
     cm1e_error_t error = plan_with_exit(axis, from, move, passing, profile);
-    if (error || !slowed(axis) || !cm1e_axis_profile_strays(axis, from, move, profile))
+    if (error != CM1E_OK || !slowed(axis) || !cm1e_axis_profile_strays(axis, from, move, profile))
         return error;
     axis->override = (override_t){factors.velocity, 1.0, 1.0};
     move->exit_velocity = exit_velocity(axis, from, move, before_others);
     error = plan_with_exit(axis, from, move, passing, profile);
-    if (!error && before_others && cm1e_axis_profile_strays(axis, from, move, profile)) {
+    if (error == CM1E_OK && before_others && cm1e_axis_profile_strays(axis, from, move, profile)) {
         axis->override = no_override;
         const double most = fabs(from->velocity);
         move->exit_velocity = fmax(-most, fmin(exit_velocity(axis, from, move, true), most));
@@ -336,7 +339,7 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
     return cm1e_position_plus(from->position, profile->end.position * axis->position.scale);
 }
 
-/* A disabled direction allows what the braking needs that is going on anyway, nothing more. */
+/* Whether the directions permit a profile. In a disabled direction only the braking under way is permitted. */
 static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     if (axis->power.enable_positive && axis->power.enable_negative)
@@ -344,7 +347,7 @@ static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const 
     double lowest, highest, brake_lowest, brake_highest;
     cm1e_profile_extent(profile, &lowest, &highest);
     cm1e_profile_t brake;
-    if (cm1e_axis_plan_stop(axis, from, &axis->limits.maximum, &brake))
+    if (cm1e_axis_plan_stop(axis, from, &axis->limits.maximum, &brake) != CM1E_OK)
         return false;
     cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
     return (axis->power.enable_positive || highest <= fmax(brake_highest, 0.0) + axis->limits.tolerance) &&

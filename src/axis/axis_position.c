@@ -1,7 +1,7 @@
 /*
- * Positions: from the drive's 32-bit counts, which wrap, to 64 bits and to units; the turns of a modulo axis; the
- * shift of the coordinates by MC_SetPosition and homing. A turn of a modulo axis is a fraction of counts, and turn k
- * begins at k times that fraction exactly, computed anew each time: nothing adds up, however long the axis turns.
+ * Positions: from the drive's 32-bit counts, which wrap, to 64 bits and to units; the turns of a modulo axis; the shift
+ * of the coordinates by MC_SetPosition and homing. A turn of a modulo axis is a fraction of counts. Turn k begins at
+ * exactly k times that fraction, computed anew each time. So no rounding adds up, however long the axis turns.
  */
 #include <float.h>
 #include <math.h>
@@ -13,13 +13,13 @@
 
 __extension__ typedef __int128 wide_t;
 
-/* Positions that a drive of whole counts cannot tell apart are the same: nobody means a whole turn by that. */
+/* Positions that whole counts of a drive cannot tell apart are one place, and not a whole turn apart. */
 static const double same_counts = 0.5 + 1e-6;
 
-/* Of a fraction of a count, where it has gone through a few sums. */
+/* The rounding of a fraction of a count after a few sums. */
 static const double rounding_counts = 1e-9;
 
-/* floor() without its call; of what fits. */
+/* floor() of a value that fits, without a call. */
 static int64_t floor_of(double value)
 {
     const int64_t whole = (int64_t)value;
@@ -37,7 +37,7 @@ static position_t normal(int64_t counts, double fraction)
 
 static position_t sum(position_t a, position_t b) { return normal(a.counts + b.counts, a.fraction + b.fraction); }
 
-/* Seen from the origin, counted in the direction in which u grows. */
+/* A position relative to the origin, in the direction in which u grows. */
 static position_t from_origin(const cm1e_axis_t *axis, position_t position)
 {
     const position_t o = axis->position.origin;
@@ -66,18 +66,17 @@ static double turn_counts(const cm1e_axis_t *axis)
 /* n / d with n >= 0, as a double, without losing the fraction of a large quotient. */
 static double quotient(wide_t n, int64_t d) { return (double)(int64_t)(n / d) + (double)(int64_t)(n % d) / (double)d; }
 
-/* What the arithmetic of a turn of so many counts rounds. */
+/* The rounding of the arithmetic with a turn of so many counts. */
 static double turn_rounding(double turn) { return rounding_counts + 4.0 * DBL_EPSILON * turn; }
 
-/* In which turn a position from the origin is, and how many counts from its beginning; 0 <= phase < a turn. The
- * beginning of a turn that is no whole number of counts is rounded, perhaps to less: it belongs to its turn all the
- * same. */
+/* The turn of a position relative to the origin, and its counts from the begin of that turn; 0 <= phase < a turn. If a
+ * turn is no whole number of counts, its begin is rounded, perhaps down. It still belongs to its turn. */
 static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *phase)
 {
     const int64_t numerator = axis->position.turn.numerator, denominator = axis->position.turn.denominator;
     int64_t turn, short_product;
     wide_t rest;
-    if (!__builtin_mul_overflow(position.counts, denominator, &short_product)) { /* nearly always, and much faster */
+    if (!__builtin_mul_overflow(position.counts, denominator, &short_product)) { /* nearly always, and faster */
         turn = short_product / numerator;
         rest = short_product % numerator;
     } else {
@@ -91,14 +90,14 @@ static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *pha
     }
     *phase = quotient(rest, denominator) + position.fraction;
     const double all = turn_counts(axis);
-    if (*phase >= all - turn_rounding(all)) { /* by the fraction of a count */
+    if (*phase >= all - turn_rounding(all)) { /* rounding: it is the begin of the next turn */
         *phase = fmax(*phase - all, 0.0);
         turn++;
     }
     return turn;
 }
 
-/* Position `phase` counts into a turn. */
+/* The position at `phase` counts of a turn. */
 static position_t in_turn(const cm1e_axis_t *axis, int64_t turn, double phase)
 {
     const wide_t product = (wide_t)turn * axis->position.turn.numerator;
@@ -128,9 +127,9 @@ double cm1e_axis_units(const cm1e_axis_t *axis, position_t position)
     return cm1e_axis_line(axis, position);
 }
 
-/* Set and actual position of an axis at rest may lie on both sides of the beginning of a turn, which a drive of whole
- * counts cannot tell. Who reads a turn beside 0 would think of a turn of lag: the one before the beginning is shown at
- * it. */
+/* The positions as they are shown. At rest, set and actual position may be on both sides of the begin of a turn, less
+ * than a count apart. A user who reads a turn beside 0 would see a lag of a turn. So the position before the begin is
+ * shown as the begin. */
 void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual)
 {
     const position_t at = axis_actual(axis);
@@ -180,14 +179,15 @@ bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, positi
     return cm1e_axis_position_from_line(axis, units, position);
 }
 
-/* Which repetition of a position, `way` counts away, the axis goes to: the first one in the direction asked for that
- * lies beyond the point where it can stop (2.4.2, 3.5). */
+/* The repetition of a position, `way` counts away, to which the axis goes: the first one in the commanded direction
+ * beyond the point where it can stop (2.4.2, 3.5). */
 static double repetitions(double way, double turn, double stop, bool positive)
 {
     return positive ? ceil((stop - same_counts - way) / turn) : floor((stop + same_counts - way) / turn);
 }
 
-/* Both ways equal, but for the rounding of their numbers: positive. None at all: as the axis moves. */
+/* The direction of the shortest way. If both ways are equal, apart from rounding, it is positive. If there is no way,
+ * it is the direction of the motion. */
 static bool shortest_is_positive(double way, double turn, double velocity)
 {
     way -= turn * round(way / turn);
@@ -274,7 +274,8 @@ void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
 
 /* ---- the drive's counts ------------------------------------------------------------------------------------------ */
 
-/* Differences of wrapping counts are exact as long as the motor moves less than half the range between two looks. */
+/* Follows the actual position. Differences of counts that wrap are exact while the motor moves less than half of their
+ * range between two calls. */
 void cm1e_axis_track(cm1e_axis_t *axis)
 {
     const int32_t raw = axis->drive.feedback.position;

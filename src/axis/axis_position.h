@@ -1,6 +1,6 @@
 /**
  * @file axis_position.h
- * Where the axis is: counts of the drive without wrap-around, units, turns of a modulo axis, the origin
+ * Positions of an axis: counts of the drive without wrap-around, units, turns of a modulo axis, the origin
  * (axis_position.c).
  */
 #ifndef CM1E_AXIS_AXIS_POSITION_H
@@ -8,39 +8,40 @@
 
 #include "axis/axis_parts.h"
 
-/** Counts of this motor that are as far as so many of a CM1-E; two at least, as one is rounding. */
-static inline double cm1e_axis_few(const cm1e_axis_t *axis, double counts)
+/** A tolerance in counts of this motor, given in counts of a CM1-E. It is at least two counts, because one is rounding.
+ *  */
+static inline double cm1e_axis_tolerance_counts(const cm1e_axis_t *axis, double counts)
 {
     return fmax(counts * axis->position.count, 2.0);
 }
-/** Whether a way of so many u can be counted; what is not a number cannot. */
+/** Whether a distance in u is in the range of the counts. It is not if it is not a number. */
 static inline bool cm1e_axis_can_count(const cm1e_axis_t *axis, double units)
 {
     return fabs(units * axis->position.scale) < (double)CM1E_FARTHEST_COUNTS;
 }
-/** What counts mean, by the configuration. FALSE: numbers that the axis cannot compute with. @rt init */
+/** Sets the meaning of counts by the configuration. false: the axis cannot compute with these numbers. @rt init */
 bool cm1e_axis_position_init(cm1e_axis_t *axis);
-/** MC_ReadAxisInfo.IsHomed */
+/** Sets MC_ReadAxisInfo.IsHomed. */
 static inline void cm1e_axis_set_homed(cm1e_axis_t *axis, bool homed) { axis->position.homed = homed; }
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 /** Set and actual position, as they are shown. */
 void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual);
-/** Without the turns of a modulo axis: what limits are compared with. */
+/** A position in u without the turns of a modulo axis, as limits are compared with it. */
 double cm1e_axis_line(const cm1e_axis_t *axis, position_t position);
-/** The way back; FALSE: not finite, or farther away than the axis counts. */
+/** The inverse of cm1e_axis_line(); false: not finite, or outside the range of the counts. */
 bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double line, position_t *position);
-/** FALSE: not finite, or farther away than the axis counts. */
+/** The inverse of cm1e_axis_units(); false: not finite, or outside the range of the counts. */
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
-/** Where a command to `position` (u) ends that begins at `from` with `velocity` (u/s): on a linear axis there, whatever
- *  the direction; on a modulo axis the first repetition in that direction, seen from the point where the axis can stop,
- *  `stop` (u, signed) after `from`. The shortest way is judged at `from`. */
+/** The target of a command to `position` (u) that begins at `from` with `velocity` (u/s). On a linear axis it is that
+ *  position, whatever the direction. On a modulo axis it is the first repetition in the commanded direction beyond the
+ *  point where the axis can stop, `stop` (u, signed) after `from`. The shortest way is judged at `from`. */
 cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,
                                       position_t from, double velocity, double stop, position_t *target);
-/** MC_SetPosition: what the actual position `now` becomes; FALSE: out of range. */
+/** MC_SetPosition: the new value of the actual position `now`; false: out of range. */
 bool cm1e_axis_new_position(const cm1e_axis_t *axis, double now, double position, bool relative, double *value);
-/** From now on the axis is at `units` when it is at `at`; on a modulo axis `units` is less than a turn. */
+/** Sets the coordinates: the position `at` is `units`. On a modulo axis `units` is less than a turn. */
 void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units);
-/** u; about where that range ends. */
+/** u; the approximate end of the range of the counts. */
 double cm1e_axis_farthest(const cm1e_axis_t *axis);
 void cm1e_axis_track(cm1e_axis_t *axis);
 void cm1e_axis_set_to_actual(cm1e_axis_t *axis);

@@ -1,10 +1,10 @@
 /*
  * Power, errors and their reset: the transitions of figure 2 that no motion command makes.
  *
- * MC_Power.Enable FALSE while the axis moves: the commands are aborted and the state is Disabled at once (note 2), the
- * motor is ramped down with the axis's deceleration and only then loses its torque; MC_Power.Status is TRUE so long.
- * ErrorStop ramps down without a limit of jerk, and ends without torque as well, so that MC_Reset leads to Disabled
- * (note 3), and from there, if MC_Power.Enable is TRUE, on to Standstill.
+ * If MC_Power.Enable becomes FALSE while the axis moves, the commands are aborted and the state is Disabled at once
+ * (note 2). The motor is ramped down with the axis's deceleration, and loses its torque only then; until then
+ * MC_Power.Status is TRUE. ErrorStop ramps down without a limit of jerk and ends without torque too. So MC_Reset leads
+ * to Disabled (note 3), and from there to Standstill if MC_Power.Enable is TRUE.
  */
 #include <math.h>
 
@@ -12,6 +12,7 @@
 #include "axis/axis_backlash.h"
 #include "axis/axis_commands.h"
 #include "axis/axis_device.h"
+#include "axis/axis_guest.h"
 #include "axis/axis_handle.h"
 #include "axis/axis_limits.h"
 #include "axis/axis_position.h"
@@ -19,11 +20,11 @@
 #include "axis/axis_text.h"
 #include "core/clock.h"
 
-/* How long a drive that cannot be heard any more counts as "still there" at the end. */
+/* At the end of a run, the time after which an offline drive counts as gone. */
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
 static const int64_t brake_ns = 20 * MS_IN_NS;
 
-/* Whatever moves is stopped, by a ramp of ours or by the drive in its homing; without torque nothing is to stop. */
+/* Stops the motion, by our ramp or, during a homing, by the drive. Without torque there is nothing to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
 {
     if (!axis->drive.feedback.enabled && !drive_moves(axis))
@@ -36,7 +37,7 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
                           const cm1e_motion_limits_t *ramp)
 {
     if (axis->state == CM1E_AXIS_ERROR_STOP)
-        return; /* the first cause is the one to tell */
+        return; /* the first cause is reported */
     const bool homing_broke = drive_homes(axis) &&
                               (error == CM1E_ERROR_AXIS_HOMING_FAILED || error == CM1E_ERROR_AXIS_HOMING_TIMEOUT);
     const bool followed = axis_follows(axis);
@@ -45,7 +46,7 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
     /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ERROR,
                            homing_broke || coupling_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
-    cm1e_axis_set_refusal(axis, CM1E_OK); /* old by the time of the reset */
+    cm1e_axis_set_refusal(axis, CM1E_OK); /* outdated after the reset */
     cm1e_axis_forget_not_set(axis);
     axis->fault.error = error;
     axis->fault.device_error = axis->drive.fault.device_code;
@@ -58,8 +59,8 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
         axis->coupling_hooks->failed(axis);
 }
 
-/* No faster and no farther than the set-point would have gone. For a moment at least: what the feedback shows is some
- * cycles old, and the motor may just be on its way. */
+/* Begins to brake at the actual state, no faster and no farther than the set-point would have gone. The ramp lasts a
+ * moment at least, because the feedback is some cycles old and the motor may just begin to move. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
 {
     if (axis_free(axis))
@@ -95,19 +96,26 @@ static void power_off(cm1e_axis_t *axis)
     wind_down(axis, &axis->limits.maximum);
 }
 
+/* The owner where a guest has enabled the axis (axis_guest.h). */
+static const char guest;
+
+/* A block may be replaced while it does not enable the axis. A guest gives way. */
+static bool may_own(const power_t *power, const void *owner)
+{
+    return !power->owner || power->owner == owner || power->owner == &guest || !(power->enable || power->energized);
+}
+
 cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
                              bool enable_negative)
 {
+    axis->power.claimed |= owner != &guest;
     if (enable && axis->config->type == CM1E_AXIS_ENCODER) {
         cm1e_axis_set_refusal(axis, CM1E_ERROR_AXIS_VIRTUAL);
         return CM1E_ERROR_AXIS_VIRTUAL;
     }
-    if (axis->power.owner != owner) {
-        /* A block that does not enable may be replaced, one that does may not. */
-        if (axis->power.owner && (axis->power.enable || axis->power.energized))
-            return CM1E_ERROR_FB_SECOND_POWER;
-        axis->power.owner = owner;
-    }
+    if (!may_own(&axis->power, owner))
+        return CM1E_ERROR_FB_SECOND_POWER;
+    axis->power.owner = owner;
     const bool positive_fell = axis->power.enable_positive && !enable_positive;
     const bool negative_fell = axis->power.enable_negative && !enable_negative;
     axis->power.shutting_down = false;
@@ -123,9 +131,31 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
     if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->commands.active &&
         drive_homes(axis)) {
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
-        axis->setpoint.source->stop(axis, &axis->limits.maximum, HOME_GOAL_HOLD); /* every method moves both ways */
+        axis->setpoint.source->stop(axis, &axis->limits.maximum, HOME_GOAL_HOLD);
     }
     return enable && axis->motor_hooks ? axis->motor_hooks->refuses_power(axis) : CM1E_OK;
+}
+
+bool cm1e_axis_guest_powers(const cm1e_axis_t *axis) { return axis->power.owner == &guest && axis->power.enable; }
+
+cm1e_guest_refusal_t cm1e_axis_guest_power(cm1e_axis_t *axis, bool enable)
+{
+    if (axis->power.claimed || (!enable && axis->power.owner != &guest))
+        return CM1E_GUEST_POWER;
+    if (cm1e_axis_power(axis, &guest, enable, true, true) == CM1E_OK)
+        return CM1E_GUEST_MAY;
+    cm1e_axis_power(axis, &guest, false, true, true);
+    return CM1E_GUEST_MODE;
+}
+
+void cm1e_axis_claim_power(AXIS_REF_t reference)
+{
+    cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
+    if (!axis || axis->power.claimed)
+        return;
+    if (cm1e_axis_guest_powers(axis))
+        cm1e_axis_power(axis, &guest, false, true, true);
+    axis->power.claimed = true;
 }
 
 bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
@@ -141,8 +171,8 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis)
     return axis->power.energized && axis->drive.feedback.state == OPERATION_ENABLED;
 }
 
-/* The enabled drive is taken over (note 5); the set-point begins where the motor is in this very cycle. It does so too
- * where power came back within the ramp of a step that pushed: the set-point has ended where the motor cannot go. */
+/* Takes over the enabled drive (note 5): the set-point begins at the actual position of this cycle. This also applies
+ * if power comes back during the ramp of a homing step that pressed: there the set-point is beyond the stop. */
 static void take_over(cm1e_axis_t *axis)
 {
     if (axis_free(axis) || axis->homing_step.pushing)
@@ -150,7 +180,7 @@ static void take_over(cm1e_axis_t *axis)
     axis->homing_step.pushing = false;
     cm1e_axis_set_source(axis, &cm1e_source_hold);
     axis->power.energized = true;
-    cm1e_axis_apply_limits(axis); /* without torque it may have been turned over the end of the drive's counts */
+    cm1e_axis_apply_limits(axis); /* without torque it may have been turned past the end of the counts */
     cm1e_axis_go(axis, ON_POWER_ON);
 }
 
@@ -163,9 +193,9 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
         take_over(axis);
     else if (axis_holds(axis) && !wanted && axis->now_ns >= axis->power.brake_until_ns &&
              cm1e_axis_backlash_at_rest(axis) && (!axis->power.shutting_down || cm1e_axis_outputs_off_first(axis)))
-        cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
+        cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point was sent */
     else if (!axis_free(axis) && !drive_moves(axis) && !acting)
-        cm1e_axis_become_free(axis); /* the torque went in the middle of a ramp */
+        cm1e_axis_become_free(axis); /* the torque was lost during a ramp */
 }
 
 void cm1e_axis_enable_step(cm1e_axis_t *axis)
@@ -181,7 +211,7 @@ cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 {
     axis->power.reset_error = CM1E_OK;
     if (axis->state != CM1E_AXIS_ERROR_STOP) {
-        axis->power.reset_state = CM1E_COMMAND_DONE; /* nothing to reset, and nothing happens */
+        axis->power.reset_state = CM1E_COMMAND_DONE; /* there is nothing to reset */
     } else if (axis->power.reset_state != CM1E_COMMAND_ACTIVE) {
         axis->power.reset_state = CM1E_COMMAND_ACTIVE;
         axis->power.reset_sent = false;
@@ -191,7 +221,7 @@ cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 
 cm1e_command_state_t cm1e_axis_reset_state(const cm1e_axis_t *axis, cm1e_error_t *error)
 {
-    if (error)
+    if (error != CM1E_OK)
         *error = axis->power.reset_error;
     return axis->power.reset_state;
 }
@@ -201,14 +231,14 @@ static void reset_finished(cm1e_axis_t *axis)
     const cm1e_error_t error = axis->drive.fault.error;
     axis->drive.command.reset = false;
     axis->power.reset_error = error;
-    axis->power.reset_state = error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
+    axis->power.reset_state = error != CM1E_OK ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
     axis->fault.error = error;
     axis->fault.device_error = axis->drive.fault.device_code;
-    if (!error)
+    if (error == CM1E_OK)
         cm1e_axis_go(axis, ON_RESET);
 }
 
-/* After the ramp of ErrorStop has ended: the drive's reset, which also brings back a slave that was away. */
+/* Resets the drive after the ramp of ErrorStop. This also brings back a slave that was offline. */
 void cm1e_axis_reset_step(cm1e_axis_t *axis)
 {
     if (!axis_free(axis))
@@ -225,10 +255,10 @@ bool cm1e_axis_shut_down(cm1e_axis_t *axis)
 {
     axis->power.shutting_down = true;
     power_off(axis);
-    if (!axis_free(axis) || axis->drive.torque ||
+    if (!axis_free(axis) || axis->drive.torque.asked ||
         (axis->motor_hooks && !axis->motor_hooks->released(axis)))
         return false;
-    cm1e_axis_outputs_off(axis); /* not before: a brake on it must not fall on a moving load */
+    cm1e_axis_outputs_off(axis); /* not earlier: a brake on an output must not act on a moving load */
     const bool gone = axis->now_ns - axis->power.free_ns >= gone_after_ns;
     return axis->drive.feedback.state != OPERATION_ENABLED || (gone && !axis->drive.feedback.online);
 }

@@ -8,7 +8,7 @@
 #include "axis/axis_parts.h"
 
 static inline void cm1e_axis_power_init(cm1e_axis_t *axis) { axis->power.reset_state = CM1E_COMMAND_DONE; }
-/** The drive's own code of the fault may come a cycle later. */
+/** Adds the drive's code of the fault, which may come a cycle later. */
 static inline void cm1e_axis_tell_device_error(cm1e_axis_t *axis, uint16_t code) { axis->fault.device_error = code; }
 static inline bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 {
@@ -18,12 +18,13 @@ static inline bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 void cm1e_axis_become_free(cm1e_axis_t *axis); /* axis_free.c */
 void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound,
                           const cm1e_motion_limits_t *ramp);
-/** A ramp of ErrorStop begins anew, from the motor's own position and speed. */
+/** Begins the ramp of ErrorStop anew, from the actual position and velocity of the motor. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis);
-/** The set velocity falls by `velocity` (u/s) at once: the torque stays until the motor has had time to follow. */
+/** Called when the set velocity falls by `velocity` (u/s) at once: the torque stays until the motor has had time to
+ *  follow. */
 void cm1e_axis_keep_torque(cm1e_axis_t *axis, double velocity);
-/** The bus is lost. In CSP the set-point stays where it is, under torque for as long as the ramp of an error would take:
- *  a drive that still hears, and one that does not, both stop there. */
+/** Called when the bus is lost. In CSP the set-point stays, with torque for as long as the ramp of an error takes. So a
+ *  drive stops at the same place whether it still receives frames or not. */
 void cm1e_axis_hold_unheard(cm1e_axis_t *axis);
 void cm1e_axis_power_step(cm1e_axis_t *axis);
 void cm1e_axis_enable_step(cm1e_axis_t *axis);

@@ -1,7 +1,7 @@
 /*
- * Touch probes (3.33, 3.34). The CM1-E has no latch of its own (no 0x60B8): a trigger is seen as an input that differs
- * between two samples, and the position is the middle of the two positions. So it is known to half the way between two
- * samples, and to the device's own delay of an input, which the manual does not tell.
+ * Touch probes (3.33, 3.34). The CM1-E has no latch (no 0x60B8). An edge is seen as an input that differs between two
+ * samples, and its position is taken as the middle of the two positions. So the uncertainty is half the way between two
+ * samples, plus the delay of the input in the device, which the manual does not state.
  */
 #include <math.h>
 
@@ -14,7 +14,7 @@
 
 static uint16_t bit_of(cm1e_axis_trigger_t trigger) { return (uint16_t)(1u << (trigger.input - 1)); }
 
-/* The drive latches positions at this edge itself. */
+/* Whether the drive itself latches the position at this edge. */
 static bool is_latched(const cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
 {
     return !cm1e_drive_is_virtual(&axis->drive) && cm1e_drive_has_probe(&axis->drive, trigger.input, trigger.falling);
@@ -28,9 +28,9 @@ static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, pro
         return CM1E_OK;
     }
     const cm1e_error_t error = cm1e_axis_check_input(axis, trigger.input);
-    if (error)
+    if (error != CM1E_OK)
         return error;
-    if (!cm1e_axis_sees_inputs(axis)) /* SDOs are much later than half the way between two samples */
+    if (!cm1e_axis_sees_inputs(axis)) /* inputs by SDO are too late for this */
         return CM1E_ERROR_PDO_MAPPING;
     *probe = &axis->signals.probes[2 * (trigger.input - 1) + trigger.falling];
     return CM1E_OK;
@@ -39,7 +39,7 @@ static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, pro
 static probe_sample_t sample(const cm1e_axis_t *axis)
 {
     return (probe_sample_t){
-        .time_ns = axis->drive.read_ns,
+        .time_ns = axis->drive.actual.read_ns,
         .position = axis_actual(axis),
         .inputs = axis->drive.feedback.digital_inputs,
     };
@@ -62,7 +62,7 @@ static cm1e_error_t check_window(const cm1e_axis_t *axis, double first, double l
     return first <= last || axis->position.modulo_range > 0.0 ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
-/* Both ends included, and what the counts of the motor cannot tell from them. */
+/* Whether a position is in the window. Both ends are included, with a tolerance of a count. */
 static bool in_window(const cm1e_axis_t *axis, const probe_t *probe, double position)
 {
     const double few = 0.01 / fabs(axis->position.scale);
@@ -78,17 +78,17 @@ static cm1e_error_t arm(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool win
     *id = 0;
     probe_t *probe;
     cm1e_error_t error = probe_of(axis, trigger, &probe);
-    if (!error && window)
+    if (error == CM1E_OK && window)
         error = check_window(axis, first, last);
-    if (error)
+    if (error != CM1E_OK)
         return error;
-    if (!axis->drive.seen || !axis->position.known)
+    if (!axis->drive.actual.seen || !axis->position.known)
         return CM1E_ERROR_AXIS_OFFLINE;
     if (axis->signals.probes_armed == 0)
         axis->signals.probe_sample = sample(axis);
     if (probe->state != CM1E_COMMAND_ACTIVE)
         axis->signals.probes_armed++;
-    /* The number tells the probe, so that it is found again; a PROBES-th part of all numbers never comes back. */
+    /* The number contains the place of the probe, by which it is found. */
     axis->signals.probe_count = axis->signals.probe_count % (UINT32_MAX / PROBES - 1) + 1;
     *id = axis->signals.probe_count * PROBES + (uint32_t)(probe - axis->signals.probes);
     *probe = (probe_t){.id = *id, .state = CM1E_COMMAND_ACTIVE, .window = window, .first = first, .last = last};
@@ -122,15 +122,15 @@ cm1e_error_t cm1e_axis_probe_abort(cm1e_axis_t *axis, cm1e_axis_trigger_t trigge
 {
     probe_t *probe;
     const cm1e_error_t error = probe_of(axis, trigger, &probe);
-    if (!error && is_latched(axis, trigger))
+    if (error == CM1E_OK && is_latched(axis, trigger))
         cm1e_drive_probe_disarm(&axis->drive, trigger.input, trigger.falling);
-    if (!error && probe->state == CM1E_COMMAND_ACTIVE)
+    if (error == CM1E_OK && probe->state == CM1E_COMMAND_ACTIVE)
         end(axis, probe, CM1E_COMMAND_ABORTED, CM1E_OK);
     return error;
 }
 
-/* Longer without inputs than the axis rides out, or while the motor gives its counts new meaning: nobody knows where
- * the axis was when the input changed. */
+/* Whether the position of the edge is unknown: inputs were missing for too long, or the counts of the motor got another
+ * meaning. */
 static bool position_unknown(const cm1e_axis_t *axis, const probe_sample_t *before, const probe_sample_t *now)
 {
     const double cycles = (double)(now->time_ns - before->time_ns) / (axis->cycle_s * 1e9);
@@ -154,7 +154,7 @@ static void triggered(cm1e_axis_t *axis, probe_t *probe, const probe_sample_t *b
     end(axis, probe, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
-/* The latch of the drive knows the position to the count. */
+/* Takes the position from the latch of the drive, which is exact to the count. */
 static void take_latched(cm1e_axis_t *axis, probe_t *probe, cm1e_axis_trigger_t trigger)
 {
     int32_t raw;

@@ -1,5 +1,4 @@
-/* What is kept of commands and refusals: how a command ended, for who asks by number; what was refused last, for the
- * text. */
+/* The records of commands and refusals: how a command ended, by its number; and what was refused last, for the text. */
 #include "axis/axis_commands.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_text.h"
@@ -15,7 +14,7 @@ void cm1e_axis_record(cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_stat
 cm1e_command_id_t cm1e_axis_next_id(cm1e_axis_t *axis)
 {
     if (++axis->commands.last_id == 0)
-        axis->commands.last_id = 1; /* 0 is no command */
+        axis->commands.last_id = 1; /* 0 is not the number of a command */
     return axis->commands.last_id;
 }
 
@@ -60,7 +59,7 @@ move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
 void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error)
 {
     axis->commands.refusal = error;
-    if (!error)
+    if (error == CM1E_OK)
         return;
     axis->commands.refused = *command;
     axis->not_set.error = CM1E_OK;
@@ -68,16 +67,16 @@ void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *co
 
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what)
 {
-    if (!what.error && axis->not_set.what != what.what)
+    if (what.error == CM1E_OK && axis->not_set.what != what.what)
         return;
     axis->not_set = what;
-    if (what.error)
+    if (what.error != CM1E_OK)
         axis->commands.refusal = CM1E_OK;
 }
 
 void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_error_t error)
 {
-    if (error && error != CM1E_ERROR_AXIS_ERROR_STOP)
+    if (error != CM1E_OK && error != CM1E_ERROR_AXIS_ERROR_STOP)
         cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_FINISHED, .number = (int)kind});
 }
 

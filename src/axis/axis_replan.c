@@ -1,4 +1,4 @@
-/* What becomes of the profile of a command: another one takes over, or it is planned anew from the present set-point. */
+/* Changes of the profile of a command: another one takes over, or it is planned anew from the present set-point. */
 #include "axis/axis_commands.h"
 #include "axis/axis_plan.h"
 #include "axis/axis_setpoint.h"
@@ -14,7 +14,7 @@ void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, c
 
 void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind)
 {
-    if (kind->plan != PLAN_HOMING_STEP) /* it has gone there itself: MC_HomeDirect may be over already */
+    if (kind->plan != PLAN_HOMING_STEP) /* a step sets the state itself: MC_HomeDirect may be over already */
         cm1e_axis_go(axis, kind->trigger);
 }
 
@@ -31,7 +31,7 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
     cm1e_profile_t profile;
     const from_t from = from_base(axis);
     const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
-    if (!error)
+    if (error == CM1E_OK)
         go_on_as(axis, &from, &move, &profile);
     return error;
 }
@@ -42,20 +42,20 @@ bool cm1e_axis_can_replan(const cm1e_axis_t *axis)
            is_planned(axis->commands.kind);
 }
 
-/* `careful`: not when it would then run over its target, or go back. */
+/* Plans the command anew. `careful`: not if it would then overrun its target or go back. */
 static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
 {
     move_t move = axis->commands.move;
     cm1e_profile_t profile;
     const from_t from = from_base(axis);
     const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
-    *done = !error && !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile));
+    *done = error == CM1E_OK && !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile));
     if (*done)
         go_on_as(axis, &from, &move, &profile);
     return error;
 }
 
-/* What runs does so itself: it began too late for anything else. */
+/* Whether the present profile overruns its target or goes back already, because it began too late. */
 static bool runs_astray(const cm1e_axis_t *axis)
 {
     const cm1e_motion_state_t *start = &axis->setpoint.profile.segments[0].start;
@@ -64,7 +64,7 @@ static bool runs_astray(const cm1e_axis_t *axis)
            cm1e_axis_profile_strays(axis, &from, &axis->commands.move, &axis->setpoint.profile);
 }
 
-/* One that keeps its target, or passes it with a velocity, cannot always be changed any more: then it stays. */
+/* A profile that reaches its target, or passes it with a velocity, stays if the new plan would not do so. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
 {
     bool done;

@@ -22,12 +22,12 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
     double value;
     if (!cm1e_axis_new_position(axis, now, position, relative, &value))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    /* The written limits; those of the motor's counts stay where they are. */
+    /* The software limits as written. The limits of the motor's counts do not shift. */
     const double lower = axis->limits.negative_enabled ? axis->limits.negative : -INFINITY;
     const double upper = axis->limits.positive_enabled ? axis->limits.positive : INFINITY;
     const bool limited = axis->limits.negative_enabled || axis->limits.positive_enabled;
     if (limited && drive_moves(axis))
-        return CM1E_ERROR_AXIS_STATE; /* of the drive's way only the end is known */
+        return CM1E_ERROR_AXIS_STATE; /* only the end of a motion by the drive is known */
     const double shift = value - now;
     if (limited) {
         const double set = cm1e_axis_units(axis, axis->setpoint.position) + shift;

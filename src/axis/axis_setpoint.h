@@ -1,14 +1,14 @@
 /**
  * @file axis_setpoint.h
- * The set-point of every cycle: where it comes from, where it is, and the profile that it is on. axis_motion.c samples
- * profiles; the other sources (axis_source.h) write the set-point itself.
+ * The set-point of every cycle: its source, its state of motion, and its profile. axis_motion.c samples profiles. The
+ * other sources (axis_source.h) write the set-point themselves.
  */
 #ifndef CM1E_AXIS_AXIS_SETPOINT_H
 #define CM1E_AXIS_AXIS_SETPOINT_H
 
 #include "axis/axis_position.h"
 
-/* Where the set-point comes from. */
+/* Sets the source of the set-point. */
 static inline void cm1e_axis_set_source(cm1e_axis_t *axis, const source_t *source)
 {
     if (axis->setpoint.source != source && axis->setpoint.source->leave)
@@ -22,28 +22,28 @@ static inline void cm1e_axis_setpoint_init(cm1e_axis_t *axis) /* @rt init */
 }
 static inline bool axis_free(const cm1e_axis_t *axis) { return axis->setpoint.source->is_free; }
 static inline bool axis_holds(const cm1e_axis_t *axis) { return axis->setpoint.source->holds; }
-/** A profile, or a table over time, which is one too. */
+/** Whether the set-point is on a profile or on a table over time. */
 static inline bool axis_on_profile(const cm1e_axis_t *axis) { return axis->setpoint.source->find_stretch != NULL; }
-/** A coupling function moves the axis. */
+/** Whether a coupling function moves the axis. */
 static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->setpoint.source->follows; }
-/** Set-points of ours change from cycle to cycle. */
+/** Whether our set-points change from cycle to cycle. */
 static inline bool set_points_move(const cm1e_axis_t *axis) { return axis->setpoint.source->moves; }
-/** The drive moves, or is about to, by itself. */
+/** Whether the drive moves by itself, or is about to. */
 static inline bool drive_moves(const cm1e_axis_t *axis) { return axis->setpoint.source->by_drive; }
-/** The drive moves by itself in its homing. */
+/** Whether the drive moves by itself in a homing. */
 static inline bool drive_homes(const cm1e_axis_t *axis) { return axis->setpoint.source->homes; }
-/** The axis's motions are the drive's: `motion: drive`. */
+/** Whether the drive makes the motions of the axis (`motion: drive`). */
 static inline bool drive_profiles(const cm1e_axis_t *axis) { return axis->config->motion == CM1E_MOTION_DRIVE; }
-/** Set-points of ours reach the motor. */
+/** Whether our set-points act on the motor. */
 static inline bool axis_acts(const cm1e_axis_t *axis)
 {
     return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)axis->mode;
 }
 
-/** The axis's own half of cm1e_axis_outputs(): state diagram and set-point, before they become the drive's. */
+/** The first half of cm1e_axis_outputs(): state diagram and set-point, before they are written to the drive. */
 void cm1e_axis_advance(cm1e_axis_t *axis);
 /* What sources write that are no profile of axis_motion.c, and those who change something beside the motion. */
-/** The set-point of this cycle. */
+/** Writes the set-point of this cycle. */
 static inline void cm1e_axis_put_set_point(cm1e_axis_t *axis, const from_t *point)
 {
     axis->setpoint.position = point->position;
@@ -56,19 +56,19 @@ static inline void cm1e_axis_put_position(cm1e_axis_t *axis, position_t position
 {
     axis->setpoint.position = position;
 }
-/** No motion led there. */
+/** Moves the set-point to a position without a motion. */
 static inline void cm1e_axis_jump(cm1e_axis_t *axis, position_t position)
 {
     axis->setpoint.position = position;
     axis->setpoint.jumps++;
 }
-/** From here on with this velocity, u/s, and acceleration, u/s2. */
+/** Sets the velocity (u/s) and the acceleration (u/s2). */
 static inline void cm1e_axis_put_motion(cm1e_axis_t *axis, double velocity, double acceleration)
 {
     axis->setpoint.velocity = velocity;
     axis->setpoint.acceleration = acceleration;
 }
-/** From here on with this velocity, u/s, and no acceleration. */
+/** Sets the velocity (u/s), without acceleration. */
 static inline void cm1e_axis_put_velocity(cm1e_axis_t *axis, double velocity)
 {
     axis->setpoint.velocity = velocity;
@@ -78,19 +78,19 @@ static inline void cm1e_axis_shift_set_point(cm1e_axis_t *axis, double counts)
 {
     cm1e_axis_put_position(axis, cm1e_position_plus(axis->setpoint.position, counts));
 }
-/** The coordinates have changed. */
+/** Called when the coordinates have changed. */
 static inline void cm1e_axis_renew_base_line(cm1e_axis_t *axis)
 {
     axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
 }
-/** The profile begins and ends so many counts farther on. */
+/** Shifts the begin and the end of the profile by so many counts. */
 static inline void cm1e_axis_shift_profile(cm1e_axis_t *axis, double counts)
 {
     axis->setpoint.base = cm1e_position_plus(axis->setpoint.base, counts);
     axis->setpoint.target = cm1e_position_plus(axis->setpoint.target, counts);
     cm1e_axis_renew_base_line(axis);
 }
-/** Of a table over time the profile has only these. */
+/** Sets the duration and the end, which is all that the profile has of a table over time. */
 static inline void cm1e_axis_put_duration(cm1e_axis_t *axis, double duration_s, cm1e_motion_state_t end)
 {
     axis->setpoint.profile.duration_s = duration_s;
@@ -98,35 +98,35 @@ static inline void cm1e_axis_put_duration(cm1e_axis_t *axis, double duration_s, 
     axis->setpoint.profile.segment_count = 0;
 }
 static inline void cm1e_axis_set_reached(cm1e_axis_t *axis, bool reached) { axis->setpoint.reached = reached; }
-/** Of a follower: whether it is still on its way to what was commanded. */
+/** Sets whether a follower is still approaching. */
 static inline void cm1e_axis_set_synchronizing(cm1e_axis_t *axis, bool on) { axis->setpoint.synchronizing = on; }
 /** Of a cam: cm1e_command_status_t.ends */
 static inline void cm1e_axis_set_ends(cm1e_axis_t *axis, uint32_t ends) { axis->setpoint.ends = ends; }
 static inline void cm1e_axis_set_paused(cm1e_axis_t *axis, bool paused) { axis->setpoint.paused = paused; }
 static inline void cm1e_axis_set_stands(cm1e_axis_t *axis, bool stands) { axis->setpoint.stands = stands; }
 
-/** A profile takes over that began at `from`, `offset_s` before the present set-point. */
+/** Puts a profile in force that began at `from`, `offset_s` before the present set-point. */
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
                    double offset_s);
-/** Of any source that is a profile. */
+/** Begins any source that is a profile. */
 void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t *from, position_t target,
                          double offset_s);
-/** Down to standstill without a command. */
+/** Ramps down to standstill without a command. */
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
 /** source_t.stop of sources whose set-points are ours: cm1e_axis_ramp_down(). */
 void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
-/** The profile's functions, which a table over time shares. */
+/** Functions of the profile that a table over time uses too. */
 bool cm1e_axis_profile_step(cm1e_axis_t *axis);
 /** source_t.step and slowing of a profile whose time can run slower for a while (motion/slow_time.h). */
 bool cm1e_axis_timed_step(cm1e_axis_t *axis);
 void cm1e_axis_timed_slow(cm1e_axis_t *axis, double part);
 bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign);
-/** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the next
+/** Called when MC_Power no longer enables the direction `sign` (3.1). A command in that direction fails, and the next
  *  one begins, or the axis stops. */
 void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign);
-/** The set-point stands where it is, and its profile ends there. */
+/** Stops the set-point where it is. Its profile ends there. */
 void cm1e_axis_hold_here(cm1e_axis_t *axis);
-/** The set-point stands at the end of its profile. */
+/** Puts the set-point to rest at the end of its profile. */
 void cm1e_axis_stand(cm1e_axis_t *axis);
 void cm1e_axis_motion_step(cm1e_axis_t *axis);
 void cm1e_axis_write_set_point(cm1e_axis_t *axis);

@@ -9,43 +9,44 @@
 
 #include "axis/axis.h"
 
-/** What comes after the drive has ended a motion of its own. */
+/** What follows when a motion by the drive has ended: its command is done, the axis holds, or it has no torque. */
 typedef enum home_goal { HOME_GOAL_DONE = 0, HOME_GOAL_HOLD, HOME_GOAL_OFF } home_goal_t;
 
 typedef struct source {
-    /** The set-point of the cycle. FALSE: there is none, as the source has ended; a profile that has taken over gives
+    /** Makes the set-point of the cycle. false: the source has ended and made none; the profile that took over makes
      *  it. */
     bool (*step)(cm1e_axis_t *axis);
-    /** What moves comes to rest: by this ramp, or as the drive does it, which then has `goal`. */
+    /** Brings the motion to rest by this ramp. A motion by the drive ends in the drive's own way, with `goal`. */
     void (*stop)(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
-    /** What moves begins anew at the present set-point. NULL: as a profile does (axis_pause.c), or nothing moves. */
+    /** Begins the motion anew at the present set-point. NULL: as a profile does (axis_pause.c), or nothing moves. */
     void (*begin_anew)(cm1e_axis_t *axis);
-    /** Goes on, at first with this part of its velocity or, led, of that of all. NULL: it begins anew with it. */
+    /** Goes on with this part of its velocity at first; a led axis with this part of the velocity of all. NULL: it
+     *  begins anew with that velocity. */
     void (*slow)(cm1e_axis_t *axis, double part);
-    /** Another source takes over. NULL: nothing is to be done then. */
+    /** Called when another source takes over. NULL: nothing to do. */
     void (*leave)(cm1e_axis_t *axis);
-    /** What is left to go: whether any of it goes in the direction of `sign`. NULL: none does. */
+    /** Whether any of the remaining motion is in the direction of `sign`. NULL: none is. */
     bool (*goes)(cm1e_axis_t *axis, double sign);
-    /** What is left to go: whether it, and a stop from it, keeps these software limits (u). NULL: it does. */
+    /** Whether the remaining motion, and a stop from it, keeps these software limits (u). NULL: it does. */
     bool (*keeps)(const cm1e_axis_t *axis, double lower, double upper);
-    /** Of a profile over time: finds the stretch that `time_s` lies in. NULL: the source is no such profile. */
+    /** Finds the stretch of a profile over time that contains `time_s`. NULL: the source is no such profile. */
     void (*find_stretch)(cm1e_axis_t *axis, double time_s);
     /** Targets of the drive that do not follow from the set-point. NULL: there are none. */
     void (*write)(cm1e_axis_t *axis);
     bool is_free;      /**< no torque */
-    bool holds;        /**< the set-point stands */
-    bool moves;        /**< set-points of ours change from cycle to cycle */
-    bool is_composite; /**< they are a part of something that would be lost if it began anew */
-    bool follows;      /**< masters are what moves the axis */
-    bool by_drive;     /**< the drive moves, or is about to, by itself */
-    bool homes;        /**< the drive moves by itself in its homing */
+    bool holds;        /**< the set-point is at rest */
+    bool moves;        /**< our set-points change from cycle to cycle */
+    bool is_composite; /**< the motion is made of several, and cannot begin anew without losing one */
+    bool follows;      /**< masters move the axis */
+    bool by_drive;     /**< the drive moves by itself, or is about to */
+    bool homes;        /**< the drive moves by itself in a homing */
 } source_t;
 
 extern const source_t cm1e_source_free;    /**< no torque: the set-point is the actual position; axis_free.c */
-extern const source_t cm1e_source_hold;    /**< it stands; axis_motion.c */
-extern const source_t cm1e_source_profile; /**< of a command, or of a stopping ramp; axis_motion.c */
+extern const source_t cm1e_source_hold;    /**< the set-point is at rest; axis_motion.c */
+extern const source_t cm1e_source_profile; /**< a profile of a command, or a ramp; axis_motion.c */
 extern const source_t cm1e_source_table;   /**< axis_table.c */
 extern const source_t cm1e_source_drive;   /**< the drive's own profile; axis_drive_profile.c */
-extern const source_t cm1e_source_leader;  /**< somebody above; axis_lead.c */
+extern const source_t cm1e_source_leader;  /**< a leader from a room above; axis_lead.c */
 
 #endif

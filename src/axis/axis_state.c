@@ -1,12 +1,12 @@
 /*
- * The state diagram of PLCopen Part 1 v2.0, figure 2. A cell is the state that the trigger leads to, or the error by
- * which a command is refused there, or STAYS.
+ * The state diagram of PLCopen Part 1 v2.0, figure 2. A cell is the state that the trigger leads to, or the error with
+ * which a command is refused in that state, or STAYS.
  *
- * Homing has no arrow to a motion, so only MC_Stop and the next step of a homing in steps (Part 5) are taken there.
- * Stopping takes another MC_Stop only when no MC_Stop holds it any more (axis_command.c): the same block may so be
- * triggered again while the axis still brakes. A superimposed motion changes no state but Standstill (3.8). What leaves
- * a master, or shifts against it, needs one (4.4, 4.6, 4.8). ErrorStop always ends without torque, so MC_Reset leads to
- * Disabled (note 3), and from there on to Standstill where MC_Power.Enable is TRUE: that is note 4.
+ * Homing has no arrow to a motion, so it accepts only MC_Stop and the next step of a homing in steps (Part 5). Stopping
+ * accepts another MC_Stop only when no MC_Stop holds it any more (axis_command.c). So the same block may be triggered
+ * again while the axis still brakes. A superimposed motion changes no state except Standstill (3.8). Commands that
+ * leave a master, or shift against it, need a master (4.4, 4.6, 4.8). ErrorStop always ends without torque, so MC_Reset
+ * leads to Disabled (note 3), and from there to Standstill if MC_Power.Enable is TRUE: this is note 4.
  */
 #include "axis/axis_state.h"
 

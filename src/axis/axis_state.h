@@ -8,9 +8,9 @@
 
 #include "axis/axis.h"
 
-/** What moves an axis in the diagram. */
+/** The triggers of the diagram. */
 typedef enum state_trigger {
-    /* commands; those that the diagram does not tell apart have one trigger (axis_kind.c) */
+    /* commands; commands that the diagram treats alike have one trigger (axis_kind.c) */
     ON_DISCRETE = 0,
     ON_CONTINUOUS,
     ON_COUPLE,
@@ -25,11 +25,11 @@ typedef enum state_trigger {
     /* the ends of commands */
     ON_AT_REST = COMMAND_TRIGGERS, /**< the motion of a command has come to rest */
     ON_DONE,                       /**< a homing is over; a command that waited for its motor is Done */
-    ON_BROKEN_OFF,                 /**< a motion ends before its end: it is braked */
+    ON_BROKEN_OFF,                 /**< a motion is broken off: it is braked */
     ON_STOP_RELEASED,              /**< MC_Stop is done, and its Execute FALSE (note 6) */
     /* groups */
-    ON_LED,                        /**< a group gives the set-points from now on */
-    ON_LET_GO,                     /**< the group gives them no longer; the axis is at rest */
+    ON_LED,                        /**< a group begins to give the set-points */
+    ON_LET_GO,                     /**< the group ends that, with the axis at rest */
     /* power, errors, reset */
     ON_POWER_ON,                   /**< MC_Power.Enable, and the drive is enabled (note 5) */
     ON_POWER_OFF,                  /**< MC_Power.Enable FALSE (note 2) */
@@ -38,11 +38,11 @@ typedef enum state_trigger {
     STATE_TRIGGER_COUNT,
 } state_trigger_t;
 
-/** Why a command is refused in this state; CM1E_OK: it is taken. */
+/** Why a command is refused in this state; CM1E_OK: it is accepted. */
 cm1e_error_t cm1e_axis_state_refusal(cm1e_axis_state_t state, state_trigger_t trigger);
 /** The state that the trigger leads to: the same one where the diagram has no arrow, or the command is refused. */
 cm1e_axis_state_t cm1e_axis_state_after(cm1e_axis_state_t state, state_trigger_t trigger);
-/** Goes there. */
+/** Assigns the state that the trigger leads to. */
 void cm1e_axis_go(cm1e_axis_t *axis, state_trigger_t trigger);
 
 #endif

@@ -1,17 +1,17 @@
 /*
- * MC_MoveSuperimposed and MC_HaltSuperimposed (3.8, 3.9): a second motion on top of the commanded one, its base. The
- * set-point is the sum of both.
+ * MC_MoveSuperimposed and MC_HaltSuperimposed (3.8, 3.9): a second motion in addition to the commanded one, its base.
+ * The set-point is the sum of both.
  *
- * So that the sum never exceeds what the axis may do, the limits are shared: the superimposed motion takes at most half
- * of the axis's acceleration and jerk, and the base is planned anew with what is left; a base that needs no more than
- * that keeps its time (3.8). Both change over at the same jerk, so that the sum stays inside on the way there too. A
- * base that is about to arrive and needs its whole deceleration for that gets it: the superimposed motion then begins
- * when it can. A follower's velocity is its master's, which nobody shares: a command that takes over from it where it
- * is faster than what the superimposed motion leaves gets all of the motion, and the superimposed one waits with what
- * it has covered until there is room for it again. On an axis in Standstill there is nothing to share with.
+ * The limits are shared, so that the sum keeps the limits of the axis. The superimposed motion gets at most half of the
+ * acceleration and jerk, and the base is planned anew with the rest; a base that needs no more than the rest keeps its
+ * time (3.8). Both change with the same jerk, so that the sum also keeps the limits during the change. A base that is
+ * about to arrive and needs its whole deceleration for that gets it; then the superimposed motion begins later. The
+ * velocity of a follower is that of its master, which is not shared. If a command takes over from a follower that is
+ * faster than the rest, the command gets the whole motion, and the superimposed motion waits, with what it has covered,
+ * until there is room for it again. On an axis in Standstill the superimposed motion has all limits.
  *
- * While it goes on, the base counts its positions without it. At its end the base, and where that goes, are moved by
- * what has been covered.
+ * During a superimposed motion the base counts its positions without it. At its end the base and its target are shifted
+ * by what it has covered.
  */
 #include <math.h>
 
@@ -31,7 +31,7 @@ static const double same_moment = 1e-6; /* cycles */
 static bool plan_with(const cm1e_axis_t *axis, const override_t *override, superimposed_t *on_top, bool *strays)
 {
     cm1e_motion_limits_t limits;
-    if (cm1e_axis_limits_on_top(axis, on_top, override, &limits))
+    if (cm1e_axis_limits_on_top(axis, on_top, override, &limits) != CM1E_OK)
         return false;
     const double target = on_top->move.position;
     const bool stops = on_top->paused || on_top->move.kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
@@ -43,7 +43,7 @@ static bool plan_with(const cm1e_axis_t *axis, const override_t *override, super
     return true;
 }
 
-/* An override takes away no more than cm1e_axis_plan() lets it. */
+/* Plans the superimposed motion. An override reduces it no more than cm1e_axis_plan() allows. */
 static bool plan(const cm1e_axis_t *axis, superimposed_t *on_top)
 {
     const override_t full = {axis->override.velocity, 1.0, 1.0};
@@ -57,7 +57,7 @@ static bool plan(const cm1e_axis_t *axis, superimposed_t *on_top)
     return true;
 }
 
-/* u/s; the fastest that the base goes, or is commanded to go now or next. */
+/* u/s; the maximum of the present and the commanded velocities of the base, with those of waiting commands. */
 static double base_velocity(cm1e_axis_t *axis)
 {
     const from_t from = from_base(axis);
@@ -71,7 +71,7 @@ static double base_velocity(cm1e_axis_t *axis)
     return fastest;
 }
 
-/* What the acceleration of the base still makes of its velocity while it ends, also beyond a turn. */
+/* The velocity that the base reaches until its acceleration has ended, also if it changes its direction. */
 static double peak_of(const from_t *from, double jerk)
 {
     const double a = from->acceleration;
@@ -86,7 +86,7 @@ static cm1e_motion_limits_t share_of(const cm1e_axis_t *axis, const cm1e_motion_
     return (cm1e_motion_limits_t){asked->velocity, acceleration, acceleration, fmin(asked->jerk, most->jerk / 2.0)};
 }
 
-/* With what is left it would run over a software limit. */
+/* Whether a halt with the rest of the limits would pass a software limit. */
 static bool needs_all_to_halt(const cm1e_axis_t *axis)
 {
     const from_t from = from_base(axis);
@@ -94,11 +94,12 @@ static bool needs_all_to_halt(const cm1e_axis_t *axis)
     cm1e_motion_limits_t limits;
     cm1e_profile_t stop;
     return axis->commands.kind == CM1E_COMMAND_HALT && axis->limits.software_limits &&
-           (cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits) ||
-            cm1e_profile_to_velocity(&stop, &start, 0.0, &limits) || !cm1e_axis_limits_contain(axis, &from, &stop));
+           (cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits) != CM1E_OK ||
+            cm1e_profile_to_velocity(&stop, &start, 0.0, &limits) != CM1E_OK ||
+            !cm1e_axis_limits_contain(axis, &from, &stop));
 }
 
-/* The base makes room; FALSE: it cannot now. */
+/* Plans the base with the rest of the limits; false: that is not possible now. */
 static bool base_gives_way(cm1e_axis_t *axis)
 {
     if (axis->setpoint.stands)
@@ -109,7 +110,7 @@ static bool base_gives_way(cm1e_axis_t *axis)
     const double peak = peak_of(&from, axis->limits.maximum.jerk / 2.0);
     if (!axis->commands.active || peak + axis->superimposed.share.velocity > axis->limits.maximum.velocity)
         return false;
-    return axis->setpoint.reached || cm1e_axis_replan_if(axis); /* a constant velocity stays, and InVelocity (3.10) */
+    return axis->setpoint.reached || cm1e_axis_replan_if(axis); /* InVelocity stays (3.10) */
 }
 
 static bool begin(cm1e_axis_t *axis)
@@ -136,7 +137,7 @@ void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from)
 
 /* ---- its place in the base --------------------------------------------------------------------------------------- */
 
-/* What it has covered so far becomes the base's. */
+/* Makes the distance covered so far a part of the base. */
 static void give_to_base(cm1e_axis_t *axis)
 {
     const double covered = axis->superimposed.now.position, counts = covered * axis->position.scale;
@@ -179,6 +180,22 @@ void cm1e_axis_superimposed_abandon(cm1e_axis_t *axis)
     axis->superimposed.now = (cm1e_motion_state_t){0};
 }
 
+/* The base has reached a velocity, but a smaller one than it was commanded: what was left for it. */
+static bool falls_short(cm1e_axis_t *axis)
+{
+    static const double rounding = 1.0 + 1e-9;
+    const move_t *move = &axis->commands.move;
+    const from_t from = from_base(axis);
+    const command_plan_t plan = kind_row(move->kind)->plan;
+    const bool through = plan == PLAN_THROUGH_TARGET;
+    cm1e_motion_limits_t limits;
+    if (!axis->commands.active || !(through || plan == PLAN_VELOCITY) || axis->setpoint.paused ||
+        cm1e_axis_limits_of(axis, &from, move, &limits) != CM1E_OK)
+        return false;
+    const double commanded = through ? fabs(cm1e_axis_exit_velocity(axis, &from, move)) : limits.velocity;
+    return commanded > fabs(axis->setpoint.profile.end.velocity) * rounding;
+}
+
 static void finish(cm1e_axis_t *axis)
 {
     superimposed_t *on_top = &axis->superimposed;
@@ -189,9 +206,9 @@ static void finish(cm1e_axis_t *axis)
     on_top->moving = false;
     if (axis->setpoint.stands)
         cm1e_axis_stand(axis);
-    else if (!axis->setpoint.reached)
+    else if (!axis->setpoint.reached || falls_short(axis))
         (void)cm1e_axis_replan(axis);
-    if (axis->setpoint.reached && axis->commands.waiting.count > 0) { /* for this */
+    if (axis->setpoint.reached && axis->commands.waiting.count > 0) { /* they waited for the end of this motion */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     }
@@ -199,7 +216,8 @@ static void finish(cm1e_axis_t *axis)
 
 /* ---- commands ---------------------------------------------------------------------------------------------------- */
 
-/* With it on top, no position that the base is at or goes to may lie outside the software limits. */
+/* Whether the present position and the target of the base, with the superimposed distance, are inside the software
+ * limits. */
 static bool inside(cm1e_axis_t *axis, double distance)
 {
     const position_t base = from_base(axis).position;
@@ -223,10 +241,10 @@ static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, cm1
     static const override_t none = {1.0, 1.0, 1.0};
     const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
     const cm1e_error_t error = axis->commands.active && !kind_row(axis->commands.kind)->carries_superimposed
-                                   ? CM1E_ERROR_AXIS_STATE /* its times and limits are its own */
+                                   ? CM1E_ERROR_AXIS_STATE /* the drive has its own times and limits */
                                    : cm1e_axis_limits_with(axis, &rest, move, &none, limits);
     const double counts = move->position * axis->position.scale;
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (!isfinite(counts) || fabs(counts) > 4.5e15 || !inside(axis, move->position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
@@ -236,7 +254,7 @@ static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, cm1
     return !alone && move->velocity + base_velocity(axis) > most ? CM1E_ERROR_AXIS_VELOCITY_RANGE : CM1E_OK;
 }
 
-/* The base that an axis in Standstill has: it stays where it is. */
+/* Makes the base of an axis in Standstill: it stays at its position. */
 static void stand_as_base(cm1e_axis_t *axis)
 {
     const from_t from = from_set(axis);
@@ -248,7 +266,8 @@ static void stand_as_base(cm1e_axis_t *axis)
     cm1e_axis_set_stands(axis, true);
 }
 
-/* From how it goes now; asked before anything is changed, as what goes cannot end on the spot. */
+/* Whether the superimposed motion can go on as `move` from its present state. This is tested before anything changes,
+ * because the present motion cannot end at once. */
 static bool can_go_on_as(const cm1e_axis_t *axis, const move_t *move, bool alone, const cm1e_motion_limits_t *share)
 {
     superimposed_t trial = {.move = *move, .alone = alone, .share = *share, .now = axis->superimposed.now};
@@ -262,13 +281,13 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     const bool replaces = on_top->id && on_top->moving, alone = axis_holds(axis) || (replaces && on_top->alone);
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = check(axis, move, alone, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
-    /* One that replaces another keeps to what the base has left for that. */
+    /* A motion that replaces another one gets the share of that one. */
     const cm1e_motion_limits_t share = replaces ? on_top->share : alone ? axis->limits.maximum
                                        : share_of(axis, &limits);
     if (!can_go_on_as(axis, move, alone, &share))
-        return CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* next to nothing, perhaps by factors of MC_SetOverride */
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* the values are too small, perhaps by MC_SetOverride */
     if (axis_holds(axis))
         stand_as_base(axis);
     if (on_top->id)
@@ -290,13 +309,13 @@ static cm1e_error_t halt(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_
     const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &rest, move, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (on_top->moving && !can_go_on_as(axis, move, on_top->alone, &on_top->share))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     *id = cm1e_axis_next_id(axis);
     if (!on_top->id) {
-        cm1e_axis_record(axis, *id, CM1E_COMMAND_DONE, CM1E_OK); /* nothing is superimposed */
+        cm1e_axis_record(axis, *id, CM1E_COMMAND_DONE, CM1E_OK); /* there is no superimposed motion */
         return CM1E_OK;
     }
     record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
@@ -316,7 +335,7 @@ cm1e_error_t cm1e_axis_superimpose(cm1e_axis_t *axis, const cm1e_axis_command_t 
     return command->kind == CM1E_COMMAND_HALT_SUPERIMPOSED ? halt(axis, &move, id) : superimpose(axis, &move, id);
 }
 
-/* New inputs act within the share that it began with. */
+/* ContinuousUpdate: new inputs act within the share with which the motion began. */
 cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
     superimposed_t *on_top = &axis->superimposed;
@@ -324,14 +343,14 @@ cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t i
     if (command->kind == CM1E_COMMAND_HALT_SUPERIMPOSED)
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (id != on_top->id)
-        return CM1E_OK; /* it has ended */
+        return CM1E_OK; /* the command has ended */
     if (inputs.kind != on_top->move.kind)
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (cm1e_axis_same_inputs(&on_top->move, &inputs))
         return CM1E_OK;
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = check(axis, &inputs, true, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     superimposed_t next = *on_top;
     next.move = inputs;

@@ -1,10 +1,10 @@
 /*
  * Motions along a table of positions, velocities or accelerations over time (3.14 ... 3.16). The table is copied when
- * the command is taken, as points of the axis, and becomes a chain of pieces that starts with the axis's own motion;
- * the whole of it is checked against the limits of the axis before it begins. It is locked to time: an override does
- * not act on it, and there is no ContinuousUpdate.
+ * the command is accepted. Its points become a chain of pieces that begins with the present motion of the axis. The
+ * whole chain is checked against the limits before it begins. It is locked to time: no override acts on it, and there
+ * is no ContinuousUpdate.
  *
- * A table of positions ends at rest; tables of velocities and accelerations go on with their last velocity.
+ * A table of positions ends at rest. Tables of velocities and accelerations go on with their last velocity.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -38,7 +38,7 @@ cm1e_error_t cm1e_axis_table_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 
 static bool factor(double given, double *value)
 {
-    *value = given == 0.0 ? 1.0 : given; /* an input that nobody set */
+    *value = given == 0.0 ? 1.0 : given; /* the input was not set */
     return isfinite(given);
 }
 
@@ -64,7 +64,8 @@ static cm1e_error_t read_points(const cm1e_axis_table_t *table, table_points_t *
     return CM1E_OK;
 }
 
-/* The kernel counts positions from the start, velocities and accelerations from zero. */
+/* The offset of the table for the kernel, which counts positions from the start, and velocities and accelerations from
+ * zero. */
 static double shift(const cm1e_axis_t *axis, const from_t *from, cm1e_command_kind_t kind, bool absolute)
 {
     if (kind == CM1E_COMMAND_POSITION_PROFILE)
@@ -74,8 +75,9 @@ static double shift(const cm1e_axis_t *axis, const from_t *from, cm1e_command_ki
 
 /* ---- the check --------------------------------------------------------------------------------------------------- */
 
-/* Whether a motion along the table still goes that way after `from_s`. The velocity is extreme where pieces meet, and
- * inside a piece where the acceleration goes through zero. The table's own place in it is moved, and nothing else. */
+/* Whether a motion along the table moves in the direction `sign` after `from_s`. The velocity has its extremes where
+ * pieces meet and, inside a piece, where the acceleration is zero. Only the place of the sampling in the table is
+ * changed. */
 static bool goes_after(cm1e_table_profile_t *table, double from_s, double sign)
 {
     const double rounding = relative_tolerance * (1.0 + fabs(table->end.velocity));
@@ -154,14 +156,15 @@ static cm1e_error_t prepare(const cm1e_axis_t *axis, const from_t *from, cm1e_co
     cm1e_table_point_t shifted[CM1E_TABLE_POINTS_MAX];
     for (int i = 0; i < points->count; i++)
         shifted[i] = (cm1e_table_point_t){points->points[i].time_s, points->points[i].value + more};
-    if (cm1e_table_profile(table, table_kind(kind), &start, shifted, points->count, axis->limits.maximum.jerk, needed))
+    if (cm1e_table_profile(table, table_kind(kind), &start, shifted, points->count, axis->limits.maximum.jerk,
+                           needed) != CM1E_OK)
         return CM1E_ERROR_AXIS_TABLE;
     return check(axis, from, table, needed);
 }
 
 /* ---- the command ------------------------------------------------------------------------------------------------- */
 
-/* Exactly the last position, where it is one of the axis. */
+/* The end of the motion: exactly the last position of the table, if it is a position of the axis. */
 static position_t end_of(const cm1e_axis_t *axis, const from_t *from, cm1e_command_kind_t kind,
                          const table_points_t *points, const cm1e_table_profile_t *table)
 {
@@ -190,9 +193,9 @@ cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t 
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;
     cm1e_error_t error = axis->tables ? read_points(command->table, &points) : CM1E_ERROR_AXIS_NO_TABLES;
-    if (!error)
+    if (error == CM1E_OK)
         error = prepare(axis, &from, command->kind, &points, &table, &needed);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     *id = cm1e_axis_next_id(axis);
@@ -212,13 +215,13 @@ cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t
     table_points_t points;
     move_t move = {.kind = (uint8_t)command->kind, .buffer_mode = mcBuffered};
     cm1e_error_t error = read_points(command->table, &points);
-    if (error)
+    if (error != CM1E_OK)
         return error;
-    /* Before it waits: what it waits for may be there already, and it begins at once. */
+    /* The number is set before it waits, because it may begin at once. */
     axis->tables->waiting_id = axis->commands.last_id + 1 ? axis->commands.last_id + 1 : 1;
     axis->tables->waiting = points;
     error = cm1e_axis_buffer(axis, &move);
-    axis->tables->waiting_id = *id = error ? 0 : move.id;
+    axis->tables->waiting_id = *id = error != CM1E_OK ? 0 : move.id;
     return error;
 }
 
@@ -230,7 +233,7 @@ cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, move_t *move, const from_t
         return CM1E_ERROR_AXIS_STATE;
     const table_points_t *points = &axis->tables->waiting;
     const cm1e_error_t error = prepare(axis, from, (cm1e_command_kind_t)move->kind, points, &table, &needed);
-    if (!error)
+    if (error == CM1E_OK)
         take(axis, move, from, points, &table, offset_s);
     return error;
 }
@@ -242,7 +245,7 @@ void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *c
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;
     needs->table = NULL;
-    if (read_points(command->table, &points) ||
+    if (read_points(command->table, &points) != CM1E_OK ||
         prepare(axis, &from, command->kind, &points, &table, &needed) == CM1E_ERROR_AXIS_TABLE)
         return;
     needs->velocity = needed.velocity;

@@ -1,4 +1,4 @@
-/* What happened to an axis, in sentences. */
+/* Sentences about the errors of an axis and about refused commands. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +17,7 @@ static bool coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refu
     return axis->coupling_hooks && axis->coupling_hooks->text(axis, error, refused, text, size);
 }
 
-/* Without a bound it is the drive that says so, in a motion of its own. */
+/* Without a bound, the drive itself has reported the lag, in a motion by the drive. */
 static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     if (axis->fault.bound == 0.0) {
@@ -34,7 +34,7 @@ static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
              axis->config->name, cm1e_strerror(axis->fault.error), axis->fault.value, axis->fault.bound);
 }
 
-/* Behind what has been said: where the counts of a motor behind a bridge end (BR appendix 5). */
+/* Adds where the counts of a motor behind a bridge end (BR appendix 5). */
 static void add_counts_limit(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const size_t used = strlen(text);
@@ -102,7 +102,7 @@ static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t si
              axis->limits.maximum.jerk);
 }
 
-/* Nobody means so slow a motion; such numbers are what profiles cannot be computed with. */
+/* Whether the values are so small that no profile can be computed. No useful motion is so slow. */
 static bool too_small(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     static const double least_counts = 1e-6;
@@ -126,7 +126,7 @@ static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
              axis->override.acceleration, axis->override.jerk);
 }
 
-/* Where the base is, and where it goes as far as that is known. */
+/* Explains a refused superimposed motion: the position of the base, and its target if that is known. */
 static void refused_on_top_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const from_t base = from_base(axis);
@@ -181,7 +181,7 @@ static void refused_by_drive_text(const cm1e_axis_t *axis, char *text, size_t si
              "master, and for all other motions, it needs `motion: host` in the bus file.", axis->config->name);
 }
 
-/* A command was refused; the axis itself has no error. */
+/* The sentences for a refused command; the axis itself has no error. */
 static const struct {
     cm1e_error_t error;
     void (*text)(const cm1e_axis_t *axis, char *text, size_t size);

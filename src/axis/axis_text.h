@@ -1,13 +1,13 @@
 /**
  * @file axis_text.h
- * What the axis says of what was refused (axis_record.c, axis_text.c, axis_text_not_set.c).
+ * Sentences about refusals (axis_record.c, axis_text.c, axis_text_not_set.c).
  */
 #ifndef CM1E_AXIS_AXIS_TEXT_H
 #define CM1E_AXIS_AXIS_TEXT_H
 
 #include "axis/axis_parts.h"
 
-/** For the text: what was refused last is told. A success takes back only what was told of the same. */
+/** Remembers the last refusal for the text. A success clears only a refusal of the same kind. */
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 static inline void cm1e_axis_forget_not_set(cm1e_axis_t *axis) { axis->not_set.error = CM1E_OK; }
 void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size);

@@ -1,4 +1,4 @@
-/* What was not set, in sentences: parameters, positions, overrides, signals, cams. */
+/* Sentences about what was not set: parameters, positions, overrides, signals, cams. */
 #include <stdio.h>
 
 #include "axis/axis_device.h"

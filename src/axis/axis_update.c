@@ -1,6 +1,7 @@
 /*
- * ContinuousUpdate (2.4.6): new inputs of a command that runs or waits. What has not changed costs a comparison. What
- * has is planned anew from the present set-point; relative values go on counting from where the command began.
+ * ContinuousUpdate (2.4.6): new inputs of an active or waiting command. If no input has changed, it costs one
+ * comparison. Else the command is planned anew from the present set-point. Relative values still count from the begin
+ * of the command.
  */
 #include "axis/axis_commands.h"
 #include "axis/axis_in_position.h"
@@ -8,12 +9,12 @@
 #include "axis/axis_plan.h"
 #include "axis/axis_setpoint.h"
 
-/* The new inputs in an old command. */
+/* An old command with new inputs. */
 static move_t merged(const move_t *old, const move_t *inputs)
 {
     move_t move = *inputs;
     move.id = old->id;
-    move.buffer_mode = old->buffer_mode; /* it has been used */
+    move.buffer_mode = old->buffer_mode; /* the buffer mode has taken effect already */
     move.origin = old->origin;
     move.target = old->target;
     move.shift = cm1e_axis_same_way(old, inputs) ? old->shift : 0.0;
@@ -33,9 +34,9 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
     const from_t from = from_base(axis);
     if (!cm1e_axis_same_way(&axis->commands.move, inputs)) {
         const cm1e_error_t error = cm1e_axis_resolve(axis, &from, &move);
-        if (error)
+        if (error != CM1E_OK)
             return error;
-    } else if (axis_settling(axis)) { /* it stands where it was to go: there is nothing to plan */
+    } else if (axis_settling(axis)) { /* its set-point is at the target: nothing to plan */
         cm1e_motion_limits_t unused;
         return cm1e_axis_limits_of(axis, &from, &move, &unused);
     }
@@ -54,7 +55,7 @@ cm1e_error_t cm1e_axis_update_move(cm1e_axis_t *axis, cm1e_command_id_t id, cons
         const move_t move = merged(waiting, &inputs);
         return cm1e_axis_update_waiting(axis, &move);
     }
-    return CM1E_OK; /* nothing new, or it has ended */
+    return CM1E_OK; /* no change, or the command has ended */
 }
 
 static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
@@ -68,7 +69,7 @@ static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_a
 cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
     const cm1e_error_t error = update(axis, id, command);
-    if (error) /* a good one, at every call of a block, says nothing about what was refused before */
+    if (error != CM1E_OK) /* a success must not clear an earlier refusal: it comes with every call of a block */
         cm1e_axis_remember_refusal(axis, command, error);
     return error;
 }

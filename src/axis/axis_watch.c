@@ -4,6 +4,7 @@
 
 #include "axis/axis_kind.h"
 #include "axis/axis_parts.h"
+#include "core/cache_line.h"
 
 void cm1e_axis_news(const cm1e_axis_t *axis, cm1e_axis_news_t *news)
 {
@@ -38,6 +39,35 @@ bool cm1e_axis_has_text(const cm1e_axis_t *axis)
     return axis->fault.error || axis->commands.refusal || axis->not_set.error;
 }
 
-size_t cm1e_axis_copy_bytes(void) { return sizeof(cm1e_axis_t); }
+/** What rooms above the axis keep of it. */
+static int own_copies(const cm1e_axis_t *axis, const own_copy_t *own[3])
+{
+    int count = 0;
+    if (axis->coupling_hooks)
+        own[count++] = &axis->coupling_hooks->own;
+    if (axis->homing_hooks)
+        own[count++] = &axis->homing_hooks->own;
+    if (axis->motor_hooks)
+        own[count++] = &axis->motor_hooks->own;
+    return count;
+}
 
-void cm1e_axis_copy(const cm1e_axis_t *axis, void *copy) { memcpy(copy, axis, sizeof *axis); }
+size_t cm1e_axis_copy_bytes(const cm1e_axis_t *axis)
+{
+    const own_copy_t *own[3];
+    size_t bytes = cm1e_whole_cache_lines(sizeof *axis);
+    for (int i = own_copies(axis, own) - 1; i >= 0; i--)
+        bytes += cm1e_whole_cache_lines(own[i]->bytes);
+    return bytes;
+}
+
+void cm1e_axis_copy(const cm1e_axis_t *axis, void *copy)
+{
+    const own_copy_t *own[3];
+    unsigned char *place = (unsigned char *)copy + cm1e_whole_cache_lines(sizeof *axis);
+    memcpy(copy, axis, sizeof *axis);
+    for (int i = own_copies(axis, own) - 1; i >= 0; i--) {
+        own[i]->make(axis, copy, place);
+        place += cm1e_whole_cache_lines(own[i]->bytes);
+    }
+}

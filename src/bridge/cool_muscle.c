@@ -1,10 +1,11 @@
 /*
- * What a motor behind a bridge does beside motion: strings in CML, modes of operation, commands of CMD. Only while the
- * axis is Disabled and nobody asks for torque. MC_Power leads from CML back to the axis's own mode, CSP or CPIO; from
- * CMD no way leads there (BR 6).
+ * What a motor behind a bridge does beside motion: strings in CML, modes of operation, commands of CMD. They are
+ * accepted only while the axis is Disabled and no torque is commanded. MC_Power switches from CML back to the axis's
+ * own mode, CSP or CPIO. From CMD there is no way back to those modes (BR 6).
  *
- * A string or a command may move the motor, without a set-point of ours. So it is freed when that is left behind, when
- * the axis fails, when the slave was away, and at the end of the run. And its counts may mean another place afterwards.
+ * A string or a command may move the motor without our set-points. So the motor is freed (its torque is taken away)
+ * when CML is left, when the axis fails, when the slave was offline, and at the end of the run. The axis is no longer
+ * homed if a command may have changed what the motor's counts mean.
  */
 #include "bridge/cool_muscle.h"
 
@@ -20,27 +21,28 @@
 #include "device/cml.h"
 #include "drive/drive_bridge.h"
 
-/* A request of a block, which polls it by its ticket. */
+/* The last request of one kind. The block that made it polls it by its ticket. */
 typedef struct asked {
-    uint32_t ticket;            /* of the last one; 0: none yet */
+    uint32_t ticket;            /* 0: there was no request yet */
     cm1e_command_state_t state;
     cm1e_error_t error;
 } asked_t;
 
-/* What a motor behind a bridge does beside motion. */
+/* The state of these functions for one axis. */
 struct cool_muscle {
-    int8_t mode, next;          /* commanded while the axis is Disabled, and what is to be so as soon as it can */
+    int8_t mode, next;          /* the mode that is commanded while the axis is Disabled; the mode requested after it */
     bool insist;
-    bool moved;                 /* since CML was entered, a string was taken that may have moved the motor */
-    bool must_free;             /* it is to lose its torque before anything else */
-    bool failed;                /* ErrorStop, as of the last cycle */
-    bool away;                  /* the slave was, and its mode is not known since */
-    uint32_t freeing;           /* ticket of the string that does that; 0: none is under way */
-    uint32_t last;              /* ticket of the last string that a block sent; its end is not told yet; 0: it is */
-    int64_t release_ns;         /* shut down is waited for since then; 0: it is not */
+    bool moved;                 /* a string since CML was entered may have moved the motor */
+    bool must_free;             /* the motor has to lose its torque before anything else */
+    bool failed;                /* the axis was in ErrorStop in the last cycle */
+    bool away;                  /* the slave was offline, and its mode is not known yet */
+    uint32_t freeing;           /* ticket of the string that frees the motor; 0: none is under way */
+    uint32_t last;              /* ticket of the last string of a block until its end is reported; 0: reported */
+    int64_t release_ns;         /* when the wait for the shut-down began; 0: no wait */
     asked_t switching, command;
-    const char *why;            /* of the last refusal, for the text: a sentence; NULL: none */
-    char text[CM1E_CML_BYTES + 1]; /* and the string that was refused */
+    const char *why;            /* the reason of the last refusal, as a sentence, or `said`; NULL: none */
+    char said[CM1E_CML_BYTES + 1]; /* what the motor answered then */
+    char text[CM1E_CML_BYTES + 1]; /* the string that was refused last */
 };
 typedef struct cool_muscle cool_muscle_t;
 
@@ -71,7 +73,7 @@ static cm1e_error_t refuse(cm1e_axis_t *axis, cm1e_error_t error, const char *wh
         axis->muscle->why = why;
         const size_t size = text ? strnlen(text, sizeof axis->muscle->text - 1) : 0;
         if (text)
-            memcpy(axis->muscle->text, text, size); /* texts are made when they are asked for, not in the cycle */
+            memcpy(axis->muscle->text, text, size); /* the text of the error is made outside the cycle */
         axis->muscle->text[size] = '\0';
     }
     return error;
@@ -80,10 +82,11 @@ static cm1e_error_t refuse(cm1e_axis_t *axis, cm1e_error_t error, const char *wh
 static bool is_quiet(const cm1e_axis_t *axis)
 {
     return axis->state == CM1E_AXIS_DISABLED && axis_free(axis) && !axis->power.enable &&
-           !axis->drive.torque && !axis->power.shutting_down;
+           !axis->drive.torque.asked && !axis->power.shutting_down;
 }
 
-/* In ErrorStop the mode is not switched. A motor that is in CML already can be asked for the cause. */
+/* In ErrorStop the mode is not switched, but a motor that is in CML already accepts strings: they can ask for the
+ * cause. */
 static cm1e_error_t check(const cm1e_axis_t *axis, bool string)
 {
     if (!axis->muscle)
@@ -146,11 +149,11 @@ cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size
     *ticket = 0;
     memcpy(copy, text, strnlen(text, size < sizeof copy - 1 ? size : sizeof copy - 1));
     cm1e_error_t error = check(axis, true);
-    if (!error)
+    if (error == CM1E_OK)
         error = check_string(axis, copy, allow_motion, &why);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_drive_cml_send(cml_of(axis), copy, timeout_ns, ticket);
-    if (error)
+    if (error != CM1E_OK)
         return refuse(axis, error, why, copy);
     cool_muscle_t *muscle = axis->muscle;
     cm1e_axis_set_refusal(axis, CM1E_OK);
@@ -195,9 +198,9 @@ cm1e_error_t cm1e_axis_set_mode(cm1e_axis_t *axis, cm1e_bridge_mode_t mode, bool
     const char *why = NULL;
     *ticket = 0;
     cm1e_error_t error = check(axis, false);
-    if (!error)
+    if (error == CM1E_OK)
         error = check_mode(axis, mode, insist, &why);
-    if (error)
+    if (error != CM1E_OK)
         return refuse(axis, error, why, NULL);
     cool_muscle_t *muscle = axis->muscle;
     cm1e_axis_set_refusal(axis, CM1E_OK);
@@ -208,7 +211,7 @@ cm1e_error_t cm1e_axis_set_mode(cm1e_axis_t *axis, cm1e_bridge_mode_t mode, bool
     return CM1E_OK;
 }
 
-/* Aborts a request that another one has replaced. */
+/* The state of a request. A request that a later one has replaced is aborted. */
 static cm1e_command_state_t state_of(const asked_t *asked, uint32_t ticket, cm1e_error_t *error)
 {
     const bool mine = ticket != 0 && asked->ticket == ticket;
@@ -227,7 +230,8 @@ static bool is_mode(int8_t mode)
            mode == CM1E_BRIDGE_MODE_CPIO;
 }
 
-/* Shown, or given up: then the motor is where it is shown, and nothing asks it to go anywhere. */
+/* Ends a switch of the mode when the bridge shows the new mode. In ErrorStop the switch is given up, and the mode that
+ * the bridge shows is taken over. */
 static void follow_switch(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;
@@ -243,15 +247,15 @@ static void follow_switch(cm1e_axis_t *axis)
     end_switching(muscle, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
-/* Where a bridge that was away is found counts: switched off and on, it is in CSP (BR 6), and nothing leads it into a
- * dead end again that nobody has asked for since. Until it is known, nothing is asked for. From a homing that was
- * broken off the way leads on to CSP. */
+/* A bridge that was offline may come back in another mode: after power-on it is in CSP (BR 6). The mode that it shows
+ * is taken over, so that it is not led into CMD again without a new request. No mode is commanded until it shows one.
+ * If it shows the mode of a homing that was broken off, the switch to the requested mode goes on. */
 static void follow_return(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;
     const int8_t shown = axis->drive.feedback.mode;
     muscle->away = muscle->away || !cm1e_drive_operational(&axis->drive);
-    if (!muscle->away || !cm1e_drive_operational(&axis->drive) || !axis->drive.mode_known || shown == CM1E_MODE_NONE)
+    if (!muscle->away || !cm1e_drive_operational(&axis->drive) || !axis->drive.change.known || shown == CM1E_MODE_NONE)
         return;
     muscle->away = false;
     if (!is_mode(shown))
@@ -271,7 +275,7 @@ cm1e_error_t cm1e_axis_motor_command(cm1e_axis_t *axis, cm1e_drive_cmd_t command
                                                    : cm1e_drive_cmd_start(&axis->drive, command, timeout_ns);
     if (error == CM1E_ERROR_STATE)
         error = CM1E_ERROR_CM_MODE;
-    if (error)
+    if (error != CM1E_OK)
         return refuse(axis, error, error == CM1E_ERROR_CM_MODE ? not_in_cmd : NULL, NULL);
     cm1e_axis_set_refusal(axis, CM1E_OK);
     if (command == CM1E_DRIVE_CMD_ORIGIN_SEARCH || command == CM1E_DRIVE_CMD_RESET_COUNTER)
@@ -297,8 +301,8 @@ static void follow_command(cm1e_axis_t *axis)
                      : state == CM1E_DRIVE_CMD_SEARCH_TIME_OUT ? CM1E_ERROR_CM_SEARCH
                      : state == CM1E_DRIVE_CMD_GIVEN_UP        ? CM1E_ERROR_CM_SEARCH_TIMEOUT
                                                                : CM1E_ERROR_AXIS_OFFLINE;
-    command->state = command->error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
-    if (command->error)
+    command->state = command->error != CM1E_OK ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
+    if (command->error != CM1E_OK)
         refuse(axis, command->error, NULL, NULL);
 }
 
@@ -312,7 +316,8 @@ static void end_strings(cm1e_axis_t *axis, cm1e_error_t error)
     muscle->freeing = 0;
 }
 
-/* A bridge in another mode has no motion by CML any more. */
+/* Sends the string that frees the motor, until it was answered. In a mode other than CML no motion by CML goes on, so
+ * the motor need not be freed there. */
 static void free_step(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;
@@ -325,7 +330,7 @@ static void free_step(cm1e_axis_t *axis)
         if (cm1e_drive_operational(&axis->drive))
             cm1e_drive_cml_send(cml_of(axis), cm1e_drive_cml_motor_free(cml_of(axis), text), 0, &muscle->freeing);
     } else if (!request || request->state == CM1E_DRIVE_CML_ERROR) {
-        muscle->freeing = 0; /* again */
+        muscle->freeing = 0; /* it is sent again in the next cycle */
     } else if (request->state == CM1E_DRIVE_CML_DONE) {
         muscle->must_free = muscle->moved = false;
     }
@@ -344,7 +349,8 @@ static void follow_string(cm1e_axis_t *axis)
     if (!request || request->state != CM1E_DRIVE_CML_ERROR)
         return;
     const bool said = request->error == CM1E_ERROR_CML_ANSWER || request->error == CM1E_ERROR_CM_SEARCH;
-    refuse(axis, request->error, said ? request->first : NULL, request->text);
+    memcpy(muscle->said, request->first, sizeof muscle->said);
+    refuse(axis, request->error, said ? muscle->said : NULL, request->text);
     if (request->sent && cm1e_cml_kind(request->text) == CM1E_CML_MOTION)
         end_strings(axis, CM1E_ERROR_CANCELLED);
 }
@@ -375,7 +381,7 @@ static void step(cm1e_axis_t *axis)
         muscle->next = (int8_t)axis->mode;
     }
     const bool away = muscle->moved && !muscle->must_free && !cm1e_drive_operational(&axis->drive);
-    const bool leaves = muscle->next != cml && !muscle->must_free; /* before it was there, too */
+    const bool leaves = muscle->next != cml && !muscle->must_free; /* also if CML was not reached yet */
     if ((failed && !muscle->failed) || away || (leaves && (muscle->moved || !cm1e_drive_cml_idle(cml_of(axis)))))
         end_strings(axis, failed ? axis->fault.error : away ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_CANCELLED);
     muscle->failed = failed;
@@ -462,7 +468,22 @@ static bool text_of(const cm1e_axis_t *axis, cm1e_error_t error, char *text, siz
 
 static void forget(cm1e_axis_t *axis) { free(axis->muscle); }
 
-static const motor_hooks_t hooks = {forget, step, is_home, refuses_power, refuses_homing, released, text_of};
+typedef union muscle_copy {
+    cool_muscle_t muscle;
+    uint64_t words[1]; /* what comes behind it is aligned */
+} muscle_copy_t;
+
+static void copy_own(const cm1e_axis_t *axis, cm1e_axis_t *copy, void *place)
+{
+    cool_muscle_t *muscle = place;
+    *muscle = *axis->muscle;
+    if (axis->muscle->why == axis->muscle->said)
+        muscle->why = muscle->said;
+    copy->muscle = muscle;
+}
+
+static const motor_hooks_t hooks = {forget, step, is_home, refuses_power, refuses_homing, released, text_of,
+                                    {sizeof(muscle_copy_t), copy_own}};
 
 cm1e_error_t cm1e_cool_muscle_add(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {

@@ -16,7 +16,7 @@ static void feed_job(cm1e_bus_slave_t *slave, int64_t now_ns)
 }
 
 /** The next datagram of this slave, by precedence. */
-static bool next_datagram(cm1e_bus_slave_t *slave, int64_t now_ns)
+static bool next_datagram(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     if (!cm1e_recovery_idle(&slave->recovery)) {
         slave->owner = OWNER_RECOVERY;
@@ -27,12 +27,14 @@ static bool next_datagram(cm1e_bus_slave_t *slave, int64_t now_ns)
         return cm1e_al_next(&slave->al, &slave->datagram, now_ns);
     }
     feed_job(slave, now_ns);
-    slave->owner = OWNER_COE;
-    return cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
+    bus->errand_sent = !bus->errand_sent && cm1e_errand_next(bus, slave);
+    slave->owner = bus->errand_sent ? OWNER_ERRAND : OWNER_COE;
+    return bus->errand_sent || cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
 }
 
 void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
 {
+    cm1e_errand_serve(bus, now_ns);
     cm1e_sdo_queue_serve(bus, now_ns);
     uint32_t place = bus->next_slave;
     for (uint32_t n = 0; n < bus->slave_count && limit > 0; n++) {
@@ -42,7 +44,7 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
         cm1e_bus_slave_t *slave = &bus->slaves[place];
         if (slave->owner != OWNER_NONE)
             continue;
-        if (!next_datagram(slave, now_ns)) {
+        if (!next_datagram(bus, slave, now_ns)) {
             slave->owner = OWNER_NONE;
             continue;
         }
@@ -53,7 +55,7 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
     }
 }
 
-static void deliver(cm1e_bus_slave_t *slave, int64_t now_ns)
+static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     const cm1e_datagram_owner_t owner = slave->owner;
     slave->owner = OWNER_NONE;
@@ -68,6 +70,9 @@ static void deliver(cm1e_bus_slave_t *slave, int64_t now_ns)
         break;
     case OWNER_RECOVERY:
         cm1e_recovery_result(slave, &slave->datagram, now_ns);
+        break;
+    case OWNER_ERRAND:
+        cm1e_errand_result(bus, slave, now_ns);
         break;
     }
 }
@@ -87,7 +92,7 @@ void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns)
             cm1e_soem_drop(bus->soem, &slave->datagram);
         if (slave->datagram.working_counter == DATAGRAM_LOST)
             bus->counters.mailbox_retries++;
-        deliver(slave, now_ns);
+        deliver(bus, slave, now_ns);
     }
     bus->sent_count = kept;
 }
@@ -107,4 +112,5 @@ void cm1e_acyclic_cancel(cm1e_bus_t *bus)
         cm1e_recovery_cancel(slave);
         cm1e_coe_cancel(&slave->coe, CM1E_ERROR_CANCELLED);
     }
+    cm1e_errand_cancel(bus);
 }

@@ -8,6 +8,7 @@
 #include "bus/al_machine.h"
 #include "bus/bus_image.h"
 #include "bus/coe_client.h"
+#include "bus/errand.h"
 #include "bus/mapping.h"
 #include "bus/recognise.h"
 #include "bus/recovery.h"
@@ -41,9 +42,10 @@ typedef enum cm1e_datagram_owner {
     OWNER_AL,
     OWNER_COE,
     OWNER_RECOVERY,
+    OWNER_ERRAND,
 } cm1e_datagram_owner_t;
 
-typedef struct cm1e_bus_slave {
+struct cm1e_bus_slave {
     cm1e_slave_info_t info;
     cm1e_slave_facts_t facts;
     const cm1e_firmware_info_t *firmware;    /**< NULL: unreadable */
@@ -66,7 +68,7 @@ typedef struct cm1e_bus_slave {
     cm1e_slave_watch_t watch;
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
     uint32_t silent_cycles;                  /**< in a row, in which it did not take part */
-} cm1e_bus_slave_t;
+};
 
 /** Transfers handed in by any thread, the cycle's own included: each takes a place with `head` and fills it; the bus
  *  empties it and writes the rest. */
@@ -94,6 +96,8 @@ struct cm1e_bus {
     cm1e_bus_slave_t *slaves;                /**< CM1E_MAX_SLAVES; [0] is the first */
     uint16_t axis_position[CM1E_MAX_AXES];
 
+    uint32_t layouts;                        /**< process images made so far */
+    uint32_t layout;                         /**< number of the present process image, from 1; 0: there is none */
     uint8_t *image;                          /**< what SOEM sends and receives: outputs, then inputs */
     uint8_t *sent_outputs;                   /**< as they left, to know the frame again */
     uint8_t *outputs, *inputs;               /**< what the upper rooms write and read */
@@ -117,6 +121,8 @@ struct cm1e_bus {
     uint32_t watched_slave;
 
     cm1e_sdo_queue_t queue;
+    cm1e_errand_t *errand;                   /**< atomic; NULL: none */
+    bool errand_sent;                        /**< CoE has the next turn of that slave */
 
     const cm1e_bus_remote_t *remote;         /**< another program runs the network: there is no nic; NULL: we do */
     void *remote_state;
@@ -128,6 +134,8 @@ cm1e_error_t cm1e_bus_make(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm
 cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_transfer_remote(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo,
                                       cm1e_diag_t *diag);
+/** An errand of a slave; an error is diagnosed. */
+cm1e_error_t cm1e_bus_errand_remote(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_refuse_attached(const cm1e_bus_t *bus, const char *function, cm1e_diag_t *diag);
 
 static inline cm1e_bus_slave_t *cm1e_bus_at(const cm1e_bus_t *bus, uint32_t position)

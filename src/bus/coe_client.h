@@ -9,7 +9,7 @@
 #ifndef CM1E_BUS_COE_CLIENT_H
 #define CM1E_BUS_COE_CLIENT_H
 
-#include "bus/mailbox.h"
+#include "bus/mailbox_link.h"
 #include "cm1e/bus.h"
 
 typedef enum cm1e_coe_phase {

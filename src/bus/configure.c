@@ -24,12 +24,12 @@ static cm1e_error_t check_cycle_time(const cm1e_bus_t *bus, const cm1e_bus_slave
     if (!known && device->cycle_time_count == 1)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
                              "%s runs with a cycle time of %s us only; configured are %lld us, for all slaves.",
-                             cm1e_bus_label_first(bus, slave, label), cm1e_device_cycle_times(device, list),
+                             cm1e_bus_label_first(bus, slave, label), cm1e_device_cycle_times(device, "and", list),
                              (long long)(cycle_ns / 1000));
     if (!known)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
                              "The cycle time of %lld us is not one of %s us, which %s accepts.",
-                             (long long)(cycle_ns / 1000), cm1e_device_cycle_times(device, list),
+                             (long long)(cycle_ns / 1000), cm1e_device_cycle_times(device, "and", list),
                              cm1e_bus_label(bus, slave, label));
     if (slave->firmware && !slave->firmware->all_cycle_times && cycle_ns != 1000000)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
@@ -97,6 +97,7 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
     free(bus->inputs);
     bus->image = bus->sent_outputs = bus->outputs = bus->inputs = NULL;
     bus->output_bytes = bus->input_bytes = 0;
+    bus->layout = 0;
 }
 
 static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
@@ -113,6 +114,7 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                              "The process data of all slaves (%zu bytes) needs more than %d frames a cycle.", room,
                              CM1E_PROCESS_FRAMES_MAX);
+    bus->layout = ++bus->layouts;
     bus->expected_working_counter = cm1e_soem_expected_working_counter(bus->soem);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];

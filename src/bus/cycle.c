@@ -92,8 +92,9 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     }
     bus->last_error = error;
     bus->counters.late_frames = cm1e_soem_late_frames(bus->soem);
-    bus->counters.foreign_frames = cm1e_soem_foreign_frames(bus->soem);
-    bus->counters.unsent_frames = cm1e_soem_unsent_frames(bus->soem);
+    /* Another thread may make the text of a fault, which tells these two. */
+    __atomic_store_n(&bus->counters.foreign_frames, cm1e_soem_foreign_frames(bus->soem), __ATOMIC_RELAXED);
+    __atomic_store_n(&bus->counters.unsent_frames, cm1e_soem_unsent_frames(bus->soem), __ATOMIC_RELAXED);
     cm1e_acyclic_receive(bus, 0);
     cm1e_supervision_receive(bus, cm1e_clock_now(bus->clock));
     return error;

@@ -1,4 +1,6 @@
 /* What the ports of a slave controller have counted since its power-on (ETG.1000.4, 6.2). */
+#include <string.h>
+
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 #include "core/in_task.h"
@@ -14,9 +16,15 @@ enum {
     REG_LOST_LINKS = 0x0310,
 };
 
-static bool read_register(const cm1e_bus_t *bus, uint16_t position, uint16_t offset, uint8_t *data, uint16_t length)
+static bool read_register(cm1e_bus_t *bus, uint16_t position, uint16_t offset, uint8_t *data, uint16_t length)
 {
     const uint16_t station = cm1e_bus_at(bus, position)->facts.station;
+    cm1e_errand_t errand = {.kind = ERRAND_REGISTERS, .position = position, .place = offset, .size = length};
+    if (bus->remote) {
+        const cm1e_error_t error = cm1e_bus_errand_remote(bus, &errand, NULL);
+        memcpy(data, errand.data, length);
+        return error == CM1E_OK && errand.error == CM1E_OK;
+    }
     return cm1e_soem_transfer(bus->soem, COMMAND_FPRD, station, offset, data, length) == 1;
 }
 

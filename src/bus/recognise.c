@@ -14,7 +14,7 @@ void cm1e_recognise_begin(cm1e_recognition_t *job, uint16_t position, int64_t de
 
 void cm1e_recognise_cancel(cm1e_recognition_t *job) { job->busy = false; }
 
-/** FALSE: no bridge answers so. */
+/** false: no bridge answers so. */
 static bool took(cm1e_recognition_t *job)
 {
     const cm1e_question_t *question = &device()->questions[job->question];

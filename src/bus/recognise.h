@@ -35,7 +35,7 @@ void cm1e_recognise_cancel(cm1e_recognition_t *job);
 static inline bool cm1e_recognise_idle(const cm1e_recognition_t *job) { return !job->busy; }
 /** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
 cm1e_sdo_t *cm1e_recognise_next(cm1e_recognition_t *job, int64_t now_ns);
-/** The model with these motors; FALSE, and CM1E_DEVICE_CM1E: there is none. */
+/** The model with these motors; false, and CM1E_DEVICE_CM1E: there is none. */
 bool cm1e_recognise_model(const cm1e_bridge_facts_t *facts, cm1e_device_model_t *model);
 
 #endif

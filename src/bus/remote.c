@@ -53,6 +53,11 @@ cm1e_error_t cm1e_bus_transfer_remote(cm1e_bus_t *bus, const cm1e_bus_slave_t *s
     return sdo->error == CM1E_OK ? CM1E_OK : cm1e_bus_diagnose_sdo(bus, slave, sdo, "SDO transfer", diag);
 }
 
+cm1e_error_t cm1e_bus_errand_remote(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_diag_t *diag)
+{
+    return bus->remote->errand(bus->remote_state, errand, diag);
+}
+
 cm1e_error_t cm1e_bus_refuse_attached(const cm1e_bus_t *bus, const char *function, cm1e_diag_t *diag)
 {
     if (!bus->remote)

@@ -5,6 +5,7 @@
 #ifndef CM1E_BUS_REMOTE_H
 #define CM1E_BUS_REMOTE_H
 
+#include "bus/errand.h"
 #include "cm1e/bus.h"
 #include "core/guest_api.h"
 
@@ -20,6 +21,8 @@ typedef struct cm1e_bus_remote {
     /** Executes a transfer; an error is in `sdo` as after any other transfer. Returns CM1E_OK, or why it could not even
      *  be tried, with `diag`. */
     cm1e_error_t (*transfer)(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag);
+    /** As `transfer`, of what is not an object. */
+    cm1e_error_t (*errand)(void *state, cm1e_errand_t *errand, cm1e_diag_t *diag);
     void (*close)(void *state);
 } cm1e_bus_remote_t;
 

@@ -137,6 +137,18 @@ static cm1e_error_t diagnose_scan(const cm1e_bus_t *bus, int result, uint16_t po
                          result == SCAN_SII_DAMAGED ? "is damaged: its categories have no end" : "cannot be read");
 }
 
+static cm1e_error_t nobody_answers(const cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    const char *name = bus->config.interface_name;
+    if (cm1e_nic_lacks_link(name))
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_NO_SLAVES, 0,
+                             "No EtherCAT slave answers on %s: the interface has no link. Plug the cable from it into IN "
+                             "of the first slave, and switch the control power of that slave on.", name);
+    return cm1e_diag_set(diag, CM1E_ERROR_BUS_NO_SLAVES, 0,
+                         "No EtherCAT slave answers on %s. Check the cable to IN of the first slave, the power of "
+                         "the slaves and the name of the interface.", name);
+}
+
 cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
@@ -156,9 +168,7 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (found < 0)
         return diagnose_scan(bus, found, position, diag);
     if (found == 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_NO_SLAVES, 0,
-                             "No EtherCAT slave answers on %s. Check the cable to IN of the first slave, the power of "
-                             "the slaves and the name of the interface.", bus->config.interface_name);
+        return nobody_answers(bus, diag);
     for (position = 1; position <= found; position++)
         set_up_slave(bus, position);
     bus->slave_count = (uint32_t)found;

@@ -33,13 +33,22 @@ static cm1e_error_t diagnose(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slav
                          cm1e_strerror(request->error));
 }
 
+static cm1e_error_t ask_remote(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_info_request_t *request,
+                               cm1e_diag_t *diag)
+{
+    cm1e_errand_t errand = {.kind = ERRAND_INFO, .position = slave->info.position, .info = *request};
+    const cm1e_error_t error = cm1e_bus_errand_remote(bus, &errand, diag);
+    *request = errand.info;
+    request->error = errand.error;
+    if (error != CM1E_OK)
+        return error;
+    return request->error == CM1E_OK ? CM1E_OK : diagnose(bus, slave, request, diag);
+}
+
 static cm1e_error_t ask(cm1e_bus_t *bus, uint16_t position, cm1e_info_request_t *request, cm1e_diag_t *diag)
 {
     if (!bus || bus->phase < BUS_SCANNED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before reading SDO information.");
-    const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, "Reading the dictionary of a slave", diag);
-    if (attached != CM1E_OK)
-        return attached;
     cm1e_bus_enter(bus);
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (!slave)
@@ -49,6 +58,8 @@ static cm1e_error_t ask(cm1e_bus_t *bus, uint16_t position, cm1e_info_request_t 
     if (!slave->facts.coe)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "%s has no object dictionary: its SII announces no CoE.",
                              cm1e_bus_label_first(bus, slave, label));
+    if (bus->remote)
+        return ask_remote(bus, slave, request, diag);
     /* Transfers of other threads end by themselves. */
     while (!cm1e_coe_idle(&slave->coe) || !cm1e_mapping_idle(&slave->mapping))
         cm1e_bus_pump(bus);

@@ -6,7 +6,7 @@
 
 #include "bus/bus_internal.h"
 #include "bus/eeprom.h"
-#include "bus/sii.h"
+#include "bus/sii_reader.h"
 #include "core/bytes.h"
 #include "core/in_task.h"
 #include "core/sized.h"
@@ -50,7 +50,7 @@ static cm1e_error_t begin(session_t *session, cm1e_bus_t *bus, uint16_t position
 {
     if (!bus || bus->phase < BUS_OPEN || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The SII of a slave needs an open bus that does not operate.");
-    const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, "Access to the SII of a slave", diag);
+    const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, "Writing the SII of a slave", diag);
     if (attached != CM1E_OK)
         return attached;
     cm1e_bus_enter(bus);
@@ -110,11 +110,46 @@ static cm1e_error_t read_image(session_t *session, uint8_t *image, size_t *size,
     return read_words(session, image, *size, diag);
 }
 
+/** Pieces of CM1E_ERRAND_BYTES, which divide every SII whose size is stated. */
+static cm1e_error_t read_remote_piece(cm1e_bus_t *bus, uint16_t position, size_t place, cm1e_errand_t *errand,
+                                      cm1e_diag_t *diag)
+{
+    *errand = (cm1e_errand_t){.kind = ERRAND_SII, .position = position, .place = (uint32_t)(place / 2),
+                              .size = CM1E_ERRAND_BYTES};
+    const cm1e_error_t error = cm1e_bus_errand_remote(bus, errand, diag);
+    if (error != CM1E_OK || errand->error == CM1E_OK)
+        return error;
+    return cm1e_diag_set(diag, errand->error, 0, "Slave %u: its SII cannot be read at word 0x%04X: %s.", position,
+                         (unsigned)errand->place, cm1e_strerror(errand->error));
+}
+
+static cm1e_error_t read_remote(cm1e_bus_t *bus, uint16_t position, uint8_t *image, size_t *size, cm1e_diag_t *diag)
+{
+    const size_t room = *size;
+    cm1e_errand_t errand;
+    for (size_t place = 0; place == 0 || place < *size; place += CM1E_ERRAND_BYTES) {
+        const cm1e_error_t error = read_remote_piece(bus, position, place, &errand, diag);
+        if (error != CM1E_OK)
+            return error;
+        if (place == 0)
+            *size = stated_size(word_at(errand.data, WORD_SIZE));
+        if (*size == 0)
+            *size = CM1E_SII_SIZE;
+        if (*size > room)
+            return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The SII of slave %u has %zu bytes, there is "
+                                 "room for %zu.", position, *size, room);
+        memcpy(image + place, errand.data, *size - place < CM1E_ERRAND_BYTES ? *size - place : CM1E_ERRAND_BYTES);
+    }
+    return CM1E_OK;
+}
+
 cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *image, size_t *size, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_sii_read_device()", "", diag);
     session_t session;
+    if (bus && bus->remote && size && image)
+        return read_remote(bus, position, image, size, diag);
     if (!size || (!image && *size > 0))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sii_read_device() needs a buffer, its size.");
     cm1e_error_t error = begin(&session, bus, position, diag);
@@ -157,8 +192,10 @@ static cm1e_error_t check_image(const uint8_t *image, size_t size, const cm1e_si
                              "least 128 bytes.", size);
     cm1e_sii_t sii;
     view_t view = {image, size};
-    if (cm1e_sii_read_header(&sii, read_from_image, &view) != SII_OK ||
-        cm1e_sii_read_categories(&sii, read_from_image, &view) != SII_OK)
+    const bool whole = cm1e_sii_read_header(&sii, read_from_image, &view) == SII_OK &&
+                       cm1e_sii_read_categories(&sii, read_from_image, &view) == SII_OK;
+    cm1e_sii_free(&sii);
+    if (!whole)
         return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The SII image is incomplete: its categories do not end within "
                              "its %zu bytes. A scan would stop at a slave with it.", size);
     if (!checksum_good(image) && !options->force_checksum)

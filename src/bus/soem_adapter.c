@@ -50,6 +50,7 @@ void cm1e_soem_destroy(cm1e_soem_t *soem)
     if (!soem)
         return;
     ecx_close(&soem->context);
+    cm1e_soem_forget_siis(soem);
     free(soem);
 }
 
@@ -95,6 +96,7 @@ bool cm1e_soem_set_process_data_by_sii(cm1e_soem_t *soem, uint16_t position)
             const uint32_t carried = sii->bits[direction][sm];
             if (!carried)
                 continue;
+            bits[direction] = (bits[direction] + 7) / 8 * 8; /* a sync manager begins with a whole byte */
             /* SOEM's mapping does not end where a sync manager of that number is missing. */
             if (slave->SM[sm].StartAddr == 0 || (slave->mbx_l && sm < 2) || carried > UINT16_MAX - bits[direction])
                 return false;

@@ -53,6 +53,8 @@ int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position);
 uint16_t cm1e_soem_address(cm1e_soem_t *soem, uint16_t position);
 /** Prepares Init -> Pre-Operational: programs the mailboxes of the slaves and gives the SII to them. */
 void cm1e_soem_set_up_mailboxes(cm1e_soem_t *soem);
+/** What the process data mean by the SII; NULL: nothing is known. Valid until the next scan. */
+const struct cm1e_sii_signals *cm1e_soem_signals(const cm1e_soem_t *soem, uint16_t position);
 void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts);
 
 /** Sets the process data of a slave; zero bits: none. False: its sync managers cannot carry it. */

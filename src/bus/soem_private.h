@@ -5,7 +5,7 @@
 #ifndef CM1E_BUS_SOEM_PRIVATE_H
 #define CM1E_BUS_SOEM_PRIVATE_H
 
-#include "bus/sii.h"
+#include "bus/sii_reader.h"
 #include "bus/soem_adapter.h"
 #include "ethercat.h"
 
@@ -30,5 +30,8 @@ struct cm1e_soem {
     cm1e_sii_t siis[CM1E_MAX_SLAVES + 1];
     uint8_t *image;
 };
+
+/** Frees what was read of the slaves' SII. */
+void cm1e_soem_forget_siis(cm1e_soem_t *soem);
 
 #endif

@@ -1,3 +1,4 @@
+#include <stdlib.h>
 #include <string.h>
 
 #include "bus/eeprom.h"
@@ -79,6 +80,24 @@ uint16_t cm1e_soem_address(cm1e_soem_t *soem, uint16_t position)
         return 0;
     write_all(soem, ECT_REG_STADR, none, sizeof none); /* that of an earlier scan may be another slave's now */
     return take_address(soem, position) ? soem->slaves[position].configadr : 0;
+}
+
+/** Slaves of one kind share their signals. */
+void cm1e_soem_forget_siis(cm1e_soem_t *soem)
+{
+    for (int i = 1; i <= CM1E_MAX_SLAVES; i++) {
+        cm1e_sii_signals_t *signals = soem->siis[i].signals;
+        for (int other = i; signals && other <= CM1E_MAX_SLAVES; other++)
+            if (soem->siis[other].signals == signals)
+                soem->siis[other].signals = NULL;
+        free(signals);
+    }
+    memset(soem->siis, 0, sizeof soem->siis);
+}
+
+const cm1e_sii_signals_t *cm1e_soem_signals(const cm1e_soem_t *soem, uint16_t position)
+{
+    return soem->siis[position].signals;
 }
 
 /** The categories are the same for the same product and revision: they are read once. */
@@ -163,7 +182,7 @@ int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
     soem->slave_count = 0;
     memset(soem->slaves, 0, sizeof soem->slaves);
     memset(soem->groups, 0, sizeof soem->groups);
-    memset(soem->siis, 0, sizeof soem->siis);
+    cm1e_soem_forget_siis(soem);
     const int count = ecx_BRD(&soem->port, 0, ECT_REG_TYPE, sizeof type, &type, EC_TIMEOUTSAFE);
     if (count <= 0)
         return 0;

@@ -28,7 +28,7 @@ cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document
 /** Finds line and column of the node at problem->path, or of the deepest existing node on that path. */
 void cm1e_busfile_locate(yaml_document_t *document, cm1e_config_problem_t *problem);
 
-/* ---- schema.c, compare.c: keys and types ------------------------------------------------------------------------- */
+/* ---- schema.c, differences.c: keys and types --------------------------------------------------------------------- */
 
 enum { CM1E_BUSFILE_VELOCITY_COUNTS_PER_S = 1, CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS = 2 };
 

@@ -56,7 +56,7 @@ cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, 
         error = read_all(file, *bytes, size, problem);
     }
     close(file);
-    if (error) {
+    if (error != CM1E_OK) {
         free(*bytes);
         *bytes = NULL;
     }
@@ -161,7 +161,7 @@ static cm1e_error_t scan_events(const uint8_t *bytes, size_t size, cm1e_config_p
     yaml_parser_set_input_string(&parser, bytes, size);
     scan_t scan = {0};
     cm1e_error_t error = CM1E_OK;
-    for (bool end = false; !end && !error;) {
+    for (bool end = false; !end && error == CM1E_OK;) {
         yaml_event_t event;
         if (!yaml_parser_parse(&parser, &event)) {
             error = parser_error(&parser, bytes, size, problem);
@@ -177,7 +177,7 @@ static cm1e_error_t scan_events(const uint8_t *bytes, size_t size, cm1e_config_p
         yaml_event_delete(&event);
     }
     yaml_parser_delete(&parser);
-    if (!error && scan.documents == 0) {
+    if (error == CM1E_OK && scan.documents == 0) {
         problem->line = problem->column = 1;
         snprintf(problem->text, sizeof problem->text, "the file is empty; expected the keys bus and axes");
         error = CM1E_ERROR_CONFIG;
@@ -189,7 +189,7 @@ cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document
                                 cm1e_config_problem_t *problem)
 {
     const cm1e_error_t error = scan_events(bytes, size, problem);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser)) {

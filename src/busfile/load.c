@@ -149,10 +149,10 @@ static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, 
 {
     yaml_document_t document;
     cm1e_error_t error = cm1e_busfile_parse(bytes, size, &document, problem);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     error = cm1e_busfile_compare(&document, problem) ? fill(config, bytes, size, problem) : CM1E_ERROR_CONFIG;
-    if (error && problem->line == 0)
+    if (error != CM1E_OK && problem->line == 0)
         cm1e_busfile_locate(&document, problem);
     yaml_document_delete(&document);
     return error;
@@ -200,14 +200,14 @@ cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, 
     size_t length = 0;
     cm1e_error_t error = cm1e_busfile_read(path, &bytes, &length, &problem);
     cm1e_bus_config_t loaded = {0};
-    if (!error)
+    if (error == CM1E_OK)
         error = load_in_c_locale(&loaded, bytes, length, &problem);
-    if (!error) {
+    if (error == CM1E_OK) {
         error = cm1e_config_copy_sized(config, size, axis_size, &loaded);
-        if (error)
+        if (error != CM1E_OK)
             snprintf(problem.text, sizeof problem.text, "out of memory");
     }
     cm1e_bus_config_free(&loaded);
     free(bytes);
-    return error ? report(diag, error, path, &problem) : cm1e_diag_set(diag, CM1E_OK, 0, "%s", "");
+    return error != CM1E_OK ? report(diag, error, path, &problem) : cm1e_diag_set(diag, CM1E_OK, 0, "%s", "");
 }

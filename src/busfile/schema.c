@@ -204,8 +204,8 @@ const cyaml_schema_value_t cm1e_busfile_schema = {
 };
 
 const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
-    {"cycle_time_us", 200, 1000},
-    {"frame_timeout_us", 1, 1000},
+    {"cycle_time_us", 200, 4000},
+    {"frame_timeout_us", 1, 4000},
     {"lost_cycles_limit", 1, 250},
     {"position", 1, CM1E_MAX_SLAVES},
     {"alias", 1, 65535},

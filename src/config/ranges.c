@@ -5,6 +5,7 @@
 
 #include "config/interface.h"
 #include "config/ranges.h"
+#include "device/place.h"
 
 static const int64_t longest_silence_ns = 50000000;
 
@@ -22,16 +23,38 @@ static bool bus_wrong(const check_t *check, const char *key, const char *format,
 
 /* ---- the bus ----------------------------------------------------------------------------------------------------- */
 
+static bool some_device_has(int64_t cycle_time_ns)
+{
+    const cm1e_device_t *device;
+    for (size_t i = 0; (device = cm1e_device_number(i)); i++)
+        if (cm1e_device_has_cycle_time(device, cycle_time_ns))
+            return true;
+    return false;
+}
+
+/* All slaves have one cycle time. A device that several axes share is checked with each of them (ranges_device.c). */
 static bool check_cycle_time(const check_t *check)
 {
-    const int64_t cycle_time_ns = check->config->cycle_time_ns;
-    bool accepted = cycle_time_ns == 0;
-    for (size_t i = 0; i < sizeof cm1e_device_cycle_times_ns / sizeof cm1e_device_cycle_times_ns[0]; i++)
-        accepted = accepted || cycle_time_ns == cm1e_device_cycle_times_ns[i];
-    if (!accepted)
-        return bus_wrong(check, "cycle_time_us", "is %g; expected 200, 250, 500 or 1000, which the CM1-E accepts",
-                         (double)cycle_time_ns / 1000);
-    const int64_t cycle = cycle_time_ns ? cycle_time_ns : 1000000;
+    const cm1e_bus_config_t *config = check->config;
+    const double cycle_time_us = (double)config->cycle_time_ns / 1000;
+    char list[CM1E_CYCLE_TIMES_TEXT];
+    if (config->cycle_time_ns == 0)
+        return true;
+    for (uint32_t i = 0; i < config->axis_count; i++) {
+        const cm1e_axis_config_t *axis = &config->axes[i];
+        const bool own = cm1e_axis_has_motor(axis) && IS_TEXT(axis->device) && !cm1e_device_is_shared(axis);
+        const cm1e_device_t *device = own ? cm1e_device_configured(axis) : NULL;
+        if (device && !cm1e_device_has_cycle_time(device, config->cycle_time_ns))
+            return bus_wrong(check, "cycle_time_us", "is %g; expected %s, which the %s accepts", cycle_time_us,
+                             cm1e_device_cycle_times(device, "or", list), device->label);
+    }
+    return some_device_has(config->cycle_time_ns) ||
+           bus_wrong(check, "cycle_time_us", "is %g; expected a cycle time that a device accepts", cycle_time_us);
+}
+
+static bool check_times(const check_t *check)
+{
+    const int64_t cycle = check->config->cycle_time_ns ? check->config->cycle_time_ns : 1000000;
     if (check->config->frame_timeout_ns < 0 || check->config->frame_timeout_ns > cycle)
         return bus_wrong(check, "frame_timeout_us", "is %g; expected at most the cycle time, %g",
                          (double)check->config->frame_timeout_ns / 1000, (double)cycle / 1000);
@@ -64,7 +87,7 @@ static bool check_bus(const check_t *check)
         return bus_wrong(check, "sim_gaps", "is %d; expected one of the enumeration", (int)config->sim_gaps);
     if ((unsigned)config->control > CM1E_CONTROL_MAINTAIN)
         return bus_wrong(check, "control", "is %d; expected one of the enumeration", (int)config->control);
-    return check_cycle_time(check);
+    return check_cycle_time(check) && check_times(check);
 }
 
 /* ---- what an axis is --------------------------------------------------------------------------------------------- */

@@ -149,7 +149,7 @@ static bool check_shared(const check_t *check)
         return true;
     if (cycle_time_ns != 0 && !cm1e_device_has_cycle_time(device, cycle_time_ns))
         return axis_wrong(check, "channel", "is given, and a %s runs at %s us only; the cycle time is %g us",
-                          device->family, cm1e_device_cycle_times(device, list), (double)cycle_time_ns / 1000);
+                          device->family, cm1e_device_cycle_times(device, "and", list), (double)cycle_time_ns / 1000);
     return check_model(check);
 }
 

@@ -7,10 +7,12 @@
 #include <unistd.h>
 
 #include "cm1e/version.h"
+#include "control/maintain_request.h"
 #include "control/message.h"
+#include "control/record_request.h"
 #include "control/show.h"
 
-enum { SDO_MAX = 1 << 15 };
+enum { SDO_MAX = 1 << 15, INFO_MAX = 2 + 2 * 0x10000, SII_WORDS = 1 << 18 };
 #define PATIENCE_NS INT64_C(2000000000)
 #define SDO_TIMEOUT_MAX_MS 60000
 
@@ -190,31 +192,153 @@ static json_t *sdo_read(control_request_t *request, control_run_t *run, const js
     return submitted(request, cm1e_sdo_submit(run->view.bus, &request->sdo));
 }
 
+/** NULL: this client may do more than look. */
+static json_t *check_consent(const control_request_t *request, const control_run_t *run, const char *what)
+{
+    char text[160];
+    if (run->control == CM1E_CONTROL_MAINTAIN || (run->serves_own && request->pid == (int)getpid()))
+        return NULL;
+    snprintf(text, sizeof text, "The program lets others look only (control: observe). %s needs `control: maintain` in "
+             "its bus file.", what);
+    return cm1e_request_refuse(request->id, CM1E_ERROR_PERMISSION, 0, text);
+}
+
 static json_t *sdo_write(control_request_t *request, control_run_t *run, const json_t *message)
 {
-    if (run->control != CM1E_CONTROL_MAINTAIN)
-        return cm1e_request_refuse(request->id, CM1E_ERROR_PERMISSION, 0,
-                                   "The program lets others look only (control: observe). Writing needs `control: "
-                                   "maintain` in its bus file.");
-    json_t *refused = take_object(request, message);
+    json_t *refused = check_consent(request, run, "Writing");
+    if (!refused)
+        refused = take_object(request, message);
     if (refused)
         return refused;
     if (!take_bytes(message, "data", request->data, SDO_MAX, &request->sdo.size))
         return wrong(request, "\"data\" is expected to be the bytes to write as hexadecimal digits, as on the wire.");
     request->sdo.write = true;
-    request->write.sdo = &request->sdo;
+    request->write = (view_write_t){.order.decide = cm1e_view_decide_write, .sdo = &request->sdo};
     request->state = REQUEST_WRITE;
     request->wanted = false;
     return NULL;
 }
+
+/* ---- errands ---------------------------------------------------------------------------------------------------- */
+
+static json_t *start_errand(control_request_t *request, control_run_t *run)
+{
+    const cm1e_error_t error = cm1e_errand_submit(run->view.bus, &request->errand);
+    request->state = REQUEST_ERRAND;
+    request->wanted = error == CM1E_OK;
+    if (error == CM1E_OK || error == CM1E_ERROR_BUSY)
+        return NULL;
+    return cm1e_request_refuse(request->id, error, 0, cm1e_strerror(error));
+}
+
+static json_t *continue_errand(control_request_t *request, control_run_t *run)
+{
+    const cm1e_errand_t *errand = &request->errand;
+    const bool info = errand->kind == ERRAND_INFO;
+    if (!request->wanted)
+        return start_errand(request, run);
+    if (!cm1e_errand_done(errand))
+        return NULL;
+    if (errand->error != CM1E_OK)
+        return cm1e_request_refuse(request->id, errand->error, errand->info.abort_code,
+                                   errand->error == CM1E_ERROR_SDO_ABORT ? cm1e_sdo_abort_text(errand->info.abort_code)
+                                                                         : cm1e_strerror(errand->error));
+    return accept(request->id, "data", info ? show_bytes(errand->info.answer, errand->info.size)
+                                            : show_bytes(errand->data, errand->size));
+}
+
+static json_t *errand_of(control_request_t *request, control_run_t *run, const json_t *message,
+                         cm1e_errand_kind_t kind, const char *place, json_int_t place_max)
+{
+    json_int_t slave, start, size;
+    if (!take_number(message, "slave", 1, run->view.slave_count, 0, &slave))
+        return wrong(request, "\"slave\" is expected to be the position of a slave, 1 = first.");
+    if (!take_number(message, place, 0, place_max, -1, &start))
+        return wrong(request, kind == ERRAND_SII ? "\"word\" is expected to be 0 ... 262143."
+                                                 : "\"address\" is expected to be 0 ... 2303 (0x08FF).");
+    if (!take_number(message, "size", 1, CM1E_ERRAND_BYTES, 2, &size) || (kind == ERRAND_SII && size % 2 != 0) ||
+        (kind == ERRAND_REGISTERS && start + size > CM1E_ERRAND_REGISTERS_END))
+        return wrong(request, "\"size\" is expected to be 1 ... 128, even for an SII, up to register 0x08FF.");
+    request->errand = (cm1e_errand_t){.kind = kind, .position = (uint16_t)slave, .place = (uint32_t)start,
+                                      .size = (size_t)size};
+    return start_errand(request, run);
+}
+
+static json_t *registers(control_request_t *request, control_run_t *run, const json_t *message)
+{
+    return errand_of(request, run, message, ERRAND_REGISTERS, "address", CM1E_ERRAND_REGISTERS_END - 1);
+}
+
+static json_t *sii_read(control_request_t *request, control_run_t *run, const json_t *message)
+{
+    return errand_of(request, run, message, ERRAND_SII, "word", SII_WORDS - 1);
+}
+
+static json_t *sdo_info(control_request_t *request, control_run_t *run, const json_t *message)
+{
+    json_int_t slave, kind, index, subindex, values;
+    if (!take_number(message, "slave", 1, run->view.slave_count, 0, &slave))
+        return wrong(request, "\"slave\" is expected to be the position of a slave, 1 = first.");
+    if (!take_number(message, "kind", INFO_LIST, INFO_ENTRY, 0, &kind) || kind % 2 == 0)
+        return wrong(request, "\"kind\" is expected to be 1 (list), 3 (object) or 5 (entry).");
+    if (!take_number(message, "index", 0, 0xFFFF, -1, &index) ||
+        !take_number(message, "subindex", 0, 0xFF, 0, &subindex) ||
+        !take_number(message, "values", 0, 0xFF, 0, &values))
+        return wrong(request, "\"index\" is expected to be 0 ... 65535, \"subindex\" and \"values\" 0 ... 255.");
+    request->data = malloc(INFO_MAX);
+    if (!request->data)
+        return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a description.");
+    request->errand = (cm1e_errand_t){
+        .kind = ERRAND_INFO, .position = (uint16_t)slave,
+        .info = {.kind = (cm1e_info_kind_t)kind, .index = (uint16_t)index, .subindex = (uint8_t)subindex,
+                 .values = (uint8_t)values, .answer = request->data, .size = INFO_MAX}};
+    return start_errand(request, run);
+}
+
+/* ---- motion -------------------------------------------------------------------------------------------------------- */
+
+static json_t *maintain(control_request_t *request, control_run_t *run, const json_t *message, maintain_what_t what)
+{
+    json_t *refused = check_consent(request, run, "To move, enable or reset an axis");
+    const char *bad = refused ? NULL : cm1e_maintain_take(request, run, what, message);
+    if (refused || bad)
+        return refused ? refused : wrong(request, bad);
+    request->state = REQUEST_MAINTAIN;
+    request->wanted = false;
+    return NULL;
+}
+
+#define MAINTAIN(name, WHAT)                                                                                          \
+    static json_t *name(control_request_t *request, control_run_t *run, const json_t *message)                        \
+    {                                                                                                                 \
+        return maintain(request, run, message, MAINTAIN_##WHAT);                                                      \
+    }
+MAINTAIN(enable, ENABLE)
+MAINTAIN(disable, DISABLE)
+MAINTAIN(jog, JOG)
+MAINTAIN(home, HOME)
+MAINTAIN(stop, STOP)
+MAINTAIN(reset, RESET)
+MAINTAIN(keep, KEEP)
 
 static const struct {
     const char *name;
     json_t *(*begin)(control_request_t *request, control_run_t *run, const json_t *message);
 } requests[] = {
     {"hello", hello},   {"axes", axes},         {"slaves", slaves},       {"statistics", statistics},
-    {"log", event_log}, {"sdo_read", sdo_read}, {"sdo_write", sdo_write},
+    {"log", event_log}, {"sdo_read", sdo_read}, {"sdo_write", sdo_write}, {"sdo_info", sdo_info},
+    {"sii_read", sii_read}, {"registers", registers}, {"enable", enable}, {"disable", disable}, {"jog", jog},
+    {"home", home},     {"stop", stop},         {"reset", reset},         {"keep", keep},
+    {"record", cm1e_record_begin}, {"samples", cm1e_record_samples},
 };
+
+static json_t *unknown(const control_request_t *request)
+{
+    char text[256] = "\"request\" is expected to be one of";
+    for (size_t i = 0, used = strlen(text); i < sizeof requests / sizeof *requests; i++, used = strlen(text))
+        snprintf(text + used, sizeof text - used, "%s %s", i ? "," : "", requests[i].name);
+    return wrong(request, text);
+}
 
 json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const json_t *message, int64_t now_ns)
 {
@@ -228,7 +352,7 @@ json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const
     for (size_t i = 0; name && i < sizeof requests / sizeof *requests; i++)
         if (strcmp(requests[i].name, name) == 0)
             return requests[i].begin(request, run, message);
-    return wrong(request, "\"request\" is expected to be hello, axes, slaves, statistics, log, sdo_read or sdo_write.");
+    return unknown(request);
 }
 
 /* ---- those that go on ------------------------------------------------------------------------------------------- */
@@ -249,16 +373,29 @@ static json_t *continue_snapshot(control_request_t *request, control_run_t *run)
     return cm1e_view_filled(&run->view) ? accept(request->id, request->name, request->show(&run->view)) : NULL;
 }
 
-static json_t *continue_write(control_request_t *request, control_run_t *run)
+/** The order of a request that the cycle decides on; NULL: it is none. */
+static view_order_t *order_of(control_request_t *request)
+{
+    return request->state == REQUEST_WRITE      ? &request->write.order
+           : request->state == REQUEST_MAINTAIN ? &request->maintain.order
+                                                : NULL;
+}
+
+/** Hands it over as soon as no other one waits. true: it is decided. */
+static bool continue_order(control_request_t *request, control_run_t *run)
+{
+    view_order_t *order = order_of(request);
+    if (!request->wanted) {
+        request->wanted = cm1e_view_submit(&run->view, order);
+        return false;
+    }
+    return atomic_load_explicit(&order->decided, memory_order_acquire);
+}
+
+static json_t *end_write(control_request_t *request, control_run_t *run)
 {
     char text[160];
     view_write_t *write = &request->write;
-    if (!request->wanted) {
-        request->wanted = cm1e_view_submit(&run->view, write);
-        return NULL;
-    }
-    if (!atomic_load_explicit(&write->decided, memory_order_acquire))
-        return NULL;
     if (write->commanded < 0)
         return submitted(request, write->result);
     snprintf(text, sizeof text, "Axis \"%s\" is commanded by the program: nothing is written to slave %u until it "
@@ -268,12 +405,12 @@ static json_t *continue_write(control_request_t *request, control_run_t *run)
     return cm1e_request_refuse(request->id, write->result, 0, text);
 }
 
-/** TRUE: the cycle cannot have it any more. */
+/** true: the cycle cannot have it any more. */
 static bool give_up(control_request_t *request, control_run_t *run)
 {
-    if (request->state == REQUEST_WRITE && request->wanted)
-        return cm1e_view_withdraw(&run->view, &request->write);
-    return request->state != REQUEST_SDO;
+    if (order_of(request) && request->wanted)
+        return cm1e_view_withdraw(&run->view, order_of(request));
+    return !cm1e_request_must_end(request);
 }
 
 json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, int64_t now_ns, bool stopping)
@@ -281,8 +418,12 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
     json_t *reply = NULL;
     if (request->state == REQUEST_SNAPSHOT)
         reply = continue_snapshot(request, run);
-    else if (request->state == REQUEST_WRITE)
-        reply = continue_write(request, run);
+    else if (request->state == REQUEST_ERRAND)
+        reply = continue_errand(request, run);
+    else if (request->state == REQUEST_WRITE && continue_order(request, run))
+        reply = end_write(request, run);
+    else if (request->state == REQUEST_MAINTAIN && continue_order(request, run))
+        reply = with_id(cm1e_maintain_reply(request, run), request->id);
     if (request->state == REQUEST_SDO && !reply && cm1e_sdo_state(&request->sdo) != CM1E_SDO_BUSY)
         reply = end_transfer(request);
     if (!reply && (stopping || now_ns - request->begun_ns > PATIENCE_NS) && give_up(request, run))
@@ -294,7 +435,9 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
 
 bool cm1e_request_must_end(const control_request_t *request)
 {
-    return request->state == REQUEST_SDO || (request->state == REQUEST_WRITE && request->wanted);
+    const bool may_be_taken = request->state == REQUEST_WRITE || request->state == REQUEST_MAINTAIN ||
+                              request->state == REQUEST_ERRAND;
+    return request->state == REQUEST_SDO || (request->wanted && may_be_taken);
 }
 
 void cm1e_request_clear(control_request_t *request)

@@ -8,12 +8,14 @@
 #include <jansson.h>
 #include <time.h>
 
-#include "control/view.h"
+#include "bus/errand.h"
+#include "control/maintain.h"
 
 /** Facts of a run that do not change. */
 typedef struct control_run {
     view_t view;
     cm1e_control_mode_t control;
+    bool serves_own;           /**< connections of this process may do everything */
     char program[64];
     time_t since;
 } control_run_t;
@@ -22,12 +24,16 @@ typedef enum request_state {
     REQUEST_NONE = 0, /**< the client is not waiting */
     REQUEST_SNAPSHOT,
     REQUEST_WRITE,    /**< until the cycle has decided on it */
+    REQUEST_MAINTAIN, /**< the same */
     REQUEST_SDO,
+    REQUEST_ERRAND,
 } request_state_t;
 
 /** The request of one client that is being worked on. */
 typedef struct control_request {
     request_state_t state;
+    uint32_t client;           /**< whose it is: its place, and its process */
+    int pid;
     json_t *id;                /**< what the client calls it; NULL: nothing */
     bool wanted;               /**< a snapshot was wanted after this request came */
     json_t *(*show)(const view_t *view); /**< SNAPSHOT: what of it */
@@ -36,6 +42,8 @@ typedef struct control_request {
     cm1e_sdo_t sdo;
     uint8_t *data;             /**< of the transfer */
     view_write_t write;
+    cm1e_errand_t errand;
+    maintain_order_t maintain;
 } control_request_t;
 
 /** Begins a request. Returns its reply, or NULL if it goes on: cm1e_request_continue(). */

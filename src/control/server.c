@@ -13,13 +13,15 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "cm1e/control.h"
 #include "control/message.h"
+#include "control/recorder.h"
 #include "control/request.h"
 #include "control/runtime_dir.h"
 #include "core/program.h"
 
 enum {
-    CLIENTS = 32, IN_ROOM = CM1E_MESSAGE_HEADER + CM1E_REQUEST_MAX, FIRST_CLIENT = 2, /* of the polled descriptors */
+    CLIENTS = CM1E_CONTROL_CLIENTS, IN_ROOM = CM1E_MESSAGE_HEADER + CM1E_REQUEST_MAX, FIRST_CLIENT = 2, /* of the polled descriptors */
     STACK_BYTES = 512 * 1024, BUSY_MS = 1, IDLE_MS = 500, REQUESTS_AT_ONCE = 8,
     QUEUE = 64, ACCEPT_FLAGS = SOCK_CLOEXEC | SOCK_NONBLOCK,
 };
@@ -28,6 +30,8 @@ enum {
 #define FAREWELL_NS INT64_C(500000000)
 
 typedef struct client {
+    uint32_t place;            /**< among them all, 0 = first */
+    int pid;                   /**< of the process that connected */
     int fd;                    /**< -1: gone; the request may still have to end */
     bool used, closing;        /**< closing: when all is sent */
     uint8_t *in, *out;
@@ -58,10 +62,12 @@ static void hang_up(client_t *client)
 }
 
 /** Frees the place, once nothing of it is on its way through the cycle. */
-static void leave(client_t *client)
+static void leave(server_t *server, client_t *client)
 {
     hang_up(client);
-    if (cm1e_request_must_end(&client->request))
+    cm1e_maintain_leave(&server->run.view, client->place);
+    const bool recorded = !cm1e_recorder_end(&server->run.view, client->place, atomic_load(&server->stop));
+    if (cm1e_request_must_end(&client->request) || recorded)
         return;
     cm1e_request_clear(&client->request);
     free(client->in);
@@ -123,6 +129,8 @@ static bool take_request(server_t *server, client_t *client)
         answer(client, cm1e_request_refuse(NULL, CM1E_ERROR_INVALID_ARGUMENT, 0, text));
         return true;
     }
+    client->request.client = client->place;
+    client->request.pid = client->pid;
     json_t *reply = cm1e_request_begin(&client->request, &server->run, message, now_ns());
     json_decref(message);
     if (reply)
@@ -180,11 +188,15 @@ static void continue_requests(server_t *server, bool stopping)
         }
 }
 
-static bool may_connect(int fd)
+static bool may_connect(const server_t *server, int fd, int *pid)
 {
     struct ucred peer;
     socklen_t size = sizeof peer;
-    return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && (peer.uid == geteuid() || peer.uid == 0);
+    if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0)
+        return false;
+    *pid = (int)peer.pid;
+    return (peer.uid == geteuid() || peer.uid == 0) &&
+           (server->run.control != CM1E_CONTROL_NONE || peer.pid == getpid());
 }
 
 static void turn_away(int fd, cm1e_error_t error, const char *text)
@@ -200,10 +212,12 @@ static void turn_away(int fd, cm1e_error_t error, const char *text)
 static void welcome(server_t *server, int fd)
 {
     client_t *client = NULL;
+    int pid = 0;
     for (int i = 0; i < CLIENTS && !client; i++)
         client = server->clients[i].used ? NULL : &server->clients[i];
-    if (!may_connect(fd)) {
-        turn_away(fd, CM1E_ERROR_PERMISSION, "This program belongs to another user.");
+    if (!may_connect(server, fd, &pid)) {
+        turn_away(fd, CM1E_ERROR_PERMISSION, server->run.control == CM1E_CONTROL_NONE
+                  ? "The program lets nobody look (control: none)." : "This program belongs to another user.");
         return;
     }
     uint8_t *in = client ? malloc(IN_ROOM) : NULL;
@@ -211,7 +225,8 @@ static void welcome(server_t *server, int fd)
         turn_away(fd, CM1E_ERROR_FULL, "Too many others are connected; at most 32 are served.");
         return;
     }
-    *client = (client_t){.fd = fd, .used = true, .in = in, .moved_ns = now_ns()};
+    *client = (client_t){.fd = fd, .used = true, .in = in, .moved_ns = now_ns(), .pid = pid,
+                         .place = (uint32_t)(client - server->clients)};
 }
 
 /** Milliseconds until somebody has to be looked at, whether or not something comes. */
@@ -224,7 +239,7 @@ static int fill_polled(const server_t *server, struct pollfd polled[FIRST_CLIENT
         const client_t *client = &server->clients[i];
         const short events = (short)((may_read(client) ? POLLIN : 0) | (client->out ? POLLOUT : 0));
         polled[FIRST_CLIENT + i] = (struct pollfd){.fd = client->used ? client->fd : -1, .events = events};
-        if (is_waiting(client))
+        if (is_waiting(client) || (client->used && client->fd < 0)) /* or has to be let go of */
             wait_ms = BUSY_MS;
         else if ((client->out || client->in_used > 0) && wait_ms < 0)
             wait_ms = IDLE_MS;
@@ -265,11 +280,11 @@ static void *serve(void *context)
         continue_requests(server, stopping);
         for (int i = 0; i < CLIENTS; i++)
             if (server->clients[i].used && server->clients[i].fd < 0)
-                leave(&server->clients[i]);
+                leave(server, &server->clients[i]);
     }
     for (int i = 0; i < CLIENTS; i++)
         if (server->clients[i].used)
-            leave(&server->clients[i]);
+            leave(server, &server->clients[i]);
     return NULL;
 }
 
@@ -337,12 +352,15 @@ cm1e_error_t cm1e_control_server_start(cm1e_control_server_t **server, cm1e_sche
     *server = NULL;
     cm1e_error_t error = cm1e_runtime_dir(directory, sizeof directory, diag);
     server_t *made = error == CM1E_OK ? calloc(1, sizeof *made) : NULL;
+    if (error != CM1E_OK)
+        return error;
     if (!made)
-        return error ? error : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the control socket.");
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the control socket.");
     made->listener = -1;
     made->wake = eventfd(0, EFD_CLOEXEC);
     made->run.since = time(NULL);
     made->run.control = cm1e_bus_configuration(cm1e_scheduler_bus(scheduler))->control;
+    made->run.serves_own = cm1e_control_serves_own();
     cm1e_program_name(made->run.program, sizeof made->run.program);
     for (int i = 0; i < CLIENTS; i++)
         made->clients[i].fd = -1;

@@ -10,6 +10,9 @@
 
 typedef struct cm1e_control_server cm1e_control_server_t;
 
+/** What cm1e_control_serve_own() has said. */
+bool cm1e_control_serves_own(void);
+
 /** Makes the socket and starts the thread; `path` is where others connect. @rt init */
 cm1e_error_t cm1e_control_server_start(cm1e_control_server_t **server, cm1e_scheduler_t *scheduler, char *path,
                                        size_t path_size, cm1e_diag_t *diag);

@@ -51,12 +51,21 @@ static void add_values(json_t *axis, const cm1e_axis_info_t *info)
     json_object_set_new(axis, "mode", json_integer(info->mode));
 }
 
+/** What the values are measured by; null: there is no such limit. */
+static json_t *limits_of(const view_t *view, uint32_t index)
+{
+    const cm1e_axis_measures_t *measures = &view->measures[index];
+    return json_pack("{s:o, s:o, s:o, s:o}", "lower", cm1e_show_real(measures->lower), "upper",
+                     cm1e_show_real(measures->upper), "velocity", cm1e_show_real(measures->max_velocity), "lag",
+                     cm1e_show_real(measures->max_lag));
+}
+
 static void add_error(json_t *axis, const view_t *view, uint32_t index)
 {
     const cm1e_axis_info_t *info = &view->infos[index];
     char text[CM1E_AXIS_ERROR_TEXT_BYTES], id[8];
     json_t *error = json_null();
-    if (info->error) {
+    if (info->error != CM1E_OK) {
         snprintf(id, sizeof id, "0x%04X", cm1e_error_id(info->error));
         error = json_pack("{s:i, s:s, s:s, s:i}", "code", (int)info->error, "id", id, "name",
                           cm1e_strerror(info->error), "device_error", (int)info->device_error);
@@ -81,6 +90,9 @@ json_t *cm1e_show_axes(const view_t *view)
         json_object_set_new(axis, "state", json_string(cm1e_axis_state_name(view->infos[i].state)));
         json_object_set_new(axis, "command", news->command ? json_string(cm1e_command_name(news->kind)) : json_null());
         json_object_set_new(axis, "modulo_range", cm1e_show_real(config->modulo_range));
+        json_object_set_new(axis, "limits", limits_of(view, i));
+        json_object_set_new(axis, "held", json_boolean(view->holders[i] >= 0));
+        json_object_set_new(axis, "resetting", json_boolean(view->resetting[i]));
         add_values(axis, &view->infos[i]);
         add_error(axis, view, i);
         json_array_append_new(all, axis);

@@ -3,13 +3,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "control/maintain.h"
+#include "control/recorder.h"
+#include "core/cache_line.h"
+
 cm1e_error_t cm1e_view_init(view_t *view, cm1e_scheduler_t *scheduler)
 {
     view->scheduler = scheduler;
     view->bus = cm1e_scheduler_bus(scheduler);
     view->axes = cm1e_scheduler_axes(scheduler, &view->axis_count);
     view->slave_count = cm1e_bus_slave_count(view->bus);
-    view->copies = calloc(view->axis_count ? view->axis_count : 1, cm1e_axis_copy_bytes());
+    size_t bytes = 0;
+    for (uint32_t i = 0; i < view->axis_count; i++) {
+        view->copy_at[i] = bytes;
+        bytes += cm1e_axis_copy_bytes(view->axes[i]);
+    }
+    view->copies = cm1e_cache_lines(bytes ? bytes : 1);
     return view->copies ? CM1E_OK : CM1E_ERROR_NO_MEMORY;
 }
 
@@ -19,7 +28,7 @@ void cm1e_view_free(view_t *view) { free(view->copies); }
 
 static unsigned char *copy_of(const view_t *view, uint32_t axis)
 {
-    return view->copies + axis * cm1e_axis_copy_bytes();
+    return view->copies + view->copy_at[axis];
 }
 
 static void begin(view_t *view)
@@ -31,6 +40,9 @@ static void begin(view_t *view)
         cm1e_axis_get(view->axes[i], &view->infos[i]);
         cm1e_axis_news(view->axes[i], &view->news[i]);
         view->has_text[i] = cm1e_axis_has_text(view->axes[i]);
+        view->measures[i] = cm1e_axis_measures(view->axes[i]);
+        view->holders[i] = view->maintained.holds[i].held ? (int32_t)view->maintained.holds[i].client : -1;
+        view->resetting[i] = cm1e_axis_reset_state(view->axes[i], NULL) == CM1E_COMMAND_ACTIVE;
     }
     for (uint32_t i = 0; i < view->slave_count; i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(view->bus, i + 1);
@@ -63,25 +75,30 @@ static bool is_commanded(const cm1e_axis_t *axis)
                                  news.state != CM1E_AXIS_ERROR_STOP);
 }
 
-static void decide(view_t *view, view_write_t *write)
+void cm1e_view_decide_write(view_t *view, view_order_t *order)
 {
+    view_write_t *write = (view_write_t *)order;
     write->commanded = -1;
     for (uint32_t i = 0; i < view->axis_count && write->commanded < 0; i++)
         if (cm1e_bus_axis_position(view->bus, i) == write->sdo->position && is_commanded(view->axes[i]))
             write->commanded = (int32_t)i;
     write->result = write->commanded >= 0 ? CM1E_ERROR_AXIS_STATE : cm1e_sdo_submit(view->bus, write->sdo);
-    atomic_store_explicit(&write->decided, true, memory_order_release);
 }
 
 void cm1e_view_cycle(view_t *view)
 {
     if (atomic_load_explicit(&view->state, memory_order_acquire) == VIEW_WANTED)
         fill(view);
-    if (!atomic_load_explicit(&view->write, memory_order_relaxed))
+    cm1e_maintain_cycle(view);
+    if (atomic_load_explicit(&view->recording, memory_order_relaxed))
+        cm1e_recorder_cycle(view);
+    if (!atomic_load_explicit(&view->order, memory_order_relaxed))
         return;
-    view_write_t *write = atomic_exchange_explicit(&view->write, NULL, memory_order_acquire);
-    if (write)
-        decide(view, write);
+    view_order_t *order = atomic_exchange_explicit(&view->order, NULL, memory_order_acquire);
+    if (!order)
+        return;
+    order->decide(view, order);
+    atomic_store_explicit(&order->decided, true, memory_order_release);
 }
 
 /* ---- the thread ------------------------------------------------------------------------------------------------- */
@@ -104,16 +121,16 @@ void cm1e_view_text(const view_t *view, uint32_t axis, char *text, size_t size)
         cm1e_axis_text((const cm1e_axis_t *)(const void *)copy_of(view, axis), text, size);
 }
 
-bool cm1e_view_submit(view_t *view, view_write_t *write)
+bool cm1e_view_submit(view_t *view, view_order_t *order)
 {
-    view_write_t *none = NULL;
-    atomic_store_explicit(&write->decided, false, memory_order_relaxed);
-    return atomic_compare_exchange_strong_explicit(&view->write, &none, write, memory_order_release,
+    view_order_t *none = NULL;
+    atomic_store_explicit(&order->decided, false, memory_order_relaxed);
+    return atomic_compare_exchange_strong_explicit(&view->order, &none, order, memory_order_release,
                                                    memory_order_relaxed);
 }
 
-bool cm1e_view_withdraw(view_t *view, view_write_t *write)
+bool cm1e_view_withdraw(view_t *view, view_order_t *order)
 {
-    view_write_t *expected = write;
-    return atomic_compare_exchange_strong(&view->write, &expected, NULL);
+    view_order_t *expected = order;
+    return atomic_compare_exchange_strong(&view->order, &expected, NULL);
 }

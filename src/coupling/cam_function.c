@@ -1,4 +1,5 @@
-/* The coupling function by a cam (MC_CamIn): where it is placed, what it asks of the slave (coupling_cam.h). */
+/* The coupling function of a cam (MC_CamIn): where the cam is placed, and which motion it needs from the slave
+ * (coupling_cam.h). */
 #include <math.h>
 
 #include "axis/axis_limits.h"
@@ -7,15 +8,15 @@
 #include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
-/* A remainder below this is reached: the slave is where the cam wants it and moves like it. */
+/* Tolerances: within them the slave has the position and the velocity of the cam. */
 static const double same_place_counts = 10.0;
-static const double same_motion_cycles = 1.0; /* of the axis's own acceleration */
+static const double same_motion_cycles = 1.0; /* cycles with the maximum acceleration of the axis */
 
 static const double largest_scaling = 1e9;
 
 /* ---- the coupling function --------------------------------------------------------------------------------------- */
 
-/* Divides instead of multiplying, so that a master at an end of the cam is exactly there. */
+/* It divides and does not multiply by the inverse: so a master at an end of the cam is exactly at that end. */
 static double place_in_cam(const cam_place_t *cam, const link_t *link, double counts)
 {
     const double way = (counts + cam->away) / link->master->position.scale - cam->master_offset;
@@ -27,14 +28,15 @@ static double place_now(const follow_t *follow)
     return place_in_cam(&follow->cam, &follow->links[0], follow->links[0].seen.counts);
 }
 
-/* A single-shot cam that has ended does not run again, whatever the master does. The slave stays at that end (4.1). */
+/* The place in the cam that counts. A single-shot cam that has ended stays at that end, whatever the master does
+ * (4.1). */
 static double place_to_be(const follow_t *follow)
 {
     const cam_place_t *cam = &follow->cam;
     return cam->left == 0.0 ? place_now(follow) : cam->left * INFINITY;
 }
 
-/* u, from the slave's zero. */
+/* The position of the slave by the cam, in u from the slave's zero. */
 static double height(const cam_place_t *cam, const cm1e_cam_sample_t *sample)
 {
     const cm1e_cam_t *table = &cam->slot->cam;
@@ -42,14 +44,14 @@ static double height(const cam_place_t *cam, const cm1e_cam_sample_t *sample)
     return cam->slave_offset + cam->slave_scaling * (turns + sample->point.position);
 }
 
-/* Number of periods whose end the master has passed or reached, in this direction. */
+/* How many ends of periods the master has passed or reached in this direction. */
 static double ends_below(const cm1e_cam_t *table, const cm1e_cam_sample_t *sample, bool rising)
 {
     return !table->periodic || rising || sample->phase == 0.0 ? sample->turn : sample->turn + 1.0;
 }
 
-/* Over an end of the profile in either direction (4.3): a period of it, or the first or last point of one that is run
- * once. */
+/* Whether the master has passed an end of the profile in either direction (4.3): the end of a period, or the first or
+ * last point of a single-shot cam. */
 static bool came_over_end(const cam_place_t *cam, const cm1e_cam_sample_t *now)
 {
     const cm1e_cam_t *table = &cam->slot->cam;
@@ -63,7 +65,8 @@ static bool came_over_end(const cam_place_t *cam, const cm1e_cam_sample_t *now)
            ends_below(table, now, false) < ends_below(table, &cam->before, false);
 }
 
-/* Back where it came onto the cam, the master may begin it again; a little way to and fro there does no harm. */
+/* Remembers the place for the next cycle. A single-shot cam has ended when the master leaves it at the other end than
+ * that by which it came. At the end by which it came it may leave and come again. */
 static void remember(cam_place_t *cam, const cm1e_cam_sample_t *now)
 {
     if (!cam->sampled)
@@ -75,7 +78,7 @@ static void remember(cam_place_t *cam, const cm1e_cam_sample_t *now)
     cam->sampled = true;
 }
 
-/* An approach has led to here, a moment ago: at an end of a single-shot the master comes by that end. */
+/* The approach to the cam has just ended. If it ended at an end of a single-shot cam, the master came by that end. */
 void cm1e_cam_in_enter(follow_t *follow, double counts)
 {
     cam_place_t *cam = &follow->cam;
@@ -123,7 +126,7 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
 
 static const coupling_function_t cam_kind = {evaluate, steepest};
 
-/* At the ends of a single-shot, from within: that is where the master is on it. */
+/* At the ends of a single-shot cam it uses the slope inside the cam, because the master is about to be there. */
 void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,
                          cm1e_curve_point_t *point)
 {
@@ -141,7 +144,7 @@ void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double c
                                   .curvature = cam->slave_scaling * once * once * sample.point.curvature};
 }
 
-/* The limits that a cam may need soon, at the present velocity of the master. */
+/* The maximum velocity, acceleration and jerk that the cam needs anywhere, at the present velocity of the master. */
 static cm1e_motion_limits_t cam_demand(const follow_t *follow)
 {
     const cam_place_t *cam = &follow->cam;
@@ -158,8 +161,8 @@ static cm1e_motion_limits_t cam_demand(const follow_t *follow)
 
 static double part_of(double asked, double most, double needed)
 {
-    const double least_part = 0.1, largest_part = 0.5; /* the master may become faster */
-    return fmin(asked, fmax(fmin(most - needed, largest_part * most), least_part * most));
+    const double minimum_part = 0.1, maximum_part = 0.5; /* not all of the rest: the master may become faster */
+    return fmin(asked, fmax(fmin(most - needed, maximum_part * most), minimum_part * most));
 }
 
 cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
@@ -167,7 +170,7 @@ cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *fo
 {
     const cm1e_motion_limits_t nothing = {0}, *most = &axis->limits.maximum;
     const cm1e_motion_limits_t needed = follow->cam.slot ? cam_demand(follow) : nothing;
-    /* A deceleration of the catch-up may accelerate the axis. */
+    /* Both are bounded alike, because a deceleration of the catch-up may accelerate the axis. */
     const double change = part_of(fmin(asked->acceleration, asked->deceleration),
                                   fmin(most->acceleration, most->deceleration),
                                   fmax(needed.acceleration, needed.deceleration));
@@ -206,8 +209,9 @@ static cm1e_error_t take_numbers(const cm1e_axis_t *axis, const cm1e_axis_t *mas
     return CM1E_OK;
 }
 
-/* A cam that waited for the end of the one before begins there, which was inside the present cycle: the master is so
- * far beyond by now (its counts), and the slave was there. Else both stay as they are. */
+/* A buffered cam begins at the end of the cam before it, and that end is usually inside a cycle. Then `*beyond` becomes
+ * the distance of the master from that end (counts of the master), and `*slave` the slave's position at that end. In
+ * all other cases both keep their values. */
 static void begins_at_end(const cm1e_axis_t *axis, const follow_t *follow, double *beyond, position_t *slave)
 {
     const follow_t *before = axis->coupling->now;
@@ -232,7 +236,8 @@ static void find_master_zero(const follow_t *follow, cam_place_t *cam, double be
     cam->away = cam->slot->master_absolute ? units * link->master->position.scale : beyond - link->seen.counts;
 }
 
-/* Of the repeated positions of a modulo slave, the one nearest to that of the cam. */
+/* Decides where the slave position 0 of the cam is. On a modulo axis it is the turn in which the slave is nearest to
+ * its position by the cam. */
 static cm1e_error_t find_slave_zero(const cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling, const from_t *from,
                                     cam_place_t *cam, double here)
 {
@@ -254,7 +259,8 @@ static cm1e_error_t find_slave_zero(const cm1e_axis_t *axis, const cm1e_axis_cou
     return CM1E_OK;
 }
 
-/* All of it, wherever the master is to go; of one that advances with every period that is not known. */
+/* Whether the software limits contain the whole cam, wherever the master goes. A cam that advances with every period
+ * passes this check, because its end is not known. */
 static bool contained(const cm1e_axis_t *axis, const from_t *from, const cam_place_t *cam)
 {
     const cm1e_cam_t *table = &cam->slot->cam;
@@ -273,13 +279,13 @@ static bool on_it(cm1e_axis_t *axis, const from_t *from, const from_t *wanted)
     const double velocity = wanted->velocity - from->velocity;
     *refused = (cam_refused_t){cm1e_axis_units(axis, from->position), cm1e_axis_units(axis, wanted->position),
                                from->velocity, wanted->velocity};
-    return fabs(way) <= cm1e_axis_few(axis, same_place_counts) &&
+    return fabs(way) <= cm1e_axis_tolerance_counts(axis, same_place_counts) &&
            fabs(velocity) <= same_motion_cycles * axis->cycle_s * fmin(axis->limits.maximum.acceleration,
                                                                        axis->limits.maximum.deceleration);
 }
 
-/* MasterSyncPosition is a place in the cam; of a periodic one it comes again. */
-static cm1e_error_t by_way(cm1e_axis_t *axis, follow_t *follow, const move_t *move,
+/* Prepares an approach to MasterSyncPosition, which is a place in the cam. In a periodic cam it repeats. */
+static cm1e_error_t by_approach(cm1e_axis_t *axis, follow_t *follow, const move_t *move,
                            const cm1e_axis_coupling_t *coupling, const from_t *from)
 {
     const cam_place_t *cam = &follow->cam;
@@ -309,9 +315,9 @@ cm1e_error_t cm1e_cam_in_prepare(cm1e_axis_t *axis, const move_t *move, const cm
     if ((unsigned)coupling->start_mode > mcRampIn)
         return CM1E_ERROR_INVALID_ARGUMENT;
     cm1e_error_t error = take_numbers(axis, cm1e_axis_from_reference(&coupling->master[0].axis), coupling, cam);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_coupling_link(axis, follow, &coupling->master[0]);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_cam_sample_t sample;
     from_t wanted, start = *from;
@@ -322,7 +328,7 @@ cm1e_error_t cm1e_cam_in_prepare(cm1e_axis_t *axis, const move_t *move, const cm
     find_master_zero(follow, cam, 0.0);
     cm1e_cam_sample(&slot->cam, &cam->place, place_now(follow), &sample);
     error = find_slave_zero(axis, coupling, &start, cam, height(cam, &sample));
-    if (error)
+    if (error != CM1E_OK)
         return error;
     find_master_zero(follow, cam, beyond);
     cm1e_cam_sample(&slot->cam, &cam->place, place_now(follow), &sample);
@@ -330,7 +336,7 @@ cm1e_error_t cm1e_cam_in_prepare(cm1e_axis_t *axis, const move_t *move, const cm
     if (!cm1e_position_in_range(wanted.position) || !contained(axis, from, cam))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (coupling->master_start_distance != 0.0)
-        return by_way(axis, follow, move, coupling, from);
+        return by_approach(axis, follow, move, coupling, from);
     return coupling->start_mode == mcRampIn || on_it(axis, from, &wanted) ? CM1E_OK : CM1E_ERROR_AXIS_CAM_START;
 }
 
@@ -347,12 +353,12 @@ cm1e_error_t cm1e_cam_in_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *c
     if (now->function != &cam_kind || same_numbers(inputs, coupling))
         return CM1E_OK;
     const from_t from = from_base(axis);
-    cam_place_t cam = now->cam; /* zeros and all: relative values count from where the command began (2.4.6) */
+    cam_place_t cam = now->cam; /* with its zeros: relative values count from the start of the command (2.4.6) */
     cm1e_motion_limits_t limits;
     cm1e_error_t error = take_numbers(axis, now->links[0].master, coupling, &cam);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (!contained(axis, &from, &cam))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
@@ -360,7 +366,7 @@ cm1e_error_t cm1e_cam_in_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *c
     *follow = *now;
     follow->links[0].listed = false;
     follow->cam = cam;
-    follow->cam.sampled = false; /* a period that is over by other numbers is none that has ended */
+    follow->cam.sampled = false; /* a period that ends only by the new numbers is no end of profile */
     inputs->master_offset = coupling->master_offset;
     inputs->slave_offset = coupling->slave_offset;
     inputs->master_scaling = coupling->master_scaling;

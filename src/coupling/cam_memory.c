@@ -31,7 +31,7 @@ const cam_slot_t *cm1e_cam_memory_find(const cm1e_axis_t *axis, MC_CAM_ID id)
     return NULL;
 }
 
-/* Whether the cam is followed, or a command that waits names it. */
+/* Whether the axis follows the cam, or a waiting command names it. */
 static bool used(cm1e_axis_t *axis, const cam_slot_t *slot)
 {
     const coupling_t *c = axis->coupling;
@@ -46,12 +46,12 @@ static bool used(cm1e_axis_t *axis, const cam_slot_t *slot)
 static cam_slot_t *empty_slot(cams_t *cams)
 {
     cam_slot_t *slot = cams->slots;
-    while (slot->id != 0) /* there is one more of them than cams stay */
+    while (slot->id != 0) /* there is always a free one: there is one place more than cams stay */
         slot++;
     return slot;
 }
 
-/* The oldest cam that is not needed. NULL: there is none; `*room`: a place is free. */
+/* The cam to be overwritten: the oldest one that is not in use; NULL: none. `*room`: whether a place is free. */
 static cam_slot_t *to_go(cm1e_axis_t *axis, bool *room)
 {
     cam_slot_t *oldest = NULL;
@@ -80,7 +80,7 @@ static cm1e_error_t select_cam(cm1e_axis_t *axis, const MC_CAM_REF *table, bool 
     if (!room)
         oldest->id = 0;
     if (++cams->last == 0)
-        cams->last = 1; /* 0 is no cam */
+        cams->last = 1; /* 0 is not the number of a cam */
     slot->id = cams->last;
     *taken = slot;
     return CM1E_OK;
@@ -93,7 +93,7 @@ cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, boo
     const cm1e_error_t error = select_cam(slave, cam, periodic, &slot);
     *id = 0;
     cm1e_axis_remember_not_set(slave, (not_set_t){.error = error, .what = NOT_SET_CAM});
-    if (error)
+    if (error != CM1E_OK)
         return error;
     slot->master_absolute = master_absolute;
     slot->slave_absolute = slave_absolute;
@@ -101,7 +101,7 @@ cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, boo
     return CM1E_OK;
 }
 
-/* In words what is wrong with the cam that was refused last, and what would be right. */
+/* Explains what is wrong with the cam that was refused last, and what would be right. */
 void cm1e_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cams_t *cams = axis->coupling->cams;

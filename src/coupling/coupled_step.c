@@ -1,4 +1,4 @@
-/* Followers: their set-point of every cycle, and how a coupling begins (coupling_private.h). */
+/* Followers: how a coupling begins, and the set-point of every cycle (coupling_private.h). */
 #include "axis/axis_events.h"
 #include "axis/axis_guard.h"
 #include "axis/axis_plan.h"
@@ -15,14 +15,16 @@ static const double rounding_counts = 1e-3;
 
 /* ---- what is not in step yet ------------------------------------------------------------------------------------- */
 
-static const double least_part = 0.01; /* it must come to an end */
+/* The part of a limit that the catch-up always gets, so that it comes to an end. */
+static const double least_part = 0.01;
 
 static double at_most(double asked, double most, double used)
 {
     return fmin(asked, fmax(most - used, least_part * most));
 }
 
-/* u/s; what is left of the axis's velocity to a slave that makes up distance in the direction of the function. */
+/* u/s. A slave that makes up distance in the direction in which the coupling function moves has only the velocity that
+ * the function and a superimposed motion leave; in the other direction it has all of it. */
 static double room_beside(const cm1e_axis_t *axis, const from_t *f)
 {
     const cm1e_motion_state_t *now = &axis->coupling->catch_up.now;
@@ -33,16 +35,17 @@ static double room_beside(const cm1e_axis_t *axis, const from_t *f)
     return lags ? fmax(most - fabs(f->velocity) - on_top, 0.0) : most;
 }
 
-/* A part of what the coupling function leaves. The function may become faster, and the catch-up can give way by its
- * jerk only. */
+/* The velocity with which distance is made up. It is a part of what the coupling function leaves: the function may
+ * become faster, and the catch-up can slow down only with its jerk. */
 static double velocity_to_place(const cm1e_axis_t *axis, const from_t *f)
 {
     const double part = 0.1, most = axis->limits.maximum.velocity, left = part * (most - fabs(f->velocity));
     return fmin(axis->coupling->catch_up.asked.velocity, fmin(fmax(left, least_part * most), room_beside(axis, f)));
 }
 
-/* What the coupling function leaves of the axis's limits. The velocity of the catch-up goes to 0 while the axis's own
- * grows or shrinks to that of the function. An acceleration of the function that helps leaves all of them. */
+/* The limits of the catch-up: those of the axis without what the coupling function uses. The velocity of the catch-up
+ * goes to 0 while the velocity of the axis changes to that of the function. Where the acceleration of the function
+ * helps that change, the catch-up has the whole limits. */
 static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t *f, double f_jerk, bool full_jerk)
 {
     const catch_up_t *catch_up = &axis->coupling->catch_up;
@@ -69,13 +72,13 @@ static void plan_catch_up(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
         catch_up->to_place ? cm1e_profile_to_position(&catch_up->profile, &catch_up->now, 0.0, limits)
                        : cm1e_profile_to_velocity(&catch_up->profile, &catch_up->now, 0.0, limits);
     catch_up->cycles = 0;
-    catch_up->on = error || catch_up->profile.duration_s > 0.0 || catch_up->now.position != 0.0;
-    if (error) /* numbers that doubles cannot hold: it ends as it is, for the guard to judge */
+    catch_up->on = error != CM1E_OK || catch_up->profile.duration_s > 0.0 || catch_up->now.position != 0.0;
+    if (error != CM1E_OK) /* the numbers are too large for doubles: the catch-up stays, and the guard judges it */
         catch_up->profile = (cm1e_profile_t){.end = catch_up->now};
 }
 
-/* A gear that accelerates may need all of the axis's limits: lost distance is made up when it no longer does, and when
- * it leaves some velocity for that. */
+/* Whether the catch-up makes up distance now, and not only velocity. A gear that accelerates may need all limits of the
+ * axis. So distance is made up while the gear is steady and leaves some velocity. */
 static bool goes_to_place(const cm1e_axis_t *axis, const from_t *f, bool steady)
 {
     const double next_to_nothing = 1e-4 * axis->limits.maximum.velocity;
@@ -110,7 +113,7 @@ static from_t sum_of(const cm1e_axis_t *axis, const from_t *f)
 
 typedef struct verdict {
     guard_t guard;
-    bool smooth; /**< it keeps the limits between the set-points too */
+    bool smooth; /**< the motion between the set-points keeps the limits too */
 } verdict_t;
 
 static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
@@ -120,12 +123,13 @@ static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
     return (verdict_t){guard, !guard.limit && (!kept_jerk || cm1e_axis_guard_smooth(axis, sum))};
 }
 
-/* How the catch-up may go on in a cycle: by its plan; planned anew beside what the coupling function has come to need,
- * first with all its jerk, which may go against that of the function; and without any jerk. */
+/* How the catch-up may go on in a cycle, in the order in which it is tried: by its plan; by a new plan with the whole
+ * jerk, which may act against the jerk of the coupling function; by a new plan with the jerk that the function leaves;
+ * without jerk. */
 typedef enum attempt { AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITHOUT_JERK, ATTEMPTS } attempt_t;
 
-/* The smallest jerk with which the coupling function can have come over this cycle. It may change in the middle. */
-static double jerk_of_f(const cm1e_axis_t *axis, const from_t *f)
+/* The smallest jerk that explains what the coupling function did in this cycle, if the jerk may change once in it. */
+static double jerk_of_function(const cm1e_axis_t *axis, const from_t *f)
 {
     const coupling_t *c = axis->coupling;
     const double t = axis->cycle_s, mean = (f->acceleration - c->f_acceleration) / t;
@@ -140,7 +144,7 @@ static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
     if (attempt == WITH_ALL_JERK || attempt == WITH_JERK_LEFT) {
         const bool steady = f->acceleration == 0.0 && axis->coupling->f_acceleration == 0.0;
         catch_up->to_place = goes_to_place(axis, f, steady);
-        const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_f(axis, f), attempt == WITH_ALL_JERK);
+        const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_function(axis, f), attempt == WITH_ALL_JERK);
         plan_catch_up(axis, &limits);
     }
     const double v = catch_up->now.velocity, a = catch_up->now.acceleration;
@@ -152,7 +156,7 @@ static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
     }
 }
 
-/* In a cycle that begins with `before`. */
+/* Tries to go on from the catch-up `before`. Returns the set-point, and in `*verdict` whether it keeps the limits. */
 static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, const catch_up_t *before, attempt_t attempt,
                          verdict_t *verdict)
 {
@@ -166,9 +170,9 @@ static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, const catch_up_t *b
     return sum;
 }
 
-/* Once the coupling function has come to need more of the limits than was left to it, the catch-up is planned anew in
- * every cycle until it has ended: it takes what there is. Where the function leaves no smooth one, one that keeps the
- * limits has to do. */
+/* The catch-up was planned with the limits that the coupling function left at that time. If the function needs more,
+ * the catch-up is planned anew in every cycle until it ends. The first attempt that is smooth is taken; if none is, the
+ * first one that keeps the limits at the set-points. */
 static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
     const catch_up_t before = axis->coupling->catch_up;
@@ -195,7 +199,7 @@ static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdi
     return kept == ATTEMPTS || kept == WITHOUT_JERK ? sum : attempt_to(axis, f, &before, kept, verdict);
 }
 
-/* What is superimposed gives way too, by a cycle without jerk. */
+/* With a superimposed motion: if the sum breaks a limit, that motion goes on without jerk for a cycle. */
 static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
     const catch_up_t catch_up_before = axis->coupling->catch_up;
@@ -219,7 +223,7 @@ static void emit(cm1e_axis_t *axis, const from_t *point)
                        cm1e_axis_farthest(axis));
 }
 
-/* Lost distance is not made up (4.5, note 1). */
+/* Ends the catch-up. If lost distance is not made up (4.5, note 1), it becomes a part of the anchor. */
 static void end_catch_up(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
@@ -230,7 +234,7 @@ static void end_catch_up(cm1e_axis_t *axis)
     c->catch_up.now = (cm1e_motion_state_t){0};
 }
 
-/* The catch-up has come to its end. The distance that was lost meanwhile waits until the function is steady. */
+/* The profile of the catch-up has ended. Distance that is still to be made up waits until the function is steady. */
 static void catch_up_ended(cm1e_axis_t *axis, const from_t *f)
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
@@ -264,7 +268,7 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
     }
 }
 
-/* Always returns false. In ErrorStop there is nothing more to report. */
+/* Stops the axis without its masters. Returns false, for step(). In ErrorStop the error is reported already. */
 static bool stop_alone(cm1e_axis_t *axis, guard_t guard)
 {
     if (axis->coupling->stopping)
@@ -277,7 +281,7 @@ static bool stop_alone(cm1e_axis_t *axis, guard_t guard)
     return false;
 }
 
-/* At the end of keep_ratio. */
+/* With keep_ratio, the coupling ends when the masters are at standstill. */
 static void stand_with_masters(cm1e_axis_t *axis, const from_t *f)
 {
     if (!axis->coupling->stopping || axis->coupling->catch_up.on || f->velocity != 0.0 || f->acceleration != 0.0)
@@ -285,7 +289,7 @@ static void stand_with_masters(cm1e_axis_t *axis, const from_t *f)
     cm1e_axis_set_source(axis, &cm1e_source_hold);
 }
 
-/* Seldom there is something beside the coupling function, or a set-point that has to be looked at twice. */
+/* The rare case: there is a catch-up or a superimposed motion, or the set-point is close to a limit. */
 CM1E_RARE static guard_t judge(cm1e_axis_t *axis, const from_t *f, from_t *next)
 {
     verdict_t verdict;
@@ -322,7 +326,7 @@ static bool step(cm1e_axis_t *axis)
     emit(axis, next);
     if (axis_follows(axis))
         after_set_point(axis, &f);
-    if (axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO && axis_follows(axis)) {
+    if (c->keeps_ratio && axis_follows(axis)) {
         cm1e_coupling_keep_ratio(axis);
         stand_with_masters(axis, &f);
     }
@@ -339,7 +343,7 @@ static void leave(cm1e_axis_t *axis)
     axis->coupling->stopping = false;
 }
 
-/* The motion of the masters is unknown, so only the way of an emergency stop is known. */
+/* Whether an emergency stop ends within the bounds. More is not known, because the masters may do anything. */
 static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
     const double v = axis->setpoint.velocity;
@@ -359,7 +363,7 @@ const source_t cm1e_source_coupling = {
 
 /* ---- beginnings -------------------------------------------------------------------------------------------------- */
 
-/* The remainder that rounding leaves of zero. */
+/* Whether a difference is only rounding. */
 static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *left)
 {
     const double counts = 1e-6, t = axis->cycle_s, scale = fabs(axis->position.scale);
@@ -367,7 +371,8 @@ static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *left)
            fabs(left->acceleration) * scale * t * t < counts;
 }
 
-/* Where lost distance is not made up, the function begins where the axis is; a difference of rounding would add up. */
+/* Begins the catch-up from the state `from`. If lost distance is not made up, the coupling function begins at the
+ * position of the axis. A difference that is only rounding does not move the anchor, because it would add up. */
 static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up)
 {
     coupling_t *c = axis->coupling;
@@ -412,7 +417,8 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     cm1e_axis_set_stands(axis, false);
 }
 
-/* Where all stand at their last targets, they are in step as before: the catch-up is what it was. */
+/* Begins the catch-up anew after a pause or silence. If masters and slave kept their last targets, the difference is
+ * what it was before. */
 static void begin_anew(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
@@ -424,8 +430,8 @@ static void begin_anew(cm1e_axis_t *axis)
         (void)stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
         return;
     }
-    /* A slave that was in step gets back into its place; on its way there, lost distance is not made up (4.5, note 1).
-     * A motor that went on by itself in CSV is not asked to come back. */
+    /* A slave that was in step makes up the distance. One that was still on its way does not (4.5, note 1). Nor does a
+     * motor in CSV that went on by itself: it is not moved back. */
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up, comes_back = axis->mode == CM1E_MODE_CSP ||
                                                                           axis->silence.silent_before > 0;
     begin_catch_up(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back));

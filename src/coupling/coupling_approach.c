@@ -1,7 +1,8 @@
 /*
  * Approaches over the master's position: MC_GearInPos (4.7), and MC_CamIn with a MasterStartDistance. Until the master
- * comes to where the approach begins, whatever the slave does goes on (4.7, note 1): the command waits, first of all,
- * with its masters seen in every cycle. Then the coupling function is the curve, and behind its end a gear or a cam.
+ * reaches the place where the approach begins, the slave goes on with what it does (4.7, note 1). The command waits as
+ * the first one, and its masters are looked at in every cycle. Then the coupling function is the curve of the approach,
+ * and after the end of the curve it is the gear or the cam.
  */
 #include <math.h>
 #include <stdio.h>
@@ -13,11 +14,11 @@
 #include "axis/axis_position.h"
 #include "coupling/coupling_private.h"
 
-/* Counts of a master that are none, and what of a limit is rounding. */
+/* Tolerances for rounding: counts of a master, and a part of a limit. */
 static const double same_place = 1e-3;
 static const double relative_tolerance = 1e-6;
 
-/* Repetitions of the place, farther and farther away, that are tried: each leaves the slave more way. */
+/* How many repetitions of the meeting place are tried. Each is farther away and leaves the slave more distance. */
 enum { REPETITIONS = 4 };
 
 /* ---- the coupling function --------------------------------------------------------------------------------------- */
@@ -32,20 +33,31 @@ static void arrive(follow_t *follow)
         cm1e_cam_in_enter(follow, approach->sync);
         return;
     }
-    follow->anchor = approach->end; /* from here on the gear counts from where they met */
+    follow->anchor = approach->end; /* the gear counts from the place where they met */
     link->origin = cm1e_position_plus(link->origin, approach->sync);
     link->seen.counts -= approach->sync;
 }
 
-/* Before its beginning, where a master comes to that turns round on the way, the slave goes on as it began. */
+/* The sign of the way of the master from the beginning of the curve to its end. */
+static double way_sign(const approach_t *approach) { return approach->first < 0.0 ? 1.0 : -1.0; }
+
+/* The point of the curve. A master that turns round, or goes away from the end, comes to before the beginning of the
+ * curve. There the curvature fades to 0, because a step of it would be a step of the acceleration. Then the slave
+ * continues in a straight line. */
 static cm1e_curve_point_t point_at(const approach_t *approach, double master)
 {
-    const double beyond = (master - approach->first) * (approach->first < 0.0 ? 1.0 : -1.0);
-    if (beyond >= 0.0)
+    const double sign = way_sign(approach), back = (approach->first - master) * sign, fade = approach->fade;
+    if (back <= 0.0)
         return cm1e_curve_at(&approach->curve, master);
     const cm1e_curve_point_t first = cm1e_curve_at(&approach->curve, approach->first);
-    return (cm1e_curve_point_t){.position = first.position + first.slope * (master - approach->first),
-                                .slope = first.slope};
+    const double left = back < fade ? 1.0 - back / fade : 0.0;
+    const double change = first.curvature * fade / 2.0; /* of the slope, over the whole fade */
+    return (cm1e_curve_point_t){
+        .position = first.position - sign * first.slope * back +
+                    change * (back - fade / 3.0 * (1.0 - left * left * left)),
+        .slope = first.slope - sign * change * (1.0 - left * left),
+        .curvature = first.curvature * left,
+    };
 }
 
 static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
@@ -53,7 +65,7 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
     const approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
     const double counts = link->seen.counts - approach->sync, master = counts / link->master->position.scale;
-    const double left = (approach->first < 0.0 ? -master : master) * fabs(link->master->position.scale);
+    const double left = -master * way_sign(approach) * fabs(link->master->position.scale);
     if (left <= same_place) {
         arrive(follow);
         follow->function->evaluate(axis, follow, point);
@@ -70,7 +82,7 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
     return fmax(follow->approach.steepest, follow->approach.then->steepest(axis, follow, link));
 }
 
-static const coupling_function_t way_kind = {evaluate, steepest};
+static const coupling_function_t approach_kind = {evaluate, steepest};
 
 /* ---- its beginning ----------------------------------------------------------------------------------------------- */
 
@@ -82,7 +94,7 @@ static bool beyond(cm1e_axis_t *axis, const char *what, const char *unit, double
     return true;
 }
 
-/* What the curve asks of the slave at the master's present velocity. */
+/* Whether the curve keeps the limits of the slave at the present velocity of the master. */
 static bool keeps_limits(cm1e_axis_t *axis, const follow_t *follow, const from_t *from,
                          const cm1e_motion_limits_t *limits, const cm1e_curve_extremes_t *extremes)
 {
@@ -92,6 +104,15 @@ static bool keeps_limits(cm1e_axis_t *axis, const follow_t *follow, const from_t
            !beyond(axis, "acceleration", "u/s2", demand.acceleration, fmin(limits->acceleration, limits->deceleration),
                    from->acceleration) &&
            !beyond(axis, "jerk", "u/s3", demand.jerk, limits->jerk, 0.0);
+}
+
+/* The curvature before the beginning fades with half of the jerk, at the present velocity of the master. The other half
+ * is for the acceleration of the master. */
+static void begin_fade(approach_t *approach, const cm1e_curve_point_t *begin, double master_velocity, double jerk)
+{
+    const double speed = fabs(master_velocity);
+    approach->fade = 2.0 * fabs(begin->curvature) * speed * speed * speed / jerk;
+    approach->steepest = fabs(begin->slope - way_sign(approach) * begin->curvature * approach->fade / 2.0);
 }
 
 static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *limits,
@@ -124,7 +145,8 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     approach->curve = curve;
     approach->first = first;
-    approach->steepest = fmax(fabs(extremes.least_slope), fabs(extremes.most_slope));
+    begin_fade(approach, &begin, link->seen.velocity, limits->jerk);
+    approach->steepest = fmax(approach->steepest, fmax(fabs(extremes.least_slope), fabs(extremes.most_slope)));
     approach->sync = sync;
     approach->begin = from->position;
     approach->end = cm1e_position_plus(meeting, shift);
@@ -133,7 +155,7 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
     return CM1E_OK;
 }
 
-/* In counts: the sign of where the master goes, or is to go, during the approach. */
+/* The direction of the master during the approach: the sign of its way in counts. */
 static double direction(const follow_t *follow)
 {
     const double distance = follow->approach.start_distance;
@@ -141,7 +163,7 @@ static double direction(const follow_t *follow)
     return copysign(1.0, distance != 0.0 ? distance : link->seen.velocity * link->master->position.scale);
 }
 
-/* Counts of the master since it was where the approach begins; where that comes again, since the last time. */
+/* Counts of the master since the place where the approach begins; if that place repeats, since the last repetition. */
 static double since_start(const follow_t *follow, double counts)
 {
     const approach_t *approach = &follow->approach;
@@ -149,7 +171,7 @@ static double since_start(const follow_t *follow, double counts)
     return approach->again > 0.0 ? since - floor(since / approach->again + 1e-12) * approach->again : since;
 }
 
-/* Counts of the master to where the approach ends, in the direction in which it goes. */
+/* Counts that the master has to go, in its direction, to the place where the approach ends. */
 static double ahead(const follow_t *follow)
 {
     const approach_t *approach = &follow->approach;
@@ -164,13 +186,13 @@ cm1e_error_t cm1e_coupling_approach_begin(cm1e_axis_t *axis, follow_t *follow, c
     const double counts = follow->links[0].seen.counts, sign = direction(follow);
     cm1e_motion_limits_t limits;
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (approach->start_distance != 0.0) {
         const double left = fabs(approach->start_distance) - since_start(follow, counts);
         if (left > same_place)
             return plan(axis, follow, from, &limits, counts + sign * left);
-        axis->coupling->cams->approach_refused = (approach_refused_t){0}; /* it has gone over all of it in one cycle */
+        axis->coupling->cams->approach_refused = (approach_refused_t){0}; /* the master passed it in one cycle */
         return CM1E_ERROR_AXIS_SYNC_WAY;
     }
     const double next = ahead(follow);
@@ -182,16 +204,16 @@ cm1e_error_t cm1e_coupling_approach_begin(cm1e_axis_t *axis, follow_t *follow, c
 
 /* ---- until it begins --------------------------------------------------------------------------------------------- */
 
-/* Both stand where they are to meet. */
+/* Whether both axes are at standstill at the place where they are to meet. */
 static bool met_already(const cm1e_axis_t *axis, follow_t *follow, const from_t *from)
 {
     const approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
-    const double few_counts = 2.0, left = approach->sync - link->seen.counts;
+    const double tolerance_counts = 2.0, left = approach->sync - link->seen.counts;
     const double master = approach->again > 0.0 ? remainder(left, approach->again) : left;
     const double u = cm1e_position_minus(approach->end, from->position) / axis->position.scale;
     const double slave = (approach->turn > 0.0 ? remainder(u, approach->turn) : u);
-    if (fabs(master) > few_counts || fabs(slave * axis->position.scale) > few_counts || link->seen.velocity != 0.0 ||
+    if (fabs(master) > tolerance_counts || fabs(slave * axis->position.scale) > tolerance_counts || link->seen.velocity != 0.0 ||
         from->velocity != 0.0)
         return false;
     follow->approach.sync = link->seen.counts + master;
@@ -203,7 +225,7 @@ cm1e_error_t cm1e_coupling_approach_prepare(cm1e_axis_t *axis, follow_t *follow,
 {
     approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
-    follow->function = &way_kind;
+    follow->function = &approach_kind;
     follow->in_step = false;
     follow->to_position = true;
     if (approach->start_distance != 0.0) {
@@ -220,7 +242,8 @@ cm1e_error_t cm1e_coupling_approach_prepare(cm1e_axis_t *axis, follow_t *follow,
     return approach->awaited ? CM1E_OK : cm1e_coupling_approach_begin(axis, follow, move, from);
 }
 
-/* The master has come over the beginning of the approach, or goes towards its end. */
+/* Whether the approach begins in this cycle: the master has passed its beginning, or has begun to move towards its
+ * end. */
 static bool due(const follow_t *follow, double before)
 {
     const approach_t *approach = &follow->approach;
@@ -243,7 +266,7 @@ void cm1e_coupling_await_step(cm1e_axis_t *axis)
         return;
     const bool may_come = !trouble && next->approach.awaited == AWAIT_MOTION && next->links[0].seen.acceleration != 0.0;
     if (may_come && cm1e_coupling_approach_begin(axis, next, waiting_move(axis, 0), &from) == CM1E_ERROR_AXIS_SYNC_WAY)
-        return; /* it becomes faster, or slower */
+        return; /* the velocity of the master still changes: it may fit in a later cycle */
     c->due = true;
     c->due_error = trouble ? CM1E_ERROR_AXIS_MASTER_LOST : CM1E_OK;
     (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
@@ -262,7 +285,7 @@ cm1e_error_t cm1e_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move,
 {
     follow_t *follow = cm1e_coupling_spare(axis);
     const cm1e_error_t error = cm1e_gear_prepare(axis, move, coupling, from);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if ((unsigned)coupling->sync_mode > mcSlowDown)
         return CM1E_ERROR_INVALID_ARGUMENT;

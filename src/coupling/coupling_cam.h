@@ -8,8 +8,9 @@
  *     position in the cam = (M - zero of the master - MasterOffset) / MasterScaling
  *     slave               = zero of the slave + SlaveOffset + SlaveScaling * cam(position in the cam)
  *
- * The zeros are those of the axes' coordinates when the command began, or, of what is relative, where the master was
- * then, and where they have to be for the slave to be on the cam where it was (but for SlaveOffset).
+ * The zeros are the zeros of the axes' coordinates when the command began. If the cam is relative, the zero of the
+ * master is its position at that time, and the zero of the slave is chosen so that the slave is on the cam (but for
+ * SlaveOffset).
  */
 #ifndef CM1E_COUPLING_COUPLING_CAM_H
 #define CM1E_COUPLING_COUPLING_CAM_H
@@ -24,38 +25,39 @@ typedef struct cam_slot {
     MC_CAM_ID id;                  /**< 0: none */
     bool master_absolute, slave_absolute;
     cm1e_cam_t cam;
-    cm1e_cam_knot_t *knots;        /**< as many as the axis has `points` */
+    cm1e_cam_knot_t *knots;        /**< room for the `points` of the configuration */
 } cam_slot_t;
 
-/** Those that stay, and one more to take the next one in. */
+/** The cams that stay, and a place for the next one. */
 enum { CAM_SLOTS = CM1E_AXIS_CAMS + 1 };
 
 /** What an approach waits for. */
 typedef enum awaited {
     AWAIT_NOTHING = 0,
-    AWAIT_PLACE,                   /**< the master comes over the place where the approach begins */
-    AWAIT_MOTION,                  /**< the master goes towards the place where it ends */
+    AWAIT_PLACE,                   /**< that the master passes the place where the approach begins */
+    AWAIT_MOTION,                  /**< that the master moves towards the place where it ends */
 } awaited_t;
 
-/** An approach is a curve over the master's position, from what the slave does to what it shall do when the master is
- *  at a place. Counts of the master are those of the link. */
+/** An approach is a curve over the master's position. It leads from the present motion of the slave to the motion that
+ *  the slave must have when the master is at a given place. Counts of the master are those of the link. */
 typedef struct approach {
     const struct coupling_function *then; /**< the coupling function behind it */
-    awaited_t awaited;             /**< the approach is still to come */
-    double start_distance;         /**< counts of the master, signed as it goes; 0: from where it is */
+    awaited_t awaited;             /**< what the beginning of the approach waits for */
+    double start_distance;         /**< counts of the master, in its direction; 0: begins at once */
     double sync;                   /**< counts of the master where it ends */
-    double again;                  /**< counts after which that place comes again; 0: it does not */
+    double again;                  /**< counts after which that place repeats; 0: it does not */
     MC_SYNC_MODE mode;
-    double turn;                   /**< u of the slave, whose places so far apart are the same; 0: there are none */
+    double turn;                   /**< u of the slave; positions that differ by it are one place; 0: none */
     position_t begin, end;         /**< of the slave */
-    double first;                  /**< u of the master, counted from the end: where it begins */
-    double steepest;               /**< largest slope of it, without sign */
+    double first;                  /**< u of the master from the end: where the curve begins */
+    double fade;                   /**< u of the master before `first`, in which the curvature goes to 0; at least 0 */
+    double steepest;               /**< largest absolute slope of the curve, and before it */
     cm1e_curve_t curve;            /**< u of the slave from `begin` over u of the master from the end */
 } approach_t;
 
 /** What an approach would have demanded of the slave, for the text. */
 typedef struct approach_refused {
-    const char *what;              /**< NULL: the master stands while the slave moves, or has gone over it */
+    const char *what;              /**< NULL: the master stands while the slave moves, or passed it in a cycle */
     const char *unit;
     double asked, allowed;
 } approach_refused_t;
@@ -79,7 +81,7 @@ typedef struct cams {
 
 /** A cam that is followed. */
 typedef struct cam_place {
-    const cam_slot_t *slot;        /**< NULL: it is another coupling function */
+    const cam_slot_t *slot;        /**< NULL: the coupling function is no cam */
     position_t slave_zero;
     double away;                   /**< counts of the master from its zero to where its slave began to follow it */
     double master_offset, master_scaling, slave_offset, slave_scaling;
@@ -87,12 +89,12 @@ typedef struct cam_place {
     cm1e_cam_place_t place;
     cm1e_cam_sample_t before;      /**< sample of the last cycle, without its point */
     bool sampled;                  /**< there was a last cycle */
-    double entered;                /**< turn from which the master came onto a single-shot cam; 0: it began on it */
-    double left;                   /**< turn to which it left the cam at its other end; 0: not yet */
+    double entered;                /**< side from which the master came onto a single-shot cam; 0: it began on it */
+    double left;                   /**< side to which it left the cam at its other end; 0: not yet */
 } cam_place_t;
 
 cm1e_error_t cm1e_cam_memory_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
-/** NULL: there is none of that number. */
+/** The cam with a number; NULL: there is none. */
 const cam_slot_t *cm1e_cam_memory_find(const cm1e_axis_t *axis, MC_CAM_ID id);
 void cm1e_coupling_approach_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size);

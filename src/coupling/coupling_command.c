@@ -15,23 +15,25 @@ static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_COMBINE_AXES] = cm1e_gear_prepare,
 };
 
-/* Some numbers are too small to compute with, whatever the masters do when the command begins. */
+/* Refuses limits that are too small to compute with, whatever the masters do when the command begins. */
 static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
     const double most = axis->limits.maximum.velocity;
     const cm1e_motion_state_t fastest = {.velocity = most};
     const cm1e_motion_limits_t limits = {2.0 * most, asked->acceleration, asked->deceleration, asked->jerk};
     cm1e_profile_t profile;
-    return cm1e_profile_to_velocity(&profile, &fastest, 0.0, &limits) ? CM1E_ERROR_AXIS_DYNAMICS_RANGE : CM1E_OK;
+    if (cm1e_profile_to_velocity(&profile, &fastest, 0.0, &limits) != CM1E_OK)
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+    return CM1E_OK;
 }
 
 static cm1e_error_t prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                             const from_t *from, cm1e_motion_limits_t *limits)
 {
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, limits);
-    if (!error)
+    if (error == CM1E_OK)
         error = check_size(axis, limits);
-    return error ? error : preparers[move->kind](axis, move, coupling, from);
+    return error != CM1E_OK ? error : preparers[move->kind](axis, move, coupling, from);
 }
 
 static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling, follow_t *follow,
@@ -60,7 +62,7 @@ static bool same_inputs(const cm1e_axis_coupling_t *a, const cm1e_axis_coupling_
            a->master_scaling == b->master_scaling && a->slave_scaling == b->slave_scaling;
 }
 
-/* Changed inputs make a new coupling from the present set-point on. */
+/* Whether changed inputs of this command begin a new coupling at the present set-point. */
 static bool begins_anew(cm1e_command_kind_t kind)
 {
     return kind == CM1E_COMMAND_GEAR_IN || kind == CM1E_COMMAND_COMBINE_AXES;
@@ -79,7 +81,7 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const cm1e_axis_command_t *
     if (cm1e_axis_same_inputs(&axis->commands.move, &move) && same_inputs(&c->inputs, command->coupling))
         return CM1E_OK;
     const cm1e_error_t error = prepare(axis, &move, command->coupling, &from, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     move.id = axis->commands.move.id;
     cm1e_axis_activate(axis, &move);
@@ -106,7 +108,8 @@ static waiting_coupling_t *free_place(cm1e_axis_t *axis)
     return NULL;
 }
 
-/* What runs goes on, as the active command, until the master is where the approach begins; what waits is aborted. */
+/* Takes a coupling whose approach begins later. The active command goes on until the master is at that place; waiting
+ * commands are aborted. */
 static void take_later(cm1e_axis_t *axis, move_t *move, const cm1e_axis_coupling_t *coupling, follow_t *follow)
 {
     cm1e_axis_waiting_end(axis, CM1E_COMMAND_ABORTED);
@@ -123,7 +126,7 @@ cm1e_error_t cm1e_coupling_start(cm1e_axis_t *axis, const cm1e_axis_command_t *c
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = command->coupling ? prepare(axis, &move, command->coupling, &from, &limits)
                                                  : CM1E_ERROR_INVALID_ARGUMENT;
-    if (error)
+    if (error != CM1E_OK)
         return error;
     follow_t *follow = cm1e_coupling_spare(axis);
     if (follow->approach.awaited) {
@@ -139,7 +142,7 @@ cm1e_error_t cm1e_coupling_start(cm1e_axis_t *axis, const cm1e_axis_command_t *c
 
 /* ---- buffered ---------------------------------------------------------------------------------------------------- */
 
-/* Before it waits it has its place: what it waits for may be there already, and it begins at once. */
+/* Buffers a coupling. It gets its place before it waits, because it may be able to begin at once. */
 cm1e_error_t cm1e_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     move_t move = cm1e_axis_move_of(command);
@@ -150,14 +153,14 @@ cm1e_error_t cm1e_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *
         return CM1E_ERROR_FULL;
     *place = (waiting_coupling_t){axis->commands.last_id + 1 ? axis->commands.last_id + 1 : 1, *command->coupling};
     const cm1e_error_t error = cm1e_axis_buffer(axis, &move);
-    if (error)
+    if (error != CM1E_OK)
         place->id = 0; /* the number will belong to another command */
     else
         *id = move.id;
     return error;
 }
 
-/* The end of the previous command, moved on by its velocity to the present. */
+/* The state at the end of the previous command, moved on by its velocity to the present set-point. */
 static from_t at_present(const cm1e_axis_t *axis, const from_t *from, double late_s)
 {
     from_t here = *from;
@@ -175,22 +178,22 @@ bool cm1e_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s)
     const from_t here = at_present(axis, from, late_s);
     follow_t *follow = cm1e_coupling_spare(axis);
     cm1e_motion_limits_t limits;
-    if (!waiting || prepare(axis, move, &waiting->coupling, &here, &limits) || !follow->approach.awaited)
+    if (!waiting || prepare(axis, move, &waiting->coupling, &here, &limits) != CM1E_OK || !follow->approach.awaited)
         return false;
     cm1e_coupling_await(axis, follow);
     return true;
 }
 
-/* What was awaited is there: as it was placed when it came to be awaited. */
+/* Begins an awaited coupling, with the place that it got when the wait began. */
 static cm1e_error_t begin_awaited(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                                   const from_t *from)
 {
     coupling_t *c = axis->coupling;
     cm1e_motion_limits_t limits;
-    cm1e_error_t error = c->due_error ? c->due_error : cm1e_axis_limits_of(axis, from, move, &limits);
-    if (!error)
+    cm1e_error_t error = c->due_error != CM1E_OK ? c->due_error : cm1e_axis_limits_of(axis, from, move, &limits);
+    if (error == CM1E_OK)
         error = cm1e_coupling_approach_begin(axis, axis->coupling->awaited, move, from);
-    if (error)
+    if (error != CM1E_OK)
         cm1e_coupling_await_nothing(axis);
     else
         take(axis, move, coupling, axis->coupling->awaited, from, &limits);
@@ -209,7 +212,7 @@ cm1e_error_t cm1e_coupling_begin(cm1e_axis_t *axis, move_t *move, const from_t *
     const cm1e_error_t error = waiting ? prepare(axis, move, &waiting->coupling, &here, &limits)
                                        : CM1E_ERROR_AXIS_STATE;
     axis->coupling->at_end = false;
-    if (!error)
+    if (error == CM1E_OK)
         take(axis, move, &waiting->coupling, cm1e_coupling_spare(axis), &here, &limits);
     return error;
 }
@@ -222,11 +225,11 @@ cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const
         return update_active(axis, command);
     move_t *waiting = cm1e_axis_find_waiting(axis, id);
     if (!waiting)
-        return CM1E_OK; /* it has ended */
+        return CM1E_OK; /* the command has ended */
     if (waiting->kind != (uint8_t)command->kind || command->kind == CM1E_COMMAND_GEAR_IN_POS)
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (waiting == waiting_move(axis, 0) && axis->coupling->awaited)
-        return CM1E_OK; /* it is placed already, and waits for its master only */
+        return CM1E_OK; /* it has its place, and waits only for its master */
     move_t move = cm1e_axis_move_of(command);
     move.id = id;
     move.buffer_mode = waiting->buffer_mode;

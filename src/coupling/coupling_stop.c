@@ -1,10 +1,10 @@
 /*
- * What stops with a follower that cannot go on, or whose master cannot: `coupling_stop` of its configuration.
+ * Which axes stop together if a follower or its master cannot go on: `coupling_stop` of the configuration.
  *
- * keep_ratio has the slave follow its master to the standstill, in ErrorStop: the ramp of a master that has failed by
- * itself, as long as there is one; or one that its own limits need. In the latter case the master brakes no harder than
- * the slave can follow, so that has to begin while the slave still can: a cycle before its limit. Where it cannot, the
- * axis brakes alone.
+ * With keep_ratio the slave, in ErrorStop, follows its master to standstill. Either the master has failed by itself,
+ * and the slave follows its ramp; or the slave would break a limit of its own, and both brake. In the latter case the
+ * master brakes no harder than the slave can follow. So the braking begins a cycle before the limit, while the slave
+ * can still follow. If it cannot follow, it brakes alone.
  */
 #include <string.h>
 
@@ -17,10 +17,10 @@
 static bool keeps_ratio(const cm1e_axis_t *axis)
 {
     return axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO && axis->drive.feedback.enabled &&
-           !axis->superimposed.id; /* it ends with the commands */
+           !axis->superimposed.id; /* a superimposed motion ends with the commands */
 }
 
-/* The axis that caused the stop, for the text. */
+/* Stops an axis because of `cause`, whose name goes into the text of the error. */
 static void fail_with(cm1e_axis_t *axis, const cm1e_axis_t *cause, double deceleration)
 {
     if (axis->state == CM1E_AXIS_ERROR_STOP || axis_free(axis))
@@ -29,7 +29,7 @@ static void fail_with(cm1e_axis_t *axis, const cm1e_axis_t *cause, double decele
     cm1e_axis_fail_gently(axis, CM1E_ERROR_AXIS_COUPLED, deceleration);
 }
 
-/* Whether the slave follows by this link, and does not only wait to do so. */
+/* Whether the slave follows by this link now, and does not only wait for it. */
 static bool in_force(const link_t *link)
 {
     const follow_t *now = link->slave->coupling->now;
@@ -61,7 +61,7 @@ bool cm1e_coupling_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t troubl
     return true;
 }
 
-/* u/s2; how hard the pair can brake: as the slave sees it. 0: not at all. */
+/* u/s2 of the slave: the deceleration with which master and slave can brake together. 0: they cannot. */
 static double braking_together(const cm1e_axis_t *axis)
 {
     const follow_t *follow = axis->coupling->now;
@@ -72,14 +72,14 @@ static double braking_together(const cm1e_axis_t *axis)
     return fmin(axis->limits.emergency.deceleration, link->master->limits.emergency.deceleration * slope);
 }
 
-/* The limit that the pair would run over if it went on for another cycle before it brakes. */
+/* The limit that the slave would break if both went on for another cycle before they brake. */
 static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
 {
     const double t = axis->cycle_s, v = axis->setpoint.velocity + axis->setpoint.acceleration * t;
     const double most = axis->limits.system.velocity;
     const double line = cm1e_axis_line(axis, axis->setpoint.position) + (axis->setpoint.velocity + v) / 2.0 * t;
     const double end = line + v * fabs(v) / (2.0 * braking) + v * t;
-    /* In that cycle the acceleration may grow too; what it is then takes time to end. */
+    /* In that cycle the acceleration may grow too, and the jerk needs time to end it. */
     const double a = fabs(axis->setpoint.acceleration) + axis->guarding.jerk;
     const double toward = axis->setpoint.acceleration * v;
     const bool eases = coupling_keeps_jerk(axis->coupling) && toward > 0.0;
@@ -96,7 +96,7 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
 void cm1e_coupling_keep_ratio(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
-    if (!keeps_ratio(axis) || c->stopping || c->phase.velocity != 0.0) /* a shift has its own way to its rest */
+    if (!keeps_ratio(axis) || c->stopping || c->phase.velocity != 0.0) /* a phase shift ends by itself */
         return;
     const double braking = braking_together(axis);
     const guard_t guard = braking > 0.0 ? limit_ahead(axis, braking) : (guard_t){.limit = GUARD_KEPT};

@@ -1,4 +1,4 @@
-/* Couplings in sentences: what was refused, and what they were lost for. */
+/* Sentences about couplings: why a command was refused, and why a coupling was lost. */
 #include <stdio.h>
 
 #include "axis/axis_setpoint.h"
@@ -21,7 +21,7 @@ static void master_lost_text(const cm1e_axis_t *axis, bool refused, char *text, 
     const coupling_t *c = axis->coupling;
     int used = snprintf(text, size, "Axis \"%s\" %s its master \"%s\", which %s", axis->config->name,
                         refused ? "cannot follow" : "was braked, as it lost", c->other_name, troubles[c->trouble]);
-    if (c->master_error && used > 0 && (size_t)used < size)
+    if (c->master_error != CM1E_OK && used > 0 && (size_t)used < size)
         used += snprintf(text + used, size - (size_t)used, " (%s)", cm1e_strerror(c->master_error));
     if (used > 0 && (size_t)used < size)
         snprintf(text + used, size - (size_t)used, "%s",
@@ -50,7 +50,7 @@ static void ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
                  (unsigned long)axis->coupling->denominator);
 }
 
-/* FALSE: another command. */
+/* Explains a refused command by its kind; false: it has no such explanation. */
 static bool mode_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     static const char *const modes[CM1E_COMMAND_KIND_COUNT] = {

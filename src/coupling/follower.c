@@ -1,7 +1,9 @@
-/* What the axis knows of couplings: a table of functions, added to it when it is made. */
+/* Adds couplings to an axis when it is made: a table of functions that the axis calls (axis_hooks.h). */
 #include <stdlib.h>
+#include <string.h>
 
 #include "axis/axis_commands.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling.h"
 #include "coupling/coupling_private.h"
 
@@ -12,6 +14,23 @@ static void forget(cm1e_axis_t *axis)
     free(axis->coupling);
 }
 
+/** In the copy, what pointed into the coupling or its cams points into their copies. Points of cams are in no text. */
+static void copy_own(const cm1e_axis_t *axis, cm1e_axis_t *copy, void *place)
+{
+    coupling_t *c = place;
+    cams_t *cams = (cams_t *)(void *)((unsigned char *)place + sizeof *c);
+    const coupling_t *own = axis->coupling;
+    memcpy(c, own, sizeof *c);
+    memcpy(cams, own->cams, sizeof *cams);
+    for (int i = 0; i < FOLLOWS; i++)
+        if (own->follows[i].cam.slot)
+            c->follows[i].cam.slot = cams->slots + (own->follows[i].cam.slot - own->cams->slots);
+    c->now = own->now ? c->follows + (own->now - own->follows) : NULL;
+    c->cams = cams;
+    copy->coupling = c;
+}
+_Static_assert(sizeof(coupling_t) % 8 == 0 && sizeof(cams_t) % 8 == 0, "one lies behind the other in a copy");
+
 static bool stops_with_masters(const cm1e_axis_t *axis) { return axis->coupling->stopping; }
 
 static bool by_actual(const cm1e_axis_t *axis) { return axis->coupling->now->by_actual; }
@@ -20,6 +39,22 @@ static bool hands_over(const cm1e_axis_t *axis)
 {
     const follow_t *now = axis->coupling->now;
     return !now->waits_for_end || now->cam.left != 0.0;
+}
+
+static bool is_of(const link_t *link, const follow_t *follow)
+{
+    return follow && link >= follow->links && link < follow->links + follow->count;
+}
+
+/** Links stay in the list until their place is taken for another coupling. */
+static bool is_followed(const cm1e_axis_t *axis)
+{
+    for (const link_t *link = axis->coupling->slaves; link; link = link->next) {
+        const coupling_t *slave = link->slave->coupling;
+        if ((axis_follows(link->slave) && is_of(link, slave->now)) || is_of(link, slave->awaited))
+            return true;
+    }
+    return false;
 }
 
 static const command_method_t methods[PLAN_COUNT] = {
@@ -32,6 +67,7 @@ static const command_method_t methods[PLAN_COUNT] = {
 static const coupling_hooks_t hooks = {
     .methods = methods,
     .free = forget,
+    .own = {sizeof(coupling_t) + sizeof(cams_t), copy_own},
     .observe = cm1e_coupling_observe,
     .advance_masters = cm1e_coupling_advance_masters,
     .first_set_point = cm1e_coupling_first_set_point,
@@ -42,6 +78,7 @@ static const coupling_hooks_t hooks = {
     .failed = cm1e_coupling_failed,
     .stops_with_masters = stops_with_masters,
     .by_actual = by_actual,
+    .is_followed = is_followed,
     .resume_masters = cm1e_coupling_resume_masters,
     .resume_slaves = cm1e_coupling_resume_slaves,
     .begins_anew = cm1e_coupling_begins_anew,
@@ -54,10 +91,11 @@ static const coupling_hooks_t hooks = {
 
 cm1e_error_t cm1e_coupling_add(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
-    axis->coupling = calloc(1, sizeof *axis->coupling);
+    axis->coupling = cm1e_cache_lines(sizeof *axis->coupling);
     if (!axis->coupling)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for what axis \"%s\" may follow.",
                              axis->config->name);
+    axis->coupling->keeps_ratio = axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO;
     axis->coupling_hooks = &hooks;
     axis->observed = axis->config->type == CM1E_AXIS_ENCODER;
     return cm1e_cam_memory_init(axis, diag);

@@ -1,4 +1,5 @@
-/* MC_GearIn, MC_CombineAxes: the sum of the masters' motions, each by its ratio. And the way out again. */
+/* MC_GearIn, MC_CombineAxes: the coupling function is the sum of the masters' motions, each times its ratio. MC_GearOut
+ * and MC_CamOut leave the masters. */
 #include <math.h>
 
 #include "axis/axis_commands.h"
@@ -27,7 +28,7 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
 
 static const coupling_function_t gear = {evaluate, steepest};
 
-/* Whole numbers as far as doubles hold them, so that they are rounded once: positions are this times counts. */
+/* The ratio in counts. It is computed from whole numbers as far as doubles hold them, so it is rounded only once. */
 static double counts_ratio(const cm1e_axis_t *slave, const cm1e_axis_t *master, double numerator, double denominator)
 {
     const double sign = slave->position.scale * master->position.scale < 0.0 ? -1.0 : 1.0;
@@ -51,7 +52,7 @@ cm1e_error_t cm1e_gear_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e
             return CM1E_ERROR_AXIS_RATIO;
         }
         const cm1e_error_t error = cm1e_coupling_link(axis, follow, master);
-        if (error)
+        if (error != CM1E_OK)
             return error;
         link_t *link = &follow->links[i];
         const bool subtracted = i == 1 && coupling->combine == mcSubAxes;
@@ -69,7 +70,7 @@ static bool leaves(cm1e_command_kind_t out, cm1e_command_kind_t in)
     return out == CM1E_COMMAND_CAM_OUT ? in == CM1E_COMMAND_CAM_IN : in != CM1E_COMMAND_CAM_IN;
 }
 
-/* The command is done at once. The motion goes on as a command that no block owns. */
+/* Leaves the masters. The command is done at once, and the motion goes on as a command that no block owns. */
 cm1e_error_t cm1e_gear_out(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);
@@ -78,7 +79,7 @@ cm1e_error_t cm1e_gear_out(cm1e_axis_t *axis, const cm1e_axis_command_t *command
     if (!axis_follows(axis) || !axis->commands.active || !leaves(command->kind, axis->commands.kind))
         return CM1E_ERROR_AXIS_NOT_COUPLED;
     const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, false, &profile);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     *id = cm1e_axis_next_id(axis);

@@ -1,4 +1,4 @@
-/* The masters of a follower: who follows whom, in which order they advance, and what is seen of them. */
+/* The masters of a follower: the links, the order in which axes advance, and the view of a master. */
 #include <string.h>
 
 #include "axis/axis_commands.h"
@@ -6,8 +6,8 @@
 #include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
-/* Counts by which a master's position may differ from what its velocities explain: rounding of where a ramp without a
- * limit of jerk has its corner. */
+/* Tolerance in counts between the way of a master and what its velocities explain. A ramp without a limit of jerk has
+ * its corner between two set-points. */
 static const double same_way_counts = 1.0;
 
 static void advance_masters(follow_t *follow)
@@ -77,7 +77,7 @@ static bool search_masters(const follow_t *follow, const cm1e_axis_t *goal, uint
     return false;
 }
 
-/* Whether `goal` is `from`, one of its masters, or one of theirs. Looks at each axis once. */
+/* Whether `goal` is `from` or one of its direct or indirect masters. Each axis is visited once. */
 static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark)
 {
     coupling_t *c = from->coupling;
@@ -172,7 +172,7 @@ static master_trouble_t trouble_of_set_value(const cm1e_axis_t *master)
     return stopped ? MASTER_STOPPING : MASTER_GOOD;
 }
 
-/* If the slave has not advanced, its set-point is that of the previous cycle. */
+/* The actual position of the master: of this cycle if the slave has advanced, else of the previous cycle. */
 static master_trouble_t see_actual(link_t *link, position_t *position)
 {
     from_t seen;
@@ -185,8 +185,8 @@ static master_trouble_t see_actual(link_t *link, position_t *position)
     return MASTER_GOOD;
 }
 
-/* Positions are counted in the master's counts from where the slave began to follow, so that no shift of coordinates is
- * a motion, and none of them is lost however far the master goes. */
+/* The position of the master. It is counted from the place where the slave began to follow. So a shift of the master's
+ * coordinates is no motion, and no count is lost however far the master goes. */
 static master_trouble_t see(link_t *link, position_t *position)
 {
     const cm1e_axis_t *master = link->master;
@@ -204,13 +204,13 @@ static master_trouble_t see(link_t *link, position_t *position)
     return trouble;
 }
 
-/* The slave follows that master already, and is shifted against it. */
+/* Whether the slave follows that master already, with its phase shift. */
 static bool keeps_phase(const cm1e_axis_t *slave, const link_t *link)
 {
     return axis_follows(slave) && slave->coupling->now->links[0].master == link->master;
 }
 
-/* The slave's own shift against the first of its masters (4.8). */
+/* Adds the phase shift of the slave against its first master (4.8). */
 static void add_phase(const cm1e_axis_t *slave, link_t *link)
 {
     const cm1e_motion_state_t *phase = &slave->coupling->phase;
@@ -219,8 +219,8 @@ static void add_phase(const cm1e_axis_t *slave, link_t *link)
     link->seen.acceleration += phase->acceleration;
 }
 
-/* What velocities explain of a way, and what they do not: within a cycle both limits may be met. What an actual value
- * may do, the guard of the slave has to say. */
+/* Computes how far the way of a master in a cycle may differ from what its velocities explain: its acceleration may
+ * reach both limits within the cycle. An actual value has no such bound; the guard of the slave judges it. */
 static void know_ways(link_t *link, double cycle_s)
 {
     const cm1e_axis_t *master = link->master;
@@ -231,7 +231,7 @@ static void know_ways(link_t *link, double cycle_s)
                                                            : same_way_counts + corner * fabs(master->position.scale);
 }
 
-/* A jump of its set-point, however short, is no way that limits were kept on. */
+/* Whether the set-point of the master jumped: even a short jump breaks its limits. */
 static bool jumped(const link_t *link, const master_view_t *before)
 {
     if (link->seen.jumps != before->jumps)
@@ -285,11 +285,11 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
         return CM1E_ERROR_AXIS_COUPLING_CYCLE;
     if (asked->source != mcSetValue && asked->source != mcActualValue)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (slave->advanced && !master->advanced) /* a command that waited begins: the slave's set-point is of this cycle */
+    if (slave->advanced && !master->advanced) /* a waiting command begins in this cycle */
         cm1e_axis_advance(master);
     link_t *link = &follow->links[follow->count];
     *link = (link_t){.master = master, .slave = slave, .source = asked->source};
-    if (master->config->type == CM1E_AXIS_ENCODER || drive_profiles(master)) /* it has no other */
+    if (master->config->type == CM1E_AXIS_ENCODER || drive_profiles(master)) /* it has only an actual value */
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;
     know_ways(link, slave->cycle_s);

@@ -1,8 +1,8 @@
 /*
- * An axis as those see it that follow its actual value. What comes from an encoder is in whole counts, a cycle old, and
- * sometimes missing: the filter (motion/observer.h) estimates where the axis is now, as long as no more is missing than
- * is ridden out elsewhere. Velocity and acceleration are the differences of these positions, for they are what the
- * slave's motor is given.
+ * The actual value of an axis, as its slaves see it. The position of an encoder is a whole number of counts, a cycle
+ * old, and sometimes missing. The filter (motion/observer.h) estimates the present position, as long as no more values
+ * are missing than `lost_cycles_limit` allows. Velocity and acceleration are the differences of these positions,
+ * because the set-points of the slave have these differences.
  */
 #include <math.h>
 
@@ -23,14 +23,14 @@ static void look(cm1e_axis_t *axis)
     own->now.acceleration = (own->now.velocity - own->before.velocity) / axis->cycle_s;
 }
 
-/* Whether our set-points move the axis, and not a hand or a profile of its drive. */
+/* Whether our set-points move the axis. Else a hand or its drive may move it. */
 static bool goes_as_told(const cm1e_axis_t *axis)
 {
     return !axis_free(axis) && axis->setpoint.source != &cm1e_source_drive;
 }
 
-/* Counts/s, of what nobody has looked at before: a motor goes as it is told to, or says how. An encoder is looked at
- * from its first counts on. */
+/* Counts/s: the velocity with which the filter begins. It is the set velocity of a motor that follows set-points, or
+ * the velocity that the drive reports. An encoder begins with its first counts. */
 static double first_velocity(const cm1e_axis_t *axis)
 {
     if (axis->config->type == CM1E_AXIS_ENCODER)
@@ -61,14 +61,14 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
     observed_t *own = &axis->coupling->own;
     const bool fresh = axis->drive.feedback.fresh;
     const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
-    /* A position after a homing of the drive, or after a long silence, is another place. */
+    /* After a homing of the drive, or after a long silence, the position is not a motion from the last one. */
     const bool anew = !own->begun || drive_homes(axis) || own->lost > limit;
     if (anew && fresh) {
         begin(axis);
         return;
     }
     own->lost = fresh ? 0 : own->lost + (own->lost < UINT32_MAX);
-    if (own->lost > limit) /* nobody is shown it, and an estimate that went on for days could not be counted */
+    if (own->lost > limit) /* no slave sees it, and an estimate that went on for days would leave the range */
         return;
     cm1e_observer_step(&own->filter, axis_actual(axis).counts, fresh);
     look(axis);

@@ -1,9 +1,10 @@
 /*
  * MC_PhasingAbsolute, MC_PhasingRelative (4.8, 4.9): the slave sees its master shifted. The shift is a motion of its
- * own in u of the master, from its present state to the one asked for; the coupling function brings it to the slave.
+ * own, in u of the master, from its present state to the commanded one. The coupling function transfers it to the
+ * slave.
  *
- * It is never the active command: it has a record of its own, and one after the other may wait behind it. It belongs to
- * the first master, and stays, running or not, while the axis follows that one, by whatever gear or cam.
+ * A phasing is never the active command: it has a record of its own, and other phasings may wait behind it. The shift
+ * belongs to the first master. It stays while the axis follows that master, also by another gear or cam.
  */
 #include <math.h>
 #include <stdio.h>
@@ -18,7 +19,7 @@ static const double relative_tolerance = 1e-9;
 
 /* ---- what the slave can follow ----------------------------------------------------------------------------------- */
 
-/* The largest slope of the coupling function; 1 for a cam that does not move its slave. */
+/* The maximum slope of the coupling function; 1 for a cam that does not move its slave. */
 static double steepest(const cm1e_axis_t *axis)
 {
     const follow_t *now = axis->coupling->now;
@@ -26,7 +27,7 @@ static double steepest(const cm1e_axis_t *axis)
     return slope > 0.0 ? slope : 1.0;
 }
 
-/* u of the master: where the slave has all its limits for the shift. */
+/* The limits of the shift in u of the master, if the slave has all its own limits for it. */
 static cm1e_motion_limits_t most_of(const cm1e_axis_t *axis)
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum;
@@ -35,7 +36,7 @@ static cm1e_motion_limits_t most_of(const cm1e_axis_t *axis)
                                   most->jerk / slope};
 }
 
-/* 0 is half of what there is: the other half is for the motion of the master. */
+/* The default, 0, is half of the maximum: the other half is for the motion of the master. */
 static bool choose(double asked, double most, double *value)
 {
     *value = asked == 0.0 ? most / 2.0 : asked;
@@ -65,8 +66,8 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const move_t *move)
     return limits_of(axis, move, &unused);
 }
 
-/* Whether the slave would go too fast with it while its master goes as it does now. Where the master changes, or the
- * slope of the cam, the guard looks at every set-point. */
+/* Whether the slave keeps its maximum velocity with this shift, at the present velocity of the master. If the master or
+ * the slope of the cam changes later, the guard checks every set-point. */
 static bool fits_beside_master(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
 {
     const coupling_t *c = axis->coupling;
@@ -83,16 +84,16 @@ static bool fits_beside_master(const cm1e_axis_t *axis, const cm1e_profile_t *pr
 
 /* ---- one after the other ----------------------------------------------------------------------------------------- */
 
-/* The motion of the shift from its present state on. */
+/* Plans the motion of the shift from its present state. */
 static cm1e_error_t plan(const cm1e_axis_t *axis, const move_t *move, double *origin, cm1e_profile_t *profile)
 {
     const coupling_t *c = axis->coupling;
     cm1e_motion_limits_t limits;
     *origin = move->kind == CM1E_COMMAND_PHASING_RELATIVE ? c->phase.position : 0.0;
     const cm1e_error_t error = limits_of(axis, move, &limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
-    if (cm1e_profile_to_position(profile, &c->phase, *origin + move->position, &limits))
+    if (cm1e_profile_to_position(profile, &c->phase, *origin + move->position, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     return fits_beside_master(axis, profile) ? CM1E_OK : CM1E_ERROR_AXIS_VELOCITY_RANGE;
 }
@@ -118,7 +119,7 @@ static void record(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t e
     phasing->id = 0;
 }
 
-/* 2.2.2, case 2: one that cannot begin fails, and the next one does. */
+/* Begins the next waiting phasing. One that cannot begin fails, and the one after it is tried (2.2.2, case 2). */
 static void begin_waiting(cm1e_axis_t *axis)
 {
     phasing_t *phasing = &axis->coupling->phasing;
@@ -130,7 +131,7 @@ static void begin_waiting(cm1e_axis_t *axis)
         double origin;
         cm1e_profile_t profile;
         const cm1e_error_t error = plan(axis, &move, &origin, &profile);
-        if (error) {
+        if (error != CM1E_OK) {
             cm1e_axis_record(axis, move.id, CM1E_COMMAND_ERROR, error);
             cm1e_axis_remember_end(axis, (cm1e_command_kind_t)move.kind, error);
         } else {
@@ -139,7 +140,7 @@ static void begin_waiting(cm1e_axis_t *axis)
     }
 }
 
-/* The blending modes act as mcBuffered: a shift ends at rest. */
+/* Buffers a phasing. The blending modes act like mcBuffered, because a shift ends at rest. */
 static cm1e_error_t buffer(cm1e_axis_t *axis, move_t *move)
 {
     phasing_t *phasing = &axis->coupling->phasing;
@@ -163,7 +164,7 @@ static cm1e_error_t replace(cm1e_axis_t *axis, move_t *move)
     double origin;
     cm1e_profile_t profile;
     const cm1e_error_t error = plan(axis, move, &origin, &profile);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     forget_waiting(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
@@ -184,9 +185,9 @@ cm1e_error_t cm1e_phasing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     if ((unsigned)command->buffer_mode > mcBlendingHigh)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     cm1e_error_t error = check(axis, &move);
-    if (!error)
+    if (error == CM1E_OK)
         error = command->buffer_mode != mcAborting && c->phasing.id ? buffer(axis, &move) : replace(axis, &move);
-    if (!error)
+    if (error == CM1E_OK)
         *id = move.id;
     return error;
 }

@@ -65,7 +65,7 @@ void cm1e_describe_channel(cm1e_arena_t *arena, cm1e_description_t *device);
 /** FMMUs, mailbox with CoE, ways to synchronise. */
 void cm1e_describe_communication(cm1e_arena_t *arena, cm1e_description_t *device,
                                  const cm1e_device_options_t *options);
-/** FALSE: the configuration words 0-6 (14 bytes) are the ones that we guess, as an image of ours holds them, or there
+/** false: the configuration words 0-6 (14 bytes) are the ones that we guess, as an image of ours holds them, or there
  *  are none: they must not get from there into a device as if they were those of a real one. */
 bool cm1e_describe_config_is_known(const uint8_t *config);
 /** Adds the other contents of the EEPROM. `bootstrap`: there is a mailbox in the state Bootstrap. */

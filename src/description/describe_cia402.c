@@ -1,6 +1,6 @@
 /* The servo drive by CiA 402 as the simulator plays it: its SII. Of a real one its maker has the description. */
 #include "description/describe.h"
-#include "device/cia402.h"
+#include "device/cia402_drive.h"
 
 cm1e_error_t cm1e_describe_cia402(cm1e_description_file_t *file, const cm1e_device_options_t *options,
                                   cm1e_esi_layout_t layout, cm1e_diag_t *diag)

@@ -54,7 +54,7 @@ typedef struct cm1e_sii_category {
     size_t start;   /**< byte address of its content */
     size_t bytes;   /**< as it states them, perhaps beyond the end of the image; the next one begins behind */
 } cm1e_sii_category_t;
-/** The category whose header begins at byte `at`. FALSE: the image ends before. @rt any */
+/** The category whose header begins at byte `at`. false: the image ends before. @rt any */
 bool cm1e_sii_category_at(cm1e_sii_category_t *category, const uint8_t *image, size_t size, size_t at);
 /** Whether cm1e_sii_read() takes anything from categories of this type. @rt any */
 bool cm1e_sii_category_is_read(uint16_t type);

@@ -4,13 +4,14 @@
 #include "device/bridge_tables.h"
 
 /*
- * The bridge's own objects (BR appendix 6), and the dictionary of a model made of them and of those of its axes. Where
- * the guide states no value it is 0, and the unknown identity is left to the configuration. As with the CM1-E,
- * sub-index 0 has 8 bits and is read-only, whatever the appendix says of 60F6 and 60FB, except where an assignment
- * could not be written otherwise (1C12, 1C13).
+ * The bridge's own objects (BR appendix 6). They and the objects of the axes make the dictionary of a model. A value
+ * that the guide does not state is 0. The identity of the bridge is not known, so the configuration states it. As with
+ * the CM1-E, sub-index 0 has 8 bits and is read-only, although the appendix says otherwise of 60F6 and 60FB. Sub-index
+ * 0 of 1C12 and 1C13 is writable, because the assignment could not be written otherwise.
  */
 
-/* A row is a number of 32 bits; the appendix has the size of what is mapped in some of them. */
+/* Every entry of a mapping is a number of 32 bits. For some entries the appendix states the size of the mapped object
+ * instead. */
 #define MAPPING_VALUE(axis, index, bits) ((int64_t)((index) + CM1E_BRIDGE_INDEX_INCREMENT * (axis)) << 16 | (bits))
 #define PDO_INDEX(pdo, axis) ((pdo) + CM1E_BRIDGE_PDO_INCREMENT * (axis))
 #define MAPPING_ROW(pdo, axis, place, index, bits, name, available)                                                 \
@@ -32,14 +33,14 @@
     MAPPING(1A00, axis, "csp/csv mode TxPDO", 4, NA), MAPPING(1A01, axis, "csp mode TxPDO", 2, YES),                \
         MAPPING(1A02, axis, "csv mode TxPDO", 2, NA)
 
-/* The entries are writable, and could not be written while sub-index 0 is not 0 (BR 5.4.1, abort 06010003h). */
+/* The entries are writable while sub-index 0 is 0; else the bridge refuses (BR 5.4.1, abort 06010003h). */
 #define ASSIGNED(assign, pdo, axis)                                                                                 \
     ENTRY(assign, (axis) + 1, RW_PREOP, UINT, AXIS_NAME_##axis " csp", "", PDO_INDEX(pdo, axis), )
 #define ASSIGNMENT(index, name, pdo)                                                                                \
     ARRAY(index, name, 4, ENTRY_RANGE(index, 0, RW_PREOP, USINT, "Number of entries", "", 4, 0, 4, ),               \
           ASSIGNED(index, pdo, 0), ASSIGNED(index, pdo, 1), ASSIGNED(index, pdo, 2), ASSIGNED(index, pdo, 3))
 
-/* Free run and synchronised by the sync manager (BR 2.3), coded as in ETG.1020. */
+/* The types "free run" and "synchronised by the sync manager" (BR 2.3), coded as in ETG.1020. */
 #define SM_PARAMETER(index, name, sync_type)                                                                        \
     RECORD(index, name, 32, ENTRY_COUNT(index, USINT, 32, ),                                                        \
            ENTRY(index, 1, RW, UINT, "Synchronization Type", "", sync_type, ),                                      \
@@ -55,7 +56,7 @@
            ENTRY(index, 32, RO, BOOL, "Sync error", "", 0, NA))
 
 #define SM_TYPE(sub, name) ENTRY(0x1C00, sub, RO, USINT, name, "", sub, )
-/* A number for each axis. */
+/* An array with a number for each axis. */
 #define OF_AXES(index, name, list_name, value)                                                                      \
     ARRAY(index, list_name, 4, ENTRY_COUNT(index, USINT, 4, ),                                                      \
           ENTRY(index, 1, RO, UDINT, AXIS_NAME_0 " " name, "", value, ),                                            \
@@ -63,13 +64,13 @@
           ENTRY(index, 3, RO, UDINT, AXIS_NAME_2 " " name, "", value, ),                                            \
           ENTRY(index, 4, RO, UDINT, AXIS_NAME_3 " " name, "", value, ))
 
-/* A text whose content is not known, of up to so many bytes. */
+/* A text of at most `bytes_` bytes whose content is not known. */
 #define TEXT(index_, name_, access_, bytes_, available)                                                             \
     {.index = (index_), .object_code = CM1E_OBJECT_VAR, .name = (name_), .entry_count = 1,                          \
      .entries = ENTRIES({.index = (index_), .access = (access_), .type = CM1E_TYPE_STRING, .bits = 8 * (bytes_),    \
                          .name = (name_), .unit = "", .default_string = "", available})}
 #define CML_TEXT(index, name, access) TEXT(index, name, access, CM1E_CML_BYTES, YES)
-/* Of these the guide gives no length either: this one is ours. */
+/* The guide states no length for the following texts; this one is our choice. */
 enum { TEXT_BYTES = 16 };
 
 #define NAME(model) VAR_STRING(0x1008, "Manufacturer Device Name", model)
@@ -108,7 +109,7 @@ static const cm1e_object_t modules[] = {
     OF_AXES(0xF050, "Module Detected", "Module Detected List", CM1E_BRIDGE_MODULE_IDENT),
 };
 
-/* BR 7.3; its "8" in the row of the number of entries is a slip. */
+/* BR 7.3. The guide's 8 as the number of entries is an error. */
 #define CONFIG(index, axis, motor)                                                                                  \
     RECORD(index, "Config Axis" #axis, 4, ENTRY_COUNT(index, USINT, 4, ),                                           \
            ENTRY_RANGE(index, 1, RO, UDINT, "Type", "", motor, 1, 2, ),                                             \
@@ -139,7 +140,7 @@ static const cm1e_object_t manufacturer[] = {
     RECORD(0xF540, "Config System", 12, ENTRY_COUNT(0xF540, USINT, 12, ), SYSTEM(1, "Musclecorp Mode", YES),
            SYSTEM(2, "Reserved", NA), SYSTEM(3, "Reserved", NA), SYSTEM(4, "Reserved", NA),
            SYSTEM(5, "Master Mode", YES),
-           ENTRY(0xF540, 6, RO, UDINT, "CM Serial Cycle", "", 1, ), /* ms, not changeable, as 0xF511:3 (BR 7.3) */
+           ENTRY(0xF540, 6, RO, UDINT, "CM Serial Cycle", "", 1, ), /* ms; fixed, like 0xF511:3 (BR 7.3) */
            SYSTEM(7, "Reserved", NA), SYSTEM(8, "Reserved", NA), SYSTEM(9, "Reserved", NA),
            SYSTEM(10, "Reserved", NA), SYSTEM(11, "CoolMuscle Device Config Code", YES),
            SYSTEM(12, "Serial Number", YES)),
@@ -196,7 +197,7 @@ bool cm1e_bridge_model_with(const char *const asked[CM1E_BRIDGE_AXES], cm1e_devi
     return false;
 }
 
-/* The dictionary of a model lies in parts, one behind the other by index. */
+/* The dictionary of a model is made of parts, in order of index. */
 typedef struct part {
     const cm1e_object_t *objects;
     size_t count;

@@ -21,7 +21,7 @@ enum {
     BRIDGE_STATUS_TEMPERATURE = 0x80,
 };
 
-/** An error or an alarm of the motor or of the serial line to it. TRUE also for bits that the guide gives no meaning
+/** An error or an alarm of the motor or of the serial line to it. true also for bits that the guide gives no meaning
  *  for this motor. */
 bool cm1e_bridge_status_is_error(cm1e_bridge_motor_t motor, uint32_t status);
 /** One of the values that the guide lists for this motor. */

@@ -1,4 +1,4 @@
-#include "device/cia402.h"
+#include "device/cia402_drive.h"
 #include "device/device_rows.h"
 
 /* CiA 301 and CiA 402 (IEC 61800-7-201), the codes that drives use. The cures are ours. */

@@ -1,4 +1,4 @@
-#include "device/cia402.h"
+#include "device/cia402_drive.h"
 #include "device/device_rows.h"
 #include "device/objects.h"
 

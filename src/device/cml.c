@@ -166,7 +166,7 @@ static bool is_nothing(const char *at, size_t size)
     return true;
 }
 
-/* A name, for a K parameter with its number, ".ID", "=value". FALSE: it is another text. */
+/* A name, for a K parameter with its number, ".ID", "=value". false: it is another text. */
 static bool take_answer(cm1e_cml_answer_t *answer, const char *at, const char *end)
 {
     size_t length = 0;

@@ -1,5 +1,5 @@
-/* A servo drive by CiA 402 and ETG.6010 as a row of the device interface; see cia402.h. */
-#include "device/cia402.h"
+/* A servo drive by CiA 402 and ETG.6010 as a row of the device interface; see cia402_drive.h. */
+#include "device/cia402_drive.h"
 #include "device/device_rows.h"
 
 #include <stdio.h>
@@ -117,9 +117,13 @@ static const cm1e_absent_key_t absent[] = {
     {NULL, NULL},
 };
 
+/* The standard leaves them to the maker. These are usual, and 0x60C2 can state them: a byte times a power of ten. */
+static const int64_t cycle_times_ns[] = {200000, 250000, 500000, 1000000, 2000000, 4000000};
+
 const cm1e_device_t cm1e_device_cia402 = {
     .kind = "cia402", .label = "CiA 402 servo drive", .name = "CiA 402 servo drive", .model = CM1E_DEVICE_CIA402,
     .recognised = CM1E_BY_PROFILE, .profile = CM1E_PROFILE_402, .motor_stated = true,
+    .cycle_times_ns = cycle_times_ns, .cycle_time_count = COUNT(cycle_times_ns),
     ONE_TABLE(cm1e_cia402_objects), .pdos = pdos,
     .counts_per_revolution = counts_per_revolution, .peak_velocity = peak_velocity,
     .motor = motor, .motors_note = "no such key: drive.counts_per_revolution and drive.max_speed_rpm state its motor",

@@ -82,20 +82,21 @@ bool cm1e_device_has_motors(const cm1e_device_t *device, const char *const motor
     return device && device->channels > 0;
 }
 
-const char *cm1e_device_cycle_times(const cm1e_device_t *device, char text[CM1E_CYCLE_TIMES_TEXT])
+const char *cm1e_device_cycle_times(const cm1e_device_t *device, const char *word, char text[CM1E_CYCLE_TIMES_TEXT])
 {
     size_t used = 0;
     text[0] = 0;
-    for (size_t i = 0; i < device->cycle_time_count; i++)
-        used += (size_t)snprintf(text + used, CM1E_CYCLE_TIMES_TEXT - used, "%s%lld",
-                                 i == 0 ? "" : i + 1 == device->cycle_time_count ? " and " : ", ",
-                                 (long long)(device->cycle_times_ns[i] / 1000));
+    for (size_t i = 0; i < device->cycle_time_count; i++) {
+        const bool last = i > 0 && i + 1 == device->cycle_time_count;
+        used += (size_t)snprintf(text + used, CM1E_CYCLE_TIMES_TEXT - used, "%s%s%s%lld", last ? " " : i ? ", " : "",
+                                 last ? word : "", last ? " " : "", (long long)(device->cycle_times_ns[i] / 1000));
+    }
     return text;
 }
 
 bool cm1e_device_has_cycle_time(const cm1e_device_t *device, int64_t cycle_time_ns)
 {
-    bool known = device->cycle_time_count == 0;
+    bool known = false;
     for (size_t i = 0; i < device->cycle_time_count; i++)
         known = known || device->cycle_times_ns[i] == cycle_time_ns;
     return known;

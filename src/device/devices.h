@@ -209,7 +209,7 @@ struct cm1e_device {
     bool described;                 /**< descriptions for other masters are made from its tables */
     bool extra_is_error;            /**< one that no axis is configured for is an error, and not just another slave */
 
-    const int64_t *cycle_times_ns;  /**< NULL: any */
+    const int64_t *cycle_times_ns;  /**< all that it accepts */
     size_t cycle_time_count;
     /** NULL: no difference between versions is known. */
     const cm1e_firmware_info_t *(*firmware)(const char *version);
@@ -246,7 +246,7 @@ struct cm1e_device {
 };
 
 extern const cm1e_device_t cm1e_device_cm1e;
-/** A servo drive of any maker (device/cia402.h). */
+/** A servo drive of any maker (device/cia402_drive.h). */
 extern const cm1e_device_t cm1e_device_cia402;
 extern const cm1e_device_t cm1e_device_eb01, cm1e_device_eb02, cm1e_device_eb12;
 /** A bridge whose motors no known model has together: no axis can be behind it. */
@@ -269,9 +269,9 @@ const cm1e_device_drive_t *cm1e_device_drive_configured(const cm1e_axis_config_t
 bool cm1e_device_is_shared(const cm1e_axis_config_t *axis);
 /** A model with channels, and with these motors at them ("" or NULL: any). */
 bool cm1e_device_has_motors(const cm1e_device_t *device, const char *const motors[CM1E_BRIDGE_AXES]);
-/** "200, 250, 500 and 1000": its cycle times in us. */
+/** Its cycle times in us, with this word before the last one: "200, 250, 500 and 1000". */
 enum { CM1E_CYCLE_TIMES_TEXT = 64 };
-const char *cm1e_device_cycle_times(const cm1e_device_t *device, char text[CM1E_CYCLE_TIMES_TEXT]);
+const char *cm1e_device_cycle_times(const cm1e_device_t *device, const char *word, char text[CM1E_CYCLE_TIMES_TEXT]);
 /** A bus with this cycle time can have the device. */
 bool cm1e_device_has_cycle_time(const cm1e_device_t *device, int64_t cycle_time_ns);
 /** Models of one kind, whatever motors they have; false where one of them is NULL. */

@@ -10,7 +10,7 @@
 
 #include "cm1e/config.h"
 
-/** FALSE: it is virtual, or an encoder, and has no slave. */
+/** false: it is virtual, or an encoder, and has no slave. */
 static inline bool cm1e_axis_has_motor(const cm1e_axis_config_t *axis) { return axis->type == CM1E_AXIS_MOTOR; }
 
 /** Motors among the first `count` entries of the list. */

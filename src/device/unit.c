@@ -102,7 +102,7 @@ static bool rational(double value, ratio_t *result)
     return true;
 }
 
-/* a *= numerator / denominator, kept in lowest terms. FALSE: too large. */
+/* a *= numerator / denominator, kept in lowest terms. false: too large. */
 static bool multiply(ratio_t *a, wide_t numerator, wide_t denominator)
 {
     const wide_t left = divisor(a->numerator, denominator), right = divisor(numerator, a->denominator);

@@ -62,7 +62,7 @@ cm1e_unit_t cm1e_unit_of(const cm1e_axis_config_t *config);
 double cm1e_unit_scale(const cm1e_axis_config_t *config);
 
 /** modulo_range in counts, exactly: decimal fractions and quotients of the configuration count as what is written there
- *  (25.4 is 127/5), not as the double next to it. FALSE: no two 62-bit numbers make this fraction. */
+ *  (25.4 is 127/5), not as the double next to it. false: no two 62-bit numbers make this fraction. */
 bool cm1e_unit_modulo(const cm1e_axis_config_t *config, cm1e_fraction_t *turn);
 
 #endif

@@ -46,19 +46,19 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
                              drive->config->name);
     const cm1e_drive_kind_t *kind;
     cm1e_error_t error = find_device(drive, &kind, diag);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     drive->feedback.state = CM1E_FSA_UNKNOWN;
-    drive->velocity_unit = 1;
-    drive->velocity_believed = (int64_t)(2.0 * cm1e_unit_peak_velocity(drive->config));
-    drive->velocity_possible = (int64_t)(1.25 * cm1e_unit_peak_velocity(drive->config));
+    drive->range.velocity_unit = 1;
+    drive->range.velocity_believed = (int64_t)(2.0 * cm1e_unit_peak_velocity(drive->config));
+    drive->range.velocity_possible = (int64_t)(1.25 * cm1e_unit_peak_velocity(drive->config));
     drive->step = kind->step;
-    drive->position_least = INT32_MIN;
-    drive->position_most = INT32_MAX;
+    drive->range.position_least = INT32_MIN;
+    drive->range.position_most = INT32_MAX;
     error = kind->init(drive, diag);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_drive_resolve(drive, diag);
-    return error ? error : cm1e_drive_mode_init(drive, diag);
+    return error != CM1E_OK ? error : cm1e_drive_mode_init(drive, diag);
 }
 
 void cm1e_drive_free(cm1e_drive_t *drive)
@@ -90,57 +90,57 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     if (f->fresh)
         cm1e_drive_decode(drive);
     f->online = bus_ok && cm1e_drive_operational(drive);
-    if (f->state != OPERATION_ENABLED || !drive->may_hold)
-        drive->target_holds = false;
+    if (f->state != OPERATION_ENABLED || !drive->mode.may_hold)
+        drive->target.holds = false;
     else if (f->mode == CM1E_MODE_NONE)
-        drive->target_holds = true;
+        drive->target.holds = true;
     if (drive->step)
         drive->step(drive);
-    if (drive->reset_phase != RESET_IDLE) {
+    if (drive->reset.phase != RESET_IDLE) {
         cm1e_drive_reset_step(drive);
         f->enabled = false;
         return;
     }
-    const bool operating = drive->operates && drive->torque;
-    const bool shown = f->mode == (int8_t)drive->mode;
+    const bool operating = drive->mode.operates && drive->torque.asked;
+    const bool shown = f->mode == (int8_t)drive->mode.commanded;
     cm1e_drive_latch_faults(drive);
     if (operating && f->online)
-        drive->was_enabled = true;
+        drive->torque.was_enabled = true;
     if (operating && shown && f->online)
-        drive->mode_confirmed = true;
+        drive->torque.confirmed = true;
     /* A single lost frame changes nothing: the last inputs hold until the supervision reports the bus as lost. */
-    f->enabled = operating && shown && drive->was_enabled &&
-                 (!drive->fault.error || drive_fault_allows_ramp(drive->fault.error));
+    f->enabled = operating && shown && drive->torque.was_enabled &&
+                 (drive->fault.error == CM1E_OK || drive_fault_allows_ramp(drive->fault.error));
 }
 
 static bool in_range(const cm1e_drive_t *drive, int32_t position)
 {
-    return position >= drive->position_least && position <= drive->position_most;
+    return position >= drive->range.position_least && position <= drive->range.position_most;
 }
 
 /* Reports an error to a caller that requests torque where there will be none. */
 static void refuse_torque(cm1e_drive_t *drive)
 {
-    const bool asked = drive->command.enable && !drive->torque && drive->seen && drive->feedback.online;
+    const bool asked = drive->command.enable && !drive->torque.asked && drive->actual.seen && drive->feedback.online;
     if (asked && !in_range(drive, drive->feedback.position)) /* as a target it would be clamped, which is a jump */
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE);
-    if (!asked || drive->takes_torque || drive->blocked_ns == 0) /* 0: not set yet */
-        drive->blocked_ns = drive->now_ns;
-    else if (drive->now_ns - drive->blocked_ns >= enable_timeout_ns)
+    if (!asked || drive->mode.takes_torque || drive->waits.blocked_ns == 0) /* 0: not set yet */
+        drive->waits.blocked_ns = drive->now_ns;
+    else if (drive->now_ns - drive->waits.blocked_ns >= enable_timeout_ns)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_TIMEOUT);
 }
 
 static bool wants_torque(const cm1e_drive_t *drive)
 {
-    if (!drive->command.enable || !drive->seen || drive->reset_phase != RESET_IDLE || !drive->takes_torque)
+    if (!drive->command.enable || !drive->actual.seen || drive->reset.phase != RESET_IDLE || !drive->mode.takes_torque)
         return false;
-    if (drive->fault.error)
+    if (drive->fault.error != CM1E_OK)
         return drive_fault_allows_ramp(drive->fault.error) && drive->feedback.enabled;
-    if (!drive->torque && (drive->feedback.state == OPERATION_ENABLED || drive->now_ns < drive->torque_from_ns ||
-                           drive->distrusted > 0))
+    if (!drive->torque.asked && (drive->feedback.state == OPERATION_ENABLED || drive->actual.distrusted > 0 ||
+                                 drive->now_ns < drive->waits.torque_from_ns))
         return false;
     /* Without fresh inputs the actual position is unknown, so the drive takes no step towards torque. */
-    return drive->feedback.online || drive->was_enabled;
+    return drive->feedback.online || drive->torque.was_enabled;
 }
 
 static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
@@ -148,19 +148,19 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
     const cm1e_drive_command_t *command = &drive->command;
     const int8_t shown = drive->feedback.mode;
     uint16_t bits = 0;
-    if (command->halt && drive->shown && drive->shown->halts)
+    if (command->halt && drive->mode.shown && drive->mode.shown->halts)
         bits |= CONTROLWORD_HALT;
     if (shown == CM1E_MODE_HM && pass && command->homing_start)
         bits |= CONTROLWORD_HOMING_START;
     if (shown == CM1E_MODE_PP && pass) { /* UG 6.2.2: edge and acknowledge announce a set-point */
-        if (drive->set_point_bit && drive->feedback.bit12) {
-            drive->set_point_bit = false;
-        } else if (!drive->set_point_bit && !drive->feedback.bit12 && !command->halt &&
-                   command->target_position != drive->set_point) {
-            drive->set_point_bit = true;
-            drive->set_point = command->target_position;
+        if (drive->target.set_point_bit && drive->feedback.bit12) {
+            drive->target.set_point_bit = false;
+        } else if (!drive->target.set_point_bit && !drive->feedback.bit12 && !command->halt &&
+                   command->target_position != drive->target.set_point) {
+            drive->target.set_point_bit = true;
+            drive->target.set_point = command->target_position;
         }
-        if (drive->set_point_bit)
+        if (drive->target.set_point_bit)
             bits |= CONTROLWORD_NEW_SET_POINT;
     }
     return bits;
@@ -169,8 +169,8 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
 /* During a switch to a mode with other words, the present words are meaningless. */
 static uint16_t no_torque_word(const cm1e_drive_t *drive)
 {
-    const cm1e_device_words_t *words = drive->words;
-    if (words != drive->wanted->words)
+    const cm1e_device_words_t *words = drive->mode.words;
+    if (words != drive->mode.wanted->words)
         return 0;
     return words->commands ? cm1e_drive_cmd_word(drive) : words->no_torque;
 }
@@ -179,12 +179,13 @@ static uint16_t no_torque_word(const cm1e_drive_t *drive)
 static uint16_t controlword(cm1e_drive_t *drive, bool pass)
 {
     const cm1e_drive_feedback_t *f = &drive->feedback;
-    if (drive->reset_phase == RESET_EDGE && drive->words == drive->wanted->words && !drive->words->commands)
-        return drive->words->fault_reset;
-    if (!drive->torque || f->state >= CM1E_FSA_STATE_COUNT)
+    const cm1e_device_words_t *words = drive->mode.words;
+    if (drive->reset.phase == RESET_EDGE && words == drive->mode.wanted->words && !words->commands)
+        return words->fault_reset;
+    if (!drive->torque.asked || f->state >= CM1E_FSA_STATE_COUNT)
         return no_torque_word(drive);
     /* Switched on without motor power is a drive fault (UG 6.1.1). The mode must be the right one by then, too. */
-    const bool ready = f->voltage && f->mode == (int8_t)drive->mode;
+    const bool ready = f->voltage && f->mode == (int8_t)drive->mode.commanded;
     if (!ready && f->state != OPERATION_ENABLED)
         return no_torque_word(drive);
     const cm1e_fsa_command_t command = cm1e_fsa_next_command(f->state, true);
@@ -192,13 +193,13 @@ static uint16_t controlword(cm1e_drive_t *drive, bool pass)
         return no_torque_word(drive);
     uint16_t word = cm1e_fsa_commands[command].controlword;
     if (f->state == OPERATION_ENABLED)
-        word |= (uint16_t)(mode_bits(drive, pass) | (drive->shown ? drive->shown->controlword : 0));
+        word |= (uint16_t)(mode_bits(drive, pass) | (drive->mode.shown ? drive->mode.shown->controlword : 0));
     return word;
 }
 
 static uint16_t signals(const cm1e_drive_t *drive)
 {
-    const cm1e_device_words_t *words = drive->words;
+    const cm1e_device_words_t *words = drive->mode.words;
     const unsigned outputs = drive->command.digital_outputs & cm1e_drive_output_mask(drive);
     return (uint16_t)(words->mark | (outputs << CM1E_DEVICE_SIGNALS_AT & words->outputs));
 }
@@ -208,7 +209,7 @@ static uint16_t signals(const cm1e_drive_t *drive)
  * position cannot move it. */
 static int32_t safe_position(const cm1e_drive_t *drive)
 {
-    return drive->target_holds ? drive->target_position : drive->feedback.position;
+    return drive->target.holds ? drive->target.position : drive->feedback.position;
 }
 
 static int32_t slewed(int32_t from, int32_t to, int32_t step)
@@ -224,9 +225,9 @@ static int64_t way_between(int32_t from, int32_t to) { return (int32_t)((uint32_
  * Otherwise the target stays within one step of the last target, or of the actual position. */
 static int32_t next_position(const cm1e_drive_t *drive)
 {
-    const int32_t wanted = drive->command.target_position, last = drive->target_position;
+    const int32_t wanted = drive->command.target_position, last = drive->target.position;
     const int32_t step = drive->command.position_step;
-    if (drive->wanted->mode != CM1E_MODE_CSP)
+    if (drive->mode.wanted->mode != CM1E_MODE_CSP)
         return wanted;
     if (!drive->answered)
         return last;
@@ -240,11 +241,12 @@ static int32_t next_position(const cm1e_drive_t *drive)
 static int32_t next_velocity(cm1e_drive_t *drive)
 {
     const int32_t wanted = drive->command.target_velocity;
-    if (drive->wanted->mode != CM1E_MODE_CSV)
+    if (drive->mode.wanted->mode != CM1E_MODE_CSV)
         return wanted;
-    drive->slewing |= !drive->answered;
-    const int32_t next = drive->slewing ? slewed(drive->target_velocity, wanted, drive->command.velocity_step) : wanted;
-    drive->slewing = !drive->answered || next != wanted;
+    cm1e_drive_target_t *target = &drive->target;
+    target->slewing |= !drive->answered;
+    const int32_t next = target->slewing ? slewed(target->velocity, wanted, drive->command.velocity_step) : wanted;
+    target->slewing = !drive->answered || next != wanted;
     return next;
 }
 
@@ -255,37 +257,36 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         cm1e_drive_virtual_write(drive);
         return;
     }
-    if (command->reset && !drive->reset_before && drive->reset_phase == RESET_IDLE)
+    if (cm1e_drive_reset_asked(drive) && drive->reset.phase == RESET_IDLE)
         cm1e_drive_reset_start(drive);
-    drive->reset_before = command->reset;
 
-    if (!drive->torque)
+    if (!drive->torque.asked)
         refuse_torque(drive);
     const bool torque = wants_torque(drive);
-    if (torque && !drive->torque)
-        drive->enable_deadline_ns = drive->now_ns + enable_timeout_ns;
-    if (!torque && drive->torque)
-        drive->torque_from_ns = drive->now_ns + torque_pause_ns;
+    if (torque && !drive->torque.asked)
+        drive->waits.enable_deadline_ns = drive->now_ns + enable_timeout_ns;
+    if (!torque && drive->torque.asked)
+        drive->waits.torque_from_ns = drive->now_ns + torque_pause_ns;
     if (!torque) {
-        drive->was_enabled = false;
+        drive->torque.was_enabled = false;
         drive->feedback.enabled = false;
     }
-    drive->torque = torque;
+    drive->torque.asked = torque;
     cm1e_drive_mode_choose(drive);
 
-    const bool pass = drive->feedback.enabled && drive->feedback.mode == (int8_t)drive->mode;
+    const bool pass = drive->feedback.enabled && drive->feedback.mode == (int8_t)drive->mode.commanded;
     if (!pass) {
-        drive->set_point_bit = false;
-        drive->set_point = drive->feedback.position;
+        drive->target.set_point_bit = false;
+        drive->target.set_point = drive->feedback.position;
     }
     const bool follow = pass && !drive->fault.slave_deaf;
-    const bool held_before = drive->target_holds;
-    drive->target_holds |= follow && drive->holds;
+    const bool held_before = drive->target.holds;
+    drive->target.holds |= follow && drive->mode.holds;
     int32_t position = safe_position(drive);
-    if (follow && drive->holds && in_range(drive, command->target_position))
+    if (follow && drive->mode.holds && in_range(drive, command->target_position))
         position = held_before || !drive->answered ? next_position(drive) : command->target_position;
-    else if (follow && drive->holds)
+    else if (follow && drive->mode.holds)
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE); /* the last target holds until the torque goes */
-    const uint16_t word = controlword(drive, pass) | (drive->marked ? signals(drive) : 0);
+    const uint16_t word = controlword(drive, pass) | (drive->mode.marked ? signals(drive) : 0);
     cm1e_drive_encode(drive, word, position, follow ? next_velocity(drive) : 0);
 }

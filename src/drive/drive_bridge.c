@@ -41,9 +41,9 @@ cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              "state k37 in the configuration of the axis.", config->name, drive->position,
                              config->channel, config->channel);
     const cm1e_bridge_motor_t motor = cm1e_drive_bridge_motor(drive);
-    drive->position_most = cm1e_bridge_position_limit(motor, config->k37);
-    drive->position_least = -drive->position_most;
-    if (drive->position_most == 0)
+    drive->range.position_most = cm1e_bridge_position_limit(motor, config->k37);
+    drive->range.position_least = -drive->range.position_most;
+    if (drive->range.position_most == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                              "Axis \"%s\" (slave %u, channel %u): a %s knows no K37 of %u (BR appendix 5). Ask the "
                              "motor with the CML string \"K37.%u\".", config->name, drive->position, config->channel,
@@ -72,10 +72,10 @@ static void watch_rest(cm1e_drive_t *drive)
 {
     cm1e_drive_bridge_t *behind = drive->behind;
     if (near(behind, drive->feedback.position, behind->rest_position) &&
-        near(behind, drive->target_position, behind->rest_target))
+        near(behind, drive->target.position, behind->rest_target))
         return;
     behind->rest_position = drive->feedback.position;
-    behind->rest_target = drive->target_position;
+    behind->rest_target = drive->target.position;
     behind->rest_since_ns = drive->now_ns;
 }
 
@@ -102,7 +102,7 @@ static void take_status(cm1e_drive_t *drive)
     const uint8_t status = behind->status_data[0]; /* UDINT, of which the guide uses eight bits */
     behind->status_sound = !cm1e_bridge_status_is_error(cm1e_drive_bridge_motor(drive), status);
     behind->status_until_ns = drive->now_ns + status_holds_ns;
-    if (drive->fault.error) {
+    if (drive->fault.error != CM1E_OK) {
         drive->fault.motor_status = status;
         drive->fault.motor_status_known = true;
     }
@@ -150,6 +150,6 @@ void cm1e_drive_bridge_step(cm1e_drive_t *drive)
     cm1e_drive_cmd_step(drive);
     cm1e_drive_digital_step(drive);
     /* The switch to CML itself was made after five cycles of 0000h, which stays while it is shown (BR appendix 2). */
-    const bool cml = drive->feedback.mode == CM1E_BRIDGE_MODE_CML && drive->words == drive->wanted->words;
+    const bool cml = drive->feedback.mode == CM1E_BRIDGE_MODE_CML && drive->mode.words == drive->mode.wanted->words;
     cm1e_drive_cml_step(&behind->cml, drive->now_ns, cml && cm1e_drive_operational(drive));
 }

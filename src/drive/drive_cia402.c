@@ -1,5 +1,5 @@
 /* A servo drive of another maker (ETG.6010): what it is told at start-up, and its touch probes (0x60B8 ... 0x60BD). */
-#include "device/cia402.h"
+#include "device/cia402_drive.h"
 
 #include "core/bytes.h"
 #include "drive/drive_kind.h"
@@ -30,7 +30,7 @@ static void tell_cycle_time(cm1e_drive_t *drive)
 cm1e_error_t cm1e_drive_init_cia402(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
     (void)diag;
-    drive->velocity_most = (int32_t)cm1e_unit_peak_velocity(drive->config);
+    drive->range.velocity_most = (int32_t)cm1e_unit_peak_velocity(drive->config);
     tell_cycle_time(drive);
     tell(drive, OBJ_60FE_DIGITAL_OUTPUTS, 2, CM1E_CIA402_OUTPUTS << CM1E_CIA402_OUTPUT_SHIFT, 4);
     return CM1E_OK;
@@ -44,13 +44,13 @@ static uint8_t edge(bool falling) { return falling ? 2 : 1; }
 
 bool cm1e_drive_has_probe(const cm1e_drive_t *drive, int input, bool falling)
 {
-    return drive->kind->hardware_probe && input >= 1 && input <= PROBES && drive->out_probe.bytes &&
-           drive->in_probe.bytes && drive->in_latched[2 * (input - 1) + falling].bytes;
+    return drive->kind->hardware_probe && input >= 1 && input <= PROBES && drive->image.out_probe.bytes &&
+           drive->image.in_probe.bytes && drive->image.in_latched[2 * (input - 1) + falling].bytes;
 }
 
 void cm1e_drive_probe_arm(cm1e_drive_t *drive, int input, bool falling)
 {
-    cm1e_drive_probe_t *probe = &drive->probe[input - 1];
+    cm1e_drive_probe_t *probe = &drive->probes.probe[input - 1];
     probe->wanted |= edge(falling);
     probe->taken &= (uint8_t)~edge(falling);
     probe->on = false;
@@ -59,14 +59,14 @@ void cm1e_drive_probe_arm(cm1e_drive_t *drive, int input, bool falling)
 
 void cm1e_drive_probe_disarm(cm1e_drive_t *drive, int input, bool falling)
 {
-    cm1e_drive_probe_t *probe = &drive->probe[input - 1];
+    cm1e_drive_probe_t *probe = &drive->probes.probe[input - 1];
     probe->wanted &= (uint8_t)~edge(falling);
     probe->taken &= (uint8_t)~edge(falling);
 }
 
 bool cm1e_drive_probe_taken(cm1e_drive_t *drive, int input, bool falling, int32_t *position)
 {
-    cm1e_drive_probe_t *probe = &drive->probe[input - 1];
+    cm1e_drive_probe_t *probe = &drive->probes.probe[input - 1];
     const bool taken = probe->taken & edge(falling);
     *position = probe->positions[falling];
     probe->taken &= (uint8_t)~edge(falling);
@@ -75,13 +75,13 @@ bool cm1e_drive_probe_taken(cm1e_drive_t *drive, int input, bool falling, int32_
 
 static void take_edges(cm1e_drive_t *drive, unsigned n, unsigned status)
 {
-    cm1e_drive_probe_t *probe = &drive->probe[n];
+    cm1e_drive_probe_t *probe = &drive->probes.probe[n];
     const uint8_t *in = cm1e_bus_inputs(drive->bus);
     for (unsigned falling = 0; falling < 2; falling++) {
         const unsigned stored = CM1E_PROBE_POSITIVE_STORED << falling;
         if (!(probe->wanted & edge(falling)) || !(status & stored))
             continue;
-        probe->positions[falling] = (int32_t)cm1e_get_u32(in + drive->in_latched[2 * n + falling].offset);
+        probe->positions[falling] = (int32_t)cm1e_get_u32(in + drive->image.in_latched[2 * n + falling].offset);
         probe->wanted &= (uint8_t)~edge(falling);
         probe->taken |= edge(falling);
     }
@@ -90,7 +90,7 @@ static void take_edges(cm1e_drive_t *drive, unsigned n, unsigned status)
 /* The enable bit goes off until the drive shows so, and on again: its rise arms the probe for one edge of each kind. */
 static unsigned step(cm1e_drive_t *drive, unsigned n, unsigned status)
 {
-    cm1e_drive_probe_t *probe = &drive->probe[n];
+    cm1e_drive_probe_t *probe = &drive->probes.probe[n];
     if (probe->on && status & CM1E_PROBE_ENABLED)
         take_edges(drive, n, status);
     if (probe->clearing && !(status & CM1E_PROBE_ENABLED)) {
@@ -106,11 +106,11 @@ static unsigned step(cm1e_drive_t *drive, unsigned n, unsigned status)
 
 void cm1e_drive_probe_step(cm1e_drive_t *drive)
 {
-    if (!drive->in_probe.bytes || !drive->feedback.fresh)
+    if (!drive->image.in_probe.bytes || !drive->feedback.fresh)
         return;
-    const unsigned status = cm1e_get_u16(cm1e_bus_inputs(drive->bus) + drive->in_probe.offset);
+    const unsigned status = cm1e_get_u16(cm1e_bus_inputs(drive->bus) + drive->image.in_probe.offset);
     unsigned function = 0;
     for (unsigned n = 0; n < PROBES; n++)
         function |= step(drive, n, status >> BITS * n & 0xFF) << BITS * n;
-    drive->probe_function = (uint16_t)function;
+    drive->probes.function = (uint16_t)function;
 }

@@ -4,9 +4,9 @@
 /* If the firmware is unknown, a drive with this unit is taken for an old one in all other respects. */
 static void set_velocity_unit(cm1e_drive_t *drive, bool in_counts_per_ms)
 {
-    drive->velocity_unit = in_counts_per_ms ? 1000 : 1;
-    drive->velocity_most = (int32_t)(drive->motor->max_velocity_counts_per_s / drive->velocity_unit);
-    drive->velocity_quarter = drive->firmware ? drive->firmware->velocity_quarter_in_hm_pp : in_counts_per_ms;
+    drive->range.velocity_unit = in_counts_per_ms ? 1000 : 1;
+    drive->range.velocity_most = (int32_t)(drive->motor->max_velocity_counts_per_s / drive->range.velocity_unit);
+    drive->range.velocity_quarter = drive->firmware ? drive->firmware->velocity_quarter_in_hm_pp : in_counts_per_ms;
 }
 
 static cm1e_error_t velocity_unit(cm1e_drive_t *drive, cm1e_diag_t *diag)

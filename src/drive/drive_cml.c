@@ -77,7 +77,7 @@ const char *cm1e_drive_cml_line(const cm1e_drive_cml_t *cml, uint32_t ticket, un
 static void finish(cm1e_drive_cml_t *cml, cm1e_error_t error)
 {
     cm1e_drive_cml_request_t *request = request_of(cml, cml->head);
-    request->state = error ? CM1E_DRIVE_CML_ERROR : CM1E_DRIVE_CML_DONE;
+    request->state = error != CM1E_OK ? CM1E_DRIVE_CML_ERROR : CM1E_DRIVE_CML_DONE;
     request->error = error;
     request->abort_code = error == CM1E_ERROR_SDO_ABORT ? cml->sdo.abort_code : 0;
     cml->head++;
@@ -154,13 +154,13 @@ static int answered(const cm1e_drive_cml_t *cml, const cm1e_cml_answer_t *answer
     return -1;
 }
 
-/* One line, with what ends it. FALSE: the request has ended. */
+/* One line, with what ends it. false: the request has ended. */
 static bool take_line(cm1e_drive_cml_t *cml, const char *line, size_t size)
 {
     cm1e_drive_cml_request_t *request = request_of(cml, cml->head);
     cm1e_cml_answer_t answer;
     const size_t length = strcspn(line, "\r\n");
-    if (cm1e_cml_parse(&answer, line, size)) {
+    if (cm1e_cml_parse(&answer, line, size) != CM1E_OK) {
         copy_line(request->first, line, length);
         finish(cml, CM1E_ERROR_CML_ANSWER);
         return false;

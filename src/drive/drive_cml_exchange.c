@@ -39,7 +39,7 @@ static cm1e_error_t transfer(void *context, cm1e_sdo_t *sdo)
     else
         sdo->error = cm1e_sdo_read(at->bus, sdo->position, sdo->index, 0, sdo->data, &sdo->size, at->diag);
     sdo->abort_code = sdo->error == CM1E_ERROR_SDO_ABORT && at->diag ? at->diag->foreign_code : 0;
-    sdo->state = sdo->error ? CM1E_SDO_ERROR : CM1E_SDO_DONE;
+    sdo->state = sdo->error != CM1E_OK ? CM1E_SDO_ERROR : CM1E_SDO_DONE;
     return CM1E_OK;
 }
 
@@ -108,14 +108,14 @@ static cm1e_error_t switch_mode(const place_t *at, int8_t wanted)
         sleep_for(at->bus, CM1E_BRIDGE_MODE_INTERVAL_NS);
         error = read_mode(at, &shown);
     }
-    return error || shown == wanted ? error : not_confirmed(at, wanted, shown);
+    return error != CM1E_OK || shown == wanted ? error : not_confirmed(at, wanted, shown);
 }
 
 static cm1e_error_t enter(const place_t *at)
 {
     int8_t mode = 0;
     cm1e_error_t error = read_mode(at, &mode);
-    if (error || mode == CM1E_BRIDGE_MODE_CML)
+    if (error != CM1E_OK || mode == CM1E_BRIDGE_MODE_CML)
         return error;
     if (mode == CM1E_BRIDGE_MODE_CMD || mode == CM1E_BRIDGE_MODE_CPIO)
         return cm1e_diag_set(at->diag, CM1E_ERROR_CM_MODE, 0,
@@ -124,7 +124,7 @@ static cm1e_error_t enter(const place_t *at)
                              at->channel, cm1e_bridge_mode_name(mode), mode);
     if (mode != OWN_MODE)
         error = switch_mode(at, OWN_MODE);
-    return error ? error : switch_mode(at, CM1E_BRIDGE_MODE_CML);
+    return error != CM1E_OK ? error : switch_mode(at, CM1E_BRIDGE_MODE_CML);
 }
 
 /* ---- strings ----------------------------------------------------------------------------------------------------- */
@@ -142,7 +142,7 @@ static cm1e_error_t run(place_t *at, cm1e_drive_cml_t *cml, const char *text, co
             sleep_for(at->bus, step_ns);
     }
     cm1e_clock_sleep_until(clock, cml->free_ns); /* of the string that may come next, which knows nothing of this one */
-    return error ? error : cm1e_drive_cml_request(cml, *ticket)->error;
+    return error != CM1E_OK ? error : cm1e_drive_cml_request(cml, *ticket)->error;
 }
 
 static cm1e_error_t describe(const place_t *at, const cm1e_drive_cml_t *cml, const cm1e_drive_cml_request_t *request,
@@ -230,7 +230,7 @@ cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, c
         error = check_exchange(&at, exchange);
     if (error == CM1E_OK)
         error = enter(&at);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_drive_cml_t *cml = malloc(sizeof *cml);
     if (!cml)
@@ -240,7 +240,7 @@ cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, c
     const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml, ticket);
     error = describe(&at, cml, request, error);
     copy_answer(exchange, cml, ticket);
-    if (error && request->sent && cm1e_cml_kind(exchange->text) == CM1E_CML_MOTION)
+    if (error != CM1E_OK && request->sent && cm1e_cml_kind(exchange->text) == CM1E_CML_MOTION)
         free_motor(&at, cml);
     free(cml);
     return error;
@@ -257,7 +257,7 @@ cm1e_error_t cm1e_cml_leave(cm1e_bus_t *bus, uint16_t position, uint8_t channel,
     cm1e_error_t error = check_place(&at);
     if (error == CM1E_OK)
         error = read_mode(&at, &mode);
-    if (error || mode != CM1E_BRIDGE_MODE_CML)
+    if (error != CM1E_OK || mode != CM1E_BRIDGE_MODE_CML)
         return error;
     if (free_it) {
         cm1e_drive_cml_t *cml = malloc(sizeof *cml);

@@ -18,7 +18,7 @@ static uint8_t high_byte(const cm1e_drive_t *drive) { return drive->feedback.sta
 
 static bool in_cmd(const cm1e_drive_t *drive)
 {
-    return drive->words->commands && drive->words == drive->wanted->words;
+    return drive->mode.words->commands && drive->mode.words == drive->mode.wanted->words;
 }
 
 uint16_t cm1e_drive_cmd_word(const cm1e_drive_t *drive)
@@ -158,7 +158,7 @@ static void leave(cm1e_drive_t *drive)
 {
     lose(drive);
     drive->behind->cmd.ready = false;
-    if (drive->shown) /* another mode is shown: no command of CMD is under way any more */
+    if (drive->mode.shown) /* another mode is shown: no command of CMD is under way any more */
         drive->behind->cmd.may_search = false;
 }
 

@@ -63,8 +63,8 @@ static inline bool cm1e_drive_cmd_busy(cm1e_drive_cmd_state_t state)
 {
     return state == CM1E_DRIVE_CMD_SENDING || state == CM1E_DRIVE_CMD_SEARCHING;
 }
-/** At the end of a run: ends a search and frees the motor (F607h, F107h); call it in every cycle until TRUE. In other
- *  modes, and where nothing is heard of the motor, TRUE at once; never later than 2 s after the first call.
+/** At the end of a run: ends a search and frees the motor (F607h, F107h); call it in every cycle until true. In other
+ *  modes, and where nothing is heard of the motor, true at once; never later than 2 s after the first call.
  *  @rt cycle */
 bool cm1e_drive_cmd_release(struct cm1e_drive *drive);
 

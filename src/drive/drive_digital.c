@@ -23,20 +23,20 @@ void cm1e_drive_want_inputs(cm1e_drive_t *drive)
 uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive)
 {
     if (!drive->kind->signals.by_sdo)
-        return drive->in_digital.bytes ? UINT16_MAX : 0;
+        return drive->image.in_digital.bytes ? UINT16_MAX : 0;
     const uint16_t all = drive->kind->signals.inputs;
-    const unsigned in_words = (unsigned)drive->words->inputs >> CM1E_DEVICE_SIGNALS_AT;
+    const unsigned in_words = (unsigned)drive->mode.words->inputs >> CM1E_DEVICE_SIGNALS_AT;
     return in_words ? (uint16_t)(all & in_words) : all; /* inputs 5 and 6 "are not replied" (BR 7.1.3, note 2) */
 }
 
 uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive)
 {
     if (!drive->kind->signals.by_sdo)
-        return drive->out_digital.bytes ? UINT16_MAX : 0;
+        return drive->image.out_digital.bytes ? UINT16_MAX : 0;
     return drive->kind->signals.outputs;
 }
 
-bool cm1e_drive_signals_in_cycle(const cm1e_drive_t *drive) { return !drive->behind || drive->words->inputs != 0; }
+bool cm1e_drive_signals_in_cycle(const cm1e_drive_t *drive) { return !drive->behind || drive->mode.words->inputs != 0; }
 
 static bool reachable(const cm1e_drive_t *drive)
 {
@@ -84,8 +84,8 @@ static void show(cm1e_drive_t *drive)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
     const cm1e_drive_digital_t *d = &drive->behind->digital;
-    if (drive->words->inputs) {
-        const unsigned inputs = (unsigned)(f->statusword & drive->words->inputs) >> CM1E_DEVICE_SIGNALS_AT;
+    if (drive->mode.words->inputs) {
+        const unsigned inputs = (unsigned)(f->statusword & drive->mode.words->inputs) >> CM1E_DEVICE_SIGNALS_AT;
         f->digital_inputs = (uint16_t)(inputs & cm1e_drive_input_mask(drive));
         f->digital_known = f->online && f->state != CM1E_FSA_UNKNOWN;
     } else {
@@ -143,7 +143,7 @@ static void step_outputs(cm1e_drive_t *drive)
 
 cm1e_drive_outputs_t cm1e_drive_outputs(const cm1e_drive_t *drive)
 {
-    if (drive->words->outputs || !drive->behind)
+    if (drive->mode.words->outputs || !drive->behind)
         return drive->feedback.online ? CM1E_DRIVE_OUTPUTS_SET : CM1E_DRIVE_OUTPUTS_WAITING;
     const cm1e_drive_digital_t *d = &drive->behind->digital;
     if (d->outputs_known && d->outputs == wanted(drive))

@@ -9,8 +9,8 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
             .error = error,
             .device_code = drive->feedback.fault ? drive->feedback.error_code : 0,
             .statusword = drive->feedback.statusword,
-            .mode_commanded = (int8_t)drive->mode,
-            .mode_shown = drive->feedback.mode != CM1E_MODE_NONE ? drive->feedback.mode : drive->mode_read,
+            .mode_commanded = (int8_t)drive->mode.commanded,
+            .mode_shown = drive->feedback.mode != CM1E_MODE_NONE ? drive->feedback.mode : drive->change.read,
         };
     /* Adds details that arrive after the first sign: the code of the device, and what the supervision found. */
     if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
@@ -33,19 +33,19 @@ static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
         const cm1e_device_error_t *error = drive->kind->error(f->error_code);
         return error && error->motor_power ? CM1E_ERROR_DRIVE_POWER : CM1E_ERROR_DRIVE_FAULT;
     }
-    if (!drive->torque)
+    if (!drive->torque.asked)
         return CM1E_OK;
     const bool power_stage = f->state == OPERATION_ENABLED || f->state == SWITCHED_ON;
-    if (!f->voltage && (power_stage || drive->was_enabled))
+    if (!f->voltage && (power_stage || drive->torque.was_enabled))
         return CM1E_ERROR_DRIVE_POWER;
-    if (drive->was_enabled && !drive->operates)
+    if (drive->torque.was_enabled && !drive->mode.operates)
         return CM1E_ERROR_DRIVE_ENABLE_LOST;
-    const bool shown = f->mode == (int8_t)drive->mode;
-    if (drive->was_enabled && !shown && drive->mode_confirmed)
+    const bool shown = f->mode == (int8_t)drive->mode.commanded;
+    if (drive->torque.was_enabled && !shown && drive->torque.confirmed)
         return CM1E_ERROR_DRIVE_MODE_LOST;
-    if (drive->was_enabled && !shown && drive->now_ns >= drive->mode_deadline_ns)
+    if (drive->torque.was_enabled && !shown && drive->now_ns >= drive->change.deadline_ns)
         return CM1E_ERROR_DRIVE_MODE_TIMEOUT;
-    if (!drive->was_enabled && !drive->operates && drive->now_ns >= drive->enable_deadline_ns)
+    if (!drive->torque.was_enabled && !drive->mode.operates && drive->now_ns >= drive->waits.enable_deadline_ns)
         return !f->voltage ? CM1E_ERROR_DRIVE_POWER
                : !shown    ? CM1E_ERROR_DRIVE_MODE_TIMEOUT : CM1E_ERROR_DRIVE_ENABLE_TIMEOUT;
     return CM1E_OK;
@@ -54,15 +54,15 @@ static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
 void cm1e_drive_latch_faults(cm1e_drive_t *drive)
 {
     cm1e_error_t error = drive->fault.error; /* a latched fault only collects its details */
-    if (!error && drive->torque && drive->watch.lost)
+    if (error == CM1E_OK && drive->torque.asked && drive->watch.lost)
         error = CM1E_ERROR_AXIS_OFFLINE;
-    if (!error && drive->torque && !cm1e_drive_operational(drive))
+    if (error == CM1E_OK && drive->torque.asked && !cm1e_drive_operational(drive))
         error = CM1E_ERROR_BUS_STATE;
-    if (!error && drive->feedback.online)
+    if (error == CM1E_OK && drive->feedback.online)
         error = cause_in_inputs(drive);
-    if (!error && drive->torque && drive->positions_rejected > 0 &&
-        drive->positions_rejected >= cm1e_bus_configuration(drive->bus)->lost_cycles_limit)
+    if (error == CM1E_OK && drive->torque.asked && drive->actual.rejected > 0 &&
+        drive->actual.rejected >= cm1e_bus_configuration(drive->bus)->lost_cycles_limit)
         error = CM1E_ERROR_DRIVE_POSITION;
-    if (error)
+    if (error != CM1E_OK)
         cm1e_drive_fail(drive, error);
 }

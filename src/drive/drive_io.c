@@ -4,7 +4,7 @@
 #include "core/bytes.h"
 #include "drive/drive_private.h"
 
-#define SLOT(member) offsetof(cm1e_drive_t, member)
+#define SLOT(member) offsetof(cm1e_drive_image_t, member)
 static const size_t slots[CM1E_ROLE_COUNT] = {
     [CM1E_OUT_CONTROLWORD] = SLOT(out_controlword),
     [CM1E_OUT_POSITION] = SLOT(out_position),
@@ -32,12 +32,12 @@ static const size_t slots[CM1E_ROLE_COUNT] = {
 
 static cm1e_image_slot_t *slot_of(cm1e_drive_t *drive, const cm1e_device_object_t *object)
 {
-    return (cm1e_image_slot_t *)(void *)((char *)drive + slots[object->role]);
+    return (cm1e_image_slot_t *)(void *)((char *)&drive->image + slots[object->role]);
 }
 
 const cm1e_image_slot_t *cm1e_drive_slot(const cm1e_drive_t *drive, cm1e_role_t role)
 {
-    return (const cm1e_image_slot_t *)(const void *)((const char *)drive + slots[role]);
+    return (const cm1e_image_slot_t *)(const void *)((const char *)&drive->image + slots[role]);
 }
 
 static const char *mapping_name(const cm1e_drive_t *drive)
@@ -84,8 +84,8 @@ static void profile_objects(cm1e_drive_t *drive)
         kilo = 1.0;
     if (kilo > 32767.0)
         kilo = 32767.0; /* UG 6.2.2: kept as 1 ... 32767 kpulses/s2 */
-    drive->profile_velocity = (uint32_t)velocity;
-    drive->profile_acceleration = (uint32_t)kilo * (config->acceleration_in_kpulses ? 1u : 1000u);
+    drive->image.profile_velocity = (uint32_t)velocity;
+    drive->image.profile_acceleration = (uint32_t)kilo * (config->acceleration_in_kpulses ? 1u : 1000u);
 }
 
 cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
@@ -96,12 +96,12 @@ cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              (int)drive->config->mapping, drive->kind->name);
     for (size_t i = 0; i < drive->kind->object_count; i++) {
         const cm1e_error_t error = resolve_object(drive, &drive->kind->objects[i], diag);
-        if (error)
+        if (error != CM1E_OK)
             return error;
     }
     /* One object without the other gives a switch that cannot be confirmed, or one that the process data undo. */
-    if ((drive->out_mode.bytes == 0) != (drive->in_mode.bytes == 0)) {
-        const bool out = drive->out_mode.bytes == 0;
+    if ((drive->image.out_mode.bytes == 0) != (drive->image.in_mode.bytes == 0)) {
+        const bool out = drive->image.out_mode.bytes == 0;
         return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING,
                              out ? OBJ_6060_MODES_OF_OPERATION : OBJ_6061_MODES_OF_OPERATION_DISPLAY,
                              "Axis \"%s\" (slave %u): the mapping %s has object 0x%04X but not 0x%04X: a mode of "
@@ -110,8 +110,20 @@ cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              out ? 0x6061 : 0x6060, out ? 0x6060 : 0x6061);
     }
     profile_objects(drive);
-    drive->feedback.digital_known = drive->in_digital.bytes > 0;
+    drive->feedback.digital_known = drive->image.in_digital.bytes > 0;
     return CM1E_OK;
+}
+
+bool cm1e_drive_carry(cm1e_drive_t *drive, uint16_t index, uint32_t raw)
+{
+    cm1e_drive_image_t *image = &drive->image;
+    if (index == OBJ_6081_PROFILE_VELOCITY && image->out_profile_velocity.bytes)
+        image->profile_velocity = raw;
+    else if (index == OBJ_6083_PROFILE_ACCELERATION && image->out_profile_acceleration.bytes)
+        image->profile_acceleration = raw;
+    else
+        return false;
+    return true;
 }
 
 static int32_t clamp_i32(int64_t value)
@@ -158,17 +170,17 @@ static void put_u32(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
  * UG 10.1). Then it is the difference of two positions. */
 static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
 {
-    const bool quarter = drive->velocity_quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP);
-    if (drive->in_velocity.bytes && !quarter)
-        return clamp_i32((int64_t)get_i32(in, drive->in_velocity) * drive->velocity_unit);
-    const int64_t elapsed_ns = drive->now_ns - drive->read_ns;
-    if (!drive->seen || elapsed_ns <= 0)
+    const bool quarter = drive->range.velocity_quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP);
+    if (drive->image.in_velocity.bytes && !quarter)
+        return clamp_i32((int64_t)get_i32(in, drive->image.in_velocity) * drive->range.velocity_unit);
+    const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
+    if (!drive->actual.seen || elapsed_ns <= 0)
         return 0;
     const int32_t step = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
     const int64_t velocity = (int64_t)step * INT64_C(1000000000) / elapsed_ns;
     /* A change faster than any motor is a new origin and not a motion: the end of a homing, or a counter that was
      * reset. */
-    if (velocity > drive->velocity_believed || velocity < -drive->velocity_believed)
+    if (velocity > drive->range.velocity_believed || velocity < -drive->range.velocity_believed)
         return drive->feedback.velocity;
     return clamp_i32(velocity);
 }
@@ -178,20 +190,20 @@ static const cm1e_device_words_t unknown_words = {0};
 
 static void derive(cm1e_drive_t *drive)
 {
-    const bool same = drive->words == drive->wanted->words;
-    drive->takes_torque = same && drive->wanted->torque;
-    drive->marked = same && drive->words->mark != 0;
-    drive->holds = drive->shown && drive->shown->holds_position;
+    const bool same = drive->mode.words == drive->mode.wanted->words;
+    drive->mode.takes_torque = same && drive->mode.wanted->torque;
+    drive->mode.marked = same && drive->mode.words->mark != 0;
+    drive->mode.holds = drive->mode.shown && drive->mode.shown->holds_position;
     /* While a switch over SDO is under way, either mode may act. A target that stands still is right in both. */
-    drive->may_hold = drive->holds || drive->feedback.mode == CM1E_MODE_NONE;
+    drive->mode.may_hold = drive->mode.holds || drive->feedback.mode == CM1E_MODE_NONE;
 }
 
 void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_device_mode_t *row)
 {
-    drive->mode = (cm1e_mode_t)row->mode;
-    drive->wanted = row;
-    if (!drive->words)
-        drive->words = row->words;
+    drive->mode.commanded = (cm1e_mode_t)row->mode;
+    drive->mode.wanted = row;
+    if (!drive->mode.words)
+        drive->mode.words = row->words;
     derive(drive);
 }
 
@@ -200,24 +212,24 @@ void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_device_mode_t *row)
 static void take_mode(cm1e_drive_t *drive, int8_t mode)
 {
     drive->feedback.mode = mode;
-    drive->shown = cm1e_device_mode(drive->kind, mode);
-    if (drive->shown)
-        drive->words = drive->shown->words;
-    else if (drive->words != drive->wanted->words || drive->words->own_coding)
-        drive->words = &unknown_words;
+    drive->mode.shown = cm1e_device_mode(drive->kind, mode);
+    if (drive->mode.shown)
+        drive->mode.words = drive->mode.shown->words;
+    else if (drive->mode.words != drive->mode.wanted->words || drive->mode.words->own_coding)
+        drive->mode.words = &unknown_words;
     derive(drive);
 }
 
 static void take_statusword(cm1e_drive_t *drive, uint16_t statusword)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
-    const cm1e_device_words_t *words = drive->words;
+    const cm1e_device_words_t *words = drive->mode.words;
     f->statusword = statusword;
     f->state = words->states ? cm1e_fsa_decode_by(words->states, statusword) : CM1E_FSA_UNKNOWN;
     f->voltage = !words->voltage || (statusword & words->voltage);
     f->fault = statusword & words->fault;
     f->motor_free = statusword & words->motor_free;
-    drive->operates = f->state == OPERATION_ENABLED && !f->motor_free;
+    drive->mode.operates = f->state == OPERATION_ENABLED && !f->motor_free;
     f->target_reached = statusword & words->target_reached;
     f->bit12 = statusword & words->bit12;
     f->bit13 = statusword & words->bit13;
@@ -233,10 +245,11 @@ enum { POSITIONS_TO_TRUST = 3 };
  * origin. */
 static bool can_be_there(const cm1e_drive_t *drive, int32_t position)
 {
-    if (!drive->seen || drive->now_ns <= drive->read_ns)
+    if (!drive->actual.seen || drive->now_ns <= drive->actual.read_ns)
         return true;
     const int64_t way = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
-    const int64_t most = drive->velocity_possible * (drive->now_ns - drive->read_ns + position_age_ns) / 1000000000;
+    const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
+    const int64_t most = drive->range.velocity_possible * (elapsed_ns + position_age_ns) / 1000000000;
     return llabs(way) <= most;
 }
 
@@ -244,35 +257,36 @@ static bool can_be_there(const cm1e_drive_t *drive, int32_t position)
  * cycle. */
 static bool contradicts(const cm1e_drive_t *drive, int32_t position)
 {
-    const int64_t elapsed_ns = drive->now_ns - drive->read_ns;
+    const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
     const int64_t way = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
     const int64_t told = (int64_t)drive->feedback.velocity * elapsed_ns / 1000000000;
-    const int64_t tolerance = drive->velocity_possible * elapsed_ns / 1000000000 / 100;
-    return drive->seen && drive->in_velocity.bytes > 0 && llabs(way - told) > llabs(told) / 2 + tolerance;
+    const int64_t tolerance = drive->range.velocity_possible * elapsed_ns / 1000000000 / 100;
+    return drive->actual.seen && drive->image.in_velocity.bytes > 0 && llabs(way - told) > llabs(told) / 2 + tolerance;
 }
 
 /* false: the position is rejected. It becomes neither a target, nor a lag, nor a captured position. */
 static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
+    cm1e_drive_actual_t *actual = &drive->actual;
     const bool possible = can_be_there(drive, position);
     const bool own_targets = mode == CM1E_MODE_CSP || mode == CM1E_MODE_CSV || mode == CM1E_MODE_PP ||
                              mode == CM1E_MODE_PV;
-    if (!possible && drive->was_enabled && own_targets) {
-        drive->positions_rejected += drive->positions_rejected < UINT8_MAX;
+    if (!possible && drive->torque.was_enabled && own_targets) {
+        actual->rejected += actual->rejected < UINT8_MAX;
         f->fresh = false;
         return false;
     }
-    drive->positions_rejected = 0;
-    drive->distrusted = possible ? drive->distrusted - (drive->distrusted > 0) : POSITIONS_TO_TRUST;
+    actual->rejected = 0;
+    actual->distrusted = possible ? actual->distrusted - (actual->distrusted > 0) : POSITIONS_TO_TRUST;
     f->velocity = velocity_of(drive, in, position, mode);
     if (contradicts(drive, position))
-        drive->contradictions += drive->contradictions < UINT8_MAX;
+        actual->contradictions += actual->contradictions < UINT8_MAX;
     else
-        drive->contradictions -= drive->contradictions > 0;
+        actual->contradictions -= actual->contradictions > 0;
     f->position = position;
-    drive->read_ns = drive->now_ns;
-    drive->seen = true;
+    actual->read_ns = drive->now_ns;
+    actual->seen = true;
     return true;
 }
 
@@ -280,46 +294,46 @@ void cm1e_drive_decode(cm1e_drive_t *drive)
 {
     const uint8_t *in = cm1e_bus_inputs(drive->bus);
     cm1e_drive_feedback_t *f = &drive->feedback;
-    const int8_t mode = drive->in_mode.bytes ? (int8_t)in[drive->in_mode.offset] : drive->mode_shown;
-    const uint16_t statusword = get_u16(in, drive->in_statusword);
-    if (mode != f->mode || statusword != f->statusword || !drive->seen) {
+    const int8_t mode = drive->image.in_mode.bytes ? (int8_t)in[drive->image.in_mode.offset] : drive->change.shown;
+    const uint16_t statusword = get_u16(in, drive->image.in_statusword);
+    if (mode != f->mode || statusword != f->statusword || !drive->actual.seen) {
         take_mode(drive, mode);
         take_statusword(drive, statusword);
     }
-    f->error_code = get_u16(in, drive->in_error);
-    if (!take_position(drive, in, get_i32(in, drive->in_position), mode))
+    f->error_code = get_u16(in, drive->image.in_error);
+    if (!take_position(drive, in, get_i32(in, drive->image.in_position), mode))
         return;
-    f->torque = get_i16(in, drive->in_torque);
-    f->digital_inputs = (uint16_t)get_signed(in, drive->in_digital);
-    f->temperature = get_i16(in, drive->in_temperature);
-    f->dc_link_decivolt = get_signed(in, drive->in_dc);
+    f->torque = get_i16(in, drive->image.in_torque);
+    f->digital_inputs = (uint16_t)get_signed(in, drive->image.in_digital);
+    f->temperature = get_i16(in, drive->image.in_temperature);
+    f->dc_link_decivolt = get_signed(in, drive->image.in_dc);
 }
 
 /* Clamps the target to the peak speed of the motor (UG 6.3). In counts/ms the bound is the whole number below. */
 static int32_t velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s)
 {
-    const int32_t half = counts_per_s < 0 ? -drive->velocity_unit / 2 : drive->velocity_unit / 2;
-    const int64_t value = drive->velocity_unit == 1 ? counts_per_s
-                                                    : ((int64_t)counts_per_s + half) / drive->velocity_unit;
-    const int32_t most = drive->velocity_most;
+    const int32_t half = counts_per_s < 0 ? -drive->range.velocity_unit / 2 : drive->range.velocity_unit / 2;
+    const int64_t value = drive->range.velocity_unit == 1 ? counts_per_s
+                                                    : ((int64_t)counts_per_s + half) / drive->range.velocity_unit;
+    const int32_t most = drive->range.velocity_most;
     return (int32_t)(value > most ? most : value < -most ? -most : value);
 }
 
 void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity)
 {
     uint8_t *out = cm1e_bus_outputs(drive->bus);
-    cm1e_put_u16(out + drive->out_controlword.offset, controlword);
-    put_u32(out, drive->out_position, (uint32_t)position);
-    put_u32(out, drive->out_velocity, (uint32_t)velocity_on_wire(drive, velocity));
-    if (drive->out_mode.bytes)
-        out[drive->out_mode.offset] = (uint8_t)drive->mode;
-    if (drive->out_digital.bytes)
-        cm1e_put_uint(out + drive->out_digital.offset, drive->out_digital.bytes,
+    cm1e_put_u16(out + drive->image.out_controlword.offset, controlword);
+    put_u32(out, drive->image.out_position, (uint32_t)position);
+    put_u32(out, drive->image.out_velocity, (uint32_t)velocity_on_wire(drive, velocity));
+    if (drive->image.out_mode.bytes)
+        out[drive->image.out_mode.offset] = (uint8_t)drive->mode.commanded;
+    if (drive->image.out_digital.bytes)
+        cm1e_put_uint(out + drive->image.out_digital.offset, drive->image.out_digital.bytes,
                       (uint32_t)drive->command.digital_outputs << drive->kind->signals.output_shift);
-    if (drive->out_probe.bytes)
-        cm1e_put_u16(out + drive->out_probe.offset, drive->probe_function);
-    put_u32(out, drive->out_profile_velocity, drive->profile_velocity);
-    put_u32(out, drive->out_profile_acceleration, drive->profile_acceleration);
-    drive->target_position = position;
-    drive->target_velocity = velocity;
+    if (drive->image.out_probe.bytes)
+        cm1e_put_u16(out + drive->image.out_probe.offset, drive->probes.function);
+    put_u32(out, drive->image.out_profile_velocity, drive->image.profile_velocity);
+    put_u32(out, drive->image.out_profile_acceleration, drive->image.profile_acceleration);
+    drive->target.position = position;
+    drive->target.velocity = velocity;
 }

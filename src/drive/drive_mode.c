@@ -33,8 +33,8 @@ const char *cm1e_drive_mode_name(const cm1e_drive_t *drive, int8_t mode)
 /* The mode that the device is in, as far as it is known. */
 static const cm1e_device_mode_t *place(const cm1e_drive_t *drive)
 {
-    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->mode_read);
-    return row && drive->kind->asks_mode_first ? row : drive->wanted;
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->change.read);
+    return row && drive->kind->asks_mode_first ? row : drive->mode.wanted;
 }
 
 static bool leads(const cm1e_drive_t *drive, const cm1e_device_mode_t *from, const cm1e_device_mode_t *to)
@@ -53,7 +53,7 @@ cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, 
     } else if (!leads(drive, from, to)) {
         error = CM1E_ERROR_STATE;
         text = drive->kind->no_way;
-    } else if (drive->abnormal && !insist && !from->torque && to->torque && !to->leaves_abnormal) {
+    } else if (drive->change.abnormal && !insist && !from->torque && to->torque && !to->leaves_abnormal) {
         error = CM1E_ERROR_STATE;
         text = abnormal;
     }
@@ -69,7 +69,7 @@ static cm1e_error_t read_first(cm1e_drive_t *drive, int8_t *shown, cm1e_diag_t *
     size_t size = sizeof *shown;
     const uint16_t index = cm1e_drive_index(drive, OBJ_6061_MODES_OF_OPERATION_DISPLAY);
     const cm1e_error_t error = cm1e_sdo_read(drive->bus, drive->position, index, 0, shown, &size, diag);
-    if (!error && size != sizeof *shown)
+    if (error == CM1E_OK && size != sizeof *shown)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_MAILBOX, 0,
                              "Axis \"%s\" (slave %u): object 0x%04X was read with %zu bytes instead of 1.",
                              drive->config->name, drive->position, index, size);
@@ -79,19 +79,20 @@ static cm1e_error_t read_first(cm1e_drive_t *drive, int8_t *shown, cm1e_diag_t *
 /* Further switches are made in the cycle, if a way leads to the first mode. */
 static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
-    const cm1e_error_t error = read_first(drive, &drive->mode_read, diag);
-    if (error)
+    const cm1e_error_t error = read_first(drive, &drive->change.read, diag);
+    if (error != CM1E_OK)
         return error;
-    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->mode_read);
-    if (!row || !leads(drive, row, drive->wanted))
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->change.read);
+    if (!row || !leads(drive, row, drive->mode.wanted))
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "Axis \"%s\" (slave %u): object 0x%04X shows mode %d (%s), from which no way leads to %s. "
                              "%s.", drive->config->name, drive->position,
-                             cm1e_drive_index(drive, OBJ_6061_MODES_OF_OPERATION_DISPLAY), drive->mode_read,
-                             row ? row->abbreviation : "unknown", drive->wanted->abbreviation, drive->kind->no_way);
+                             cm1e_drive_index(drive, OBJ_6061_MODES_OF_OPERATION_DISPLAY), drive->change.read,
+                             row ? row->abbreviation : "unknown", drive->mode.wanted->abbreviation,
+                             drive->kind->no_way);
     cm1e_drive_want_mode(drive, row);
-    drive->mode_shown = drive->mode_read;
-    drive->mode_known = true;
+    drive->change.shown = drive->change.read;
+    drive->change.known = true;
     return CM1E_OK;
 }
 
@@ -105,17 +106,17 @@ cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              "nor 0x60FF, Target velocity. Choose other PDOs.", drive->config->name, drive->position);
     cm1e_drive_want_mode(drive, cm1e_device_mode(drive->kind, (int8_t)first));
     drive->command.mode = first;
-    if (drive->out_mode.bytes)
+    if (drive->image.out_mode.bytes)
         return CM1E_OK;
     if (drive->kind->asks_mode_first)
         return ask_first(drive, diag);
-    const int8_t mode = (int8_t)drive->mode;
+    const int8_t mode = (int8_t)drive->mode.commanded;
     const uint16_t index = cm1e_drive_index(drive, OBJ_6060_MODES_OF_OPERATION);
     const cm1e_error_t error = cm1e_sdo_write(drive->bus, drive->position, index, 0, &mode, 1, diag);
     int8_t shown = 0;
-    const cm1e_error_t read_error = error ? error : read_first(drive, &shown, diag);
+    const cm1e_error_t read_error = error != CM1E_OK ? error : read_first(drive, &shown, diag);
     /* A slow device shows the mode later: the cycle asks again (cm1e_drive_mode_step). */
-    drive->mode_shown = shown == mode ? shown : CM1E_MODE_NONE;
+    drive->change.shown = shown == mode ? shown : CM1E_MODE_NONE;
     return read_error;
 }
 
@@ -123,44 +124,44 @@ cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
 
 static void submit(cm1e_drive_t *drive, bool write)
 {
-    drive->mode_data = (int8_t)drive->mode;
-    drive->mode_sdo = (cm1e_sdo_t){
-        .position = drive->position, .write = write, .data = &drive->mode_data, .size = 1,
+    drive->change.data = (int8_t)drive->mode.commanded;
+    drive->change.sdo = (cm1e_sdo_t){
+        .position = drive->position, .write = write, .data = &drive->change.data, .size = 1,
         .index = cm1e_drive_index(drive, write ? OBJ_6060_MODES_OF_OPERATION : OBJ_6061_MODES_OF_OPERATION_DISPLAY),
         .timeout_ns = sdo_timeout_ns,
     };
-    if (cm1e_sdo_submit(drive->bus, &drive->mode_sdo) != CM1E_OK) {
-        drive->mode_phase = PHASE_IDLE;
-        drive->mode_retry_ns = drive->now_ns + write_again_ns;
+    if (cm1e_sdo_submit(drive->bus, &drive->change.sdo) != CM1E_OK) {
+        drive->change.phase = PHASE_IDLE;
+        drive->change.retry_ns = drive->now_ns + write_again_ns;
         return;
     }
-    drive->mode_phase = write ? PHASE_WRITING : PHASE_READING;
+    drive->change.phase = write ? PHASE_WRITING : PHASE_READING;
     if (!write)
         return;
-    drive->mode_uncertain = true;
-    drive->mode_shown = CM1E_MODE_NONE;
-    drive->abnormal |= drive->wanted->leaves_abnormal;
+    drive->change.uncertain = true;
+    drive->change.shown = CM1E_MODE_NONE;
+    drive->change.abnormal |= drive->mode.wanted->leaves_abnormal;
 }
 
 static void read_done(cm1e_drive_t *drive)
 {
-    const cm1e_device_mode_t *before = cm1e_device_mode(drive->kind, drive->mode_read);
-    drive->mode_read = drive->mode_sdo.size == 1 ? drive->mode_data : (int8_t)CM1E_MODE_NONE;
-    const cm1e_device_mode_t *now = cm1e_device_mode(drive->kind, drive->mode_read);
+    const cm1e_device_mode_t *before = cm1e_device_mode(drive->kind, drive->change.read);
+    drive->change.read = drive->change.sdo.size == 1 ? drive->change.data : (int8_t)CM1E_MODE_NONE;
+    const cm1e_device_mode_t *now = cm1e_device_mode(drive->kind, drive->change.read);
     /* The device is in a mode that no way leads to: it was switched off and on. */
-    if (before && now && !drive->mode_known && !leads(drive, before, now))
-        drive->abnormal = false;
-    drive->abnormal |= now && now->leaves_abnormal;
+    if (before && now && !drive->change.known && !leads(drive, before, now))
+        drive->change.abnormal = false;
+    drive->change.abnormal |= now && now->leaves_abnormal;
     /* The device may have been switched off and show a mode that was not commanded: that mode is the new starting
      * point. */
-    if (now && drive->kind->asks_mode_first && !drive->mode_known && !drive->mode_uncertain)
+    if (now && drive->kind->asks_mode_first && !drive->change.known && !drive->change.uncertain)
         cm1e_drive_want_mode(drive, now);
-    drive->mode_known = true;
-    if (drive->mode_read == (int8_t)drive->mode)
-        drive->mode_uncertain = false;
-    drive->mode_shown = drive->mode_uncertain ? (int8_t)CM1E_MODE_NONE : drive->mode_read;
-    drive->mode_phase = drive->mode_uncertain ? PHASE_WAIT : PHASE_IDLE;
-    drive->mode_retry_ns = drive->now_ns + (drive->mode_uncertain ? read_again_ns : 0);
+    drive->change.known = true;
+    if (drive->change.read == (int8_t)drive->mode.commanded)
+        drive->change.uncertain = false;
+    drive->change.shown = drive->change.uncertain ? (int8_t)CM1E_MODE_NONE : drive->change.read;
+    drive->change.phase = drive->change.uncertain ? PHASE_WAIT : PHASE_IDLE;
+    drive->change.retry_ns = drive->now_ns + (drive->change.uncertain ? read_again_ns : 0);
 }
 
 static bool shows_fault(const cm1e_drive_t *drive, const cm1e_device_mode_t *mode)
@@ -175,116 +176,116 @@ static bool is_sound(cm1e_drive_t *drive)
 {
     if (place(drive)->words->commands)
         return cm1e_drive_bridge_sound(drive);
-    return !shows_fault(drive, place(drive)) || !shows_fault(drive, drive->wanted);
+    return !shows_fault(drive, place(drive)) || !shows_fault(drive, drive->mode.wanted);
 }
 
 static bool may_write(cm1e_drive_t *drive)
 {
     const int64_t now_ns = drive->now_ns;
-    if (!leads(drive, place(drive), drive->wanted) || now_ns < drive->mode_from_ns ||
-        now_ns < drive->mode_write_ns + interval_ns)
+    if (!leads(drive, place(drive), drive->mode.wanted) || now_ns < drive->change.from_ns ||
+        now_ns < drive->change.write_ns + interval_ns)
         return false;
-    return !drive->wanted->rest || (cm1e_drive_rests(drive) && drive->feedback.fresh && is_sound(drive));
+    return !drive->mode.wanted->rest || (cm1e_drive_rests(drive) && drive->feedback.fresh && is_sound(drive));
 }
 
 static bool expired(cm1e_drive_t *drive)
 {
-    if (drive->mode_deadline_ns == 0)
-        drive->mode_deadline_ns = drive->now_ns + mode_timeout_ns;
-    return drive->kind->mode_supervised && drive->now_ns >= drive->mode_deadline_ns;
+    if (drive->change.deadline_ns == 0)
+        drive->change.deadline_ns = drive->now_ns + mode_timeout_ns;
+    return drive->kind->mode_supervised && drive->now_ns >= drive->change.deadline_ns;
 }
 
 static void give_up(cm1e_drive_t *drive)
 {
     cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_MODE_TIMEOUT);
-    drive->mode_phase = PHASE_GIVEN_UP;
-    drive->mode_uncertain = false;
-    drive->mode_shown = drive->mode_read;
+    drive->change.phase = PHASE_GIVEN_UP;
+    drive->change.uncertain = false;
+    drive->change.shown = drive->change.read;
 }
 
 /* Called while no SDO transfer is under way. */
 static void go_on(cm1e_drive_t *drive)
 {
-    if (drive->mode_shown == (int8_t)drive->mode || drive->mode_phase == PHASE_GIVEN_UP)
+    if (drive->change.shown == (int8_t)drive->mode.commanded || drive->change.phase == PHASE_GIVEN_UP)
         return;
     if (expired(drive)) {
         give_up(drive);
         return;
     }
-    if (drive->now_ns < drive->mode_retry_ns)
+    if (drive->now_ns < drive->change.retry_ns)
         return;
-    if (drive->mode_phase == PHASE_WAIT && drive->now_ns - drive->mode_write_ns < write_again_ns)
+    if (drive->change.phase == PHASE_WAIT && drive->now_ns - drive->change.write_ns < write_again_ns)
         submit(drive, false);
-    else if (drive->kind->asks_mode_first && !drive->mode_known)
+    else if (drive->kind->asks_mode_first && !drive->change.known)
         submit(drive, false);
     else if (may_write(drive))
         submit(drive, true);
-    else if (drive->mode_phase == PHASE_WAIT)
+    else if (drive->change.phase == PHASE_WAIT)
         submit(drive, false);
 }
 
 /* A transfer that ended in an error may have arrived. A transfer that the device has forgotten proves nothing. */
 static void written(cm1e_drive_t *drive, bool good)
 {
-    const bool forgotten = drive->kind->asks_mode_first && !drive->mode_known;
-    drive->mode_write_ns = drive->now_ns;
-    drive->mode_phase = good && !forgotten ? PHASE_WAIT : PHASE_IDLE;
-    drive->mode_uncertain &= !forgotten;
-    drive->mode_retry_ns = drive->now_ns + (good ? 0 : write_again_ns);
+    const bool forgotten = drive->kind->asks_mode_first && !drive->change.known;
+    drive->change.write_ns = drive->now_ns;
+    drive->change.phase = good && !forgotten ? PHASE_WAIT : PHASE_IDLE;
+    drive->change.uncertain &= !forgotten;
+    drive->change.retry_ns = drive->now_ns + (good ? 0 : write_again_ns);
 }
 
 void cm1e_drive_mode_step(cm1e_drive_t *drive)
 {
-    if (drive->out_mode.bytes)
+    if (drive->image.out_mode.bytes)
         return;
     const bool away = drive->kind->asks_mode_first && !cm1e_drive_operational(drive);
-    if (away && drive->mode_known) /* it may have been switched off */
+    if (away && drive->change.known) /* it may have been switched off */
         cm1e_drive_mode_forget(drive);
-    if (drive->mode_phase != PHASE_WRITING && drive->mode_phase != PHASE_READING) {
+    if (drive->change.phase != PHASE_WRITING && drive->change.phase != PHASE_READING) {
         if (!away)
             go_on(drive);
         return;
     }
-    const cm1e_sdo_state_t state = cm1e_sdo_state(&drive->mode_sdo);
+    const cm1e_sdo_state_t state = cm1e_sdo_state(&drive->change.sdo);
     if (state == CM1E_SDO_BUSY)
         return;
-    if (drive->mode_phase == PHASE_WRITING) {
+    if (drive->change.phase == PHASE_WRITING) {
         written(drive, state == CM1E_SDO_DONE);
     } else if (state == CM1E_SDO_DONE) {
         read_done(drive);
     } else {
-        drive->mode_phase = PHASE_IDLE;
-        drive->mode_retry_ns = drive->now_ns + write_again_ns;
+        drive->change.phase = PHASE_IDLE;
+        drive->change.retry_ns = drive->now_ns + write_again_ns;
     }
 }
 
 void cm1e_drive_mode_forget(cm1e_drive_t *drive)
 {
-    drive->mode_known = false;
-    drive->mode_deadline_ns = 0;
-    drive->mode_retry_ns = drive->now_ns;
-    if (drive->mode_phase == PHASE_WRITING || drive->mode_phase == PHASE_READING)
+    drive->change.known = false;
+    drive->change.deadline_ns = 0;
+    drive->change.retry_ns = drive->now_ns;
+    if (drive->change.phase == PHASE_WRITING || drive->change.phase == PHASE_READING)
         return;
-    drive->mode_phase = PHASE_IDLE;
-    drive->mode_uncertain = false;
-    drive->mode_shown = CM1E_MODE_NONE;
+    drive->change.phase = PHASE_IDLE;
+    drive->change.uncertain = false;
+    drive->change.shown = CM1E_MODE_NONE;
 }
 
 /* A switch that the process data cannot supervise is waited for, whatever its result. */
 static bool under_way(const cm1e_drive_t *drive)
 {
     if (drive->kind->asks_mode_first)
-        return drive->mode_shown != (int8_t)drive->mode && drive->mode_phase != PHASE_GIVEN_UP;
-    return drive->was_enabled && drive->feedback.mode != (int8_t)drive->mode;
+        return drive->change.shown != (int8_t)drive->mode.commanded && drive->change.phase != PHASE_GIVEN_UP;
+    return drive->torque.was_enabled && drive->feedback.mode != (int8_t)drive->mode.commanded;
 }
 
 /* A mode whose words have another coding is entered without torque only. */
 static bool needs_less(const cm1e_drive_t *drive, const cm1e_device_mode_t *to)
 {
     const cm1e_fsa_state_t state = drive->feedback.state;
-    if (to->words == drive->words)
+    if (to->words == drive->mode.words)
         return false;
-    return drive->torque || state == SWITCHED_ON || state == OPERATION_ENABLED || cm1e_drive_cmd_moves(drive);
+    return drive->torque.asked || state == SWITCHED_ON || state == OPERATION_ENABLED || cm1e_drive_cmd_moves(drive);
 }
 
 /* Makes one switch at a time. Until the display shows the last one, the mode that acts on the next process data is
@@ -292,17 +293,18 @@ static bool needs_less(const cm1e_drive_t *drive, const cm1e_device_mode_t *to)
 void cm1e_drive_mode_choose(cm1e_drive_t *drive)
 {
     const cm1e_mode_t wanted = drive->command.mode;
-    if (wanted == drive->mode || wanted == CM1E_MODE_NONE)
+    if (wanted == drive->mode.commanded || wanted == CM1E_MODE_NONE)
         return;
     const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, (int8_t)wanted);
     if (!row || under_way(drive) || needs_less(drive, row))
         return;
-    if (drive->kind->asks_mode_first && cm1e_drive_mode_check(drive, wanted, drive->command.mode_insist, NULL))
+    if (drive->kind->asks_mode_first &&
+        cm1e_drive_mode_check(drive, wanted, drive->command.mode_insist, NULL) != CM1E_OK)
         return;
     cm1e_drive_want_mode(drive, row);
-    drive->mode_confirmed = false;
-    drive->mode_deadline_ns = drive->now_ns + mode_timeout_ns;
-    drive->mode_from_ns = drive->now_ns + (row->words == drive->words ? 0 : silence_ns);
-    if (drive->mode_phase == PHASE_GIVEN_UP)
-        drive->mode_phase = PHASE_IDLE;
+    drive->torque.confirmed = false;
+    drive->change.deadline_ns = drive->now_ns + mode_timeout_ns;
+    drive->change.from_ns = drive->now_ns + (row->words == drive->mode.words ? 0 : silence_ns);
+    if (drive->change.phase == PHASE_GIVEN_UP)
+        drive->change.phase = PHASE_IDLE;
 }

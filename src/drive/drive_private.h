@@ -43,6 +43,13 @@ void cm1e_drive_mode_choose(cm1e_drive_t *drive);
 void cm1e_drive_mode_forget(cm1e_drive_t *drive);
 
 /* drive_reset.c */
+/** Rising edge of `command.reset`. */
+static inline bool cm1e_drive_reset_asked(cm1e_drive_t *drive)
+{
+    const bool asked = drive->command.reset && !drive->reset.before;
+    drive->reset.before = drive->command.reset;
+    return asked;
+}
 void cm1e_drive_reset_start(cm1e_drive_t *drive);
 void cm1e_drive_reset_step(cm1e_drive_t *drive);
 

@@ -14,25 +14,25 @@ static const int64_t recovery_interval_ns = 1000 * MS_IN_NS;
 
 void cm1e_drive_reset_start(cm1e_drive_t *drive)
 {
-    drive->reset_phase = RESET_WAIT_ONLINE;
-    drive->reset_deadline_ns = drive->now_ns + online_timeout_ns;
-    drive->reset_settle_ns = 0;
-    drive->recovery_ns = drive->now_ns;
+    drive->reset.phase = RESET_WAIT_ONLINE;
+    drive->reset.deadline_ns = drive->now_ns + online_timeout_ns;
+    drive->reset.settle_ns = 0;
+    drive->reset.recovery_ns = drive->now_ns;
 }
 
 static void request_recovery(cm1e_drive_t *drive)
 {
-    if (cm1e_drive_operational(drive) || drive->now_ns < drive->recovery_ns)
+    if (cm1e_drive_operational(drive) || drive->now_ns < drive->reset.recovery_ns)
         return;
     cm1e_bus_request_recovery(drive->bus, drive->position);
-    drive->recovery_ns = drive->now_ns + recovery_interval_ns;
+    drive->reset.recovery_ns = drive->now_ns + recovery_interval_ns;
 }
 
 static void finish(cm1e_drive_t *drive, cm1e_error_t error)
 {
-    drive->reset_phase = RESET_IDLE;
-    drive->was_enabled = false;
-    drive->torque = false;
+    drive->reset.phase = RESET_IDLE;
+    drive->torque.was_enabled = false;
+    drive->torque.asked = false;
     if (error == CM1E_OK) {
         drive->fault = (cm1e_drive_fault_t){0};
         cm1e_drive_mode_forget(drive);
@@ -58,12 +58,12 @@ static void wait_online(cm1e_drive_t *drive)
 {
     if (drive->feedback.online && !drive->feedback.fault) {
         finish(drive, CM1E_OK);
-    } else if (drive->feedback.online && drive->words != drive->wanted->words) {
+    } else if (drive->feedback.online && drive->mode.words != drive->mode.wanted->words) {
         /* The error stopped a switch of mode. That switch is given up first, because the words have no meaning until
          * then. */
     } else if (drive->feedback.online) {
-        drive->reset_phase = RESET_EDGE;
-        drive->reset_until_ns = drive->now_ns + edge_ns;
+        drive->reset.phase = RESET_EDGE;
+        drive->reset.until_ns = drive->now_ns + edge_ns;
     } else {
         request_recovery(drive);
     }
@@ -79,19 +79,19 @@ static bool device_resets(const cm1e_drive_t *drive)
 static void edge(cm1e_drive_t *drive)
 {
     const bool cleared = drive->feedback.online && !drive->feedback.fault;
-    if (drive->now_ns < drive->reset_until_ns && cm1e_drive_operational(drive) && !cleared)
+    if (drive->now_ns < drive->reset.until_ns && cm1e_drive_operational(drive) && !cleared)
         return;
-    drive->reset_phase = RESET_RELEASED;
-    drive->reset_deadline_ns = drive->now_ns + (device_resets(drive) ? online_timeout_ns : clear_timeout_ns);
+    drive->reset.phase = RESET_RELEASED;
+    drive->reset.deadline_ns = drive->now_ns + (device_resets(drive) ? online_timeout_ns : clear_timeout_ns);
     /* A device that is about to reset may clear its fault bit before it leaves the bus. */
-    drive->reset_settle_ns = drive->now_ns + (device_resets(drive) ? settle_ns : drive->kind->reset_settle_ns);
+    drive->reset.settle_ns = drive->now_ns + (device_resets(drive) ? settle_ns : drive->kind->reset_settle_ns);
 }
 
 static void released(cm1e_drive_t *drive)
 {
     if (!drive->feedback.online)
         request_recovery(drive);
-    else if (!drive->feedback.fault && drive->now_ns >= drive->reset_settle_ns)
+    else if (!drive->feedback.fault && drive->now_ns >= drive->reset.settle_ns)
         finish(drive, CM1E_OK);
 }
 
@@ -100,12 +100,12 @@ void cm1e_drive_reset_step(cm1e_drive_t *drive)
     static void (*const steps[])(cm1e_drive_t *) = {
         [RESET_WAIT_ONLINE] = wait_online, [RESET_EDGE] = edge, [RESET_RELEASED] = released,
     };
-    steps[drive->reset_phase](drive);
-    if (drive->reset_phase != RESET_IDLE && drive->now_ns >= drive->reset_deadline_ns)
+    steps[drive->reset.phase](drive);
+    if (drive->reset.phase != RESET_IDLE && drive->now_ns >= drive->reset.deadline_ns)
         give_up(drive);
 }
 
 bool cm1e_drive_resetting(const cm1e_drive_t *drive)
 {
-    return drive->reset_phase != RESET_IDLE || (drive->command.reset && !drive->reset_before);
+    return drive->reset.phase != RESET_IDLE || (drive->command.reset && !drive->reset.before);
 }

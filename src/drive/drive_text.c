@@ -69,7 +69,7 @@ static void say_words(writer_t *w, const cm1e_drive_t *drive)
 {
     const cm1e_drive_fault_t *fault = &drive->fault;
     const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, fault->mode_shown);
-    const cm1e_fsa_row_t *states = (row ? row : drive->wanted)->words->states;
+    const cm1e_fsa_row_t *states = (row ? row : drive->mode.wanted)->words->states;
     say(w, " Statusword 0x%04X", fault->statusword);
     if (states)
         say(w, " (%s)", cm1e_fsa_name(cm1e_fsa_decode_by(states, fault->statusword)));
@@ -124,11 +124,12 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
     else if (fault->al_state)
         say(&w, " EtherCAT state %u, AL status code 0x%04X: %s.", fault->al_state & 0x0Fu, fault->al_status_code,
             cm1e_al_status_text(fault->al_status_code));
-    const uint64_t unsent = fault->error == CM1E_ERROR_BUS_LOST ? cm1e_bus_counters(drive->bus)->unsent_frames : 0;
-    if (unsent > 0)
+    const cm1e_bus_counters_t *counters = cm1e_bus_counters(drive->bus);
+    const uint64_t unsent = __atomic_load_n(&counters->unsent_frames, __ATOMIC_RELAXED);
+    if (unsent > 0 && fault->error == CM1E_ERROR_BUS_LOST)
         say(&w, " The network interface did not take %llu frames since the start: it is down, or too slow.",
             (unsigned long long)unsent);
-    const uint64_t foreign = cm1e_bus_counters(drive->bus)->foreign_frames;
+    const uint64_t foreign = __atomic_load_n(&counters->foreign_frames, __ATOMIC_RELAXED);
     if (foreign > 0)
         say(&w, CM1E_OTHER_MASTER_TEXT, (unsigned long long)foreign);
     if (fault->motor_status_known)

@@ -25,12 +25,12 @@ static const cm1e_device_drive_t no_device = {
 cm1e_error_t cm1e_drive_init_virtual(cm1e_drive_t *drive)
 {
     drive->kind = &no_device;
-    drive->mode = drive->command.mode = CM1E_MODE_CSP;
-    drive->wanted = drive->shown = cm1e_device_mode(drive->kind, CM1E_MODE_CSP);
-    drive->words = drive->wanted->words;
-    drive->position_least = INT32_MIN;
-    drive->position_most = INT32_MAX;
-    drive->velocity_unit = 1;
+    drive->mode.commanded = drive->command.mode = CM1E_MODE_CSP;
+    drive->mode.wanted = drive->mode.shown = cm1e_device_mode(drive->kind, CM1E_MODE_CSP);
+    drive->mode.words = drive->mode.wanted->words;
+    drive->range.position_least = INT32_MIN;
+    drive->range.position_most = INT32_MAX;
+    drive->range.velocity_unit = 1;
     drive->feedback = drive->config->type == CM1E_AXIS_ENCODER
                           ? (cm1e_drive_feedback_t){.state = SWITCH_ON_DISABLED, .statusword = STATUSWORD_NEVER}
                           : (cm1e_drive_feedback_t){.state = READY_TO_SWITCH_ON, .statusword = STATUSWORD_OFF,
@@ -42,19 +42,19 @@ cm1e_error_t cm1e_drive_init_virtual(cm1e_drive_t *drive)
 static void read_encoder(cm1e_drive_t *drive)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
-    const int64_t elapsed_ns = drive->now_ns - drive->read_ns;
+    const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
     const int32_t way = (int32_t)(drive->encoder.counts - (uint32_t)f->position);
     f->online = f->fresh = drive->encoder.valid;
     drive->encoder.valid = false; /* written anew in every cycle, or it is not there */
     if (!f->fresh)
         return;
-    if (drive->seen && elapsed_ns > 0) {
+    if (drive->actual.seen && elapsed_ns > 0) {
         const int64_t velocity = (int64_t)way * INT64_C(1000000000) / elapsed_ns;
         f->velocity = (int32_t)(velocity > INT32_MAX ? INT32_MAX : velocity < INT32_MIN ? INT32_MIN : velocity);
     }
     f->position = (int32_t)drive->encoder.counts;
-    drive->read_ns = drive->now_ns;
-    drive->seen = true;
+    drive->actual.read_ns = drive->now_ns;
+    drive->actual.seen = true;
 }
 
 void cm1e_drive_virtual_read(cm1e_drive_t *drive)
@@ -64,23 +64,22 @@ void cm1e_drive_virtual_read(cm1e_drive_t *drive)
         read_encoder(drive);
         return;
     }
-    f->online = f->fresh = drive->seen = true;
-    f->enabled = drive->operates = drive->torque;
-    f->state = drive->torque ? OPERATION_ENABLED : READY_TO_SWITCH_ON;
-    f->statusword = drive->torque ? STATUSWORD_ON : STATUSWORD_OFF;
-    f->position = drive->target_position;
-    f->velocity = drive->torque ? drive->command.target_velocity : 0;
-    drive->read_ns = drive->now_ns;
+    f->online = f->fresh = drive->actual.seen = true;
+    f->enabled = drive->mode.operates = drive->torque.asked;
+    f->state = drive->torque.asked ? OPERATION_ENABLED : READY_TO_SWITCH_ON;
+    f->statusword = drive->torque.asked ? STATUSWORD_ON : STATUSWORD_OFF;
+    f->position = drive->target.position;
+    f->velocity = drive->torque.asked ? drive->command.target_velocity : 0;
+    drive->actual.read_ns = drive->now_ns;
 }
 
 void cm1e_drive_virtual_write(cm1e_drive_t *drive)
 {
     const cm1e_drive_command_t *command = &drive->command;
-    if (command->reset && !drive->reset_before)
+    if (cm1e_drive_reset_asked(drive))
         drive->fault = (cm1e_drive_fault_t){0};
-    drive->reset_before = command->reset;
-    drive->torque = command->enable && drive->config->type == CM1E_AXIS_VIRTUAL;
-    if (drive->torque && drive->feedback.enabled)
-        drive->target_position = command->target_position;
-    drive->feedback.enabled = drive->feedback.enabled && drive->torque;
+    drive->torque.asked = command->enable && drive->config->type == CM1E_AXIS_VIRTUAL;
+    if (drive->torque.asked && drive->feedback.enabled)
+        drive->target.position = command->target_position;
+    drive->feedback.enabled = drive->feedback.enabled && drive->torque.asked;
 }

@@ -274,7 +274,7 @@ static void check_cycle_time(cm1e_findings_t *findings, const cm1e_eni_t *docume
             continue;
         cm1e_findings_add(findings, CM1E_RULE_ENI_CYCLE_TIME, cyclic->place,
                           "A cycle time of %lld us; a %s follows %s us.", (long long)cyclic->cycle_time_us,
-                          known->label, cm1e_device_cycle_times(known, list));
+                          known->label, cm1e_device_cycle_times(known, "and", list));
         return;
     }
 }

@@ -109,7 +109,7 @@ static int compare_texts(const void *a, const void *b)
     return strcmp(a, b);
 }
 
-/* FALSE: the name was there already. */
+/* false: the name was there already. */
 static bool add_name(types_t *types, const char *name)
 {
     if (tfind(name, &types->names, compare_texts))

@@ -13,7 +13,7 @@
 #include "generate/eni.h"
 #include "generate/esi.h"
 #include "generate/file.h"
-#include "generate/options.h"
+#include "generate/generate_options.h"
 
 static const cm1e_device_options_t one_cm1e = {0};
 

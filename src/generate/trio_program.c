@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "generate/ec_extend.h"
-#include "generate/options.h"
+#include "generate/generate_options.h"
 
 /* Half a revolution of following error; one revolution at one a second. The guide's values are at the motor's limit. */
 enum { FE_LIMIT = CM1E_COUNTS_PER_REVOLUTION / 2, TRAVEL = CM1E_COUNTS_PER_REVOLUTION,

@@ -69,7 +69,7 @@ static void refresh_reset(cm1e_group_t *group)
             return;
         group->culprit = ident;
         group->reset_state = CM1E_COMMAND_ERROR;
-        group->reset_error = error ? error : CM1E_ERROR_GROUP_AXIS;
+        group->reset_error = error != CM1E_OK ? error : CM1E_ERROR_GROUP_AXIS;
         return;
     }
     group->reset_state = CM1E_COMMAND_DONE;
@@ -105,7 +105,7 @@ static cm1e_error_t refused_by_state(cm1e_group_t *group, group_trigger_t trigge
 {
     cm1e_group_refresh(group);
     const group_rule_t *rule = cm1e_group_rule(group->state, trigger);
-    if (rule->refusal)
+    if (rule->refusal != CM1E_OK)
         return cm1e_group_refuse(group, (group_refusal_t){
             .error = rule->refusal,
             .why = trigger == TRIGGER_CONFIGURE ? "Axes can be added and removed only in GroupDisabled: use "
@@ -125,7 +125,7 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
 {
     const cm1e_error_t refused = refused_by_state(group, TRIGGER_CONFIGURE);
     cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
-    if (refused)
+    if (refused != CM1E_OK)
         return refused;
     if (!axis)
         return refuse_member(group, CM1E_ERROR_FB_AXIS_REF, 0, NULL);
@@ -158,7 +158,7 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
 cm1e_error_t cm1e_group_remove(cm1e_group_t *group, uint32_t ident)
 {
     const cm1e_error_t refused = refused_by_state(group, TRIGGER_CONFIGURE);
-    if (refused)
+    if (refused != CM1E_OK)
         return refused;
     if (ident < 1 || ident > CM1E_GROUP_AXES || group->member[ident - 1].Handle == 0)
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "There is no axis at this place.");
@@ -179,7 +179,7 @@ cm1e_error_t cm1e_group_ungroup(cm1e_group_t *group)
 cm1e_error_t cm1e_group_enable(cm1e_group_t *group)
 {
     const cm1e_error_t refused = refused_by_state(group, TRIGGER_ENABLE);
-    if (refused)
+    if (refused != CM1E_OK)
         return refused;
     if (cm1e_group_count(group) == 0)
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "It has no axes: use MC_AddAxisToGroup first.");
@@ -224,7 +224,7 @@ cm1e_error_t cm1e_group_reset(cm1e_group_t *group)
 cm1e_command_state_t cm1e_group_reset_state(cm1e_group_t *group, cm1e_error_t *error)
 {
     cm1e_group_refresh(group);
-    if (error)
+    if (error != CM1E_OK)
         *error = group->reset_error;
     return group->reset_state;
 }

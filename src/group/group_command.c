@@ -150,9 +150,9 @@ static cm1e_error_t append(cm1e_group_t *group, const cm1e_group_command_t *comm
     const cm1e_path_command_t way = path_command(command, follows, id);
     cm1e_path_problem_t problem = {.refusal = CM1E_PATH_FINE};
     cm1e_error_t error = resolve(group, command, origin, target, auxiliary);
-    if (!error)
+    if (error == CM1E_OK)
         error = check_directions(group, command, target);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (!is_circle(command->kind))
         error = cm1e_path_append_line(&group->path, target, &way, &problem);
@@ -161,7 +161,7 @@ static cm1e_error_t append(cm1e_group_t *group, const cm1e_group_command_t *comm
     else
         error = cm1e_path_append_arc_centre(&group->path, auxiliary, target, command->path_choice == mcClockwise
                                             ? CM1E_PATH_CLOCKWISE : CM1E_PATH_COUNTER_CLOCKWISE, &way, &problem);
-    return error ? refuse_path(group, error, &problem) : CM1E_OK;
+    return error != CM1E_OK ? refuse_path(group, error, &problem) : CM1E_OK;
 }
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */
@@ -170,9 +170,9 @@ static cm1e_error_t append(cm1e_group_t *group, const cm1e_group_command_t *comm
 static cm1e_error_t begin_move(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     cm1e_error_t error = cm1e_group_begin_path(group);
-    if (!error)
+    if (error == CM1E_OK)
         error = append(group, command, group->sample.position, false, id);
-    return error ? error : cm1e_group_lead(group, false);
+    return error != CM1E_OK ? error : cm1e_group_lead(group, false);
 }
 
 /* Appends a command to the waiting ones. */
@@ -183,7 +183,7 @@ static cm1e_error_t wait_behind(cm1e_group_t *group, const cm1e_group_command_t 
         return refuse(group, CM1E_ERROR_FULL, 0.0, NULL);
     cm1e_path_end(&group->path, end);
     const cm1e_error_t error = append(group, command, end, !group->halting, id);
-    if (!error && group->halting) /* a command behind the halt begins only when the group has come to rest */
+    if (error == CM1E_OK && group->halting) /* a command behind the halt begins only when the group has come to rest */
         cm1e_path_stop(&group->path, group->halt_deceleration, group->halt_jerk);
     return error;
 }
@@ -199,7 +199,7 @@ static cm1e_error_t replace(cm1e_group_t *group, const cm1e_group_command_t *com
     cm1e_path_end(&group->path, rest);
     const cm1e_error_t error =
         append(group, command, is_circle(command->kind) ? rest : group->sample.position, false, id);
-    if (error) {
+    if (error != CM1E_OK) {
         group->path = group->before;
         group->halting = halting;
         return error;
@@ -214,7 +214,7 @@ static cm1e_error_t start_move(cm1e_group_t *group, const cm1e_group_command_t *
     const bool moving = group->state == CM1E_GROUP_MOVING, aborting = command->buffer_mode == mcAborting;
     const cm1e_error_t error = !moving ? begin_move(group, command, id)
                                : aborting ? replace(group, command, id) : wait_behind(group, command, id);
-    if (!error)
+    if (error == CM1E_OK)
         cm1e_group_enqueue(group, id);
     return error;
 }
@@ -229,7 +229,7 @@ static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *
     if (command->buffer_mode == mcBuffered) {
         const cm1e_group_command_t rest = {.kind = CM1E_GROUP_LINEAR_RELATIVE, .buffer_mode = mcBuffered};
         const cm1e_error_t error = wait_behind(group, &rest, id);
-        if (!error)
+        if (error == CM1E_OK)
             cm1e_group_enqueue(group, id);
         return error;
     }
@@ -262,12 +262,12 @@ static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *comma
         [CM1E_GROUP_HALT] = TRIGGER_HALT, [CM1E_GROUP_STOP] = TRIGGER_STOP};
     const group_trigger_t trigger = is_move(command->kind) ? TRIGGER_MOVE : triggers[command->kind];
     const group_rule_t *rule = cm1e_group_rule(group->state, trigger);
-    if (rule->refusal)
+    if (rule->refusal != CM1E_OK)
         return refuse(group, rule->refusal, 0.0, NULL);
     if (group->state == CM1E_GROUP_STOPPING && group->stop_held)
         return refuse(group, CM1E_ERROR_GROUP_STOPPING, 0.0, NULL);
     cm1e_error_t error = check(group, command);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     if (group->state == CM1E_GROUP_STANDBY)
         cm1e_group_let_go(group); /* no axis asks, unless it was left out of its last cycle */
@@ -277,7 +277,7 @@ static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *comma
         error = start_halt(group, command, id);
     else
         start_stop(group, command, id);
-    if (!error)
+    if (error == CM1E_OK)
         group->state = rule->next;
     return error;
 }
@@ -291,7 +291,7 @@ cm1e_error_t cm1e_group_start(cm1e_group_t *group, const cm1e_group_command_t *c
     group->refusal = (group_refusal_t){.error = CM1E_OK};
     const cm1e_command_id_t number = cm1e_group_next_id(group);
     const cm1e_error_t error = start(group, command, number);
-    if (!error)
+    if (error == CM1E_OK)
         *id = number;
     return error;
 }

@@ -31,6 +31,18 @@ void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit)
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
+/* At rest. false: a command is left, or GroupStopping holds. */
+static bool come_to_rest(cm1e_group_t *group)
+{
+    if (group->state == CM1E_GROUP_STOPPING && group->queue.count > 0)
+        cm1e_group_finish(group, group->stop);
+    const bool held = group->state == CM1E_GROUP_STOPPING && group->stop_held;
+    if (group->queue.count > 0 || held)
+        return false;
+    group->state = cm1e_group_rule(group->state, TRIGGER_AT_REST)->next;
+    return true;
+}
+
 /* The transitions of the state diagram that depend on the motion. */
 static void after_step(cm1e_group_t *group)
 {
@@ -43,15 +55,8 @@ static void after_step(cm1e_group_t *group)
     }
     for (int i = 0; i < sample->done; i++)
         cm1e_group_finish(group, sample->done_tags[i]);
-    if (!at_rest)
-        return;
-    if (group->state == CM1E_GROUP_STOPPING && group->queue.count > 0)
-        cm1e_group_finish(group, group->stop);
-    const bool held = group->state == CM1E_GROUP_STOPPING && group->stop_held;
-    if (group->queue.count > 0 || held)
-        return;
-    group->state = cm1e_group_rule(group->state, TRIGGER_AT_REST)->next;
-    group->ending = true;
+    if (at_rest && come_to_rest(group))
+        group->ending = true;
 }
 
 static cm1e_lead_t next(void *context, uint32_t index, double *position, double *velocity, double *acceleration)
@@ -75,14 +80,16 @@ static cm1e_lead_t next(void *context, uint32_t index, double *position, double 
     return CM1E_LEAD_LAST;
 }
 
-/* At rest in GroupStopping an axis may be released: it leaves no path. */
+/* At rest in GroupStopping an axis may be released: it leaves no path. After the last one no step follows. */
 static void lost(void *context, uint32_t index, cm1e_error_t error)
 {
     cm1e_group_t *group = context;
     const bool holding = group->state == CM1E_GROUP_STOPPING && cm1e_group_at_rest(group);
     group->led &= ~(1u << index);
-    if (error || !holding)
+    if (error != CM1E_OK || !holding)
         cm1e_group_fail(group, CM1E_ERROR_GROUP_AXIS, group->ident[index]);
+    else if (!group->led)
+        (void)come_to_rest(group);
 }
 
 /* All axes report a pause before the first of them asks again. */
@@ -183,7 +190,7 @@ cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group)
     }
     group->axes = config.axes;
     config.space = config.axes < CM1E_PATH_SPACE ? config.axes : CM1E_PATH_SPACE;
-    if (cm1e_path_begin(&group->path, &config, position))
+    if (cm1e_path_begin(&group->path, &config, position) != CM1E_OK)
         return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_PATH});
     cm1e_path_override(&group->path, group->override);
     group->sample = (cm1e_path_sample_t){.phase = CM1E_PATH_IDLE};

@@ -102,8 +102,8 @@ void cm1e_group_error_text(AXES_GROUP_REF_t reference, char *text, size_t size)
     const cm1e_group_t *group = cm1e_group_from_reference(&reference);
     if (!group)
         return;
-    if (group->error)
+    if (group->error != CM1E_OK)
         error_text(group, text, size);
-    else if (group->refusal.error)
+    else if (group->refusal.error != CM1E_OK)
         refusal_text(group, text, size);
 }

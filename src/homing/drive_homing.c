@@ -1,12 +1,14 @@
 /*
- * MC_Home with the drive's own routines (UG 6.2.4; BR 6.4 and appendix 4 behind a bridge): parameters over SDO, homing
- * mode, start bit, the table of statusword bits 13, 12 and 10, and back to the axis's own mode with the set-point where
- * the motor stands. The drive calls the end position 0; the axis calls it MC_Home.Position. What differs between the
- * drives, the order of the steps first of all, is the table of kinds.
+ * MC_Home with the drive's own routines (UG 6.2.4; BR 6.4 and appendix 4 behind a bridge). The steps are: write the
+ * parameters over SDO, switch to homing mode, set the start bit, read the result from statusword bits 13, 12 and 10,
+ * and switch back to the axis's own mode with the set-point at the position of the motor. The drive calls the end
+ * position 0; the axis calls it MC_Home.Position. The differences between the drives, above all the order of the steps,
+ * are in the table of the device.
  *
- * A CM1-E stops by its halt bit. The bridge has none (BR 6.1.2), nor does its guide say what ends an origin search: the
- * start bit is taken away, which interrupts a homing by CiA 402. Where bit 10 goes on saying "during homing", or the
- * motor does not come to rest, its torque goes: "motor free" is the one end that the guide knows (BR 6.1.1).
+ * A CM1-E stops by its halt bit. The bridge has no halt bit (BR 6.1.2), and its guide does not say what ends an origin
+ * search. So the start bit is taken away, which interrupts a homing by CiA 402. If bit 10 still says "during homing",
+ * or the motor does not come to rest, its torque is taken away: "motor free" is the only end that the guide names (BR
+ * 6.1.1).
  */
 #include <math.h>
 #include <stdio.h>
@@ -14,6 +16,7 @@
 
 #include "axis/axis_backlash.h"
 #include "axis/axis_commands.h"
+#include "axis/axis_driving.h"
 #include "axis/axis_events.h"
 #include "axis/axis_in_position.h"
 #include "axis/axis_position.h"
@@ -24,12 +27,9 @@
 #include "homing/homing_private.h"
 
 static const int64_t start_timeout_ns = 500 * MS_IN_NS;
-static const int64_t longest_halt_ns = 10000 * MS_IN_NS;
-static const int64_t standing_ns = 50 * MS_IN_NS;
 static const int64_t rest_timeout_ns = 1000 * MS_IN_NS;
 static const int64_t interrupted_ns = 100 * MS_IN_NS;
 static const int64_t taken_ns = 100 * MS_IN_NS; /* BR appendix 4.1: "until setting is done" */
-static const double standing_counts = 10.0;
 
 enum { OFFSET = CM1E_HOMING_OFFSET, METHOD = CM1E_HOMING_METHOD, SPEED = CM1E_HOMING_SPEED,
        ACCELERATION = CM1E_HOMING_ACCELERATION, TORQUE = CM1E_HOMING_TORQUE, TIMEOUT };
@@ -63,8 +63,8 @@ static const cm1e_entry_t *range_of(const cm1e_axis_t *axis, cm1e_homing_object_
     return object.range ? object.range : cm1e_drive_entry(&axis->drive, object.index, object.subindex);
 }
 
-/* UG 6.2.4, "Bit Sequence", and BR 6.4.2, by bit 13 * 4 + bit 12 * 2 + bit 10. 110 is not in the table; with the error
- * bit in it, it is one. */
+/* UG 6.2.4, "Bit Sequence", and BR 6.4.2, by bit 13 * 4 + bit 12 * 2 + bit 10. 110 is not in their tables; it counts as
+ * a failure because it has the error bit. */
 typedef enum meaning { IN_PROGRESS = 0, INTERRUPTED, ATTAINED, COMPLETED, FAILED } meaning_t;
 static const meaning_t meanings[8] = {IN_PROGRESS, INTERRUPTED, ATTAINED, COMPLETED, FAILED, FAILED, FAILED, FAILED};
 
@@ -76,8 +76,9 @@ static uint8_t bits(const cm1e_axis_t *axis)
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
-/* The default is the drive's, but a speed is at most one revolution per second. K42 counts pulses, and a CM1 with K37 =
- * 0 has 200 in a revolution: its default would be 50 revolutions per second, into a hard stop. */
+/* The default of a parameter is that of the drive, but the default speed is at most one revolution per second. K42
+ * counts pulses, and a CM1 with K37 = 0 has 200 pulses per revolution: its default would be 50 revolutions per second,
+ * into a hard stop. */
 static double default_of(const cm1e_axis_t *axis, int which, const cm1e_homing_object_t *object,
                          const cm1e_entry_t *entry)
 {
@@ -85,8 +86,8 @@ static double default_of(const cm1e_axis_t *axis, int which, const cm1e_homing_o
     return which == SPEED ? fmin((double)entry->default_value, most) : (double)entry->default_value;
 }
 
-/* Checked against the device's range and rounded as the device rounds, before anything reaches the wire. 0 is the
- * default of those that have one. */
+/* Checks a parameter against the range of the device and rounds it as the device does, before anything is written. 0
+ * selects the default, if the parameter has one. */
 static bool parameter(cm1e_axis_t *axis, int which, int method, double value)
 {
     const cm1e_homing_object_t object = object_of(axis, which, method);
@@ -150,7 +151,7 @@ static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_
         [TORQUE] = c->torque,
     };
     const double asked[HOMING_PARAMETERS] = {c->offset, c->method, c->velocity, c->acceleration, c->torque};
-    axis->homing->drive.k45 = -1; /* until it is read: the largest unit */
+    axis->homing->drive.k45 = -1; /* not read yet: the largest unit is assumed */
     axis->homing->drive.offset = c->offset * axis->position.scale;
     if (!isfinite(c->offset) || fabs(axis->homing->drive.offset) > INT32_MAX)
         return wrong(&axis->homing->drive, OFFSET, c->offset);
@@ -174,15 +175,15 @@ cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *c
     if (axis->motor_hooks && axis->motor_hooks->refuses_homing(axis))
         return CM1E_ERROR_CM_MODE;
     if (!(axis->power.enable_positive && axis->power.enable_negative))
-        return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method moves both ways */
-    if (c->method > kind->last_method || c->method < kind->first_method || c->method == 0) /* 0: none is selected */
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method may move in both directions */
+    if (c->method > kind->last_method || c->method < kind->first_method || c->method == 0) /* 0: none selected */
         return wrong(home, METHOD, c->method);
     if (home->submitted && cm1e_sdo_state(&home->sdo) == CM1E_SDO_BUSY)
-        return CM1E_ERROR_BUSY; /* a transfer of a homing that was stopped */
+        return CM1E_ERROR_BUSY; /* transfer of a stopped homing */
     if (!isfinite(c->timeout_s) || c->timeout_s < 0.0 || c->timeout_s > longest_timeout_s)
         return wrong(home, TIMEOUT, c->timeout_s);
     const cm1e_error_t error = take_parameters(axis, c);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     home->position = command->position;
     home->timeout_ns = (int64_t)((c->timeout_s == 0.0 ? 60.0 : c->timeout_s) * 1e9);
@@ -197,8 +198,8 @@ static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
     drive_homing_t *home = &axis->homing->drive;
     cm1e_drive_command_t *command = &axis->drive.command;
     home->step = step;
-    home->step_ns = home->quiet_ns = home->told_ns = axis->now_ns;
-    home->quiet_position = axis->position.raw;
+    home->step_ns = home->told_ns = axis->now_ns;
+    cm1e_axis_watch_standstill(axis, &home->standstill);
     if (step == HOME_SWITCH) {
         home->away = true;
         command->mode = CM1E_MODE_HM;
@@ -210,14 +211,14 @@ static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
         command->homing_start = true;
     } else if (step == HOME_SETTLE) {
         command->homing_start = false;
-    } else if (step == HOME_RETURN) { /* a halt stays until the mode is left: its end would start again */
+    } else if (step == HOME_RETURN) { /* the halt bit stays: clearing it would restart the homing */
         command->homing_start = false;
         command->mode = axis->mode;
     }
 }
 
-/* The drive's 0 is the reference, wherever in its last counts the motor stands just now. A drive that has not moved to
- * the offset has its 0 that far before it. */
+/* Sets the position at the reference, which is the 0 of the drive. The motor may be some counts beside it. A drive that
+ * does not move by the offset has its 0 that far before the reference. */
 static void take_reference(cm1e_axis_t *axis)
 {
     const int64_t offset = kind_of(axis)->offset_by_axis ? llround(axis->homing->drive.offset) : 0;
@@ -246,7 +247,7 @@ void cm1e_homing_run(cm1e_axis_t *axis)
     enter(axis, kind_of(axis)->steps[0]);
 }
 
-/* Homing is over in the axis's own mode. */
+/* Ends the homing. The drive is in the axis's own mode. */
 static void leave(cm1e_axis_t *axis)
 {
     cm1e_axis_set_source(axis, &cm1e_source_hold);
@@ -254,11 +255,11 @@ static void leave(cm1e_axis_t *axis)
     if (cm1e_axis_settle(axis))
         return;
     if (axis->commands.active)
-        cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of MC_Home, or of the MC_Stop that ended it */
+        cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* MC_Home, or the MC_Stop that ended it */
     cm1e_axis_go(axis, ON_DONE);
 }
 
-/* Nothing has moved, so this is no reason for ErrorStop. */
+/* Ends the command with an error. The motor has not moved, so the axis does not go to ErrorStop. */
 static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 {
     axis->homing->drive.refused = error;
@@ -281,11 +282,11 @@ static void submit(cm1e_axis_t *axis, uint16_t index, uint8_t subindex, unsigned
     const cm1e_error_t error = cm1e_sdo_submit(axis->drive.bus, &home->sdo);
     if (error == CM1E_OK)
         home->submitted = true;
-    else if (error != CM1E_ERROR_FULL) /* full: again in the next cycle */
+    else if (error != CM1E_ERROR_FULL) /* if the queue is full, it is tried again in the next cycle */
         refuse(axis, error);
 }
 
-/* true: the transfer under way has ended without an error. */
+/* Looks at the transfer under way. true: it has ended without an error. */
 static bool transferred(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
@@ -308,7 +309,7 @@ static void submit_parameter(cm1e_axis_t *axis)
     submit(axis, object.index, object.subindex, bytes, true);
 }
 
-/* Before the deadline of a step that transfers; a transfer under way ends by itself. */
+/* Refuses the homing when the deadline of a step with transfers is over. A transfer under way ends by itself. */
 static bool too_late(cm1e_axis_t *axis)
 {
     if (axis->now_ns < axis->homing->drive.deadline_ns)
@@ -337,7 +338,7 @@ static void step_write(cm1e_axis_t *axis)
         next_step(axis);
 }
 
-/* Without an offset, its unit does not matter. */
+/* Takes the unit of the offset from K45. Without an offset the unit does not matter. */
 static void take_offset_unit(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
@@ -365,19 +366,9 @@ static void step_read(cm1e_axis_t *axis)
         take_offset_unit(axis);
 }
 
-/* `quiet_ns` is the time since which the motor has been at rest. It counts as standing after a while. */
-static bool stands(cm1e_axis_t *axis)
-{
-    drive_homing_t *home = &axis->homing->drive;
-    const int32_t moved = (int32_t)((uint32_t)axis->position.raw - (uint32_t)home->quiet_position);
-    if (!axis->drive.feedback.online || llabs(moved) > cm1e_axis_few(axis, standing_counts)) {
-        home->quiet_ns = axis->now_ns;
-        home->quiet_position = axis->position.raw;
-    }
-    return axis->now_ns - home->quiet_ns >= standing_ns;
-}
+static bool stands(cm1e_axis_t *axis) { return cm1e_axis_is_at_standstill(axis, &axis->homing->drive.standstill); }
 
-/* BR appendix 3.1: in position before the mode is switched. */
+/* Waits for standstill: BR appendix 3.1 requires it before the mode is switched. */
 static void step_rest(cm1e_axis_t *axis)
 {
     if (stands(axis))
@@ -386,12 +377,7 @@ static void step_rest(cm1e_axis_t *axis)
         refuse(axis, CM1E_ERROR_AXIS_NOT_AT_REST);
 }
 
-static bool acting_in(const cm1e_axis_t *axis, cm1e_mode_t mode)
-{
-    return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)mode;
-}
-
-/* Without torque there is no motion to stop and no mode to wait for. */
+/* Ends a homing whose goal is no torque: then there is no motion to stop and no mode to wait for. */
 static bool off(cm1e_axis_t *axis)
 {
     if (axis->homing->drive.goal != HOME_GOAL_OFF)
@@ -406,7 +392,7 @@ static bool off(cm1e_axis_t *axis)
 static void step_switch(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
-    if (!acting_in(axis, CM1E_MODE_HM)) /* the drive's mode timeout bounds this */
+    if (!cm1e_axis_acts_in(axis, CM1E_MODE_HM)) /* the drive room bounds this wait */
         return;
     if (axis->homing->drive.goal == HOME_GOAL_DONE)
         next_step(axis);
@@ -431,7 +417,8 @@ static bool timed_out(cm1e_axis_t *axis)
     return true;
 }
 
-/* The bits of the last homing stay until the new one has begun. So only a change, or "in progress", counts. */
+/* Waits until the homing has begun. The drive shows the bits of the last homing until then, so only a change of the
+ * bits or "in progress" counts. */
 static void step_start(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
@@ -469,8 +456,8 @@ static void step_run(cm1e_axis_t *axis)
         timed_out(axis);
 }
 
-/* Behind a bridge the end of the homing and its position come over the serial line of the motor, perhaps not in the
- * same cycle: they count when the motor stands. */
+/* Waits for standstill. Behind a bridge the end of the homing and the position come over the serial line of the motor,
+ * and not always in one cycle. */
 static void step_settle(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
@@ -480,23 +467,17 @@ static void step_settle(cm1e_axis_t *axis)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
 }
 
-/* How long the stop may take: the speed over the deceleration (UG 6.2.4: that of 0x609A). Who sees a motor with a halt
- * bit gives it twice that and a second more; one that may not stop at all gets little more than it needs, and so does
- * one that nobody sees, because the bus is gone. */
+/* The stop takes speed / deceleration; the deceleration is 0x609A (UG 6.2.4). */
 static int64_t halt_bound_ns(const cm1e_axis_t *axis)
 {
     const cm1e_device_homing_t *kind = kind_of(axis);
     const double speed = axis->homing->drive.raw[SPEED] * kind->objects[SPEED].unit;
     const double acceleration = axis->homing->drive.raw[ACCELERATION] * kind->objects[ACCELERATION].unit;
-    const double braking_s = fmin(speed / acceleration, 1e-9 * (double)longest_halt_ns);
-    const int64_t braking_ns = (int64_t)(1e9 * braking_s);
-    const bool blind = axis->drive.fault.error != CM1E_OK;
-    const int64_t bound_ns = blind         ? braking_ns + standing_ns
-                             : kind->halts ? 2 * braking_ns + 1000 * MS_IN_NS : braking_ns + 3 * standing_ns;
-    return bound_ns < longest_halt_ns ? bound_ns : longest_halt_ns;
+    return cm1e_axis_halt_bound_ns(axis, speed / acceleration, kind->halts);
 }
 
-/* Halt first and the mode later: before V1.3.0 a halt together with a switch of the mode did not stop (UG 10.1). */
+/* Waits for the halt, and switches the mode only then: before V1.3.0 a halt together with a switch of the mode did not
+ * stop the motor (UG 10.1). */
 static void step_halt(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
@@ -519,7 +500,7 @@ static void step_halt(cm1e_axis_t *axis)
 static void step_return(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
-    if (!acting_in(axis, axis->mode))
+    if (!cm1e_axis_acts_in(axis, axis->mode))
         return;
     axis->drive.command.halt = false;
     leave(axis);
@@ -532,7 +513,7 @@ static bool step(cm1e_axis_t *axis)
         [HOME_TAKEN] = step_taken, [HOME_START] = step_start, [HOME_RUN] = step_run,     [HOME_SETTLE] = step_settle,
         [HOME_HALT] = step_halt,   [HOME_RETURN] = step_return,
     };
-    if (!axis->drive.feedback.enabled && axis->homing->drive.goal == HOME_GOAL_OFF && axis->drive.fault.error) {
+    if (cm1e_axis_has_lost_torque(axis, axis->homing->drive.goal)) {
         (void)off(axis);
         return true;
     }
@@ -542,13 +523,13 @@ static bool step(cm1e_axis_t *axis)
 
 static void stop(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
 {
-    (void)ramp; /* the drive has its own */
+    (void)ramp; /* the drive uses its own ramp */
     drive_homing_t *home = &axis->homing->drive;
     home->goal = goal;
     switch (home->step) {
     case HOME_READ:
     case HOME_REST:
-    case HOME_WRITE: /* holding, or standing in homing mode; a transfer under way may end by itself */
+    case HOME_WRITE: /* at standstill, in the own mode or in homing mode */
     case HOME_TAKEN:
         if (off(axis))
             break;
@@ -558,7 +539,7 @@ static void stop(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_
             leave(axis);
         break;
     case HOME_SWITCH:
-    case HOME_RETURN: /* standing; HOLD has to wait for the mode that is under way */
+    case HOME_RETURN: /* at standstill; HOLD waits for the switch of the mode */
         (void)off(axis);
         break;
     case HOME_START:

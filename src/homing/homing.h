@@ -1,14 +1,13 @@
 /**
  * @file homing/homing.h
- * Homings: by the drive (MC_Home), and in steps that the axis does (Part 5). Blocks command them with
- * cm1e_axis_start().
+ * Homings: by the drive (MC_Home), and in steps by the axis (Part 5). Blocks command them with cm1e_axis_start().
  */
 #ifndef CM1E_HOMING_HOMING_H
 #define CM1E_HOMING_HOMING_H
 
 #include "axis/axis.h"
 
-/** Adds to the axis that it can be homed. @rt init */
+/** Gives an axis the functions for homings. @rt init */
 cm1e_error_t cm1e_homing_add(cm1e_axis_t *axis, cm1e_diag_t *diag);
 
 #endif

@@ -1,4 +1,4 @@
-/* MC_Home and the steps of Part 5 as commands: at once, waiting, and when their turn comes. */
+/* The commands MC_Home and the steps of Part 5: started at once, buffered, and begun after another command. */
 #include "axis/axis_commands.h"
 #include "axis/axis_setpoint.h"
 #include "homing/homing_private.h"
@@ -6,7 +6,7 @@
 cm1e_error_t cm1e_homing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const cm1e_error_t error = cm1e_homing_prepare(axis, command);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     *id = cm1e_axis_next_id(axis);
@@ -15,7 +15,7 @@ cm1e_error_t cm1e_homing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *com
     return CM1E_OK;
 }
 
-/* Part 5: from Standstill, or after another step in Homing; the drive's own homing is no such step. */
+/* A step begins in Standstill, or in Homing after another step (Part 5), but not during a homing by the drive. */
 cm1e_error_t cm1e_homing_step_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const move_t move = cm1e_axis_move_of(command);
@@ -23,9 +23,9 @@ cm1e_error_t cm1e_homing_step_start(cm1e_axis_t *axis, const cm1e_axis_command_t
     cm1e_profile_t profile;
     cm1e_error_t error = drive_homes(axis) ? CM1E_ERROR_AXIS_HOMING
                                            : cm1e_homing_step_check(axis, command->step, &move);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_homing_step_prepare(axis, command->step, &move, &next, &profile);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     *id = cm1e_axis_next_id(axis);
@@ -38,7 +38,7 @@ cm1e_error_t cm1e_homing_step_start(cm1e_axis_t *axis, const cm1e_axis_command_t
 
 cm1e_error_t cm1e_homing_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
 {
-    (void)from; /* it begins at rest */
+    (void)from; /* a homing begins at rest */
     (void)late_s;
     const waiting_homing_t *waiting = &axis->homing->waiting;
     const cm1e_axis_command_t command = {
@@ -47,14 +47,14 @@ cm1e_error_t cm1e_homing_begin(cm1e_axis_t *axis, move_t *move, const from_t *fr
         .homing = waiting->configured ? NULL : &waiting->config,
     };
     const cm1e_error_t error = cm1e_homing_prepare(axis, &command);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_activate_homing(axis, move->id, command.kind);
     cm1e_homing_run(axis);
     return CM1E_OK;
 }
 
-/* What a homing needs beside its command is kept once, for the one that may wait. */
+/* Keeps the parameters of a waiting homing. There is one place, because only one homing can wait. */
 static cm1e_error_t keep_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     for (int i = 0; i < axis->commands.waiting.count; i++)
@@ -62,7 +62,7 @@ static cm1e_error_t keep_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *co
             return CM1E_ERROR_BUSY;
     if (!drive_homes(axis)) {
         const cm1e_error_t error = cm1e_homing_prepare(axis, command);
-        if (error)
+        if (error != CM1E_OK)
             return error;
     }
     axis->homing->waiting.configured = command->homing == NULL;
@@ -81,14 +81,14 @@ static waiting_step_t *step_of(cm1e_axis_t *axis, cm1e_command_id_t id)
 
 cm1e_error_t cm1e_homing_step_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
 {
-    (void)from; /* from the present set-point */
+    (void)from; /* a step begins at the present set-point */
     (void)late_s;
     stepping_t next;
     cm1e_profile_t profile;
     const waiting_step_t *waiting = step_of(axis, move->id);
     const cm1e_error_t error = waiting ? cm1e_homing_step_prepare(axis, &waiting->step, move, &next, &profile)
                                        : CM1E_ERROR_AXIS_STATE;
-    if (error)
+    if (error != CM1E_OK)
         return error;
     cm1e_axis_activate_homing(axis, move->id, CM1E_COMMAND_HOMING_STEP);
     cm1e_homing_step_run(axis, &next, &profile);
@@ -108,9 +108,9 @@ cm1e_error_t cm1e_homing_step_buffer(cm1e_axis_t *axis, const cm1e_axis_command_
     move_t move = cm1e_axis_move_of(command);
     waiting_step_t *place = free_step(axis);
     cm1e_error_t error = cm1e_homing_step_check(axis, command->step, &move);
-    if (!error)
+    if (error == CM1E_OK)
         error = place ? cm1e_axis_buffer(axis, &move) : CM1E_ERROR_FULL;
-    if (!error)
+    if (error == CM1E_OK)
         *place = (waiting_step_t){.id = *id = move.id, .step = *command->step};
     return error;
 }
@@ -118,5 +118,5 @@ cm1e_error_t cm1e_homing_step_buffer(cm1e_axis_t *axis, const cm1e_axis_command_
 cm1e_error_t cm1e_homing_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const cm1e_error_t error = keep_homing(axis, command);
-    return error ? error : cm1e_axis_buffer_move(axis, command, id);
+    return error != CM1E_OK ? error : cm1e_axis_buffer_move(axis, command, id);
 }

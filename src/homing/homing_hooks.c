@@ -1,4 +1,4 @@
-/* What the axis knows of homings: a table of functions, added to it when it is made. */
+/* Adds homings to an axis when it is made: a table of functions that the axis calls (axis_hooks.h). */
 #include <stdlib.h>
 
 #include "homing/homing.h"
@@ -13,8 +13,17 @@ static const command_method_t methods[PLAN_COUNT] = {
     [PLAN_HOMING_STEP] = {cm1e_homing_step_start, cm1e_homing_step_buffer, NULL, cm1e_homing_step_begin, NULL},
 };
 
+_Static_assert(sizeof(homing_t) % 8 == 0, "what comes behind it in a copy is aligned");
+
+static void copy_own(const cm1e_axis_t *axis, cm1e_axis_t *copy, void *place)
+{
+    copy->homing = place;
+    *copy->homing = *axis->homing;
+}
+
 static const homing_hooks_t hooks = {
     .methods = methods,
+    .own = {sizeof(homing_t), copy_own},
     .free = forget,
     .is_away = is_away,
     .step_cycle = cm1e_homing_step_cycle,

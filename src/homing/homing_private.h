@@ -8,7 +8,7 @@
 
 #include "axis/axis_parts.h"
 
-extern const source_t cm1e_source_homing; /**< the drive's own; drive_homing.c */
+extern const source_t cm1e_source_homing; /**< homing by the drive; drive_homing.c */
 
 enum { HOMING_PARAMETERS = CM1E_HOMING_PARAMETERS };
 
@@ -16,31 +16,30 @@ typedef struct drive_homing {
     cm1e_home_step_t step;
     home_goal_t goal;
     double position;       /**< u, at the reference */
-    double offset;         /**< counts, as asked for */
-    int32_t raw[HOMING_PARAMETERS]; /**< in the order of homing_objects (drive_homing.c) */
-    int32_t k45;           /**< of a CM2: its second digit says what the offset counts in; < 0: not read */
+    double offset;         /**< counts, as commanded */
+    int32_t raw[HOMING_PARAMETERS]; /**< values of the parameters, in the order of CM1E_HOMING_OFFSET ... */
+    int32_t k45;           /**< K45 of a CM2: its second digit is the unit of the offset; < 0: not read */
     uint8_t next;          /**< parameter to write next */
-    uint8_t place;         /**< of the step in the order of its kind */
+    uint8_t place;         /**< number of the step in the order of its kind */
     uint8_t bits_before;   /**< statusword bits 13, 12, 10 before the start */
     uint8_t wrong;         /**< for the text: the last parameter that was out of its range, and its value */
     bool submitted;
-    bool away;             /**< the axis's own mode is left */
+    bool away;             /**< the drive is not in the axis's own mode */
     bool unstoppable;      /**< for the text: it did not stop in time */
     uint8_t data[4];
-    int32_t quiet_position;
-    cm1e_error_t refused;  /**< why the last homing could not start, for the text; with the numbers in `sdo` */
+    standstill_t standstill;
+    cm1e_error_t refused;  /**< why the last homing could not start; `sdo` has the numbers for the text */
     cm1e_sdo_t sdo;
     int64_t timeout_ns, deadline_ns, step_ns; /**< step_ns: when the step began */
-    int64_t quiet_ns;      /**< since when the motor stands */
-    int64_t told_ns;       /**< since when the bits say "interrupted" */
+    int64_t told_ns;       /**< when the bits last said something else than "interrupted" */
     double wrong_value;
 } drive_homing_t;
 
 typedef enum stepping_phase {
-    STEPPING_SEARCH = 0, /**< it moves, or presses against a stop */
-    STEPPING_STOP,       /**< decided; it brakes, or makes the move of MC_FinishHoming */
-    STEPPING_SETTLE,     /**< the set-point stands: the motor comes to it, or is held up */
-    STEPPING_RELIEVE,    /**< the set-point goes back from where the motor was held up */
+    STEPPING_SEARCH = 0, /**< the axis moves, or presses against a stop */
+    STEPPING_STOP,       /**< the outcome is decided; it brakes, or makes the move of MC_FinishHoming */
+    STEPPING_SETTLE,     /**< the set-point stands, and the motor comes to it or is blocked */
+    STEPPING_RELIEVE,    /**< the set-point goes back from the place where the motor is blocked */
     STEPPING_RELIEVED,
 } stepping_phase_t;
 
@@ -52,11 +51,11 @@ typedef struct stepping {
     cm1e_error_t outcome;           /**< from STEPPING_STOP on */
     double position;                /**< u, to set at the reference; NAN: none */
     position_t reference;           /**< where the event was */
-    double search, way;             /**< +-1: direction of the search, and the one it goes now */
+    double search, way;             /**< +-1: direction of the search, and the present direction */
     double travel;                  /**< u */
     double pace;                    /**< u/s, of the set-point while the motor is pressed */
     int64_t deadline_ns, pressed_ns;
-    int64_t settled_ns;             /**< a motor that is not at its set-point by then is held up */
+    int64_t settled_ns;             /**< a motor that is not at its set-point by then is blocked */
     position_t actual_before;       /**< at the last look */
     bool level, seen_on, pressed;
     bool turned_positive, turned_negative; /**< at a limit switch */
@@ -64,15 +63,15 @@ typedef struct stepping {
     bool finishing;                 /**< positions are valid again: software limits hold */
 } stepping_t;
 
-/** What a waiting MC_Home needs beside its command. */
+/** The parameters of a waiting MC_Home. */
 typedef struct waiting_homing {
     cm1e_homing_config_t config;
-    bool configured;    /**< that of the axis instead */
+    bool configured;    /**< the configuration of the axis applies instead */
 } waiting_homing_t;
 
 enum { STEPS_WAITING = 3 };
 
-/** What a waiting step of a homing needs beside its command. */
+/** The parameters of a waiting step. */
 typedef struct waiting_step {
     cm1e_command_id_t id;
     cm1e_homing_step_t step;
@@ -87,23 +86,24 @@ typedef struct homing {
 } homing_t;
 
 /* drive_homing.c */
-/** A method that looks for a switch and not for a stop. */
+/** Whether a method searches for a switch and not for a stop. */
 bool cm1e_homing_by_switch(const cm1e_axis_t *axis, int method);
 cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
-/** The sentence for a homing that cm1e_homing_prepare() refused, for its method or another parameter. */
+/** Explains which parameter cm1e_homing_prepare() refused. */
 void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_homing_run(cm1e_axis_t *axis);
 
 /* homing_steps.c */
 /** Checks a step in every state of the axis. */
 cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move);
-/** Decides how a step begins: `*next` and `*profile`, nothing else. It is in force with cm1e_homing_step_run(). */
+/** Decides how a step begins: fills in `*next` and `*profile`. cm1e_homing_step_run() puts them in force. */
 cm1e_error_t cm1e_homing_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
                                     stepping_t *next, cm1e_profile_t *profile);
 void cm1e_homing_step_run(cm1e_axis_t *axis, const stepping_t *next, const cm1e_profile_t *profile);
 /** Called before every set-point: looks at inputs and motor, and decides the profile. */
 void cm1e_homing_step_cycle(cm1e_axis_t *axis);
-/** The profile of a step, or of the MC_Stop that ended one, has come to its end. TRUE: what comes next is decided. */
+/** Called when the profile of a step, or of the MC_Stop that ended it, has ended. true: the step has decided what
+ *  follows. */
 bool cm1e_homing_step_ended(cm1e_axis_t *axis);
 
 /** Continues the step after a pause. */
@@ -117,7 +117,7 @@ cm1e_error_t cm1e_homing_step_start(cm1e_axis_t *axis, const cm1e_axis_command_t
 cm1e_error_t cm1e_homing_step_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 cm1e_error_t cm1e_homing_step_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
 
-/* homing_text.c; FALSE: this error is not one of homings */
+/* homing_text.c; false: this error is not one of homings */
 bool cm1e_homing_failed_text(const cm1e_axis_t *axis, char *text, size_t size);
 bool cm1e_homing_refused_text(const cm1e_axis_t *axis, char *text, size_t size);
 bool cm1e_homing_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size);

@@ -1,13 +1,13 @@
 /*
- * Homing in steps (Part 5, 3.1 ... 3.8), done by the axis in its own mode: it searches with a velocity, looks at the
- * inputs and at the motor's torque and velocity in every cycle, stops, and gives the place of the event a position.
+ * Homing in steps (Part 5, 3.1 ... 3.8), by the axis in its own mode. It searches with a velocity, checks the inputs
+ * and the motor's torque and velocity in every cycle, stops, and sets the position of the place where the event was.
  *
- * Every step leaves the axis in Homing; MC_HomeDirect and MC_FinishHoming lead to Standstill. A limit that is reached
- * is an error of the block (Part 1, 2.2.2), shown once the axis stands: it does not lead to ErrorStop. Positions are
- * not valid in Homing, so the software limits do not hold, but for the move of MC_FinishHoming.
+ * Every step leaves the axis in Homing; MC_HomeDirect and MC_FinishHoming lead to Standstill. A limit of the step that
+ * is reached is an error of the block (Part 1, 2.2.2). It is shown when the axis is at standstill, and does not lead to
+ * ErrorStop. Positions are not valid in Homing, so the software limits apply only to the move of MC_FinishHoming.
  *
- * An event lies between two looks at the process data. It gets the place halfway between the two actual positions,
- * which is wrong by at most half the way between them.
+ * An event lies between two cycles. Its place is taken as halfway between the two actual positions, which is wrong by
+ * at most half of their distance.
  */
 #include <math.h>
 
@@ -24,16 +24,15 @@
 
 static const int64_t default_detection_ns = 50 * MS_IN_NS;
 static const double default_timeout_s = 60.0;
-static const double few_counts = 20.0;
-/* Here as everywhere in this file: counts of a CM1-E. Of a set-point that goes back from a stop, and of one that comes
- * nearer to it again; counts/s. */
-static const double relief_velocity_counts = 5000.0;
-static const double creep_velocity_counts = 250.0;
+/* All counts in this file are counts of a CM1-E. */
+static const double tolerance_counts = 20.0;
+static const double relief_velocity_counts = 5000.0; /* counts/s; the set-point goes back from a stop */
+static const double creep_velocity_counts = 250.0;   /* counts/s; the set-point comes nearer to the stop again */
 static const double pressing_time_s = 0.01;
 static const double farthest_relief_counts = 5000.0;
-/* Part of the allowed lag that shows a stop where no torque is given. */
+/* The part of the maximum lag that shows a stop if no TorqueLimit is given. */
 static const double pressing_lag = 0.25;
-/* A free motor that friction held short of its set-point has reached it by then. */
+/* Within this time a free motor reaches its set-point, in spite of friction. */
 static const int64_t settling_ns = 50 * MS_IN_NS;
 
 /* ---- signals ----------------------------------------------------------------------------------------------------- */
@@ -43,7 +42,7 @@ static cm1e_axis_switch_t limit_switch(double way)
     return way > 0.0 ? CM1E_SWITCH_LIMIT_POSITIVE : CM1E_SWITCH_LIMIT_NEGATIVE;
 }
 
-/* What a step searches for: a configured switch, or an input itself. */
+/* The level of the switch or input that a step searches for. */
 static bool level_of(const cm1e_axis_t *axis, const stepping_t *s)
 {
     if (s->step.kind == CM1E_STEP_LIMIT_SWITCH)
@@ -87,7 +86,7 @@ static double search_direction(const cm1e_homing_step_t *step)
     return step->direction == mcNegativeDirection || step->direction == mcSwitchNegative ? -1.0 : 1.0;
 }
 
-/* A position to be set: none, or one that the axis can count. */
+/* Whether a position can be set: it is in the range of the axis, or NAN for none. */
 static bool position_valid(const cm1e_axis_t *axis, double position)
 {
     position_t unused;
@@ -97,10 +96,10 @@ static bool position_valid(const cm1e_axis_t *axis, double position)
 static cm1e_error_t check_signal(const cm1e_axis_t *axis, const cm1e_homing_step_t *step)
 {
     const bool torque = step->torque_limit > 0.0;
-    if ((torque && axis->drive.in_torque.bytes == 0) || (by_switch(step->kind) && !cm1e_axis_sees_inputs(axis)))
+    if ((torque && axis->drive.image.in_torque.bytes == 0) || (by_switch(step->kind) && !cm1e_axis_sees_inputs(axis)))
         return CM1E_ERROR_PDO_MAPPING;
     if (step->kind == CM1E_STEP_ABSOLUTE_SWITCH && step->input != 0)
-        return cm1e_axis_check_input(axis, step->input) ? CM1E_ERROR_AXIS_STEP_INPUT : CM1E_OK;
+        return cm1e_axis_check_input(axis, step->input) != CM1E_OK ? CM1E_ERROR_AXIS_STEP_INPUT : CM1E_OK;
     if (step->kind == CM1E_STEP_LIMIT_SWITCH)
         return cm1e_axis_has_switch(axis, limit_switch(search_direction(step))) ? CM1E_OK
                                                                                 : CM1E_ERROR_AXIS_STEP_SWITCH;
@@ -120,7 +119,7 @@ cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_s
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!searches(step->kind))
         return CM1E_OK;
-    if (cm1e_drive_is_virtual(&axis->drive)) /* neither switches nor torque */
+    if (cm1e_drive_is_virtual(&axis->drive)) /* a virtual axis has neither switches nor torque */
         return CM1E_ERROR_AXIS_VIRTUAL;
     if (!direction_valid(step))
         return CM1E_ERROR_AXIS_DIRECTION;
@@ -131,14 +130,15 @@ cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_s
     const from_t from = from_set(axis);
     cm1e_motion_limits_t unused;
     const cm1e_error_t error = check_signal(axis, step);
-    return error ? error : cm1e_axis_limits_of(axis, &from, move, &unused);
+    return error != CM1E_OK ? error : cm1e_axis_limits_of(axis, &from, move, &unused);
 }
 
 /* ---- motions ----------------------------------------------------------------------------------------------------- */
 
 static cm1e_motion_state_t set_state(const cm1e_axis_t *axis)
 {
-    return (cm1e_motion_state_t){0.0, axis->setpoint.velocity, axis->setpoint.acceleration};
+    const from_t from = from_set(axis);
+    return (cm1e_motion_state_t){0.0, from.velocity, from.acceleration};
 }
 
 static void run(cm1e_axis_t *axis, const cm1e_profile_t *profile)
@@ -158,8 +158,9 @@ static void go_within(cm1e_axis_t *axis, double velocity, const cm1e_motion_limi
 
 static void go(cm1e_axis_t *axis, double velocity) { go_within(axis, velocity, &axis->homing->stepping.limits); }
 
-/* While the motor stands at something the set-point needs no limit of jerk; but no more acceleration than it takes to
- * change soon, for whatever follows has to take that back by jerk alone. */
+/* Changes the velocity of the set-point while the motor is blocked. No limit of jerk is needed then. The acceleration
+ * is only as large as needed for a change within `pressing_time_s`, because the next motion begins with a step to
+ * acceleration 0 (from_set()). */
 static void press_on(cm1e_axis_t *axis, double velocity)
 {
     cm1e_motion_limits_t limits = axis->limits.emergency;
@@ -191,8 +192,8 @@ static double relief_velocity(const cm1e_axis_t *axis)
                 axis->limits.maximum.velocity);
 }
 
-/* The motor pushes, or is about to, in the direction of `way`. The set-point goes back until it does not any more: to
- * where the motor is at least, and farther while what the drive has summed up still pushes. */
+/* Relieves a motor that pushes in the direction `way`. The set-point goes back at least to the position of the motor,
+ * and farther while the integral part of the drive's controller still pushes. */
 static void relieve(cm1e_axis_t *axis, double way)
 {
     stepping_t *s = &axis->homing->stepping;
@@ -207,7 +208,7 @@ static void relieve_cycle(cm1e_axis_t *axis)
     stepping_t *s = &axis->homing->stepping;
     s->travel += fabs(axis->setpoint.velocity) * axis->cycle_s;
     const double push = -s->way, lag = lag_counts(axis) / axis->position.scale;
-    /* Values below a whole count or per cent are rounding. */
+    /* A lag below one count and a torque below one per cent are rounding. */
     const bool pushes = lag * fabs(axis->position.scale) * push > 1.0 || torque_percent(axis) * push > 1.0;
     const bool enough = s->travel * fabs(axis->position.scale) >= farthest_relief_counts * axis->position.count;
     if ((pushes && !enough) || !axis->drive.feedback.fresh)
@@ -222,7 +223,7 @@ static bool presses_by_torque(const cm1e_axis_t *axis)
     return limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit;
 }
 
-/* A free motor is never so far from a set-point that stands still. */
+/* Whether the motor presses against something: a free motor is never so far from a set-point at rest. */
 static bool presses(const cm1e_axis_t *axis)
 {
     return presses_by_torque(axis) ||
@@ -231,19 +232,19 @@ static bool presses(const cm1e_axis_t *axis)
 
 static bool held_up(const cm1e_axis_t *axis)
 {
-    const bool away = fabs(lag_counts(axis)) > cm1e_axis_few(axis, few_counts);
+    const bool away = fabs(lag_counts(axis)) > cm1e_axis_tolerance_counts(axis, tolerance_counts);
     return axis->drive.feedback.fresh && (away || presses_by_torque(axis));
 }
 
 static double pushed_way(const cm1e_axis_t *axis)
 {
     const double lag = lag_counts(axis) / axis->position.scale;
-    const double way = fabs(lag * axis->position.scale) > cm1e_axis_few(axis, few_counts) ? lag : torque_percent(axis);
-    return way > 0.0 ? 1.0 : -1.0;
+    const bool lags = fabs(lag * axis->position.scale) > cm1e_axis_tolerance_counts(axis, tolerance_counts);
+    return (lags ? lag : torque_percent(axis)) > 0.0 ? 1.0 : -1.0;
 }
 
-/* The set-point stands and the motor is not there. A free one is on its way, or friction holds it until its controller
- * has summed up enough: it is waited for. One that is held up does not come, and is relieved. */
+/* Begins to wait for the motor while the set-point is at rest. A free motor arrives, perhaps late because of friction.
+ * A blocked motor does not, and is relieved. */
 static void settle(cm1e_axis_t *axis)
 {
     axis->homing->stepping.phase = STEPPING_SETTLE;
@@ -259,7 +260,7 @@ static void settle_cycle(cm1e_axis_t *axis)
         return;
     if (!held_up(axis)) {
         s->phase = STEPPING_RELIEVED;
-        press_on(axis, 0.0); /* it stands: over at once */
+        press_on(axis, 0.0); /* at rest already: this profile ends at once */
     } else if (presses(axis) || axis->now_ns >= s->settled_ns) {
         relieve(axis, pushed_way(axis));
     }
@@ -295,15 +296,15 @@ static cm1e_error_t prepare_finish(const cm1e_axis_t *axis, const move_t *move, 
     const from_t from = from_set(axis);
     move_t dynamics = *move;
     if (move->position == 0.0)
-        dynamics.kind = CM1E_COMMAND_HALT; /* no move: the velocity is of no matter */
+        dynamics.kind = CM1E_COMMAND_HALT; /* a halt: the velocity does not matter */
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &from, &dynamics, &next->limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     next->referenced = axis->homing->stepping.referenced;
     next->finishing = true;
     if (move->position == 0.0)
         return cm1e_profile_to_velocity(profile, &now, 0.0, &next->limits);
-    if (cm1e_profile_to_position(profile, &now, move->position, &next->limits))
+    if (cm1e_profile_to_position(profile, &now, move->position, &next->limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     return cm1e_axis_limits_check(axis, &from, profile);
 }
@@ -323,7 +324,7 @@ static cm1e_error_t prepare_search(const cm1e_axis_t *axis, const move_t *move, 
 {
     const from_t from = from_set(axis);
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &from, move, &next->limits);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     next->search = search_direction(&next->step);
     next->way = first_way(axis, next);
@@ -341,7 +342,7 @@ static cm1e_error_t prepare_search(const cm1e_axis_t *axis, const move_t *move, 
                             ? INT64_MAX : axis->now_ns + next->step.time_limit_ns;
     next->actual_before = axis_actual(axis);
     const cm1e_motion_state_t now = set_state(axis);
-    return cm1e_profile_to_velocity(profile, &now, next->way * next->limits.velocity, &next->limits)
+    return cm1e_profile_to_velocity(profile, &now, next->way * next->limits.velocity, &next->limits) != CM1E_OK
                ? CM1E_ERROR_AXIS_VELOCITY_RANGE : CM1E_OK;
 }
 
@@ -370,7 +371,7 @@ void cm1e_homing_step_run(cm1e_axis_t *axis, const stepping_t *next, const cm1e_
         cm1e_axis_set_homed(axis, false);
     run(axis, profile);
     if (next->step.kind == CM1E_STEP_DIRECT && profile->duration_s == 0.0)
-        (void)cm1e_homing_step_ended(axis); /* it stands: done at once */
+        (void)cm1e_homing_step_ended(axis); /* at standstill: done at once */
 }
 
 /* ---- search ------------------------------------------------------------------------------------------------------ */
@@ -389,7 +390,8 @@ static bool edge_is_meant(const stepping_t *s, bool rising, double moving)
     return false;
 }
 
-/* The levels of an absolute switch are conditions, however the switch is met. */
+/* Whether a level of the switch is the event. For an absolute switch the levels (mcOn, mcOff) are conditions, whichever
+ * edge leads to them. */
 static bool level_is_meant(const stepping_t *s, bool on)
 {
     return s->step.kind == CM1E_STEP_ABSOLUTE_SWITCH &&
@@ -402,7 +404,7 @@ static position_t halfway(const cm1e_axis_t *axis)
     return cm1e_position_plus(before, 0.5 * cm1e_position_minus(axis_actual(axis), before));
 }
 
-/* true: the event has occurred. */
+/* Looks at the switch. true: the event has occurred. */
 static bool look_at_switch(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
@@ -416,7 +418,8 @@ static bool look_at_switch(cm1e_axis_t *axis)
     return true;
 }
 
-/* A search that went the other way has passed the switch, or has met what it turns at: back to its own direction. */
+/* Whether a search in the opposite direction has to turn back to its own: it has passed the switch, or met a limit
+ * switch. */
 static bool time_to_turn(const stepping_t *s)
 {
     const bool falling_limit = s->step.kind == CM1E_STEP_LIMIT_SWITCH &&
@@ -426,12 +429,12 @@ static bool time_to_turn(const stepping_t *s)
     return s->way != s->search && s->seen_on && !s->level;
 }
 
-/* Each limit switch is met once: then the search goes back over the switch (Part 5, 3.1). */
+/* Turns the search at a limit switch, once at each of them (Part 5, 3.1). */
 static void look_at_limit_switch(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
     if (s->step.kind == CM1E_STEP_LIMIT_SWITCH && s->way == s->search)
-        return; /* that is the one it looks for */
+        return; /* the step searches for this limit switch */
     if (!cm1e_axis_switch_active(axis, limit_switch(s->way)))
         return;
     bool *turned = s->way > 0.0 ? &s->turned_positive : &s->turned_negative;
@@ -451,7 +454,7 @@ static bool stands(const cm1e_axis_t *axis)
     return fabs(actual_velocity(axis)) <= axis->homing->stepping.step.detection_velocity;
 }
 
-/* The share of the signs of a stop that is reached; 1 is enough. */
+/* How clearly the motor presses against a stop: torque or lag relative to its limit; 1 is enough. */
 static double pressure(const cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
@@ -460,8 +463,8 @@ static double pressure(const cm1e_axis_t *axis)
     return lag_counts(axis) / axis->position.scale * s->way / (pressing_lag * axis->limits.max_lag);
 }
 
-/* The set-point that keeps the motor pressed with about TorqueLimit, whatever its controller sums up meanwhile; without
- * a TorqueLimit it stands. */
+/* Moves the set-point so that the motor keeps pressing with about TorqueLimit, although the drive's controller
+ * integrates the lag. Without a TorqueLimit the set-point stays. */
 static void keep_pressed(cm1e_axis_t *axis, double now)
 {
     stepping_t *s = &axis->homing->stepping;
@@ -474,12 +477,13 @@ static void keep_pressed(cm1e_axis_t *axis, double now)
     press_on(axis, s->way * pace);
 }
 
-/* A stop is a place where the motor stands, pressed, for long enough. If it comes free, the search goes on. */
+/* Searches for a stop: a place where the motor presses and stands for the detection time. If it comes free, the search
+ * goes on. */
 static void look_for_block(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
     const double now = pressure(axis);
-    /* Faster than that at first, or a start from rest would look like a stop. */
+    /* The set-point has to be faster than the detection velocity first, or a start from rest would look like a stop. */
     const bool fast = fabs(axis->setpoint.velocity) > s->step.detection_velocity;
     if (!s->pressed && !(stands(axis) && fast && now >= 1.0))
         return;
@@ -499,7 +503,8 @@ static void look_for_block(cm1e_axis_t *axis)
     }
 }
 
-/* Behind a bridge the motor's own counts end, whatever positions mean. TRUE: it has to brake now. */
+/* Behind a bridge the counts of the motor have an end, whatever the positions of the axis are. true: the axis has to
+ * brake now. */
 static bool out_of_counts(const cm1e_axis_t *axis)
 {
     const double v = axis->setpoint.velocity, now = cm1e_axis_line(axis, axis->setpoint.position);
@@ -507,7 +512,7 @@ static bool out_of_counts(const cm1e_axis_t *axis)
     return v > 0.0 ? end > axis->limits.counts_upper : v < 0.0 && end < axis->limits.counts_lower;
 }
 
-/* true: a limit of the step is reached, or MC_Power no longer permits the direction. */
+/* Checks the limits of the step. true: one is reached, or MC_Power no longer permits the direction. */
 static bool over_a_limit(cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
@@ -526,7 +531,7 @@ static bool over_a_limit(cm1e_axis_t *axis)
     else if (by_switch(s->step.kind) && s->step.torque_limit > 0.0 && axis->drive.feedback.fresh &&
              fabs(torque_percent(axis)) > s->step.torque_limit)
         error = CM1E_ERROR_AXIS_STEP_TORQUE;
-    if (error)
+    if (error != CM1E_OK)
         give_up(axis, error);
     return error != CM1E_OK;
 }
@@ -550,7 +555,7 @@ static void search(cm1e_axis_t *axis)
     s->actual_before = axis_actual(axis);
 }
 
-/* MC_Stop has ended a step at its set-point, but the motor is still to be relieved before it is Done. */
+/* After MC_Stop has ended a step: whether the motor still has to be relieved before MC_Stop is Done. */
 static bool relieving_after_stop(const cm1e_axis_t *axis)
 {
     return axis->homing_step.after_stop && axis->state == CM1E_AXIS_STOPPING;
@@ -579,7 +584,7 @@ static void complete(cm1e_axis_t *axis)
     stepping_t *s = &axis->homing->stepping;
     const bool last = s->step.kind == CM1E_STEP_DIRECT || s->step.kind == CM1E_STEP_FINISH;
     axis->homing_step.pushing = false;
-    if (s->outcome) { /* what was to build on it is pointless */
+    if (s->outcome != CM1E_OK) { /* waiting steps would build on this one */
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, s->outcome);
         cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
         return;
@@ -596,7 +601,7 @@ static void complete(cm1e_axis_t *axis)
     cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
-/* The set-point of MC_Stop stands, or has been taken back. */
+/* The set-point of MC_Stop has come to rest, or the motor has been relieved. */
 static bool stop_ended(cm1e_axis_t *axis)
 {
     axis->homing_step.after_stop = false;
@@ -623,7 +628,7 @@ bool cm1e_homing_step_ended(cm1e_axis_t *axis)
         return stop_ended(axis);
     cm1e_axis_stand(axis);
     if (s->phase == STEPPING_SEARCH)
-        return true; /* it presses, and waits */
+        return true; /* the motor presses; the detection time runs */
     if (s->phase == STEPPING_STOP && s->outcome != CM1E_OK && held_up(axis))
         settle(axis);
     else
@@ -631,11 +636,11 @@ bool cm1e_homing_step_ended(cm1e_axis_t *axis)
     return true;
 }
 
-/* A step of a homing goes on as it was about to: to the velocity of its search, or to the end of MC_FinishHoming. */
+/* Continues a step after a pause: with the velocity of its search, or to the end of MC_FinishHoming. */
 cm1e_error_t cm1e_homing_step_anew(cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
-    const cm1e_motion_state_t now = {0.0, axis->setpoint.velocity, axis->setpoint.acceleration};
+    const cm1e_motion_state_t now = set_state(axis);
     const double way = cm1e_position_minus(axis->setpoint.target, axis->setpoint.position) / axis->position.scale;
     const double end = axis->setpoint.profile.end.velocity;
     const from_t from = from_set(axis);

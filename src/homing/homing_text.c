@@ -1,4 +1,4 @@
-/* Homings in sentences: what was refused, and why one failed. */
+/* Sentences about homings: why one was refused, and why one failed. */
 #include <stdio.h>
 
 #include "cm1e/error.h"

@@ -299,7 +299,7 @@ static void pop_passed(cm1e_path_t *path, cm1e_path_sample_t *sample)
     }
 }
 
-/** What comes after the end of the profile. FALSE: nothing yet. */
+/** What comes after the end of the profile. false: nothing yet. */
 static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     const double over_s = path->time_s - path->profile.duration_s;

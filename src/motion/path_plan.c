@@ -155,7 +155,7 @@ static double eased(const cm1e_motion_state_t *start, double jerk)
 static bool plan_to(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double exit,
                     double highest)
 {
-    return !cm1e_profile_to_state(profile, start, run->length, exit, &run->limits) &&
+    return cm1e_profile_to_state(profile, start, run->length, exit, &run->limits) == CM1E_OK &&
            keeps(profile, start, run->length, highest);
 }
 
@@ -296,7 +296,7 @@ void cm1e_path_keep_going(cm1e_path_t *path)
     double soft, hard;
     cm1e_profile_t profile;
     exits(path, 0, &run, &soft, &hard);
-    if (!cm1e_profile_to_state(&profile, &start, run.length, fmin(hard, start.velocity), &run.limits))
+    if (cm1e_profile_to_state(&profile, &start, run.length, fmin(hard, start.velocity), &run.limits) == CM1E_OK)
         follow(path, &profile, &start);
 }
 
@@ -362,7 +362,7 @@ static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, cm1e_
         limits.deceleration = fmin(limits.deceleration, most->deceleration);
         limits.jerk = fmin(limits.jerk, most->jerk);
         length += element->length;
-        if (cm1e_profile_to_velocity(stop, start, 0, &limits))
+        if (cm1e_profile_to_velocity(stop, start, 0, &limits) != CM1E_OK)
             return false;
         if (stop->end.position <= length)
             return stop_keeps(path, stop, start, i + 1, length, &run);
@@ -419,7 +419,8 @@ void cm1e_path_cut(cm1e_path_t *path)
     for (int next = current.count; next < path->element_count;) {
         const cm1e_path_run_t run = cm1e_path_element(path, next)->hard_braking;
         cm1e_profile_t profile;
-        if (!cm1e_profile_to_velocity(&profile, &start, 0, &run.limits) && profile.end.position <= run.length) {
+        if (cm1e_profile_to_velocity(&profile, &start, 0, &run.limits) == CM1E_OK &&
+            profile.end.position <= run.length) {
             cut_at(path, begin + profile.end.position * (1 + AS_LONG));
             break;
         }

@@ -54,7 +54,7 @@ static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *con
     }
     for (int i = 0; i < link->ports; i++) {
         const cm1e_error_t error = cm1e_raw_socket_open(&raw->sockets[i], names[i], diag);
-        if (error) {
+        if (error != CM1E_OK) {
             raw_close(link);
             return error;
         }

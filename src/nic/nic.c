@@ -37,15 +37,15 @@ cm1e_error_t cm1e_nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *b
     n->link.ports = config->second_interface[0] ? 2 : 1;
     snprintf(n->link.interface_name, sizeof n->link.interface_name, "%s", first_interface(config));
     cm1e_error_t error = backend->open(&n->link, config, diag);
-    if (error) {
+    if (error != CM1E_OK) {
         free(n);
         return error;
     }
     if (config->pcap_file[0])
         error = cm1e_nic_pcap(n, config->pcap_file, diag);
-    if (!error && n->pcap) /* its header: a full disk is told before anything moves */
+    if (error == CM1E_OK && n->pcap) /* its header: a full disk is told before anything moves */
         error = cm1e_pcap_check(n->pcap, config->pcap_file, diag);
-    if (error) {
+    if (error != CM1E_OK) {
         cm1e_nic_close(n);
         return error;
     }

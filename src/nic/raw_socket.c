@@ -13,6 +13,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "nic/nic.h"
+
 enum { ETHERTYPE_ETHERCAT = 0x88A4, RECEIVE_BUFFER = 1 << 20, DRAIN_LIMIT = 65536 };
 
 #ifndef PACKET_IGNORE_OUTGOING
@@ -55,6 +57,19 @@ static cm1e_error_t check_interface(int fd, const char *name, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+bool cm1e_nic_lacks_link(const char *interface_name)
+{
+    struct ifreq request = {0};
+    if (strlen(interface_name) >= sizeof request.ifr_name)
+        return false;
+    memcpy(request.ifr_name, interface_name, strlen(interface_name));
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const bool asked = fd >= 0 && ioctl(fd, SIOCGIFFLAGS, &request) == 0;
+    if (fd >= 0)
+        close(fd);
+    return asked && !(request.ifr_flags & IFF_RUNNING);
+}
+
 static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)
 {
     if (why != EPERM && why != EACCES)
@@ -94,7 +109,7 @@ static cm1e_error_t no_interface(const char *name, cm1e_diag_t *diag)
 static cm1e_error_t set_up(int fd, const char *name, unsigned index, cm1e_diag_t *diag)
 {
     const cm1e_error_t error = check_interface(fd, name, diag);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     tune(fd, (int)index);
     const struct sockaddr_ll address = {.sll_family = AF_PACKET, .sll_protocol = htons(ETHERTYPE_ETHERCAT),
@@ -112,7 +127,7 @@ static cm1e_error_t open_socket(int *fd, const char *interface_name, unsigned in
     if (*fd < 0)
         return no_socket(errno, diag);
     const cm1e_error_t error = set_up(*fd, interface_name, index, diag);
-    if (error)
+    if (error != CM1E_OK)
         return error;
     uint8_t stale[64];
     for (int i = 0; i < DRAIN_LIMIT && cm1e_raw_socket_receive(*fd, stale, sizeof stale) != 0; i++)
@@ -128,9 +143,9 @@ cm1e_error_t cm1e_raw_socket_open(cm1e_raw_socket_t *made, const char *interface
     if (index == 0)
         return no_interface(interface_name, diag);
     cm1e_error_t error = cm1e_interface_lock_take(&made->lock, interface_name, diag);
-    if (!error)
+    if (error == CM1E_OK)
         error = open_socket(&made->fd, interface_name, index, diag);
-    if (error)
+    if (error != CM1E_OK)
         cm1e_raw_socket_close(made);
     return error;
 }

@@ -217,13 +217,18 @@ void cm1e_plot_print_html(const trace_t *trace, FILE *file)
     fprintf(file, "};\n</script>\n<script>\n%s</script>\n</body>\n</html>\n", cm1e_plot_page_js);
 }
 
-cm1e_error_t cm1e_scheduler_write_html(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
+cm1e_error_t cm1e_plot_write_html(const trace_t *trace, const char *path, cm1e_diag_t *diag)
 {
-    if (cm1e_in_task())
-        return cm1e_in_task_refuse("cm1e_scheduler_write_html()", "", diag);
     if (!cm1e_plot_dygraphs_js[0])
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
                              "This build of cm1e draws no pages: it was configured without the chart library dygraphs "
                              "(Debian package libjs-dygraphs). Install it and build again, or write an SVG image.");
-    return cm1e_trace_write_file(cm1e_scheduler_trace(scheduler), path, cm1e_plot_print_html, diag);
+    return cm1e_trace_write_file(trace, path, cm1e_plot_print_html, diag);
+}
+
+cm1e_error_t cm1e_scheduler_write_html(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
+{
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_write_html()", "", diag);
+    return cm1e_plot_write_html(cm1e_scheduler_trace(scheduler), path, diag);
 }

@@ -19,6 +19,10 @@ extern const plot_state_t cm1e_plot_states[CM1E_AXIS_STATE_COUNT];
 /** Prints the trace as a page of HTML that needs no other file. */
 void cm1e_plot_print_html(const trace_t *trace, FILE *file);
 
+/** The files of these. CM1E_ERROR_UNSUPPORTED: there is no chart library for pages. @rt block */
+cm1e_error_t cm1e_plot_write_html(const trace_t *trace, const char *path, cm1e_diag_t *diag);
+cm1e_error_t cm1e_plot_write_svg(const trace_t *trace, const char *path, cm1e_diag_t *diag);
+
 /** Prints the trace as an SVG image. */
 void cm1e_plot_print_svg(const trace_t *trace, FILE *file);
 

@@ -493,9 +493,14 @@ void cm1e_plot_print_svg(const trace_t *trace, FILE *file)
     fputs("</svg>\n", file);
 }
 
+cm1e_error_t cm1e_plot_write_svg(const trace_t *trace, const char *path, cm1e_diag_t *diag)
+{
+    return cm1e_trace_write_file(trace, path, cm1e_plot_print_svg, diag);
+}
+
 cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_write_svg()", "", diag);
-    return cm1e_trace_write_file(cm1e_scheduler_trace(scheduler), path, cm1e_plot_print_svg, diag);
+    return cm1e_plot_write_svg(cm1e_scheduler_trace(scheduler), path, diag);
 }

@@ -66,7 +66,7 @@ static void look_at_axis(log_t *log, const cm1e_axis_t *axis, uint32_t index, in
         write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_STATE, .axis = (int32_t)index, .code = (int32_t)now.state,
                                             .detail = (uint32_t)seen->state}, run_ns);
     /* The code of the drive may come a cycle after the error. */
-    if (now.error && (now.error != seen->error || now.device_error != seen->device_error))
+    if (now.error != CM1E_OK && (now.error != seen->error || now.device_error != seen->device_error))
         write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_ERROR, .axis = (int32_t)index, .code = (int32_t)now.error,
                                             .detail = now.device_error, .value = now.value, .bound = now.bound}, run_ns);
     *seen = now;

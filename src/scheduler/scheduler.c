@@ -85,6 +85,8 @@ cm1e_axis_t *const *cm1e_scheduler_axes(const cm1e_scheduler_t *scheduler, uint3
 
 cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler) { return scheduler->bus; }
 
+bool cm1e_scheduler_is_ending(const cm1e_scheduler_t *scheduler) { return scheduler->shutting_down; }
+
 bool cm1e_scheduler_is_virtual(const cm1e_scheduler_t *scheduler)
 {
     return scheduler->clock != cm1e_clock_monotonic();
@@ -348,14 +350,14 @@ cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const c
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_write_csv()", "", diag);
-    return cm1e_trace_write_file(&scheduler->trace, path, cm1e_trace_print_csv, diag);
+    return cm1e_trace_write_csv(&scheduler->trace, path, diag);
 }
 
 cm1e_error_t cm1e_scheduler_write_npy(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_write_npy()", "", diag);
-    return cm1e_trace_write_file(&scheduler->trace, path, cm1e_trace_print_npy, diag);
+    return cm1e_trace_write_npy(&scheduler->trace, path, diag);
 }
 
 const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return &scheduler->trace; }

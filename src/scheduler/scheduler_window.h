@@ -36,6 +36,8 @@ CM1E_GUEST_API bool cm1e_scheduler_register_window(const cm1e_window_t *window);
 /** @rt any */
 CM1E_GUEST_API cm1e_axis_t *const *cm1e_scheduler_axes(const cm1e_scheduler_t *scheduler, uint32_t *count);
 CM1E_GUEST_API cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler);
+/** The programs do not run any more, and the axes are shut down. @rt cycle */
+CM1E_GUEST_API bool cm1e_scheduler_is_ending(const cm1e_scheduler_t *scheduler);
 /** Time passes only in the cycle. @rt any */
 CM1E_GUEST_API bool cm1e_scheduler_is_virtual(const cm1e_scheduler_t *scheduler);
 

@@ -312,6 +312,16 @@ void cm1e_trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_n
     watch(trace, sample, time_ns);
 }
 
+bool cm1e_trace_take(trace_t *trace, const double *values, int64_t time_ns)
+{
+    double *sample = cm1e_trace_next_sample(trace, time_ns);
+    if (!sample)
+        return false;
+    memcpy(sample, values, trace->column_count * sizeof *sample);
+    watch(trace, sample, time_ns);
+    return true;
+}
+
 void cm1e_trace_mark(trace_t *trace, const char *text, int64_t time_ns)
 {
     const uint32_t place = (trace->first_mark + trace->mark_count) % TRACE_MARKS;

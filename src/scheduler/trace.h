@@ -77,19 +77,23 @@ typedef struct trace {
 
 /** A trace of `count` axes with these names, which are not copied. `capacity` 0: a trace that records nothing.
  *  @rt init */
-cm1e_error_t cm1e_trace_init(trace_t *trace, const char *const names[], uint32_t count, uint32_t capacity,
-                             uint32_t every, cm1e_diag_t *diag);
-void cm1e_trace_free(trace_t *trace);
+CM1E_GUEST_API cm1e_error_t cm1e_trace_init(trace_t *trace, const char *const names[], uint32_t count,
+                                            uint32_t capacity, uint32_t every, cm1e_diag_t *diag);
+CM1E_GUEST_API void cm1e_trace_free(trace_t *trace);
 /** Adds a column that is read at `column->value`; conditions as for cm1e_scheduler_trace_variable(). @rt init */
-cm1e_error_t cm1e_trace_add(trace_t *trace, const trace_column_t *column, cm1e_diag_t *diag);
+CM1E_GUEST_API cm1e_error_t cm1e_trace_add(trace_t *trace, const trace_column_t *column, cm1e_diag_t *diag);
 /** Adds the object of a drive at `position`; cm1e_scheduler_trace_object(). @rt init */
-cm1e_error_t cm1e_trace_add_object(trace_t *trace, cm1e_bus_t *bus, uint16_t position, const char *axis, uint16_t index,
-                                   uint8_t subindex, cm1e_diag_t *diag);
+CM1E_GUEST_API cm1e_error_t cm1e_trace_add_object(trace_t *trace, cm1e_bus_t *bus, uint16_t position,
+                                                  const char *axis, uint16_t index, uint8_t subindex,
+                                                  cm1e_diag_t *diag);
 cm1e_error_t cm1e_trace_set_trigger(trace_t *trace, const cm1e_trace_trigger_t *trigger, cm1e_diag_t *diag);
 /** Allocates the samples; columns are complete. @rt init */
-cm1e_error_t cm1e_trace_begin(trace_t *trace, cm1e_diag_t *diag);
+CM1E_GUEST_API cm1e_error_t cm1e_trace_begin(trace_t *trace, cm1e_diag_t *diag);
 /** @rt cycle */
-void cm1e_trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns);
+CM1E_GUEST_API void cm1e_trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns);
+/** Takes in a sample that was recorded elsewhere, and lets the trigger see it. false: the trigger has ended the
+ *  recording. @rt block */
+bool cm1e_trace_take(trace_t *trace, const double *values, int64_t time_ns);
 /** The next sample of the ring, all values 0; NULL: the trigger has ended the recording. @rt cycle */
 double *cm1e_trace_next_sample(trace_t *trace, int64_t time_ns);
 
@@ -104,6 +108,9 @@ CM1E_GUEST_API const trace_mark_t *cm1e_trace_mark_at(const trace_t *trace, uint
 
 /** The trace of a scheduler. It lives as long as the scheduler. @rt init */
 CM1E_GUEST_API const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler);
+
+cm1e_error_t cm1e_trace_write_csv(const trace_t *trace, const char *path, cm1e_diag_t *diag); /**< @rt block */
+cm1e_error_t cm1e_trace_write_npy(const trace_t *trace, const char *path, cm1e_diag_t *diag); /**< @rt block */
 
 /** Print the content of files. */
 void cm1e_trace_print_csv(const trace_t *trace, FILE *file);

@@ -134,3 +134,13 @@ cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,
     print_in_c_locale(trace, output.file, print);
     return cm1e_output_close(&output, diag);
 }
+
+cm1e_error_t cm1e_trace_write_csv(const trace_t *trace, const char *path, cm1e_diag_t *diag)
+{
+    return cm1e_trace_write_file(trace, path, cm1e_trace_print_csv, diag);
+}
+
+cm1e_error_t cm1e_trace_write_npy(const trace_t *trace, const char *path, cm1e_diag_t *diag)
+{
+    return cm1e_trace_write_file(trace, path, cm1e_trace_print_npy, diag);
+}

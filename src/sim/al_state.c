@@ -20,7 +20,8 @@ static void show(cm1e_sim_slave_t *slave, uint16_t code)
     if (status != cm1e_get_u16(memory + ESC_AL_STATUS))
         cm1e_sim_esc_event(slave, ESC_EVENT_AL_STATUS, true);
     cm1e_put_u16(memory + ESC_AL_STATUS, status);
-    cm1e_put_u16(memory + ESC_AL_STATUS_CODE, code);
+    cm1e_put_u16(memory + ESC_AL_STATUS_CODE,
+                 slave->al_id ? code : (uint16_t)cm1e_sim_slave_code(slave, CM1E_SIM_CODE_AL_STATUS, code));
 }
 
 static bool has_mailbox(cm1e_sim_slave_t *slave) { return cm1e_sim_esc_sm(slave, ESC_ROLE_MAILBOX_OUT) != NULL; }
@@ -28,6 +29,13 @@ static bool has_mailbox(cm1e_sim_slave_t *slave) { return cm1e_sim_esc_sm(slave,
 static uint16_t check_mailbox(cm1e_sim_slave_t *slave)
 {
     return !has_mailbox(slave) || cm1e_sim_esc_mailboxes_valid(slave) ? AL_CODE_NONE : AL_CODE_INVALID_MAILBOX_PREOP;
+}
+
+static uint16_t check_boot_mailbox(cm1e_sim_slave_t *slave)
+{
+    if (!slave->ops->file_begin || !has_mailbox(slave))
+        return AL_CODE_BOOT_NOT_SUPPORTED;
+    return cm1e_sim_esc_mailboxes_valid(slave) ? AL_CODE_NONE : AL_CODE_INVALID_MAILBOX_BOOT;
 }
 
 static uint16_t check_process_data(cm1e_sim_slave_t *slave)
@@ -75,6 +83,8 @@ static const struct transition {
     uint16_t (*check)(cm1e_sim_slave_t *slave);
 } transitions[] = {
     {CM1E_AL_INIT, CM1E_AL_PRE_OP, check_mailbox},
+    {CM1E_AL_INIT, CM1E_AL_BOOT, check_boot_mailbox},
+    {CM1E_AL_BOOT, CM1E_AL_INIT, NULL},
     {CM1E_AL_PRE_OP, CM1E_AL_INIT, NULL},
     {CM1E_AL_PRE_OP, CM1E_AL_SAFE_OP, check_process_data},
     {CM1E_AL_SAFE_OP, CM1E_AL_INIT, NULL},
@@ -104,7 +114,9 @@ static bool state_known(uint8_t state)
 static uint16_t check_present(cm1e_sim_slave_t *slave)
 {
     uint16_t code = AL_CODE_NONE;
-    if (slave->al_state > CM1E_AL_INIT)
+    if (slave->al_state == CM1E_AL_BOOT)
+        code = check_boot_mailbox(slave);
+    else if (slave->al_state > CM1E_AL_INIT)
         code = check_mailbox(slave);
     if (code == AL_CODE_NONE && slave->al_state >= CM1E_AL_SAFE_OP)
         code = check_process_data(slave);
@@ -118,8 +130,6 @@ static uint16_t decide(cm1e_sim_slave_t *slave, uint8_t to)
         return AL_CODE_UNKNOWN_STATE;
     if (to == from)
         return check_present(slave);
-    if (to == CM1E_AL_BOOT)
-        return from == CM1E_AL_INIT ? AL_CODE_BOOT_NOT_SUPPORTED : AL_CODE_INVALID_STATE_CHANGE;
     const struct transition *transition = find_transition(from, to);
     if (!transition)
         return AL_CODE_INVALID_STATE_CHANGE;

@@ -153,12 +153,21 @@ static void destroy(void *app)
     free(app);
 }
 
+static bool play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns)
+{
+    cm1e_sim_bridge_t *bridge = app;
+    if (!cm1e_sim_store_play(&bridge->store, profile))
+        return false;
+    power_on(bridge, now_ns);
+    return true;
+}
+
 const cm1e_sim_app_ops_t cm1e_sim_bridge_ops = {
     .advance = advance, .due = due, .state_change = state_change, .process_data_sizes = cm1e_sim_bridge_sizes,
     .outputs = outputs, .inputs = cm1e_sim_bridge_inputs, .watchdog_expired = disable,
     .sdo_read = cm1e_sim_bridge_sdo_read,
     .sdo_write = cm1e_sim_bridge_sdo_write, .object = cm1e_sim_bridge_object, .entry = cm1e_sim_bridge_entry,
-    .power_on = power_on, .destroy = destroy,
+    .power_on = power_on, .destroy = destroy, .play = play,
 };
 
 cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model,

@@ -53,4 +53,5 @@ void cm1e_sim_bridge_dictionary_reset(cm1e_sim_bridge_t *bridge)
     for (size_t i = 0; i < store->object_count; i++)
         for (uint16_t k = 0; k < store->objects[i]->entry_count && !non_volatile(store->objects[i]->index); k++)
             store->values[store->first_entry[i] + k] = store->objects[i]->entries[k].default_value;
+    cm1e_sim_store_set_profile_values(&bridge->store);
 }

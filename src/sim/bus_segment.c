@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "bus/bus_image.h"
-#include "sim/backend.h"
+#include "sim/segment_backend.h"
 
 cm1e_sim_segment_t *cm1e_bus_segment(cm1e_bus_t *bus) { return cm1e_sim_segment_of(cm1e_bus_nic(bus)); }
 

@@ -1,7 +1,7 @@
 /**
  * @file cia402_app.h
  * A servo drive by CiA 402 as the application behind a simulated slave controller; private to the simulator. Files:
- *   cia402.c         life, EtherCAT state changes, time, dictionary, process data
+ *   cia402_app.c     life, EtherCAT state changes, time, dictionary, process data
  *   cia402_states.c  power drive system, errors, statusword
  *   cia402_modes.c   csp, csv, pp, pv, hm, touch probes
  * It protects nobody: enabled with another target than its position, it jumps.
@@ -9,14 +9,15 @@
 #ifndef CM1E_SIM_CIA402_APP_H
 #define CM1E_SIM_CIA402_APP_H
 
-#include "device/cia402.h"
+#include "device/cia402_drive.h"
 #include "sim/search.h"
 #include "sim/segment.h"
 #include "sim/sensors.h"
 #include "sim/slave.h"
 #include "sim/store.h"
 
-/** Objects that the drive works with: the places of their values in the store. In order of the table in cia402.c. */
+/** Objects that the drive works with: the places of their values in the store, in the order of the table in
+ *  cia402_app.c. */
 typedef struct cm1e_sim_cia402_values {
     int64_t *error_register, *assigned[2], *pdo[2], *error_code, *controlword, *statusword, *quick_stop_option, *mode,
         *mode_display, *position, *following_window, *velocity, *torque, *target_position, *home_offset,
@@ -90,7 +91,7 @@ struct cm1e_sim_cia402 {
     uint16_t probe_before;  /**< 0x60B8 at the last step */
 };
 
-/* ---- cia402.c ---------------------------------------------------------------------------------------------------- */
+/* ---- cia402_app.c ------------------------------------------------------------------------------------------------ */
 /** The drive in a slave; NULL: it is something else. */
 cm1e_sim_cia402_t *cm1e_sim_cia402_of(cm1e_sim_slave_t *slave);
 /** Brings the objects that the drive shows up to date. */

@@ -152,8 +152,11 @@ static uint16_t pp_bits(const cm1e_sim_cia402_t *drive)
 
 /* ---- hm ---------------------------------------------------------------------------------------------------------- */
 
-/* Limit switches are 0x60FD bits 0 (negative) and 1 (positive), the home switch is bit 2. 37 and 35 take the place
- * where the motor stands. */
+/* Methods by IEC 61800-7-201 (CiA 402-2), object 6098h: 17 ... 30 are 1 ... 14 without the index pulse. Limit switches
+ * are 0x60FD bits 0 (negative) and 1 (positive), the home switch is bit 2. While that switch is off, 19 and 20 (3 and
+ * 4) begin in positive direction, 21 and 22 (5 and 6) in negative direction; while it is on, they leave it first. The
+ * two of a pair take the two edges of the switch signal, which are one place here because the switch has no hysteresis.
+ * 37 takes the position where the motor is; 35 is the same in older editions. */
 static const struct {
     int8_t method, direction;
     uint8_t input;
@@ -297,6 +300,8 @@ static void probe(cm1e_sim_cia402_t *drive, unsigned n, bool was, bool is)
             status = CM1E_PROBE_ENABLED;
         for (unsigned falling = 0; falling < 2; falling++) {
             const unsigned wanted = CM1E_PROBE_POSITIVE << falling, stored = CM1E_PROBE_POSITIVE_STORED << falling;
+            if (!(function & wanted)) /* timing diagram of the touch probe: sampling off resets "stored" */
+                status &= ~stored;
             const bool again = function & CM1E_PROBE_CONTINUOUS || !(status & stored);
             if (function & wanted && again && was == (falling == 1) && is != was) {
                 *drive->v.probe_positions[2 * n + falling] = (int32_t)probed(drive, probe_inputs[n]);

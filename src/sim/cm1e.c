@@ -11,7 +11,7 @@ enum {
     AL_CODE_UNSPECIFIED = 0x0001,
     ID_RESERVED = 0xFF,
 };
-enum { INIT = 1, PRE_OPERATIONAL = 2, OPERATIONAL = 8 };
+enum { INIT = 1, PRE_OPERATIONAL = 2, BOOTSTRAP = 3, OPERATIONAL = 8 };
 enum { ERROR_OVERLOAD = 0x2310, ERROR_OVER_SPEED = 0x7310, ERROR_POSITION = 0x7320 };
 
 /* The limits of the supervision are not in the manual. */
@@ -32,37 +32,39 @@ static void supervise(cm1e_sim_cm1e_t *drive, double step_s)
     const double lag = fabs(drive->servo.reference - drive->mechanics.position);
     const double speed = fabs(drive->mechanics.velocity);
     const double torque = drive->servo.torque;
-    drive->following = lag <= FOLLOWING_WINDOW_COUNTS && !drive->servo.saturated;
-    drive->lag_s = sum_while(lag > LAG_LIMIT_COUNTS, drive->lag_s, step_s);
-    drive->overspeed_s = sum_while(speed > OVER_SPEED_RATIO * drive->motor->max_velocity_counts_per_s,
-                                   drive->overspeed_s, step_s);
-    drive->overload = fmax(0, drive->overload + step_s * (torque * torque * drive->overload_gain - 1));
-    if (drive->overspeed_s > OVER_SPEED_TIME_S)
+    cm1e_sim_watch_t *watch = &drive->watch;
+    watch->following = lag <= FOLLOWING_WINDOW_COUNTS && !drive->servo.saturated;
+    watch->lag_s = sum_while(lag > LAG_LIMIT_COUNTS, watch->lag_s, step_s);
+    watch->overspeed_s = sum_while(speed > OVER_SPEED_RATIO * drive->motor->max_velocity_counts_per_s,
+                                   watch->overspeed_s, step_s);
+    watch->overload = fmax(0, watch->overload + step_s * (torque * torque * drive->overload_gain - 1));
+    if (watch->overspeed_s > OVER_SPEED_TIME_S)
         cm1e_sim_fsa_error(drive, ERROR_OVER_SPEED);
-    else if (drive->lag_s > LAG_TIME_S)
+    else if (watch->lag_s > LAG_TIME_S)
         cm1e_sim_fsa_error(drive, ERROR_POSITION);
-    else if (drive->overload > OVERLOAD_LIMIT_S)
+    else if (watch->overload > OVERLOAD_LIMIT_S)
         cm1e_sim_fsa_error(drive, ERROR_OVERLOAD);
 }
 
 static void move(cm1e_sim_cm1e_t *drive, double step_s)
 {
-    if (drive->state != OPERATION_ENABLED) {
+    if (drive->fsa.state != OPERATION_ENABLED) {
         if (!cm1e_mechanics_at_rest(&drive->mechanics))
             cm1e_mechanics_step(&drive->mechanics, 0, step_s);
         return;
     }
-    drive->generator->step(drive, step_s);
+    drive->fsa.generator->step(drive, step_s);
     cm1e_mechanics_step(&drive->mechanics, cm1e_servo_step(&drive->servo, &drive->mechanics, step_s), step_s);
     supervise(drive, step_s);
 }
 
 static void step(cm1e_sim_cm1e_t *drive, double step_s)
 {
-    if (drive->deadline_ns <= drive->now_ns)
+    if (drive->fsa.deadline_ns <= drive->now_ns)
         cm1e_sim_fsa_deadline(drive);
     move(drive, step_s);
-    drive->still_s = sum_while(fabs(drive->mechanics.velocity) < STANDSTILL_COUNTS_PER_S, drive->still_s, step_s);
+    const bool still = fabs(drive->mechanics.velocity) < STANDSTILL_COUNTS_PER_S;
+    drive->watch.still_s = sum_while(still, drive->watch.still_s, step_s);
 }
 
 static void advance(void *app, int64_t now_ns)
@@ -78,8 +80,8 @@ static void advance(void *app, int64_t now_ns)
 static int64_t due(const void *app)
 {
     const cm1e_sim_cm1e_t *drive = app;
-    const bool rests = drive->state != OPERATION_ENABLED && cm1e_mechanics_at_rest(&drive->mechanics);
-    return rests ? drive->deadline_ns : INT64_MIN;
+    const bool rests = drive->fsa.state != OPERATION_ENABLED && cm1e_mechanics_at_rest(&drive->mechanics);
+    return rests ? drive->fsa.deadline_ns : INT64_MIN;
 }
 
 /* ---- EtherCAT --------------------------------------------------------------------------------------------------- */
@@ -96,6 +98,10 @@ static uint16_t state_change(void *app, uint8_t from, uint8_t to)
     /* UG 4.2.4: with both kinds of identification set the device has an internal error. */
     if (from <= INIT && to == PRE_OPERATIONAL && drive->alias != 0 && explicit_device_id(drive) != 0)
         return AL_CODE_UNSPECIFIED;
+    if (to == PRE_OPERATIONAL && drive->update.memory == FIRMWARE_BROKEN)
+        return AL_CODE_NO_VALID_FIRMWARE;
+    if (from == BOOTSTRAP)
+        cm1e_sim_firmware_start(drive);
     drive->al_state = to;
     if (from == OPERATIONAL && to != OPERATIONAL)
         cm1e_sim_fsa_disable(drive);
@@ -112,13 +118,12 @@ void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns)
     cm1e_sim_cm1e_t *drive = app;
     cm1e_sim_fsa_off(drive);
     advance(drive, now_ns);
-    drive->last_outputs_ns = 0;
-    drive->period.ns = drive->period.candidate_ns = 0;
-    drive->period.candidate_count = 0;
+    cm1e_sim_period_forget(drive);
     drive->al_state = INIT;
+    cm1e_sim_firmware_start(drive);
     drive->zero = 0;
     drive->zero = cm1e_sim_actual_counts(drive);
-    drive->overload = 0;
+    drive->watch.overload = 0;
     cm1e_servo_catch(&drive->servo, &drive->mechanics);
     cm1e_sim_dictionary_reset(drive);
     cm1e_sim_assign_default(drive);
@@ -143,12 +148,35 @@ static void destroy(void *app)
     free(drive);
 }
 
+/* The firmware is the one that the profile tells. */
+static bool play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns)
+{
+    cm1e_sim_cm1e_t *drive = app;
+    cm1e_sim_store_t store = {0};
+    const cm1e_firmware_info_t *firmware = NULL;
+    for (size_t i = 0; i < profile->entry_count; i++)
+        if (profile->entries[i].index == OBJ_100A_SOFTWARE_VERSION)
+            firmware = cm1e_firmware_from_version(profile->entries[i].text);
+    if (!firmware)
+        firmware = drive->firmware;
+    if (!cm1e_sim_store_create(&store, &cm1e_device_cm1e, firmware->firmware)
+        || !cm1e_sim_store_play(&store, profile)) {
+        cm1e_sim_store_destroy(&store);
+        return false;
+    }
+    cm1e_sim_store_destroy(&drive->store);
+    drive->store = store;
+    drive->firmware = firmware;
+    cm1e_sim_cm1e_power_on(drive, now_ns);
+    return true;
+}
+
 #define COMMON_OPS                                                                                                  \
     .advance = advance, .due = due, .state_change = state_change,                                                   \
     .process_data_sizes = cm1e_sim_process_data_sizes, .outputs = outputs, .inputs = cm1e_sim_inputs,               \
     .sdo_read = cm1e_sim_sdo_read, .sdo_write = cm1e_sim_sdo_write, .object = cm1e_sim_object,                      \
     .entry = cm1e_sim_entry, .explicit_device_id = explicit_device_id, .power_on = cm1e_sim_cm1e_power_on,          \
-    .destroy = destroy
+    .file_begin = cm1e_sim_firmware_begin, .file_data = cm1e_sim_firmware_data, .destroy = destroy, .play = play
 
 /* The watchdog came with V1.3.0 (UG 10.1): before it a drive goes on with the outputs that it had last. */
 static const cm1e_sim_app_ops_t ops_without_watchdog = {COMMON_OPS};
@@ -175,7 +203,6 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
     drive->alias = alias;
     drive->rotary_switches = rotary_switches;
     drive->motor_power = true;
-    drive->deadline_ns = drive->state_deadline_ns = drive->mode_deadline_ns = INT64_MAX;
     cm1e_sim_sensors_init(&drive->sensors, &config->sim);
     if (!cm1e_sim_dictionary_create(drive)) {
         destroy(drive);
@@ -188,7 +215,7 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
     return drive;
 }
 
-static size_t write_sii(uint8_t *sii, size_t room, const cm1e_sim_cm1e_t *drive)
+size_t cm1e_sim_write_sii(uint8_t *sii, size_t room, const cm1e_sim_cm1e_t *drive)
 {
     cm1e_device_options_t options = {.order = drive->order, .alias = drive->alias};
     cm1e_description_file_t file = {0};
@@ -207,7 +234,7 @@ cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pd
     if (!drive)
         return NULL;
     uint8_t sii[CM1E_SII_SIZE];
-    const size_t size = write_sii(sii, sizeof sii, drive);
+    const size_t size = cm1e_sim_write_sii(sii, sizeof sii, drive);
     cm1e_sim_slave_t *slave = size > 0 ? cm1e_sim_slave_create(sii, size, cm1e_sim_cm1e_ops(drive), drive) : NULL;
     if (slave)
         drive->slave = slave;

@@ -9,6 +9,7 @@
  *   cm1e_fsa.c         power drive system: states, errors, modes of operation, statusword (UG 6.1)
  *   cm1e_modes.c       CSP, CSV, PP, PV (UG 6.2)
  *   cm1e_homing.c      HM (UG 6.2.4)
+ *   cm1e_firmware.c    update of the firmware in Bootstrap (UG 4.3, 10)
  *   servo.c            position servo; reference.c and search.c move its reference
  *   store.c            dictionary and its values
  *   mechanics.c        the axis behind the motor
@@ -32,6 +33,7 @@ typedef struct cm1e_sim_objects {
     int32_t target_position, target_velocity, profile_velocity, profile_acceleration, profile_deceleration;
     int32_t home_offset, homing_method, homing_speed, homing_acceleration, homing_torque;
     int32_t user_variable_1, cycle_time_us, output_cycle_ns, input_cycle_ns;
+    int32_t none; /**< an object of a mapping that the drive does nothing with */
 } cm1e_sim_objects_t;
 
 /** One object in the process image. */
@@ -59,6 +61,7 @@ typedef struct cm1e_sim_mode {
     uint16_t (*status_bits)(const cm1e_sim_cm1e_t *drive);         /**< 10, 12, 13 */
 } cm1e_sim_mode_t;
 
+/** A homing, or none. Written by cm1e_homing.c and, where its mode is left, cm1e_fsa.c. */
 typedef struct cm1e_sim_homing {
     cm1e_sim_search_t search;
     bool halted;           /**< stopping or stopped by the halt bit */
@@ -74,11 +77,63 @@ typedef struct cm1e_sim_refusal {
     uint8_t subindex;
 } cm1e_sim_refusal_t;
 
-/** How far apart the outputs of the master come, as the device has detected it. */
+/** What the console has made fail. Written by console.c and, where a power-up is counted, cm1e_fsa.c. */
+typedef struct cm1e_sim_troubles {
+    cm1e_sim_refusal_t refusal;
+    uint16_t shown_code;     /**< non-error code that the console wants to see; 0: none */
+    uint16_t held_code;      /**< cause of an error that the console keeps present; 0: none */
+    uint32_t failing_power_ups; /**< the next so many times the motor controller does not answer; UINT32_MAX: always */
+} cm1e_sim_troubles_t;
+
+/** How far apart the outputs of the master come, as the device has detected it. Written by cm1e_image.c. */
 typedef struct cm1e_sim_period {
+    int64_t last_ns;           /**< when the last outputs came */
     uint32_t ns, candidate_ns; /**< 0: not known yet */
     uint8_t candidate_count;
 } cm1e_sim_period_t;
+
+/** An update of the firmware, and what the console makes of it. */
+typedef struct cm1e_sim_update {
+    enum { FIRMWARE_WHOLE = 0, FIRMWARE_BROKEN, FIRMWARE_NEW } memory; /**< NEW: whole, used from the next start */
+    const cm1e_firmware_info_t *firmware; /**< that the file says it is */
+    unsigned long bytes;                  /**< that the file says it has */
+    uint32_t error;          /**< answered from `error_at` on; 0: none. FOE_RESULT_SILENT: no answer */
+    size_t error_at;
+    uint32_t busy;           /**< number of requests that are answered with busy */
+    uint32_t password;       /**< 0: any */
+    char name[64];           /**< "": any */
+} cm1e_sim_update_t;
+
+/** Power drive system and mode of operation. Written by cm1e_fsa.c. */
+typedef struct cm1e_sim_fsa {
+    cm1e_fsa_state_t state;
+    uint16_t last_controlword;
+    bool settled;            /**< the controlword has had all its effect in this state */
+    bool was_enabled;        /**< since the last power-on or fault */
+    bool power_up_fault;     /**< no connection to the motor controller since power-on (0x7510) */
+    int8_t next_mode;
+    uint16_t fault_code;     /**< latched */
+    int64_t deadline_ns;     /**< of the state or of the mode switch, whichever comes first; INT64_MAX: none */
+    int64_t state_deadline_ns, mode_deadline_ns;
+    const cm1e_sim_mode_t *generator; /**< NULL: no mode */
+} cm1e_sim_fsa_t;
+
+/** What the device watches while it has torque. Written by cm1e.c and cm1e_fsa.c. */
+typedef struct cm1e_sim_watch {
+    double overload;         /**< i2t sum, s */
+    double overspeed_s, lag_s;
+    double still_s;          /**< how long the shaft has been at a velocity of 0, within the window */
+    bool following;
+} cm1e_sim_watch_t;
+
+/** Where the modes lead the servo's reference. Written by cm1e_modes.c. */
+typedef struct cm1e_sim_motion {
+    cm1e_sim_line_t line;       /**< CSP */
+    double goal, goal_velocity; /**< PP: set-point; CSV, PV: velocity */
+    double profile_velocity, profile_acceleration, profile_deceleration;
+    double reached_s;           /**< PV: how long it has been at the target velocity */
+    bool set_point_acknowledge;
+} cm1e_sim_motion_t;
 
 struct cm1e_sim_cm1e {
     cm1e_sim_slave_t *slave; /**< NULL: no slave controller below (unit tests) */
@@ -88,55 +143,29 @@ struct cm1e_sim_cm1e {
     cm1e_pdo_order_t order;
     uint16_t alias;
     uint8_t rotary_switches;
+    double rated_torque;     /**< Nm */
+    double overload_gain;    /**< 1 / rated_torque^2 */
 
-    cm1e_sim_store_t store;  /**< dictionary, with the values of the entries that are not in `objects` */
-
-    cm1e_sim_refusal_t refusal;
-
-    /* time */
     bool running;            /**< now_ns is known */
     int64_t now_ns;
-    int64_t last_outputs_ns;
-    cm1e_sim_period_t period;
 
-    /* process data */
-    cm1e_sim_image_t outputs, inputs;
+    cm1e_sim_store_t store;  /**< dictionary, with the values of the entries that are not in `objects` */
     cm1e_sim_objects_t objects;
-    uint16_t last_controlword;
+    cm1e_sim_image_t outputs, inputs; /**< process data */
+    cm1e_sim_period_t period;
+    cm1e_sim_troubles_t troubles;
+    cm1e_sim_update_t update;
 
-    /* power drive system */
-    cm1e_fsa_state_t state;
     uint8_t al_state;
-    bool settled;            /**< the controlword has had all its effect in this state */
-    bool was_enabled;        /**< since the last power-on or fault */
     bool restarts;           /**< the device's processor was reset by the last outputs */
     bool motor_power;
-    bool power_up_fault;     /**< no connection to the motor controller since power-on (0x7510) */
-    int64_t deadline_ns;     /**< of the state or of the mode switch, whichever comes first; INT64_MAX: none */
-    int64_t state_deadline_ns, mode_deadline_ns;
-    int8_t next_mode;
-    uint16_t fault_code;     /**< latched */
-    uint16_t reported_code;  /**< of the last emergency */
-    uint16_t shown_code;     /**< non-error code that the console wants to see; 0: none */
-    uint16_t held_code;      /**< cause of an error that the console keeps present; 0: none */
-    uint32_t failing_power_ups; /**< the next so many times the motor controller does not answer; UINT32_MAX: always */
+    cm1e_sim_fsa_t fsa;
 
-    /* motion */
-    const cm1e_sim_mode_t *generator; /**< NULL: no mode */
     cm1e_servo_t servo;
     cm1e_mechanics_t mechanics;
     int64_t zero;            /**< counts on the scale of the mechanics where 0x6064 is 0 */
-    double rated_torque;     /**< Nm */
-    double overload_gain;    /**< 1 / rated_torque^2 */
-    double overload;         /**< i2t sum, s */
-    double overspeed_s, lag_s;
-    double still_s;          /**< how long the shaft has been at a velocity of 0, within the window */
-    double reached_s;        /**< PV: ... at the target velocity */
-    bool following;
-    cm1e_sim_line_t line;       /**< CSP */
-    double goal, goal_velocity; /**< PP: set-point; CSV, PV: velocity */
-    double profile_velocity, profile_acceleration, profile_deceleration;
-    bool set_point_acknowledge;
+    cm1e_sim_watch_t watch;
+    cm1e_sim_motion_t motion;
     cm1e_sim_homing_t homing;
     cm1e_sim_sensors_t sensors;
 };
@@ -150,6 +179,14 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
 void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns);
 /** The CM1-E in a slave; NULL: it is something else. */
 cm1e_sim_cm1e_t *cm1e_sim_cm1e_of(cm1e_sim_slave_t *slave);
+
+/* ---- cm1e_firmware.c -------------------------------------------------------------------------------------------- */
+uint32_t cm1e_sim_firmware_begin(void *app, const char *name, uint32_t password);
+uint32_t cm1e_sim_firmware_data(void *app, size_t offset, const uint8_t *data, size_t size, bool last);
+/** The device leaves Bootstrap, or starts: a new firmware is used from now on. */
+void cm1e_sim_firmware_start(cm1e_sim_cm1e_t *drive);
+/** The image of the EEPROM by the tables, without that of a file; 0: no memory. */
+size_t cm1e_sim_write_sii(uint8_t *sii, size_t room, const cm1e_sim_cm1e_t *drive);
 
 /* ---- cm1e_motor.c ----------------------------------------------------------------------------------------------- */
 /** "Velocity of axis is 0": for a while, so that a shaft that only turns round does not stand. */
@@ -172,6 +209,8 @@ void cm1e_sim_objects_reset(cm1e_sim_cm1e_t *drive);
 /* ---- cm1e_dictionary.c ------------------------------------------------------------------------------------------ */
 bool cm1e_sim_dictionary_create(cm1e_sim_cm1e_t *drive);
 void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive);
+/** After a change of the firmware; what is kept without power stays. False: no memory, nothing is changed. */
+bool cm1e_sim_dictionary_renew(cm1e_sim_cm1e_t *drive);
 const cm1e_object_t *cm1e_sim_object(void *app, size_t n);
 const cm1e_entry_t *cm1e_sim_entry(void *app, uint16_t index, uint8_t subindex);
 uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data, size_t *size);
@@ -185,6 +224,8 @@ void cm1e_sim_assign_default(cm1e_sim_cm1e_t *drive);
 void cm1e_sim_process_data_sizes(void *app, uint16_t *output_bytes, uint16_t *input_bytes);
 void cm1e_sim_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns);
 void cm1e_sim_inputs(void *app, uint8_t *data, uint16_t size);
+/** The cycle time is not known any more. */
+void cm1e_sim_period_forget(cm1e_sim_cm1e_t *drive);
 /** Brings the objects that the drive shows up to date. */
 void cm1e_sim_refresh(cm1e_sim_cm1e_t *drive);
 

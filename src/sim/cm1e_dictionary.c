@@ -1,3 +1,5 @@
+#include <string.h>
+
 #include "sim/cm1e_app.h"
 
 const cm1e_entry_t *cm1e_sim_entry(void *app, uint16_t index, uint8_t subindex)
@@ -58,6 +60,18 @@ static void set_motor_objects(cm1e_sim_cm1e_t *drive)
 /* UG 7.3.23, 7.4.4 */
 static bool non_volatile(uint16_t index) { return index == OBJ_60FB_H_PARAMETERS || index == OBJ_FF00_LED_BRIGHTNESS; }
 
+/* Of the objects that the drive works with too. */
+static void set_profile_values(cm1e_sim_cm1e_t *drive)
+{
+    const cm1e_sim_profile_t *profile = drive->store.profile;
+    cm1e_sim_store_set_profile_values(&drive->store);
+    for (size_t i = 0; profile && i < profile->entry_count; i++) {
+        const int place = cm1e_sim_object_place(profile->entries[i].index, profile->entries[i].subindex);
+        if (place >= 0 && profile->entries[i].has_value)
+            ((int32_t *)&drive->objects)[place] = (int32_t)profile->entries[i].value;
+    }
+}
+
 void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive)
 {
     const cm1e_sim_store_t *store = &drive->store;
@@ -72,6 +86,25 @@ void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive)
     set_value(drive, OBJ_1C33_SM_INPUT_PARAMETER, 5, drive->firmware->shortest_cycle_ns);
     set_mapping_objects(drive);
     set_motor_objects(drive);
+    set_profile_values(drive);
+}
+
+bool cm1e_sim_dictionary_renew(cm1e_sim_cm1e_t *drive)
+{
+    const cm1e_sim_store_t before = drive->store;
+    cm1e_sim_store_t renewed = {0};
+    if (!cm1e_sim_store_create(&renewed, &cm1e_device_cm1e, drive->firmware->firmware)) {
+        cm1e_sim_store_destroy(&renewed);
+        return false;
+    }
+    for (size_t i = 0; i < before.object_count; i++)
+        for (uint16_t k = 0; k < before.objects[i]->entry_count && non_volatile(before.objects[i]->index); k++)
+            cm1e_sim_store_set(&renewed, before.objects[i]->index, before.objects[i]->entries[k].subindex,
+                               before.values[before.first_entry[i] + k]);
+    cm1e_sim_store_destroy(&drive->store);
+    drive->store = renewed;
+    cm1e_sim_dictionary_reset(drive);
+    return true;
 }
 
 /* ---- access ----------------------------------------------------------------------------------------------------- */
@@ -87,9 +120,17 @@ static int64_t present_value(const cm1e_sim_cm1e_t *drive, const cm1e_sim_cell_t
     return place >= 0 ? ((const int32_t *)&drive->objects)[place] : *cell->value;
 }
 
+/* The version that the tables have is the newest one. */
+static const char *present_text(const cm1e_sim_cm1e_t *drive, const cm1e_entry_t *entry)
+{
+    const cm1e_entry_t *ours = cm1e_device_entry(entry->index, entry->subindex);
+    const bool is_of_tables = ours && ours->default_string && strcmp(ours->default_string, entry->default_string) == 0;
+    return entry->index == OBJ_100A_SOFTWARE_VERSION && is_of_tables ? drive->firmware->version : entry->default_string;
+}
+
 static bool is_refused(const cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t subindex)
 {
-    const cm1e_sim_refusal_t *refusal = &drive->refusal;
+    const cm1e_sim_refusal_t *refusal = &drive->troubles.refusal;
     return refusal->writing && refusal->index == index && refusal->subindex == subindex;
 }
 
@@ -101,11 +142,10 @@ uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t 
     const uint32_t missing = cm1e_sim_store_find_readable(&drive->store, index, subindex, &cell);
     if (missing)
         return missing;
-    if (drive->refusal.missing && is_refused(drive, index, subindex))
+    if (drive->troubles.refusal.missing && is_refused(drive, index, subindex))
         return SDO_ABORT_NO_SUBINDEX;
     if (cell.entry->type == CM1E_TYPE_STRING)
-        return cm1e_sim_give_text(index == OBJ_100A_SOFTWARE_VERSION ? drive->firmware->version
-                                                                      : cell.entry->default_string, data, size);
+        return cm1e_sim_give_text(present_text(drive, cell.entry), data, size);
     cm1e_sim_refresh(drive);
     return cm1e_sim_give_number(cell.entry, present_value(drive, &cell), data, size);
 }
@@ -129,8 +169,9 @@ uint32_t cm1e_sim_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t
         return missing;
     const cm1e_entry_t *entry = cm1e_sim_own_entry(drive, cell.entry);
     if (is_refused(drive, index, subindex))
-        return drive->refusal.missing ? SDO_ABORT_NO_SUBINDEX : SDO_ABORT_HARDWARE;
-    uint32_t abort_code = cm1e_sim_check_write(entry, al_state, size);
+        return drive->troubles.refusal.missing ? SDO_ABORT_NO_SUBINDEX : SDO_ABORT_HARDWARE;
+    uint32_t abort_code = entry->type == CM1E_TYPE_STRING ? SDO_ABORT_READ_ONLY
+                                                          : cm1e_sim_check_write(entry, al_state, size);
     if (abort_code)
         return abort_code;
     int64_t value = cm1e_sim_take_number(entry, data);

@@ -14,13 +14,13 @@ enum { ERROR_OVER_TEMPERATURE = 0x4310, ERROR_NO_MODE = 0x4502, ERROR_CONNECTION
 
 static bool in_fault(const cm1e_sim_cm1e_t *drive)
 {
-    return drive->state == FAULT || drive->state == FAULT_REACTION_ACTIVE;
+    return drive->fsa.state == FAULT || drive->fsa.state == FAULT_REACTION_ACTIVE;
 }
 
 static void set_deadline(cm1e_sim_cm1e_t *drive)
 {
-    drive->deadline_ns = drive->state_deadline_ns < drive->mode_deadline_ns ? drive->state_deadline_ns
-                                                                            : drive->mode_deadline_ns;
+    drive->fsa.deadline_ns = drive->fsa.state_deadline_ns < drive->fsa.mode_deadline_ns ? drive->fsa.state_deadline_ns
+                                                                            : drive->fsa.mode_deadline_ns;
 }
 
 /* "No CiA mode of operation selected" (UG 6.1.3) or ready. */
@@ -33,26 +33,26 @@ static void torque_off(cm1e_sim_cm1e_t *drive)
 {
     cm1e_servo_catch(&drive->servo, &drive->mechanics);
     cm1e_sim_homing_abort(drive);
-    drive->following = false;
+    drive->watch.following = false;
 }
 
 static void torque_on(cm1e_sim_cm1e_t *drive)
 {
     cm1e_servo_catch(&drive->servo, &drive->mechanics);
     drive->servo.torque_limit = drive->motor->peak_torque_nm;
-    drive->lag_s = 0;
-    drive->overspeed_s = 0;
-    drive->was_enabled = true;
-    if (drive->generator)
-        drive->generator->enter(drive);
+    drive->watch.lag_s = 0;
+    drive->watch.overspeed_s = 0;
+    drive->fsa.was_enabled = true;
+    if (drive->fsa.generator)
+        drive->fsa.generator->enter(drive);
 }
 
 static void enter_state(cm1e_sim_cm1e_t *drive, cm1e_fsa_state_t state)
 {
-    const cm1e_fsa_state_t before = drive->state;
-    drive->state = state;
-    drive->settled = false;
-    drive->state_deadline_ns =
+    const cm1e_fsa_state_t before = drive->fsa.state;
+    drive->fsa.state = state;
+    drive->fsa.settled = false;
+    drive->fsa.state_deadline_ns =
         state == SWITCH_ON_DISABLED || state == FAULT_REACTION_ACTIVE ? drive->now_ns + PASSING_NS : INT64_MAX;
     set_deadline(drive);
     if (before == OPERATION_ENABLED && state != OPERATION_ENABLED)
@@ -63,53 +63,54 @@ static void enter_state(cm1e_sim_cm1e_t *drive, cm1e_fsa_state_t state)
 
 void cm1e_sim_fsa_disable(cm1e_sim_cm1e_t *drive)
 {
-    if (!in_fault(drive) && drive->state != resting_state(drive))
+    if (!in_fault(drive) && drive->fsa.state != resting_state(drive))
         enter_state(drive, resting_state(drive));
-    drive->settled = false;
-    drive->last_controlword = 0;
+    drive->fsa.settled = false;
+    drive->fsa.last_controlword = 0;
     cm1e_sim_fsa_update_error(drive);
 }
 
 void cm1e_sim_fsa_off(cm1e_sim_cm1e_t *drive)
 {
-    drive->mode_deadline_ns = INT64_MAX;
+    drive->fsa.mode_deadline_ns = INT64_MAX;
     enter_state(drive, NOT_READY_TO_SWITCH_ON);
-    drive->settled = true;
+    drive->fsa.settled = true;
 }
 
 /* ---- errors (UG 7.3.1) ------------------------------------------------------------------------------------------ */
 
 static uint16_t present_code(const cm1e_sim_cm1e_t *drive)
 {
-    if (drive->fault_code)
-        return drive->fault_code;
-    if (drive->power_up_fault)
+    if (drive->fsa.fault_code)
+        return drive->fsa.fault_code;
+    if (drive->fsa.power_up_fault)
         return ERROR_CONNECTION;
     if (!drive->motor_power)
         return ERROR_MOTOR_POWER;
-    if (drive->shown_code)
-        return drive->shown_code;
+    if (drive->troubles.shown_code)
+        return drive->troubles.shown_code;
     if (drive->objects.mode_display == CM1E_MODE_NONE)
         return ERROR_NO_MODE;
-    if (drive->state != OPERATION_ENABLED)
-        return drive->was_enabled ? ERROR_DISABLED : ERROR_NOT_FOLLOWING;
-    return drive->following ? 0 : ERROR_NOT_FOLLOWING;
+    if (drive->fsa.state != OPERATION_ENABLED)
+        return drive->fsa.was_enabled ? ERROR_DISABLED : ERROR_NOT_FOLLOWING;
+    return drive->watch.following ? 0 : ERROR_NOT_FOLLOWING;
 }
 
 void cm1e_sim_fsa_update_error(cm1e_sim_cm1e_t *drive)
 {
     const uint16_t code = present_code(drive);
-    if (code == drive->objects.error_code)
+    const uint16_t shown = (uint16_t)cm1e_sim_slave_code(drive->slave, CM1E_SIM_CODE_ERROR, code);
+    if (shown == drive->objects.error_code)
         return;
     const uint8_t before = (uint8_t)drive->objects.error_register;
     const cm1e_device_error_t *error = cm1e_device_error(code);
-    drive->objects.error_code = code;
+    drive->objects.error_code = shown;
     drive->objects.error_register = error->error_register;
     static const uint8_t no_data[5];
     if (!drive->slave)
         return;
     if (error->error_register != 0)
-        cm1e_sim_slave_emergency(drive->slave, code, error->error_register, no_data);
+        cm1e_sim_slave_emergency(drive->slave, shown, error->error_register, no_data);
     else if (before != 0) /* ETG.1000.6 5.6.4: error reset */
         cm1e_sim_slave_emergency(drive->slave, 0, 0, no_data);
 }
@@ -119,9 +120,9 @@ void cm1e_sim_fsa_error(cm1e_sim_cm1e_t *drive, uint16_t code)
     const cm1e_device_error_t *error = cm1e_device_error(code);
     if (!error || !error->fault || in_fault(drive))
         return;
-    if (error->fault_only_when_enabled && drive->state != OPERATION_ENABLED)
+    if (error->fault_only_when_enabled && drive->fsa.state != OPERATION_ENABLED)
         return;
-    drive->fault_code = code;
+    drive->fsa.fault_code = code;
     enter_state(drive, FAULT_REACTION_ACTIVE);
     cm1e_sim_fsa_update_error(drive);
 }
@@ -130,11 +131,11 @@ void cm1e_sim_fsa_motor_power(cm1e_sim_cm1e_t *drive, bool on)
 {
     drive->motor_power = on;
     drive->objects.dc_link = on ? (int32_t)cm1e_device_entry(OBJ_6079_DC_LINK_VOLTAGE, 0)->default_value : 0;
-    drive->settled = false;
+    drive->fsa.settled = false;
     if (!on) {
         /* A fault in Operation enabled; below it only the code is shown (UG 7.3.1 note 3). */
         cm1e_sim_fsa_error(drive, ERROR_MOTOR_POWER);
-        if (drive->state == SWITCHED_ON)
+        if (drive->fsa.state == SWITCHED_ON)
             enter_state(drive, READY_TO_SWITCH_ON);
     }
     cm1e_sim_fsa_update_error(drive);
@@ -143,8 +144,8 @@ void cm1e_sim_fsa_motor_power(cm1e_sim_cm1e_t *drive, bool on)
 /* What has not gone away is there again at once. */
 static void raise_present_causes(cm1e_sim_cm1e_t *drive)
 {
-    if (drive->held_code)
-        cm1e_sim_fsa_error(drive, drive->held_code);
+    if (drive->troubles.held_code)
+        cm1e_sim_fsa_error(drive, drive->troubles.held_code);
     if (drive->objects.temperature >= OVER_TEMPERATURE_C)
         cm1e_sim_fsa_error(drive, ERROR_OVER_TEMPERATURE);
 }
@@ -158,10 +159,10 @@ void cm1e_sim_fsa_temperature(cm1e_sim_cm1e_t *drive, int16_t degrees)
 /* One attempt to talk to the motor controller, as after power-on. */
 static bool connection_fails(cm1e_sim_cm1e_t *drive)
 {
-    if (drive->failing_power_ups == 0)
+    if (drive->troubles.failing_power_ups == 0)
         return false;
-    if (drive->failing_power_ups != UINT32_MAX)
-        drive->failing_power_ups--;
+    if (drive->troubles.failing_power_ups != UINT32_MAX)
+        drive->troubles.failing_power_ups--;
     return true;
 }
 
@@ -176,16 +177,16 @@ static void restart(cm1e_sim_cm1e_t *drive)
 /* The rising edge of controlword bit 7. */
 static void fault_reset(cm1e_sim_cm1e_t *drive)
 {
-    if (drive->power_up_fault && drive->firmware->communication_fault_resets) {
+    if (drive->fsa.power_up_fault && drive->firmware->communication_fault_resets) {
         restart(drive);
         return;
     }
-    if (drive->power_up_fault)
-        drive->power_up_fault = connection_fails(drive);
-    if (drive->state == FAULT) {
-        drive->fault_code = 0;
-        drive->overload = 0;
-        drive->was_enabled = false;
+    if (drive->fsa.power_up_fault)
+        drive->fsa.power_up_fault = connection_fails(drive);
+    if (drive->fsa.state == FAULT) {
+        drive->fsa.fault_code = 0;
+        drive->watch.overload = 0;
+        drive->fsa.was_enabled = false;
         enter_state(drive, resting_state(drive));
         raise_present_causes(drive);
     }
@@ -213,34 +214,34 @@ static const cm1e_fsa_transition_t *find_transition(cm1e_fsa_state_t from, cm1e_
 /* Motor power must be present from Switched on upwards (UG 6.1.1). */
 static bool may_enter(const cm1e_sim_cm1e_t *drive, cm1e_fsa_state_t state)
 {
-    return (state != SWITCHED_ON && state != OPERATION_ENABLED) || (drive->motor_power && !drive->power_up_fault);
+    return (state != SWITCHED_ON && state != OPERATION_ENABLED) || (drive->motor_power && !drive->fsa.power_up_fault);
 }
 
 static void apply_controlword(cm1e_sim_cm1e_t *drive, uint16_t controlword)
 {
     const cm1e_fsa_command_t command = decode_command(controlword);
     const cm1e_fsa_transition_t *transition;
-    while (command != COMMAND_FAULT_RESET && (transition = find_transition(drive->state, command)) &&
+    while (command != COMMAND_FAULT_RESET && (transition = find_transition(drive->fsa.state, command)) &&
            may_enter(drive, transition->to))
         enter_state(drive, transition->to);
-    drive->settled = true;
+    drive->fsa.settled = true;
 }
 
 void cm1e_sim_fsa_outputs(cm1e_sim_cm1e_t *drive)
 {
     const uint16_t controlword = (uint16_t)drive->objects.controlword;
-    const uint16_t rising = (uint16_t)(controlword & ~drive->last_controlword);
-    if (controlword != drive->last_controlword)
-        drive->settled = false;
-    drive->last_controlword = controlword;
-    if (drive->objects.mode != drive->next_mode)
+    const uint16_t rising = (uint16_t)(controlword & ~drive->fsa.last_controlword);
+    if (controlword != drive->fsa.last_controlword)
+        drive->fsa.settled = false;
+    drive->fsa.last_controlword = controlword;
+    if (drive->objects.mode != drive->fsa.next_mode)
         cm1e_sim_fsa_request_mode(drive);
     if (rising & CONTROLWORD_FAULT_RESET)
         fault_reset(drive);
-    if (!drive->settled)
+    if (!drive->fsa.settled)
         apply_controlword(drive, controlword);
-    if (drive->state == OPERATION_ENABLED)
-        drive->generator->outputs(drive, rising);
+    if (drive->fsa.state == OPERATION_ENABLED)
+        drive->fsa.generator->outputs(drive, rising);
 }
 
 /* ---- modes of operation (UG 6.2.1) ------------------------------------------------------------------------------ */
@@ -250,26 +251,26 @@ void cm1e_sim_fsa_request_mode(cm1e_sim_cm1e_t *drive)
     const int8_t mode = (int8_t)drive->objects.mode;
     if (mode != CM1E_MODE_NONE && !cm1e_sim_mode(mode))
         return; /* a value that is no mode changes nothing */
-    drive->next_mode = mode;
-    drive->mode_deadline_ns = mode == drive->objects.mode_display ? INT64_MAX : drive->now_ns + MODE_SWITCH_NS;
+    drive->fsa.next_mode = mode;
+    drive->fsa.mode_deadline_ns = mode == drive->objects.mode_display ? INT64_MAX : drive->now_ns + MODE_SWITCH_NS;
     set_deadline(drive);
 }
 
 static void switch_mode(cm1e_sim_cm1e_t *drive)
 {
-    drive->mode_deadline_ns = INT64_MAX;
+    drive->fsa.mode_deadline_ns = INT64_MAX;
     set_deadline(drive);
-    drive->objects.mode_display = drive->next_mode;
-    drive->generator = cm1e_sim_mode(drive->next_mode);
-    drive->settled = false;
-    if (drive->next_mode == CM1E_MODE_NONE) {
+    drive->objects.mode_display = drive->fsa.next_mode;
+    drive->fsa.generator = cm1e_sim_mode(drive->fsa.next_mode);
+    drive->fsa.settled = false;
+    if (drive->fsa.next_mode == CM1E_MODE_NONE) {
         if (!in_fault(drive))
             enter_state(drive, NOT_READY_TO_SWITCH_ON);
-    } else if (drive->state == NOT_READY_TO_SWITCH_ON) {
+    } else if (drive->fsa.state == NOT_READY_TO_SWITCH_ON) {
         enter_state(drive, SWITCH_ON_DISABLED);
-    } else if (drive->state == OPERATION_ENABLED) {
+    } else if (drive->fsa.state == OPERATION_ENABLED) {
         drive->servo.torque_limit = drive->motor->peak_torque_nm;
-        drive->generator->enter(drive);
+        drive->fsa.generator->enter(drive);
     }
 }
 
@@ -282,16 +283,16 @@ static void leave_mode(cm1e_sim_cm1e_t *drive)
         return;
     }
     if (drive->firmware->firmware < CM1E_FIRMWARE_1_3_0 && !drive->homing.halted)
-        drive->objects.mode_display = drive->next_mode;
+        drive->objects.mode_display = drive->fsa.next_mode;
     else
         drive->homing.abandoned = true;
 }
 
 void cm1e_sim_fsa_deadline(cm1e_sim_cm1e_t *drive)
 {
-    if (drive->state_deadline_ns <= drive->now_ns)
-        enter_state(drive, drive->state == FAULT_REACTION_ACTIVE ? FAULT : resting_state(drive));
-    if (drive->mode_deadline_ns <= drive->now_ns)
+    if (drive->fsa.state_deadline_ns <= drive->now_ns)
+        enter_state(drive, drive->fsa.state == FAULT_REACTION_ACTIVE ? FAULT : resting_state(drive));
+    if (drive->fsa.mode_deadline_ns <= drive->now_ns)
         leave_mode(drive);
     cm1e_sim_fsa_update_error(drive);
 }
@@ -300,11 +301,11 @@ void cm1e_sim_fsa_deadline(cm1e_sim_cm1e_t *drive)
 
 uint16_t cm1e_sim_fsa_statusword(const cm1e_sim_cm1e_t *drive)
 {
-    unsigned word = cm1e_fsa_table[drive->state].value | STATUSWORD_REMOTE;
-    if (drive->state != SWITCH_ON_DISABLED) /* both 0 there: UG 6.1.3 */
+    unsigned word = cm1e_fsa_table[drive->fsa.state].value | STATUSWORD_REMOTE;
+    if (drive->fsa.state != SWITCH_ON_DISABLED) /* both 0 there: UG 6.1.3 */
         word |= STATUSWORD_QUICK_STOP | (drive->motor_power ? STATUSWORD_VOLTAGE_ENABLED : 0u);
-    if (drive->generator && drive->generator->mode == drive->objects.mode_display)
-        word |= drive->generator->status_bits(drive);
+    if (drive->fsa.generator && drive->fsa.generator->mode == drive->objects.mode_display)
+        word |= drive->fsa.generator->status_bits(drive);
     if (drive->firmware->user_variables)
         word |= (unsigned)drive->objects.user_variable_1 & 0xC000u; /* UG 7.4.1 */
     return (uint16_t)word;
@@ -313,19 +314,19 @@ uint16_t cm1e_sim_fsa_statusword(const cm1e_sim_cm1e_t *drive)
 void cm1e_sim_fsa_reset(cm1e_sim_cm1e_t *drive)
 {
     cm1e_sim_fsa_off(drive);
-    drive->next_mode = CM1E_MODE_NONE;
-    drive->generator = NULL;
-    drive->settled = false;
-    drive->was_enabled = false;
-    drive->last_controlword = 0;
-    drive->fault_code = 0;
+    drive->fsa.next_mode = CM1E_MODE_NONE;
+    drive->fsa.generator = NULL;
+    drive->fsa.settled = false;
+    drive->fsa.was_enabled = false;
+    drive->fsa.last_controlword = 0;
+    drive->fsa.fault_code = 0;
     drive->objects.error_code = 0;
-    drive->power_up_fault = connection_fails(drive);
-    if (drive->power_up_fault && drive->firmware->fault_bit_on_7510) {
-        drive->fault_code = ERROR_CONNECTION;
-        drive->state = FAULT;
+    drive->fsa.power_up_fault = connection_fails(drive);
+    if (drive->fsa.power_up_fault && drive->firmware->fault_bit_on_7510) {
+        drive->fsa.fault_code = ERROR_CONNECTION;
+        drive->fsa.state = FAULT;
     }
-    if (!drive->power_up_fault)
+    if (!drive->fsa.power_up_fault)
         raise_present_causes(drive);
     cm1e_sim_fsa_motor_power(drive, drive->motor_power);
 }

@@ -80,7 +80,7 @@ static void homing_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     cm1e_sim_homing_t *homing = &drive->homing;
     const bool halt = (drive->objects.controlword & CONTROLWORD_HALT) != 0;
-    const bool leaving = drive->next_mode != CM1E_MODE_HM;
+    const bool leaving = drive->fsa.next_mode != CM1E_MODE_HM;
     /* UG 10.1, V1.3.0: before it the halt bit had no effect together with a switch of mode. */
     if (halt && cm1e_sim_homing_running(drive) && !(leaving && drive->firmware->firmware < CM1E_FIRMWARE_1_3_0))
         homing->halted = true;
@@ -106,7 +106,7 @@ static uint16_t homing_status_bits(const cm1e_sim_cm1e_t *drive)
     const cm1e_sim_homing_t *homing = &drive->homing;
     const cm1e_sim_search_phase_t phase = homing->search.phase;
     const bool running = cm1e_sim_homing_running(drive);
-    const bool error = drive->state == FAULT || drive->state == FAULT_REACTION_ACTIVE;
+    const bool error = drive->fsa.state == FAULT || drive->fsa.state == FAULT_REACTION_ACTIVE;
     const bool stands = cm1e_sim_stands(drive);
     const bool attained = phase == SEARCH_DONE || (phase >= SEARCH_APPROACH && !homing->halted);
     const bool reached = running ? homing->halted && stands : !error || stands;

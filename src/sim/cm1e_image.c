@@ -1,4 +1,6 @@
+#include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/bytes.h"
 #include "sim/cm1e_app.h"
@@ -7,21 +9,43 @@
 
 static uint8_t sign_shift(const cm1e_pdo_entry_t *entry)
 {
-    return cm1e_sim_is_signed(cm1e_device_entry(entry->index, entry->subindex)->type) ? (uint8_t)(32 - entry->bits) : 0;
+    const cm1e_entry_t *object = cm1e_device_entry(entry->index, entry->subindex);
+    return object && cm1e_sim_is_signed(object->type) && entry->bits <= 32 ? (uint8_t)(32 - entry->bits) : 0;
+}
+
+/* A mapping as the dictionary shows it. */
+static void read_mapping(const cm1e_sim_cm1e_t *drive, uint16_t index, cm1e_pdo_t *pdo)
+{
+    cm1e_sim_cell_t cell;
+    *pdo = (cm1e_pdo_t){.index = index};
+    const int64_t count = cm1e_sim_store_find(&drive->store, index, 0, &cell) == 0 ? *cell.value : 0;
+    for (unsigned i = 1; i <= UINT8_MAX && i <= count && pdo->entry_count < CM1E_PDO_MAX_ENTRIES; i++)
+        if (cm1e_sim_store_find(&drive->store, index, (uint8_t)i, &cell) == 0)
+            pdo->entries[pdo->entry_count++] = (cm1e_pdo_entry_t){
+                .index = (uint16_t)(*cell.value >> 16), .subindex = (uint8_t)(*cell.value >> 8),
+                .bits = (uint8_t)*cell.value};
+}
+
+/* What the drive has no object for, or in another size than a number's, is a gap. */
+static uint8_t place_of(const cm1e_pdo_entry_t *entry)
+{
+    const bool is_number = entry->bits == 8 || entry->bits == 16 || entry->bits == 32;
+    const int place = is_number ? cm1e_sim_object_place(entry->index, entry->subindex) : -1;
+    return (uint8_t)(place >= 0 ? (size_t)place : offsetof(cm1e_sim_objects_t, none) / sizeof(int32_t));
 }
 
 /* Resolves the objects of a mapping once, so that the cycle need not search. */
-static void resolve(const cm1e_sim_cm1e_t *drive, cm1e_sim_image_t *image, bool transmit)
+static void resolve(const cm1e_sim_cm1e_t *drive, cm1e_sim_image_t *image)
 {
     cm1e_pdo_t pdo = {0};
     if (image->assigned)
-        cm1e_device_pdo(&pdo, (cm1e_mapping_t)(image->pdo & 0xF), transmit, drive->order, drive->firmware->firmware);
+        read_mapping(drive, image->pdo, &pdo);
     image->slot_count = pdo.entry_count;
     image->bytes = 0;
     for (uint8_t i = 0; i < pdo.entry_count; i++) {
         const cm1e_pdo_entry_t *entry = &pdo.entries[i];
         image->slots[i] = (cm1e_sim_slot_t){
-            .object = (uint8_t)cm1e_sim_object_place(entry->index, entry->subindex),
+            .object = place_of(entry),
             .bytes = entry->bits / 8,
             .sign_shift = sign_shift(entry),
         };
@@ -33,8 +57,8 @@ void cm1e_sim_assign_default(cm1e_sim_cm1e_t *drive)
 {
     drive->outputs = (cm1e_sim_image_t){.pdo = 0x1600, .assigned = 1};
     drive->inputs = (cm1e_sim_image_t){.pdo = 0x1A00, .assigned = 1};
-    resolve(drive, &drive->outputs, false);
-    resolve(drive, &drive->inputs, true);
+    resolve(drive, &drive->outputs);
+    resolve(drive, &drive->inputs);
 }
 
 /* One of the four fixed mappings each way (UG 4.4): sub-index 0 to 0, sub-index 1, sub-index 0 to 1. */
@@ -54,7 +78,7 @@ uint32_t cm1e_sim_assign_write(cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t s
             return SDO_ABORT_SUBINDEX_0_NOT_ZERO;
         image->pdo = (uint16_t)value;
     }
-    resolve(drive, image, transmit);
+    resolve(drive, image);
     return 0;
 }
 
@@ -88,10 +112,12 @@ static uint32_t nearest_cycle_ns(const cm1e_sim_cm1e_t *drive, int64_t interval_
     return drive->firmware->all_cycle_times || cycle_ns == 1000000 ? cycle_ns : 0;
 }
 
+void cm1e_sim_period_forget(cm1e_sim_cm1e_t *drive) { drive->period = (cm1e_sim_period_t){0}; }
+
 static void detect_cycle_time(cm1e_sim_cm1e_t *drive, int64_t now_ns)
 {
-    const int64_t interval_ns = now_ns - drive->last_outputs_ns;
-    drive->last_outputs_ns = now_ns;
+    const int64_t interval_ns = now_ns - drive->period.last_ns;
+    drive->period.last_ns = now_ns;
     if (drive->period.ns != 0 && interval_ns == drive->period.ns) {
         drive->period.candidate_count = 0;
         return;
@@ -120,7 +146,8 @@ static int32_t get_slot(const cm1e_sim_slot_t *slot, const uint8_t *data)
     switch (slot->bytes) {
     case 1: return slot->sign_shift ? (int8_t)data[0] : data[0];
     case 2: return slot->sign_shift ? (int16_t)cm1e_get_u16(data) : cm1e_get_u16(data);
-    default: return (int32_t)cm1e_get_u32(data);
+    case 4: return (int32_t)cm1e_get_u32(data);
+    default: return 0;
     }
 }
 
@@ -174,7 +201,8 @@ void cm1e_sim_inputs(void *app, uint8_t *data, uint16_t size)
         switch (slot->bytes) {
         case 1: data[0] = (uint8_t)value; break;
         case 2: cm1e_put_u16(data, (uint16_t)value); break;
-        default: cm1e_put_u32(data, value); break;
+        case 4: cm1e_put_u32(data, value); break;
+        default: memset(data, 0, slot->bytes); break;
         }
         data += slot->bytes;
     }

@@ -42,7 +42,7 @@ static bool halt_bit(const cm1e_sim_cm1e_t *drive) { return (drive->objects.cont
 
 static void csp_enter(cm1e_sim_cm1e_t *drive)
 {
-    cm1e_sim_line_begin(&drive->line, &drive->servo, target_position(drive));
+    cm1e_sim_line_begin(&drive->motion.line, &drive->servo, target_position(drive));
 }
 
 static double cycle_s(const cm1e_sim_cm1e_t *drive)
@@ -53,17 +53,17 @@ static double cycle_s(const cm1e_sim_cm1e_t *drive)
 static void csp_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
-    cm1e_sim_line_target(&drive->line, target_position(drive), cycle_s(drive));
+    cm1e_sim_line_target(&drive->motion.line, target_position(drive), cycle_s(drive));
 }
 
 static void csp_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
-    cm1e_sim_line_step(&drive->line, &drive->servo, cycle_s(drive), step_s);
+    cm1e_sim_line_step(&drive->motion.line, &drive->servo, cycle_s(drive), step_s);
 }
 
 static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)
 {
-    return drive->firmware->following_bit && drive->following ? STATUSWORD_BIT12 : 0;
+    return drive->firmware->following_bit && drive->watch.following ? STATUSWORD_BIT12 : 0;
 }
 
 /* ---- cyclic synchronous velocity -------------------------------------------------------------------------------- */
@@ -71,7 +71,7 @@ static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)
 static void csv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
-    drive->goal_velocity = target_velocity(drive);
+    drive->motion.goal_velocity = target_velocity(drive);
 }
 
 static void csv_enter(cm1e_sim_cm1e_t *drive)
@@ -82,7 +82,7 @@ static void csv_enter(cm1e_sim_cm1e_t *drive)
 
 static void csv_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
-    drive->servo.reference_velocity = drive->goal_velocity;
+    drive->servo.reference_velocity = drive->motion.goal_velocity;
     cm1e_servo_run(&drive->servo, &drive->mechanics, step_s);
 }
 
@@ -91,9 +91,9 @@ static void csv_step(cm1e_sim_cm1e_t *drive, double step_s)
 static void pv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
-    drive->goal_velocity = target_velocity(drive);
-    drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
-    drive->profile_deceleration = acceleration(drive, drive->objects.profile_deceleration);
+    drive->motion.goal_velocity = target_velocity(drive);
+    drive->motion.profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
+    drive->motion.profile_deceleration = acceleration(drive, drive->objects.profile_deceleration);
 }
 
 static void pv_enter(cm1e_sim_cm1e_t *drive)
@@ -110,19 +110,19 @@ static bool at_velocity(const cm1e_sim_cm1e_t *drive, double wanted)
 /* "The deceleration value is only used when the target velocity is set to 0 or the halt bit is set" (UG 6.2.3). */
 static void pv_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
-    const double wanted = halt_bit(drive) ? 0 : drive->goal_velocity;
+    const double wanted = halt_bit(drive) ? 0 : drive->motion.goal_velocity;
     cm1e_sim_ramp(&drive->servo.reference_velocity, wanted,
-                  wanted == 0 ? drive->profile_deceleration : drive->profile_acceleration, step_s);
+                  wanted == 0 ? drive->motion.profile_deceleration : drive->motion.profile_acceleration, step_s);
     cm1e_servo_run(&drive->servo, &drive->mechanics, step_s);
-    drive->reached_s = at_velocity(drive, wanted) ? drive->reached_s + step_s : 0;
+    drive->motion.reached_s = at_velocity(drive, wanted) ? drive->motion.reached_s + step_s : 0;
     cm1e_servo_rest(&drive->servo, &drive->mechanics);
 }
 
 static uint16_t pv_status_bits(const cm1e_sim_cm1e_t *drive)
 {
-    const double wanted = drive->state == OPERATION_ENABLED && !halt_bit(drive) ? drive->goal_velocity : 0;
+    const double wanted = drive->fsa.state == OPERATION_ENABLED && !halt_bit(drive) ? drive->motion.goal_velocity : 0;
     const bool stands = cm1e_sim_stands(drive);
-    const bool reached = wanted == 0 ? stands : at_velocity(drive, wanted) && drive->reached_s >= REACHED_TIME_S;
+    const bool reached = wanted == 0 ? stands : at_velocity(drive, wanted) && drive->motion.reached_s >= REACHED_TIME_S;
     return (uint16_t)((reached ? STATUSWORD_TARGET_REACHED : 0) | (stands ? STATUSWORD_BIT12 : 0));
 }
 
@@ -133,50 +133,51 @@ static void pp_enter(cm1e_sim_cm1e_t *drive)
 {
     cm1e_servo_t *servo = &drive->servo;
     servo->own_profile = true;
-    drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
-    drive->profile_velocity = fabs(servo->reference_velocity);
-    drive->goal = cm1e_sim_stopping_place(servo, drive->profile_acceleration);
-    drive->set_point_acknowledge = false;
+    drive->motion.profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
+    drive->motion.profile_velocity = fabs(servo->reference_velocity);
+    drive->motion.goal = cm1e_sim_stopping_place(servo, drive->motion.profile_acceleration);
+    drive->motion.set_point_acknowledge = false;
 }
 
 /* Always absolute, immediate, single set-point (UG 6.2.2). */
 static void pp_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     if (rising_bits & CONTROLWORD_NEW_SET_POINT) {
-        drive->goal = target_position(drive);
-        drive->profile_velocity = motor_limited(drive, (uint32_t)drive->objects.profile_velocity);
-        drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
-        drive->set_point_acknowledge = true;
+        drive->motion.goal = target_position(drive);
+        drive->motion.profile_velocity = motor_limited(drive, (uint32_t)drive->objects.profile_velocity);
+        drive->motion.profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
+        drive->motion.set_point_acknowledge = true;
     } else if (!(drive->objects.controlword & CONTROLWORD_NEW_SET_POINT)) {
-        drive->set_point_acknowledge = false;
+        drive->motion.set_point_acknowledge = false;
     }
 }
 
 static void pp_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
+    const cm1e_sim_motion_t *m = &drive->motion;
     cm1e_servo_t *servo = &drive->servo;
     if (halt_bit(drive))
-        cm1e_sim_halt_step(servo, drive->profile_acceleration, step_s);
+        cm1e_sim_halt_step(servo, m->profile_acceleration, step_s);
     else
-        cm1e_sim_move_step(servo, drive->goal, drive->profile_velocity, drive->profile_acceleration, step_s);
+        cm1e_sim_move_step(servo, m->goal, m->profile_velocity, m->profile_acceleration, step_s);
 }
 
 static bool pp_target_reached(const cm1e_sim_cm1e_t *drive)
 {
-    if (drive->state != OPERATION_ENABLED)
+    if (drive->fsa.state != OPERATION_ENABLED)
         return false;
     if (halt_bit(drive))
         return cm1e_sim_stands(drive);
-    return drive->servo.reference == drive->goal && drive->servo.reference_velocity == 0 &&
-           fabs(drive->goal - drive->mechanics.position) <= POSITION_WINDOW;
+    return drive->servo.reference == drive->motion.goal && drive->servo.reference_velocity == 0 &&
+           fabs(drive->motion.goal - drive->mechanics.position) <= POSITION_WINDOW;
 }
 
 static uint16_t pp_status_bits(const cm1e_sim_cm1e_t *drive)
 {
-    const bool enabled = drive->state == OPERATION_ENABLED;
+    const bool enabled = drive->fsa.state == OPERATION_ENABLED;
     const double lag = fabs(drive->servo.reference - drive->mechanics.position);
     return (uint16_t)((pp_target_reached(drive) ? STATUSWORD_TARGET_REACHED : 0) |
-                      (enabled && drive->set_point_acknowledge ? STATUSWORD_SET_POINT_ACKNOWLEDGE : 0) |
+                      (enabled && drive->motion.set_point_acknowledge ? STATUSWORD_SET_POINT_ACKNOWLEDGE : 0) |
                       (enabled && lag > FOLLOWING_WINDOW ? STATUSWORD_FOLLOWING_ERROR : 0));
 }
 

@@ -5,8 +5,8 @@
 
 bool cm1e_sim_stands(const cm1e_sim_cm1e_t *drive)
 {
-    const bool moved = drive->state == OPERATION_ENABLED && drive->servo.reference_velocity != 0;
-    return !moved && drive->still_s >= STANDSTILL_TIME_S;
+    const bool moved = drive->fsa.state == OPERATION_ENABLED && drive->servo.reference_velocity != 0;
+    return !moved && drive->watch.still_s >= STANDSTILL_TIME_S;
 }
 
 int64_t cm1e_sim_actual_counts(const cm1e_sim_cm1e_t *drive)

@@ -69,7 +69,10 @@ void cm1e_sim_objects_reset(cm1e_sim_cm1e_t *drive)
     drive->objects = (cm1e_sim_objects_t){0};
     int32_t *objects = (int32_t *)&drive->objects;
     for (size_t i = 0; i < PLACE_COUNT; i++) {
-        const cm1e_entry_t *entry = cm1e_device_entry(places[i].index, places[i].subindex);
+        cm1e_sim_cell_t cell;
+        const cm1e_entry_t *entry = cm1e_sim_store_find(&drive->store, places[i].index, places[i].subindex, &cell) == 0
+                                        ? cell.entry
+                                        : cm1e_device_entry(places[i].index, places[i].subindex);
         objects[places[i].place] = (int32_t)cm1e_sim_own_entry(drive, entry)->default_value;
     }
 }

@@ -12,13 +12,22 @@ const cm1e_object_t *cm1e_sim_coe_object(cm1e_sim_slave_t *slave, uint16_t index
     const cm1e_object_t *object;
     for (size_t n = 0; slave->ops->object && (object = slave->ops->object(slave->app, n)) != NULL; n++)
         if (object->index == index)
-            return object;
+            return cm1e_sim_profile_hides(slave, index, 0) ? NULL : object;
     return NULL;
 }
 
 const cm1e_entry_t *cm1e_sim_coe_entry(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex)
 {
-    return slave->ops->entry ? slave->ops->entry(slave->app, index, subindex) : NULL;
+    return slave->ops->entry && !cm1e_sim_profile_hides(slave, index, subindex)
+               ? slave->ops->entry(slave->app, index, subindex) : NULL;
+}
+
+/* The abort code for an entry that is not there. */
+static uint32_t missing(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex)
+{
+    if (!cm1e_sim_profile_hides(slave, index, subindex))
+        return 0;
+    return cm1e_sim_profile_hides(slave, index, 0) ? SDO_ABORT_NO_OBJECT : SDO_ABORT_NO_SUBINDEX;
 }
 
 static size_t entry_bytes(const cm1e_entry_t *entry) { return (entry->bits + 7u) / 8u; }
@@ -28,7 +37,9 @@ static uint32_t read_entry(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subi
     if (!slave->ops->sdo_read)
         return SDO_ABORT_NO_OBJECT;
     const size_t room = *size;
-    const uint32_t abort = slave->ops->sdo_read(slave->app, index, subindex, slave->al_state, data, size);
+    const uint32_t hidden = missing(slave, index, subindex);
+    const uint32_t abort =
+        hidden ? hidden : slave->ops->sdo_read(slave->app, index, subindex, slave->al_state, data, size);
     if (*size > room)
         *size = room;
     return abort;
@@ -36,6 +47,9 @@ static uint32_t read_entry(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subi
 
 static uint32_t write_entry(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex, const uint8_t *data, size_t size)
 {
+    const uint32_t hidden = missing(slave, index, subindex);
+    if (hidden)
+        return hidden;
     return slave->ops->sdo_write ? slave->ops->sdo_write(slave->app, index, subindex, slave->al_state, data, size)
                                  : (uint32_t)SDO_ABORT_NO_OBJECT;
 }

@@ -75,7 +75,7 @@ static const cm1e_object_t *next_in_list(cm1e_sim_slave_t *slave, uint16_t type,
     const cm1e_object_t *object;
     while (slave->ops->object && (object = slave->ops->object(slave->app, *n)) != NULL) {
         ++*n;
-        if (in_list(object, type))
+        if (in_list(object, type) && !cm1e_sim_profile_hides(slave, object->index, 0))
             return object;
     }
     return NULL;

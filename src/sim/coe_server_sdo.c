@@ -52,7 +52,7 @@ static void answer_abort(sdo_t *sdo, uint32_t code)
     sdo->coe->transfer = COE_TRANSFER_NONE;
     answer_begin(sdo, COMMAND_ABORT);
     cm1e_put_u16(sdo->answer->data, SDO_REQUEST);
-    cm1e_put_u32(sdo->answer->data + AT_DATA, code);
+    cm1e_put_u32(sdo->answer->data + AT_DATA, cm1e_sim_slave_code(sdo->slave, CM1E_SIM_CODE_ABORT, code));
 }
 
 static void transfer_begin(sdo_t *sdo, enum coe_transfer transfer, size_t size, size_t done)

@@ -180,7 +180,7 @@ static void say_status(call_t *call, uint32_t position)
     cm1e_sim_refresh(drive);
     say(call, "%u: %s V%s, ", position, drive->motor->name, drive->firmware->version);
     say_al(call, slave);
-    say(call, ", %s, %s, position %d, motor power %s, error 0x%04X", cm1e_fsa_name(drive->state),
+    say(call, ", %s, %s, position %d, motor power %s, error 0x%04X", cm1e_fsa_name(drive->fsa.state),
         mode_name(drive->objects.mode_display), drive->objects.position, drive->motor_power ? "on" : "off",
         (unsigned)drive->objects.error_code);
 }
@@ -297,16 +297,16 @@ static cm1e_error_t run_refuse(call_t *call)
     char *end;
     const unsigned long index = strtoul(word, &end, 16), subindex = *end == ':' ? strtoul(end + 1, &end, 16) : 0;
     if (strcmp(word, "nothing") == 0) {
-        call->drive->refusal.writing = false;
+        call->drive->troubles.refusal.writing = false;
         say(call, "slave %u: refuses nothing", call->position);
         return CM1E_OK;
     }
     if (end == word || *end || index > UINT16_MAX || subindex > UINT8_MAX)
         return REFUSE(call, "\"%s\": expected index:sub-index in hexadecimal, as 60F6:1B, or nothing", word);
-    call->drive->refusal.writing = true;
-    call->drive->refusal.missing = strcmp(argument(call, 1), "missing") == 0;
-    call->drive->refusal.index = (uint16_t)index;
-    call->drive->refusal.subindex = (uint8_t)subindex;
+    call->drive->troubles.refusal.writing = true;
+    call->drive->troubles.refusal.missing = strcmp(argument(call, 1), "missing") == 0;
+    call->drive->troubles.refusal.index = (uint16_t)index;
+    call->drive->troubles.refusal.subindex = (uint8_t)subindex;
     say(call, "slave %u: refuses to write 0x%04lX:%02lX", call->position, index, subindex);
     return CM1E_OK;
 }
@@ -327,7 +327,7 @@ static cm1e_error_t motor_power_missing(call_t *call)
 
 static cm1e_error_t clear_error(call_t *call)
 {
-    call->drive->held_code = call->drive->shown_code = 0;
+    call->drive->troubles.held_code = call->drive->troubles.shown_code = 0;
     cm1e_sim_fsa_update_error(call->drive);
     say(call, "slave %u: no cause of an error is left; a fault still needs a fault reset", call->position);
     return CM1E_OK;
@@ -379,9 +379,9 @@ static cm1e_error_t run_error(call_t *call)
         return motor_power_missing(call);
     if (error->fault) {
         cm1e_sim_fsa_error(drive, error->code);
-        drive->held_code = hold ? error->code : drive->held_code;
+        drive->troubles.held_code = hold ? error->code : drive->troubles.held_code;
     } else
-        drive->shown_code = error->code;
+        drive->troubles.shown_code = error->code;
     cm1e_sim_fsa_update_error(drive);
     say(call, "slave %u: 0x%04lX %s%s", call->position, code, error->text,
         hold ? ", held until \"error <slave> clear\"" : "");
@@ -394,7 +394,7 @@ static cm1e_error_t run_power_up_fault(call_t *call)
     const bool always = strcmp(argument(call, 0), "always") == 0;
     if (!always && !parse_whole(argument(call, 0), 10, 0, 1000, &count))
         return REFUSE(call, "\"%s\": expected how often, 0 to 1000, or always", argument(call, 0));
-    call->drive->failing_power_ups = always ? UINT32_MAX : (uint32_t)count;
+    call->drive->troubles.failing_power_ups = always ? UINT32_MAX : (uint32_t)count;
     if (always)
         say(call, "slave %u: no power-up will reach the motor controller (0x7510)", call->position);
     else
@@ -508,6 +508,40 @@ static cm1e_error_t run_lose(call_t *call) { return frame_fault(call, CM1E_FRAME
 static cm1e_error_t run_corrupt(call_t *call) { return frame_fault(call, CM1E_FRAME_CORRUPT, "corrupted"); }
 static cm1e_error_t run_delay(call_t *call) { return frame_fault(call, CM1E_FRAME_DELAY, "delayed"); }
 
+static cm1e_error_t firmware_of(call_t *call, cm1e_sim_update_t *update, const char *what, const char *value)
+{
+    static const char *const kinds[] = {"busy", "name", "password", "error", "silent", NULL};
+    long number = 0, at = 0;
+    const int kind = choice(what, kinds);
+    const bool is_hex = kind == 3;
+    if (kind < 0 || (kind != 1 && !parse_whole(value, is_hex ? 16 : 10, 0, INT32_MAX, &number)))
+        return REFUSE(call, "\"%s %s\": expected busy <requests>, name <file>, password <number>, error <code> "
+                      "[bytes], silent <bytes> or nothing", what, value);
+    if (is_hex && argument(call, 2)[0] && !parse_whole(argument(call, 2), 10, 0, INT32_MAX, &at))
+        return REFUSE(call, "\"%s\": expected a number of bytes", argument(call, 2));
+    switch (kind) {
+    case 0: update->busy = (uint32_t)number; break;
+    case 1: snprintf(update->name, sizeof update->name, "%.63s", value); break;
+    case 2: update->password = (uint32_t)number; break;
+    case 3: update->error = (uint32_t)number; update->error_at = (size_t)at; break;
+    default: update->error = FOE_RESULT_SILENT; update->error_at = (size_t)number; break;
+    }
+    say(call, "slave %u: the next update of its firmware meets %s %s", call->position, what, value);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_firmware(call_t *call)
+{
+    cm1e_sim_update_t *update = &call->drive->update;
+    if (strcmp(argument(call, 0), "nothing") != 0)
+        return firmware_of(call, update, argument(call, 0), argument(call, 1));
+    update->error = update->busy = update->password = 0;
+    update->error_at = 0;
+    update->name[0] = '\0';
+    say(call, "slave %u takes every firmware", call->position);
+    return CM1E_OK;
+}
+
 /* ---- the table -------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t run_help(call_t *call);
@@ -523,6 +557,8 @@ static const command_t commands[] = {
     {"load", ANY_DRIVE, 1, 1, run_load, "<slave> <Nm>", "torque on the shaft from outside, positive drives CW"},
     {"refuse", DRIVE, 1, 2, run_refuse, "<slave> <index>:<sub>|nothing [missing]",
      "writing this object fails from now on; missing: it is not there"},
+    {"firmware", DRIVE, 1, 3, run_firmware, "<slave> busy|name|password|error|silent|nothing ...",
+     "what the next update of the firmware meets"},
     {"over-torque", DRIVE, 0, 0, run_over_torque, "<slave>", "torque overload, error 2310"},
     {"temperature", DRIVE, 1, 1, run_temperature, "<slave> <degrees C>", "of the drive; error 4310 from 85 on"},
     {"error", ANY_DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",
@@ -550,7 +586,7 @@ static cm1e_error_t run_help(call_t *call)
     return CM1E_OK;
 }
 
-/* Words; FALSE: more or longer ones than any command has. */
+/* Words; false: more or longer ones than any command has. */
 static bool split(call_t *call, const char *line)
 {
     call->count = 0;

@@ -51,6 +51,7 @@ void cm1e_sim_slave_destroy(cm1e_sim_slave_t *slave)
         return;
     if (slave->ops->destroy)
         slave->ops->destroy(slave->app);
+    cm1e_sim_profile_free(&slave->profile);
     free(slave->sii);
     free(slave);
 }

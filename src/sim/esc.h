@@ -11,7 +11,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cm1e/sim.h"
 #include "sim/coe_server.h"
+#include "sim/foe_server.h"
 #include "sim/mailbox.h"
 #include "sim/slave.h"
 
@@ -116,6 +118,8 @@ struct cm1e_sim_slave {
     int64_t mailbox_due_ns;    /**< when the mailbox needs attention */
     mailbox_t mailbox;
     coe_server_t coe;
+    foe_server_t foe;
+    cm1e_sim_profile_t profile; /**< played; all of it is the slave's own */
 };
 
 /* esc.c: life, memory as the master sees it */
@@ -189,6 +193,11 @@ void cm1e_sim_esc_sii_config(cm1e_sim_slave_t *slave);
 void cm1e_sim_esc_sii_due(cm1e_sim_slave_t *slave);
 /** A byte address in the SII image where the category starts (behind its header) and its bytes; 0: none. */
 size_t cm1e_sim_esc_sii_category(const cm1e_sim_slave_t *slave, uint16_t type, size_t *bytes);
+
+/* profile_answers.c: the device that is played */
+/** It has no such entry, whatever the application says. */
+bool cm1e_sim_profile_hides(const cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex);
+void cm1e_sim_profile_free(cm1e_sim_profile_t *profile);
 
 /* esc_dc.c: distributed clocks */
 void cm1e_sim_esc_dc_latch(cm1e_sim_slave_t *slave);

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "cm1e/bus.h"
 #include "core/bytes.h"
 #include "sim/esc.h"
 
@@ -10,8 +11,6 @@ enum { AT_LENGTH = 0, AT_TYPE = 5, TYPE = 0x0F, COUNTER_SHIFT = 4, COUNTER = 0x0
 enum { REQUEST_NS = 200000, RELOAD_NS = 50000 };
 enum { ERROR_COMMAND = 1, ERROR_BYTES = 4 };
 enum { COE_SERVICE_EMERGENCY = 1, COE_SERVICE_SHIFT = 12 };
-/* FoE (ETG.1000.6 5.8): the device takes files in Bootstrap only, which the simulation has not. */
-enum { FOE_ERROR = 5, FOE_ERROR_BOOTSTRAP_ONLY = 0x8008, FOE_BYTES = 6 };
 enum { REPEAT = 0x02, AT_ACTIVATE = 6, AT_PDI = 7, SM_BYTES = 8 };
 
 static void wake(cm1e_sim_slave_t *slave, int64_t after_ns)
@@ -30,6 +29,7 @@ void cm1e_sim_mailbox_stop(cm1e_sim_slave_t *slave)
     mailbox->answer.length = mailbox->kept_length[0] = mailbox->kept_length[1] = mailbox->held_length = 0;
     mailbox->emergency_first = mailbox->emergency_count = 0;
     cm1e_sim_coe_reset(slave);
+    cm1e_sim_foe_reset(slave);
 }
 
 /* Bits of the master's repeat request and of its acknowledgement. */
@@ -172,20 +172,12 @@ static void answer_error(mailbox_message_t *answer, uint16_t detail)
     cm1e_put_u16(answer->data + 2, detail);
 }
 
-static void answer_foe(mailbox_message_t *answer)
-{
-    answer->type = MAILBOX_TYPE_FOE;
-    answer->length = FOE_BYTES;
-    answer->data[0] = FOE_ERROR;
-    answer->data[1] = 0;
-    cm1e_put_u32(answer->data + 2, FOE_ERROR_BOOTSTRAP_ONLY);
-}
-
 static void handle_request(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm, uint16_t room)
 {
     mailbox_t *mailbox = &slave->mailbox;
     const uint8_t *request = slave->memory + sm->start;
     const uint16_t length = cm1e_get_u16(request + AT_LENGTH);
+    const bool in_bootstrap = slave->al_state == CM1E_AL_BOOT;
     const uint8_t type = request[AT_TYPE] & TYPE, counter = request[AT_TYPE] >> COUNTER_SHIFT & COUNTER;
     /* A repeated counter: the master sent the message again because the answering frame was lost (ETG.1000.4 5.6). */
     if (counter && counter == mailbox->request_counter)
@@ -195,13 +187,16 @@ static void handle_request(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm
         return; /* an error is not answered by an error */
     if (length > sm->length - MAILBOX_HEADER) {
         answer_error(&mailbox->answer, MAILBOX_ERROR_INVALID_SIZE);
-    } else if (type == MAILBOX_TYPE_COE) {
+    } else if (type == MAILBOX_TYPE_FOE && in_bootstrap) {
+        cm1e_sim_foe_request(slave, request + MAILBOX_HEADER, length, &mailbox->answer,
+                             (size_t)(sm->length - MAILBOX_HEADER));
+    } else if (type == MAILBOX_TYPE_COE && !in_bootstrap) {
         const uint16_t detail =
             cm1e_sim_coe_request(slave, request + MAILBOX_HEADER, length, &mailbox->answer, room);
         if (detail)
             answer_error(&mailbox->answer, detail);
     } else if (type == MAILBOX_TYPE_FOE) {
-        answer_foe(&mailbox->answer);
+        cm1e_sim_foe_refuse(&mailbox->answer);
     } else {
         answer_error(&mailbox->answer, MAILBOX_ERROR_UNSUPPORTED_PROTOCOL);
     }

@@ -22,7 +22,7 @@ static void probe_drive(cm1e_sim_cm1e_t *drive, cm1e_sim_probe_t *probe)
         .position_counts = drive->mechanics.position,
         .velocity_counts_per_s = drive->mechanics.velocity,
         .torque_nm = drive->servo.torque,
-        .torque_on = drive->state == OPERATION_ENABLED,
+        .torque_on = drive->fsa.state == OPERATION_ENABLED,
         .statusword = (uint16_t)drive->objects.statusword,
         .controlword = (uint16_t)drive->objects.controlword,
         .error_code = (uint16_t)drive->objects.error_code,

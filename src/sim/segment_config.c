@@ -117,8 +117,9 @@ typedef struct made {
 static cm1e_sim_slave_t *make_cm1e(made_t *made)
 {
     made->error = check_cm1e(made->place->axis, made->diag);
-    return made->error ? NULL : cm1e_sim_cm1e_create(made->place->axis, made->config->sim_pdo_order, made->alias,
-                                                     (uint8_t)made->id);
+    if (made->error != CM1E_OK)
+        return NULL;
+    return cm1e_sim_cm1e_create(made->place->axis, made->config->sim_pdo_order, made->alias, (uint8_t)made->id);
 }
 
 static cm1e_sim_slave_t *make_bridge(made_t *made)
@@ -152,7 +153,7 @@ static cm1e_sim_slave_t *make(made_t *made)
 static cm1e_error_t add_made(cm1e_sim_segment_t *segment, cm1e_sim_slave_t *slave)
 {
     const cm1e_error_t error = cm1e_sim_segment_add(segment, slave);
-    if (error)
+    if (error != CM1E_OK)
         cm1e_sim_slave_destroy(slave);
     return error;
 }

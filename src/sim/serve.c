@@ -230,9 +230,9 @@ static void find_interface(server_t *server, int64_t now_ns)
     if (server->socket.fd >= 0 || now_ns < server->retry_ns)
         return;
     const cm1e_error_t error = cm1e_raw_socket_open(&server->socket, server->interface_name, &why);
-    if (error && error != server->told)
+    if (error != CM1E_OK && error != server->told)
         notice(server, "%s The simulated segment waits for it.", why.text);
-    if (!error && server->told)
+    if (error == CM1E_OK && server->told)
         notice(server, "Network interface \"%s\" is there again.", server->interface_name);
     server->told = error;
     server->retry_ns = now_ns + RETRY_NS;
@@ -311,7 +311,7 @@ cm1e_error_t cm1e_sim_server_open(cm1e_sim_server_t **server, cm1e_sim_segment_t
     made->clock = cm1e_clock_monotonic();
     snprintf(made->interface_name, sizeof made->interface_name, "%s", interface_name);
     const cm1e_error_t error = cm1e_raw_socket_open(&made->socket, interface_name, diag);
-    if (error)
+    if (error != CM1E_OK)
         cm1e_sim_server_close(made);
     else
         *server = made;

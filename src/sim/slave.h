@@ -28,11 +28,19 @@ enum {
 /** AL status codes (ETG.1000.6 table 11) that the simulator answers with. */
 enum {
     AL_CODE_NONE = 0, AL_CODE_INVALID_STATE_CHANGE = 0x0011, AL_CODE_UNKNOWN_STATE = 0x0012,
-    AL_CODE_BOOT_NOT_SUPPORTED = 0x0013, AL_CODE_INVALID_MAILBOX_BOOT = 0x0015,
+    AL_CODE_BOOT_NOT_SUPPORTED = 0x0013, AL_CODE_NO_VALID_FIRMWARE = 0x0014,
+    AL_CODE_INVALID_MAILBOX_BOOT = 0x0015,
     AL_CODE_INVALID_MAILBOX_PREOP = 0x0016, AL_CODE_INVALID_SM_CONFIG = 0x0017, AL_CODE_NO_VALID_INPUTS = 0x0018,
     AL_CODE_NO_VALID_OUTPUTS = 0x0019, AL_CODE_SYNC_ERROR = 0x001A, AL_CODE_SM_WATCHDOG = 0x001B,
     AL_CODE_INVALID_OUTPUT_CONFIG = 0x001D, AL_CODE_INVALID_INPUT_CONFIG = 0x001E,
     AL_CODE_INVALID_WATCHDOG_CONFIG = 0x001F,
+};
+
+/** Error codes of FoE (ETG.1000.6 section 5.8) that the simulator answers with, and other results of a request. */
+enum {
+    FOE_CODE_NOT_FOUND = 0x8001, FOE_CODE_ACCESS_DENIED = 0x8002, FOE_CODE_ILLEGAL = 0x8004,
+    FOE_CODE_PACKET_NUMBER = 0x8005, FOE_CODE_BOOTSTRAP_ONLY = 0x8008, FOE_CODE_INVALID_FIRMWARE = 0x800D,
+    FOE_CODE_FILE_INCOMPATIBLE = 0x8012, FOE_RESULT_BUSY = 1, FOE_RESULT_SILENT = 2,
 };
 
 typedef struct cm1e_sim_app_ops {
@@ -65,9 +73,15 @@ typedef struct cm1e_sim_app_ops {
     const cm1e_entry_t *(*entry)(void *app, uint16_t index, uint8_t subindex);
     /** Value for register 0x0134 when AL control bit 5 asks for it. */
     uint16_t (*explicit_device_id)(void *app);
+    /** A file in Bootstrap: its name, then its bytes from `offset` on. Return 0, an error code of FoE, BUSY (asked again
+     *  later) or SILENT. NULL: the device has no Bootstrap. */
+    uint32_t (*file_begin)(void *app, const char *name, uint32_t password);
+    uint32_t (*file_data)(void *app, size_t offset, const uint8_t *data, size_t size, bool last);
     /** Back to power-on state. */
     void (*power_on)(void *app, int64_t now_ns);
     void (*destroy)(void *app);
+    /** Takes over the dictionary of a profile and powers on. false: no memory. NULL: it cannot. */
+    bool (*play)(void *app, const struct cm1e_sim_profile *profile, int64_t now_ns);
 } cm1e_sim_app_ops_t;
 
 typedef struct cm1e_sim_slave cm1e_sim_slave_t;
@@ -88,6 +102,8 @@ void cm1e_sim_slave_fall_back(cm1e_sim_slave_t *slave, uint8_t al_state, uint16_
 /** For the application: the device resets and is absent from the bus until `until_ns`. */
 void cm1e_sim_slave_reset(cm1e_sim_slave_t *slave, int64_t until_ns);
 uint8_t cm1e_sim_slave_al_state(const cm1e_sim_slave_t *slave);
+/** The code that the device of a profile has in place of this one (profile_answers.c); NULL is allowed. */
+uint32_t cm1e_sim_slave_code(const cm1e_sim_slave_t *slave, int kind, uint32_t code);
 
 /** A servo drive by CiA 402 with its mechanical axis; counts and speed are those of the configuration. */
 cm1e_sim_slave_t *cm1e_sim_cia402_create(const cm1e_axis_config_t *config, uint16_t alias);

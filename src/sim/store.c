@@ -51,6 +51,8 @@ void cm1e_sim_store_destroy(cm1e_sim_store_t *store)
     free(store->objects);
     free(store->first_entry);
     free(store->values);
+    free(store->own_objects);
+    free(store->own_entries);
     *store = (cm1e_sim_store_t){0};
 }
 

@@ -18,6 +18,9 @@ typedef struct cm1e_sim_store {
     cm1e_firmware_t firmware;      /**< entries that came later are not there */
     uint32_t *first_entry;         /**< per object: place of its first entry in `values` */
     int64_t *values;               /**< one per entry of the device tables, texts included */
+    cm1e_object_t *own_objects;    /**< of a profile: what `objects` points to; NULL: the tables */
+    cm1e_entry_t *own_entries;
+    const struct cm1e_sim_profile *profile; /**< NULL: none; it outlives the store */
 } cm1e_sim_store_t;
 
 /** An entry and its value. */
@@ -30,6 +33,11 @@ typedef struct cm1e_sim_cell {
  *  store in that case too. */
 bool cm1e_sim_store_create(cm1e_sim_store_t *store, const cm1e_device_t *device, cm1e_firmware_t firmware);
 void cm1e_sim_store_destroy(cm1e_sim_store_t *store);
+/** store_profile.c: amends the entries by a profile, and adds those that only it has. Values stay. Entries that it calls
+ *  missing stay too: the slave hides them. false: no memory, and nothing has changed. */
+bool cm1e_sim_store_play(cm1e_sim_store_t *store, const struct cm1e_sim_profile *profile);
+/** Sets the values that the profile states; after a reset. Does nothing without one. */
+void cm1e_sim_store_set_profile_values(cm1e_sim_store_t *store);
 /** NULL: no more. */
 const cm1e_object_t *cm1e_sim_store_object(const cm1e_sim_store_t *store, size_t n);
 /** Finds an entry. Returns 0, or the abort code for what is missing; the cell then has two NULL pointers. */

@@ -42,9 +42,8 @@ class Terminal:
         self.before = termios.tcgetattr(slave)
         self.slave = slave
         self.seen = ""
-        self.process = subprocess.Popen([os.path.join(BIN, "cm1e"), *words], stdin=slave, stderr=slave,
-                                        stdout=subprocess.PIPE, text=True, start_new_session=True,
-                                        preexec_fn=lambda: __import__("fcntl").ioctl(0, termios.TIOCSCTTY, 0))
+        self.process = subprocess.Popen(["setsid", "--ctty", os.path.join(BIN, "cm1e"), *words], stdin=slave,
+                                        stderr=slave, stdout=subprocess.PIPE, text=True)
 
     def look(self, seconds):
         end = time.monotonic() + seconds
@@ -111,22 +110,21 @@ def check_jog():
     expect(termios.tcgetattr(jog.slave)[3] == jog.before[3], "the terminal is not as it was after the jog")
 
 
-def check_ends_of_jog():
+def check_end_of_jog(what):
     """Ctrl-C and a closed terminal while the key is held end in order: ramp, disabled, the terminal as it was."""
-    for what in ("Ctrl-C", "closed"):
-        jog = Terminal("jog", "-i", "sim", "--dead-man", "1")
-        expect(jog.wait("stands"), "jog does not begin", jog.seen)
-        jog.hold(RIGHT, 0.4)
-        if what == "Ctrl-C":
-            os.write(jog.master, b"\x03")
-        else:
-            os.close(jog.slave)
-            os.close(jog.master)
-            jog.look = lambda seconds: ""
-        status, out = jog.end()
-        expect(status is not None and status >= 0, f"{what} while the motor moves: {status}", out)
-        if what == "Ctrl-C":
-            expect(termios.tcgetattr(jog.slave)[3] == jog.before[3], "the terminal is not as it was after Ctrl-C")
+    jog = Terminal("jog", "-i", "sim", "--dead-man", "1")
+    expect(jog.wait("stands"), "jog does not begin", jog.seen)
+    jog.hold(RIGHT, 0.4)
+    if what == "Ctrl-C":
+        os.write(jog.master, b"\x03")
+    else:
+        os.close(jog.slave)
+        os.close(jog.master)
+        jog.look = lambda seconds: ""
+    status, out = jog.end()
+    expect(status is not None and status >= 0, f"{what} while the motor moves: {status}", out)
+    if what == "Ctrl-C":
+        expect(termios.tcgetattr(jog.slave)[3] == jog.before[3], "the terminal is not as it was after Ctrl-C")
 
 
 def check_enable():
@@ -172,7 +170,12 @@ def check_led():
     expect(json.loads(bright.stdout)["brightness"] == 16, "brightness", bright)
 
 
-def check_alias(folder):
+def check_alias():
+    with tempfile.TemporaryDirectory() as folder:
+        check_alias_in(folder)
+
+
+def check_alias_in(folder):
     backup = os.path.join(folder, "backup.sii")
     shown = run("alias", "-i", "sim", "1", "--json")
     expect(json.loads(shown.stdout) == {"position": 1, "alias": 0}, "alias", shown)
@@ -201,14 +204,8 @@ def check_reset():
 
 def main():
     real_time.run_above_others()
-    with tempfile.TemporaryDirectory() as folder:
-        check_alias(folder)
-    check_refused()
-    check_led()
-    check_reset()
-    check_enable()
-    check_jog()
-    check_ends_of_jog()
+    real_time.together(check_jog, *(lambda what=what: check_end_of_jog(what) for what in ("Ctrl-C", "closed")),
+                       check_enable, check_alias, check_refused, check_led, check_reset)
     real_time.end(faults, "jog and enable in a terminal, led, alias, reset")
 
 

@@ -86,7 +86,6 @@ def check_good(folder):
     sii = os.path.join(folder, "cm1e.sii")
     generate = run("cm1e", "generate", "sii", "-o", sii)
     expect(generate.returncode == 0 and os.path.getsize(sii) == 2048, "generate sii", generate)
-    check_files(folder)
 
 
 def check_in_position(folder):
@@ -193,7 +192,7 @@ def check_hostile_names(folder):
 
 def check_diff_of_network(folder):
     """An ENI is of a whole network: slaves that are missing, or too many, are a difference."""
-    three, one = (["-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim"], ["-i", "sim"])
+    three, one = (["-b", in_virtual_time(folder, "three_axes.yaml"), "-i", "sim"], ["-i", "sim"])
     for network, other, wanted, word in ((three, three, 0, ""), (one, one, 0, ""),
                                          (three, one, 2, "network ends with slave 1"),
                                          (one, three, 1, "ends with this slave, number 1")):
@@ -241,9 +240,10 @@ def check_diff(folder):
     run("cm1e", "sii", "-i", "sim", "read", "1", image)
     same = run("cm1e", "diff", image, "-i", "sim")
     expect(same.returncode == 0 and "beside slave 1, 0 errors" in same.stdout, "diff of the same", same)
-    three = run("cm1e", "diff", image, "-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim")
+    network = in_virtual_time(folder, "three_axes.yaml")
+    three = run("cm1e", "diff", image, "-b", network, "-i", "sim")
     expect(three.returncode == 0 and "beside slave 3" in three.stdout, "diff of three axes", three)
-    told = run("cm1e", "diff", image, "-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim", "--json")
+    told = run("cm1e", "diff", image, "-b", network, "-i", "sim", "--json")
     expect([slave["position"] for slave in json.loads(told.stdout)] == [1, 2, 3], "diff of three axes as JSON", told)
     check_diff_of_network(folder)
     with open(image, "r+b") as file:
@@ -668,15 +668,17 @@ def check_axes_without_a_motor(folder):
     expect(eni.returncode == WRONG_USE and "no axis with a motor" in eni.stderr, "ENI of virtual axes only", eni)
 
 
+def in_a_folder(*checks):
+    with tempfile.TemporaryDirectory() as folder:
+        for check in checks:
+            check(folder)
+
+
 def main():
     real_time.run_above_others()
-    with tempfile.TemporaryDirectory() as folder:
-        check_good(folder)
-        check_bridge(folder)
-        check_no_motor(folder)
-        check_axes_without_a_motor(folder)
-        check_examples(folder)
-    check_wrong()
+    in_folder = lambda *checks: lambda: in_a_folder(*checks)  # noqa: E731
+    real_time.together(in_folder(check_good), in_folder(check_files), check_wrong,
+                       in_folder(check_bridge, check_no_motor, check_axes_without_a_motor, check_examples))
     real_time.end(faults, f"the command line: good use and {len(WRONG)} kinds of wrong use")
 
 

@@ -10,7 +10,6 @@ import os
 import random
 import re
 import shutil
-import socket
 import struct
 import subprocess
 import sys
@@ -20,6 +19,7 @@ import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import real_time  # noqa: E402
+from control_client import Client  # noqa: E402
 
 CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 BUS = """\
@@ -53,17 +53,23 @@ class Running:
 
     def __init__(self, control="observe", seconds=30, speed=0.5):
         bus_file = os.path.join(FOLDER, f"{control}.yaml")
-        with open(bus_file, "w", encoding="utf-8") as file:
-            file.write(BUS.format(control=control))
         self.process = subprocess.Popen([CM1E, "move", "-b", bus_file, "X", "--speed", str(speed), "--for",
                                          str(seconds)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                         env=ENVIRONMENT)
         self.pid = self.process.pid
         self.path = os.path.join(RUNTIME, f"cm1e-{self.pid}-0.sock")
 
+    def listens(self):
+        """False: the socket is not there yet, or has its name and is not served yet."""
+        try:
+            Client(self).socket.close()
+        except (FileNotFoundError, ConnectionRefusedError):
+            return False
+        return True
+
     def moves(self):
         """Waits until the axis moves."""
-        wait_for(lambda: os.path.exists(self.path), "no control socket")
+        wait_for(self.listens, "no control socket")
         with Client(self) as client:
             wait_for(lambda: client.ask("axes")["axes"][0]["velocity"] > 0.4, "the axis does not move")
         return self
@@ -99,50 +105,6 @@ def running(control="observe"):
         said = program.end()
         expect("ErrorStop" not in said, "the run ended with an error", said)
         expect(not os.path.exists(program.path), "the socket is left behind")
-
-
-class Client:
-    def __init__(self, program):
-        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        self.socket.settimeout(20)
-        while True:
-            try:
-                self.socket.connect(program.path)
-                return
-            except BlockingIOError:  # more connect at a time than wait in the queue
-                time.sleep(0.01)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.socket.close()
-
-    def send(self, text):
-        data = text if isinstance(text, bytes) else text.encode()
-        self.socket.sendall(struct.pack(">I", len(data)) + data)
-
-    def receive(self):
-        """The next reply; None: the program has closed the connection."""
-        header = self.read(4)
-        data = self.read(struct.unpack(">I", header)[0]) if header else None
-        return json.loads(data) if data else None
-
-    def read(self, length):
-        data = b""
-        while len(data) < length:
-            try:
-                part = self.socket.recv(length - len(data))
-            except ConnectionError:
-                return None
-            if not part:
-                return None
-            data += part
-        return data
-
-    def ask(self, request, **arguments):
-        self.send(json.dumps({"request": request, **arguments}))
-        return self.receive()
 
 
 # ---- what is told ---------------------------------------------------------------------------------------------------
@@ -182,6 +144,30 @@ def check_requests():
         expect((client.receive()["id"], client.receive()["id"]) == (1, 2), "two requests at once are answered in turn")
 
 
+def check_reading_slaves():
+    """What is read beside objects: SDO information, SII, registers."""
+    with running() as program, Client(program) as client:
+        objects = client.ask("sdo_info", slave=1, kind=1, index=1)["data"]
+        expect(objects.startswith("0100" "0010") and len(objects) > 200, "the list of objects", objects)
+        entry = client.ask("sdo_info", slave=1, kind=5, index=0x1018, subindex=2)
+        expect(entry["data"].startswith("1810" "02"), "an entry", entry)
+        absent = client.ask("sdo_info", slave=1, kind=3, index=0x1234)
+        expect(not absent["ok"] and absent["error"]["foreign_code"] == 0x06020000, "no such object", absent)
+        vendor = client.ask("sii_read", slave=2, word=8, size=8)
+        expect(vendor["data"] == "41440000" "02204144", "vendor and product of an SII", vendor)
+        state = client.ask("registers", slave=1, address=0x130, size=2)
+        expect(state["data"] == "0800", "AL status", state)
+        clients = [Client(program) for _ in range(6)]
+        for n in range(5):  # one errand at a time: the others wait
+            for other in clients:
+                other.send(json.dumps({"request": "sii_read", "slave": 1 + n % 2, "word": 64 * (n % 8), "size": 128}))
+            for other in clients:
+                expect(len(other.receive()["data"]) == 256, "one of six readers of the SII")
+        for other in clients:  # gone before the answer
+            other.send('{"request": "sii_read", "slave": 1, "word": 0, "size": 128}')
+            other.socket.close()
+
+
 def check_writing():
     with running("observe") as program, Client(program) as client:
         refused = client.ask("sdo_write", slave=2, index=0x2201, subindex=1, data="10270000")
@@ -207,7 +193,12 @@ WRONG = (b"", b"{", b"[]", b"null", b'"hello"', b"{}", b'{"request": 5}', b'{"re
          b'{"request": "sdo_read", "slave": 1, "index": 1, "subindex": 256}', b'{"request": "\\ud800"}', b"\xff\xfe",
          b'{"request": "sdo_read", "slave": 1, "index": 4120, "size": 0}', b'{"request": "sdo_write", "slave": 2}',
          b'{"request": "sdo_write", "slave": 2, "index": 24677, "data": "1"}', b"[" * 60000, b'{"a":' * 10000,
-         b'{"request": "sdo_write", "slave": 2, "index": 24677, "data": "zz"}', b'{"request": "' + b"x" * 60000 + b'"}')
+         b'{"request": "sdo_write", "slave": 2, "index": 24677, "data": "zz"}',
+         b'{"request": "registers", "slave": 1, "address": 2304}', b'{"request": "registers", "slave": 3, "address": 0}',
+         b'{"request": "registers", "slave": 1, "address": 2303, "size": 2}', b'{"request": "registers", "slave": 1}',
+         b'{"request": "sii_read", "slave": 1, "word": 0, "size": 3}', b'{"request": "sii_read", "slave": 1, "word": -1}',
+         b'{"request": "sii_read", "slave": 1, "word": 0, "size": 129}', b'{"request": "sdo_info", "slave": 1}',
+         b'{"request": "sdo_info", "slave": 1, "kind": 2, "index": 1}', b'{"request": "sdo_info", "slave": 0, "kind": 1}', b'{"request": "' + b"x" * 60000 + b'"}')
 
 
 def check_wrong_messages():
@@ -349,7 +340,9 @@ def check_commands():
         expect("MC_MoveVelocity, velocity 0.5 u/s" in log.stdout and log.returncode == 0, "log", log)
         as_json = json.loads(program.attached("log", "--json").stdout)
         expect(as_json[0]["text"] == "the run began", "log --json", as_json[:1])
-        expect(program.attached("sdo", "list", "1").returncode == 1, "what needs the network for itself is refused")
+        refused = program.attached("sii", "write", "1", bus_file, "--backup", os.path.join(FOLDER, "backup"))
+        expect(refused.returncode == 1 and "needs the network for itself" in refused.stderr,
+               "what needs the network for itself is refused", refused)
         by_path = subprocess.run([CM1E, "scan", "--attach", program.path], capture_output=True, text=True, timeout=60)
         expect(by_path.returncode == 0 and by_path.stdout.count("CM1-E") == 2, "attach by the path", by_path)
         follower = subprocess.Popen([CM1E, "log", "--follow", "--attach", str(program.pid)], stdout=subprocess.PIPE,
@@ -359,18 +352,68 @@ def check_commands():
     expect(follower.returncode == 0 and "Disabled (was" in out and "the run ended" in out, "log --follow ends with the program", out + err)
 
 
-if __name__ == "__main__":
+def check_more_commands():
+    """params, diff, sdo list, sii and doctor give attached what they give alone."""
+    bus_file, image, values = (os.path.join(FOLDER, name) for name in ("maintain.yaml", "s.bin", "values.yaml"))
+    with running("maintain") as program:
+        def alone(*words):
+            return subprocess.run([CM1E, *words, "-b", bus_file, "-i", f"sim:{bus_file}"], capture_output=True, text=True,
+                                  timeout=60)
+
+        made = alone("sii", "read", "1", image)
+        expect(made.returncode == 0 and os.path.getsize(image) == 2048, "sii read", made)
+        for words in (["sdo", "list", "1"], ["sdo", "list", "2", "--json"], ["sii", "decode", "2"],
+                      ["sii", "decode", "1", "--json"], ["diff", image, "-p", "1"], ["diff", image, "--json"],
+                      ["params", "list", "1"], ["params", "get", "2", "K47", "H3", "--json"],
+                      ["params", "set", "1", "K47=31", "--dry-run"], ["sdo", "list", "9"], ["params", "list", "9"]):
+            one, other = program.attached(*words), alone(*words)
+            expect((without_state(one.stdout), one.returncode) == (without_state(other.stdout), other.returncode),
+                   f"{words}: attached and alone differ", f"{one}\n    {other}")
+        moving = program.attached("params", "set", "1", "K47=31")
+        expect(moving.returncode == 1 and '"X" is commanded' in moving.stderr and "not written: K47" in moving.stderr and
+               "looked at" not in moving.stderr, "params set of a moving axis", moving)
+        for words in (["backup", "2", values], ["set", "2", "K47=44"], ["restore", "2", values, "--yes"],
+                      ["diff", "2", values]):
+            told = program.attached("params", *words)
+            expect(told.returncode == 0, f"params {words}", told)
+        doctor = program.attached("doctor", "--seconds", "0", "--json")
+        found = {(row["subject"], row["level"]) for row in json.loads(doctor.stdout)}
+        fact = next(row["fact"] for row in json.loads(doctor.stdout) if row["subject"] == "program")
+        expect({("slaves", "ok"), ("connections", "ok"), ("motor power", "ok")} <= found and "cm1e move" in fact
+               and str(program.pid) in fact and "Not done" in fact, "doctor", doctor)
+    with running("observe") as program:
+        told = program.attached("params", "set", "2", "K47=31")
+        expect(told.returncode == 1 and "control: maintain" in told.stderr and "not written: K47" in told.stderr,
+               "params set by observe", told)
+        expect(program.attached("params", "get", "2", "K47").returncode == 0, "params get by observe")
+
+
+def judge(check):
+    begin = time.monotonic()
     try:
-        for check in (check_requests, check_writing, check_wrong_messages, check_bad_clients, check_end_beside_clients,
-                      check_rights, check_no_socket, check_left_behind, check_commands):
-            begin = time.monotonic()
-            check()
-            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
+        check()
     except (KeyError, TypeError, OSError) as error:
         faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
+    print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
+
+
+def main():
+    for control in ("none", "observe", "maintain"):
+        with open(os.path.join(FOLDER, f"{control}.yaml"), "w", encoding="utf-8") as file:
+            file.write(BUS.format(control=control))
+    try:
+        real_time.together(*(lambda check=check: judge(check) for check in (
+            check_bad_clients, check_more_commands, check_end_beside_clients, check_no_socket, check_commands,
+            check_requests, check_reading_slaves, check_writing, check_wrong_messages)))
+        judge(check_rights)  # these two look at the folder that all programs share
+        judge(check_left_behind)
     finally:
         shutil.rmtree(FOLDER, ignore_errors=True)
     if faults:
         real_time.skip_on_a_busy_machine(faults)
         print("FAILED:", *faults, sep="\n")
         sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()

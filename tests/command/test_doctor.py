@@ -36,6 +36,10 @@ GOOD = {
     "sys/class/net/eth9/speed": "100",
     "sys/class/net/eth9/duplex": "full",
     "sys/class/net/eth9/device/driver": ("link", "/sys/bus/pci/drivers/igc"),
+    "sys/class/net/eth9/device/msi_irqs/41": "msix",
+    "sys/class/net/eth9/device/msi_irqs/42": "msix",
+    "proc/irq/41/effective_affinity_list": "0",
+    "proc/irq/42/smp_affinity_list": "0,2-3",
     "run/NetworkManager/devices/7": "[device]\nmanaged=false\n",
 }
 NET = "sys/class/net/eth9/"
@@ -66,6 +70,12 @@ FAULTS = [
     ({NET + "type": None}, "eth9", "problem", "does not exist. There are: wlan9 (wireless)", ""),
     ({"run/NetworkManager/devices/7": "[device]\nmanaged=true\n"}, "NetworkManager", "advice", "manages eth9",
      "unmanaged-devices=interface-name:eth9"),
+    ({"proc/irq/41/effective_affinity_list": "1"}, "interrupts", "advice", "41 at processor 1",
+     "for i in 41; do echo 0 > /proc/irq/$i/smp_affinity_list"),
+    ({"proc/irq/42/smp_affinity_list": "0-3"}, "interrupts", "advice", "42 at processor 0-3", "for i in 42; do"),
+    ({"sys/class/net/eth9/device/msi_irqs/41": None, "sys/class/net/eth9/device/msi_irqs/42": None,
+      "sys/class/net/eth9/device/irq": "17", "proc/irq/17/smp_affinity_list": "1"}, "interrupts", "advice",
+     "17 at processor 1", "for i in 17; do"),
     ({"run/systemd/netif/leases/7": "ADDRESS=10.0.0.7\n"}, "systemd-networkd", "advice", "by DHCP", "Unmanaged=yes"),
 ]
 

@@ -419,11 +419,7 @@ def check_service():
         expect(process.wait(20) == 0, f"14_service ended with {process.returncode} on SIGTERM")
 
 
-def main():
-    real_time.run_above_others()
-    check_interrupted()
-    check_error_in_words()
-    check_from_elsewhere()
+def check_traces():
     check_buffer_modes()
     check_cool_muscle_bridge()
     check_mixed_network()
@@ -434,9 +430,12 @@ def main():
     check_touch_probe()
     check_homing_steps()
     check_jog_panel()
-    check_jog_panel_on_a_terminal()
-    check_jog_panel_whose_terminal_goes()
-    check_service()
+
+
+def main():
+    real_time.run_above_others()
+    real_time.together(check_jog_panel_on_a_terminal, check_jog_panel_whose_terminal_goes, check_traces,
+                       check_interrupted, check_error_in_words, check_from_elsewhere, check_service)
     real_time.end(faults, "the examples: their traces show what they are about")
 
 

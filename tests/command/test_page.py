@@ -125,8 +125,11 @@ def drive(page, probe, state):
 
 def run_example():
     page, table = os.path.join(OUTPUT, "trace_page.html"), os.path.join(OUTPUT, "trace_page.csv")
-    subprocess.run([os.path.join(BIN, "03_plc_program"), "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml",
-                    "--seconds", "9", "--html", page, "--csv", table], check=True, stdout=subprocess.DEVNULL)
+    bus = os.path.join(OUTPUT, "trace_page.yaml")
+    with open(f"{SOURCE}/examples/three_axes.yaml", encoding="utf-8") as real, open(bus, "w", encoding="utf-8") as file:
+        file.write(real.read().replace("bus:\n", "bus:\n  virtual_time: true\n", 1))
+    subprocess.run([os.path.join(BIN, "03_plc_program"), "-b", bus, "--seconds", "9", "--html", page, "--csv", table],
+                   check=True, stdout=subprocess.DEVNULL)
     with open(table, newline="", encoding="utf-8") as file:
         head, *rows = csv.reader(file)
     return page, head, rows

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "axis/axis.h"
+#include "axis/axis_guest.h"
 #include "coupling/coupling.h"
 
 enum { FAKE_AXES = 2, FAKE_COMMANDS = 8 };
@@ -65,7 +66,7 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     static cm1e_command_id_t next_id;
     axis->starts++;
     *id = 0;
-    if (axis->start_error)
+    if (axis->start_error != CM1E_OK)
         return axis->start_error;
     if (axis->id && axis->status[axis->id % FAKE_COMMANDS].state == CM1E_COMMAND_ACTIVE)
         axis->status[axis->id % FAKE_COMMANDS].state = CM1E_COMMAND_ABORTED;
@@ -89,7 +90,7 @@ cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1
 {
     axis->updates++;
     axis->updated = id;
-    if (!axis->update_error)
+    if (axis->update_error == CM1E_OK)
         fake_keep(axis, command);
     return axis->update_error;
 }
@@ -104,7 +105,7 @@ cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, boo
 {
     slave->starts++;
     *id = 0;
-    if (slave->start_error)
+    if (slave->start_error != CM1E_OK)
         return slave->start_error;
     slave->cam = *cam;
     slave->cam_flags[0] = periodic;
@@ -133,13 +134,15 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
     return axis->power_error;
 }
 
+void cm1e_axis_claim_power(AXIS_REF_t reference) { (void)reference; }
+
 bool cm1e_axis_powered(const cm1e_axis_t *axis) { return axis->powered; }
 
 bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
-    return axis && !axis->power_error && axis->owner == owner && axis->enable && axis->positive == enable_positive &&
-           axis->negative == enable_negative && axis->powered;
+    return axis && axis->power_error == CM1E_OK && axis->owner == owner && axis->enable &&
+           axis->positive == enable_positive && axis->negative == enable_negative && axis->powered;
 }
 
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
@@ -160,7 +163,7 @@ cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 {
     axis->resets++;
     axis->starts++;
-    if (axis->start_error)
+    if (axis->start_error != CM1E_OK)
         return axis->start_error;
     axis->reset_state = CM1E_COMMAND_ACTIVE;
     return CM1E_OK;

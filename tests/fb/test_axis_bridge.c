@@ -535,11 +535,11 @@ static cm1e_error_t write_output(int n, int number, bool value)
 {
     cm1e_error_t error = cm1e_axis_write_output(axes[n], number, value);
     cm1e_command_state_t state = CM1E_COMMAND_ACTIVE;
-    for (int i = 0; i < 200 && !error && state == CM1E_COMMAND_ACTIVE; i++) {
+    for (int i = 0; i < 200 && error == CM1E_OK && state == CM1E_COMMAND_ACTIVE; i++) {
         cycles(1);
         state = cm1e_axis_output_state(axes[n], number, &error);
     }
-    ck_assert(error || state == CM1E_COMMAND_DONE);
+    ck_assert(error != CM1E_OK || state == CM1E_COMMAND_DONE);
     return error;
 }
 
@@ -629,7 +629,7 @@ static cm1e_error_t transfer(int n, int number, bool write, double *value)
 {
     uint32_t ticket;
     cm1e_error_t error = cm1e_axis_object_start(axes[n], number, write, *value, &ticket);
-    while (!error && cm1e_axis_object_state(axes[n], ticket, value, &error) < CM1E_COMMAND_DONE)
+    while (error == CM1E_OK && cm1e_axis_object_state(axes[n], ticket, value, &error) < CM1E_COMMAND_DONE)
         cycles(1);
     return error;
 }

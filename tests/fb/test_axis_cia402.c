@@ -4,7 +4,7 @@
  */
 #include "axis/axis_signals.h"
 #include "cm1e/generate.h"
-#include "device/cia402.h"
+#include "device/cia402_drive.h"
 #include "axis_segment.h"
 
 enum { COUNTS = 131072, EDGE_COUNTS = 150000 };
@@ -59,7 +59,7 @@ END_TEST
 
 START_TEST(every_cycle_time_is_told_to_the_drive)
 {
-    static const int64_t cycles_ns[] = {200000, 250000, 500000, 1000000};
+    static const int64_t cycles_ns[] = {200000, 250000, 500000, 1000000, 2000000, 4000000};
     describe_other(0);
     config.cycle_time_ns = cycles_ns[_i];
     open_segment();
@@ -79,7 +79,7 @@ static void expect_refused(const char *part)
 {
     memset(&diag, 0, sizeof diag);
     cm1e_error_t error = cm1e_bus_open(&bus, &config, &diag);
-    if (!error)
+    if (error == CM1E_OK)
         error = cm1e_bus_start(bus, &diag);
     ck_assert_msg(error != CM1E_OK && strstr(diag.text, part), "\"%s\" is not in: %s", part, diag.text);
     cm1e_bus_close(bus);
@@ -362,6 +362,37 @@ static uint32_t arm(int input, bool falling)
     return id;
 }
 
+/* Object 0x60B9 of the drive. */
+static unsigned probe_status(void)
+{
+    uint8_t data[2] = {0};
+    cm1e_sdo_t sdo = {.position = 1, .index = OBJ_60B9_TOUCH_PROBE_STATUS, .data = data, .size = sizeof data};
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    for (int i = 0; i < 100 && cm1e_sdo_state(&sdo) == CM1E_SDO_BUSY; i++)
+        cycles(1);
+    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+    return data[0] | (unsigned)data[1] << 8;
+}
+
+/* Bits 0, 1 and 2 of 0x60B9 are of touch probe 1, bits 8, 9 and 10 of touch probe 2. A "stored" bit goes with its
+ * sampling bit in 0x60B8, which the driver takes away when it has the position. */
+START_TEST(the_status_of_touch_probes_has_the_bits_of_the_standard)
+{
+    begin(0);
+    ck_assert_uint_eq(probe_status(), 0);
+    arm(1, false);
+    arm(1, true);
+    arm(2, false);
+    cycles(10);
+    ck_assert_uint_eq(probe_status(), 0x0101);
+    move_to(-EDGE_COUNTS / 50000.0 * 10 - 5, 200);
+    ck_assert_uint_eq(probe_status(), 0x0101); /* the rising edge was stored, and is taken */
+    move_to(0, 200);
+    ck_assert_uint_eq(probe_status(), 0x0100); /* nothing more is wanted of probe 1 */
+    close_segment();
+}
+END_TEST
+
 /* Probe 1 is at the home switch (-150,000), probe 2 at the positive limit switch (+150,000); the drive latches. */
 START_TEST(touch_probes_of_the_drive_know_the_edge_to_the_count)
 {
@@ -434,7 +465,7 @@ int main(void)
     TCase *tests = tcase_create("cia402");
     tcase_set_timeout(tests, 0);
     tcase_add_loop_test(tests, it_starts_with_its_own_process_data_or_those_of_the_bus_file, 0, 4);
-    tcase_add_loop_test(tests, every_cycle_time_is_told_to_the_drive, 0, 4);
+    tcase_add_loop_test(tests, every_cycle_time_is_told_to_the_drive, 0, 6);
     tcase_add_test(tests, what_cannot_work_is_said);
     tcase_add_test(tests, no_file_is_made_of_a_drive_of_another_maker);
     tcase_add_loop_test(tests, moves_end_at_their_target_in_csp_and_csv, 0, 4);
@@ -444,6 +475,7 @@ int main(void)
     tcase_add_loop_test(tests, a_fault_in_a_move_ends_it_and_a_reset_clears_it, 0, 4);
     tcase_add_test(tests, a_cause_that_stays_is_there_after_the_reset);
     tcase_add_loop_test(tests, wherever_the_power_goes_the_axis_ends_in_a_known_state, 0, 4);
+    tcase_add_test(tests, the_status_of_touch_probes_has_the_bits_of_the_standard);
     tcase_add_test(tests, touch_probes_of_the_drive_know_the_edge_to_the_count);
     tcase_add_test(tests, an_edge_outside_the_window_is_waited_out_and_one_without_a_latch_is_sampled);
     tcase_add_test(tests, outputs_are_the_makers_and_not_the_brake);

@@ -39,7 +39,7 @@ static cm1e_error_t refusal(cm1e_axis_command_t c)
     cm1e_command_id_t id;
     c.velocity = c.velocity == 0 ? 10 : c.velocity;
     const cm1e_error_t error = cm1e_axis_start(axis, &c, &id);
-    ck_assert(error && id == 0);
+    ck_assert(error != CM1E_OK && id == 0);
     return error;
 }
 

@@ -200,7 +200,7 @@ static bool check_rule(const block_t *block, cm1e_axis_state_t state)
     *trigger(block) = TRUE;
     block->call(memory);
     const WORD expected = rule->unchanged ? error_id(block) : cm1e_error_id(rule->refusal), shown = error_id(block);
-    const cm1e_axis_state_t next = rule->unchanged || rule->refusal ? state : rule->next;
+    const cm1e_axis_state_t next = rule->unchanged || rule->refusal != CM1E_OK ? state : rule->next;
     scan();
     const bool right = shown == expected && bench.info.state == next;
     if (!right)

@@ -52,7 +52,7 @@ static void open_in_cmd(int n)
 {
     mute = -1;
     open_drives();
-    wire.forge_inputs = take_answer_out;
+    bridge_wire.forge_inputs = take_answer_out;
     cycles(100);
     reach_mode(n, CM1E_BRIDGE_MODE_CMD);
 }
@@ -71,7 +71,7 @@ static void start_now(void)
 
 static void start(int n, cm1e_drive_cmd_t command)
 {
-    run_before = wire.word_count[n] - 1;
+    run_before = bridge_wire.word_count[n] - 1;
     starting = n;
     to_start = command;
     each_cycle = start_now;
@@ -91,13 +91,14 @@ static void check_words(int n, cm1e_drive_cmd_t command)
     cycles(2 * PDO_CYCLES);
     const int at = find_word((unsigned)n, run_before + 1, (uint16_t)(command << 8 | READY));
     const char *seen = words_seen((unsigned)n);
-    const word_run_t *words = wire.words[n];
+    const word_run_t *words = bridge_wire.words[n];
     ck_assert_msg(at > 0, "ID%d: %02X07h does not come behind 0007h:%s", n + 1, command, seen);
     ck_assert_msg(words[at - 1].word == READY && words[at - 1].cycles >= PDO_CYCLES,
                   "ID%d: 0007h does not stand for five cycles before %02X07h:%s", n + 1, command, seen);
     ck_assert_msg(words[at].cycles >= PDO_CYCLES, "ID%d: %02X07h does not stand for five cycles:%s", n + 1, command,
                   seen);
-    ck_assert_msg(words[wire.word_count[n] - 1].word == READY, "ID%d: 0007h is not the last word:%s", n + 1, seen);
+    ck_assert_msg(words[bridge_wire.word_count[n] - 1].word == READY, "ID%d: 0007h is not the last word:%s", n + 1,
+                  seen);
 }
 
 /** Charts 1.2 to 1.4 have one form: the answer comes, or a sending error and another attempt. */
@@ -113,7 +114,7 @@ static void run_chart(int n, cm1e_drive_cmd_t command, way_t answered)
     start(n, command);
     state = finish(n, 1000);
     ck_assert_msg(state == CM1E_DRIVE_CMD_DONE, "ID%d, %02X07h: state %d, statusword %04Xh", n + 1, command, state,
-                  wire.status[n]);
+                  bridge_wire.status[n]);
     check_words(n, command);
     branches[answered].taken++;
     branches[answered + 2].taken++;
@@ -176,18 +177,18 @@ START_TEST(test_origin_search_takes_every_branch)
     int waited = 0;
     for (int i = 0; i < 5000 && cm1e_drive_cmd_busy(cm1e_drive_cmd_state(&drives[n])); i++) {
         cycles(1);
-        waited += wire.status[n] >> 8 == 0xF3 && cm1e_drive_cmd_state(&drives[n]) == CM1E_DRIVE_CMD_SEARCHING;
+        waited += bridge_wire.status[n] >> 8 == 0xF3 && cm1e_drive_cmd_state(&drives[n]) == CM1E_DRIVE_CMD_SEARCHING;
     }
     state = cm1e_drive_cmd_state(&drives[n]);
     ck_assert_msg(waited > PDO_CYCLES, "ID%d: the search was not waited for", n + 1);
     branches[SEARCH_SENT].taken++;
     branches[SEARCH_NOT_COMPLETED].taken++;
     branches[SEARCH_NOT_TIMED_OUT].taken++;
-    ck_assert_msg(state == CM1E_DRIVE_CMD_DONE && wire.status[n] >> 8 == 0xF8, "ID%d: state %d, statusword %04Xh",
-                  n + 1, state, wire.status[n]);
+    ck_assert_msg(state == CM1E_DRIVE_CMD_DONE && bridge_wire.status[n] >> 8 == 0xF8, "ID%d: state %d, statusword "
+                  "%04Xh", n + 1, state, bridge_wire.status[n]);
     branches[SEARCH_COMPLETED].taken++;
     check_words(n, CM1E_DRIVE_CMD_ORIGIN_SEARCH);
-    ck_assert_msg(abs(wire.position[n]) < 20, "ID%d: at %d after its search", n + 1, wire.position[n]);
+    ck_assert_msg(abs(bridge_wire.position[n]) < 20, "ID%d: at %d after its search", n + 1, bridge_wire.position[n]);
     close_drives();
 }
 END_TEST
@@ -203,8 +204,8 @@ START_TEST(test_origin_search_that_finds_nothing)
     ck_assert_int_eq(cm1e_drive_cmd_state(&drives[n]), CM1E_DRIVE_CMD_SEARCHING);
     simulate("motor 1 %d error overload", n);
     const cm1e_drive_cmd_state_t state = finish(n, 1000);
-    ck_assert_msg(state == CM1E_DRIVE_CMD_SEARCH_TIME_OUT && wire.status[n] >> 8 == 0xF9,
-                  "ID%d: state %d, statusword %04Xh", n + 1, state, wire.status[n]);
+    ck_assert_msg(state == CM1E_DRIVE_CMD_SEARCH_TIME_OUT && bridge_wire.status[n] >> 8 == 0xF9,
+                  "ID%d: state %d, statusword %04Xh", n + 1, state, bridge_wire.status[n]);
     branches[SEARCH_TIMED_OUT].taken++;
     check_words(n, CM1E_DRIVE_CMD_ORIGIN_SEARCH);
     must_stand(n);
@@ -250,7 +251,7 @@ START_TEST(test_reset_counter)
     open_in_cmd(n);
     motor(n)->zero -= 1234;
     run_chart(n, CM1E_DRIVE_CMD_RESET_COUNTER, RESET_ANSWERED);
-    ck_assert_msg(abs(wire.position[n]) <= 2, "ID%d: at %d after Reset counter", n + 1, wire.position[n]);
+    ck_assert_msg(abs(bridge_wire.position[n]) <= 2, "ID%d: at %d after Reset counter", n + 1, bridge_wire.position[n]);
     close_drives();
 }
 END_TEST
@@ -284,10 +285,10 @@ START_TEST(test_origin_search_abort)
     mute = -1;
     cycles(50);
     const int first = find_word((unsigned)n, run_before + 1, 0xF607), again = find_word((unsigned)n, first + 1, 0xF607);
-    ck_assert_msg(again > first && wire.words[n][again - 1].word == READY, "ID%d: F607h is not repeated:%s", n + 1,
-                  words_seen((unsigned)n));
+    ck_assert_msg(again > first && bridge_wire.words[n][again - 1].word == READY, "ID%d: F607h is not repeated:%s",
+                  n + 1, words_seen((unsigned)n));
     branches[ABORT_RETRY].taken++;
-    ck_assert_int_eq(wire.words[n][wire.word_count[n] - 1].word, READY);
+    ck_assert_int_eq(bridge_wire.words[n][bridge_wire.word_count[n] - 1].word, READY);
     must_stand(n);
     close_drives();
 }

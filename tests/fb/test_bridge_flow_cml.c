@@ -83,8 +83,9 @@ static void delay_answers(void)
 
 static void step(void)
 {
-    const int last = wire.word_count[asked] - 1;
-    const bool silent = last >= 0 && wire.words[asked][last].word == 0 && wire.words[asked][last].cycles >= PDO_CYCLES;
+    const int last = bridge_wire.word_count[asked] - 1;
+    const word_run_t *end = &bridge_wire.words[asked][last];
+    const bool silent = last >= 0 && end->word == 0 && end->cycles >= PDO_CYCLES;
     const bool sent = count_sdos(true, send_index()) > sends_before;
     if (late && sent)
         delay_answers();
@@ -145,10 +146,10 @@ static int check_sent(const cm1e_drive_cml_request_t *request)
     int number = -1;
     for (int i = 0; i <= sends_before; i++)
         ck_assert_msg(find_sdo(number + 1, true, send_index(), &number), "%s was not sent", request->text);
-    const sdo_seen_t *sdo = &wire.sdos[number];
+    const sdo_seen_t *sdo = &bridge_wire.sdos[number];
     ck_assert_str_eq(sdo->data, request->text);
     ck_assert_int_eq(count_sdos(true, send_index()), sends_before + 1);
-    const word_run_t *word = &wire.words[asked][wire.word_count[asked] - 1];
+    const word_run_t *word = &bridge_wire.words[asked][bridge_wire.word_count[asked] - 1];
     ck_assert_msg(word->word == 0 && sdo->sent_ns - word->from_ns >= (PDO_CYCLES - 1) * INT64_C(1000000),
                   "%s: not behind 0000h for five cycles:%s", request->text, words_seen((unsigned)asked));
     return number;
@@ -160,7 +161,7 @@ static int check_receptions(int number)
 {
     int empty = 0;
     bool found = false;
-    for (const sdo_seen_t *sdo, *before = &wire.sdos[number];
+    for (const sdo_seen_t *sdo, *before = &bridge_wire.sdos[number];
          (sdo = find_sdo(number + 1, false, receive_index(), &number)); before = sdo) {
         ck_assert_msg(sdo->sent_ns - before->answered_ns >= WAIT_NS, "F59%dh is read after %.1f ms", asked + 1,
                       (double)(sdo->sent_ns - before->answered_ns) * 1e-6);
@@ -258,7 +259,7 @@ START_TEST(test_origin_search)
     branches[SEARCH_OTHER].taken++;
     branches[SEARCH_ORIGIN].taken++;
     cycles(100);
-    ck_assert_msg(abs(wire.position[_i]) < 30, "ID%d: at %d after its search", _i + 1, wire.position[_i]);
+    ck_assert_msg(abs(bridge_wire.position[_i]) < 30, "ID%d: at %d after its search", _i + 1, bridge_wire.position[_i]);
     close_drives();
 }
 END_TEST

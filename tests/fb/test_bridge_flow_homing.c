@@ -95,8 +95,8 @@ static uint16_t on_wire(int n, uint16_t index) { return (uint16_t)(index + n * C
 static void check_speed(int n, int method)
 {
     int seen = 0;
-    for (int i = 0; i < wire.sdo_count; i++) {
-        const sdo_seen_t *sdo = &wire.sdos[i];
+    for (int i = 0; i < bridge_wire.sdo_count; i++) {
+        const sdo_seen_t *sdo = &bridge_wire.sdos[i];
         if (!sdo->write || sdo->index != on_wire(n, 0x6099))
             continue;
         seen++;
@@ -114,8 +114,8 @@ static void check_start(int n, int method)
     static const uint16_t objects[] = {0x6098, 0x6099, 0x609A, 0x607C};
     const int start = find_word((unsigned)n, 0, START_WORD);
     ck_assert_msg(start > 0, "ID%d: 001Fh is not seen:%s", n + 1, words_seen((unsigned)n));
-    const word_run_t *run = &wire.words[n][start];
-    ck_assert_msg(wire.words[n][start - 1].word == ENABLED_WORD, "ID%d: bit 4 does not rise alone:%s", n + 1,
+    const word_run_t *run = &bridge_wire.words[n][start];
+    ck_assert_msg(bridge_wire.words[n][start - 1].word == ENABLED_WORD, "ID%d: bit 4 does not rise alone:%s", n + 1,
                   words_seen((unsigned)n));
     const sdo_seen_t *mode = find_sdo(0, true, on_wire(n, 0x6060), NULL);
     ck_assert_msg(mode && mode->data[0] == CM1E_BRIDGE_MODE_HM && mode->answered_ns < run->from_ns,
@@ -134,8 +134,9 @@ static cm1e_command_status_t run_home(int n, cm1e_command_id_t id, double second
 {
     for (int i = cycles_of(seconds); i > 0 && cm1e_axis_command_status(axes[n], id).state == CM1E_COMMAND_ACTIVE; i--) {
         cycles(1);
-        const bool bit4 = wire.word_count[n] && wire.words[n][wire.word_count[n] - 1].word == START_WORD;
-        *waited += bit4 && !(wire.status[n] & (ATTAINED | HOMING_ERROR));
+        const int count = bridge_wire.word_count[n];
+        const bool bit4 = count && bridge_wire.words[n][count - 1].word == START_WORD;
+        *waited += bit4 && !(bridge_wire.status[n] & (ATTAINED | HOMING_ERROR));
     }
     return cm1e_axis_command_status(axes[n], id);
 }
@@ -150,7 +151,7 @@ START_TEST(test_homing_completes)
     int waited = 0;
     open_axes();
     enable_axis(n);
-    wire.sdo_count = wire.word_count[n] = 0;
+    bridge_wire.sdo_count = bridge_wire.word_count[n] = 0;
     const cm1e_command_status_t status = run_home(n, home(n, method), 8.0, &waited);
     ck_assert_msg(status.state == CM1E_COMMAND_DONE, "ID%d, method %d: %d %s %s", n + 1, method, status.state,
                   cm1e_strerror(status.error), text_of(n));
@@ -167,7 +168,7 @@ START_TEST(test_homing_completes)
     ck_assert(info_of(n).state == CM1E_AXIS_STANDSTILL && info_of(n).homed);
     ck_assert_double_eq_tol(info_of(n).actual_position, 2.5, 0.002);
     cycles(100);
-    ck_assert_msg(abs(wire.position[n]) < 30, "ID%d: at %d after homing", n + 1, wire.position[n]);
+    ck_assert_msg(abs(bridge_wire.position[n]) < 30, "ID%d: at %d after homing", n + 1, bridge_wire.position[n]);
     close_axes();
 }
 END_TEST
@@ -180,7 +181,7 @@ START_TEST(test_homing_error_ends_the_search)
     open_axes();
     enable_axis(n);
     const cm1e_command_id_t id = home(n, 2);
-    wire.forge_inputs = forge_bits;
+    bridge_wire.forge_inputs = forge_bits;
     for (int i = 0; i < 2000 && !searching(n); i++)
         cycles(1);
     cycles(150);

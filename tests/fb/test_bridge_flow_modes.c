@@ -90,8 +90,8 @@ static void forge(int n, int answers, int mode)
     old_mode = mode;
     turned = in_error = false;
     turned_by = 0;
-    wire.forge_answer = forge_mode;
-    wire.forge_inputs = forge_motor;
+    bridge_wire.forge_answer = forge_mode;
+    bridge_wire.forge_inputs = forge_motor;
 }
 
 /* ---- what is judged ---------------------------------------------------------------------------------------------- */
@@ -156,8 +156,8 @@ START_TEST(test_mode_is_written_and_read_until_it_is_shown)
     cycles(20);
     must_not_have_moved(n, position);
     if (chart->to == CSP) {
-        ck_assert_msg(wire.target[n] == wire.position[n], "ID%d in csp: target %d, position %d", n + 1, wire.target[n],
-                      wire.position[n]);
+        ck_assert_msg(bridge_wire.target[n] == bridge_wire.position[n], "ID%d in csp: target %d, position %d", n + 1,
+                      bridge_wire.target[n], bridge_wire.position[n]);
         branches[TO_CSP_TARGET].taken++;
     }
     close_drives();

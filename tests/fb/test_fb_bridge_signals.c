@@ -207,7 +207,7 @@ static int write_output(int n, int number, BOOL value, cm1e_error_t expected)
         scan(1);
         MC_WriteDigitalOutput(&fb);
     }
-    ck_assert_msg(fb.Done == !expected && fb.Error == (expected != CM1E_OK) && fb.ErrorID == id(expected),
+    ck_assert_msg(fb.Done == (expected == CM1E_OK) && fb.Error == (expected != CM1E_OK) && fb.ErrorID == id(expected),
                   "output %d: %s: %s", number, cm1e_strerror(cm1e_error_from_id(fb.ErrorID)), text_of(n));
     return taken;
 }
@@ -217,7 +217,7 @@ static bool shown(int n, int number, cm1e_error_t expected)
     MC_OUTPUT_REF output = {.Axis = references[n], .Number = (INT)number};
     MC_ReadDigitalOutput_t fb = {.Output = &output, .Enable = TRUE};
     MC_ReadDigitalOutput(&fb);
-    ck_assert(fb.Valid == !expected && fb.Busy && fb.ErrorID == id(expected) && (fb.Valid || !fb.Value));
+    ck_assert(fb.Valid == (expected == CM1E_OK) && fb.Busy && fb.ErrorID == id(expected) && (fb.Valid || !fb.Value));
     return fb.Value;
 }
 
@@ -231,15 +231,15 @@ START_TEST(test_write_and_read_digital_output)
         const cm1e_error_t expected = has_output(n, number) ? CM1E_OK : CM1E_ERROR_AXIS_SIGNAL;
         for (int on = 1; on >= 0; on--) {
             const int taken = write_output(n, number, on != 0, expected);
-            if (!expected && way == BY_SDO) { /* it is there when Done says so */
+            if (expected == CM1E_OK && way == BY_SDO) { /* it is there when Done says so */
                 ck_assert_int_ge(taken, 2);
                 ck_assert_int_eq(motor(n)->outputs, on ? 1 << (number - 1) : 0);
             }
-            ck_assert_int_eq(shown(n, number, expected), !expected && on);
+            ck_assert_int_eq(shown(n, number, expected), expected == CM1E_OK && on);
             scan(3);
-            ck_assert_int_eq(motor(n)->outputs, !expected && on ? 1 << (number - 1) : 0);
+            ck_assert_int_eq(motor(n)->outputs, expected == CM1E_OK && on ? 1 << (number - 1) : 0);
         }
-        if (expected) {
+        if (expected != CM1E_OK) {
             write_output(n, number, TRUE, expected);
             told(n, n < CM2 ? "output 2" : "outputs 1 ... 4");
         }

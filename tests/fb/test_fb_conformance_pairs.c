@@ -57,8 +57,8 @@ static void check_aborting(void)
     const bool first_moves = first.now.busy, held = is(&first, "MC_Stop");
     trigger(&second, true);
     cycle();
-    if (rule->refusal || held) {
-        const cm1e_error_t refusal = rule->refusal ? rule->refusal : CM1E_ERROR_AXIS_STOPPING;
+    if (rule->refusal != CM1E_OK || held) {
+        const cm1e_error_t refusal = rule->refusal != CM1E_OK ? rule->refusal : CM1E_ERROR_AXIS_STOPPING;
         MUST(second.now.error_id == cm1e_error_id(refusal), "ErrorID 0x%04X", second.now.error_id);
         cycle();
         MUST(!first.now.aborted && !first.now.error, "the first is disturbed");
@@ -191,7 +191,7 @@ START_TEST(test_edge_on_a_busy_block_shows_nothing_of_the_first_command)
         trigger(&first, true);
         cycle();
         const block_rule_t *rule = &first.view->type->rules[judged.state];
-        if (rule->refusal) { /* refused: the motion goes on, this block shows the error */
+        if (rule->refusal != CM1E_OK) { /* refused: the motion goes on, this block shows the error */
             MUST(first.now.error && judged.axis->commands.active, "Error %d", first.now.error);
             continue;
         }

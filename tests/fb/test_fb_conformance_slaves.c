@@ -108,7 +108,7 @@ START_TEST(test_follower_is_aborted_by_every_block_that_moves)
         const block_rule_t rule = other.view->type->rules[axes_state(0)];
         trigger(&other, true);
         cycle();
-        if (rule.refusal)
+        if (rule.refusal != CM1E_OK)
             check_refused(rule.refusal);
         else
             check_taken_over();

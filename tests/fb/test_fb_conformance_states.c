@@ -31,7 +31,7 @@ static void expect_by_rule(const block_t *type, cm1e_axis_state_t before)
     const shown_t *now = &subject.now;
     if (rule->unchanged) {
         MUST(judged.state == before, "the state is %s", cm1e_axis_state_name(judged.state));
-    } else if (rule->refusal) {
+    } else if (rule->refusal != CM1E_OK) {
         MUST(now->error && now->error_id == cm1e_error_id(rule->refusal), "Error %d 0x%04X, 0x%04X is right",
              now->error, now->error_id, cm1e_error_id(rule->refusal));
         MUST(judged.state == before, "refused, but the state is %s", cm1e_axis_state_name(judged.state));

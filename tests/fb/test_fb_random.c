@@ -74,7 +74,7 @@ static void turn_shafts(void)
         cm1e_bus_t *bus = motor_of(n);
         if (bus->state == OPERATION_ENABLED && bus->mode == CM1E_MODE_CSV && !bus->blocked)
             bus->position += (int32_t)lround((int32_t)fake_output(bus, OBJ_60FF_TARGET_VELOCITY, 0) *
-                                             (double)judged_axes[n].axis->drive.velocity_unit *
+                                             (double)judged_axes[n].axis->drive.range.velocity_unit *
                                              (double)judged.cycle_ns * 1e-9);
     }
 }

@@ -208,7 +208,7 @@ static void act_on_device(void)
 /** Whether 0x6060 was handed in before the error could be seen, and is on its way only now: others are before it. */
 static bool handed_in_before(const cm1e_axis_config_t *axis, long long sound)
 {
-    const cm1e_sdo_t *sdo = &judged.axis->drive.mode_sdo;
+    const cm1e_sdo_t *sdo = &judged.axis->drive.change.sdo;
     long long *since = &bench.handed_in[axis->address][axis->channel];
     if (!sdo->write || sdo->state != CM1E_SDO_BUSY)
         *since = judged.number;

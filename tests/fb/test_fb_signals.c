@@ -77,14 +77,15 @@ static void write_output(MC_WriteDigitalOutput_t *fb, BOOL value, cm1e_error_t e
     fb->Value = value;
     fb->Execute = TRUE;
     MC_WriteDigitalOutput(fb);
-    ck_assert(fb->Busy == !expected && fb->Error == (expected != CM1E_OK) && fb->ErrorID == id(expected) && !fb->Done);
+    ck_assert(fb->Busy == (expected == CM1E_OK) && fb->Error == (expected != CM1E_OK) &&
+              fb->ErrorID == id(expected) && !fb->Done);
     cycles(1);
     fb->Value = !value; /* not an edge */
     MC_WriteDigitalOutput(fb);
-    ck_assert(fb->Done == !expected && !fb->Busy);
+    ck_assert(fb->Done == (expected == CM1E_OK) && !fb->Busy);
     cycles(3);
     MC_WriteDigitalOutput(fb);
-    ck_assert(fb->Done == !expected);
+    ck_assert(fb->Done == (expected == CM1E_OK));
     fb->Execute = FALSE;
     MC_WriteDigitalOutput(fb);
     ck_assert(!fb->Done && !fb->Busy && !fb->Error);
@@ -393,9 +394,9 @@ static void abort_trigger(const MC_TRIGGER_REF *trigger, cm1e_error_t expected)
 {
     MC_AbortTrigger_t fb = {.Axis = &reference, .TriggerInput = trigger, .Execute = TRUE};
     MC_AbortTrigger(&fb);
-    ck_assert(fb.Busy == !expected && fb.Error == (expected != CM1E_OK) && fb.ErrorID == id(expected));
+    ck_assert(fb.Busy == (expected == CM1E_OK) && fb.Error == (expected != CM1E_OK) && fb.ErrorID == id(expected));
     MC_AbortTrigger(&fb);
-    ck_assert(fb.Done == !expected && !fb.Busy);
+    ck_assert(fb.Done == (expected == CM1E_OK) && !fb.Busy);
     fb.Execute = FALSE;
     MC_AbortTrigger(&fb);
     ck_assert(!fb.Done && !fb.Error);

@@ -58,9 +58,10 @@ int main(void)
     cm1e_bus_t *bus = NULL;
     cm1e_bus_config_init(&config, "sim", 1);
     snprintf(config.pcap_file, sizeof config.pcap_file, "own_names.pcap");
-    if (cm1e_bus_open(&bus, &config, &why) || cm1e_bus_start(bus, &why)
-        || cm1e_scheduler_create(&scheduler, bus, &traced, &why) || cm1e_scheduler_add_task(scheduler, &task, &why)
-        || (axis = cm1e_scheduler_axis(scheduler, 0), cm1e_scheduler_run(scheduler, 0, &why)))
+    if (cm1e_bus_open(&bus, &config, &why) != CM1E_OK || cm1e_bus_start(bus, &why) != CM1E_OK
+        || cm1e_scheduler_create(&scheduler, bus, &traced, &why) != CM1E_OK
+        || cm1e_scheduler_add_task(scheduler, &task, &why) != CM1E_OK
+        || (axis = cm1e_scheduler_axis(scheduler, 0), cm1e_scheduler_run(scheduler, 0, &why) != CM1E_OK))
         fprintf(stderr, "%s\n", why.text);
     const bool powered = power.Status;
     cm1e_scheduler_destroy(scheduler);

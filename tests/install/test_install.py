@@ -14,6 +14,7 @@ import resource
 import subprocess
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../wire_only"))
 from test_wire_only import guests
@@ -116,6 +117,19 @@ def check_with_pkg_config(libraries, program, soname):
         sys.exit(f"FAILED: {soname} is not what the program needs")
 
 
+def check_can_be_watched(program, project, environment):
+    """`cm1e status` and others attach to a program that was made so."""
+    runtime = os.path.join(project, "run")
+    process = subprocess.Popen([program], cwd=project, env={**environment, "CM1E_RUNTIME_DIR": runtime},
+                               stdout=subprocess.PIPE, text=True)
+    seen = False
+    while process.poll() is None:
+        seen = seen or (os.path.isdir(runtime) and any(name.endswith(".sock") for name in os.listdir(runtime)))
+        time.sleep(0.02)
+    if process.communicate()[0] != "there and back\n" or not seen:
+        sys.exit(f"FAILED: {program} has no control socket")
+
+
 def check_new(prefix, libraries, folder):
     """What `cm1e new` makes builds against the installed package, with CMake and with make, and runs; after a change of
     one line it is linked in less than a second. The installed examples build too."""
@@ -130,6 +144,7 @@ def check_new(prefix, libraries, folder):
         told = run(program, cwd=project, env=environment)
         if told != "there and back\n" or os.path.getsize(os.path.join(project, "trace.csv")) < 10000:
             sys.exit(f"FAILED: {program}: {told}")
+        check_can_be_watched(program, project, environment)
     with open(os.path.join(project, "main.c"), "a", encoding="utf-8") as file:
         file.write("/* one more line */\n")
     before = resource.getrusage(resource.RUSAGE_CHILDREN)

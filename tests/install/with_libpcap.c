@@ -15,7 +15,7 @@ int main(void)
     cm1e_bus_t *bus = NULL;
     cm1e_bus_config_init(&config, "sim", 1);
     snprintf(config.pcap_file, sizeof config.pcap_file, "%s", path);
-    if (cm1e_bus_open(&bus, &config, &why) || cm1e_bus_scan(bus, &why))
+    if (cm1e_bus_open(&bus, &config, &why) != CM1E_OK || cm1e_bus_scan(bus, &why) != CM1E_OK)
         fprintf(stderr, "%s\n", why.text);
     const uint32_t slaves = cm1e_bus_slave_count(bus);
     cm1e_bus_close(bus);

@@ -6,17 +6,20 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "cm1e/control.h"
 #include "cm1e/iec.h"
 #include "cm1e/sim.h"
 #include "machine.h"
 
 #define MS INT64_C(1000000)
 
-static bool running, in_cycle; /* running: cm1e_scheduler_run() was called */
+static bool running; /* cm1e_scheduler_run() was called */
+static _Thread_local bool in_cycle;
 static unsigned violations;
 static const char *violator;
 static const void *caller;
@@ -61,8 +64,17 @@ WRAP(ssize_t, write, (int fd, const void *data, size_t size), (fd, data, size))
 WRAP(ssize_t, read, (int fd, void *data, size_t size), (fd, data, size))
 WRAP(int, nanosleep, (const struct timespec *time, struct timespec *rest), (time, rest))
 WRAP(int, usleep, (useconds_t us), (us))
-WRAP(int, clock_nanosleep, (clockid_t clock, int flags, const struct timespec *time, struct timespec *rest),
-     (clock, flags, time, rest))
+/** In real time the wait for the next start is where a cycle ends. */
+static bool in_real_time;
+int __real_clock_nanosleep(clockid_t clock, int flags, const struct timespec *time, struct timespec *rest);
+int __wrap_clock_nanosleep(clockid_t clock, int flags, const struct timespec *time, struct timespec *rest);
+int __wrap_clock_nanosleep(clockid_t clock, int flags, const struct timespec *time, struct timespec *rest)
+{
+    if (in_real_time && flags == TIMER_ABSTIME)
+        in_cycle = false;
+    NOTE("clock_nanosleep");
+    return __real_clock_nanosleep(clock, flags, time, rest);
+}
 
 void __real_free(void *memory);
 void __wrap_free(void *memory);
@@ -338,6 +350,91 @@ START_TEST(test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps)
     }
     ck_assert_uint_eq(errors, AXES);
     machine_close(&machine);
+}
+END_TEST
+
+/* ---- others at the control socket -------------------------------------------------------------------------------- */
+
+enum { OWN = 0, THEIRS = 1 }; /* axes of the program, and of the others */
+
+static atomic_bool over;
+static atomic_uint answered, moved;
+
+static bool ask(cm1e_control_t *control, const char *request)
+{
+    char *reply = NULL;
+    const bool good = cm1e_control_ask(control, request, &reply, NULL) == CM1E_OK;
+    free(reply);
+    answered += good;
+    return good;
+}
+
+/** Does everything that can be asked for, again and again. */
+static void *guest(void *path)
+{
+    static const char *const requests[] = {
+        "{\"request\": \"axes\"}", "{\"request\": \"slaves\"}", "{\"request\": \"statistics\"}",
+        "{\"request\": \"log\"}", "{\"request\": \"record\"}", "{\"request\": \"samples\"}",
+        "{\"request\": \"keep\"}", "{\"request\": \"sdo_read\", \"slave\": 2, \"index\": 4120, \"subindex\": 2}",
+        "{\"request\": \"jog\", \"axis\": 1, \"velocity\": 1}", /* refused: the program moves it */
+        "{\"request\": \"reset\", \"axis\": 2}",
+    };
+    cm1e_control_t *control = NULL;
+    for (int round = 0; !over; round++) {
+        if (!control && cm1e_control_connect(&control, path, NULL, NULL) != CM1E_OK)
+            continue;
+        ask(control, "{\"request\": \"enable\", \"axis\": 2}");
+        for (size_t i = 0; i < sizeof requests / sizeof *requests; i++)
+            ask(control, requests[i]);
+        moved += ask(control, round % 2 ? "{\"request\": \"jog\", \"axis\": 2, \"velocity\": 1}"
+                                        : "{\"request\": \"jog\", \"axis\": 2, \"velocity\": -1, \"keep_ms\": 50}");
+        if (round % 16 == 7)
+            ask(control, "{\"request\": \"stop\", \"axis\": 2}");
+        if (round % 16 == 14)
+            ask(control, "{\"request\": \"home\", \"axis\": 2}");
+        if (round % 16 == 11)
+            ask(control, "{\"request\": \"disable\", \"axis\": 2}");
+        if (round % 16 == 15) { /* lost while the motor moves */
+            cm1e_control_close(control);
+            control = NULL;
+        }
+        usleep(round % 4 == 3 ? 60000 : 5000);
+    }
+    cm1e_control_close(control);
+    return NULL;
+}
+
+static void turning_program(void *context)
+{
+    blocks_t *b = context;
+    b->velocity.Execute = b->power.Status;
+    MC_Power(&b->power);
+    MC_MoveVelocity(&b->velocity);
+}
+
+START_TEST(test_cycle_calls_nothing_of_that_while_others_are_at_its_control_socket)
+{
+    static char path[128], folder[] = "/tmp/cm1e-promises-XXXXXX";
+    pthread_t thread;
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    setenv("CM1E_RUNTIME_DIR", folder, 1);
+    cm1e_control_serve_own(true);
+    snprintf(path, sizeof path, "%s/cm1e-%d-0.sock", folder, (int)getpid());
+    over = false;
+    machine = (machine_t){.axis_count = 2, .real_time = true, .config = {.realtime_priority = -1}};
+    machine_open(&machine);
+    make_blocks(&axes[OWN], &machine.axis[OWN]);
+    machine_add(&machine, "", 0, 1, turning_program, &axes[OWN]);
+    ck_assert_int_eq(pthread_create(&thread, NULL, guest, path), 0);
+    running = in_real_time = true;
+    machine_run(&machine, 4000 * MS);
+    over = true;
+    pthread_join(thread, NULL);
+    ck_assert_msg(violations == 0, "%u calls in the cycle; the first: %s from %p", violations, violator, caller);
+    ck_assert_uint_ge(answered, 200);
+    ck_assert_uint_ge(moved, 10);
+    machine_close(&machine);
+    rmdir(folder);
 }
 END_TEST
 
@@ -632,6 +729,7 @@ int main(void)
     tcase_set_timeout(all, 60);
     tcase_add_test(all, test_wrapping_works);
     tcase_add_test(all, test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps);
+    tcase_add_test(all, test_cycle_calls_nothing_of_that_while_others_are_at_its_control_socket);
     tcase_add_test(all, test_an_axes_group_calls_nothing_of_that);
     tcase_add_test(all, test_slaves_and_masters_call_nothing_of_that);
     tcase_add_test(all, test_blocks_behind_a_bridge_call_nothing_of_that);

@@ -336,11 +336,8 @@ START_TEST(test_memory_is_locked_with_the_priority_of_the_cycle)
 }
 END_TEST
 
-int main(void)
+static void add_short_tests(TCase *all)
 {
-    need_real_time();
-    Suite *suite = suite_create("real time");
-    TCase *all = tcase_create("all");
     const TTest *const tests[] = {
         test_start_and_stop_from_another_thread_at_any_time,
         test_missing_privilege_is_advice_that_says_what_to_do,
@@ -350,15 +347,28 @@ int main(void)
         test_thread_is_as_before_after_the_run,
         test_memory_is_locked_with_the_priority_of_the_cycle,
     };
-    tcase_set_timeout(all, 60);
-    tcase_add_loop_test(all, test_other_thread_submits_transfers_and_reads_statistics_while_the_cycle_runs, 0, 2);
-    tcase_add_loop_test(all, test_signal_stops_in_order_and_means_again_what_it_did_before, 0, 5);
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tcase_add_test(all, tests[i]);
+}
+
+static Suite *make_suite(int part)
+{
+    Suite *suite = suite_create("real time");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 60);
+    if (part < 2)
+        tcase_add_loop_test(all, test_other_thread_submits_transfers_and_reads_statistics_while_the_cycle_runs, part,
+                            part + 1);
+    else if (part == 2)
+        tcase_add_loop_test(all, test_signal_stops_in_order_and_means_again_what_it_did_before, 0, 5);
+    else
+        add_short_tests(all);
     suite_add_tcase(suite, all);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite;
+}
+
+int main(void)
+{
+    need_real_time();
+    return run_parts(make_suite, 4);
 }

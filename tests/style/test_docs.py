@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The documentation names nothing that is not there: every error of error.h stands in docs/FUNCTION-BLOCKS.md with its
 ErrorID and its text, every rule of the cross-checker in docs/CHECK-RULES.md and in a test, every proof in a table of
-features or of safety is a test, a case in one, or a file, every relative link leads to a file and to a heading in it,
-every path of the repository that is mentioned exists, the rooms use each other as docs/DESIGN.md says.
+features or of safety is a test, a case in one, or a file, every point of `cm1e prove` that is named exists, every
+relative link leads to a file and to a heading in it, every path of the repository that is mentioned exists, the rooms use
+each other as docs/DESIGN.md says.
 
 test_docs.py SOURCE-DIRECTORY
 """
@@ -156,9 +157,37 @@ def check_proofs():
         faults.append("tests: neither tests nor cases in them are found")
     for path in TABLES_WITH_PROOF:
         for number, cells in rows(read(path)):
-            for name in re.findall(r"`([^`]+)`", cells[-1]):
+            for name in re.findall(r"`([^`]+)`", re.split(f"{ON_A_MOTOR}|{NO_POINT}", cells[-1])[0]):
                 if not fnmatch.filter(tests | cases, name) and not exists(name):
                     faults.append(f"{path}:{number}: `{name}` is no test, no case of a test and no file")
+
+
+# ---- points of cm1e prove -------------------------------------------------------------------------------------------
+
+ON_A_MOTOR, NO_POINT = "on a real motor:", "no point:"
+
+
+def check_points():
+    """Every row of the features that rests on the simulator names the points of `cm1e prove` that settle it on a real
+    motor, or says why there is none; every point that is named exists."""
+    page = "docs/FEATURES.md"
+    points = re.findall(r'^    \{"([a-z]+\.[\w.-]+)", ', read("tools/prove/points.c"), re.MULTILINE)
+    if len(points) < 50 or len(points) != len(set(points)):
+        faults.append("tools/prove/points.c: its points cannot be read, or two have one name")
+    section = {}
+    heading = ""
+    for number, line in enumerate(read(page).splitlines(), 1):
+        heading = line if line.startswith("## ") else heading
+        section[number] = heading
+    for number, cells in rows(read(page)):
+        named = re.findall(r"`([^`]+)`", cells[-1].partition(ON_A_MOTOR)[2])
+        for name in named:
+            if not fnmatch.filter(points, name):
+                faults.append(f"{page}:{number}: `cm1e prove` has no point `{name}`")
+        rests = section[number] == "## Simulated segment" or re.search(r"\bsimulated\b", " ".join(cells))
+        if rests and cells[0] != "feature" and not named and NO_POINT not in cells[-1]:
+            faults.append(f"{page}:{number}: it rests on the simulator: which point of `cm1e prove` settles it? Write "
+                          f"\"{ON_A_MOTOR} `POINT`\", or \"{NO_POINT} WHY\"")
 
 
 # ---- rooms ----------------------------------------------------------------------------------------------------------
@@ -219,6 +248,7 @@ def main():
     check_rules()
     check_keys_in_texts()
     check_proofs()
+    check_points()
     check_rooms()
     for path in documents:
         text = read(path)

@@ -51,7 +51,8 @@ static void turn_shaft(void)
     cm1e_bus_t *bus = &bench.bus;
     if (bus->state == OPERATION_ENABLED && bus->mode == CM1E_MODE_CSV && !bus->blocked)
         bus->position += (int32_t)lround((int32_t)fake_output(bus, OBJ_60FF_TARGET_VELOCITY, 0) *
-                                         (double)judged.axis->drive.velocity_unit * (double)judged.cycle_ns * 1e-9);
+                                         (double)judged.axis->drive.range.velocity_unit *
+                                         (double)judged.cycle_ns * 1e-9);
 }
 
 /** Inputs of the master, like those of the axis. */

@@ -29,7 +29,7 @@ enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160, JUDGED_MOST = 4, INSTANCES_MOST = 
 enum { NOWHERE = 0xFFFF };
 typedef struct block_view {
     const block_t *type;
-    uint16_t execute, enable, done, reached, busy, active, aborted, error, error_id, valid, axis, buffer_mode;
+    uint16_t execute, enable, done, reached, busy, active, aborted, error, error_id, valid, axis, group, buffer_mode;
 } block_view_t;
 
 /** What a block shows after a call. */
@@ -128,7 +128,8 @@ static const block_view_t *view_of(const char *name)
             .done = place_of(type, "Done"), .reached = first_place(type, reached), .busy = place_of(type, "Busy"),
             .active = place_of(type, "Active"), .aborted = place_of(type, "CommandAborted"),
             .error = place_of(type, "Error"), .error_id = place_of(type, "ErrorID"), .valid = first_place(type, valid),
-            .axis = first_place(type, axis), .buffer_mode = place_of(type, "BufferMode"),
+            .axis = first_place(type, axis), .group = place_of(type, "AxesGroup"),
+            .buffer_mode = place_of(type, "BufferMode"),
         };
         return &views[i];
     }
@@ -263,7 +264,7 @@ static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
              "%s: from %s to %s (edge %d, Error 0x%04X)", type->name, cm1e_axis_state_name(before),
              cm1e_axis_state_name(after), edge, now->error_id);
     const bool stop_again = strcmp(type->name, "MC_Stop") == 0 && before == CM1E_AXIS_STOPPING; /* may brake anew */
-    const bool refuses = type->rules && !type->rules[before].unchanged && type->rules[before].refusal;
+    const bool refuses = type->rules && !type->rules[before].unchanged && type->rules[before].refusal != CM1E_OK;
     if (edge && !may_wait && !stop_again && refuses)
         MUST(now->error, "%s is taken in %s", type->name, cm1e_axis_state_name(before));
     judged.state = after;
@@ -272,10 +273,9 @@ static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
 /** The axes group of a block of Part 4; NULL: it is a block of an axis, or names none. */
 static const cm1e_group_t *group_of(const instance_t *fb)
 {
-    const block_member_t *m = member_of(fb->view->type, "AxesGroup");
     const AXES_GROUP_REF_t *reference = NULL;
-    if (m)
-        memcpy(&reference, fb->memory + m->offset, sizeof reference);
+    if (fb->view->group != NOWHERE)
+        memcpy(&reference, fb->memory + fb->view->group, sizeof reference);
     return cm1e_group_from_reference(reference);
 }
 
@@ -517,12 +517,14 @@ static inline void watch_set_point(void)
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
     const bool taken_over = watched.disabled && axis->state == CM1E_AXIS_STANDSTILL && v == 0.0 && a == 0.0 &&
                             cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) == 0.0;
-    if (ours && watched.ours && !hard && !watched.lost && !taken_over && !watch_silence()) {
+    const bool goes_on = ours && watched.ours && !watched.lost && !taken_over;
+    if (goes_on && !watched.rough) /* a hard one too */
+        KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
+    if (goes_on && !hard && !watch_silence()) {
         const double way = cm1e_position_minus(axis->setpoint.position, watched.set) / axis->position.scale;
         const double jerk = fabs(a - watched.acceleration) / t, gain = fabs(v - watched.velocity);
         const double rounding = rounding_of(axis, JUDGED_MOST) + 4e-16 * fmax(far, watched.far);
         const double off = fabs(way - (v + watched.velocity) * t / 2.0);
-        KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
         KEEPS(fabs(a) <= largest * slack, "acceleration %.12g, limit %.12g", a, largest);
         /* Of a set-point that is not of its own making the axis accepts 1e-5 counts of rounding (axis_guard.c). */
         const double guarded = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION ? 1e-5 / fabs(axis->position.scale) : 0.0;

@@ -16,7 +16,7 @@
 #include "cm1e/sii.h"
 #include "core/bytes.h"
 #include "nic/nic.h"
-#include "sim/backend.h"
+#include "sim/segment_backend.h"
 #include "sim/slave.h"
 
 /** One configuration at a time is enough for a test; it is too large for a stack. */

@@ -1,7 +1,7 @@
 /**
  * @file group_bench.h
  * An axes group on axes_bench.h: ways into its states, commands, and a witness of its set-points against the programmed
- * path. Include it once in a program.
+ * path.
  */
 #ifndef CM1E_TESTS_GROUP_BENCH_H
 #define CM1E_TESTS_GROUP_BENCH_H
@@ -10,130 +10,35 @@
 #include "group/group.h"
 #include "group/group_private.h"
 
-static AXES_GROUP_REF_t group_reference;
-static cm1e_group_t *group;
+extern AXES_GROUP_REF_t group_reference;
+extern cm1e_group_t *group;
 
-static inline void group_end(void)
-{
-    axes_end();
-    (void)cm1e_group_destroy(group_reference);
-    group_reference = (AXES_GROUP_REF_t){0};
-    group = NULL;
-}
-
-static inline void group_create(void)
-{
-    cm1e_diag_t diag = {0};
-    const cm1e_group_config_t config = {.name = "table"};
-    AXES_MUST(cm1e_group_create(&group_reference, &config, &diag) == CM1E_OK, "%s", diag.text);
-    group = cm1e_group_from_reference(&group_reference);
-}
-
-static inline const char *group_text(void)
-{
-    static char text[CM1E_GROUP_ERROR_TEXT_BYTES];
-    cm1e_group_error_text(group_reference, text, sizeof text);
-    return text;
-}
-
-static inline void group_told(const char *words)
-{
-    AXES_MUST(strstr(group_text(), words), "the group does not say \"%s\" but: %s", words, group_text());
-}
-
-static inline cm1e_group_info_t group_info(void)
-{
-    cm1e_group_info_t info;
-    cm1e_group_get(group, &info);
-    return info;
-}
-
-static inline void group_must_be(cm1e_group_state_t state)
-{
-    AXES_MUST(group_info().state == state, "the group is in %s instead of %s: %s",
-              cm1e_group_state_name(group_info().state), cm1e_group_state_name(state), group_text());
-}
+void group_end(void);
+void group_create(void);
+const char *group_text(void);
+void group_told(const char *words);
+cm1e_group_info_t group_info(void);
+void group_must_be(cm1e_group_state_t state);
 
 /** The axes of the bench, as they are, become members in their order; GroupDisabled. */
-static inline void group_form(void)
-{
-    group_create();
-    for (int n = 0; n < axes_bench.count; n++)
-        AXES_MUST(cm1e_group_add(group, axes_reference(n), 0) == CM1E_OK, "%s", group_text());
-}
+void group_form(void);
 
 /** `count` axes in Standstill, their group in GroupStandby. */
-static inline void group_begin(int count)
-{
-    group_end();
-    axes_begin(count);
-    group_form();
-    AXES_MUST(cm1e_group_enable(group) == CM1E_OK, "%s", group_text());
-}
-
-static inline cm1e_command_id_t group_command(const cm1e_group_command_t *command)
-{
-    cm1e_command_id_t id = 0;
-    const cm1e_error_t error = cm1e_group_start(group, command, &id);
-    AXES_MUST(error == CM1E_OK && id != 0, "kind %d: %s: %s", (int)command->kind, cm1e_strerror(error), group_text());
-    return id;
-}
-
-static inline void group_refused(const cm1e_group_command_t *command, cm1e_error_t expected)
-{
-    cm1e_command_id_t id = 7;
-    const cm1e_error_t error = cm1e_group_start(group, command, &id);
-    AXES_MUST(error == expected && id == 0, "kind %d: \"%s\" instead of \"%s\"", (int)command->kind,
-              cm1e_strerror(error), cm1e_strerror(expected));
-    AXES_MUST(group_text()[0], "kind %d: nothing is said of \"%s\"", (int)command->kind, cm1e_strerror(error));
-}
-
-static inline cm1e_command_id_t group_line(double x, double y, double velocity, MC_BUFFER_MODE mode)
-{
-    return group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_ABSOLUTE, .position = {x, y},
-                                                 .velocity = velocity, .buffer_mode = mode});
-}
-
-static inline cm1e_command_id_t group_stop(void)
-{
-    return group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_STOP});
-}
-
-static inline cm1e_command_state_t group_state_of(cm1e_command_id_t id)
-{
-    return cm1e_group_command_status(group, id).state;
-}
-
-/** Cycles until the command has ended; how many it took. */
-static inline int group_wait(cm1e_command_id_t id)
-{
-    int waited = 0;
-    while ((group_state_of(id) == CM1E_COMMAND_ACTIVE || group_state_of(id) == CM1E_COMMAND_BUFFERED) &&
-           waited++ < 60000)
-        axes_cycles(1);
-    return waited;
-}
-
-static inline void group_done(cm1e_command_id_t id)
-{
-    group_wait(id);
-    AXES_MUST(group_state_of(id) == CM1E_COMMAND_DONE, "command state %d: %s", (int)group_state_of(id), group_text());
-}
+void group_begin(int count);
+cm1e_command_id_t group_command(const cm1e_group_command_t *command);
+void group_refused(const cm1e_group_command_t *command, cm1e_error_t expected);
+cm1e_command_id_t group_line(double x, double y, double velocity, MC_BUFFER_MODE mode);
+cm1e_command_id_t group_stop(void);
+cm1e_command_state_t group_state_of(cm1e_command_id_t id);
+void group_done(cm1e_command_id_t id);
 
 /** Set-point of axis n, as the path counts. */
-static inline double group_at(int n) { return cm1e_axis_place(axes_axis(n), false); }
+double group_at(int n);
 
 /** Distance of the set-points of the first two axes from the line through a and b; u. */
-static inline double group_off_line(double ax, double ay, double bx, double by)
-{
-    const double dx = bx - ax, dy = by - ay, x = group_at(0) - ax, y = group_at(1) - ay;
-    return fabs(dx * y - dy * x) / hypot(dx, dy);
-}
+double group_off_line(double ax, double ay, double bx, double by);
 
 /** Distance of the axes from a circle. */
-static inline double group_off_circle(double cx, double cy, double radius)
-{
-    return fabs(hypot(group_at(0) - cx, group_at(1) - cy) - radius);
-}
+double group_off_circle(double cx, double cy, double radius);
 
 #endif

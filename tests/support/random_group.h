@@ -32,8 +32,8 @@ static unsigned group_seen[CM1E_GROUP_STATE_COUNT];
 
 static struct random_group *random_group_of(const instance_t *fb)
 {
-    const cm1e_group_t *group = group_of(fb);
-    for (int g = 0; g < group_count; g++)
+    const cm1e_group_t *group = fb->view->group != NOWHERE ? group_of(fb) : NULL;
+    for (int g = 0; group && g < group_count; g++)
         if (groups[g].group == group)
             return &groups[g];
     return NULL;

@@ -322,16 +322,15 @@ static void play(int n)
     const cm1e_command_id_t active = judged.axis->commands.active;
     const bool busy = fb->now.busy;
     const from_t from = from_set(judged.axis);
-    const double set = cm1e_axis_units(judged.axis, judged.axis->setpoint.position);
+    const double set = edge_to_come ? cm1e_axis_units(judged.axis, judged.axis->setpoint.position) : NAN;
     double sets[JUDGED_MOST];
-    for (int a = 0; a < axis_count && group_count > 0; a++)
+    for (int a = 0; a < axis_count && edge_to_come && group_count > 0; a++)
         sets[a] = cm1e_axis_units(judged_axes[a].axis, judged_axes[a].axis->setpoint.position);
     const struct random_group *group = random_group_of(fb);
     const cm1e_group_state_t group_state = group ? group->group->state : CM1E_GROUP_DISABLED;
     call(fb);
     judge_group_states(fb);
-    if (is(fb, "MC_SetOverride") &&
-        judged.axis->commands.active != active) /* what waited at 0 is done at once by a new factor */
+    if (judged.axis->commands.active != active && is(fb, "MC_SetOverride")) /* what waited at 0 is done at once by a new factor */
         player.edge_in_cycle = true;
     if (edge_to_come && group) {
         tell(fb, &from);
@@ -361,7 +360,7 @@ static void play(int n)
         judge_group_arrival(n);
     else if (fb->now.done && busy)
         judge_arrival(n);
-    if (is(fb, "MC_CamTableSelect") && fb->now.done)
+    if (fb->now.done && is(fb, "MC_CamTableSelect"))
         player.cam = (MC_CAM_ID)integer_of(fb, "CamTableID");
 }
 
@@ -435,6 +434,14 @@ static void act_on(instance_t *fb)
     fb->memory[place] = !fb->memory[place];
 }
 
+static bool any_in_error_stop(void)
+{
+    bool any = false;
+    for (int n = 0; n < axis_count; n++)
+        any = any || judged_axes[n].axis->state == CM1E_AXIS_ERROR_STOP;
+    return any;
+}
+
 static void act(void)
 {
     if (axis_count > 1 && one_in(40)) { /* a slave, and a cam for it */
@@ -455,7 +462,7 @@ static void act(void)
         if ((is(fb, "MC_Stop") || is(fb, "MC_GroupStop")) && one_in(50))
             trigger(fb, false);
     }
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count && any_in_error_stop(); i++)
         if (judged_axes[instances[i].of].axis->state == CM1E_AXIS_ERROR_STOP && is(&instances[i], "MC_Reset") &&
             one_in(50))
             trigger(&instances[i], !instances[i].now.trigger);
@@ -474,13 +481,18 @@ static void act_on_power(void)
 
 /* ---- what must hold after every cycle ---------------------------------------------------------------------------- */
 
+/** Of all axes: at most one command of an axis is Active. */
 static void judge_active(void)
 {
-    int active = 0;
-    for (int i = 0; i < count; i++)
-        active += instances[i].now.active && instances[i].of == judged_at && !is_on_top(&instances[i]) &&
-                  instances[i].view->type->rules != NULL && !instances[i].view->type->rules->unchanged;
-    MUST(player.edge_in_cycle || active <= 1, "%d blocks are Active", active);
+    int active[JUDGED_MOST] = {0};
+    for (int i = 0; i < count; i++) {
+        const instance_t *fb = &instances[i];
+        if (!fb->now.active || is_on_top(fb))
+            continue;
+        active[fb->of] += fb->view->type->rules != NULL && !fb->view->type->rules->unchanged;
+    }
+    for (int n = 0; n < axis_count; n++)
+        MUST(players[n].edge_in_cycle || active[n] <= 1, "%d blocks of axis %d are Active", active[n], n);
 }
 
 static void judge_rest(void)
@@ -515,8 +527,10 @@ static void judge_progress(void)
     const cm1e_axis_t *axis = judged.axis;
     const bool to_move = axis->state == CM1E_AXIS_DISCRETE_MOTION ||
                          (axis->state == CM1E_AXIS_STOPPING && !axis->commands.stop_held);
-    player.still_cycles = to_move && axis->setpoint.velocity == 0.0 && !axis->setpoint.paused ? player.still_cycles + 1
-                          : 0;
+    /* Its override is 0, for the motion, or for the superimposed one of an axis that stands. */
+    const bool on_top_paused = axis->setpoint.stands && axis->superimposed.id && axis->superimposed.paused;
+    const bool paused = axis->override.velocity == 0.0 && (axis->setpoint.paused || on_top_paused);
+    player.still_cycles = to_move && axis->setpoint.velocity == 0.0 && !paused ? player.still_cycles + 1 : 0;
     MUST(player.still_cycles < STUCK, "%s, and nothing has moved for %d cycles", cm1e_axis_state_name(axis->state),
          player.still_cycles);
 }
@@ -550,7 +564,6 @@ static void judge_groups(void)
 
 static void judge_axis(void)
 {
-    judge_active();
     judge_rest();
     judge_led();
     judge_motor();
@@ -582,6 +595,7 @@ static void one_cycle(void)
         pause_for(pick(95) * 1000000);
     cycle_end();
     judge_group_states(NULL);
+    judge_active();
     for (int n = 0; n < axis_count; n++) {
         judged_at = n;
         judge_axis();

@@ -1,5 +1,8 @@
 #include "real_time.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 /** Somebody waited for a processor in nearly all of the last ten seconds. False where the kernel does not tell. */
 static bool no_processor_is_free(void)
 {
@@ -24,4 +27,29 @@ void need_real_time(void)
         return;
     printf("SKIPPED: this machine has no free processor, and SCHED_FIFO is not allowed: no time is judged\n");
     exit(EXIT_SUCCESS);
+}
+
+static int run_part(Suite *suite)
+{
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+int run_parts(Suite *(*make)(int part), int parts)
+{
+    int result = EXIT_SUCCESS, status;
+    for (int part = 0; part < parts; part++) {
+        const pid_t child = fork();
+        if (child == 0)
+            exit(run_part(make(part)));
+        if (child < 0)
+            result = EXIT_FAILURE;
+    }
+    for (int part = 0; part < parts; part++)
+        if (wait(&status) < 0 || status != 0)
+            result = EXIT_FAILURE;
+    return result;
 }

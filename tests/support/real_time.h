@@ -6,6 +6,7 @@
 #ifndef CM1E_TESTS_REAL_TIME_H
 #define CM1E_TESTS_REAL_TIME_H
 
+#include <check.h>
 #include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -19,5 +20,9 @@ bool run_above_others(bool above);
 
 /** First thing in main(). */
 void need_real_time(void);
+
+/** Runs suites that mostly wait at the same time, each in a process of its own; returns the exit status of main().
+ *  `make` makes the suite of a part, 0 ... parts - 1. */
+int run_parts(Suite *(*make)(int part), int parts);
 
 #endif

@@ -1,9 +1,11 @@
 """For tests of programs in real time: real_time.h says what is done on a busy machine, and why."""
+import concurrent.futures
 import os
 import sys
 
 PRIORITY = 10
 SKIPPED = 77
+AT_A_TIME = 3
 
 
 def run_above_others():
@@ -13,6 +15,15 @@ def run_above_others():
     except PermissionError:
         return False
     return True
+
+
+def together(*checks):
+    """Checks that mostly wait, and share nothing, a few at a time. Each runs to its end; the first that raised an
+    exception, or exits, ends the test."""
+    with concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as threads:
+        running = [threads.submit(check) for check in checks]
+    for check in running:
+        check.result()
 
 
 def no_processor_is_free():

@@ -21,7 +21,7 @@
 #include "cm1e/scheduler.h"
 #include "device/unit.h"
 #include "nic/nic.h"
-#include "sim/backend.h"
+#include "sim/segment_backend.h"
 #include "sim/bridge_app.h"
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"

@@ -1,6 +1,6 @@
 /* Blending (2.4.2, figures 56-63): with which velocity a position is passed, and the moment of the change. */
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 
 static uint64_t seed;
 

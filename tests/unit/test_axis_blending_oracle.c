@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 
 enum { MOVES_MAX = 3, PAIRS = 500, TRIPLES = 600, GRID = 80 };
 

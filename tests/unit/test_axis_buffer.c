@@ -1,6 +1,6 @@
 /* Commands that wait (2.4.2, table 4): who is active when, what ends them, what is refused. */
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 
 void setUp(void)
 {

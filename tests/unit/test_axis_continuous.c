@@ -1,6 +1,6 @@
 /* MC_MoveContinuousAbsolute, MC_MoveContinuousRelative (3.11, 3.12): through a position with a velocity, and on. */
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 
 static void begin_with_limits(double negative, double positive)
 {

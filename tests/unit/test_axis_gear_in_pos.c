@@ -189,6 +189,39 @@ static void test_a_master_that_turns_round_on_the_way(void)
     TEST_ASSERT_TRUE(set_of(MASTER) < 10);
 }
 
+static void master_goes(double velocity)
+{
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = velocity,
+                                                .acceleration = 5, .deceleration = 5, .jerk = 100});
+}
+
+/* The master accelerates where the approach begins, so the curve begins with a curvature: of 3 u/s2 at 5 u/s, which are
+ * 6 cycles of the slave's jerk. The bench watches the slave while the master goes over the beginning and back. */
+static void over_the_beginning(double velocity, double distance, double slave)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->max_jerk = 500;
+    axes_make();
+    axes_enable_all();
+    axes_wait_reached(SLAVE, axes_move_velocity(SLAVE, 3), 2000);
+    master_goes(velocity);
+    AXES_UNTIL(fabs(axes_info(MASTER).set_velocity) > 5);
+    const double begin = set_of(MASTER);
+    const cm1e_axis_coupling_t coupling = meet(begin + 10, set_of(SLAVE) + slave, distance);
+    const cm1e_command_id_t id = gear_in_pos(&coupling);
+    axes_cycles(50);
+    must_show(id, CM1E_COMMAND_ACTIVE, true, false);
+    master_goes(-4);
+    AXES_UNTIL(set_of(MASTER) < begin - 1);
+    must_show(id, CM1E_COMMAND_ACTIVE, true, false);
+    master_goes(4);
+    meets(id, coupling.master_sync_position, coupling.slave_sync_position, 1, 10000);
+}
+
+static void test_a_master_that_turns_round_over_the_beginning(void) { over_the_beginning(8, 0, 8); }
+
+static void test_a_master_that_goes_away_from_the_first_cycle_on(void) { over_the_beginning(-8, 15, 2); }
+
 static void test_in_the_other_direction(void)
 {
     axes_begin(2);
@@ -424,7 +457,7 @@ static void test_random_ways_that_begin_come_to_their_end(void)
         const cm1e_axis_command_t command = in_pos(&coupling);
         cm1e_command_id_t id;
         const cm1e_error_t error = cm1e_axis_start(axes_axis(SLAVE), &command, &id);
-        if (error) {
+        if (error != CM1E_OK) {
             TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_SYNC_WAY, error);
             refused++;
             continue;
@@ -566,6 +599,8 @@ int main(void)
     RUN_TEST(test_from_one_gear_into_another);
     RUN_TEST(test_a_stop_before_start_sync_inhibits_it);
     RUN_TEST(test_a_master_that_turns_round_on_the_way);
+    RUN_TEST(test_a_master_that_turns_round_over_the_beginning);
+    RUN_TEST(test_a_master_that_goes_away_from_the_first_cycle_on);
     RUN_TEST(test_in_the_other_direction);
     RUN_TEST(test_without_a_distance_the_whole_way_is_used);
     RUN_TEST(test_who_stands_in_step_is_in_step);

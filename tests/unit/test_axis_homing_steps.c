@@ -391,6 +391,43 @@ static void test_block_goes_on_when_the_motor_comes_free(void)
     expect_called(STOP, 0.0, 0.0);
 }
 
+enum { COMES_FREE, MC_STOP, DIRECTION_OFF, OTHER_STEP, TAKE_OVERS };
+
+static void take_over(int how)
+{
+    if (how == COMES_FREE) {
+        gives_way = true;
+    } else if (how == MC_STOP) {
+        cm1e_axis_hold_stop(axis, bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP}), false);
+    } else if (how == DIRECTION_OFF) {
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_power(axis, &owner, true, false, true));
+    } else {
+        step = (cm1e_homing_step_t){.mode = mcRisingEdge};
+        start(0.2, 0.0);
+    }
+}
+
+/* A set-point that presses has no limit of jerk. What takes over, at the axis's jerk, does not take its acceleration
+ * along: to take that back would need a velocity far beyond all limits. */
+static void test_what_takes_over_from_pressing_does_not_run_away(void)
+{
+    limits_there = false;
+    bus.config.axes[0].max_jerk = 20.0;
+    for (int n = 0; n < 20 * TAKE_OVERS; n++) {
+        gives_way = false;
+        step = block(1, 30.0);
+        begin_at(18000);
+        bus.world = soft_world;
+        start(0.2, 0.0);
+        while (bus.torque < 500)
+            bench_cycles(1);
+        bench_cycles(n / TAKE_OVERS);
+        take_over(n % TAKE_OVERS);
+        bench_cycles(500);
+        TEST_ASSERT_LESS_OR_EQUAL_INT64(11, worst_step); /* 0.2 u/s */
+    }
+}
+
 static void test_block_ends_at_a_limit_switch(void)
 {
     step = block(1, 30.0);
@@ -1039,6 +1076,7 @@ int main(void)
     RUN_TEST(test_block_by_torque_and_by_lag_from_afar_and_from_the_stop_itself);
     RUN_TEST(test_block_presses_no_harder_than_the_torque_limit_and_the_ramp_need);
     RUN_TEST(test_block_goes_on_when_the_motor_comes_free);
+    RUN_TEST(test_what_takes_over_from_pressing_does_not_run_away);
     RUN_TEST(test_block_ends_at_a_limit_switch);
     RUN_TEST(test_free_motor_that_comes_late_is_waited_for_and_not_relieved);
     RUN_TEST(test_motor_held_up_with_a_small_lag_is_relieved);

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 
 /* The shaft behind the motor: no faster than `pace` counts a cycle, not beyond `stop`, and `off` counts beside its
  * target. Units of 50,000 counts; the default window is 10 counts, the default time 20 cycles. */

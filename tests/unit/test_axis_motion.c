@@ -162,7 +162,7 @@ static void test_turning_for_ever_passes_the_range_of_the_device_many_times(void
     axis->setpoint.profile_next_s += 86400.0 * 30;
     axis->setpoint.position.counts += counts;
     axis->position.actual_counts += counts;
-    axis->drive.target_position = (int32_t)((uint32_t)axis->drive.target_position + (uint32_t)(uint64_t)counts);
+    axis->drive.target.position = (int32_t)((uint32_t)axis->drive.target.position + (uint32_t)(uint64_t)counts);
     axis->drive.feedback.position = (int32_t)((uint32_t)axis->drive.feedback.position + (uint32_t)(uint64_t)counts);
     axis->position.raw = bus.position = (int32_t)((uint32_t)bus.position + (uint32_t)(uint64_t)counts);
     const cm1e_image_slot_t target = fake_find(&bus.rx, OBJ_607A_TARGET_POSITION);
@@ -848,7 +848,7 @@ static void random_run(void)
             TEST_ASSERT_TRUE(fabs(info.set_velocity - velocity_before) <= 100.0 * 1e-3 + 1e-6);
         }
         velocity_before = info.set_velocity;
-        if (info.error)
+        if (info.error != CM1E_OK)
             TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, info.error);
         TEST_ASSERT_EQUAL_INT(info.state == CM1E_AXIS_ERROR_STOP, info.error != CM1E_OK);
         if (info.state == CM1E_AXIS_STANDSTILL)

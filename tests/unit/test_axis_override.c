@@ -1,6 +1,6 @@
 /* MC_SetOverride (3.18): factors on the dynamics of what moves the axis. */
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 
 static uint64_t seed;
 

@@ -4,7 +4,7 @@
  * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_SEEDS=<count> as many from there on.
  */
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 #include "../support/chance.h"
 
 enum { RUNS = 300, CYCLES = 9000, CHAIN = 4 };

@@ -4,7 +4,7 @@
 #include "axis/axis_parameters.h"
 
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 
 static uint64_t seed;
 
@@ -136,6 +136,33 @@ static void test_on_a_velocity(void)
     TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->setpoint.velocity);
     TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, base).reached);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(base));
+}
+
+/* A base that begins later and is to be faster than what the superimposed motion leaves gets what is left, its end
+ * velocity too; and what it was commanded when that is over. */
+static void test_a_faster_base_that_begins_later_is_reduced_until_the_end(void)
+{
+    static const cm1e_command_kind_t kinds[] = {CM1E_COMMAND_MOVE_VELOCITY, CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE};
+    for (int k = 0; k < 2; k++)
+        for (int mode = mcBuffered; mode <= mcBlendingHigh; mode++) {
+            setUp();
+            bench_move_to(3.0, 10.0);
+            watch_cycles(100);
+            const cm1e_command_id_t on_top = superimpose(20.0, 5.0);
+            const cm1e_command_id_t base = bench_start_command(&(cm1e_axis_command_t){
+                .kind = kinds[k], .position = 1.0, .velocity = 20.0 + 8.0 * (k == 0), .end_velocity = 28.0,
+                .buffer_mode = (MC_BUFFER_MODE)mode});
+            double fastest = 0.0;
+            while (bench_state_of(on_top) == CM1E_COMMAND_ACTIVE) {
+                watch_cycles(1);
+                fastest = fmax(fastest, axis->setpoint.velocity);
+            }
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, 30.0, fastest);
+            watch_cycles(500);
+            TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(base));
+            TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, base).reached);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 28.0, axis->setpoint.velocity);
+        }
 }
 
 /* In a turn the acceleration of the base will still make a velocity that what goes on top has to leave room for. */
@@ -422,8 +449,8 @@ static void test_random_programs_keep_all_limits(void)
                 CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, CM1E_COMMAND_MOVE_VELOCITY, CM1E_COMMAND_HALT,
                 CM1E_COMMAND_MOVE_SUPERIMPOSED, CM1E_COMMAND_MOVE_SUPERIMPOSED, CM1E_COMMAND_HALT_SUPERIMPOSED};
             const cm1e_axis_command_t command = {
-                .kind = kinds[(int)draw(0.0, 8.999)], .position = draw(-20.0, 20.0), .velocity = draw(0.5, 20.0),
-                .end_velocity = draw(-10.0, 10.0), .acceleration = draw(0.0, 1.0) < 0.5 ? 0.0 : draw(5.0, 60.0),
+                .kind = kinds[(int)draw(0.0, 8.999)], .position = draw(-20.0, 20.0), .velocity = draw(0.5, 30.0),
+                .end_velocity = draw(-30.0, 30.0), .acceleration = draw(0.0, 1.0) < 0.5 ? 0.0 : draw(5.0, 60.0),
                 .deceleration = draw(0.0, 1.0) < 0.5 ? 0.0 : draw(5.0, 60.0),
                 .jerk = draw(0.0, 1.0) < 0.5 ? 0.0 : draw(100.0, 2000.0),
                 .direction = draw(0.0, 1.0) < 0.5 ? mcPositiveDirection : mcNegativeDirection,
@@ -452,6 +479,7 @@ int main(void)
     RUN_TEST(test_a_base_that_needs_no_more_than_half_keeps_its_time);
     RUN_TEST(test_in_standstill_it_acts_like_a_relative_move);
     RUN_TEST(test_on_a_velocity);
+    RUN_TEST(test_a_faster_base_that_begins_later_is_reduced_until_the_end);
     RUN_TEST(test_on_a_base_that_turns);
     RUN_TEST(test_on_a_halt_before_a_limit);
     RUN_TEST(test_another_one_replaces_the_first_only);

@@ -499,7 +499,7 @@ static void test_random_tables_are_refused_or_kept_to_at_every_sample(void)
         cm1e_command_id_t id;
         char what[32];
         snprintf(what, sizeof what, "seed %u", (unsigned)first);
-        if (cm1e_axis_start(axis, &command, &id)) {
+        if (cm1e_axis_start(axis, &command, &id) != CM1E_OK) {
             refused++;
             continue;
         }

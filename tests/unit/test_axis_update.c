@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "../support/axis_bench.h"
-#include "../support/axis_watch.h"
+#include "../support/axis_witness.h"
 
 void setUp(void)
 {
@@ -202,7 +202,7 @@ static void test_random_updates_keep_the_limits(void)
         cm1e_axis_command_t command = inputs(kinds[run % 4], draw(-15.0, 15.0), draw(5.0, 40.0));
         command.end_velocity = draw(-2.0, 2.0);
         cm1e_command_id_t id;
-        if (cm1e_axis_start(axis, &command, &id))
+        if (cm1e_axis_start(axis, &command, &id) != CM1E_OK)
             continue;
         for (int i = 0; i < 1500 && axis->state != CM1E_AXIS_ERROR_STOP; i++) {
             const cm1e_axis_command_t next = random_inputs(&command);

@@ -4,7 +4,8 @@
 #include <string.h>
 #include <unity.h>
 
-#include "bus/sii.h"
+#include "bus/sii_reader.h"
+#include "cm1e/io.h"
 #include "core/bytes.h"
 
 enum { BYTES = 0x8000 };
@@ -45,10 +46,11 @@ void setUp(void)
     cm1e_put_u32(image + 0x34, 0x00801080);
     cm1e_put_u32(image + 0x38, 0x0004);
 }
-void tearDown(void) {}
+void tearDown(void) { cm1e_sii_free(&sii); }
 
 static cm1e_sii_result_t parse(void)
 {
+    cm1e_sii_free(&sii);
     const cm1e_sii_result_t result = cm1e_sii_read_header(&sii, read_image, NULL);
     return result == SII_OK ? cm1e_sii_read_categories(&sii, read_image, NULL) : result;
 }
@@ -84,6 +86,14 @@ static void test_good_image_gives_everything(void)
     TEST_ASSERT_TRUE(sii.coe);
     TEST_ASSERT_EQUAL_STRING("name", sii.name);
     TEST_ASSERT_TRUE(sii.complete_access);
+    TEST_ASSERT_NOT_NULL(sii.signals); /* 0x1A01 has no sync manager */
+    TEST_ASSERT_EQUAL_UINT32(3, sii.signals->count);
+    const cm1e_sii_signal_t *second = &sii.signals->at[1];
+    TEST_ASSERT_EQUAL_HEX16(0x6064, second->index);
+    TEST_ASSERT_EQUAL_UINT32(16, second->bit_offset);
+    TEST_ASSERT_EQUAL_UINT16(32, second->bits);
+    TEST_ASSERT_EQUAL_INT(CM1E_IO_DINT, second->type);
+    TEST_ASSERT_TRUE(second->input);
     TEST_ASSERT_TRUE(sii.no_lrw);
     TEST_ASSERT_EQUAL_UINT8(4, sii.sync_manager_count);
     TEST_ASSERT_EQUAL_HEX16(0x1400, sii.sync_managers[3].start);

@@ -35,7 +35,7 @@ static cm1e_error_t load(void)
     loaded = error == CM1E_OK;
     TEST_ASSERT_EQUAL(error, diag.error);
     TEST_ASSERT_NOT_NULL(memchr(diag.text, '\0', sizeof diag.text));
-    if (error) {
+    if (error != CM1E_OK) {
         TEST_ASSERT_EQUAL_MEMORY(&untouched, &config, sizeof config);
         TEST_ASSERT_EQUAL_STRING_LEN(temporary, diag.text, strlen(temporary));
         TEST_ASSERT_GREATER_THAN(strlen(temporary) + 10, strlen(diag.text));
@@ -179,7 +179,7 @@ static const struct {
      {"inputs.limit_negative is 2", "expected another input"}},
     {"axes: [{jog: {slow: 0}}]\n", "1:21", {"slow is 0", "default"}},
     {"axes: [{limits: {velocity: 10}, jog: {fast: 11}}]\n", "1:45", {"jog.fast is 11", "10"}},
-    {"bus: {cycle_time_us: 100}\naxes: [{}]\n", "1:22", {"cycle_time_us is '100'", "200 ... 1000"}},
+    {"bus: {cycle_time_us: 100}\naxes: [{}]\n", "1:22", {"cycle_time_us is '100'", "200 ... 4000"}},
     {"bus: {cycle_time_us: 300}\naxes: [{}]\n", "1:22", {"cycle_time_us is 300", "200, 250, 500 or 1000"}},
     {"bus: {lost_cycles_limit: 0}\naxes: [{}]\n", "1:26", {"lost_cycles_limit", "1 ... 250"}},
     {"bus: {lost_cycles_limit: 4294967297}\naxes: [{}]\n", "1:26", {"lost_cycles_limit", "1 ... 250"}},

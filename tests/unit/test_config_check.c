@@ -63,6 +63,34 @@ static void test_only_the_four_cycle_times_are_good(void)
     }
 }
 
+static void use_other_drive(cm1e_axis_config_t *axis)
+{
+    snprintf(axis->device, sizeof axis->device, "cia402");
+    axis->counts_per_revolution = 10000;
+    axis->max_speed_rpm = 3000;
+}
+
+/* Each device of the bus has to accept the cycle time, and no other device is asked. */
+static void test_cycle_time_is_one_of_every_device_on_the_bus(void)
+{
+    use_other_drive(&config.axes[0]);
+    config.cycle_time_ns = 2000000;
+    expect_wrong("cycle_time_us is 2000; expected 200, 250, 500 or 1000, which the CM1-E accepts");
+    use_other_drive(&config.axes[1]);
+    expect_good();
+    config.cycle_time_ns = 300000;
+    expect_wrong("cycle_time_us is 300; expected 200, 250, 500, 1000, 2000 or 4000, which the CiA 402 servo drive "
+                 "accepts");
+    config.axes[0].type = config.axes[1].type = CM1E_AXIS_VIRTUAL;
+    config.axes[0].device[0] = config.axes[1].device[0] = '\0';
+    config.axes[0].counts_per_revolution = config.axes[1].counts_per_revolution = 0;
+    config.axes[0].max_speed_rpm = config.axes[1].max_speed_rpm = 0;
+    expect_wrong("cycle_time_us is 300; expected a cycle time that a device accepts");
+    config.cycle_time_ns = 4000000;
+    config.lost_cycles_limit = 10;
+    expect_good();
+}
+
 static void test_frame_timeout_is_within_the_cycle(void)
 {
     config.frame_timeout_ns = 1000000;
@@ -463,6 +491,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_all_zero_configuration_is_good);
     RUN_TEST(test_only_the_four_cycle_times_are_good);
+    RUN_TEST(test_cycle_time_is_one_of_every_device_on_the_bus);
     RUN_TEST(test_frame_timeout_is_within_the_cycle);
     RUN_TEST(test_texts_without_end_are_refused);
     RUN_TEST(test_enumerations_out_of_range_are_refused);

@@ -106,7 +106,7 @@ static void check(void)
         TEST_ASSERT_FALSE(torque);
     if (torque && f->state != OPERATION_ENABLED) { /* on the way: actual position, the right mode shown */
         TEST_ASSERT_EQUAL_INT32(f->position, target);
-        TEST_ASSERT_EQUAL_INT8(drive.mode, f->mode);
+        TEST_ASSERT_EQUAL_INT8(drive.mode.commanded, f->mode);
         TEST_ASSERT_TRUE(f->online);
     }
     if (!f->enabled)

@@ -420,10 +420,10 @@ static void test_mode_lost_or_cancelled_at_every_step(void)
                 TEST_ASSERT_EQUAL(CM1E_OK, request->error);
             else if (cancel)
                 TEST_ASSERT_EQUAL(CM1E_ERROR_CANCELLED, request->error);
-            else if (request->error) /* or the answer had just come */
+            else if (request->error != CM1E_OK) /* or the answer had just come */
                 TEST_ASSERT_TRUE(request->error == CM1E_ERROR_DRIVE_MODE_LOST ||
                                  request->error == CM1E_ERROR_DRIVE_MODE_TIMEOUT);
-            TEST_ASSERT_TRUE(request->error || request->lines == 1);
+            TEST_ASSERT_TRUE(request->error != CM1E_OK || request->lines == 1);
             TEST_ASSERT_TRUE(cm1e_drive_cml_idle(&cml));
             answers("K54.2=2\r\n", box.sent_count + 1, 4);
             request = finish(send("K54.2"));

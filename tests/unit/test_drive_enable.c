@@ -38,7 +38,7 @@ static void enable_with_turning_shaft(cm1e_mode_t mode, int32_t turn_per_cycle)
 {
     if (!cm1e_drive_supports(&drive, mode))
         return;
-    const bool has_position = drive.out_position.bytes, has_velocity = drive.out_velocity.bytes;
+    const bool has_position = drive.image.out_position.bytes, has_velocity = drive.image.out_velocity.bytes;
     drive.command = (cm1e_drive_command_t){.enable = true, .mode = mode, .target_position = 1000000007,
                                            .target_velocity = 2000000, .homing_start = true};
     unsigned n = 0;

@@ -192,7 +192,7 @@ static void test_enable_lost(void)
         cycle();
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_ENABLE_LOST, drive.fault.error);
         assert_no_torque_commanded();
-        TEST_ASSERT_FALSE(drive.command.enable && drive.torque);
+        TEST_ASSERT_FALSE(drive.command.enable && drive.torque.asked);
     }
 }
 

@@ -199,9 +199,9 @@ static void test_inputs_of_both_orders_are_decoded(void)
             TEST_ASSERT_EQUAL_INT32(4321, drive.feedback.velocity);
             TEST_ASSERT_EQUAL_HEX16(0x000B, drive.feedback.digital_inputs);
             TEST_ASSERT_EQUAL_HEX16(0x8611, drive.feedback.error_code);
-            TEST_ASSERT_EQUAL_INT16(drive.in_torque.bytes ? -250 : 0, drive.feedback.torque);
-            TEST_ASSERT_EQUAL_INT16(drive.in_temperature.bytes ? -12 : 0, drive.feedback.temperature);
-            TEST_ASSERT_EQUAL_INT32(drive.in_dc.bytes ? 241 : 0, drive.feedback.dc_link_decivolt);
+            TEST_ASSERT_EQUAL_INT16(drive.image.in_torque.bytes ? -250 : 0, drive.feedback.torque);
+            TEST_ASSERT_EQUAL_INT16(drive.image.in_temperature.bytes ? -12 : 0, drive.feedback.temperature);
+            TEST_ASSERT_EQUAL_INT32(drive.image.in_dc.bytes ? 241 : 0, drive.feedback.dc_link_decivolt);
             TEST_ASSERT_TRUE(drive.feedback.voltage);
             TEST_ASSERT_TRUE(drive.feedback.digital_known);
         }

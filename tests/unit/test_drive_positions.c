@@ -52,7 +52,7 @@ static void enable(void)
 
 /** Counts that the motor can have gone at most since the last good position, so many cycles ago: the position may be
  *  2 ms old beside that. */
-static int32_t farthest(int cycles_ago) { return (int32_t)(drive.velocity_possible * (cycles_ago + 2) / 1000); }
+static int32_t farthest(int cycles_ago) { return (int32_t)(drive.range.velocity_possible * (cycles_ago + 2) / 1000); }
 
 static void expect_position(int32_t position, bool fresh)
 {

@@ -94,7 +94,7 @@ static void check(bool enabled_before)
     if (torque && f->state != OPERATION_ENABLED) { /* on the way: actual position, no velocity, the right mode shown */
         TEST_ASSERT_EQUAL_INT32(f->position, target);
         TEST_ASSERT_EQUAL_INT32(0, velocity);
-        TEST_ASSERT_EQUAL_INT8(drive.mode, f->mode);
+        TEST_ASSERT_EQUAL_INT8(drive.mode.commanded, f->mode);
         TEST_ASSERT_TRUE(f->voltage && f->online);
     }
     if (!f->enabled) { /* a target of the caller never passes: the actual one, or the one it is holding */

@@ -331,6 +331,24 @@ static void test_stop_without_power_holds_the_group(void)
     group_must_be(CM1E_GROUP_STANDBY);
 }
 
+/* Before the first step after MC_GroupStop, so that nobody asks the group for a set-point any more. */
+static void test_stop_that_loses_all_axes_at_once_is_done(void)
+{
+    for (int held = 0; held <= 1; held++) {
+        again();
+        const cm1e_command_id_t stop = group_stop();
+        cm1e_group_hold_stop(group, stop, held);
+        for (int n = 0; n < 3; n++)
+            axes_power(n, false);
+        axes_cycles(1);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, group_state_of(stop));
+        group_must_be(held ? CM1E_GROUP_STOPPING : CM1E_GROUP_STANDBY);
+        cm1e_group_hold_stop(group, stop, false);
+        group_must_be(CM1E_GROUP_STANDBY);
+        TEST_ASSERT_EQUAL_INT(0, group_info().commands);
+    }
+}
+
 static void test_halt_may_be_aborted_and_be_waited_for(void)
 {
     const cm1e_group_command_t halt = {.kind = CM1E_GROUP_HALT, .deceleration = 2.0};
@@ -538,6 +556,7 @@ int main(void)
     RUN_TEST(test_stop_released_early_may_be_repeated_until_it_stands);
     RUN_TEST(test_stop_in_standby_holds_the_axes);
     RUN_TEST(test_stop_without_power_holds_the_group);
+    RUN_TEST(test_stop_that_loses_all_axes_at_once_is_done);
     RUN_TEST(test_halt_may_be_aborted_and_be_waited_for);
     RUN_TEST(test_a_buffered_halt_lets_the_line_end);
     RUN_TEST(test_a_halt_that_waits_for_a_halt);

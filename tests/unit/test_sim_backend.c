@@ -8,7 +8,7 @@
 
 #include "core/bytes.h"
 #include "nic/nic.h"
-#include "sim/backend.h"
+#include "sim/segment_backend.h"
 #include "sim/slave.h"
 
 enum { N = 4, NS_PER_SLAVE = 1200, SHORT_FRAME_NS = (60 + 24) * 80, STATION = 0x1001, REGISTER_STATION = 0x0010,

@@ -20,7 +20,7 @@ static void to_state(bench_t *b, cm1e_fsa_state_t state)
 {
     static const uint16_t controlwords[CM1E_FSA_STATE_COUNT] = {
         [READY_TO_SWITCH_ON] = 0x06, [SWITCHED_ON] = 0x07, [OPERATION_ENABLED] = 0x0F, [FAULT] = 0x06};
-    if (b->drive->state == FAULT) {
+    if (b->drive->fsa.state == FAULT) {
         b->controlword = 0;
         bench_cycle(b);
         b->controlword = 0x86;
@@ -321,7 +321,7 @@ static void test_power_up_fault_by_firmware(void)
         const cm1e_axis_config_t config = bench_firmware(firmwares[i]);
         bench_t b;
         bench_open(&b, &config, CM1E_PDO_ORDER_UG_4_4);
-        b.drive->failing_power_ups = 2;
+        b.drive->troubles.failing_power_ups = 2;
         b.ops->power_on(b.drive, b.now_ns);
         bench_to_op(&b);
         b.mode = 8;
@@ -353,14 +353,14 @@ static void test_power_up_fault_resets_again_while_the_bit_stays_set(void)
 {
     bench_t b;
     bench_open(&b, NULL, CM1E_PDO_ORDER_UG_4_4);
-    b.drive->failing_power_ups = 100;
+    b.drive->troubles.failing_power_ups = 100;
     b.ops->power_on(b.drive, b.now_ns);
     b.controlword = 0x86;
     for (int i = 0; i < 10; i++) {
         bench_to_op(&b);
         bench_cycle(&b);
         TEST_ASSERT_EQUAL(BENCH_INIT, b.drive->al_state);
-        TEST_ASSERT_EQUAL(98 - i, b.drive->failing_power_ups);
+        TEST_ASSERT_EQUAL(98 - i, b.drive->troubles.failing_power_ups);
     }
     bench_close(&b);
 }
@@ -409,7 +409,7 @@ static void test_controlword_starts_anew_in_op(void)
     TEST_ASSERT_EQUAL_HEX16(0, b.ops->state_change(b.drive, BENCH_OP, BENCH_SAFEOP));
     cm1e_sim_fsa_error(b.drive, 0x7500);
     b.ops->advance(b.drive, b.now_ns += 10 * BENCH_MS);
-    TEST_ASSERT_EQUAL(FAULT, b.drive->state);
+    TEST_ASSERT_EQUAL(FAULT, b.drive->fsa.state);
     TEST_ASSERT_EQUAL_HEX16(0, b.ops->state_change(b.drive, BENCH_SAFEOP, BENCH_OP));
     bench_cycle(&b);
     TEST_ASSERT_EQUAL(READY_TO_SWITCH_ON, bench_state(&b));

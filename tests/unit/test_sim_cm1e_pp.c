@@ -95,7 +95,7 @@ static void test_pp_velocity_and_acceleration_are_kept(void)
     while (!(b.statusword & BIT10)) {
         bench_cycle(&b);
         peak = fmax(peak, b.drive->servo.reference_velocity);
-        TEST_ASSERT_EQUAL_DOUBLE(1000000, b.drive->profile_acceleration);
+        TEST_ASSERT_EQUAL_DOUBLE(1000000, b.drive->motion.profile_acceleration);
         steepest = fmax(steepest, fabs(b.drive->servo.reference_velocity - last));
         last = b.drive->servo.reference_velocity;
     }
@@ -124,8 +124,8 @@ static void test_pp_values_over_the_process_data_are_rounded_and_limited(void)
         b.profile_acceleration = rows[i].written;
         b.profile_velocity = UINT32_MAX;
         set_point(&b, 1000);
-        TEST_ASSERT_EQUAL_DOUBLE(rows[i].used, b.drive->profile_acceleration);
-        TEST_ASSERT_EQUAL_DOUBLE(2500000, b.drive->profile_velocity);
+        TEST_ASSERT_EQUAL_DOUBLE(rows[i].used, b.drive->motion.profile_acceleration);
+        TEST_ASSERT_EQUAL_DOUBLE(2500000, b.drive->motion.profile_velocity);
         bench_close(&b);
     }
 }

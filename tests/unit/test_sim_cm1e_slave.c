@@ -44,7 +44,7 @@ static void enable(void)
 {
     for (int i = 0; i < 10; i++)
         outputs(0x0F);
-    TEST_ASSERT_EQUAL(OPERATION_ENABLED, drive->state);
+    TEST_ASSERT_EQUAL(OPERATION_ENABLED, drive->fsa.state);
 }
 
 static unsigned emergencies(void) { return slave->mailbox.emergency_count; }
@@ -107,10 +107,10 @@ static void test_a_full_queue_drops_what_follows(void)
 
 static void test_clearing_a_power_up_fault_takes_the_device_off_the_bus(void)
 {
-    drive->failing_power_ups = 2;
+    drive->troubles.failing_power_ups = 2;
     cm1e_sim_slave_reset(slave, now_ns + MS);
     cm1e_sim_esc_advance(slave, now_ns += 2 * MS);
-    TEST_ASSERT_EQUAL_HEX16(0x7510, drive->fault_code);
+    TEST_ASSERT_EQUAL_HEX16(0x7510, drive->fsa.fault_code);
     for (int attempt = 0; attempt < 2; attempt++) {
         outputs(0x06);
         TEST_ASSERT_TRUE(cm1e_sim_esc_present(slave));
@@ -121,7 +121,7 @@ static void test_clearing_a_power_up_fault_takes_the_device_off_the_bus(void)
         cm1e_sim_esc_advance(slave, now_ns += 200 * MS);
         TEST_ASSERT_TRUE(cm1e_sim_esc_present(slave));
         TEST_ASSERT_EQUAL(1, cm1e_sim_slave_al_state(slave));
-        TEST_ASSERT_EQUAL_HEX16(attempt == 0 ? 0x7510 : 0, drive->fault_code);
+        TEST_ASSERT_EQUAL_HEX16(attempt == 0 ? 0x7510 : 0, drive->fsa.fault_code);
     }
 }
 

@@ -97,7 +97,7 @@ static void test_wrong_lines_are_refused_in_words(void)
     pass(10);
     for (uint32_t i = 1; i < SLAVES; i++) {
         TEST_ASSERT_TRUE_MESSAGE(drive(i)->motor_power, "a refused line acted");
-        TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, drive(i)->fault_code, "a refused line acted");
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, drive(i)->fsa.fault_code, "a refused line acted");
     }
 }
 
@@ -219,18 +219,18 @@ static void test_overload_and_temperature(void)
 static void test_power_up_fault(void)
 {
     accept("power-up-fault 1 1");
-    TEST_ASSERT_EQUAL_HEX16(0, drive(1)->fault_code);
+    TEST_ASSERT_EQUAL_HEX16(0, drive(1)->fsa.fault_code);
     accept("power-cycle 1 10");
     pass(50);
-    TEST_ASSERT_EQUAL_HEX16(0x7510, drive(1)->fault_code);
+    TEST_ASSERT_EQUAL_HEX16(0x7510, drive(1)->fsa.fault_code);
     accept("power-cycle 1 10");
     pass(50);
-    TEST_ASSERT_EQUAL_HEX16(0, drive(1)->fault_code);
+    TEST_ASSERT_EQUAL_HEX16(0, drive(1)->fsa.fault_code);
     accept("power-up-fault 1 always");
     for (int i = 0; i < 3; i++) {
         accept("power-cycle 1 10");
         pass(50);
-        TEST_ASSERT_EQUAL_HEX16(0x7510, drive(1)->fault_code);
+        TEST_ASSERT_EQUAL_HEX16(0x7510, drive(1)->fsa.fault_code);
     }
 }
 
@@ -239,7 +239,7 @@ static void test_power_cycle_stops_torque_and_lets_the_axis_run_out(void)
     cm1e_sim_cm1e_t *d = drive(1);
     d->mechanics.velocity = 500000;
     accept("power-cycle 1 400");
-    TEST_ASSERT_FALSE(d->state == OPERATION_ENABLED);
+    TEST_ASSERT_FALSE(d->fsa.state == OPERATION_ENABLED);
     pass(500);
     TEST_ASSERT_DOUBLE_WITHIN(2000, 17000, d->mechanics.position);
     TEST_ASSERT_EQUAL_DOUBLE(0, d->mechanics.velocity);

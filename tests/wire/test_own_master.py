@@ -51,6 +51,6 @@ def move_behind_a_bridge(cm1e):
 
 
 if __name__ == "__main__":
-    move_behind_a_bridge(sys.argv[1])
-    for cycle in (1000, 250):
-        home_and_move(sys.argv[1], cycle)
+    command = sys.argv[1]
+    wire.together(lambda: move_behind_a_bridge(command), lambda: home_and_move(command, 1000),
+                  lambda: home_and_move(command, 250))

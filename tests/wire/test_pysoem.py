@@ -71,7 +71,7 @@ def check_wrong_requests(pysoem, master, slave):
     for start, asked, code, why in [
         (pysoem.INIT_STATE, pysoem.OP_STATE, 0x0011, "Init -> Op"),
         (pysoem.PREOP_STATE, 0x07, 0x0012, "an unknown state"),
-        (pysoem.INIT_STATE, 0x03, 0x0013, "Init -> Bootstrap, which the simulated device does not have"),
+        (pysoem.PREOP_STATE, pysoem.BOOT_STATE, 0x0011, "Pre-Operational -> Bootstrap"),
     ]:
         acknowledge(master, slave, start)
         slave.state = asked

@@ -5,6 +5,7 @@ in order by the same signals.
 
 test_signals.py CM1E
 """
+import contextlib
 import os
 import re
 import signal
@@ -46,9 +47,8 @@ def velocity(segment):
 def end_by(segment, cm1e, number, nohup=False):
     """Signals the master twice; returns what it said and how long it took to end."""
     command = [cm1e, "move", "-b", bus_file(segment), "X", "--speed", "10", "--for", "3" if nohup else "60"]
-    ignore = (lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)) if nohup else None
-    master = subprocess.Popen(segment.command(command), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                              preexec_fn=ignore)
+    master = subprocess.Popen(segment.command([*(["nohup"] if nohup else []), *command]), stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     wire.wait_for(lambda: velocity(segment) > 9 or master.poll() is not None, 10, "the motor does not turn")
     began = time.monotonic()
     for _ in range(2):
@@ -61,24 +61,42 @@ def end_by(segment, cm1e, number, nohup=False):
     return master.returncode, output, complaint, took
 
 
-def main(cm1e):
+@contextlib.contextmanager
+def segment_of_a_motor(cm1e):
     with tempfile.TemporaryDirectory() as folder:
         slaves = os.path.join(folder, "slaves.yaml")
         with open(slaves, "w", encoding="utf-8") as file:
             file.write(SLAVES)
         with wire.segment(cm1e, slaves) as segment:
-            for number in NUMBERS:
-                status, _, complaint, took = end_by(segment, cm1e, number)
-                wire.check(status == 1 and "interrupted" in complaint, f"{number.name}: {status} {complaint}")
-                wire.check(took > 0.4, f"{number.name}: at rest after {took:.3f} s, sooner than the ramp")
-                print(f"{number.name}: at rest, ended after {took:.3f} s")
-            status, output, complaint, took = end_by(segment, cm1e, signal.SIGHUP, nohup=True)
-            wire.check(status == 0 and "done" in output and took > 2, f"under nohup: {status} {output}{complaint}")
-            print("SIGHUP under nohup: ignored, the move ends by itself")
+            yield segment
+
+
+def ended_master(cm1e, numbers):
+    with segment_of_a_motor(cm1e) as segment:
+        for number in numbers:
+            status, _, complaint, took = end_by(segment, cm1e, number)
+            wire.check(status == 1 and "interrupted" in complaint, f"{number.name}: {status} {complaint}")
+            wire.check(took > 0.4, f"{number.name}: at rest after {took:.3f} s, sooner than the ramp")
+            print(f"{number.name}: at rest, ended after {took:.3f} s")
+
+
+def master_under_nohup(cm1e):
+    with segment_of_a_motor(cm1e) as segment:
+        status, output, complaint, took = end_by(segment, cm1e, signal.SIGHUP, nohup=True)
+        wire.check(status == 0 and "done" in output and took > 2, f"under nohup: {status} {output}{complaint}")
+    print("SIGHUP under nohup: ignored, the move ends by itself")
+
+
+def ended_simulator(cm1e):
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGPIPE):
         with wire.segment(cm1e) as segment: # its end judges the exit status
             segment.simulator.send_signal(number)
             time.sleep(0.1)
+
+
+def main(cm1e):
+    wire.together(lambda: master_under_nohup(cm1e), lambda: ended_master(cm1e, NUMBERS[:4]),
+                  lambda: ended_master(cm1e, NUMBERS[4:]), lambda: ended_simulator(cm1e))
 
 
 if __name__ == "__main__":

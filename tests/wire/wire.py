@@ -77,6 +77,9 @@ def join(master, slave):
     for holder, interface in ((master, MASTER_INTERFACE), (slave, SLAVE_INTERFACE)):
         up = ip(holder, "set", interface, "up")
         check(up.returncode == 0, f"{interface} does not come up: {up.stderr}")
+    for holder, interface in ((master, MASTER_INTERFACE), (slave, SLAVE_INTERFACE)):
+        # The kernel tells of the link a moment later: until then cm1e says that there is none.
+        wait_for(lambda: " state UP " in ip(holder, "show", interface).stdout, 10, f"{interface} has no link")
 
 
 def with_priority(command, priority):
@@ -156,6 +159,12 @@ def segment(cm1e, *arguments):
         yield running
         simulator.send_signal(signal.SIGINT)
         check(simulator.wait(10) == 0, f"cm1e sim ended with {simulator.returncode} on SIGINT")
+
+
+def together(*checks):
+    """Checks with segments of their own, a few at a time."""
+    become_root()
+    real_time.together(*checks)
 
 
 def check(condition, message):

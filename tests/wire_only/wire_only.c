@@ -31,16 +31,17 @@ int main(int argc, char **argv)
 #ifdef REGISTER_SIM
     cm1e_sim_register();
 #endif
-    if (cm1e_bus_config_init(&config, argc > 1 ? argv[1] : NULL, 1)) {
+    if (cm1e_bus_config_init(&config, argc > 1 ? argv[1] : NULL, 1) != CM1E_OK) {
         fprintf(stderr, "No memory for the configuration.\n");
         return 1;
     }
-    if (cm1e_bus_open(&bus, &config, &why) || cm1e_bus_start(bus, &why) ||
-        cm1e_scheduler_create(&scheduler, bus, NULL, &why) || cm1e_scheduler_add_task(scheduler, &task, &why) ||
-        (axis = cm1e_scheduler_axis(scheduler, 0), cm1e_scheduler_run(scheduler, 100000000, &why)))
+    if (cm1e_bus_open(&bus, &config, &why) != CM1E_OK || cm1e_bus_start(bus, &why) != CM1E_OK ||
+        cm1e_scheduler_create(&scheduler, bus, NULL, &why) != CM1E_OK ||
+        cm1e_scheduler_add_task(scheduler, &task, &why) != CM1E_OK ||
+        (axis = cm1e_scheduler_axis(scheduler, 0), cm1e_scheduler_run(scheduler, 100000000, &why) != CM1E_OK))
         fprintf(stderr, "%s\n", why.text);
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(bus);
     cm1e_bus_config_free(&config);
-    return why.error ? 1 : 0;
+    return why.error != CM1E_OK ? 1 : 0;
 }

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "attach.h"
 #include "cm1e/bus.h"
 #include "cm1e/config.h"
 
@@ -57,7 +58,9 @@ void doctor_look_at_machine(doctor_t *doctor);
 void doctor_measure_latency(doctor_t *doctor, int64_t cycle_time_ns, double seconds);
 /** The network interface, before anything is sent on it. Returns false if there is none of this name. */
 bool doctor_look_at_interface(doctor_t *doctor, const char *name);
-/** The slaves, their connections, and the bus file against what is there. */
-void doctor_look_at_bus(doctor_t *doctor, const cm1e_bus_config_t *config);
+/** The slaves, their connections, and the bus file against what is there. If a program has the network, it is asked. */
+void doctor_look_at_bus(doctor_t *doctor, const common_options_t *options, const cm1e_bus_config_t *config);
+/** Which processors serve the interrupts of the card. */
+void doctor_look_at_interrupts(doctor_t *doctor, const char *name);
 
 #endif

@@ -1,0 +1,83 @@
+/* Registers and state of one slave, as they are asked for. */
+#include "cm1e/esc.h"
+
+#include <string.h>
+
+#include "bus/bus_internal.h"
+#include "core/in_task.h"
+
+enum { HIGHEST_STATE = 15 };
+
+static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const char *function, cm1e_diag_t *diag)
+{
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse(function, "", diag);
+    if (!bus || bus->phase >= BUS_OPERATING)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s needs an open bus that does not operate.", function);
+    const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, function, diag);
+    if (attached != CM1E_OK)
+        return attached;
+    if (position > 0 && (bus->phase < BUS_SCANNED || !cm1e_bus_at(bus, position)))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u; a scan found %u.", position,
+                             bus->slave_count);
+    cm1e_bus_enter(bus);
+    return CM1E_OK;
+}
+
+static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_command_t command, uint16_t position, uint16_t address, void *data,
+                             uint16_t size, cm1e_diag_t *diag)
+{
+    const uint16_t station = position > 0 ? cm1e_bus_at(bus, position)->facts.station : 0;
+    if (size == 0 || size > CM1E_ESC_BYTES)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%u bytes of registers; expected 1 ... %d.", size,
+                             CM1E_ESC_BYTES);
+    if (cm1e_soem_transfer(bus->soem, command, station, address, data, size) >= 1)
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer at register 0x%04X.", position,
+                         address);
+}
+
+cm1e_error_t cm1e_esc_read(cm1e_bus_t *bus, uint16_t position, uint16_t address, void *data, uint16_t size,
+                           cm1e_diag_t *diag)
+{
+    const cm1e_error_t error = check(bus, position, "cm1e_esc_read()", diag);
+    if (error != CM1E_OK)
+        return error;
+    memset(data, 0, size);
+    return transfer(bus, position ? COMMAND_FPRD : COMMAND_BRD, position, address, data, size, diag);
+}
+
+cm1e_error_t cm1e_esc_write(cm1e_bus_t *bus, uint16_t position, uint16_t address, const void *data, uint16_t size,
+                            cm1e_diag_t *diag)
+{
+    uint8_t copy[CM1E_ESC_BYTES];
+    const cm1e_error_t error = check(bus, position, "cm1e_esc_write()", diag);
+    if (error != CM1E_OK)
+        return error;
+    if (position == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_esc_write() needs one slave, not all.");
+    memcpy(copy, data, size <= sizeof copy ? size : sizeof copy);
+    return transfer(bus, COMMAND_FPWR, position, address, copy, size, diag);
+}
+
+cm1e_error_t cm1e_esc_request_state(cm1e_bus_t *bus, uint16_t position, uint8_t state, int64_t timeout_ns,
+                                    cm1e_al_answer_t *answer, cm1e_diag_t *diag)
+{
+    const cm1e_error_t error = check(bus, position, "cm1e_esc_request_state()", diag);
+    if (error != CM1E_OK)
+        return error;
+    cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    if (!slave || state < 1 || state > HIGHEST_STATE)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "State %u of slave %u; expected 1 ... %d of one "
+                             "slave.", state, position, HIGHEST_STATE);
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + timeout_ns;
+    cm1e_al_request(&slave->al, state, deadline_ns);
+    cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
+    *answer = (cm1e_al_answer_t){.state = slave->al.state, .code = slave->al.code};
+    slave->info.al_state = slave->al.state;
+    slave->info.al_status_code = slave->al.code;
+    if (slave->al.error == CM1E_OK || slave->al.state & AL_ERROR_FLAG)
+        return CM1E_OK;
+    cm1e_bus_diagnose_state(bus, slave, diag);
+    return CM1E_ERROR_TIMEOUT;
+}

@@ -1,0 +1,60 @@
+/**
+ * @file sii_reader.h
+ * Reads the part of a slave's SII (EEPROM; ETG.2010) that the bus needs, with bounds: no length in it is trusted, and
+ * the loop over the categories always goes forward and ends. description/sii.h defines the meaning of the words. Pure
+ * functions: a callback reads the words.
+ */
+#ifndef CM1E_BUS_SII_READER_H
+#define CM1E_BUS_SII_READER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { CM1E_SII_SYNC_MANAGERS = 8, CM1E_SII_NAME = 48, CM1E_SII_SIGNAL_NAME = 64 };
+
+/** An entry of a PDO that a sync manager carries; gaps are left out. */
+typedef struct cm1e_sii_signal {
+    bool input;                        /**< TxPDO */
+    uint16_t index;
+    uint8_t subindex, type;            /**< type: cm1e_io_type_t */
+    uint16_t bits;
+    uint32_t bit_offset;               /**< from the beginning of the slave's process data of its direction */
+    char name[CM1E_SII_SIGNAL_NAME];   /**< "PDO entry", as far as the SII has names */
+} cm1e_sii_signal_t;
+
+/** What the process data of a slave mean. Made once, then only read. */
+typedef struct cm1e_sii_signals {
+    uint32_t count;
+    cm1e_sii_signal_t at[];
+} cm1e_sii_signals_t;
+
+typedef struct cm1e_sii_sync_manager {
+    uint16_t start, length;
+    uint8_t control, enable;
+} cm1e_sii_sync_manager_t;
+
+typedef struct cm1e_sii {
+    uint32_t vendor_id, product_code, revision, serial_number;
+    uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length;
+    bool coe, complete_access;
+    bool no_lrw;                                       /**< the slave cannot do LRW */
+    char name[CM1E_SII_NAME];                          /**< printable; "": none */
+    uint8_t sync_manager_count;
+    cm1e_sii_sync_manager_t sync_managers[CM1E_SII_SYNC_MANAGERS];
+    uint32_t bits[2][CM1E_SII_SYNC_MANAGERS];          /**< process data: [0] outputs (RxPDO), [1] inputs, by SM */
+    cm1e_sii_signals_t *signals;                       /**< NULL: none; freed by cm1e_sii_free() */
+} cm1e_sii_t;
+
+/** Reads two words (four bytes) from word address `word`; false: the SII cannot be read. */
+typedef bool (*cm1e_sii_reader)(void *context, uint16_t word, uint8_t bytes[4]);
+
+typedef enum cm1e_sii_result { SII_OK = 0, SII_UNREADABLE, SII_DAMAGED, SII_NO_MEMORY } cm1e_sii_result_t;
+
+/** The fixed part: identity and mailbox. */
+cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context);
+/** The categories: name, sync managers, process data with their meaning (`signals`, NULL before). */
+cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context);
+/** Frees the signals; the rest stays. */
+void cm1e_sii_free(cm1e_sii_t *sii);
+
+#endif

@@ -1,0 +1,163 @@
+/* A bus whose slaves and transfers come through a control socket. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bus/remote.h"
+#include "control/client.h"
+#include "core/text.h"
+
+static json_int_t number(const json_t *object, const char *name)
+{
+    return json_integer_value(json_object_get(object, name));
+}
+
+static void copy_text(char *text, size_t size, const json_t *object, const char *name)
+{
+    const char *told = json_string_value(json_object_get(object, name));
+    snprintf(text, size, "%s", told ? told : "");
+    cm1e_text_clean(text);
+}
+
+/* What the other program says is judged like the answer of a slave: every number is cut to its range. */
+static void take_slave(cm1e_remote_slave_t *slave, uint16_t position, const json_t *told)
+{
+    cm1e_slave_info_t *info = &slave->info;
+    const json_t *motors = json_object_get(told, "motors");
+    *slave = (cm1e_remote_slave_t){.coe = json_is_true(json_object_get(told, "coe"))};
+    info->position = position;
+    info->vendor_id = (uint32_t)number(told, "vendor_id");
+    info->product_code = (uint32_t)number(told, "product_code");
+    info->revision = (uint32_t)number(told, "revision");
+    info->serial_number = (uint32_t)number(told, "serial_number");
+    info->alias = (uint16_t)number(told, "alias");
+    info->explicit_id = (uint16_t)number(told, "explicit_id");
+    info->al_state = (uint16_t)number(told, "al_state");
+    info->al_status_code = (uint16_t)number(told, "al_status_code");
+    info->model = (cm1e_device_model_t)(uint8_t)number(told, "model");
+    for (size_t i = 0; i < sizeof info->motors; i++)
+        info->motors[i] = (uint8_t)json_integer_value(json_array_get(motors, i));
+    copy_text(info->name, sizeof info->name, told, "name");
+    copy_text(info->software_version, sizeof info->software_version, told, "software_version");
+    copy_text(slave->kind, sizeof slave->kind, told, "kind");
+}
+
+static cm1e_error_t scan(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count, cm1e_diag_t *diag)
+{
+    json_t *reply = NULL;
+    const cm1e_error_t error = cm1e_control_call(state, json_pack("{s:s}", "request", "slaves"), &reply, diag);
+    const json_t *told = json_object_get(reply, "slaves");
+    const size_t found = json_array_size(told);
+    *count = found < room ? (uint32_t)found : room;
+    for (uint32_t i = 0; i < *count; i++)
+        take_slave(&slaves[i], (uint16_t)(i + 1), json_array_get(told, i));
+    json_decref(reply);
+    return error;
+}
+
+static int digit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
+
+/** The bytes that were read; false: they are more than there is room for, or no bytes. */
+static bool take_data(void *data, size_t *size, const char *text)
+{
+    const size_t digits = text ? strlen(text) : 1;
+    uint8_t *bytes = data;
+    if (digits % 2 != 0 || digits / 2 > *size || strspn(text, "0123456789abcdef") != digits)
+        return false;
+    for (size_t i = 0; i < digits; i += 2)
+        bytes[i / 2] = (uint8_t)(digit(text[i]) << 4 | digit(text[i + 1]));
+    *size = digits / 2;
+    return true;
+}
+
+static json_t *request_of(const cm1e_sdo_t *sdo)
+{
+    json_t *request = json_pack("{s:s, s:i, s:i, s:i, s:b}", "request", sdo->write ? "sdo_write" : "sdo_read", "slave",
+                                sdo->position, "index", sdo->index, "subindex", sdo->subindex, "complete_access",
+                                sdo->complete_access);
+    if (sdo->timeout_ns > 0)
+        json_object_set_new(request, "timeout_ms", json_integer(sdo->timeout_ns / 1000000 + 1));
+    if (!sdo->write) {
+        json_object_set_new(request, "size", json_integer((json_int_t)(sdo->size < 32768 ? sdo->size : 32768)));
+        return request;
+    }
+    const uint8_t *bytes = sdo->data;
+    char *text = sdo->size < 32768 ? malloc(2 * sdo->size + 1) : NULL;
+    for (size_t i = 0; text && i <= sdo->size; i++)
+        snprintf(text + 2 * i, 3, i < sdo->size ? "%02x" : "", bytes[i < sdo->size ? i : 0]);
+    json_object_set_new(request, "data", json_string(text ? text : ""));
+    free(text);
+    return request;
+}
+
+/** An error of the transfer itself, which the slave or the bus gave; any other is the program's. */
+static bool is_of_transfer(cm1e_error_t error)
+{
+    return error == CM1E_ERROR_SDO_ABORT || error == CM1E_ERROR_BUS_MAILBOX || error == CM1E_ERROR_BUS_LOST ||
+           error == CM1E_ERROR_TIMEOUT || error == CM1E_ERROR_CANCELLED || error == CM1E_ERROR_UNSUPPORTED;
+}
+
+static cm1e_error_t transfer(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
+{
+    json_t *reply = NULL;
+    cm1e_diag_t told = {0};
+    cm1e_error_t error = cm1e_control_call(state, request_of(sdo), &reply, &told);
+    const bool answered = reply != NULL;
+    sdo->error = CM1E_OK;
+    const char *data = json_string_value(json_object_get(reply, "data"));
+    if (error == CM1E_OK && !sdo->write && !take_data(sdo->data, &sdo->size, data))
+        error = cm1e_diag_set(&told, CM1E_ERROR_FILE, 0, "The program answered with something that is no data.");
+    json_decref(reply);
+    if (error == CM1E_OK)
+        return CM1E_OK;
+    if (answered && is_of_transfer(error)) {
+        sdo->error = error;
+        sdo->abort_code = error == CM1E_ERROR_SDO_ABORT ? told.foreign_code : 0;
+        return CM1E_OK;
+    }
+    return cm1e_diag_set(diag, error, told.foreign_code, "%s", told.text);
+}
+
+static json_t *request_of_errand(const cm1e_errand_t *errand)
+{
+    if (errand->kind == ERRAND_INFO)
+        return json_pack("{s:s, s:i, s:i, s:i, s:i, s:i}", "request", "sdo_info", "slave", errand->position, "kind",
+                         (int)errand->info.kind, "index", errand->info.index, "subindex", errand->info.subindex,
+                         "values", errand->info.values);
+    const bool sii = errand->kind == ERRAND_SII;
+    return json_pack("{s:s, s:i, s:i, s:i}", "request", sii ? "sii_read" : "registers", "slave", errand->position,
+                     sii ? "word" : "address", (int)errand->place, "size", (int)errand->size);
+}
+
+static cm1e_error_t run_errand(void *state, cm1e_errand_t *errand, cm1e_diag_t *diag)
+{
+    json_t *reply = NULL;
+    cm1e_diag_t told = {0};
+    const bool info = errand->kind == ERRAND_INFO;
+    const size_t size = errand->size;
+    cm1e_error_t error = cm1e_control_call(state, request_of_errand(errand), &reply, &told);
+    const bool answered = reply != NULL;
+    const char *data = json_string_value(json_object_get(reply, "data"));
+    const bool good = error == CM1E_OK && (info ? take_data(errand->info.answer, &errand->info.size, data)
+                                                : take_data(errand->data, &errand->size, data) && errand->size == size);
+    json_decref(reply);
+    if (error == CM1E_OK && !good)
+        error = cm1e_diag_set(&told, CM1E_ERROR_FILE, 0, "The program answered with something that is no data.");
+    errand->error = CM1E_OK;
+    if (answered && is_of_transfer(error)) {
+        errand->error = error;
+        errand->info.abort_code = error == CM1E_ERROR_SDO_ABORT ? told.foreign_code : 0;
+        return CM1E_OK;
+    }
+    return error == CM1E_OK ? CM1E_OK : cm1e_diag_set(diag, error, told.foreign_code, "%s", told.text);
+}
+
+static void close_connection(void *state) { cm1e_control_close(state); }
+
+static const cm1e_bus_remote_t through_control = {scan, transfer, run_errand, close_connection};
+
+cm1e_error_t cm1e_bus_open_attached(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_control_t *control,
+                                    cm1e_diag_t *diag)
+{
+    return cm1e_bus_open_remote(bus, config, &through_control, control, diag);
+}

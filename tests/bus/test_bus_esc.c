@@ -1,0 +1,74 @@
+/* Registers and states of one slave, requested as they are (cm1e/esc.h). */
+#include "bus_support.h"
+#include "cm1e/esc.h"
+
+#define TIMEOUT_NS INT64_C(500000000)
+
+static cm1e_bus_t *scanned_bus(void)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+START_TEST(registers_are_read_and_written)
+{
+    enum { WATCHDOG_DATA = 0x0420, AL_STATUS = 0x0130 };
+    cm1e_bus_t *bus = scanned_bus();
+    uint8_t value[2] = {0}, wanted[2] = {0x34, 0x12};
+    ck_assert_int_eq(cm1e_esc_write(bus, 2, WATCHDOG_DATA, wanted, sizeof wanted, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_esc_read(bus, 2, WATCHDOG_DATA, value, sizeof value, &diag), CM1E_OK);
+    ck_assert_mem_eq(value, wanted, sizeof value);
+    ck_assert_int_eq(cm1e_esc_read(bus, 1, WATCHDOG_DATA, value, sizeof value, &diag), CM1E_OK);
+    ck_assert_int_eq(value[0] | value[1] << 8, 0x03E8);
+    ck_assert_int_eq(cm1e_esc_read(bus, 0, AL_STATUS, value, sizeof value, &diag), CM1E_OK);
+    ck_assert_int_eq(value[0], CM1E_AL_PRE_OP);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(states_are_requested_as_they_are)
+{
+    cm1e_bus_t *bus = scanned_bus();
+    cm1e_al_answer_t answer;
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 1, CM1E_AL_OP, TIMEOUT_NS, &answer, &diag), CM1E_OK);
+    ck_assert_int_eq(answer.state, CM1E_AL_PRE_OP | CM1E_AL_ERROR);
+    ck_assert_int_eq(answer.code, 0x0011);
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 1, 5, TIMEOUT_NS, &answer, &diag), CM1E_OK);
+    ck_assert_int_eq(answer.code, 0x0012);
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 1, CM1E_AL_INIT, TIMEOUT_NS, &answer, &diag), CM1E_OK);
+    ck_assert_int_eq(answer.state, CM1E_AL_INIT);
+    ck_assert_int_eq(answer.code, 0);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(what_cannot_be_meant_is_refused_in_words)
+{
+    cm1e_bus_t *bus = scanned_bus();
+    uint8_t value[2] = {0};
+    cm1e_al_answer_t answer;
+    ck_assert_int_eq(cm1e_esc_read(bus, 3, 0, value, 2, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(diag.text, "no slave 3"));
+    ck_assert_int_eq(cm1e_esc_read(bus, 1, 0, value, 0, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_esc_write(bus, 0, 0, value, 2, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 1, 0, 1, &answer, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 0, 1, 1, &answer, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_esc_read(bus, 1, 0, value, 2, &diag), CM1E_ERROR_STATE);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_esc");
+    TCase *tests = tcase_create("esc");
+    tcase_add_test(tests, registers_are_read_and_written);
+    tcase_add_test(tests, states_are_requested_as_they_are);
+    tcase_add_test(tests, what_cannot_be_meant_is_refused_in_words);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}

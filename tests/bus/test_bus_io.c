@@ -1,0 +1,224 @@
+/* Signals of any slave: found by name, object and place; read and written in the cycle; what they tell while the slave
+ * is away. The simulated terminals have each input wired to the output of its number. */
+#include "bus_support.h"
+#include "cm1e/io.h"
+
+enum { MODULE = 1, MOTOR = 2, SECOND = 3, SLAVES = 4, SETTLE = 4, UNPOWERED = 400 /* cycles, at least */ };
+
+/** Simple devices at 1 and 3, motors at 2 and 4. */
+static cm1e_bus_t *open_with(cm1e_sim_io_t kind)
+{
+    sim_config(2);
+    config.sim_gaps = kind;
+    config.axes[0].address = MOTOR;
+    config.axes[1].address = SLAVES;
+    return open_bus();
+}
+
+static cm1e_bus_t *start_with(cm1e_sim_io_t kind)
+{
+    cm1e_bus_t *bus = open_with(kind);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+static cm1e_io_t find(cm1e_bus_t *bus, const char *name)
+{
+    cm1e_io_t io;
+    ck_assert_msg(cm1e_io_find(bus, name, &io, &diag) == CM1E_OK, "%s: %s", name, diag.text);
+    return io;
+}
+
+/** Each output of a terminal comes back at its input and nowhere else, beside the neighbours' bits. */
+START_TEST(each_bit_of_a_terminal_is_its_own)
+{
+    cm1e_bus_t *bus = start_with(CM1E_SIM_IO_TERMINAL);
+    for (unsigned on = 0; on < 16; on++) {
+        cm1e_io_t inputs[4], outputs[4];
+        for (unsigned bit = 0; bit < 4; bit++) {
+            char name[32];
+            snprintf(name, sizeof name, "%u.output %u", SECOND, bit + 1);
+            outputs[bit] = find(bus, name);
+            snprintf(name, sizeof name, "SLAVE %u.INPUT %u", SECOND, bit + 1);
+            inputs[bit] = find(bus, name);
+            ck_assert_int_eq(cm1e_io_set_bool(&outputs[bit], on >> bit & 1), CM1E_OK);
+        }
+        cycles(bus, SETTLE);
+        for (unsigned bit = 0; bit < 4; bit++) {
+            ck_assert_int_eq(cm1e_io_bool(&inputs[bit]), on >> bit & 1);
+            ck_assert_int_eq(cm1e_io_bool(&outputs[bit]), on >> bit & 1);
+            ck_assert_int_eq(cm1e_io_quality(&inputs[bit]), CM1E_IO_GOOD);
+        }
+        const cm1e_io_t other = find(bus, "1.input 1"); /* the terminal before the motor has got nothing */
+        ck_assert_int_eq(cm1e_io_integer(&other), 0);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(signals_are_listed_with_name_object_and_type)
+{
+    cm1e_bus_t *bus = open_with(CM1E_SIM_IO_TERMINAL);
+    ck_assert_uint_eq(cm1e_io_count(bus), 0); /* nothing is known yet */
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_io_info_t info;
+    unsigned of_terminals = 0, of_axes = 0;
+    for (uint32_t n = 0; n < cm1e_io_count(bus); n++) {
+        ck_assert(cm1e_io_at(bus, n, &info));
+        cm1e_io_t io, by_object;
+        char name[96];
+        snprintf(name, sizeof name, "%u.%s %u", info.position, info.output ? "output" : "input", info.number);
+        ck_assert_msg(cm1e_io_find(bus, name, &io, &diag) == CM1E_OK, "%s: %s", name, diag.text);
+        ck_assert_int_eq(cm1e_io_find_object(bus, info.position, info.index, info.subindex, info.output, &by_object,
+                                             &diag), CM1E_OK);
+        ck_assert_uint_eq(io.byte, by_object.byte);
+        ck_assert_uint_eq(io.shift, by_object.shift);
+        of_terminals += !info.of_axis;
+        of_axes += info.of_axis;
+    }
+    ck_assert(!cm1e_io_at(bus, cm1e_io_count(bus), &info));
+    ck_assert_uint_eq(of_terminals, 2 * 8);
+    ck_assert_uint_gt(of_axes, 2 * 4);
+    ck_assert(cm1e_io_at(bus, 1, &info)); /* the second input of the first terminal */
+    ck_assert_uint_eq(info.position, MODULE);
+    ck_assert_uint_eq(info.index, 0x6010);
+    ck_assert_int_eq(info.type, CM1E_IO_BOOL);
+    ck_assert_uint_eq(info.bit_offset, 1);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The statusword by its object; its controlword cannot be written past the axis. */
+START_TEST(signals_of_a_motor_are_read_and_never_written)
+{
+    cm1e_bus_t *bus = start_with(CM1E_SIM_IO_MODULE);
+    cycles(bus, SETTLE);
+    const cm1e_io_t status = find(bus, "2.Statusword"), control = find(bus, "2.0x6040:00");
+    ck_assert_int_ne(cm1e_io_integer(&status), 0);
+    ck_assert_int_eq(cm1e_io_set_integer(&control, 15), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_io_set_bytes(&control, "\017", 2), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_io_set_integer(&status, 0), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_io_integer(&control), 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(wrong_names_are_told_what_there_is)
+{
+    static const struct {
+        const char *name, *told;
+        cm1e_error_t error;
+    } cases[] = {
+        {"3.output 9", "Slave 3 has no signal \"output 9\". It has: ", CM1E_ERROR_NOT_FOUND},
+        {"3.", "Slave 3 has no signal \"\"", CM1E_ERROR_NOT_FOUND},
+        {"9.output 1", "names no slave of the network, which has 4", CM1E_ERROR_NOT_FOUND},
+        {"valve", "names no slave", CM1E_ERROR_NOT_FOUND},
+        {"", "names no slave", CM1E_ERROR_NOT_FOUND},
+        {"Digital terminal 4+4.output 1", "names no slave", CM1E_ERROR_NOT_FOUND}, /* two have this name */
+        {"3.Outputs", "has 4 signals with the name \"Outputs\": name the one by its number",
+         CM1E_ERROR_INVALID_ARGUMENT},
+    };
+    cm1e_bus_t *bus = start_with(CM1E_SIM_IO_TERMINAL);
+    cm1e_io_t io;
+    ck_assert_int_eq(cm1e_io_find(bus, NULL, &io, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_io_find(NULL, "1.input 1", &io, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_io_quality(&io), CM1E_IO_INVALID);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        ck_assert_int_eq(cm1e_io_find(bus, cases[i].name, &io, &diag), cases[i].error);
+        ck_assert_msg(strstr(diag.text, cases[i].told), "%s: %s", cases[i].name, diag.text);
+        ck_assert_int_eq(cm1e_io_quality(&io), CM1E_IO_INVALID);
+        ck_assert_int_eq(cm1e_io_set_bool(&io, true), CM1E_ERROR_STATE);
+        ck_assert_int_eq(cm1e_io_integer(&io), 0);
+    }
+    ck_assert_int_eq(cm1e_io_find_bits(bus, SECOND, true, 0, 1, CM1E_IO_BOOL, &io, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_io_find_bits(bus, SECOND, true, 8, 1, CM1E_IO_BOOL, &io, &diag), CM1E_ERROR_NOT_FOUND);
+    ck_assert_int_eq(cm1e_io_find_bits(bus, SECOND, true, UINT32_MAX, 1, CM1E_IO_BOOL, &io, &diag),
+                     CM1E_ERROR_NOT_FOUND);
+    ck_assert_int_eq(cm1e_io_find_bits(bus, SECOND, true, 0, 2, CM1E_IO_BOOL, &io, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_io_find_bits(bus, SECOND, true, 0, 0, CM1E_IO_UINT, &io, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_io_find_bits(bus, 0, true, 0, 1, CM1E_IO_BOOL, &io, &diag), CM1E_ERROR_NOT_FOUND);
+    ck_assert_int_eq(cm1e_io_find_object(bus, SECOND, 0x6041, 0, false, &io, &diag), CM1E_ERROR_NOT_FOUND);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Without power its last inputs stay and are told as old; when it is back its outputs are set again. */
+START_TEST(slave_that_is_away_says_so_and_comes_back_with_its_outputs)
+{
+    cm1e_bus_t *bus = start_with(CM1E_SIM_IO_TERMINAL);
+    const cm1e_io_t output = find(bus, "3.output 2"), input = find(bus, "3.input 2"), near = find(bus, "1.input 1");
+    ck_assert_int_eq(cm1e_io_set_bool(&output, true), CM1E_OK);
+    cycles(bus, SETTLE);
+    ck_assert(cm1e_io_bool(&input));
+    simulate(bus, "power-cycle 3");
+    bool was_away = false;
+    for (unsigned n = 0; n < 3000; n++) {
+        cycle(bus);
+        const cm1e_io_quality_t quality = cm1e_io_quality(&input);
+        was_away = was_away || quality == CM1E_IO_OFFLINE || quality == CM1E_IO_STALE;
+        ck_assert_msg(n >= UNPOWERED || cm1e_io_bool(&input), "cycle %u: %s, and its last value is lost", n,
+                      cm1e_io_quality_name(quality));
+        ck_assert_int_eq(cm1e_io_quality(&near), CM1E_IO_GOOD);
+    }
+    ck_assert(was_away);
+    ck_assert_int_eq(cm1e_io_quality(&input), CM1E_IO_GOOD);
+    ck_assert(cm1e_io_bool(&input));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(lost_frame_makes_inputs_stale_for_a_cycle)
+{
+    cm1e_bus_t *bus = start_with(CM1E_SIM_IO_MODULE);
+    const cm1e_io_t input = find(bus, "1.input 1");
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(cm1e_io_quality(&input), CM1E_IO_GOOD);
+    cm1e_sim_segment_cut(segment_of(bus), 1, true);
+    cycle(bus);
+    cycle(bus);
+    ck_assert_int_ne(cm1e_io_quality(&input), CM1E_IO_GOOD);
+    for (unsigned n = 0; n < 10; n++)
+        cycle(bus);
+    ck_assert_int_eq(cm1e_io_quality(&input), CM1E_IO_OFFLINE);
+    cm1e_sim_segment_cut(segment_of(bus), 1, false);
+    for (unsigned n = 0; n < 100; n++)
+        cycle(bus);
+    ck_assert_int_eq(cm1e_io_quality(&input), CM1E_IO_GOOD);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(handle_ends_with_the_start_of_the_bus_that_it_was_found_in)
+{
+    cm1e_bus_t *bus = start_with(CM1E_SIM_IO_MODULE);
+    const cm1e_io_t output = find(bus, "1.output 1");
+    cm1e_bus_stop(bus);
+    ck_assert_int_ne(cm1e_io_quality(&output), CM1E_IO_GOOD);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_io_quality(&output), CM1E_IO_INVALID);
+    ck_assert_int_eq(cm1e_io_set_integer(&output, 1), CM1E_ERROR_STATE);
+    const cm1e_io_t again = find(bus, "1.output 1");
+    ck_assert_int_eq(cm1e_io_integer(&again), 0);
+    ck_assert_int_eq(cm1e_io_set_integer(&again, 255), CM1E_OK);
+    ck_assert_int_eq(cm1e_io_set_integer(&again, 256), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_io_set_integer(&again, -1), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_io_integer(&again), 255);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus io");
+    TCase *tests = tcase_create("io");
+    tcase_set_timeout(tests, 120);
+    tcase_add_test(tests, each_bit_of_a_terminal_is_its_own);
+    tcase_add_test(tests, signals_are_listed_with_name_object_and_type);
+    tcase_add_test(tests, signals_of_a_motor_are_read_and_never_written);
+    tcase_add_test(tests, wrong_names_are_told_what_there_is);
+    tcase_add_test(tests, slave_that_is_away_says_so_and_comes_back_with_its_outputs);
+    tcase_add_test(tests, lost_frame_makes_inputs_stale_for_a_cycle);
+    tcase_add_test(tests, handle_ends_with_the_start_of_the_bus_that_it_was_found_in);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""`cm1e init` on simulated segments: the file that it writes names every motor, loads, and drives at once, as it is and
+with its commented keys; what it cannot know is a comment; a file that exists is not written over.
+
+test_init.py BIN-DIRECTORY
+"""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+CM1E = os.path.join(sys.argv[1], "cm1e")
+
+MOTORS = """\
+axes:
+  - {name: a, position: 1, motor: CM1-E-17S30D}
+  - {name: b, alias: 1001, motor: CM1-E-17L30D, firmware: 1.3.3}
+  - {name: c, explicit_id: 181, motor: CM1-E-23S30D}
+  - {name: d, position: 5, motor: CM1-E-23L20D, firmware: 1.2.0}
+"""
+BRIDGE = """\
+axes:
+  - {name: x, position: 1}
+  - {name: left, position: 2, channel: 1, motor: CM1, k37: 10}
+  - {name: lift, position: 2, channel: 3, motor: CM2, k37: 3}
+"""
+SERVO = """\
+axes:
+  - {name: s, position: 1, device: cia402, drive: {counts_per_revolution: 131072, max_speed_rpm: 3000}}
+  - {name: x, position: 2}
+"""
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+def run(*words):
+    return subprocess.run([CM1E, *words], capture_output=True, text=True, timeout=120, check=False)
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    return path
+
+
+def init(folder, name, network):
+    """The file made of a network that a bus file describes."""
+    interface = "sim:" + write(os.path.join(folder, name + "-network.yaml"), network) if network else "sim"
+    path = os.path.join(folder, name + ".yaml")
+    done = run("init", "-i", interface, "-o", path)
+    expect(done.returncode == 0, f"init of {name}: {done}")
+    with open(path, encoding="utf-8") as file:
+        return done, path, file.read()
+
+
+def drive(path, axes):
+    for axis in axes:
+        moved = run("move", "-b", path, axis, "--by", "0.5")
+        expect(moved.returncode == 0 and f"{axis}: move done" in moved.stdout, f"{path}: {moved}")
+
+
+def check_motors(folder):
+    done, path, text = init(folder, "motors", MOTORS)
+    expect("4 axes" in done.stdout, f"{done}")
+    # By the order on the wire: positions first, the others fill the places between.
+    for wanted in (r"position: 1 .*\n    motor: CM1-E-17S30D ", r"alias: 1001 .*\n    motor: CM1-E-17L30D ",
+                   r"explicit_id: 181 .*\n    motor: CM1-E-23S30D ", r"position: 5 .*\n    motor: CM1-E-23L20D ",
+                   r"# Slave 4: .*\n  # It needs no entry", r"# firmware: 1\.3\.3"):
+        expect(re.search(wanted, text), f"{wanted} is not in\n{text}")
+    drive(path, ["axis1", "axis2", "axis3", "axis4"])
+    every = write(os.path.join(folder, "every.yaml"),
+                  re.sub(r"^( +)# (firmware|limits|software_limits|cycle_time_us)", r"\1\2", text, flags=re.MULTILINE))
+    drive(every, ["axis2"])
+
+
+def check_bridge(folder):
+    done, path, text = init(folder, "bridge", BRIDGE)
+    for wanted in (r"channel: 1\n    motor: CM1\n    k37: 10 ", r"channel: 3\n    motor: CM2\n    k37: 3 "):
+        expect(re.search(wanted, text), f"{wanted} is not in\n{text}")
+    drive(path, ["axis1", "axis2", "axis4"])
+
+
+def check_servo(folder):
+    done, path, text = init(folder, "servo", SERVO)
+    if "device: cia402, drive" in text:
+        expect("# - {name: axis, position: 1, device: cia402" in text and "1 axis is not complete" in done.stderr, text)
+        drive(path, ["axis1"])
+    else:
+        expect("counts_per_revolution: 131072, max_speed_rpm: 3000" in text, text)
+        drive(path, ["axis1", "axis2"])
+
+
+def check_overwriting(folder):
+    _, path, text = init(folder, "one", "")
+    again = run("init", "-i", "sim", "-o", path)
+    expect(again.returncode == 2 and "--force" in again.stderr, f"a file that exists: {again}")
+    write(path, "mine\n")
+    forced = run("init", "-i", "sim", "-o", path, "--force")
+    with open(path, encoding="utf-8") as file:
+        expect(forced.returncode == 0 and file.read() == text, f"--force: {forced}")
+    shown = run("init", "-i", "sim")
+    expect(shown.returncode == 0 and shown.stdout == text, f"on standard output: {shown}")
+
+
+def check_refusals(folder):
+    for words in (["init"], ["init", "-i", ""], ["init", "-i", "sim", "-o", ""], ["init", "-i", "sim", "more"]):
+        done = run(*words)
+        expect(done.returncode in (2, 64) and done.stderr, f"{words}: {done}")
+    nothing = run("init", "-i", "sim:" + write(os.path.join(folder, "v.yaml"), "axes: [{type: virtual}]\n"))
+    expect(nothing.returncode == 1 and "there is no motor" in nothing.stderr, f"no motor: {nothing}")
+
+
+with tempfile.TemporaryDirectory() as work:
+    check_motors(work)
+    check_bridge(work)
+    check_servo(work)
+    check_overwriting(work)
+    check_refusals(work)

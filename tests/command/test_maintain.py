@@ -1,0 +1,327 @@
+#!/usr/bin/env python3
+"""What others may do to the axes of a running program through its control socket: only by its consent, never while it
+commands the axis itself, and never longer than they renew it.
+
+test_maintain.py BIN-DIRECTORY
+"""
+import contextlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import real_time  # noqa: E402
+from control_client import Client  # noqa: E402
+
+CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
+# Axis Y has stops 5 revolutions away, Z a software limit.
+BUS = """\
+bus: {{interface: sim, control: {control}, lost_cycles_limit: 50}}
+axes:
+  - {{name: X, sim: {{no_stops: true}}}}
+  - {{name: Y, homing: {{method: -2, velocity: 2, acceleration: 10, torque: 30}}}}
+  - {{name: Z, sim: {{no_stops: true}}, software_limits: {{negative: -0.5, positive: 0.5}}}}
+  - {{name: E, type: encoder}}
+"""
+X, Y, Z, E = 1, 2, 3, 4
+FOLDER = tempfile.mkdtemp()
+RUNTIME = os.path.join(FOLDER, "run")
+ENVIRONMENT = {**os.environ, "CM1E_RUNTIME_DIR": RUNTIME}
+faults = []
+
+
+def expect(condition, what, told=""):
+    if not condition:
+        faults.append(f"{what}\n    {told}")
+
+
+def wait_for(condition, what, seconds=10):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    expect(condition(), what)
+
+
+@contextlib.contextmanager
+def running(control="maintain"):
+    """`cm1e move` of axis X; it has no block for the others. Yields the process and the path of its socket."""
+    bus_file = os.path.join(FOLDER, f"{control}.yaml")
+    with open(bus_file, "w", encoding="utf-8") as file:
+        file.write(BUS.format(control=control))
+    process = subprocess.Popen([CM1E, "move", "-b", bus_file, "X", "--speed", "0.5", "--for", "120"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+    path = os.path.join(RUNTIME, f"cm1e-{process.pid}-0.sock")
+    try:
+        wait_for(lambda: os.path.exists(path), "no control socket")
+        with Client(path) as client:
+            wait_for(lambda: axis(client, X)["velocity"] > 0.45, "the axis does not move")
+            yield client, path
+            moving = axis(client, X)
+            expect(moving["state"] == "ContinuousMotion" and abs(moving["velocity"] - 0.5) < 0.1,
+                   "the program's own axis was disturbed", moving)
+    finally:
+        process.terminate()
+        out, err = process.communicate(timeout=30)
+        expect("ErrorStop" not in out + err, "the run ended with an error", out + err)
+
+
+def axis(client, number):
+    return client.ask("axes")["axes"][number - 1]
+
+
+def text(reply):
+    return "" if reply["ok"] else reply["error"]["text"]
+
+
+def refused(reply, words, what):
+    expect(not reply["ok"] and words in text(reply), what, reply)
+
+
+def enable(client, number):
+    reply = client.ask("enable", axis=number, keep_ms=2000)
+    expect(reply["ok"], f"enable {number}", reply)
+    wait_for(lambda: axis(client, number)["state"] == "Standstill", f"axis {number} is not enabled")
+
+
+def jog_for(client, number, velocity, seconds):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        reply = client.ask("jog", axis=number, velocity=velocity)
+        client.ask("keep")
+        if not reply["ok"]:
+            return reply
+        time.sleep(0.03)
+    return reply
+
+
+def stands(client, number):
+    return abs(axis(client, number)["set_velocity"]) < 1e-9
+
+
+# ---- consent and precedence -----------------------------------------------------------------------------------------
+
+def check_consent():
+    with running("observe") as (client, _):
+        for request in ("enable", "disable", "jog", "home", "stop", "reset", "keep"):
+            refused(client.ask(request, axis=Y, velocity=0.1), "control: maintain", f"{request} by observe")
+        expect(axis(client, Y)["state"] == "Disabled", "observe has enabled an axis")
+
+
+def check_precedence():
+    with running() as (client, _):
+        for request in ("enable", "jog", "home", "reset"):
+            refused(client.ask(request, axis=X, velocity=-0.1), "commanded by the program (ContinuousMotion, "
+                    "MC_MoveVelocity)", f"{request} of an axis that the program moves")
+        refused(client.ask("stop", axis=X), "not moved through", "stop of a motion of the program")
+        refused(client.ask("disable", axis=X), "not enabled through", "disable of an axis of the program")
+        refused(client.ask("enable", axis=E), "encoder", "enable of an encoder")
+        refused(client.ask("jog", axis=Y, velocity=0.1), "Enable it first", "jog without power")
+        refused(client.ask("home", axis=Y), "Enable it first", "home without power")
+        for wrong in ({"axis": 0}, {"axis": 5}, {"axis": "Y"}, {}, {"axis": Y}, {"axis": Y, "velocity": 0},
+                      {"axis": Y, "velocity": "1"}, {"axis": Y, "velocity": 1, "keep_ms": 49},
+                      {"axis": Y, "velocity": 1, "keep_ms": 1001}, {"axis": Y, "velocity": 1, "acceleration": -1}):
+            refused(client.ask("jog", **wrong), "expected", f"jog {wrong}")
+        refused(client.ask("enable", axis=Y, keep_ms=100), "500 ... 10000", "enable for 100 ms")
+        expect(axis(client, Y)["state"] == "Disabled" and axis(client, Y)["position"] == 0, "a refused request acted")
+
+
+# ---- dead-man -------------------------------------------------------------------------------------------------------
+
+def check_jog():
+    with running() as (client, _):
+        enable(client, Y)
+        expect(axis(client, Y)["held"] and axis(client, Y)["state"] == "Standstill", "enabled", axis(client, Y))
+        jog_for(client, Y, 0.5, 1.0)
+        moved = axis(client, Y)
+        expect(moved["state"] == "ContinuousMotion" and 0.3 < moved["position"] < 0.7, "a jog that is renewed", moved)
+        time.sleep(0.4)
+        after = axis(client, Y)
+        expect(after["state"] == "Standstill" and after["position"] < moved["position"] + 0.3 and after["powered"],
+               "a jog that is not renewed", after)
+        jog_for(client, Y, 0.5, 0.3)
+        jog_for(client, Y, -0.5, 0.5)
+        expect(axis(client, Y)["velocity"] < 0, "a jog backwards right after one forwards", axis(client, Y))
+        expect(client.ask("stop", axis=Y)["ok"], "stop")
+        wait_for(lambda: stands(client, Y), "stop", 1)
+        refused(client.ask("jog", axis=Y, velocity=1e6), "elocity", "a velocity above that of the axis")
+        expect(client.ask("disable", axis=Y)["ok"], "disable")
+        wait_for(lambda: not axis(client, Y)["powered"], "disable")
+        expect(not axis(client, Y)["held"], "held after disable")
+
+
+def check_power_goes_off():
+    with running() as (client, _):
+        enable(client, Y)
+        begin = time.monotonic()
+        while time.monotonic() < begin + 3:
+            client.ask("keep")
+            time.sleep(0.1)
+        expect(axis(client, Y)["powered"], "power that is renewed")
+        time.sleep(2.3)
+        expect(axis(client, Y)["state"] == "Disabled" and not axis(client, Y)["powered"], "power that is not renewed",
+               axis(client, Y))
+
+
+def check_software_limit():
+    with running() as (client, _):
+        enable(client, Z)
+        reply = jog_for(client, Z, 1.0, 2.0)
+        refused(reply, "software limit", "jog at the limit")
+        stood = axis(client, Z)
+        expect(abs(stood["position"] - 0.5) < 0.01 and stood["state"] == "Standstill", "a jog ends at the limit", stood)
+        expect(stood["limits"] == {"lower": -0.5, "upper": 0.5, "velocity": stood["limits"]["velocity"],
+                                   "lag": stood["limits"]["lag"]} and stood["limits"]["lag"] > 0, "limits", stood)
+
+
+# ---- lost connections -----------------------------------------------------------------------------------------------
+
+def check_connection_lost():
+    with running() as (client, path):
+        with Client(path) as other:
+            enable(other, Y)
+            jog_for(other, Y, 0.5, 0.5)
+            refused(client.ask("jog", axis=Y, velocity=0.1), "held by another", "an axis that another one holds")
+            refused(client.ask("disable", axis=Y), "held by another", "disable of another one's axis")
+        lost = time.monotonic()
+        wait_for(lambda: stands(client, Y), "the connection is lost, and the motor goes on", 1)
+        expect(time.monotonic() - lost < 0.2, "the lost connection is not seen at once", time.monotonic() - lost)
+        wait_for(lambda: not axis(client, Y)["powered"] and not axis(client, Y)["held"], "power after that", 2)
+        with Client(path) as other:  # anybody may stop
+            enable(other, Y)
+            jog_for(other, Y, 0.5, 0.3)
+            expect(client.ask("stop", axis=Y)["ok"], "stop of another one's motion")
+            wait_for(lambda: stands(client, Y), "stop of another one's motion", 1)
+
+
+CHILD = """
+import sys, time
+sys.path.insert(0, sys.argv[2])
+from control_client import Client
+with Client(sys.argv[1]) as client:
+    client.ask("enable", axis=2)
+    while not client.ask("axes")["axes"][1]["powered"]:
+        client.ask("keep")
+    while True:
+        client.ask("jog", axis=2, velocity=0.5)
+        client.ask("keep")
+        time.sleep(0.03)
+"""
+
+
+def check_client_suspended():
+    """A client that is killed, and one that is suspended with its connection open."""
+    for how in (signal.SIGKILL, signal.SIGSTOP):
+        with running() as (client, path):
+            support = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support")
+            child = subprocess.Popen([sys.executable, "-c", CHILD, path, support])
+            try:
+                wait_for(lambda: axis(client, Y)["position"] > 0.3, "the child does not jog")
+                os.kill(child.pid, how)
+                lost = time.monotonic()
+                wait_for(lambda: stands(client, Y), f"{how}: the motor goes on", 1)
+                expect(time.monotonic() - lost < 0.5, f"{how}: stopped late", time.monotonic() - lost)
+                wait_for(lambda: not axis(client, Y)["powered"], f"{how}: power", 4)
+            finally:
+                child.kill()
+                child.wait()
+
+
+# ---- home, errors, end ----------------------------------------------------------------------------------------------
+
+def check_home():
+    with running() as (client, path):
+        with Client(path) as other:
+            enable(other, Y)
+            expect(other.ask("home", axis=Y)["ok"], "home")
+            wait_for(lambda: abs(axis(client, Y)["velocity"]) > 1, "Homing", 1)
+            expect(axis(client, Y)["state"] == "Homing", "Homing", axis(client, Y))
+            refused(other.ask("jog", axis=Y, velocity=0.1), "already moved", "jog beside a homing")
+        wait_for(lambda: axis(client, Y)["state"] == "Disabled" and abs(axis(client, Y)["velocity"]) < 0.01,
+                 "the connection is lost, and the homing goes on", 3)
+        expect(not axis(client, Y)["homed"] and abs(axis(client, Y)["position"]) < 3, "broken off", axis(client, Y))
+        enable(client, Y)
+        again = client.ask("home", axis=Y)
+        expect(again["ok"], "home again", again)
+
+        def homed():
+            client.ask("keep")
+            return axis(client, Y)["homed"]
+
+        wait_for(homed, "a homing that is renewed", 20)
+
+
+def check_error_and_reset():
+    with running() as (client, _):
+        enable(client, Y)
+        jog_for(client, Y, 8, 3)
+        wait_for(lambda: axis(client, Y)["state"] == "ErrorStop", "no error at the mechanical stop")
+        refused(client.ask("jog", axis=Y, velocity=-1), "Reset it first", "jog in ErrorStop")
+        wait_for(lambda: not axis(client, Y)["powered"], "power in ErrorStop")
+        expect(axis(client, Y)["text"] != "", "the text of the error", axis(client, Y))
+        expect(client.ask("reset", axis=Y)["ok"], "reset")
+        wait_for(lambda: axis(client, Y)["state"] == "Disabled" and not axis(client, Y)["resetting"], "reset", 5)
+        time.sleep(0.3)
+        expect(axis(client, Y)["state"] == "Disabled" and not axis(client, Y)["held"], "power comes back by itself",
+               axis(client, Y))
+
+
+def check_commands():
+    """cm1e reset, enable and jog, attached."""
+    def attached(pid, *words):
+        return subprocess.run([CM1E, *words, "--attach", str(pid)], capture_output=True, text=True, timeout=60,
+                              env=ENVIRONMENT, stdin=subprocess.DEVNULL)
+
+    with running() as (client, path):
+        pid = client.ask("hello")["hello"]["pid"]
+        told = attached(pid, "reset")
+        expect(told.returncode == 0 and told.stdout == "".join(f"{name}: has no error (simulated)\n" for name in "XYZ"),
+               "reset without an error", told)
+        enable(client, Y)
+        jog_for(client, Y, 8, 3)
+        wait_for(lambda: axis(client, Y)["state"] == "ErrorStop", "no error at the mechanical stop")
+        told = attached(pid, "reset", "Y")
+        expect(told.returncode == 0 and told.stdout.startswith("Y: error reset (simulated). It was: "), "reset", told)
+        as_json = json.loads(attached(pid, "reset", "--json").stdout)
+        expect([a["axis"] for a in as_json] == ["X", "Y", "Z"] and not as_json[1]["had_error"], "reset --json", as_json)
+        told = attached(pid, "reset", "nobody")
+        expect(told.returncode == 2 and "no axis \"nobody\"" in told.stderr, "reset of an axis that is not there", told)
+        told = attached(pid, "enable", "Z", "--for", "1")
+        expect(told.returncode == 0 and told.stdout.startswith("Z: was enabled for 1.0 s"), "enable", told)
+        expect(not axis(client, Z)["powered"], "enabled after the command", axis(client, Z))
+        child = subprocess.Popen([CM1E, "enable", "Z", "--for", "60", "--attach", str(pid)], stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        wait_for(lambda: axis(client, Z)["powered"], "enable")
+        child.terminate()
+        out, err = child.communicate(timeout=20)
+        expect(child.returncode == 0 and "was enabled" in out, "enable that is ended by a signal", out + err)
+        expect(not axis(client, Z)["powered"], "enabled after a signal", axis(client, Z))
+        told = attached(pid, "jog", "Z")
+        expect(told.returncode == 2 and "needs a terminal" in told.stderr, "jog without a terminal", told)
+    with running("observe") as (client, path):
+        pid = client.ask("hello")["hello"]["pid"]
+        for words in (("enable", "Z", "--for", "1"), ("enable", "Z", "--for", "1", "--json")):
+            told = attached(pid, *words)
+            expect(told.returncode == 1 and "control: maintain" in told.stderr, "enable by observe", told)
+
+
+if __name__ == "__main__":
+    try:
+        for check in (check_consent, check_precedence, check_jog, check_power_goes_off, check_software_limit,
+                      check_connection_lost, check_client_suspended, check_home, check_error_and_reset, check_commands):
+            begin = time.monotonic()
+            check()
+            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
+    except (KeyError, TypeError, OSError) as error:
+        faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
+    finally:
+        shutil.rmtree(FOLDER, ignore_errors=True)
+    if faults:
+        real_time.skip_on_a_busy_machine(faults)
+        print("FAILED:", *faults, sep="\n")
+        sys.exit(1)

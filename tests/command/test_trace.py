@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+"""cm1e trace of a running program: the same samples as the program records itself, counted gaps, triggers, many at a
+time; and alone.
+
+test_trace.py BIN-DIRECTORY
+"""
+import contextlib
+import csv
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import real_time  # noqa: E402
+from control_client import Client  # noqa: E402
+
+CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
+BUS = """\
+bus: {interface: sim, lost_cycles_limit: 50}
+axes:
+  - {name: X, sim: {no_stops: true}}
+  - {name: Y}
+"""
+FOLDER = tempfile.mkdtemp()
+RUNTIME = os.path.join(FOLDER, "run")
+ENVIRONMENT = {**os.environ, "CM1E_RUNTIME_DIR": RUNTIME}
+faults = []
+
+
+def expect(condition, what, told=""):
+    if not condition:
+        faults.append(f"{what}\n    {told}")
+
+
+def wait_for(condition, what, seconds=10):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    expect(condition(), what)
+
+
+def path_of(name):
+    return os.path.join(FOLDER, name)
+
+
+def rows(name):
+    with open(path_of(name), encoding="utf-8", newline="") as file:
+        return list(csv.reader(file))
+
+
+@contextlib.contextmanager
+def running(*options):
+    with open(path_of("bus.yaml"), "w", encoding="utf-8") as file:
+        file.write(BUS)
+    process = subprocess.Popen([CM1E, "move", "-b", path_of("bus.yaml"), "X", "--speed", "0.5", "--for", "120",
+                                *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+    path = os.path.join(RUNTIME, f"cm1e-{process.pid}-0.sock")
+    try:
+        wait_for(lambda: os.path.exists(path), "no control socket")
+        with Client(path) as client:
+            wait_for(lambda: client.ask("axes")["axes"][0]["velocity"] > 0.45, "the axis does not move")
+            yield client, process
+            if process.poll() is None:
+                expect(client.ask("axes")["axes"][0]["state"] == "ContinuousMotion", "the program was disturbed")
+    finally:
+        if process.poll() is None:
+            process.terminate()
+        out, err = process.communicate(timeout=30)
+        expect("ErrorStop" not in out + err, "the run ended with an error", out + err)
+
+
+def trace(process, *words):
+    return subprocess.run([CM1E, "trace", "--attach", str(process.pid), *words], capture_output=True, text=True,
+                          timeout=60, env=ENVIRONMENT)
+
+
+# ---- the same as the program's own ----------------------------------------------------------------------------------
+
+def check_same_samples():
+    with running("--csv", path_of("own.csv")) as (_, process):
+        files = [word for kind in ("csv", "svg", "html", "npy") for word in (f"--{kind}", path_of(f"a.{kind}"))]
+        told = trace(process, "--for", "2", "--object", "X:0x603F", "--object", "2:0x6064:0", *files)
+        every = trace(process, "--for", "1", "--every", "5", "--csv", path_of("every.csv"))
+        names = trace(process, "--list")
+    expect(told.returncode == 0 and "lost" not in told.stderr and "20 signals" in told.stdout, "trace", told)
+    own, attached = rows("own.csv"), rows("a.csv")
+    width = len(own[0])
+    expect(attached[0][:width] == own[0] and [name.split()[0] for name in attached[0][width:]] == ["X", "Y"],
+           "columns", (own[0], attached[0]))
+    of_time = {row[0]: row for row in own[1:]}
+    first = list(of_time).index(attached[1][0])
+    expect([row[0] for row in attached[1:]] == list(of_time)[first:first + len(attached) - 1],
+           "cycles that the program records are missing in what is recorded attached")
+    expect(all(row[:width] == of_time.get(row[0]) for row in attached[1:]), "values differ")
+    expect(len(attached) > 1500, "samples", len(attached))
+    for name, begin in (("a.svg", b"<svg"), ("a.html", b"<!DOCTYPE html>"), ("a.npy", b"\x93NUMPY\x03")):
+        with open(path_of(name), "rb") as file:
+            expect(file.read(len(begin)) == begin, name)
+    steps = [round(1e3 * (float(b[0]) - float(a[0]))) for a, b in zip(rows("every.csv")[1:], rows("every.csv")[2:])]
+    expect(every.returncode == 0 and steps.count(5) > 0.9 * len(steps), "--every 5", steps[:20])
+    expect("X actual velocity [u/s]" in names.stdout.splitlines() and "overruns" in names.stdout, "--list", names)
+
+
+def check_gaps_are_counted():
+    """A client that is suspended for longer than the program keeps samples for it."""
+    with running() as (_, process):
+        child = subprocess.Popen([CM1E, "trace", "--attach", str(process.pid), "--for", "8", "--csv",
+                                  path_of("gap.csv"), "--html", path_of("gap.html"), "--json"], stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        time.sleep(1)
+        os.kill(child.pid, signal.SIGSTOP)
+        time.sleep(6)
+        os.kill(child.pid, signal.SIGCONT)
+        out, err = child.communicate(timeout=30)
+    told, times = json.loads(out), [round(1e3 * float(row[0])) for row in rows("gap.csv")[1:]]
+    missing = times[-1] - times[0] + 1 - len(times)
+    expect(child.returncode == 0 and "samples were lost" in err and told["lost"] > 500, "a gap", out + err)
+    expect(told["lost"] <= missing <= told["lost"] + 100, "lost samples are counted", (told, missing))  # and overruns
+    expect(max(b - a for a, b in zip(times, times[1:])) >= told["lost"] // 2, "the gap is one", told)
+    with open(path_of("gap.html"), encoding="utf-8") as file:
+        expect('"text": "samples were lost"' in file.read(), "the gap is marked")
+
+
+def check_many_and_gone():
+    with running() as (client, process):
+        children = [subprocess.Popen([CM1E, "trace", "--attach", str(process.pid), "--for", "2", "--csv",
+                                      path_of(f"many{n}.csv")], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                     text=True, env=ENVIRONMENT) for n in range(4)]
+        for child in children:
+            out, err = child.communicate(timeout=30)
+            expect(child.returncode == 0 and "lost" not in err, "one of four", out + err)
+        for _ in range(60):  # more than there are places: each is free again
+            with Client(client.socket.getpeername()) as other:
+                expect(other.ask("record")["ok"], "record")
+                other.send('{"request": "samples"}')
+        with Client(client.socket.getpeername()) as other:
+            expect("send \"record\"" in other.ask("samples")["error"]["text"], "samples without a recording")
+            for wrong in ({"every": 0}, {"every": "1"}, {"objects": 1}, {"objects": [1]}, {"objects": [{"axis": 9}]},
+                          {"objects": [{"axis": 1, "index": 0x1018}]}, {"objects": [{"axis": 1, "index": 0x6064}] * 2}):
+                reply = other.ask("record", **wrong)
+                expect(not reply["ok"] and reply["error"]["text"], f"record {wrong}", reply)
+            expect(other.ask("record")["ok"], "record after refused ones")
+            expect("records already" in other.ask("record")["error"]["text"], "two recordings of one connection")
+
+
+# ---- triggers and ends ----------------------------------------------------------------------------------------------
+
+def check_triggers():
+    with running() as (client, process):
+        at = client.ask("axes")["axes"][0]["position"] + 0.75
+        told = trace(process, "--for", "1", "--before", "0.25", "--trigger", f"rising:X actual position:{at}", "--csv",
+                     path_of("trigger.csv"))
+        expect(told.returncode == 0, "trigger", told)
+        positions = [float(row[rows("trigger.csv")[0].index("X actual position [u]")]) for row in
+                     rows("trigger.csv")[1:]]
+        before = sum(position < at for position in positions)
+        expect(before == 250 and len(positions) == 1001, "samples around the trigger", (before, len(positions)))
+        for words, why in ((["--trigger", "rising:X actual position", "--for", "1"], "expected error-stop"),
+                           (["--trigger", "sometimes", "--for", "1"], "sometimes"),
+                           (["--trigger", "change:nothing", "--for", "1"], "no signal \"nothing\""),
+                           (["--trigger", "error-stop"], "needs --for"), (["--before", "1"], "--before"),
+                           (["--object", "X"], "AXIS:INDEX"), (["--object", "X:0x1018"], "not in the process data"),
+                           (["--for", "80000"], "--every"), (["--every", "0"], "whole number 1 ... 10000")):
+            told = trace(process, *words, "--csv", path_of("no.csv"))
+            expect(told.returncode in (1, 2) and why in told.stderr, f"trace {words}", told)
+        expect(not os.path.exists(path_of("no.csv")), "a file of nothing")
+        child = subprocess.Popen([CM1E, "trace", "--attach", str(process.pid), "--for", "60", "--trigger", "error-stop",
+                                  "--csv", path_of("never.csv")], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 text=True, env=ENVIRONMENT)
+        time.sleep(1)
+        child.terminate()
+        out, err = child.communicate(timeout=20)
+        expect(child.returncode == 1 and "did not come" in err and len(rows("never.csv")) > 100, "no trigger",
+               out + err)
+
+
+def check_end_of_program():
+    with running() as (_, process):
+        child = subprocess.Popen([CM1E, "trace", "--attach", str(process.pid), "--csv", path_of("end.csv")],
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        time.sleep(1)
+        process.terminate()
+        out, err = child.communicate(timeout=20)
+        process.wait(timeout=20)
+        states = [row[1] for row in rows("end.csv")[1:]]
+        expect(child.returncode == 0 and "has ended" in err and "What came until then is written" in err, "end",
+               out + err)
+        expect(len(states) > 500 and states[-1] == "Disabled", "the end of the run is recorded", states[-3:])
+
+
+def check_alone():
+    told = subprocess.run([CM1E, "trace", "-b", path_of("bus.yaml"), "--for", "0.5", "--csv", path_of("alone.csv"),
+                           "--json"], capture_output=True, text=True, timeout=60, env=ENVIRONMENT)
+    expect(told.returncode == 0 and json.loads(told.stdout)["samples"] >= 400 and rows("alone.csv")[5][1] == "Disabled",
+           "alone", told)
+    told = subprocess.run([CM1E, "trace", "-i", "sim", "--list"], capture_output=True, text=True, timeout=60,
+                          env=ENVIRONMENT)
+    expect(told.returncode == 0 and "axis1 torque [%]" in told.stdout, "--list, alone", told)
+
+
+if __name__ == "__main__":
+    try:
+        for check in (check_same_samples, check_gaps_are_counted, check_many_and_gone, check_triggers,
+                      check_end_of_program, check_alone):
+            begin = time.monotonic()
+            check()
+            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
+    except (KeyError, TypeError, OSError, ValueError, IndexError) as error:
+        faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
+    finally:
+        shutil.rmtree(FOLDER, ignore_errors=True)
+    if faults:
+        real_time.skip_on_a_busy_machine(faults)
+        print("FAILED:", *faults, sep="\n")
+        sys.exit(1)

@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""The code has one form where C allows several: a result of type cm1e_error_t is compared with CM1E_OK or with another
+error, and is never taken for a truth value. A comment about a C bool has true and false; TRUE and FALSE are values of
+PLCopen inputs. No two files in different rooms have one name.
+
+test_code.py SOURCE-DIRECTORY
+"""
+import glob
+import os
+import re
+import sys
+
+SOURCE = sys.argv[1]
+FOLDERS = ("include", "src", "fb", "tools", "examples", "bench", "tests")
+TYPE = "cm1e_error_t"
+TOKEN = re.compile(r"[A-Za-z_]\w*|0[xX]\w+|\d[\w.]*|->|&&|\|\||[=!<>]=|\S")
+NAME = re.compile(r"[A-Za-z_]\w*\Z")
+# A type, a name, and further names after commas; it ends before ";", ",", ")" or an initial value.
+DECLARATION = re.compile(r"(?<![\w.>])(?:struct )?([A-Za-z_]\w*)(?: const)?[ \n]+\**(?:const )?(\w+)"
+                         r"((?:\[[^\]]*\])*(?:(?: = [^;{}(),]*)?,\s\**\w+(?:\[[^\]]*\])*)*)(?=[;,)]|\s=\s)")
+COMPARED = ("==", "!=", "<", ">", "<=", ">=")
+faults = []
+
+
+def read(path):
+    with open(os.path.join(SOURCE, path), encoding="utf-8") as file:
+        return file.read()
+
+
+def files():
+    return sorted(os.path.relpath(path, SOURCE) for folder in FOLDERS
+                  for path in glob.glob(os.path.join(SOURCE, folder, "**/*.[ch]"), recursive=True))
+
+
+def blank(match):
+    return re.sub(r"[^\n]", " ", match.group())
+
+
+def code(text):
+    """The same lines without comments, strings and characters."""
+    text = re.sub(r"/\*.*?\*/|//[^\n]*", blank, text, flags=re.DOTALL)
+    return re.sub(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', blank, text)
+
+
+# ---- the form of an error test --------------------------------------------------------------------------------------
+
+def declarations(text):
+    """{name: type} of everything that looks like a declaration: parameters, variables, members."""
+    found = {}
+    for kind, first, others in DECLARATION.findall(text):
+        if kind not in ("return", "goto", "typedef", "enum", "struct", "else", "case", "sizeof"):
+            for name in [first, *re.findall(r",\s\**(\w+)", others)]:
+                found[name] = kind
+    return found
+
+
+def structs(texts):
+    """{type: {member: type}}."""
+    found = {}
+    for text in texts.values():
+        for name, body, alias in re.findall(r"\bstruct (\w+) \{\n(.*?)\n\}(?: (\w+))?;", text, re.DOTALL):
+            found[alias or f"{name}_t"] = found[name] = declarations(body)
+    return found
+
+
+def functions(text):
+    """{name: type it returns}."""
+    return {name: kind for kind, name in re.findall(r"^(?:CM1E_API |static |inline |extern )*(\w+) \**(\w+)\(", text,
+                                                    re.MULTILINE)}
+
+
+def bodies(text):
+    """(begin, text) of every function with its head."""
+    for match in re.finditer(r"^[A-Za-z_][^;{}#]*\)\s*(?:\{[^\n]*\}$|\{\n.*?^\})", text, re.MULTILINE | re.DOTALL):
+        yield match.start(), match.group()
+
+
+def operand(tokens, place):
+    """The end of the chain of members, indices and calls that begins at a place, and its names; None at a call."""
+    names = [tokens[place].group()]
+    place += 1
+    while place < len(tokens):
+        token = tokens[place].group()
+        if token in ("->", "."):
+            names.append(tokens[place + 1].group())
+            place += 2
+        elif token in "([":
+            depth = 0
+            while place < len(tokens):
+                depth += (tokens[place].group() in "([") - (tokens[place].group() in ")]")
+                place += 1
+                if depth == 0:
+                    break
+            if token == "(":
+                names.append(None)
+        else:
+            break
+    return place, names
+
+
+def is_error(names, variables, members, results):
+    if names[-1] is None:
+        return len(names) == 2 and results.get(names[0]) == TYPE
+    kind = variables.get(names[0])
+    for name in names[1:]:
+        kind = members.get(kind, {}).get(name)
+    return kind == TYPE
+
+
+def truth_values(tokens, variables, members, results):
+    """(begin, end, whether it is negated) of every error that stands for a truth value."""
+    place = 0
+    while place < len(tokens):
+        before = tokens[place - 1].group() if place else ""
+        if not NAME.match(tokens[place].group()) or before in ("->", "."):
+            place += 1
+            continue
+        end, names = operand(tokens, place)
+        after = tokens[end].group() if end < len(tokens) else ""
+        asked = before == "(" and after == ")" and tokens[place - 2].group() in ("if", "while")
+        joined = before in ("&&", "||") and after in (")", ";", "&&", "||", "?", ":", ",")
+        leads = before not in COMPARED and after in ("&&", "||", "?")
+        zero = after in ("==", "!=") and tokens[end + 1].group() == "0"
+        if before == "!" or asked or joined or leads or zero:
+            if is_error(names, variables, members, results):
+                yield tokens[place - (before == "!")].start(), tokens[end - 1].end(), before == "!"
+        place = end if names[-1] is not None else place + 1
+
+
+def check_error_tests(texts):
+    members, everywhere = structs(texts), {}
+    for path, text in texts.items():
+        if path.endswith(".h"):
+            everywhere.update(functions(text))
+    found = []
+    for path, text in texts.items():
+        results = {**everywhere, **functions(text)}
+        for begin, body in bodies(text):
+            variables, tokens = declarations(body), list(TOKEN.finditer(body))
+            for first, last, negated in truth_values(tokens, variables, members, results):
+                words = re.sub(r"\s+", " ", body[first:last])
+                line = text.count("\n", 0, begin + first) + 1
+                found.append(f"{path}:{line}: \"{words}\" is an error, not a truth value: write \"{words.lstrip('!')} "
+                             f"{'==' if negated else '!='} CM1E_OK\"")
+    return found
+
+
+# What the check must find, and what it must leave alone.
+WRONG = ("if (error)", "return !error;", "if (on && fault->error)", "return first(on) ? 1 : 0;", "while (error == 0)")
+RIGHT = ("if (error == CM1E_OK)", "if (on)", "return on && error != CM1E_OK;", "if (shown->error)", "return error;")
+SAMPLE = """cm1e_error_t first(bool on);
+typedef struct fault {
+    cm1e_error_t error;
+} fault_t;
+typedef struct shown {
+    bool error;
+} shown_t;
+int sample(bool on, const fault_t *fault, const shown_t *shown, cm1e_error_t error)
+{
+    %s
+}
+"""
+
+
+def check_itself():
+    for statement in WRONG + RIGHT:
+        found = check_error_tests({"sample.h": SAMPLE % statement})
+        if len(found) != (statement in WRONG):
+            faults.append(f"tests/style/test_code.py judges \"{statement}\" wrongly: {found}")
+
+
+# ---- true and TRUE --------------------------------------------------------------------------------------------------
+
+# What TRUE and FALSE are said of: inputs and outputs of blocks, and an argument of SOEM's core.
+BLOCK_WORDS = re.compile(r"\b(Execute|Enable|Status|Busy|Valid|Done|ecx_setupnic)\b")
+
+
+def check_truth(path):
+    """Of a comment in the sources that have no function blocks."""
+    text = read(path)
+    for comment in re.finditer(r"/\*.*?\*/", text, re.DOTALL):
+        found = re.search(r"\b(TRUE|FALSE)\b", comment.group())
+        if found and not BLOCK_WORDS.search(comment.group()):
+            line = text.count("\n", 0, comment.start() + found.start()) + 1
+            faults.append(f"{path}:{line}: {found.group()} is a value of an input of a block; a C bool is "
+                          f"{found.group().lower()}")
+
+
+# ---- names of files -------------------------------------------------------------------------------------------------
+
+# Names that other programs look for, and the source of the project that `cm1e new` makes.
+ANY_ROOM = {"CMakeLists.txt", "Makefile", "README.md", "requirements.txt", "main.c"}
+
+
+def check_names():
+    folders = {}
+    for folder in ("src", "tools", "fb", "examples", "tests"):
+        for parent, _, names in os.walk(os.path.join(SOURCE, folder)):
+            if "__pycache__" not in parent:
+                for name in set(names) - ANY_ROOM:
+                    folders.setdefault(name, []).append(os.path.relpath(parent, SOURCE))
+    for name, rooms in sorted(folders.items()):
+        if len(rooms) > 1:
+            faults.append(f"{name} is in {', '.join(sorted(rooms))}: give all but one a name of their own")
+
+
+for path in files():
+    if path.startswith(("src/", "tools/")):
+        check_truth(path)
+check_names()
+check_itself()
+faults += check_error_tests({path: code(read(path)) for path in files()})
+print("\n".join(faults) if faults else "code: fine")
+sys.exit(1 if faults else 0)

@@ -1,0 +1,85 @@
+/* Signals in a process image, without a network: any type, any number of bits, at any place. */
+#include "bus/bus_internal.h"
+#include "chance.h"
+#include "cm1e/io.h"
+#include "unity.h"
+
+static cm1e_diag_t diag;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+enum { IMAGE = 40, TRIES = 200000 };
+static uint8_t outputs[IMAGE];
+static cm1e_bus_slave_t slave = {.info = {.position = 1}, .placement = {.output_bytes = IMAGE}};
+static cm1e_bus_t bus = {
+    .slaves = &slave, .slave_count = 1, .layout = 1, .outputs = outputs, .phase = BUS_OPERATING,
+};
+
+/** Any type at any place keeps its value, and leaves every other bit alone. */
+static void test_every_value_of_every_type_lies_anywhere(void)
+{
+    for (int n = 0; n < TRIES; n++) {
+        uint8_t before[IMAGE];
+        for (unsigned i = 0; i < IMAGE; i++)
+            before[i] = outputs[i] = (uint8_t)chance();
+        const cm1e_io_type_t type = (cm1e_io_type_t)pick(CM1E_IO_BYTES);
+        static const uint8_t widest[] = {1, 8, 8, 16, 16, 32, 32, 64, 64, 32, 64};
+        const bool exact = type == CM1E_IO_BOOL || type >= CM1E_IO_REAL;
+        const uint16_t bits = (uint16_t)(exact ? widest[type] : 1 + pick(widest[type]));
+        const uint32_t place = (uint32_t)pick(8 * IMAGE - bits + 1);
+        cm1e_io_t io;
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_io_find_bits(&bus, 1, true, place, bits, type, &io, &diag));
+        const bool is_signed = type < CM1E_IO_REAL && type % 2 == CM1E_IO_SINT % 2;
+        if (type >= CM1E_IO_REAL) {
+            const double real = type == CM1E_IO_REAL ? (double)(float)uniform(-1e9, 1e9) : uniform(-1e9, 1e9);
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_io_set_real(&io, real));
+            TEST_ASSERT_TRUE(cm1e_io_real(&io) == real);
+            TEST_ASSERT_EQUAL_INT64((int64_t)real, cm1e_io_integer(&io));
+        } else {
+            uint64_t value = (uint64_t)chance() << 32 ^ (uint64_t)chance();
+            value = bits < 64 ? value & ((UINT64_C(1) << bits) - 1) : is_signed ? value : value >> 1;
+            int64_t number = (int64_t)value;
+            if (is_signed && bits < 64 && value >> (bits - 1))
+                number = (int64_t)value - (INT64_C(1) << (bits - 1)) - (INT64_C(1) << (bits - 1));
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_io_set_integer(&io, number));
+            TEST_ASSERT_EQUAL_INT64(number, cm1e_io_integer(&io));
+            TEST_ASSERT_EQUAL_INT(number != 0, cm1e_io_bool(&io));
+            TEST_ASSERT_TRUE(cm1e_io_real(&io) == (double)number);
+        }
+        for (uint32_t bit = 0; bit < 8 * IMAGE; bit++)
+            if (bit < place || bit >= place + bits)
+                TEST_ASSERT_FALSE_MESSAGE((before[bit / 8] ^ outputs[bit / 8]) >> bit % 8 & 1, "a bit beside it");
+    }
+}
+
+static void test_bytes_of_any_length_lie_anywhere(void)
+{
+    for (int n = 0; n < TRIES / 10; n++) {
+        const uint16_t bits = (uint16_t)(1 + pick(8 * (IMAGE - 1)));
+        const uint32_t place = (uint32_t)pick(8 * IMAGE - bits + 1);
+        const size_t size = (bits + 7u) / 8u;
+        uint8_t written[IMAGE], read[IMAGE];
+        for (size_t i = 0; i < size; i++)
+            written[i] = (uint8_t)chance();
+        if (bits % 8)
+            written[size - 1] &= (uint8_t)((1u << bits % 8) - 1u);
+        cm1e_io_t io;
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_io_find_bits(&bus, 1, true, place, bits, CM1E_IO_BYTES, &io, &diag));
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_io_set_bytes(&io, written, size));
+        TEST_ASSERT_EQUAL_UINT(size, cm1e_io_bytes(&io, read, sizeof read));
+        TEST_ASSERT_EQUAL_MEMORY(written, read, size);
+        TEST_ASSERT_EQUAL_UINT(0, cm1e_io_bytes(&io, read, size - 1));
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_bytes(&io, written, size + 1));
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_integer(&io, 0));
+    }
+}
+
+int main(void)
+{
+    chance_seed(1);
+    UNITY_BEGIN();
+    RUN_TEST(test_every_value_of_every_type_lies_anywhere);
+    RUN_TEST(test_bytes_of_any_length_lie_anywhere);
+    return UNITY_END();
+}

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""`cm1e reset`, `led` and `alias` over the wire, on a motor that goes on when the command has ended.
+
+test_wire_by_hand.py CM1E
+"""
+import json
+import os
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import wire  # noqa: E402
+
+
+def check_reset(segment, cm1e):
+    bus = segment.bus_file()
+    segment.console("error 1 7310 hold")
+    stays = segment.run([cm1e, "reset", "-b", bus])
+    wire.check(stays.returncode == 1 and "still there" in stays.stderr and "7310" in stays.stderr,
+               f"an error whose cause is still there: {stays}")
+    segment.console("error 1 clear")
+    segment.console("error 1 7310")
+    told = segment.run([cm1e, "reset", "-b", bus, "--json"])
+    axis = json.loads(told.stdout)[0]
+    wire.check(told.returncode == 0 and axis["had_error"] and axis["good"] and axis["device_error"] == 0x7310
+               and "Over speed" in axis["details"], f"reset: {told}")
+    again = segment.run([cm1e, "reset", "-b", bus])
+    wire.check(again.returncode == 0 and again.stdout == "X: has no error\n", f"after the reset: {again}")
+    moved = segment.run([cm1e, "move", "-b", bus, "--by", "0.1"])
+    wire.check(moved.returncode == 0 and "simulated" not in moved.stdout, f"a move after the reset: {moved}")
+
+
+def check_led(segment, cm1e):
+    bus = segment.bus_file()
+    red = segment.run([cm1e, "led", "-b", bus, "X", "red", "--flash"])
+    value = segment.run([cm1e, "sdo", "-b", bus, "read", "1", "0xFF01", "--json"])
+    wire.check(red.returncode == 0 and json.loads(value.stdout)["value"] == 0x01000003, f"a red LED: {red}{value}")
+    found = segment.run([cm1e, "led", "-b", bus, "X", "--for", "0.3", "--json"])
+    wire.check(json.loads(found.stdout)["now"] == 0x01000003, f"the LED is as it was before: {found}")
+
+
+def check_alias(segment, cm1e, folder):
+    bus, backup = segment.bus_file(), os.path.join(folder, "backup.sii")
+    written = segment.run([cm1e, "alias", "-b", bus, "1", "77", "--backup", backup])
+    wire.check(written.returncode == 0, f"alias: {written}")
+    segment.console("power-cycle 1 100")
+    wire.wait_for(lambda: json.loads(segment.run([cm1e, "scan", "-b", bus, "--json"]).stdout or "[{}]")[0].get("alias")
+                  == 77, 10, "the alias is not there after the power-on")
+    back = segment.run([cm1e, "sii", "write", "1", backup, "--own-alias-and-serial", "-b", bus, "--backup",
+                        os.path.join(folder, "other.sii")])
+    wire.check(back.returncode == 0, f"the backup written back: {back}")
+    segment.console("power-cycle 1 100")
+    wire.wait_for(lambda: json.loads(segment.run([cm1e, "scan", "-b", bus, "--json"]).stdout or "[{}]")[0].get("alias")
+                  == 0, 10, "the alias is still there after the backup was written back")
+
+
+def main(cm1e):
+    with wire.segment(cm1e) as segment, tempfile.TemporaryDirectory() as folder:
+        check_reset(segment, cm1e)
+        check_led(segment, cm1e)
+        check_alias(segment, cm1e, folder)
+    print("reset, led and alias over the wire")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

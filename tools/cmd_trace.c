@@ -1,0 +1,343 @@
+/** cm1e trace: records the signals of the program that runs the network, or runs it itself, with every motor without
+ *  torque, and records that. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "attach.h"
+#include "axis_run.h"
+#include "cm1e/plot.h"
+#include "plot/plot.h"
+#include "recording.h"
+
+enum { KEY_FOR = 0x600, KEY_EVERY, KEY_OBJECT, KEY_TRIGGER, KEY_BEFORE, KEY_LIST, KEY_CSV, KEY_SVG, KEY_HTML, KEY_NPY,
+       LONGEST_S = 86400, EVERY_MOST = 10000, PAUSE_US = 20000 };
+
+static const struct {
+    const char *option;
+    cm1e_error_t (*write)(const trace_t *trace, const char *path, cm1e_diag_t *diag);
+} trace_files[] = {{"--csv", cm1e_trace_write_csv},
+                   {"--svg", cm1e_plot_write_svg},
+                   {"--html", cm1e_plot_write_html},
+                   {"--npy", cm1e_trace_write_npy}};
+enum { TRACE_FILES = sizeof trace_files / sizeof trace_files[0], OBJECTS = 64 };
+
+typedef struct trace_options {
+    common_options_t common;
+    const char *files[TRACE_FILES]; /* NULL: not wanted */
+    const char *objects[OBJECTS];   /* AXIS:INDEX[:SUBINDEX] */
+    int object_count;
+    double seconds, before_s;
+    uint32_t every;
+    bool list;
+    cm1e_trace_trigger_t trigger;
+    char signal[CM1E_TRACE_NAME_BYTES];
+} trace_options_t;
+
+/* ---- options ----------------------------------------------------------------------------------------------------- */
+
+/** error-stop, rising:SIGNAL:LEVEL, falling:SIGNAL:LEVEL, change:SIGNAL */
+static error_t parse_trigger(trace_options_t *options, const char *arg)
+{
+    static const cm1e_trace_trigger_kind_t kinds[] = {CM1E_TRACE_ON_ERROR_STOP, CM1E_TRACE_ON_RISING,
+                                                      CM1E_TRACE_ON_FALLING, CM1E_TRACE_ON_CHANGE};
+    char word[16];
+    const size_t bytes = strcspn(arg, ":");
+    const char *signal = arg[bytes] ? arg + bytes + 1 : "", *level = strrchr(signal, ':');
+    snprintf(word, sizeof word, "%.*s", (int)(bytes < sizeof word ? bytes : sizeof word - 1), arg);
+    const int kind = choose_word("kind of trigger", word, "error-stop|rising|falling|change");
+    if (kind < 0)
+        return EINVAL;
+    options->trigger.kind = kinds[kind];
+    options->trigger.signal = options->signal;
+    const bool has_level = kinds[kind] == CM1E_TRACE_ON_RISING || kinds[kind] == CM1E_TRACE_ON_FALLING;
+    if (kinds[kind] == CM1E_TRACE_ON_ERROR_STOP ? signal[0] != '\0' : signal[0] == '\0' || (has_level && !level)) {
+        complain("the trigger is \"%s\"; expected error-stop, rising:SIGNAL:LEVEL, falling:SIGNAL:LEVEL or "
+                 "change:SIGNAL", arg);
+        return EINVAL;
+    }
+    const size_t length = has_level ? (size_t)(level - signal) : strlen(signal);
+    if (length >= sizeof options->signal) {
+        complain("the signal of the trigger is longer than %zu bytes", sizeof options->signal - 1);
+        return EINVAL;
+    }
+    snprintf(options->signal, sizeof options->signal, "%.*s", (int)length, signal);
+    return !has_level || parse_real(level + 1, "the level of the trigger", &options->trigger.level) ? 0 : EINVAL;
+}
+
+static void check(const trace_options_t *options, struct argp_state *state)
+{
+    int files = 0;
+    for (int i = 0; i < TRACE_FILES; i++) {
+        files += options->files[i] != NULL;
+        if (options->files[i] && !options->files[i][0])
+            argp_error(state, "%s needs the name of a file", trace_files[i].option);
+    }
+    if (files == 0 && !options->list)
+        argp_error(state, "say what to write: --csv, --svg, --html or --npy FILE, or --list");
+    if (options->before_s > 0 && (options->trigger.kind == CM1E_TRACE_NO_TRIGGER ||
+                                  options->before_s >= options->seconds))
+        argp_error(state, "--before is for a --trigger, and shorter than --for");
+    if (options->trigger.kind != CM1E_TRACE_NO_TRIGGER && options->seconds == 0)
+        argp_error(state, "--trigger needs --for SECONDS, the time that is kept");
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    trace_options_t *options = state->input;
+    long long number;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->common;
+        state->child_inputs[1] = &options->common;
+        return 0;
+    case KEY_FOR: return parse_seconds(arg, LONGEST_S, &options->seconds) ? 0 : EINVAL;
+    case KEY_BEFORE: return parse_seconds(arg, LONGEST_S, &options->before_s) ? 0 : EINVAL;
+    case KEY_EVERY:
+        if (!parse_number(arg, "the number of cycles between samples", 1, EVERY_MOST, &number))
+            return EINVAL;
+        options->every = (uint32_t)number;
+        return 0;
+    case KEY_OBJECT:
+        if (options->object_count == OBJECTS)
+            argp_error(state, "at most %d objects", OBJECTS);
+        options->objects[options->object_count++] = arg;
+        return 0;
+    case KEY_TRIGGER: return parse_trigger(options, arg);
+    case KEY_LIST: options->list = true; return 0;
+    case KEY_CSV: case KEY_SVG: case KEY_HTML: case KEY_NPY: options->files[key - KEY_CSV] = arg; return 0;
+    case ARGP_KEY_ARG: argp_error(state, "trace records all axes; \"%s\" is too many", arg); return EINVAL;
+    case ARGP_KEY_END: check(options, state); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option table[] = {
+    {"for", KEY_FOR, "SECONDS", 0, "Time to record, or to keep around a trigger; default: until Ctrl-C", 0},
+    {"every", KEY_EVERY, "N", 0, "Record every N-th cycle; default 1", 0},
+    {"object", KEY_OBJECT, "AXIS:INDEX[:SUB]", 0, "Also an object in the process data, like 1:0x603F", 0},
+    {"trigger", KEY_TRIGGER, "KIND[:SIGNAL[:LEVEL]]", 0,
+     "End --for SECONDS after it: error-stop, rising:SIGNAL:LEVEL, falling:SIGNAL:LEVEL, change:SIGNAL", 0},
+    {"before", KEY_BEFORE, "SECONDS", 0, "Of that time, so much before the trigger", 0},
+    {"list", KEY_LIST, NULL, 0, "Print the names of the signals and end", 0},
+    {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
+    {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
+    {"html", KEY_HTML, "FILE", 0, "Write the trace as a page for a browser: zoom, cursors, events", 0},
+    {"npy", KEY_NPY, "FILE", 0, "Write the trace for NumPy", 0},
+    {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
+const struct argp argp_trace = {
+    table, parse, NULL,
+    "Records all signals of the program that runs the network: axes, timing, the variables and objects that the "
+    "program records itself, and objects of --object. Without such a program it runs the network itself, with every motor "
+    "without torque.\vNo cycle is left out. If this program is too slow to take them, the samples that are lost are "
+    "counted and said, and the place is marked.", children, NULL, NULL};
+
+/* ---- recording --------------------------------------------------------------------------------------------------- */
+
+/** NULL, with a complaint: one of them is no object. */
+static json_t *objects_as_json(const trace_options_t *options, const json_t *axes)
+{
+    json_t *all = json_array();
+    for (int i = 0; i < options->object_count; i++) {
+        char name[64], trail;
+        unsigned index = 0, subindex = 0;
+        json_int_t axis = 0;
+        const char *colon = strchr(options->objects[i], ':');
+        const size_t bytes = colon ? (size_t)(colon - options->objects[i]) : 0;
+        snprintf(name, sizeof name, "%.*s", (int)(bytes < sizeof name ? bytes : 0), options->objects[i]);
+        for (size_t n = 0; n < json_array_size(axes); n++) {
+            char number[24];
+            const char *known = json_string_value(json_object_get(json_array_get(axes, n), "name"));
+            snprintf(number, sizeof number, "%zu", n + 1);
+            if ((known && strcmp(name, known) == 0) || strcmp(name, number) == 0)
+                axis = (json_int_t)n + 1;
+        }
+        const int parts = colon ? sscanf(colon + 1, "%x:%x%c", &index, &subindex, &trail) : 0;
+        if (axis == 0 || (parts != 1 && parts != 2) || index == 0 || index > 0xFFFF || subindex > 0xFF) {
+            complain("the object is \"%s\"; expected AXIS:INDEX or AXIS:INDEX:SUBINDEX, like 1:0x603F, with a name or "
+                     "number of an axis", options->objects[i]);
+            json_decref(all);
+            return NULL;
+        }
+        json_array_append_new(all, json_pack("{s:I, s:i, s:i}", "axis", axis, "index", (int)index, "subindex",
+                                             (int)subindex));
+    }
+    return all;
+}
+
+/** Returns the exit status. */
+static int begin(recording_t *recording, const trace_options_t *options, cm1e_control_t *control)
+{
+    cm1e_diag_t diag = {0};
+    json_t *axes = ask_program(control, json_pack("{s:s}", "request", "axes"), "axes", &diag);
+    json_t *objects = axes ? objects_as_json(options, axes) : NULL;
+    const bool answered = axes != NULL;
+    json_decref(axes);
+    if (!answered)
+        return fail(&diag);
+    if (!objects)
+        return EXIT_WRONG_USE;
+    recording->seconds = options->seconds;
+    recording->before_s = options->before_s;
+    return recording_begin(recording, control, options->every, objects, &options->trigger, &diag) ? EXIT_OK
+                                                                                                  : fail(&diag);
+}
+
+static int write_files(const recording_t *recording, const trace_options_t *options)
+{
+    cm1e_diag_t diag = {0};
+    int status = EXIT_OK;
+    for (int i = 0; i < TRACE_FILES; i++)
+        if (options->files[i] && trace_files[i].write(&recording->trace, options->files[i], &diag) != CM1E_OK)
+            status = fail(&diag);
+    return status;
+}
+
+static int report(const recording_t *recording, const trace_options_t *options)
+{
+    const trace_trigger_t *trigger = &recording->trace.trigger;
+    const bool came = trigger->kind == CM1E_TRACE_NO_TRIGGER || trigger->seen;
+    const int status = write_files(recording, options);
+    if (options->common.json)
+        print_json(json_pack("{s:I, s:I, s:i, s:b}", "samples", (json_int_t)recording->trace.used, "lost",
+                             (json_int_t)recording->lost, "signals", (int)recording->trace.column_count, "triggered",
+                             trigger->seen));
+    else
+        printf("%u samples of %u signals recorded\n", recording->trace.used, recording->trace.column_count);
+    if (recording->lost > 0)
+        complain("%llu samples were lost, because this program took them too slowly; the gaps are marked. Record fewer "
+                 "with --every", (unsigned long long)recording->lost);
+    if (!came)
+        complain("the trigger did not come");
+    return came ? status : EXIT_FAILED;
+}
+
+static int list(const recording_t *recording, const trace_options_t *options)
+{
+    json_t *all = json_array();
+    for (uint32_t i = 0; i < recording->trace.column_count; i++) {
+        const trace_column_t *column = &recording->trace.columns[i];
+        json_array_append_new(all, json_pack("{s:o, s:o}", "name", text_as_json(column->name), "unit",
+                                             text_as_json(column->unit)));
+        if (!options->common.json)
+            printf("%s%s%s%s\n", column->name, column->unit[0] ? " [" : "", column->unit, column->unit[0] ? "]" : "");
+    }
+    if (options->common.json)
+        print_json(all);
+    else
+        json_decref(all);
+    return EXIT_OK;
+}
+
+static int trace_other(const trace_options_t *options, cm1e_control_t *control)
+{
+    static recording_t recording;
+    cm1e_diag_t diag = {0};
+    attached_catch_signals();
+    int status = begin(&recording, options, control);
+    if (status == EXIT_OK && options->list) {
+        status = list(&recording, options);
+    } else if (status == EXIT_OK) {
+        bool answers = true;
+        while (answers && !recording.full && !attached_signalled()) {
+            answers = recording_take(&recording, control, &diag);
+            usleep(PAUSE_US);
+        }
+        if (!answers)
+            complain("%s What came until then is written.", diag.text);
+        status = report(&recording, options);
+    }
+    recording_free(&recording);
+    cm1e_control_close(control);
+    return status;
+}
+
+/* ---- alone ------------------------------------------------------------------------------------------------------- */
+
+typedef struct alone {
+    const trace_options_t *options;
+    cm1e_scheduler_t *scheduler;
+    cm1e_control_t *control;
+    recording_t recording;
+    int status;
+    bool over;
+} alone_t;
+
+static void do_nothing(void *context) { (void)context; }
+static void prepare(cm1e_scheduler_t *scheduler, void *context) { ((alone_t *)context)->scheduler = scheduler; }
+
+/** After the last cycle. */
+static int end_alone(void *context)
+{
+    alone_t *alone = context;
+    if (alone->status == EXIT_OK && alone->recording.told)
+        alone->status = alone->options->list ? list(&alone->recording, alone->options)
+                                             : report(&alone->recording, alone->options);
+    recording_free(&alone->recording);
+    return alone->status;
+}
+
+static void end_run(alone_t *alone)
+{
+    alone->over = true;
+    cm1e_scheduler_stop(alone->scheduler);
+}
+
+static void watch(void *context, bool last)
+{
+    alone_t *alone = context;
+    cm1e_diag_t diag = {0};
+    if (last) {
+        cm1e_control_close(alone->control);
+        return;
+    }
+    if (alone->over)
+        return;
+    if (!alone->control) {
+        cm1e_scheduler_statistics_t statistics;
+        cm1e_scheduler_statistics(alone->scheduler, &statistics);
+        if (statistics.cycles == 0 ||
+            cm1e_control_connect(&alone->control, statistics.control_socket, NULL, &diag) != CM1E_OK)
+            return;
+        alone->status = begin(&alone->recording, alone->options, alone->control);
+        if (alone->status != EXIT_OK || alone->options->list)
+            end_run(alone);
+        return;
+    }
+    if (!recording_take(&alone->recording, alone->control, &diag) || alone->recording.full)
+        end_run(alone);
+}
+
+static int trace_alone(const trace_options_t *options, cm1e_bus_config_t *config)
+{
+    static alone_t alone;
+    const int loaded = load_axes(&options->common, config);
+    if (loaded != EXIT_OK)
+        return loaded;
+    alone.options = options;
+    cm1e_control_serve_own(true);
+    const axis_run_t run = {.what = "trace", .program = do_nothing, .prepare = prepare, .report = end_alone,
+                            .watch = watch, .context = &alone};
+    return run_on_axes(&run, &options->common, config);
+}
+
+int command_trace(int argc, char **argv)
+{
+    static cm1e_bus_config_t config;
+    static trace_options_t options;
+    cm1e_control_t *control;
+    cm1e_diag_t diag = {0};
+    options = (trace_options_t){.every = 1};
+    if (parse_options(&argp_trace, argc, argv, &options))
+        return EXIT_WRONG_USE;
+    for (int i = 0; i < TRACE_FILES; i++)
+        if (options.files[i] && cm1e_scheduler_check_path(options.files[i], &diag) != CM1E_OK)
+            return fail(&diag);
+    const int status = attach_if_running(&options.common, &config, &control);
+    if (status != EXIT_OK)
+        return status;
+    return control ? trace_other(&options, control) : trace_alone(&options, &config);
+}
