@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "control/message.h"
@@ -16,7 +17,7 @@
 #include "nic/interface_lock.h"
 
 /** Longer than the longest transfer (request.c). */
-enum { REPLY_TIMEOUT_S = 65 };
+enum { REPLY_TIMEOUT_S = 65, LISTEN_TRIES = 10 };
 
 struct cm1e_control {
     int fd;
@@ -137,6 +138,18 @@ cm1e_error_t cm1e_control_ask(cm1e_control_t *control, const char *request, char
 
 /* ---- connecting ------------------------------------------------------------------------------------------------- */
 
+/** The socket of a program that has just begun has its name for a moment before anybody listens. */
+static int connect_patiently(int fd, const struct sockaddr_un *address)
+{
+    const struct timespec moment = {.tv_nsec = 10000000};
+    for (int tries = 0;; tries++) {
+        const int failed = connect(fd, (const struct sockaddr *)address, sizeof *address);
+        if (failed == 0 || errno != ECONNREFUSED || tries == LISTEN_TRIES)
+            return failed;
+        nanosleep(&moment, NULL);
+    }
+}
+
 static cm1e_error_t connect_to(cm1e_control_t **control, const char *path, cm1e_diag_t *diag)
 {
     const struct timeval patience = {.tv_sec = REPLY_TIMEOUT_S};
@@ -150,7 +163,7 @@ static cm1e_error_t connect_to(cm1e_control_t **control, const char *path, cm1e_
     strcpy(address.sun_path, path);
     strcpy(made->path, path);
     made->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    if (made->fd >= 0 && connect(made->fd, (const struct sockaddr *)&address, sizeof address) == 0) {
+    if (made->fd >= 0 && connect_patiently(made->fd, &address) == 0) {
         setsockopt(made->fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
         setsockopt(made->fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
         *control = made;

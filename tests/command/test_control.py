@@ -19,7 +19,7 @@ import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import real_time  # noqa: E402
-from control_client import Client  # noqa: E402
+from control_client import Client, Program  # noqa: E402
 
 CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 BUS = """\
@@ -48,59 +48,23 @@ def wait_for(condition, what, seconds=10):
 
 # ---- the program and its clients ------------------------------------------------------------------------------------
 
-class Running:
-    """`cm1e move` of axis X on a simulated segment."""
+def started(control="observe"):
+    return Program(CM1E, os.path.join(FOLDER, f"{control}.yaml"), ENVIRONMENT)
 
-    def __init__(self, control="observe", seconds=30, speed=0.5):
-        bus_file = os.path.join(FOLDER, f"{control}.yaml")
-        self.process = subprocess.Popen([CM1E, "move", "-b", bus_file, "X", "--speed", str(speed), "--for",
-                                         str(seconds)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                        env=ENVIRONMENT)
-        self.pid = self.process.pid
-        self.path = os.path.join(RUNTIME, f"cm1e-{self.pid}-0.sock")
 
-    def listens(self):
-        """False: the socket is not there yet, or has its name and is not served yet."""
-        try:
-            Client(self).socket.close()
-        except (FileNotFoundError, ConnectionRefusedError):
-            return False
-        return True
-
-    def moves(self):
-        """Waits until the axis moves."""
-        wait_for(self.listens, "no control socket")
-        with Client(self) as client:
-            wait_for(lambda: client.ask("axes")["axes"][0]["velocity"] > 0.4, "the axis does not move")
-        return self
-
-    def end(self):
-        self.process.terminate()
-        out, err = self.process.communicate(timeout=30)
-        return out + err
-
-    def attached(self, *words):
-        return subprocess.run([CM1E, *words, "--attach", str(self.pid)], capture_output=True, text=True, timeout=60,
-                              env=ENVIRONMENT)
+def moving(control="observe"):
+    program = started(control)
+    wait_for(program.listens, "no control socket")
+    wait_for(program.moves, "the axis does not move")
+    return program
 
 
 @contextlib.contextmanager
 def running(control="observe"):
-    program = Running(control).moves()
+    program = moving(control)
     try:
         yield program
-        replies = []
-
-        def served():  # the places of clients that have just vanished may all be taken still
-            with Client(program) as client, contextlib.suppress(ConnectionError):
-                replies.append(client.ask("axes"))
-            return bool(replies and replies[-1] and replies[-1]["ok"])
-
-        wait_for(served, "nobody is served any more")
-        if served():  # it still moves, as if nothing had been
-            axis = replies[-1]["axes"][0]
-            expect(axis["state"] == "ContinuousMotion" and axis["error"] is None, "the program was disturbed", axis)
-            expect(abs(axis["velocity"] - 0.5) < 0.1, "the motor does not keep its speed", axis)
+        wait_for(program.moves, "it does not move any more as if nothing had been")
     finally:
         said = program.end()
         expect("ErrorStop" not in said, "the run ended with an error", said)
@@ -259,7 +223,7 @@ def check_bad_clients():
 
 def check_end_beside_clients():
     for _ in range(5):
-        program = Running().moves()
+        program = moving()
         with contextlib.ExitStack() as stack:
             clients = [stack.enter_context(Client(program)) for _ in range(8)]
             for client in clients:
@@ -285,7 +249,7 @@ def check_rights():
 
 
 def check_no_socket():
-    program = Running("none")
+    program = started("none")
     time.sleep(1)
     expect(not os.path.exists(program.path), "control: none has a socket")
     told = program.attached("scan")
@@ -301,7 +265,7 @@ def check_no_socket():
 
 
 def check_left_behind():
-    killed = Running().moves()
+    killed = moving()
     killed.process.kill()
     killed.process.communicate()
     expect(os.path.exists(killed.path), "a killed program leaves its socket")

@@ -17,7 +17,7 @@ import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import real_time  # noqa: E402
-from control_client import Client  # noqa: E402
+from control_client import Client, Program  # noqa: E402
 
 CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 # Axis Y has stops 5 revolutions away, Z a software limit.
@@ -50,25 +50,20 @@ def wait_for(condition, what, seconds=10):
 
 @contextlib.contextmanager
 def running(control="maintain"):
-    """`cm1e move` of axis X; it has no block for the others. Yields the process and the path of its socket."""
+    """A program that moves axis X only. Yields a client, and the program."""
     bus_file = os.path.join(FOLDER, f"{control}.yaml")
     with open(bus_file, "w", encoding="utf-8") as file:
         file.write(BUS.format(control=control))
-    process = subprocess.Popen([CM1E, "move", "-b", bus_file, "X", "--speed", "0.5", "--for", "120"],
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
-    path = os.path.join(RUNTIME, f"cm1e-{process.pid}-0.sock")
+    program = Program(CM1E, bus_file, ENVIRONMENT)
     try:
-        wait_for(lambda: os.path.exists(path), "no control socket")
-        with Client(path) as client:
-            wait_for(lambda: axis(client, X)["velocity"] > 0.45, "the axis does not move")
-            yield client, path
-            moving = axis(client, X)
-            expect(moving["state"] == "ContinuousMotion" and abs(moving["velocity"] - 0.5) < 0.1,
-                   "the program's own axis was disturbed", moving)
+        wait_for(program.listens, "no control socket")
+        wait_for(program.moves, "the axis does not move")
+        with Client(program) as client:
+            yield client, program
+        wait_for(program.moves, "the program's own axis was disturbed")
     finally:
-        process.terminate()
-        out, err = process.communicate(timeout=30)
-        expect("ErrorStop" not in out + err, "the run ended with an error", out + err)
+        said = program.end()
+        expect("ErrorStop" not in said, "the run ended with an error", said)
 
 
 def axis(client, number):
@@ -182,8 +177,8 @@ def check_software_limit():
 # ---- lost connections -----------------------------------------------------------------------------------------------
 
 def check_connection_lost():
-    with running() as (client, path):
-        with Client(path) as other:
+    with running() as (client, program):
+        with Client(program) as other:
             enable(other, Y)
             jog_for(other, Y, 0.5, 0.5)
             refused(client.ask("jog", axis=Y, velocity=0.1), "held by another", "an axis that another one holds")
@@ -192,7 +187,7 @@ def check_connection_lost():
         wait_for(lambda: stands(client, Y), "the connection is lost, and the motor goes on", 1)
         expect(time.monotonic() - lost < 0.2, "the lost connection is not seen at once", time.monotonic() - lost)
         wait_for(lambda: not axis(client, Y)["powered"] and not axis(client, Y)["held"], "power after that", 2)
-        with Client(path) as other:  # anybody may stop
+        with Client(program) as other:  # anybody may stop
             enable(other, Y)
             jog_for(other, Y, 0.5, 0.3)
             expect(client.ask("stop", axis=Y)["ok"], "stop of another one's motion")
@@ -217,9 +212,9 @@ with Client(sys.argv[1]) as client:
 def check_client_suspended():
     """A client that is killed, and one that is suspended with its connection open."""
     for how in (signal.SIGKILL, signal.SIGSTOP):
-        with running() as (client, path):
+        with running() as (client, program):
             support = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support")
-            child = subprocess.Popen([sys.executable, "-c", CHILD, path, support])
+            child = subprocess.Popen([sys.executable, "-c", CHILD, program.path, support])
             try:
                 wait_for(lambda: axis(client, Y)["position"] > 0.3, "the child does not jog")
                 os.kill(child.pid, how)
@@ -235,8 +230,8 @@ def check_client_suspended():
 # ---- home, errors, end ----------------------------------------------------------------------------------------------
 
 def check_home():
-    with running() as (client, path):
-        with Client(path) as other:
+    with running() as (client, program):
+        with Client(program) as other:
             enable(other, Y)
             expect(other.ask("home", axis=Y)["ok"], "home")
             wait_for(lambda: abs(axis(client, Y)["velocity"]) > 1, "Homing", 1)
@@ -277,7 +272,7 @@ def check_commands():
         return subprocess.run([CM1E, *words, "--attach", str(pid)], capture_output=True, text=True, timeout=60,
                               env=ENVIRONMENT, stdin=subprocess.DEVNULL)
 
-    with running() as (client, path):
+    with running() as (client, program):
         pid = client.ask("hello")["hello"]["pid"]
         told = attached(pid, "reset")
         expect(told.returncode == 0 and told.stdout == "".join(f"{name}: has no error (simulated)\n" for name in "XYZ"),
@@ -303,7 +298,7 @@ def check_commands():
         expect(not axis(client, Z)["powered"], "enabled after a signal", axis(client, Z))
         told = attached(pid, "jog", "Z")
         expect(told.returncode == 2 and "needs a terminal" in told.stderr, "jog without a terminal", told)
-    with running("observe") as (client, path):
+    with running("observe") as (client, program):
         pid = client.ask("hello")["hello"]["pid"]
         for words in (("enable", "Z", "--for", "1"), ("enable", "Z", "--for", "1", "--json")):
             told = attached(pid, *words)

@@ -17,7 +17,7 @@ import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import real_time  # noqa: E402
-from control_client import Client  # noqa: E402
+from control_client import Client, Program  # noqa: E402
 
 CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 BUS = """\
@@ -60,22 +60,17 @@ def axis(client, number):
 
 @contextlib.contextmanager
 def running(control):
-    """`cm1e move` of axis X; it has no block for the others."""
-    process = subprocess.Popen([CM1E, "move", "-b", bus_file(control), "X", "--speed", "0.5", "--for", "120"],
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
-    path = os.path.join(RUNTIME, f"cm1e-{process.pid}-0.sock")
+    """A program that moves axis X only. Yields a client, and the program's process."""
+    program = Program(CM1E, bus_file(control), ENVIRONMENT)
     try:
-        wait_for(lambda: os.path.exists(path), "no control socket")
-        with Client(path) as client:
-            wait_for(lambda: axis(client, X)["velocity"] > 0.45, "the axis does not move")
-            yield client, process.pid
-            moving = axis(client, X)
-            expect(moving["state"] == "ContinuousMotion" and abs(moving["velocity"] - 0.5) < 0.1,
-                   "the program's own axis was disturbed", moving)
+        wait_for(program.listens, "no control socket")
+        wait_for(program.moves, "the axis does not move")
+        with Client(program) as client:
+            yield client, program.pid
+        wait_for(program.moves, "the program's own axis was disturbed")
     finally:
-        process.terminate()
-        out, err = process.communicate(timeout=30)
-        expect("ErrorStop" not in out + err, "the run ended with an error", out + err)
+        said = program.end()
+        expect("ErrorStop" not in said, "the run ended with an error", said)
 
 
 class Terminal:

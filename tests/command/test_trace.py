@@ -18,7 +18,7 @@ import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import real_time  # noqa: E402
-from control_client import Client  # noqa: E402
+from control_client import Client, Program  # noqa: E402
 
 CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 BUS = """\
@@ -58,36 +58,27 @@ def rows(name):
 def running(*options):
     with open(path_of("bus.yaml"), "w", encoding="utf-8") as file:
         file.write(BUS)
-    process = subprocess.Popen([CM1E, "move", "-b", path_of("bus.yaml"), "X", "--speed", "0.5", "--for", "120",
-                                *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
-    path = os.path.join(RUNTIME, f"cm1e-{process.pid}-0.sock")
+    program = Program(CM1E, path_of("bus.yaml"), ENVIRONMENT, *options)
     try:
-        wait_for(lambda: os.path.exists(path), "no control socket")
-        with Client(path) as client:
-            wait_for(lambda: client.ask("axes")["axes"][0]["velocity"] > 0.45, "the axis does not move")
-            yield client, process
-            if process.poll() is None:
-                expect(client.ask("axes")["axes"][0]["state"] == "ContinuousMotion", "the program was disturbed")
+        wait_for(program.listens, "no control socket")
+        wait_for(program.moves, "the axis does not move")
+        with Client(program) as client:
+            yield client, program
+        if program.process.poll() is None:
+            wait_for(program.moves, "the program was disturbed")
     finally:
-        if process.poll() is None:
-            process.terminate()
-        out, err = process.communicate(timeout=30)
-        expect("ErrorStop" not in out + err, "the run ended with an error", out + err)
-
-
-def trace(process, *words):
-    return subprocess.run([CM1E, "trace", "--attach", str(process.pid), *words], capture_output=True, text=True,
-                          timeout=60, env=ENVIRONMENT)
+        said = program.end()
+        expect("ErrorStop" not in said, "the run ended with an error", said)
 
 
 # ---- the same as the program's own ----------------------------------------------------------------------------------
 
 def check_same_samples():
-    with running("--csv", path_of("own.csv")) as (_, process):
+    with running("--csv", path_of("own.csv")) as (_, program):
         files = [word for kind in ("csv", "svg", "html", "npy") for word in (f"--{kind}", path_of(f"a.{kind}"))]
-        told = trace(process, "--for", "2", "--object", "X:0x603F", "--object", "2:0x6064:0", *files)
-        every = trace(process, "--for", "1", "--every", "5", "--csv", path_of("every.csv"))
-        names = trace(process, "--list")
+        told = program.attached("trace", "--for", "2", "--object", "X:0x603F", "--object", "2:0x6064:0", *files)
+        every = program.attached("trace", "--for", "1", "--every", "5", "--csv", path_of("every.csv"))
+        names = program.attached("trace", "--list")
     expect(told.returncode == 0 and "lost" not in told.stderr and "20 signals" in told.stdout, "trace", told)
     own, attached = rows("own.csv"), rows("a.csv")
     width = len(own[0])
@@ -109,8 +100,8 @@ def check_same_samples():
 
 def check_gaps_are_counted():
     """A client that is suspended for longer than the program keeps samples for it."""
-    with running() as (_, process):
-        child = subprocess.Popen([CM1E, "trace", "--attach", str(process.pid), "--for", "8", "--csv",
+    with running() as (_, program):
+        child = subprocess.Popen([CM1E, "trace", "--attach", str(program.pid), "--for", "8", "--csv",
                                   path_of("gap.csv"), "--html", path_of("gap.html"), "--json"], stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
         time.sleep(1)
@@ -128,8 +119,8 @@ def check_gaps_are_counted():
 
 
 def check_many_and_gone():
-    with running() as (client, process):
-        children = [subprocess.Popen([CM1E, "trace", "--attach", str(process.pid), "--for", "2", "--csv",
+    with running() as (client, program):
+        children = [subprocess.Popen([CM1E, "trace", "--attach", str(program.pid), "--for", "2", "--csv",
                                       path_of(f"many{n}.csv")], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                      text=True, env=ENVIRONMENT) for n in range(4)]
         for child in children:
@@ -152,9 +143,9 @@ def check_many_and_gone():
 # ---- triggers and ends ----------------------------------------------------------------------------------------------
 
 def check_triggers():
-    with running() as (client, process):
+    with running() as (client, program):
         at = client.ask("axes")["axes"][0]["position"] + 0.75
-        told = trace(process, "--for", "1", "--before", "0.25", "--trigger", f"rising:X actual position:{at}", "--csv",
+        told = program.attached("trace", "--for", "1", "--before", "0.25", "--trigger", f"rising:X actual position:{at}", "--csv",
                      path_of("trigger.csv"))
         expect(told.returncode == 0, "trigger", told)
         positions = [float(row[rows("trigger.csv")[0].index("X actual position [u]")]) for row in
@@ -167,10 +158,10 @@ def check_triggers():
                            (["--trigger", "error-stop"], "needs --for"), (["--before", "1"], "--before"),
                            (["--object", "X"], "AXIS:INDEX"), (["--object", "X:0x1018"], "not in the process data"),
                            (["--for", "80000"], "--every"), (["--every", "0"], "whole number 1 ... 10000")):
-            told = trace(process, *words, "--csv", path_of("no.csv"))
+            told = program.attached("trace", *words, "--csv", path_of("no.csv"))
             expect(told.returncode in (1, 2) and why in told.stderr, f"trace {words}", told)
         expect(not os.path.exists(path_of("no.csv")), "a file of nothing")
-        child = subprocess.Popen([CM1E, "trace", "--attach", str(process.pid), "--for", "60", "--trigger", "error-stop",
+        child = subprocess.Popen([CM1E, "trace", "--attach", str(program.pid), "--for", "60", "--trigger", "error-stop",
                                   "--csv", path_of("never.csv")], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                  text=True, env=ENVIRONMENT)
         time.sleep(1)
@@ -181,13 +172,13 @@ def check_triggers():
 
 
 def check_end_of_program():
-    with running() as (_, process):
-        child = subprocess.Popen([CM1E, "trace", "--attach", str(process.pid), "--csv", path_of("end.csv")],
+    with running() as (_, program):
+        child = subprocess.Popen([CM1E, "trace", "--attach", str(program.pid), "--csv", path_of("end.csv")],
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
         time.sleep(1)
-        process.terminate()
+        program.process.terminate()
         out, err = child.communicate(timeout=20)
-        process.wait(timeout=20)
+        program.process.wait(timeout=20)
         states = [row[1] for row in rows("end.csv")[1:]]
         expect(child.returncode == 0 and "has ended" in err and "What came until then is written" in err, "end",
                out + err)

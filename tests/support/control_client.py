@@ -1,7 +1,9 @@
-"""A client of the control socket of a running program (docs/CONTROL.md)."""
+"""The control socket of a running program (docs/CONTROL.md): a client, and a program to be looked at."""
 import json
+import os
 import socket
 import struct
+import subprocess
 import time
 
 
@@ -48,3 +50,52 @@ class Client:
     def ask(self, request, **arguments):
         self.send(json.dumps({"request": request, **arguments}))
         return self.receive()
+
+
+class Program:
+    """`cm1e move` of axis X on a simulated segment, and where its socket is. It has no block for other axes."""
+
+    SPEED = 0.5
+
+    def __init__(self, cm1e, bus_file, environment, *options, seconds=120):
+        self.cm1e, self.environment = cm1e, environment
+        self.process = subprocess.Popen([cm1e, "move", "-b", bus_file, "X", "--speed", str(self.SPEED), "--for",
+                                         str(seconds), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                        text=True, env=environment)
+        self.pid = self.process.pid
+        self.path = os.path.join(environment["CM1E_RUNTIME_DIR"], f"cm1e-{self.pid}-0.sock")
+
+    def listens(self):
+        """False: the socket is not there yet, or has its name and is not served yet."""
+        try:
+            Client(self).socket.close()
+        except (FileNotFoundError, ConnectionRefusedError):
+            return False
+        return True
+
+    def axis(self):
+        """Axis X as the program tells of it; empty: all places of clients are taken, those of clients that have just
+        vanished too."""
+        try:
+            with Client(self) as client:
+                reply = client.ask("axes")
+        except ConnectionError:
+            return {}
+        return reply["axes"][0] if reply and reply["ok"] else {}
+
+    def moves(self):
+        """It moves as it was told to. On a machine that pauses it goes on slower for a while (docs/SAFETY.md)."""
+        axis = self.axis()
+        return bool(axis) and axis["state"] == "ContinuousMotion" and axis["error"] is None and \
+            abs(axis["velocity"] - self.SPEED) < 0.1
+
+    def attached(self, *words):
+        return subprocess.run([self.cm1e, *words, "--attach", str(self.pid)], capture_output=True, text=True,
+                              timeout=60, env=self.environment)
+
+    def end(self):
+        """What it printed."""
+        if self.process.poll() is None:
+            self.process.terminate()
+        out, err = self.process.communicate(timeout=30)
+        return out + err

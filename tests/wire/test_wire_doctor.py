@@ -106,7 +106,8 @@ def main():
     cm1e = sys.argv[1]
     with tempfile.TemporaryDirectory() as folder:
         slaves, bus_file = os.path.join(folder, "sim.yaml"), os.path.join(folder, "bus.yaml")
-        for path, text in ((slaves, SLAVES), (bus_file, f"bus: {{interface: {wire.MASTER_INTERFACE}}}\n" + SLAVES)):
+        bus = f"bus: {{interface: {wire.MASTER_INTERFACE}, lost_cycles_limit: 50}}\n"
+        for path, text in ((slaves, SLAVES), (bus_file, bus + SLAVES)):
             with open(path, "w", encoding="utf-8") as file:
                 file.write(text)
         with wire.segment(cm1e, slaves) as segment:
