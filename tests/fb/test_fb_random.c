@@ -15,7 +15,7 @@
  *
  * Seeds: seeds.h.
  */
-#include "block_judge.h"
+#include "random_program.h"
 #include "fake_bus.h"
 
 enum { CYCLES = 20000, RUNS = 256, BATCHES = 8 };
@@ -23,7 +23,6 @@ enum { CYCLES = 20000, RUNS = 256, BATCHES = 8 };
 /** The axes and their drives without frames. */
 static struct bench {
     cm1e_bus_t bus, others[JUDGED_MOST - 1];
-    MC_Power_t powers[JUDGED_MOST];
     int order[JUDGED_MOST];         /**< of the outputs */
     cm1e_error_t received, health;
     int homing_cycles;              /**< what the drive's own homing takes */
@@ -31,11 +30,6 @@ static struct bench {
     uint32_t encoder;               /**< what all encoders count, and how fast they do */
     int encoder_speed;
 } bench;
-
-static void cycle_begin(void);
-static void cycle_end(void);
-
-#include "random_program.h"
 
 static cm1e_bus_t *motor_of(int n) { return n == 0 ? &bench.bus : &bench.others[n - 1]; }
 
@@ -90,7 +84,7 @@ static void turn_encoders(void)
             (void)cm1e_axis_write_encoder(judged_axes[n].reference, bench.encoder, !one_in(3000));
 }
 
-static void cycle_begin(void)
+void cycle_begin(void)
 {
     turn_shafts();
     turn_encoders();
@@ -102,12 +96,12 @@ static void cycle_begin(void)
         judge_cycle();
     }
     for (int n = 0; n < axis_count; n++)
-        MC_Power(&bench.powers[n]);
+        MC_Power(&powers[n]);
     for (int n = 0; n < axis_count; n++)
         judged_axes[n].state = judged_axes[n].axis->state; /* what MC_Power may do is judged where it is tested */
 }
 
-static void cycle_end(void)
+void cycle_end(void)
 {
     for (int n = 0; n < axis_count; n++)
         cm1e_axis_outputs(judged_axes[bench.order[n]].axis);
@@ -153,7 +147,7 @@ static void make_axis(int n)
     judged.number = 0;
     judged.cycle_ns = bench.bus.config.cycle_time_ns;
     watched.ours = false;
-    bench.powers[n] = (MC_Power_t){.Axis = &judged.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    powers[n] = (MC_Power_t){.Axis = &judged.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
 }
 
 static void prepare(unsigned seed, int axes)
@@ -203,7 +197,7 @@ static void act_on_motor(cm1e_bus_t *bus)
         bus->position += pick(20001) - 10000; /* somebody turns the shaft */
 }
 
-static void act_on_device(void)
+void act_on_device(void)
 {
     bench.received = one_in(200) ? CM1E_ERROR_BUS_LOST : CM1E_OK;
     if (bench.health ? one_in(30) : one_in(15000))
@@ -216,20 +210,20 @@ static void act_on_device(void)
 
 /* ---- what must hold after every cycle ---------------------------------------------------------------------------- */
 
-static void time_passes(int64_t time_ns)
+void time_passes(int64_t time_ns)
 {
     for (int64_t left = time_ns; left > 0; left -= judged.cycle_ns)
         turn_shafts();
 }
 
-static bool has_torque(void)
+bool has_torque(void)
 {
     return type_of(judged_at) == CM1E_AXIS_MOTOR && motor_of(judged_at)->state == OPERATION_ENABLED;
 }
-static bool is_deaf(void) { return bench.health != CM1E_OK; }
+bool is_deaf(void) { return bench.health != CM1E_OK; }
 
 /** Under torque in its own mode the drive has what the axis wants; without, it has its own position. */
-static void judge_motor(void)
+void judge_motor(void)
 {
     const cm1e_bus_t *bus = motor_of(judged_at);
     const cm1e_image_slot_t slot =

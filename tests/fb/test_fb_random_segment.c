@@ -7,7 +7,7 @@
  *
  * Seeds: seeds.h.
  */
-#include "block_judge.h"
+#include "random_program.h"
 #include "bus/bus_image.h"
 #include "device/unit.h"
 #include "nic/nic.h"
@@ -28,7 +28,6 @@ typedef struct other {
 
 static struct bench {
     cm1e_bus_t *bus;
-    MC_Power_t powers[1];
     cm1e_sim_segment_t *segment;
     cm1e_axis_info_t info;
     int64_t start_ns, disturbed_until;
@@ -47,7 +46,7 @@ static struct bench {
 
 static void play_others(void);
 
-static void cycle_begin(void)
+void cycle_begin(void)
 {
     const int64_t planned_ns = bench.start_ns + judged.number * judged.cycle_ns;
     cm1e_clock_sleep_until(cm1e_bus_clock(bench.bus), planned_ns);
@@ -56,12 +55,12 @@ static void cycle_begin(void)
     for (int i = 0; i < bench.other_count; i++)
         cm1e_axis_inputs(bench.others[i].axis, received, cm1e_bus_health(bench.bus), planned_ns);
     judge_cycle();
-    MC_Power(&bench.powers[0]);
+    MC_Power(&powers[0]);
     judged.state = judged.axis->state;
     play_others();
 }
 
-static void cycle_end(void)
+void cycle_end(void)
 {
     cm1e_axis_outputs(judged.axis);
     for (int i = 0; i < bench.other_count; i++)
@@ -72,8 +71,6 @@ static void cycle_end(void)
     cm1e_axis_get(judged.axis, &bench.info);
     judged.number++;
 }
-
-#include "random_program.h"
 
 enum { CYCLES = 20000, RUNS = 32, BRIDGE_RUNS = 24, CIA402_RUNS = 24, BATCHES = 4 };
 
@@ -96,7 +93,7 @@ static cm1e_sim_probe_t probe(void)
 }
 
 /** A motor that runs overshoots the target that stands still all at once, and takes its time to settle. */
-static void time_passes(int64_t time_ns)
+void time_passes(int64_t time_ns)
 {
     cm1e_clock_t *clock = cm1e_bus_clock(bench.bus);
     if (bench.disturbed_until < judged.number + SETTLING)
@@ -109,12 +106,12 @@ static void time_passes(int64_t time_ns)
 }
 
 /** A CM1 holds by itself until it was enabled once (BR 6.1.1): that is nobody's torque. */
-static bool has_torque(void)
+bool has_torque(void)
 {
     const cm1e_sim_bridge_axis_t *m = motor();
     return probe().torque_on && (!m || m->state == OPERATION_ENABLED || m->state == SWITCHED_ON);
 }
-static bool is_deaf(void) { return cm1e_bus_health(bench.bus) != CM1E_OK; }
+bool is_deaf(void) { return cm1e_bus_health(bench.bus) != CM1E_OK; }
 
 /* ---- faults ------------------------------------------------------------------------------------------------------ */
 
@@ -189,7 +186,7 @@ static void heal(void)
         console("sensor %u %d auto", bench.position, input);
 }
 
-static void act_on_device(void)
+void act_on_device(void)
 {
     if (one_in(4000)) {
         make_fault();
@@ -240,7 +237,7 @@ static void judge_rules(const cm1e_sim_probe_t *shaft, const cm1e_axis_config_t 
 }
 
 /** A motor that nobody disturbs follows closely: what the servo lags by at its acceleration, and two cycles of way. */
-static void judge_motor(void)
+void judge_motor(void)
 {
     const bool moved_by_us = set_point_is_ours() && cm1e_axis_powered(judged.axis) && bench.info.mode == CM1E_MODE_CSP;
     const int64_t soon = judged.number + SETTLING;
@@ -399,7 +396,7 @@ static void prepare(unsigned seed, kind_t kind)
     judged.reset_asked = false;
     judged.number = 0;
     watched.ours = false;
-    bench.powers[0] = (MC_Power_t){.Axis = &judged.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    powers[0] = (MC_Power_t){.Axis = &judged.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
     bench.start_ns = cm1e_clock_now(cm1e_bus_clock(bench.bus));
     begin_blocks();
     begin_program();

@@ -137,7 +137,7 @@ static void test_other_documents_are_refused(void)
     for (size_t i = 0; i < COUNT(others); i++)
         bad(others[i].text, 1, others[i].words);
     TEST_ASSERT_EQUAL(CM1E_ERROR_FILE, read_text(""));
-    TEST_ASSERT_EQUAL(CM1E_ERROR_FILE, cm1e_esi_read(&read, "x", 1, NULL)); /* no diag */
+    TEST_ASSERT_EQUAL(CM1E_ERROR_FILE, cm1e_esi_read(&parsed, "x", 1, NULL)); /* no diag */
 }
 
 static void test_the_first_error_is_told(void)
@@ -153,7 +153,7 @@ static void test_unknown_elements_and_attributes_do_not_matter(void)
 {
     cm1e_file_t expected = {0}, written = {0};
     good(every);
-    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_esi_write(&expected, &read, &diag));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_esi_write(&expected, &parsed, &diag));
     char *text = malloc(16 * strlen(every)), *to = text;
     TEST_ASSERT_NOT_NULL(text);
     const char *const vendor = strstr(every, "<Vendor>"), *from = every;
@@ -174,7 +174,7 @@ static void test_unknown_elements_and_attributes_do_not_matter(void)
     }
     *to = '\0';
     good(text);
-    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_esi_write(&written, &read, &diag));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_esi_write(&written, &parsed, &diag));
     TEST_ASSERT_EQUAL_STRING(expected.bytes, written.bytes);
     free(text);
     cm1e_file_free(&expected);
@@ -218,9 +218,9 @@ static void damage_and_read(unsigned seed)
         TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE("line ", diag.text, 5, name);
         return;
     }
-    if (cm1e_esi_write(&first, &read, &diag) == CM1E_OK) {
+    if (cm1e_esi_write(&first, &parsed, &diag) == CM1E_OK) {
         TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, read_bytes(first.bytes, first.size), name);
-        TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_esi_write(&second, &read, &diag), name);
+        TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_esi_write(&second, &parsed, &diag), name);
         TEST_ASSERT_EQUAL_STRING_MESSAGE(first.bytes, second.bytes, name);
     }
     cm1e_file_free(&first);
@@ -255,9 +255,9 @@ static void test_what_fuzzing_found(void)
     for (size_t i = 0; i < COUNT(found); i++) {
         cm1e_file_t first = {0}, second = {0};
         good(with(found[i].was, found[i].is));
-        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_esi_write(&first, &read, &diag));
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_esi_write(&first, &parsed, &diag));
         good((const char *)first.bytes);
-        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_esi_write(&second, &read, &diag));
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_esi_write(&second, &parsed, &diag));
         TEST_ASSERT_EQUAL_STRING(first.bytes, second.bytes);
         cm1e_file_free(&first);
         cm1e_file_free(&second);
@@ -296,7 +296,7 @@ static void test_objects_of_many_elements_take_bounded_memory(void)
         big_end = stpcpy(big_end, "<Object><Index>1</Index><Type>T</Type></Object>");
     TEST_ASSERT_EQUAL(CM1E_ERROR_NO_MEMORY, read_big("</Objects></Dictionary></Profile></Device></Devices>"
                                                      "</Descriptions></EtherCATInfo>"));
-    TEST_ASSERT_LESS_OR_EQUAL(CM1E_ARENA_LIMIT, read.arena.used);
+    TEST_ASSERT_LESS_OR_EQUAL(CM1E_ARENA_LIMIT, parsed.arena.used);
 }
 
 static void test_names_are_found_among_many(void)
@@ -311,7 +311,7 @@ static void test_names_are_found_among_many(void)
         big_end += sprintf(big_end, "<Object><Index>1</Index><Type>%d</Type></Object>", i);
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, read_big("</Objects></Dictionary></Profile></Device></Devices></Descriptions>"
                                                 "</EtherCATInfo>"), diag.text);
-    TEST_ASSERT_EQUAL(TYPES, read.devices.at[0].objects.count);
+    TEST_ASSERT_EQUAL(TYPES, parsed.devices.at[0].objects.count);
 }
 
 static void test_slots_that_take_every_module_take_bounded_memory(void)

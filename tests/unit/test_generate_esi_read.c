@@ -6,8 +6,8 @@
 
 static const cm1e_description_t *device(size_t n)
 {
-    TEST_ASSERT_LESS_THAN(read.devices.count, n);
-    return &read.devices.at[n];
+    TEST_ASSERT_LESS_THAN(parsed.devices.count, n);
+    return &parsed.devices.at[n];
 }
 
 static const cm1e_described_object_t *object(uint16_t index)
@@ -52,12 +52,12 @@ enum { RO = CM1E_ACCESS_READ, WO = CM1E_ACCESS_WRITE, RW = CM1E_ACCESS_READ | CM
 static void test_identity(void)
 {
     good(every);
-    TEST_ASSERT_EQUAL_STRING("every element that is read", read.comment);
-    TEST_ASSERT_EQUAL_HEX32(0x4441, read.vendor_id);
-    TEST_ASSERT_EQUAL_STRING("Works", read.vendor_name);
-    TEST_ASSERT_EQUAL(line_of("<Vendor>"), read.vendor_place);
-    TEST_ASSERT_EQUAL(2, read.devices.count);
-    TEST_ASSERT_EQUAL(2, read.modules.count);
+    TEST_ASSERT_EQUAL_STRING("every element that is read", parsed.comment);
+    TEST_ASSERT_EQUAL_HEX32(0x4441, parsed.vendor_id);
+    TEST_ASSERT_EQUAL_STRING("Works", parsed.vendor_name);
+    TEST_ASSERT_EQUAL(line_of("<Vendor>"), parsed.vendor_place);
+    TEST_ASSERT_EQUAL(2, parsed.devices.count);
+    TEST_ASSERT_EQUAL(2, parsed.modules.count);
     const cm1e_description_t *d = device(0);
     TEST_ASSERT_EQUAL(line_of("<Device Physics"), d->place);
     TEST_ASSERT_EQUAL(line_of("<Type ProductCode"), d->identity_place);
@@ -459,7 +459,7 @@ static void test_slots_and_modules(void)
     TEST_ASSERT_EQUAL_HEX32(0x219800, axis->choices.at[1].ident);
     TEST_ASSERT_EQUAL(1, any->choices.count); /* by its class */
     TEST_ASSERT_EQUAL_HEX32(0x119800, any->choices.at[0].ident);
-    const cm1e_module_t *module = &read.modules.at[0];
+    const cm1e_module_t *module = &parsed.modules.at[0];
     TEST_ASSERT_EQUAL(line_of("<Type ModuleIdent=\"#x119800\"") - 1, module->place);
     TEST_ASSERT_EQUAL_HEX32(0x119800, module->ident);
     TEST_ASSERT_EQUAL_STRING("M1", module->type);
@@ -472,9 +472,9 @@ static void test_slots_and_modules(void)
     TEST_ASSERT_EQUAL(1, module->init_commands.count);
     TEST_ASSERT_TRUE(module->init_commands.at[0].depends_on_slot);
     expect_bytes("FF", module->objects.at[0].entries.at[0].minimum);
-    TEST_ASSERT_EQUAL(402, read.modules.at[1].profile_no);
-    TEST_ASSERT_EQUAL(-1, read.modules.at[1].profile_info);
-    TEST_ASSERT_EQUAL_STRING("x", read.modules.at[1].name); /* no English one */
+    TEST_ASSERT_EQUAL(402, parsed.modules.at[1].profile_no);
+    TEST_ASSERT_EQUAL(-1, parsed.modules.at[1].profile_info);
+    TEST_ASSERT_EQUAL_STRING("x", parsed.modules.at[1].name); /* no English one */
 }
 
 /* ---- what is not stated ----------------------------------------------------------------------------------------- */
@@ -486,8 +486,8 @@ static void test_what_is_not_there_is_not_stated(void)
          "</Descriptions></EtherCATInfo>");
     cm1e_description_init(&expected);
     const cm1e_description_t *d = device(0);
-    TEST_ASSERT_NULL(read.vendor_name);
-    TEST_ASSERT_NULL(read.comment);
+    TEST_ASSERT_NULL(parsed.vendor_name);
+    TEST_ASSERT_NULL(parsed.comment);
     TEST_ASSERT_FALSE(d->product_given || d->revision_given || d->identification_reg134_given || d->mailbox.present);
     TEST_ASSERT_EQUAL_STRING("", d->type);
     TEST_ASSERT_EQUAL_STRING("", d->name);
@@ -503,9 +503,9 @@ static void test_file_of_modules_alone(void)
 {
     good("<EtherCATModule><Vendor><Id>1</Id></Vendor><Modules><Module><Type ModuleIdent='7'>m</Type></Module></Modules>"
          "</EtherCATModule>");
-    TEST_ASSERT_EQUAL(1, read.modules.count);
-    TEST_ASSERT_EQUAL(7, read.modules.at[0].ident);
-    TEST_ASSERT_EQUAL(-1, read.modules.at[0].profile_no);
+    TEST_ASSERT_EQUAL(1, parsed.modules.count);
+    TEST_ASSERT_EQUAL(7, parsed.modules.at[0].ident);
+    TEST_ASSERT_EQUAL(-1, parsed.modules.at[0].profile_no);
 }
 
 /* ---- a real file ------------------------------------------------------------------------------------------------ */
@@ -522,9 +522,9 @@ static void test_reference_file_of_two_axes(void)
     const cm1e_error_t error = read_text(text);
     free(text);
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, error, diag.text);
-    TEST_ASSERT_EQUAL_HEX32(0x0048504D, read.vendor_id);
-    TEST_ASSERT_EQUAL(1, read.devices.count);
-    TEST_ASSERT_EQUAL(3, read.modules.count);
+    TEST_ASSERT_EQUAL_HEX32(0x0048504D, parsed.vendor_id);
+    TEST_ASSERT_EQUAL(1, parsed.devices.count);
+    TEST_ASSERT_EQUAL(3, parsed.modules.count);
     const cm1e_description_t *d = device(0);
     TEST_ASSERT_EQUAL(17, d->place);
     TEST_ASSERT_EQUAL(18, d->identity_place);
@@ -546,7 +546,7 @@ static void test_reference_file_of_two_axes(void)
     TEST_ASSERT_EQUAL(2, d->slots.count);
     TEST_ASSERT_TRUE(d->slots.at[0].choices.at[2].is_default);
     expect_bytes("800C8166000000001234", d->eeprom.config_data);
-    const cm1e_module_t *csp = &read.modules.at[1];
+    const cm1e_module_t *csp = &parsed.modules.at[1];
     TEST_ASSERT_EQUAL(1465, csp->place);
     TEST_ASSERT_EQUAL(1468, csp->pdos.at[0].place);
     TEST_ASSERT_EQUAL(64, cm1e_pdo_bits(&csp->pdos.at[0]));
