@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""scripts/mutate: which defects it can plant in a source, and that it leaves comments, texts and the lines alone.
+"""scripts/mutate: which defects it can plant in a source, and that it leaves comments, texts and the lines alone;
+which tests it counts as near a source.
 
     test_mutate.py <source folder>
 """
 import importlib.machinery
 import importlib.util
+import re
 import sys
 from pathlib import Path
 
@@ -38,6 +40,10 @@ def main():
     assert found == list(mutate.defects("a.c", SOURCE))
     for _, begin, end, new in found:
         assert "\n" not in SOURCE[begin:end] + new
+    regex = mutate.near(["src/drive/drive_cml_exchange.c", "src/drive/drive.c"])
+    for name, is_near in (("test_drive_enable", True), ("test_cml_exchange", True), ("test_cml_exchanges", False),
+                          ("test_fb_drive_enable", False), ("test_axis_home", False)):
+        assert bool(re.search(regex, name)) == is_near, (name, regex)
     print(f"{len(found)} defects in {SOURCE.count(chr(10))} lines")
 
 
