@@ -41,8 +41,9 @@ def main():
     for _, begin, end, new in found:
         assert "\n" not in SOURCE[begin:end] + new
     regex = mutate.near(["src/drive/drive_cml_exchange.c", "src/drive/drive.c"])
-    for name, is_near in (("test_drive_enable", True), ("test_cml_exchange", True), ("test_cml_exchanges", False),
-                          ("test_fb_drive_enable", False), ("test_axis_home", False)):
+    for name, is_near in (("test_drive_enable", True), ("test_axis_drive_profile", True), ("test_cml_exchange", True),
+                          ("test_bridge_cml_exchange", True), ("test_cml_exchanges", False),
+                          ("test_drives", False), ("test_axis_home", False)):
         assert bool(re.search(regex, name)) == is_near, (name, regex)
     print(f"{len(found)} defects in {SOURCE.count(chr(10))} lines")
 
