@@ -1,6 +1,5 @@
 /* CML without a cycle: the same steps, with transfers that are waited for, and the flows of appendix 3.2 and 3.3 around
  * them. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "bus/bus_image.h"
@@ -30,7 +29,7 @@ static void sleep_for(cm1e_bus_t *bus, int64_t time_ns)
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
 }
 
-/* A transfer that has ended when this returns. */
+/* A transfer that has ended when this returns. What it tells of an abort is in the diag. */
 static cm1e_error_t transfer(void *context, cm1e_sdo_t *sdo)
 {
     const place_t *at = context;
@@ -38,7 +37,6 @@ static cm1e_error_t transfer(void *context, cm1e_sdo_t *sdo)
         sdo->error = cm1e_sdo_write(at->bus, sdo->position, sdo->index, 0, sdo->data, sdo->size, at->diag);
     else
         sdo->error = cm1e_sdo_read(at->bus, sdo->position, sdo->index, 0, sdo->data, &sdo->size, at->diag);
-    sdo->abort_code = sdo->error == CM1E_ERROR_SDO_ABORT && at->diag ? at->diag->foreign_code : 0;
     sdo->state = sdo->error != CM1E_OK ? CM1E_SDO_ERROR : CM1E_SDO_DONE;
     return CM1E_OK;
 }
@@ -205,7 +203,7 @@ static void copy_answer(cm1e_cml_exchange_t *exchange, const cm1e_drive_cml_t *c
     memcpy(exchange->stray, cml->stray, sizeof exchange->stray);
 }
 
-/* Whatever went wrong before: said nowhere, because there is a better error already. */
+/* Takes the torque from the motor. An error of that is not told: the caller has a better one, or goes on. */
 static void free_motor(const place_t *at, cm1e_drive_cml_t *cml)
 {
     char text[8];
@@ -232,17 +230,14 @@ cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, c
         error = enter(&at);
     if (error != CM1E_OK)
         return error;
-    cm1e_drive_cml_t *cml = malloc(sizeof *cml);
-    if (!cml)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "There is no memory for the answer.");
-    cm1e_drive_cml_init(cml, at.position, at.channel, transfer, &at);
-    error = run(&at, cml, exchange->text, exchange, &ticket);
-    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml, ticket);
-    error = describe(&at, cml, request, error);
-    copy_answer(exchange, cml, ticket);
+    cm1e_drive_cml_t cml;
+    cm1e_drive_cml_init(&cml, at.position, at.channel, transfer, &at);
+    error = run(&at, &cml, exchange->text, exchange, &ticket);
+    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(&cml, ticket);
+    error = describe(&at, &cml, request, error);
+    copy_answer(exchange, &cml, ticket);
     if (error != CM1E_OK && request->sent && cm1e_cml_kind(exchange->text) == CM1E_CML_MOTION)
-        free_motor(&at, cml);
-    free(cml);
+        free_motor(&at, &cml);
     return error;
 }
 
@@ -260,11 +255,8 @@ cm1e_error_t cm1e_cml_leave(cm1e_bus_t *bus, uint16_t position, uint8_t channel,
     if (error != CM1E_OK || mode != CM1E_BRIDGE_MODE_CML)
         return error;
     if (free_it) {
-        cm1e_drive_cml_t *cml = malloc(sizeof *cml);
-        if (!cml)
-            return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "There is no memory to free the motor.");
-        free_motor(&at, cml);
-        free(cml);
+        cm1e_drive_cml_t cml;
+        free_motor(&at, &cml);
     }
     return switch_mode(&at, OWN_MODE);
 }
