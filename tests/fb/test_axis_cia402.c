@@ -425,8 +425,16 @@ START_TEST(an_edge_outside_the_window_is_waited_out_and_one_without_a_latch_is_s
     move_to(-40, 200);
     move_to(0, 200);
     ck_assert_int_eq(cm1e_axis_probe_status(axis, id).state, CM1E_COMMAND_ACTIVE);
+    arm(2, false);
+    cycles(10);
+    ck_assert_uint_eq(probe_status(), 0x0101);
     ck_assert_int_eq(cm1e_axis_probe_abort(axis, trigger), CM1E_OK);
     ck_assert_int_eq(cm1e_axis_probe_status(axis, id).state, CM1E_COMMAND_ABORTED);
+    cycles(10);
+    ck_assert_uint_eq(probe_status(), 0x0100); /* the other probe goes on */
+    ck_assert_int_eq(cm1e_axis_probe_abort(axis, (cm1e_axis_trigger_t){.input = 2}), CM1E_OK);
+    cycles(10);
+    ck_assert_uint_eq(probe_status(), 0);
     /* 0x60BD is not mapped: the falling edge of input 2 is seen in 0x60FD. */
     move_to(35, 200);
     id = arm(2, true);
