@@ -11,9 +11,11 @@
 #include "cm1e/plot.h"
 #include "plot/plot.h"
 #include "recording.h"
+#include "trace_server.h"
 
 enum { KEY_FOR = 0x600, KEY_EVERY, KEY_OBJECT, KEY_TRIGGER, KEY_BEFORE, KEY_LIST, KEY_CSV, KEY_SVG, KEY_HTML, KEY_NPY,
-       LONGEST_S = 86400, EVERY_MOST = 10000, PAUSE_US = 20000 };
+       KEY_LIVE, LONGEST_S = 86400, EVERY_MOST = 10000, PAUSE_US = 20000,
+       LIVE_SAMPLES = 40000 };
 
 static const struct {
     const char *option;
@@ -31,7 +33,8 @@ typedef struct trace_options {
     int object_count;
     double seconds, before_s;
     uint32_t every;
-    bool list;
+    bool list, live;
+    uint16_t port;                  /* of the live page; 0: a free one */
     cm1e_trace_trigger_t trigger;
     char signal[CM1E_TRACE_NAME_BYTES];
 } trace_options_t;
@@ -75,8 +78,10 @@ static void check(const trace_options_t *options, struct argp_state *state)
         if (options->files[i] && !options->files[i][0])
             argp_error(state, "%s needs the name of a file", trace_files[i].option);
     }
-    if (files == 0 && !options->list)
-        argp_error(state, "say what to write: --csv, --svg, --html or --npy FILE, or --list");
+    if (files == 0 && !options->list && !options->live)
+        argp_error(state, "say what to write: --csv, --svg, --html or --npy FILE, or --list, or --live");
+    if (options->list && options->live)
+        argp_error(state, "--list ends at once, and --live shows what goes on: choose one");
     if (options->before_s > 0 && (options->trigger.kind == CM1E_TRACE_NO_TRIGGER ||
                                   options->before_s >= options->seconds))
         argp_error(state, "--before is for a --trigger, and shorter than --for");
@@ -106,6 +111,12 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         options->objects[options->object_count++] = arg;
         return 0;
     case KEY_TRIGGER: return parse_trigger(options, arg);
+    case KEY_LIVE:
+        if (arg && !parse_number(arg, "the port of the live page", 1, UINT16_MAX, &number))
+            return EINVAL;
+        options->live = true;
+        options->port = arg ? (uint16_t)number : 0;
+        return 0;
     case KEY_LIST: options->list = true; return 0;
     case KEY_CSV: case KEY_SVG: case KEY_HTML: case KEY_NPY: options->files[key - KEY_CSV] = arg; return 0;
     case ARGP_KEY_ARG: argp_error(state, "trace records all axes; \"%s\" is too many", arg); return EINVAL;
@@ -126,6 +137,8 @@ static const struct argp_option table[] = {
     {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
     {"html", KEY_HTML, "FILE", 0, "Write the trace as a page for a browser: zoom, cursors, events", 0},
     {"npy", KEY_NPY, "FILE", 0, "Write the trace for NumPy", 0},
+    {"live", KEY_LIVE, "PORT", OPTION_ARG_OPTIONAL,
+     "Show the trace while it is recorded, in a browser on this machine: print the address of a page", 0},
     {0}};
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_trace = {
@@ -168,8 +181,34 @@ static json_t *objects_as_json(const trace_options_t *options, const json_t *axe
     return all;
 }
 
+/** Nothing is written: only what a live page has not been shown yet needs to be kept. */
+static bool is_only_live(const trace_options_t *options)
+{
+    bool writes = options->seconds > 0;
+    for (int i = 0; i < TRACE_FILES; i++)
+        writes = writes || options->files[i];
+    return options->live && !writes;
+}
+
 /** Returns the exit status. */
-static int begin(recording_t *recording, const trace_options_t *options, cm1e_control_t *control)
+static int begin_live(trace_server_t **server, const recording_t *recording, const trace_options_t *options)
+{
+    cm1e_diag_t diag = {0};
+    if (!options->live)
+        return EXIT_OK;
+    if (trace_server_begin(server, recording, options->port, &diag) != CM1E_OK)
+        return fail(&diag);
+    if (options->common.json)
+        print_json(json_pack("{s:s}", "url", trace_server_url(*server)));
+    else
+        printf("%s\n", trace_server_url(*server));
+    fflush(stdout);
+    return EXIT_OK;
+}
+
+/** Returns the exit status. `*server` is set for a live page. */
+static int begin(recording_t *recording, trace_server_t **server, const trace_options_t *options,
+                 cm1e_control_t *control)
 {
     cm1e_diag_t diag = {0};
     json_t *axes = ask_program(control, json_pack("{s:s}", "request", "axes"), "axes", &diag);
@@ -182,8 +221,25 @@ static int begin(recording_t *recording, const trace_options_t *options, cm1e_co
         return EXIT_WRONG_USE;
     recording->seconds = options->seconds;
     recording->before_s = options->before_s;
-    return recording_begin(recording, control, options->every, objects, &options->trigger, &diag) ? EXIT_OK
-                                                                                                  : fail(&diag);
+    recording->kept = is_only_live(options) ? LIVE_SAMPLES : 0;
+    if (!recording_begin(recording, control, options->every, objects, &options->trigger, &diag))
+        return fail(&diag);
+    return begin_live(server, recording, options);
+}
+
+/** Takes what has come, and shows it. false: it is over, `diag` says why, or nothing if all is recorded. */
+static bool go_on(recording_t *recording, trace_server_t *server, cm1e_control_t *control, cm1e_diag_t *diag)
+{
+    const bool answers = recording_take(recording, control, diag);
+    if (server)
+        trace_server_show(server, recording);
+    return answers && !recording->full;
+}
+
+static void end_live(trace_server_t *server, const recording_t *recording, const char *why)
+{
+    trace_server_end(server, recording, recording->full ? "The recording is complete." : why[0] ? why
+                                                        : "The recording was ended.");
 }
 
 static int write_files(const recording_t *recording, const trace_options_t *options)
@@ -235,18 +291,17 @@ static int list(const recording_t *recording, const trace_options_t *options)
 static int trace_other(const trace_options_t *options, cm1e_control_t *control)
 {
     static recording_t recording;
+    trace_server_t *server = NULL;
     cm1e_diag_t diag = {0};
     attached_catch_signals();
-    int status = begin(&recording, options, control);
+    int status = begin(&recording, &server, options, control);
     if (status == EXIT_OK && options->list) {
         status = list(&recording, options);
     } else if (status == EXIT_OK) {
-        bool answers = true;
-        while (answers && !recording.full && !attached_signalled()) {
-            answers = recording_take(&recording, control, &diag);
+        while (!attached_signalled() && go_on(&recording, server, control, &diag))
             usleep(PAUSE_US);
-        }
-        if (!answers)
+        end_live(server, &recording, diag.text);
+        if (diag.text[0])
             complain("%s What came until then is written.", diag.text);
         status = report(&recording, options);
     }
@@ -262,6 +317,7 @@ typedef struct alone {
     cm1e_scheduler_t *scheduler;
     cm1e_control_t *control;
     recording_t recording;
+    trace_server_t *server;
     int status;
     bool over;
 } alone_t;
@@ -291,6 +347,7 @@ static void watch(void *context, bool last)
     alone_t *alone = context;
     cm1e_diag_t diag = {0};
     if (last) {
+        end_live(alone->server, &alone->recording, "");
         cm1e_control_close(alone->control);
         return;
     }
@@ -302,12 +359,12 @@ static void watch(void *context, bool last)
         if (statistics.cycles == 0 ||
             cm1e_control_connect(&alone->control, statistics.control_socket, NULL, &diag) != CM1E_OK)
             return;
-        alone->status = begin(&alone->recording, alone->options, alone->control);
+        alone->status = begin(&alone->recording, &alone->server, alone->options, alone->control);
         if (alone->status != EXIT_OK || alone->options->list)
             end_run(alone);
         return;
     }
-    if (!recording_take(&alone->recording, alone->control, &diag) || alone->recording.full)
+    if (!go_on(&alone->recording, alone->server, alone->control, &diag))
         end_run(alone);
 }
 

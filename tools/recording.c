@@ -60,7 +60,8 @@ static cm1e_error_t prepare(recording_t *recording, const cm1e_trace_trigger_t *
 {
     const double period_s = (double)json_integer_value(json_object_get(recording->told, "cycle_ns")) *
                             (double)json_integer_value(json_object_get(recording->told, "every")) * 1e-9;
-    const double wanted = recording->seconds > 0 && period_s > 0 ? recording->seconds / period_s + 1 : KEPT_SAMPLES;
+    const double kept = recording->kept ? recording->kept : KEPT_SAMPLES;
+    const double wanted = recording->seconds > 0 && period_s > 0 ? recording->seconds / period_s + 1 : kept;
     cm1e_trace_trigger_t own = *trigger;
     if (wanted > KEPT_SAMPLES)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%.6g s are %.0f samples; at most %d are kept: "
@@ -110,12 +111,14 @@ static void take_sample(recording_t *recording, const char *digits, double *valu
     }
     if (recording->first_ns < 0)
         recording->first_ns = time_ns;
+    const bool ends_by_trigger = recording->trace.trigger.kind != CM1E_TRACE_NO_TRIGGER;
+    if (!cm1e_trace_take(&recording->trace, values, time_ns)) {
+        recording->full = true;
+        return;
+    }
     recording->last_ns = time_ns;
     recording->samples++;
-    const bool ends_by_trigger = recording->trace.trigger.kind != CM1E_TRACE_NO_TRIGGER;
-    if (!cm1e_trace_take(&recording->trace, values, time_ns))
-        recording->full = true;
-    else if (!ends_by_trigger && recording->seconds > 0 &&
+    if (!ends_by_trigger && recording->seconds > 0 &&
              (double)(time_ns - recording->first_ns) * 1e-9 >= recording->seconds)
         recording->full = true;
 }

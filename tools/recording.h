@@ -18,6 +18,7 @@ typedef struct recording {
     uint64_t samples, lost;  /**< taken, and lost for want of room */
     double seconds;          /**< to record; 0: until it is ended */
     double before_s;         /**< of the trigger */
+    uint32_t kept;           /**< samples to keep without `seconds`; 0: many */
     bool full;               /**< the trigger has ended it, or the time is over */
 } recording_t;
 

@@ -1,4 +1,5 @@
-/* The trace as one page that needs no other file: its data, the chart library and page.js, which uses both. */
+/* The trace as one page that needs no other file: its data, the chart library and page.js, which uses both. A live page
+ * has no data: it asks for samples where it comes from. */
 #include <math.h>
 #include <string.h>
 
@@ -117,7 +118,7 @@ static void print_values(const trace_t *trace, uint32_t column, FILE *file)
     fputs("\"}", file);
 }
 
-static void print_columns(const trace_t *trace, FILE *file)
+static void print_columns(const trace_t *trace, bool with_values, FILE *file)
 {
     static const char *const kinds[] = {
         [TRACE_KIND_NUMBER] = "number", [TRACE_KIND_FLAG] = "flag",   [TRACE_KIND_STATE] = "state",
@@ -132,7 +133,10 @@ static void print_columns(const trace_t *trace, FILE *file)
         print_text(file, column->unit);
         fprintf(file, ", \"kind\": \"%s\", \"integer\": %s, \"program\": %s", kinds[column->kind],
                 is_real(column) ? "false" : "true", i + trace->variables >= trace->column_count ? "true" : "false");
-        print_values(trace, i, file);
+        if (with_values)
+            print_values(trace, i, file);
+        else
+            fputc('}', file);
     }
     fputs("],\n", file);
 }
@@ -176,20 +180,21 @@ static void print_errors(const trace_t *trace, FILE *file)
     fputs("},\n", file);
 }
 
-static void print_marks(const trace_t *trace, FILE *file)
+/** Those from `from_ns` to the last sample. */
+static void print_marks(const trace_t *trace, int64_t from_ns, FILE *file)
 {
     bool some = false;
     fputs("\"marks\": [", file);
     for (uint32_t i = 0; i < trace->mark_count && trace->used; i++) {
         const trace_mark_t *mark = cm1e_trace_mark_at(trace, i);
-        if (mark->time_ns < cm1e_trace_time_ns(trace, 0) || mark->time_ns > cm1e_trace_time_ns(trace, trace->used - 1))
+        if (mark->time_ns < from_ns || mark->time_ns > cm1e_trace_time_ns(trace, trace->used - 1))
             continue;
         fprintf(file, "%s{\"t\": %.9f, \"text\": ", some ? ", " : "", (double)mark->time_ns * 1e-9);
         print_text(file, mark->text);
         fputc('}', file);
         some = true;
     }
-    fputs("],\n", file);
+    fputs("], ", file);
 }
 
 static void print_times(const trace_t *trace, FILE *file)
@@ -202,28 +207,46 @@ static void print_times(const trace_t *trace, FILE *file)
     fputs("\"", file);
 }
 
-void cm1e_plot_print_html(const trace_t *trace, FILE *file)
+/* ---- the page -------------------------------------------------------------------------------------------------- */
+
+static void print_head(FILE *file)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>cm1e trace</title>\n<style>\n",
           file);
     fprintf(file, "%s\n%s</style>\n</head>\n<body>\n%s", cm1e_plot_dygraphs_css, cm1e_plot_page_css,
             cm1e_plot_page_html);
     fprintf(file, "<script>\n%s\n</script>\n<script>\nconst trace = {\n", cm1e_plot_dygraphs_js);
+}
+
+static void print_tail(FILE *file)
+{
+    fprintf(file, "};\n</script>\n<script>\n%s</script>\n</body>\n</html>\n", cm1e_plot_page_js);
+}
+
+void cm1e_plot_print_html(const trace_t *trace, FILE *file)
+{
+    print_head(file);
     print_axes(trace, file);
     print_errors(trace, file);
-    print_marks(trace, file);
-    print_columns(trace, file);
+    print_marks(trace, trace->used ? cm1e_trace_time_ns(trace, 0) : 0, file);
+    print_columns(trace, true, file);
     print_times(trace, file);
-    fprintf(file, "};\n</script>\n<script>\n%s</script>\n</body>\n</html>\n", cm1e_plot_page_js);
+    print_tail(file);
+}
+
+static cm1e_error_t check_library(const char *instead, cm1e_diag_t *diag)
+{
+    if (cm1e_plot_dygraphs_js[0])
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
+                         "This build of cm1e draws no pages: it was configured without the chart library dygraphs "
+                         "(Debian package libjs-dygraphs). Install it and build again, or %s.", instead);
 }
 
 cm1e_error_t cm1e_plot_write_html(const trace_t *trace, const char *path, cm1e_diag_t *diag)
 {
-    if (!cm1e_plot_dygraphs_js[0])
-        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
-                             "This build of cm1e draws no pages: it was configured without the chart library dygraphs "
-                             "(Debian package libjs-dygraphs). Install it and build again, or write an SVG image.");
-    return cm1e_trace_write_file(trace, path, cm1e_plot_print_html, diag);
+    const cm1e_error_t error = check_library("write an SVG image", diag);
+    return error == CM1E_OK ? cm1e_trace_write_file(trace, path, cm1e_plot_print_html, diag) : error;
 }
 
 cm1e_error_t cm1e_scheduler_write_html(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
@@ -231,4 +254,55 @@ cm1e_error_t cm1e_scheduler_write_html(const cm1e_scheduler_t *scheduler, const 
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_write_html()", "", diag);
     return cm1e_plot_write_html(cm1e_scheduler_trace(scheduler), path, diag);
+}
+
+/* ---- live ------------------------------------------------------------------------------------------------------ */
+
+/** The texts of all errors, because any of them may come. */
+static void print_all_errors(FILE *file)
+{
+#define ROW(name, value, text) CM1E_##name,
+    static const cm1e_error_t errors[] = {CM1E_ERRORS(ROW)};
+#undef ROW
+    bool some = false;
+    fputs("\"errors\": {", file);
+    for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) {
+        if (errors[i] == CM1E_OK)
+            continue;
+        fprintf(file, "%s\"%d\": ", some ? ", " : "", (int)errors[i]);
+        print_text(file, cm1e_strerror(errors[i]));
+        some = true;
+    }
+    fputs("},\n", file);
+}
+
+cm1e_error_t cm1e_plot_print_live_page(const trace_t *trace, const char *source, FILE *file, cm1e_diag_t *diag)
+{
+    const cm1e_error_t error = check_library("record into a file", diag);
+    if (error != CM1E_OK)
+        return error;
+    print_head(file);
+    print_axes(trace, file);
+    print_all_errors(file);
+    print_columns(trace, false, file);
+    fputs("\"marks\": [], \"live\": ", file);
+    print_text(file, source);
+    print_tail(file);
+    return CM1E_OK;
+}
+
+void cm1e_plot_print_live_samples(const trace_t *trace, uint32_t count, uint64_t number, int64_t marks_after_ns,
+                                  FILE *file)
+{
+    base64_t base64 = {.file = file};
+    fprintf(file, "{\"number\": %llu, ", (unsigned long long)number);
+    print_marks(trace, marks_after_ns + 1, file);
+    fputs("\"samples\": \"", file);
+    for (uint32_t n = trace->used - count; n < trace->used; n++) {
+        put_double(&base64, (double)cm1e_trace_time_ns(trace, n) * 1e-9);
+        for (uint32_t i = 0; i < trace->column_count; i++)
+            put_double(&base64, value_of(trace, n, i));
+    }
+    end_base64(&base64);
+    fputs("\"}", file);
 }

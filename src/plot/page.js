@@ -1,10 +1,12 @@
 /* The trace as a page: charts with one time scale, cursors, events. `trace` is the data, written before this text;
- * dygraphs draws the curves. */
+ * dygraphs draws the curves. With `trace.live` the samples come later, from that address, and the last ones are
+ * kept. */
 "use strict";
 (function () {
   const COLOURS = ["#1f5fbf", "#c2571a", "#2b8a3e", "#8e44ad", "#b8860b", "#0f8b8d", "#c0392b", "#5d6d7e"];
   const MARK = "#5a6570", ERROR = "#d5343b", OVERRUN = "#e67e22", LOST = "#b5179e", CURSOR_A = "#111", CURSOR_B = "#7a1fa2";
   const LABEL_WIDTH = 62, POINTS = 3000, EVENTS_SHOWN = 500;
+  const live = trace.live !== undefined, LIVE_VALUES = 4e6, LIVE_SAMPLES = 120000, LIVE_EVENTS = 5000;
 
   /* ---- data ----------------------------------------------------------------------------------------------------- */
 
@@ -14,17 +16,23 @@
 
   /* 4 bytes a value: its difference from `base`. */
   function valuesOf(column) {
+    if (live)
+      return new Float64Array(2 * kept);
     const buffer = bytesOf(column.data).buffer;
     return column.bytes === 8 ? new Float64Array(buffer) : Float64Array.from(new Float32Array(buffer), v => v + column.base);
   }
 
-  const times = new Float64Array(bytesOf(trace.times).buffer);
+  /* A live page keeps so many samples, in arrays of twice that length. */
+  const kept = Math.min(LIVE_SAMPLES, Math.floor(LIVE_VALUES / (trace.columns.length + 1)));
+  const times = live ? new Float64Array(2 * kept) : new Float64Array(bytesOf(trace.times).buffer);
   const columns = trace.columns.map((column, i) =>
     ({...column, index: i, values: valuesOf(column), colour: COLOURS[0], shown: true}));
   const ofAxes = trace.axes.reduce((sum, axis) => sum + axis.count, 0); /* the first so many columns */
-  const count = times.length;
-  const begin = count ? times[0] : 0, end = count ? Math.max(times[count - 1], begin + 1e-6) : 1;
+  let count = live ? 0 : times.length;
+  let begin = count ? times[0] : 0, end = count ? Math.max(times[count - 1], begin + 1e-6) : 1;
   let from = begin, to = end;         /* the time shown */
+  let coming = live;                  /* samples */
+  let running = live;                 /* the time shown ends with the newest sample */
   let pointer = null, cursorA = null, cursorB = null;
 
   /* The last sample that is not after t. */
@@ -63,9 +71,10 @@
 
   /* ---- events ----------------------------------------------------------------------------------------------------- */
 
-  function eventsOfCount(column, colour, one, many) {
+  /* Events of the samples from `first` on. */
+  function eventsOfCount(column, first, colour, one, many) {
     const found = [];
-    for (let i = 1; i < count; i++) {
+    for (let i = Math.max(1, first); i < count; i++) {
       const more = column.values[i] - column.values[i - 1];
       if (more > 0)
         found.push({t: times[i], text: more === 1 ? one : `${more} ${many}`, colour});
@@ -73,32 +82,34 @@
     return found;
   }
 
-  function eventsOfErrors(column) {
+  function eventsOfErrors(column, first) {
     const found = [];
-    for (let i = 0; i < count; i++)
+    for (let i = first; i < count; i++)
       if (column.values[i] !== 0 && (i === 0 || column.values[i - 1] !== column.values[i]))
         found.push({t: times[i], text: `${column.name}: ${textOf(column, i)}`, colour: ERROR});
     return found;
   }
 
-  function allEvents() {
-    let found = trace.marks.map(mark => ({...mark, colour: MARK, mark: true}));
+  function eventsFrom(first, marks) {
+    let found = marks.map(mark => ({...mark, colour: MARK, mark: true}));
     for (const column of columns) {
       if (column.kind === "error")
-        found = found.concat(eventsOfErrors(column));
+        found = found.concat(eventsOfErrors(column, first));
       else if (column.name === "overruns")
-        found = found.concat(eventsOfCount(column, OVERRUN, "overrun", "overruns"));
+        found = found.concat(eventsOfCount(column, first, OVERRUN, "overrun", "overruns"));
       else if (column.name === "lost frames")
-        found = found.concat(eventsOfCount(column, LOST, "lost frame", "lost frames"));
+        found = found.concat(eventsOfCount(column, first, LOST, "lost frame", "lost frames"));
     }
     return found.sort((a, b) => a.t - b.t);
   }
 
-  const events = allEvents();
+  let events = eventsFrom(0, trace.marks);
 
+  /* A live page has the newest one at the top. */
   function showEvents() {
     const list = document.getElementById("events");
-    for (const event of events.slice(0, EVENTS_SHOWN)) {
+    list.replaceChildren();
+    for (const event of live ? events.slice(-EVENTS_SHOWN).reverse() : events.slice(0, EVENTS_SHOWN)) {
       const item = document.createElement("li"), time = document.createElement("time");
       time.textContent = timeText(event.t);
       item.style.borderColor = event.colour;
@@ -106,7 +117,7 @@
       item.addEventListener("click", () => {
         const half = Math.min((to - from) / 2, (end - begin) / 20);
         cursorA = event.t;
-        show(event.t - half, event.t + half);
+        look(event.t - half, event.t + half);
       });
       list.append(item);
     }
@@ -179,7 +190,7 @@
 
   function interaction() {
     const model = {...Dygraph.defaultInteractionModel};
-    model.dblclick = () => show(begin, end);
+    model.dblclick = showAll;
     model.wheel = (event, graph) => {
       const at = graph.toDataXCoord(graph.eventToDomCoords(event)[0]);
       zoom(event.deltaY > 0 ? 1.25 : 0.8, at);
@@ -203,7 +214,7 @@
                  drawAxis: timeAxis},
              y: {axisLabelWidth: LABEL_WIDTH, pixelsPerLabel: 24}},
       interactionModel: interaction(), underlayCallback: drawUnder,
-      zoomCallback: (low, high) => show(low, high),
+      zoomCallback: (low, high) => look(low, high),
       drawCallback: (graph, first) => follow(graph, first),
       highlightCallback: (event, x) => { pointer = x; showValues(); },
       clickCallback: (event, x) => { setCursor(event.shiftKey, x); },
@@ -221,7 +232,7 @@
     following = true;
     requestAnimationFrame(() => {
       following = false;
-      show(...graph.xAxisRange());
+      look(...graph.xAxisRange());
     });
   }
 
@@ -304,9 +315,21 @@
     showValues();
   }
 
+  /* What a person wants to see, who does not want it to run away. */
+  function look(low, high) {
+    run(false);
+    show(low, high);
+  }
+
+  /* While samples come, the newest ones. */
+  function showAll() {
+    run(true);
+    show(begin, end);
+  }
+
   function zoom(factor, at) {
     const centre = at === undefined || at === null ? (from + to) / 2 : at;
-    show(centre - (centre - from) * factor, centre + (to - centre) * factor);
+    look(centre - (centre - from) * factor, centre + (to - centre) * factor);
   }
 
   function setCursor(second, t) {
@@ -321,8 +344,8 @@
     const move = (to - from) / 10;
     const keys = {
       "a": () => pointer !== null && setCursor(false, pointer), "b": () => pointer !== null && setCursor(true, pointer),
-      "+": () => zoom(0.8, pointer), "-": () => zoom(1.25, pointer), "0": () => show(begin, end),
-      "ArrowLeft": () => show(from - move, to - move), "ArrowRight": () => show(from + move, to + move),
+      "+": () => zoom(0.8, pointer), "-": () => zoom(1.25, pointer), "0": showAll, " ": () => run(!running),
+      "ArrowLeft": () => look(from - move, to - move), "ArrowRight": () => look(from + move, to + move),
       "Escape": () => { cursorA = cursorB = null; show(from, to); },
     };
     if (keys[event.key] && !event.ctrlKey && !event.metaKey && !event.altKey) {
@@ -376,7 +399,7 @@
   function makeTable() {
     const table = document.getElementById("values"), head = table.insertRow();
     cell(head, "signal", true).className = "name";
-    for (const title of ["pointer", "A", "B", "B - A", "min", "max"])
+    for (const title of [live ? "now" : "pointer", "A", "B", "B - A", "min", "max"])
       cell(head, title, true);
     for (const column of columns) {
       const axis = trace.axes.find(a => column.index >= a.first && column.index < a.first + a.count);
@@ -407,6 +430,8 @@
     if (count === 0)
       return;
     const at = [pointer, cursorA, cursorB].map(t => t === null ? -1 : indexAt(t));
+    if (running)
+      at[0] = count - 1;
     for (const {column, cells} of rows) {
       const isNumber = column.kind !== "state" && column.kind !== "error";
       at.forEach((i, k) => { cells[k].textContent = i < 0 ? "" : textOf(column, i); });
@@ -428,6 +453,108 @@
     const difference = cursorA !== null && cursorB !== null ? cursorB - cursorA : null;
     cell(row, difference === null ? "B - A: -" : `B - A: ${timeText(difference)}`
       + (difference !== 0 ? ` (${numberText(1 / Math.abs(difference))} Hz)` : ""));
+  }
+
+  /* ---- live ------------------------------------------------------------------------------------------------------ */
+
+  let expected = 0, missed = 0;     /* number of the next sample, and of those that did not come */
+  let pressed = false, planned = false, eventsChanged = false;
+
+  function run(on) {
+    running = on && coming;
+    if (!live)
+      return;
+    document.getElementById("run").textContent = running ? "Pause" : "Run";
+    document.querySelectorAll("#values th")[1].textContent = running ? "now" : "pointer";
+    if (running)
+      plan(0);
+  }
+
+  /* Room for so many more: the oldest samples go. */
+  function makeRoom(more) {
+    if (count + more <= times.length)
+      return;
+    const gone = Math.max(0, count - Math.max(0, kept - more));
+    times.copyWithin(0, gone, count);
+    columns.forEach(column => column.values.copyWithin(0, gone, count));
+    count -= gone;
+  }
+
+  /* Samples lie one after the other: time, then a value per column. Those that are here already are left out: after a
+   * break of the connection they may come again. */
+  function take(message) {
+    const data = new Float64Array(bytesOf(message.samples).buffer), width = columns.length + 1;
+    const number = data.length / width, known = Math.max(0, Math.min(number, expected - message.number));
+    const skipped = Math.max(known, number - kept), gap = message.number - expected, first = number - skipped;
+    makeRoom(first);
+    for (let k = skipped; k < number; k++, count++) {
+      times[count] = data[k * width];
+      columns.forEach((column, i) => { column.values[count] = data[k * width + 1 + i]; });
+    }
+    if (number === 0)
+      return;
+    const marks = known === 0 ? message.marks : [];
+    if (expected > 0 && gap > 0) {
+      missed += gap;
+      marks.push({t: data[0], text: `${gap} samples did not reach this page`});
+    }
+    expected = Math.max(expected, message.number + number);
+    begin = times[0];
+    end = Math.max(times[count - 1], begin + 1e-6);
+    addEvents(eventsFrom(count - first, marks));
+  }
+
+  function addEvents(found) {
+    eventsChanged = eventsChanged || found.length > 0 || (events.length > 0 && events[0].t < begin);
+    events = events.filter(event => event.t >= begin).concat(found).slice(-LIVE_EVENTS);
+  }
+
+  /* Draws when the browser has time for it; one that is slow draws less often, and still takes all samples. */
+  function plan(wait) {
+    if (planned)
+      return;
+    planned = true;
+    setTimeout(() => requestAnimationFrame(draw), wait);
+  }
+
+  function draw() {
+    const started = performance.now();
+    about();
+    if (eventsChanged)
+      showEvents();
+    eventsChanged = false;
+    if (running && !pressed && count > 0)
+      show(Math.max(begin, end - Number(document.getElementById("width").value)), end);
+    if (!coming)
+      document.body.dataset.ended = "true";
+    planned = false;
+    lastDrawing = performance.now() - started;
+  }
+
+  let lastDrawing = 0;
+
+  function tell(text) {
+    document.getElementById("connection").textContent = text;
+  }
+
+  function connect() {
+    const source = new EventSource(trace.live);
+    document.getElementById("live").hidden = false;
+    document.getElementById("run").addEventListener("click", event => { run(!running); event.target.blur(); });
+    document.getElementById("width").addEventListener("change", event => { run(true); event.target.blur(); });
+    place.addEventListener("mousedown", () => { pressed = true; });
+    window.addEventListener("mouseup", () => { pressed = false; });
+    source.onopen = () => tell("");
+    source.onerror = () => tell("The connection is lost. This page tries to connect again.");
+    source.onmessage = event => { take(JSON.parse(event.data)); plan(2 * lastDrawing); };
+    source.addEventListener("end", event => {
+      source.close();
+      tell(event.data);
+      coming = false;
+      document.getElementById("run").disabled = true;
+      run(false);
+      plan(0);
+    });
   }
 
   /* ---- the page ------------------------------------------------------------------------------------------------------- */
@@ -466,14 +593,16 @@
 
   function about() {
     const all = (name) => { const c = columns.find(column => column.name === name); return c && count ? c.values[count - 1] : 0; };
-    document.getElementById("about").textContent = count === 0 ? "The trace is empty."
+    document.getElementById("about").textContent =
+      count === 0 ? live ? "No sample has come yet." : "The trace is empty."
       : `${count} samples of ${columns.length} signals, ${timeText(begin)} to ${timeText(end)}, `
-        + `${all("lost frames")} lost frames, ${all("overruns")} overruns.`;
+        + `${all("lost frames")} lost frames, ${all("overruns")} overruns.`
+        + (missed ? ` ${missed} samples did not reach this page.` : "");
   }
 
   function start() {
     about();
-    if (count > 0) {
+    if (count > 0 || live) {
       addMarkBand();
       trace.axes.forEach(addAxis);
       addOthers(columns.slice(ofAxes).filter(c => c.program));
@@ -482,6 +611,8 @@
     makeTable();
     showEvents();
     show(begin, end);
+    if (live)
+      connect();
     document.body.dataset.ready = String(charts.length);
   }
 

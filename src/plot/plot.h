@@ -23,6 +23,17 @@ void cm1e_plot_print_html(const trace_t *trace, FILE *file);
 cm1e_error_t cm1e_plot_write_html(const trace_t *trace, const char *path, cm1e_diag_t *diag);
 cm1e_error_t cm1e_plot_write_svg(const trace_t *trace, const char *path, cm1e_diag_t *diag);
 
+/** Prints a page of a trace whose samples are still to come. The page asks the address `source`, relative to its own,
+ *  for server-sent events: a message has what cm1e_plot_print_live_samples() prints, an event "end" a text that says
+ *  why there are no more. CM1E_ERROR_UNSUPPORTED as above. @rt block */
+cm1e_error_t cm1e_plot_print_live_page(const trace_t *trace, const char *source, FILE *file, cm1e_diag_t *diag);
+
+/** Prints the last `count` samples for a live page, in one line. `number` is that of the first of them since the
+ *  recording began, from which the page knows samples that it did not get. With them go the marks that are later than
+ *  `marks_after_ns`. @rt block */
+void cm1e_plot_print_live_samples(const trace_t *trace, uint32_t count, uint64_t number, int64_t marks_after_ns,
+                                  FILE *file);
+
 /** Prints the trace as an SVG image. */
 void cm1e_plot_print_svg(const trace_t *trace, FILE *file);
 
