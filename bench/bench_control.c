@@ -1,7 +1,7 @@
 /**
  * What others cost who are attached to a running program: one run at 250 us on the simulated segment, four axes turning,
  * in turns alone and with three readers of objects, a screen that asks for axes, slaves and statistics, and a recorder
- * of every cycle of all signals, each a process of its own. Real time: the figures are those of this machine at this time.
+ * of every cycle of 64 signals, half of them variables of the program, each a process of its own. Real time: the figures are those of this machine at this time.
  */
 #include <pthread.h>
 #include <stdatomic.h>
@@ -16,8 +16,10 @@
 #include "cm1e/control.h"
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
+#include "cm1e/trace.h"
 
 enum { AXES = 4, READERS = 3, SCREEN = READERS, RECORDER, CLIENTS, SCREEN_US = 50000, RECORDER_US = 20000 };
+enum { VARIABLES = 32 /* with those of the axes and of the timing 64 signals */ };
 enum { TURNS = 10, TURN_S = 3, LATE_BUCKET = 8 /* from 128 us on */ };
 
 /** Shared with the clients. */
@@ -36,6 +38,7 @@ static cm1e_scheduler_t *scheduler;
 static MC_Power_t powers[AXES];
 static MC_MoveVelocity_t moves[AXES];
 static AXIS_REF_t axes[AXES];
+static double variables[VARIABLES];
 
 static void fail(const char *text)
 {
@@ -134,6 +137,8 @@ static void run_client(shared_t *shared, int number, pid_t program)
 static void program(void *context)
 {
     (void)context;
+    for (int i = 0; i < VARIABLES; i++)
+        variables[i] += i;
     for (int i = 0; i < AXES; i++) {
         powers[i].Axis = moves[i].Axis = &axes[i];
         powers[i].Enable = powers[i].EnablePositive = powers[i].EnableNegative = TRUE;
@@ -141,6 +146,17 @@ static void program(void *context)
         moves[i].Execute = powers[i].Status;
         moves[i].Velocity = 2.0;
         MC_MoveVelocity(&moves[i]);
+    }
+}
+
+static void name_variables(void)
+{
+    cm1e_diag_t diag = {0};
+    char name[32];
+    for (int i = 0; i < VARIABLES; i++) {
+        snprintf(name, sizeof name, "variable %d", i);
+        if (cm1e_scheduler_trace_variable(scheduler, name, "", CM1E_TRACE_LREAL, &variables[i], &diag) != CM1E_OK)
+            fail(diag.text);
     }
 }
 
@@ -167,6 +183,7 @@ static void start(void)
         cm1e_scheduler_create(&scheduler, bus, NULL, &diag) != CM1E_OK ||
         cm1e_scheduler_add_task(scheduler, &task, &diag) != CM1E_OK)
         fail(diag.text);
+    name_variables();
     for (uint32_t i = 0; i < AXES; i++)
         axes[i] = cm1e_scheduler_axis(scheduler, i);
 }

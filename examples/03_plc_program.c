@@ -415,7 +415,7 @@ static cm1e_error_t check_files(const options_t *options, cm1e_diag_t *why)
     return error;
 }
 
-/* What the trace records of the program, beside the axes. */
+/* What a trace has of the program beside the axes: its own, and that of `cm1e trace` while it runs. */
 static cm1e_error_t trace_variables(cm1e_diag_t *why)
 {
     cm1e_error_t error = cm1e_scheduler_trace_variable(m.scheduler, "step", "", CM1E_TRACE_UDINT, &m.step, why);
@@ -446,8 +446,7 @@ static cm1e_error_t start(const options_t *options, cm1e_diag_t *why)
     if (error != CM1E_OK)
         return error;
     make_machine(cm1e_bus_configuration(m.bus), options->seconds);
-    if (scheduler.trace_capacity > 0)
-        error = trace_variables(why);
+    error = trace_variables(why);
     return error == CM1E_OK ? add_tasks(why) : error;
 }
 

@@ -144,7 +144,7 @@ static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attac
 const struct argp argp_trace = {
     table, parse, NULL,
     "Records all signals of the program that runs the network: axes, timing, the variables and objects that the "
-    "program records itself, and objects of --object. Without such a program it runs the network itself, with every motor "
+    "program has named, and objects of --object. Without such a program it runs the network itself, with every motor "
     "without torque.\vNo cycle is left out. If this program is too slow to take them, the samples that are lost are "
     "counted and said, and the place is marked.", children, NULL, NULL};
 

@@ -41,8 +41,10 @@ enum {
 };
 
 /** Records a variable of the program from now on. It is read at the end of every recorded cycle, after the programs,
- *  and must live until the run has ended. `name` and `unit` are copied; unit "" or NULL: it has none. Errors:
- *  CM1E_ERROR_STATE: the scheduler has run, or its trace_capacity is 0.
+ *  and must live until the run has ended. With a trace_capacity of 0 the scheduler records nothing itself; others who
+ *  attach do (`cm1e trace`), and see the variable too. `name` and `unit` are copied; unit "" or NULL: it has none.
+ *  Errors:
+ *  CM1E_ERROR_STATE: the scheduler has run.
  *  CM1E_ERROR_INVALID_ARGUMENT: no name, a name that is too long or is a signal already, no variable, or no such type.
  *  CM1E_ERROR_NO_MEMORY: more than CM1E_TRACE_VARIABLES. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const char *name, const char *unit,
@@ -85,8 +87,9 @@ typedef struct cm1e_trace_trigger {
 /** Sets the trigger. The trace records from the start of the run; when the trigger comes, it records
  *  trace_capacity - samples_before samples more, the one of the trigger included, and then no more. The trigger is a
  *  mark of the trace. Only the first one counts. Without one the trace has the last cycles of the run. Errors:
- *  CM1E_ERROR_STATE as above; CM1E_ERROR_INVALID_ARGUMENT: no such kind or signal (register it before), `level` is not
- *  a number, or samples_before is not less than trace_capacity. @rt init */
+ *  CM1E_ERROR_STATE: the scheduler has run, or its trace_capacity is 0.
+ *  CM1E_ERROR_INVALID_ARGUMENT: no such kind or signal (register it before), `level` is not a number, or samples_before
+ *  is not less than trace_capacity. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_trace_trigger(cm1e_scheduler_t *scheduler, const cm1e_trace_trigger_t *trigger,
                                                    cm1e_diag_t *diag);
 

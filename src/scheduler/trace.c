@@ -66,13 +66,11 @@ cm1e_error_t cm1e_trace_init(trace_t *trace, const char *const names[], uint32_t
                              uint32_t every, cm1e_diag_t *diag)
 {
     *trace = (trace_t){.axes = count, .every = every ? every : 1};
-    if (capacity == 0)
-        return CM1E_OK;
     trace->column_room = count * (TRACE_AXIS_COLUMNS + 1) + TIMING_COLUMNS + CM1E_TRACE_VARIABLES;
     trace->names = calloc(count + 1, sizeof *trace->names);
     trace->columns = calloc(trace->column_room, sizeof *trace->columns);
-    trace->times_ns = calloc(capacity, sizeof *trace->times_ns);
-    if (!trace->names || !trace->columns || !trace->times_ns) {
+    trace->times_ns = capacity ? calloc(capacity, sizeof *trace->times_ns) : NULL;
+    if (!trace->names || !trace->columns || (capacity && !trace->times_ns)) {
         cm1e_trace_free(trace);
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for a trace of %u cycles.", capacity);
     }
@@ -106,10 +104,7 @@ static uint32_t find_column(const trace_t *trace, const char *name)
 
 static cm1e_error_t check_column(const trace_t *trace, const trace_column_t *column, cm1e_diag_t *diag)
 {
-    if (trace->capacity == 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
-                             "The trace records nothing: the scheduler's trace_capacity is 0.");
-    if (trace->values)
+    if (trace->begun)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Signals of the trace are chosen before the scheduler runs.");
     if (!column->name[0] || !column->value || (unsigned)column->type > CM1E_TRACE_LREAL)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
@@ -137,7 +132,7 @@ cm1e_error_t cm1e_trace_add(trace_t *trace, const trace_column_t *column, cm1e_d
 
 static cm1e_error_t check_trigger(const trace_t *trace, const cm1e_trace_trigger_t *trigger, cm1e_diag_t *diag)
 {
-    if (trace->capacity == 0 || trace->values)
+    if (trace->capacity == 0 || trace->begun)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "The trigger of a trace is set before the scheduler runs, and trace_capacity is not 0.");
     if ((unsigned)trigger->kind > CM1E_TRACE_ON_CHANGE || !isfinite(trigger->level))
@@ -218,6 +213,7 @@ static void watch(trace_t *trace, const double *sample, int64_t time_ns)
 
 cm1e_error_t cm1e_trace_begin(trace_t *trace, cm1e_diag_t *diag)
 {
+    trace->begun = true;
     if (trace->capacity == 0)
         return CM1E_OK;
     trace->values = calloc(trace->capacity, trace->column_count * sizeof *trace->values);

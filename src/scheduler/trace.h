@@ -62,6 +62,7 @@ typedef struct trace_trigger {
 
 typedef struct trace {
     uint32_t axes, capacity, every;
+    bool begun;               /**< the columns are complete */
     uint32_t first, used;     /**< samples: index of the oldest, and their number */
     uint32_t until_next;      /**< cycles until the next one is recorded */
     const char **names;       /**< of the axes */
@@ -75,8 +76,8 @@ typedef struct trace {
     uint32_t first_mark, mark_count;
 } trace_t;
 
-/** A trace of `count` axes with these names, which are not copied. `capacity` 0: a trace that records nothing.
- *  @rt init */
+/** A trace of `count` axes with these names, which are not copied. `capacity` 0: it has columns, for others who record
+ *  them, and records nothing itself. @rt init */
 CM1E_GUEST_API cm1e_error_t cm1e_trace_init(trace_t *trace, const char *const names[], uint32_t count,
                                             uint32_t capacity, uint32_t every, cm1e_diag_t *diag);
 CM1E_GUEST_API void cm1e_trace_free(trace_t *trace);

@@ -185,6 +185,22 @@ def check_end_of_program():
         expect(len(states) > 500 and states[-1] == "Disabled", "the end of the run is recorded", states[-3:])
 
 
+def check_variables():
+    """Those of a program that keeps no trace itself."""
+    process = subprocess.Popen([os.path.join(os.path.dirname(CM1E), "03_plc_program"), "-i", "sim", "--seconds", "60"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+    wait_for(lambda: os.path.exists(os.path.join(RUNTIME, f"cm1e-{process.pid}-0.sock")), "no control socket")
+    names = trace(process, "--list").stdout.splitlines()
+    expect("step" in names and "homed" in names, "variables are listed", names)
+    told = trace(process, "--for", "1.5", "--before", "0.5", "--trigger", "change:step", "--csv", path_of("step.csv"))
+    process.terminate()
+    process.communicate(timeout=30)
+    head, *samples = rows("step.csv")
+    steps = [row[head.index("step")] for row in samples]
+    expect(told.returncode == 0 and len(set(steps)) > 1 and steps[0] == steps[400] != steps[-1],
+           "a variable and its trigger", (told, steps[::100]))
+
+
 def check_alone():
     told = subprocess.run([CM1E, "trace", "-b", path_of("bus.yaml"), "--for", "0.5", "--csv", path_of("alone.csv"),
                            "--json"], capture_output=True, text=True, timeout=60, env=ENVIRONMENT)
@@ -198,7 +214,7 @@ def check_alone():
 if __name__ == "__main__":
     try:
         for check in (check_same_samples, check_gaps_are_counted, check_many_and_gone, check_triggers,
-                      check_end_of_program, check_alone):
+                      check_variables, check_end_of_program, check_alone):
             begin = time.monotonic()
             check()
             print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)

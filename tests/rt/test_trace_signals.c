@@ -181,7 +181,12 @@ START_TEST(test_signals_that_cannot_be_are_refused_in_words)
            "before the scheduler runs");
     machine_close(&machine);
     open_machine(0);
-    expect(add("flag", CM1E_TRACE_BOOL, &plc.v.flag), CM1E_ERROR_STATE, "trace_capacity");
+    expect(add("flag", CM1E_TRACE_BOOL, &plc.v.flag), CM1E_OK, ""); /* for others who attach */
+    expect(cm1e_scheduler_trace_trigger(machine.scheduler, &(cm1e_trace_trigger_t){0}, &diag), CM1E_ERROR_STATE,
+           "trace_capacity");
+    machine_run(&machine, 10 * MS);
+    expect(add("late", CM1E_TRACE_BOOL, &plc.v.flag), CM1E_ERROR_STATE, "before the scheduler runs");
+    expect(cm1e_scheduler_write_csv(machine.scheduler, "never.csv", &diag), CM1E_ERROR_STATE, "trace_capacity");
     machine_close(&machine);
 }
 END_TEST

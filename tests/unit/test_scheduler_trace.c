@@ -356,7 +356,7 @@ static void test_paths_that_cannot_be_written_are_named(void)
     TEST_ASSERT_TRUE(S_ISCHR(status.st_mode)); /* a device is written to, not replaced */
     TEST_ASSERT_EQUAL(CM1E_ERROR_IO, cm1e_trace_write_file(&empty, "/dev/full", cm1e_plot_print_svg, &diag));
     cm1e_trace_free(&empty);
-    const trace_t none = {.axes = 3}; /* as cm1e_trace_init() leaves it for capacity 0 */
+    const trace_t none = {.axes = 3, .capacity = 0};
     TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, cm1e_trace_write_file(&none, csv_path, cm1e_trace_print_csv, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "trace_capacity"));
 }
