@@ -2,8 +2,10 @@
  *  of other slaves. status_drive.c reads a CM1-E, status_bridge.c a bridge. */
 #include <math.h>
 #include <stdio.h>
+#include <time.h>
 
 #include "attach.h"
+#include "cm1e/emergency.h"
 #include "command.h"
 #include "device/devices.h"
 #include "device/unit.h"
@@ -102,11 +104,63 @@ static bool show_bridge(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const 
     return readable;
 }
 
+enum { EMERGENCIES_SHOWN = 4 };
+
+/** The time of day; a virtual clock has seconds only. */
+static void time_text(int64_t time_ns, char text[32])
+{
+    const time_t seconds = (time_t)(time_ns / 1000000000);
+    const int ms = (int)(time_ns / 1000000 % 1000);
+    struct tm local;
+    char day[20];
+    localtime_r(&seconds, &local);
+    strftime(day, sizeof day, "%H:%M:%S", &local);
+    snprintf(text, 32, "%s.%03d", day, ms);
+}
+
+/** The last emergencies of a slave, below its lines. */
+static void print_emergencies(const cm1e_bus_t *bus, uint16_t position)
+{
+    cm1e_emergency_t all[CM1E_EMERGENCIES];
+    char text[CM1E_EMERGENCY_TEXT_BYTES], when[32];
+    const size_t count = cm1e_bus_emergency(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
+    for (size_t i = count > EMERGENCIES_SHOWN ? count - EMERGENCIES_SHOWN : 0; i < count; i++) {
+        cm1e_emergency_text(bus, position, &all[i], text, sizeof text);
+        time_text(all[i].time_ns, when);
+        printf("  %s       %s\n", when, text);
+    }
+}
+
+static json_t *emergencies_as_json(const cm1e_bus_t *bus, uint16_t position)
+{
+    cm1e_emergency_t all[CM1E_EMERGENCIES];
+    char text[CM1E_EMERGENCY_TEXT_BYTES];
+    const size_t count = cm1e_bus_emergency(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; i++) {
+        cm1e_emergency_text(bus, position, &all[i], text, sizeof text);
+        json_array_append_new(list, json_pack("{s:I, s:I, s:i, s:i, s:s}", "number", (json_int_t)all[i].number,
+                                              "time_ns", (json_int_t)all[i].time_ns, "code", all[i].code,
+                                              "error_register", all[i].error_register, "text", text));
+    }
+    return list;
+}
+
+/** As every slave ends, whatever it is. */
+static void show_emergencies(const cm1e_bus_t *bus, uint16_t position, json_t *all)
+{
+    if (all)
+        json_object_set_new(json_array_get(all, json_array_size(all) - 1), "emergencies",
+                            emergencies_as_json(bus, position));
+    else
+        print_emergencies(bus, position);
+}
+
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
-                                 "Shows state, error and measurements of every drive, and which slaves are not "
-                                 "motors. Where a program runs the network, it is asked; else the network is brought "
-                                 "to Pre-Operational.",
+                                 "Shows state, error, measurements and the last emergencies of every drive, and which "
+                                 "slaves are not motors. Where a program runs the network, it is asked; else the "
+                                 "network is brought to Pre-Operational.",
                                  children, NULL, NULL};
 
 int command_status(int argc, char **argv)
@@ -132,6 +186,7 @@ int command_status(int argc, char **argv)
             readable = show_bridge(bus, &config, slave, all, &diag) && readable;
         else
             show_other(slave, all);
+        show_emergencies(bus, slave->position, all);
     }
     if (all)
         print_json(all);

@@ -32,10 +32,30 @@ static bool next_datagram(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_
     return bus->errand_sent || cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
 }
 
+/** Emergencies come without being asked for. In operation one mailbox after the other is looked into, while its client
+ *  has nothing else to do. */
+static void listen_in_turn(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_listening_t *listening = &bus->listening;
+    if (bus->phase != BUS_OPERATING || listening->paused || now_ns < listening->due_ns)
+        return;
+    listening->due_ns = now_ns + CM1E_LISTEN_PACE_NS;
+    for (uint32_t n = 0; n < bus->slave_count; n++) {
+        listening->place = listening->place + 1 < bus->slave_count ? listening->place + 1 : 0;
+        cm1e_bus_slave_t *slave = &bus->slaves[listening->place];
+        if (!slave->facts.coe || slave->watch.lost || slave->owner != OWNER_NONE || !cm1e_coe_idle(&slave->coe) ||
+            !cm1e_recovery_idle(&slave->recovery) || !cm1e_mapping_idle(&slave->mapping))
+            continue;
+        cm1e_coe_listen(&slave->coe, now_ns);
+        return;
+    }
+}
+
 void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
 {
     cm1e_errand_serve(bus, now_ns);
     cm1e_sdo_queue_serve(bus, now_ns);
+    listen_in_turn(bus, now_ns);
     uint32_t place = bus->next_slave;
     for (uint32_t n = 0; n < bus->slave_count && limit > 0; n++) {
         if (bus->sent_count == CM1E_DATAGRAMS_IN_FLIGHT)
@@ -55,6 +75,17 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
     }
 }
 
+/** One datagram carries at most one emergency. */
+static void take_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
+{
+    cm1e_emergency_t emergency = slave->coe.emergency;
+    if (emergency.number == slave->emergencies.last)
+        return;
+    emergency.time_ns = cm1e_clock_wall(bus->clock);
+    cm1e_emergency_add(&slave->emergencies, emergency);
+    bus->emergencies++;
+}
+
 static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     const cm1e_datagram_owner_t owner = slave->owner;
@@ -67,6 +98,7 @@ static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
         break;
     case OWNER_COE:
         cm1e_coe_result(&slave->coe, &slave->datagram, now_ns);
+        take_emergency(bus, slave);
         break;
     case OWNER_RECOVERY:
         cm1e_recovery_result(slave, &slave->datagram, now_ns);

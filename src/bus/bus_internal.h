@@ -8,6 +8,7 @@
 #include "bus/al_machine.h"
 #include "bus/bus_image.h"
 #include "bus/coe_client.h"
+#include "bus/emergency_ring.h"
 #include "bus/errand.h"
 #include "bus/mapping.h"
 #include "bus/recognise.h"
@@ -28,6 +29,8 @@ enum {
 #define CM1E_START_SDO_TIMEOUT_NS INT64_C(1000000000)
 /** A frame of single datagrams that is not back by then is lost. */
 #define CM1E_FRAME_LOST_NS INT64_C(2000000)
+/** In operation one mailbox in this time is looked into for messages that nobody asked for. */
+#define CM1E_LISTEN_PACE_NS INT64_C(5000000)
 /** Pace of the blocking phases. */
 #define CM1E_PUMP_PERIOD_NS INT64_C(100000)
 
@@ -56,6 +59,7 @@ struct cm1e_bus_slave {
     cm1e_datagram_owner_t owner;
     cm1e_al_machine_t al;
     cm1e_coe_client_t coe;
+    cm1e_emergency_ring_t emergencies;
     cm1e_recognition_t recognition;
     cm1e_bridge_facts_t bridge;              /**< as the scan found them; of a bridge only */
     cm1e_mapping_job_t mapping;
@@ -69,6 +73,13 @@ struct cm1e_bus_slave {
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
     uint32_t silent_cycles;                  /**< in a row, in which it did not take part */
 };
+
+/** Looking into mailboxes in turn, without having asked. */
+typedef struct cm1e_listening {
+    uint32_t place;                          /**< the slave whose mailbox was looked into last */
+    int64_t due_ns;
+    bool paused;                             /**< while somebody waits until all slaves are idle */
+} cm1e_listening_t;
 
 /** Transfers handed in by any thread, the cycle's own included: each takes a place with `head` and fills it; the bus
  *  empties it and writes the rest. */
@@ -116,6 +127,8 @@ struct cm1e_bus {
     cm1e_bus_slave_t *sent[CM1E_DATAGRAMS_IN_FLIGHT];
     unsigned sent_count;
     uint32_t next_slave;                     /**< round robin of acyclic datagrams */
+    cm1e_listening_t listening;
+    uint64_t emergencies;                    /**< of all slaves */
     cm1e_datagram_t watch_datagram;
     bool watch_sent;
     uint32_t watched_slave;

@@ -9,6 +9,9 @@ enum { DEFAULT_TIMEOUT_NS = 1000000000 };
 #define INFO_TIMEOUT_NS INT64_C(3000000000)
 /** A transfer is given up if the slave sends only other messages for this time. */
 enum { DISCARD_LIMIT = 64 };
+/** Messages at one look, so that a slave that always sends does not keep transfers waiting. */
+enum { LISTEN_LIMIT = 4 };
+#define LISTEN_NS INT64_C(100000000)
 
 /* CoE services and SDO command specifiers (ETG.1000.6 sections 5.6.1 and 5.6.2). */
 enum { SERVICE_EMERGENCY = 1, SERVICE_SDO_REQUEST = 2, SERVICE_SDO_RESPONSE = 3, SERVICE_SDO_INFORMATION = 8 };
@@ -53,6 +56,8 @@ static void finish(cm1e_coe_client_t *client, cm1e_error_t error, uint32_t abort
         cm1e_sdo_finish(sdo, error, abort_code);
         return;
     }
+    if (!info) /* it listened */
+        return;
     info->size = error == CM1E_OK ? info->taken : 0;
     info->error = error;
     info->abort_code = abort_code;
@@ -80,6 +85,10 @@ static void owe_abort(cm1e_coe_client_t *client, uint32_t code)
 /** Ends the transfer from our side, without another datagram. */
 static void give_up(cm1e_coe_client_t *client, cm1e_error_t error)
 {
+    if (client->phase == COE_LISTEN) { /* nothing was asked, so no answer can come late */
+        finish(client, error, 0);
+        return;
+    }
     distrust(client);
     if (is_transfer(client))
         owe_abort(client, error == CM1E_ERROR_TIMEOUT ? ABORT_TIMEOUT : ABORT_GENERAL);
@@ -242,6 +251,13 @@ static void abandon(cm1e_coe_client_t *client, cm1e_error_t error, uint32_t abor
     request_abort(client, error);
 }
 
+static bool has_mailbox(const cm1e_coe_client_t *client)
+{
+    const cm1e_mailbox_t *mailbox = &client->mailbox;
+    return mailbox->in_length >= CM1E_MAILBOX_HEADER + SDO_BYTES && mailbox->in_length <= CM1E_DATAGRAM_MAX &&
+           mailbox->out_length >= CM1E_MAILBOX_HEADER + SDO_BYTES && mailbox->out_length <= CM1E_DATAGRAM_MAX;
+}
+
 static void start_transfer(cm1e_coe_client_t *client)
 {
     if (client->info)
@@ -259,9 +275,7 @@ static void begin(cm1e_coe_client_t *client, int64_t timeout_ns, int64_t now_ns)
     client->toggle = false;
     client->discarded = 0;
     client->mailbox_error = 0;
-    const cm1e_mailbox_t *mailbox = &client->mailbox;
-    if (mailbox->in_length < CM1E_MAILBOX_HEADER + SDO_BYTES || mailbox->out_length < CM1E_MAILBOX_HEADER + SDO_BYTES ||
-        mailbox->in_length > CM1E_DATAGRAM_MAX || mailbox->out_length > CM1E_DATAGRAM_MAX)
+    if (!has_mailbox(client))
         finish(client, CM1E_ERROR_UNSUPPORTED, 0);
     else if (client->abort.owed)
         request_abort(client, CM1E_OK);
@@ -295,6 +309,16 @@ void cm1e_coe_begin_info(cm1e_coe_client_t *client, cm1e_info_request_t *info, i
     info->done = false;
     client->info = info;
     begin(client, INFO_TIMEOUT_NS, now_ns);
+}
+
+void cm1e_coe_listen(cm1e_coe_client_t *client, int64_t now_ns)
+{
+    if (!has_mailbox(client))
+        return;
+    client->deadline_ns = now_ns + LISTEN_NS;
+    client->discarded = 0;
+    client->phase = COE_LISTEN;
+    cm1e_mailbox_listen(&client->mailbox);
 }
 
 /* ---- answers --------------------------------------------------------------------------------------------------- */
@@ -412,7 +436,7 @@ static void on_emergency(cm1e_coe_client_t *client, const uint8_t *body, size_t 
     client->emergency.code = cm1e_get_u16(body + 2);
     client->emergency.error_register = body[4];
     memcpy(client->emergency.data, body + 5, sizeof client->emergency.data);
-    client->emergency.count++;
+    client->emergency.number++;
 }
 
 static void on_abort(cm1e_coe_client_t *client, const uint8_t *body)
@@ -440,6 +464,7 @@ static void on_sdo(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     case COE_INFORMATION:
     case COE_ABORT:
     case COE_DRAIN:
+    case COE_LISTEN:
         break;
     case COE_FENCE:
         client->doubtful = client->abort_sent = false;
@@ -510,7 +535,7 @@ static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     if (service == SERVICE_EMERGENCY) {
         on_emergency(client, body, size);
         discard(client);
-    } else if (client->phase == COE_ABORT || client->phase == COE_DRAIN) {
+    } else if (client->phase == COE_ABORT || client->phase == COE_DRAIN || client->phase == COE_LISTEN) {
         discard(client);
     } else if (client->phase == COE_INFORMATION) {
         if (service == SERVICE_SDO_INFORMATION)
@@ -533,7 +558,7 @@ static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
 /** The link layer of the slave refused a message: the request, or an abort that it does not accept. */
 static void on_mailbox_error(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
 {
-    const bool old = client->phase == COE_ABORT || client->phase == COE_DRAIN;
+    const bool old = client->phase == COE_ABORT || client->phase == COE_DRAIN || client->phase == COE_LISTEN;
     if (old || (client->phase == COE_FENCE && client->abort_sent)) {
         client->abort_sent = false;
         discard(client);
@@ -578,18 +603,27 @@ bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t
     return cm1e_mailbox_next(&client->mailbox, datagram);
 }
 
+/** After a look that found the mailbox empty, or was lost. */
+static bool has_listened(const cm1e_coe_client_t *client, bool looked)
+{
+    return client->mailbox.state == MAILBOX_POLL && (looked || client->discarded >= LISTEN_LIMIT);
+}
+
 void cm1e_coe_result(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram, int64_t now_ns)
 {
     if (datagram->working_counter == DATAGRAM_LOST)
         client->lost_frames++;
     if (cm1e_coe_idle(client))
         return; /* ended while the datagram was on its way */
+    const bool looked = client->mailbox.state == MAILBOX_POLL;
     if (cm1e_mailbox_result(&client->mailbox, datagram))
         on_message(client, datagram->data);
     if (client->phase == COE_ABORT && cm1e_mailbox_delivered(&client->mailbox))
         after_abort(client);
     else if (client->phase == COE_DRAIN && cm1e_mailbox_drained(&client->mailbox))
         request_fence(client);
+    else if (client->phase == COE_LISTEN && has_listened(client, looked))
+        finish(client, CM1E_OK, 0);
     if (!cm1e_coe_idle(client) && now_ns >= client->deadline_ns)
         give_up(client, CM1E_ERROR_TIMEOUT);
 }

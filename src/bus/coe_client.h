@@ -10,7 +10,7 @@
 #define CM1E_BUS_COE_CLIENT_H
 
 #include "bus/mailbox_link.h"
-#include "cm1e/bus.h"
+#include "cm1e/emergency.h"
 
 typedef enum cm1e_coe_phase {
     COE_IDLE = 0,
@@ -22,6 +22,7 @@ typedef enum cm1e_coe_phase {
     COE_DOWNLOAD_SEGMENT,
     COE_INFORMATION,
     COE_ABORT, /**< aborts a transfer that is given up: this one, or the one before */
+    COE_LISTEN, /**< takes what the slave sends without being asked */
 } cm1e_coe_phase_t;
 
 /** A transfer that was given up while the slave may still hold it open (ETG.1000.6 section 5.6.2.7). */
@@ -49,14 +50,6 @@ typedef struct cm1e_info_request {
     uint32_t abort_code;     /**< valid with CM1E_ERROR_SDO_ABORT */
 } cm1e_info_request_t;
 
-/** Emergencies (ETG.1000.6 section 5.6.4) received so far. */
-typedef struct cm1e_emergency {
-    uint32_t count;
-    uint16_t code;
-    uint8_t error_register;
-    uint8_t data[5];
-} cm1e_emergency_t;
-
 typedef struct cm1e_coe_client {
     cm1e_mailbox_t mailbox;
     cm1e_sdo_t *sdo;              /**< in work; NULL: none */
@@ -76,18 +69,23 @@ typedef struct cm1e_coe_client {
     unsigned discarded;           /**< messages that were not for this transfer */
     uint16_t mailbox_error;       /**< detail of the last mailbox error reply */
     uint32_t lost_frames;         /**< only grows */
-    cm1e_emergency_t emergency;
+    cm1e_emergency_t emergency;   /**< the last one; its number counts them */
 } cm1e_coe_client_t;
 
 /** Resets everything except the addresses, as after Init -> Pre-Operational; a running transfer ends with `error`. */
 void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error);
 /** Gives up the running transfer, if there is one. */
 void cm1e_coe_cancel(cm1e_coe_client_t *client, cm1e_error_t error);
-static inline bool cm1e_coe_idle(const cm1e_coe_client_t *client) { return !client->sdo && !client->info; }
+static inline bool cm1e_coe_idle(const cm1e_coe_client_t *client)
+{
+    return !client->sdo && !client->info && client->phase != COE_LISTEN;
+}
 /** Starts a transfer; the client must be idle. */
 void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns);
 /** Starts a request of SDO information; the client must be idle. */
 void cm1e_coe_begin_info(cm1e_coe_client_t *client, cm1e_info_request_t *info, int64_t now_ns);
+/** Looks into the mailbox of the slave once, and takes the messages that are in it; the client must be idle. */
+void cm1e_coe_listen(cm1e_coe_client_t *client, int64_t now_ns);
 /** Fills the datagram to be sent next; false: none. Ends a transfer whose time is over. */
 bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns);
 /** Takes a datagram that is back or lost. */

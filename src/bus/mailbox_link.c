@@ -58,6 +58,12 @@ void cm1e_mailbox_drain(cm1e_mailbox_t *mailbox)
     enter(mailbox, MAILBOX_POLL);
 }
 
+void cm1e_mailbox_listen(cm1e_mailbox_t *mailbox)
+{
+    mailbox->write_lost = mailbox->draining = false;
+    enter(mailbox, MAILBOX_POLL);
+}
+
 void cm1e_mailbox_stop(cm1e_mailbox_t *mailbox) { enter(mailbox, MAILBOX_IDLE); }
 
 bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *d)

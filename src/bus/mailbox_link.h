@@ -50,6 +50,8 @@ uint8_t *cm1e_mailbox_body(cm1e_mailbox_t *mailbox);
  *  cm1e_mailbox_stop(). */
 void cm1e_mailbox_send(cm1e_mailbox_t *mailbox, uint8_t type, uint16_t size);
 void cm1e_mailbox_stop(cm1e_mailbox_t *mailbox);
+/** Fetches messages without having sent one, until cm1e_mailbox_stop(). */
+void cm1e_mailbox_listen(cm1e_mailbox_t *mailbox);
 /** Polls, and fetches answers, until the slave has read the message in its mailbox; otherwise a lost write of the next
  *  message could not be detected. Then cm1e_mailbox_drained() is true. */
 void cm1e_mailbox_drain(cm1e_mailbox_t *mailbox);

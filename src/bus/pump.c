@@ -34,10 +34,9 @@ static bool all_idle(const cm1e_bus_t *bus)
 
 bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns)
 {
-    while (!all_idle(bus)) {
-        if (cm1e_clock_now(bus->clock) >= deadline_ns)
-            return false;
+    bus->listening.paused = true;
+    while (!all_idle(bus) && cm1e_clock_now(bus->clock) < deadline_ns)
         cm1e_bus_pump(bus);
-    }
-    return true;
+    bus->listening.paused = false;
+    return all_idle(bus);
 }

@@ -23,6 +23,15 @@ static void take_device(cm1e_bus_slave_t *slave, const cm1e_remote_slave_t *told
         slave->bridge.motors[i] = info->motors[i];
 }
 
+static void take_emergencies(cm1e_bus_slave_t *slave, const cm1e_remote_slave_t *told)
+{
+    cm1e_emergency_ring_t *ring = &slave->emergencies;
+    for (uint32_t i = 0; i < told->emergency_count; i++) {
+        __atomic_store_n(&ring->last, told->emergencies[i].number - 1, __ATOMIC_RELAXED);
+        cm1e_emergency_add(ring, told->emergencies[i]);
+    }
+}
+
 cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     cm1e_remote_slave_t *told = calloc(CM1E_MAX_SLAVES, sizeof *told);
@@ -34,6 +43,7 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
         memset(&bus->slaves[i], 0, sizeof bus->slaves[i]);
         bus->slaves[i].info = told[i].info;
         take_device(&bus->slaves[i], &told[i]);
+        take_emergencies(&bus->slaves[i], &told[i]);
     }
     free(told);
     if (error != CM1E_OK)

@@ -6,7 +6,7 @@
 #define CM1E_BUS_REMOTE_H
 
 #include "bus/errand.h"
-#include "cm1e/bus.h"
+#include "cm1e/emergency.h"
 #include "core/guest_api.h"
 
 /** A slave as the other program found it. */
@@ -14,6 +14,8 @@ typedef struct cm1e_remote_slave {
     cm1e_slave_info_t info; /**< without `device` and `kind` */
     char kind[24];          /**< "": none of ours */
     bool coe;
+    uint32_t emergency_count;
+    cm1e_emergency_t emergencies[CM1E_EMERGENCIES]; /**< in the order of their numbers */
 } cm1e_remote_slave_t;
 
 typedef struct cm1e_bus_remote {

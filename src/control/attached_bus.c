@@ -19,6 +19,23 @@ static void copy_text(char *text, size_t size, const json_t *object, const char 
     cm1e_text_clean(text);
 }
 
+static void take_emergencies(cm1e_remote_slave_t *slave, const json_t *told)
+{
+    const size_t count = json_array_size(told);
+    for (size_t i = 0; i < count && i < CM1E_EMERGENCIES; i++) {
+        const json_t *one = json_array_get(told, i);
+        cm1e_emergency_t *emergency = &slave->emergencies[slave->emergency_count];
+        *emergency = (cm1e_emergency_t){.number = (uint64_t)number(one, "number"), .time_ns = number(one, "time_ns"),
+                                        .code = (uint16_t)number(one, "code"),
+                                        .error_register = (uint8_t)number(one, "error_register")};
+        for (size_t n = 0; n < sizeof emergency->data; n++)
+            emergency->data[n] = (uint8_t)json_integer_value(json_array_get(json_object_get(one, "data"), n));
+        if (number(one, "number") < 1)
+            return;
+        slave->emergency_count++;
+    }
+}
+
 /* What the other program says is judged like the answer of a slave: every number is cut to its range. */
 static void take_slave(cm1e_remote_slave_t *slave, uint16_t position, const json_t *told)
 {
@@ -40,6 +57,7 @@ static void take_slave(cm1e_remote_slave_t *slave, uint16_t position, const json
     copy_text(info->name, sizeof info->name, told, "name");
     copy_text(info->software_version, sizeof info->software_version, told, "software_version");
     copy_text(slave->kind, sizeof slave->kind, told, "kind");
+    take_emergencies(slave, json_object_get(told, "emergencies"));
 }
 
 static cm1e_error_t scan(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count, cm1e_diag_t *diag)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cm1e/bus.h"
+#include "cm1e/emergency.h"
 #include "core/text.h"
 
 enum { EVENTS_OF_REPLY = 256, EVENT_TEXT = 512 };
@@ -102,6 +102,25 @@ json_t *cm1e_show_axes(const view_t *view)
 
 /* ---- slaves ----------------------------------------------------------------------------------------------------- */
 
+static json_t *emergencies_of(const cm1e_bus_t *bus, uint16_t position)
+{
+    cm1e_emergency_t emergencies[CM1E_EMERGENCIES];
+    char text[CM1E_EMERGENCY_TEXT_BYTES];
+    json_t *all = json_array();
+    const size_t count = cm1e_bus_emergency(bus, position, 0, emergencies, CM1E_EMERGENCIES, NULL);
+    for (size_t i = 0; i < count; i++) {
+        const cm1e_emergency_t *one = &emergencies[i];
+        json_t *data = json_array();
+        for (size_t n = 0; n < sizeof one->data; n++)
+            json_array_append_new(data, json_integer(one->data[n]));
+        cm1e_emergency_text(bus, position, one, text, sizeof text);
+        json_array_append_new(all, json_pack("{s:I, s:I, s:i, s:i, s:o, s:o}", "number", (json_int_t)one->number,
+                                             "time_ns", (json_int_t)one->time_ns, "code", one->code, "error_register",
+                                             one->error_register, "data", data, "text", cm1e_show_text(text)));
+    }
+    return all;
+}
+
 json_t *cm1e_show_slaves(const view_t *view)
 {
     json_t *all = json_array();
@@ -125,6 +144,7 @@ json_t *cm1e_show_slaves(const view_t *view)
         json_object_set_new(slave, "motors", motors);
         json_object_set_new(slave, "software_version", cm1e_show_text(info->software_version));
         json_object_set_new(slave, "coe", json_boolean(cm1e_bus_slave_has_coe(view->bus, info->position)));
+        json_object_set_new(slave, "emergencies", emergencies_of(view->bus, info->position));
         json_array_append_new(all, slave);
     }
     return all;

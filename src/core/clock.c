@@ -43,6 +43,15 @@ void cm1e_clock_init_virtual(cm1e_clock_t *clock, int64_t start_ns)
     *clock = (cm1e_clock_t){.ops = &virtual_ops, .virtual_now_ns = start_ns};
 }
 
+int64_t cm1e_clock_wall(const cm1e_clock_t *clock)
+{
+    struct timespec now;
+    if (clock != &monotonic_clock)
+        return cm1e_clock_now(clock);
+    clock_gettime(CLOCK_REALTIME, &now);
+    return (int64_t)now.tv_sec * S_IN_NS + now.tv_nsec;
+}
+
 cm1e_clock_t *cm1e_clock_current(void) { return current_clock ? current_clock : &monotonic_clock; }
 
 void cm1e_clock_make_current(cm1e_clock_t *clock) { current_clock = clock; }

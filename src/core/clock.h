@@ -37,6 +37,9 @@ CM1E_GUEST_API cm1e_clock_t *cm1e_clock_monotonic(void);
 /** Makes a clock that starts at `start_ns` and is advanced only by cm1e_clock_sleep_until(). @rt any */
 CM1E_GUEST_API void cm1e_clock_init_virtual(cm1e_clock_t *clock, int64_t start_ns);
 
+/** The time as people tell it: since 1970 (UTC). On a virtual clock, its own time. @rt cycle */
+CM1E_GUEST_API int64_t cm1e_clock_wall(const cm1e_clock_t *clock);
+
 /** The clock of the calling thread: what SOEM's osal functions use. Default: monotonic. Thread local. @rt cycle */
 cm1e_clock_t *cm1e_clock_current(void);
 void cm1e_clock_make_current(cm1e_clock_t *clock);

@@ -3,7 +3,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /** Between two records of one counter. */
 #define QUIET_NS INT64_C(100000000)
@@ -25,20 +24,11 @@ void cm1e_log_free(log_t *log)
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */
 
-static int64_t present_ns(const log_t *log)
-{
-    struct timespec now;
-    if (log->clock != cm1e_clock_monotonic())
-        return cm1e_clock_now(log->clock);
-    clock_gettime(CLOCK_REALTIME, &now);
-    return now.tv_sec * S_IN_NS + now.tv_nsec;
-}
-
 static void write_event(log_t *log, cm1e_log_event_t event, int64_t run_ns)
 {
     uint64_t words[CM1E_LOG_WORDS];
     event.number = atomic_load_explicit(&log->last, memory_order_relaxed) + 1;
-    event.time_ns = present_ns(log);
+    event.time_ns = cm1e_clock_wall(log->clock);
     event.run_ns = run_ns;
     memcpy(words, &event, sizeof words);
     log_place_t *place = &log->places[event.number % CM1E_LOG_EVENTS];
@@ -92,6 +82,34 @@ void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64
     look_at_counter(log, CM1E_LOG_WORKING_COUNTER, bus->working_counter_errors, run_ns);
     look_at_counter(log, CM1E_LOG_UNSENT_FRAMES, bus->unsent_frames, run_ns);
     look_at_counter(log, CM1E_LOG_OTHER_MASTER, bus->foreign_frames, run_ns);
+}
+
+static void write_emergency(log_t *log, uint32_t position, const cm1e_emergency_t *emergency, int64_t run_ns)
+{
+    uint64_t bytes = 0;
+    for (size_t i = sizeof emergency->data; i-- > 0;)
+        bytes = bytes << 8 | emergency->data[i];
+    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_EMERGENCY, .axis = -1, .code = emergency->code,
+                                        .detail = (uint32_t)emergency->error_register << 16 | position,
+                                        .value = (double)bytes}, run_ns);
+}
+
+void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, int64_t run_ns)
+{
+    cm1e_emergency_t news[CM1E_EMERGENCIES];
+    if (log->emergencies == cm1e_bus_emergencies(bus))
+        return;
+    log->emergencies = cm1e_bus_emergencies(bus);
+    if (log->operation != cm1e_bus_operation(bus)) /* after another scan they count from 1 again */
+        memset(log->told, 0, sizeof log->told);
+    log->operation = cm1e_bus_operation(bus);
+    for (uint32_t i = 0; i < cm1e_bus_slave_count(bus); i++) {
+        const size_t count = cm1e_bus_emergency(bus, (uint16_t)(i + 1), log->told[i], news, CM1E_EMERGENCIES, NULL);
+        for (size_t n = 0; n < count; n++)
+            write_emergency(log, i + 1, &news[n], run_ns);
+        if (count > 0)
+            log->told[i] = news[count - 1].number;
+    }
 }
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */

@@ -8,6 +8,7 @@
 #include <stdatomic.h>
 
 #include "axis/axis_watch.h"
+#include "bus/emergency_ring.h"
 #include "cm1e/log.h"
 #include "core/clock.h"
 
@@ -23,7 +24,7 @@ typedef struct log_counter {
     uint64_t told;
     int64_t quiet_until_ns;
 } log_counter_t;
-enum { CM1E_LOG_COUNTERS = CM1E_LOG_KIND_COUNT - CM1E_LOG_OVERRUN };
+enum { CM1E_LOG_COUNTERS = CM1E_LOG_OTHER_MASTER + 1 - CM1E_LOG_OVERRUN };
 
 typedef struct log {
     log_place_t *places;
@@ -31,6 +32,9 @@ typedef struct log {
     const cm1e_clock_t *clock;
     cm1e_axis_news_t seen[CM1E_MAX_AXES];
     log_counter_t counters[CM1E_LOG_COUNTERS];
+    uint64_t emergencies;       /**< of all slaves, told */
+    uint32_t operation;         /**< of the bus, in which they were counted */
+    uint64_t told[CM1E_MAX_SLAVES];
 } log_t;
 
 /** CM1E_ERROR_NO_MEMORY. @rt init */
@@ -41,6 +45,8 @@ void cm1e_log_run(log_t *log, bool begins, int64_t run_ns);
 /** Called in every cycle, after its work. @rt cycle */
 void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
                    const cm1e_bus_counters_t *bus, int64_t run_ns);
+/** The emergencies that came since the last call. @rt cycle */
+void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, int64_t run_ns);
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost);
 
 #endif

@@ -2,6 +2,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "bus/emergency_ring.h"
 #include "scheduler/scheduler_window.h"
 
 static const char *const kind_names[] = {
@@ -14,6 +15,7 @@ static const char *const kind_names[] = {
     [CM1E_LOG_WORKING_COUNTER] = "working counter",
     [CM1E_LOG_UNSENT_FRAMES] = "unsent frames",
     [CM1E_LOG_OTHER_MASTER] = "other master",
+    [CM1E_LOG_EMERGENCY] = "emergency",
 };
 _Static_assert(sizeof kind_names / sizeof *kind_names == CM1E_LOG_KIND_COUNT, "a kind of the log has no name");
 
@@ -53,6 +55,15 @@ static void command_text(const char *name, const cm1e_log_event_t *event, char *
     snprintf(text, size, "%s: %s%s%s", name, cm1e_command_name((cm1e_command_kind_t)event->code), position, velocity);
 }
 
+static void emergency_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char *text, size_t size)
+{
+    cm1e_emergency_t emergency = {.code = (uint16_t)event->code, .error_register = (uint8_t)(event->detail >> 16)};
+    const uint64_t bytes = (uint64_t)event->value;
+    for (size_t i = 0; i < sizeof emergency.data; i++)
+        emergency.data[i] = (uint8_t)(bytes >> 8 * i);
+    cm1e_emergency_sentence(bus, (uint16_t)event->detail, &emergency, text, size);
+}
+
 void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
 {
     uint32_t count;
@@ -64,9 +75,11 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
     text[0] = 0;
     if (event->kind == CM1E_LOG_RUN)
         snprintf(text, size, event->code ? "the run began" : "the run ended");
-    else if (event->kind >= CM1E_LOG_OVERRUN && event->kind < CM1E_LOG_KIND_COUNT)
+    else if (event->kind >= CM1E_LOG_OVERRUN && event->kind <= CM1E_LOG_OTHER_MASTER)
         snprintf(text, size, "%s: %" PRId32 " (%" PRIu32 " since the start)", counter_texts[event->kind], event->code,
                  event->detail);
+    else if (event->kind == CM1E_LOG_EMERGENCY)
+        emergency_text(cm1e_scheduler_bus(scheduler), event, text, size);
     else if (of_axis && event->kind == CM1E_LOG_STATE)
         snprintf(text, size, "%s: %s (was %s)", name, cm1e_axis_state_name((cm1e_axis_state_t)event->code),
                  cm1e_axis_state_name((cm1e_axis_state_t)event->detail));

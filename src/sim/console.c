@@ -388,6 +388,22 @@ static cm1e_error_t run_error(call_t *call)
     return CM1E_OK;
 }
 
+static cm1e_error_t run_emergency(call_t *call)
+{
+    uint8_t data[5] = {0};
+    long code, error_register = 1, first = 0;
+    if (!parse_whole(argument(call, 0), 16, 0, 0xFFFF, &code) ||
+        (call->count > 3 && !parse_whole(argument(call, 1), 16, 0, 0xFF, &error_register)) ||
+        (call->count > 4 && !parse_whole(argument(call, 2), 16, 0, 0xFF, &first)))
+        return REFUSE(call, "expected a code 0000 to FFFF, a register 00 to FF and a byte 00 to FF");
+    data[0] = (uint8_t)first;
+    if (!call->slave->ops->sdo_read ||
+        !cm1e_sim_slave_emergency(call->slave, (uint16_t)code, (uint8_t)error_register, data))
+        return REFUSE(call, "slave %u sends none: it has no CoE, is in INIT, or has eight waiting", call->position);
+    say(call, "slave %u: emergency 0x%04lX", call->position, code);
+    return CM1E_OK;
+}
+
 static cm1e_error_t run_power_up_fault(call_t *call)
 {
     long count = 0;
@@ -563,6 +579,7 @@ static const command_t commands[] = {
     {"temperature", DRIVE, 1, 1, run_temperature, "<slave> <degrees C>", "of the drive; error 4310 from 85 on"},
     {"error", ANY_DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",
      "an error code of the guide's 7.3.1; hold: its cause stays until clear"},
+    {"emergency", ANY_SLAVE, 1, 3, run_emergency, "<slave> <code> [register [byte]]", "send a CoE emergency"},
     {"power-up-fault", DRIVE, 1, 1, run_power_up_fault, "<slave> <times>|always", "error 7510 at the next power-ups"},
     {"motor", BRIDGE, 2, 4, run_motor,
      "<slave> <1...4> unplug|replug|broken|error|sensor|load ...",

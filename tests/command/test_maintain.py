@@ -25,7 +25,7 @@ BUS = """\
 bus: {{interface: sim, control: {control}, lost_cycles_limit: 50}}
 axes:
   - {{name: X, sim: {{no_stops: true}}}}
-  - {{name: Y, homing: {{method: -2, velocity: 2, acceleration: 10, torque: 30}}}}
+  - {{name: Y, limits: {{position_lag: 20}}, homing: {{method: -2, velocity: 2, acceleration: 10, torque: 30}}}}
   - {{name: Z, sim: {{no_stops: true}}, software_limits: {{negative: -0.5, positive: 0.5}}}}
   - {{name: E, type: encoder}}
 """
@@ -266,6 +266,25 @@ def check_error_and_reset():
                axis(client, Y))
 
 
+def check_emergencies(client, attached):
+    """Of a drive that stopped with an error of its own: told by the socket, by status and in the event log."""
+    wait_for(lambda: client.ask("slaves")["slaves"][Y - 1]["emergencies"], "no emergency of the drive")
+    slaves = client.ask("slaves")["slaves"]
+    told = slaves[Y - 1]["emergencies"][0]
+    expect(slaves[X - 1]["emergencies"] == [] and told["number"] == 1 and told["code"] != 0 and
+           abs(told["time_ns"] / 1e9 - time.time()) < 60 and len(told["data"]) == 5, "emergencies", slaves)
+    words = f"emergency 0x{told['code']:04X}, "
+    expect(told["text"].startswith(words) and "Cure: " in told["text"], "the text of an emergency", told)
+    shown = attached("status")
+    expect(shown.returncode == 0 and shown.stdout.count("emergency") == 1 and words in shown.stdout, "status", shown)
+    as_json = json.loads(attached("status", "--json").stdout)
+    expect([len(s["emergencies"]) for s in as_json] == [0, 1, 0] and as_json[Y - 1]["emergencies"][0]["code"] ==
+           told["code"], "status --json", as_json)
+    events = [e for e in client.ask("log")["log"]["events"] if e["kind"] == "emergency"]
+    expect([e["code"] for e in events] == [told["code"]] and words in events[0]["text"] and
+           events[0]["text"].startswith('Slave 2 ("Y", '), "the event log", events)
+
+
 def check_commands():
     """cm1e reset, enable and jog, attached."""
     def attached(pid, *words):
@@ -280,6 +299,7 @@ def check_commands():
         enable(client, Y)
         jog_for(client, Y, 8, 3)
         wait_for(lambda: axis(client, Y)["state"] == "ErrorStop", "no error at the mechanical stop")
+        check_emergencies(client, lambda *words: attached(pid, *words))
         told = attached(pid, "reset", "Y")
         expect(told.returncode == 0 and told.stdout.startswith("Y: error reset (simulated). It was: "), "reset", told)
         as_json = json.loads(attached(pid, "reset", "--json").stdout)

@@ -49,6 +49,8 @@ static void program(void *context)
         simulate(p, "lose 6");
     if (now == 1350 * MS)
         simulate(p, "lose 1");
+    if (now == 1400 * MS)
+        simulate(p, "emergency 1 9007 80 fe");
 }
 
 static const cm1e_log_event_t *find(size_t count, cm1e_log_kind_t kind, int code)
@@ -94,6 +96,11 @@ START_TEST(test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away)
     expect_text(s, find(n, CM1E_LOG_STATE, CM1E_AXIS_ERROR_STOP), "ErrorStop (was DiscreteMotion)");
     expect_text(s, find(n, CM1E_LOG_ERROR, CM1E_ERROR_DRIVE_FAULT), "Device error 0x2310");
     expect_text(s, find(n, CM1E_LOG_ERROR, CM1E_ERROR_DRIVE_FAULT), "Cure: ");
+    expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0x2310), "Slave 1 (\"axis1\", ");
+    expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0x2310), "emergency 0x2310, Continuous over current");
+    expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0x2310), "Error register 0x03: generic error, current.");
+    expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0), "no error any more");
+    expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0x9007), "external error. Error register 0x80: maker's own. Data: FE");
     const cm1e_log_event_t *frames = find(n, CM1E_LOG_LOST_FRAMES, -2000);
     expect_text(s, frames, "frames were lost");
     ck_assert_int_eq(frames->run_ns / MS / 10, 120);

@@ -157,7 +157,7 @@ static void test_emergency_in_between_is_taken_and_does_not_disturb(void)
     run(&sdo);
     TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
     TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, 200));
-    TEST_ASSERT_EQUAL_UINT(slave.requests, client.emergency.count);
+    TEST_ASSERT_EQUAL_UINT(slave.requests, client.emergency.number);
     TEST_ASSERT_EQUAL_HEX16(0xFF05, client.emergency.code);
     TEST_ASSERT_EQUAL_HEX8(0x81, client.emergency.error_register);
 }

@@ -1,0 +1,231 @@
+/* Emergencies: they are taken from the mailboxes while the cycle runs, kept for each slave, and told in words. */
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "bus/bus_internal.h"
+#include "bus_support.h"
+#include "core/bytes.h"
+
+static cm1e_emergency_t all[CM1E_EMERGENCIES];
+
+static size_t emergencies_of(const cm1e_bus_t *bus, uint16_t position)
+{
+    return cm1e_bus_emergency(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
+}
+
+static void expect_text(const cm1e_bus_t *bus, uint16_t position, const cm1e_emergency_t *emergency, const char *words)
+{
+    char text[CM1E_EMERGENCY_TEXT_BYTES];
+    cm1e_emergency_text(bus, position, emergency, text, sizeof text);
+    ck_assert_msg(strstr(text, words) != NULL, "\"%s\" is not in: %s", words, text);
+}
+
+START_TEST(an_emergency_arrives_without_any_transfer)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 20);
+    ck_assert_uint_eq(emergencies_of(bus, 1), 0);
+    simulate(bus, "emergency 2 8611 21 7f");
+    const int64_t sent_ns = now_of(bus);
+    cycles(bus, 2 * 5 + 5);
+    ck_assert_uint_eq(emergencies_of(bus, 1), 0);
+    ck_assert_uint_eq(emergencies_of(bus, 2), 1);
+    ck_assert_uint_eq(all[0].number, 1);
+    ck_assert_uint_eq(all[0].code, 0x8611);
+    ck_assert_uint_eq(all[0].error_register, 0x21);
+    ck_assert_uint_eq(all[0].data[0], 0x7F);
+    ck_assert(all[0].time_ns >= sent_ns && all[0].time_ns <= now_of(bus));
+    ck_assert_uint_eq(bus->counters.lost_frames + bus->counters.mailbox_retries, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A device has its own text for a code; another slave gets that of the standard; an unknown code that of its class. */
+START_TEST(texts_are_those_of_the_device_or_of_the_class)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0xFF05, .error_register = 0x81},
+                cm1e_device_error(0xFF05)->text);
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0xFF05, .error_register = 0x81}, "0x81: generic error, maker's own");
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0x3299}, "0x3299, voltage inside the device. Error register 0x00.");
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0x3999}, "0x3999, voltage.");
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0x3220}, "DC link under voltage");
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0xA001}, "from Safe-Operational to Operational failed");
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0xB000}, "no standard has");
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0, .data = {1, 0, 0xAB}}, "no error any more. Data: 01 00 AB 00 00");
+    expect_text(bus, 1, &(cm1e_emergency_t){.code = 0x2310}, "Cure: ");
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(an_error_of_a_drive_arrives_once)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    simulate(bus, "error 1 2310");
+    cycles(bus, 20);
+    ck_assert_uint_eq(emergencies_of(bus, 1), 1);
+    ck_assert_uint_eq(all[0].code, 0x2310);
+    cycles(bus, 100);
+    ck_assert_uint_eq(emergencies_of(bus, 1), 1);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** More than are kept: the oldest are gone and counted; a reader goes on where it was. */
+START_TEST(the_last_ones_are_kept)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    for (unsigned i = 0; i < CM1E_EMERGENCIES + 5; i++) {
+        char line[40];
+        snprintf(line, sizeof line, "emergency 1 %x", 0x1000 + i);
+        simulate(bus, line);
+        cycles(bus, 10);
+    }
+    uint64_t lost = 0;
+    ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, 0, all, CM1E_EMERGENCIES, &lost), CM1E_EMERGENCIES);
+    ck_assert_uint_eq(lost, 5);
+    for (unsigned i = 0; i < CM1E_EMERGENCIES; i++) {
+        ck_assert_uint_eq(all[i].number, i + 6);
+        ck_assert_uint_eq(all[i].code, 0x1005 + i);
+    }
+    ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, all[0].number, all, 3, &lost), 3);
+    ck_assert_uint_eq(all[0].number, 7);
+    ck_assert_uint_eq(lost, 0);
+    ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, CM1E_EMERGENCIES + 5, all, 3, &lost), 0);
+    ck_assert_uint_eq(cm1e_bus_emergency(bus, 9, 0, all, 3, &lost), 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Emergencies and SDO transfers share the mailbox: nothing is lost, and every transfer has its own answer. */
+START_TEST(transfers_and_emergencies_do_not_disturb_each_other)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    unsigned sent = 0;
+    for (unsigned i = 0; i < 200; i++) {
+        uint8_t data[4] = {0};
+        cm1e_sdo_t sdo = {.position = 1, .index = 0x1018, .subindex = 1, .data = data, .size = sizeof data};
+        if (i % 3 == 0) {
+            simulate(bus, "emergency 1 1000");
+            sent++;
+        }
+        if (i % 7 == 0)
+            simulate(bus, "lose 1");
+        ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+        finish_sdo(bus, &sdo);
+        ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+        ck_assert_uint_eq(cm1e_get_u32(data), cm1e_bus_slave(bus, 1)->vendor_id);
+        cycles(bus, i % 5);
+    }
+    cycles(bus, 50);
+    emergencies_of(bus, 1);
+    ck_assert_uint_eq(bus->slaves[0].emergencies.last, sent);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A slave that has a new message every eight cycles keeps no transfer waiting. */
+START_TEST(a_flood_keeps_no_transfer_waiting)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    uint8_t data[4];
+    cm1e_sdo_t sdo = {.position = 1, .index = 0x1018, .subindex = 1, .data = data, .size = sizeof data};
+    for (unsigned i = 0; i < 100; i++) {
+        char answer[100];
+        cm1e_bus_simulate(bus, "emergency 1 1000", answer, sizeof answer); /* refused where eight wait */
+        cycles(bus, 1);
+    }
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    unsigned n = 0;
+    for (; n < 200 && cm1e_sdo_state(&sdo) == CM1E_SDO_BUSY; n++) {
+        char answer[100];
+        if (n % 8 == 0)
+            cm1e_bus_simulate(bus, "emergency 1 1000", answer, sizeof answer);
+        cycles(bus, 1);
+    }
+    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+    ck_assert_uint_lt(n, 100);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A slave without CoE, and one that is away, are not asked; the others still are. */
+START_TEST(slaves_without_a_mailbox_are_passed_over)
+{
+    sim_config(2);
+    config.axes[1].address = 3; /* in the gap is an I/O module */
+    cm1e_bus_t *bus = start_bus();
+    char answer[200];
+    ck_assert_int_eq(cm1e_bus_simulate(bus, "emergency 2 1000", answer, sizeof answer), CM1E_ERROR_INVALID_ARGUMENT);
+    simulate(bus, "emergency 3 1000");
+    cycles(bus, 20);
+    ck_assert_uint_eq(emergencies_of(bus, 3), 1);
+    ck_assert_uint_eq(emergencies_of(bus, 2), 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/* ---- a reader beside the writer --------------------------------------------------------------------------------- */
+
+static cm1e_emergency_ring_t ring;
+static _Atomic bool ready;
+
+static void *write_many(void *context)
+{
+    (void)context;
+    for (uint32_t i = 1; i <= 200000; i++) {
+        cm1e_emergency_t one = {.time_ns = i, .code = (uint16_t)i, .error_register = (uint8_t)i};
+        memset(one.data, (uint8_t)i, sizeof one.data);
+        cm1e_emergency_add(&ring, one);
+    }
+    ready = true;
+    return NULL;
+}
+
+START_TEST(a_reader_in_another_thread_sees_whole_emergencies_in_order)
+{
+    pthread_t thread;
+    uint64_t after = 0;
+    memset(&ring, 0, sizeof ring);
+    ready = false;
+    ck_assert_int_eq(pthread_create(&thread, NULL, write_many, NULL), 0);
+    for (bool last = false; !last;) {
+        cm1e_emergency_t got[CM1E_EMERGENCIES];
+        uint64_t lost = 0;
+        last = ready;
+        const size_t count = cm1e_emergency_copy(&ring, after, got, CM1E_EMERGENCIES, &lost);
+        for (size_t i = 0; i < count; i++) {
+            ck_assert_uint_eq(got[i].number, after + lost + 1 + i);
+            ck_assert_int_eq(got[i].time_ns, (int64_t)got[i].number);
+            ck_assert_uint_eq(got[i].code, (uint16_t)got[i].number);
+            ck_assert_uint_eq(got[i].data[4], (uint8_t)got[i].number);
+        }
+        after = count ? got[count - 1].number : after;
+    }
+    pthread_join(thread, NULL);
+    ck_assert_uint_eq(after, 200000);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("emergencies");
+    TCase *tests = tcase_create("emergencies");
+    tcase_set_timeout(tests, 60);
+    tcase_add_test(tests, an_emergency_arrives_without_any_transfer);
+    tcase_add_test(tests, texts_are_those_of_the_device_or_of_the_class);
+    tcase_add_test(tests, an_error_of_a_drive_arrives_once);
+    tcase_add_test(tests, the_last_ones_are_kept);
+    tcase_add_test(tests, transfers_and_emergencies_do_not_disturb_each_other);
+    tcase_add_test(tests, a_flood_keeps_no_transfer_waiting);
+    tcase_add_test(tests, slaves_without_a_mailbox_are_passed_over);
+    tcase_add_test(tests, a_reader_in_another_thread_sees_whole_emergencies_in_order);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
