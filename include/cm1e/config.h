@@ -123,6 +123,22 @@ typedef enum cm1e_coupling_stop {
     CM1E_COUPLING_STOP_KEEP_RATIO,   /**< the master is braked so that the axis can follow it down to standstill */
 } cm1e_coupling_stop_t;
 
+/** Types of signals, with their names in IEC 61131-3. */
+typedef enum cm1e_io_type {
+    CM1E_IO_BOOL = 0, /**< 1 bit */
+    CM1E_IO_SINT,     /**< INTEGER8 */
+    CM1E_IO_USINT,    /**< 2 ... 8 bits */
+    CM1E_IO_INT,      /**< INTEGER16 */
+    CM1E_IO_UINT,     /**< 9 ... 16 bits */
+    CM1E_IO_DINT,     /**< INTEGER32 */
+    CM1E_IO_UDINT,    /**< 17 ... 32 bits */
+    CM1E_IO_LINT,     /**< INTEGER64 */
+    CM1E_IO_ULINT,    /**< 33 ... 64 bits */
+    CM1E_IO_REAL,     /**< REAL32 */
+    CM1E_IO_LREAL,    /**< REAL64 */
+    CM1E_IO_BYTES,    /**< more than 64 bits: cm1e_io_bytes() */
+} cm1e_io_type_t;
+
 /** What other programs may do with a running one through its control socket (docs/CONTROL.md). */
 typedef enum cm1e_control_mode {
     CM1E_CONTROL_OBSERVE = 0,        /**< look: axes, slaves, statistics, log, reading objects */
@@ -195,10 +211,78 @@ typedef struct cm1e_axis_config {
                                           those that the drive has assigned itself */
 } cm1e_axis_config_t;
 
-/** The whole bus. The configuration owns its axes: make it with cm1e_bus_config_init() or cm1e_bus_config_load(), add
- *  axes with cm1e_bus_config_add_axis(), and free it with cm1e_bus_config_free() when the bus is open, because the bus
- *  has a copy. Later versions add members at the end of this struct and of cm1e_axis_config_t only. The two sizes tell
- *  the library which members the program was compiled with. */
+/** A start-up SDO of a slave: written at every start, and when the slave has come back. */
+typedef struct cm1e_sdo_config {
+    uint16_t index;
+    uint8_t subindex;
+    uint8_t bytes;                   /**< 1 ... 8 */
+    bool before_op;                  /**< true: written in Safe-Operational; false: before that, ahead of the PDOs */
+    uint64_t value;                  /**< its bits; the lowest `bytes` bytes are sent, little endian */
+} cm1e_sdo_config_t;
+
+/** An entry of a PDO that is written anew. The entries of one PDO stand together, in their order. */
+typedef struct cm1e_pdo_entry_config {
+    uint16_t pdo;                    /**< 0x1600 ... 0x17FF or 0x1A00 ... 0x1BFF */
+    uint16_t index;                  /**< 0: a gap of `bits` */
+    uint8_t subindex, bits;          /**< bits: 1 ... 255 */
+} cm1e_pdo_entry_config_t;
+
+/** A signal of a slave with a name of its own: an object that its PDOs map, or bits by their place. */
+typedef struct cm1e_signal_config {
+    char name[CM1E_NAME_LENGTH];
+    bool output;
+    uint16_t index;                  /**< object; 0: by place, as `bit` and `bits` say */
+    uint8_t subindex;
+    bool type_stated;                /**< true: `type` is valid; false: as the slave says, or by the number of bits */
+    cm1e_io_type_t type;
+    uint16_t bit;                    /**< from the beginning of the slave's process data of this direction, 0 = first */
+    uint16_t bits;                   /**< 0 selects those of the type, or 1 */
+    bool hold;                       /**< outputs: true: keeps its last value where others take their safe value */
+    double safe;                     /**< outputs: the safe value (docs/BUS-FILE.md); at most 64 bits */
+} cm1e_signal_config_t;
+
+/** What the simulated segment has at the place of a slave; ignored on a real network. */
+typedef enum cm1e_sim_slave_kind {
+    CM1E_SIM_SLAVE_GAP = 0,          /**< the device of `sim_gaps` */
+    CM1E_SIM_SLAVE_COUPLER,          /**< no process data, no mailbox */
+    CM1E_SIM_SLAVE_DIGITAL,          /**< a bit per channel, no mailbox */
+    CM1E_SIM_SLAVE_ANALOG,           /**< 16 bits per channel, with CoE: settings, PDOs that can be written */
+} cm1e_sim_slave_kind_t;
+
+typedef struct cm1e_sim_slave_config {
+    cm1e_sim_slave_kind_t kind;
+    uint8_t inputs, outputs;         /**< channels, 0 ... 8; at least one of a digital or analog device */
+    char wired_to[CM1E_NAME_LENGTH]; /**< the slave to whose outputs the inputs are wired, channel by channel; "": to
+                                          its own outputs, if it has any */
+} cm1e_sim_slave_config_t;
+
+#define CM1E_SLAVE_SDOS 32        /**< maximum number of start-up SDOs of a slave */
+#define CM1E_SLAVE_PDOS 16        /**< maximum number of PDOs that are assigned in one direction */
+#define CM1E_SLAVE_PDO_ENTRIES 64 /**< maximum number of entries of all PDOs that are written anew */
+#define CM1E_SLAVE_SIGNALS 64     /**< maximum number of named signals */
+
+/** A slave without an axis: terminal, encoder, device of another maker. Slaves that are not listed run too, with the
+ *  process data of their SII and with signals that a program can find. */
+typedef struct cm1e_slave_config {
+    char name[CM1E_NAME_LENGTH];     /**< "" selects "slave<n>"; no name of an axis, no '.' */
+    cm1e_address_kind_t address_kind;
+    uint16_t address;                /**< position (1 = first), alias or explicit ID */
+    uint32_t vendor, product, revision; /**< checked at the start; 0: any */
+    uint16_t watchdog_ms;            /**< process data watchdog, 1 ... 6000; 0 selects 100 */
+    uint16_t outputs_pdo_count, inputs_pdo_count; /**< 0: those that the slave has assigned itself */
+    uint16_t outputs_pdos[CM1E_SLAVE_PDOS], inputs_pdos[CM1E_SLAVE_PDOS];
+    uint16_t entry_count, sdo_count, signal_count;
+    cm1e_pdo_entry_config_t entries[CM1E_SLAVE_PDO_ENTRIES];
+    cm1e_sdo_config_t sdos[CM1E_SLAVE_SDOS];
+    cm1e_signal_config_t signals[CM1E_SLAVE_SIGNALS];
+    cm1e_sim_slave_config_t sim;
+} cm1e_slave_config_t;
+
+/** The whole bus. The configuration owns its axes and slaves: make it with cm1e_bus_config_init() or
+ *  cm1e_bus_config_load(), add to it with cm1e_bus_config_add_axis() and cm1e_bus_config_add_slave(), and free it with
+ *  cm1e_bus_config_free() when the bus is open, because the bus has a copy. Later versions add members at the end of
+ *  this struct, of cm1e_axis_config_t and of cm1e_slave_config_t only. The sizes tell the library which members the
+ *  program was compiled with. */
 typedef struct cm1e_bus_config {
     size_t size, axis_size;          /**< bytes of this struct and of an axis; 0: the sizes that the library has */
     uint32_t axis_count;             /**< at most CM1E_MAX_AXES */
@@ -214,6 +298,9 @@ typedef struct cm1e_bus_config {
     cm1e_pdo_order_t sim_pdo_order;  /**< simulated segment only */
     cm1e_sim_io_t sim_gaps;          /**< simulated segment only: the device at each place without a motor */
     cm1e_control_mode_t control;     /**< only where the program links cm1e::control */
+    size_t slave_size;               /**< bytes of a slave; 0: the size that the library has */
+    uint32_t slave_count;            /**< at most CM1E_MAX_SLAVES */
+    cm1e_slave_config_t *slaves;     /**< slaves[0] ... slaves[slave_count - 1] */
 } cm1e_bus_config_t;
 
 /** Does the work of cm1e_bus_config_init(), for a program with these sizes of the structs. @rt init */
@@ -233,18 +320,34 @@ static inline cm1e_error_t cm1e_bus_config_init(cm1e_bus_config_t *config, const
  *  axis is added. Returns NULL if there are CM1E_MAX_AXES axes already, or no memory. @rt init */
 CM1E_API cm1e_axis_config_t *cm1e_bus_config_add_axis(cm1e_bus_config_t *config, const char *name);
 
-/** Frees the axes; the configuration has no axes then. NULL is allowed. @rt init */
+/** Does the work of cm1e_bus_config_add_slave(), for a program with this size of the struct. @rt init */
+CM1E_API cm1e_slave_config_t *cm1e_bus_config_add_slave_sized(cm1e_bus_config_t *config, size_t slave_size,
+                                                              const char *name);
+/** Adds a slave without an axis and returns it, with defaults and without an address; `name` NULL or "" selects
+ *  "slave<n>". The pointer is valid until the next slave is added. Returns NULL if there are CM1E_MAX_SLAVES slaves
+ *  already, or no memory. @rt init */
+static inline cm1e_slave_config_t *cm1e_bus_config_add_slave(cm1e_bus_config_t *config, const char *name)
+{
+    return cm1e_bus_config_add_slave_sized(config, sizeof(cm1e_slave_config_t), name);
+}
+
+/** Frees the axes and slaves; the configuration has none then. NULL is allowed. @rt init */
 CM1E_API void cm1e_bus_config_free(cm1e_bus_config_t *config);
 
 /** Does the work of cm1e_bus_config_load(), for a program with these sizes of the structs. @rt init */
 CM1E_API cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, size_t axis_size,
                                                  const char *path, cm1e_diag_t *diag);
+/** Gives the slaves of a configuration the size that the program has for them. After a failure, CM1E_ERROR_NO_MEMORY,
+ *  the configuration is freed. @rt init */
+CM1E_API cm1e_error_t cm1e_bus_config_size_slaves(cm1e_bus_config_t *config, size_t slave_size, cm1e_diag_t *diag);
 /** Makes a configuration from a bus file (YAML; docs/BUS-FILE.md describes it), instead of cm1e_bus_config_init(): free
  *  an earlier configuration first. After a failure `config` is unchanged, and `diag` names file, line, column, what was
  *  found and what was expected. @rt init */
 static inline cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag)
 {
-    return cm1e_bus_config_load_sized(config, sizeof(cm1e_bus_config_t), sizeof(cm1e_axis_config_t), path, diag);
+    const cm1e_error_t error = cm1e_bus_config_load_sized(config, sizeof(cm1e_bus_config_t), sizeof(cm1e_axis_config_t),
+                                                          path, diag);
+    return error != CM1E_OK ? error : cm1e_bus_config_size_slaves(config, sizeof(cm1e_slave_config_t), diag);
 }
 
 /** Checks a configuration made by hand for ranges and contradictions; a bus file is checked when it is loaded. Returns

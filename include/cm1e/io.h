@@ -25,22 +25,6 @@
 extern "C" {
 #endif
 
-/** Types of signals, with their names in IEC 61131-3. */
-typedef enum cm1e_io_type {
-    CM1E_IO_BOOL = 0, /**< 1 bit */
-    CM1E_IO_SINT,     /**< INTEGER8 */
-    CM1E_IO_USINT,    /**< 2 ... 8 bits */
-    CM1E_IO_INT,      /**< INTEGER16 */
-    CM1E_IO_UINT,     /**< 9 ... 16 bits */
-    CM1E_IO_DINT,     /**< INTEGER32 */
-    CM1E_IO_UDINT,    /**< 17 ... 32 bits */
-    CM1E_IO_LINT,     /**< INTEGER64 */
-    CM1E_IO_ULINT,    /**< 33 ... 64 bits */
-    CM1E_IO_REAL,     /**< REAL32 */
-    CM1E_IO_LREAL,    /**< REAL64 */
-    CM1E_IO_BYTES,    /**< more than 64 bits: cm1e_io_bytes() */
-} cm1e_io_type_t;
-
 /** "BOOL", "USINT" ...; never NULL. @rt any */
 CM1E_API const char *cm1e_io_type_name(cm1e_io_type_t type);
 /** The unsigned type of so many bits. @rt any */

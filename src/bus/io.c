@@ -10,7 +10,7 @@
 #include <strings.h>
 
 #include "bus/bus_internal.h"
-#include "bus/io_types.h"
+#include "config/io_types.h"
 #include "bus/sii_reader.h"
 
 /* ---- the signals of a slave -------------------------------------------------------------------------------------- */
@@ -253,6 +253,12 @@ cm1e_error_t cm1e_io_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io, cm1e
 }
 
 /* ---- in the cycle ------------------------------------------------------------------------------------------------ */
+
+const char *cm1e_io_quality_name(cm1e_io_quality_t quality)
+{
+    static const char *const names[] = {"good", "stale", "offline", "invalid"};
+    return (unsigned)quality < sizeof names / sizeof names[0] ? names[quality] : "?";
+}
 
 static bool is_valid(const cm1e_io_t *io) { return io->bus && io->layout == io->bus->layout && io->layout != 0; }
 

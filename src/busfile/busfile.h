@@ -43,11 +43,50 @@ typedef struct cm1e_busfile_axis {
     int acceleration_unit; /**< 1: kcounts/s2 */
 } cm1e_busfile_axis_t;
 
+/** An object, a PDO, an entry: "0x6000:01", "0x1A00", "0x6000:01/16", "gap/8". */
+typedef char cm1e_busfile_text_t[24];
+
+typedef struct cm1e_busfile_sdo {
+    cm1e_busfile_text_t object;
+    char type[8], value[32];
+    int before_op;
+} cm1e_busfile_sdo_t;
+
+enum { CM1E_BUSFILE_PDO_ENTRIES = 32 };
+
+typedef struct cm1e_busfile_mapping {
+    cm1e_busfile_text_t pdo;
+    cm1e_busfile_text_t entries[CM1E_BUSFILE_PDO_ENTRIES];
+    uint32_t count;
+} cm1e_busfile_mapping_t;
+
+typedef struct cm1e_busfile_signal {
+    char name[CM1E_NAME_LENGTH];
+    cm1e_busfile_text_t object; /**< "": by its bit */
+    uint16_t *bit;              /**< NULL: by its object */
+    uint16_t bits;
+    char type[8], safe[32];     /**< "": not stated */
+} cm1e_busfile_signal_t;
+
+/** One slave of the file: values that are copied into the configuration, and values that are converted. */
+typedef struct cm1e_busfile_slave {
+    cm1e_slave_config_t slave;
+    uint16_t position, alias, explicit_id;
+    char vendor[12], product[12], revision[12];
+    uint32_t sdo_count, mapping_count, outputs_pdo_count, inputs_pdo_count, output_count, input_count;
+    cm1e_busfile_sdo_t sdos[CM1E_SLAVE_SDOS];
+    cm1e_busfile_mapping_t mappings[CM1E_SLAVE_PDOS];
+    cm1e_busfile_text_t outputs_pdos[CM1E_SLAVE_PDOS], inputs_pdos[CM1E_SLAVE_PDOS];
+    cm1e_busfile_signal_t outputs[CM1E_SLAVE_SIGNALS], inputs[CM1E_SLAVE_SIGNALS];
+} cm1e_busfile_slave_t;
+
 typedef struct cm1e_busfile {
-    cm1e_bus_config_t config; /**< without axes */
+    cm1e_bus_config_t config; /**< without axes and slaves */
     uint32_t cycle_time_us, frame_timeout_us;
     uint32_t axis_count;
     cm1e_busfile_axis_t axes[CM1E_MAX_AXES];
+    uint32_t slave_count;
+    cm1e_busfile_slave_t *slaves;
 } cm1e_busfile_t;
 
 extern const cyaml_schema_value_t cm1e_busfile_schema;
@@ -63,5 +102,15 @@ extern const char *const cm1e_busfile_zero_allowed[];
 
 /** Compares every node of the document with the schema. Numbers are read in the thread's locale: it must be "C". */
 bool cm1e_busfile_compare(yaml_document_t *document, cm1e_config_problem_t *problem);
+
+/* ---- load.c, load_slaves.c: conversion --------------------------------------------------------------------------- */
+
+/** Takes the one address that is stated of position, alias and explicit ID; 0: the others are. false: more than one
+ *  is. `list`: "axes" or "slaves". */
+bool cm1e_busfile_convert_address(const uint16_t stated[3], cm1e_address_kind_t *kind, uint16_t *address,
+                                  const char *list, uint32_t index, cm1e_config_problem_t *problem);
+/** Adds the slaves of the file to the configuration. */
+bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t *from,
+                                 cm1e_config_problem_t *problem);
 
 #endif

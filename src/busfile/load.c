@@ -41,23 +41,24 @@ static void set_up_libcyaml(cyaml_config_t *settings, cm1e_config_problem_t *pro
 
 /* ---- conversion -------------------------------------------------------------------------------------------------- */
 
-static bool convert_address(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
-                            cm1e_config_problem_t *problem)
+bool cm1e_busfile_convert_address(const uint16_t stated[3], cm1e_address_kind_t *kind, uint16_t *address,
+                                  const char *list, uint32_t index, cm1e_config_problem_t *problem)
 {
-    if ((from->position != 0) + (from->alias != 0) + (from->explicit_id != 0) > 1) {
-        snprintf(problem->path, sizeof problem->path, "axes[%u].%s", index,
-                 from->explicit_id ? "explicit_id" : "alias");
-        snprintf(problem->text, sizeof problem->text,
-                 "entry %u of the list is addressed twice; expected one of position, alias and explicit_id", index + 1);
-        return false;
-    }
-    axis->address_kind = from->alias         ? CM1E_ADDRESS_ALIAS
-                         : from->explicit_id ? CM1E_ADDRESS_EXPLICIT_ID
-                                             : CM1E_ADDRESS_POSITION;
-    axis->address = from->alias         ? from->alias
-                    : from->explicit_id ? from->explicit_id
-                                        : from->position; /* 0: its place in the list */
-    return true;
+    static const char *const keys[] = {"position", "alias", "explicit_id"}; /* by cm1e_address_kind_t */
+    unsigned count = 0, last = 0;
+    for (unsigned i = 0; i < 3; i++)
+        if (stated[i]) {
+            count++;
+            last = i;
+        }
+    *kind = (cm1e_address_kind_t)last;
+    *address = stated[last];
+    if (count <= 1)
+        return true;
+    snprintf(problem->path, sizeof problem->path, "%s[%u].%s", list, index, keys[last]);
+    snprintf(problem->text, sizeof problem->text,
+             "entry %u of the list is addressed twice; expected one of position, alias and explicit_id", index + 1);
+    return false;
 }
 
 static void convert_software_limits(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from)
@@ -101,7 +102,8 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
     if (!convert_pdo(&axis->outputs_pdo, from->outputs_pdo, "outputs_pdo", 0x1600, index, problem) ||
         !convert_pdo(&axis->inputs_pdo, from->inputs_pdo, "inputs_pdo", 0x1A00, index, problem))
         return false;
-    return convert_address(axis, from, index, problem);
+    const uint16_t stated[] = {from->position, from->alias, from->explicit_id}; /* 0: its place in the list */
+    return cm1e_busfile_convert_address(stated, &axis->address_kind, &axis->address, "axes", index, problem);
 }
 
 static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_config_problem_t *problem)
@@ -121,7 +123,7 @@ static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_
             return false;
     for (uint32_t i = 0; i < from->axis_count; i++)
         config->axes[i].address = cm1e_axis_address(config, i);
-    return true;
+    return cm1e_busfile_convert_slaves(config, from, problem);
 }
 
 /* ---- loading ----------------------------------------------------------------------------------------------------- */
@@ -205,7 +207,10 @@ cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, 
     if (error == CM1E_OK) {
         error = cm1e_config_copy_sized(config, size, axis_size, &loaded);
         if (error != CM1E_OK)
-            snprintf(problem.text, sizeof problem.text, "out of memory");
+            snprintf(problem.text, sizeof problem.text, "%s",
+                     error == CM1E_ERROR_CONFIG ? "the file has slaves, which the program does not know: it was "
+                                                  "compiled with an older version of the library; compile it again"
+                                                : "out of memory");
     }
     cm1e_bus_config_free(&loaded);
     free(bytes);

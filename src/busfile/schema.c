@@ -193,10 +193,99 @@ static const cyaml_schema_value_t axis_value = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_axis_t, axis_fields),
 };
 
+#define SLAVE_UINT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_slave_t, member)
+#define SLAVE_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_slave_t, member, 1)
+/* A list of entries of one kind, each required to be there. */
+#define LIST_OF(key, structure, member, count, entry)                                                               \
+    CYAML_FIELD_SEQUENCE_COUNT(key, OPTIONAL, structure, member, count, entry, 1, COUNT_OF(((structure *)0)->member))
+#define TEXT_OF(type) {CYAML_VALUE_STRING(CYAML_FLAG_DEFAULT, type, 1, sizeof(type) - 1)}
+
+static const cyaml_schema_value_t text_value = TEXT_OF(cm1e_busfile_text_t);
+
+static const cyaml_strval_t moments[] = {
+    {"safe_op", 0},
+    {"op", 1},
+};
+static const cyaml_schema_field_t sdo_fields[] = {
+    CYAML_FIELD_STRING("object", CYAML_FLAG_STRICT, cm1e_busfile_sdo_t, object, 1),
+    CYAML_FIELD_STRING("type", CYAML_FLAG_STRICT, cm1e_busfile_sdo_t, type, 1),
+    CYAML_FIELD_STRING("value", CYAML_FLAG_STRICT, cm1e_busfile_sdo_t, value, 1),
+    ENUM_OF("before", cm1e_busfile_sdo_t, before_op, moments),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t sdo_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_sdo_t, sdo_fields),
+};
+static const cyaml_schema_field_t mapping_fields[] = {
+    CYAML_FIELD_STRING("pdo", CYAML_FLAG_STRICT, cm1e_busfile_mapping_t, pdo, 1),
+    CYAML_FIELD_SEQUENCE_COUNT("entries", CYAML_FLAG_STRICT, cm1e_busfile_mapping_t, entries, count, &text_value, 1,
+                               CM1E_BUSFILE_PDO_ENTRIES),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t mapping_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_mapping_t, mapping_fields),
+};
+#define SIGNAL_PLACE                                                                                                \
+    CYAML_FIELD_STRING("name", CYAML_FLAG_STRICT, cm1e_busfile_signal_t, name, 1),                                  \
+    CYAML_FIELD_STRING("object", OPTIONAL, cm1e_busfile_signal_t, object, 1),                                       \
+    CYAML_FIELD_UINT_PTR("bit", OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_signal_t, bit),                         \
+    CYAML_FIELD_UINT("bits", OPTIONAL, cm1e_busfile_signal_t, bits),                                                \
+    CYAML_FIELD_STRING("type", OPTIONAL, cm1e_busfile_signal_t, type, 1)
+static const cyaml_schema_field_t input_signal_fields[] = {SIGNAL_PLACE, CYAML_FIELD_END};
+static const cyaml_schema_field_t output_signal_fields[] = {
+    SIGNAL_PLACE,
+    CYAML_FIELD_STRING("safe", OPTIONAL, cm1e_busfile_signal_t, safe, 1),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t input_signal_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_signal_t, input_signal_fields),
+};
+static const cyaml_schema_value_t output_signal_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_signal_t, output_signal_fields),
+};
+
+static const cyaml_strval_t sim_devices[] = {
+    {"coupler", CM1E_SIM_SLAVE_COUPLER},
+    {"digital", CM1E_SIM_SLAVE_DIGITAL},
+    {"analog", CM1E_SIM_SLAVE_ANALOG},
+};
+static const cyaml_schema_field_t sim_slave_fields[] = {
+    CYAML_FIELD_ENUM("device", CYAML_FLAG_STRICT, cm1e_busfile_slave_t, slave.sim.kind, sim_devices,
+                     COUNT_OF(sim_devices)),
+    SLAVE_UINT("inputs", slave.sim.inputs),
+    SLAVE_UINT("outputs", slave.sim.outputs),
+    SLAVE_STRING("wired_to", slave.sim.wired_to),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t slave_fields[] = {
+    SLAVE_STRING("name", slave.name),
+    SLAVE_UINT("position", position),
+    SLAVE_UINT("alias", alias),
+    SLAVE_UINT("explicit_id", explicit_id),
+    SLAVE_STRING("vendor", vendor),
+    SLAVE_STRING("product", product),
+    SLAVE_STRING("revision", revision),
+    SLAVE_UINT("watchdog_ms", slave.watchdog_ms),
+    LIST_OF("sdo", cm1e_busfile_slave_t, sdos, sdo_count, &sdo_value),
+    LIST_OF("mapping", cm1e_busfile_slave_t, mappings, mapping_count, &mapping_value),
+    LIST_OF("outputs_pdos", cm1e_busfile_slave_t, outputs_pdos, outputs_pdo_count, &text_value),
+    LIST_OF("inputs_pdos", cm1e_busfile_slave_t, inputs_pdos, inputs_pdo_count, &text_value),
+    LIST_OF("outputs", cm1e_busfile_slave_t, outputs, output_count, &output_signal_value),
+    LIST_OF("inputs", cm1e_busfile_slave_t, inputs, input_count, &input_signal_value),
+    GROUP("sim", cm1e_busfile_slave_t, sim_slave_fields),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t slave_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_slave_t, slave_fields),
+};
+
 static const cyaml_schema_field_t file_fields[] = {
     GROUP("bus", cm1e_busfile_t, bus_fields),
     CYAML_FIELD_SEQUENCE_COUNT("axes", CYAML_FLAG_DEFAULT, cm1e_busfile_t, axes, axis_count, &axis_value, 1,
                                CM1E_MAX_AXES),
+    CYAML_FIELD_SEQUENCE_COUNT("slaves", OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_t, slaves, slave_count,
+                               &slave_value, 1, CM1E_MAX_SLAVES),
     CYAML_FIELD_END,
 };
 const cyaml_schema_value_t cm1e_busfile_schema = {
@@ -216,6 +305,8 @@ const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
     {"counts_per_revolution", 100, 1 << 30},
     {"gear_numerator", 1, 1000000}, {"gear_denominator", 1, 1000000},
     {"cam_points", CM1E_CAM_POINTS_MINIMUM, CM1E_CAM_POINTS_MAXIMUM},
+    {"watchdog_ms", 1, 6000},
+    {"bit", 0, 8 * 1486 - 1}, {"bits", 1, 8 * 1486}, {"inputs", 1, 8}, {"outputs", 1, 8},
     {"limit_positive", 1, 4}, {"limit_negative", 1, 4}, {"home", 1, 4},
     {NULL, INT32_MIN, INT32_MAX},
 };

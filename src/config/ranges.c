@@ -233,5 +233,5 @@ bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_probl
         if (!check_axis(&check))
             return false;
     }
-    return true;
+    return cm1e_config_check_slaves(config, problem);
 }

@@ -40,6 +40,8 @@ bool cm1e_config_check_device(const check_t *check);
 /** The unit, which the numbers need; then the numbers of an axis (ranges_numbers.c). */
 bool cm1e_config_check_unit(check_t *check);
 bool cm1e_config_check_numbers(check_t *check);
+/** The slaves without an axis (ranges_slaves.c). */
+bool cm1e_config_check_slaves(const cm1e_bus_config_t *config, cm1e_config_problem_t *problem);
 /** Checks that a virtual axis or an encoder has no keys of a motor. */
 bool cm1e_config_check_without_motor(const check_t *check);
 

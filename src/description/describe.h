@@ -21,6 +21,9 @@ static inline void cm1e_describe_io_module(cm1e_description_file_t *file)
     cm1e_describe_io(file, CM1E_SIM_IO_MODULE);
 }
 
+/** Appends the simulated device of a slave of the configuration, with its identity: a coupler, digital or analog. */
+void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_config_t *slave);
+
 /** The sync managers that carry process data: 0x1C12 and 0x1C13 assign PDOs to them. */
 enum { CM1E_SM_NUMBER_OUTPUTS = 2, CM1E_SM_NUMBER_INPUTS = 3 };
 

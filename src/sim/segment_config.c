@@ -1,17 +1,23 @@
 #include <string.h>
 
+#include <strings.h>
+
 #include "device/devices.h"
 #include "device/place.h"
+#include "sim/io_device.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 
 enum { EXPLICIT_ID_MAX = 254 };
 
-/* One place: a CM1-E, which is one axis, or a bridge with up to four. Empty: no motor. */
+/* One place: a CM1-E, which is one axis, or a bridge with up to four; or a slave without an axis. Empty: a gap. */
 typedef struct place {
+    const cm1e_slave_config_t *slave;
     const cm1e_axis_config_t *axis;                        /* the first of the list */
     const cm1e_axis_config_t *channels[CM1E_BRIDGE_AXES];  /* behind a bridge */
 } place_t;
+
+static bool is_free(const place_t *place) { return !place->axis && !place->slave; }
 
 /* Returns false if the place is taken, or if there is no such connector. */
 static bool take_place(place_t *place, const cm1e_axis_config_t *axis)
@@ -25,9 +31,9 @@ static bool take_place(place_t *place, const cm1e_axis_config_t *axis)
         place->axis = axis;
     if (!shares)
         return true;
-    const bool is_free = !place->channels[axis->channel - 1];
+    const bool unused = !place->channels[axis->channel - 1];
     place->channels[axis->channel - 1] = axis;
-    return is_free;
+    return unused;
 }
 
 /* The place of the bridge of which the list has named another axis before; NULL: none. */
@@ -41,7 +47,8 @@ static place_t *place_of_bridge(place_t *places, const cm1e_axis_config_t *axis)
     return NULL;
 }
 
-/* Axes with a position take that place; the others fill the remaining places, in the order of the list. */
+/* Axes and slaves with a position take that place; other axes, then other slaves fill the remaining places, in the
+ * order of their lists. */
 static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_diag_t *diag)
 {
     for (uint32_t i = 0; i < config->axis_count; i++) {
@@ -56,13 +63,23 @@ static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_di
             return false;
         }
     }
+    return true;
+}
+
+static bool place_other_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_diag_t *diag)
+{
     uint32_t free_place = 0;
     for (uint32_t i = 0; i < config->axis_count; i++) {
         if (!cm1e_axis_has_motor(&config->axes[i]) || config->axes[i].address_kind == CM1E_ADDRESS_POSITION)
             continue;
-        while (places[free_place].axis)
+        while (free_place < CM1E_MAX_SLAVES && !is_free(&places[free_place]))
             free_place++;
         place_t *bridge = place_of_bridge(places, &config->axes[i]);
+        if (!bridge && free_place == CM1E_MAX_SLAVES) {
+            cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the simulated segment has no place for axis %u: %d are taken",
+                          i + 1, CM1E_MAX_SLAVES);
+            return false;
+        }
         if (!take_place(bridge ? bridge : &places[free_place], &config->axes[i])) {
             cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the simulated segment has no place for axis %u at channel %u: "
                           "it is taken by another axis", i + 1, config->axes[i].channel);
@@ -72,11 +89,50 @@ static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_di
     return true;
 }
 
-/* An axis at position 3 means that two slaves are before it: places without a motor get the device of `sim_gaps`. */
+static bool place_slave(const cm1e_slave_config_t *slave, place_t *place, cm1e_diag_t *diag)
+{
+    if (place && is_free(place)) {
+        place->slave = slave;
+        return true;
+    }
+    cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the simulated segment has no place for slave %s at %u: it is %s",
+                  slave->name, slave->address, place ? "taken by another" : "too far away");
+    return false;
+}
+
+static bool place_slaves(const cm1e_bus_config_t *config, place_t *places, bool by_position, cm1e_diag_t *diag)
+{
+    uint32_t next = 0;
+    for (uint32_t i = 0; i < config->slave_count; i++) {
+        const cm1e_slave_config_t *slave = &config->slaves[i];
+        if ((slave->address_kind == CM1E_ADDRESS_POSITION) != by_position)
+            continue;
+        while (!by_position && next < CM1E_MAX_SLAVES && !is_free(&places[next]))
+            next++;
+        const uint32_t place = by_position ? slave->address - 1u : next;
+        if (!place_slave(slave, place < CM1E_MAX_SLAVES ? &places[place] : NULL, diag))
+            return false;
+    }
+    return true;
+}
+
+/* A wire goes from an input to the output of its number. */
+static void wire_inputs(cm1e_sim_segment_t *segment, const place_t *places, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const char *source = places[i].slave ? places[i].slave->sim.wired_to : "";
+        for (uint32_t k = 0; k < count && source[0]; k++)
+            if (places[k].slave && strcasecmp(places[k].slave->name, source) == 0)
+                cm1e_sim_io_device_of(cm1e_sim_segment_slave(segment, i + 1))->source =
+                    cm1e_sim_io_device_of(cm1e_sim_segment_slave(segment, k + 1));
+    }
+}
+
+/* An axis at position 3 means that two slaves are before it: places of nobody get the device of `sim_gaps`. */
 static uint32_t last_place(const place_t *places)
 {
     uint32_t count = CM1E_MAX_SLAVES;
-    while (count && !places[count - 1].axis)
+    while (count && is_free(&places[count - 1]))
         count--;
     return count;
 }
@@ -139,6 +195,8 @@ static const struct {
 
 static cm1e_sim_slave_t *make(made_t *made)
 {
+    if (made->place->slave)
+        return cm1e_sim_io_device_create(made->place->slave, made->config->sim_gaps);
     if (!made->place->axis)
         return cm1e_sim_io_create(made->config->sim_gaps);
     const cm1e_device_t *device = cm1e_device_configured(made->place->axis);
@@ -182,7 +240,8 @@ cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1
         cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "%u axes: a bus has %d at most", config->axis_count, CM1E_MAX_AXES);
         return NULL;
     }
-    if (!place_axes(config, places, diag))
+    if (!place_axes(config, places, diag) || !place_slaves(config, places, true, diag) ||
+        !place_other_axes(config, places, diag) || !place_slaves(config, places, false, diag))
         return NULL;
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
     if (!segment) {
@@ -197,6 +256,7 @@ cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1
             cm1e_sim_segment_destroy(segment);
             return NULL;
         }
+    wire_inputs(segment, places, count);
     return segment;
 }
 

@@ -1,4 +1,7 @@
-#include "bus/io_types.h"
+#include "config/io_types.h"
+
+#include <math.h>
+#include <strings.h>
 
 const cm1e_io_type_row_t cm1e_io_types[CM1E_IO_TYPE_COUNT] = {
     [CM1E_IO_BOOL] = {"BOOL", 1, false, false},   [CM1E_IO_SINT] = {"SINT", 8, true, false},
@@ -20,8 +23,19 @@ cm1e_io_type_t cm1e_io_type_of_bits(uint32_t bits)
            bits <= 32 ? CM1E_IO_UDINT : bits <= 64 ? CM1E_IO_ULINT : CM1E_IO_BYTES;
 }
 
-const char *cm1e_io_quality_name(cm1e_io_quality_t quality)
+bool cm1e_io_fits(cm1e_io_type_t type, unsigned bits, double value)
 {
-    static const char *const names[] = {"good", "stale", "offline", "invalid"};
-    return (unsigned)quality < sizeof names / sizeof names[0] ? names[quality] : "?";
+    const cm1e_io_type_row_t *row = &cm1e_io_types[type];
+    if (row->is_real)
+        return isfinite(value);
+    const double least = row->is_signed ? -ldexp(1, (int)bits - 1) : 0, end = ldexp(1, (int)bits - row->is_signed);
+    return type != CM1E_IO_BYTES && value == floor(value) && value >= least && value < end;
+}
+
+unsigned cm1e_io_type_of_name(const char *name)
+{
+    unsigned type = 0;
+    while (type < CM1E_IO_TYPE_COUNT && strcasecmp(cm1e_io_types[type].name, name) != 0)
+        type++;
+    return type;
 }

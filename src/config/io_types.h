@@ -2,8 +2,8 @@
  * @file io_types.h
  * What the types of signals are.
  */
-#ifndef CM1E_BUS_IO_TYPES_H
-#define CM1E_BUS_IO_TYPES_H
+#ifndef CM1E_CONFIG_IO_TYPES_H
+#define CM1E_CONFIG_IO_TYPES_H
 
 #include "cm1e/io.h"
 
@@ -16,5 +16,10 @@ typedef struct cm1e_io_type_row {
 enum { CM1E_IO_TYPE_COUNT = CM1E_IO_BYTES + 1 };
 /** By cm1e_io_type_t. */
 extern const cm1e_io_type_row_t cm1e_io_types[CM1E_IO_TYPE_COUNT];
+
+/** Whether a signal of this type with so many bits can have a value; no BYTES can. */
+bool cm1e_io_fits(cm1e_io_type_t type, unsigned bits, double value);
+/** The type of this name, without regard to upper and lower case; CM1E_IO_TYPE_COUNT: there is none. */
+unsigned cm1e_io_type_of_name(const char *name);
 
 #endif

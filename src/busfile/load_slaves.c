@@ -1,0 +1,295 @@
+/* The slaves of a bus file: texts that name objects, PDOs and values become numbers. */
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "busfile/busfile.h"
+#include "config/io_types.h"
+
+typedef struct place {
+    cm1e_config_problem_t *problem;
+    uint32_t slave;
+} place_t;
+
+__attribute__((format(printf, 3, 4)))
+static bool wrong(const place_t *place, const char *key, const char *format, ...)
+{
+    cm1e_config_problem_t *problem = place->problem;
+    snprintf(problem->path, sizeof problem->path, "slaves[%u].%s", place->slave, key);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(problem->text, sizeof problem->text, format, args);
+    va_end(args);
+    return false;
+}
+
+/* ---- texts into numbers ------------------------------------------------------------------------------------------ */
+
+/* "0x" and 1 ... `digits` hexadecimal digits; `*end` is behind them. */
+static bool take_hex(const char *text, size_t digits, uint32_t *value, const char **end)
+{
+    static const char hex[] = "0123456789abcdefABCDEF";
+    const size_t length = strncmp(text, "0x", 2) == 0 ? strspn(text + 2, hex) : 0;
+    *value = (uint32_t)strtoul(text, NULL, 16);
+    *end = text + 2 + length;
+    return length >= 1 && length <= digits;
+}
+
+static bool convert_identity(const place_t *place, const char *key, const char *text, uint32_t *value)
+{
+    const char *end = "";
+    *value = 0;
+    if (text[0] == '\0' || (take_hex(text, 8, value, &end) && *end == '\0'))
+        return true;
+    return wrong(place, key, "%s is '%s'; expected it as in 0x0000001A", key, text);
+}
+
+/* "0x6000:01", "0x1A00"; `*end` is behind it. */
+static bool take_object(const char *text, uint16_t *index, uint8_t *subindex, const char **end)
+{
+    static const char hex[] = "0123456789abcdefABCDEF";
+    uint32_t value;
+    if (!take_hex(text, 4, &value, end))
+        return false;
+    *index = (uint16_t)value;
+    *subindex = 0;
+    if (**end != ':')
+        return true;
+    const size_t length = strspn(*end + 1, hex);
+    *subindex = (uint8_t)strtoul(*end + 1, NULL, 16);
+    *end += 1 + length;
+    return length >= 1 && length <= 2;
+}
+
+static bool convert_pdo(const place_t *place, const char *key, const char *text, uint16_t *pdo)
+{
+    const char *end;
+    uint32_t value;
+    const bool good = take_hex(text, 4, &value, &end) && *end == '\0';
+    *pdo = (uint16_t)value;
+    return good || wrong(place, key, "'%s' is no PDO; expected it as in 0x1A00", text);
+}
+
+static bool convert_pdos(const place_t *place, const char *key, const cm1e_busfile_text_t *texts, uint32_t count,
+                         uint16_t *pdos, uint16_t *to_count)
+{
+    char item[32];
+    for (uint32_t i = 0; i < count; i++) {
+        snprintf(item, sizeof item, "%s[%u]", key, i);
+        if (!convert_pdo(place, item, texts[i], &pdos[i]))
+            return false;
+    }
+    *to_count = (uint16_t)count;
+    return true;
+}
+
+/* ---- what is written into the slave ------------------------------------------------------------------------------ */
+
+static bool take_entry(const char *text, cm1e_pdo_entry_config_t *entry)
+{
+    const char *end = text + 3;
+    entry->index = 0;
+    entry->subindex = 0;
+    if (strncmp(text, "gap", 3) != 0 && !take_object(text, &entry->index, &entry->subindex, &end))
+        return false;
+    char *last;
+    const unsigned long bits = *end == '/' ? strtoul(end + 1, &last, 10) : 0;
+    entry->bits = (uint8_t)bits;
+    return bits >= 1 && bits <= 255 && *last == '\0' && end[1] >= '1' && end[1] <= '9';
+}
+
+static bool convert_mapping(const place_t *place, unsigned n, const cm1e_busfile_mapping_t *from,
+                            cm1e_slave_config_t *slave)
+{
+    char key[40];
+    uint16_t pdo;
+    snprintf(key, sizeof key, "mapping[%u].pdo", n);
+    if (!convert_pdo(place, key, from->pdo, &pdo))
+        return false;
+    for (uint32_t i = 0; i < from->count; i++) {
+        snprintf(key, sizeof key, "mapping[%u].entries[%u]", n, i);
+        if (slave->entry_count == CM1E_SLAVE_PDO_ENTRIES)
+            return wrong(place, key, "the mapping of a slave has at most %d entries in all PDOs",
+                         CM1E_SLAVE_PDO_ENTRIES);
+        cm1e_pdo_entry_config_t *entry = &slave->entries[slave->entry_count++];
+        if (!take_entry(from->entries[i], entry))
+            return wrong(place, key, "'%s' is no entry of a PDO; expected object and bits as in 0x6000:01/16, or a gap "
+                         "as in gap/8", from->entries[i]);
+        entry->pdo = pdo;
+    }
+    return true;
+}
+
+/* The bits of a value of this type; false: it is none. */
+static bool take_value(const char *text, cm1e_io_type_t type, unsigned bits, uint64_t *raw)
+{
+    char *end;
+    errno = 0;
+    if (strncmp(text, "0x", 2) == 0 && !cm1e_io_types[type].is_real) {
+        *raw = strtoull(text, &end, 16);
+        return end != text + 2 && *end == '\0' && errno == 0 && (bits == 64 || *raw >> bits == 0);
+    }
+    if (strcasecmp(text, "true") == 0 || strcasecmp(text, "on") == 0 || strcasecmp(text, "yes") == 0) {
+        *raw = 1;
+        return type == CM1E_IO_BOOL;
+    }
+    if (strcasecmp(text, "false") == 0 || strcasecmp(text, "off") == 0 || strcasecmp(text, "no") == 0) {
+        *raw = 0;
+        return type == CM1E_IO_BOOL;
+    }
+    const double value = strtod(text, &end);
+    if (end == text || *end != '\0' || strpbrk(text, "xXnN") || !cm1e_io_fits(type, bits, value))
+        return false;
+    const float narrow = (float)value;
+    uint32_t word;
+    memcpy(&word, &narrow, sizeof word);
+    if (type == CM1E_IO_LREAL)
+        memcpy(raw, &value, sizeof value);
+    else
+        *raw = type == CM1E_IO_REAL ? word : value < 0 ? (uint64_t)strtoll(text, NULL, 10) : strtoull(text, NULL, 10);
+    return type == CM1E_IO_LREAL || type == CM1E_IO_REAL || strspn(text, "-0123456789") == strlen(text);
+}
+
+/* "BOOL, SINT ...": of numbers only. */
+static void list_types(char text[100])
+{
+    text[0] = '\0';
+    for (unsigned i = 0; i < CM1E_IO_BYTES; i++)
+        snprintf(text + strlen(text), 100 - strlen(text), "%s%s", i ? ", " : "", cm1e_io_types[i].name);
+}
+
+static bool convert_type(const place_t *place, const char *key, const char *text, cm1e_io_type_t *type)
+{
+    char types[100];
+    const unsigned found = cm1e_io_type_of_name(text);
+    *type = found < CM1E_IO_BYTES ? (cm1e_io_type_t)found : CM1E_IO_BOOL;
+    list_types(types);
+    return found < CM1E_IO_BYTES || wrong(place, key, "type is '%s'; expected one of: %s", text, types);
+}
+
+static bool convert_sdo(const place_t *place, unsigned n, const cm1e_busfile_sdo_t *from, cm1e_sdo_config_t *sdo)
+{
+    char key[32];
+    const char *end;
+    cm1e_io_type_t type;
+    snprintf(key, sizeof key, "sdo[%u].object", n);
+    if (!take_object(from->object, &sdo->index, &sdo->subindex, &end) || *end != '\0')
+        return wrong(place, key, "object is '%s'; expected it as in 0x8000:06, in hexadecimal", from->object);
+    snprintf(key, sizeof key, "sdo[%u].type", n);
+    if (!convert_type(place, key, from->type, &type))
+        return false;
+    const unsigned bits = cm1e_io_types[type].bits;
+    sdo->bytes = (uint8_t)((bits + 7) / 8);
+    sdo->before_op = from->before_op != 0;
+    snprintf(key, sizeof key, "sdo[%u].value", n);
+    return take_value(from->value, type, bits, &sdo->value) ||
+           wrong(place, key, "value is '%s', which is no %s", from->value, cm1e_io_types[type].name);
+}
+
+/* ---- signals ----------------------------------------------------------------------------------------------------- */
+
+static bool convert_safe(const place_t *place, const char *key, const char *text, cm1e_signal_config_t *signal)
+{
+    char *end;
+    signal->hold = strcasecmp(text, "hold") == 0;
+    if (text[0] == '\0' || signal->hold)
+        return true;
+    uint64_t raw;
+    if (take_value(text, CM1E_IO_BOOL, 1, &raw)) {
+        signal->safe = (double)raw;
+        return true;
+    }
+    signal->safe = strtod(text, &end);
+    return (end != text && *end == '\0' && !strpbrk(text, "xXnN")) ||
+           wrong(place, key, "safe is '%s'; expected a number, true, false or hold", text);
+}
+
+static bool convert_signal(const place_t *place, const char *list, unsigned n, const cm1e_busfile_signal_t *from,
+                           cm1e_signal_config_t *signal)
+{
+    char key[32];
+    const char *end;
+    snprintf(key, sizeof key, "%s[%u].object", list, n);
+    if (from->object[0] && (!take_object(from->object, &signal->index, &signal->subindex, &end) || *end != '\0' ||
+                            signal->index == 0))
+        return wrong(place, key, "object is '%s'; expected it as in 0x6000:01, in hexadecimal", from->object);
+    key[strlen(key) - sizeof ".object" + 1] = '\0';
+    if ((from->object[0] != '\0') == (from->bit != NULL))
+        return wrong(place, key, "signal '%s' has %s; expected one of object and bit", from->name,
+                     from->bit ? "an object and a bit" : "neither an object nor a bit");
+    memcpy(signal->name, from->name, sizeof signal->name);
+    signal->bit = from->bit ? *from->bit : 0;
+    signal->bits = from->bits;
+    snprintf(key, sizeof key, "%s[%u].type", list, n);
+    signal->type_stated = from->type[0] != '\0';
+    if (signal->type_stated && !convert_type(place, key, from->type, &signal->type))
+        return false;
+    if (from->bit && !signal->bits)
+        signal->bits = signal->type_stated ? cm1e_io_types[signal->type].bits : 1;
+    snprintf(key, sizeof key, "%s[%u].safe", list, n);
+    return convert_safe(place, key, from->safe, signal);
+}
+
+static bool convert_signals(const place_t *place, const cm1e_busfile_slave_t *from, bool output,
+                            cm1e_slave_config_t *slave)
+{
+    const cm1e_busfile_signal_t *signals = output ? from->outputs : from->inputs;
+    const char *list = output ? "outputs" : "inputs";
+    const uint32_t count = output ? from->output_count : from->input_count;
+    for (uint32_t i = 0; i < count; i++) {
+        if (slave->signal_count == CM1E_SLAVE_SIGNALS)
+            return wrong(place, list, "inputs and outputs of a slave have at most %d names", CM1E_SLAVE_SIGNALS);
+        cm1e_signal_config_t *signal = &slave->signals[slave->signal_count++];
+        signal->output = output;
+        if (!convert_signal(place, list, i, &signals[i], signal))
+            return false;
+    }
+    return true;
+}
+
+/* ---- all together ------------------------------------------------------------------------------------------------ */
+
+static bool convert_slave(const place_t *place, cm1e_slave_config_t *slave, const cm1e_busfile_slave_t *from)
+{
+    char name[CM1E_NAME_LENGTH];
+    memcpy(name, slave->name, sizeof name); /* "slave<n>" */
+    *slave = from->slave;
+    if (slave->name[0] == '\0')
+        memcpy(slave->name, name, sizeof name);
+    const uint16_t stated[] = {from->position, from->alias, from->explicit_id};
+    if (!cm1e_busfile_convert_address(stated, &slave->address_kind, &slave->address, "slaves", place->slave,
+                                      place->problem) ||
+        !convert_identity(place, "vendor", from->vendor, &slave->vendor) ||
+        !convert_identity(place, "product", from->product, &slave->product) ||
+        !convert_identity(place, "revision", from->revision, &slave->revision))
+        return false;
+    for (uint32_t i = 0; i < from->sdo_count; i++)
+        if (!convert_sdo(place, i, &from->sdos[i], &slave->sdos[slave->sdo_count++]))
+            return false;
+    for (uint32_t i = 0; i < from->mapping_count; i++)
+        if (!convert_mapping(place, i, &from->mappings[i], slave))
+            return false;
+    return convert_pdos(place, "outputs_pdos", from->outputs_pdos, from->outputs_pdo_count, slave->outputs_pdos,
+                        &slave->outputs_pdo_count) &&
+           convert_pdos(place, "inputs_pdos", from->inputs_pdos, from->inputs_pdo_count, slave->inputs_pdos,
+                        &slave->inputs_pdo_count) &&
+           convert_signals(place, from, false, slave) && convert_signals(place, from, true, slave);
+}
+
+bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_config_problem_t *problem)
+{
+    for (uint32_t i = 0; i < from->slave_count; i++) {
+        cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(config, NULL);
+        const place_t place = {problem, i};
+        if (!slave) {
+            snprintf(problem->text, sizeof problem->text, "out of memory");
+            return false;
+        }
+        if (!convert_slave(&place, slave, &from->slaves[i]))
+            return false;
+    }
+    return true;
+}

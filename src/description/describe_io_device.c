@@ -1,0 +1,138 @@
+/* Devices with inputs and outputs as the bus file names them for the simulator: their SII. */
+#include "core/bytes.h"
+#include "description/describe.h"
+#include "description/sii.h"
+
+/* In SII word 0: a digital I/O process data interface, and whether the controller emulates the device (0x0141 bit 0). */
+enum { PDI_DIGITAL_IO = 0x0004, DEVICE_EMULATION = 0x0100 };
+enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, UNDERRANGE = 0x01, OVERRANGE = 0x02, VALUE = 0x11 };
+enum { OUTPUT_PDO = 0x1600, INPUT_PDO = 0x1A00 };
+
+static void add_entry(cm1e_arena_t *arena, cm1e_described_pdo_t *pdo, unsigned index, unsigned subindex, uint32_t bits,
+                      const char *name)
+{
+    cm1e_described_pdo_entry_t *entry = CM1E_APPEND(arena, &pdo->entries);
+    entry->index = (uint16_t)index;
+    entry->subindex = (uint8_t)subindex;
+    entry->bits = bits;
+    entry->name = name;
+    entry->type = index == 0 ? "" : bits == 1 ? "BOOL" : "INT";
+}
+
+static cm1e_described_pdo_t *add_pdo(cm1e_arena_t *arena, cm1e_description_t *device, unsigned index, const char *kind,
+                                     unsigned channel, int sync_manager)
+{
+    cm1e_described_pdo_t *pdo = CM1E_APPEND(arena, &device->pdos);
+    pdo->transmit = index >= INPUT_PDO;
+    pdo->index = (uint16_t)index;
+    pdo->name = cm1e_arena_format(arena, "%s %u", kind, channel + 1);
+    pdo->sync_manager = sync_manager;
+    return pdo;
+}
+
+/* ---- digital ----------------------------------------------------------------------------------------------------- */
+
+static void add_sync_manager(cm1e_arena_t *arena, cm1e_description_t *device, cm1e_sync_manager_use_t use)
+{
+    const bool outputs = use == CM1E_SM_OUTPUTS;
+    cm1e_described_sync_manager_t *manager = CM1E_APPEND(arena, &device->sync_managers);
+    manager->use = use;
+    manager->start = outputs ? 0x1000 : 0x1100;
+    manager->length = 1;
+    manager->length_given = true;
+    manager->control = outputs ? 0x44 : 0x00; /* buffered, outputs with watchdog */
+    manager->enable = 1;
+    cm1e_described_fmmu_t *fmmu = CM1E_APPEND(arena, &device->fmmus);
+    fmmu->use = outputs ? CM1E_FMMU_OUTPUTS : CM1E_FMMU_INPUTS;
+}
+
+/* As digital terminals have it: a PDO per channel, and no sync manager for a direction without any. */
+static void describe_digital(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_sim_slave_config_t *sim)
+{
+    int manager = 0;
+    for (unsigned n = 0; n < sim->outputs; n++)
+        add_entry(arena, add_pdo(arena, device, OUTPUT_PDO + n, "Channel", n, manager), OUTPUTS + n * STEP, 1, 1,
+                  "Output");
+    if (sim->outputs) {
+        add_sync_manager(arena, device, CM1E_SM_OUTPUTS);
+        manager++;
+    }
+    for (unsigned n = 0; n < sim->inputs; n++)
+        add_entry(arena, add_pdo(arena, device, INPUT_PDO + n, "Channel", n, manager), INPUTS + n * STEP, 1, 1,
+                  "Input");
+    if (sim->inputs)
+        add_sync_manager(arena, device, CM1E_SM_INPUTS);
+}
+
+static void describe_eeprom(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave)
+{
+    /* A controller that emulates the device knows no explicit ID. */
+    const bool emulates = slave->address_kind != CM1E_ADDRESS_EXPLICIT_ID;
+    uint8_t config[CM1E_SII_CONFIG_BYTES] = {0};
+    cm1e_put_u16(config, PDI_DIGITAL_IO | (emulates ? DEVICE_EMULATION : 0));
+    device->eeprom.byte_size = 2048;
+    device->eeprom.version = 1;
+    device->eeprom.alias = slave->address_kind == CM1E_ADDRESS_ALIAS ? slave->address : 0;
+    cm1e_put_u16(config + CM1E_SII_ALIAS, device->eeprom.alias);
+    device->eeprom.config_data = (cm1e_bytes_t){cm1e_arena_bytes(arena, config, sizeof config), sizeof config};
+}
+
+/* ---- analog ------------------------------------------------------------------------------------------------------ */
+
+static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave)
+{
+    const cm1e_device_options_t options = {
+        .alias = slave->address_kind == CM1E_ADDRESS_ALIAS ? slave->address : 0};
+    for (unsigned n = 0; n < slave->sim.outputs; n++)
+        add_entry(arena, add_pdo(arena, device, OUTPUT_PDO + n, "AO Output Channel", n, CM1E_SM_NUMBER_OUTPUTS),
+                  OUTPUTS + n * STEP, VALUE, 16, "Value");
+    for (unsigned n = 0; n < slave->sim.inputs; n++) {
+        const unsigned index = INPUTS + n * STEP;
+        cm1e_described_pdo_t *pdo =
+            add_pdo(arena, device, INPUT_PDO + 2 * n, "AI Standard Channel", n, CM1E_SM_NUMBER_INPUTS);
+        add_entry(arena, pdo, index, UNDERRANGE, 1, "Underrange");
+        add_entry(arena, pdo, index, OVERRANGE, 1, "Overrange");
+        add_entry(arena, pdo, 0, 0, 14, NULL);
+        add_entry(arena, pdo, index, VALUE, 16, "Value");
+        pdo = add_pdo(arena, device, INPUT_PDO + 2 * n + 1, "AI Compact Channel", n, CM1E_NO_SYNC_MANAGER);
+        add_entry(arena, pdo, index, VALUE, 16, "Value");
+    }
+    cm1e_describe_communication(arena, device, &options);
+    cm1e_describe_eeprom(arena, device, &options, false);
+    cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &device->pdos);
+}
+
+/* ---- any --------------------------------------------------------------------------------------------------------- */
+
+/* Like product codes of the simulator's other simple devices: 0x0808 has 8 outputs and 8 inputs. */
+static uint32_t product_code(const cm1e_sim_slave_config_t *sim)
+{
+    const uint32_t channels = (uint32_t)sim->outputs << 8 | sim->inputs;
+    return sim->kind == CM1E_SIM_SLAVE_COUPLER ? 0x0100 : sim->kind == CM1E_SIM_SLAVE_ANALOG ? 0xA0000 | channels
+                                                                                            : channels;
+}
+
+void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_config_t *slave)
+{
+    static const char *const kinds[] = {"", "Coupler", "Digital", "Analog"};
+    const cm1e_sim_slave_config_t *sim = &slave->sim;
+    cm1e_arena_t *arena = &file->arena;
+    cm1e_description_t *device = CM1E_APPEND(arena, &file->devices);
+    cm1e_description_init(device);
+    device->vendor_id = slave->vendor;
+    device->product_code = slave->product ? slave->product : product_code(sim);
+    device->revision = slave->revision ? slave->revision : 1;
+    device->product_given = device->revision_given = true;
+    device->name = sim->kind == CM1E_SIM_SLAVE_COUPLER
+                       ? kinds[sim->kind]
+                       : cm1e_arena_format(arena, "%s terminal %u+%u", kinds[sim->kind], sim->outputs, sim->inputs);
+    device->type = device->name;
+    device->group = "Simulated I/O";
+    device->physics = "YY";
+    if (sim->kind == CM1E_SIM_SLAVE_ANALOG) {
+        describe_analog(arena, device, slave);
+        return;
+    }
+    describe_digital(arena, device, sim);
+    describe_eeprom(arena, device, slave);
+}

@@ -1,0 +1,300 @@
+/* The dictionary of an analog device, in the shape of ETG.5001: a channel has its inputs at 0x6000, outputs at 0x7000
+ * and settings at 0x8000, 0x10 apart. Of each input there are two PDOs, one with state and value, one with the value. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/bytes.h"
+#include "description/describe.h"
+#include "sim/io_device.h"
+#include "sim/store.h"
+
+enum { RO = CM1E_ACCESS_READ, RW = RO | CM1E_ACCESS_WRITE, RW_PREOP = RW | CM1E_ACCESS_WRITE_PREOP_ONLY };
+enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, SETTINGS = 0x8000, OUTPUT_SETTINGS = 0x8080 };
+enum { UNDERRANGE = 0x01, OVERRANGE = 0x02, VALUE = 0x11, OFFSET = 0x12, LIMIT = 32760 };
+
+/* ---- making ------------------------------------------------------------------------------------------------------ */
+
+static void add_object(cm1e_sim_io_objects_t *o, unsigned index, uint8_t code, unsigned highest, const char *name)
+{
+    o->objects[o->object_count++] = (cm1e_object_t){.index = (uint16_t)index, .object_code = code, .name = name,
+                                                    .highest_subindex = (uint8_t)highest,
+                                                    .entries = &o->entries[o->entry_count]};
+}
+
+static void add_entry(cm1e_sim_io_objects_t *o, unsigned subindex, unsigned access, cm1e_data_type_t type,
+                      const char *name, int64_t value)
+{
+    static const uint8_t bits[] = {[CM1E_TYPE_BOOL] = 1, [CM1E_TYPE_INT] = 16, [CM1E_TYPE_USINT] = 8,
+                                   [CM1E_TYPE_UINT] = 16, [CM1E_TYPE_UDINT] = 32};
+    cm1e_object_t *object = &o->objects[o->object_count - 1];
+    const bool is_signed = type == CM1E_TYPE_INT;
+    object->entry_count++;
+    o->entries[o->entry_count++] = (cm1e_entry_t){
+        .index = object->index, .subindex = (uint8_t)subindex, .access = (uint8_t)access, .type = type,
+        .bits = bits[type], .name = name, .unit = "", .default_value = value, .minimum = is_signed ? INT16_MIN : 0,
+        .maximum = is_signed ? INT16_MAX : (INT64_C(1) << bits[type]) - 1};
+}
+
+static void add_count(cm1e_sim_io_objects_t *o, unsigned access, int64_t count)
+{
+    add_entry(o, 0, access, CM1E_TYPE_USINT, "Number of entries", count);
+}
+
+static void add_identity(cm1e_sim_io_objects_t *o, const cm1e_description_t *device)
+{
+    add_object(o, 0x1000, CM1E_OBJECT_VAR, 0, "Device type");
+    add_entry(o, 0, RO, CM1E_TYPE_UDINT, "Device type", 0x00001389); /* modular device profile */
+    add_object(o, OBJ_1018_IDENTITY, CM1E_OBJECT_RECORD, 4, "Identity");
+    add_count(o, RO, 4);
+    add_entry(o, 1, RO, CM1E_TYPE_UDINT, "Vendor ID", device->vendor_id);
+    add_entry(o, 2, RO, CM1E_TYPE_UDINT, "Product code", device->product_code);
+    add_entry(o, 3, RO, CM1E_TYPE_UDINT, "Revision number", device->revision);
+    add_entry(o, 4, RO, CM1E_TYPE_UDINT, "Serial number", 0);
+}
+
+/* As the description has the PDO; further entries are empty. */
+static void add_pdo(cm1e_sim_io_objects_t *o, const cm1e_described_pdo_t *pdo)
+{
+    add_object(o, pdo->index, CM1E_OBJECT_RECORD, IO_MAPPED, pdo->name);
+    add_count(o, RW_PREOP, (int64_t)pdo->entries.count);
+    for (unsigned i = 0; i < IO_MAPPED; i++) {
+        const cm1e_described_pdo_entry_t *entry = i < pdo->entries.count ? &pdo->entries.at[i] : NULL;
+        const uint32_t value =
+            entry ? (uint32_t)entry->index << 16 | (uint32_t)entry->subindex << 8 | entry->bits : 0;
+        add_entry(o, i + 1, RW_PREOP, CM1E_TYPE_UDINT, "Mapped object", value);
+    }
+}
+
+static void add_pdos(cm1e_sim_io_objects_t *o, const cm1e_description_t *device, bool transmit)
+{
+    for (size_t i = 0; i < device->pdos.count; i++)
+        if (device->pdos.at[i].transmit == transmit)
+            add_pdo(o, &device->pdos.at[i]);
+}
+
+static void add_assignment(cm1e_sim_io_objects_t *o, const cm1e_description_t *device, bool transmit)
+{
+    unsigned count = 0;
+    uint16_t assigned[IO_CHANNELS] = {0};
+    for (size_t i = 0; i < device->pdos.count && count < IO_CHANNELS; i++)
+        if (device->pdos.at[i].transmit == transmit && device->pdos.at[i].sync_manager != CM1E_NO_SYNC_MANAGER)
+            assigned[count++] = device->pdos.at[i].index;
+    add_object(o, transmit ? OBJ_1C13_TXPDO_ASSIGN : OBJ_1C12_RXPDO_ASSIGN, CM1E_OBJECT_ARRAY, IO_CHANNELS,
+               transmit ? "TxPDO assign" : "RxPDO assign");
+    add_count(o, RW_PREOP, count);
+    for (unsigned i = 0; i < IO_CHANNELS; i++)
+        add_entry(o, i + 1, RW_PREOP, CM1E_TYPE_UINT, "Assigned PDO", assigned[i]);
+}
+
+static void add_channels(cm1e_sim_io_objects_t *o, const cm1e_sim_slave_config_t *config)
+{
+    for (unsigned n = 0; n < config->inputs; n++) {
+        add_object(o, INPUTS + n * STEP, CM1E_OBJECT_RECORD, VALUE, "Analog input");
+        add_count(o, RO, VALUE);
+        add_entry(o, UNDERRANGE, RO, CM1E_TYPE_BOOL, "Underrange", 0);
+        add_entry(o, OVERRANGE, RO, CM1E_TYPE_BOOL, "Overrange", 0);
+        add_entry(o, VALUE, RO, CM1E_TYPE_INT, "Value", 0);
+    }
+    for (unsigned n = 0; n < config->outputs; n++) {
+        add_object(o, OUTPUTS + n * STEP, CM1E_OBJECT_RECORD, VALUE, "Analog output");
+        add_count(o, RO, VALUE);
+        add_entry(o, VALUE, RW, CM1E_TYPE_INT, "Value", 0);
+    }
+    for (unsigned n = 0; n < config->inputs; n++) {
+        add_object(o, SETTINGS + n * STEP, CM1E_OBJECT_RECORD, OFFSET, "Settings of an analog input");
+        add_count(o, RO, OFFSET);
+        add_entry(o, OFFSET, RW, CM1E_TYPE_INT, "User offset", 0);
+    }
+    for (unsigned n = 0; n < config->outputs; n++) {
+        add_object(o, OUTPUT_SETTINGS + n * STEP, CM1E_OBJECT_RECORD, OFFSET, "Settings of an analog output");
+        add_count(o, RO, OFFSET);
+        add_entry(o, OFFSET, RW, CM1E_TYPE_INT, "User offset", 0);
+    }
+}
+
+bool cm1e_sim_io_objects_create(cm1e_sim_io_device_t *device, const cm1e_slave_config_t *slave)
+{
+    cm1e_sim_io_objects_t *o = calloc(1, sizeof *o);
+    cm1e_description_file_t file = {0};
+    cm1e_describe_io_device(&file, slave);
+    if (!o || file.arena.failed) {
+        cm1e_description_file_free(&file);
+        free(o);
+        return false;
+    }
+    const cm1e_description_t *described = &file.devices.at[0];
+    add_identity(o, described);
+    add_pdos(o, described, false);
+    add_pdos(o, described, true);
+    add_assignment(o, described, false);
+    add_assignment(o, described, true);
+    add_channels(o, &device->config);
+    for (size_t i = 0; i < o->object_count; i++)
+        if (o->objects[i].index >= 0x1600 && o->objects[i].index < 0x1C00)
+            o->objects[i].name = "PDO mapping"; /* the names of the description end with it */
+    cm1e_description_file_free(&file);
+    device->objects = o;
+    cm1e_sim_io_objects_power_on(device);
+    return true;
+}
+
+/* ---- asking ------------------------------------------------------------------------------------------------------ */
+
+const cm1e_object_t *cm1e_sim_io_objects_at(void *app, size_t n)
+{
+    const cm1e_sim_io_objects_t *o = ((const cm1e_sim_io_device_t *)app)->objects;
+    return n < o->object_count ? &o->objects[n] : NULL;
+}
+
+const cm1e_entry_t *cm1e_sim_io_objects_entry(void *app, uint16_t index, uint8_t subindex)
+{
+    const cm1e_sim_io_objects_t *o = ((const cm1e_sim_io_device_t *)app)->objects;
+    for (size_t i = 0; i < o->entry_count; i++)
+        if (o->entries[i].index == index && o->entries[i].subindex == subindex)
+            return &o->entries[i];
+    return NULL;
+}
+
+/* NULL: there is no such entry. */
+static int64_t *value_of(cm1e_sim_io_device_t *device, unsigned index, unsigned subindex)
+{
+    const cm1e_entry_t *entry = cm1e_sim_io_objects_entry(device, (uint16_t)index, (uint8_t)subindex);
+    return entry ? &device->objects->values[entry - device->objects->entries] : NULL;
+}
+
+static uint32_t missing(cm1e_sim_io_device_t *device, uint16_t index)
+{
+    for (size_t i = 0; i < device->objects->object_count; i++)
+        if (device->objects->objects[i].index == index)
+            return SDO_ABORT_NO_SUBINDEX;
+    return SDO_ABORT_NO_OBJECT;
+}
+
+uint32_t cm1e_sim_io_objects_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data,
+                                  size_t *size)
+{
+    (void)al_state;
+    cm1e_sim_io_device_t *device = app;
+    const cm1e_entry_t *entry = cm1e_sim_io_objects_entry(app, index, subindex);
+    if (!entry)
+        return missing(device, index);
+    cm1e_sim_io_objects_give(device);
+    return cm1e_sim_give_number(entry, *value_of(device, index, subindex), data, size);
+}
+
+/* ---- process data ------------------------------------------------------------------------------------------------ */
+
+static void resolve_pdo(cm1e_sim_io_device_t *device, unsigned pdo, cm1e_sim_io_image_t *image)
+{
+    const int64_t *count = value_of(device, pdo, 0);
+    for (unsigned i = 1; count && i <= *count; i++) {
+        const uint32_t mapped = (uint32_t)*value_of(device, pdo, i);
+        int64_t *value = mapped >> 16 ? value_of(device, mapped >> 16, mapped >> 8 & 0xFF) : NULL;
+        if (image->slot_count < IO_SLOTS)
+            image->slots[image->slot_count++] =
+                (cm1e_sim_io_slot_t){value, (uint16_t)image->bits, (uint16_t)(mapped & 0xFF)};
+        image->bits += mapped & 0xFF;
+    }
+}
+
+/* The objects of the assigned PDOs, so that the cycle need not search. */
+static void resolve(cm1e_sim_io_device_t *device)
+{
+    for (unsigned direction = 0; direction < 2; direction++) {
+        const unsigned index = OBJ_1C12_RXPDO_ASSIGN + direction;
+        device->images[direction] = (cm1e_sim_io_image_t){0};
+        for (unsigned i = 1; i <= *value_of(device, index, 0); i++)
+            resolve_pdo(device, (unsigned)*value_of(device, index, i), &device->images[direction]);
+    }
+}
+
+void cm1e_sim_io_objects_power_on(cm1e_sim_io_device_t *device)
+{
+    for (size_t i = 0; i < device->objects->entry_count; i++)
+        device->objects->values[i] = device->objects->entries[i].default_value;
+    resolve(device);
+}
+
+void cm1e_sim_io_objects_give(cm1e_sim_io_device_t *device)
+{
+    for (unsigned n = 0; n < device->config.inputs; n++) {
+        const unsigned index = INPUTS + n * STEP;
+        const int64_t value = cm1e_sim_io_terminal(device, n) + *value_of(device, SETTINGS + n * STEP, OFFSET);
+        *value_of(device, index, UNDERRANGE) = value < -LIMIT;
+        *value_of(device, index, OVERRANGE) = value > LIMIT;
+        *value_of(device, index, VALUE) = value < -LIMIT ? -LIMIT : value > LIMIT ? LIMIT : value;
+    }
+}
+
+void cm1e_sim_io_objects_take(cm1e_sim_io_device_t *device)
+{
+    for (unsigned n = 0; n < device->config.outputs; n++)
+        device->outputs[n] = (int16_t)(uint16_t)*value_of(device, OUTPUTS + n * STEP, VALUE) +
+                             *value_of(device, OUTPUT_SETTINGS + n * STEP, OFFSET);
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+static bool is_assigned(cm1e_sim_io_device_t *device, uint16_t pdo)
+{
+    const unsigned index = pdo < 0x1A00 ? OBJ_1C12_RXPDO_ASSIGN : OBJ_1C13_TXPDO_ASSIGN;
+    for (unsigned i = 1; i <= *value_of(device, index, 0); i++)
+        if (*value_of(device, index, i) == pdo)
+            return true;
+    return false;
+}
+
+/* Whether an entry may be mapped; of inputs only objects of inputs, of outputs only objects of outputs. */
+static bool can_be_mapped(cm1e_sim_io_device_t *device, uint16_t pdo, uint32_t mapped)
+{
+    const unsigned index = mapped >> 16, first = pdo < 0x1A00 ? OUTPUTS : INPUTS;
+    const cm1e_entry_t *entry = cm1e_sim_io_objects_entry(device, (uint16_t)index, (uint8_t)(mapped >> 8));
+    return index == 0 || (entry && entry->subindex > 0 && entry->bits == (mapped & 0xFF) && index >= first &&
+                          index < first + 0x1000u);
+}
+
+static uint32_t check_mapping(cm1e_sim_io_device_t *device, uint16_t index, uint8_t subindex, int64_t value)
+{
+    if (is_assigned(device, index))
+        return SDO_ABORT_STATE;
+    if (subindex > 0 && *value_of(device, index, 0) != 0)
+        return SDO_ABORT_SUBINDEX_0_NOT_ZERO;
+    for (unsigned i = 1; subindex == 0 && i <= value && i <= IO_MAPPED; i++)
+        if (!can_be_mapped(device, index, (uint32_t)*value_of(device, index, i)))
+            return SDO_ABORT_PDO_MAPPING;
+    return subindex == 0 && value > IO_MAPPED ? (uint32_t)SDO_ABORT_TOO_HIGH : 0;
+}
+
+static uint32_t check_assignment(cm1e_sim_io_device_t *device, uint16_t index, uint8_t subindex, int64_t value)
+{
+    const int first = index == OBJ_1C12_RXPDO_ASSIGN ? 0x1600 : 0x1A00;
+    if (subindex == 0)
+        return value > IO_CHANNELS ? (uint32_t)SDO_ABORT_TOO_HIGH : 0;
+    if (*value_of(device, index, 0) != 0)
+        return SDO_ABORT_SUBINDEX_0_NOT_ZERO;
+    const bool is_pdo = value >= first && value < first + 0x200 && value_of(device, (unsigned)value, 0);
+    return is_pdo ? 0 : (uint32_t)SDO_ABORT_RANGE;
+}
+
+uint32_t cm1e_sim_io_objects_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,
+                                   size_t size)
+{
+    cm1e_sim_io_device_t *device = app;
+    const cm1e_entry_t *entry = cm1e_sim_io_objects_entry(app, index, subindex);
+    if (!entry)
+        return missing(device, index);
+    uint32_t code = cm1e_sim_check_write(entry, al_state, size);
+    if (code)
+        return code;
+    const int64_t value = cm1e_sim_take_number(entry, data);
+    code = cm1e_sim_check_range(entry, value);
+    if (code == 0 && index >= 0x1600 && index < 0x1C00)
+        code = check_mapping(device, index, subindex, value);
+    else if (code == 0 && (index == OBJ_1C12_RXPDO_ASSIGN || index == OBJ_1C13_TXPDO_ASSIGN))
+        code = check_assignment(device, index, subindex, value);
+    if (code)
+        return code;
+    *value_of(device, index, subindex) = value;
+    resolve(device);
+    return 0;
+}
