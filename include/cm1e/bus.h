@@ -69,6 +69,9 @@ CM1E_API uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus);
 /** The slave at `position` (1 = first); NULL if there is no such slave. Valid until the next scan. While the cycle
  *  runs, it updates `al_state` and `al_status_code`; then only its thread may read these two. @rt any */
 CM1E_API const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position);
+/** The name that the configuration gives to a slave without an axis, from cm1e_bus_identify() on; "" if it names none
+ *  there. @rt any */
+CM1E_API const char *cm1e_bus_slave_name(const cm1e_bus_t *bus, uint32_t position);
 
 /** Compares the scan with the configured axes. A wrong, missing, doubled or extra slave is an error; `diag` names what
  *  was expected and what was found. A CM1-E or a bridge without a configured axis is extra. A device of another kind

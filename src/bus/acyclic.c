@@ -9,6 +9,8 @@ static void feed_job(cm1e_bus_slave_t *slave, int64_t now_ns)
     if (!cm1e_coe_idle(&slave->coe))
         return;
     cm1e_sdo_t *sdo = cm1e_recognise_next(&slave->recognition, now_ns);
+    if (!sdo)
+        sdo = cm1e_setup_next(&slave->setup);
     if (!sdo && !cm1e_mapping_idle(&slave->mapping))
         sdo = cm1e_mapping_next(&slave->mapping);
     if (sdo)

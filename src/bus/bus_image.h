@@ -38,6 +38,10 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
  *  asked. @rt cycle */
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position);
 
+/** The program has ended: from the next frame on the outputs of the slaves that the configuration names take their safe
+ *  values (docs/BUS-FILE.md). @rt cycle */
+void cm1e_bus_release_outputs(cm1e_bus_t *bus);
+
 /** Number of the present operation, from 1: the number of times that cm1e_bus_operate() succeeded. 0: the bus is not in
  *  Operational. Locations that were resolved in one operation are not valid in the next. @rt init */
 uint32_t cm1e_bus_operation(const cm1e_bus_t *bus);

@@ -49,6 +49,8 @@ const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave,
 {
     char kind[CM1E_KIND_LENGTH];
     int used = snprintf(label, CM1E_LABEL_LENGTH, "slave %u (", slave->info.position);
+    if (slave->config)
+        used += snprintf(label + used, CM1E_LABEL_LENGTH - (size_t)used, "\"%s\", ", slave->config->name);
     for (unsigned channel = 0; channel < CM1E_CHANNELS; channel++) {
         const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave, channel);
         if (axis)
@@ -63,6 +65,12 @@ const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *
     cm1e_bus_label(bus, slave, label);
     label[0] = 'S';
     return label;
+}
+
+const char *cm1e_bus_slave_name(const cm1e_bus_t *bus, uint32_t position)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    return slave && slave->config ? slave->config->name : "";
 }
 
 bool cm1e_bus_is_attached(const cm1e_bus_t *bus) { return bus && bus->remote; }

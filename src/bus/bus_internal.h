@@ -14,6 +14,7 @@
 #include "bus/recognise.h"
 #include "bus/recovery.h"
 #include "bus/remote.h"
+#include "bus/slave_setup.h"
 #include "bus/soem_adapter.h"
 
 enum {
@@ -48,8 +49,14 @@ typedef enum cm1e_datagram_owner {
     OWNER_ERRAND,
 } cm1e_datagram_owner_t;
 
+typedef struct cm1e_signal_list cm1e_signal_list_t;
+
 struct cm1e_bus_slave {
     cm1e_slave_info_t info;
+    const cm1e_slave_config_t *config;       /**< of a slave without an axis that the configuration names; else NULL */
+    cm1e_setup_job_t setup;
+    cm1e_signal_list_t *signals;             /**< of such a slave, from its configuration on (io_list.h) */
+    bool by_pdos;                            /**< its process data are those of `mapped`, not of its SII */
     cm1e_slave_facts_t facts;
     const cm1e_firmware_info_t *firmware;    /**< NULL: unreadable */
     uint8_t axes[CM1E_CHANNELS];             /**< configured axis of each channel, 1 = first; 0: none. No channel is
@@ -112,6 +119,8 @@ struct cm1e_bus {
     uint8_t *image;                          /**< what SOEM sends and receives: outputs, then inputs */
     uint8_t *sent_outputs;                   /**< as they left, to know the frame again */
     uint8_t *outputs, *inputs;               /**< what the upper rooms write and read */
+    uint8_t *safe_values, *safe_mask;        /**< of outputs; a bit of the mask: the output takes its safe value */
+    bool any_safe, released;                 /**< released: the program has ended, so outputs take their safe values */
     size_t output_bytes, input_bytes;
     int expected_working_counter;
 
@@ -179,6 +188,25 @@ static inline bool cm1e_bus_has_motors(const cm1e_bus_slave_t *slave)
 static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
 {
     __atomic_store_n(&bus->phase, (int)phase, __ATOMIC_SEQ_CST);
+}
+
+/** A diagnosis that ends with what the scan found; what a slave is addressed by (identify.c). */
+cm1e_error_t cm1e_bus_identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, const char *problem);
+uint32_t cm1e_bus_address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t kind);
+/** Finds the slaves that the configuration names beside the axes (identify_slaves.c). */
+cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, cm1e_diag_t *diag);
+/** configure_slaves.c: writes what the configuration states for them; then reads which process data they have. */
+cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t *diag);
+cm1e_error_t cm1e_bus_diagnose_setup(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
+cm1e_error_t cm1e_bus_read_pdos(cm1e_bus_t *bus, cm1e_diag_t *diag);
+/** safe_outputs.c: where safe values go; puts them where they are needed in this cycle. */
+cm1e_error_t cm1e_bus_prepare_safe_outputs(cm1e_bus_t *bus, cm1e_diag_t *diag);
+void cm1e_bus_make_outputs_safe(cm1e_bus_t *bus);
+/** Process data watchdog of a slave, in units of 100 us. */
+static inline uint16_t cm1e_bus_watchdog(const cm1e_bus_slave_t *slave)
+{
+    const bool stated = slave->config && slave->config->watchdog_ms;
+    return stated ? (uint16_t)(slave->config->watchdog_ms * 10) : CM1E_WATCHDOG_TIME;
 }
 
 /** What kind of slave it is: "bridge EB12", else the name in its SII. */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "bus/io_list.h"
 #include "core/bytes.h"
 #include "core/in_task.h"
 
@@ -76,15 +77,17 @@ static cm1e_error_t set_process_data(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const uint16_t position = slave->info.position, outputs = slave->mapped[0].bits, inputs = slave->mapped[1].bits;
         const bool ok = cm1e_bus_has_motors(slave)
-                            ? cm1e_soem_set_process_data(bus->soem, slave->info.position, slave->mapped[0].bits,
-                                                         slave->mapped[1].bits)
-                            : cm1e_soem_set_process_data_by_sii(bus->soem, slave->info.position);
+                            ? cm1e_soem_set_process_data(bus->soem, position, outputs, inputs)
+                        : slave->by_pdos ? cm1e_soem_set_process_data_by_pdos(bus->soem, position, outputs, inputs)
+                                         : cm1e_soem_set_process_data_by_sii(bus->soem, position);
         char label[CM1E_LABEL_LENGTH];
         if (!ok)
             return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, 0,
-                                 "The process data of %s does not fit its sync managers: its SII is damaged.",
-                                 cm1e_bus_label(bus, slave, label));
+                                 "The process data of %s does not fit its sync managers: %s.",
+                                 cm1e_bus_label(bus, slave, label),
+                                 slave->by_pdos ? "assign fewer PDOs" : "its SII is damaged");
     }
     return CM1E_OK;
 }
@@ -95,6 +98,13 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
     free(bus->sent_outputs);
     free(bus->outputs);
     free(bus->inputs);
+    free(bus->safe_values);
+    free(bus->safe_mask);
+    for (uint32_t i = 0; i < CM1E_MAX_SLAVES; i++) {
+        free(bus->slaves[i].signals);
+        bus->slaves[i].signals = NULL;
+    }
+    bus->safe_values = bus->safe_mask = NULL;
     bus->image = bus->sent_outputs = bus->outputs = bus->inputs = NULL;
     bus->output_bytes = bus->input_bytes = 0;
     bus->layout = 0;
@@ -108,7 +118,9 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
     bus->sent_outputs = calloc(1, room + 1);
     bus->outputs = calloc(1, room + 1);
     bus->inputs = calloc(1, room + 1);
-    if (!bus->image || !bus->sent_outputs || !bus->outputs || !bus->inputs)
+    bus->safe_values = calloc(1, room + 1);
+    bus->safe_mask = calloc(1, room + 1);
+    if (!bus->image || !bus->sent_outputs || !bus->outputs || !bus->inputs || !bus->safe_values || !bus->safe_mask)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the process image.");
     if (!cm1e_soem_map(bus->soem, bus->image, room, &bus->output_bytes, &bus->input_bytes))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
@@ -123,6 +135,15 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
         slave->info.input_bytes = slave->placement.input_bytes;
     }
     return CM1E_OK;
+}
+
+static cm1e_error_t list_signals(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = CM1E_OK;
+    for (uint32_t i = 0; i < bus->slave_count && error == CM1E_OK; i++)
+        if (bus->slaves[i].config)
+            error = cm1e_io_list_make(bus, &bus->slaves[i], diag);
+    return error != CM1E_OK ? error : cm1e_bus_prepare_safe_outputs(bus, diag);
 }
 
 /** A bus whose frames come back after the next cycle has begun would start, and then lose most of them. */
@@ -158,7 +179,7 @@ static cm1e_error_t set_watchdogs(cm1e_bus_t *bus, cm1e_diag_t *diag)
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         const bool set = write_word(bus, slave, REG_WATCHDOG_DIVIDER, CM1E_WATCHDOG_DIVIDER) &&
-                         write_word(bus, slave, REG_WATCHDOG_PROCESS_DATA, CM1E_WATCHDOG_TIME);
+                         write_word(bus, slave, REG_WATCHDOG_PROCESS_DATA, cm1e_bus_watchdog(slave));
         if (!set && cm1e_bus_has_motors(slave)) /* another device may have none */
             return cm1e_diag_set(diag, CM1E_ERROR_BUS_WORKING_COUNTER, 0,
                                  "%s does not accept the time of its watchdog. Check its cables and its power.",
@@ -186,15 +207,23 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (error == CM1E_OK)
         error = read_mappings(bus, diag);
     if (error == CM1E_OK)
+        error = cm1e_bus_set_up_slaves(bus, false, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_read_pdos(bus, diag);
+    if (error == CM1E_OK)
         error = set_process_data(bus, diag);
     if (error == CM1E_OK)
         error = map_image(bus, diag);
+    if (error == CM1E_OK)
+        error = list_signals(bus, diag);
     if (error == CM1E_OK)
         error = check_wire_time(bus, diag);
     if (error == CM1E_OK)
         error = set_watchdogs(bus, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_all_to_state(bus, CM1E_AL_SAFE_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_set_up_slaves(bus, true, diag);
     if (error == CM1E_OK)
         cm1e_bus_set_phase(bus, BUS_CONFIGURED);
     return error;

@@ -100,11 +100,12 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     return error;
 }
 
+/** Slaves of the configuration get their safe values instead: cm1e_bus_make_outputs_safe(). */
 static void mute_recovering(cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (cm1e_recovery_mutes(&slave->recovery))
+        if (cm1e_recovery_mutes(&slave->recovery) && !slave->config)
             memset(bus->image + slave->placement.output_offset, 0, slave->placement.output_bytes);
     }
 }
@@ -116,6 +117,7 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     const int64_t now_ns = cm1e_bus_enter(bus);
     if (bus->in_flight) /* never two frames: the old one is given up */
         cm1e_soem_receive_process_data(bus->soem, 0);
+    cm1e_bus_make_outputs_safe(bus);
     memcpy(bus->image, bus->outputs, bus->output_bytes);
     mute_recovering(bus);
     memcpy(bus->sent_outputs, bus->image, bus->output_bytes);

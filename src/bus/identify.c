@@ -13,7 +13,7 @@ static const char *address_text(const cm1e_axis_config_t *axis, char text[32])
     return text;
 }
 
-static uint32_t address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t kind)
+uint32_t cm1e_bus_address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t kind)
 {
     switch (kind) {
     case CM1E_ADDRESS_POSITION:
@@ -42,7 +42,7 @@ static const char *found_text(const cm1e_bus_t *bus, char *text, size_t size)
     return text;
 }
 
-static cm1e_error_t identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, const char *problem)
+cm1e_error_t cm1e_bus_identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, const char *problem)
 {
     char found[300];
     return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "%s Found %u slave%s: %s.", problem, bus->slave_count,
@@ -100,7 +100,7 @@ static cm1e_error_t check_kind(const cm1e_bus_t *bus, const cm1e_axis_config_t *
     if (!wrong[0])
         return CM1E_OK;
     snprintf(problem, sizeof problem, "Axis \"%s\" at %s: %s", axis->name, address_text(axis, where), wrong);
-    return identity_error(bus, diag, problem);
+    return cm1e_bus_identity_error(bus, diag, problem);
 }
 
 /** A bridge whose motors nobody knows together: neither its dictionary nor its limits are known. */
@@ -114,7 +114,7 @@ static cm1e_error_t check_model(const cm1e_bus_t *bus, const cm1e_bus_slave_t *s
              "Slave %u is a bridge that reports the motors %u, %u, %u, %u (objects 0xF511:01 ... 0xF514:01), which no "
              "known model has: EB01 has 1, 1, 1, 1 (CM1), EB02 2, 2, 2, 2 (CM2), EB12 1, 1, 2, 2.",
              slave->info.position, motors[0], motors[1], motors[2], motors[3]);
-    return identity_error(bus, diag, problem);
+    return cm1e_bus_identity_error(bus, diag, problem);
 }
 
 static cm1e_error_t check_motor(const cm1e_bus_t *bus, const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave,
@@ -130,7 +130,7 @@ static cm1e_error_t check_motor(const cm1e_bus_t *bus, const cm1e_axis_config_t 
              "Axis \"%s\": the configuration expects the motor %s at channel %u of slave %u, the bridge has a %s there "
              "(object 0x%04X:01). Correct \"motor\" or leave it out.", axis->name, axis->motor, axis->channel,
              slave->info.position, motor, OBJ_F511_CONFIG_AXIS_1 + axis->channel - 1u);
-    return identity_error(bus, diag, problem);
+    return cm1e_bus_identity_error(bus, diag, problem);
 }
 
 /** The version without a leading V. */
@@ -146,7 +146,7 @@ static cm1e_error_t check_firmware(const cm1e_bus_t *bus, const cm1e_axis_config
              "Axis \"%s\" (slave %u): the configuration expects firmware %s, the device reports \"%s\" (object "
              "0x100A). Correct \"firmware\" or leave it out.", axis->name, slave->info.position, axis->firmware,
              slave->info.software_version);
-    return identity_error(bus, diag, problem);
+    return cm1e_bus_identity_error(bus, diag, problem);
 }
 
 /** The one slave at an address; NULL: there is none, or more than one. */
@@ -156,12 +156,12 @@ static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_axis_config_t *a
     cm1e_bus_slave_t *match = NULL;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (address_of(slave, axis->address_kind) != axis->address)
+        if (cm1e_bus_address_of(slave, axis->address_kind) != axis->address)
             continue;
         if (match) {
             snprintf(problem, sizeof problem, "Axis \"%s\": %s is doubled, slaves %u and %u both have it.", axis->name,
                      address_text(axis, where), match->info.position, slave->info.position);
-            identity_error(bus, diag, problem);
+            cm1e_bus_identity_error(bus, diag, problem);
             return NULL;
         }
         match = slave;
@@ -169,7 +169,7 @@ static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_axis_config_t *a
     if (!match) {
         snprintf(problem, sizeof problem, "Axis \"%s\": expected a %s at %s, which is missing.", axis->name,
                  cm1e_device_configured(axis)->label, address_text(axis, where));
-        identity_error(bus, diag, problem);
+        cm1e_bus_identity_error(bus, diag, problem);
     }
     return match;
 }
@@ -186,7 +186,7 @@ static cm1e_error_t check_alone(const cm1e_bus_t *bus, const cm1e_axis_config_t 
         snprintf(channel, sizeof channel, "channel %u of ", axis->channel);
     snprintf(problem, sizeof problem, "Axes \"%s\" and \"%s\" are both %sslave %u.", other->name, axis->name, channel,
              slave->info.position);
-    return identity_error(bus, diag, problem);
+    return cm1e_bus_identity_error(bus, diag, problem);
 }
 
 static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t *diag)
@@ -213,7 +213,7 @@ static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t
  *  the axes of a bridge its other motors stay as they are from power-on: their controlword is 0. */
 static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
-    for (uint32_t i = 0; i < bus->slave_count && bus->config.axis_count > 0; i++) {
+    for (uint32_t i = 0; i < bus->slave_count && bus->config.axis_count + bus->config.slave_count > 0; i++) {
         char problem[256];
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (!cm1e_bus_has_motors(slave) || cm1e_bus_is_used(slave))
@@ -223,7 +223,7 @@ static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
                  slave->info.position, slave->info.device->label,
                  cm1e_motors_before(&bus->config, bus->config.axis_count),
                  slave->info.device->channels ? "behind " : "");
-        return identity_error(bus, diag, problem);
+        return cm1e_bus_identity_error(bus, diag, problem);
     }
     return CM1E_OK;
 }
@@ -236,12 +236,16 @@ cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before identifying the slaves.");
     cm1e_bus_set_phase(bus, BUS_SCANNED);
     memset(bus->axis_position, 0, sizeof bus->axis_position);
-    for (uint32_t i = 0; i < bus->slave_count; i++)
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
         memset(bus->slaves[i].axes, 0, sizeof bus->slaves[i].axes);
+        bus->slaves[i].config = NULL;
+    }
     cm1e_error_t error = CM1E_OK;
     for (uint32_t axis = 0; axis < bus->config.axis_count && error == CM1E_OK; axis++)
         if (cm1e_axis_has_motor(&bus->config.axes[axis]))
             error = match_axis(bus, axis, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_identify_slaves(bus, diag);
     if (error == CM1E_OK)
         error = check_extra(bus, diag);
     if (error == CM1E_OK)

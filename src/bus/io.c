@@ -9,91 +9,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include "bus/bus_internal.h"
+#include "bus/io_list.h"
 #include "config/io_types.h"
-#include "bus/sii_reader.h"
-
-/* ---- the signals of a slave -------------------------------------------------------------------------------------- */
-
-static cm1e_io_info_t info_of_sii(const cm1e_sii_signal_t *signal)
-{
-    cm1e_io_info_t info = {.output = !signal->input, .index = signal->index, .subindex = signal->subindex,
-                           .type = signal->type, .bits = signal->bits, .bit_offset = signal->bit_offset};
-    memcpy(info.name, signal->name, sizeof info.name);
-    return info;
-}
-
-static cm1e_io_info_t info_of_mapping(const cm1e_device_t *device, const cm1e_mapped_entry_t *mapped, bool output)
-{
-    cm1e_io_info_t info = {.output = output, .index = mapped->index, .subindex = mapped->subindex, .bits = mapped->bits,
-                           .type = cm1e_io_type_of_bits(mapped->bits), .bit_offset = mapped->bit_offset};
-    const cm1e_entry_t *entry = device->entry(device, mapped->index, mapped->subindex);
-    if (!entry)
-        return info;
-    snprintf(info.name, sizeof info.name, "%.63s", entry->name);
-    if (entry->bits == mapped->bits)
-        info.type = entry->type == CM1E_TYPE_SINT ? CM1E_IO_SINT : entry->type == CM1E_TYPE_INT ? CM1E_IO_INT :
-                    entry->type == CM1E_TYPE_DINT ? CM1E_IO_DINT : info.type;
-    return info;
-}
-
-/** Signal `number` (1 = first) of a slave in one direction. */
-static bool find_number(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, bool output, unsigned number,
-                        cm1e_io_info_t *info)
-{
-    unsigned seen = 0;
-    if (cm1e_bus_has_motors(slave)) {
-        const cm1e_mapped_direction_t *mapped = &slave->mapped[!output];
-        for (unsigned i = 0; i < mapped->entry_count && seen < number; i++)
-            if (mapped->entries[i].index != 0 && ++seen == number)
-                *info = info_of_mapping(slave->info.device, &mapped->entries[i], output);
-    } else {
-        const cm1e_sii_signals_t *signals = cm1e_soem_signals(bus->soem, slave->info.position);
-        for (uint32_t i = 0; signals && i < signals->count && seen < number; i++)
-            if (signals->at[i].input != output && ++seen == number)
-                *info = info_of_sii(&signals->at[i]);
-    }
-    if (number == 0 || seen < number)
-        return false;
-    info->position = slave->info.position;
-    info->number = (uint16_t)number;
-    info->of_axis = cm1e_bus_has_motors(slave);
-    if (!info->name[0])
-        snprintf(info->name, sizeof info->name, "0x%04X:%02X", info->index, info->subindex);
-    return true;
-}
-
-static bool next_signal(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_io_info_t *info)
-{
-    if (info->position == 0)
-        return find_number(bus, slave, false, 1, info) || find_number(bus, slave, true, 1, info);
-    const cm1e_io_info_t last = *info;
-    *info = (cm1e_io_info_t){0};
-    return find_number(bus, slave, last.output, last.number + 1u, info) ||
-           (!last.output && find_number(bus, slave, true, 1, info));
-}
-
-bool cm1e_io_at(const cm1e_bus_t *bus, uint32_t n, cm1e_io_info_t *info)
-{
-    for (uint32_t position = 1; bus && bus->layout && position <= bus->slave_count; position++) {
-        *info = (cm1e_io_info_t){0};
-        while (next_signal(bus, cm1e_bus_at(bus, position), info))
-            if (n-- == 0)
-                return true;
-    }
-    return false;
-}
-
-uint32_t cm1e_io_count(const cm1e_bus_t *bus)
-{
-    uint32_t count = 0;
-    for (uint32_t position = 1; bus && bus->layout && position <= bus->slave_count; position++) {
-        cm1e_io_info_t info = {0};
-        while (next_signal(bus, cm1e_bus_at(bus, position), &info))
-            count++;
-    }
-    return count;
-}
 
 /* ---- to find one ------------------------------------------------------------------------------------------------- */
 
@@ -157,7 +74,7 @@ cm1e_error_t cm1e_io_find_object(cm1e_bus_t *bus, uint16_t position, uint16_t in
     if (!slave)
         return no_slave(bus, position, diag);
     cm1e_io_info_t info = {0};
-    while (next_signal(bus, slave, &info))
+    while (cm1e_io_next(bus, slave, &info))
         if (info.output == output && info.index == index && info.subindex == subindex)
             return take(bus, &info, io, diag);
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "Object 0x%04X:%02X is not among the %s of slave %u.", index,
@@ -179,10 +96,12 @@ static bool is_the_only_one(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave
     return count == 1;
 }
 
-/** The name of the signal, where `name` begins with this slave; else NULL. */
-static const char *behind_slave(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const char *name)
+/** The name of the signal, where `name` begins with this slave; else NULL. The configuration's name counts first. */
+static const char *behind_slave(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const char *name, bool by_config)
 {
     char word[16];
+    if (by_config)
+        return slave->config ? behind(name, slave->config->name) : NULL;
     snprintf(word, sizeof word, "slave %u", slave->info.position);
     const char *found = behind(name, word);
     if (!found)
@@ -205,7 +124,7 @@ static cm1e_error_t not_found(const cm1e_bus_t *bus, const cm1e_bus_slave_t *sla
     char list[300] = "";
     size_t used = 0;
     cm1e_io_info_t info = {0};
-    while (next_signal(bus, slave, &info) && used + 80 < sizeof list)
+    while (cm1e_io_next(bus, slave, &info) && used + 80 < sizeof list)
         used += (size_t)snprintf(list + used, sizeof list - used, "%s\"%s\" (%s %u)", used ? ", " : "", info.name,
                                  info.output ? "output" : "input", info.number);
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "Slave %u has no signal \"%.60s\". It has: %s%s.",
@@ -218,7 +137,7 @@ static cm1e_error_t find_word(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, co
 {
     cm1e_io_info_t info = {0}, found = {0};
     unsigned count = 0;
-    while (next_signal(bus, slave, &info)) {
+    while (cm1e_io_next(bus, slave, &info)) {
         if (!is_named(&info, word))
             continue;
         found = info;
@@ -241,9 +160,9 @@ cm1e_error_t cm1e_io_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io, cm1e
         return error;
     if (!name)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A signal needs a name, such as \"3.input 1\".");
-    for (uint32_t position = 1; position <= bus->slave_count; position++) {
-        const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
-        const char *word = behind_slave(bus, slave, name);
+    for (uint32_t n = 0; n < 2 * bus->slave_count; n++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[n % bus->slave_count];
+        const char *word = behind_slave(bus, slave, name, n < bus->slave_count);
         if (word)
             return find_word(bus, slave, word, io, diag);
     }

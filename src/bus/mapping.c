@@ -13,6 +13,11 @@ void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_p
                                 .assigned = *choice, .sdo = {.position = position}};
 }
 
+void cm1e_mapping_begin_any(cm1e_mapping_job_t *job, uint16_t position)
+{
+    *job = (cm1e_mapping_job_t){.step = MAPPING_READ_COUNT, .any = true, .sdo = {.position = position}};
+}
+
 static void end(cm1e_mapping_job_t *job, cm1e_error_t error, const char *reason)
 {
     job->step = MAPPING_IDLE;
@@ -92,6 +97,17 @@ static void next_direction(cm1e_mapping_job_t *job)
     }
 }
 
+static void read_next_pdo(cm1e_mapping_job_t *job)
+{
+    if (job->place + 1 < job->assigned.count) {
+        job->place++;
+        job->step = MAPPING_READ_ENTRIES;
+    } else {
+        job->place = 0;
+        next_direction(job);
+    }
+}
+
 static void took_entry(cm1e_mapping_job_t *job)
 {
     cm1e_mapped_direction_t *mapped = &job->mapped[job->direction];
@@ -104,22 +120,19 @@ static void took_entry(cm1e_mapping_job_t *job)
     mapped->entries[mapped->entry_count++] = (cm1e_mapped_entry_t){
         .index = (uint16_t)(value >> 16), .subindex = (uint8_t)(value >> 8), .bits = bits, .bit_offset = mapped->bits};
     mapped->bits = (uint16_t)(mapped->bits + bits);
-    if (job->entry < job->entries) {
+    if (job->entry < job->entries)
         job->entry++;
-    } else if (job->place + 1 < job->assigned.count) {
-        job->place++;
-        job->step = MAPPING_READ_ENTRIES;
-    } else {
-        job->place = 0;
-        next_direction(job);
-    }
+    else
+        read_next_pdo(job);
 }
 
 /** How many PDOs the device has assigned itself. */
 static void take_count(cm1e_mapping_job_t *job)
 {
     job->assigned.count = job->data[0];
-    if (job->assigned.count == 0)
+    if (job->assigned.count == 0 && job->any)
+        next_direction(job);
+    else if (job->assigned.count == 0)
         end(job, CM1E_ERROR_PDO_MAPPING, "it has no PDO assigned; name PDOs in the bus file");
     else if (job->assigned.count > CM1E_ASSIGNED_PDOS)
         end(job, CM1E_ERROR_PDO_MAPPING, "it has more PDOs assigned than are understood; name PDOs in the bus file");
@@ -159,7 +172,9 @@ static void took(cm1e_mapping_job_t *job)
         job->entries = job->data[0];
         job->entry = 1;
         job->step = MAPPING_READ_ENTRY;
-        if (job->entries == 0)
+        if (job->entries == 0 && job->any)
+            read_next_pdo(job);
+        else if (job->entries == 0)
             end(job, CM1E_ERROR_PDO_MAPPING, "its PDO is empty");
         break;
     case MAPPING_READ_ENTRY:
@@ -168,9 +183,15 @@ static void took(cm1e_mapping_job_t *job)
     }
 }
 
-/** A refused write is no error yet: what is read back tells. */
+/** A refused write is no error yet: what is read back tells. A slave may have no object for its assignment. */
 static bool may_go_on(cm1e_mapping_job_t *job)
 {
+    if (job->any && job->step == MAPPING_READ_COUNT && job->sdo.error == CM1E_ERROR_SDO_ABORT) {
+        job->unknown++;
+        job->data[0] = 0;
+        job->sdo.size = 1;
+        return true;
+    }
     if (!job->sdo.write || job->sdo.error != CM1E_ERROR_SDO_ABORT)
         return false;
     if (!job->is_refused)

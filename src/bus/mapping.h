@@ -12,7 +12,7 @@
 #include "cm1e/bus.h"
 #include "device/devices.h"
 
-enum { CM1E_MAPPED_ENTRIES = 64 };
+enum { CM1E_MAPPED_ENTRIES = 128 };
 
 typedef struct cm1e_mapped_entry {
     uint16_t index, bit_offset; /**< index 0: a gap */
@@ -45,6 +45,8 @@ typedef struct cm1e_mapping_job {
     uint8_t place;           /**< which PDO of the choice, from 0 */
     uint8_t entry, entries;  /**< where the reading of its entries is, from 1 */
     bool started;            /**< `sdo` is in work or done */
+    bool any;                /**< cm1e_mapping_begin_any() */
+    uint8_t unknown;         /**< directions whose assignment cannot be read: it has none, or no object for it */
     cm1e_sdo_t sdo;
     cm1e_sdo_t refused;      /**< the first write that was refused, where `is_refused`; the result if it matters */
     bool is_refused;
@@ -55,6 +57,8 @@ typedef struct cm1e_mapping_job {
 } cm1e_mapping_job_t;
 
 void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_pdo_choice_t *choice);
+/** Reads the assignment that a slave has, which may be empty in a direction, or missing. */
+void cm1e_mapping_begin_any(cm1e_mapping_job_t *job, uint16_t position);
 static inline bool cm1e_mapping_idle(const cm1e_mapping_job_t *job) { return job->step == MAPPING_IDLE; }
 /** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
 cm1e_sdo_t *cm1e_mapping_next(cm1e_mapping_job_t *job);

@@ -122,11 +122,21 @@ static void look_at_states(cm1e_bus_t *bus)
     }
 }
 
+/** More than once: a frame may be lost. */
+static void send_safe_outputs(cm1e_bus_t *bus)
+{
+    cm1e_bus_release_outputs(bus);
+    for (unsigned i = 0; i < EXCHANGES; i++)
+        cm1e_bus_pump(bus);
+}
+
 void cm1e_bus_stop(cm1e_bus_t *bus)
 {
     if (!bus || bus->phase < BUS_OPEN || !bus->soem || cm1e_in_task_note("cm1e_bus_stop()"))
         return;
     cm1e_bus_enter(bus);
+    if (bus->phase == BUS_OPERATING && bus->any_safe)
+        send_safe_outputs(bus);
     if (bus->in_flight)
         cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns);
     bus->in_flight = bus->exchanging = false;

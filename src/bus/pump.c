@@ -26,7 +26,8 @@ static bool all_idle(const cm1e_bus_t *bus)
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (slave->owner != OWNER_NONE || !cm1e_al_idle(&slave->al) || !cm1e_coe_idle(&slave->coe) ||
-            !cm1e_recognise_idle(&slave->recognition) || !cm1e_mapping_idle(&slave->mapping))
+            !cm1e_recognise_idle(&slave->recognition) || !cm1e_mapping_idle(&slave->mapping) ||
+            !cm1e_setup_idle(&slave->setup))
             return false;
     }
     return true;

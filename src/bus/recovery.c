@@ -63,6 +63,7 @@ static void cancel_jobs(cm1e_bus_slave_t *slave)
     cm1e_al_cancel(&slave->al);
     cm1e_recognise_cancel(&slave->recognition);
     slave->mapping.step = MAPPING_IDLE;
+    cm1e_setup_cancel(&slave->setup);
 }
 
 static void fail(cm1e_bus_slave_t *slave, int64_t now_ns)
@@ -208,7 +209,7 @@ static bool next_watchdog(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
 {
     (void)now_ns;
     cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_WATCHDOG_PROCESS_DATA, 2);
-    cm1e_put_u16(d->data, CM1E_WATCHDOG_TIME);
+    cm1e_put_u16(d->data, cm1e_bus_watchdog(slave));
     return true;
 }
 
@@ -342,18 +343,55 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
 
+static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, bool before_op)
+{
+    cm1e_setup_job_t *job = &slave->setup;
+    if (!cm1e_setup_is_needed(slave->config, before_op)) {
+        advance(slave, now_ns);
+        return false;
+    }
+    if (!slave->recovery.entered) {
+        slave->recovery.entered = true;
+        cm1e_setup_begin(job, slave->info.position, slave->config, before_op);
+    }
+    if (cm1e_coe_idle(&slave->coe)) {
+        cm1e_sdo_t *sdo = cm1e_setup_next(job);
+        if (!sdo) {
+            if (job->error == CM1E_OK)
+                advance(slave, now_ns);
+            else
+                fail(slave, now_ns);
+            return false;
+        }
+        cm1e_coe_begin(&slave->coe, sdo, now_ns);
+    }
+    return cm1e_coe_next(&slave->coe, d, now_ns);
+}
+
+static bool next_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    return run_setup(slave, d, now_ns, false);
+}
+static bool next_setup_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    return run_setup(slave, d, now_ns, true);
+}
+
 /** Assigns the PDOs again; the layout must not change, because the image of the running bus is fixed. */
 static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_mapping_job_t *job = &slave->mapping;
-    if (!cm1e_bus_has_motors(slave)) {
+    if (!cm1e_bus_has_motors(slave) && !slave->by_pdos) {
         advance(slave, now_ns);
         return false;
     }
     if (!slave->recovery.entered) {
         slave->recovery.entered = true;
         const cm1e_pdo_choice_t choice = job->choice;
-        cm1e_mapping_begin(job, slave->info.position, &choice);
+        if (slave->by_pdos)
+            cm1e_mapping_begin_any(job, slave->info.position);
+        else
+            cm1e_mapping_begin(job, slave->info.position, &choice);
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_mapping_next(job);
@@ -392,12 +430,14 @@ static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_PRODUCT] = {SDO_STEP_NS, next_product, result_coe},
     [RECOVERY_SERIAL] = {SDO_STEP_NS, next_serial, result_coe},
     [RECOVERY_OBJECTS] = {OBJECTS_STEP_NS, next_objects, result_coe},
+    [RECOVERY_SETUP] = {MAPPING_STEP_NS, next_setup, result_coe},
     [RECOVERY_MAPPING] = {MAPPING_STEP_NS, next_mapping, result_coe},
     [RECOVERY_PROCESS_DATA] = {STEP_NS, next_process_data, result_next_step},
     [RECOVERY_FMMUS] = {STEP_NS, next_fmmus, result_next_step},
     [RECOVERY_WATCHDOG_DIVIDER] = {STEP_NS, next_watchdog_divider, result_next_step},
     [RECOVERY_WATCHDOG] = {STEP_NS, next_watchdog, result_next_step},
     [RECOVERY_SAFE_OP] = {CM1E_STATE_TIMEOUT_NS, next_safe_op, result_al},
+    [RECOVERY_SETUP_OP] = {MAPPING_STEP_NS, next_setup_op, result_coe},
     [RECOVERY_OP] = {CM1E_STATE_TIMEOUT_NS, next_op, result_al},
     [RECOVERY_RELEASE] = {RELEASE_NS, next_release, result_release},
 };

@@ -27,12 +27,14 @@ typedef enum cm1e_recovery_step {
     RECOVERY_PRODUCT,
     RECOVERY_SERIAL,
     RECOVERY_OBJECTS,         /**< still a bridge, of the same revision, with the same motors */
+    RECOVERY_SETUP,           /**< what the configuration writes into it in Pre-Operational */
     RECOVERY_MAPPING,
     RECOVERY_PROCESS_DATA,   /**< SM2, SM3 */
     RECOVERY_FMMUS,
     RECOVERY_WATCHDOG_DIVIDER,
     RECOVERY_WATCHDOG,
     RECOVERY_SAFE_OP,
+    RECOVERY_SETUP_OP,       /**< what the configuration writes into it in Safe-Operational */
     RECOVERY_OP,
     RECOVERY_RELEASE,        /**< remove the station address from a device that is not the expected one */
     RECOVERY_STEPS,

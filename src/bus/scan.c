@@ -43,11 +43,22 @@ static void set_up_slave(cm1e_bus_t *bus, uint16_t position)
     };
 }
 
+/** Whether the configuration finds a slave without an axis by its explicit device ID: then every device is asked. */
+static bool finds_by_id(const cm1e_bus_config_t *config)
+{
+    for (uint32_t i = 0; i < config->slave_count; i++)
+        if (config->slaves[i].address_kind == CM1E_ADDRESS_EXPLICIT_ID)
+            return true;
+    return false;
+}
+
 static void read_explicit_ids(cm1e_bus_t *bus)
 {
+    const bool by_id = finds_by_id(&bus->config);
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + ID_TIMEOUT_NS;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
-        if (bus->slaves[i].info.device && bus->slaves[i].info.device->explicit_id)
+        const cm1e_device_t *device = bus->slaves[i].info.device;
+        if (device ? device->explicit_id : by_id)
             cm1e_al_read_id(&bus->slaves[i].al, deadline_ns);
     }
     cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);

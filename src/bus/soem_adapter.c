@@ -71,6 +71,15 @@ static void set_direction(ec_slavet *slave, int sm, uint8 type, uint16_t bits)
     slave->SMtype[sm] = type;
 }
 
+/** Three buffers each, in the controller's memory from 0x1000 to 0xFFFF, without overlap. */
+static bool are_apart(const ec_slavet *slave, uint16_t output_bits, uint16_t input_bits)
+{
+    const uint32_t outputs = etohs(slave->SM[2].StartAddr), inputs = etohs(slave->SM[3].StartAddr);
+    const uint32_t output_end = outputs + 3u * bytes_of(output_bits), input_end = inputs + 3u * bytes_of(input_bits);
+    const bool apart = output_end <= inputs || input_end <= outputs || !output_bits || !input_bits;
+    return output_end <= 0x10000 && input_end <= 0x10000 && apart;
+}
+
 bool cm1e_soem_set_process_data(cm1e_soem_t *soem, uint16_t position, uint16_t output_bits, uint16_t input_bits)
 {
     ec_slavet *slave = &soem->slaves[position];
@@ -79,11 +88,7 @@ bool cm1e_soem_set_process_data(cm1e_soem_t *soem, uint16_t position, uint16_t o
     slave->Obits = output_bits;
     slave->Ibits = input_bits;
     slave->configindex = 1;
-    const uint32_t outputs = etohs(slave->SM[2].StartAddr), inputs = etohs(slave->SM[3].StartAddr);
-    /* Three buffers each, in the controller's memory from 0x1000 to 0xFFFF, without overlap. */
-    const uint32_t output_end = outputs + 3u * bytes_of(output_bits), input_end = inputs + 3u * bytes_of(input_bits);
-    const bool apart = output_end <= inputs || input_end <= outputs || !output_bits || !input_bits;
-    return output_end <= 0x10000 && input_end <= 0x10000 && apart && output_bits + input_bits > 0;
+    return are_apart(slave, output_bits, input_bits) && output_bits + input_bits > 0;
 }
 
 bool cm1e_soem_set_process_data_by_sii(cm1e_soem_t *soem, uint16_t position)
@@ -109,6 +114,23 @@ bool cm1e_soem_set_process_data_by_sii(cm1e_soem_t *soem, uint16_t position)
     slave->Ibits = (uint16)bits[1];
     slave->configindex = 1;
     return true;
+}
+
+bool cm1e_soem_set_process_data_by_pdos(cm1e_soem_t *soem, uint16_t position, uint16_t output_bits, uint16_t input_bits)
+{
+    ec_slavet *slave = &soem->slaves[position];
+    const uint16_t bits[2] = {output_bits, input_bits};
+    for (int direction = 0; direction < 2; direction++) {
+        ec_smt *manager = &slave->SM[2 + direction];
+        if (bits[direction] && manager->StartAddr == 0)
+            return false;
+        manager->SMlength = htoes(bytes_of(bits[direction]));
+        slave->SMtype[2 + direction] = direction ? 4 : 3;
+    }
+    slave->Obits = output_bits;
+    slave->Ibits = input_bits;
+    slave->configindex = 1;
+    return are_apart(slave, output_bits, input_bits);
 }
 
 size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem)

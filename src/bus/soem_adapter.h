@@ -61,6 +61,10 @@ void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_fact
 bool cm1e_soem_set_process_data(cm1e_soem_t *soem, uint16_t position, uint16_t output_bits, uint16_t input_bits);
 /** Sets the process data of a slave as its SII states it. Returns false if the SII is contradictory. */
 bool cm1e_soem_set_process_data_by_sii(cm1e_soem_t *soem, uint16_t position);
+/** Sets the process data of a slave with a mailbox: SM2 and SM3 as its SII has them, with the length that its PDOs have.
+ *  Returns false if they cannot carry it. */
+bool cm1e_soem_set_process_data_by_pdos(cm1e_soem_t *soem, uint16_t position, uint16_t output_bits,
+                                        uint16_t input_bits);
 /** Upper bound of the image size in bytes, for all slaves set so far. */
 size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem);
 /** Maps into `image`, programs sync managers and FMMUs. False: it does not fit into CM1E_PROCESS_FRAMES_MAX frames. */

@@ -44,7 +44,7 @@ typedef struct cm1e_device_mapping {
 } cm1e_device_mapping_t;
 
 /** PDOs to assign to the sync managers, in order, as many in each direction. */
-enum { CM1E_ASSIGNED_PDOS = 8 };
+enum { CM1E_ASSIGNED_PDOS = 16 };
 typedef struct cm1e_pdo_choice {
     uint8_t count;                       /**< 0: those that the device has assigned itself */
     uint16_t pdos[2][CM1E_ASSIGNED_PDOS]; /**< outputs, inputs */

@@ -111,6 +111,7 @@ static void take_inputs(cm1e_scheduler_t *s, cm1e_error_t received)
 
 static void shut_down_axes(cm1e_scheduler_t *s)
 {
+    cm1e_bus_release_outputs(s->bus);
     s->shut_down = true;
     for (uint32_t i = 0; i < s->axis_count; i++)
         s->shut_down &= cm1e_axis_shut_down(s->axes[i]);

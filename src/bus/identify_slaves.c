@@ -1,0 +1,110 @@
+/* Finds the slaves that the configuration names beside the axes, and checks their identity. */
+#include <stdio.h>
+
+#include "bus/bus_internal.h"
+
+static const char *address_text(const cm1e_slave_config_t *slave, char text[32])
+{
+    static const char *const kinds[] = {"position", "alias", "explicit device ID"};
+    snprintf(text, 32, "%s %u", kinds[slave->address_kind], slave->address);
+    return text;
+}
+
+/** The one slave at an address; NULL: there is none, or more than one. */
+static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_slave_config_t *config, cm1e_diag_t *diag)
+{
+    char where[32], problem[256];
+    cm1e_bus_slave_t *match = NULL;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (cm1e_bus_address_of(slave, config->address_kind) != config->address)
+            continue;
+        if (match) {
+            snprintf(problem, sizeof problem, "Slave \"%s\": %s is doubled, slaves %u and %u both have it.",
+                     config->name, address_text(config, where), match->info.position, slave->info.position);
+            cm1e_bus_identity_error(bus, diag, problem);
+            return NULL;
+        }
+        match = slave;
+    }
+    if (!match) {
+        snprintf(problem, sizeof problem, "Slave \"%s\": expected at %s, where there is none.", config->name,
+                 address_text(config, where));
+        cm1e_bus_identity_error(bus, diag, problem);
+    }
+    return match;
+}
+
+/** Another axis or entry has the slave, or it is a motor, which needs an axis. */
+static cm1e_error_t check_free(const cm1e_bus_t *bus, const cm1e_slave_config_t *config, const cm1e_bus_slave_t *slave,
+                               cm1e_diag_t *diag)
+{
+    char problem[256];
+    if (slave->config)
+        snprintf(problem, sizeof problem, "\"%s\" and \"%s\" are both slave %u.", slave->config->name, config->name,
+                 slave->info.position);
+    else if (cm1e_bus_is_used(slave))
+        snprintf(problem, sizeof problem, "Slave \"%s\" is slave %u, which an axis of the configuration is already.",
+                 config->name, slave->info.position);
+    else if (cm1e_bus_has_motors(slave))
+        snprintf(problem, sizeof problem, "Slave \"%s\" is slave %u, a %s: name it among the axes, not the slaves.",
+                 config->name, slave->info.position, slave->info.device->label);
+    else
+        return CM1E_OK;
+    return cm1e_bus_identity_error(bus, diag, problem);
+}
+
+static cm1e_error_t check_identity(const cm1e_bus_t *bus, const cm1e_slave_config_t *config,
+                                   const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+{
+    const struct {
+        const char *key;
+        uint32_t expected, found;
+    } numbers[] = {{"vendor", config->vendor, slave->info.vendor_id},
+                   {"product", config->product, slave->info.product_code},
+                   {"revision", config->revision, slave->info.revision}};
+    char problem[256];
+    for (int i = 0; i < 3; i++) {
+        if (!numbers[i].expected || numbers[i].expected == numbers[i].found)
+            continue;
+        snprintf(problem, sizeof problem, "Slave \"%s\" (slave %u): the configuration expects the %s 0x%08X, the "
+                 "device is \"%s\" with 0x%08X. Correct \"%s\" or leave it out.", config->name, slave->info.position,
+                 numbers[i].key, numbers[i].expected, slave->info.name, numbers[i].found, numbers[i].key);
+        return cm1e_bus_identity_error(bus, diag, problem);
+    }
+    return CM1E_OK;
+}
+
+/** What the configuration writes needs a mailbox. */
+static cm1e_error_t check_mailbox(const cm1e_bus_t *bus, const cm1e_slave_config_t *config,
+                                  const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+{
+    char label[CM1E_LABEL_LENGTH];
+    if (slave->facts.coe || (!cm1e_setup_is_needed(config, false) && !cm1e_setup_is_needed(config, true)))
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "%s has no mailbox for CoE, so SDOs and PDOs cannot be "
+                         "written: leave sdo, mapping, outputs_pdos and inputs_pdos out.",
+                         cm1e_bus_label_first(bus, slave, label));
+}
+
+static cm1e_error_t match_slave(cm1e_bus_t *bus, const cm1e_slave_config_t *config, cm1e_diag_t *diag)
+{
+    cm1e_bus_slave_t *slave = find_slave(bus, config, diag);
+    if (!slave)
+        return CM1E_ERROR_BUS_IDENTITY;
+    cm1e_error_t error = check_free(bus, config, slave, diag);
+    if (error == CM1E_OK)
+        error = check_identity(bus, config, slave, diag);
+    if (error != CM1E_OK)
+        return error;
+    slave->config = config;
+    return check_mailbox(bus, config, slave, diag);
+}
+
+cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = CM1E_OK;
+    for (uint32_t i = 0; i < bus->config.slave_count && error == CM1E_OK; i++)
+        error = match_slave(bus, &bus->config.slaves[i], diag);
+    return error;
+}

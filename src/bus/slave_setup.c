@@ -1,0 +1,148 @@
+#include "bus/slave_setup.h"
+
+#include "core/bytes.h"
+#include "device/device.h"
+
+enum { SDO_TIMEOUT_NS = 1000000000, COUNT_BYTES = 1, PDO_BYTES = 2, ENTRY_BYTES = 4 };
+
+/** One transfer of the list. */
+typedef struct step {
+    uint16_t index;
+    uint8_t subindex, bytes;
+    bool check; /**< reads what was written; false: writes */
+    uint64_t value;
+} step_t;
+
+/** Goes along the list until it is at the step that is looked for. */
+typedef struct walk {
+    unsigned left;
+    step_t *step;
+    bool check; /**< the steps are those that read */
+} walk_t;
+
+/** false: go on; true: this is the step. */
+static bool visit(walk_t *walk, unsigned index, unsigned subindex, unsigned bytes, uint64_t value)
+{
+    if (walk->left-- > 0)
+        return false;
+    *walk->step = (step_t){(uint16_t)index, (uint8_t)subindex, (uint8_t)bytes, walk->check, value};
+    return true;
+}
+
+static bool walk_sdos(walk_t *walk, const cm1e_slave_config_t *config, bool before_op)
+{
+    for (unsigned i = 0; i < config->sdo_count; i++) {
+        const cm1e_sdo_config_t *sdo = &config->sdos[i];
+        if (sdo->before_op == before_op && visit(walk, sdo->index, sdo->subindex, sdo->bytes, sdo->value))
+            return true;
+    }
+    return false;
+}
+
+/** A PDO is emptied, filled and counted (ETG.1000.6 section 5.6.7); then read. */
+static bool walk_mapping(walk_t *walk, const cm1e_slave_config_t *config)
+{
+    for (unsigned first = 0, end; first < config->entry_count; first = end) {
+        const unsigned pdo = config->entries[first].pdo;
+        for (end = first; end < config->entry_count && config->entries[end].pdo == pdo;)
+            end++;
+        if (!walk->check && visit(walk, pdo, 0, COUNT_BYTES, 0))
+            return true;
+        for (unsigned i = first; i < end; i++) {
+            const cm1e_pdo_entry_config_t *entry = &config->entries[i];
+            const uint32_t value = (uint32_t)entry->index << 16 | (uint32_t)entry->subindex << 8 | entry->bits;
+            if (visit(walk, pdo, i - first + 1, ENTRY_BYTES, value))
+                return true;
+        }
+        if (visit(walk, pdo, 0, COUNT_BYTES, end - first))
+            return true;
+    }
+    return false;
+}
+
+static unsigned assigned_count(const cm1e_slave_config_t *config, int direction)
+{
+    return direction ? config->inputs_pdo_count : config->outputs_pdo_count;
+}
+
+/** A slave may refuse to have a PDO written that is assigned, so assignments are emptied before. */
+static bool walk_clearing(walk_t *walk, const cm1e_slave_config_t *config)
+{
+    for (int direction = 0; direction < 2; direction++)
+        if (assigned_count(config, direction) && visit(walk, OBJ_1C12_RXPDO_ASSIGN + direction, 0, COUNT_BYTES, 0))
+            return true;
+    return false;
+}
+
+static bool walk_assignment(walk_t *walk, const cm1e_slave_config_t *config)
+{
+    for (int direction = 0; direction < 2; direction++) {
+        const unsigned index = OBJ_1C12_RXPDO_ASSIGN + direction, count = assigned_count(config, direction);
+        const uint16_t *pdos = direction ? config->inputs_pdos : config->outputs_pdos;
+        for (unsigned i = 0; i < count; i++)
+            if (visit(walk, index, i + 1, PDO_BYTES, pdos[i]))
+                return true;
+        if (count && visit(walk, index, 0, COUNT_BYTES, count))
+            return true;
+    }
+    return false;
+}
+
+static bool find_step(const cm1e_slave_config_t *config, bool before_op, unsigned number, step_t *step)
+{
+    walk_t walk = {.left = number, .step = step};
+    if (walk_sdos(&walk, config, before_op))
+        return true;
+    if (before_op)
+        return false;
+    if (walk_clearing(&walk, config) || walk_mapping(&walk, config) || walk_assignment(&walk, config))
+        return true;
+    walk.check = true;
+    return walk_mapping(&walk, config) || walk_assignment(&walk, config);
+}
+
+bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, bool before_op)
+{
+    step_t step;
+    return config && find_step(config, before_op, 0, &step);
+}
+
+void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config, bool before_op)
+{
+    *job = (cm1e_setup_job_t){.config = config, .before_op = before_op, .sdo = {.position = position}};
+}
+
+/** false: the job has failed. */
+static bool took(cm1e_setup_job_t *job)
+{
+    if (cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR) {
+        job->error = job->sdo.error;
+        return false;
+    }
+    if (job->sdo.write)
+        return true;
+    job->shown = cm1e_get_uint(job->data, (unsigned)job->sdo.size);
+    job->differs = job->shown != job->expected;
+    if (job->differs)
+        job->error = CM1E_ERROR_PDO_MAPPING;
+    return !job->differs;
+}
+
+cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job)
+{
+    step_t step;
+    if (!job->config)
+        return NULL;
+    if ((job->started && !took(job)) || !find_step(job->config, job->before_op, job->step, &step)) {
+        job->config = NULL;
+        return NULL;
+    }
+    job->step++;
+    job->started = true;
+    job->expected = step.value;
+    cm1e_put_uint(job->data, sizeof job->data, step.check ? 0 : step.value);
+    job->sdo = (cm1e_sdo_t){.position = job->sdo.position, .index = step.index, .subindex = step.subindex,
+                            .write = !step.check, .data = job->data, .timeout_ns = SDO_TIMEOUT_NS,
+                            .size = step.check ? sizeof job->data : step.bytes, .state = CM1E_SDO_BUSY};
+    return &job->sdo;
+}

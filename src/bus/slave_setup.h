@@ -1,0 +1,32 @@
+/**
+ * @file slave_setup.h
+ * What the configuration writes into a slave without an axis at its start: SDOs and PDOs. What it wrote of PDOs is read
+ * back, because a slave may take another value without a word. A list of SDO transfers, one after the other; who runs
+ * it owns the CoE client. No clock inside.
+ */
+#ifndef CM1E_BUS_SLAVE_SETUP_H
+#define CM1E_BUS_SLAVE_SETUP_H
+
+#include "cm1e/bus.h"
+
+typedef struct cm1e_setup_job {
+    const cm1e_slave_config_t *config; /**< NULL: idle */
+    bool before_op;                    /**< which of the start-up SDOs; PDOs are written with those before Safe-Op */
+    bool started;                      /**< `sdo` is in work or done */
+    bool differs;                      /**< the last transfer read another value than the one that was written */
+    unsigned step;
+    uint64_t expected, shown;          /**< of the last transfer that read */
+    cm1e_sdo_t sdo;
+    uint8_t data[8];
+    cm1e_error_t error;                /**< result, valid when idle; foreign code in sdo.abort_code */
+} cm1e_setup_job_t;
+
+/** Whether the configuration writes anything into the slave. */
+bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, bool before_op);
+void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config, bool before_op);
+static inline bool cm1e_setup_idle(const cm1e_setup_job_t *job) { return job->config == NULL; }
+static inline void cm1e_setup_cancel(cm1e_setup_job_t *job) { job->config = NULL; }
+/** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
+cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job);
+
+#endif
