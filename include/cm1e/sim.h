@@ -217,6 +217,20 @@ CM1E_API void cm1e_sim_probe_channel(cm1e_sim_segment_t *segment, uint32_t posit
 /** cm1e_sim_probe_reset() of one motor. @rt any */
 CM1E_API void cm1e_sim_probe_reset_channel(cm1e_sim_segment_t *segment, uint32_t position, unsigned channel);
 
+/* ---- distributed clocks ------------------------------------------------------------------------------------------ */
+
+/** The distributed clock of a slave, as somebody sees it who has the exact time of the simulation. The console lets it
+ *  drift, jump or lose its reference ("clock"). */
+typedef struct cm1e_sim_clock_t {
+    int64_t time_ns;       /**< simulated time of this state */
+    int64_t system_ns;     /**< the local copy of the system time then */
+    double drift_ppm;      /**< of the crystal now, positive: it is fast */
+    uint64_t sync0_pulses, sync1_pulses; /**< since they were activated */
+    int64_t next_sync0_ns; /**< system time of the next pulse; 0: none will come */
+} cm1e_sim_clock_t;
+/** NULL-safe; no such slave, or it is away: zeros. @rt any */
+CM1E_API void cm1e_sim_segment_clock(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_clock_t *result);
+
 #ifdef __cplusplus
 }
 #endif

@@ -134,6 +134,8 @@ static uint16_t decide(cm1e_sim_slave_t *slave, uint8_t to)
     if (!transition)
         return AL_CODE_INVALID_STATE_CHANGE;
     uint16_t code = transition->check ? transition->check(slave) : AL_CODE_NONE;
+    if (code == AL_CODE_NONE && to > from && to >= CM1E_AL_SAFE_OP)
+        code = cm1e_sim_esc_sync_check(slave, to);
     if (code == AL_CODE_NONE)
         code = ask_application(slave, to);
     if (code == AL_CODE_NONE || to < from)

@@ -323,7 +323,7 @@ static const cm1e_sim_app_ops_t ops = {
     .advance = advance, .due = due, .state_change = state_change, .process_data_sizes = process_data_sizes,
     .outputs = outputs, .inputs = inputs, .watchdog_expired = watchdog_expired, .sdo_read = sdo_read,
     .sdo_write = sdo_write, .object = object, .entry = entry, .explicit_device_id = explicit_device_id,
-    .power_on = power_on, .destroy = destroy,
+    .power_on = power_on, .destroy = destroy, .runs_by_sync0 = true,
 };
 
 cm1e_sim_cia402_t *cm1e_sim_cia402_of(cm1e_sim_slave_t *slave)

@@ -14,6 +14,7 @@
 #include "sim/cia402_app.h"
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"
+#include "sim/esc_clock_orders.h"
 
 enum { LINE_MAX_BYTES = 128, WORDS_MAX = 6, FRAMES_MAX = 1000000, DELAY_MAX_US = 1000000, ABSENCE_MAX_MS = 60000 };
 enum { ABSENCE_DEFAULT_MS = 500 };
@@ -558,6 +559,14 @@ static cm1e_error_t run_firmware(call_t *call)
     return CM1E_OK;
 }
 
+static cm1e_error_t run_clock(call_t *call)
+{
+    char text[160];
+    const bool taken = cm1e_sim_clock_order(call->slave, argument(call, 0), argument(call, 1), text, sizeof text);
+    say(call, "slave %u: %s", call->position, text);
+    return taken ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
+}
+
 /* ---- the table -------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t run_help(call_t *call);
@@ -587,6 +596,8 @@ static const command_t commands[] = {
     {"power-cycle", ANY_SLAVE, 0, 1, run_power_cycle, "<slave> [ms]", "control power off and on again"},
     {"unplug", ANY_SLAVE, 0, 0, run_unplug, "<slave>", "pull the cable before it"},
     {"replug", ANY_SLAVE, 0, 0, run_replug, "<slave>", "plug the cable in again"},
+    {"clock", ANY_SLAVE, 1, 2, run_clock, "<slave> drift|temperature|jitter|step|...",
+     "its distributed clock: drifts, jumps, loses its reference"},
     {"lose", NO_SLAVE, 1, 1, run_lose, "<frames>", "lose the next frames"},
     {"corrupt", NO_SLAVE, 1, 1, run_corrupt, "<frames>", "corrupt the next frames"},
     {"delay", NO_SLAVE, 2, 2, run_delay, "<frames> <us>", "deliver the next frames late"},

@@ -76,7 +76,7 @@ void cm1e_sim_esc_power_on(cm1e_sim_slave_t *slave, int64_t now_ns)
     slave->powered_on_ns = now_ns;
     slave->now_ns = now_ns;
     slave->absent_until_ns = 0;
-    slave->dc_adjustment_ns = 0;
+    cm1e_sim_esc_dc_power_on(slave, now_ns);
     slave->outputs_arrived = false;
     slave->inputs_stale = true;
     if (slave->topology_changed)
@@ -100,6 +100,8 @@ void cm1e_sim_esc_advance(cm1e_sim_slave_t *slave, int64_t now_ns)
         if (slave->ops->power_on)
             slave->ops->power_on(slave->app, now_ns);
     }
+    cm1e_sim_esc_dc_advance(slave, now_ns);
+    cm1e_sim_esc_sync_supervise(slave);
     if (now_ns >= slave->sii_due_ns)
         cm1e_sim_esc_sii_due(slave);
     if (now_ns >= slave->watchdog_due_ns)

@@ -13,6 +13,7 @@
 
 #include "cm1e/sim.h"
 #include "sim/coe_server.h"
+#include "sim/esc_clock.h"
 #include "sim/foe_server.h"
 #include "sim/mailbox.h"
 #include "sim/slave.h"
@@ -28,7 +29,10 @@ enum {
     ESC_WATCHDOG_STATUS = 0x0440, ESC_WATCHDOG_COUNTERS = 0x0442, ESC_SII_CONFIG = 0x0500, ESC_SII_PDI_ACCESS = 0x0501,
     ESC_SII_CONTROL = 0x0502, ESC_SII_ADDRESS = 0x0504, ESC_SII_DATA = 0x0508, ESC_FMMU = 0x0600, ESC_SM = 0x0800,
     ESC_DC_PORT_TIMES = 0x0900, ESC_DC_SYSTEM_TIME = 0x0910, ESC_DC_UNIT_TIME = 0x0918, ESC_DC_OFFSET = 0x0920,
-    ESC_DC_DELAY = 0x0928, ESC_DC_DIFFERENCE = 0x092C, ESC_DC_SPEED_START = 0x0930, ESC_DC_CYCLIC_CONTROL = 0x0980,
+    ESC_DC_DELAY = 0x0928, ESC_DC_DIFFERENCE = 0x092C, ESC_DC_SPEED_START = 0x0930, ESC_DC_SPEED_DIFF = 0x0932,
+    ESC_DC_DEPTH = 0x0934, ESC_DC_SPEED_DEPTH = 0x0935, ESC_DC_CYCLIC_CONTROL = 0x0980, ESC_DC_ACTIVATION = 0x0981,
+    ESC_DC_ACTIVATION_STATUS = 0x0984, ESC_DC_START = 0x0990, ESC_DC_NEXT_SYNC1 = 0x0998, ESC_DC_CYCLE_0 = 0x09A0,
+    ESC_DC_CYCLE_1 = 0x09A4, ESC_DC_END = 0x0A00,
 };
 
 /* ECAT event request bits (0x0210). */
@@ -96,7 +100,7 @@ struct cm1e_sim_slave {
     int64_t return_ns;        /**< when it comes back into the other port; -1: that port is closed */
     bool inputs_stale;        /**< the inputs in the RAM are older than now_ns */
     bool outputs_arrived;
-    int64_t dc_adjustment_ns; /**< of the system time, by the clock's control loop */
+    esc_clock_t clock;
 
     /* AL state machine */
     uint8_t al_state;
@@ -200,9 +204,25 @@ bool cm1e_sim_profile_hides(const cm1e_sim_slave_t *slave, uint16_t index, uint8
 void cm1e_sim_profile_free(cm1e_sim_profile_t *profile);
 
 /* esc_dc.c: distributed clocks */
+void cm1e_sim_esc_dc_power_on(cm1e_sim_slave_t *slave, int64_t now_ns);
+/** Lets the clock run, and gives the pulses that are due. */
+void cm1e_sim_esc_dc_advance(cm1e_sim_slave_t *slave, int64_t now_ns);
+/** A frame arrives, and comes back into the other port at `return_ns`; -1: that port is closed. */
+void cm1e_sim_esc_dc_frame(cm1e_sim_slave_t *slave, int64_t frame_ns, int64_t return_ns);
 void cm1e_sim_esc_dc_latch(cm1e_sim_slave_t *slave);
 void cm1e_sim_esc_dc_refresh(cm1e_sim_slave_t *slave);
+/** 0x0910, 0x0930 and 0x0981 were written. */
 void cm1e_sim_esc_dc_received(cm1e_sim_slave_t *slave, const uint8_t *data);
+void cm1e_sim_esc_dc_restart(cm1e_sim_slave_t *slave);
+void cm1e_sim_esc_dc_activated(cm1e_sim_slave_t *slave);
+/** The state of the clock, for a slave that is there. */
+void cm1e_sim_esc_clock(const cm1e_sim_slave_t *slave, cm1e_sim_clock_t *clock);
+
+/* esc_sync.c: a device that runs by SYNC0 */
+/** 0, or the AL status code why the state `to` is refused. */
+uint16_t cm1e_sim_esc_sync_check(const cm1e_sim_slave_t *slave, uint8_t to);
+/** In Operational: it falls back where pulses, process data or the reference clock stay away. */
+void cm1e_sim_esc_sync_supervise(cm1e_sim_slave_t *slave);
 
 /* al_state.c */
 void cm1e_sim_al_power_on(cm1e_sim_slave_t *slave);

@@ -82,6 +82,7 @@ void cm1e_sim_esc_deliver_outputs(cm1e_sim_slave_t *slave)
     if (!slave->outputs_arrived)
         return;
     slave->outputs_arrived = false;
+    slave->clock.pulses.without_outputs = 0;
     const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, ESC_ROLE_OUTPUTS);
     if (sm && slave->al_state == CM1E_AL_OP && slave->ops->outputs)
         slave->ops->outputs(slave->app, slave->memory + sm->start, sm->length, slave->now_ns);

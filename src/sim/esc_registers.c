@@ -83,6 +83,8 @@ static const struct effect {
     {0x0600, 0x067F, cm1e_sim_esc_fmmu_decode},
     {0x0800, 0x081F, sync_managers_written},
     {0x0900, 0x0900, cm1e_sim_esc_dc_latch},
+    {0x0930, 0x0931, cm1e_sim_esc_dc_restart},
+    {0x0981, 0x0981, cm1e_sim_esc_dc_activated},
 };
 enum { EFFECTS = sizeof effects / sizeof effects[0] };
 
@@ -93,6 +95,8 @@ static bool touches(uint32_t address, size_t length, uint32_t first, uint32_t la
 
 bool cm1e_sim_esc_registers_write(cm1e_sim_slave_t *slave, uint16_t address, const uint8_t *data, size_t length)
 {
+    if (slave->clock.troubles.absent && address >= ESC_DC_PORT_TIMES && address < ESC_DC_END)
+        return false;
     /* The frame of every cycle of a master that uses distributed clocks: keep it short. The write is compared with the
      * system time, not stored (0x0910). */
     if (address == ESC_DC_SYSTEM_TIME && length >= 4 && length <= 8) {
@@ -141,7 +145,7 @@ void cm1e_sim_esc_registers_power_on(cm1e_sim_slave_t *slave)
     memory[ESC_RAM_SIZE] = (ESC_MEMORY_BYTES - ESC_REGISTER_BYTES) / 1024;
     memory[ESC_PORT_DESCRIPTOR] = 0x0F; /* ports 0 and 1: MII */
     /* FMMUs to the bit, distributed clocks with 64 bits. */
-    cm1e_put_u16(memory + ESC_FEATURES, 0x000C);
+    cm1e_put_u16(memory + ESC_FEATURES, slave->clock.troubles.absent ? 0x0000 : 0x000C);
     cm1e_put_u32(memory + ESC_DL_CONTROL, 0x00070001);
     cm1e_put_u16(memory + ESC_WATCHDOG_DIVIDER, 0x09C2); /* 100 us */
     cm1e_put_u16(memory + ESC_WATCHDOG_PDI, 0x03E8);     /* 100 ms */

@@ -255,11 +255,9 @@ static void pass_slaves(cm1e_sim_segment_t *segment, const struct route *route, 
     for (uint32_t i = 0; i < route->count; i++) {
         cm1e_sim_slave_t *slave = segment->slaves[route->first + i];
         const bool last = i + 1 == route->count && route->exit_port == CM1E_SIM_PORT_PRIMARY;
-        slave->frame_ns = segment->now_ns + (int64_t)i * ESC_HOP_NS;
-        slave->return_ns =
-            last || route->exit_port != CM1E_SIM_PORT_PRIMARY
-                ? -1
-                : segment->now_ns + (int64_t)(2 * (route->count - 1) - i) * ESC_HOP_NS;
+        const bool returns = !last && route->exit_port == CM1E_SIM_PORT_PRIMARY;
+        const int64_t return_ns = segment->now_ns + (int64_t)(2 * (route->count - 1) - i) * ESC_HOP_NS;
+        cm1e_sim_esc_dc_frame(slave, segment->now_ns + (int64_t)i * ESC_HOP_NS, returns ? return_ns : -1);
         cm1e_sim_esc_frame(slave, frame + DATAGRAMS, frame + end);
     }
     if (route->count)

@@ -33,7 +33,8 @@ enum {
     AL_CODE_INVALID_MAILBOX_PREOP = 0x0016, AL_CODE_INVALID_SM_CONFIG = 0x0017, AL_CODE_NO_VALID_INPUTS = 0x0018,
     AL_CODE_NO_VALID_OUTPUTS = 0x0019, AL_CODE_SYNC_ERROR = 0x001A, AL_CODE_SM_WATCHDOG = 0x001B,
     AL_CODE_INVALID_OUTPUT_CONFIG = 0x001D, AL_CODE_INVALID_INPUT_CONFIG = 0x001E,
-    AL_CODE_INVALID_WATCHDOG_CONFIG = 0x001F,
+    AL_CODE_INVALID_WATCHDOG_CONFIG = 0x001F, AL_CODE_FATAL_SYNC = 0x002C, AL_CODE_NO_SYNC = 0x002D,
+    AL_CODE_PLL = 0x0032, AL_CODE_SYNC0_CYCLE = 0x0036,
 };
 
 /** Error codes of FoE (ETG.1000.6 section 5.8) that the simulator answers with, and other results of a request. */
@@ -82,6 +83,8 @@ typedef struct cm1e_sim_app_ops {
     void (*destroy)(void *app);
     /** Takes over the dictionary of a profile and powers on. false: no memory. NULL: it cannot. */
     bool (*play)(void *app, const struct cm1e_sim_profile *profile, int64_t now_ns);
+    /** It runs by SYNC0 where the master activates that (esc_sync.c); else by its process data. */
+    bool runs_by_sync0;
 } cm1e_sim_app_ops_t;
 
 typedef struct cm1e_sim_slave cm1e_sim_slave_t;

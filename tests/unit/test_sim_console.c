@@ -49,7 +49,7 @@ static void test_help_lists_every_command(void)
 {
     static const char *const words[] = {"help", "status", "show", "power", "switches", "sensor", "load", "over-torque",
                                         "temperature", "error", "power-up-fault", "motor", "power-cycle", "unplug",
-                                        "replug", "lose", "corrupt", "delay"};
+                                        "replug", "clock", "lose", "corrupt", "delay"};
     accept("help");
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(answer, words[i]), words[i]);
@@ -80,6 +80,8 @@ static void test_wrong_lines_are_refused_in_words(void)
         {"power-cycle 1 0", "1 to 60000"}, {"power-cycle 1 60001", "1 to 60000"}, {"power-cycle", "slave is missing"},
         {"unplug", "slave is missing"}, {"unplug 1 2", "too much"}, {"replug 9", "1 to 4"},
         {"lose", "usage"}, {"lose many", "frames"}, {"lose -1", "frames"}, {"lose 1000001", "1000000"},
+        {"clock 1", "usage"}, {"clock 1 fast", "drift, temperature"}, {"clock 1 drift", "ppm, -500 to 500"},
+        {"clock 1 drift 501", "ppm, -500 to 500"}, {"clock 1 free 3", "too much behind free"},
         {"lose 1 2", "too much"}, {"corrupt", "usage"}, {"delay 1", "usage"}, {"delay 1 0", "1 to 1000000"},
         {"delay 1 x", "microseconds"}, {"status 9", "1 to 4"}, {"status 1 2", "too much"}, {"show", "slave is missing"},
         {"show 4", "not a CM1-E"}, {"help me", "too much"}, {"1 2 3 4 5 6 7 8", "help"},
