@@ -102,6 +102,13 @@ typedef enum cm1e_bus_phase {
     BUS_CLOSED = 0, BUS_OPEN, BUS_SCANNED, BUS_IDENTIFIED, BUS_CONFIGURED, BUS_OPERATING,
 } cm1e_bus_phase_t;
 
+/** What outputs of slaves without motor take where the program does not write them (safe_outputs.c). */
+typedef struct cm1e_safe_outputs {
+    uint8_t *values, *mask; /**< as the outputs of the image; a bit of the mask: the output takes its safe value */
+    bool any;
+    bool released;          /**< the program has ended, so outputs take their safe values */
+} cm1e_safe_outputs_t;
+
 struct cm1e_bus {
     cm1e_bus_config_t config;                /**< zeros of the bus itself replaced by their defaults */
     int phase;                               /**< cm1e_bus_phase_t; atomic: cm1e_sdo_submit() looks at it */
@@ -119,8 +126,7 @@ struct cm1e_bus {
     uint8_t *image;                          /**< what SOEM sends and receives: outputs, then inputs */
     uint8_t *sent_outputs;                   /**< as they left, to know the frame again */
     uint8_t *outputs, *inputs;               /**< what the upper rooms write and read */
-    uint8_t *safe_values, *safe_mask;        /**< of outputs; a bit of the mask: the output takes its safe value */
-    bool any_safe, released;                 /**< released: the program has ended, so outputs take their safe values */
+    cm1e_safe_outputs_t safe;
     size_t output_bytes, input_bytes;
     int expected_working_counter;
 

@@ -98,13 +98,13 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
     free(bus->sent_outputs);
     free(bus->outputs);
     free(bus->inputs);
-    free(bus->safe_values);
-    free(bus->safe_mask);
+    free(bus->safe.values);
+    free(bus->safe.mask);
     for (uint32_t i = 0; i < CM1E_MAX_SLAVES; i++) {
         free(bus->slaves[i].signals);
         bus->slaves[i].signals = NULL;
     }
-    bus->safe_values = bus->safe_mask = NULL;
+    bus->safe.values = bus->safe.mask = NULL;
     bus->image = bus->sent_outputs = bus->outputs = bus->inputs = NULL;
     bus->output_bytes = bus->input_bytes = 0;
     bus->layout = 0;
@@ -118,9 +118,9 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
     bus->sent_outputs = calloc(1, room + 1);
     bus->outputs = calloc(1, room + 1);
     bus->inputs = calloc(1, room + 1);
-    bus->safe_values = calloc(1, room + 1);
-    bus->safe_mask = calloc(1, room + 1);
-    if (!bus->image || !bus->sent_outputs || !bus->outputs || !bus->inputs || !bus->safe_values || !bus->safe_mask)
+    bus->safe.values = calloc(1, room + 1);
+    bus->safe.mask = calloc(1, room + 1);
+    if (!bus->image || !bus->sent_outputs || !bus->outputs || !bus->inputs || !bus->safe.values || !bus->safe.mask)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the process image.");
     if (!cm1e_soem_map(bus->soem, bus->image, room, &bus->output_bytes, &bus->input_bytes))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,

@@ -135,7 +135,7 @@ void cm1e_bus_stop(cm1e_bus_t *bus)
     if (!bus || bus->phase < BUS_OPEN || !bus->soem || cm1e_in_task_note("cm1e_bus_stop()"))
         return;
     cm1e_bus_enter(bus);
-    if (bus->phase == BUS_OPERATING && bus->any_safe)
+    if (bus->phase == BUS_OPERATING && bus->safe.any)
         send_safe_outputs(bus);
     if (bus->in_flight)
         cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns);

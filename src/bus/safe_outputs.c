@@ -41,8 +41,8 @@ static cm1e_error_t take_signal(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, 
     const uint64_t value = bits_of_value(info, safe);
     for (uint32_t n = 0; n < info->bits; n++) {
         const uint32_t bit = 8 * slave->placement.output_offset + info->bit_offset + n;
-        put_bit(bus->safe_mask, bit, !signal->config->hold);
-        put_bit(bus->safe_values, bit, value >> n & 1);
+        put_bit(bus->safe.mask, bit, !signal->config->hold);
+        put_bit(bus->safe.values, bit, value >> n & 1);
     }
     return CM1E_OK;
 }
@@ -50,32 +50,32 @@ static cm1e_error_t take_signal(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, 
 cm1e_error_t cm1e_bus_prepare_safe_outputs(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     cm1e_error_t error = CM1E_OK;
-    bus->released = bus->any_safe = false;
+    bus->safe.released = bus->safe.any = false;
     for (uint32_t i = 0; i < bus->slave_count && error == CM1E_OK; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (!slave->config)
             continue;
-        bus->any_safe |= slave->placement.output_bytes > 0;
-        memset(bus->safe_mask + slave->placement.output_offset, 0xFF, slave->placement.output_bytes);
+        bus->safe.any |= slave->placement.output_bytes > 0;
+        memset(bus->safe.mask + slave->placement.output_offset, 0xFF, slave->placement.output_bytes);
         for (uint32_t n = 0; n < slave->signals->count && error == CM1E_OK; n++)
             error = take_signal(bus, slave, &slave->signals->at[n], diag);
     }
     if (error == CM1E_OK)
-        memcpy(bus->outputs, bus->safe_values, bus->output_bytes); /* until the program writes them */
+        memcpy(bus->outputs, bus->safe.values, bus->output_bytes); /* until the program writes them */
     return error;
 }
 
 static void make_safe(cm1e_bus_t *bus, uint32_t offset, size_t bytes)
 {
     for (size_t i = offset; i < offset + bytes; i++)
-        bus->outputs[i] = (uint8_t)((bus->outputs[i] & ~bus->safe_mask[i]) | (bus->safe_values[i] & bus->safe_mask[i]));
+        bus->outputs[i] = (uint8_t)((bus->outputs[i] & ~bus->safe.mask[i]) | (bus->safe.values[i] & bus->safe.mask[i]));
 }
 
 void cm1e_bus_make_outputs_safe(cm1e_bus_t *bus)
 {
-    if (!bus->any_safe)
+    if (!bus->safe.any)
         return;
-    if (bus->released || cm1e_bus_health(bus) == CM1E_ERROR_BUS_LOST) {
+    if (bus->safe.released || cm1e_bus_health(bus) == CM1E_ERROR_BUS_LOST) {
         make_safe(bus, 0, bus->output_bytes);
         return;
     }
@@ -86,4 +86,4 @@ void cm1e_bus_make_outputs_safe(cm1e_bus_t *bus)
     }
 }
 
-void cm1e_bus_release_outputs(cm1e_bus_t *bus) { bus->released = true; }
+void cm1e_bus_release_outputs(cm1e_bus_t *bus) { bus->safe.released = true; }

@@ -5,8 +5,8 @@
 #include "nic/nic.h"
 #include "sim/bridge_app.h"
 
-#include "axis_segment.h"
 #include "bridge_wire.h"
+#include "axis_segment.h"
 
 static cm1e_cml_exchange_t exchange;
 

@@ -235,6 +235,7 @@ static void test_unset_fields_are_zero_after_an_earlier_load(void)
     cm1e_bus_config_free(&config);
     memset(&config, 0xA5, sizeof config);
     config.axes = NULL;
+    config.slaves = NULL;
     cm1e_bus_config_t expected;
     cm1e_bus_config_init(&expected, "sim", 1);
     expected.axes[0].address = 1;
