@@ -1,5 +1,13 @@
-/* Checks set-points that the axis has not planned itself. A set-point that the motor could not follow within the limits
- * of the axis is not sent to it. */
+/*
+ * Checks set-points that the axis has not planned itself. A set-point that the motor could not follow within the limits
+ * of the axis is not sent to it.
+ *
+ * Only the ends of cycles are known. So a cycle is judged by the gentlest motion that leads from one end to the other:
+ * a step of the velocity or of the acceleration inside a cycle is seen if it needs more than the limits at its ends, or
+ * more jerk inside. What stays unseen is a detour of the position that is over at the end of the cycle, which no motor
+ * is sent, and a step of the position of less than a quarter of (acceleration * cycle time^2). Without a limit of jerk
+ * (a linear cam, an actual value, a stop) the velocity may step by what the acceleration makes of it in a cycle.
+ */
 #include <math.h>
 #include <stdio.h>
 
@@ -69,6 +77,15 @@ static bool leaves_limits(const cm1e_axis_t *axis, double line)
                                             (line < axis->limits.lower - axis->limits.tolerance && line < before));
 }
 
+/* The smallest jerk that leads from one velocity and acceleration to the next within the cycle. It changes once. */
+static double jerk_inside(const cm1e_axis_t *axis, const from_t *next)
+{
+    const double t = axis->cycle_s, a0 = axis->setpoint.acceleration, gain = next->velocity - axis->setpoint.velocity;
+    const double mean = (next->acceleration - a0) / t, noise = 1e-12 * fabs(next->velocity);
+    const double beside = fmax(fabs(gain - (a0 + next->acceleration) * t / 2.0) - noise, 0.0) / (t * t);
+    return 2.0 * beside + sqrt(4.0 * beside * beside + mean * mean);
+}
+
 CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
@@ -88,6 +105,11 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     const double jerk_noise = 1e-9 * fmax(most->acceleration, most->deceleration) / axis->cycle_s;
     if (kept_jerk && jerk > most->jerk * (1.0 + slack) + jerk_noise)
         return broken(GUARD_JERK, jerk, most->jerk);
+    if (kept_jerk) {
+        const double inside = jerk_inside(axis, next);
+        if (inside > most->jerk * (1.0 + slack) + jerk_noise)
+            return broken(GUARD_JERK, inside, most->jerk);
+    }
     guard = guard_step(axis, next, kept_jerk);
     if (guard.limit)
         return guard;
@@ -154,6 +176,7 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
         .down = most->deceleration * t,
         .acceleration = either,
         .jerk = most->jerk * t,
+        .twice_jerk = 2.0 * most->jerk,
         .ease = axis_led(axis) ? 0.0 : 0.5 / most->jerk, /* the group has planned its path with these limits */
         .half_cycle = axis->position.scale * t / 2.0,
         .step = either * t * t / 4.0 * fabs(axis->position.scale) + slack_counts,

@@ -27,7 +27,8 @@ static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *
           fabs(a) <= g->acceleration && fabs(step) <= g->step && axis->power.enable_positive &&
               axis->power.enable_negative))
         return false;
-    if (kept_jerk && !(fabs(a - axis->setpoint.acceleration) <= g->jerk &&
+    const double a0 = axis->setpoint.acceleration, beside = fabs(2.0 * (v - v0) - (a0 + a) * axis->cycle_s);
+    if (kept_jerk && !((a - a0) * (a - a0) + beside * g->twice_jerk <= g->jerk * g->jerk &&
                        (a * v <= 0.0 || speed + a * a * g->ease <= g->velocity)))
         return false;
     if (!axis->limits.software_limits)

@@ -638,6 +638,41 @@ static void test_wrong_inputs_are_refused(void)
     axes_must_be(SLAVE, CM1E_AXIS_STANDSTILL);
 }
 
+/* A cam that is flat before its first point and has a slope there: the velocity of the slave steps inside the cycle in
+ * which the master passes that point. At the ends of that cycle the acceleration is 0. */
+static void pass_a_kink(double step)
+{
+    const double velocity = 5;
+    axes_begin(2);
+    axes_bench.witness[SLAVE].strictness = AXES_UNWATCHED;
+    axes_wait(MASTER, axes_move_to(MASTER, -3, 10), 5000);
+    points[0] = (MC_CAM_POINT){.Master = 0, .Slave = 0, .Velocity = step / velocity};
+    points[1] = (MC_CAM_POINT){.Master = 10, .Slave = 5 * step / velocity};
+    const MC_CAM_REF table = {points, 2, mcCamPolynomial5};
+    const cm1e_axis_coupling_t coupling = by_cam(selected(SLAVE, &table, false, true), mcAbsolute);
+    (void)cam_in(&coupling);
+    axes_move_velocity(MASTER, velocity);
+    axes_cycles(1500);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, velocity, axes_info(MASTER).set_velocity);
+    TEST_ASSERT_TRUE(set_of(MASTER) > 1);
+}
+
+static void test_a_kink_of_a_cam_inside_a_cycle_is_seen(void)
+{
+    axes_begin(2);
+    const cm1e_motion_limits_t most = axes_axis(SLAVE)->limits.maximum;
+    const double t = axes_axis(SLAVE)->cycle_s, hidden = most.jerk * t * t / 4, allowed = most.acceleration * t;
+    TEST_ASSERT_TRUE(2 * hidden < allowed);
+    pass_a_kink(0.9 * hidden); /* the jerk of the axis makes as much in a cycle */
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+    pass_a_kink(1.1 * hidden);
+    axes_must_be(SLAVE, CM1E_AXIS_ERROR_STOP);
+    axes_told(SLAVE, "a jerk of");
+    pass_a_kink(0.9 * allowed);
+    axes_must_be(SLAVE, CM1E_AXIS_ERROR_STOP);
+    axes_told(SLAVE, "a jerk of");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -663,5 +698,6 @@ int main(void)
     RUN_TEST(test_a_cam_that_leaves_the_software_limits_is_refused);
     RUN_TEST(test_a_cam_that_is_needed_is_not_overwritten);
     RUN_TEST(test_wrong_inputs_are_refused);
+    RUN_TEST(test_a_kink_of_a_cam_inside_a_cycle_is_seen);
     return UNITY_END();
 }
