@@ -106,8 +106,8 @@ bool cm1e_drive_has_probe(const cm1e_drive_t *drive, int input, bool falling);
 /** Waits for the next edge; an edge of the same input that is waited for already is armed anew too. @rt cycle */
 void cm1e_drive_probe_arm(cm1e_drive_t *drive, int input, bool falling);
 void cm1e_drive_probe_disarm(cm1e_drive_t *drive, int input, bool falling);
-/** true, once: the edge came, at `*position` counts. @rt cycle */
-bool cm1e_drive_probe_taken(cm1e_drive_t *drive, int input, bool falling, int32_t *position);
+/** Whether the edge came since it was armed; `*position` is where, in counts. @rt cycle */
+bool cm1e_drive_probe_taken(const cm1e_drive_t *drive, int input, bool falling, int32_t *position);
 /** The latched fault as sentences: cause, numbers, cure. @rt block */
 void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size);
 

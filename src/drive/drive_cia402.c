@@ -19,9 +19,10 @@ static void tell(cm1e_drive_t *drive, uint16_t index, uint8_t subindex, uint32_t
 /* The cycle time as value * 10^index seconds in 8 bits: 1, 2, 5 or 25, in the largest unit that has it whole. */
 static void tell_cycle_time(cm1e_drive_t *drive)
 {
-    int64_t value = cm1e_bus_configuration(drive->bus)->cycle_time_ns, unit = 1000000;
+    const int64_t value = cm1e_bus_configuration(drive->bus)->cycle_time_ns;
+    int64_t unit = 1000000;
     int8_t index = -3;
-    for (; unit > 1000 && value % unit != 0; unit /= 10)
+    for (; value % unit != 0; unit /= 10)
         index--;
     tell(drive, OBJ_60C2_INTERPOLATION_TIME, 2, (uint8_t)index, 1);
     tell(drive, OBJ_60C2_INTERPOLATION_TIME, 1, (uint32_t)(value / unit), 1);
@@ -54,23 +55,18 @@ void cm1e_drive_probe_arm(cm1e_drive_t *drive, int input, bool falling)
     probe->wanted |= edge(falling);
     probe->taken &= (uint8_t)~edge(falling);
     probe->on = false;
-    probe->clearing = true;
 }
 
 void cm1e_drive_probe_disarm(cm1e_drive_t *drive, int input, bool falling)
 {
-    cm1e_drive_probe_t *probe = &drive->probes.probe[input - 1];
-    probe->wanted &= (uint8_t)~edge(falling);
-    probe->taken &= (uint8_t)~edge(falling);
+    drive->probes.probe[input - 1].wanted &= (uint8_t)~edge(falling);
 }
 
-bool cm1e_drive_probe_taken(cm1e_drive_t *drive, int input, bool falling, int32_t *position)
+bool cm1e_drive_probe_taken(const cm1e_drive_t *drive, int input, bool falling, int32_t *position)
 {
-    cm1e_drive_probe_t *probe = &drive->probes.probe[input - 1];
-    const bool taken = probe->taken & edge(falling);
+    const cm1e_drive_probe_t *probe = &drive->probes.probe[input - 1];
     *position = probe->positions[falling];
-    probe->taken &= (uint8_t)~edge(falling);
-    return taken;
+    return probe->taken & edge(falling);
 }
 
 static void take_edges(cm1e_drive_t *drive, unsigned n, unsigned status)
@@ -93,11 +89,7 @@ static unsigned step(cm1e_drive_t *drive, unsigned n, unsigned status)
     cm1e_drive_probe_t *probe = &drive->probes.probe[n];
     if (probe->on && status & CM1E_PROBE_ENABLED)
         take_edges(drive, n, status);
-    if (probe->clearing && !(status & CM1E_PROBE_ENABLED)) {
-        probe->clearing = false;
-        probe->on = true;
-    }
-    probe->on = probe->on && probe->wanted;
+    probe->on = probe->wanted && (probe->on || !(status & CM1E_PROBE_ENABLED));
     if (!probe->on)
         return 0;
     return CM1E_PROBE_ENABLE | (probe->wanted & 1 ? CM1E_PROBE_POSITIVE : 0u) |

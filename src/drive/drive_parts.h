@@ -168,10 +168,9 @@ typedef struct cm1e_drive_reset {
 /** A touch probe of the drive's own (0x60B8). Edges are bits: 1 rising, 2 falling. */
 typedef struct cm1e_drive_probe {
     uint8_t wanted;                 /**< edges that are waited for */
-    uint8_t taken;                  /**< edges whose position was not fetched yet */
-    bool on;                        /**< the enable bit is set */
-    bool clearing;                  /**< the enable bit is off until the drive shows that: its next rise arms the
-                                         probe anew */
+    uint8_t taken;                  /**< edges that were seen since they were armed */
+    bool on;                        /**< the enable bit is set. It is off after arming until the drive shows that: its
+                                         next rise arms the probe anew */
     int32_t positions[2];           /**< counts: rising, falling */
 } cm1e_drive_probe_t;
 

@@ -2,6 +2,7 @@
  * A servo drive of another maker by CiA 402 (`device: cia402`), on the simulated segment: start, csp, csv, pp, pv,
  * homing by methods of the standard, faults and their reset, its own touch probes.
  */
+#include "axis/axis_parts.h"
 #include "axis/axis_signals.h"
 #include "cm1e/generate.h"
 #include "device/cia402_drive.h"
@@ -416,6 +417,34 @@ START_TEST(touch_probes_of_the_drive_know_the_edge_to_the_count)
 }
 END_TEST
 
+static uint16_t probe_function(void) { return axis->drive.probes.function; }
+
+/* 0x60B8 wants the edges that are waited for, and no others. For another edge the enable bit goes off until the drive
+ * shows that: the edges that it has stored until then are old. */
+START_TEST(a_touch_probe_is_enabled_anew_for_each_edge)
+{
+    begin(0);
+    arm(1, true);
+    cycles(10);
+    ck_assert_uint_eq(probe_function(), CM1E_PROBE_ENABLE | CM1E_PROBE_NEGATIVE);
+    arm(1, false);
+    cycles(1);
+    ck_assert_uint_eq(probe_function(), 0);
+    cycles(10);
+    ck_assert_uint_eq(probe_function(), CM1E_PROBE_ENABLE | CM1E_PROBE_NEGATIVE | CM1E_PROBE_POSITIVE);
+    uint32_t id = arm(1, false);
+    const cm1e_command_id_t move = command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = -40,
+                                                                  .velocity = 200});
+    while (cm1e_axis_probe_status(axis, id).state == CM1E_COMMAND_ACTIVE)
+        cycles(1);
+    ck_assert_int_eq(cm1e_axis_probe_status(axis, id).state, CM1E_COMMAND_DONE);
+    id = arm(1, false); /* the drive still shows the edge before */
+    await(move, 10);
+    ck_assert_int_eq(cm1e_axis_probe_status(axis, id).state, CM1E_COMMAND_ACTIVE);
+    close_segment();
+}
+END_TEST
+
 START_TEST(an_edge_outside_the_window_is_waited_out_and_one_without_a_latch_is_sampled)
 {
     begin(0);
@@ -485,6 +514,7 @@ int main(void)
     tcase_add_loop_test(tests, wherever_the_power_goes_the_axis_ends_in_a_known_state, 0, 4);
     tcase_add_test(tests, the_status_of_touch_probes_has_the_bits_of_the_standard);
     tcase_add_test(tests, touch_probes_of_the_drive_know_the_edge_to_the_count);
+    tcase_add_test(tests, a_touch_probe_is_enabled_anew_for_each_edge);
     tcase_add_test(tests, an_edge_outside_the_window_is_waited_out_and_one_without_a_latch_is_sampled);
     tcase_add_test(tests, outputs_are_the_makers_and_not_the_brake);
     suite_add_tcase(suite, tests);

@@ -148,6 +148,62 @@ static void test_motor_power_lost_while_enabled(void)
     assert_text_has("24 V");
 }
 
+/* On the way up the motor may have power without torque; on the way down it may have lost its torque with the power. */
+static void test_motor_power_lost_in_the_cycle_of_another_state(void)
+{
+    drive.command.enable = true;
+    for (int i = 0; i < 10 && drive.feedback.state != SWITCHED_ON; i++)
+        cycle();
+    TEST_ASSERT_EQUAL_INT(SWITCHED_ON, drive.feedback.state);
+    bus.frozen = true;
+    bus.power = false;
+    cycle();
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_POWER, drive.fault.error);
+
+    start(CM1E_FIRMWARE_1_3_5);
+    enable();
+    bus.frozen = true;
+    bus.power = false;
+    bus.state = READY_TO_SWITCH_ON;
+    cycle();
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_POWER, drive.fault.error);
+}
+
+/* The first code tells the cause. A code without the fault bit is one of an earlier fault. */
+static void test_the_code_of_the_device_is_the_first_one_of_a_fault(void)
+{
+    enable();
+    fake_bus_fault(&bus, 0x4310);
+    cycle();
+    bus.error_code = 0x7320;
+    cycle();
+    TEST_ASSERT_EQUAL_HEX16(0x4310, drive.fault.device_code);
+
+    start(CM1E_FIRMWARE_1_3_5);
+    enable();
+    bus.frozen = true;
+    bus.state = READY_TO_SWITCH_ON;
+    bus.error_code = 0x4310;
+    cycles(2);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_ENABLE_LOST, drive.fault.error);
+    TEST_ASSERT_EQUAL_HEX16(0, drive.fault.device_code);
+}
+
+static void test_a_latched_fault_collects_what_comes_later(void)
+{
+    enable();
+    bus.frozen = true;
+    bus.state = READY_TO_SWITCH_ON;
+    cycle();
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_ENABLE_LOST, drive.fault.error);
+    TEST_ASSERT_FALSE(drive.fault.slave_deaf);
+    cycles(3);
+    bus.watch.silent = true;
+    cycle();
+    TEST_ASSERT_TRUE(drive.feedback.online);
+    TEST_ASSERT_TRUE(drive.fault.slave_deaf);
+}
+
 static void test_enable_without_motor_power_waits_then_says_so(void)
 {
     bus.power = false;
@@ -174,7 +230,9 @@ static void test_enable_timeout(void)
 {
     bus.frozen = true;
     drive.command.enable = true;
-    cycles(2100);
+    cycles(2000);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
+    cycle(); /* 2 s after the first one */
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_ENABLE_TIMEOUT, drive.fault.error);
     assert_no_torque_commanded();
     assert_text_has("Ready to switch on");
@@ -213,10 +271,10 @@ static void test_mode_timeout_while_enabled_and_while_enabling(void)
     enable();
     bus.frozen = true;
     drive.command.mode = CM1E_MODE_HM;
-    cycles(900);
+    cycles(1000);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
     TEST_ASSERT_FALSE(drive.feedback.enabled);
-    cycles(200);
+    cycle(); /* 1 s after the first one */
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_MODE_TIMEOUT, drive.fault.error);
 
     start(CM1E_FIRMWARE_1_3_5);
@@ -520,6 +578,9 @@ int main(void)
     RUN_TEST(test_fault_while_disabled_is_latched_and_cleared_by_reset);
     RUN_TEST(test_fault_blocks_enable_until_reset);
     RUN_TEST(test_motor_power_lost_while_enabled);
+    RUN_TEST(test_motor_power_lost_in_the_cycle_of_another_state);
+    RUN_TEST(test_the_code_of_the_device_is_the_first_one_of_a_fault);
+    RUN_TEST(test_a_latched_fault_collects_what_comes_later);
     RUN_TEST(test_enable_without_motor_power_waits_then_says_so);
     RUN_TEST(test_motor_power_coming_late_still_enables);
     RUN_TEST(test_enable_timeout);
