@@ -206,13 +206,16 @@ static void list_output(const io_program_t *p, uint32_t number, json_t *list)
 static void list_signal(const io_program_t *p, uint32_t n, json_t *list)
 {
     const cm1e_io_info_t *info = &p->infos[n];
+    const char *slave = cm1e_bus_slave_name(p->bus, info->position), *type = cm1e_io_type_name(info->type);
+    char name[SIGNAL_NAME + CM1E_NAME_LENGTH], position[8];
+    snprintf(position, sizeof position, "%u", info->position);
+    snprintf(name, sizeof name, "%s.%s", slave[0] ? slave : position, info->name);
     if (p->common.json)
-        json_array_append_new(list, json_pack("{s:i, s:s, s:s, s:b, s:b, s:s}", "slave", info->position, "name",
-                                              info->name, "type", cm1e_io_type_name(info->type), "output", info->output,
-                                              "of_axis", info->of_axis, "value", p->values[n]));
+        json_array_append_new(list, json_pack("{s:i, s:s, s:s, s:s, s:b, s:b, s:s}", "slave", info->position,
+                                              "slave_name", slave, "name", info->name, "type", type, "output",
+                                              info->output, "of_axis", info->of_axis, "value", p->values[n]));
     else
-        printf("%u.%-42s %-6s %-4s %s\n", info->position, info->name, cm1e_io_type_name(info->type),
-               info->output ? "out" : "in", p->values[n]);
+        printf("%-44s %-6s %-4s %s\n", name, type, info->output ? "out" : "in", p->values[n]);
 }
 
 static int report(void *context)

@@ -2,13 +2,14 @@
  * @file io.h
  * The process data of any slave, signal by signal: digital and analog terminals, encoders, devices of other makers. A
  * signal is found once by its name, its object or its place; then reading and writing it in the cycle costs a copy of a
- * few bytes. The signals of a slave and their names come from its SII (ETG.2010, categories TxPDO and RxPDO); a slave
- * with a motor has those of its present PDO mapping.
+ * few bytes. The names come from the bus file (`slaves`), else from the SII of the slave (ETG.2010, categories TxPDO
+ * and RxPDO). A slave with a motor, or with CoE and listed in the bus file, has the signals of its present PDO mapping.
  *
- * While a slave is away its inputs keep the last values that came from it; cm1e_io_quality() tells. Its outputs are
- * zeros from its return until it is in Operational again. The outputs of a slave with a motor belong to its axis and
- * are not written here. After the last program has ended, outputs keep their values until the bus leaves Operational;
- * what the slave does then, and when frames stay away (watchdog), is the slave's own.
+ * While a slave is away its inputs keep the last values that came from it; cm1e_io_quality() tells. The outputs of a
+ * slave that the bus file lists take their safe values before the program writes them, while the slave or the bus is
+ * lost, and after the last program (docs/BUS-FILE.md). Those of another slave keep their values, and are zeros from its
+ * return until it is in Operational again. The outputs of a slave with a motor belong to its axis and are not written
+ * here. What a slave does when the bus has left Operational, and when frames stay away (watchdog), is its own.
  */
 #ifndef CM1E_IO_H
 #define CM1E_IO_H
@@ -71,7 +72,7 @@ CM1E_API uint32_t cm1e_io_count(const cm1e_bus_t *bus);
 CM1E_API bool cm1e_io_at(const cm1e_bus_t *bus, uint32_t n, cm1e_io_info_t *info);
 
 /** Finds a signal by "SLAVE.SIGNAL", without regard to upper and lower case, after cm1e_bus_configure().
- *  SLAVE: position ("3"), "slave 3", or the slave's name of SII where only one slave has it.
+ *  SLAVE: name in the bus file, position ("3"), "slave 3", or the name of its SII where only one slave has it.
  *  SIGNAL: name as listed; "input 2" or "output 2", the second one; or its object, "0x6000:01".
  *  Returns CM1E_ERROR_NOT_FOUND, where `diag` lists what is there, or CM1E_ERROR_INVALID_ARGUMENT if two signals have
  *  this name. @rt init */

@@ -102,11 +102,11 @@ typedef enum cm1e_bus_phase {
     BUS_CLOSED = 0, BUS_OPEN, BUS_SCANNED, BUS_IDENTIFIED, BUS_CONFIGURED, BUS_OPERATING,
 } cm1e_bus_phase_t;
 
-/** What outputs of slaves without motor take where the program does not write them (safe_outputs.c). */
+/** The safe values of outputs (safe_outputs.c), as large as these. */
 typedef struct cm1e_safe_outputs {
-    uint8_t *values, *mask; /**< as the outputs of the image; a bit of the mask: the output takes its safe value */
-    bool any;
-    bool released;          /**< the program has ended, so outputs take their safe values */
+    uint8_t *values, *mask;                  /**< a bit of the mask: the output takes its safe value */
+    bool any;                                /**< there is a slave with such outputs */
+    bool released;                           /**< the program has ended */
 } cm1e_safe_outputs_t;
 
 struct cm1e_bus {

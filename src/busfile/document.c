@@ -65,7 +65,7 @@ cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, 
 
 /* ---- parsing ----------------------------------------------------------------------------------------------------- */
 
-enum { MAX_DEPTH = 8 }; /* the schema needs 4 */
+enum { MAX_DEPTH = 8 }; /* the schema needs 6 */
 
 static void set_place(cm1e_config_problem_t *problem, yaml_mark_t mark)
 {

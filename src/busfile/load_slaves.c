@@ -123,34 +123,59 @@ static bool convert_mapping(const place_t *place, unsigned n, const cm1e_busfile
     return true;
 }
 
-/* The bits of a value of this type; false: it is none. */
-static bool take_value(const char *text, cm1e_io_type_t type, unsigned bits, uint64_t *raw)
+/* true, false and their other spellings, as the file has them elsewhere. */
+static bool take_truth(const char *text, uint64_t *raw)
+{
+    static const char *const words[] = {"false", "true", "off", "on", "no", "yes"};
+    for (unsigned i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strcasecmp(text, words[i]) == 0) {
+            *raw = i % 2;
+            return true;
+        }
+    return false;
+}
+
+static bool take_whole(const char *text, bool is_signed, unsigned bits, uint64_t *raw)
+{
+    const bool hex = strncmp(text, "0x", 2) == 0, negative = text[0] == '-';
+    const char *digits = text + (hex ? 2 : negative);
+    const char *allowed = hex ? "0123456789abcdefABCDEF" : "0123456789";
+    if (digits[0] == '\0' || strspn(digits, allowed) != strlen(digits))
+        return false;
+    errno = 0;
+    const uint64_t size = strtoull(digits, NULL, hex ? 16 : 10), half = UINT64_C(1) << (bits - 1);
+    *raw = negative ? -size : size;
+    if (errno)
+        return false;
+    if (is_signed && !hex)
+        return size <= half - !negative;
+    return !negative && (bits == 64 || size >> bits == 0);
+}
+
+static bool take_real(const char *text, double *value)
 {
     char *end;
-    errno = 0;
-    if (strncmp(text, "0x", 2) == 0 && !cm1e_io_types[type].is_real) {
-        *raw = strtoull(text, &end, 16);
-        return end != text + 2 && *end == '\0' && errno == 0 && (bits == 64 || *raw >> bits == 0);
-    }
-    if (strcasecmp(text, "true") == 0 || strcasecmp(text, "on") == 0 || strcasecmp(text, "yes") == 0) {
-        *raw = 1;
-        return type == CM1E_IO_BOOL;
-    }
-    if (strcasecmp(text, "false") == 0 || strcasecmp(text, "off") == 0 || strcasecmp(text, "no") == 0) {
-        *raw = 0;
-        return type == CM1E_IO_BOOL;
-    }
-    const double value = strtod(text, &end);
-    if (end == text || *end != '\0' || strpbrk(text, "xXnN") || !cm1e_io_fits(type, bits, value))
+    *value = strtod(text, &end);
+    return end != text && *end == '\0' && !strpbrk(text, "xXnN");
+}
+
+/* The bits of a value of this type; false: it is none. */
+static bool take_value(const char *text, cm1e_io_type_t type, uint64_t *raw)
+{
+    const cm1e_io_type_row_t *row = &cm1e_io_types[type];
+    double value;
+    if (type == CM1E_IO_BOOL && take_truth(text, raw))
+        return true;
+    if (!row->is_real)
+        return take_whole(text, row->is_signed, row->bits, raw);
+    if (!take_real(text, &value))
         return false;
     const float narrow = (float)value;
     uint32_t word;
     memcpy(&word, &narrow, sizeof word);
-    if (type == CM1E_IO_LREAL)
-        memcpy(raw, &value, sizeof value);
-    else
-        *raw = type == CM1E_IO_REAL ? word : value < 0 ? (uint64_t)strtoll(text, NULL, 10) : strtoull(text, NULL, 10);
-    return type == CM1E_IO_LREAL || type == CM1E_IO_REAL || strspn(text, "-0123456789") == strlen(text);
+    memcpy(raw, &value, sizeof value);
+    *raw = type == CM1E_IO_REAL ? word : *raw;
+    return true;
 }
 
 /* "BOOL, SINT ...": of numbers only. */
@@ -181,11 +206,10 @@ static bool convert_sdo(const place_t *place, unsigned n, const cm1e_busfile_sdo
     snprintf(key, sizeof key, "sdo[%u].type", n);
     if (!convert_type(place, key, from->type, &type))
         return false;
-    const unsigned bits = cm1e_io_types[type].bits;
-    sdo->bytes = (uint8_t)((bits + 7) / 8);
+    sdo->bytes = (uint8_t)((cm1e_io_types[type].bits + 7) / 8);
     sdo->before_op = from->before_op != 0;
     snprintf(key, sizeof key, "sdo[%u].value", n);
-    return take_value(from->value, type, bits, &sdo->value) ||
+    return take_value(from->value, type, &sdo->value) ||
            wrong(place, key, "value is '%s', which is no %s", from->value, cm1e_io_types[type].name);
 }
 
@@ -193,18 +217,15 @@ static bool convert_sdo(const place_t *place, unsigned n, const cm1e_busfile_sdo
 
 static bool convert_safe(const place_t *place, const char *key, const char *text, cm1e_signal_config_t *signal)
 {
-    char *end;
+    uint64_t truth;
     signal->hold = strcasecmp(text, "hold") == 0;
-    if (text[0] == '\0' || signal->hold)
+    if (text[0] == '\0' || signal->hold || take_real(text, &signal->safe))
         return true;
-    uint64_t raw;
-    if (take_value(text, CM1E_IO_BOOL, 1, &raw)) {
-        signal->safe = (double)raw;
-        return true;
-    }
-    signal->safe = strtod(text, &end);
-    return (end != text && *end == '\0' && !strpbrk(text, "xXnN")) ||
-           wrong(place, key, "safe is '%s'; expected a number, true, false or hold", text);
+    signal->safe = 0;
+    if (!take_truth(text, &truth))
+        return wrong(place, key, "safe is '%s'; expected a number, true, false or hold", text);
+    signal->safe = (double)truth;
+    return true;
 }
 
 static bool convert_signal(const place_t *place, const char *list, unsigned n, const cm1e_busfile_signal_t *from,

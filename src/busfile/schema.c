@@ -194,6 +194,7 @@ static const cyaml_schema_value_t axis_value = {
 };
 
 #define SLAVE_UINT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_slave_t, member)
+#define SLAVE_GROUP(key, fields) GROUP(key, cm1e_busfile_slave_t, fields)
 #define SLAVE_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_slave_t, member, 1)
 /* A list of entries of one kind, each required to be there. */
 #define LIST_OF(key, structure, member, count, entry)                                                               \
@@ -273,7 +274,7 @@ static const cyaml_schema_field_t slave_fields[] = {
     LIST_OF("inputs_pdos", cm1e_busfile_slave_t, inputs_pdos, inputs_pdo_count, &text_value),
     LIST_OF("outputs", cm1e_busfile_slave_t, outputs, output_count, &output_signal_value),
     LIST_OF("inputs", cm1e_busfile_slave_t, inputs, input_count, &input_signal_value),
-    GROUP("sim", cm1e_busfile_slave_t, sim_slave_fields),
+    SLAVE_GROUP("sim", sim_slave_fields),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_value_t slave_value = {

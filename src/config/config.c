@@ -64,7 +64,7 @@ cm1e_error_t cm1e_config_copy_sized(cm1e_bus_config_t *to, size_t size, size_t a
     to->axis_size = axis_size;
     to->axes = axes;
     if (has_slaves(size)) {
-        to->slave_size = sizeof *to->slaves;
+        to->slave_size = slaves ? sizeof *to->slaves : 0;
         to->slaves = slave_rows;
     }
     return CM1E_OK;
@@ -140,7 +140,7 @@ cm1e_slave_config_t *cm1e_bus_config_add_slave_sized(cm1e_bus_config_t *config, 
 cm1e_error_t cm1e_bus_config_size_slaves(cm1e_bus_config_t *config, size_t slave_size, cm1e_diag_t *diag)
 {
     void *slaves = NULL;
-    if (!has_slaves(size_of(config)) || size_of_slave(config) == slave_size)
+    if (slaves_of(config) == 0 || size_of_slave(config) == slave_size)
         return CM1E_OK;
     if (!copy_rows(&slaves, slave_size, config->slaves, size_of_slave(config), config->slave_count)) {
         cm1e_bus_config_free(config);

@@ -248,10 +248,10 @@ static void test_harm_at_every_transfer_ends_defined(void)
 
 static void test_too_many_entries_and_entries_of_no_bits_are_refused(void)
 {
-    device.entries = 16;
+    device.entries = CM1E_MAPPED_ENTRIES / CM1E_BRIDGE_AXES;
     run(&bridge);
-    check_mapped(&bridge); /* 64 */
-    device.entries = 17;
+    check_mapped(&bridge);
+    device.entries++;
     run(&bridge);
     TEST_ASSERT_EQUAL(CM1E_ERROR_PDO_MAPPING, job.error);
     device.entries = 255;

@@ -1,0 +1,399 @@
+/* Slaves of the configuration beside the axes: found and identified, written and read back, named signals, safe
+ * outputs; and all of it again after a slave was away. */
+#include "bus_support.h"
+#include "cm1e/esc.h"
+#include "cm1e/io.h"
+
+enum { COUPLER = 1, VALVES, SWITCHES, ANALOG_IN, ANALOG_OUT, MOTOR, SETTLE = 5, BACK = 3000 };
+
+static cm1e_slave_config_t *add(const char *name, unsigned position, cm1e_sim_slave_kind_t kind, unsigned inputs,
+                                unsigned outputs)
+{
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, name);
+    slave->address = (uint16_t)position;
+    slave->sim.kind = kind;
+    slave->sim.inputs = (uint8_t)inputs;
+    slave->sim.outputs = (uint8_t)outputs;
+    return slave;
+}
+
+static cm1e_signal_config_t *name_bits(unsigned slave, const char *name, bool output, unsigned bit, unsigned bits)
+{
+    cm1e_slave_config_t *of = &config.slaves[slave - 1];
+    cm1e_signal_config_t *signal = &of->signals[of->signal_count++];
+    snprintf(signal->name, sizeof signal->name, "%s", name);
+    signal->output = output;
+    signal->bit = (uint16_t)bit;
+    signal->bits = (uint16_t)bits;
+    return signal;
+}
+
+static cm1e_signal_config_t *name_object(unsigned slave, const char *name, bool output, unsigned index,
+                                         unsigned subindex)
+{
+    cm1e_signal_config_t *signal = name_bits(slave, name, output, 0, 0);
+    signal->index = (uint16_t)index;
+    signal->subindex = (uint8_t)subindex;
+    return signal;
+}
+
+static void write_object(unsigned slave, unsigned index, unsigned subindex, int value, bool before_op)
+{
+    cm1e_slave_config_t *of = &config.slaves[slave - 1];
+    of->sdos[of->sdo_count++] = (cm1e_sdo_config_t){(uint16_t)index, (uint8_t)subindex, 2, before_op,
+                                                    (uint64_t)(int64_t)value};
+}
+
+static void map(unsigned slave, unsigned pdo, unsigned index, unsigned subindex, unsigned bits)
+{
+    cm1e_slave_config_t *of = &config.slaves[slave - 1];
+    of->entries[of->entry_count++] = (cm1e_pdo_entry_config_t){(uint16_t)pdo, (uint16_t)index, (uint8_t)subindex,
+                                                               (uint8_t)bits};
+}
+
+/** A coupler, four valves wired to eight switches, two analog outputs wired to two analog inputs, a motor. */
+static void machine(void)
+{
+    sim_config(1);
+    config.axes[0].address = MOTOR;
+    add("coupler", COUPLER, CM1E_SIM_SLAVE_COUPLER, 0, 0);
+    add("valves", VALVES, CM1E_SIM_SLAVE_DIGITAL, 0, 4);
+    add("switches", SWITCHES, CM1E_SIM_SLAVE_DIGITAL, 8, 0);
+    add("analog in", ANALOG_IN, CM1E_SIM_SLAVE_ANALOG, 2, 0);
+    add("analog out", ANALOG_OUT, CM1E_SIM_SLAVE_ANALOG, 0, 2);
+    strcpy(config.slaves[SWITCHES - 1].sim.wired_to, "valves");
+    strcpy(config.slaves[ANALOG_IN - 1].sim.wired_to, "analog out");
+    name_object(VALVES, "clamp", true, 0x7000, 1);
+    name_bits(VALVES, "lamp", true, 1, 1)->safe = 1;
+    name_bits(VALVES, "blower", true, 2, 1)->hold = true;
+    name_bits(SWITCHES, "curtain", false, 0, 1);
+    name_bits(SWITCHES, "upper", false, 4, 4);
+}
+
+static cm1e_bus_t *start_machine(void)
+{
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+static void expect_refused(cm1e_error_t error, const char *part)
+{
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), error);
+    ck_assert_msg(strstr(diag.text, part), "%s", diag.text);
+    cm1e_bus_close(bus);
+}
+
+static cm1e_io_t find(cm1e_bus_t *bus, const char *name)
+{
+    cm1e_io_t io;
+    ck_assert_msg(cm1e_io_find(bus, name, &io, &diag) == CM1E_OK, "%s: %s", name, diag.text);
+    return io;
+}
+
+static int64_t value_of(cm1e_bus_t *bus, const char *name)
+{
+    const cm1e_io_t io = find(bus, name);
+    return cm1e_io_integer(&io);
+}
+
+/** Cycles whose frames may be lost. */
+static void any_cycles(cm1e_bus_t *bus, unsigned n)
+{
+    while (n-- > 0)
+        cycle(bus);
+}
+
+static void set(cm1e_bus_t *bus, const char *name, int64_t value)
+{
+    const cm1e_io_t io = find(bus, name);
+    ck_assert_int_eq(cm1e_io_set_integer(&io, value), CM1E_OK);
+}
+
+START_TEST(signals_have_the_names_of_the_configuration)
+{
+    machine();
+    cm1e_bus_t *bus = start_machine();
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, VALVES), "valves");
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, MOTOR), "");
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, 99), "");
+    for (unsigned on = 0; on < 16; on++) {
+        set(bus, "VALVES.Clamp", on & 1);
+        set(bus, "valves.lamp", on >> 1 & 1);
+        set(bus, "valves.blower", on >> 2 & 1);
+        set(bus, "valves.output 4", on >> 3 & 1);
+        cycles(bus, SETTLE);
+        ck_assert_int_eq(value_of(bus, "switches.curtain"), on & 1);
+        ck_assert_int_eq(value_of(bus, "3.input 2"), on >> 1 & 1);
+        ck_assert_int_eq(value_of(bus, "switches.0x6020:01"), on >> 2 & 1);
+        ck_assert_int_eq(value_of(bus, "switches.input 4"), on >> 3);
+        ck_assert_int_eq(value_of(bus, "switches.upper"), 0);
+    }
+    cm1e_io_info_t info;
+    unsigned extra = 0;
+    for (uint32_t n = 0; cm1e_io_at(bus, n, &info); n++) /* four bits together are one more than the eight */
+        extra += info.position == SWITCHES && info.number == 9 && strcmp(info.name, "upper") == 0;
+    ck_assert_uint_eq(extra, 1);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(signal_that_the_slave_does_not_have_is_told)
+{
+    machine();
+    name_object(VALVES, "no object", true, 0x7090, 1);
+    expect_refused(CM1E_ERROR_PDO_MAPPING, "\"no object\" is not there: object 0x7090:01 is not among the outputs of "
+                                           "slave 2 (\"valves\", Digital terminal 4+0)");
+    machine();
+    name_bits(SWITCHES, "no bit", false, 7, 2);
+    expect_refused(CM1E_ERROR_PDO_MAPPING, "\"no bit\" is not there: it ends with bit 8, and slave 3");
+    machine();
+    name_object(ANALOG_OUT, "speed", true, 0x7000, 0x11)->safe = 32768;
+    expect_refused(CM1E_ERROR_CONFIG, "The safe value 32768 of \"speed\" of slave 5");
+    machine();
+    cm1e_signal_config_t *signal = name_object(ANALOG_IN, "level", false, 0x6000, 0x11);
+    signal->type_stated = true;
+    signal->type = CM1E_IO_REAL;
+    expect_refused(CM1E_ERROR_PDO_MAPPING, "has 16 bits: it is no REAL");
+}
+END_TEST
+
+START_TEST(identity_and_address_are_checked)
+{
+    static const struct {
+        cm1e_address_kind_t kind;
+        unsigned address, product, revision;
+        const char *told; /* NULL: it starts */
+    } cases[] = {
+        {CM1E_ADDRESS_POSITION, VALVES, 0x400, 1, NULL},
+        {CM1E_ADDRESS_POSITION, VALVES, 0x401, 0, "expects the product 0x00000401, the device is \"Digital terminal"},
+        {CM1E_ADDRESS_POSITION, VALVES, 0x400, 2, "expects the revision 0x00000002"},
+        {CM1E_ADDRESS_POSITION, 9, 0, 0, "\"valves\": expected at position 9, where there is none"},
+        {CM1E_ADDRESS_ALIAS, 77, 0, 0, "expected at alias 77"},
+        {CM1E_ADDRESS_EXPLICIT_ID, 7, 0, 0, "expected at explicit device ID 7"},
+        {CM1E_ADDRESS_POSITION, 7, 0, 0, "is slave 7, a CM1-E: name it among the axes"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        machine();
+        cm1e_bus_config_t segment = config;
+        cm1e_axis_config_t axes[2] = {config.axes[0], config.axes[0]};
+        axes[1].address = 7; /* one motor more in the segment */
+        segment.axes = axes;
+        segment.axis_count = cases[i].address == 7 && cases[i].kind == CM1E_ADDRESS_POSITION ? 2 : 1;
+        cm1e_slave_config_t slaves[ANALOG_OUT];
+        memcpy(slaves, config.slaves, sizeof slaves);
+        segment.slaves = slaves;
+        config.slaves[VALVES - 1].address_kind = cases[i].kind;
+        config.slaves[VALVES - 1].address = (uint16_t)cases[i].address;
+        config.slaves[VALVES - 1].product = cases[i].product;
+        config.slaves[VALVES - 1].revision = cases[i].revision;
+        cm1e_bus_t *bus = open_bus_on(&segment);
+        ck_assert_int_eq(cm1e_bus_start(bus, &diag), cases[i].told ? CM1E_ERROR_BUS_IDENTITY : CM1E_OK);
+        ck_assert_msg(!cases[i].told || strstr(diag.text, cases[i].told), "%s", diag.text);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
+START_TEST(slave_is_found_by_alias_and_by_explicit_id)
+{
+    machine();
+    config.slaves[VALVES - 1].address_kind = CM1E_ADDRESS_ALIAS;
+    config.slaves[VALVES - 1].address = 1001;
+    config.slaves[ANALOG_OUT - 1].address_kind = CM1E_ADDRESS_EXPLICIT_ID;
+    config.slaves[ANALOG_OUT - 1].address = 7;
+    cm1e_bus_t *bus = start_machine();
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, VALVES), "valves");
+    set(bus, "analog out.AO Output Channel 2 Value", -77);
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(value_of(bus, "analog in.AI Standard Channel 2 Value"), -77);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** PDOs in another order, one of them written anew with a gap that moves the others off their bytes; settings. */
+static void rearrange(void)
+{
+    machine();
+    cm1e_slave_config_t *analog = &config.slaves[ANALOG_IN - 1];
+    map(ANALOG_IN, 0x1A00, 0x6000, 1, 1);
+    map(ANALOG_IN, 0x1A00, 0, 0, 2);
+    map(ANALOG_IN, 0x1A00, 0x6000, 0x11, 16);
+    analog->inputs_pdos[0] = 0x1A03;
+    analog->inputs_pdos[1] = 0x1A00;
+    analog->inputs_pdo_count = 2;
+    name_object(ANALOG_IN, "level", false, 0x6000, 0x11);
+    write_object(ANALOG_IN, 0x8000, 0x12, 1000, false);
+    write_object(ANALOG_IN, 0x8010, 0x12, -3, true);
+}
+
+static void expect_rearranged(cm1e_bus_t *bus)
+{
+    const cm1e_io_t level = find(bus, "analog in.level"), other = find(bus, "analog in.0x6010:11");
+    set(bus, "5.output 1", -1234);
+    set(bus, "5.output 2", 31000);
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(cm1e_io_integer(&level), -234);
+    ck_assert_int_eq(cm1e_io_integer(&other), 30997);
+    ck_assert_uint_eq(other.shift, 0);
+    ck_assert_uint_eq(level.shift, 3);
+    set(bus, "5.output 1", -32768);
+    set(bus, "5.output 2", 0);
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(cm1e_io_integer(&level), -31768);
+    ck_assert_int_eq(value_of(bus, "analog in.AI Standard Channel 1 Underrange"), 0);
+}
+
+START_TEST(what_is_written_at_the_start_is_written_again_after_the_slave_was_away)
+{
+    rearrange();
+    cm1e_bus_t *bus = start_machine();
+    expect_rearranged(bus);
+    simulate(bus, "power-cycle 4");
+    any_cycles(bus, BACK);
+    const cm1e_io_t level = find(bus, "analog in.level");
+    ck_assert_int_eq(cm1e_io_quality(&level), CM1E_IO_GOOD);
+    expect_rearranged(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(what_a_slave_refuses_is_told)
+{
+    rearrange();
+    write_object(ANALOG_IN, 0x8020, 0x12, 1, false);
+    expect_refused(CM1E_ERROR_SDO_ABORT, "Start-up as the configuration states it: slave 4 (\"analog in\", Analog terminal "
+                                         "0+2) refuses to write object 0x8020:12");
+    rearrange();
+    map(ANALOG_IN, 0x1A00, 0x6000, 0x11, 8);
+    expect_refused(CM1E_ERROR_SDO_ABORT, "refuses to write object 0x1A00:00: SDO abort 0x06040041");
+    rearrange();
+    config.slaves[ANALOG_IN - 1].inputs_pdos[1] = 0x1A09;
+    expect_refused(CM1E_ERROR_SDO_ABORT, "refuses to write object 0x1C13:02");
+    rearrange();
+    write_object(ANALOG_IN, 0x8000, 0x12, 1, true);
+    config.slaves[ANALOG_IN - 1].sdos[2].bytes = 4;
+    expect_refused(CM1E_ERROR_SDO_ABORT, "refuses to write object 0x8000:12");
+    machine();
+    write_object(VALVES, 0x8000, 1, 1, false);
+    expect_refused(CM1E_ERROR_BUS_IDENTITY, "Slave 2 (\"valves\", Digital terminal 4+0) has no mailbox for CoE");
+}
+END_TEST
+
+/** What the switches see of the valves: lamp has the safe value 1, blower keeps its value, the others have 0. */
+enum { LAMP = 2, BLOWER = 4, ALL = 15 };
+
+static unsigned switches(cm1e_bus_t *bus)
+{
+    cm1e_io_t io;
+    ck_assert_int_eq(cm1e_io_find_bits(bus, SWITCHES, false, 0, 4, CM1E_IO_USINT, &io, &diag), CM1E_OK);
+    return (unsigned)cm1e_io_integer(&io);
+}
+
+static cm1e_io_t all_valves(cm1e_bus_t *bus)
+{
+    cm1e_io_t io;
+    ck_assert_int_eq(cm1e_io_find_bits(bus, VALVES, true, 0, 4, CM1E_IO_USINT, &io, &diag), CM1E_OK);
+    return io;
+}
+
+START_TEST(outputs_are_safe_before_the_program_and_after_it)
+{
+    machine();
+    cm1e_bus_t *bus = start_machine();
+    cycles(bus, SETTLE);
+    ck_assert_uint_eq(switches(bus), LAMP);
+    const cm1e_io_t valves = all_valves(bus);
+    ck_assert_int_eq(cm1e_io_set_integer(&valves, ALL & ~LAMP), CM1E_OK);
+    cycles(bus, SETTLE);
+    ck_assert_uint_eq(switches(bus), ALL & ~LAMP);
+    cm1e_bus_release_outputs(bus);
+    for (int n = 0; n < SETTLE; n++) {
+        cm1e_io_set_integer(&valves, ALL); /* too late */
+        cycle(bus);
+    }
+    ck_assert_uint_eq(switches(bus), LAMP | BLOWER);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(outputs_are_safe_after_the_bus_was_lost)
+{
+    machine();
+    cm1e_bus_t *bus = start_machine();
+    const cm1e_io_t valves = all_valves(bus);
+    ck_assert_int_eq(cm1e_io_set_integer(&valves, ALL & ~LAMP), CM1E_OK);
+    cycles(bus, SETTLE);
+    simulate(bus, "lose 2"); /* fewer than the limit: nothing happens */
+    any_cycles(bus, SETTLE);
+    ck_assert_uint_eq(switches(bus), ALL & ~LAMP);
+    simulate(bus, "lose 20");
+    any_cycles(bus, 40);
+    ck_assert_uint_eq(switches(bus), LAMP | BLOWER);
+    ck_assert_int_eq(cm1e_io_integer(&valves), LAMP | BLOWER);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Slaves behind the one without power are away too. */
+START_TEST(outputs_of_a_slave_that_was_away_are_safe_and_those_of_others_stay)
+{
+    machine();
+    name_object(ANALOG_OUT, "speed", true, 0x7000, 0x11)->safe = -9;
+    cm1e_bus_t *bus = start_machine();
+    const cm1e_io_t valves = all_valves(bus), speed = find(bus, "analog out.speed");
+    ck_assert_int_eq(cm1e_io_set_integer(&valves, ALL & ~LAMP), CM1E_OK);
+    ck_assert_int_eq(cm1e_io_set_integer(&speed, 500), CM1E_OK);
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(value_of(bus, "analog in.input 3"), 500);
+    simulate(bus, "power-cycle 5");
+    for (unsigned n = 0; n < BACK; n++) {
+        cycle(bus);
+        ck_assert_uint_eq(switches(bus), ALL & ~LAMP);
+    }
+    ck_assert_int_eq(cm1e_io_quality(&speed), CM1E_IO_GOOD);
+    ck_assert_int_eq(cm1e_io_integer(&speed), -9);
+    ck_assert_int_eq(value_of(bus, "analog in.input 3"), -9);
+    ck_assert_int_eq(cm1e_io_set_integer(&speed, 501), CM1E_OK);
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(value_of(bus, "analog in.input 3"), 501);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(watchdog_has_the_time_of_the_configuration)
+{
+    machine();
+    config.slaves[VALVES - 1].watchdog_ms = 20;
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_identify(bus, &diag), CM1E_OK);
+    ck_assert_msg(cm1e_bus_configure(bus, &diag) == CM1E_OK, "%s", diag.text);
+    uint8_t time[2];
+    ck_assert_int_eq(cm1e_esc_read(bus, VALVES, 0x0420, time, sizeof time, &diag), CM1E_OK);
+    ck_assert_uint_eq(cm1e_get_u16(time), 200);
+    ck_assert_int_eq(cm1e_esc_read(bus, SWITCHES, 0x0420, time, sizeof time, &diag), CM1E_OK);
+    ck_assert_uint_eq(cm1e_get_u16(time), 1000);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus slaves");
+    TCase *tests = tcase_create("slaves");
+    tcase_set_timeout(tests, 120);
+    tcase_add_test(tests, signals_have_the_names_of_the_configuration);
+    tcase_add_test(tests, signal_that_the_slave_does_not_have_is_told);
+    tcase_add_test(tests, identity_and_address_are_checked);
+    tcase_add_test(tests, slave_is_found_by_alias_and_by_explicit_id);
+    tcase_add_test(tests, what_is_written_at_the_start_is_written_again_after_the_slave_was_away);
+    tcase_add_test(tests, what_a_slave_refuses_is_told);
+    tcase_add_test(tests, outputs_are_safe_before_the_program_and_after_it);
+    tcase_add_test(tests, outputs_are_safe_after_the_bus_was_lost);
+    tcase_add_test(tests, outputs_of_a_slave_that_was_away_are_safe_and_those_of_others_stay);
+    tcase_add_test(tests, watchdog_has_the_time_of_the_configuration);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}

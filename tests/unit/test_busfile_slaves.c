@@ -1,0 +1,245 @@
+/* Slaves without an axis in a bus file: what each key becomes, and what a wrong one is told. */
+#include <stdio.h>
+#include <string.h>
+
+#include "cm1e/config.h"
+#include "unity.h"
+
+static const char temporary[] = CM1E_TEST_OUTPUT "/busfile_slaves.yaml";
+static cm1e_bus_config_t config;
+static cm1e_diag_t diag;
+
+void setUp(void) {}
+void tearDown(void) { cm1e_bus_config_free(&config); }
+
+static cm1e_error_t load(const char *text)
+{
+    FILE *file = fopen(temporary, "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL(strlen(text), fwrite(text, 1, strlen(text), file));
+    TEST_ASSERT_EQUAL(0, fclose(file));
+    return cm1e_bus_config_load(&config, temporary, &diag);
+}
+
+static const char everything[] =
+    "axes: [{name: feed, position: 9}]\n"
+    "slaves:\n"
+    "  - name: analog in\n"
+    "    position: 3\n"
+    "    vendor: 0x00000002\n"
+    "    product: 0x0BC03052\n"
+    "    revision: 0x00120000\n"
+    "    watchdog_ms: 250\n"
+    "    sdo:\n"
+    "      - {object: 0x8000:12, type: INT, value: -100}\n"
+    "      - {object: 0x8000:0a, type: REAL, value: 1.5, before: op}\n"
+    "      - {object: 0xF800, type: UDINT, value: 0xFFFFFFFF, before: safe_op}\n"
+    "      - {object: 0x8000:01, type: BOOL, value: true}\n"
+    "      - {object: 0x8000:02, type: ULINT, value: 18446744073709551615}\n"
+    "    mapping:\n"
+    "      - {pdo: 0x1A00, entries: [0x6000:11/16, gap/7, 0x6000:01/1]}\n"
+    "      - {pdo: 0x1600, entries: [0x7000:11/255]}\n"
+    "    outputs_pdos: [0x1600]\n"
+    "    inputs_pdos: [0x1A00, 0x1A03]\n"
+    "    outputs:\n"
+    "      - {name: speed, object: 0x7000:11, type: INT, safe: -5}\n"
+    "      - {name: clamp, bit: 3, safe: on}\n"
+    "      - {name: lamp, bit: 4, safe: hold}\n"
+    "    inputs:\n"
+    "      - {name: pressure, object: 0x6000:11}\n"
+    "      - {name: state, bit: 16, bits: 3, type: USINT}\n"
+    "      - {name: weight, bit: 32, type: REAL}\n"
+    "    sim: {device: analog, inputs: 2, outputs: 1, wired_to: other}\n"
+    "  - {name: other, alias: 1001, sim: {device: analog, outputs: 8}}\n"
+    "  - {explicit_id: 7}\n";
+
+static void test_every_key_becomes_what_it_says(void)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(everything), diag.text);
+    TEST_ASSERT_EQUAL(3, config.slave_count);
+    const cm1e_slave_config_t *slave = &config.slaves[0];
+    TEST_ASSERT_EQUAL_STRING("analog in", slave->name);
+    TEST_ASSERT_EQUAL(CM1E_ADDRESS_POSITION, slave->address_kind);
+    TEST_ASSERT_EQUAL(3, slave->address);
+    TEST_ASSERT_EQUAL_HEX32(2, slave->vendor);
+    TEST_ASSERT_EQUAL_HEX32(0x0BC03052, slave->product);
+    TEST_ASSERT_EQUAL_HEX32(0x00120000, slave->revision);
+    TEST_ASSERT_EQUAL(250, slave->watchdog_ms);
+    TEST_ASSERT_EQUAL(1, slave->outputs_pdo_count);
+    TEST_ASSERT_EQUAL_HEX16(0x1600, slave->outputs_pdos[0]);
+    TEST_ASSERT_EQUAL(2, slave->inputs_pdo_count);
+    TEST_ASSERT_EQUAL_HEX16(0x1A03, slave->inputs_pdos[1]);
+    TEST_ASSERT_EQUAL(CM1E_SIM_SLAVE_ANALOG, slave->sim.kind);
+    TEST_ASSERT_EQUAL(2, slave->sim.inputs);
+    TEST_ASSERT_EQUAL(1, slave->sim.outputs);
+    TEST_ASSERT_EQUAL_STRING("other", slave->sim.wired_to);
+    TEST_ASSERT_EQUAL(CM1E_ADDRESS_ALIAS, config.slaves[1].address_kind);
+    TEST_ASSERT_EQUAL(1001, config.slaves[1].address);
+    TEST_ASSERT_EQUAL(CM1E_ADDRESS_EXPLICIT_ID, config.slaves[2].address_kind);
+    TEST_ASSERT_EQUAL_STRING("slave3", config.slaves[2].name);
+}
+
+static void test_sdos_have_the_bits_of_their_values(void)
+{
+    static const cm1e_sdo_config_t expected[] = {
+        {0x8000, 0x12, 2, false, (uint64_t)-100}, {0x8000, 0x0A, 4, true, 0x3FC00000},
+        {0xF800, 0, 4, false, 0xFFFFFFFF}, {0x8000, 1, 1, false, 1}, {0x8000, 2, 8, false, UINT64_MAX},
+    };
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(everything), diag.text);
+    TEST_ASSERT_EQUAL(5, config.slaves[0].sdo_count);
+    for (int i = 0; i < 5; i++) {
+        const cm1e_sdo_config_t *sdo = &config.slaves[0].sdos[i];
+        const uint64_t mask = sdo->bytes == 8 ? UINT64_MAX : (UINT64_C(1) << 8 * sdo->bytes) - 1;
+        TEST_ASSERT_EQUAL_HEX16(expected[i].index, sdo->index);
+        TEST_ASSERT_EQUAL_HEX8(expected[i].subindex, sdo->subindex);
+        TEST_ASSERT_EQUAL(expected[i].bytes, sdo->bytes);
+        TEST_ASSERT_EQUAL(expected[i].before_op, sdo->before_op);
+        TEST_ASSERT_EQUAL_HEX64(expected[i].value & mask, sdo->value & mask);
+    }
+}
+
+static void test_mapping_and_signals_are_in_their_order(void)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(everything), diag.text);
+    const cm1e_slave_config_t *slave = &config.slaves[0];
+    static const cm1e_pdo_entry_config_t entries[] = {
+        {0x1A00, 0x6000, 0x11, 16}, {0x1A00, 0, 0, 7}, {0x1A00, 0x6000, 1, 1}, {0x1600, 0x7000, 0x11, 255}};
+    TEST_ASSERT_EQUAL(4, slave->entry_count);
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL_HEX16(entries[i].pdo, slave->entries[i].pdo);
+        TEST_ASSERT_EQUAL_HEX16(entries[i].index, slave->entries[i].index);
+        TEST_ASSERT_EQUAL_HEX8(entries[i].subindex, slave->entries[i].subindex);
+        TEST_ASSERT_EQUAL(entries[i].bits, slave->entries[i].bits);
+    }
+    TEST_ASSERT_EQUAL(6, slave->signal_count);
+    const cm1e_signal_config_t *signals = slave->signals; /* inputs first */
+    TEST_ASSERT_EQUAL_STRING("pressure", signals[0].name);
+    TEST_ASSERT_FALSE(signals[0].output);
+    TEST_ASSERT_EQUAL_HEX16(0x6000, signals[0].index);
+    TEST_ASSERT_EQUAL_HEX8(0x11, signals[0].subindex);
+    TEST_ASSERT_EQUAL(16, signals[1].bit);
+    TEST_ASSERT_EQUAL(3, signals[1].bits);
+    TEST_ASSERT_TRUE(signals[1].type_stated && signals[1].type == CM1E_IO_USINT);
+    TEST_ASSERT_EQUAL(32, signals[2].bits);
+    TEST_ASSERT_TRUE(signals[3].output && signals[3].safe == -5);
+    TEST_ASSERT_TRUE(signals[4].safe == 1 && signals[4].bit == 3 && signals[4].bits == 1);
+    TEST_ASSERT_TRUE(signals[5].hold && signals[5].safe == 0);
+}
+
+/* `keys` of a slave at position 3, in line 3 from column 6 on. */
+static void expect_wrong(const char *keys, const char *place, const char *part)
+{
+    char text[800], where[600];
+    snprintf(text, sizeof text, "axes: [{name: feed, position: 9}]\nslaves:\n  - {position: 3, %s}\n", keys);
+    TEST_ASSERT_NOT_EQUAL_MESSAGE(CM1E_OK, load(text), keys);
+    snprintf(where, sizeof where, "%s:%s: ", temporary, place);
+    TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(where, diag.text, strlen(where), diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, part), diag.text);
+}
+
+static void test_wrong_keys_are_told_with_place_and_cure(void)
+{
+    static const struct {
+        const char *keys, *place, *part;
+    } cases[] = {
+        {"optional: true", "3:19", "unknown key 'optional' in slaves[0]; expected one of: name, position"},
+        {"esi: a.xml", "3:19", "unknown key 'esi'"},
+        {"alias: 4", "3:26", "addressed twice"},
+        {"name: a.b", "3:25", "expected a name without '.'"},
+        {"name: 7", "3:25", "is '7'; expected a name"},
+        {"name: slave 7", "3:25", "that is no position"},
+        {"name: feed", "3:25", "is also the name of an axis"},
+        {"vendor: 2", "3:27", "vendor is '2'; expected it as in 0x0000001A"},
+        {"product: 0x123456789", "3:28", "product is '0x123456789'"},
+        {"watchdog_ms: 0", "3:32", "watchdog_ms is '0'; expected a whole number, 1 ... 6000"},
+        {"outputs_pdos: [0x1A00]", "3:34", "is 0x1A00; expected 0x1600 ... 0x17FF"},
+        {"inputs_pdos: [0x1A00, 0x1A00]", "3:41", "which the list has already"},
+        {"inputs_pdos: [6656]", "3:33", "'6656' is no PDO"},
+        {"inputs_pdos: []", "3:32", "empty list"},
+        {"mapping: [{pdo: 0x1C00, entries: [gap/8]}]", "3:28", "has the PDO 0x1C00"},
+        {"mapping: [{pdo: 0x1A00, entries: [0x6000:1]}]", "3:53", "'0x6000:1' is no entry of a PDO"},
+        {"mapping: [{pdo: 0x1A00, entries: [gap/0]}]", "3:53", "'gap/0' is no entry"},
+        {"mapping: [{pdo: 0x1A00, entries: [gap/256]}]", "3:53", "'gap/256' is no entry"},
+        {"mapping: [{pdo: 0x1A00, entries: [0x6000:111/8]}]", "3:53", "'0x6000:111/8' is no entry"},
+        {"mapping: [{pdo: 0x1A00}]", "3:29", "'entries' is missing"},
+        {"mapping: [{pdo: 0x1A00, entries: [gap/8]}, {pdo: 0x1A01, entries: [gap/8]}, {pdo: 0x1A00, "
+         "entries: [gap/8]}]", "3:28", "has the PDO 0x1A00 twice"},
+        {"sdo: [{object: 0x8000:01, type: UINT, value: 65536}]", "3:64", "value is '65536', which is no UINT"},
+        {"sdo: [{object: 0x8000:01, type: INT, value: -32769}]", "3:63", "which is no INT"},
+        {"sdo: [{object: 0x8000:01, type: UINT, value: 1.5}]", "3:64", "which is no UINT"},
+        {"sdo: [{object: 0x8000:01, type: UINT, value: 0x10000}]", "3:64", "which is no UINT"},
+        {"sdo: [{object: 0x8000:01, type: UINT, value: true}]", "3:64", "which is no UINT"},
+        {"sdo: [{object: 0x8000:01, type: REAL, value: nan}]", "3:64", "which is no REAL"},
+        {"sdo: [{object: 0x8000:01, type: WORD, value: 1}]", "3:51", "type is 'WORD'; expected one of: BOOL, SINT"},
+        {"sdo: [{object: 8000, type: UINT, value: 1}]", "3:34", "object is '8000'"},
+        {"sdo: [{object: 0x0800:01, type: UINT, value: 1}]", "3:34", "expected an object from 0x1000 on"},
+        {"sdo: [{object: 0x8000:01, value: 1}]", "3:25", "'type' is missing"},
+        {"sdo: [{object: 0x8000:01, type: UINT, value: 1, before: init}]", "3:75", "expected one of: safe_op, op"},
+        {"inputs: [{name: a}]", "3:28", "neither an object nor a bit"},
+        {"inputs: [{name: a, bit: 1, object: 0x6000:01}]", "3:28", "an object and a bit"},
+        {"inputs: [{name: a, bit: 1, safe: 1}]", "3:46", "unknown key 'safe'"},
+        {"inputs: [{name: input 1, bit: 1}]", "3:28", "has the name 'input 1'"},
+        {"inputs: [{name: a, bit: 1}, {name: A, bit: 2}]", "3:47", "which another signal of the slave has already"},
+        {"inputs: [{name: a, bit: 1, type: REAL, bits: 8}]", "3:28", "has 8 bits; a REAL has 32"},
+        {"inputs: [{name: a, bit: 11888}]", "3:43", "0 ... 11887"},
+        {"outputs: [{name: a, bit: 1, safe: 2}]", "3:29", "has the safe value 2, which is no BOOL of 1 bits"},
+        {"outputs: [{name: a, bit: 1, safe: maybe}]", "3:53", "expected a number, true, false or hold"},
+        {"sim: {inputs: 3}", "3:24", "'device' is missing"},
+        {"sim: {device: digital}", "3:24", "neither inputs nor outputs"},
+        {"sim: {device: coupler, inputs: 1}", "3:24", "which its device has not"},
+        {"sim: {device: digital, inputs: 9}", "3:50", "1 ... 8"},
+        {"sim: {device: digital, inputs: 1, wired_to: x}", "3:63", "expected the name of a slave of the list"},
+        {"sim: {device: digital, outputs: 1, wired_to: x}", "3:64", "there are no inputs to wire"},
+        {"name: a}\n  - {name: A, position: 4", "4:12", "is also the name of entry 1"},
+        {"name: a}\n  - {position: 3", "4:16", "is 3, which entry 1 of the list has already"},
+        {"name: a}\n  - {position: 9", "4:16", "where the axis feed is"},
+        {"name: a}\n  - {name: b", "4:5", "position is missing"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        expect_wrong(cases[i].keys, cases[i].place, cases[i].part);
+}
+
+static void test_slaves_of_an_older_or_newer_program(void)
+{
+    const size_t old = offsetof(cm1e_bus_config_t, slave_size);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(everything), diag.text);
+    cm1e_bus_config_t older = {0};
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, cm1e_bus_config_load_sized(&older, old, sizeof(cm1e_axis_config_t), temporary,
+                                                                    &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "compile it again"), diag.text);
+    const size_t larger = sizeof(cm1e_slave_config_t) + 24;
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_bus_config_size_slaves(&config, larger, &diag));
+    const cm1e_slave_config_t *second = (cm1e_slave_config_t *)(void *)((char *)config.slaves + larger);
+    TEST_ASSERT_EQUAL_STRING("other", second->name);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_check(&config, &diag), diag.text);
+}
+
+static void test_no_more_slaves_than_the_maximum(void)
+{
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_bus_config_init(&config, "sim", 0));
+    for (unsigned i = 0; i < CM1E_MAX_SLAVES; i++) {
+        cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, NULL);
+        TEST_ASSERT_NOT_NULL(slave);
+        slave->address = (uint16_t)(i + 1);
+    }
+    TEST_ASSERT_NULL(cm1e_bus_config_add_slave(&config, NULL));
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_check(&config, &diag), diag.text);
+    config.slaves[5].signal_count = CM1E_SLAVE_SIGNALS + 1;
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, cm1e_bus_config_check(&config, &diag));
+    config.slaves[5].signal_count = 0;
+    config.slave_count++;
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, cm1e_bus_config_check(&config, &diag));
+    config.slave_count--;
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_every_key_becomes_what_it_says);
+    RUN_TEST(test_sdos_have_the_bits_of_their_values);
+    RUN_TEST(test_mapping_and_signals_are_in_their_order);
+    RUN_TEST(test_wrong_keys_are_told_with_place_and_cure);
+    RUN_TEST(test_slaves_of_an_older_or_newer_program);
+    RUN_TEST(test_no_more_slaves_than_the_maximum);
+    return UNITY_END();
+}
