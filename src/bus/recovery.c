@@ -41,11 +41,19 @@ static void succeed(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_stat
     slave->recovery.successes++;
 }
 
+/** Most slaves have nothing written, which costs no cycle then. */
+static cm1e_recovery_step_t step_behind(const cm1e_bus_slave_t *slave, cm1e_recovery_step_t step)
+{
+    const cm1e_recovery_step_t next = (cm1e_recovery_step_t)(step + 1);
+    const bool setup = next == RECOVERY_SETUP || next == RECOVERY_SETUP_OP;
+    return setup && !cm1e_setup_is_needed(slave->config, next == RECOVERY_SETUP_OP) ? step_behind(slave, next) : next;
+}
+
 static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     cm1e_recovery_t *recovery = &slave->recovery;
     if (recovery->step != RECOVERY_OP) {
-        enter(slave, (cm1e_recovery_step_t)(recovery->step + 1), now_ns);
+        enter(slave, step_behind(slave, recovery->step), now_ns);
         return;
     }
     succeed(slave, slave->al.state, slave->al.code);
@@ -346,10 +354,6 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
 static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, bool before_op)
 {
     cm1e_setup_job_t *job = &slave->setup;
-    if (!cm1e_setup_is_needed(slave->config, before_op)) {
-        advance(slave, now_ns);
-        return false;
-    }
     if (!slave->recovery.entered) {
         slave->recovery.entered = true;
         cm1e_setup_begin(job, slave->info.position, slave->config, before_op);
