@@ -107,6 +107,16 @@ typedef struct cm1e_sim_axis_config {
     bool no_sensors;         /**< true: nothing is wired to IN2 and IN3 */
 } cm1e_sim_axis_config_t;
 
+/** Pulses of the distributed clock of a slave (docs/CLOCKS.md). They come at whole multiples of the cycle time of the
+ *  bus plus the shift, counted from the moment at which the process data passes the reference clock. */
+typedef struct cm1e_dc_config {
+    double sync0_us;     /**< us, period of SYNC0: the cycle time of the bus, a part or a multiple of it; 0: no SYNC0,
+                              the slave takes its cycle from the process data */
+    double sync1_us;     /**< us, SYNC1 behind SYNC0 (register 0x09A4); 0: no SYNC1 */
+    double shift_us;     /**< us, SYNC0 behind the process data, less than a cycle time to both sides; 0 selects half a
+                              cycle time */
+} cm1e_dc_config_t;
+
 /** The kinds of axes. */
 typedef enum cm1e_axis_type {
     CM1E_AXIS_MOTOR = 0,             /**< a motor on the bus */
@@ -209,6 +219,8 @@ typedef struct cm1e_axis_config {
                                           stated */
     uint16_t outputs_pdo, inputs_pdo; /**< PDOs to assign, as 0x1600 and 0x1A00; only with the device cia402; 0 selects
                                           those that the drive has assigned itself */
+    cm1e_dc_config_t dc;             /**< only with the device cia402: a CM1-E and a bridge take their cycle from the
+                                          process data */
 } cm1e_axis_config_t;
 
 /** A start-up SDO of a slave: written at every start, and when the slave has come back. */
@@ -301,6 +313,8 @@ typedef struct cm1e_bus_config {
     size_t slave_size;               /**< bytes of a slave; 0: the size that the library has */
     uint32_t slave_count;            /**< at most CM1E_MAX_SLAVES */
     cm1e_slave_config_t *slaves;     /**< slaves[0] ... slaves[slave_count - 1] */
+    bool distributed_clocks;         /**< true: the cycle follows the clock of the first slave that has one, so frames
+                                          arrive at a constant phase; also if an axis has `dc` */
 } cm1e_bus_config_t;
 
 /** Does the work of cm1e_bus_config_init(), for a program with these sizes of the structs. @rt init */

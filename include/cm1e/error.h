@@ -46,6 +46,7 @@ extern "C" {
     X(ERROR_PDO_MAPPING, -27, "the PDO mapping lacks an object that the operation needs")                           \
     X(ERROR_BUS_CYCLE_TIME, -28, "the device does not accept the cycle time")                                       \
     X(ERROR_INTERFACE_IN_USE, -29, "another program has the network interface: end it, or attach to it")            \
+    X(ERROR_BUS_CLOCKS, -39, "the clocks of slaves and machine do not come together")                                \
     X(ERROR_DRIVE_FAULT, -40, "the drive reports a fault")                                                          \
     X(ERROR_DRIVE_POWER, -41, "motor power is off")                                                                 \
     X(ERROR_DRIVE_ENABLE_LOST, -42, "the drive left Operation enabled by itself")                                   \

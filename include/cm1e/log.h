@@ -30,6 +30,7 @@ typedef enum cm1e_log_kind {
     CM1E_LOG_WORKING_COUNTER, /**< as OVERRUN: cycles with a wrong working counter */
     CM1E_LOG_UNSENT_FRAMES,   /**< as OVERRUN: frames that the network interface did not take */
     CM1E_LOG_OTHER_MASTER,    /**< as OVERRUN: frames of another master */
+    CM1E_LOG_SYNC_LOST,       /**< as OVERRUN: clocks that left the reference clock, or that reference was lost */
     CM1E_LOG_EMERGENCY,       /**< of a slave, whether it has an axis or not; code: the error code, detail: its
                                    position, and 65536 times the error register; value: its five bytes as a number, the
                                    first is the lowest */

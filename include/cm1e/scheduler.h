@@ -14,6 +14,7 @@
 #include "cm1e/api.h"
 #include "cm1e/axis.h"
 #include "cm1e/bus.h"
+#include "cm1e/clocks.h"
 #include "cm1e/error.h"
 
 #ifdef __cplusplus
@@ -63,6 +64,7 @@ typedef struct cm1e_scheduler_statistics_t {
     char control_socket[112];    /**< path at which other programs can watch this run (docs/CONTROL.md); "": none */
     char control_advice[400];    /**< why there is none although it is configured, and the cure; "": there is one, or
                                       none is wanted */
+    cm1e_bus_clocks_t clocks;    /**< distributed clocks, where they are used */
 } cm1e_scheduler_statistics_t;
 
 /* The structs of this header may grow at their ends in later versions. The functions ..._sized() are told the size that

@@ -41,6 +41,12 @@ void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position);
 /** The program has ended: from the next frame on the outputs of the slaves that the configuration names take their safe
  *  values (docs/BUS-FILE.md). @rt cycle */
 void cm1e_bus_release_outputs(cm1e_bus_t *bus);
+/** What the next cycle begins later than planned, in ns, so that the cycle follows the reference clock; 0 without
+ *  distributed clocks. Taken once a cycle, behind cm1e_bus_receive(). @rt cycle */
+int64_t cm1e_bus_pace(cm1e_bus_t *bus);
+/** The first start of a cycle from `now_ns` on that has the phase of the reference clock; `now_ns` itself without
+ *  distributed clocks. @rt init */
+int64_t cm1e_bus_next_start(const cm1e_bus_t *bus, int64_t now_ns);
 
 /** Number of the present operation, from 1: the number of times that cm1e_bus_operate() succeeded. 0: the bus is not in
  *  Operational. Locations that were resolved in one operation are not valid in the next. @rt init */

@@ -8,6 +8,7 @@
 #include "bus/al_machine.h"
 #include "bus/bus_image.h"
 #include "bus/coe_client.h"
+#include "bus/dc.h"
 #include "bus/emergency_ring.h"
 #include "bus/errand.h"
 #include "bus/mapping.h"
@@ -77,6 +78,7 @@ struct cm1e_bus_slave {
     cm1e_mapped_direction_t mapped[2];       /**< 0 outputs, 1 inputs; as configured */
     cm1e_slave_placement_t placement;
     cm1e_slave_watch_t watch;
+    cm1e_dc_t *dc;                           /**< the clocks of the bus; NULL: they are not used */
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
     uint32_t silent_cycles;                  /**< in a row, in which it did not take part */
 };
@@ -151,6 +153,8 @@ struct cm1e_bus {
     cm1e_sdo_queue_t queue;
     cm1e_errand_t *errand;                   /**< atomic; NULL: none */
     bool errand_sent;                        /**< CoE has the next turn of that slave */
+
+    cm1e_dc_t dc;                            /**< distributed clocks */
 
     const cm1e_bus_remote_t *remote;         /**< another program runs the network: there is no nic; NULL: we do */
     void *remote_state;

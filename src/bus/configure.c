@@ -221,6 +221,8 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (error == CM1E_OK)
         error = set_watchdogs(bus, diag);
     if (error == CM1E_OK)
+        error = cm1e_dc_set_up(bus, diag);
+    if (error == CM1E_OK)
         error = cm1e_bus_all_to_state(bus, CM1E_AL_SAFE_OP, CM1E_STATE_TIMEOUT_NS, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_set_up_slaves(bus, true, diag);

@@ -79,6 +79,7 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     bus->in_flight = false;
     const int working_counter = cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns);
     const cm1e_error_t error = judge(bus, working_counter);
+    cm1e_dc_receive(bus, error != CM1E_ERROR_BUS_LOST);
     bus->counters.cycles++;
     bus->partly_fresh = false;
     if (error == CM1E_ERROR_BUS_WORKING_COUNTER)
@@ -122,6 +123,7 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     mute_recovering(bus);
     memcpy(bus->sent_outputs, bus->image, bus->output_bytes);
     memset(bus->image + bus->output_bytes, INPUT_PATTERN, bus->input_bytes);
+    cm1e_dc_send(bus, now_ns);
     cm1e_soem_send_process_data(bus->soem);
     bus->in_flight = true;
     cm1e_acyclic_send(bus, now_ns, CM1E_DATAGRAMS_PER_CYCLE);

@@ -20,6 +20,7 @@ typedef enum cm1e_command {
     COMMAND_FPWR = 5,
     COMMAND_BRD = 7,
     COMMAND_BWR = 8,
+    COMMAND_FRMW = 14, /**< the addressed slave is read, all others are written */
 } cm1e_command_t;
 
 /** Registers of a slave controller (ETG.1000.4, section 6). */

@@ -42,7 +42,10 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
     bus->next_cycle_ns = cm1e_bus_enter(bus);
     bus->exchanging = true;
     bus->bad_cycles = 0;
+    cm1e_dc_begin(bus);
     cm1e_error_t error = exchange(bus, false, diag);
+    if (error == CM1E_OK)
+        error = cm1e_dc_wait(bus, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_all_to_state(bus, CM1E_AL_OP, CM1E_STATE_TIMEOUT_NS, diag);
     if (error == CM1E_OK)
@@ -148,6 +151,7 @@ void cm1e_bus_stop(cm1e_bus_t *bus)
         if (configured)
             all_down_to(bus, CM1E_AL_SAFE_OP);
         all_down_to(bus, CM1E_AL_INIT);
+        cm1e_dc_stop(bus);
         look_at_states(bus);
     }
 }

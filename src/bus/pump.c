@@ -8,13 +8,14 @@ void cm1e_bus_pump(cm1e_bus_t *bus)
     if (bus->exchanging) {
         if (bus->next_cycle_ns <= now_ns - bus->config.cycle_time_ns)
             bus->next_cycle_ns = now_ns; /* the first one, or far behind: no burst */
-        bus->next_cycle_ns += bus->config.cycle_time_ns;
         if (bus->in_flight)
             cm1e_bus_receive(bus);
+        bus->next_cycle_ns += bus->config.cycle_time_ns + cm1e_bus_pace(bus);
         cm1e_bus_send(bus);
         cm1e_clock_sleep_until(bus->clock, bus->next_cycle_ns);
         return;
     }
+    cm1e_dc_keep(bus);
     cm1e_acyclic_send(bus, now_ns, CM1E_DATAGRAMS_IN_FLIGHT);
     cm1e_acyclic_receive(bus, CM1E_FRAME_LOST_NS);
     /* The pause bounds the load of a slave that always answers, but never correctly. */

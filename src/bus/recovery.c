@@ -12,6 +12,7 @@
 #define SDO_STEP_NS INT64_C(1000000000)
 #define OBJECTS_STEP_NS INT64_C(3000000000)
 #define MAPPING_STEP_NS INT64_C(10000000000)
+#define CLOCK_STEP_NS INT64_C(10000000000)
 /** Short: a device that is away has no address to give back. */
 #define RELEASE_NS INT64_C(10000000)
 
@@ -219,6 +220,19 @@ static bool next_watchdog(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
     cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_WATCHDOG_PROCESS_DATA, 2);
     cm1e_put_u16(d->data, cm1e_bus_watchdog(slave));
     return true;
+}
+
+/** A clock that was far away comes nearer by a step with every frame. */
+static bool next_clock(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    bool is_set;
+    if (!slave->recovery.entered)
+        cm1e_dc_recover_begin(slave);
+    slave->recovery.entered = true;
+    const bool sends = cm1e_dc_recover_next(slave, d, now_ns, &is_set);
+    if (is_set)
+        advance(slave, now_ns);
+    return sends;
 }
 
 /* ---- states ---------------------------------------------------------------------------------------------------- */
@@ -440,6 +454,7 @@ static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_FMMUS] = {STEP_NS, next_fmmus, result_next_step},
     [RECOVERY_WATCHDOG_DIVIDER] = {STEP_NS, next_watchdog_divider, result_next_step},
     [RECOVERY_WATCHDOG] = {STEP_NS, next_watchdog, result_next_step},
+    [RECOVERY_CLOCK] = {CLOCK_STEP_NS, next_clock, cm1e_dc_recovered},
     [RECOVERY_SAFE_OP] = {CM1E_STATE_TIMEOUT_NS, next_safe_op, result_al},
     [RECOVERY_SETUP_OP] = {MAPPING_STEP_NS, next_setup_op, result_coe},
     [RECOVERY_OP] = {CM1E_STATE_TIMEOUT_NS, next_op, result_al},

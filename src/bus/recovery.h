@@ -33,6 +33,7 @@ typedef enum cm1e_recovery_step {
     RECOVERY_FMMUS,
     RECOVERY_WATCHDOG_DIVIDER,
     RECOVERY_WATCHDOG,
+    RECOVERY_CLOCK,          /**< its distributed clock, and its pulses */
     RECOVERY_SAFE_OP,
     RECOVERY_SETUP_OP,       /**< what the configuration writes into it in Safe-Operational */
     RECOVERY_OP,

@@ -150,8 +150,7 @@ bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, size_t room, size_t *outpu
     const int used = ecx_config_map_group_aligned(&soem->context, image, 0);
     *output_bytes = group->Obytes;
     *input_bytes = group->Ibytes;
-    /* Distributed clocks are not used: the drives take their cycle from the process data (UG 4.3). */
-    group->hasdc = FALSE;
+    group->hasdc = FALSE; /* until cm1e_soem_use_clocks() */
     return used >= 0 && (size_t)used <= room && group->nsegments <= CM1E_PROCESS_FRAMES_MAX;
 }
 
@@ -180,6 +179,15 @@ int cm1e_soem_expected_working_counter(const cm1e_soem_t *soem)
     /* LRW counts 2 for a slave that takes outputs and 1 for one that gives inputs; SOEM emulates that for LRD/LWR. */
     return soem->groups[0].outputsWKC * 2 + soem->groups[0].inputsWKC;
 }
+
+void cm1e_soem_use_clocks(cm1e_soem_t *soem, uint16_t position)
+{
+    soem->groups[0].hasdc = position > 0;
+    soem->groups[0].DCnext = position;
+}
+
+void cm1e_soem_set_clock_time(cm1e_soem_t *soem, int64_t time_ns) { soem->dc_time = (int64)htoell(time_ns); }
+int64_t cm1e_soem_clock_time(const cm1e_soem_t *soem) { return soem->dc_time; }
 
 void cm1e_soem_send_process_data(cm1e_soem_t *soem) { ecx_send_processdata(&soem->context); }
 
@@ -243,7 +251,8 @@ int cm1e_soem_transfer(cm1e_soem_t *soem, cm1e_command_t command, uint16_t addre
     const uint8 index = ecx_getindex(&soem->port);
     ecx_setupdatagram(&soem->port, &soem->port.txbuf[index], (uint8)command, index, address, offset, length, data);
     const int working_counter = ecx_srconfirm(&soem->port, index, EC_TIMEOUTRET3);
-    if (working_counter > 0 && (command == COMMAND_BRD || command == COMMAND_APRD || command == COMMAND_FPRD))
+    if (working_counter > 0 && (command == COMMAND_BRD || command == COMMAND_APRD || command == COMMAND_FPRD ||
+                                command == COMMAND_FRMW))
         memcpy(data, (const uint8_t *)&soem->port.rxbuf[index] + EC_HEADERSIZE, length);
     ecx_setbufstat(&soem->port, index, EC_BUF_EMPTY);
     return working_counter < 0 ? DATAGRAM_LOST : working_counter;

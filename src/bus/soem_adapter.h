@@ -79,6 +79,11 @@ int cm1e_soem_expected_working_counter(const cm1e_soem_t *soem);
  *  frame came back. */
 void cm1e_soem_send_process_data(cm1e_soem_t *soem);
 int cm1e_soem_receive_process_data(cm1e_soem_t *soem, int64_t timeout_ns);
+/** From now on the process data goes with the time of this slave, which all others get (FRMW); position 0: without. */
+void cm1e_soem_use_clocks(cm1e_soem_t *soem, uint16_t position);
+/** What that datagram carries when it is sent, and the time that the last one to come back has brought. */
+void cm1e_soem_set_clock_time(cm1e_soem_t *soem, int64_t time_ns);
+int64_t cm1e_soem_clock_time(const cm1e_soem_t *soem);
 /** Number of frames that came back too late; only grows. */
 uint64_t cm1e_soem_late_frames(const cm1e_soem_t *soem);
 /** Number of frames of another master that were seen; only grows. */

@@ -17,6 +17,11 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
 {
     if (bus->watch_sent || bus->slave_count == 0)
         return;
+    if (cm1e_dc_next_look(bus, &bus->watch_datagram)) {
+        cm1e_soem_post(bus->soem, &bus->watch_datagram, now_ns);
+        bus->watch_sent = true;
+        return;
+    }
     bus->watched_slave = bus->watched_slave + 1 < bus->slave_count ? bus->watched_slave + 1 : 0;
     cm1e_datagram_set(&bus->watch_datagram, COMMAND_FPRD, bus->slaves[bus->watched_slave].facts.station, REG_AL_STATUS,
                       AL_STATUS_BYTES);
@@ -45,6 +50,10 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
         cm1e_soem_drop(bus->soem, d);
     }
     bus->watch_sent = false;
+    if (d->offset == REG_DC_DIFFERENCE) {
+        cm1e_dc_looked(bus, d);
+        return;
+    }
     if (d->working_counter == 1) {
         cm1e_supervision_note(slave, cm1e_get_u16(d->data), cm1e_get_u16(d->data + 4));
     } else if (d->working_counter == 0 && ++slave->unanswered >= UNANSWERED_LIMIT) {

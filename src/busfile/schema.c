@@ -72,6 +72,7 @@ static const cyaml_schema_field_t bus_fields[] = {
     BUS_BOOL("virtual_time", config.virtual_time),
     ENUM_OF("sim_pdo_order", cm1e_busfile_t, config.sim_pdo_order, pdo_orders),
     ENUM_OF("sim_gaps", cm1e_busfile_t, config.sim_gaps, gaps),
+    BUS_BOOL("distributed_clocks", config.distributed_clocks),
     ENUM_OF("control", cm1e_busfile_t, config.control, control_modes),
     CYAML_FIELD_END,
 };
@@ -122,6 +123,12 @@ static const cyaml_schema_field_t drive_fields[] = {
     AXIS_FLOAT("max_speed_rpm", max_speed_rpm),
     CYAML_FIELD_STRING("outputs_pdo", OPTIONAL, cm1e_busfile_axis_t, outputs_pdo, 1),
     CYAML_FIELD_STRING("inputs_pdo", OPTIONAL, cm1e_busfile_axis_t, inputs_pdo, 1),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_field_t dc_fields[] = {
+    AXIS_FLOAT("sync0_us", dc.sync0_us),
+    AXIS_FLOAT("sync1_us", dc.sync1_us),
+    AXIS_FLOAT("shift_us", dc.shift_us),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_field_t homing_fields[] = {
@@ -185,6 +192,7 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_GROUP("inputs", input_fields),
     AXIS_GROUP("homing", homing_fields),
     AXIS_GROUP("drive", drive_fields),
+    AXIS_GROUP("dc", dc_fields),
     AXIS_GROUP("wire", wire_fields),
     AXIS_GROUP("sim", sim_fields),
     CYAML_FIELD_END,

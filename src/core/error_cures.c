@@ -33,6 +33,7 @@ static const struct {
     {CM1E_ERROR_BUS_CYCLE_TIME,
      "a CM1-E takes 200, 250, 500 and 1000 us, before firmware 1.3.2 and behind a bridge 1000 us only"},
     {CM1E_ERROR_INTERFACE_IN_USE, "end the other program, or use another interface"},
+    {CM1E_ERROR_BUS_CLOCKS, "the text beside the error names the clock; look at lost frames and wake-up latency"},
     {CM1E_ERROR_DRIVE_FAULT, "the code of the drive beside the error says why: cm1e explain CODE; then MC_Reset"},
     {CM1E_ERROR_DRIVE_POWER, "switch the 24 V motor power on, check its fuse and the emergency stop; then MC_Reset"},
     {CM1E_ERROR_DRIVE_ENABLE_LOST, "look for another master or controller that disables the drive; then MC_Reset"},

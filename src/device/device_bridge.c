@@ -194,6 +194,7 @@ static const cm1e_absent_key_t absent[] = {
     LACKS("motion", "it makes no moves of its own"),
     LACKS("wire.velocity_unit", "no velocities go over the wire"),
     LACKS("wire.acceleration_unit", "no accelerations of a profile go over the wire"),
+    LACKS("dc", "it takes its cycle from the process data (BR 6.3)"),
     {NULL, NULL},
 };
 

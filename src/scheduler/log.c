@@ -73,7 +73,7 @@ static void look_at_counter(log_t *log, cm1e_log_kind_t kind, uint64_t total, in
 }
 
 void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
-                   const cm1e_bus_counters_t *bus, int64_t run_ns)
+                   const cm1e_bus_counters_t *bus, uint64_t sync_losses, int64_t run_ns)
 {
     for (uint32_t i = 0; i < count; i++)
         look_at_axis(log, axes[i], i, run_ns);
@@ -82,6 +82,7 @@ void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64
     look_at_counter(log, CM1E_LOG_WORKING_COUNTER, bus->working_counter_errors, run_ns);
     look_at_counter(log, CM1E_LOG_UNSENT_FRAMES, bus->unsent_frames, run_ns);
     look_at_counter(log, CM1E_LOG_OTHER_MASTER, bus->foreign_frames, run_ns);
+    look_at_counter(log, CM1E_LOG_SYNC_LOST, sync_losses, run_ns);
 }
 
 static void write_emergency(log_t *log, uint32_t position, const cm1e_emergency_t *emergency, int64_t run_ns)

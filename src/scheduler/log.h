@@ -24,7 +24,7 @@ typedef struct log_counter {
     uint64_t told;
     int64_t quiet_until_ns;
 } log_counter_t;
-enum { CM1E_LOG_COUNTERS = CM1E_LOG_OTHER_MASTER + 1 - CM1E_LOG_OVERRUN };
+enum { CM1E_LOG_COUNTERS = CM1E_LOG_SYNC_LOST + 1 - CM1E_LOG_OVERRUN };
 
 typedef struct log {
     log_place_t *places;
@@ -44,7 +44,7 @@ void cm1e_log_free(log_t *log);
 void cm1e_log_run(log_t *log, bool begins, int64_t run_ns);
 /** Called in every cycle, after its work. @rt cycle */
 void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
-                   const cm1e_bus_counters_t *bus, int64_t run_ns);
+                   const cm1e_bus_counters_t *bus, uint64_t sync_losses, int64_t run_ns);
 /** The emergencies that came since the last call. @rt cycle */
 void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, int64_t run_ns);
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost);

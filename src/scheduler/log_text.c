@@ -15,6 +15,7 @@ static const char *const kind_names[] = {
     [CM1E_LOG_WORKING_COUNTER] = "working counter",
     [CM1E_LOG_UNSENT_FRAMES] = "unsent frames",
     [CM1E_LOG_OTHER_MASTER] = "other master",
+    [CM1E_LOG_SYNC_LOST] = "sync lost",
     [CM1E_LOG_EMERGENCY] = "emergency",
 };
 _Static_assert(sizeof kind_names / sizeof *kind_names == CM1E_LOG_KIND_COUNT, "a kind of the log has no name");
@@ -25,6 +26,7 @@ static const char *const counter_texts[] = {
     [CM1E_LOG_WORKING_COUNTER] = "cycles with a wrong working counter because a slave did not take part",
     [CM1E_LOG_UNSENT_FRAMES] = "frames that the network interface did not take because it is down or too slow",
     [CM1E_LOG_OTHER_MASTER] = "frames of another master on this network, which is to be ended",
+    [CM1E_LOG_SYNC_LOST] = "loss of synchronism: the clock of a slave left the reference clock, or the reference is away",
 };
 
 const char *cm1e_log_kind_name(cm1e_log_kind_t kind)
@@ -75,7 +77,7 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
     text[0] = 0;
     if (event->kind == CM1E_LOG_RUN)
         snprintf(text, size, event->code ? "the run began" : "the run ended");
-    else if (event->kind >= CM1E_LOG_OVERRUN && event->kind <= CM1E_LOG_OTHER_MASTER)
+    else if (event->kind >= CM1E_LOG_OVERRUN && event->kind <= CM1E_LOG_SYNC_LOST)
         snprintf(text, size, "%s: %" PRId32 " (%" PRIu32 " since the start)", counter_texts[event->kind], event->code,
                  event->detail);
     else if (event->kind == CM1E_LOG_EMERGENCY)

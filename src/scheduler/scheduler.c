@@ -155,9 +155,18 @@ static void run_tasks(cm1e_scheduler_t *s)
 
 /** receive -> inputs -> programs -> axes -> outputs -> send. At the end of a run the shut-down of the axes replaces the
  *  programs. */
+/** The plan follows the reference clock of the bus, and what was planned before moves with it. */
+static void follow_clock(cm1e_scheduler_t *s)
+{
+    const int64_t later_ns = cm1e_bus_pace(s->bus);
+    s->start_ns += later_ns;
+    s->sent_ns += later_ns;
+}
+
 static void scan(cm1e_scheduler_t *s)
 {
-    take_inputs(s, cm1e_bus_receive(s->bus));
+    const cm1e_error_t received = cm1e_bus_receive(s->bus);
+    take_inputs(s, received);
     cm1e_scan_time_set(planned_ns(s, s->number));
     if (s->shutting_down)
         shut_down_axes(s);
@@ -165,6 +174,7 @@ static void scan(cm1e_scheduler_t *s)
         run_tasks(s);
     set_outputs(s);
     cm1e_bus_send(s->bus);
+    follow_clock(s);
 }
 
 static void count_overrun(cm1e_scheduler_t *s)
@@ -210,9 +220,13 @@ static void end_cycle(cm1e_scheduler_t *s)
 static void show(cm1e_scheduler_t *s)
 {
     const uint64_t overruns = atomic_load_explicit(&s->statistics.overruns, memory_order_relaxed);
+    cm1e_bus_clocks_t clocks;
+    cm1e_bus_clocks(s->bus, &clocks);
+    cm1e_statistics_note_clocks(&s->statistics, &clocks);
     s->trace.timing.lost_frames = cm1e_bus_counters(s->bus)->lost_frames;
     cm1e_trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
-    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, cm1e_bus_counters(s->bus), cm1e_scheduler_time_ns(s));
+    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, cm1e_bus_counters(s->bus), clocks.sync_losses,
+                  cm1e_scheduler_time_ns(s));
     cm1e_log_emergencies(&s->log, s->bus, cm1e_scheduler_time_ns(s));
     for (int i = 0; i < CM1E_WINDOWS; i++)
         if (s->windows[i])
@@ -266,7 +280,7 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     open_windows(s);
     cm1e_error_t error = take_real_time(s, &realtime, diag);
     if (error == CM1E_OK) {
-        s->start_ns = s->sent_ns = cm1e_clock_now(s->clock);
+        s->start_ns = s->sent_ns = cm1e_bus_next_start(s->bus, cm1e_clock_now(s->clock));
         cm1e_log_run(&s->log, true, 0);
         while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
             cycle(s);

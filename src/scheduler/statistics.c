@@ -39,6 +39,34 @@ void cm1e_statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_
     WRITE(statistics->mailbox_retries, counters->mailbox_retries);
 }
 
+void cm1e_statistics_note_clocks(statistics_t *statistics, const cm1e_bus_clocks_t *clocks)
+{
+    if (!clocks->used)
+        return;
+    WRITE(statistics->clocks_used, true);
+    WRITE(statistics->clock_reference, clocks->reference);
+    WRITE(statistics->clock_reference_ns, clocks->reference_ns);
+    WRITE(statistics->clock_rate_ppb, (int64_t)(clocks->rate_ppm * 1000));
+    WRITE(statistics->phase_error_ns, clocks->phase_error_ns);
+    WRITE(statistics->phase_mean_ns, (int64_t)clocks->phase_mean_ns);
+    WRITE(statistics->phase_maximum_ns, clocks->phase_maximum_ns);
+    WRITE(statistics->sync_losses, clocks->sync_losses);
+}
+
+static cm1e_bus_clocks_t read_clocks(const statistics_t *statistics)
+{
+    return (cm1e_bus_clocks_t){
+        .used = READ(statistics->clocks_used),
+        .reference = (uint16_t)READ(statistics->clock_reference),
+        .reference_ns = READ(statistics->clock_reference_ns),
+        .rate_ppm = (double)READ(statistics->clock_rate_ppb) * 1e-3,
+        .phase_error_ns = READ(statistics->phase_error_ns),
+        .phase_mean_ns = (double)READ(statistics->phase_mean_ns),
+        .phase_maximum_ns = READ(statistics->phase_maximum_ns),
+        .sync_losses = READ(statistics->sync_losses),
+    };
+}
+
 void cm1e_statistics_publish_realtime(statistics_t *statistics, bool realtime, const char *advice)
 {
     snprintf(statistics->advice, sizeof statistics->advice, "%s", advice);
@@ -73,6 +101,7 @@ void cm1e_statistics_read(const statistics_t *statistics, cm1e_scheduler_statist
         .unsent_frames = READ(statistics->unsent_frames),
         .mailbox_retries = READ(statistics->mailbox_retries),
     };
+    copy->clocks = read_clocks(statistics);
     if (atomic_load_explicit(&statistics->ready, memory_order_acquire)) {
         copy->realtime = READ(statistics->realtime);
         memcpy(copy->advice, statistics->advice, sizeof copy->advice);

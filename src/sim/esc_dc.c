@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "core/bytes.h"
-#include "sim/segment.h"
 
 /* Distributed clocks (ETG.1000.4, and the register description of the controllers). The local time counts from power-on
  * by a crystal. The control loop makes it faster or slower, so that local time plus offset follows the system time of
@@ -254,12 +253,4 @@ void cm1e_sim_esc_clock(const cm1e_sim_slave_t *slave, cm1e_sim_clock_t *result)
         .sync1_pulses = clock->pulses.count_sync1,
         .next_sync0_ns = clock->pulses.running ? (int64_t)clock->pulses.next_ns : 0,
     };
-}
-
-void cm1e_sim_segment_clock(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_clock_t *result)
-{
-    const cm1e_sim_slave_t *slave = segment ? cm1e_sim_segment_slave(segment, position) : NULL;
-    *result = (cm1e_sim_clock_t){0};
-    if (slave && cm1e_sim_esc_present(slave))
-        cm1e_sim_esc_clock(slave, result);
 }

@@ -3,6 +3,7 @@
 #include "sim/bridge_app.h"
 #include "sim/cia402_app.h"
 #include "sim/cm1e_app.h"
+#include "sim/esc.h"
 
 static cm1e_sim_cm1e_t *drive_at(cm1e_sim_segment_t *segment, uint32_t position)
 {
@@ -108,4 +109,12 @@ void cm1e_sim_probe(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_pro
 void cm1e_sim_probe_reset(cm1e_sim_segment_t *segment, uint32_t position)
 {
     cm1e_sim_probe_reset_channel(segment, position, 0);
+}
+
+void cm1e_sim_segment_clock(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_clock_t *result)
+{
+    const cm1e_sim_slave_t *slave = segment ? cm1e_sim_segment_slave(segment, position) : NULL;
+    *result = (cm1e_sim_clock_t){0};
+    if (slave && cm1e_sim_esc_present(slave))
+        cm1e_sim_esc_clock(slave, result);
 }

@@ -1,0 +1,149 @@
+#include "bus/dc.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "bus/bus_internal.h"
+#include "core/bytes.h"
+
+enum {
+    BEYOND_LIMIT = 3,    /* looks in a row */
+    SILENT_LIMIT = 3,    /* frames in a row without the time of the reference clock */
+    MARK_NS = 3,         /* a prediction is off by this in every second frame, and by twice as much in the others: a
+                            clock that follows predictions does not give them back */
+};
+#define SIGN 0x80000000u
+
+/* ---- in every cycle ---------------------------------------------------------------------------------------------- */
+
+/** The datagram carries the time that is expected. If the reference does not answer, the others get that, and not the
+ *  time of an earlier frame, by which they would fall back a whole cycle. */
+void cm1e_dc_send(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    if (!dc->used)
+        return;
+    dc->frame_ns = now_ns;
+    dc->marked = !dc->marked;
+    dc->predicted_ns = dc->reference_ns + (now_ns - dc->sent_ns) + (dc->marked ? MARK_NS : 2 * MARK_NS);
+    cm1e_soem_set_clock_time(bus->soem, dc->predicted_ns);
+}
+
+static void lose(cm1e_dc_t *dc, cm1e_dc_slave_t *slave)
+{
+    if (slave->clock.lost)
+        return;
+    slave->clock.lost = true;
+    slave->clock.losses++;
+    dc->losses++;
+}
+
+/** The next clock on the wire takes over. Its delay register says when a frame passed the first clock, so the delays of
+ *  the others stay right. */
+static void change_reference(cm1e_bus_t *bus)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    uint32_t next = dc->reference;
+    dc->silent = 0;
+    lose(dc, &dc->slaves[dc->reference - 1]);
+    dc->slaves[dc->reference - 1].clock.is_reference = false;
+    while (next < bus->slave_count && !(dc->slaves[next].clock.has_clock && !bus->slaves[next].watch.lost &&
+                                        bus->slaves[next].unanswered == 0))
+        next++;
+    dc->reference = next < bus->slave_count ? (uint16_t)(next + 1) : 0;
+    if (dc->reference)
+        dc->slaves[dc->reference - 1].clock.is_reference = true;
+    cm1e_soem_use_clocks(bus->soem, dc->reference);
+}
+
+static void note_phase(cm1e_dc_t *dc)
+{
+    const int64_t mean_ns = llabs((long long)dc->pace.mean_ns);
+    dc->phase_maximum_ns = mean_ns > dc->phase_maximum_ns ? mean_ns : dc->phase_maximum_ns;
+}
+
+/** Takes the time of the reference from a frame that came back. */
+void cm1e_dc_receive(cm1e_bus_t *bus, bool returned)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    if (!dc->used)
+        return;
+    const int64_t time_ns = cm1e_soem_clock_time(bus->soem);
+    if (!returned || dc->reference == 0 || time_ns == dc->predicted_ns) {
+        dc->correction_ns += cm1e_dc_pace_coast(&dc->pace);
+        if (returned && dc->reference && ++dc->silent >= SILENT_LIMIT)
+            change_reference(bus);
+        return;
+    }
+    dc->silent = 0;
+    dc->reference_ns = time_ns;
+    dc->sent_ns = dc->frame_ns;
+    dc->correction_ns += cm1e_dc_pace_step(&dc->pace, time_ns);
+    note_phase(dc);
+}
+
+int64_t cm1e_bus_pace(cm1e_bus_t *bus)
+{
+    const int64_t correction_ns = bus->dc.used ? bus->dc.correction_ns : 0;
+    bus->dc.correction_ns = 0;
+    return correction_ns;
+}
+
+/** The plan of the cycle that the blocking phases have kept goes on. */
+int64_t cm1e_bus_next_start(const cm1e_bus_t *bus, int64_t now_ns)
+{
+    const int64_t cycle_ns = bus->config.cycle_time_ns, passed_ns = now_ns - bus->next_cycle_ns;
+    if (!bus->dc.used)
+        return now_ns;
+    return bus->next_cycle_ns + (passed_ns > 0 ? (passed_ns + cycle_ns - 1) / cycle_ns * cycle_ns : 0);
+}
+
+/* ---- looks at the clocks, one slave in every second cycle --------------------------------------------------------- */
+
+bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *d)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    dc->turn = dc->used && !dc->turn;
+    if (!dc->turn)
+        return false;
+    for (uint32_t n = 0; n < bus->slave_count; n++) {
+        dc->looked = (uint16_t)(dc->looked < bus->slave_count ? dc->looked + 1 : 1);
+        const cm1e_slave_clock_t *clock = &dc->slaves[dc->looked - 1].clock;
+        if (!clock->has_clock || clock->is_reference)
+            continue;
+        cm1e_datagram_set(d, COMMAND_FPRD, bus->slaves[dc->looked - 1].facts.station, REG_DC_DIFFERENCE, 4);
+        return true;
+    }
+    return false;
+}
+
+void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *d)
+{
+    cm1e_dc_slave_t *slave = &bus->dc.slaves[bus->dc.looked - 1];
+    if (d->working_counter != 1)
+        return; /* a slave that is away is noticed by its AL status */
+    const uint32_t value = cm1e_get_u32(d->data), size = value & ~SIGN;
+    slave->seen = true;
+    slave->clock.deviation_ns = value & SIGN ? -(int32_t)size : (int32_t)size;
+    slave->clock.maximum_ns = size > slave->clock.maximum_ns ? size : slave->clock.maximum_ns;
+    if (size <= CM1E_CLOCK_TOLERANCE_NS) {
+        slave->beyond = 0;
+        slave->clock.lost = false;
+    } else if (slave->beyond < BEYOND_LIMIT && ++slave->beyond == BEYOND_LIMIT && bus->phase == BUS_OPERATING) {
+        lose(&bus->dc, slave);
+    }
+}
+
+/* ---- without a cycle ---------------------------------------------------------------------------------------------- */
+
+void cm1e_dc_keep(cm1e_bus_t *bus)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    uint8_t time[8] = {0};
+    if (!dc->used || dc->reference == 0)
+        return;
+    const cm1e_bus_slave_t *reference = &bus->slaves[dc->reference - 1];
+    dc->sent_ns = cm1e_clock_now(bus->clock);
+    if (cm1e_soem_transfer(bus->soem, COMMAND_FRMW, reference->facts.station, REG_DC_SYSTEM_TIME, time, 8) > 0)
+        dc->reference_ns = (int64_t)cm1e_get_u64(time);
+}

@@ -1,0 +1,23 @@
+/* What the clocks tell others. */
+#include "bus/bus_internal.h"
+#include "core/sized.h"
+
+void cm1e_bus_clocks_sized(const cm1e_bus_t *bus, cm1e_bus_clocks_t *clocks, size_t size)
+{
+    cm1e_bus_clocks_t all = {0};
+    const cm1e_dc_t *dc = &bus->dc;
+    if (dc->used)
+        all = (cm1e_bus_clocks_t){
+            .used = true, .reference = dc->reference, .reference_ns = dc->reference_ns,
+            .rate_ppm = dc->pace.cycle_ns ? dc->pace.rate_ns / (double)dc->pace.cycle_ns * 1e6 : 0,
+            .phase_error_ns = dc->pace.error_ns, .phase_mean_ns = dc->pace.mean_ns,
+            .phase_maximum_ns = dc->phase_maximum_ns, .sync_losses = dc->losses};
+    cm1e_copy_sized(clocks, size, &all, sizeof all);
+}
+
+void cm1e_bus_slave_clock_sized(const cm1e_bus_t *bus, uint16_t position, cm1e_slave_clock_t *clock, size_t size)
+{
+    static const cm1e_slave_clock_t none;
+    const bool known = bus->dc.used && position >= 1 && position <= bus->slave_count;
+    cm1e_copy_sized(clock, size, known ? &bus->dc.slaves[position - 1].clock : &none, sizeof none);
+}

@@ -1,0 +1,400 @@
+/* Distributed clocks: reference, delays, offsets, drift compensation in the frame of the cycle, SYNC0, loss of
+ * synchronism, and the cycle that follows the reference clock. */
+#include <math.h>
+
+#include "bus_support.h"
+#include "cm1e/clocks.h"
+#include "sim/esc.h"
+
+static int64_t plan_ns;
+
+enum { CM1E = 1, DRIVE = 2, LAST = 3, SLAVES = 3, CYCLE_NS = 1000000 };
+
+/** A CM1-E, a drive that runs by SYNC0, and another CM1-E. */
+static void describe(double sync0_us)
+{
+    sim_config(SLAVES);
+    cm1e_axis_config_t *drive = &config.axes[DRIVE - 1];
+    drive->firmware[0] = '\0';
+    strcpy(drive->device, "cia402");
+    drive->counts_per_revolution = 131072;
+    drive->max_speed_rpm = 3000;
+    drive->dc.sync0_us = sync0_us;
+    config.cycle_time_ns = CYCLE_NS;
+}
+
+static cm1e_bus_t *open_drifting(double first, double second, double third)
+{
+    const double ppm[] = {first, second, third};
+    cm1e_bus_t *bus = open_bus();
+    for (int i = 0; i < SLAVES; i++) {
+        char line[40];
+        snprintf(line, sizeof line, "clock %d drift %g", i + 1, ppm[i]);
+        simulate(bus, line);
+    }
+    return bus;
+}
+
+static cm1e_bus_t *start_drifting(double first, double second, double third)
+{
+    cm1e_bus_t *bus = open_drifting(first, second, third);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    plan_ns = 0;
+    return bus;
+}
+
+
+
+/** Cycles as the scheduler has them: the plan follows the reference clock. */
+static void run(cm1e_bus_t *bus, unsigned n)
+{
+    if (plan_ns == 0)
+        plan_ns = cm1e_bus_next_start(bus, now_of(bus));
+    for (unsigned i = 0; i < n; i++) {
+        cm1e_clock_sleep_until(cm1e_bus_clock(bus), plan_ns);
+        cm1e_bus_receive(bus);
+        cm1e_bus_send(bus);
+        plan_ns += CYCLE_NS + cm1e_bus_pace(bus);
+    }
+}
+
+/** What a clock really is ahead of that of the first slave. */
+static double ahead_ns(cm1e_bus_t *bus, uint32_t position)
+{
+    cm1e_sim_clock_t first, other;
+    cm1e_sim_segment_advance(segment_of(bus), now_of(bus));
+    cm1e_sim_segment_clock(segment_of(bus), 1, &first);
+    cm1e_sim_segment_clock(segment_of(bus), position, &other);
+    return (double)(other.system_ns - first.system_ns) - (double)(other.time_ns - first.time_ns);
+}
+
+static cm1e_slave_clock_t clock_of(cm1e_bus_t *bus, uint16_t position)
+{
+    cm1e_slave_clock_t clock;
+    cm1e_bus_slave_clock(bus, position, &clock);
+    return clock;
+}
+
+static cm1e_bus_clocks_t clocks_of(cm1e_bus_t *bus)
+{
+    cm1e_bus_clocks_t clocks;
+    cm1e_bus_clocks(bus, &clocks);
+    return clocks;
+}
+
+START_TEST(all_clocks_are_one_before_operational_and_stay_so)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(30, -50, 80);
+    for (uint32_t i = DRIVE; i <= LAST; i++) {
+        const cm1e_slave_clock_t clock = clock_of(bus, (uint16_t)i);
+        ck_assert(clock.has_clock && !clock.is_reference && !clock.lost);
+        ck_assert_uint_eq(clock.delay_ns, (i - 1) * ESC_HOP_NS);
+        ck_assert_msg(abs(clock.deviation_ns) <= CM1E_CLOCK_TOLERANCE_NS, "%d ns", clock.deviation_ns);
+    }
+    ck_assert(clock_of(bus, 1).is_reference);
+    ck_assert_uint_eq(clocks_of(bus).reference, 1);
+    run(bus, 20000);
+    for (uint32_t i = DRIVE; i <= LAST; i++)
+        ck_assert_msg(ahead_ns(bus, i) < 130 && ahead_ns(bus, i) > -130, "slave %u: %.0f ns", i, ahead_ns(bus, i));
+    ck_assert_uint_eq(clocks_of(bus).sync_losses, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(the_cycle_follows_the_reference_clock)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(_i ? 200 : -200, 0, 0);
+    run(bus, 10000);
+    const int64_t begin_ns = plan_ns;
+    run(bus, 10000);
+    const double drift = ((double)(plan_ns - begin_ns) / 10000 / CYCLE_NS - 1) * 1e6;
+    ck_assert_msg(fabs(drift + (_i ? 200 : -200)) < 0.2, "%g ppm", drift);
+    const cm1e_bus_clocks_t clocks = clocks_of(bus);
+    ck_assert_msg(fabs(clocks.rate_ppm - drift) < 0.2, "%g ppm", clocks.rate_ppm);
+    ck_assert_msg(fabs(clocks.phase_mean_ns) < 10, "%g ns", clocks.phase_mean_ns);
+    ck_assert_msg(clocks.phase_maximum_ns < 20000, "%d ns", (int)clocks.phase_maximum_ns);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Neither the first frame of the run nor the pulses of the drive come at any other phase. */
+START_TEST(frames_and_pulses_have_one_phase)
+{
+    static const struct {
+        double sync0, sync1, shift;
+        int64_t expected;
+    } rows[] = {{1000, 0, 0, 500000}, {500, 0, 100, 100000}, {2000, 0, -250, -250000}, {1000, 250, 300, 300000}};
+    describe(rows[_i].sync0);
+    config.axes[DRIVE - 1].dc.sync1_us = rows[_i].sync1;
+    config.axes[DRIVE - 1].dc.shift_us = rows[_i].shift;
+    cm1e_bus_t *bus = start_drifting(20, -20, 0);
+    run(bus, 2000);
+    ck_assert_msg(llabs((long long)clocks_of(bus).phase_error_ns) < 1000, "%d ns",
+                  (int)clocks_of(bus).phase_error_ns);
+    cm1e_sim_clock_t drive;
+    cm1e_sim_segment_clock(segment_of(bus), DRIVE, &drive);
+    ck_assert_int_eq((drive.next_sync0_ns - rows[_i].expected) % (int64_t)(rows[_i].sync0 * 1000), 0);
+    ck_assert_uint_gt(drive.sync0_pulses, 900);
+    ck_assert(rows[_i].sync1 > 0 ? drive.sync1_pulses > 900 : drive.sync1_pulses == 0);
+    ck_assert_int_eq(clock_of(bus, DRIVE).shift_ns, rows[_i].expected);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+static unsigned process_frames, with_time;
+
+static cm1e_tap_verdict_t count_times(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { COMMAND_AT = 16, LENGTH_AT = 22, DATA_AT = 26, LRW_NUMBER = 12, FRMW_NUMBER = 14, MORE = 0x80 };
+    const uint8_t *bytes = frame->bytes;
+    (void)context;
+    if (frame->direction != CM1E_TAP_SENT || frame->length < DATA_AT || bytes[COMMAND_AT] != LRW_NUMBER)
+        return CM1E_TAP_PASS;
+    const size_t second = DATA_AT + (cm1e_get_u16(bytes + LENGTH_AT) & 0x7FFu) + 2;
+    process_frames++;
+    with_time += (bytes[LENGTH_AT + 1] & MORE) && bytes[second] == FRMW_NUMBER &&
+                 cm1e_get_u16(bytes + second + 4) == 0x0910;
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(the_time_goes_in_the_frame_of_the_process_data)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 10, 20);
+    process_frames = with_time = 0;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), count_times, NULL);
+    run(bus, 100);
+    ck_assert_uint_eq(process_frames, 100);
+    ck_assert_uint_eq(with_time, 100);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Without a request nothing is sent that was not sent before. */
+START_TEST(clocks_that_nobody_asked_for_are_left_alone)
+{
+    describe(0);
+    cm1e_bus_t *bus = start_drifting(0, 10, 20);
+    process_frames = with_time = 0;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), count_times, NULL);
+    run(bus, 100);
+    ck_assert_uint_eq(process_frames, 100);
+    ck_assert_uint_eq(with_time, 0);
+    ck_assert(!clocks_of(bus).used);
+    ck_assert_int_eq(cm1e_bus_pace(bus), 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_bus_of_motors_may_follow_a_clock_without_sync0)
+{
+    sim_config(2);
+    config.distributed_clocks = true;
+    cm1e_bus_t *bus = start_bus();
+    simulate(bus, "clock 1 drift 60");
+    run(bus, 10000);
+    ck_assert_msg(fabs(clocks_of(bus).phase_mean_ns) < 50, "%g ns", clocks_of(bus).phase_mean_ns);
+    ck_assert_int_eq(cm1e_bus_slave_watch(bus, 1).al_state, CM1E_AL_OP);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/* ---- what is refused ----------------------------------------------------------------------------------------------- */
+
+static void expect_refused(cm1e_bus_t *bus, cm1e_error_t error, const char *part)
+{
+    memset(&diag, 0, sizeof diag);
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), error);
+    ck_assert_msg(strstr(diag.text, part) != NULL, "%s", diag.text);
+    cm1e_bus_close(bus);
+}
+
+START_TEST(sync0_of_a_device_without_clocks_is_refused)
+{
+    describe(1000);
+    cm1e_bus_t *bus = open_drifting(0, 0, 0);
+    simulate(bus, "clock 2 none");
+    expect_refused(bus, CM1E_ERROR_CONFIG, "has no distributed clocks");
+}
+END_TEST
+
+START_TEST(a_bus_without_any_clock_is_refused)
+{
+    sim_config(1);
+    config.distributed_clocks = true;
+    cm1e_bus_t *bus = open_bus();
+    simulate(bus, "clock 1 none");
+    expect_refused(bus, CM1E_ERROR_CONFIG, "No slave has distributed clocks");
+}
+END_TEST
+
+START_TEST(sync0_of_a_motor_that_runs_by_its_process_data_is_refused)
+{
+    sim_config(1);
+    config.axes[0].dc.sync0_us = 1000;
+    ck_assert_int_eq(cm1e_bus_config_check(&config, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "takes its cycle from the process data") != NULL, "%s", diag.text);
+    describe(1000);
+    strcpy(config.second_interface, "sim");
+    ck_assert_int_eq(cm1e_bus_config_check(&config, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "broken ring") != NULL, "%s", diag.text);
+    describe(300);
+    ck_assert_int_eq(cm1e_bus_config_check(&config, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "dc.sync0_us") != NULL, "%s", diag.text);
+    describe(1000);
+    config.axes[DRIVE - 1].dc.shift_us = 1000;
+    ck_assert_int_eq(cm1e_bus_config_check(&config, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "dc.shift_us") != NULL, "%s", diag.text);
+}
+END_TEST
+
+START_TEST(a_clock_that_does_not_follow_is_told_before_operational)
+{
+    describe(1000);
+    cm1e_bus_t *bus = open_drifting(0, 0, 200);
+    simulate(bus, "clock 3 free");
+    expect_refused(bus, CM1E_ERROR_BUS_CLOCKS, "does not follow the reference clock");
+}
+END_TEST
+
+/* ---- loss ---------------------------------------------------------------------------------------------------------- */
+
+START_TEST(a_clock_that_leaves_the_reference_is_counted_once)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 0, 5);
+    simulate(bus, "clock 3 free");
+    run(bus, 1000);
+    ck_assert_uint_eq(clocks_of(bus).sync_losses, 1);
+    ck_assert(clock_of(bus, LAST).lost);
+    ck_assert_int_gt(clock_of(bus, LAST).deviation_ns, CM1E_CLOCK_TOLERANCE_NS);
+    simulate(bus, "clock 3 follow");
+    run(bus, 2000);
+    ck_assert(!clock_of(bus, LAST).lost);
+    ck_assert_uint_eq(clocks_of(bus).sync_losses, 1);
+    ck_assert_uint_eq(clock_of(bus, LAST).losses, 1);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+static void expect_left(cm1e_bus_t *bus, uint16_t code)
+{
+    run(bus, 300);
+    const cm1e_slave_watch_t watch = cm1e_bus_slave_watch(bus, DRIVE);
+    ck_assert_uint_eq(watch.al_state, CM1E_AL_SAFE_OP | CM1E_AL_ERROR);
+    ck_assert_uint_eq(watch.al_status_code, code);
+}
+
+static void expect_back(cm1e_bus_t *bus)
+{
+    cm1e_bus_request_recovery(bus, DRIVE);
+    run(bus, 3000);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, DRIVE).al_state, CM1E_AL_OP);
+    run(bus, 1000);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, DRIVE).al_state, CM1E_AL_OP);
+    ck_assert_msg(fabs(ahead_ns(bus, DRIVE)) < 300, "%g ns", ahead_ns(bus, DRIVE));
+}
+
+START_TEST(a_drive_without_pulses_leaves_operational_and_comes_back)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 10, 0);
+    simulate(bus, "clock 2 silent");
+    expect_left(bus, 0x002C);
+    simulate(bus, "clock 2 pulses");
+    expect_back(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_drive_whose_clock_runs_away_leaves_operational)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 10, 0);
+    simulate(bus, "clock 2 step 50000");
+    expect_left(bus, 0x0032);
+    run(bus, 3000);
+    expect_back(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(the_clock_of_a_drive_that_was_off_is_set_again)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(20, 60, 0);
+    simulate(bus, "power-cycle 2 200");
+    run(bus, 400);
+    ck_assert_uint_ne(cm1e_bus_slave_watch(bus, DRIVE).al_state, CM1E_AL_OP);
+    expect_back(bus);
+    cm1e_sim_clock_t drive;
+    cm1e_sim_segment_clock(segment_of(bus), DRIVE, &drive);
+    ck_assert_int_eq((drive.next_sync0_ns - CYCLE_NS / 2) % CYCLE_NS, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(lost_frames_do_not_disturb_the_clocks)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(100, 0, -100);
+    run(bus, 5000);
+    for (int i = 0; i < 50; i++) {
+        simulate(bus, "lose 9");
+        run(bus, 100);
+    }
+    ck_assert_uint_eq(clocks_of(bus).sync_losses, 0);
+    /* Waiting for a lost frame delays the next one by a quarter of a cycle: that is no reason to change the rate. */
+    ck_assert_msg(fabs(clocks_of(bus).rate_ppm + 100) < 1, "%g ppm", clocks_of(bus).rate_ppm);
+    run(bus, 1000);
+    ck_assert_msg(fabs(clocks_of(bus).phase_mean_ns) < 30, "%g ns", clocks_of(bus).phase_mean_ns);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The controller of the reference no longer answers at its address; its cables still lead on. */
+START_TEST(another_clock_takes_over_from_a_reference_that_is_away)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 10, -10);
+    run(bus, 20000);
+    cm1e_put_u16(cm1e_sim_segment_slave(segment_of(bus), CM1E)->memory + ESC_STATION_ADDRESS, 0);
+    run(bus, 1000);
+    ck_assert_uint_eq(clocks_of(bus).reference, DRIVE);
+    ck_assert(clock_of(bus, DRIVE).is_reference && !clock_of(bus, CM1E).is_reference);
+    ck_assert_uint_eq(clocks_of(bus).sync_losses, 1);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, DRIVE).al_state, CM1E_AL_OP);
+    ck_assert(!clock_of(bus, LAST).lost);
+    ck_assert_msg(fabs(ahead_ns(bus, LAST) - ahead_ns(bus, DRIVE)) < 100, "%g ns",
+                  ahead_ns(bus, LAST) - ahead_ns(bus, DRIVE));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus clocks");
+    TCase *good = tcase_create("in step"), *refused = tcase_create("refused"), *lost = tcase_create("lost");
+    tcase_add_test(good, all_clocks_are_one_before_operational_and_stay_so);
+    tcase_add_loop_test(good, the_cycle_follows_the_reference_clock, 0, 2);
+    tcase_add_loop_test(good, frames_and_pulses_have_one_phase, 0, 4);
+    tcase_add_test(good, the_time_goes_in_the_frame_of_the_process_data);
+    tcase_add_test(good, clocks_that_nobody_asked_for_are_left_alone);
+    tcase_add_test(good, a_bus_of_motors_may_follow_a_clock_without_sync0);
+    tcase_add_test(refused, sync0_of_a_device_without_clocks_is_refused);
+    tcase_add_test(refused, a_bus_without_any_clock_is_refused);
+    tcase_add_test(refused, sync0_of_a_motor_that_runs_by_its_process_data_is_refused);
+    tcase_add_test(refused, a_clock_that_does_not_follow_is_told_before_operational);
+    tcase_add_test(lost, a_clock_that_leaves_the_reference_is_counted_once);
+    tcase_add_test(lost, a_drive_without_pulses_leaves_operational_and_comes_back);
+    tcase_add_test(lost, a_drive_whose_clock_runs_away_leaves_operational);
+    tcase_add_test(lost, the_clock_of_a_drive_that_was_off_is_set_again);
+    tcase_add_test(lost, lost_frames_do_not_disturb_the_clocks);
+    tcase_add_test(lost, another_clock_takes_over_from_a_reference_that_is_away);
+    suite_add_tcase(suite, good);
+    suite_add_tcase(suite, refused);
+    suite_add_tcase(suite, lost);
+    return run_suite(suite);
+}
