@@ -223,8 +223,9 @@ static int update(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const firmwa
     cm1e_firmware_state_t state;
     const cm1e_firmware_file_t file = {
         .name = options->name ? options->name : slash ? slash + 1 : options->file, .bytes = image->bytes,
-        .size = image->size, .password = (uint32_t)options->password,
-        .answer_ns = (int64_t)(options->timeout_s * 1e9), .progress = show_progress, .context = &shown};
+        .size = image->size,
+        .options = {.password = (uint32_t)options->password, .answer_ns = (int64_t)(options->timeout_s * 1e9),
+                    .progress = show_progress, .context = &shown}};
     if (!is_at_rest(bus, config))
         return EXIT_FAILED;
     int status = find(bus, config, options, &position, before, sizeof before);

@@ -36,6 +36,7 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
     X(io, "show inputs and outputs, write outputs", "")                                                             \
     X(led, "find a motor by its LED", "")                                                                           \
     X(firmware, "write a new firmware into a motor", "update")                                                      \
+    X(foe, "read or write a file of a slave", "read write")                                                         \
     X(alias, "show or write the alias of a slave", "")                                                              \
     X(sim, "serve a simulated network on a network interface", "")                                                  \
     X(generate, "write files for other masters", "esi ec-extend sii eni")                                           \

@@ -77,17 +77,6 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
     }
 }
 
-/** One datagram carries at most one emergency. */
-static void take_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
-{
-    cm1e_emergency_t emergency = slave->coe.emergency;
-    if (emergency.number == slave->emergencies.last)
-        return;
-    emergency.time_ns = cm1e_clock_wall(bus->clock);
-    cm1e_emergency_add(&slave->emergencies, emergency);
-    bus->emergencies++;
-}
-
 static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     const cm1e_datagram_owner_t owner = slave->owner;
@@ -100,7 +89,7 @@ static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
         break;
     case OWNER_COE:
         cm1e_coe_result(&slave->coe, &slave->datagram, now_ns);
-        take_emergency(bus, slave);
+        cm1e_bus_keep_emergency(bus, slave);
         break;
     case OWNER_RECOVERY:
         cm1e_recovery_result(slave, &slave->datagram, now_ns);

@@ -232,6 +232,8 @@ int64_t cm1e_bus_enter(cm1e_bus_t *bus);
 void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit);
 /** Takes in what is back; waits at most `wait_ns` for each. */
 void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns);
+/** Keeps the emergency that the CoE client took last, if it is a new one. A datagram brings at most one. */
+void cm1e_bus_keep_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave);
 /** Forgets everything under way. */
 void cm1e_acyclic_cancel(cm1e_bus_t *bus);
 /** One round of a blocking phase: a cycle when process data is exchanged, else datagrams at the pump's pace. */

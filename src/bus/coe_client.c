@@ -439,6 +439,17 @@ static void on_emergency(cm1e_coe_client_t *client, const uint8_t *body, size_t 
     client->emergency.number++;
 }
 
+bool cm1e_coe_take_emergency(cm1e_coe_client_t *client, const uint8_t *message)
+{
+    const size_t size = cm1e_get_u16(message);
+    const uint8_t *body = message + CM1E_MAILBOX_HEADER;
+    const bool is_one = (message[5] & 0x0F) == MAILBOX_TYPE_COE && size >= COE_HEADER &&
+                        cm1e_get_u16(body) >> 12 == SERVICE_EMERGENCY;
+    if (is_one)
+        on_emergency(client, body, size);
+    return is_one;
+}
+
 static void on_abort(cm1e_coe_client_t *client, const uint8_t *body)
 {
     if (!addressed(client, body)) {

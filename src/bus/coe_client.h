@@ -84,6 +84,8 @@ static inline bool cm1e_coe_idle(const cm1e_coe_client_t *client)
 void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns);
 /** Starts a request of SDO information; the client must be idle. */
 void cm1e_coe_begin_info(cm1e_coe_client_t *client, cm1e_info_request_t *info, int64_t now_ns);
+/** Takes a message that came while others used the mailbox. True: it was an emergency. */
+bool cm1e_coe_take_emergency(cm1e_coe_client_t *client, const uint8_t *message);
 /** Looks into the mailbox of the slave once, and takes the messages that are in it; the client must be idle. */
 void cm1e_coe_listen(cm1e_coe_client_t *client, int64_t now_ns);
 /** Fills the datagram to be sent next; false: none. Ends a transfer whose time is over. */

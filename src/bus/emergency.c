@@ -75,6 +75,16 @@ size_t cm1e_bus_emergency(const cm1e_bus_t *bus, uint16_t position, uint64_t aft
     return 0;
 }
 
+void cm1e_bus_keep_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
+{
+    cm1e_emergency_t emergency = slave->coe.emergency;
+    if (emergency.number == slave->emergencies.last)
+        return;
+    emergency.time_ns = cm1e_clock_wall(bus->clock);
+    cm1e_emergency_add(&slave->emergencies, emergency);
+    bus->emergencies++;
+}
+
 uint64_t cm1e_bus_emergencies(const cm1e_bus_t *bus) { return bus->emergencies; }
 
 /* ---- texts ------------------------------------------------------------------------------------------------------ */

@@ -6,17 +6,13 @@
 #ifndef CM1E_BUS_FIRMWARE_UPDATE_H
 #define CM1E_BUS_FIRMWARE_UPDATE_H
 
-#include "cm1e/bus.h"
+#include "cm1e/foe.h"
 
 typedef struct cm1e_firmware_file {
     const char *name;        /**< by which the slave knows the file */
-    uint32_t password;       /**< 0: none */
     const uint8_t *bytes;
     size_t size;
-    int64_t answer_ns;       /**< longest time for one answer; a slave may erase its memory meanwhile */
-    /** After each packet. False: break off. */
-    bool (*progress)(void *context, size_t taken, size_t size);
-    void *context;
+    cm1e_foe_options_t options; /**< a slave may erase its memory before an answer */
 } cm1e_firmware_file_t;
 
 /** What became of the slave. */

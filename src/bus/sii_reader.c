@@ -58,6 +58,7 @@ cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, 
         sii->mailbox_in_start = device->eeprom.mailbox_in_start;
         sii->mailbox_in_length = device->eeprom.mailbox_in_length;
         sii->coe = device->mailbox.coe;
+        sii->foe = device->mailbox.foe;
     }
     cm1e_description_file_free(&file);
     return result;

@@ -36,7 +36,7 @@ typedef struct cm1e_sii_sync_manager {
 typedef struct cm1e_sii {
     uint32_t vendor_id, product_code, revision, serial_number;
     uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length;
-    bool coe, complete_access;
+    bool coe, foe, complete_access;
     bool no_lrw;                                       /**< the slave cannot do LRW */
     char name[CM1E_SII_NAME];                          /**< printable; "": none */
     uint8_t sync_manager_count;

@@ -23,7 +23,7 @@ typedef struct cm1e_slave_facts {
     uint16_t station, alias;
     uint32_t vendor_id, product_code, revision, serial_number;
     uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length;
-    bool coe, complete_access;
+    bool coe, foe, complete_access;
     char name[48];
 } cm1e_slave_facts_t;
 

@@ -229,6 +229,7 @@ void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_fact
         .mailbox_in_start = sii->mailbox_in_start,
         .mailbox_in_length = sii->mailbox_in_length,
         .coe = sii->mailbox_out_length > 0 && sii->mailbox_in_length > 0 && sii->coe,
+        .foe = sii->mailbox_out_length > 0 && sii->mailbox_in_length > 0 && sii->foe,
         .complete_access = sii->complete_access,
     };
     memcpy(facts->name, sii->name, sizeof facts->name);

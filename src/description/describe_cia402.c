@@ -29,6 +29,7 @@ cm1e_error_t cm1e_describe_cia402(cm1e_description_file_t *file, const cm1e_devi
                               n == 0 ? manager : CM1E_NO_SYNC_MANAGER);
         }
     cm1e_describe_communication(arena, device, options);
+    device->mailbox.foe = true; /* the simulated drive keeps a file */
     cm1e_describe_eeprom(arena, device, options, false);
     cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &device->pdos);
     return CM1E_OK;

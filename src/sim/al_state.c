@@ -33,7 +33,7 @@ static uint16_t check_mailbox(cm1e_sim_slave_t *slave)
 
 static uint16_t check_boot_mailbox(cm1e_sim_slave_t *slave)
 {
-    if (!slave->ops->file_begin || !has_mailbox(slave))
+    if (!slave->ops->file_begin || slave->ops->files_in_operation || !has_mailbox(slave))
         return AL_CODE_BOOT_NOT_SUPPORTED;
     return cm1e_sim_esc_mailboxes_valid(slave) ? AL_CODE_NONE : AL_CODE_INVALID_MAILBOX_BOOT;
 }

@@ -319,10 +319,28 @@ static void destroy(void *app)
     free(drive);
 }
 
+static uint32_t file_begin(void *app, const char *name, uint32_t password)
+{
+    (void)password; /* it has none */
+    return cm1e_sim_files_begin(&((cm1e_sim_cia402_t *)app)->files, name);
+}
+
+static uint32_t file_data(void *app, size_t offset, const uint8_t *data, size_t size, bool last)
+{
+    return cm1e_sim_files_data(&((cm1e_sim_cia402_t *)app)->files, offset, data, size, last);
+}
+
+static uint32_t file_read(void *app, const char *name, uint32_t password, size_t offset, uint8_t *data, size_t *size)
+{
+    (void)password;
+    return cm1e_sim_files_read(&((cm1e_sim_cia402_t *)app)->files, name, offset, data, size);
+}
+
 static const cm1e_sim_app_ops_t ops = {
     .advance = advance, .due = due, .state_change = state_change, .process_data_sizes = process_data_sizes,
     .outputs = outputs, .inputs = inputs, .watchdog_expired = watchdog_expired, .sdo_read = sdo_read,
     .sdo_write = sdo_write, .object = object, .entry = entry, .explicit_device_id = explicit_device_id,
+    .file_begin = file_begin, .file_data = file_data, .file_read = file_read, .files_in_operation = true,
     .power_on = power_on, .destroy = destroy, .runs_by_sync0 = true,
 };
 

@@ -10,6 +10,7 @@
 #define CM1E_SIM_CIA402_APP_H
 
 #include "device/cia402_drive.h"
+#include "sim/file_store.h"
 #include "sim/search.h"
 #include "sim/segment.h"
 #include "sim/sensors.h"
@@ -61,6 +62,7 @@ typedef struct cm1e_sim_cia402_homing {
 struct cm1e_sim_cia402 {
     cm1e_sim_slave_t *slave; /**< NULL: no slave controller below (unit tests) */
     cm1e_sim_store_t store;
+    cm1e_sim_files_t files; /**< kept without power */
     cm1e_sim_cia402_values_t v;
     double counts_per_revolution, peak_velocity; /**< counts/s */
     double scale;           /**< counts of the drive in one of the mechanics */

@@ -29,6 +29,7 @@ static const char *text_of(uint32_t code)
 {
     switch (code) {
     case FOE_CODE_NOT_FOUND: return "no such file";
+    case FOE_CODE_DISK_FULL: return "no room for it";
     case FOE_CODE_ACCESS_DENIED: return "wrong password";
     case FOE_CODE_PACKET_NUMBER: return "wrong packet number";
     case FOE_CODE_BOOTSTRAP_ONLY: return "in Bootstrap only";
@@ -94,18 +95,71 @@ static void data_request(cm1e_sim_slave_t *slave, const uint8_t *request, size_t
     answer_result(slave, answer, result, packet);
 }
 
+/** The packet behind the last one that was acknowledged; a busy application is asked again with the next request. */
+static void answer_packet(cm1e_sim_slave_t *slave, mailbox_message_t *answer, size_t room)
+{
+    foe_server_t *foe = &slave->foe;
+    size_t size = room - HEADER_BYTES;
+    begin_answer(answer, FOE_DATA, foe->packet + 1);
+    const uint32_t result = slave->ops->file_read(slave->app, foe->name, foe->password, foe->received,
+                                                  answer->data + HEADER_BYTES, &size);
+    if (result != 0) {
+        answer->length = 0;
+        answer_result(slave, answer, result, 0);
+        foe->reading = foe->reading && result == FOE_RESULT_BUSY;
+        return;
+    }
+    foe->packet++;
+    foe->received += size;
+    foe->ended = size < room - HEADER_BYTES;
+    answer->length = (uint16_t)(HEADER_BYTES + size);
+}
+
+static void read_request(cm1e_sim_slave_t *slave, const uint8_t *request, size_t length, mailbox_message_t *answer,
+                         size_t room)
+{
+    foe_server_t *foe = &slave->foe;
+    const size_t given = length - HEADER_BYTES, bytes = given < sizeof foe->name - 1 ? given : sizeof foe->name - 1;
+    *foe = (foe_server_t){.reading = slave->ops->file_read != NULL, .password = cm1e_get_u32(request + 2)};
+    memcpy(foe->name, request + HEADER_BYTES, bytes);
+    if (foe->reading)
+        answer_packet(slave, answer, room);
+    else
+        answer_error(answer, FOE_CODE_NOT_FOUND, text_of(FOE_CODE_NOT_FOUND));
+}
+
+static void acknowledged(cm1e_sim_slave_t *slave, const uint8_t *request, mailbox_message_t *answer, size_t room)
+{
+    foe_server_t *foe = &slave->foe;
+    if (!foe->reading || cm1e_get_u32(request + 2) != foe->packet) {
+        foe->reading = false;
+        answer_error(answer, FOE_CODE_PACKET_NUMBER, text_of(FOE_CODE_PACKET_NUMBER));
+    } else if (foe->ended) {
+        foe->reading = false;
+    } else {
+        answer_packet(slave, answer, room);
+    }
+}
+
 void cm1e_sim_foe_request(cm1e_sim_slave_t *slave, const uint8_t *request, size_t length, mailbox_message_t *answer,
-                          size_t room)
+                          size_t room, size_t answer_room)
 {
     if (length < HEADER_BYTES) {
         answer_error(answer, FOE_CODE_ILLEGAL, "too short");
         return;
     }
+    const bool asks = request[0] == FOE_READ || request[0] == FOE_WRITE;
+    if (asks && (slave->foe.open || (slave->foe.reading && slave->foe.packet > 0))) { /* as SOES does */
+        slave->foe.open = slave->foe.reading = false;
+        answer_error(answer, FOE_CODE_ILLEGAL, "another file is open");
+        return;
+    }
     switch (request[0]) {
     case FOE_WRITE: write_request(slave, request, length, answer); break;
     case FOE_DATA: data_request(slave, request, length, answer, room); break;
-    case FOE_READ: answer_error(answer, FOE_CODE_NOT_FOUND, text_of(FOE_CODE_NOT_FOUND)); break;
-    case FOE_ERROR: slave->foe.open = false; break; /* the master gives up: no answer */
+    case FOE_READ: read_request(slave, request, length, answer, answer_room); break;
+    case FOE_ACK: acknowledged(slave, request, answer, answer_room); break;
+    case FOE_ERROR: slave->foe.open = slave->foe.reading = false; break; /* the master gives up: no answer */
     default: answer_error(answer, FOE_CODE_ILLEGAL, "unknown request"); break;
     }
 }

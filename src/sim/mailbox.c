@@ -187,9 +187,9 @@ static void handle_request(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm
         return; /* an error is not answered by an error */
     if (length > sm->length - MAILBOX_HEADER) {
         answer_error(&mailbox->answer, MAILBOX_ERROR_INVALID_SIZE);
-    } else if (type == MAILBOX_TYPE_FOE && in_bootstrap) {
+    } else if (type == MAILBOX_TYPE_FOE && in_bootstrap != slave->ops->files_in_operation) {
         cm1e_sim_foe_request(slave, request + MAILBOX_HEADER, length, &mailbox->answer,
-                             (size_t)(sm->length - MAILBOX_HEADER));
+                             (size_t)(sm->length - MAILBOX_HEADER), room);
     } else if (type == MAILBOX_TYPE_COE && !in_bootstrap) {
         const uint16_t detail =
             cm1e_sim_coe_request(slave, request + MAILBOX_HEADER, length, &mailbox->answer, room);

@@ -1,0 +1,65 @@
+/**
+ * @file foe.h
+ * Files in a slave (FoE, ETG.1000.6 section 5.8): parameters, logs, firmware. The slave knows a file by its name; what
+ * is in it is a matter of its maker. The thread that owns the bus calls these functions after a scan, before the bus
+ * operates. They wait; every answer and the whole transfer are bounded. A slave that is busy is asked again. A transfer
+ * that is given up is told to the slave, so that the next one begins anew.
+ */
+#ifndef CM1E_FOE_H
+#define CM1E_FOE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cm1e/api.h"
+#include "cm1e/bus.h"
+#include "cm1e/error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A zeroed struct has the defaults. */
+typedef struct cm1e_foe_options {
+    uint32_t password;  /**< 0: none */
+    bool bootstrap;     /**< in the state Bootstrap, with its mailbox; the bus needs a new scan afterwards */
+    int64_t answer_ns;  /**< longest time for one answer, or for being busy; 0 selects 5 s */
+    /** Called after each packet with the bytes so far, and the bytes of the file (0 while reading: not known). false:
+     *  break off. NULL: none. */
+    bool (*progress)(void *context, size_t done, size_t size);
+    void *context;
+} cm1e_foe_options_t;
+
+/** Does the work of cm1e_foe_read(), for a program with this size of the options. @rt block */
+CM1E_API cm1e_error_t cm1e_foe_read_sized(cm1e_bus_t *bus, uint16_t position, const char *name, void *data,
+                                          size_t *size, const cm1e_foe_options_t *options, size_t options_size,
+                                          cm1e_diag_t *diag);
+/** Reads a file. `*size` is the room in `data`, afterwards the bytes of the file. `options` may be NULL. Returns
+ *  CM1E_ERROR_BUS_MAILBOX if the slave refuses, with the error code of FoE in `diag->foreign_code` and its text;
+ *  CM1E_ERROR_FULL if the file is larger than the room; CM1E_ERROR_TIMEOUT, CM1E_ERROR_BUS_LOST, CM1E_ERROR_CANCELLED
+ *  (by `progress`); CM1E_ERROR_UNSUPPORTED if its SII announces no FoE; CM1E_ERROR_STATE while the bus operates.
+ *  @rt block */
+static inline cm1e_error_t cm1e_foe_read(cm1e_bus_t *bus, uint16_t position, const char *name, void *data,
+                                         size_t *size, const cm1e_foe_options_t *options, cm1e_diag_t *diag)
+{
+    return cm1e_foe_read_sized(bus, position, name, data, size, options, sizeof(cm1e_foe_options_t), diag);
+}
+/** Does the work of cm1e_foe_write(), for a program with this size of the options. @rt block */
+CM1E_API cm1e_error_t cm1e_foe_write_sized(cm1e_bus_t *bus, uint16_t position, const char *name, const void *data,
+                                           size_t size, const cm1e_foe_options_t *options, size_t options_size,
+                                           cm1e_diag_t *diag);
+/** Writes a file; errors as for cm1e_foe_read(). What the slave has of a file that breaks off is its own matter.
+ *  @rt block */
+static inline cm1e_error_t cm1e_foe_write(cm1e_bus_t *bus, uint16_t position, const char *name, const void *data,
+                                          size_t size, const cm1e_foe_options_t *options, cm1e_diag_t *diag)
+{
+    return cm1e_foe_write_sized(bus, position, name, data, size, options, sizeof(cm1e_foe_options_t), diag);
+}
+/** Text of an error code of FoE (0x8000 and above); never NULL. @rt any */
+CM1E_API const char *cm1e_foe_error_text(uint32_t code);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,24 @@
+/**
+ * @file bootstrap.h
+ * One slave in the state Bootstrap, with the mailbox that its SII states for it. The slave needs no valid firmware for
+ * it, and the bus no scan. Afterwards nothing is known of the other slaves: the bus is to be scanned again.
+ */
+#ifndef CM1E_BUS_BOOTSTRAP_H
+#define CM1E_BUS_BOOTSTRAP_H
+
+#include "bus/mailbox_link.h"
+#include "cm1e/bus.h"
+
+typedef struct cm1e_bootstrap {
+    cm1e_bus_t *bus;
+    uint16_t position;
+    cm1e_diag_t *diag;
+    cm1e_mailbox_t mailbox; /**< once entered */
+} cm1e_bootstrap_t;
+
+/** From any state by Init into Bootstrap. */
+cm1e_error_t cm1e_bootstrap_enter(cm1e_bootstrap_t *bootstrap);
+/** To Init. A device may copy its memory before it answers. */
+cm1e_error_t cm1e_bootstrap_leave(cm1e_bootstrap_t *bootstrap);
+
+#endif

@@ -1,0 +1,241 @@
+/* Files of a slave: every size around a packet, busy, lost frames, refusals, and a mailbox that is shared with SDO. */
+#include "cm1e/foe.h" /* before the global `diag` of the tests */
+
+#include "bus/bus_internal.h"
+#include "bus_support.h"
+#include "cm1e/emergency.h"
+#include "core/bytes.h"
+#include "sim/cia402_app.h"
+
+enum { FILE_MAX = CM1E_SIM_FILE_BYTES };
+static uint8_t written[FILE_MAX + 1], got[FILE_MAX + 1];
+
+/** A bus with a drive that keeps files, in Pre-Operational. */
+static cm1e_bus_t *scanned(void)
+{
+    sim_config(1);
+    strcpy(config.axes[0].device, "cia402");
+    config.axes[0].firmware[0] = 0;
+    config.axes[0].counts_per_revolution = 10000;
+    config.axes[0].max_speed_rpm = 3000;
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    for (size_t i = 0; i < sizeof written; i++)
+        written[i] = (uint8_t)(i * 7 + i / 251);
+    return bus;
+}
+
+static cm1e_sim_files_t *files_of(cm1e_bus_t *bus)
+{
+    return &cm1e_sim_cia402_of(cm1e_sim_segment_slave(segment_of(bus), 1))->files;
+}
+
+/** Bytes of a file in one packet. */
+static size_t packet(cm1e_bus_t *bus) { return bus->slaves[0].facts.mailbox_in_length - 12u; }
+
+static void write_and_read(cm1e_bus_t *bus, size_t size, const cm1e_foe_options_t *options)
+{
+    size_t room = FILE_MAX;
+    memset(got, 0xEE, sizeof got);
+    ck_assert_msg(cm1e_foe_write(bus, 1, "a file.bin", written, size, options, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(files_of(bus)->size, size);
+    ck_assert_msg(cm1e_foe_read(bus, 1, "a file.bin", got, &room, options, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(room, size);
+    ck_assert_int_eq(memcmp(got, written, size), 0);
+}
+
+START_TEST(files_of_every_size_around_a_packet)
+{
+    cm1e_bus_t *bus = scanned();
+    const size_t p = packet(bus), sizes[] = {0, 1, p - 1, p, p + 1, 2 * p, 5 * p - 1, 20 * p, 12345, FILE_MAX};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        write_and_read(bus, sizes[i], NULL);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Busy at the request, at a packet, many times: it is asked again; for longer than an answer may take: given up. */
+START_TEST(a_busy_slave_is_asked_again_for_a_bounded_time)
+{
+    cm1e_bus_t *bus = scanned();
+    const cm1e_foe_options_t short_time = {.answer_ns = 300000000};
+    size_t room = FILE_MAX;
+    for (unsigned busy = 1; busy < 9; busy++) {
+        files_of(bus)->busy = busy;
+        write_and_read(bus, 3 * packet(bus), &short_time);
+    }
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "a file.bin", written, 1000, NULL, &diag), CM1E_OK);
+    files_of(bus)->busy = 1;
+    ck_assert_msg(cm1e_foe_read(bus, 1, "a file.bin", got, &room, NULL, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(files_of(bus)->busy, 0);
+    files_of(bus)->busy = 1000000;
+    const int64_t begun_ns = now_of(bus);
+    ck_assert_int_eq(cm1e_foe_read(bus, 1, "a file.bin", got, &room, &short_time, &diag), CM1E_ERROR_TIMEOUT);
+    ck_assert_ptr_nonnull(strstr(diag.text, "busy, after 0 bytes"));
+    ck_assert_int_lt(now_of(bus) - begun_ns, 1000000000);
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "x", written, 10, &short_time, &diag), CM1E_ERROR_TIMEOUT);
+    files_of(bus)->busy = 0;
+    write_and_read(bus, 100, NULL);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Every datagram of a transfer lost once, and then three of them: the file is whole. */
+START_TEST(lost_frames_lose_no_byte)
+{
+    cm1e_bus_t *bus = scanned();
+    char line[40];
+    for (unsigned n = 1; n < 60; n++) {
+        snprintf(line, sizeof line, "lose %u", n % 4 + 1);
+        simulate(bus, line);
+        write_and_read(bus, n * 17 + packet(bus), NULL);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(refusals_have_code_and_text)
+{
+    cm1e_bus_t *bus = scanned();
+    size_t room = FILE_MAX;
+    char name[1500];
+    ck_assert_int_eq(cm1e_foe_read(bus, 1, "nothing", got, &room, NULL, &diag), CM1E_ERROR_BUS_MAILBOX);
+    ck_assert_uint_eq(diag.foreign_code, 0x8001);
+    ck_assert_ptr_nonnull(strstr(diag.text, "FoE error 0x8001, file not found (\"no such file\")"));
+    ck_assert_uint_eq(room, 0);
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "large", written, FILE_MAX + 1, NULL, &diag), CM1E_ERROR_BUS_MAILBOX);
+    ck_assert_uint_eq(diag.foreign_code, 0x8003);
+    ck_assert_msg(strstr(diag.text, " of 65537 bytes") != NULL, "%s", diag.text);
+    memset(name, 'n', sizeof name);
+    name[sizeof name - 1] = 0;
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, name, written, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "", written, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_foe_write(bus, 2, "n", written, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_str_eq(cm1e_foe_error_text(0x8008), "in Bootstrap only");
+    ck_assert_str_eq(cm1e_foe_error_text(7), "unknown");
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A file that is larger than the room: the slave is told, and does not wait for the rest. */
+START_TEST(a_file_that_is_too_large_ends_in_both)
+{
+    cm1e_bus_t *bus = scanned();
+    size_t room = 3 * packet(bus) - 1;
+    write_and_read(bus, 3 * packet(bus), NULL);
+    got[room] = 0xEE;
+    ck_assert_int_eq(cm1e_foe_read(bus, 1, "a file.bin", got, &room, NULL, &diag), CM1E_ERROR_FULL);
+    ck_assert_uint_eq(got[3 * packet(bus) - 1], 0xEE);
+    write_and_read(bus, 10, NULL); /* the simulated slave refuses a request while another file is open, as SOES does */
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+static unsigned calls, cancel_at;
+static size_t last_done, last_size;
+
+static bool count(void *context, size_t done, size_t size)
+{
+    ck_assert_ptr_eq(context, &calls);
+    ck_assert_uint_ge(done, last_done);
+    last_done = done;
+    last_size = size;
+    return ++calls != cancel_at;
+}
+
+START_TEST(progress_is_told_and_may_break_off)
+{
+    cm1e_bus_t *bus = scanned();
+    const cm1e_foe_options_t options = {.progress = count, .context = &calls};
+    const size_t size = 4 * packet(bus) + 1;
+    size_t room = FILE_MAX;
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "f", written, size, &options, &diag), CM1E_OK);
+    ck_assert(calls == 6 && last_done == size && last_size == size);
+    calls = 0, last_done = 0;
+    ck_assert_int_eq(cm1e_foe_read(bus, 1, "f", got, &room, &options, &diag), CM1E_OK);
+    ck_assert(calls == 5 && last_done == size && last_size == 0);
+    for (cancel_at = 1; cancel_at < 5; cancel_at++) {
+        calls = 0, last_done = 0, room = FILE_MAX;
+        ck_assert_int_eq(cm1e_foe_read(bus, 1, "f", got, &room, &options, &diag), CM1E_ERROR_CANCELLED);
+    }
+    calls = 0, last_done = 0, cancel_at = 3;
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "f", written, size, &options, &diag), CM1E_ERROR_CANCELLED);
+    cancel_at = 0, last_done = 0;
+    write_and_read(bus, size, NULL);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** SDO transfers before and after count the same mailbox; an emergency in between is kept. */
+START_TEST(the_mailbox_is_shared)
+{
+    cm1e_bus_t *bus = scanned();
+    for (unsigned i = 0; i < 20; i++) {
+        uint8_t data[4];
+        size_t size = sizeof data;
+        ck_assert_msg(cm1e_sdo_read(bus, 1, 0x1018, 1, data, &size, &diag) == CM1E_OK, "%s", diag.text);
+        simulate(bus, "emergency 1 5000");
+        write_and_read(bus, 100 * i, NULL);
+    }
+    cm1e_emergency_t all[CM1E_EMERGENCIES];
+    ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, 0, all, CM1E_EMERGENCIES, NULL), CM1E_EMERGENCIES);
+    ck_assert_uint_eq(all[CM1E_EMERGENCIES - 1].number, 20);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A CM1-E takes its firmware in Bootstrap only, and says so elsewhere. Another device has no files at all. */
+START_TEST(bootstrap_and_slaves_without_files)
+{
+    static const char image[] = "CM1-E simulated firmware 1.3.4, 2000 bytes\n";
+    const cm1e_foe_options_t in_bootstrap = {.bootstrap = true};
+    size_t room = FILE_MAX;
+    sim_config(2);
+    config.axes[1].address = 3; /* in the gap is an I/O module */
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    memcpy(written, image, sizeof image);
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "x.bin", written, 2000, NULL, &diag), CM1E_ERROR_BUS_MAILBOX);
+    ck_assert_uint_eq(diag.foreign_code, 0x8008);
+    ck_assert_int_eq(cm1e_foe_read(bus, 2, "x", got, &room, NULL, &diag), CM1E_ERROR_UNSUPPORTED);
+    ck_assert_ptr_nonnull(strstr(diag.text, "announces no FoE"));
+    room = FILE_MAX;
+    ck_assert_int_eq(cm1e_foe_read(bus, 1, "x.bin", got, &room, &in_bootstrap, &diag), CM1E_ERROR_BUS_MAILBOX);
+    ck_assert_uint_eq(diag.foreign_code, 0x8001);
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "x.bin", written, 2000, &in_bootstrap, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    ck_assert_msg(cm1e_foe_write(bus, 1, "x.bin", written, 2000, &in_bootstrap, &diag) == CM1E_OK, "%s", diag.text);
+    simulate(bus, "power-cycle 1 100"); /* the simulated device starts its new firmware */
+    cm1e_clock_sleep_until(bus->clock, now_of(bus) + INT64_C(1000000000));
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_str_eq(cm1e_bus_slave(bus, 1)->software_version, "1.3.4");
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_bus_in_operation_refuses)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "x.bin", written, 1, NULL, &diag), CM1E_ERROR_STATE);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("foe");
+    TCase *tests = tcase_create("foe");
+    tcase_set_timeout(tests, 60);
+    tcase_add_test(tests, files_of_every_size_around_a_packet);
+    tcase_add_test(tests, a_busy_slave_is_asked_again_for_a_bounded_time);
+    tcase_add_test(tests, lost_frames_lose_no_byte);
+    tcase_add_test(tests, refusals_have_code_and_text);
+    tcase_add_test(tests, a_file_that_is_too_large_ends_in_both);
+    tcase_add_test(tests, progress_is_told_and_may_break_off);
+    tcase_add_test(tests, the_mailbox_is_shared);
+    tcase_add_test(tests, bootstrap_and_slaves_without_files);
+    tcase_add_test(tests, a_bus_in_operation_refuses);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
