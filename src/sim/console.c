@@ -2,8 +2,6 @@
  * The console of a simulated segment: one line, one answer. The grammar is "<command> <slave> <arguments>"; commands
  * that concern the frames have no slave.
  */
-#include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,25 +11,10 @@
 #include "sim/bridge_app.h"
 #include "sim/cia402_app.h"
 #include "sim/cm1e_app.h"
+#include "sim/console_call.h"
 #include "sim/esc.h"
-#include "sim/esc_clock_orders.h"
 
-enum { LINE_MAX_BYTES = 128, WORDS_MAX = 6, FRAMES_MAX = 1000000, DELAY_MAX_US = 1000000, ABSENCE_MAX_MS = 60000 };
-enum { ABSENCE_DEFAULT_MS = 500 };
 enum { ERROR_OVERLOAD = 0x2310, ERROR_MOTOR_POWER = 0xFF05 };
-
-typedef struct call {
-    cm1e_sim_segment_t *segment;
-    char words[WORDS_MAX][LINE_MAX_BYTES];
-    int count;               /* words */
-    uint32_t position;       /* of the slave named, where the command takes one */
-    cm1e_sim_slave_t *slave;
-    cm1e_sim_cm1e_t *drive;
-    cm1e_sim_cia402_t *other; /* a drive of another maker */
-    char *answer;
-    size_t size, used;
-    bool cut;                /* the answer was longer than its room */
-} call_t;
 
 typedef struct command {
     const char *word;
@@ -40,62 +23,6 @@ typedef struct command {
     cm1e_error_t (*run)(call_t *call);
     const char *usage, *help;
 } command_t;
-
-__attribute__((format(printf, 2, 3))) static void say(call_t *call, const char *format, ...)
-{
-    if (call->used + 1 >= call->size) {
-        call->cut = true;
-        return;
-    }
-    va_list args;
-    va_start(args, format);
-    const int length = vsnprintf(call->answer + call->used, call->size - call->used, format, args);
-    va_end(args);
-    const size_t room = call->size - call->used - 1;
-    if (length <= 0)
-        return;
-    call->cut |= (size_t)length > room;
-    call->used += (size_t)length < room ? (size_t)length : room;
-}
-
-#define REFUSE(call, ...) (say(call, __VA_ARGS__), CM1E_ERROR_INVALID_ARGUMENT)
-
-/* ---- words into numbers ----------------------------------------------------------------------------------------- */
-
-/* The n-th argument behind command and slave, "" where it is missing. */
-static const char *argument(const call_t *call, int n)
-{
-    const int i = n + (call->slave ? 2 : 1);
-    return i < call->count ? call->words[i] : "";
-}
-
-static bool parse_whole(const char *word, int base, long least, long most, long *value)
-{
-    char *end;
-    if (base == 16 && (word[0] == '0') && (word[1] == 'x' || word[1] == 'X'))
-        word += 2;
-    for (const char *c = word; *c; c++)
-        if (*c == ' ' || (base == 16 && (*c == '-' || *c == '+' || *c == 'x' || *c == 'X')))
-            return false;
-    *value = strtol(word, &end, base);
-    return end != word && *end == '\0' && *value >= least && *value <= most;
-}
-
-static bool parse_real(const char *word, double least, double most, double *value)
-{
-    char *end;
-    *value = strtod(word, &end);
-    return end != word && *end == '\0' && isfinite(*value) && *value >= least && *value <= most;
-}
-
-/* The place of a word in a list that ends with NULL; -1: not there. */
-static int choice(const char *word, const char *const *list)
-{
-    for (int i = 0; list[i]; i++)
-        if (strcmp(word, list[i]) == 0)
-            return i;
-    return -1;
-}
 
 /* ---- commands on a drive ---------------------------------------------------------------------------------------- */
 
@@ -389,22 +316,6 @@ static cm1e_error_t run_error(call_t *call)
     return CM1E_OK;
 }
 
-static cm1e_error_t run_emergency(call_t *call)
-{
-    uint8_t data[5] = {0};
-    long code, error_register = 1, first = 0;
-    if (!parse_whole(argument(call, 0), 16, 0, 0xFFFF, &code) ||
-        (call->count > 3 && !parse_whole(argument(call, 1), 16, 0, 0xFF, &error_register)) ||
-        (call->count > 4 && !parse_whole(argument(call, 2), 16, 0, 0xFF, &first)))
-        return REFUSE(call, "expected a code 0000 to FFFF, a register 00 to FF and a byte 00 to FF");
-    data[0] = (uint8_t)first;
-    if (!call->slave->ops->sdo_read ||
-        !cm1e_sim_slave_emergency(call->slave, (uint16_t)code, (uint8_t)error_register, data))
-        return REFUSE(call, "slave %u sends none: it has no CoE, is in INIT, or has eight waiting", call->position);
-    say(call, "slave %u: emergency 0x%04lX", call->position, code);
-    return CM1E_OK;
-}
-
 static cm1e_error_t run_power_up_fault(call_t *call)
 {
     long count = 0;
@@ -479,94 +390,6 @@ static cm1e_error_t run_motor(call_t *call)
     return CM1E_OK;
 }
 
-/* ---- commands on cables, supply and frames ---------------------------------------------------------------------- */
-
-static cm1e_error_t run_power_cycle(call_t *call)
-{
-    long ms = ABSENCE_DEFAULT_MS;
-    if (argument(call, 0)[0] && !parse_whole(argument(call, 0), 10, 1, ABSENCE_MAX_MS, &ms))
-        return REFUSE(call, "\"%s\": expected milliseconds, 1 to %d", argument(call, 0), ABSENCE_MAX_MS);
-    if (call->drive)
-        cm1e_sim_fsa_off(call->drive);
-    cm1e_sim_slave_reset(call->slave, call->slave->now_ns + ms * INT64_C(1000000));
-    say(call, "slave %u: control power off for %ld ms", call->position, ms);
-    return CM1E_OK;
-}
-
-static cm1e_error_t run_unplug(call_t *call)
-{
-    cm1e_sim_segment_cut(call->segment, call->position, true);
-    say(call, "slave %u: cable to it unplugged", call->position);
-    return CM1E_OK;
-}
-
-static cm1e_error_t run_replug(call_t *call)
-{
-    cm1e_sim_segment_cut(call->segment, call->position, false);
-    say(call, "slave %u: cable to it plugged in", call->position);
-    return CM1E_OK;
-}
-
-static cm1e_error_t frame_fault(call_t *call, cm1e_frame_fault_t kind, const char *verb)
-{
-    long count, us = 0;
-    if (!parse_whole(argument(call, 0), 10, 0, FRAMES_MAX, &count))
-        return REFUSE(call, "\"%s\": expected a number of frames, 0 to %d", argument(call, 0), FRAMES_MAX);
-    if (kind == CM1E_FRAME_DELAY && !parse_whole(argument(call, 1), 10, 1, DELAY_MAX_US, &us))
-        return REFUSE(call, "\"%s\": expected microseconds, 1 to %d", argument(call, 1), DELAY_MAX_US);
-    cm1e_sim_segment_set_frame_fault(call->segment, kind, (uint32_t)count, us * 1000);
-    say(call, "the next %ld frame%s %s", count, count == 1 ? " is" : "s are", verb);
-    if (kind == CM1E_FRAME_DELAY)
-        say(call, " by %ld us", us);
-    return CM1E_OK;
-}
-
-static cm1e_error_t run_lose(call_t *call) { return frame_fault(call, CM1E_FRAME_LOSE, "lost"); }
-static cm1e_error_t run_corrupt(call_t *call) { return frame_fault(call, CM1E_FRAME_CORRUPT, "corrupted"); }
-static cm1e_error_t run_delay(call_t *call) { return frame_fault(call, CM1E_FRAME_DELAY, "delayed"); }
-
-static cm1e_error_t firmware_of(call_t *call, cm1e_sim_update_t *update, const char *what, const char *value)
-{
-    static const char *const kinds[] = {"busy", "name", "password", "error", "silent", NULL};
-    long number = 0, at = 0;
-    const int kind = choice(what, kinds);
-    const bool is_hex = kind == 3;
-    if (kind < 0 || (kind != 1 && !parse_whole(value, is_hex ? 16 : 10, 0, INT32_MAX, &number)))
-        return REFUSE(call, "\"%s %s\": expected busy <requests>, name <file>, password <number>, error <code> "
-                      "[bytes], silent <bytes> or nothing", what, value);
-    if (is_hex && argument(call, 2)[0] && !parse_whole(argument(call, 2), 10, 0, INT32_MAX, &at))
-        return REFUSE(call, "\"%s\": expected a number of bytes", argument(call, 2));
-    switch (kind) {
-    case 0: update->busy = (uint32_t)number; break;
-    case 1: snprintf(update->name, sizeof update->name, "%.63s", value); break;
-    case 2: update->password = (uint32_t)number; break;
-    case 3: update->error = (uint32_t)number; update->error_at = (size_t)at; break;
-    default: update->error = FOE_RESULT_SILENT; update->error_at = (size_t)number; break;
-    }
-    say(call, "slave %u: the next update of its firmware meets %s %s", call->position, what, value);
-    return CM1E_OK;
-}
-
-static cm1e_error_t run_firmware(call_t *call)
-{
-    cm1e_sim_update_t *update = &call->drive->update;
-    if (strcmp(argument(call, 0), "nothing") != 0)
-        return firmware_of(call, update, argument(call, 0), argument(call, 1));
-    update->error = update->busy = update->password = 0;
-    update->error_at = 0;
-    update->name[0] = '\0';
-    say(call, "slave %u takes every firmware", call->position);
-    return CM1E_OK;
-}
-
-static cm1e_error_t run_clock(call_t *call)
-{
-    char text[160];
-    const bool taken = cm1e_sim_clock_order(call->slave, argument(call, 0), argument(call, 1), text, sizeof text);
-    say(call, "slave %u: %s", call->position, text);
-    return taken ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
-}
-
 /* ---- the table -------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t run_help(call_t *call);
@@ -582,25 +405,25 @@ static const command_t commands[] = {
     {"load", ANY_DRIVE, 1, 1, run_load, "<slave> <Nm>", "torque on the shaft from outside, positive drives CW"},
     {"refuse", DRIVE, 1, 2, run_refuse, "<slave> <index>:<sub>|nothing [missing]",
      "writing this object fails from now on; missing: it is not there"},
-    {"firmware", DRIVE, 1, 3, run_firmware, "<slave> busy|name|password|error|silent|nothing ...",
+    {"firmware", DRIVE, 1, 3, cm1e_console_firmware, "<slave> busy|name|password|error|silent|nothing ...",
      "what the next update of the firmware meets"},
     {"over-torque", DRIVE, 0, 0, run_over_torque, "<slave>", "torque overload, error 2310"},
     {"temperature", DRIVE, 1, 1, run_temperature, "<slave> <degrees C>", "of the drive; error 4310 from 85 on"},
     {"error", ANY_DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",
      "an error code of the guide's 7.3.1; hold: its cause stays until clear"},
-    {"emergency", ANY_SLAVE, 1, 3, run_emergency, "<slave> <code> [register [byte]]", "send a CoE emergency"},
+    {"emergency", ANY_SLAVE, 1, 3, cm1e_console_emergency, "<slave> <code> [register [byte]]", "send a CoE emergency"},
     {"power-up-fault", DRIVE, 1, 1, run_power_up_fault, "<slave> <times>|always", "error 7510 at the next power-ups"},
     {"motor", BRIDGE, 2, 4, run_motor,
      "<slave> <1...4> unplug|replug|broken|error|sensor|load ...",
      "a bridge's motor: cable, answers, error, input, load"},
-    {"power-cycle", ANY_SLAVE, 0, 1, run_power_cycle, "<slave> [ms]", "control power off and on again"},
-    {"unplug", ANY_SLAVE, 0, 0, run_unplug, "<slave>", "pull the cable before it"},
-    {"replug", ANY_SLAVE, 0, 0, run_replug, "<slave>", "plug the cable in again"},
-    {"clock", ANY_SLAVE, 1, 2, run_clock, "<slave> drift|temperature|jitter|step|...",
+    {"power-cycle", ANY_SLAVE, 0, 1, cm1e_console_power_cycle, "<slave> [ms]", "control power off and on again"},
+    {"unplug", ANY_SLAVE, 0, 0, cm1e_console_unplug, "<slave>", "pull the cable before it"},
+    {"replug", ANY_SLAVE, 0, 0, cm1e_console_replug, "<slave>", "plug the cable in again"},
+    {"clock", ANY_SLAVE, 1, 2, cm1e_console_clock, "<slave> drift|temperature|jitter|step|...",
      "its distributed clock: drifts, jumps, loses its reference"},
-    {"lose", NO_SLAVE, 1, 1, run_lose, "<frames>", "lose the next frames"},
-    {"corrupt", NO_SLAVE, 1, 1, run_corrupt, "<frames>", "corrupt the next frames"},
-    {"delay", NO_SLAVE, 2, 2, run_delay, "<frames> <us>", "deliver the next frames late"},
+    {"lose", NO_SLAVE, 1, 1, cm1e_console_lose, "<frames>", "lose the next frames"},
+    {"corrupt", NO_SLAVE, 1, 1, cm1e_console_corrupt, "<frames>", "corrupt the next frames"},
+    {"delay", NO_SLAVE, 2, 2, cm1e_console_delay, "<frames> <us>", "deliver the next frames late"},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
