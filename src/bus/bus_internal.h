@@ -88,6 +88,7 @@ typedef struct cm1e_listening {
     uint32_t place;                          /**< the slave whose mailbox was looked into last */
     int64_t due_ns;
     bool paused;                             /**< while somebody waits until all slaves are idle */
+    uint64_t emergencies;                    /**< heard of all slaves */
 } cm1e_listening_t;
 
 /** Transfers handed in by any thread, the cycle's own included: each takes a place with `head` and fills it; the bus
@@ -145,7 +146,6 @@ struct cm1e_bus {
     unsigned sent_count;
     uint32_t next_slave;                     /**< round robin of acyclic datagrams */
     cm1e_listening_t listening;
-    uint64_t emergencies;                    /**< of all slaves */
     cm1e_datagram_t watch_datagram;
     bool watch_sent;
     uint32_t watched_slave;

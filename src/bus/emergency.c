@@ -82,10 +82,10 @@ void cm1e_bus_keep_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
         return;
     emergency.time_ns = cm1e_clock_wall(bus->clock);
     cm1e_emergency_add(&slave->emergencies, emergency);
-    bus->emergencies++;
+    bus->listening.emergencies++;
 }
 
-uint64_t cm1e_bus_emergencies(const cm1e_bus_t *bus) { return bus->emergencies; }
+uint64_t cm1e_bus_emergencies(const cm1e_bus_t *bus) { return bus->listening.emergencies; }
 
 /* ---- texts ------------------------------------------------------------------------------------------------------ */
 
