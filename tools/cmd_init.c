@@ -13,6 +13,7 @@
 #include "core/text.h"
 #include "device/devices.h"
 #include "files.h"
+#include "init_slaves.h"
 
 enum { KEY_FORCE = 0x700 };
 
@@ -24,7 +25,7 @@ typedef struct init_options {
 typedef struct init {
     cm1e_bus_t *bus;
     FILE *file;
-    unsigned axes;  /**< written so far */
+    unsigned axes, slaves; /**< written so far */
     unsigned gaps;  /**< axes that could not be completed: they are comments */
 } init_t;
 
@@ -53,7 +54,7 @@ static bool is_alone(const init_t *init, const cm1e_slave_info_t *slave, bool by
 static void print_address(const init_t *init, const cm1e_slave_info_t *slave)
 {
     FILE *file = init->file;
-    if (slave->explicit_id > 0 && slave->device->explicit_id && is_alone(init, slave, true))
+    if (slave->explicit_id > 0 && slave->device && slave->device->explicit_id && is_alone(init, slave, true))
         fprintf(file, "    explicit_id: %u               # its rotary switches; it was at position %u\n",
                 slave->explicit_id, slave->position);
     else if (slave->alias > 0 && is_alone(init, slave, false))
@@ -194,18 +195,28 @@ static void print_servo(init_t *init, const cm1e_slave_info_t *slave)
 
 /* ---- the file ---------------------------------------------------------------------------------------------------- */
 
-static void print_any(init_t *init, const cm1e_slave_info_t *slave)
+static void print_axes(init_t *init, const cm1e_slave_info_t *slave)
 {
     print_slave(init, slave);
-    if (!slave->device)
-        fprintf(init->file, "  # It needs no entry: it runs with the process data of its SII.\n");
-    else if (slave->device->channels > 0)
+    if (slave->device->channels > 0)
         for (uint8_t channel = 1; channel <= slave->device->channels; channel++)
             print_channel(init, slave, channel);
     else if (slave->device->motor_stated)
         print_servo(init, slave);
     else
         print_cm1e(init, slave);
+}
+
+/** It would run without an entry too, but then nobody notices that another device is there. */
+static void print_without_axis(init_t *init, const cm1e_slave_info_t *slave)
+{
+    if (init->slaves++ == 0)
+        fprintf(init->file, "\n# Slaves without an axis. The program finds their signals by name, as in \"io2.in1\".\n"
+                "slaves:\n");
+    print_slave(init, slave);
+    fprintf(init->file, "  - name: io%u\n", slave->position);
+    print_address(init, slave);
+    init_print_slave(init->file, init->bus, slave);
 }
 
 static void print_file(init_t *init, const char *interface_name)
@@ -219,7 +230,11 @@ static void print_file(init_t *init, const char *interface_name)
             "\naxes:\n",
             interface_name, interface_name);
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(init->bus); position++)
-        print_any(init, cm1e_bus_slave(init->bus, position));
+        if (cm1e_bus_slave(init->bus, position)->device)
+            print_axes(init, cm1e_bus_slave(init->bus, position));
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(init->bus); position++)
+        if (!cm1e_bus_slave(init->bus, position)->device)
+            print_without_axis(init, cm1e_bus_slave(init->bus, position));
 }
 
 /** The file as text; the caller frees it. NULL after a complaint. */
@@ -237,6 +252,14 @@ static char *make_file(init_t *init, const char *interface_name, size_t *size)
     return NULL;
 }
 
+static void print_counts(const init_t *init, const char *path)
+{
+    printf("%s: %u %s", path, init->axes, init->axes == 1 ? "axis" : "axes");
+    if (init->slaves > 0)
+        printf(", %u %s without an axis", init->slaves, init->slaves == 1 ? "slave" : "slaves");
+    printf("\n");
+}
+
 static int write_file(init_t *init, const init_options_t *options)
 {
     size_t size;
@@ -250,7 +273,7 @@ static int write_file(init_t *init, const init_options_t *options)
     if (init->axes == 0)
         complain("there is no motor that can be an axis; a bus file needs one");
     else if (strcmp(options->output, "-") != 0)
-        printf("%s: %u %s\n", options->output, init->axes, init->axes == 1 ? "axis" : "axes");
+        print_counts(init, options->output);
     if (init->gaps > 0)
         complain("%u %s not complete, and a comment in the file", init->gaps, init->gaps == 1 ? "axis is" : "axes are");
     return init->axes > 0 ? EXIT_OK : EXIT_FAILED;
@@ -286,9 +309,10 @@ static const struct argp_option table[] = {
     {0}};
 const struct argp argp_init = {
     table, parse, NULL,
-    "Writes a bus file from the network as it is: every motor as an axis, with its address, its kind and its firmware, "
-    "and comments that say what else can be chosen. The file can be used at once. Nothing moves, and no parameter is "
-    "written. A motor behind a bridge is asked for K37 in CML mode and then put back to csp.",
+    "Writes a bus file from the network as it is: every motor as an axis, with its address, its kind and its firmware; "
+    "every other slave with its identity and names of its signals; and comments that say what else can be chosen. The "
+    "file can be used at once. Nothing moves, and no parameter is written. A motor behind a bridge is asked for K37 in "
+    "CML mode and then put back to csp.",
     NULL, NULL, NULL};
 
 int command_init(int argc, char **argv)

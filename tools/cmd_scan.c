@@ -6,15 +6,24 @@
 #include "command.h"
 #include "core/text.h"
 #include "device/devices.h"
+#include "pdo_list.h"
+
+enum { KEY_PDOS = 0xE00 };
+
+typedef struct scan_options {
+    common_options_t common;
+    bool pdos;
+} scan_options_t;
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     (void)arg;
-    if (key == ARGP_KEY_INIT) {
-        state->child_inputs[0] = state->child_inputs[1] = state->input;
-        return 0;
+    scan_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case KEY_PDOS: options->pdos = true; return 0;
+    default: return ARGP_ERR_UNKNOWN;
     }
-    return ARGP_ERR_UNKNOWN;
 }
 
 static const char *model_name(const cm1e_slave_info_t *slave)
@@ -59,7 +68,52 @@ static int wider(int width, const char *text)
 /** printf() counts bytes; a letter may have several. */
 static int in_bytes(int width, const char *text) { return width + (int)(strlen(text) - cm1e_text_width(text)); }
 
-static void print_table(const cm1e_bus_t *bus)
+/* ---- process data ------------------------------------------------------------------------------------------------ */
+
+static void print_pdos(cm1e_bus_t *bus, uint16_t position)
+{
+    pdo_list_t list;
+    if (!pdo_list_read(bus, position, &list)) {
+        complain("out of memory");
+        return;
+    }
+    if (list.count == 0)
+        printf("     no process data\n");
+    unsigned pdo = 0;
+    for (size_t i = 0; i < list.count; i++) {
+        const listed_entry_t *entry = &list.entries[i];
+        if (entry->pdo != pdo)
+            printf("     %s 0x%04X %s\n", entry->output ? "outputs" : "inputs ", entry->pdo, entry->pdo_name);
+        pdo = entry->pdo;
+        if (entry->index)
+            printf("       bit %4u  0x%04X:%02X  %3u %-8s %s\n", entry->bit, entry->index, entry->subindex, entry->bits,
+                   entry->type, entry->name);
+        else
+            printf("       bit %4u  gap        %3u\n", entry->bit, entry->bits);
+    }
+    pdo_list_free(&list);
+}
+
+static json_t *pdos_as_json(cm1e_bus_t *bus, uint16_t position)
+{
+    pdo_list_t list;
+    json_t *entries = json_array();
+    if (!pdo_list_read(bus, position, &list))
+        complain("out of memory");
+    for (size_t i = 0; i < list.count; i++) {
+        const listed_entry_t *entry = &list.entries[i];
+        json_array_append_new(entries, json_pack("{s:b, s:i, s:s, s:i, s:i, s:i, s:i, s:s, s:s}", "output",
+                                                 entry->output, "pdo", entry->pdo, "pdo_name", entry->pdo_name, "index",
+                                                 entry->index, "subindex", entry->subindex, "bit", (int)entry->bit,
+                                                 "bits", (int)entry->bits, "type", entry->type, "name", entry->name));
+    }
+    pdo_list_free(&list);
+    return entries;
+}
+
+/* ---- the table --------------------------------------------------------------------------------------------------- */
+
+static void print_table(cm1e_bus_t *bus, bool pdos)
 {
     char state[48];
     int name_width = 20, state_width = 18;
@@ -79,17 +133,22 @@ static void print_table(const cm1e_bus_t *bus)
         if (slave->device && slave->device->channels)
             printf("     bridge %s, motors %s, %s, %s, %s\n", model_name(slave), motor_name(slave->motors[0]),
                    motor_name(slave->motors[1]), motor_name(slave->motors[2]), motor_name(slave->motors[3]));
+        if (pdos)
+            print_pdos(bus, slave->position);
     }
 }
 
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
-const struct argp argp_scan = {NULL, parse, NULL, "Lists the slaves of a network.", children, NULL, NULL};
+static const struct argp_option table[] = {
+    {"pdos", KEY_PDOS, NULL, 0, "Show the process data of each slave, as it has them assigned now", 0}, {0}};
+const struct argp argp_scan = {table, parse, NULL, "Lists the slaves of a network.", children, NULL, NULL};
 
 int command_scan(int argc, char **argv)
 {
-    common_options_t options = {0};
-    if (parse_options(&argp_scan, argc, argv, &options))
+    scan_options_t scan = {0};
+    if (parse_options(&argp_scan, argc, argv, &scan))
         return EXIT_WRONG_USE;
+    const common_options_t options = scan.common;
 
     static cm1e_bus_config_t config;
     if (!load_network(&options, &config))
@@ -100,14 +159,18 @@ int command_scan(int argc, char **argv)
         return fail(&diag);
     if (options.json) {
         json_t *slaves = json_array();
-        for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++)
-            json_array_append_new(slaves, slave_as_json(cm1e_bus_slave(bus, i)));
+        for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
+            json_t *slave = slave_as_json(cm1e_bus_slave(bus, i));
+            if (scan.pdos)
+                json_object_set_new(slave, "pdos", pdos_as_json(bus, (uint16_t)i));
+            json_array_append_new(slaves, slave);
+        }
         print_json(slaves);
     } else {
-        print_table(bus);
+        print_table(bus, scan.pdos);
         tell_simulated(&config);
     }
     /* A bus file states the expected slaves: compare. */
-    const bool as_expected = config.axis_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;
+    const bool as_expected = config.axis_count + config.slave_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;
     return close_bus(bus, &options, as_expected ? EXIT_OK : fail(&diag));
 }

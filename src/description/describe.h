@@ -21,6 +21,9 @@ static inline void cm1e_describe_io_module(cm1e_description_file_t *file)
     cm1e_describe_io(file, CM1E_SIM_IO_MODULE);
 }
 
+/** Gives the identity and alias of a slave of the configuration to the last device of the file; what it does not state
+ *  stays. */
+void cm1e_describe_io_identity(cm1e_description_file_t *file, const cm1e_slave_config_t *slave);
 /** Appends the simulated device of a slave of the configuration, with its identity: a coupler, digital or analog. */
 void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_config_t *slave);
 

@@ -72,21 +72,18 @@ static void describe_eeprom(cm1e_arena_t *arena, cm1e_description_t *device, con
     cm1e_put_u16(config, PDI_DIGITAL_IO | (emulates ? DEVICE_EMULATION : 0));
     device->eeprom.byte_size = 2048;
     device->eeprom.version = 1;
-    device->eeprom.alias = slave->address_kind == CM1E_ADDRESS_ALIAS ? slave->address : 0;
-    cm1e_put_u16(config + CM1E_SII_ALIAS, device->eeprom.alias);
     device->eeprom.config_data = (cm1e_bytes_t){cm1e_arena_bytes(arena, config, sizeof config), sizeof config};
 }
 
 /* ---- analog ------------------------------------------------------------------------------------------------------ */
 
-static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave)
+static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_sim_slave_config_t *sim)
 {
-    const cm1e_device_options_t options = {
-        .alias = slave->address_kind == CM1E_ADDRESS_ALIAS ? slave->address : 0};
-    for (unsigned n = 0; n < slave->sim.outputs; n++)
+    const cm1e_device_options_t options = {0};
+    for (unsigned n = 0; n < sim->outputs; n++)
         add_entry(arena, add_pdo(arena, device, OUTPUT_PDO + n, "AO Output Channel", n, CM1E_SM_NUMBER_OUTPUTS),
                   OUTPUTS + n * STEP, VALUE, 16, "Value");
-    for (unsigned n = 0; n < slave->sim.inputs; n++) {
+    for (unsigned n = 0; n < sim->inputs; n++) {
         const unsigned index = INPUTS + n * STEP;
         cm1e_described_pdo_t *pdo =
             add_pdo(arena, device, INPUT_PDO + 2 * n, "AI Standard Channel", n, CM1E_SM_NUMBER_INPUTS);
@@ -100,6 +97,25 @@ static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, con
     cm1e_describe_communication(arena, device, &options);
     cm1e_describe_eeprom(arena, device, &options, false);
     cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &device->pdos);
+}
+
+/* ---- identity ---------------------------------------------------------------------------------------------------- */
+
+void cm1e_describe_io_identity(cm1e_description_file_t *file, const cm1e_slave_config_t *slave)
+{
+    if (file->devices.count == 0)
+        return;
+    cm1e_description_t *device = &file->devices.at[file->devices.count - 1];
+    uint8_t config[CM1E_SII_CONFIG_BYTES] = {0};
+    const cm1e_bytes_t present = device->eeprom.config_data;
+    device->vendor_id = slave->vendor;
+    device->product_code = slave->product ? slave->product : device->product_code;
+    device->revision = slave->revision ? slave->revision : device->revision;
+    device->eeprom.alias = slave->address_kind == CM1E_ADDRESS_ALIAS ? slave->address : 0;
+    for (size_t i = 0; i < present.size && i < sizeof config; i++)
+        config[i] = present.data[i];
+    cm1e_put_u16(config + CM1E_SII_ALIAS, device->eeprom.alias);
+    device->eeprom.config_data = (cm1e_bytes_t){cm1e_arena_bytes(&file->arena, config, sizeof config), sizeof config};
 }
 
 /* ---- any --------------------------------------------------------------------------------------------------------- */
@@ -119,9 +135,8 @@ void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_con
     cm1e_arena_t *arena = &file->arena;
     cm1e_description_t *device = CM1E_APPEND(arena, &file->devices);
     cm1e_description_init(device);
-    device->vendor_id = slave->vendor;
-    device->product_code = slave->product ? slave->product : product_code(sim);
-    device->revision = slave->revision ? slave->revision : 1;
+    device->product_code = product_code(sim);
+    device->revision = 1;
     device->product_given = device->revision_given = true;
     device->name = sim->kind == CM1E_SIM_SLAVE_COUPLER
                        ? kinds[sim->kind]
@@ -130,9 +145,10 @@ void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_con
     device->group = "Simulated I/O";
     device->physics = "YY";
     if (sim->kind == CM1E_SIM_SLAVE_ANALOG) {
-        describe_analog(arena, device, slave);
-        return;
+        describe_analog(arena, device, sim);
+    } else {
+        describe_digital(arena, device, sim);
+        describe_eeprom(arena, device, slave);
     }
-    describe_digital(arena, device, sim);
-    describe_eeprom(arena, device, slave);
+    cm1e_describe_io_identity(file, slave);
 }

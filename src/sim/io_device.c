@@ -125,15 +125,12 @@ cm1e_sim_io_device_t *cm1e_sim_io_device_of(cm1e_sim_slave_t *slave)
     return own == &ops || own == &ops_with_coe ? cm1e_sim_slave_app(slave) : NULL;
 }
 
-static cm1e_sim_io_device_t *create_app(const cm1e_slave_config_t *slave, cm1e_sim_io_t gap)
+static cm1e_sim_io_device_t *create_app(const cm1e_slave_config_t *slave)
 {
-    static const cm1e_sim_slave_config_t gaps[] = { /* by cm1e_sim_io_t */
-        {CM1E_SIM_SLAVE_DIGITAL, 8, 8, ""}, {CM1E_SIM_SLAVE_DIGITAL, 4, 4, ""}, {CM1E_SIM_SLAVE_COUPLER, 0, 0, ""},
-    };
     cm1e_sim_io_device_t *device = calloc(1, sizeof *device);
     if (!device)
         return NULL;
-    device->config = slave->sim.kind == CM1E_SIM_SLAVE_GAP ? gaps[gap] : slave->sim;
+    device->config = slave->sim;
     device->id = slave->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? slave->address : 0;
     if (device->config.outputs > 0 && !device->config.wired_to[0])
         device->source = device;
@@ -145,16 +142,14 @@ static cm1e_sim_io_device_t *create_app(const cm1e_slave_config_t *slave, cm1e_s
     return device;
 }
 
-cm1e_sim_slave_t *cm1e_sim_io_device_create(const cm1e_slave_config_t *slave, cm1e_sim_io_t gap)
+cm1e_sim_slave_t *cm1e_sim_io_device_create(const cm1e_slave_config_t *slave)
 {
     uint8_t sii[CM1E_SII_SIZE];
-    cm1e_sim_io_device_t *device = create_app(slave, gap);
+    cm1e_sim_io_device_t *device = create_app(slave);
     if (!device)
         return NULL;
-    cm1e_slave_config_t described = *slave;
-    described.sim = device->config;
     cm1e_description_file_t file = {0};
-    cm1e_describe_io_device(&file, &described);
+    cm1e_describe_io_device(&file, slave);
     const size_t size = file.arena.failed ? 0 : cm1e_sii_write(sii, sizeof sii, &file.devices.at[0], NULL);
     cm1e_description_file_free(&file);
     cm1e_sim_slave_t *made =

@@ -45,9 +45,8 @@ typedef struct cm1e_sim_io_device {
     int64_t digital[2][IO_CHANNELS];         /**< values of the process data without CoE */
 } cm1e_sim_io_device_t;
 
-/** A device for a slave of the configuration, with its identity and address. Where it names no simulated device, that of
- *  a gap. NULL: no memory. */
-cm1e_sim_slave_t *cm1e_sim_io_device_create(const cm1e_slave_config_t *slave, cm1e_sim_io_t gap);
+/** The device that a slave of the configuration names, with its identity and address. NULL: no memory. */
+cm1e_sim_slave_t *cm1e_sim_io_device_create(const cm1e_slave_config_t *slave);
 /** NULL: it is another device. */
 cm1e_sim_io_device_t *cm1e_sim_io_device_of(cm1e_sim_slave_t *slave);
 /** What comes to the terminal of an input (0 = first). */

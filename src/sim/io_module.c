@@ -62,11 +62,13 @@ static const cm1e_sim_app_ops_t ops = {
     .destroy = free,
 };
 
-cm1e_sim_slave_t *cm1e_sim_io_create(cm1e_sim_io_t kind)
+cm1e_sim_slave_t *cm1e_sim_io_create_as(cm1e_sim_io_t kind, const cm1e_slave_config_t *slave_config)
 {
     uint8_t sii[CM1E_SII_SIZE];
     cm1e_description_file_t file = {0};
     cm1e_describe_io(&file, kind);
+    if (slave_config)
+        cm1e_describe_io_identity(&file, slave_config);
     const size_t size = file.arena.failed ? 0 : cm1e_sii_write(sii, sizeof sii, &file.devices.at[0], NULL);
     cm1e_description_file_free(&file);
     io_module_t *module = size > 0 ? calloc(1, sizeof *module) : NULL;

@@ -116,6 +116,13 @@ static bool place_slaves(const cm1e_bus_config_t *config, place_t *places, bool 
     return true;
 }
 
+static void wire_device(cm1e_sim_slave_t *inputs, cm1e_sim_slave_t *outputs)
+{
+    cm1e_sim_io_device_t *device = cm1e_sim_io_device_of(inputs);
+    if (device)
+        device->source = cm1e_sim_io_device_of(outputs);
+}
+
 /* A wire goes from an input to the output of its number. */
 static void wire_inputs(cm1e_sim_segment_t *segment, const place_t *places, uint32_t count)
 {
@@ -123,8 +130,7 @@ static void wire_inputs(cm1e_sim_segment_t *segment, const place_t *places, uint
         const char *source = places[i].slave ? places[i].slave->sim.wired_to : "";
         for (uint32_t k = 0; k < count && source[0]; k++)
             if (places[k].slave && strcasecmp(places[k].slave->name, source) == 0)
-                cm1e_sim_io_device_of(cm1e_sim_segment_slave(segment, i + 1))->source =
-                    cm1e_sim_io_device_of(cm1e_sim_segment_slave(segment, k + 1));
+                wire_device(cm1e_sim_segment_slave(segment, i + 1), cm1e_sim_segment_slave(segment, k + 1));
     }
 }
 
@@ -195,10 +201,11 @@ static const struct {
 
 static cm1e_sim_slave_t *make(made_t *made)
 {
-    if (made->place->slave)
-        return cm1e_sim_io_device_create(made->place->slave, made->config->sim_gaps);
+    const cm1e_slave_config_t *slave = made->place->slave;
+    if (slave && slave->sim.kind != CM1E_SIM_SLAVE_GAP)
+        return cm1e_sim_io_device_create(slave);
     if (!made->place->axis)
-        return cm1e_sim_io_create(made->config->sim_gaps);
+        return cm1e_sim_io_create_as(made->config->sim_gaps, slave);
     const cm1e_device_t *device = cm1e_device_configured(made->place->axis);
     for (size_t i = 0; device && i < sizeof makers / sizeof makers[0]; i++)
         if (strcmp(makers[i].device, device->kind) == 0)

@@ -118,7 +118,9 @@ cm1e_sim_slave_t *cm1e_sim_cia402_create(const cm1e_axis_config_t *config, uint1
 /** The applications: a CM1-E with its mechanical axis; simple devices without mailbox. */
 cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
                                        uint8_t rotary_switches);
-cm1e_sim_slave_t *cm1e_sim_io_create(cm1e_sim_io_t kind);
+/** With identity and alias of a slave of the configuration; NULL: its own. */
+cm1e_sim_slave_t *cm1e_sim_io_create_as(cm1e_sim_io_t kind, const cm1e_slave_config_t *slave);
+static inline cm1e_sim_slave_t *cm1e_sim_io_create(cm1e_sim_io_t kind) { return cm1e_sim_io_create_as(kind, NULL); }
 static inline cm1e_sim_slave_t *cm1e_sim_io_module_create(void) { return cm1e_sim_io_create(CM1E_SIM_IO_MODULE); }
 /** A Cool MUSCLE Bridge (CM1E_DEVICE_EB01 ... EB12) with its four motors. Of the axis at each connector K37 and `sim`
  *  are played; NULL, one or all of them: the defaults of cm1e/config.h, and K37 = 10. NULL: no bridge, or no memory. */

@@ -4,6 +4,7 @@ with its commented keys; what it cannot know is a comment; a file that exists is
 
 test_init.py BIN-DIRECTORY
 """
+import json
 import os
 import re
 import subprocess
@@ -29,6 +30,15 @@ SERVO = """\
 axes:
   - {name: s, position: 1, device: cia402, drive: {counts_per_revolution: 131072, max_speed_rpm: 3000}}
   - {name: x, position: 2}
+"""
+SLAVES = """\
+axes:
+  - {name: feed, position: 6}
+slaves:
+  - {name: coupler, position: 1, sim: {device: coupler}}
+  - {name: both, position: 2, sim: {device: digital, inputs: 3, outputs: 2}}
+  - {name: level, position: 3, sim: {device: analog, inputs: 1}}
+  - {name: speed, alias: 1001, vendor: 0x00000002, product: 0x03F03052, sim: {device: analog, outputs: 2}}
 """
 
 
@@ -65,11 +75,11 @@ def drive(path, axes):
 
 def check_motors(folder):
     done, path, text = init(folder, "motors", MOTORS)
-    expect("4 axes" in done.stdout, f"{done}")
+    expect("4 axes, 1 slave without an axis" in done.stdout, f"{done}")
     # By the order on the wire: positions first, the others fill the places between.
     for wanted in (r"position: 1 .*\n    motor: CM1-E-17S30D ", r"alias: 1001 .*\n    motor: CM1-E-17L30D ",
                    r"explicit_id: 181 .*\n    motor: CM1-E-23S30D ", r"position: 5 .*\n    motor: CM1-E-23L20D ",
-                   r"# Slave 4: .*\n  # It needs no entry", r"# firmware: 1\.3\.3"):
+                   r"# Slave 4: .*\n  - name: io4\n    position: 4 ", r"# firmware: 1\.3\.3"):
         expect(re.search(wanted, text), f"{wanted} is not in\n{text}")
     drive(path, ["axis1", "axis2", "axis3", "axis4"])
     every = write(os.path.join(folder, "every.yaml"),
@@ -92,6 +102,47 @@ def check_servo(folder):
     else:
         expect("counts_per_revolution: 131072, max_speed_rpm: 3000" in text, text)
         drive(path, ["axis1", "axis2"])
+
+
+def signals(path):
+    """Names, types and directions as `cm1e io` lists them."""
+    done = run("io", "-b", path, "--json")
+    expect(done.returncode == 0, f"io -b {path}: {done}")
+    return [(signal["slave_name"], signal["name"], signal["type"], signal["output"])
+            for signal in json.loads(done.stdout)["signals"] if not signal["of_axis"]]
+
+
+def check_slaves(folder):
+    """What the file names is there, on that network and on the segment that the simulator makes of the file itself."""
+    done, path, text = init(folder, "slaves", SLAVES)
+    expect("1 axis, 5 slaves without an axis" in done.stdout, f"{done}")
+    for wanted in (r"- name: io1\n.*position: 1 .*\n.*product: 0x00000100\n.*\n    sim: \{device: coupler\}",
+                   r"alias: 1001 .*\n    vendor: 0x00000002\n    product: 0x03F03052\n",
+                   r"- \{name: in3, bit: 2\}   # BOOL, Channel 3, Input\n    sim: \{device: digital, inputs: 3, outputs: 2\}",
+                   r"- \{name: in3, object: 0x6000:11\}   # INT, AI Standard Channel 1, Value\n"):
+        expect(re.search(wanted, text), f"{wanted} is not in\n{text}")
+    listed = signals(path)
+    expect(len(listed) == 5 + 3 + 2 + 2, f"{listed}")
+    expect(("io2", "out2", "BOOL", True) in listed and ("io3", "in3", "INT", False) in listed, f"{listed}")
+    own = write(os.path.join(folder, "own.yaml"), re.sub(r"interface: .*", "interface: sim", text))
+    expect(signals(own) == listed, f"on a segment of its own: {signals(own)}, not {listed}")
+    drive(own, ["axis1"])
+
+
+def check_pdos(folder):
+    network = write(os.path.join(folder, "pdos.yaml"), SLAVES)
+    done = run("scan", "-b", network, "--pdos")
+    for wanted in (r"no process data", r"outputs 0x1600 Channel 1\n +bit +0  0x7000:01 +1 BOOL +Output",
+                   r"inputs  0x1A02 AI Standard Channel 2|inputs  0x1A00 AI Standard Channel 1",
+                   r"bit +2  gap +14\n +bit +16  0x6000:11 +16 INT +Value", r"0x6041:00 +16 UINT +Statusword"):
+        expect(done.returncode == 0 and re.search(wanted, done.stdout), f"{wanted}: {done}")
+    done = run("scan", "-b", network, "--pdos", "--json")
+    slaves = json.loads(done.stdout)
+    expect([len(slave["pdos"]) for slave in slaves][:4] == [0, 5, 4, 2], f"{slaves}")
+    last = slaves[2]["pdos"][3]
+    expect(last["bit"] == 16 and last["bits"] == 16 and last["index"] == 0x6000 and last["type"] == "INT", f"{last}")
+    plain = json.loads(run("scan", "-b", network, "--json").stdout)
+    expect("pdos" not in plain[0], f"{plain[0]}")
 
 
 def check_overwriting(folder):
@@ -118,5 +169,7 @@ with tempfile.TemporaryDirectory() as work:
     check_motors(work)
     check_bridge(work)
     check_servo(work)
+    check_slaves(work)
+    check_pdos(work)
     check_overwriting(work)
     check_refusals(work)

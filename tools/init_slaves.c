@@ -1,0 +1,115 @@
+#include "init_slaves.h"
+
+#include <string.h>
+
+#include "command.h"
+#include "pdo_list.h"
+
+enum { CHANNELS = 8, STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, VALUE = 0x11 };
+
+static void print_identity(FILE *file, const cm1e_slave_info_t *slave)
+{
+    if (slave->vendor_id)
+        fprintf(file, "    vendor: 0x%08X\n", (unsigned)slave->vendor_id);
+    if (slave->product_code)
+        fprintf(file, "    product: 0x%08X\n", (unsigned)slave->product_code);
+    if (slave->revision)
+        fprintf(file, "    # revision: 0x%08X   # without the leading # another revision is an error\n",
+                (unsigned)slave->revision);
+}
+
+/** A mailbox tells the objects; without one only the place counts. Entries beyond the maximum are comments. */
+static void print_signals(FILE *file, const pdo_list_t *list, bool output, unsigned *named)
+{
+    unsigned number = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        const listed_entry_t *entry = &list->entries[i];
+        if (entry->output != output || entry->index == 0)
+            continue;
+        if (++number == 1)
+            fprintf(file, "    %s:\n", output ? "outputs" : "inputs");
+        const char *comment = ++*named > CM1E_SLAVE_SIGNALS ? "# " : "";
+        fprintf(file, "      %s- {name: %s%u, ", comment, output ? "out" : "in", number);
+        if (list->by_coe)
+            fprintf(file, "object: 0x%04X:%02X}", entry->index, entry->subindex);
+        else if (entry->bits == 1)
+            fprintf(file, "bit: %u}", entry->bit);
+        else
+            fprintf(file, "bit: %u, bits: %u}", entry->bit, entry->bits);
+        fprintf(file, "   # %s%s%s%s%s\n", entry->type, entry->pdo_name[0] ? ", " : "", entry->pdo_name,
+                entry->name[0] ? ", " : "", entry->name);
+    }
+}
+
+/* ---- the simulated device ---------------------------------------------------------------------------------------- */
+
+/** Bits in a row from 0 on, and nothing else. */
+static bool is_digital(const pdo_list_t *list, unsigned counts[2])
+{
+    for (size_t i = 0; i < list->count; i++) {
+        const listed_entry_t *entry = &list->entries[i];
+        if (list->by_coe || entry->bits != 1 || entry->index == 0 || entry->bit != counts[entry->output])
+            return false;
+        counts[entry->output]++;
+    }
+    return counts[0] <= CHANNELS && counts[1] <= CHANNELS && counts[0] + counts[1] > 0;
+}
+
+/** Whether the simulated analog device has the objects: see src/sim/io_device_objects.c. */
+static bool is_analog(const pdo_list_t *list, unsigned counts[2])
+{
+    for (size_t i = 0; i < list->count; i++) {
+        const listed_entry_t *entry = &list->entries[i];
+        const unsigned first = entry->output ? OUTPUTS : INPUTS, channel = (entry->index - first) / STEP;
+        const bool value = entry->subindex == VALUE && entry->bits == 16;
+        const bool state = !entry->output && (entry->subindex == 1 || entry->subindex == 2) && entry->bits == 1;
+        if (entry->index == 0)
+            continue;
+        if (entry->index < first || entry->index % STEP || channel >= CHANNELS || (!value && !state))
+            return false;
+        if (channel >= counts[entry->output])
+            counts[entry->output] = channel + 1;
+    }
+    return list->by_coe && counts[0] + counts[1] > 0;
+}
+
+/** A byte each way: the device that the simulator has where the file names none (`sim_gaps`). */
+static bool is_module(const pdo_list_t *list)
+{
+    return !list->by_coe && list->count == 2 && list->entries[0].bits == 8 && list->entries[1].bits == 8 &&
+           list->entries[0].output != list->entries[1].output;
+}
+
+static void print_sim(FILE *file, const pdo_list_t *list)
+{
+    unsigned digital[2] = {0, 0}, analog[2] = {0, 0}; /* inputs, outputs */
+    const bool is_bits = is_digital(list, digital), is_words = is_analog(list, analog);
+    const unsigned *counts = is_bits ? digital : analog;
+    if (list->count == 0) {
+        fprintf(file, "    sim: {device: coupler}\n");
+    } else if (is_bits || is_words) {
+        fprintf(file, "    sim: {device: %s", is_bits ? "digital" : "analog");
+        if (counts[0])
+            fprintf(file, ", inputs: %u", counts[0]);
+        if (counts[1])
+            fprintf(file, ", outputs: %u", counts[1]);
+        fprintf(file, "}\n");
+    } else if (!is_module(list)) {
+        fprintf(file, "    # The simulator has no such device: without its inputs and outputs the file runs there.\n");
+    }
+}
+
+void init_print_slave(FILE *file, cm1e_bus_t *bus, const cm1e_slave_info_t *slave)
+{
+    pdo_list_t list;
+    unsigned named = 0;
+    print_identity(file, slave);
+    if (!pdo_list_read(bus, slave->position, &list)) {
+        complain("out of memory");
+        return;
+    }
+    print_signals(file, &list, true, &named);
+    print_signals(file, &list, false, &named);
+    print_sim(file, &list);
+    pdo_list_free(&list);
+}
