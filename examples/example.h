@@ -28,6 +28,7 @@ typedef struct example {
     bool virtual_time;
     void (*describe)(cm1e_axis_config_t *axis); /**< what is special about the axis; NULL: nothing */
     uint32_t axis_count;                        /**< 0: 1 */
+    const char *bus_file;                       /**< describes the network; NULL: it has axes with defaults */
     void (*describe_network)(cm1e_bus_config_t *config); /**< what is special about several axes; NULL: nothing */
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
@@ -74,9 +75,11 @@ static inline void example_options(example_t *e, int argc, char **argv, const ch
 static inline cm1e_error_t example_open_bus(example_t *e, cm1e_diag_t *why)
 {
     cm1e_bus_config_t config;
-    cm1e_error_t error = cm1e_bus_config_init(&config, e->interface_name, e->axis_count > 0 ? e->axis_count : 1);
+    cm1e_error_t error = e->bus_file ? cm1e_bus_config_load(&config, e->bus_file, why)
+                                     : cm1e_bus_config_init(&config, NULL, e->axis_count > 0 ? e->axis_count : 1);
     if (error != CM1E_OK)
-        return cm1e_diag_set(why, error, 0, "%s", cm1e_strerror(error));
+        return e->bus_file ? error : cm1e_diag_set(why, error, 0, "%s", cm1e_strerror(error));
+    snprintf(config.interface_name, sizeof config.interface_name, "%s", e->interface_name);
     if (e->describe_network)
         e->describe_network(&config);
     config.virtual_time = e->virtual_time;

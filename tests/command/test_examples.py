@@ -346,6 +346,30 @@ def check_xy_table():
         expect(done.returncode == 1 and told in done.stderr, f"{name}: {text!r}: {done.returncode} {done.stderr}")
 
 
+def check_machine_io():
+    """The curtain stops the axis within its deceleration, and the cam switches where it says, to a cycle."""
+    name = "15_machine_io"
+    printed, trace, words = run(name)
+    told = re.search(r"Glue from ([\d.]+) mm on, off at ([\d.]+) mm\. Pressure 1250 of 1000.*\n.*interrupted at ([\d.]+) "
+                     r"mm\. The axis stood (\d+) ms later, at ([\d.]+) mm", printed)
+    expect(told, f"{name}: {printed}")
+    on, off, interrupted, late, stood = (float(part) for part in told.groups())
+    cycle = 60 * 0.001
+    expect(20 <= on <= 20 + 2 * cycle and 60 <= off <= 60 + 2 * cycle, f"{name}: {printed}")
+    expect(80 <= interrupted < 80 + 10 * cycle and 100 <= late < 160 and stood - interrupted < 6, f"{name}: {printed}")
+    still = [sample for sample in trace if sample["set_velocity"] == 0 and abs(sample["set_position"] - stood) < 0.01]
+    expect(len(still) > 300, f"{name}: it stands for {len(still)} cycles")
+    expect(abs(trace[-1]["set_position"] - 150) < 1e-6, f"{name}: it ends at {trace[-1]['set_position']}")
+    expect("curtain" in words and "go on" in words, f"{name}: {words}")
+    wrong = os.path.join(OUTPUT, "machine_without_curtain.yaml")
+    path = os.path.join(os.path.dirname(__file__), "..", "..", "examples", "machine.yaml")
+    with open(path, encoding="utf-8") as file, open(wrong, "w", encoding="utf-8") as other:
+        other.write(file.read().replace("name: curtain", "name: fence"))
+    done = subprocess.run([os.path.join(BIN, name), "--virtual-time", "-b", wrong], capture_output=True, text=True,
+                          timeout=60)
+    expect(done.returncode == 1 and 'has no signal "curtain"' in done.stderr and '"fence"' in done.stderr, f"{name}: {done}")
+
+
 def distance(row, begin, end, x, y):
     """Of a point from a row of the outline; the arc of this one is a quarter of a circle around (80, 40)."""
     if row[0] == "arc":
@@ -367,7 +391,7 @@ def check_interrupted():
     """Ctrl-C is no success, and is said."""
     commands = [["02_move_one_axis"], ["03_plc_program"], *([name, "-i", "sim"] for name in (
         "04_buffer_modes", "08_cool_muscle_bridge", "10_electronic_gear", "11_flying_shear", "12_winder",
-        "13_xy_table"))]
+        "13_xy_table", "15_machine_io"))]
     running = [subprocess.Popen([os.path.join(BIN, words[0]), *words[1:]], stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True) for words in commands]
     for example in running:
@@ -427,6 +451,7 @@ def check_traces():
     check_flying_shear()
     check_winder()
     check_xy_table()
+    check_machine_io()
     check_touch_probe()
     check_homing_steps()
     check_jog_panel()

@@ -337,7 +337,7 @@ static void test_example_files_are_loaded(void)
     static const struct {
         const char *name;
         uint32_t axes, behind_bridges;
-    } examples[] = {{"three_axes", 3, 0}, {"bridge", 4, 4}, {"mixed", 4, 2}};
+    } examples[] = {{"three_axes", 3, 0}, {"bridge", 4, 4}, {"mixed", 4, 2}, {"machine", 1, 0}};
     for (size_t i = 0; i < sizeof examples / sizeof examples[0]; i++) {
         char path[200];
         snprintf(path, sizeof path, CM1E_SOURCE_DIR "/examples/%s.yaml", examples[i].name);
