@@ -359,7 +359,7 @@ def check_machine_io():
     expect(80 <= interrupted < 80 + 10 * cycle and 100 <= late < 160 and stood - interrupted < 6, f"{name}: {printed}")
     still = [sample for sample in trace if sample["set_velocity"] == 0 and abs(sample["set_position"] - stood) < 0.01]
     expect(len(still) > 300, f"{name}: it stands for {len(still)} cycles")
-    expect(abs(trace[-1]["set_position"] - 150) < 1e-6, f"{name}: it ends at {trace[-1]['set_position']}")
+    expect(abs(trace[-1]["set_position"] - 150) < 0.01, f"{name}: it ends at {trace[-1]['set_position']}")
     expect("curtain" in words and "go on" in words, f"{name}: {words}")
     wrong = os.path.join(OUTPUT, "machine_without_curtain.yaml")
     path = os.path.join(os.path.dirname(__file__), "..", "..", "examples", "machine.yaml")
