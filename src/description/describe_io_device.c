@@ -120,12 +120,11 @@ void cm1e_describe_io_identity(cm1e_description_file_t *file, const cm1e_slave_c
 
 /* ---- any --------------------------------------------------------------------------------------------------------- */
 
-/* Like product codes of the simulator's other simple devices: 0x0808 has 8 outputs and 8 inputs. */
+/* Masters take devices of one product and revision for equal, so each has its own: 0xD0408 has 4 outputs, 8 inputs. */
 static uint32_t product_code(const cm1e_sim_slave_config_t *sim)
 {
-    const uint32_t channels = (uint32_t)sim->outputs << 8 | sim->inputs;
-    return sim->kind == CM1E_SIM_SLAVE_COUPLER ? 0x0100 : sim->kind == CM1E_SIM_SLAVE_ANALOG ? 0xA0000 | channels
-                                                                                            : channels;
+    static const uint32_t kinds[] = {0, 0xC0000, 0xD0000, 0xA0000};
+    return kinds[sim->kind] | (uint32_t)sim->outputs << 8 | sim->inputs;
 }
 
 void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_config_t *slave)

@@ -31,13 +31,21 @@ void cm1e_sim_al_watchdog_changed(cm1e_sim_slave_t *slave)
     }
 }
 
+/* Nothing triggers the watchdog of a device without outputs. */
+static bool has_outputs(const cm1e_sim_slave_t *slave)
+{
+    uint16_t outputs = 0, inputs = 0;
+    slave->ops->process_data_sizes(slave->app, &outputs, &inputs);
+    return outputs > 0;
+}
+
 void cm1e_sim_al_watchdog_due(cm1e_sim_slave_t *slave)
 {
     slave->watchdog_due_ns = ESC_NEVER;
     slave->memory[ESC_WATCHDOG_STATUS] &= (uint8_t)~STATUS_RUNNING;
     cm1e_sim_esc_count(slave, ESC_WATCHDOG_COUNTERS);
     /* A device without a function for it takes no notice (firmware before V1.3.0, UG 10.1). */
-    if (slave->al_state != CM1E_AL_OP || !slave->ops->watchdog_expired)
+    if (slave->al_state != CM1E_AL_OP || !slave->ops->watchdog_expired || !has_outputs(slave))
         return;
     slave->ops->watchdog_expired(slave->app);
     cm1e_sim_slave_fall_back(slave, CM1E_AL_SAFE_OP, AL_CODE_SM_WATCHDOG);

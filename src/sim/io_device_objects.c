@@ -52,6 +52,15 @@ static void add_identity(cm1e_sim_io_objects_t *o, const cm1e_description_t *dev
     add_entry(o, 4, RO, CM1E_TYPE_UDINT, "Serial number", 0);
 }
 
+/* Mailbox out and in, outputs, inputs (ETG.1000.6 section 5.6.7.4). */
+static void add_sync_managers(cm1e_sim_io_objects_t *o)
+{
+    add_object(o, OBJ_1C00_SM_TYPES, CM1E_OBJECT_ARRAY, 4, "Sync manager type");
+    add_count(o, RO, 4);
+    for (unsigned i = 1; i <= 4; i++)
+        add_entry(o, i, RO, CM1E_TYPE_USINT, "Sync manager type", i);
+}
+
 /* As the description has the PDO; further entries are empty. */
 static void add_pdo(cm1e_sim_io_objects_t *o, const cm1e_described_pdo_t *pdo)
 {
@@ -126,6 +135,7 @@ bool cm1e_sim_io_objects_create(cm1e_sim_io_device_t *device, const cm1e_slave_c
     add_identity(o, described);
     add_pdos(o, described, false);
     add_pdos(o, described, true);
+    add_sync_managers(o);
     add_assignment(o, described, false);
     add_assignment(o, described, true);
     add_channels(o, &device->config);

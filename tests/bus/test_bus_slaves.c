@@ -166,9 +166,9 @@ START_TEST(identity_and_address_are_checked)
         unsigned address, product, revision;
         const char *told; /* NULL: it starts */
     } cases[] = {
-        {CM1E_ADDRESS_POSITION, VALVES, 0x400, 1, NULL},
-        {CM1E_ADDRESS_POSITION, VALVES, 0x401, 0, "expects the product 0x00000401, the device is \"Digital terminal"},
-        {CM1E_ADDRESS_POSITION, VALVES, 0x400, 2, "expects the revision 0x00000002"},
+        {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 1, NULL},
+        {CM1E_ADDRESS_POSITION, VALVES, 0xD0401, 0, "expects the product 0x000D0401, the device is \"Digital terminal"},
+        {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 2, "expects the revision 0x00000002"},
         {CM1E_ADDRESS_POSITION, 9, 0, 0, "\"valves\": expected at position 9, where there is none"},
         {CM1E_ADDRESS_ALIAS, 77, 0, 0, "expected at alias 77"},
         {CM1E_ADDRESS_EXPLICIT_ID, 7, 0, 0, "expected at explicit device ID 7"},

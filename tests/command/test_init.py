@@ -116,7 +116,7 @@ def check_slaves(folder):
     """What the file names is there, on that network and on the segment that the simulator makes of the file itself."""
     done, path, text = init(folder, "slaves", SLAVES)
     expect("1 axis, 5 slaves without an axis" in done.stdout, f"{done}")
-    for wanted in (r"- name: io1\n.*position: 1 .*\n.*product: 0x00000100\n.*\n    sim: \{device: coupler\}",
+    for wanted in (r"- name: io1\n.*position: 1 .*\n.*product: 0x000C0000\n.*\n    sim: \{device: coupler\}",
                    r"alias: 1001 .*\n    vendor: 0x00000002\n    product: 0x03F03052\n",
                    r"- \{name: in3, bit: 2\}   # BOOL, Channel 3, Input\n    sim: \{device: digital, inputs: 3, outputs: 2\}",
                    r"- \{name: in3, object: 0x6000:11\}   # INT, AI Standard Channel 1, Value\n"):
