@@ -1,6 +1,6 @@
 /* A whole machine on one bus: a coupler with eight digital terminals, an analog device each way with CoE, a CM1-E, a
- * servo drive of another maker and a bridge. Its start with a frame lost at every moment, and every slave going away and
- * coming back. */
+ * servo drive of another maker and a bridge. Its start with a frame lost at every moment, and every slave going away
+ * and coming back. */
 #include "bus_support.h"
 #include "cm1e/io.h"
 #include "effort.h"

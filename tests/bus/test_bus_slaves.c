@@ -263,8 +263,8 @@ START_TEST(what_a_slave_refuses_is_told)
 {
     rearrange();
     write_object(ANALOG_IN, 0x8020, 0x12, 1, false);
-    expect_refused(CM1E_ERROR_SDO_ABORT, "Start-up as the configuration states it: slave 4 (\"analog in\", Analog terminal "
-                                         "0+2) refuses to write object 0x8020:12");
+    expect_refused(CM1E_ERROR_SDO_ABORT, "Start-up as the configuration states it: slave 4 (\"analog in\", Analog "
+                                         "terminal 0+2) refuses to write object 0x8020:12");
     rearrange();
     map(ANALOG_IN, 0x1A00, 0x6000, 0x11, 8);
     expect_refused(CM1E_ERROR_SDO_ABORT, "refuses to write object 0x1A00:00: SDO abort 0x06040041");

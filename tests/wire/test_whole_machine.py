@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A whole machine over a veth pair: a coupler with eight digital terminals of 1 to 8 bits, an analog device each way with
-CoE, a CM1-E, a servo drive of another maker and a bridge. Our master and pysoem exchange the same bits with it.
+"""A whole machine over a veth pair: a coupler with eight digital terminals of 1 to 8 bits, an analog device each way
+with CoE, a CM1-E, a servo drive of another maker and a bridge. Our master and pysoem exchange the same bits with it.
 
 test_whole_machine.py CM1E PYTHON: starts the segment and runs itself with --master in the master's namespace.
 """
