@@ -78,7 +78,7 @@ static void print_pdos(cm1e_bus_t *bus, uint16_t position)
         return;
     }
     if (list.count == 0)
-        printf("     no process data\n");
+        printf("     %s\n", list.unknown ? "its process data could not be read" : "no process data");
     unsigned pdo = 0;
     for (size_t i = 0; i < list.count; i++) {
         const listed_entry_t *entry = &list.entries[i];
@@ -100,6 +100,10 @@ static json_t *pdos_as_json(cm1e_bus_t *bus, uint16_t position)
     json_t *entries = json_array();
     if (!pdo_list_read(bus, position, &list))
         complain("out of memory");
+    if (list.unknown) {
+        json_decref(entries);
+        return json_null();
+    }
     for (size_t i = 0; i < list.count; i++) {
         const listed_entry_t *entry = &list.entries[i];
         json_array_append_new(entries, json_pack("{s:b, s:i, s:s, s:i, s:i, s:i, s:i, s:s, s:s}", "output",

@@ -85,6 +85,8 @@ static void print_sim(FILE *file, const pdo_list_t *list)
     unsigned digital[2] = {0, 0}, analog[2] = {0, 0}; /* inputs, outputs */
     const bool is_bits = is_digital(list, digital), is_words = is_analog(list, analog);
     const unsigned *counts = is_bits ? digital : analog;
+    if (list->unknown)
+        return;
     if (list->count == 0) {
         fprintf(file, "    sim: {device: coupler}\n");
     } else if (is_bits || is_words) {
@@ -108,6 +110,8 @@ void init_print_slave(FILE *file, cm1e_bus_t *bus, const cm1e_slave_info_t *slav
         complain("out of memory");
         return;
     }
+    if (list.unknown)
+        fprintf(file, "    # Its process data could not be read.\n");
     print_signals(file, &list, true, &named);
     print_signals(file, &list, false, &named);
     print_sim(file, &list);

@@ -141,6 +141,7 @@ bool pdo_list_read(cm1e_bus_t *bus, uint16_t position, pdo_list_t *list)
     bool good = !cm1e_bus_slave_has_coe(bus, position) || list_assigned(bus, position, list);
     if (good && !list->by_coe)
         good = list_sii(sii, list);
+    list->unknown = !list->by_coe && !sii;
     for (size_t i = 0; good && i < list->count; i++)
         name_entry(sii, &list->entries[i]);
     cm1e_description_file_free(&file);

@@ -22,6 +22,7 @@ typedef struct listed_entry {
 
 typedef struct pdo_list {
     bool by_coe;              /**< asked of the slave; false: of its SII */
+    bool unknown;             /**< neither of them could be read */
     size_t count, room;
     listed_entry_t *entries;  /**< outputs, then inputs */
 } pdo_list_t;
