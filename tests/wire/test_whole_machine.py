@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """A whole machine over a veth pair: a coupler with eight digital terminals of 1 to 8 bits, an analog device each way
-with CoE, a CM1-E, a servo drive of another maker and a bridge. Our master and pysoem exchange the same bits with it.
+with CoE, a CM1-E, a servo drive of another maker and a bridge. Our master, pysoem, and a master that knows nothing but
+the ENI of our scan exchange the same bits with it.
 
 test_whole_machine.py CM1E PYTHON: starts the segment and runs itself with --master in the master's namespace.
 """
@@ -142,6 +143,45 @@ def run_master():
     print(f"pysoem: {len(slaves)} slaves in Op, {sum(CHANNELS)} bits and two words came back")
 
 
+# ---- an ENI of it ----------------------------------------------------------------------------------------------------
+
+PLAYER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "eni_player.py")
+PLAY = """
+def play(master):
+    master.start()
+    for _ in range(20):
+        master.cycle()
+    if master.al_states() != (8, len(master.slaves)):
+        raise Failed(f"AL states {master.al_states()}")
+    for pattern in PATTERNS:
+        for n, count in enumerate(CHANNELS):
+            terminal = f"Digital terminal {count}+0 {2 + 2 * n}"
+            for channel in range(count):
+                master.write(terminal, f"Channel {channel + 1}.Output", pattern >> channel & 1)
+        master.write("Analog terminal 2+0 10", "AO Output Channel 1.Value", pattern - 1234)
+        for _ in range(20):
+            master.cycle()
+        for n, count in enumerate(CHANNELS):
+            for channel in range(count):
+                got = master.read(f"Digital terminal 0+{count} {3 + 2 * n}", f"Channel {channel + 1}.Input")
+                if got != pattern >> channel & 1:
+                    raise Failed(f"input {channel + 1} of in{n} is {got} with {pattern:#x}")
+        if master.read("Analog terminal 0+2 11", "AI Standard Channel 1.Value", signed=True) != pattern - 1234:
+            raise Failed("the analog value is another")
+    print("the ENI of our scan, played by itself:", sum(CHANNELS), "bits and a word came back")
+"""
+
+
+def check_eni(segment, cm1e):
+    path = os.path.join(segment.folder, "scan.xml")
+    made = segment.run([cm1e, "generate", "eni", "-i", wire.MASTER_INTERFACE, "-o", path])
+    wire.check(made.returncode == 0, f"generate eni: {made}")
+    played = segment.run([sys.executable, PLAYER, path, wire.MASTER_INTERFACE,
+                          f"PATTERNS, CHANNELS = {PATTERNS}, {CHANNELS}\n{PLAY}"])
+    print(played.stdout + played.stderr, end="")
+    wire.check(played.returncode == 0, f"the player of the ENI ended with {played.returncode}")
+
+
 def main(cm1e, python):
     with tempfile.TemporaryDirectory() as folder:
         slow = bus_file(folder, 1000, True)
@@ -153,6 +193,7 @@ def main(cm1e, python):
             result = segment.run([python, os.path.abspath(__file__), "--master"])
             print(result.stdout + result.stderr, end="")
             wire.check(result.returncode == 0, f"pysoem ended with {result.returncode}")
+            check_eni(segment, cm1e)
 
 
 if __name__ == "__main__":

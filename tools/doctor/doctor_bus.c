@@ -203,10 +203,11 @@ static bool look_at_owner(doctor_t *doctor, const common_options_t *options, con
 static void look_at_configuration(doctor_t *doctor, cm1e_bus_t *bus, const cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
-    if (config->axis_count == 0)
+    if (config->axis_count + config->slave_count == 0)
         doctor_find(doctor, FINDING_NOTE, group, "bus file", "none given: -b FILE compares one with what is there");
     else if (cm1e_bus_identify(bus, &diag) == CM1E_OK)
-        doctor_find(doctor, FINDING_GOOD, group, "bus file", "its %u axes are there", config->axis_count);
+        doctor_find(doctor, FINDING_GOOD, group, "bus file", "its %u axes and %u other slaves are there",
+                    config->axis_count, config->slave_count);
     else
         say_failure(doctor, "bus file", &diag);
 }
