@@ -29,6 +29,9 @@ static cm1e_error_t copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *
             snprintf(axis->name, sizeof axis->name, "axis%u", i + 1);
         axis->address = cm1e_axis_address(to, i);
     }
+    for (uint32_t i = 0; i < to->slave_count; i++)
+        if (!to->slaves[i].name[0])
+            snprintf(to->slaves[i].name, sizeof to->slaves[i].name, "slave%u", i + 1);
     return CM1E_OK;
 }
 

@@ -419,6 +419,8 @@ static const command_t commands[] = {
     {"power-cycle", ANY_SLAVE, 0, 1, cm1e_console_power_cycle, "<slave> [ms]", "control power off and on again"},
     {"unplug", ANY_SLAVE, 0, 0, cm1e_console_unplug, "<slave>", "pull the cable before it"},
     {"replug", ANY_SLAVE, 0, 0, cm1e_console_replug, "<slave>", "plug the cable in again"},
+    {"input", ANY_SLAVE, 2, 2, cm1e_console_input, "<slave> <1...8> on|off|<value>|wire",
+     "hold an input of a digital or analog device"},
     {"clock", ANY_SLAVE, 1, 2, cm1e_console_clock, "<slave> drift|temperature|jitter|step|...",
      "its distributed clock: drifts, jumps, loses its reference"},
     {"lose", NO_SLAVE, 1, 1, cm1e_console_lose, "<frames>", "lose the next frames"},

@@ -99,5 +99,6 @@ cm1e_error_t cm1e_console_corrupt(call_t *call);
 cm1e_error_t cm1e_console_delay(call_t *call);
 cm1e_error_t cm1e_console_firmware(call_t *call);
 cm1e_error_t cm1e_console_clock(call_t *call);
+cm1e_error_t cm1e_console_input(call_t *call);
 
 #endif

@@ -1,6 +1,7 @@
 #include "sim/console_call.h"
 #include "sim/esc.h"
 #include "sim/esc_clock_orders.h"
+#include "sim/io_device.h"
 
 enum { FRAMES_MAX = 1000000, DELAY_MAX_US = 1000000, ABSENCE_MAX_MS = 60000, ABSENCE_DEFAULT_MS = 500 };
 
@@ -104,4 +105,26 @@ cm1e_error_t cm1e_console_clock(call_t *call)
     const bool taken = cm1e_sim_clock_order(call->slave, argument(call, 0), argument(call, 1), text, sizeof text);
     say(call, "slave %u: %s", call->position, text);
     return taken ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
+}
+
+/* What comes to the terminal of an input, in place of its wire. */
+cm1e_error_t cm1e_console_input(call_t *call)
+{
+    static const char *const words[] = {"off", "on", "wire", NULL};
+    cm1e_sim_io_device_t *device = cm1e_sim_io_device_of(call->slave);
+    const unsigned inputs = device ? device->config.inputs : 0;
+    const char *text = argument(call, 1);
+    const int word = choice(text, words);
+    long channel, value = word;
+    if (inputs == 0)
+        return REFUSE(call, "slave %u has no simulated inputs", call->position);
+    if (!parse_whole(argument(call, 0), 10, 1, (long)inputs, &channel))
+        return REFUSE(call, "\"%s\": expected an input, 1 to %u", argument(call, 0), inputs);
+    const bool analog = device->config.kind == CM1E_SIM_SLAVE_ANALOG;
+    if (word < 0 && !(analog && parse_whole(text, 10, INT16_MIN, INT16_MAX, &value)))
+        return REFUSE(call, "\"%s\": expected %s or wire", text, analog ? "-32768 to 32767" : "on, off");
+    device->is_held[channel - 1] = word != 2;
+    device->held[channel - 1] = value;
+    say(call, "slave %u: input %ld is %s", call->position, channel, word == 2 ? "wired again" : text);
+    return CM1E_OK;
 }

@@ -114,8 +114,10 @@ static void set(cm1e_bus_t *bus, const char *name, int64_t value)
 START_TEST(signals_have_the_names_of_the_configuration)
 {
     machine();
+    config.slaves[COUPLER - 1].name[0] = '\0';
     cm1e_bus_t *bus = start_machine();
     ck_assert_str_eq(cm1e_bus_slave_name(bus, VALVES), "valves");
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, COUPLER), "slave1"); /* it has no name of its own */
     ck_assert_str_eq(cm1e_bus_slave_name(bus, MOTOR), "");
     ck_assert_str_eq(cm1e_bus_slave_name(bus, 99), "");
     for (unsigned on = 0; on < 16; on++) {
@@ -362,6 +364,34 @@ START_TEST(outputs_of_a_slave_that_was_away_are_safe_and_those_of_others_stay)
 }
 END_TEST
 
+START_TEST(console_holds_an_input_until_it_is_wired_again)
+{
+    static const char *const wrong[] = {"input 3 9 on", "input 3 0 on", "input 3 1 2", "input 2 1 on",
+                                        "input 4 1 40000"};
+    char answer[200];
+    machine();
+    cm1e_bus_t *bus = start_machine();
+    set(bus, "valves.clamp", 0);
+    simulate(bus, "input 3 1 on");
+    simulate(bus, "input 4 2 -77");
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(value_of(bus, "switches.curtain"), 1);
+    ck_assert_int_eq(value_of(bus, "analog in.AI Standard Channel 2 Value"), -77);
+    set(bus, "valves.clamp", 1);
+    simulate(bus, "input 3 1 off");
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(value_of(bus, "switches.curtain"), 0);
+    simulate(bus, "input 3 1 wire");
+    simulate(bus, "input 4 2 wire");
+    cycles(bus, SETTLE);
+    ck_assert_int_eq(value_of(bus, "switches.curtain"), 1);
+    ck_assert_int_eq(value_of(bus, "analog in.AI Standard Channel 2 Value"), 0);
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
+        ck_assert_int_eq(cm1e_bus_simulate(bus, wrong[i], answer, sizeof answer), CM1E_ERROR_INVALID_ARGUMENT);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(watchdog_has_the_time_of_the_configuration)
 {
     machine();
@@ -393,6 +423,7 @@ int main(void)
     tcase_add_test(tests, outputs_are_safe_before_the_program_and_after_it);
     tcase_add_test(tests, outputs_are_safe_after_the_bus_was_lost);
     tcase_add_test(tests, outputs_of_a_slave_that_was_away_are_safe_and_those_of_others_stay);
+    tcase_add_test(tests, console_holds_an_input_until_it_is_wired_again);
     tcase_add_test(tests, watchdog_has_the_time_of_the_configuration);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

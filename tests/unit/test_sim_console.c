@@ -49,7 +49,7 @@ static void test_help_lists_every_command(void)
 {
     static const char *const words[] = {"help", "status", "show", "power", "switches", "sensor", "load", "over-torque",
                                         "temperature", "error", "power-up-fault", "motor", "power-cycle", "unplug",
-                                        "replug", "clock", "lose", "corrupt", "delay"};
+                                        "replug", "input", "clock", "lose", "corrupt", "delay"};
     accept("help");
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(answer, words[i]), words[i]);
@@ -67,6 +67,7 @@ static void test_wrong_lines_are_refused_in_words(void)
         {"power", "slave is missing"}, {"power 0 off", "1 to 4"}, {"power 5 off", "1 to 4"}, {"power -1 off", "1 to 4"},
         {"power 1x off", "1 to 4"}, {"power x off", "1 to 4"}, {"power 99999999999999999999 off", "1 to 4"},
         {"power 1", "usage: power <slave> on|off"}, {"power 1 maybe", "on or off"}, {"power 1 off now", "too much"},
+        {"input 1 1 on", "no simulated inputs"}, {"input 1 1", "usage"}, {"input 9 1 on", "1 to 4"},
         {"power 4 off", "not a CM1-E"}, {"power off 1", "1 to 4"},
         {"switches 1 100", "00 to FF"}, {"switches 1 G1", "00 to FF"}, {"switches 1 -1", "00 to FF"},
         {"switches 1 0x", "00 to FF"}, {"switches 1 0x-1", "00 to FF"}, {"switches 1 B5 B6", "too much"},
