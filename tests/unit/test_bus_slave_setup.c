@@ -1,0 +1,126 @@
+/* What the configuration writes into a slave at its start: the transfers in their order, what is read back, and every
+ * one of them refused or answered with another value. */
+#include <string.h>
+
+#include "bus/slave_setup.h"
+#include "core/bytes.h"
+#include "unity.h"
+
+static cm1e_slave_config_t config;
+static cm1e_setup_job_t job;
+
+void setUp(void)
+{
+    config = (cm1e_slave_config_t){
+        .outputs_pdos = {0x1601}, .inputs_pdos = {0x1A03, 0x1A00}, .outputs_pdo_count = 1, .inputs_pdo_count = 2,
+        .entries = {{0x1A00, 0x6000, 1, 1}, {0x1A00, 0, 0, 7}, {0x1601, 0x7000, 0x11, 16}}, .entry_count = 3,
+        .sdos = {{0x8000, 0x12, 2, false, 0xFF9C}, {0x8000, 1, 4, true, 0x3FC00000}, {0x8010, 0, 1, false, 1}},
+        .sdo_count = 3,
+    };
+}
+void tearDown(void) {}
+
+typedef struct transfer {
+    bool write;
+    unsigned index, subindex, bytes;
+    uint64_t value;
+} transfer_t;
+
+static const transfer_t before_safe_op[] = {
+    {true, 0x8000, 0x12, 2, 0xFF9C}, {true, 0x8010, 0, 1, 1},
+    {true, 0x1C12, 0, 1, 0}, {true, 0x1C13, 0, 1, 0},
+    {true, 0x1A00, 0, 1, 0}, {true, 0x1A00, 1, 4, 0x60000101}, {true, 0x1A00, 2, 4, 0x00000007},
+    {true, 0x1A00, 0, 1, 2},
+    {true, 0x1601, 0, 1, 0}, {true, 0x1601, 1, 4, 0x70001110}, {true, 0x1601, 0, 1, 1},
+    {true, 0x1C12, 1, 2, 0x1601}, {true, 0x1C12, 0, 1, 1},
+    {true, 0x1C13, 1, 2, 0x1A03}, {true, 0x1C13, 2, 2, 0x1A00}, {true, 0x1C13, 0, 1, 2},
+    {false, 0x1A00, 1, 4, 0x60000101}, {false, 0x1A00, 2, 4, 0x00000007}, {false, 0x1A00, 0, 1, 2},
+    {false, 0x1601, 1, 4, 0x70001110}, {false, 0x1601, 0, 1, 1},
+    {false, 0x1C12, 1, 2, 0x1601}, {false, 0x1C12, 0, 1, 1},
+    {false, 0x1C13, 1, 2, 0x1A03}, {false, 0x1C13, 2, 2, 0x1A00}, {false, 0x1C13, 0, 1, 2},
+};
+enum { TRANSFERS = sizeof before_safe_op / sizeof before_safe_op[0] };
+
+typedef enum harm { NOTHING = 0, REFUSED, OTHER_VALUE } harm_t;
+
+/* Answers every transfer as a good slave does, but for one. Returns how many there were. */
+static int run(bool before_op, const transfer_t *expected, int harmed, harm_t harm)
+{
+    int count = 0;
+    cm1e_setup_begin(&job, 3, &config, before_op);
+    for (cm1e_sdo_t *sdo; (sdo = cm1e_setup_next(&job)) != NULL; count++) {
+        const transfer_t *one = &expected[count];
+        const bool hit = harm != NOTHING && count == harmed;
+        TEST_ASSERT_EQUAL(3, sdo->position);
+        TEST_ASSERT_EQUAL_HEX16(one->index, sdo->index);
+        TEST_ASSERT_EQUAL_HEX8(one->subindex, sdo->subindex);
+        TEST_ASSERT_EQUAL(one->write, sdo->write);
+        if (one->write) {
+            TEST_ASSERT_EQUAL(one->bytes, sdo->size);
+            TEST_ASSERT_EQUAL_HEX64(one->value, cm1e_get_uint(sdo->data, (unsigned)sdo->size));
+        } else {
+            cm1e_put_uint(sdo->data, one->bytes, one->value ^ (hit && harm == OTHER_VALUE));
+            sdo->size = one->bytes;
+        }
+        sdo->error = hit && harm == REFUSED ? CM1E_ERROR_SDO_ABORT : CM1E_OK;
+        sdo->state = sdo->error != CM1E_OK ? CM1E_SDO_ERROR : CM1E_SDO_DONE;
+    }
+    TEST_ASSERT_TRUE(cm1e_setup_idle(&job));
+    return count;
+}
+
+static void test_all_is_written_in_order_and_pdos_are_read_back(void)
+{
+    static const transfer_t before_op = {true, 0x8000, 1, 4, 0x3FC00000};
+    TEST_ASSERT_EQUAL(TRANSFERS, run(false, before_safe_op, 0, NOTHING));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+    TEST_ASSERT_EQUAL(1, run(true, &before_op, 0, NOTHING));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+}
+
+static void test_every_refusal_ends_the_job_there(void)
+{
+    for (int i = 0; i < TRANSFERS; i++) {
+        TEST_ASSERT_EQUAL(i + 1, run(false, before_safe_op, i, REFUSED));
+        TEST_ASSERT_EQUAL(CM1E_ERROR_SDO_ABORT, job.error);
+        TEST_ASSERT_EQUAL_HEX16(before_safe_op[i].index, job.sdo.index);
+        TEST_ASSERT_FALSE(job.differs);
+    }
+}
+
+static void test_every_other_value_is_noticed(void)
+{
+    for (int i = 0; i < TRANSFERS; i++) {
+        if (before_safe_op[i].write)
+            continue;
+        TEST_ASSERT_EQUAL(i + 1, run(false, before_safe_op, i, OTHER_VALUE));
+        TEST_ASSERT_EQUAL(CM1E_ERROR_PDO_MAPPING, job.error);
+        TEST_ASSERT_TRUE(job.differs);
+        TEST_ASSERT_EQUAL_HEX64(before_safe_op[i].value, job.expected);
+        TEST_ASSERT_EQUAL_HEX64(before_safe_op[i].value ^ 1, job.shown);
+    }
+}
+
+static void test_nothing_to_write_is_no_job(void)
+{
+    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false));
+    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, true));
+    config.sdo_count = 0;
+    TEST_ASSERT_FALSE(cm1e_setup_is_needed(&config, true));
+    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false));
+    config.entry_count = config.outputs_pdo_count = config.inputs_pdo_count = 0;
+    TEST_ASSERT_FALSE(cm1e_setup_is_needed(&config, false));
+    TEST_ASSERT_FALSE(cm1e_setup_is_needed(NULL, false));
+    TEST_ASSERT_EQUAL(0, run(false, before_safe_op, 0, NOTHING));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_all_is_written_in_order_and_pdos_are_read_back);
+    RUN_TEST(test_every_refusal_ends_the_job_there);
+    RUN_TEST(test_every_other_value_is_noticed);
+    RUN_TEST(test_nothing_to_write_is_no_job);
+    return UNITY_END();
+}
