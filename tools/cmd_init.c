@@ -219,6 +219,14 @@ static void print_without_axis(init_t *init, const cm1e_slave_info_t *slave)
     init_print_slave(init->file, init->bus, slave);
 }
 
+static bool has_motors(const init_t *init)
+{
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(init->bus); position++)
+        if (cm1e_bus_slave(init->bus, position)->device)
+            return true;
+    return false;
+}
+
 static void print_file(init_t *init, const char *interface_name)
 {
     fprintf(init->file,
@@ -226,9 +234,10 @@ static void print_file(init_t *init, const char *interface_name)
             "# Behind # stand facts, and keys with examples.\n"
             "bus:\n"
             "  interface: %s\n"
-            "  # cycle_time_us: 1000   # 200, 250, 500 or 1000; with a bridge 1000\n"
-            "\naxes:\n",
+            "  # cycle_time_us: 1000   # 200, 250, 500 or 1000; with a bridge 1000\n",
             interface_name, interface_name);
+    if (has_motors(init))
+        fprintf(init->file, "\naxes:\n");
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(init->bus); position++)
         if (cm1e_bus_slave(init->bus, position)->device)
             print_axes(init, cm1e_bus_slave(init->bus, position));
@@ -270,13 +279,13 @@ static int write_file(init_t *init, const init_options_t *options)
     free(text);
     if (!written)
         return EXIT_FAILED;
-    if (init->axes == 0)
-        complain("there is no motor that can be an axis; a bus file needs one");
+    if (init->axes == 0 && has_motors(init))
+        complain("none of the motors can be an axis without what the comments ask for");
     else if (strcmp(options->output, "-") != 0)
         print_counts(init, options->output);
     if (init->gaps > 0)
         complain("%u %s not complete, and a comment in the file", init->gaps, init->gaps == 1 ? "axis is" : "axes are");
-    return init->axes > 0 ? EXIT_OK : EXIT_FAILED;
+    return init->axes > 0 || !has_motors(init) ? EXIT_OK : EXIT_FAILED;
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)

@@ -179,7 +179,7 @@ int load_axes(const common_options_t *options, cm1e_bus_config_t *config)
 {
     if (!load_configuration(options, config))
         return EXIT_WRONG_USE;
-    if (config->axis_count > 0)
+    if (config->axis_count + config->slave_count > 0)
         return EXIT_OK;
     cm1e_bus_t *bus;
     cm1e_bus_config_t scanned = *config;

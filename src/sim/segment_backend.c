@@ -36,7 +36,7 @@ static cm1e_error_t make_segment(sim_t *sim, const char *name, const cm1e_bus_co
 {
     cm1e_bus_config_t other = {0}; /* the segment where it is described elsewhere, or not at all */
     cm1e_error_t error = CM1E_OK;
-    const bool by_file = bus_file(name) != NULL, by_config = !by_file && config->axis_count > 0;
+    const bool by_file = bus_file(name) != NULL, by_config = !by_file && config->axis_count + config->slave_count > 0;
     if (by_file)
         error = cm1e_bus_config_load(&other, bus_file(name), diag);
     else if (!by_config)

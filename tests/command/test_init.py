@@ -31,6 +31,11 @@ axes:
   - {name: s, position: 1, device: cia402, drive: {counts_per_revolution: 131072, max_speed_rpm: 3000}}
   - {name: x, position: 2}
 """
+ONLY_SLAVES = """\
+slaves:
+  - {name: out, position: 1, sim: {device: digital, outputs: 1}}
+  - {name: in, position: 2, sim: {device: digital, inputs: 1, wired_to: out}}
+"""
 SLAVES = """\
 axes:
   - {name: feed, position: 6}
@@ -129,6 +134,16 @@ def check_slaves(folder):
     drive(own, ["axis1"])
 
 
+def check_without_motor(folder):
+    """A network of terminals alone: no axes in the file, and no need of any."""
+    done, path, text = init(folder, "terminals", ONLY_SLAVES)
+    expect("0 axes, 2 slaves without an axis" in done.stdout and "axes:" not in text, f"{done}\n{text}")
+    own = write(os.path.join(folder, "terminals_own.yaml"), re.sub(r"interface: .*", "interface: sim", text))
+    expect([signal[:2] for signal in signals(own)] == [("io1", "out1"), ("io2", "in1")], f"{signals(own)}")
+    moved = run("move", "-b", own, "--by", "1")
+    expect(moved.returncode in (1, 2) and moved.stderr, f"a move without an axis: {moved}")
+
+
 def check_pdos(folder):
     network = write(os.path.join(folder, "pdos.yaml"), SLAVES)
     done = run("scan", "-b", network, "--pdos")
@@ -161,8 +176,6 @@ def check_refusals(folder):
     for words in (["init"], ["init", "-i", ""], ["init", "-i", "sim", "-o", ""], ["init", "-i", "sim", "more"]):
         done = run(*words)
         expect(done.returncode in (2, 64) and done.stderr, f"{words}: {done}")
-    nothing = run("init", "-i", "sim:" + write(os.path.join(folder, "v.yaml"), "axes: [{type: virtual}]\n"))
-    expect(nothing.returncode == 1 and "there is no motor" in nothing.stderr, f"no motor: {nothing}")
 
 
 with tempfile.TemporaryDirectory() as work:
@@ -170,6 +183,7 @@ with tempfile.TemporaryDirectory() as work:
     check_bridge(work)
     check_servo(work)
     check_slaves(work)
+    check_without_motor(work)
     check_pdos(work)
     check_overwriting(work)
     check_refusals(work)

@@ -214,6 +214,16 @@ static void test_slaves_of_an_older_or_newer_program(void)
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_check(&config, &diag), diag.text);
 }
 
+static void test_a_file_has_axes_or_slaves(void)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load("slaves: [{position: 1}]\n"), diag.text);
+    TEST_ASSERT_EQUAL(0, config.axis_count);
+    TEST_ASSERT_EQUAL(1, config.slave_count);
+    cm1e_bus_config_free(&config);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, load("bus: {interface: sim}\n"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "expected axes, slaves or both"), diag.text);
+}
+
 static void test_no_more_slaves_than_the_maximum(void)
 {
     TEST_ASSERT_EQUAL(CM1E_OK, cm1e_bus_config_init(&config, "sim", 0));
@@ -240,6 +250,7 @@ int main(void)
     RUN_TEST(test_mapping_and_signals_are_in_their_order);
     RUN_TEST(test_wrong_keys_are_told_with_place_and_cure);
     RUN_TEST(test_slaves_of_an_older_or_newer_program);
+    RUN_TEST(test_a_file_has_axes_or_slaves);
     RUN_TEST(test_no_more_slaves_than_the_maximum);
     return UNITY_END();
 }
