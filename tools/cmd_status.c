@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "attach.h"
+#include "cm1e/clocks.h"
 #include "cm1e/emergency.h"
 #include "command.h"
 #include "device/devices.h"
@@ -156,6 +157,37 @@ static void show_emergencies(const cm1e_bus_t *bus, uint16_t position, json_t *a
         print_emergencies(bus, position);
 }
 
+/* ---- distributed clocks, of a program that uses them ------------------------------------------------------------ */
+
+static void print_clock(const cm1e_slave_clock_t *clock)
+{
+    char pulses[64] = "";
+    if (clock->sync0_ns)
+        snprintf(pulses, sizeof pulses, ", SYNC0 every %g us", clock->sync0_ns * 1e-3);
+    if (clock->is_reference)
+        printf("  clock              reference of all others%s\n", pulses);
+    else
+        printf("  clock              %+d ns, at most %u ns%s%s\n", (int)clock->deviation_ns, clock->maximum_ns, pulses,
+               clock->lost ? "; LOST: it does not follow the reference" : clock->losses ? "; it was lost before" : "");
+}
+
+static void show_clock(const cm1e_bus_t *bus, uint16_t position, json_t *all)
+{
+    cm1e_slave_clock_t clock;
+    cm1e_bus_slave_clock(bus, position, &clock);
+    if (!clock.has_clock)
+        return;
+    if (!all) {
+        print_clock(&clock);
+        return;
+    }
+    json_object_set_new(json_array_get(all, json_array_size(all) - 1), "clock",
+                        json_pack("{s:b, s:b, s:i, s:i, s:i, s:I}", "is_reference", clock.is_reference, "lost",
+                                  clock.lost, "deviation_ns", (int)clock.deviation_ns, "maximum_ns",
+                                  (int)clock.maximum_ns, "sync0_ns", (int)clock.sync0_ns, "losses",
+                                  (json_int_t)clock.losses));
+}
+
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
                                  "Shows state, error, measurements and the last emergencies of every drive, and which "
@@ -186,6 +218,7 @@ int command_status(int argc, char **argv)
             readable = show_bridge(bus, &config, slave, all, &diag) && readable;
         else
             show_other(slave, all);
+        show_clock(bus, slave->position, all);
         show_emergencies(bus, slave->position, all);
     }
     if (all)

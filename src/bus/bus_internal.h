@@ -101,6 +101,13 @@ typedef struct cm1e_sdo_queue {
     unsigned listed;
 } cm1e_sdo_queue_t;
 
+/** The datagram of the supervision. */
+typedef struct cm1e_watching {
+    cm1e_datagram_t datagram;
+    bool sent;
+    uint32_t slave;                          /**< whose AL status was read last, 0 = first */
+} cm1e_watching_t;
+
 typedef enum cm1e_bus_phase {
     BUS_CLOSED = 0, BUS_OPEN, BUS_SCANNED, BUS_IDENTIFIED, BUS_CONFIGURED, BUS_OPERATING,
 } cm1e_bus_phase_t;
@@ -146,9 +153,7 @@ struct cm1e_bus {
     unsigned sent_count;
     uint32_t next_slave;                     /**< round robin of acyclic datagrams */
     cm1e_listening_t listening;
-    cm1e_datagram_t watch_datagram;
-    bool watch_sent;
-    uint32_t watched_slave;
+    cm1e_watching_t watching;
 
     cm1e_sdo_queue_t queue;
     cm1e_errand_t *errand;                   /**< atomic; NULL: none */

@@ -44,6 +44,8 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
         bus->slaves[i].info = told[i].info;
         take_device(&bus->slaves[i], &told[i]);
         take_emergencies(&bus->slaves[i], &told[i]);
+        bus->dc.used = (i > 0 && bus->dc.used) || told[i].has_clock;
+        bus->dc.slaves[i].clock = told[i].clock;
     }
     free(told);
     if (error != CM1E_OK)

@@ -6,6 +6,7 @@
 #define CM1E_BUS_REMOTE_H
 
 #include "bus/errand.h"
+#include "cm1e/clocks.h"
 #include "cm1e/emergency.h"
 #include "core/guest_api.h"
 
@@ -14,6 +15,8 @@ typedef struct cm1e_remote_slave {
     cm1e_slave_info_t info; /**< without `device` and `kind` */
     char kind[24];          /**< "": none of ours */
     bool coe;
+    bool has_clock;         /**< distributed clocks are used there */
+    cm1e_slave_clock_t clock;
     uint32_t emergency_count;
     cm1e_emergency_t emergencies[CM1E_EMERGENCIES]; /**< in the order of their numbers */
 } cm1e_remote_slave_t;

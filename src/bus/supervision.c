@@ -15,18 +15,18 @@ void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t 
 
 void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
 {
-    if (bus->watch_sent || bus->slave_count == 0)
+    if (bus->watching.sent || bus->slave_count == 0)
         return;
-    if (cm1e_dc_next_look(bus, &bus->watch_datagram)) {
-        cm1e_soem_post(bus->soem, &bus->watch_datagram, now_ns);
-        bus->watch_sent = true;
+    if (cm1e_dc_next_look(bus, &bus->watching.datagram)) {
+        cm1e_soem_post(bus->soem, &bus->watching.datagram, now_ns);
+        bus->watching.sent = true;
         return;
     }
-    bus->watched_slave = bus->watched_slave + 1 < bus->slave_count ? bus->watched_slave + 1 : 0;
-    cm1e_datagram_set(&bus->watch_datagram, COMMAND_FPRD, bus->slaves[bus->watched_slave].facts.station, REG_AL_STATUS,
+    bus->watching.slave = bus->watching.slave + 1 < bus->slave_count ? bus->watching.slave + 1 : 0;
+    cm1e_datagram_set(&bus->watching.datagram, COMMAND_FPRD, bus->slaves[bus->watching.slave].facts.station, REG_AL_STATUS,
                       AL_STATUS_BYTES);
-    cm1e_soem_post(bus->soem, &bus->watch_datagram, now_ns);
-    bus->watch_sent = true;
+    cm1e_soem_post(bus->soem, &bus->watching.datagram, now_ns);
+    bus->watching.sent = true;
 }
 
 /** No axis requests the recovery of a device between the axes, but while it is missing, the working counter of all is
@@ -40,16 +40,16 @@ static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
 {
-    cm1e_datagram_t *d = &bus->watch_datagram;
-    cm1e_bus_slave_t *slave = &bus->slaves[bus->watched_slave];
-    if (!bus->watch_sent)
+    cm1e_datagram_t *d = &bus->watching.datagram;
+    cm1e_bus_slave_t *slave = &bus->slaves[bus->watching.slave];
+    if (!bus->watching.sent)
         return;
     if (!cm1e_soem_take(bus->soem, d, 0)) {
         if (now_ns - d->sent_ns < CM1E_FRAME_LOST_NS)
             return;
         cm1e_soem_drop(bus->soem, d);
     }
-    bus->watch_sent = false;
+    bus->watching.sent = false;
     if (d->offset == REG_DC_DIFFERENCE) {
         cm1e_dc_looked(bus, d);
         return;

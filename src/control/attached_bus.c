@@ -36,6 +36,24 @@ static void take_emergencies(cm1e_remote_slave_t *slave, const json_t *told)
     }
 }
 
+/* Without distributed clocks there is nothing told. */
+static void take_clock(cm1e_remote_slave_t *slave, const json_t *told)
+{
+    slave->has_clock = json_is_object(told);
+    slave->clock = (cm1e_slave_clock_t){
+        .has_clock = slave->has_clock,
+        .is_reference = json_is_true(json_object_get(told, "is_reference")),
+        .lost = json_is_true(json_object_get(told, "lost")),
+        .delay_ns = (uint32_t)number(told, "delay_ns"),
+        .sync0_ns = (uint32_t)number(told, "sync0_ns"),
+        .sync1_ns = (uint32_t)number(told, "sync1_ns"),
+        .shift_ns = (int32_t)number(told, "shift_ns"),
+        .deviation_ns = (int32_t)number(told, "deviation_ns"),
+        .maximum_ns = (uint32_t)number(told, "maximum_ns"),
+        .losses = (uint64_t)number(told, "losses"),
+    };
+}
+
 /* What the other program says is judged like the answer of a slave: every number is cut to its range. */
 static void take_slave(cm1e_remote_slave_t *slave, uint16_t position, const json_t *told)
 {
@@ -58,6 +76,7 @@ static void take_slave(cm1e_remote_slave_t *slave, uint16_t position, const json
     copy_text(info->software_version, sizeof info->software_version, told, "software_version");
     copy_text(slave->kind, sizeof slave->kind, told, "kind");
     take_emergencies(slave, json_object_get(told, "emergencies"));
+    take_clock(slave, json_object_get(told, "clock"));
 }
 
 static cm1e_error_t scan(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count, cm1e_diag_t *diag)

@@ -121,6 +121,14 @@ static json_t *emergencies_of(const cm1e_bus_t *bus, uint16_t position)
     return all;
 }
 
+static json_t *clock_of(const cm1e_slave_clock_t *clock)
+{
+    return json_pack("{s:b, s:b, s:i, s:i, s:i, s:i, s:i, s:i, s:I}", "is_reference", clock->is_reference, "lost",
+                     clock->lost, "delay_ns", (int)clock->delay_ns, "sync0_ns", (int)clock->sync0_ns, "sync1_ns",
+                     (int)clock->sync1_ns, "shift_ns", (int)clock->shift_ns, "deviation_ns", (int)clock->deviation_ns,
+                     "maximum_ns", (int)clock->maximum_ns, "losses", (json_int_t)clock->losses);
+}
+
 json_t *cm1e_show_slaves(const view_t *view)
 {
     json_t *all = json_array();
@@ -145,6 +153,8 @@ json_t *cm1e_show_slaves(const view_t *view)
         json_object_set_new(slave, "software_version", cm1e_show_text(info->software_version));
         json_object_set_new(slave, "coe", json_boolean(cm1e_bus_slave_has_coe(view->bus, info->position)));
         json_object_set_new(slave, "emergencies", emergencies_of(view->bus, info->position));
+        if (view->slaves[i].clock.has_clock)
+            json_object_set_new(slave, "clock", clock_of(&view->slaves[i].clock));
         json_array_append_new(all, slave);
     }
     return all;
@@ -165,6 +175,14 @@ static json_t *distribution(const cm1e_distribution_t *d)
                      "count", (json_int_t)d->count, "histogram", histogram);
 }
 
+static json_t *clocks_of(const cm1e_bus_clocks_t *clocks)
+{
+    return json_pack("{s:i, s:f, s:I, s:f, s:I, s:I}", "reference", clocks->reference, "rate_ppm", clocks->rate_ppm,
+                     "phase_error_ns", (json_int_t)clocks->phase_error_ns, "phase_mean_ns", clocks->phase_mean_ns,
+                     "phase_maximum_ns", (json_int_t)clocks->phase_maximum_ns, "sync_losses",
+                     (json_int_t)clocks->sync_losses);
+}
+
 json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler)
 {
     cm1e_scheduler_statistics_t s;
@@ -183,6 +201,8 @@ json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler)
     json_object_set_new(shown, "wake_up_latency", distribution(&s.wake_up_latency));
     json_object_set_new(shown, "execution_time", distribution(&s.execution_time));
     json_object_set_new(shown, "bus", bus);
+    if (s.clocks.used)
+        json_object_set_new(shown, "clocks", clocks_of(&s.clocks));
     json_object_set_new(shown, "realtime", json_boolean(s.realtime));
     json_object_set_new(shown, "advice", cm1e_show_text(s.advice));
     return shown;

@@ -48,6 +48,7 @@ static void begin(view_t *view)
         const cm1e_slave_info_t *slave = cm1e_bus_slave(view->bus, i + 1);
         view->slaves[i].al_state = slave->al_state;
         view->slaves[i].al_status_code = slave->al_status_code;
+        cm1e_bus_slave_clock(view->bus, slave->position, &view->slaves[i].clock);
     }
 }
 

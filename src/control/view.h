@@ -72,6 +72,7 @@ typedef struct view {
     size_t copy_at[CM1E_MAX_AXES]; /**< where in `copies` */
     struct {
         uint16_t al_state, al_status_code;
+        cm1e_slave_clock_t clock;
     } slaves[CM1E_MAX_SLAVES];
 
     maintained_t maintained;

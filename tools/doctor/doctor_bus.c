@@ -143,6 +143,30 @@ static void say_foreign_frames(doctor_t *doctor, unsigned long long foreign)
                   "Stop the other master, or disconnect it.", "%s", "");
 }
 
+/* ---- distributed clocks ----------------------------------------------------------------------------------------- */
+
+/** Of a program that uses them. */
+static void look_at_clocks(doctor_t *doctor, cm1e_bus_t *bus)
+{
+    uint32_t worst_ns = 0, count = 0;
+    for (uint16_t position = 1; position <= cm1e_bus_slave_count(bus); position++) {
+        cm1e_slave_clock_t clock;
+        cm1e_bus_slave_clock(bus, position, &clock);
+        count += clock.has_clock;
+        worst_ns = clock.maximum_ns > worst_ns ? clock.maximum_ns : worst_ns;
+        if (clock.lost || clock.losses)
+            doctor_advise(doctor_find(doctor, FINDING_PROBLEM, group, "clocks",
+                                      "slave %u lost the reference clock %llu times, it was up to %u ns away%s",
+                                      position, (unsigned long long)clock.losses, clock.maximum_ns,
+                                      clock.lost ? ", and it is lost now" : ""),
+                          "Its SYNC0 comes at another time than those of the others, so axes are not in step.",
+                          "Look at lost frames and at the connections below; if there are none, its controller may be "
+                          "damaged.", "%s", "");
+    }
+    if (count > 0)
+        doctor_find(doctor, FINDING_GOOD, group, "clocks", "%u, up to %u ns from the reference", count, worst_ns);
+}
+
 /* ---- a program that has the network ----------------------------------------------------------------------------- */
 
 static json_int_t number(const json_t *object, const char *name)
@@ -226,6 +250,7 @@ void doctor_look_at_bus(doctor_t *doctor, const common_options_t *options, const
         look_at_slave(doctor, bus, cm1e_bus_slave(bus, position));
     look_at_configuration(doctor, bus, config);
     look_at_ports(doctor, bus);
+    look_at_clocks(doctor, bus);
     if (!attached && cm1e_bus_counters(bus)->foreign_frames > 0)
         say_foreign_frames(doctor, (unsigned long long)cm1e_bus_counters(bus)->foreign_frames);
     cm1e_bus_close(bus);
