@@ -288,6 +288,7 @@ typedef struct cm1e_slave_config {
     cm1e_sdo_config_t sdos[CM1E_SLAVE_SDOS];
     cm1e_signal_config_t signals[CM1E_SLAVE_SIGNALS];
     cm1e_sim_slave_config_t sim;
+    cm1e_dc_config_t dc;             /**< SYNC0 and SYNC1; all zero: it takes its cycle from the process data */
 } cm1e_slave_config_t;
 
 /** The whole bus. The configuration owns its axes and slaves: make it with cm1e_bus_config_init() or

@@ -5,6 +5,7 @@
 
 #include "bus/bus_internal.h"
 #include "bus/dc_delay.h"
+#include "config/clocks.h"
 #include "core/bytes.h"
 
 enum {
@@ -13,14 +14,6 @@ enum {
 };
 /** In which frames that only distribute the time bring the clocks together. */
 #define ALIGN_NS INT64_C(3000000000)
-
-static bool is_wanted(const cm1e_bus_config_t *config)
-{
-    bool wanted = config->distributed_clocks;
-    for (uint32_t i = 0; i < config->axis_count; i++)
-        wanted |= config->axes[i].dc.sync0_us > 0;
-    return wanted;
-}
 
 static bool transfer(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_command_t command, uint16_t offset,
                      void *data, uint16_t length)
@@ -43,7 +36,8 @@ static cm1e_error_t no_answer(const cm1e_bus_t *bus, const cm1e_bus_slave_t *sla
 static const cm1e_dc_config_t *pulses_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
     const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave, 0);
-    return axis && axis->dc.sync0_us > 0 ? &axis->dc : NULL;
+    const cm1e_dc_config_t *dc = axis ? &axis->dc : slave->config ? &slave->config->dc : NULL;
+    return dc && cm1e_config_has_pulses(dc) ? dc : NULL;
 }
 
 static uint8_t open_ports(uint16_t dl_status)
@@ -217,7 +211,7 @@ cm1e_error_t cm1e_dc_set_up(cm1e_bus_t *bus, cm1e_diag_t *diag)
     bus->dc.pace = pace;
     for (uint32_t i = 0; i < bus->slave_count; i++)
         bus->slaves[i].dc = NULL;
-    if (!is_wanted(&bus->config))
+    if (!cm1e_config_uses_clocks(&bus->config))
         return CM1E_OK;
     cm1e_error_t error = set_clocks(bus, diag);
     if (error != CM1E_OK)

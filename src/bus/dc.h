@@ -81,8 +81,8 @@ void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *datagram);
 /* dc_recovery.c */
 struct cm1e_bus_slave;
 void cm1e_dc_recover_begin(struct cm1e_bus_slave *slave);
-/** The next register of a slave whose clock is set again; false: nothing to send now. `*is_set`: it is set, or the slave
- *  has none. */
+/** The next register of a slave whose clock is set again; false: nothing to send now. `*is_set`: it is set, or the
+ *  slave has none. */
 bool cm1e_dc_recover_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns, bool *is_set);
 void cm1e_dc_recovered(struct cm1e_bus_slave *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
 

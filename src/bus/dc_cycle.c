@@ -98,7 +98,7 @@ int64_t cm1e_bus_next_start(const cm1e_bus_t *bus, int64_t now_ns)
     return bus->next_cycle_ns + (passed_ns > 0 ? (passed_ns + cycle_ns - 1) / cycle_ns * cycle_ns : 0);
 }
 
-/* ---- looks at the clocks, one slave in every second cycle --------------------------------------------------------- */
+/* ---- looks at the clocks, one slave in every second cycle -------------------------------------------------------- */
 
 bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *d)
 {
@@ -134,7 +134,7 @@ void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *d)
     }
 }
 
-/* ---- without a cycle ---------------------------------------------------------------------------------------------- */
+/* ---- without a cycle --------------------------------------------------------------------------------------------- */
 
 void cm1e_dc_keep(cm1e_bus_t *bus)
 {

@@ -1,4 +1,4 @@
-/* The clock of a slave that comes back while the others run: set again by the time that the last frames have brought. */
+/* The clock of a slave that comes back while the others run: set again by the time that the last frames brought. */
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 

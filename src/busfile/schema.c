@@ -267,6 +267,13 @@ static const cyaml_schema_field_t sim_slave_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_field_t dc_slave_fields[] = {
+    CYAML_FIELD_FLOAT("sync0_us", OPTIONAL, cm1e_busfile_slave_t, slave.dc.sync0_us),
+    CYAML_FIELD_FLOAT("sync1_us", OPTIONAL, cm1e_busfile_slave_t, slave.dc.sync1_us),
+    CYAML_FIELD_FLOAT("shift_us", OPTIONAL, cm1e_busfile_slave_t, slave.dc.shift_us),
+    CYAML_FIELD_END,
+};
+
 static const cyaml_schema_field_t slave_fields[] = {
     SLAVE_STRING("name", slave.name),
     SLAVE_UINT("position", position),
@@ -282,6 +289,7 @@ static const cyaml_schema_field_t slave_fields[] = {
     LIST_OF("inputs_pdos", cm1e_busfile_slave_t, inputs_pdos, inputs_pdo_count, &text_value),
     LIST_OF("outputs", cm1e_busfile_slave_t, outputs, output_count, &output_signal_value),
     LIST_OF("inputs", cm1e_busfile_slave_t, inputs, input_count, &input_signal_value),
+    SLAVE_GROUP("dc", dc_slave_fields),
     SLAVE_GROUP("sim", sim_slave_fields),
     CYAML_FIELD_END,
 };

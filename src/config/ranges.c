@@ -75,10 +75,7 @@ static bool check_bus(const check_t *check)
         return bus_wrong(check, "second_interface", NO_TEXT, sizeof config->second_interface);
     if (!IS_TEXT(config->pcap_file))
         return bus_wrong(check, "pcap_file", NO_TEXT, sizeof config->pcap_file);
-    bool clocks = config->distributed_clocks;
-    for (uint32_t i = 0; i < config->axis_count; i++)
-        clocks |= config->axes[i].dc.sync0_us > 0;
-    if (config->second_interface[0] && clocks)
+    if (config->second_interface[0] && cm1e_config_uses_clocks(config))
         return bus_wrong(check, "second_interface", "is given together with distributed clocks, whose time would reach "
                          "half of a broken ring before the reference has given it; expected one of the two");
     if (config->second_interface[0] && strcmp(config->second_interface, config->interface_name) == 0)

@@ -5,6 +5,7 @@
 #ifndef CM1E_CONFIG_RANGES_H
 #define CM1E_CONFIG_RANGES_H
 
+#include "config/clocks.h"
 #include "config/problem.h"
 #include "device/devices.h"
 
@@ -42,6 +43,10 @@ bool cm1e_config_check_unit(check_t *check);
 bool cm1e_config_check_numbers(check_t *check);
 /** The slaves without an axis (ranges_slaves.c). */
 bool cm1e_config_check_slaves(const cm1e_bus_config_t *config, cm1e_config_problem_t *problem);
+/** Pulses of distributed clocks (ranges_clocks.c): the key that is wrong, and why; NULL: none. */
+enum { CM1E_WRONG_PULSES = 160 };
+const char *cm1e_config_wrong_pulses(const cm1e_bus_config_t *config, const cm1e_dc_config_t *dc,
+                                     char text[CM1E_WRONG_PULSES]);
 /** Checks that a virtual axis or an encoder has no keys of a motor. */
 bool cm1e_config_check_without_motor(const check_t *check);
 

@@ -1,5 +1,4 @@
 /* The device of an axis: which it is, where it is, its motor, and the keys that it has. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -132,7 +131,7 @@ static bool check_absent(const check_t *check)
         {"motion", axis->motion != CM1E_MOTION_HOST},
         {"wire.velocity_unit", axis->velocity_unit_stated},
         {"wire.acceleration_unit", axis->acceleration_in_kpulses},
-        {"dc", axis->dc.sync0_us != 0 || axis->dc.sync1_us != 0 || axis->dc.shift_us != 0},
+        {"dc", cm1e_config_has_pulses(&axis->dc)},
     };
     for (const cm1e_absent_key_t *absent = device_of(check)->absent; absent->key; absent++)
         for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
@@ -192,22 +191,11 @@ static bool check_stated_motor(const check_t *check)
     return true;
 }
 
-/* Pulses in step with the cycle of the bus. */
 static bool check_pulses(const check_t *check)
 {
-    const cm1e_dc_config_t *dc = &check->axis->dc;
-    const double cycle_us = (check->config->cycle_time_ns ? (double)check->config->cycle_time_ns : 1e6) / 1000;
-    const double part = dc->sync0_us > cycle_us ? dc->sync0_us / cycle_us : cycle_us / dc->sync0_us;
-    if (dc->sync0_us == 0 && dc->sync1_us == 0 && dc->shift_us == 0)
-        return true;
-    if (!(dc->sync0_us >= 62.5 && dc->sync0_us <= 1e6) || part != floor(part))
-        return axis_wrong(check, "dc.sync0_us", "is %g; expected the cycle time of %g us, a whole part of it from "
-                          "62.5 us on, or a multiple up to 1 s", dc->sync0_us, cycle_us);
-    if (!(dc->sync1_us >= 0 && dc->sync1_us <= 1e6))
-        return axis_wrong(check, "dc.sync1_us", "is %g; expected 0 ... 1000000 us behind SYNC0", dc->sync1_us);
-    return (dc->shift_us > -cycle_us && dc->shift_us < cycle_us) ||
-           axis_wrong(check, "dc.shift_us", "is %g; expected less than the cycle time of %g us to both sides",
-                      dc->shift_us, cycle_us);
+    char text[CM1E_WRONG_PULSES];
+    const char *key = cm1e_config_wrong_pulses(check->config, &check->axis->dc, text);
+    return !key || axis_wrong(check, key, "%s", text);
 }
 
 /* Keys that only this device has. */

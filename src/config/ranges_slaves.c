@@ -303,6 +303,10 @@ static bool check_slave(slave_check_t *check)
         return false;
     if (slave->watchdog_ms > WATCHDOG_MS_MAX)
         return slave_wrong(check, "watchdog_ms", "is %u; expected 1 ... %d", slave->watchdog_ms, WATCHDOG_MS_MAX);
+    char text[CM1E_WRONG_PULSES];
+    const char *key = cm1e_config_wrong_pulses(check->config, &slave->dc, text);
+    if (key)
+        return slave_wrong(check, key, "%s", text);
     return check_assignment(check, "outputs_pdos", slave->outputs_pdos, slave->outputs_pdo_count, OUTPUT_PDO) &&
            check_assignment(check, "inputs_pdos", slave->inputs_pdos, slave->inputs_pdo_count, INPUT_PDO) &&
            check_entries(check) && check_sdos(check) && check_signals(check) && check_sim(check);

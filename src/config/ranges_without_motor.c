@@ -49,7 +49,7 @@ bool cm1e_config_check_without_motor(const check_t *check)
         {"inputs", any_input(&axis->inputs)},
         {"homing", any_homing(&axis->homing)},
         {"drive", axis->counts_per_revolution || axis->max_speed_rpm != 0 || axis->outputs_pdo || axis->inputs_pdo},
-        {"dc", axis->dc.sync0_us != 0 || axis->dc.sync1_us != 0 || axis->dc.shift_us != 0},
+        {"dc", cm1e_config_has_pulses(&axis->dc)},
         {"wire.velocity_unit", axis->velocity_unit_stated},
         {"wire.acceleration_unit", axis->acceleration_in_kpulses},
         {"sim", any_sim(&axis->sim)},

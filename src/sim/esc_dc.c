@@ -170,7 +170,7 @@ void cm1e_sim_esc_dc_received(cm1e_sim_slave_t *slave, const uint8_t *data)
     clock->loop_ns -= fmin(fmax(clock->mean_ns * gain / 2, -LOOP_STEP_NS), LOOP_STEP_NS);
 }
 
-/* ---- SYNC0 and SYNC1 ---------------------------------------------------------------------------------------------- */
+/* ---- SYNC0 and SYNC1 --------------------------------------------------------------------------------------------- */
 
 /* SYNC1 comes 0x09A4 behind a SYNC0; the next one waits for the first SYNC0 behind that. */
 static uint64_t sync1_period(const cm1e_sim_slave_t *slave)
@@ -233,7 +233,7 @@ void cm1e_sim_esc_dc_advance(cm1e_sim_slave_t *slave, int64_t now_ns)
     advance_sync1(slave, now);
 }
 
-/* ---- life --------------------------------------------------------------------------------------------------------- */
+/* ---- life -------------------------------------------------------------------------------------------------------- */
 
 void cm1e_sim_esc_dc_power_on(cm1e_sim_slave_t *slave, int64_t now_ns)
 {

@@ -25,6 +25,14 @@ uint16_t cm1e_sim_esc_sync_check(const cm1e_sim_slave_t *slave, uint8_t to)
     return to == CM1E_AL_OP && slave->clock.pulses.count == 0 ? AL_CODE_NO_SYNC : AL_CODE_NONE;
 }
 
+static bool has_outputs(const cm1e_sim_slave_t *slave)
+{
+    uint16_t outputs = 0, inputs = 0;
+    if (slave->ops->process_data_sizes)
+        slave->ops->process_data_sizes(slave->app, &outputs, &inputs);
+    return outputs > 0;
+}
+
 static uint16_t find_error(const cm1e_sim_slave_t *slave)
 {
     const esc_pulses_t *pulses = &slave->clock.pulses;
@@ -35,7 +43,8 @@ static uint16_t find_error(const cm1e_sim_slave_t *slave)
         return AL_CODE_PLL;
     if (clock.system_ns - (int64_t)pulses->next_ns > MISSED_PULSES_MAX * cycle)
         return AL_CODE_FATAL_SYNC;
-    return pulses->without_outputs > MISSED_OUTPUTS_MAX ? AL_CODE_SYNC_ERROR : AL_CODE_NONE;
+    const bool misses = has_outputs(slave) && pulses->without_outputs > MISSED_OUTPUTS_MAX;
+    return misses ? AL_CODE_SYNC_ERROR : AL_CODE_NONE;
 }
 
 void cm1e_sim_esc_sync_supervise(cm1e_sim_slave_t *slave)

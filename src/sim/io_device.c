@@ -116,7 +116,7 @@ static void destroy(void *app)
 static const cm1e_sim_app_ops_t ops = {LIFE};
 static const cm1e_sim_app_ops_t ops_with_coe = {
     LIFE, .sdo_read = cm1e_sim_io_objects_read, .sdo_write = cm1e_sim_io_objects_write,
-    .object = cm1e_sim_io_objects_at, .entry = cm1e_sim_io_objects_entry,
+    .object = cm1e_sim_io_objects_at, .entry = cm1e_sim_io_objects_entry, .runs_by_sync0 = true,
 };
 
 cm1e_sim_io_device_t *cm1e_sim_io_device_of(cm1e_sim_slave_t *slave)

@@ -201,7 +201,33 @@ START_TEST(a_bus_of_motors_may_follow_a_clock_without_sync0)
 }
 END_TEST
 
-/* ---- what is refused ----------------------------------------------------------------------------------------------- */
+/** A device without a motor: an analog input, which has no outputs that could come in time. */
+START_TEST(a_slave_without_an_axis_gets_pulses_too)
+{
+    sim_config(1);
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "encoder");
+    slave->address = 2;
+    slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_ANALOG, .inputs = 2};
+    slave->dc = (cm1e_dc_config_t){.sync0_us = 250, .shift_us = -100};
+    cm1e_bus_t *bus = open_bus();
+    simulate(bus, "clock 2 drift -30");
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    plan_ns = 0;
+    run(bus, 3000);
+    cm1e_sim_clock_t clock;
+    cm1e_sim_segment_clock(segment_of(bus), 2, &clock);
+    ck_assert_int_eq((clock.next_sync0_ns + 100000) % 250000, 0);
+    ck_assert_uint_gt(clock.sync0_pulses, 11900);
+    ck_assert_uint_eq(clock_of(bus, 2).sync0_ns, 250000);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 2).al_state, CM1E_AL_OP);
+    cm1e_bus_close(bus);
+    slave->dc.sync0_us = 333;
+    ck_assert_int_eq(cm1e_bus_config_check(&config, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "slave encoder: dc.sync0_us") != NULL, "%s", diag.text);
+}
+END_TEST
+
+/* ---- what is refused --------------------------------------------------------------------------------------------- */
 
 static void expect_refused(cm1e_bus_t *bus, cm1e_error_t error, const char *part)
 {
@@ -259,7 +285,7 @@ START_TEST(a_clock_that_does_not_follow_is_told_before_operational)
 }
 END_TEST
 
-/* ---- loss ---------------------------------------------------------------------------------------------------------- */
+/* ---- loss -------------------------------------------------------------------------------------------------------- */
 
 START_TEST(a_clock_that_leaves_the_reference_is_counted_once)
 {
@@ -383,6 +409,7 @@ int main(void)
     tcase_add_test(good, the_time_goes_in_the_frame_of_the_process_data);
     tcase_add_test(good, clocks_that_nobody_asked_for_are_left_alone);
     tcase_add_test(good, a_bus_of_motors_may_follow_a_clock_without_sync0);
+    tcase_add_test(good, a_slave_without_an_axis_gets_pulses_too);
     tcase_add_test(refused, sync0_of_a_device_without_clocks_is_refused);
     tcase_add_test(refused, a_bus_without_any_clock_is_refused);
     tcase_add_test(refused, sync0_of_a_motor_that_runs_by_its_process_data_is_refused);

@@ -1,4 +1,4 @@
-/** Propagation delays of distributed clocks: made of lines, branches and slaves without a clock whose cables are known. */
+/** Propagation delays of distributed clocks: lines, branches and slaves without a clock, whose cables are known. */
 #include <string.h>
 
 #include "bus/dc_delay.h"

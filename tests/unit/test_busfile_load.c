@@ -372,6 +372,21 @@ static void test_documented_example_of_a_bridge(void)
     TEST_ASSERT_EQUAL(0, config.axes[1].channel);
 }
 
+static void test_pulses_of_axes_and_slaves(void)
+{
+    load("bus: {distributed_clocks: true}\n"
+         "axes:\n"
+         "  - {device: cia402, drive: {counts_per_revolution: 4096, max_speed_rpm: 3000},\n"
+         "     dc: {sync0_us: 500, sync1_us: 125, shift_us: -62.5}}\n"
+         "slaves:\n"
+         "  - {name: encoder, position: 2, dc: {sync0_us: 2000}}\n");
+    TEST_ASSERT_TRUE(config.distributed_clocks);
+    TEST_ASSERT_EQUAL_DOUBLE(500, config.axes[0].dc.sync0_us);
+    TEST_ASSERT_EQUAL_DOUBLE(125, config.axes[0].dc.sync1_us);
+    TEST_ASSERT_EQUAL_DOUBLE(-62.5, config.axes[0].dc.shift_us);
+    TEST_ASSERT_EQUAL_DOUBLE(2000, config.slaves[0].dc.sync0_us);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -392,5 +407,6 @@ int main(void)
     RUN_TEST(test_decimal_point_is_a_point_where_the_locale_has_a_comma);
     RUN_TEST(test_init_makes_default_axes_that_pass_the_check);
     RUN_TEST(test_init_with_too_many_axes_is_refused_by_the_check);
+    RUN_TEST(test_pulses_of_axes_and_slaves);
     return UNITY_END();
 }
