@@ -46,6 +46,8 @@ typedef struct cm1e_dc {
     cm1e_dc_slave_t slaves[CM1E_MAX_SLAVES];
 } cm1e_dc_t;
 
+struct cm1e_bus_slave;
+
 /* dc.c */
 /** Measures delays, sets offsets and pulses. CM1E_OK without a frame where the configuration asks for no clocks. */
 cm1e_error_t cm1e_dc_set_up(cm1e_bus_t *bus, cm1e_diag_t *diag);
@@ -74,12 +76,13 @@ void cm1e_dc_keep(cm1e_bus_t *bus);
 /** Before and behind an exchange. @rt cycle */
 void cm1e_dc_send(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_dc_receive(cm1e_bus_t *bus, bool returned);
+/** A slave shows another AL status code than before: one of synchronism counts as a loss. @rt cycle */
+void cm1e_dc_note_status(struct cm1e_bus_slave *slave, uint16_t al_status_code);
 /** Supervision: fills the datagram with a look at a clock; false: it is not the turn of the clocks. @rt cycle */
 bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *datagram);
 void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *datagram);
 
 /* dc_recovery.c */
-struct cm1e_bus_slave;
 void cm1e_dc_recover_begin(struct cm1e_bus_slave *slave);
 /** The next register of a slave whose clock is set again; false: nothing to send now. `*is_set`: it is set, or the
  *  slave has none. */

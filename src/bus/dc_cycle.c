@@ -100,6 +100,15 @@ int64_t cm1e_bus_next_start(const cm1e_bus_t *bus, int64_t now_ns)
 
 /* ---- looks at the clocks, one slave in every second cycle -------------------------------------------------------- */
 
+void cm1e_dc_note_status(cm1e_bus_slave_t *slave, uint16_t al_status_code)
+{
+    enum { SYNC_ERROR = 0x001A, FATAL = 0x002C, NO_SYNC = 0x002D, FIRST_OF_CLOCKS = 0x0030, LAST_OF_CLOCKS = 0x0037 };
+    const bool of_clocks = al_status_code >= FIRST_OF_CLOCKS && al_status_code <= LAST_OF_CLOCKS;
+    if (slave->dc && slave->dc->slaves[slave->info.position - 1].clock.sync0_ns &&
+        (of_clocks || al_status_code == SYNC_ERROR || al_status_code == FATAL || al_status_code == NO_SYNC))
+        lose(slave->dc, &slave->dc->slaves[slave->info.position - 1]);
+}
+
 bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *d)
 {
     cm1e_dc_t *dc = &bus->dc;

@@ -8,6 +8,8 @@ enum { AL_STATUS_BYTES = 6, UNANSWERED_LIMIT = 3 };
 void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
 {
     slave->unanswered = 0;
+    if (al_status_code != slave->watch.al_status_code)
+        cm1e_dc_note_status(slave, al_status_code);
     slave->watch = (cm1e_slave_watch_t){.al_state = al_state, .al_status_code = al_status_code};
     slave->info.al_state = al_state;
     slave->info.al_status_code = al_status_code;

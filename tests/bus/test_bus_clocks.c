@@ -143,6 +143,27 @@ START_TEST(frames_and_pulses_have_one_phase)
 }
 END_TEST
 
+/** Each slave at another time 20 ppm up or down, in the half minute that its housing needs; stamps jitter by 10 ns. */
+START_TEST(temperature_steps_are_followed)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(35, -48, 22);
+    double worst = 0;
+    for (int i = 0; i < 90; i++) { /* seconds */
+        char line[40];
+        snprintf(line, sizeof line, "clock %d %s %d", i % SLAVES + 1, i % 30 < SLAVES ? "temperature" : "jitter",
+                 i % 30 < SLAVES ? (i / 30 % 2 ? -40 : 40) : 10);
+        simulate(bus, line);
+        run(bus, 1000);
+        worst = fmax(worst, fmax(fabs(ahead_ns(bus, DRIVE)), fabs(ahead_ns(bus, LAST))));
+        ck_assert_msg(i < 10 || fabs(clocks_of(bus).phase_mean_ns) < 50, "%g ns", clocks_of(bus).phase_mean_ns);
+    }
+    ck_assert_msg(worst < 150, "%g ns", worst);
+    ck_assert_uint_eq(clocks_of(bus).sync_losses, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 static unsigned process_frames, with_time;
 
 static cm1e_tap_verdict_t count_times(void *context, cm1e_tap_frame_t *frame)
@@ -405,6 +426,7 @@ int main(void)
     TCase *good = tcase_create("in step"), *refused = tcase_create("refused"), *lost = tcase_create("lost");
     tcase_add_test(good, all_clocks_are_one_before_operational_and_stay_so);
     tcase_add_loop_test(good, the_cycle_follows_the_reference_clock, 0, 2);
+    tcase_add_test(good, temperature_steps_are_followed);
     tcase_add_loop_test(good, frames_and_pulses_have_one_phase, 0, 4);
     tcase_add_test(good, the_time_goes_in_the_frame_of_the_process_data);
     tcase_add_test(good, clocks_that_nobody_asked_for_are_left_alone);

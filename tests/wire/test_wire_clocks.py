@@ -65,7 +65,7 @@ def check_own_master(cm1e, folder):
         log = segment.run([cm1e, "log", "-b", bus_file]).stdout
         wire.check("loss of synchronism" in log, f"the log does not tell it: {log}")
         doctor = segment.run([cm1e, "doctor", "-b", bus_file]).stdout
-        wire.check("slave 2 lost the reference clock 1 times" in doctor, doctor)
+        wire.check("slave 2 lost synchronism 1 times" in doctor, doctor)
         segment.console("clock 2 step 100000")
         wire.wait_for(lambda: "0x0032" in segment.console("status 2"), 5, "the drive stays in Operational")
         program.terminate()

@@ -156,7 +156,7 @@ static void look_at_clocks(doctor_t *doctor, cm1e_bus_t *bus)
         worst_ns = clock.maximum_ns > worst_ns ? clock.maximum_ns : worst_ns;
         if (clock.lost || clock.losses)
             doctor_advise(doctor_find(doctor, FINDING_PROBLEM, group, "clocks",
-                                      "slave %u lost the reference clock %llu times, it was up to %u ns away%s",
+                                      "slave %u lost synchronism %llu times, its clock was up to %u ns away%s",
                                       position, (unsigned long long)clock.losses, clock.maximum_ns,
                                       clock.lost ? ", and it is lost now" : ""),
                           "Its SYNC0 comes at another time than those of the others, so axes are not in step.",
