@@ -173,6 +173,7 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
     cm1e_bus_free_image(bus);
     cm1e_bus_set_phase(bus, BUS_OPEN);
     bus->slave_count = 0;
+    bus->dc.used = false; /* set up anew by cm1e_bus_configure() */
     memset(bus->axis_position, 0, sizeof bus->axis_position);
     uint16_t position;
     const int found = cm1e_soem_scan(bus->soem, &position);

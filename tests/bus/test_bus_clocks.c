@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "bus_support.h"
+#include "bus/dc_pace.h"
 #include "cm1e/clocks.h"
 #include "sim/esc.h"
 
@@ -180,6 +181,35 @@ static cm1e_tap_verdict_t count_times(void *context, cm1e_tap_frame_t *frame)
     return CM1E_TAP_PASS;
 }
 
+static int64_t first_time_ns;
+
+static cm1e_tap_verdict_t take_first_time(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { COMMAND_AT = 16, LENGTH_AT = 22, DATA_AT = 26, LRW_NUMBER = 12 };
+    const uint8_t *bytes = frame->bytes;
+    (void)context;
+    if (frame->direction == CM1E_TAP_RECEIVED && first_time_ns == 0 && bytes[COMMAND_AT] == LRW_NUMBER)
+        first_time_ns = (int64_t)cm1e_get_u64(bytes + DATA_AT + (cm1e_get_u16(bytes + LENGTH_AT) & 0x7FFu) + 2 + 10);
+    return CM1E_TAP_PASS;
+}
+
+/** Drives in Safe-Operational see no cycles that hurry after the phase. */
+START_TEST(the_first_frame_has_the_phase_already)
+{
+    describe(1000);
+    cm1e_bus_t *bus = open_drifting(100, 0, 0);
+    ck_assert(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK);
+    ck_assert_msg(cm1e_bus_configure(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_clock_sleep_until(cm1e_bus_clock(bus), now_of(bus) + 333333);
+    first_time_ns = 0;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), take_first_time, NULL);
+    ck_assert_msg(cm1e_bus_operate(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(llabs((long long)cm1e_dc_phase(first_time_ns, CYCLE_NS)) < 2000, "%d ns",
+                  (int)cm1e_dc_phase(first_time_ns, CYCLE_NS));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(the_time_goes_in_the_frame_of_the_process_data)
 {
     describe(1000);
@@ -245,6 +275,47 @@ START_TEST(a_slave_without_an_axis_gets_pulses_too)
     slave->dc.sync0_us = 333;
     ck_assert_int_eq(cm1e_bus_config_check(&config, &diag), CM1E_ERROR_CONFIG);
     ck_assert_msg(strstr(diag.text, "slave encoder: dc.sync0_us") != NULL, "%s", diag.text);
+}
+END_TEST
+
+static unsigned frames_until_loss, losses_in_a_row;
+
+static cm1e_tap_verdict_t lose_some(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    if (frame->direction != CM1E_TAP_RECEIVED)
+        return CM1E_TAP_PASS;
+    if (frames_until_loss > 0) {
+        frames_until_loss--;
+        return CM1E_TAP_PASS;
+    }
+    if (losses_in_a_row == 0)
+        return CM1E_TAP_PASS;
+    losses_in_a_row--;
+    return CM1E_TAP_DROP;
+}
+
+/** Two frames lost at every moment from the configuration on: the clocks are right in spite of that. */
+START_TEST(a_start_with_lost_frames_gives_right_clocks)
+{
+    enum { MOMENTS = 200 };
+    for (unsigned moment = 0; moment < MOMENTS; moment++) {
+        describe(1000);
+        cm1e_bus_t *bus = open_drifting(30, -50, 80);
+        ck_assert(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK);
+        frames_until_loss = moment < 150 ? moment * 3 : moment * 40;
+        losses_in_a_row = 2;
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), lose_some, NULL);
+        ck_assert_msg(cm1e_bus_configure(bus, &diag) == CM1E_OK, "%u: %s", moment, diag.text);
+        ck_assert_msg(cm1e_bus_operate(bus, &diag) == CM1E_OK, "%u: %s", moment, diag.text);
+        plan_ns = 0;
+        run(bus, 300);
+        for (uint32_t i = DRIVE; i <= LAST; i++)
+            ck_assert_msg(fabs(ahead_ns(bus, i)) < 500, "%u: slave %u: %g ns", moment, i, ahead_ns(bus, i));
+        ck_assert_msg(fabs(clocks_of(bus).phase_mean_ns) < 20000, "%u: %g ns", moment, clocks_of(bus).phase_mean_ns);
+        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, DRIVE).al_state, CM1E_AL_OP);
+        cm1e_bus_close(bus);
+    }
 }
 END_TEST
 
@@ -428,10 +499,12 @@ int main(void)
     tcase_add_loop_test(good, the_cycle_follows_the_reference_clock, 0, 2);
     tcase_add_test(good, temperature_steps_are_followed);
     tcase_add_loop_test(good, frames_and_pulses_have_one_phase, 0, 4);
+    tcase_add_test(good, the_first_frame_has_the_phase_already);
     tcase_add_test(good, the_time_goes_in_the_frame_of_the_process_data);
     tcase_add_test(good, clocks_that_nobody_asked_for_are_left_alone);
     tcase_add_test(good, a_bus_of_motors_may_follow_a_clock_without_sync0);
     tcase_add_test(good, a_slave_without_an_axis_gets_pulses_too);
+    tcase_add_test(good, a_start_with_lost_frames_gives_right_clocks);
     tcase_add_test(refused, sync0_of_a_device_without_clocks_is_refused);
     tcase_add_test(refused, a_bus_without_any_clock_is_refused);
     tcase_add_test(refused, sync0_of_a_motor_that_runs_by_its_process_data_is_refused);
