@@ -23,7 +23,7 @@ enum {
     CM1E_PACE_STEP = 1000,     /**< a cycle is at most this part longer or shorter: 1000 ppm */
     CM1E_PACE_RATE = 2000,     /**< limit of the integral part: crystals differ by 500 ppm at most */
     CM1E_PACE_LINEAR = 16,     /**< a larger phase error counts as this part, and is not integrated */
-    CM1E_PACE_SETTLED = 50,    /**< tolerance of the mean phase error for cm1e_dc_pace_settled() */
+    CM1E_PACE_SETTLED = 20,    /**< tolerance of the mean phase error for cm1e_dc_pace_settled() */
 };
 
 void cm1e_dc_pace_begin(cm1e_dc_pace_t *pace, int64_t cycle_ns);

@@ -48,6 +48,9 @@ cm1e_error_t cm1e_dc_wait(cm1e_bus_t *bus, cm1e_diag_t *diag)
         cm1e_bus_pump(bus);
         if (cm1e_clock_now(bus->clock) < deadline_ns)
             continue;
+        if (apart && !dc->slaves[apart->info.position - 1].seen)
+            return cm1e_diag_set(diag, CM1E_ERROR_BUS_CLOCKS, 0, "%s does not answer when the deviation of its clock is "
+                                 "read. Check its cables and its power.", cm1e_bus_label_first(bus, apart, label));
         if (apart)
             return cm1e_diag_set(diag, CM1E_ERROR_BUS_CLOCKS, 0,
                                  "The clock of %s does not follow the reference clock: it deviates by %d ns, allowed "
