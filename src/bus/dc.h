@@ -39,6 +39,8 @@ typedef struct cm1e_dc {
     int64_t correction_ns; /**< for the next cycle, not yet taken */
     bool marked;          /**< it is one of every second frame */
     unsigned silent;      /**< frames in a row that came back without the time of the reference */
+    bool abandoned;       /**< the reference was off: another one is taken before the next frame */
+    uint16_t candidate;   /**< a slave whose clock was set while there was no reference; 0: none */
     uint16_t looked;      /**< slave whose deviation was read last */
     bool turn;            /**< supervision looks at a clock next, not at an AL status */
     int64_t phase_maximum_ns;
@@ -84,6 +86,8 @@ void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *datagram);
 
 /* dc_recovery.c */
 void cm1e_dc_recover_begin(struct cm1e_bus_slave *slave);
+/** The slave has no address any more: it was off, and its clock with it. */
+void cm1e_dc_was_off(struct cm1e_bus_slave *slave);
 /** The next register of a slave whose clock is set again; false: nothing to send now. `*is_set`: it is set, or the
  *  slave has none. */
 bool cm1e_dc_recover_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns, bool *is_set);

@@ -13,21 +13,10 @@ enum {
                             clock that follows predictions does not give them back */
 };
 #define SIGN 0x80000000u
+/** From one frame to the next no clock goes so far wrong: the reference was off, and counts from 0. */
+#define IMPLAUSIBLE_NS INT64_C(1000000000)
 
 /* ---- in every cycle ---------------------------------------------------------------------------------------------- */
-
-/** The datagram carries the time that is expected. If the reference does not answer, the others get that, and not the
- *  time of an earlier frame, by which they would fall back a whole cycle. */
-void cm1e_dc_send(cm1e_bus_t *bus, int64_t now_ns)
-{
-    cm1e_dc_t *dc = &bus->dc;
-    if (!dc->used)
-        return;
-    dc->frame_ns = now_ns;
-    dc->marked = !dc->marked;
-    dc->predicted_ns = dc->reference_ns + (now_ns - dc->sent_ns) + (dc->marked ? MARK_NS : 2 * MARK_NS);
-    cm1e_soem_set_clock_time(bus->soem, dc->predicted_ns);
-}
 
 static void lose(cm1e_dc_t *dc, cm1e_dc_slave_t *slave)
 {
@@ -38,22 +27,49 @@ static void lose(cm1e_dc_t *dc, cm1e_dc_slave_t *slave)
     dc->losses++;
 }
 
+static void set_reference(cm1e_bus_t *bus, uint16_t position)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    dc->silent = 0;
+    dc->candidate = 0;
+    dc->reference = position;
+    if (position)
+        dc->slaves[position - 1].clock.is_reference = true;
+    cm1e_soem_use_clocks(bus->soem, position);
+}
+
 /** The next clock on the wire takes over. Its delay register says when a frame passed the first clock, so the delays of
  *  the others stay right. */
 static void change_reference(cm1e_bus_t *bus)
 {
     cm1e_dc_t *dc = &bus->dc;
     uint32_t next = dc->reference;
-    dc->silent = 0;
+    dc->abandoned = false;
+    if (dc->reference == 0)
+        return;
     lose(dc, &dc->slaves[dc->reference - 1]);
     dc->slaves[dc->reference - 1].clock.is_reference = false;
     while (next < bus->slave_count && !(dc->slaves[next].clock.has_clock && !bus->slaves[next].watch.lost &&
                                         bus->slaves[next].unanswered == 0))
         next++;
-    dc->reference = next < bus->slave_count ? (uint16_t)(next + 1) : 0;
-    if (dc->reference)
-        dc->slaves[dc->reference - 1].clock.is_reference = true;
-    cm1e_soem_use_clocks(bus->soem, dc->reference);
+    set_reference(bus, next < bus->slave_count ? (uint16_t)(next + 1) : 0);
+}
+
+/** The datagram carries the time that is expected. If the reference does not answer, the others get that, and not the
+ *  time of an earlier frame, by which they would fall back a whole cycle. */
+void cm1e_dc_send(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    if (!dc->used)
+        return;
+    if (dc->abandoned)
+        change_reference(bus);
+    if (dc->reference == 0 && dc->candidate)
+        set_reference(bus, dc->candidate);
+    dc->frame_ns = now_ns;
+    dc->marked = !dc->marked;
+    dc->predicted_ns = dc->reference_ns + (now_ns - dc->sent_ns) + (dc->marked ? MARK_NS : 2 * MARK_NS);
+    cm1e_soem_set_clock_time(bus->soem, dc->predicted_ns);
 }
 
 static void note_phase(cm1e_dc_t *dc)
@@ -69,7 +85,8 @@ void cm1e_dc_receive(cm1e_bus_t *bus, bool returned)
     if (!dc->used)
         return;
     const int64_t time_ns = cm1e_soem_clock_time(bus->soem);
-    if (!returned || dc->reference == 0 || time_ns == dc->predicted_ns) {
+    const bool is_answer = time_ns != dc->predicted_ns && llabs(time_ns - dc->predicted_ns) < IMPLAUSIBLE_NS;
+    if (!returned || dc->reference == 0 || !is_answer) {
         dc->correction_ns += cm1e_dc_pace_coast(&dc->pace);
         if (returned && dc->reference && ++dc->silent >= SILENT_LIMIT)
             change_reference(bus);

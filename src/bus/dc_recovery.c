@@ -51,6 +51,12 @@ void cm1e_dc_recover_begin(cm1e_bus_slave_t *slave)
         slave->dc->slaves[slave->info.position - 1].step = FILTERS;
 }
 
+void cm1e_dc_was_off(cm1e_bus_slave_t *slave)
+{
+    if (slave->dc && slave->dc->slaves[slave->info.position - 1].clock.is_reference)
+        slave->dc->abandoned = true;
+}
+
 bool cm1e_dc_recover_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, bool *is_set)
 {
     cm1e_dc_t *dc = slave->dc;
@@ -60,7 +66,7 @@ bool cm1e_dc_recover_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
     if (*is_set || own->step == PULSES)
         return false;
     if (own->clock.is_reference && own->step < OFF) {
-        own->step = OFF; /* it gives the time */
+        own->step = OFF; /* it has its address, so it was not off: it gives the time */
         return false;
     }
     fill(dc, own, slave->facts.station, d);
@@ -84,6 +90,8 @@ void cm1e_dc_recovered(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_
         take_times(dc, own, d);
     if (own->step == ON)
         own->deadline_ns = now_ns + PULSES_NS;
+    if (own->step == TOGETHER && dc->reference == 0)
+        dc->candidate = slave->info.position;
     if (difference <= CM1E_CLOCK_TOLERANCE_NS)
         own->step++;
 }

@@ -123,6 +123,7 @@ static bool next_address(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
 {
     (void)now_ns;
     slave->recovery.address_given = true;
+    cm1e_dc_was_off(slave);
     cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
     cm1e_put_u16(d->data, slave->facts.station);
     return true;

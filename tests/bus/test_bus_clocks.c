@@ -491,6 +491,51 @@ START_TEST(another_clock_takes_over_from_a_reference_that_is_away)
 }
 END_TEST
 
+/** The first slave of a line was off: no frame came back meanwhile, and its clock counts from 0 again. */
+START_TEST(a_reference_that_was_off_comes_back_as_one_of_the_others)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(20, 60, -40);
+    run(bus, 5000);
+    simulate(bus, "power-cycle 1 300");
+    run(bus, 400);
+    for (uint16_t i = 1; i <= SLAVES; i++)
+        cm1e_bus_request_recovery(bus, i);
+    run(bus, 4000);
+    for (uint16_t i = 1; i <= SLAVES; i++)
+        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, i).al_state, CM1E_AL_OP);
+    ck_assert_uint_eq(clocks_of(bus).reference, DRIVE);
+    run(bus, 20000);
+    ck_assert_msg(fabs(ahead_ns(bus, DRIVE)) < 200 && fabs(ahead_ns(bus, LAST)) < 200, "%g %g ns", ahead_ns(bus, DRIVE),
+                  ahead_ns(bus, LAST));
+    ck_assert_msg(fabs(clocks_of(bus).phase_mean_ns) < 50, "%g ns", clocks_of(bus).phase_mean_ns);
+    ck_assert(!clock_of(bus, CM1E).lost);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(the_only_clock_is_the_reference_again)
+{
+    sim_config(1);
+    config.distributed_clocks = true;
+    cm1e_bus_t *bus = start_bus();
+    plan_ns = 0;
+    simulate(bus, "clock 1 drift 100");
+    run(bus, 5000);
+    simulate(bus, "power-cycle 1 300");
+    run(bus, 400);
+    cm1e_bus_request_recovery(bus, 1);
+    run(bus, 200);
+    const int64_t before_ns = clocks_of(bus).reference_ns;
+    run(bus, 3000);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 1).al_state, CM1E_AL_OP);
+    ck_assert_uint_eq(clocks_of(bus).reference, 1);
+    ck_assert_msg(fabs(clocks_of(bus).phase_mean_ns) < 50, "%g ns", clocks_of(bus).phase_mean_ns);
+    ck_assert_int_gt(clocks_of(bus).reference_ns, before_ns);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus clocks");
@@ -515,6 +560,8 @@ int main(void)
     tcase_add_test(lost, the_clock_of_a_drive_that_was_off_is_set_again);
     tcase_add_test(lost, lost_frames_do_not_disturb_the_clocks);
     tcase_add_test(lost, another_clock_takes_over_from_a_reference_that_is_away);
+    tcase_add_test(lost, a_reference_that_was_off_comes_back_as_one_of_the_others);
+    tcase_add_test(lost, the_only_clock_is_the_reference_again);
     suite_add_tcase(suite, good);
     suite_add_tcase(suite, refused);
     suite_add_tcase(suite, lost);
