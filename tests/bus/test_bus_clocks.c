@@ -514,6 +514,34 @@ START_TEST(a_reference_that_was_off_comes_back_as_one_of_the_others)
 }
 END_TEST
 
+/** A coupler is brought back without a request: it has its address again in the first cycles in which frames return. */
+START_TEST(a_coupler_that_was_off_does_not_take_the_others_along)
+{
+    sim_config(2);
+    config.sim_gaps = CM1E_SIM_IO_COUPLER;
+    config.distributed_clocks = true;
+    config.axes[0].address = 2;
+    config.axes[1].address = 3;
+    cm1e_bus_t *bus = open_drifting(20, -50, 80);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    plan_ns = 0;
+    run(bus, 20000);
+    ck_assert_uint_eq(clocks_of(bus).reference, 1);
+    simulate(bus, "power-cycle 1 300");
+    for (int i = 0; i < 1000; i++) {
+        run(bus, 1);
+        ck_assert_msg(fabs(ahead_ns(bus, 3) - ahead_ns(bus, 2)) < 20000, "%d: %g ns", i,
+                      ahead_ns(bus, 3) - ahead_ns(bus, 2));
+    }
+    ck_assert_uint_eq(clocks_of(bus).reference, 2);
+    run(bus, 5000);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 1).al_state, CM1E_AL_OP);
+    ck_assert_msg(fabs(ahead_ns(bus, 3)) < 200, "%g ns", ahead_ns(bus, 3));
+    ck_assert(!clock_of(bus, 1).lost && !clock_of(bus, 3).lost);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(the_only_clock_is_the_reference_again)
 {
     sim_config(1);
@@ -561,6 +589,7 @@ int main(void)
     tcase_add_test(lost, lost_frames_do_not_disturb_the_clocks);
     tcase_add_test(lost, another_clock_takes_over_from_a_reference_that_is_away);
     tcase_add_test(lost, a_reference_that_was_off_comes_back_as_one_of_the_others);
+    tcase_add_test(lost, a_coupler_that_was_off_does_not_take_the_others_along);
     tcase_add_test(lost, the_only_clock_is_the_reference_again);
     suite_add_tcase(suite, good);
     suite_add_tcase(suite, refused);
