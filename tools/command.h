@@ -38,6 +38,9 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
     X(firmware, "write a new firmware into a motor", "update")                                                      \
     X(foe, "read or write a file of a slave", "read write")                                                         \
     X(alias, "show or write the alias of a slave", "")                                                              \
+    X(states, "show the EtherCAT states of the slaves, or request one", "")                                         \
+    X(reg, "read or write registers of a slave", "read write")                                                      \
+    X(graph, "show how the slaves are wired", "")                                                                   \
     X(sim, "serve a simulated network on a network interface", "")                                                  \
     X(generate, "write files for other masters", "esi ec-extend sii eni")                                           \
     X(check, "check a file for other masters, from any source", "")                                                 \

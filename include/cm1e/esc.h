@@ -21,7 +21,8 @@ extern "C" {
 #define CM1E_ESC_BYTES 512 /**< maximum number of bytes of one access */
 
 /** Reads `size` bytes from `address` on. Position 0 asks all slaves at once, also before a scan: the bits of all are
- *  OR-ed together. Returns CM1E_ERROR_TIMEOUT if the slave does not answer, CM1E_ERROR_STATE while the cycle runs.
+ *  OR-ed together. Of a network that another program runs (cm1e_bus_open_attached()) the registers below 0x0900 of one
+ *  slave can be read. Returns CM1E_ERROR_TIMEOUT if the slave does not answer, CM1E_ERROR_STATE while the cycle runs.
  *  @rt block */
 CM1E_API cm1e_error_t cm1e_esc_read(cm1e_bus_t *bus, uint16_t position, uint16_t address, void *data, uint16_t size,
                                     cm1e_diag_t *diag);

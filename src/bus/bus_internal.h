@@ -260,6 +260,9 @@ cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t time
 /** " Another master sends ...", or "" if none was seen; for the end of a diagnosis. */
 enum { CM1E_OTHER_MASTER_LENGTH = 160 };
 const char *cm1e_bus_other_master(const cm1e_bus_t *bus, char text[CM1E_OTHER_MASTER_LENGTH]);
+/** Reads registers of one slave, also of a bus that another program runs (up to CM1E_ERRAND_REGISTERS_END there).
+ *  false: it does not answer. Not while our own cycle runs. */
+bool cm1e_bus_read_registers(cm1e_bus_t *bus, uint16_t position, uint16_t address, uint8_t *data, uint16_t size);
 /** Diagnosis of a failed transfer or transition. */
 cm1e_error_t cm1e_bus_diagnose_sdo(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const cm1e_sdo_t *sdo,
                                    const char *purpose, cm1e_diag_t *diag);

@@ -8,6 +8,36 @@
 
 enum { HIGHEST_STATE = 15 };
 
+bool cm1e_bus_read_registers(cm1e_bus_t *bus, uint16_t position, uint16_t address, uint8_t *data, uint16_t size)
+{
+    const uint16_t station = cm1e_bus_at(bus, position)->facts.station;
+    if (!bus->remote)
+        return cm1e_soem_transfer(bus->soem, COMMAND_FPRD, station, address, data, size) == 1;
+    for (uint16_t done = 0; done < size;) {
+        const uint16_t left = (uint16_t)(size - done), part = left < CM1E_ERRAND_BYTES ? left : CM1E_ERRAND_BYTES;
+        cm1e_errand_t errand = {.kind = ERRAND_REGISTERS, .position = position, .place = address + done, .size = part};
+        if (cm1e_bus_errand_remote(bus, &errand, NULL) != CM1E_OK || errand.error != CM1E_OK)
+            return false;
+        memcpy(data + done, errand.data, part);
+        done = (uint16_t)(done + part);
+    }
+    return true;
+}
+
+/** What another program's slave can be asked for: registers whose reading changes nothing. */
+static cm1e_error_t read_attached(cm1e_bus_t *bus, uint16_t position, uint16_t address, uint8_t *data, uint16_t size,
+                                  cm1e_diag_t *diag)
+{
+    if (!cm1e_bus_at(bus, position) || size == 0 || address + size > CM1E_ERRAND_REGISTERS_END)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Slave %u, %u bytes from register 0x%04X: of a "
+                             "network that another program runs, expected are slave 1 to %u and registers up to "
+                             "0x%04X.", position, size, address, bus->slave_count, CM1E_ERRAND_REGISTERS_END - 1);
+    if (cm1e_bus_read_registers(bus, position, address, data, size))
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer at register 0x%04X.", position,
+                         address);
+}
+
 static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const char *function, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
@@ -40,6 +70,8 @@ static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_command_t command, uint16_t p
 cm1e_error_t cm1e_esc_read(cm1e_bus_t *bus, uint16_t position, uint16_t address, void *data, uint16_t size,
                            cm1e_diag_t *diag)
 {
+    if (bus && bus->remote && !cm1e_in_task())
+        return read_attached(bus, position, address, data, size, diag);
     const cm1e_error_t error = check(bus, position, "cm1e_esc_read()", diag);
     if (error != CM1E_OK)
         return error;

@@ -293,7 +293,8 @@ static cm1e_error_t take_packet(cm1e_foe_t *foe, const uint8_t *answer, size_t b
         return CM1E_OK;
     if (got != *number + 1)
         return end_early(foe, FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "Slave %u sends packet %u of the file, packet %u was "
-                                   "expected.", foe->position, (unsigned)got, (unsigned)*number + 1), FOE_ERROR_PACKET);
+                                   "expected.", foe->position, (unsigned)got, (unsigned)*number + 1),
+                         FOE_ERROR_PACKET);
     if (bytes > room - foe->done)
         return end_early(foe, FAIL(foe, CM1E_ERROR_FULL, "The file of slave %u has more than %zu bytes.",
                                    foe->position, room), FOE_ERROR_DISK_FULL);

@@ -1,6 +1,4 @@
 /* What the ports of a slave controller have counted since its power-on (ETG.1000.4, 6.2). */
-#include <string.h>
-
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 #include "core/in_task.h"
@@ -16,18 +14,6 @@ enum {
     REG_LOST_LINKS = 0x0310,
 };
 
-static bool read_register(cm1e_bus_t *bus, uint16_t position, uint16_t offset, uint8_t *data, uint16_t length)
-{
-    const uint16_t station = cm1e_bus_at(bus, position)->facts.station;
-    cm1e_errand_t errand = {.kind = ERRAND_REGISTERS, .position = position, .place = offset, .size = length};
-    if (bus->remote) {
-        const cm1e_error_t error = cm1e_bus_errand_remote(bus, &errand, NULL);
-        memcpy(data, errand.data, length);
-        return error == CM1E_OK && errand.error == CM1E_OK;
-    }
-    return cm1e_soem_transfer(bus->soem, COMMAND_FPRD, station, offset, data, length) == 1;
-}
-
 cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_port_t ports[CM1E_PORTS],
                                  cm1e_diag_t *diag)
 {
@@ -36,9 +22,9 @@ cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_
         return cm1e_in_task_refuse("cm1e_bus_read_ports()", "", diag);
     if (!cm1e_bus_slave(bus, position))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u.", position);
-    if (!read_register(bus, position, REG_DL_STATUS, status, sizeof status) ||
-        !read_register(bus, position, REG_RECEIVE_ERRORS, errors, sizeof errors) ||
-        !read_register(bus, position, REG_LOST_LINKS, lost, sizeof lost))
+    if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status) ||
+        !cm1e_bus_read_registers(bus, position, REG_RECEIVE_ERRORS, errors, sizeof errors) ||
+        !cm1e_bus_read_registers(bus, position, REG_LOST_LINKS, lost, sizeof lost))
         return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer when its ports are read.",
                              position);
     for (int port = 0; port < CM1E_PORTS; port++)

@@ -61,7 +61,8 @@ def look_at_wiring(segment, cm1e):
     segment.console("replug 3")
     _, found = doctor(segment, cm1e)
     find(found, "slaves", "ok", "3")
-    find(found, "lost links", "problem", "behind port 1 (OUT) of slave 2")
+    find(found, "lost links", "problem", "between slave 2 (port 1, OUT) and slave 3 (port 0, IN)",
+         "as slave 2 counts")
 
     subprocess.run(wire.enter(segment.master, ["ip", "address", "add", "192.0.2.7/24", "dev", wire.MASTER_INTERFACE]),
                    check=True)

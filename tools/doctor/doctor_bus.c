@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cia402/cia402.h"
+#include "cm1e/topology.h"
 #include "core/bytes.h"
 #include "core/codes.h"
 #include "device/devices.h"
@@ -21,50 +22,58 @@ static void say_failure(doctor_t *doctor, const char *subject, const cm1e_diag_t
 
 /* ---- connections ----------------------------------------------------------------------------------------------- */
 
-/** "between slave 1 and slave 2"; in a line port 0 is IN and port 1 is OUT. */
-static void place_of(char *text, size_t size, uint16_t position, int port)
-{
-    if (port > 0)
-        snprintf(text, size, "behind port %d (%s) of slave %u", port, port == 1 ? "OUT" : "branch", position);
-    else if (position == 1)
-        snprintf(text, size, "between this computer and slave 1 (IN)");
-    else
-        snprintf(text, size, "between slave %u and slave %u (IN)", position - 1, position);
-}
-
 static const char damaged[] = "Frames are damaged or lost there: a cable, a plug, its shield, or interference.";
 
-static void judge_port(doctor_t *doctor, uint16_t position, int port, const cm1e_slave_port_t *counters, bool *clean)
+/** Counters of one port; forwarded errors are those of another cable, so they are no finding. */
+static void judge_port(doctor_t *doctor, uint32_t position, const char *place, const cm1e_slave_port_t *counters,
+                       bool *clean)
 {
-    char place[96];
-    place_of(place, sizeof place, position, port);
     if (counters->invalid_frames > 0 || counters->receive_errors > 0)
         doctor_advise(doctor_find(doctor, FINDING_PROBLEM, group, "frame errors",
-                                  "%s: %u invalid frames, %u receive errors "
+                                  "%s: slave %u counts %u invalid frames, %u receive errors "
                                   "since power-on",
-                                  place, counters->invalid_frames, counters->receive_errors),
+                                  place, position, counters->invalid_frames, counters->receive_errors),
                       damaged, "Replace the cable there, keep it away from motor cables, then look again.", "%s", "");
     if (counters->lost_links > 0)
         doctor_advise(doctor_find(doctor, FINDING_PROBLEM, group, "lost links",
                                   "%s: the link was lost %u times since "
-                                  "power-on",
-                                  place, counters->lost_links),
+                                  "power-on, as slave %u counts",
+                                  place, counters->lost_links, position),
                       damaged, "Check that both plugs have locked; replace the cable.", "%s", "");
     *clean &= counters->invalid_frames == 0 && counters->receive_errors == 0 && counters->lost_links == 0;
 }
 
+/** Frames turn back there: nothing behind that port is reached. */
+static void judge_loop(doctor_t *doctor, const char *place, const cm1e_slave_place_t *at, int port, bool *clean)
+{
+    if (!at->link[port] || at->open[port])
+        return;
+    doctor_advise(doctor_find(doctor, FINDING_PROBLEM, group, "loop", "%s: there is a link, but the port sends frames "
+                              "back", place),
+                  "A master has closed the port, or the device behind it is no EtherCAT slave or has just been plugged "
+                  "in.", "Look what is plugged in there; switch the slave off and on.", "%s", "");
+    *clean = false;
+}
+
 static void look_at_ports(doctor_t *doctor, cm1e_bus_t *bus)
 {
+    static cm1e_slave_place_t places[CM1E_MAX_SLAVES];
     bool clean = true;
+    memset(places, 0, sizeof places);
+    (void)cm1e_bus_topology(bus, places, CM1E_MAX_SLAVES, NULL); /* without it ports are named by their slave only */
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++) {
         cm1e_slave_port_t ports[CM1E_PORTS];
+        char text[96];
         cm1e_diag_t diag = {0};
         if (cm1e_bus_read_ports(bus, (uint16_t)position, ports, &diag) != CM1E_OK) {
             say_failure(doctor, "ports", &diag);
             return;
         }
-        for (int port = 0; port < CM1E_PORTS; port++)
-            judge_port(doctor, (uint16_t)position, port, &ports[port], &clean);
+        for (int port = 0; port < CM1E_PORTS; port++) {
+            cm1e_cable_text(&places[position - 1], (uint16_t)position, port, text, sizeof text);
+            judge_port(doctor, position, text, &ports[port], &clean);
+            judge_loop(doctor, text, &places[position - 1], port, &clean);
+        }
     }
     if (clean)
         doctor_find(doctor, FINDING_GOOD, group, "connections", "no damaged frame and no lost link since power-on");

@@ -1,0 +1,44 @@
+/**
+ * @file topology.h
+ * How the slaves of a bus are wired: which port of which slave each of them is connected to. It is read from the port
+ * states that the slave controllers show (register 0x0110, ETG.1000.4) and from the order of the slaves.
+ */
+#ifndef CM1E_TOPOLOGY_H
+#define CM1E_TOPOLOGY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cm1e/api.h"
+#include "cm1e/bus.h"
+#include "cm1e/error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The place of one slave. A zeroed struct is one whose place is not known. */
+typedef struct cm1e_slave_place {
+    bool known;                 /**< false: the port states do not explain the order of the slaves */
+    uint16_t parent;            /**< position of the slave before it; 0: this computer */
+    uint8_t parent_port;        /**< the port of the parent at which it is */
+    uint8_t entry_port;         /**< the port by which frames enter: 0, unless that is closed */
+    bool link[CM1E_PORTS];      /**< there is a link */
+    bool open[CM1E_PORTS];      /**< frames pass; a port with a link that is closed loops back */
+    uint16_t next[CM1E_PORTS];  /**< position of the slave that is connected there; 0: none. Not of the entry port */
+    uint8_t next_port[CM1E_PORTS]; /**< the entry port of that slave */
+} cm1e_slave_place_t;
+
+/** Reads the places of all slaves, after cm1e_bus_scan() and while no cycle runs, or of a program that runs the network
+ *  (cm1e_bus_open_attached()). `places[0]` is that of the first slave; at most `room` are written. Returns
+ *  CM1E_ERROR_TIMEOUT if a slave does not answer, CM1E_ERROR_STATE before a scan or in a task. @rt block */
+CM1E_API cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag);
+/** Names the cable at a port in words: "between slave 1 (port 1, OUT) and slave 2 (port 0, IN)". `place` is that of the
+ *  slave at `position`. 96 bytes are enough. @rt block */
+CM1E_API void cm1e_cable_text(const cm1e_slave_place_t *place, uint16_t position, int port, char *text, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

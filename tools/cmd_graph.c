@@ -1,0 +1,276 @@
+/** cm1e graph: how the slaves are wired, as a picture (DOT or SVG). */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "attach.h"
+#include "cm1e/topology.h"
+#include "files.h"
+
+enum { KEY_SVG = 0x9C0 };
+/** The picture, in pixels. */
+enum { BOX_WIDTH = 230, BOX_HEIGHT = 76, GAP_X = 60, GAP_Y = 34, MARGIN = 20, LINE = 16, SHOWN_LETTERS = 38 };
+enum { LINES = 4, LINE_BYTES = 160 };
+
+typedef struct graph_options {
+    common_options_t common;
+    const char *svg;
+} graph_options_t;
+
+/** All that a picture shows. */
+typedef struct graph {
+    const cm1e_bus_t *bus;
+    const cm1e_bus_config_t *config;
+    uint32_t count;
+    cm1e_slave_place_t places[CM1E_MAX_SLAVES];
+    unsigned row[CM1E_MAX_SLAVES], column[CM1E_MAX_SLAVES], rows, columns; /* of the SVG */
+} graph_t;
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    graph_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case KEY_SVG: options->svg = arg; return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* ---- what is said of a slave ------------------------------------------------------------------------------------ */
+
+/** A link whose port is closed: the slave sends frames back there, so nothing behind it is reached. */
+static bool loops_back(const cm1e_slave_place_t *place, int port) { return place->link[port] && !place->open[port]; }
+
+static const char *port_word(const cm1e_slave_place_t *place, int port)
+{
+    return loops_back(place, port) ? "loop" : place->open[port] ? "open" : "-";
+}
+
+static void ports_text(const cm1e_slave_place_t *place, char *text, size_t size)
+{
+    snprintf(text, size, "ports: 0 %s, 1 %s, 2 %s, 3 %s", port_word(place, 0), port_word(place, 1),
+             port_word(place, 2), port_word(place, 3));
+}
+
+/** Position with the axis and the name of the slave, its state, its ports. Returns the number of lines. */
+static int describe(const graph_t *graph, uint32_t i, char lines[LINES][LINE_BYTES])
+{
+    char state[48];
+    const cm1e_slave_info_t *slave = cm1e_bus_slave(graph->bus, i + 1);
+    const int axis = find_axis_at(graph->config, slave, 0);
+    const char *name = slave->name[0] ? slave->name : "without a name";
+    int n = 0;
+    snprintf(lines[n++], LINE_BYTES, "%u: %s", slave->position, axis >= 0 ? graph->config->axes[axis].name : name);
+    if (axis >= 0)
+        snprintf(lines[n++], LINE_BYTES, "%s", name);
+    snprintf(lines[n++], LINE_BYTES, "%s", al_state_name(slave->al_state, state, sizeof state));
+    ports_text(&graph->places[i], lines[n++], LINE_BYTES);
+    return n;
+}
+
+static bool is_troubled(const cm1e_slave_info_t *slave, const cm1e_slave_place_t *place)
+{
+    bool loop = !place->known || (slave->al_state & CM1E_AL_ERROR);
+    for (int port = 0; port < CM1E_PORTS; port++)
+        loop = loop || loops_back(place, port);
+    return loop;
+}
+
+/* ---- DOT -------------------------------------------------------------------------------------------------------- */
+
+/** A text of a device inside quotes. */
+static void print_quoted(FILE *file, const char *text)
+{
+    for (; *text; text++)
+        if (*text == '"' || *text == '\\')
+            fprintf(file, "\\%c", *text);
+        else
+            fputc((unsigned char)*text < ' ' ? ' ' : *text, file);
+}
+
+static void print_dot_slave(FILE *file, const graph_t *graph, uint32_t i)
+{
+    char lines[LINES][LINE_BYTES];
+    const cm1e_slave_info_t *slave = cm1e_bus_slave(graph->bus, i + 1);
+    const cm1e_slave_place_t *place = &graph->places[i];
+    const int count = describe(graph, i, lines);
+    fprintf(file, "  s%u [label=\"", slave->position);
+    for (int n = 0; n < count; n++) {
+        fputs(n ? "\\n" : "", file);
+        print_quoted(file, lines[n]);
+    }
+    fprintf(file, "\"%s];\n", is_troubled(slave, place) ? ", color=red" : "");
+    if (place->parent)
+        fprintf(file, "  s%u -> s%u [taillabel=\"%u\", headlabel=\"%u\"];\n", place->parent, slave->position,
+                place->parent_port, place->entry_port);
+    else
+        fprintf(file, "  master -> s%u [headlabel=\"%u\"%s];\n", slave->position, place->entry_port,
+                place->known ? "" : ", style=dotted");
+}
+
+static void print_dot(FILE *file, const graph_t *graph)
+{
+    fprintf(file, "digraph network {\n  rankdir=LR;\n  node [shape=box];\n  master [label=\"");
+    print_quoted(file, graph->config->interface_name);
+    fprintf(file, "\"];\n");
+    for (uint32_t i = 0; i < graph->count; i++)
+        print_dot_slave(file, graph, i);
+    fprintf(file, "}\n");
+}
+
+/* ---- SVG -------------------------------------------------------------------------------------------------------- */
+
+/** A line goes to the right, a branch begins a new row. Port 1 is the way on, if there are several. */
+static void place_boxes(graph_t *graph)
+{
+    graph->rows = graph->columns = graph->count > 0;
+    for (uint32_t i = 0; i < graph->count; i++) {
+        const cm1e_slave_place_t *place = &graph->places[i];
+        const bool has_parent = place->known && place->parent > 0;
+        const unsigned parent = has_parent ? place->parent - 1u : i > 0 ? i - 1 : 0;
+        bool goes_on = true;
+        for (int port = 1; has_parent && port < CM1E_PORTS; port++) /* is another one of its slaves the way on? */
+            goes_on = goes_on && (port == place->parent_port || graph->places[parent].next[port] == 0 ||
+                                  place->parent_port == 1);
+        graph->column[i] = i == 0 ? 0 : graph->column[parent] + 1;
+        graph->row[i] = i == 0 ? 0 : goes_on ? graph->row[parent] : graph->rows++;
+        graph->columns = graph->column[i] + 1 > graph->columns ? graph->column[i] + 1 : graph->columns;
+    }
+}
+
+static void print_xml(FILE *file, const char *text)
+{
+    for (int n = 0; *text && n < SHOWN_LETTERS; text++, n += ((unsigned char)*text & 0xC0) != 0x80)
+        switch (*text) {
+        case '<': fputs("&lt;", file); break;
+        case '&': fputs("&amp;", file); break;
+        default: fputc((unsigned char)*text < ' ' ? ' ' : *text, file);
+        }
+}
+
+/** Left edge of a column and top of a row; column 0 is the computer. */
+static int left_of(unsigned column) { return MARGIN + (int)column * (BOX_WIDTH + GAP_X); }
+static int top_of(unsigned row) { return MARGIN + (int)row * (BOX_HEIGHT + GAP_Y); }
+
+static void print_box(FILE *file, int x, int y, bool troubled, char lines[LINES][LINE_BYTES], int count)
+{
+    fprintf(file, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" rx=\"4\" fill=\"%s\" stroke=\"%s\"/>\n", x, y,
+            BOX_WIDTH, BOX_HEIGHT, troubled ? "#fdecea" : "#f5f7fa", troubled ? "#c62828" : "#455a64");
+    for (int i = 0; i < count; i++) {
+        fprintf(file, "<text x=\"%d\" y=\"%d\"%s>", x + 8, y + LINE * (i + 1), i ? "" : " font-weight=\"bold\"");
+        print_xml(file, lines[i]);
+        fprintf(file, "</text>\n");
+    }
+}
+
+static void print_svg_slave(FILE *file, const graph_t *graph, uint32_t i)
+{
+    char lines[LINES][LINE_BYTES];
+    const cm1e_slave_place_t *place = &graph->places[i];
+    const bool has_parent = i > 0 && place->known && place->parent > 0;
+    const int x = left_of(graph->column[i] + 1), y = top_of(graph->row[i]);
+    const int from_x = has_parent ? left_of(graph->column[place->parent - 1] + 1) + BOX_WIDTH : MARGIN + BOX_WIDTH;
+    const int from_y = (has_parent ? top_of(graph->row[place->parent - 1]) : MARGIN) + BOX_HEIGHT / 2;
+    const int middle = y + BOX_HEIGHT / 2;
+    if (i == 0 || has_parent) {
+        fprintf(file, "<polyline points=\"%d,%d %d,%d %d,%d %d,%d\" fill=\"none\" stroke=\"#455a64\"/>\n", from_x,
+                from_y, x - GAP_X / 2, from_y, x - GAP_X / 2, middle, x, middle);
+        fprintf(file, "<text x=\"%d\" y=\"%d\">%u</text>\n", x - 12, middle - 4, place->entry_port);
+    }
+    if (has_parent)
+        fprintf(file, "<text x=\"%d\" y=\"%d\">%u</text>\n", from_x + 4,
+                (graph->row[i] == graph->row[place->parent - 1] ? from_y : middle) - 4, place->parent_port);
+    const int count = describe(graph, i, lines);
+    print_box(file, x, y, is_troubled(cm1e_bus_slave(graph->bus, i + 1), place), lines, count);
+}
+
+static void print_svg(FILE *file, const graph_t *graph)
+{
+    char computer[LINES][LINE_BYTES] = {"this computer"};
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" font-family=\"sans-serif\" "
+            "font-size=\"11\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
+            left_of(graph->columns + 1) - GAP_X + MARGIN, top_of(graph->rows ? graph->rows : 1) - GAP_Y + MARGIN);
+    snprintf(computer[1], LINE_BYTES, "%s", graph->config->interface_name);
+    print_box(file, MARGIN, MARGIN, false, computer, 2);
+    for (uint32_t i = 0; i < graph->count; i++)
+        print_svg_slave(file, graph, i);
+    fprintf(file, "</svg>\n");
+}
+
+/* ---- the command ------------------------------------------------------------------------------------------------ */
+
+static void show_json(const graph_t *graph)
+{
+    json_t *all = json_array();
+    for (uint32_t i = 0; i < graph->count; i++) {
+        const cm1e_slave_place_t *place = &graph->places[i];
+        json_t *ports = json_array();
+        for (int port = 0; port < CM1E_PORTS; port++)
+            json_array_append_new(ports, json_pack("{s:b, s:b, s:i}", "link", place->link[port], "open",
+                                                   place->open[port], "slave", place->next[port]));
+        json_array_append_new(all, json_pack("{s:i, s:o, s:b, s:i, s:i, s:i, s:o}", "position", (int)i + 1, "name",
+                                             text_as_json(cm1e_bus_slave(graph->bus, i + 1)->name), "known",
+                                             place->known, "parent", place->parent, "parent_port",
+                                             place->parent_port, "entry_port", place->entry_port, "ports", ports));
+    }
+    print_json(all);
+}
+
+/** The picture as a file, complete or not at all. */
+static int write_svg(const graph_t *graph, const char *path)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    if (file)
+        print_svg(file, graph);
+    const bool made = file && fclose(file) == 0;
+    const bool good = made && write_output(path, text, size);
+    if (!made)
+        complain("no memory for the picture");
+    free(text);
+    return good ? EXIT_OK : EXIT_FAILED;
+}
+
+static int show(graph_t *graph, const graph_options_t *options)
+{
+    place_boxes(graph);
+    if (options->svg)
+        return write_svg(graph, options->svg);
+    if (options->common.json)
+        show_json(graph);
+    else
+        print_dot(stdout, graph);
+    return EXIT_OK;
+}
+
+static const struct argp_option table[] = {
+    {"svg", KEY_SVG, "FILE", 0, "Write a picture; -: to standard output", 0},
+    {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
+const struct argp argp_graph = {
+    table, parse, NULL,
+    "Shows how the slaves are wired, with the states of their ports: as DOT of Graphviz, or as a picture with --svg. A "
+    "port with a link that is closed (\"loop\") sends frames back: what is behind it is not reached. Where a program "
+    "runs the network, it is asked.", children, NULL, NULL};
+
+int command_graph(int argc, char **argv)
+{
+    static cm1e_bus_config_t config;
+    static graph_t graph;
+    graph_options_t options = {.svg = NULL};
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    if (parse_options(&argp_graph, argc, argv, &options))
+        return EXIT_WRONG_USE;
+    if (!load_network(&options.common, &config))
+        return EXIT_WRONG_USE;
+    if (open_network(&options.common, &config, &bus, &diag) != CM1E_OK)
+        return fail(&diag);
+    graph = (graph_t){.bus = bus, .config = &config, .count = cm1e_bus_slave_count(bus)};
+    const int status = cm1e_bus_topology(bus, graph.places, CM1E_MAX_SLAVES, &diag) == CM1E_OK
+                           ? show(&graph, &options)
+                           : fail(&diag);
+    return close_bus(bus, &options.common, status);
+}
