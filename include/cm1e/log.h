@@ -34,6 +34,9 @@ typedef enum cm1e_log_kind {
     CM1E_LOG_EMERGENCY,       /**< of a slave, whether it has an axis or not; code: the error code, detail: its
                                    position, and 65536 times the error register; value: its five bytes as a number, the
                                    first is the lowest */
+    CM1E_LOG_PORT,            /**< faults that a port of a slave has counted; code: so many since the last such record,
+                                   detail: the position of the slave, 65536 times the port, and 16777216 times the kind
+                                   of fault: 0 damaged frames, 1 receive errors, 2 frames damaged before, 3 lost links */
     CM1E_LOG_KIND_COUNT,
 } cm1e_log_kind_t;
 

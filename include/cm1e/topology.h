@@ -38,6 +38,17 @@ CM1E_API cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *pla
  *  slave at `position`. 96 bytes are enough. @rt block */
 CM1E_API void cm1e_cable_text(const cm1e_slave_place_t *place, uint16_t position, int port, char *text, size_t size);
 
+/** What the ports of a slave have counted since the bus reached Operational. The bus reads one slave every 20 ms while
+ *  the cycle runs. A counter of a slave stops at 255 since its power-on; what follows is not seen. */
+typedef struct cm1e_port_faults {
+    uint32_t invalid_frames, receive_errors; /**< damaged on the cable at this port */
+    uint32_t forwarded_errors;               /**< damaged before, at another slave */
+    uint32_t lost_links;
+} cm1e_port_faults_t;
+
+/** The faults of one port; zeros if there is no such slave or port. @rt any */
+CM1E_API cm1e_port_faults_t cm1e_bus_port_faults(const cm1e_bus_t *bus, uint16_t position, int port);
+
 #ifdef __cplusplus
 }
 #endif

@@ -127,9 +127,9 @@ void cm1e_acyclic_cancel(cm1e_bus_t *bus)
         bus->sent[i]->owner = OWNER_NONE;
     }
     bus->sent_count = 0;
-    if (bus->watching.sent)
-        cm1e_soem_drop(bus->soem, &bus->watching.datagram);
-    bus->watching.sent = false;
+    if (bus->supervised.sent)
+        cm1e_soem_drop(bus->soem, &bus->supervised.datagram);
+    bus->supervised.sent = false;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         cm1e_recovery_cancel(slave);

@@ -12,6 +12,7 @@
 #include "bus/emergency_ring.h"
 #include "bus/errand.h"
 #include "bus/mapping.h"
+#include "bus/port_watch.h"
 #include "bus/recognise.h"
 #include "bus/recovery.h"
 #include "bus/remote.h"
@@ -31,6 +32,8 @@ enum {
 #define CM1E_START_SDO_TIMEOUT_NS INT64_C(1000000000)
 /** A frame of single datagrams that is not back by then is lost. */
 #define CM1E_FRAME_LOST_NS INT64_C(2000000)
+/** In operation the port counters of one slave are read in this time, in place of an AL status. */
+#define CM1E_PORTS_PACE_NS INT64_C(20000000)
 /** In operation one mailbox in this time is looked into for messages that nobody asked for. */
 #define CM1E_LISTEN_PACE_NS INT64_C(5000000)
 /** Pace of the blocking phases. */
@@ -79,6 +82,7 @@ struct cm1e_bus_slave {
     cm1e_slave_placement_t placement;
     cm1e_slave_watch_t watch;
     cm1e_dc_t *dc;                           /**< the clocks of the bus; NULL: they are not used */
+    cm1e_port_watch_t ports;
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
     uint32_t silent_cycles;                  /**< in a row, in which it did not take part */
 };
@@ -91,6 +95,14 @@ typedef struct cm1e_listening {
     uint64_t emergencies;                    /**< heard of all slaves */
 } cm1e_listening_t;
 
+/** The one datagram of the supervision. */
+typedef struct cm1e_supervised {
+    cm1e_datagram_t datagram;
+    bool sent;
+    uint32_t place;                          /**< of the slave whose AL status was asked for last */
+    cm1e_port_turn_t ports;
+} cm1e_supervised_t;
+
 /** Transfers handed in by any thread, the cycle's own included: each takes a place with `head` and fills it; the bus
  *  empties it and writes the rest. */
 typedef struct cm1e_sdo_queue {
@@ -100,13 +112,6 @@ typedef struct cm1e_sdo_queue {
     cm1e_sdo_t *list[CM1E_SDO_WAITING_MAX];  /**< taken over, in order */
     unsigned listed;
 } cm1e_sdo_queue_t;
-
-/** The datagram of the supervision. */
-typedef struct cm1e_watching {
-    cm1e_datagram_t datagram;
-    bool sent;
-    uint32_t slave;                          /**< whose AL status was read last, 0 = first */
-} cm1e_watching_t;
 
 typedef enum cm1e_bus_phase {
     BUS_CLOSED = 0, BUS_OPEN, BUS_SCANNED, BUS_IDENTIFIED, BUS_CONFIGURED, BUS_OPERATING,
@@ -153,7 +158,7 @@ struct cm1e_bus {
     unsigned sent_count;
     uint32_t next_slave;                     /**< round robin of acyclic datagrams */
     cm1e_listening_t listening;
-    cm1e_watching_t watching;
+    cm1e_supervised_t supervised;
 
     cm1e_sdo_queue_t queue;
     cm1e_errand_t *errand;                   /**< atomic; NULL: none */
@@ -263,6 +268,10 @@ const char *cm1e_bus_other_master(const cm1e_bus_t *bus, char text[CM1E_OTHER_MA
 /** Reads registers of one slave, also of a bus that another program runs (up to CM1E_ERRAND_REGISTERS_END there).
  *  false: it does not answer. Not while our own cycle runs. */
 bool cm1e_bus_read_registers(cm1e_bus_t *bus, uint16_t position, uint16_t address, uint8_t *data, uint16_t size);
+/** Whether each controller has the FMMUs and sync managers that the mapping uses. */
+cm1e_error_t cm1e_bus_check_resources(cm1e_bus_t *bus, cm1e_diag_t *diag);
+/** As cm1e_bus_topology(), without its checks. */
+cm1e_error_t cm1e_bus_read_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag);
 /** Diagnosis of a failed transfer or transition. */
 cm1e_error_t cm1e_bus_diagnose_sdo(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const cm1e_sdo_t *sdo,
                                    const char *purpose, cm1e_diag_t *diag);

@@ -39,6 +39,8 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return cm1e_in_task_refuse("cm1e_bus_operate()", "", diag);
     if (bus->phase != BUS_CONFIGURED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Configure the slaves before bringing them to Operational.");
+    cm1e_bus_enter(bus);
+    cm1e_port_watch_begin(bus);
     bus->next_cycle_ns = cm1e_bus_enter(bus);
     bus->exchanging = true;
     bus->bad_cycles = 0;

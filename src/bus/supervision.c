@@ -1,7 +1,7 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** One slave's AL status in each cycle, in turn. A slave counts as lost after three unanswered questions in a row: a
+/** One slave's AL status in each cycle, in turn; now and then the counters of its ports instead. A slave counts as lost after three unanswered questions in a row: a
  *  single one may be a disturbed frame. */
 enum { AL_STATUS_BYTES = 6, UNANSWERED_LIMIT = 3 };
 
@@ -15,20 +15,40 @@ void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t 
     slave->info.al_status_code = al_status_code;
 }
 
+static uint32_t next_of(const cm1e_bus_t *bus, uint32_t place) { return place + 1 < bus->slave_count ? place + 1 : 0; }
+
+static void ask_state(cm1e_bus_t *bus)
+{
+    bus->supervised.place = next_of(bus, bus->supervised.place);
+    cm1e_datagram_set(&bus->supervised.datagram, COMMAND_FPRD, bus->slaves[bus->supervised.place].facts.station, REG_AL_STATUS,
+                      AL_STATUS_BYTES);
+}
+
+/** The counters have a turn of their own, so that every slave gets one. */
+static void ask_ports(cm1e_bus_t *bus, int64_t now_ns)
+{
+    bus->supervised.ports.due_ns = now_ns + CM1E_PORTS_PACE_NS;
+    bus->supervised.ports.place = next_of(bus, bus->supervised.ports.place);
+    cm1e_port_watch_ask(&bus->slaves[bus->supervised.ports.place], &bus->supervised.datagram);
+}
+
 void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
 {
-    if (bus->watching.sent || bus->slave_count == 0)
+    if (bus->supervised.sent || bus->slave_count == 0)
         return;
-    if (cm1e_dc_next_look(bus, &bus->watching.datagram)) {
-        cm1e_soem_post(bus->soem, &bus->watching.datagram, now_ns);
-        bus->watching.sent = true;
+    bus->supervised.ports.asked = false;
+    if (cm1e_dc_next_look(bus, &bus->supervised.datagram)) {
+        cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
+        bus->supervised.sent = true;
         return;
     }
-    bus->watching.slave = bus->watching.slave + 1 < bus->slave_count ? bus->watching.slave + 1 : 0;
-    cm1e_datagram_set(&bus->watching.datagram, COMMAND_FPRD, bus->slaves[bus->watching.slave].facts.station, REG_AL_STATUS,
-                      AL_STATUS_BYTES);
-    cm1e_soem_post(bus->soem, &bus->watching.datagram, now_ns);
-    bus->watching.sent = true;
+    bus->supervised.ports.asked = bus->phase == BUS_OPERATING && now_ns >= bus->supervised.ports.due_ns;
+    if (bus->supervised.ports.asked)
+        ask_ports(bus, now_ns);
+    else
+        ask_state(bus);
+    cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
+    bus->supervised.sent = true;
 }
 
 /** No axis requests the recovery of a device between the axes, but while it is missing, the working counter of all is
@@ -42,18 +62,23 @@ static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
 {
-    cm1e_datagram_t *d = &bus->watching.datagram;
-    cm1e_bus_slave_t *slave = &bus->slaves[bus->watching.slave];
-    if (!bus->watching.sent)
+    cm1e_datagram_t *d = &bus->supervised.datagram;
+    cm1e_bus_slave_t *slave = &bus->slaves[bus->supervised.place];
+    if (!bus->supervised.sent)
         return;
     if (!cm1e_soem_take(bus->soem, d, 0)) {
         if (now_ns - d->sent_ns < CM1E_FRAME_LOST_NS)
             return;
         cm1e_soem_drop(bus->soem, d);
     }
-    bus->watching.sent = false;
+    bus->supervised.sent = false;
     if (d->offset == REG_DC_DIFFERENCE) {
         cm1e_dc_looked(bus, d);
+        return;
+    }
+    if (bus->supervised.ports.asked) {
+        if (d->working_counter == 1)
+            cm1e_port_watch_take(bus, &bus->slaves[bus->supervised.ports.place], d);
         return;
     }
     if (d->working_counter == 1) {

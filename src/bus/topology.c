@@ -58,13 +58,18 @@ static void connect_slave(walk_t *walk, cm1e_slave_place_t *places, uint16_t pos
 
 cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag)
 {
-    walk_t walk = {.count = 0};
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_topology()", "", diag);
     if (!bus || bus->phase < BUS_SCANNED || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "cm1e_bus_topology() needs a scanned bus whose cycle does not "
                              "run.");
     cm1e_bus_enter(bus);
+    return cm1e_bus_read_topology(bus, places, room, diag);
+}
+
+cm1e_error_t cm1e_bus_read_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag)
+{
+    walk_t walk = {.count = 0};
     for (uint16_t position = 1; position <= bus->slave_count && position <= room; position++) {
         uint8_t status[2] = {0};
         if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status))

@@ -6,6 +6,8 @@
 
 /** Between two records of one counter. */
 #define QUIET_NS INT64_C(100000000)
+/** Between two looks at the ports: one damaged cable is counted by every slave behind it. */
+#define PORTS_QUIET_NS INT64_C(1000000000)
 
 _Static_assert(sizeof(cm1e_log_event_t) % sizeof(uint64_t) == 0, "a record is whole words");
 
@@ -111,6 +113,29 @@ void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, int64_t run_ns)
         if (count > 0)
             log->told[i] = news[count - 1].number;
     }
+}
+
+static void look_at_port(log_t *log, const cm1e_bus_t *bus, uint32_t position, unsigned port, int64_t run_ns)
+{
+    for (unsigned fault = 0; fault < CM1E_PORT_FAULTS; fault++) {
+        uint32_t *told = &log->port_faults[position - 1][port][fault];
+        const uint32_t total = cm1e_bus_port_fault(bus, position, port, (cm1e_port_fault_t)fault);
+        if (total > *told)
+            write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_PORT, .axis = -1, .code = (int32_t)(total - *told),
+                                                .detail = fault << 24 | port << 16 | position}, run_ns);
+        *told = total;
+    }
+}
+
+void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, int64_t run_ns)
+{
+    if (log->port_news == cm1e_bus_port_news(bus) || run_ns < log->ports_quiet_until_ns)
+        return;
+    log->port_news = cm1e_bus_port_news(bus);
+    log->ports_quiet_until_ns = run_ns + PORTS_QUIET_NS;
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
+        for (unsigned port = 0; port < CM1E_PORTS; port++)
+            look_at_port(log, bus, position, port, run_ns);
 }
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */

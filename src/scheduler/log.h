@@ -9,6 +9,7 @@
 
 #include "axis/axis_watch.h"
 #include "bus/emergency_ring.h"
+#include "bus/port_watch.h"
 #include "cm1e/log.h"
 #include "core/clock.h"
 
@@ -35,6 +36,9 @@ typedef struct log {
     uint64_t emergencies;       /**< of all slaves, told */
     uint32_t operation;         /**< of the bus, in which they were counted */
     uint64_t told[CM1E_MAX_SLAVES];
+    uint64_t port_news;         /**< faults of all ports, told */
+    int64_t ports_quiet_until_ns;
+    uint32_t port_faults[CM1E_MAX_SLAVES][CM1E_PORTS][CM1E_PORT_FAULTS]; /**< told */
 } log_t;
 
 /** CM1E_ERROR_NO_MEMORY. @rt init */
@@ -47,6 +51,8 @@ void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64
                    const cm1e_bus_counters_t *bus, uint64_t sync_losses, int64_t run_ns);
 /** The emergencies that came since the last call. @rt cycle */
 void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, int64_t run_ns);
+/** What the ports of the slaves have counted since the last call. @rt cycle */
+void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, int64_t run_ns);
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost);
 
 #endif

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "bus/emergency_ring.h"
+#include "bus/port_watch.h"
 #include "scheduler/scheduler_window.h"
 
 static const char *const kind_names[] = {
@@ -17,6 +18,7 @@ static const char *const kind_names[] = {
     [CM1E_LOG_OTHER_MASTER] = "other master",
     [CM1E_LOG_SYNC_LOST] = "sync lost",
     [CM1E_LOG_EMERGENCY] = "emergency",
+    [CM1E_LOG_PORT] = "port",
 };
 _Static_assert(sizeof kind_names / sizeof *kind_names == CM1E_LOG_KIND_COUNT, "a kind of the log has no name");
 
@@ -82,6 +84,9 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
                  event->detail);
     else if (event->kind == CM1E_LOG_EMERGENCY)
         emergency_text(cm1e_scheduler_bus(scheduler), event, text, size);
+    else if (event->kind == CM1E_LOG_PORT)
+        cm1e_port_sentence(cm1e_scheduler_bus(scheduler), (uint16_t)event->detail, event->detail >> 16 & 0xFF,
+                           (cm1e_port_fault_t)(event->detail >> 24), (uint32_t)event->code, text, size);
     else if (of_axis && event->kind == CM1E_LOG_STATE)
         snprintf(text, size, "%s: %s (was %s)", name, cm1e_axis_state_name((cm1e_axis_state_t)event->code),
                  cm1e_axis_state_name((cm1e_axis_state_t)event->detail));

@@ -228,6 +228,7 @@ static void show(cm1e_scheduler_t *s)
     cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, cm1e_bus_counters(s->bus), clocks.sync_losses,
                   cm1e_scheduler_time_ns(s));
     cm1e_log_emergencies(&s->log, s->bus, cm1e_scheduler_time_ns(s));
+    cm1e_log_ports(&s->log, s->bus, cm1e_scheduler_time_ns(s));
     for (int i = 0; i < CM1E_WINDOWS; i++)
         if (s->windows[i])
             kinds[i]->cycle(s->windows[i]);

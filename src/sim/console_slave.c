@@ -4,6 +4,7 @@
 #include "sim/io_device.h"
 
 enum { FRAMES_MAX = 1000000, DELAY_MAX_US = 1000000, ABSENCE_MAX_MS = 60000, ABSENCE_DEFAULT_MS = 500 };
+enum { FORWARDED_AT = 8 /* behind the receive errors */ };
 
 cm1e_error_t cm1e_console_emergency(call_t *call)
 {
@@ -44,6 +45,23 @@ cm1e_error_t cm1e_console_replug(call_t *call)
 {
     cm1e_sim_segment_cut(call->segment, call->position, false);
     say(call, "slave %u: cable to it plugged in", call->position);
+    return CM1E_OK;
+}
+
+/* As a bad cable does: the slave behind it counts an invalid frame, those behind that one a forwarded error, and the
+ * frame is destroyed. */
+cm1e_error_t cm1e_console_damage(call_t *call)
+{
+    long count;
+    if (!parse_whole(argument(call, 0), 10, 1, FRAMES_MAX, &count))
+        return REFUSE(call, "\"%s\": expected a number of frames, 1 to %d", argument(call, 0), FRAMES_MAX);
+    for (uint32_t p = call->position; p <= cm1e_sim_segment_slave_count(call->segment); p++)
+        for (long n = 0; n < count; n++)
+            cm1e_sim_esc_count(cm1e_sim_segment_slave(call->segment, p),
+                               p == call->position ? ESC_RX_ERRORS : ESC_RX_ERRORS + FORWARDED_AT);
+    cm1e_sim_segment_set_frame_fault(call->segment, CM1E_FRAME_LOSE, (uint32_t)count, 0);
+    say(call, "slave %u: the next %ld frame%s damaged on the cable to it", call->position, count,
+        count == 1 ? " is" : "s are");
     return CM1E_OK;
 }
 

@@ -49,6 +49,8 @@ static void program(void *context)
         simulate(p, "lose 6");
     if (now == 1350 * MS)
         simulate(p, "lose 1");
+    if (now == 1450 * MS)
+        simulate(p, "damage 1 2");
     if (now == 1400 * MS)
         simulate(p, "emergency 1 9007 80 fe");
 }
@@ -100,6 +102,8 @@ START_TEST(test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away)
     expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0x2310), "emergency 0x2310, Continuous over current");
     expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0x2310), "Error register 0x03: generic error, current.");
     expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0), "no error any more");
+    expect_text(s, find(n, CM1E_LOG_PORT, 2),
+                "Slave 1 counts 2 damaged frames more: between this computer and slave 1 (port 0, IN).");
     expect_text(s, find(n, CM1E_LOG_EMERGENCY, 0x9007), "external error. Error register 0x80: maker's own. Data: FE");
     const cm1e_log_event_t *frames = find(n, CM1E_LOG_LOST_FRAMES, -2000);
     expect_text(s, frames, "frames were lost");
