@@ -36,7 +36,8 @@ typedef enum cm1e_log_kind {
                                    first is the lowest */
     CM1E_LOG_PORT,            /**< faults that a port of a slave has counted; code: so many since the last such record,
                                    detail: the position of the slave, 65536 times the port, and 16777216 times the kind
-                                   of fault: 0 damaged frames, 1 receive errors, 2 frames damaged before, 3 lost links */
+                                   of fault: 0 damaged frames, 1 receive errors, 2 frames damaged before, 3 lost
+                                   links */
     CM1E_LOG_KIND_COUNT,
 } cm1e_log_kind_t;
 

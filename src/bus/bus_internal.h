@@ -275,7 +275,7 @@ cm1e_error_t cm1e_bus_read_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places,
 /** Diagnosis of a failed transfer or transition. */
 cm1e_error_t cm1e_bus_diagnose_sdo(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const cm1e_sdo_t *sdo,
                                    const char *purpose, cm1e_diag_t *diag);
-cm1e_error_t cm1e_bus_diagnose_state(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
+cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
 /** Frees the process image. */
 void cm1e_bus_free_image(cm1e_bus_t *bus);
 

@@ -215,6 +215,8 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (error == CM1E_OK)
         error = map_image(bus, diag);
     if (error == CM1E_OK)
+        error = cm1e_bus_check_resources(bus, diag);
+    if (error == CM1E_OK)
         error = list_signals(bus, diag);
     if (error == CM1E_OK)
         error = check_wire_time(bus, diag);

@@ -8,6 +8,7 @@
 #include "core/sized.h"
 
 #define ANSWER_NS INT64_C(5000000000)
+enum { MAILBOX_MIN = 32 };
 
 static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const char *function, cm1e_diag_t *diag)
 {
@@ -25,6 +26,9 @@ static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const char *functi
     return CM1E_OK;
 }
 
+/** The SII is not trusted. */
+static bool fits(uint16_t length) { return length >= MAILBOX_MIN && length <= CM1E_DATAGRAM_MAX; }
+
 /** The mailbox of Pre-Operational is that of the CoE client: both number their messages together. */
 static cm1e_error_t use_mailbox(cm1e_foe_t *foe)
 {
@@ -34,6 +38,10 @@ static cm1e_error_t use_mailbox(cm1e_foe_t *foe)
     if (!slave->facts.foe)
         return cm1e_diag_set(foe->diag, CM1E_ERROR_UNSUPPORTED, 0,
                              "Slave %u has no files: its SII announces no FoE.", foe->position);
+    if (!fits(foe->mailbox->out_length) || !fits(foe->mailbox->in_length))
+        return cm1e_diag_set(foe->diag, CM1E_ERROR_UNSUPPORTED, 0, "The mailbox of slave %u has %u bytes to it and %u "
+                             "from it, as its SII states; expected are %d to %d.", foe->position,
+                             foe->mailbox->out_length, foe->mailbox->in_length, MAILBOX_MIN, CM1E_DATAGRAM_MAX);
     cm1e_bus_pump_until_idle(foe->bus, cm1e_clock_now(foe->bus->clock) + CM1E_STATE_TIMEOUT_NS);
     return CM1E_OK;
 }

@@ -238,9 +238,9 @@ static cm1e_error_t send_packet(cm1e_foe_t *foe, size_t size, uint32_t number)
     const cm1e_error_t error = ask(foe, size, FOE_ACK, &answer, &length);
     if (error != CM1E_OK || cm1e_get_u32(answer + 2) == number)
         return error;
-    return end_early(foe, FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "Slave %u acknowledges packet %u of the file, packet %u was "
-                               "sent.", foe->position, (unsigned)cm1e_get_u32(answer + 2), (unsigned)number),
-                     FOE_ERROR_PACKET);
+    FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "Slave %u acknowledges packet %u of the file, packet %u was sent.", foe->position,
+         (unsigned)cm1e_get_u32(answer + 2), (unsigned)number);
+    return end_early(foe, CM1E_ERROR_BUS_MAILBOX, FOE_ERROR_PACKET);
 }
 
 static cm1e_error_t send_file(cm1e_foe_t *foe, const char *name, const uint8_t *bytes)

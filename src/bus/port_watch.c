@@ -37,14 +37,14 @@ void cm1e_port_watch_take(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, const cm1e_d
             uint32_t *total = &watch->total[port][fault];
             const uint8_t more = watch->seen ? growth(now[fault], watch->last[port][fault]) : 0;
             __atomic_store_n(total, *total + more, __ATOMIC_RELAXED);
-            bus->port_turn.news += more;
+            bus->supervised.ports.news += more;
         }
         memcpy(watch->last[port], now, sizeof now);
     }
     watch->seen = true;
 }
 
-uint64_t cm1e_bus_port_news(const cm1e_bus_t *bus) { return bus->port_turn.news; }
+uint64_t cm1e_bus_port_news(const cm1e_bus_t *bus) { return bus->supervised.ports.news; }
 
 uint32_t cm1e_bus_port_fault(const cm1e_bus_t *bus, uint32_t position, unsigned port, cm1e_port_fault_t fault)
 {

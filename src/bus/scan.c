@@ -34,12 +34,13 @@ static void set_up_slave(cm1e_bus_t *bus, uint16_t position)
     memcpy(slave->info.name, facts->name, sizeof slave->info.name);
     cm1e_text_clean(slave->info.name);
     slave->al.station = facts->station;
+    const bool used = facts->coe || facts->foe;
     slave->coe.mailbox = (cm1e_mailbox_t){
         .station = facts->station,
         .out_start = facts->mailbox_out_start,
-        .out_length = facts->coe ? facts->mailbox_out_length : 0,
+        .out_length = used ? facts->mailbox_out_length : 0,
         .in_start = facts->mailbox_in_start,
-        .in_length = facts->coe ? facts->mailbox_in_length : 0,
+        .in_length = used ? facts->mailbox_in_length : 0,
     };
 }
 

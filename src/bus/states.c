@@ -11,7 +11,20 @@ const char *cm1e_bus_other_master(const cm1e_bus_t *bus, char text[CM1E_OTHER_MA
     return text;
 }
 
-cm1e_error_t cm1e_bus_diagnose_state(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+/** A controller that refuses its EEPROM gives its processor no access: the device hears of no state. */
+static const char *why_in_init(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+{
+    enum { REG_DL_STATUS = 0x0110, EEPROM_LOADED = 1 };
+    uint8_t status[2] = {0};
+    if (slave->al.state != CM1E_AL_INIT || bus->exchanging ||
+        !cm1e_bus_read_registers(bus, slave->info.position, REG_DL_STATUS, status, sizeof status) ||
+        status[0] & EEPROM_LOADED)
+        return "";
+    return " Its controller has not loaded its EEPROM: the checksum is wrong, or the EEPROM is empty. `cm1e sii "
+           "decode` shows it, `cm1e sii write` writes it anew.";
+}
+
+cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
     char label[CM1E_LABEL_LENGTH], other[CM1E_OTHER_MASTER_LENGTH];
     const cm1e_al_machine_t *al = &slave->al;
@@ -26,8 +39,8 @@ cm1e_error_t cm1e_bus_diagnose_state(const cm1e_bus_t *bus, const cm1e_bus_slave
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s refuses %s and is in %s: AL status 0x%04X, %s.%s",
                              label, target, cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code),
                              other);
-    return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s did not reach %s in time; it stays in %s.%s", label,
-                         target, cm1e_al_state_text(al->state), other);
+    return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s did not reach %s in time; it stays in %s.%s%s",
+                         label, target, cm1e_al_state_text(al->state), why_in_init(bus, slave), other);
 }
 
 cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t timeout_ns, cm1e_diag_t *diag)

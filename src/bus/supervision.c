@@ -1,8 +1,8 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** One slave's AL status in each cycle, in turn; now and then the counters of its ports instead. A slave counts as lost after three unanswered questions in a row: a
- *  single one may be a disturbed frame. */
+/** One slave's AL status in each cycle, in turn; now and then the counters of its ports instead. A slave counts as lost
+ *  after three unanswered questions in a row: a single one may be a disturbed frame. */
 enum { AL_STATUS_BYTES = 6, UNANSWERED_LIMIT = 3 };
 
 void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
@@ -20,8 +20,8 @@ static uint32_t next_of(const cm1e_bus_t *bus, uint32_t place) { return place + 
 static void ask_state(cm1e_bus_t *bus)
 {
     bus->supervised.place = next_of(bus, bus->supervised.place);
-    cm1e_datagram_set(&bus->supervised.datagram, COMMAND_FPRD, bus->slaves[bus->supervised.place].facts.station, REG_AL_STATUS,
-                      AL_STATUS_BYTES);
+    cm1e_datagram_set(&bus->supervised.datagram, COMMAND_FPRD, bus->slaves[bus->supervised.place].facts.station,
+                      REG_AL_STATUS, AL_STATUS_BYTES);
 }
 
 /** The counters have a turn of their own, so that every slave gets one. */

@@ -32,6 +32,7 @@ typedef struct coe_server {
     uint16_t list_type;       /**< 0: none */
     size_t list_object;       /**< number of the next object of the dictionary */
     uint16_t fragments_left;
+    unsigned fragments_sent;  /**< of the list, behind the first one */
 } coe_server_t;
 
 void cm1e_sim_coe_reset(cm1e_sim_slave_t *slave);

@@ -120,7 +120,10 @@ static void get_list(cm1e_sim_slave_t *slave, const uint8_t *request, size_t len
     const unsigned words = 1 + list_length(slave, type), words_per_fragment = (unsigned)(room - AT_DATA) / 2;
     slave->coe.list_type = type;
     slave->coe.list_object = 0;
+    slave->coe.fragments_sent = 0;
     slave->coe.fragments_left = (uint16_t)((words + words_per_fragment - 1) / words_per_fragment - 1);
+    if (slave->coe.fragments_left < slave->quirks.info_fragments) /* of those that never come */
+        slave->coe.fragments_left = (uint16_t)slave->quirks.info_fragments;
     answer_begin(answer, LIST, slave->coe.fragments_left);
     append_u16(answer, type);
     append_indices(slave, answer, room);
@@ -133,6 +136,11 @@ bool cm1e_sim_coe_next_fragment(cm1e_sim_slave_t *slave, mailbox_message_t *answ
     if (room > sizeof answer->data)
         room = sizeof answer->data;
     answer->type = MAILBOX_TYPE_COE;
+    if (++slave->coe.fragments_sent == slave->quirks.info_fragments) {
+        slave->coe.list_type = 0;
+        answer_error(answer, SDO_ABORT_GENERAL);
+        return true;
+    }
     answer_begin(answer, LIST, slave->coe.fragments_left);
     append_indices(slave, answer, room);
     return true;

@@ -423,6 +423,8 @@ static const command_t commands[] = {
      "hold an input of a digital or analog device"},
     {"clock", ANY_SLAVE, 1, 2, cm1e_console_clock, "<slave> drift|temperature|jitter|step|...",
      "its distributed clock: drifts, jumps, loses its reference"},
+    {"quirk", ANY_SLAVE, 1, 2, cm1e_console_quirk, "<slave> <name>|nothing [number]",
+     "what real slaves do: few FMMUs, a slow EEPROM ..."},
     {"damage", ANY_SLAVE, 1, 1, cm1e_console_damage, "<slave> <frames>", "the cable before it damages the next frames"},
     {"lose", NO_SLAVE, 1, 1, cm1e_console_lose, "<frames>", "lose the next frames"},
     {"corrupt", NO_SLAVE, 1, 1, cm1e_console_corrupt, "<frames>", "corrupt the next frames"},

@@ -91,6 +91,7 @@ static inline int choice(const char *word, const char *const *list)
 /* ---- console_slave.c -------------------------------------------------------------------------------------------- */
 
 cm1e_error_t cm1e_console_emergency(call_t *call);
+cm1e_error_t cm1e_console_quirk(call_t *call);
 cm1e_error_t cm1e_console_power_cycle(call_t *call);
 cm1e_error_t cm1e_console_unplug(call_t *call);
 cm1e_error_t cm1e_console_replug(call_t *call);

@@ -146,3 +146,11 @@ cm1e_error_t cm1e_console_input(call_t *call)
     say(call, "slave %u: input %ld is %s", call->position, channel, word == 2 ? "wired again" : text);
     return CM1E_OK;
 }
+
+cm1e_error_t cm1e_console_quirk(call_t *call)
+{
+    char text[200];
+    const bool taken = cm1e_sim_quirk(call->slave, argument(call, 0), argument(call, 1), text, sizeof text);
+    say(call, "slave %u: %s", call->position, text);
+    return taken ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
+}

@@ -13,6 +13,7 @@
 
 #include "cm1e/sim.h"
 #include "sim/coe_server.h"
+#include "sim/quirks.h"
 #include "sim/esc_clock.h"
 #include "sim/foe_server.h"
 #include "sim/mailbox.h"
@@ -123,6 +124,7 @@ struct cm1e_sim_slave {
     mailbox_t mailbox;
     coe_server_t coe;
     foe_server_t foe;
+    cm1e_sim_quirks_t quirks;   /**< kept without power */
     cm1e_sim_profile_t profile; /**< played; all of it is the slave's own */
 };
 
@@ -149,8 +151,8 @@ bool cm1e_sim_esc_registers_write(cm1e_sim_slave_t *slave, uint16_t address, con
 
 /* esc_events.c */
 void cm1e_sim_esc_event(cm1e_sim_slave_t *slave, uint16_t bits, bool on);
-/** Links of the two ports: the neighbour is there, and the port is open. */
-void cm1e_sim_esc_links(cm1e_sim_slave_t *slave, const bool link[2], const bool open[2]);
+/** Links of the ports: the neighbour is there, and the port is open. */
+void cm1e_sim_esc_links(cm1e_sim_slave_t *slave, const bool link[4], const bool open[4]);
 /** Adds one to an 8-bit error counter, which stops at 255. */
 void cm1e_sim_esc_count(cm1e_sim_slave_t *slave, uint16_t address);
 

@@ -16,13 +16,13 @@ void cm1e_sim_esc_count(cm1e_sim_slave_t *slave, uint16_t address)
         slave->memory[address]++;
 }
 
-void cm1e_sim_esc_links(cm1e_sim_slave_t *slave, const bool link[2], const bool open[2])
+void cm1e_sim_esc_links(cm1e_sim_slave_t *slave, const bool link[4], const bool open[4])
 {
-    enum { LINK_SHIFT = 4, LOOP_SHIFT = 8, LOOP_CLOSED = 1, COMMUNICATION = 2, UNUSED_PORTS = 0x5000 };
+    enum { LINK_SHIFT = 4, LOOP_SHIFT = 8, LOOP_CLOSED = 1, COMMUNICATION = 2, PORTS = 4 };
     const uint16_t before = cm1e_get_u16(slave->memory + ESC_DL_STATUS);
     /* Bit 0: the SII was loaded, bit 1: the PDI watchdog is served. */
-    uint16_t status = (uint16_t)(UNUSED_PORTS | (slave->sii_valid ? 0x0003 : 0x0000));
-    for (int port = 0; port < 2; port++) {
+    uint16_t status = slave->sii_valid ? 0x0003 : 0x0000;
+    for (int port = 0; port < PORTS; port++) {
         if (link[port])
             status |= (uint16_t)(1u << (LINK_SHIFT + port));
         else if (before & 1u << (LINK_SHIFT + port))

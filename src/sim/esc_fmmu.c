@@ -1,5 +1,7 @@
 #include "sim/esc.h"
 
+#include <string.h>
+
 #include "core/bytes.h"
 
 /* Registers of an FMMU (0x0600 + 16 n). */
@@ -21,7 +23,9 @@ static void list_add(esc_fmmu_list_t *list, const esc_fmmu_t *fmmu)
 void cm1e_sim_esc_fmmu_decode(cm1e_sim_slave_t *slave)
 {
     slave->reads.count = slave->writes.count = 0;
-    for (int i = 0; i < ESC_FMMUS; i++) {
+    const unsigned count = cm1e_sim_quirk_fmmus(slave);
+    memset(slave->memory + ESC_FMMU + count * FMMU_BYTES, 0, (ESC_FMMUS - count) * FMMU_BYTES);
+    for (unsigned i = 0; i < count; i++) {
         const uint8_t *registers = slave->memory + ESC_FMMU + i * FMMU_BYTES;
         const uint32_t start = cm1e_get_u32(registers + AT_LOGICAL);
         const uint16_t length = cm1e_get_u16(registers + AT_LENGTH);

@@ -60,6 +60,8 @@ static void dl_control_written(cm1e_sim_slave_t *slave)
 
 static void sync_managers_written(cm1e_sim_slave_t *slave)
 {
+    const unsigned count = cm1e_sim_quirk_sync_managers(slave);
+    memset(slave->memory + ESC_SM + count * SM_BYTES, 0, (ESC_SYNC_MANAGERS - count) * SM_BYTES);
     for (unsigned i = 0; i < ESC_SYNC_MANAGERS; i++)
         cm1e_sim_esc_sm_decode(slave, i);
     cm1e_sim_mailbox_repeat(slave);
@@ -140,8 +142,8 @@ void cm1e_sim_esc_registers_power_on(cm1e_sim_slave_t *slave)
     uint8_t *memory = slave->memory;
     memory[ESC_TYPE] = 0x04; /* an IP core: the only type whose units are free in number */
     memory[ESC_TYPE + 1] = 0x03;
-    memory[ESC_FMMU_COUNT] = ESC_FMMUS;
-    memory[ESC_SM_COUNT] = ESC_SYNC_MANAGERS;
+    memory[ESC_FMMU_COUNT] = (uint8_t)cm1e_sim_quirk_fmmus(slave);
+    memory[ESC_SM_COUNT] = (uint8_t)cm1e_sim_quirk_sync_managers(slave);
     memory[ESC_RAM_SIZE] = (ESC_MEMORY_BYTES - ESC_REGISTER_BYTES) / 1024;
     memory[ESC_PORT_DESCRIPTOR] = 0x0F; /* ports 0 and 1: MII */
     /* FMMUs to the bit, distributed clocks with 64 bits. */

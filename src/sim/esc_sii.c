@@ -72,7 +72,7 @@ void cm1e_sim_esc_sii_command(cm1e_sim_slave_t *slave)
     case 0: /* clears the errors of the last command */
         return;
     case COMMAND_READ:
-        slave->sii_due_ns = slave->now_ns + READ_NS;
+        slave->sii_due_ns = slave->now_ns + READ_NS + slave->quirks.sii_extra_ns;
         break;
     case COMMAND_WRITE:
         if (!write_enabled) {

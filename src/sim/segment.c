@@ -11,12 +11,13 @@ enum {
     DATAGRAM_LENGTH = 6,
 };
 enum { LENGTH_MASK = 0x07FF, CIRCULATED = 0x4000, MORE_FOLLOW = 0x8000, TYPE_SHIFT = 12, TYPE_COMMANDS = 1 };
-enum { LOCALLY_ADMINISTERED = 0x02, LOOP_CLOSED_ALWAYS = 3, PORT_1_SHIFT = 2 };
+enum { LOCALLY_ADMINISTERED = 0x02, LOOP_CLOSED_ALWAYS = 3, PORT_1_SHIFT = 2, PORTS = 4 };
 
 struct cm1e_sim_segment {
     cm1e_sim_slave_t **slaves;
     uint32_t count;
     bool *cuts;              /* [1] = before the first slave ... [count + 1] = behind the last */
+    bool *reached;           /* likewise: a frame from the first interface passes this slave */
     bool ring;
     bool topology_changed;
     bool fell_back;          /* any slave, since somebody asked */
@@ -26,6 +27,7 @@ struct cm1e_sim_segment {
         uint32_t first, count;
         int exit_port;
         bool circulates;     /* turned around at a closed port 0: the frame is marked */
+        bool branches;       /* passes only the slaves that are reached: a branch may be cut off */
     } routes[2];
     cm1e_frame_fault_t fault;
     uint32_t fault_count;
@@ -35,13 +37,15 @@ struct cm1e_sim_segment {
 cm1e_sim_segment_t *cm1e_sim_segment_create_empty(void)
 {
     cm1e_sim_segment_t *segment = calloc(1, sizeof *segment);
-    bool *cuts = calloc(2, sizeof *cuts);
-    if (!segment || !cuts) {
+    bool *cuts = calloc(2, sizeof *cuts), *reached = calloc(2, sizeof *reached);
+    if (!segment || !cuts || !reached) {
         free(segment);
         free(cuts);
+        free(reached);
         return NULL;
     }
     segment->cuts = cuts;
+    segment->reached = reached;
     segment->topology_changed = true;
     return segment;
 }
@@ -55,10 +59,13 @@ cm1e_error_t cm1e_sim_segment_add(cm1e_sim_segment_t *segment, cm1e_sim_slave_t 
     if (slaves)
         segment->slaves = slaves;
     bool *cuts = slaves ? realloc(segment->cuts, (count + 2) * sizeof *cuts) : NULL;
-    if (!cuts)
+    if (cuts)
+        segment->cuts = cuts;
+    bool *reached = cuts ? realloc(segment->reached, (count + 2) * sizeof *reached) : NULL;
+    if (!reached)
         return CM1E_ERROR_NO_MEMORY;
-    cuts[count + 1] = false;
-    segment->cuts = cuts;
+    cuts[count + 1] = reached[count + 1] = false;
+    segment->reached = reached;
     segment->slaves[segment->count] = slave;
     segment->count = count;
     slave->topology_changed = &segment->topology_changed;
@@ -75,6 +82,7 @@ void cm1e_sim_segment_destroy(cm1e_sim_segment_t *segment)
         cm1e_sim_slave_destroy(segment->slaves[i]);
     free(segment->slaves);
     free(segment->cuts);
+    free(segment->reached);
     free(segment);
 }
 
@@ -112,13 +120,28 @@ void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool c
 
 /* ---- topology -------------------------------------------------------------------------------------------------- */
 
+/* The slave that a slave is connected to: the one before it, or that of its branch; 0: the master. */
+static uint32_t parent_of(const cm1e_sim_segment_t *segment, uint32_t position)
+{
+    const cm1e_sim_slave_t *slave = position <= segment->count ? segment->slaves[position - 1] : NULL;
+    const bool branch = slave && slave->quirks.branch_of > 0 && slave->quirks.branch_of < position;
+    return branch ? slave->quirks.branch_of : position - 1;
+}
+
+static int port_of_parent(const cm1e_sim_segment_t *segment, uint32_t position)
+{
+    const cm1e_sim_slave_t *slave = position <= segment->count ? segment->slaves[position - 1] : NULL;
+    return slave && slave->quirks.branch_of > 0 && slave->quirks.branch_of < position ? slave->quirks.branch_port : 1;
+}
+
 /* Whether the cable before slave `position` connects two partners that are switched on (count + 1: the ring's last). */
 static bool cable_connects(const cm1e_sim_segment_t *segment, uint32_t position)
 {
     const uint32_t count = segment->count;
     if (segment->cuts[position] || (position == count + 1 && !segment->ring))
         return false;
-    const bool before = position == 1 || cm1e_sim_esc_present(segment->slaves[position - 2]);
+    const uint32_t parent = parent_of(segment, position);
+    const bool before = parent == 0 || cm1e_sim_esc_present(segment->slaves[parent - 1]);
     const bool behind = position == count + 1 || cm1e_sim_esc_present(segment->slaves[position - 1]);
     return before && behind;
 }
@@ -126,7 +149,7 @@ static bool cable_connects(const cm1e_sim_segment_t *segment, uint32_t position)
 /* The master may order port 1 closed (0x0101); port 0 follows its link. */
 static bool port_1_ordered_closed(const cm1e_sim_slave_t *slave)
 {
-    return (slave->memory[ESC_DL_PORTS] >> PORT_1_SHIFT & 3) == LOOP_CLOSED_ALWAYS;
+    return slave->quirks.loops || (slave->memory[ESC_DL_PORTS] >> PORT_1_SHIFT & 3) == LOOP_CLOSED_ALWAYS;
 }
 
 static bool port_1_open(const cm1e_sim_segment_t *segment, uint32_t position)
@@ -134,19 +157,30 @@ static bool port_1_open(const cm1e_sim_segment_t *segment, uint32_t position)
     return cable_connects(segment, position + 1) && !port_1_ordered_closed(segment->slaves[position - 1]);
 }
 
-/* From the first slave on, until a port 1 is closed. */
-static struct route primary_route(const cm1e_sim_segment_t *segment)
+/* Frames come to a slave if they come to its parent, and if the port there is open. */
+static bool is_reached(const cm1e_sim_segment_t *segment, uint32_t position)
 {
-    struct route route = {.exit_port = CM1E_SIM_PORT_LOST};
+    const uint32_t parent = parent_of(segment, position);
+    const bool closed = parent > 0 && port_of_parent(segment, position) == 1 &&
+                        port_1_ordered_closed(segment->slaves[parent - 1]);
+    return cable_connects(segment, position) && !closed && (parent == 0 || segment->reached[parent]);
+}
+
+/* From the first slave on, into every branch, until a port is closed. */
+static struct route primary_route(cm1e_sim_segment_t *segment)
+{
+    struct route route = {.exit_port = CM1E_SIM_PORT_LOST, .branches = true};
     if (!cable_connects(segment, 1))
         return route;
-    uint32_t position = 1;
-    while (position <= segment->count && port_1_open(segment, position))
-        position++;
+    for (uint32_t position = 1; position <= segment->count; position++) {
+        segment->reached[position] = is_reached(segment, position);
+        route.count = segment->reached[position] ? position : route.count;
+    }
     /* Out of the last open port the ring's end is reached. */
-    const bool through = position == segment->count + 1;
-    route.count = through ? segment->count : position;
-    route.exit_port = through ? CM1E_SIM_PORT_SECONDARY : CM1E_SIM_PORT_PRIMARY;
+    const bool through = segment->count == 0 || (segment->reached[segment->count] &&
+                                                 port_1_open(segment, segment->count));
+    route.exit_port = through && cable_connects(segment, segment->count + 1) ? CM1E_SIM_PORT_SECONDARY
+                                                                             : CM1E_SIM_PORT_PRIMARY;
     return route;
 }
 
@@ -182,8 +216,11 @@ static void update_topology(cm1e_sim_segment_t *segment)
         cm1e_sim_slave_t *slave = segment->slaves[position - 1];
         if (!cm1e_sim_esc_present(slave))
             continue;
-        const bool link[2] = {cable_connects(segment, position), cable_connects(segment, position + 1)};
-        const bool open[2] = {link[0], port_1_open(segment, position)};
+        bool link[PORTS] = {cable_connects(segment, position)};
+        for (uint32_t child = position + 1; child <= segment->count + 1; child++)
+            if (parent_of(segment, child) == position)
+                link[port_of_parent(segment, child)] |= cable_connects(segment, child);
+        const bool open[PORTS] = {link[0], link[1] && !port_1_ordered_closed(slave), link[2], link[3]};
         cm1e_sim_esc_links(slave, link, open);
     }
     segment->routes[CM1E_SIM_PORT_PRIMARY] = primary_route(segment);
@@ -254,6 +291,8 @@ static void pass_slaves(cm1e_sim_segment_t *segment, const struct route *route, 
 {
     for (uint32_t i = 0; i < route->count; i++) {
         cm1e_sim_slave_t *slave = segment->slaves[route->first + i];
+        if (route->branches && !segment->reached[route->first + i + 1])
+            continue;
         const bool last = i + 1 == route->count && route->exit_port == CM1E_SIM_PORT_PRIMARY;
         const bool returns = !last && route->exit_port == CM1E_SIM_PORT_PRIMARY;
         const int64_t return_ns = segment->now_ns + (int64_t)(2 * (route->count - 1) - i) * ESC_HOP_NS;

@@ -80,16 +80,78 @@ START_TEST(a_busy_slave_is_asked_again_for_a_bounded_time)
 }
 END_TEST
 
-/** Every datagram of a transfer lost once, and then three of them: the file is whole. */
+static unsigned frames[2], lost_first, lost_count;
+static cm1e_tap_direction_t lost_way;
+
+static cm1e_tap_verdict_t lose(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    const unsigned n = ++frames[frame->direction == lost_way];
+    const bool lost = frame->direction == lost_way && n >= lost_first && n < lost_first + lost_count;
+    return lost ? CM1E_TAP_DROP : CM1E_TAP_PASS;
+}
+
+/** Every frame of a transfer, on either way, is lost once, and then three in a row: the file is whole. */
 START_TEST(lost_frames_lose_no_byte)
 {
+    static const cm1e_tap_direction_t ways[] = {CM1E_TAP_SENT, CM1E_TAP_RECEIVED};
     cm1e_bus_t *bus = scanned();
-    char line[40];
-    for (unsigned n = 1; n < 60; n++) {
-        snprintf(line, sizeof line, "lose %u", n % 4 + 1);
-        simulate(bus, line);
-        write_and_read(bus, n * 17 + packet(bus), NULL);
+    unsigned runs = 0;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), lose, NULL);
+    for (int way = 0; way < 2; way++)
+        for (lost_count = 1; lost_count <= 3; lost_count += 2)
+            for (lost_first = 1, frames[1] = UINT32_MAX; lost_first <= frames[1]; lost_first++, runs++) {
+                lost_way = ways[way];
+                frames[0] = frames[1] = 0;
+                write_and_read(bus, packet(bus) + 20, NULL);
+            }
+    ck_assert_uint_gt(runs, 60);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+static unsigned random_state;
+static unsigned next_random(unsigned below)
+{
+    random_state = random_state * 1103515245u + 12345u;
+    return random_state / 65536u % below;
+}
+
+/** In every fifth answer of FoE a byte of its length, service, number or data is another one. */
+static cm1e_tap_verdict_t lie(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    uint8_t *message = frame->bytes + 26; /* Ethernet, EtherCAT and datagram header */
+    const bool mailbox = frame->direction == CM1E_TAP_RECEIVED && frame->bytes[16] == 4 && frame->length > 100;
+    static const uint8_t places[] = {0, 0, 1, 6, 6, 8, 9, 11, 12, 13};
+    if (mailbox && (message[5] & 0x0F) == 4 && next_random(5) == 0)
+        message[places[next_random(sizeof places)]] = (uint8_t)next_random(256);
+    return CM1E_TAP_PASS;
+}
+
+/** Whatever a slave answers: the transfer ends in time, nothing is written behind the room, and the next one is right. */
+START_TEST(lies_end_in_time_and_overrun_nothing)
+{
+    const cm1e_foe_options_t options = {.answer_ns = 100000000};
+    cm1e_bus_t *bus = scanned();
+    unsigned runs = 0, failed = 0;
+    for (random_state = 1; runs < 400; runs++) {
+        const size_t size = next_random(6) * packet(bus) + next_random(3);
+        size_t room = size + next_random(40);
+        const size_t end = room;
+        const int64_t begun_ns = now_of(bus);
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), lie, NULL);
+        failed += cm1e_foe_write(bus, 1, "a file.bin", written, size, &options, &diag) != CM1E_OK;
+        got[end] = 0xEE;
+        (void)cm1e_foe_read(bus, 1, "a file.bin", got, &room, &options, &diag);
+        ck_assert_uint_eq(got[end], 0xEE);
+        ck_assert_uint_le(room, end);
+        ck_assert_int_lt(now_of(bus) - begun_ns, INT64_C(3000000000));
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+        (void)cm1e_foe_read(bus, 1, "x", got, &room, &options, &diag); /* may meet what is left of the one before */
+        write_and_read(bus, size, &options);
     }
+    ck_assert(failed > 50 && failed < 350);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -230,6 +292,7 @@ int main(void)
     tcase_add_test(tests, files_of_every_size_around_a_packet);
     tcase_add_test(tests, a_busy_slave_is_asked_again_for_a_bounded_time);
     tcase_add_test(tests, lost_frames_lose_no_byte);
+    tcase_add_test(tests, lies_end_in_time_and_overrun_nothing);
     tcase_add_test(tests, refusals_have_code_and_text);
     tcase_add_test(tests, a_file_that_is_too_large_ends_in_both);
     tcase_add_test(tests, progress_is_told_and_may_break_off);

@@ -41,7 +41,8 @@ def on_bus(*words):
 
 def check_registers():
     told = on_bus("reg", "read", "1", "0x0130")
-    expect(told.returncode == 0 and told.stdout == "0x0130  02 00\n  0x0130 = 2 (0x0002): AL status\n", "reg read", told)
+    expect(told.returncode == 0 and told.stdout == "0x0130  02 00\n  0x0130 = 2 (0x0002): AL status\n", "reg read",
+           told)
     told = json.loads(on_bus("reg", "read", "Y", "0x10", "4", "--json").stdout)
     expect(told == {"position": 3, "address": 16, "data": "03100000"}, "the address of slave 3", told)
     told = on_bus("reg", "write", "Y", "0x0420", "500")

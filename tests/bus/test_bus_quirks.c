@@ -1,0 +1,218 @@
+/* Slaves that real networks have: small controllers, slow and damaged EEPROMs, mailboxes without CoE, SDO information
+ * that breaks off, ports that loop back, junctions. Each is scanned and operated, or refused in words. */
+#include "cm1e/foe.h" /* before the global `diag` of the tests */
+
+#include "bus/bus_internal.h"
+#include "bus_support.h"
+#include "cm1e/sdo_info.h"
+#include "cm1e/topology.h"
+
+static cm1e_bus_t *bus_with(uint32_t axes, const char *const lines[])
+{
+    sim_config(axes);
+    cm1e_bus_t *bus = open_bus();
+    for (int i = 0; lines[i]; i++)
+        simulate(bus, lines[i]);
+    return bus;
+}
+#define BUS_WITH(axes, ...) bus_with(axes, (const char *const[]){__VA_ARGS__, NULL})
+
+static void expect_start(cm1e_bus_t *bus)
+{
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cycles(bus, 50);
+    for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++)
+        ck_assert_uint_eq(cm1e_bus_slave(bus, i)->al_state, CM1E_AL_OP);
+}
+
+static void expect_refusal(cm1e_bus_t *bus, cm1e_error_t error, const char *words)
+{
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), error);
+    ck_assert_msg(strstr(diag.text, words) != NULL, "\"%s\" is not in: %s", words, diag.text);
+    cm1e_bus_close(bus);
+}
+
+/** As many as the mapping needs is enough; one less is refused before the slave can refuse a state without a reason. */
+START_TEST(small_controllers)
+{
+    cm1e_bus_t *bus = BUS_WITH(2, "quirk 2 fmmus 2", "quirk 2 sync-managers 4");
+    expect_start(bus);
+    cm1e_bus_close(bus);
+    expect_refusal(BUS_WITH(2, "quirk 2 fmmus 1"), CM1E_ERROR_CONFIG, "has 1 FMMUs and 4 sync managers; its process "
+                   "data needs 2 and 4");
+    expect_refusal(BUS_WITH(2, "quirk 1 sync-managers 3"), CM1E_ERROR_CONFIG, "slave 1 (\"axis1\", CM1-E) has 8 FMMUs "
+                   "and 3 sync managers");
+    /* The simulated controller itself has no more than it says. */
+    bus = BUS_WITH(1, "quirk 1 fmmus 1");
+    uint8_t registers[32];
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    memset(registers, 0xFF, sizeof registers);
+    ck_assert(cm1e_soem_transfer(bus->soem, COMMAND_FPWR, 0x1001, REG_FMMU0, registers, sizeof registers) == 1);
+    ck_assert(cm1e_bus_read_registers(bus, 1, REG_FMMU0, registers, sizeof registers));
+    ck_assert(registers[0] == 0xFF && registers[16] == 0 && registers[28] == 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** An EEPROM that takes 15 ms more for each of its reads delays the scan, and nothing else. */
+START_TEST(a_slow_eeprom)
+{
+    cm1e_bus_t *bus = BUS_WITH(2, "quirk 1 slow-eeprom 15000");
+    const int64_t begun_ns = now_of(bus);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    const int64_t took_ns = now_of(bus) - begun_ns;
+    ck_assert_msg(took_ns > 500000000 && took_ns < INT64_C(30000000000), "%lld ns", (long long)took_ns);
+    ck_assert_str_eq(cm1e_bus_slave(bus, 1)->name, cm1e_bus_slave(bus, 2)->name);
+    expect_start(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The controller does not load it, so the device hears of no state: it stays in Init, and the reason is said. */
+START_TEST(a_wrong_checksum)
+{
+    cm1e_bus_t *bus = BUS_WITH(2, "quirk 2 wrong-checksum");
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_ERROR_BUS_STATE);
+    ck_assert_msg(strstr(diag.text, "Slave 2 (CM1-E) did not reach PRE-OP") != NULL, "%s", diag.text);
+    ck_assert_msg(strstr(diag.text, "has not loaded its EEPROM: the checksum is wrong") != NULL, "%s", diag.text);
+    simulate(bus, "quirk 2 wrong-checksum"); /* right again */
+    cm1e_bus_stop(bus);
+    expect_start(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The list of objects breaks off behind a fragment: an error with the code of the slave, then transfers go on. */
+START_TEST(information_that_breaks_off)
+{
+    static uint16_t indexes[4096];
+    cm1e_bus_t *bus = BUS_WITH(1, "quirk 1 abort-info 1");
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    for (int i = 0; i < 5; i++) {
+        uint8_t data[4];
+        size_t count = sizeof indexes / sizeof *indexes, size = sizeof data;
+        ck_assert_int_eq(cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, indexes, &count, &diag), CM1E_ERROR_SDO_ABORT);
+        ck_assert_uint_eq(diag.foreign_code, SDO_ABORT_GENERAL);
+        ck_assert_msg(cm1e_sdo_read(bus, 1, 0x1018, 1, data, &size, &diag) == CM1E_OK, "%s", diag.text);
+    }
+    simulate(bus, "quirk 1 nothing");
+    size_t count = sizeof indexes / sizeof *indexes;
+    ck_assert_msg(cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, indexes, &count, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_gt(count, 40);
+    expect_start(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A foreign drive whose mailbox carries files, but no objects, between two motors. */
+START_TEST(a_mailbox_without_coe)
+{
+    static cm1e_bus_config_t foreign;
+    uint8_t data[64];
+    size_t size = sizeof data;
+    sim_config(3);
+    cm1e_axis_config_t *axis = &config.axes[1];
+    strcpy(axis->device, "cia402");
+    axis->firmware[0] = 0;
+    axis->counts_per_revolution = 10000;
+    axis->max_speed_rpm = 3000;
+    foreign = config;
+    foreign.axes = malloc(3 * sizeof *foreign.axes);
+    ck_assert_ptr_nonnull(foreign.axes);
+    memcpy(foreign.axes, config.axes, 3 * sizeof *foreign.axes);
+    config.axes[1] = config.axes[2];
+    config.axis_count = 2;
+    config.axes[1].address = 3;
+    cm1e_bus_t *bus = open_bus_on(&foreign);
+    free(foreign.axes);
+    simulate(bus, "quirk 2 no-coe");
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert(!bus->slaves[1].facts.coe && bus->slaves[1].facts.foe);
+    ck_assert_int_eq(cm1e_sdo_read(bus, 2, 0x1018, 1, data, &size, &diag), CM1E_ERROR_UNSUPPORTED);
+    ck_assert_msg(cm1e_foe_write(bus, 2, "f", data, 64, NULL, &diag) == CM1E_OK, "%s", diag.text);
+    expect_start(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Behind a port that sends frames back nothing is found, although there is a link. */
+START_TEST(a_port_that_loops_back)
+{
+    cm1e_slave_place_t places[4];
+    cm1e_bus_t *bus = BUS_WITH(4, "quirk 2 loop 1");
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(cm1e_bus_slave_count(bus), 2);
+    ck_assert_int_eq(cm1e_bus_topology(bus, places, 4, &diag), CM1E_OK);
+    ck_assert(places[1].link[1] && !places[1].open[1] && places[1].next[1] == 0);
+    simulate(bus, "quirk 2 nothing");
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    ck_assert_uint_eq(cm1e_bus_slave_count(bus), 4);
+    expect_start(bus);
+    simulate(bus, "quirk 2 loop 1"); /* in operation: the slaves behind it are lost, the others go on */
+    for (int i = 0; i < 100; i++)
+        cycle(bus);
+    ck_assert(cm1e_bus_slave_watch(bus, 3).lost && cm1e_bus_slave_watch(bus, 4).lost);
+    ck_assert(!cm1e_bus_slave_watch(bus, 1).lost && !cm1e_bus_slave_watch(bus, 2).lost);
+    ck_assert(cm1e_bus_slave_watch(bus, 1).fresh && cm1e_bus_slave_watch(bus, 2).fresh);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Slave 2 is a junction: slaves 3 and 4 are at its port 3, slave 5 at port 1, slave 6 at port 2. A branch that is cut
+ *  off leaves the others in operation. */
+START_TEST(a_junction_whose_branch_is_cut_off)
+{
+    static const uint16_t parents[] = {0, 1, 2, 3, 2, 2}, ports[] = {0, 1, 3, 1, 1, 2};
+    cm1e_slave_place_t places[6];
+    char text[96];
+    cm1e_bus_t *bus = BUS_WITH(6, "quirk 3 branch 3002", "quirk 5 branch 1002", "quirk 6 branch 2002");
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(cm1e_bus_slave_count(bus), 6);
+    ck_assert_int_eq(cm1e_bus_topology(bus, places, 6, &diag), CM1E_OK);
+    for (int i = 0; i < 6; i++)
+        ck_assert_msg(places[i].known && places[i].parent == parents[i] && places[i].parent_port == ports[i],
+                      "slave %d is at port %u of slave %u", i + 1, places[i].parent_port, places[i].parent);
+    cm1e_cable_text(&places[2], 3, 0, text, sizeof text);
+    ck_assert_str_eq(text, "between slave 2 (port 3) and slave 3 (port 0, IN)");
+    expect_start(bus);
+    simulate(bus, "unplug 3");
+    for (int i = 0; i < 100; i++)
+        cycle(bus);
+    for (uint16_t position = 1; position <= 6; position++)
+        ck_assert_msg(cm1e_bus_slave_watch(bus, position).lost == (position == 3 || position == 4), "slave %u",
+                      position);
+    ck_assert(cm1e_bus_slave_watch(bus, 5).fresh && cm1e_bus_slave_watch(bus, 6).fresh);
+    ck_assert_uint_eq(cm1e_bus_port_faults(bus, 2, 3).lost_links, 1);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(the_console_says_what_it_expects)
+{
+    char answer[300];
+    cm1e_bus_t *bus = BUS_WITH(1, "quirk 1 nothing");
+    ck_assert_int_eq(cm1e_bus_simulate(bus, "quirk 1 warp", answer, sizeof answer), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(answer, "fmmus <number> sync-managers <number>"));
+    ck_assert_int_eq(cm1e_bus_simulate(bus, "quirk 1 fmmus 9", answer, sizeof answer), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(answer, "expected a number, 1 to 8"));
+    ck_assert_int_eq(cm1e_bus_simulate(bus, "quirk 1 fmmus", answer, sizeof answer), CM1E_ERROR_INVALID_ARGUMENT);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("quirks");
+    TCase *tests = tcase_create("quirks");
+    tcase_set_timeout(tests, 60);
+    tcase_add_test(tests, small_controllers);
+    tcase_add_test(tests, a_slow_eeprom);
+    tcase_add_test(tests, a_wrong_checksum);
+    tcase_add_test(tests, information_that_breaks_off);
+    tcase_add_test(tests, a_mailbox_without_coe);
+    tcase_add_test(tests, a_port_that_loops_back);
+    tcase_add_test(tests, a_junction_whose_branch_is_cut_off);
+    tcase_add_test(tests, the_console_says_what_it_expects);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
