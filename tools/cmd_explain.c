@@ -6,9 +6,10 @@
 
 #include "command.h"
 #include "core/near.h"
+#include "device/emergency_codes.h"
 #include "meaning.h"
 
-enum { KEY_JSON = 0x500, QUERY_BYTES = 120, NEAR_SHOWN = 4 };
+enum { KEY_JSON = 0x500, QUERY_BYTES = 120, NEAR_SHOWN = 4, EMERGENCY_FIRST = 0x1000 };
 
 typedef struct explain_options {
     bool json;
@@ -164,8 +165,12 @@ static void print_near_codes(const meaning_t *rows, size_t count, const question
 static int complain_unknown(const meaning_t *rows, size_t count, const char *query, const question_t *question)
 {
     if (question->code_count || question->error) {
-        complain("no table has \"%s\": no device error, ErrorID, AL status code, SDO abort code or status of a Cool "
-                 "Muscle", query);
+        complain("no table has \"%s\": no device error, ErrorID, AL status code, SDO abort code, FoE error or status "
+                 "of a Cool Muscle", query);
+        for (int i = 0; i < question->code_count; i++)
+            if (question->codes[i] >= EMERGENCY_FIRST && question->codes[i] <= UINT16_MAX)
+                fprintf(stderr, "as an emergency of a slave, 0x%04X is of the class: %s\n",
+                        (unsigned)question->codes[i], cm1e_emergency_class((uint16_t)question->codes[i]));
         print_near_codes(rows, count, question);
         return EXIT_FAILED;
     }

@@ -158,6 +158,8 @@ meaning_t *all_meanings(size_t *count)
     add_codes(&list, rows, codes, 4, "AL status code of an EtherCAT slave (register 0x0134)", CM1E_AL_STATUS_CLAUSE);
     rows = cm1e_sdo_abort_codes(&codes);
     add_codes(&list, rows, codes, 8, "SDO abort code of a slave", CM1E_SDO_ABORT_CLAUSE);
+    rows = cm1e_foe_error_codes(&codes);
+    add_codes(&list, rows, codes, 4, "error code of FoE, files of a slave", CM1E_FOE_ERROR_CLAUSE);
     add_statuses(&list);
     if (list.full) {
         free(list.rows);

@@ -26,18 +26,6 @@ enum { FOE_ERROR_UNDEFINED = 0x8000, FOE_ERROR_DISK_FULL = 0x8003, FOE_ERROR_PAC
 
 #define FAIL(foe, error, ...) cm1e_diag_set((foe)->diag, error, 0, __VA_ARGS__)
 
-const char *cm1e_foe_error_text(uint32_t code)
-{
-    static const char *const texts[] = { /* ETG.1000.6 section 5.8, from 0x8000 on */
-        "not defined", "file not found", "access denied (wrong password?)", "memory full", "illegal request",
-        "wrong packet number", "the file exists already", "no user", "in Bootstrap only", "not in Bootstrap",
-        "no rights", "error of the program", "wrong checksum", "not a firmware for this device", "unknown",
-        "no file to read", "the header of the file is missing", "fault of the flash memory", "the file does not fit",
-    };
-    const uint32_t n = code - FOE_ERROR_UNDEFINED;
-    return n < sizeof texts / sizeof texts[0] ? texts[n] : "unknown";
-}
-
 /* ---- time and place --------------------------------------------------------------------------------------------- */
 
 static int64_t now(const cm1e_foe_t *foe) { return cm1e_clock_now(foe->bus->clock); }

@@ -1,6 +1,6 @@
 #include "core/codes.h"
 
-#include "cm1e/bus.h"
+#include "cm1e/foe.h"
 
 /* CM1E_SDO_ABORT_CLAUSE */
 static const cm1e_code_t abort_texts[] = {
@@ -140,6 +140,36 @@ const cm1e_code_t *cm1e_sdo_abort_codes(size_t *count)
     return abort_texts;
 }
 
+/* CM1E_FOE_ERROR_CLAUSE */
+static const cm1e_code_t foe_texts[] = {
+    {0x8000, "not defined", "look at the text that the slave sends with it"},
+    {0x8001, "file not found", "the slave knows the file by another name: --name; its manual has the names"},
+    {0x8002, "access denied (wrong password?)", "give the password that the maker states: --password"},
+    {0x8003, "memory full", "the file is too large for the slave: take the right one"},
+    {0x8004, "illegal request", "repeat it; if it comes back, switch the slave off and on"},
+    {0x8005, "wrong packet number", "repeat it; if it comes back, look for a second master"},
+    {0x8006, "the file exists already", "give it another name, or remove it as the maker says"},
+    {0x8007, "no user", "the slave wants a user to log in: do that as its maker says"},
+    {0x8008, "in Bootstrap only", "transfer the file in Bootstrap: cm1e foe --bootstrap, or cm1e firmware update"},
+    {0x8009, "not in Bootstrap", "transfer the file in Pre-Operational: without --bootstrap"},
+    {0x800A, "no rights", "give the password that the maker states: --password"},
+    {0x800B, "error of the program", "switch the slave off and on; if it comes back, ask its maker"},
+    {0x800C, "wrong checksum", "the file is damaged: get it anew"},
+    {0x800D, "not a firmware for this device", "take the firmware of this device and this hardware"},
+    {0x800E, "unknown", "look at the text that the slave sends with it"},
+    {0x800F, "no file to read", "the slave has no such file yet: write it first"},
+    {0x8010, "the header of the file is missing", "the file is no file for this device: take the maker's"},
+    {0x8011, "fault of the flash memory", "repeat it; if it comes back, the slave is defective"},
+    {0x8012, "the file does not fit", "take the file for this device and this hardware"},
+};
+enum { FOE_CODES = sizeof foe_texts / sizeof foe_texts[0] };
+
+const cm1e_code_t *cm1e_foe_error_codes(size_t *count)
+{
+    *count = FOE_CODES;
+    return foe_texts;
+}
+
 const cm1e_code_t *cm1e_al_status_codes(size_t *count)
 {
     *count = AL_CODES;
@@ -165,3 +195,5 @@ const char *cm1e_al_status_text(uint16_t al_status_code)
 {
     return find(al_texts, AL_CODES, al_status_code, "a status code of the device's own");
 }
+
+const char *cm1e_foe_error_text(uint32_t code) { return find(foe_texts, FOE_CODES, code, "unknown"); }

@@ -1,6 +1,6 @@
 /**
  * @file codes.h
- * The tables behind cm1e_sdo_abort_text() and cm1e_al_status_text(), and what the user does about each error.
+ * The tables behind cm1e_sdo_abort_text(), cm1e_al_status_text() and cm1e_foe_error_text(), and what the user does about each error.
  */
 #ifndef CM1E_CORE_CODES_H
 #define CM1E_CORE_CODES_H
@@ -17,10 +17,12 @@ typedef struct cm1e_code {
 } cm1e_code_t;
 
 #define CM1E_SDO_ABORT_CLAUSE "ETG.1000.6 table 41"
+#define CM1E_FOE_ERROR_CLAUSE "ETG.1000.6 section 5.8"
 #define CM1E_AL_STATUS_CLAUSE "ETG.1000.6 table 11, ETG.1020"
 
 const cm1e_code_t *cm1e_sdo_abort_codes(size_t *count);
 const cm1e_code_t *cm1e_al_status_codes(size_t *count);
+const cm1e_code_t *cm1e_foe_error_codes(size_t *count);
 
 /** One row of CM1E_ERRORS. */
 typedef struct cm1e_error_row {

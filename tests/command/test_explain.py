@@ -46,6 +46,7 @@ def check_every_code():
         ("ErrorID", "", errors),
         ("AL status code", "ETG.1000.6", rows("src/core/codes.c", r'\{(0x00\w\w), "([^"]*)"')),
         ("SDO abort code", "ETG.1000.6", rows("src/core/codes.c", r'\{(0x0[568]\w{6}), "([^"]*)"')),
+        ("error code of FoE", "ETG.1000.6 section 5.8", rows("src/core/codes.c", r'\{(0x80\w\w), "([^"]*)"')),
     ]
     total = 0
     for whose, clause, table in tables:
@@ -89,6 +90,7 @@ def check_questions():
 
 def check_unknown():
     for words, status, text in ((["0xFF06"], FAILED, "0xFF05"), (["0x7301"], FAILED, "0x7310"),
+                                (["0x3299"], FAILED, "of the class: voltage inside the device"),
                                 (["velocty"], FAILED, "did you mean \"velocity\"?"), (["0x100000000"], FAILED, "0x1000"),
                                 (["-9999"], FAILED, "-9999"), (["-150"], FAILED, "0x1E95"),
                                 (["zzzzzz"], FAILED, "no text has \"zzzzzz\""), ([], WRONG_USE, "0xFF05"),
