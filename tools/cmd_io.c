@@ -7,42 +7,34 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "attach.h"
 #include "axis_run.h"
-#include "cm1e/io.h"
 #include "device/device.h"
+#include "io_rows.h"
 
-enum { KEY_ALLOW = 0xB00, KEY_FOR, KEY_ALL, WRITES_MAX = 16, SIGNAL_NAME = 96, INPUTS = 4, LONGEST_S = 1000000 };
+enum { KEY_ALLOW = 0xB00, KEY_FOR, KEY_ALL, LONGEST_S = 1000000 };
 #define LOOK_S 0.2
 
-typedef struct io_write {
-    const char *word, *equals;
-    cm1e_io_t io;
-    double value;
-} io_write_t;
-
 typedef struct io_program {
-    common_options_t common;
+    io_options_t options;
     const cm1e_bus_config_t *config;
     cm1e_scheduler_t *scheduler;
     cm1e_bus_t *bus;
-    io_write_t writes[WRITES_MAX];
-    int write_count;
-    bool allow, all, ended, refused;
-    double seconds; /* 0: not given */
+    bool ended, refused;
     cm1e_io_t *signals;
     cm1e_io_info_t *infos;
-    char (*values)[SIGNAL_NAME];
+    char (*values)[IO_SIGNAL_NAME];
     cm1e_axis_info_t *axes;
     uint32_t count;
 } io_program_t;
 
-static error_t add_write(io_program_t *p, char *arg, struct argp_state *state)
+static error_t add_write(io_options_t *p, char *arg, struct argp_state *state)
 {
     const char *equals = strrchr(arg, '=');
-    if (!equals || equals == arg || equals - arg >= SIGNAL_NAME)
+    if (!equals || equals == arg || equals - arg >= IO_SIGNAL_NAME)
         argp_error(state, "\"%s\": expected NAME=VALUE, as \"2.Output 1=1\"", arg);
-    if (p->write_count == WRITES_MAX)
-        argp_error(state, "more than %d outputs", WRITES_MAX);
+    if (p->write_count == IO_WRITES_MAX)
+        argp_error(state, "more than %d outputs", IO_WRITES_MAX);
     io_write_t *write = &p->writes[p->write_count++];
     *write = (io_write_t){.word = arg, .equals = equals};
     return parse_real(equals + 1, "the value of the output", &write->value) ? 0 : EINVAL;
@@ -50,9 +42,12 @@ static error_t add_write(io_program_t *p, char *arg, struct argp_state *state)
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
-    io_program_t *p = state->input;
+    io_options_t *p = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &p->common; return 0;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &p->common;
+        state->child_inputs[1] = &p->common;
+        return 0;
     case KEY_ALLOW: p->allow = true; return 0;
     case KEY_ALL: p->all = true; return 0;
     case KEY_FOR: return parse_seconds(arg, LONGEST_S, &p->seconds) ? 0 : EINVAL;
@@ -72,11 +67,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 /** What is to be written is found before anything is sent. */
 static void find_writes(io_program_t *p)
 {
-    for (int i = 0; i < p->write_count && !p->refused; i++) {
-        char name[SIGNAL_NAME];
+    for (int i = 0; i < p->options.write_count && !p->refused; i++) {
+        char name[IO_SIGNAL_NAME];
         cm1e_diag_t diag = {0};
-        io_write_t *write = &p->writes[i];
-        snprintf(name, sizeof name, "%.*s", (int)(write->equals - write->word), write->word);
+        io_write_t *write = &p->options.writes[i];
+        io_name(write, name);
         p->refused = cm1e_io_find(p->bus, name, &write->io, &diag) != CM1E_OK;
         if (p->refused)
             fail(&diag);
@@ -84,8 +79,8 @@ static void find_writes(io_program_t *p)
             complain("%s cannot be written with %s: it is an input, belongs to a motor (MC_WriteDigitalOutput), or "
                      "its type has no such value", name, write->equals + 1);
     }
-    for (int i = 0; i < p->write_count && p->refused; i++) /* none of them is sent */
-        cm1e_io_set_real(&p->writes[i].io, 0);
+    for (int i = 0; i < p->options.write_count && p->refused; i++) /* none of them is sent */
+        cm1e_io_set_real(&p->options.writes[i].io, 0);
 }
 
 static int take_bus(cm1e_bus_t *bus, void *context)
@@ -122,8 +117,8 @@ static void program(void *context)
 {
     io_program_t *p = context;
     const double seconds = (double)cm1e_scheduler_time_ns(p->scheduler) * 1e-9;
-    for (int i = 0; i < p->write_count && !p->refused; i++)
-        if (cm1e_io_set_real(&p->writes[i].io, p->ended ? 0 : p->writes[i].value) != CM1E_OK)
+    for (int i = 0; i < p->options.write_count && !p->refused; i++)
+        if (cm1e_io_set_real(&p->options.writes[i].io, p->ended ? 0 : p->options.writes[i].value) != CM1E_OK)
             p->refused = true;
     for (uint32_t i = 0; i < p->config->axis_count && !p->ended && p->axes; i++)
         cm1e_axis_read(cm1e_scheduler_axis(p->scheduler, i), &p->axes[i]);
@@ -131,17 +126,17 @@ static void program(void *context)
         cm1e_scheduler_stop(p->scheduler);
         return;
     }
-    if (seconds < fmax(LOOK_S, p->seconds))
+    if (seconds < fmax(LOOK_S, p->options.seconds))
         return;
     for (uint32_t i = 0; i < p->count; i++) { /* the last values; the cycle after it sends zeros */
         const cm1e_io_t *io = &p->signals[i];
         const bool whole = io->type != CM1E_IO_REAL && io->type != CM1E_IO_LREAL;
         if (cm1e_io_quality(io) == CM1E_IO_INVALID || io->type == CM1E_IO_BYTES)
-            snprintf(p->values[i], SIGNAL_NAME, "-");
+            snprintf(p->values[i], IO_SIGNAL_NAME, "-");
         else if (whole)
-            snprintf(p->values[i], SIGNAL_NAME, "%" PRId64, cm1e_io_integer(io));
+            snprintf(p->values[i], IO_SIGNAL_NAME, "%" PRId64, cm1e_io_integer(io));
         else
-            snprintf(p->values[i], SIGNAL_NAME, "%.6g", cm1e_io_real(io));
+            snprintf(p->values[i], IO_SIGNAL_NAME, "%.6g", cm1e_io_real(io));
     }
     p->ended = true;
 }
@@ -161,8 +156,7 @@ static void say_switch(const cm1e_input_config_t *inputs, int number, char *text
     text[0] = 0;
     for (size_t i = 0; i < sizeof switches / sizeof switches[0]; i++)
         if (switches[i].number == number)
-            snprintf(text + strlen(text), size - strlen(text), "%s%s%s", text[0] ? ", " : "", switches[i].name,
-                     switches[i].closed ? " (normally closed)" : "");
+            io_add_switch(text, size, switches[i].name, switches[i].closed);
 }
 
 static void list_axis(const io_program_t *p, uint32_t number, json_t *list)
@@ -171,16 +165,10 @@ static void list_axis(const io_program_t *p, uint32_t number, json_t *list)
     const cm1e_axis_info_t *info = &p->axes[number];
     char axis[CM1E_NAME_LENGTH + 8], wired[96];
     snprintf(axis, sizeof axis, config->name[0] ? "%s" : "axis%.0s%u", config->name, number + 1);
-    for (int n = 1; n <= INPUTS && config->type == CM1E_AXIS_MOTOR; n++) {
+    for (int n = 1; n <= IO_INPUTS && config->type == CM1E_AXIS_MOTOR; n++) {
         const bool on = info->digital_inputs >> (n - 1) & 1;
         say_switch(&config->inputs, n, wired, sizeof wired);
-        if (p->common.json)
-            json_array_append_new(list, json_pack("{s:s, s:i, s:o, s:s}", "axis", axis, "input", n, "value",
-                                                  info->digital_known ? json_boolean(on) : json_null(), "wired",
-                                                  wired));
-        else
-            printf("%s.IN%d  %-36s %-6s in   %s\n", axis, n, wired, "BOOL",
-                   !info->digital_known ? "-" : on ? "1" : "0");
+        json_array_append_new(list, io_input_row(axis, n, info->digital_known ? json_boolean(on) : NULL, wired));
     }
 }
 
@@ -195,27 +183,8 @@ static void list_output(const io_program_t *p, uint32_t number, json_t *list)
         if (!info->of_axis || !info->output || info->index != OBJ_60FE_DIGITAL_OUTPUTS || config->channel ||
             info->position != cm1e_bus_axis_position(p->bus, number))
             continue;
-        const bool on = strtoul(p->values[i], NULL, 10) & 1;
-        if (p->common.json)
-            json_array_append_new(list, json_pack("{s:s, s:i, s:b}", "axis", axis, "output", 1, "value", on));
-        else
-            printf("%s.OUT1 %-36s %-6s out  %d\n", axis, "", "BOOL", on);
+        json_array_append_new(list, io_output_row(axis, strtoul(p->values[i], NULL, 10) & 1));
     }
-}
-
-static void list_signal(const io_program_t *p, uint32_t n, json_t *list)
-{
-    const cm1e_io_info_t *info = &p->infos[n];
-    const char *slave = cm1e_bus_slave_name(p->bus, info->position), *type = cm1e_io_type_name(info->type);
-    char name[SIGNAL_NAME + CM1E_NAME_LENGTH], position[8];
-    snprintf(position, sizeof position, "%u", info->position);
-    snprintf(name, sizeof name, "%s.%s", slave[0] ? slave : position, info->name);
-    if (p->common.json)
-        json_array_append_new(list, json_pack("{s:i, s:s, s:s, s:s, s:b, s:b, s:s}", "slave", info->position,
-                                              "slave_name", slave, "name", info->name, "type", type, "output",
-                                              info->output, "of_axis", info->of_axis, "value", p->values[n]));
-    else
-        printf("%-44s %-6s %-4s %s\n", name, type, info->output ? "out" : "in", p->values[n]);
 }
 
 static int report(void *context)
@@ -233,17 +202,15 @@ static int report(void *context)
         list_output(p, i, axes);
     }
     for (uint32_t i = 0; i < p->count; i++)
-        if (p->all || !p->infos[i].of_axis)
-            list_signal(p, i, signals);
-    if (p->common.json)
-        print_json(json_pack("{s:o, s:o, s:b}", "axes", axes, "signals", signals, "simulated",
-                             is_simulated(p->config)));
-    else
+        if (p->options.all || !p->infos[i].of_axis)
+            json_array_append_new(signals, io_signal_row(p->infos[i].position,
+                                                         cm1e_bus_slave_name(p->bus, p->infos[i].position),
+                                                         p->infos[i].name,
+                                                         cm1e_io_type_name(p->infos[i].type), p->infos[i].output,
+                                                         p->infos[i].of_axis, p->values[i]));
+    io_print(axes, signals, p->options.common.json, is_simulated(p->config));
+    if (!p->options.common.json)
         tell_simulated(p->config);
-    if (!p->common.json) {
-        json_decref(axes);
-        json_decref(signals);
-    }
     return EXIT_OK;
 }
 
@@ -252,27 +219,33 @@ static const struct argp_option table[] = {
     {"all", KEY_ALL, NULL, 0, "Also list the process data of motors", 0},
     {"for", KEY_FOR, "SECONDS", 0, "How long the outputs have their values; they are 0 afterwards", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_io = {
     table, parse, "[NAME=VALUE...]",
     "Lists the digital inputs and outputs of the motors, with the switches that the bus file names, and the inputs and "
     "outputs of all other slaves with name, type and value. With NAME=VALUE, as \"2.Output 1=1\", it writes outputs of "
-    "slaves without a motor. It brings the slaves to Operational; no motor gets torque.", children, NULL, NULL};
+    "slaves without a motor. It brings the slaves to Operational; no motor gets torque. Where a program runs "
+    "the network, it attaches to it: it writes only outputs that the program does not use, with control: maintain.",
+    children, NULL, NULL};
 
 int command_io(int argc, char **argv)
 {
     static io_program_t p;
     static cm1e_bus_config_t config;
+    cm1e_control_t *control;
     p = (io_program_t){0};
-    if (parse_options(&argp_io, argc, argv, &p))
+    if (parse_options(&argp_io, argc, argv, &p.options))
         return EXIT_WRONG_USE;
-    const int loaded = load_axes(&p.common, &config);
+    const int found = attach_if_running(&p.options.common, &config, &control);
+    if (found != EXIT_OK || control)
+        return found == EXIT_OK ? io_attached(&p.options, control) : found;
+    const int loaded = load_axes(&p.options.common, &config);
     if (loaded != EXIT_OK)
         return loaded;
     p.config = &config;
     const axis_run_t run = {.what = "io", .program = program, .prepare = prepare, .report = report,
                             .ready = take_bus, .context = &p};
-    const int status = run_on_axes(&run, &p.common, &config);
+    const int status = run_on_axes(&run, &p.options.common, &config);
     free(p.infos);
     free(p.signals);
     free(p.values);

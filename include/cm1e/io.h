@@ -5,6 +5,9 @@
  * few bytes. The names come from the bus file (`slaves`), else from the SII of the slave (ETG.2010, categories TxPDO
  * and RxPDO). A slave with a motor, or with CoE and listed in the bus file, has the signals of its present PDO mapping.
  *
+ * An output that a program has found here is its own: others who attach to the program (docs/CONTROL.md) do not write
+ * it.
+ *
  * While a slave is away its inputs keep the last values that came from it; cm1e_io_quality() tells. The outputs of a
  * slave that the bus file lists take their safe values before the program writes them, while the slave or the bus is
  * lost, and after the last program (docs/BUS-FILE.md). Those of another slave keep their values, and are zeros from its

@@ -120,6 +120,7 @@ typedef enum cm1e_bus_phase {
 /** The safe values of outputs (safe_outputs.c), as large as these. */
 typedef struct cm1e_safe_outputs {
     uint8_t *values, *mask;                  /**< a bit of the mask: the output takes its safe value */
+    uint8_t *claimed;                        /**< bits that the program has found (cm1e/io.h): no guest writes them */
     bool any;                                /**< there is a slave with such outputs */
     bool released;                           /**< the program has ended */
 } cm1e_safe_outputs_t;

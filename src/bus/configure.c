@@ -105,6 +105,8 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
         bus->slaves[i].signals = NULL;
     }
     bus->safe.values = bus->safe.mask = NULL;
+    free(bus->safe.claimed);
+    bus->safe.claimed = NULL;
     bus->image = bus->sent_outputs = bus->outputs = bus->inputs = NULL;
     bus->output_bytes = bus->input_bytes = 0;
     bus->layout = 0;
@@ -120,7 +122,9 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
     bus->inputs = calloc(1, room + 1);
     bus->safe.values = calloc(1, room + 1);
     bus->safe.mask = calloc(1, room + 1);
-    if (!bus->image || !bus->sent_outputs || !bus->outputs || !bus->inputs || !bus->safe.values || !bus->safe.mask)
+    bus->safe.claimed = calloc(1, room + 1);
+    if (!bus->image || !bus->sent_outputs || !bus->outputs || !bus->inputs || !bus->safe.values || !bus->safe.mask ||
+        !bus->safe.claimed)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the process image.");
     if (!cm1e_soem_map(bus->soem, bus->image, room, &bus->output_bytes, &bus->input_bytes))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,

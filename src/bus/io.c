@@ -9,6 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "bus/io_guest.h"
 #include "bus/io_list.h"
 #include "config/io_types.h"
 
@@ -31,8 +32,8 @@ static cm1e_error_t no_slave(const cm1e_bus_t *bus, uint32_t position, cm1e_diag
                          position, bus->slave_count);
 }
 
-cm1e_error_t cm1e_io_find_bits(cm1e_bus_t *bus, uint16_t position, bool output, uint32_t bit_offset, uint16_t bits,
-                               cm1e_io_type_t type, cm1e_io_t *io, cm1e_diag_t *diag)
+static cm1e_error_t find_bits(cm1e_bus_t *bus, uint16_t position, bool output, uint32_t bit_offset, uint16_t bits,
+                              cm1e_io_type_t type, cm1e_io_t *io, cm1e_diag_t *diag)
 {
     *io = (cm1e_io_t){0};
     const cm1e_error_t error = check_ready(bus, diag);
@@ -58,9 +59,18 @@ cm1e_error_t cm1e_io_find_bits(cm1e_bus_t *bus, uint16_t position, bool output, 
     return CM1E_OK;
 }
 
-static cm1e_error_t take(cm1e_bus_t *bus, const cm1e_io_info_t *info, cm1e_io_t *io, cm1e_diag_t *diag)
+/** From now on the outputs that were found are the program's. */
+static cm1e_error_t claim(const cm1e_io_t *io, cm1e_error_t error)
 {
-    return cm1e_io_find_bits(bus, info->position, info->output, info->bit_offset, info->bits, info->type, io, diag);
+    for (unsigned bit = io->shift; error == CM1E_OK && io->output && bit < io->shift + (unsigned)io->bits; bit++)
+        io->bus->safe.claimed[io->byte + bit / 8] |= (uint8_t)(1u << bit % 8);
+    return error;
+}
+
+cm1e_error_t cm1e_io_find_bits(cm1e_bus_t *bus, uint16_t position, bool output, uint32_t bit_offset, uint16_t bits,
+                               cm1e_io_type_t type, cm1e_io_t *io, cm1e_diag_t *diag)
+{
+    return claim(io, find_bits(bus, position, output, bit_offset, bits, type, io, diag));
 }
 
 cm1e_error_t cm1e_io_find_object(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, bool output,
@@ -76,7 +86,7 @@ cm1e_error_t cm1e_io_find_object(cm1e_bus_t *bus, uint16_t position, uint16_t in
     cm1e_io_info_t info = {0};
     while (cm1e_io_next(bus, slave, &info))
         if (info.output == output && info.index == index && info.subindex == subindex)
-            return take(bus, &info, io, diag);
+            return claim(io, cm1e_io_guest_take(bus, &info, io, diag));
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "Object 0x%04X:%02X is not among the %s of slave %u.", index,
                          subindex, output ? "outputs" : "inputs", position);
 }
@@ -149,10 +159,15 @@ static cm1e_error_t find_word(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, co
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Slave %u has %u signals with the name \"%.60s\": "
                              "name the one by its number, such as \"%u.%s %u\".", slave->info.position, count, word,
                              slave->info.position, found.output ? "output" : "input", found.number);
-    return take(bus, &found, io, diag);
+    return cm1e_io_guest_take(bus, &found, io, diag);
 }
 
 cm1e_error_t cm1e_io_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io, cm1e_diag_t *diag)
+{
+    return claim(io, cm1e_io_guest_find(bus, name, io, diag));
+}
+
+cm1e_error_t cm1e_io_guest_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io, cm1e_diag_t *diag)
 {
     *io = (cm1e_io_t){0};
     const cm1e_error_t error = check_ready(bus, diag);
@@ -169,6 +184,42 @@ cm1e_error_t cm1e_io_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io, cm1e
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "\"%.80s\" names no slave of the network, which has %" PRIu32
                          ". A signal is named as in \"3.input 1\", or by the name of a slave that no other has.", name,
                          bus->slave_count);
+}
+
+/* ---- for guests -------------------------------------------------------------------------------------------------- */
+
+bool cm1e_io_guest_next(const cm1e_bus_t *bus, cm1e_io_info_t *info)
+{
+    uint32_t position = info->position ? info->position : 1;
+    while (bus->layout && position <= bus->slave_count) {
+        if (cm1e_io_next(bus, cm1e_bus_at(bus, position), info))
+            return true;
+        *info = (cm1e_io_info_t){0};
+        position++;
+    }
+    return false;
+}
+
+cm1e_error_t cm1e_io_guest_take(cm1e_bus_t *bus, const cm1e_io_info_t *info, cm1e_io_t *io, cm1e_diag_t *diag)
+{
+    return find_bits(bus, info->position, info->output, info->bit_offset, info->bits, info->type, io, diag);
+}
+
+bool cm1e_io_is_claimed(const cm1e_io_t *io)
+{
+    bool claimed = false;
+    for (unsigned bit = io->shift; io->output && bit < io->shift + (unsigned)io->bits; bit++)
+        claimed = claimed || (io->bus->safe.claimed[io->byte + bit / 8] >> bit % 8 & 1);
+    return claimed;
+}
+
+void cm1e_io_guest_release(const cm1e_io_t *io)
+{
+    for (unsigned bit = io->shift; io->output && bit < io->shift + (unsigned)io->bits; bit++) {
+        const uint8_t mask = (uint8_t)(1u << bit % 8);
+        uint8_t *byte = &io->bus->outputs[io->byte + bit / 8];
+        *byte = (uint8_t)((*byte & ~mask) | (io->bus->safe.values[io->byte + bit / 8] & mask));
+    }
 }
 
 /* ---- in the cycle ------------------------------------------------------------------------------------------------ */

@@ -321,6 +321,53 @@ MAINTAIN(stop, STOP)
 MAINTAIN(reset, RESET)
 MAINTAIN(keep, KEEP)
 
+/* ---- signals ----------------------------------------------------------------------------------------------------- */
+
+static json_t *io(control_request_t *request, control_run_t *run, const json_t *message)
+{
+    (void)message;
+    request->io = cm1e_io_list_begin();
+    if (!request->io)
+        return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
+    if (!cm1e_io_list_next(request->io, &run->view))
+        return accept(request->id, "io", json_incref(request->io->told));
+    request->state = REQUEST_IO;
+    request->wanted = false;
+    return NULL;
+}
+
+/** The cycle has read some; NULL: there are more. */
+static json_t *continue_io(control_request_t *request, control_run_t *run)
+{
+    cm1e_io_list_take(request->io, &run->view);
+    request->wanted = false;
+    return cm1e_io_list_next(request->io, &run->view) ? NULL
+                                                      : accept(request->id, "io", json_incref(request->io->told));
+}
+
+static json_t *output(control_request_t *request, control_run_t *run, const json_t *message)
+{
+    cm1e_diag_t diag = {0};
+    cm1e_error_t error = CM1E_OK;
+    json_t *refused = check_consent(request, run, "Writing an output");
+    request->output.client = request->client;
+    const char *bad = refused ? NULL
+                              : cm1e_output_take(&request->output, &run->view, message, &error, diag.text,
+                                                 sizeof diag.text);
+    if (refused || bad)
+        return refused ? refused : cm1e_request_refuse(request->id, error, 0, bad);
+    request->state = REQUEST_OUTPUT;
+    request->wanted = false;
+    return NULL;
+}
+
+static json_t *end_output(const control_request_t *request)
+{
+    const char *refusal = cm1e_output_refusal(&request->output);
+    return refusal ? cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, refusal)
+                   : accept(request->id, "output", json_null());
+}
+
 static const struct {
     const char *name;
     json_t *(*begin)(control_request_t *request, control_run_t *run, const json_t *message);
@@ -329,7 +376,7 @@ static const struct {
     {"log", event_log}, {"sdo_read", sdo_read}, {"sdo_write", sdo_write}, {"sdo_info", sdo_info},
     {"sii_read", sii_read}, {"registers", registers}, {"enable", enable}, {"disable", disable}, {"jog", jog},
     {"home", home},     {"stop", stop},         {"reset", reset},         {"keep", keep},
-    {"record", cm1e_record_begin}, {"samples", cm1e_record_samples},
+    {"record", cm1e_record_begin}, {"samples", cm1e_record_samples}, {"io", io}, {"output", output},
 };
 
 static json_t *unknown(const control_request_t *request)
@@ -378,6 +425,8 @@ static view_order_t *order_of(control_request_t *request)
 {
     return request->state == REQUEST_WRITE      ? &request->write.order
            : request->state == REQUEST_MAINTAIN ? &request->maintain.order
+           : request->state == REQUEST_IO       ? &request->io->values.order
+           : request->state == REQUEST_OUTPUT   ? &request->output.order
                                                 : NULL;
 }
 
@@ -424,6 +473,10 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
         reply = end_write(request, run);
     else if (request->state == REQUEST_MAINTAIN && continue_order(request, run))
         reply = with_id(cm1e_maintain_reply(request, run), request->id);
+    else if (request->state == REQUEST_IO && continue_order(request, run))
+        reply = continue_io(request, run);
+    else if (request->state == REQUEST_OUTPUT && continue_order(request, run))
+        reply = end_output(request);
     if (request->state == REQUEST_SDO && !reply && cm1e_sdo_state(&request->sdo) != CM1E_SDO_BUSY)
         reply = end_transfer(request);
     if (!reply && (stopping || now_ns - request->begun_ns > PATIENCE_NS) && give_up(request, run))
@@ -436,13 +489,15 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
 bool cm1e_request_must_end(const control_request_t *request)
 {
     const bool may_be_taken = request->state == REQUEST_WRITE || request->state == REQUEST_MAINTAIN ||
-                              request->state == REQUEST_ERRAND;
+                              request->state == REQUEST_ERRAND || request->state == REQUEST_IO ||
+                              request->state == REQUEST_OUTPUT;
     return request->state == REQUEST_SDO || (request->wanted && may_be_taken);
 }
 
 void cm1e_request_clear(control_request_t *request)
 {
     json_decref(request->id);
+    cm1e_io_list_free(request->io);
     free(request->data);
     memset(request, 0, sizeof *request);
 }

@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "bus/errand.h"
+#include "control/io_request.h"
 #include "control/maintain.h"
 
 /** Facts of a run that do not change. */
@@ -25,6 +26,8 @@ typedef enum request_state {
     REQUEST_SNAPSHOT,
     REQUEST_WRITE,    /**< until the cycle has decided on it */
     REQUEST_MAINTAIN, /**< the same */
+    REQUEST_IO,       /**< until the cycle has read some signals */
+    REQUEST_OUTPUT,   /**< until it has set one */
     REQUEST_SDO,
     REQUEST_ERRAND,
 } request_state_t;
@@ -44,6 +47,8 @@ typedef struct control_request {
     view_write_t write;
     cm1e_errand_t errand;
     maintain_order_t maintain;
+    io_list_t *io;             /**< IO */
+    output_order_t output;
 } control_request_t;
 
 /** Begins a request. Returns its reply, or NULL if it goes on: cm1e_request_continue(). */

@@ -66,6 +66,7 @@ static void leave(server_t *server, client_t *client)
 {
     hang_up(client);
     cm1e_maintain_leave(&server->run.view, client->place);
+    cm1e_guest_outputs_leave(&server->run.view.outputs, client->place);
     const bool recorded = !cm1e_recorder_end(&server->run.view, client->place, atomic_load(&server->stop));
     if (cm1e_request_must_end(&client->request) || recorded)
         return;

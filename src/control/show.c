@@ -60,6 +60,24 @@ static json_t *limits_of(const view_t *view, uint32_t index)
                      cm1e_show_real(measures->max_lag));
 }
 
+/** Inputs of the motor to which a switch is wired. */
+static json_t *switches_of(const cm1e_input_config_t *inputs)
+{
+    const struct {
+        int input;
+        const char *name;
+        bool closed;
+    } rows[] = {{inputs->home, "home switch", inputs->home_normally_closed},
+                {inputs->limit_positive, "positive limit switch", inputs->limits_normally_closed},
+                {inputs->limit_negative, "negative limit switch", inputs->limits_normally_closed}};
+    json_t *all = json_array();
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        if (rows[i].input > 0)
+            json_array_append_new(all, json_pack("{s:i, s:s, s:b}", "input", rows[i].input, "name", rows[i].name,
+                                                 "normally_closed", rows[i].closed));
+    return all;
+}
+
 static void add_error(json_t *axis, const view_t *view, uint32_t index)
 {
     const cm1e_axis_info_t *info = &view->infos[index];
@@ -91,6 +109,7 @@ json_t *cm1e_show_axes(const view_t *view)
         json_object_set_new(axis, "command", news->command ? json_string(cm1e_command_name(news->kind)) : json_null());
         json_object_set_new(axis, "modulo_range", cm1e_show_real(config->modulo_range));
         json_object_set_new(axis, "limits", limits_of(view, i));
+        json_object_set_new(axis, "switches", switches_of(&config->inputs));
         json_object_set_new(axis, "held", json_boolean(view->holders[i] >= 0));
         json_object_set_new(axis, "resetting", json_boolean(view->resetting[i]));
         add_values(axis, &view->infos[i]);

@@ -91,6 +91,9 @@ void cm1e_view_cycle(view_t *view)
     if (atomic_load_explicit(&view->state, memory_order_acquire) == VIEW_WANTED)
         fill(view);
     cm1e_maintain_cycle(view);
+    if (view->outputs.count > 0 || atomic_load_explicit(&view->outputs.gone, memory_order_relaxed))
+        cm1e_guest_outputs_cycle(&view->outputs, cm1e_scheduler_time_ns(view->scheduler),
+                                 cm1e_scheduler_is_ending(view->scheduler));
     if (atomic_load_explicit(&view->recording, memory_order_relaxed))
         cm1e_recorder_cycle(view);
     if (!atomic_load_explicit(&view->order, memory_order_relaxed))

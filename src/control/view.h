@@ -2,7 +2,7 @@
  * @file view.h
  * What passes between the cycle and the thread of the control socket. The cycle allocates, locks and waits for nothing:
  * it fills in a snapshot where one is wanted, and decides on an order where there is one. While nobody asks, it costs
- * five loads.
+ * seven loads.
  */
 #ifndef CM1E_CONTROL_VIEW_H
 #define CM1E_CONTROL_VIEW_H
@@ -10,6 +10,7 @@
 #include <stdatomic.h>
 
 #include "axis/axis_signals.h"
+#include "control/guest_outputs.h"
 #include "scheduler/scheduler_window.h"
 
 typedef enum view_state { VIEW_IDLE = 0, VIEW_WANTED, VIEW_FILLED } view_state_t;
@@ -76,6 +77,7 @@ typedef struct view {
     } slaves[CM1E_MAX_SLAVES];
 
     maintained_t maintained;
+    guest_outputs_t outputs;
     struct recorder *recorders[CM1E_CONTROL_CLIENTS]; /**< recorder.h; NULL: none */
     _Atomic uint32_t recording; /**< a bit for each of them that the cycle has */
     _Atomic(view_order_t *) order;

@@ -1,23 +1,34 @@
 #!/usr/bin/env python3
-"""`cm1e io` on the simulated segment: inputs of the motors with what the bus file has wired to them, signals of a module,
-outputs that are written for a while, and what is refused before anything is written.
+"""`cm1e io` on the simulated segment: inputs of the motors with what the bus file has wired to them, signals of a
+module, outputs that are written for a while, and what is refused before anything is written. The same beside a running
+program.
 
 test_io.py BIN-DIRECTORY
 """
+import contextlib
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import real_time  # noqa: E402
+from control_client import Client  # noqa: E402
 
 CM1E = os.path.join(sys.argv[1], "cm1e")
 BUS = """bus: {interface: sim, lost_cycles_limit: 50}
 axes:
   - {name: X, position: 1, inputs: {home: 2, limit_positive: 3, limits_normally_closed: true}}
   - {name: Y, position: 3}
+"""
+SAFE_BUS = """bus: {interface: sim, lost_cycles_limit: 50}
+axes:
+  - {name: X, position: 1}
+slaves:
+  - {name: valves, position: 2, outputs: [{name: lamp, bit: 3, safe: on}]}
 """
 faults = []
 
@@ -58,9 +69,119 @@ def main(folder):
         expect(told.returncode != 0 and said in told.stderr, f"{words}", told)
 
 
+# ---- beside a running program ---------------------------------------------------------------------------------------
+
+@contextlib.contextmanager
+def running(folder, control, *words, bus=None):
+    """A program that has the network, and a function that runs `cm1e io` beside it."""
+    environment = {**os.environ, "CM1E_RUNTIME_DIR": os.path.join(folder, "run")}
+    bus_file = os.path.join(folder, "attached.yaml")
+    with open(bus_file, "w", encoding="utf-8") as file:
+        file.write((bus or BUS).replace("sim,", f"sim, control: {control},"))
+    process = subprocess.Popen([CM1E, words[0], "-b", bus_file, *words[1:]], stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True, env=environment)
+    path = os.path.join(folder, "run", f"cm1e-{process.pid}-0.sock")
+
+    def start(*more):
+        return subprocess.Popen([CM1E, "io", "--attach", str(process.pid), *more], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True, env=environment)
+
+    def io(*more):
+        child = start(*more)
+        out, err = child.communicate(timeout=60)
+        return subprocess.CompletedProcess(more, child.returncode, out, err)
+    try:
+        end = time.monotonic() + 10
+        while not os.path.exists(path) and time.monotonic() < end:
+            time.sleep(0.01)
+        io.start, io.path = start, path
+        yield io
+        expect(process.poll() is None, "the program has ended", words)
+    finally:
+        process.terminate()
+        out, err = process.communicate(timeout=30)
+        expect("ErrorStop" not in out + err, "the program was disturbed", out + err)
+
+
+def values(told):
+    signals = json.loads(told.stdout or '{"signals": []}')["signals"]
+    return {(row["slave"], row["name"]): row["value"] for row in signals}
+
+
+def attached(folder):
+    turn = ("move", "X", "--speed", "0.01", "--for", "100")
+    with running(folder, "maintain", *turn) as io:
+        alone = subprocess.run([CM1E, "io", "-b", os.path.join(folder, "attached.yaml")], capture_output=True,
+                               text=True, timeout=60)
+        told = io()
+        expect(told.returncode == 0 and [line.rsplit(None, 1)[0] for line in told.stdout.splitlines()] ==
+               [line.rsplit(None, 1)[0] for line in alone.stdout.splitlines()], "the same rows as alone", (alone, told))
+        whole = io("--json", "--all")
+        expect(len(json.loads(whole.stdout)["signals"]) > 20, "--all", whole)
+        written = io("2.outputs=5", "--allow-output", "--for", "1.5", "--json")
+        expect(values(written) == {(2, "Inputs"): "5", (2, "Outputs"): "5"}, "written, and renewed", written)
+        expect(values(io("--json")) == {(2, "Inputs"): "0", (2, "Outputs"): "0"}, "0 when it has ended", io("--json"))
+        for words, said in ((["2.outputs=256"], "no such value"), (["2.inputs=1"], "an input"),
+                            (["1.0x6040:00=15"], "belongs to a motor"), (["2.nothing=1"], "no signal \"nothing\""),
+                            (["2.outputs=3", "9.outputs=1"], "names no slave")):
+            told = io(*words, "--allow-output", "--for", "1")
+            expect(told.returncode == 1 and said in told.stderr, f"attached {words}", told)
+        check_ends(io)
+    with running(folder, "observe", *turn) as io:
+        told = io("2.outputs=5", "--allow-output", "--for", "1")
+        expect(told.returncode == 1 and "control: maintain" in told.stderr and io().returncode == 0, "observe", told)
+    with running(folder, "maintain", "io", "2.outputs=3", "--allow-output", "--for", "100") as io:
+        expect(values(io("--json")) == {(2, "Inputs"): "3", (2, "Outputs"): "3"}, "an output of the program", io())
+        told = io("2.outputs=5", "--allow-output", "--for", "1")
+        expect(told.returncode == 1 and "belongs to the program" in told.stderr, "it is not written", told)
+        expect(values(io("--json"))[(2, "Outputs")] == "3", "it has kept its value", io())
+
+
+def check_safe_value(folder):
+    """An output that is let go of has the safe value of the bus file again."""
+    with running(folder, "maintain", "move", "X", "--speed", "0.01", "--for", "100", bus=SAFE_BUS) as io:
+        expect(values(io("--json"))[(2, "lamp")] == "1", "the safe value", io("--json"))
+        told = io("valves.lamp=0", "--allow-output", "--for", "0.3", "--json")
+        expect(values(told)[(2, "lamp")] == "0" and '"slave_name": "valves"' in told.stdout, "by its name", told)
+        expect(values(io("--json"))[(2, "lamp")] == "1", "the safe value again", io("--json"))
+
+
+def check_ends(io):
+    """Whoever holds an output and does not renew it, or is gone, loses it; another one does not get it before."""
+    with Client(io.path) as client:
+        def output():
+            return next(row for row in client.ask("io")["io"] if row["output"] and not row["of_axis"])["value"]
+
+        def wait_for(value, seconds):
+            end = time.monotonic() + seconds
+            while output() != value and time.monotonic() < end:
+                time.sleep(0.01)
+            return output() == value
+        for number in (signal.SIGSTOP, signal.SIGKILL, signal.SIGINT):
+            child = io.start("2.outputs=9", "--allow-output", "--for", "60")
+            expect(wait_for(9, 5), "an output is set", number)
+            refused = client.ask("output", name="2.outputs", value=1)
+            expect(not refused["ok"] and "Another connection" in refused["error"]["text"], "it is held", refused)
+            child.send_signal(number)
+            expect(wait_for(0, 3), f"0 after {number!r}", output())
+            child.kill()
+            child.communicate()
+        told = client.ask("output", name="2.outputs", value=7, keep_ms=200)
+        expect(told["ok"] and output() == 7, "a client", told)
+        time.sleep(0.4)
+        expect(output() == 0, "an output that is not renewed", output())
+        for wrong in ({}, {"name": 5, "value": 1}, {"name": "2.outputs"}, {"name": "2.outputs", "value": "1"},
+                      {"name": "2.outputs", "value": 1, "keep_ms": 10},
+                      {"name": "2.outputs", "value": 1, "keep_ms": 6000}):
+            refused = client.ask("output", **wrong)
+            expect(not refused["ok"] and "expected" in refused["error"]["text"], f"output {wrong}", refused)
+
+
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as temporary:
         main(temporary)
+        attached(temporary)
+        check_safe_value(temporary)
     if faults:
         real_time.skip_on_a_busy_machine(faults)
         print("FAILED:", *faults, sep="\n")

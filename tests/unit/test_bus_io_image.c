@@ -1,5 +1,8 @@
 /* Signals in a process image, without a network: any type, any number of bits, at any place. */
+#include <string.h>
+
 #include "bus/bus_internal.h"
+#include "bus/io_guest.h"
 #include "chance.h"
 #include "cm1e/io.h"
 #include "unity.h"
@@ -10,11 +13,28 @@ void setUp(void) {}
 void tearDown(void) {}
 
 enum { IMAGE = 40, TRIES = 200000 };
-static uint8_t outputs[IMAGE];
+static uint8_t outputs[IMAGE], claimed[IMAGE];
 static cm1e_bus_slave_t slave = {.info = {.position = 1}, .placement = {.output_bytes = IMAGE}};
 static cm1e_bus_t bus = {
-    .slaves = &slave, .slave_count = 1, .layout = 1, .outputs = outputs, .phase = BUS_OPERATING,
+    .slaves = &slave, .slave_count = 1, .layout = 1, .outputs = outputs, .safe.claimed = claimed,
+    .phase = BUS_OPERATING,
 };
+
+/** A signal that was found belongs to the program with all of its bits, and no other bit does. */
+static void test_what_is_found_is_claimed_bit_by_bit(void)
+{
+    for (int n = 0; n < TRIES / 100; n++) {
+        const uint16_t bits = (uint16_t)(1 + pick(64));
+        const uint32_t place = (uint32_t)pick(8 * IMAGE - bits + 1), looked = (uint32_t)pick(8 * IMAGE);
+        cm1e_io_t io, other;
+        memset(claimed, 0, sizeof claimed);
+        const cm1e_io_info_t listed = {.position = 1, .output = true, .bits = 1, .bit_offset = looked};
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_guest_take(&bus, &listed, &other, &diag));
+        TEST_ASSERT_FALSE(cm1e_io_is_claimed(&other));
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_find_bits(&bus, 1, true, place, bits, CM1E_IO_ULINT, &io, &diag));
+        TEST_ASSERT_EQUAL(looked >= place && looked < place + bits, cm1e_io_is_claimed(&other));
+    }
+}
 
 /** Any type at any place keeps its value, and leaves every other bit alone. */
 static void test_every_value_of_every_type_lies_anywhere(void)
@@ -79,6 +99,7 @@ int main(void)
 {
     chance_seed(1);
     UNITY_BEGIN();
+    RUN_TEST(test_what_is_found_is_claimed_bit_by_bit);
     RUN_TEST(test_every_value_of_every_type_lies_anywhere);
     RUN_TEST(test_bytes_of_any_length_lie_anywhere);
     return UNITY_END();
