@@ -65,7 +65,7 @@ static void tell_error(void)
 {
     char text[CM1E_AXIS_ERROR_TEXT_BYTES];
     cm1e_axis_error_text(axis, text, sizeof text);
-    fprintf(stderr, "%s. %s\n", cm1e_strerror(cm1e_error_from_id(first_error())), text);
+    fprintf(stderr, "%s\n", text[0] ? text : cm1e_strerror(cm1e_error_from_id(first_error())));
 }
 
 int main(int argc, char **argv)

@@ -145,7 +145,7 @@ static inline void example_tell_error_of(AXIS_REF_t axis, WORD error_id)
 {
     char text[CM1E_AXIS_ERROR_TEXT_BYTES];
     cm1e_axis_error_text(axis, text, sizeof text);
-    fprintf(stderr, "%s.%s%s\n", cm1e_strerror(cm1e_error_from_id(error_id)), text[0] ? " " : "", text);
+    fprintf(stderr, "%s\n", text[0] ? text : cm1e_strerror(cm1e_error_from_id(error_id)));
 }
 static inline void example_tell_error(const example_t *e, WORD error_id) { example_tell_error_of(e->axis, error_id); }
 

@@ -165,7 +165,7 @@ static int report_jog(const by_hand_t *hand, const other_t *other, double from, 
     else if (!failed)
         printf("%s: jogged from %.6g to %.6g%s\n", name, from, real_of(other, "position"), other->simulated);
     if (failed && in_error)
-        complain("%s: %s. %s", name, why, details);
+        complain_of_axis(name, why, details);
     else if (failed)
         complain("%s", other->diag.text);
     return failed ? EXIT_FAILED : EXIT_OK;
@@ -272,6 +272,14 @@ int enable_attached(const by_hand_t *hand, cm1e_control_t *control)
 
 /* ---- reset ------------------------------------------------------------------------------------------------------- */
 
+static void tell_reset(const other_t *other, const char *what, const char *details)
+{
+    char line[AXIS_LINE_BYTES];
+    const char *axis = text_of(other->axis, "name");
+    describe_error(line, sizeof line, axis, what, details);
+    printf("%s: error reset%s. It was: %s\n", axis, other->simulated, line);
+}
+
 static bool reset_one(const by_hand_t *hand, other_t *other, json_t *all)
 {
     const json_t *error = json_object_get(other->axis, "error");
@@ -298,7 +306,7 @@ static bool reset_one(const by_hand_t *hand, other_t *other, json_t *all)
     if (!had_error)
         printf("%s: has no error%s\n", axis, other->simulated);
     else if (good)
-        printf("%s: error reset%s. It was: %s. %s\n", axis, other->simulated, name, text);
+        tell_reset(other, name, text);
     else
         complain("%s: the error is still there. %s", axis, why);
     return good;

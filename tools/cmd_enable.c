@@ -125,7 +125,7 @@ static int report(void *context)
         printf("%s: was enabled for %.1f s, at %.6g, and was displaced by %.2g%s\n", cm1e_axis_name(p->axis), seconds,
                p->end.actual_position, way, p->simulated);
     if (p->failed)
-        complain("%s: %s. %s", cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text);
+        complain_of_axis(cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text);
     return was_enabled && !p->failed ? EXIT_OK : EXIT_FAILED;
 }
 

@@ -156,7 +156,7 @@ static int report(void *context)
     else if (!p->failed)
         printf("%s: jogged from %.6g to %.6g%s\n", cm1e_axis_name(p->axis), p->from, p->to, p->simulated);
     if (p->failed)
-        complain("%s: %s. %s", cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text);
+        complain_of_axis(cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text);
     return p->failed ? EXIT_FAILED : EXIT_OK;
 }
 

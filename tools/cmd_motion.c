@@ -351,10 +351,11 @@ static int report(const motion_program_t *p)
                (double)(p->ended_ns - p->started_ns) * 1e-9, p->before.actual_position, p->after.actual_position,
                deviation_of(p), p->simulated);
     if (p->failed)
-        complain("%s: %s. %s%s", cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text,
-                 p->before_power_failed ? " (--reset does that here.)" : "");
+        complain_of_axis(cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text);
     else if (!p->done)
         complain("%s: %s was interrupted", cm1e_axis_name(p->axis), what);
+    if (p->failed && p->before_power_failed)
+        complain("--reset does that here");
     return p->done ? EXIT_OK : EXIT_FAILED;
 }
 

@@ -87,6 +87,13 @@ static void program(void *context)
         cm1e_scheduler_stop(p->scheduler);
 }
 
+static void tell_reset(const axis_reset_t *a, const char *simulated)
+{
+    char line[AXIS_LINE_BYTES];
+    describe_error(line, sizeof line, cm1e_axis_name(a->axis), cm1e_strerror(a->before.error), a->text);
+    printf("%s: error reset%s. It was: %s\n", cm1e_axis_name(a->axis), simulated, line);
+}
+
 static int report(void *context)
 {
     reset_program_t *p = context;
@@ -109,11 +116,11 @@ static int report(void *context)
         if (!a->had_error && good)
             printf("%s: has no error%s\n", cm1e_axis_name(a->axis), p->simulated);
         else if (good)
-            printf("%s: error reset%s. It was: %s. %s\n", cm1e_axis_name(a->axis), p->simulated,
-                   cm1e_strerror(a->before.error), a->text);
+            tell_reset(a, p->simulated);
+        else if (a->reset.Error)
+            complain_of_axis(cm1e_axis_name(a->axis), cm1e_strerror(cm1e_error_from_id(a->reset.ErrorID)), why);
         else
-            complain("%s: the error is still there%s%s. %s", cm1e_axis_name(a->axis), a->reset.Error ? ": " : "",
-                     a->reset.Error ? cm1e_strerror(cm1e_error_from_id(a->reset.ErrorID)) : "", why);
+            complain("%s: the error is still there. %s", cm1e_axis_name(a->axis), why);
     }
     if (p->common.json)
         print_json(all);

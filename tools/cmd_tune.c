@@ -420,7 +420,7 @@ static int report(void *context)
         complain("%s: from %.6g on, a travel of %g u leaves the software limits; nothing was moved", run->name,
                  run->start, run->options->limits.travel);
     else if (run->failed)
-        complain("%s: %s. %s", run->name, cm1e_strerror(cm1e_error_from_id(run->error_id)), text);
+        complain_of_axis(run->name, cm1e_strerror(cm1e_error_from_id(run->error_id)), text);
     else if (!run->done)
         complain("%s: tune was interrupted", run->name);
     return run->done ? EXIT_OK : EXIT_FAILED;

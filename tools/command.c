@@ -51,6 +51,26 @@ void complain(const char *format, ...)
     va_end(args);
 }
 
+void describe_error(char *line, size_t size, const char *name, const char *what, const char *details)
+{
+    char prefix[CM1E_NAME_LENGTH + 16];
+    snprintf(prefix, sizeof prefix, "Axis \"%s\": ", name);
+    const bool has_prefix = strncmp(details, prefix, strlen(prefix)) == 0;
+    if (strstr(details, what))
+        snprintf(line, size, "%s", details);
+    else if (has_prefix)
+        snprintf(line, size, "%s: %s: %s", name, what, details + strlen(prefix));
+    else
+        snprintf(line, size, "%s: %s%s%s", name, what, details[0] ? ". " : "", details);
+}
+
+void complain_of_axis(const char *name, const char *what, const char *details)
+{
+    char line[AXIS_LINE_BYTES];
+    describe_error(line, sizeof line, name, what, details);
+    complain("%s", line);
+}
+
 int fail(const cm1e_diag_t *diag)
 {
     complain("%s", diag->text[0] ? diag->text : cm1e_strerror(diag->error));

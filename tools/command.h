@@ -13,7 +13,7 @@
 #include "cm1e/bus.h"
 #include "cm1e/config.h"
 
-enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
+enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2, AXIS_LINE_BYTES = 1280 };
 
 /** Every command: X(name, its summary, words that its arguments begin with). Each has a source cmd_<name>.c with
  *  command_<name>() and the options argp_<name>. Help, man pages and completions follow from this list. */
@@ -150,6 +150,12 @@ enum { MAX_WORDS = 32 };
 /** Prints "cm1e <command>: <text of diag>" on standard error and returns EXIT_FAILED. */
 int fail(const cm1e_diag_t *diag);
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/** Writes what is wrong with an axis, each thing once. `what` is the text of the error, `details` are the sentences about
+ *  the axis, which may say it too. */
+void describe_error(char *line, size_t size, const char *name, const char *what, const char *details);
+/** Complains of that. */
+void complain_of_axis(const char *name, const char *what, const char *details);
 
 /** A text as JSON, which must be UTF-8; other bytes and control characters become "?". NULL counts as "". */
 json_t *text_as_json(const char *text);

@@ -58,7 +58,7 @@ static int run(cm1e_bus_t *bus)
     char text[CM1E_AXIS_ERROR_TEXT_BYTES] = "";
     cm1e_axis_error_text(lift, text, sizeof text);
     if (first_error() != 0) {
-        fprintf(stderr, "%s. %s\n", cm1e_strerror(cm1e_error_from_id(first_error())), text);
+        fprintf(stderr, "%s\n", text[0] ? text : cm1e_strerror(cm1e_error_from_id(first_error())));
         status = 1;
     }
     printf("%s\n", back.Done && status == 0 ? "there and back" : "not done");

@@ -25,8 +25,12 @@ faults = []
 
 
 def run(*words):
-    return subprocess.run([os.path.join(BIN, "cm1e"), *words], capture_output=True, text=True, timeout=60,
+    told = subprocess.run([os.path.join(BIN, "cm1e"), *words], capture_output=True, text=True, timeout=60,
                           stdin=subprocess.DEVNULL)
+    for line in told.stderr.splitlines() + ([] if "--json" in words else told.stdout.splitlines()):
+        said = [part for part in re.split(r"[.:] ", line) if len(part) > 12]
+        expect(len(said) == len(set(said)) and line.count('Axis "') < 2, f"{words}: said twice", line)
+    return told
 
 
 def expect(condition, what, result=""):

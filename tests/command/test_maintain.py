@@ -301,7 +301,8 @@ def check_commands():
         wait_for(lambda: axis(client, Y)["state"] == "ErrorStop", "no error at the mechanical stop")
         check_emergencies(client, lambda *words: attached(pid, *words))
         told = attached(pid, "reset", "Y")
-        expect(told.returncode == 0 and told.stdout.startswith("Y: error reset (simulated). It was: "), "reset", told)
+        expect(told.returncode == 0 and told.stdout.startswith("Y: error reset (simulated). It was: Axis \"Y\"") and
+               told.stdout.count("Axis \"Y\"") == 1, "reset", told)
         as_json = json.loads(attached(pid, "reset", "--json").stdout)
         expect([a["axis"] for a in as_json] == ["X", "Y", "Z"] and not as_json[1]["had_error"], "reset --json", as_json)
         told = attached(pid, "reset", "nobody")
