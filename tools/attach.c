@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { KEY_ATTACH = 0x700 };
 
@@ -65,19 +66,39 @@ cm1e_error_t open_unscanned(const common_options_t *options, const cm1e_bus_conf
     return error;
 }
 
+cm1e_error_t refuse_to_attach(const common_options_t *options, const cm1e_bus_config_t *config, const char *what,
+                              const char *why, cm1e_diag_t *diag)
+{
+    cm1e_control_t *control;
+    cm1e_diag_t told = {0};
+    const cm1e_error_t error = connect_network(options, config, &control, &told);
+    if (error == CM1E_ERROR_NOT_FOUND && !options->attach)
+        return CM1E_OK;
+    if (error != CM1E_OK)
+        return cm1e_diag_set(diag, error, told.foreign_code, "%s needs the network for itself: %s. %.300s", what, why,
+                             told.text);
+    json_t *hello = ask_program(control, json_pack("{s:s}", "request", "hello"), "hello", &told);
+    const char *program = json_string_value(json_object_get(hello, "program"));
+    const time_t since = (time_t)json_integer_value(json_object_get(hello, "since"));
+    char began[40] = "";
+    struct tm local;
+    if (since > 0 && localtime_r(&since, &local))
+        strftime(began, sizeof began, " since %Y-%m-%d %H:%M:%S", &local);
+    cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, 0, "%s needs the network for itself: %s. It is in use by %s "
+                  "(process %d)%s: end that program%s.", what, why, program ? program : "a program",
+                  (int)json_integer_value(json_object_get(hello, "pid")), began,
+                  options->attach ? ", and leave --attach out" : "");
+    json_decref(hello);
+    cm1e_control_close(control);
+    return diag->error;
+}
+
 cm1e_error_t own_network(const common_options_t *options, const cm1e_bus_config_t *config, const char *what,
-                         cm1e_bus_t **bus, cm1e_diag_t *diag)
+                         const char *why, cm1e_bus_t **bus, cm1e_diag_t *diag)
 {
     *bus = NULL;
-    if (options->attach)
-        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "%s needs the network for itself: end the program that "
-                             "runs it, and leave --attach out.", what);
-    const cm1e_error_t error = cm1e_bus_open(bus, config, diag);
-    if (error != CM1E_ERROR_INTERFACE_IN_USE)
-        return error;
-    char owner[sizeof diag->text];
-    snprintf(owner, sizeof owner, "%s", diag->text);
-    return cm1e_diag_set(diag, error, diag->foreign_code, "%s needs the network for itself. %.400s", what, owner);
+    const cm1e_error_t error = refuse_to_attach(options, config, what, why, diag);
+    return error == CM1E_OK ? cm1e_bus_open(bus, config, diag) : error;
 }
 
 cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,

@@ -23,10 +23,15 @@ cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config
 /** As open_network(), but our own network is not scanned: a damaged SII stops a scan. */
 cm1e_error_t open_unscanned(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
                             cm1e_diag_t *diag);
-/** Opens the network, but does not scan it. Refuses to attach: `what` ("Writing an SII") needs the network for itself,
- *  and the program that has it must end before. */
+/** Says no where another program runs the network, or with --attach: `what` ("Writing an SII") needs it for itself,
+ *  `why` is half a sentence ("while it is written, the slave cannot ..."). CM1E_OK: nobody runs it, who could be
+ *  asked. */
+cm1e_error_t refuse_to_attach(const common_options_t *options, const cm1e_bus_config_t *config, const char *what,
+                              const char *why, cm1e_diag_t *diag);
+
+/** Opens the network, but does not scan it, after refuse_to_attach(). */
 cm1e_error_t own_network(const common_options_t *options, const cm1e_bus_config_t *config, const char *what,
-                         cm1e_bus_t **bus, cm1e_diag_t *diag);
+                         const char *why, cm1e_bus_t **bus, cm1e_diag_t *diag);
 
 /** Connects to the program that runs the network; for commands that only make sense attached. */
 cm1e_error_t connect_network(const common_options_t *options, const cm1e_bus_config_t *config,

@@ -50,7 +50,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     firmware_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->common;
+        state->child_inputs[1] = &options->common;
+        return 0;
     case 'a': options->axis = arg; return 0;
     case 'p': return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
     case KEY_NAME: options->name = arg; return 0;
@@ -257,7 +260,7 @@ static const struct argp_option table[] = {
     {"other-device", KEY_OTHER_DEVICE, NULL, 0, "Allow a slave that is no CM1-E", 0},
     {"yes", KEY_YES, NULL, 0, "Do not ask", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_firmware = {
     table, parse, "update FILE",
     "Writes a new firmware into a motor (UG 4.3, 10): FoE in the state Bootstrap, then Init and Pre-Operational, and "
@@ -273,9 +276,10 @@ static int open_and_update(const firmware_options_t *options, const input_t *ima
         complain("%s has %zu bytes: no firmware is that short. Nothing was done", options->file, image->size);
         return EXIT_FAILED;
     }
-    if (!load_configuration(&options->common, &config))
+    if (!load_network(&options->common, &config))
         return EXIT_WRONG_USE;
-    if (own_network(&options->common, &config, "An update of the firmware", &bus, &diag) != CM1E_OK)
+    if (own_network(&options->common, &config, "An update of the firmware",
+                    "the motor leaves the cycle for Init and Bootstrap, and the program would lose it", &bus, &diag) != CM1E_OK)
         return fail(&diag);
     return close_bus(bus, &options->common, update(bus, &config, options, image));
 }

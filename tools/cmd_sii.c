@@ -67,7 +67,8 @@ static cm1e_bus_t *open_bus(const sii_options_t *options, int *status)
     if (!load_network(&options->common, &config))
         return NULL;
     const bool writes = is_verb(options, "write", 3);
-    if ((writes ? own_network(&options->common, &config, "Writing an SII", &bus, &diag)
+    if ((writes ? own_network(&options->common, &config, "Writing an SII",
+                                "while it is written, the application of the slave has no access to it", &bus, &diag)
                 : open_unscanned(&options->common, &config, &bus, &diag)) != CM1E_OK)
         *status = fail(&diag);
     return bus;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "attach.h"
 #include "axis_run.h"
 #include "params.h"
 #include "tune.h"
@@ -97,7 +98,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     tune_options_t *options = state->input;
     parser = state;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->common;
+        state->child_inputs[1] = &options->common;
+        return 0;
     case KEY_TRAVEL: return parse_positive(arg, "the travel", &options->limits.travel) ? 0 : EINVAL;
     case KEY_VELOCITY: return parse_positive(arg, "the velocity", &options->limits.velocity) ? 0 : EINVAL;
     case 'a': return parse_positive(arg, "the acceleration", &options->limits.acceleration) ? 0 : EINVAL;
@@ -527,12 +531,13 @@ static const struct argp_option table[] = {
     {"keep", KEY_KEEP, NULL, 0, "Let the motor keep the values of --set", 0},
     {"html", KEY_HTML, "FILE", 0, "Write both runs as a page for a browser", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_tune = {
     table, parse, "step [AXIS]\nramp [AXIS]\nsine [AXIS]\nchirp [AXIS]",
     "Enables one axis (name or number, default 1), moves it within the limits given, and measures: step: rise time, "
     "overshoot, settling time; ramp: lag at constant velocity; sine, chirp: gain and phase of the actual position "
-    "beside the set position. A chirp is a series of sines, each of five periods. The axis ends where it began.",
+    "beside the set position. A chirp is a series of sines, each of five periods. The axis ends where it began. Refused "
+    "while a program has the network.",
     children, NULL, NULL};
 
 static bool make_records(tune_run_t runs[2], double cycle_s)
@@ -592,6 +597,19 @@ static int run_both(tune_run_t runs[2], const cm1e_bus_config_t *config)
     return status == EXIT_OK ? tell(runs, two, config) : status;
 }
 
+/** Returns the exit status. `config` is empty afterwards. */
+static int check_alone(const common_options_t *options, cm1e_bus_config_t *config)
+{
+    cm1e_diag_t diag = {0};
+    if (!load_network(options, config))
+        return EXIT_WRONG_USE;
+    const cm1e_error_t error = refuse_to_attach(options, config, "tune", "it moves the motor by a table with a target "
+                                                "for every cycle, and only the program that runs the cycle can do that",
+                                                &diag);
+    cm1e_bus_config_free(config);
+    return error == CM1E_OK ? EXIT_OK : fail(&diag);
+}
+
 int command_tune(int argc, char **argv)
 {
     static cm1e_bus_config_t config;
@@ -599,6 +617,9 @@ int command_tune(int argc, char **argv)
     tune_options_t options = {.kind = -1, .frequency = 1, .to = 10, .steps = 8};
     if (parse_options(&argp_tune, argc, argv, &options))
         return EXIT_WRONG_USE;
+    const int alone = check_alone(&options.common, &config);
+    if (alone != EXIT_OK)
+        return alone;
     const int loaded = load_axes(&options.common, &config);
     if (loaded != EXIT_OK)
         return loaded;

@@ -304,9 +304,14 @@ def check_commands():
         expect("MC_MoveVelocity, velocity 0.5 u/s" in log.stdout and log.returncode == 0, "log", log)
         as_json = json.loads(program.attached("log", "--json").stdout)
         expect(as_json[0]["text"] == "the run began", "log --json", as_json[:1])
-        refused = program.attached("sii", "write", "1", bus_file, "--backup", os.path.join(FOLDER, "backup"))
-        expect(refused.returncode == 1 and "needs the network for itself" in refused.stderr,
-               "what needs the network for itself is refused", refused)
+        for words, why in ((("sii", "write", "1", bus_file, "--backup", os.path.join(FOLDER, "backup")), "no access to it"),
+                           (("firmware", "update", CM1E, "-p", "1", "--yes"), "for Init and Bootstrap"),
+                           (("tune", "step", "X", "--max-travel", "0.1", "--max-velocity", "1"),
+                            "a target for every cycle")):
+            refused = program.attached(*words)
+            expect(refused.returncode == 1 and "needs the network for itself" in refused.stderr and why in refused.stderr
+                   and f"in use by cm1e move (process {program.pid}) since" in refused.stderr,
+                   f"{words}: what needs the network for itself is refused, with the reason", refused)
         by_path = subprocess.run([CM1E, "scan", "--attach", program.path], capture_output=True, text=True, timeout=60)
         expect(by_path.returncode == 0 and by_path.stdout.count("CM1-E") == 2, "attach by the path", by_path)
         follower = subprocess.Popen([CM1E, "log", "--follow", "--attach", str(program.pid)], stdout=subprocess.PIPE,
