@@ -1,4 +1,4 @@
-/** cm1e params: the parameters of a CM1-E with their meaning: listed, read, written, kept in a file, compared. */
+/** cm1e params: the parameters of a motor with their meaning: listed, read, written, kept in a file, compared. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include "params.h"
 #include "terminal.h"
 
-enum { KEY_YES = 0x600, KEY_DRY_RUN, KEY_OTHER_FIRMWARE, MAX_NAMES = 32 };
+enum { KEY_YES = 0x600, KEY_DRY_RUN, KEY_OTHER_FIRMWARE, KEY_ALLOW, MAX_NAMES = 32 };
 enum { ABORT_NO_OBJECT = 0x06020000, ABORT_NO_SUBINDEX = 0x06090011 };
 enum { LIST = 0, GET, SET, BACKUP, RESTORE, DIFF };
 #define ACTIONS "list|get|set|backup|restore|diff"
@@ -21,7 +21,7 @@ typedef struct params_options {
     int action; /* -1: not given yet */
     const char *where, *words[MAX_NAMES];
     int word_count;
-    bool yes, dry_run, other_firmware;
+    bool yes, dry_run, other_firmware, allow_motion;
 } params_options_t;
 
 static void check_words(const params_options_t *options, struct argp_state *state)
@@ -34,9 +34,9 @@ static void check_words(const params_options_t *options, struct argp_state *stat
     if ((options->action == GET || options->action == SET) && options->word_count == 0)
         argp_error(state, options->action == GET ? "expected names of parameters behind the motor"
                                                  : "expected NAME=VALUE behind the motor");
-    if ((options->dry_run || options->yes || options->other_firmware) && options->action != SET
-        && options->action != RESTORE)
-        argp_error(state, "--yes, --dry-run and --other-firmware are for set and restore");
+    if ((options->dry_run || options->yes || options->other_firmware || options->allow_motion) &&
+        options->action != SET && options->action != RESTORE)
+        argp_error(state, "--yes, --dry-run, --other-firmware and --allow-motion are for set and restore");
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -46,6 +46,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
     case KEY_YES: options->yes = true; return 0;
     case KEY_DRY_RUN: options->dry_run = true; return 0;
+    case KEY_ALLOW: options->allow_motion = true; return 0;
     case KEY_OTHER_FIRMWARE: options->other_firmware = true; return 0;
     case ARGP_KEY_ARG:
         if (options->action < 0) {
@@ -70,8 +71,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 typedef struct motor {
     cm1e_bus_t *bus;
     uint16_t position;
+    unsigned channel;    /* behind a bridge; 0: none */
+    char label[40];      /* "slave 2", "slave 2, connector 1" */
     const cm1e_slave_info_t *slave;
-    params_t params; /* all that it has */
+    params_t params;     /* all that it has */
 } motor_t;
 
 /** The motor has no such object: the guide and the drive that it shows do not agree on H8 (UG 7.3.23, 7.5). */
@@ -90,7 +93,7 @@ static bool read_values(const motor_t *motor, params_t *params)
         if (param_read(motor->bus, motor->position, params->at[i].entry, &params->at[i].value, &diag)) {
             params->at[kept++] = params->at[i];
         } else if (is_missing(&diag)) {
-            complain("slave %u has no %s (0x%04X:%02X): it is left out", motor->position, params->at[i].entry->name,
+            complain("%s has no %s (0x%04X:%02X): it is left out", motor->label, params->at[i].entry->name,
                      params->at[i].entry->index, params->at[i].entry->subindex);
         } else {
             fail(&diag);
@@ -152,6 +155,8 @@ static bool named(const motor_t *motor, const params_options_t *options, params_
     params->count = 0;
     for (int i = 0; i < options->word_count; i++) {
         const cm1e_entry_t *entry = param_find(&motor->params, options->words[i]);
+        if (!entry && motor->channel)
+            complain("the other parameters of a motor behind a bridge are read and written by `cm1e cml` (K37.1)");
         if (!entry)
             return false;
         params->at[params->count++] = (param_t){.entry = entry};
@@ -263,8 +268,20 @@ static int write_all(const motor_t *motor, params_t *params, bool json)
                              "not_written", names_as_json(params, good || refused ? written : written + 1,
                                                           params->count)));
     else if (good)
-        printf("%zu value%s written to slave %u and read back\n", written, written == 1 ? "" : "s", motor->position);
+        printf("%zu value%s written to %s and read back\n", written, written == 1 ? "" : "s", motor->label);
     return good ? EXIT_OK : EXIT_FAILED;
+}
+
+/** false, with a complaint: one of them may move the motor. */
+static bool no_motion(const params_t *params)
+{
+    for (size_t i = 0; i < params->count; i++)
+        if (param_can_move(params->at[i].entry)) {
+            complain("nothing was written: %s is what an input does, and if it is on, the motor may move at once "
+                     "(--allow-motion)", params->at[i].entry->name);
+            return false;
+        }
+    return true;
 }
 
 static int change(motor_t *motor, const params_options_t *options, params_t *params)
@@ -282,6 +299,8 @@ static int change(motor_t *motor, const params_options_t *options, params_t *par
         print_json(json_pack("{s:b, s:o}", "done", false, "would_write", names_as_json(params, 0, params->count)));
     if (options->dry_run || (params->count == 0 && !json))
         return complete;
+    if (!options->allow_motion && !no_motion(params))
+        return EXIT_FAILED;
     if (params->count > 0 && !confirmed(options, params->count))
         return EXIT_FAILED;
     const int status = write_all(motor, params, json);
@@ -294,13 +313,12 @@ static bool suits(const motor_t *motor, const params_options_t *options, const p
     params_head_t own;
     head_of(motor, &own);
     if (strcmp(head->kind, own.kind) != 0) {
-        complain("%s is of a device \"%s\"; slave %u is a \"%s\"", options->words[0], head->kind, motor->position,
-                 own.kind);
+        complain("%s is of a device \"%s\"; %s is a \"%s\"", options->words[0], head->kind, motor->label, own.kind);
         return false;
     }
     if (strcmp(head->firmware, own.firmware) != 0 && !options->other_firmware) {
-        complain("%s is of firmware %s; slave %u has %s. Units may differ between firmwares (UG 10.1): look at the "
-                 "values, then use --other-firmware", options->words[0], head->firmware, motor->position, own.firmware);
+        complain("%s is of firmware %s; %s has %s. Units may differ between firmwares (UG 10.1): look at the "
+                 "values, then use --other-firmware", options->words[0], head->firmware, motor->label, own.firmware);
         return false;
     }
     return true;
@@ -323,7 +341,7 @@ static int backup(motor_t *motor, const params_options_t *options)
         print_json(json_pack("{s:o, s:I}", "file", text_as_json(options->words[0]), "parameters",
                              (json_int_t)motor->params.count));
     else if (written && strcmp(options->words[0], "-") != 0)
-        printf("%s: %zu parameters of slave %u\n", options->words[0], motor->params.count, motor->position);
+        printf("%s: %zu parameters of %s\n", options->words[0], motor->params.count, motor->label);
     return written ? EXIT_OK : EXIT_FAILED;
 }
 
@@ -370,14 +388,51 @@ static int run_with_file(motor_t *motor, const params_options_t *options)
     return suits(motor, options, &head) ? change(motor, options, &file) : EXIT_WRONG_USE;
 }
 
+/** "2.1" is connector 1 of slave 2; an axis of the bus file may be behind a bridge. Returns the exit status. */
+static int find_motor(motor_t *motor, const cm1e_bus_config_t *config, const char *where)
+{
+    char position[16], trail;
+    unsigned slave = 0, channel = 0;
+    const bool has_connector = sscanf(where, "%u.%u%c", &slave, &channel, &trail) == 2;
+    for (uint32_t i = 1; i <= cm1e_bus_slave_count(motor->bus) && !has_connector; i++)
+        for (uint8_t c = 1; c <= CM1E_BRIDGE_AXES; c++) {
+            const int axis = find_axis_at(config, cm1e_bus_slave(motor->bus, i), c);
+            if (axis < 0 || strcmp(config->axes[axis].name, where) != 0)
+                continue;
+            motor->position = (uint16_t)i;
+            motor->channel = c;
+            return EXIT_OK;
+        }
+    snprintf(position, sizeof position, "%u", slave);
+    motor->channel = has_connector ? channel : 0;
+    return find_slave(motor->bus, config, has_connector ? position : where, &motor->position);
+}
+
+/** A bridge has connectors, and nothing else has. Returns the exit status. */
+static int check_connector(motor_t *motor)
+{
+    const unsigned channels = motor->slave->device ? motor->slave->device->channels : 0;
+    snprintf(motor->label, sizeof motor->label, motor->channel ? "slave %u, connector %u" : "slave %u",
+             motor->position, motor->channel);
+    if (channels == 0 && motor->channel == 0)
+        return EXIT_OK;
+    if (motor->channel >= 1 && motor->channel <= channels)
+        return EXIT_OK;
+    if (channels == 0)
+        complain("slave %u is no bridge: it has no connector %u", motor->position, motor->channel);
+    else
+        complain("slave %u is a bridge: name the connector of the motor, %u.1 ... %u.%u", motor->position,
+                 motor->position, motor->position, channels);
+    return EXIT_WRONG_USE;
+}
+
 static int run(motor_t *motor, const params_options_t *options)
 {
     static params_t params;
-    params_of(motor->slave->device, &motor->params);
+    params_of(motor->slave, motor->channel, &motor->params);
     if (motor->params.count == 0) {
-        complain("the parameters of slave %u are not known: only those of a CM1-E are. Those of a motor behind a "
-                 "bridge "
-                 "are read and written by `cm1e cml` (K37.1, K53.1=100)", motor->position);
+        complain("the parameters of %s are not known: only those of a CM1-E and of motors behind a bridge are",
+                 motor->label);
         return EXIT_FAILED;
     }
     switch (options->action) {
@@ -391,6 +446,7 @@ static int run(motor_t *motor, const params_options_t *options)
 static const struct argp_option table[] = {
     {"yes", KEY_YES, NULL, 0, "restore: do not ask", 0},
     {"dry-run", KEY_DRY_RUN, NULL, 0, "set, restore: show what would change, write nothing", 0},
+    {"allow-motion", KEY_ALLOW, NULL, 0, "set, restore: also what may move a motor behind a bridge at once", 0},
     {"other-firmware", KEY_OTHER_FIRMWARE, NULL, 0, "restore: allow a file of another firmware", 0},
     {0}};
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
@@ -398,7 +454,8 @@ const struct argp argp_params = {
     table, parse,
     "list POSITION|AXIS [NAME...]\nget POSITION|AXIS NAME...\nset POSITION|AXIS NAME=VALUE...\n"
     "backup POSITION|AXIS FILE\nrestore POSITION|AXIS FILE\ndiff POSITION|AXIS FILE",
-    "Lists, reads and writes the parameters of a CM1-E, keeps them in a file (YAML with comments), writes them back, "
+    "Lists, reads and writes the parameters of a CM1-E, or of a motor behind a bridge (2.1: connector 1 of slave 2; by "
+    "SDO, those that the bridge has: cm1e cml has the others), keeps them in a file (YAML with comments), writes them back, "
     "compares. A parameter is given by name (K47, H3, \"Home offset\", home_offset) or number (0x60F6:1B). restore "
     "checks "
     "device, firmware and every range before it writes, shows what will change, reads back each value, and says what "
@@ -418,10 +475,11 @@ int command_params(int argc, char **argv)
     static motor_t motor;
     if (open_network(&options.common, &config, &motor.bus, &diag) != CM1E_OK)
         return fail(&diag);
-    int status = find_slave(motor.bus, &config, options.where, &motor.position);
-    if (status == EXIT_OK) {
-        motor.slave = cm1e_bus_slave(motor.bus, motor.position);
+    int status = find_motor(&motor, &config, options.where);
+    motor.slave = status == EXIT_OK ? cm1e_bus_slave(motor.bus, motor.position) : NULL;
+    if (status == EXIT_OK)
+        status = check_connector(&motor);
+    if (status == EXIT_OK)
         status = run(&motor, &options);
-    }
     return close_bus(motor.bus, &options.common, status);
 }

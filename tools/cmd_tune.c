@@ -382,7 +382,7 @@ static int ready(cm1e_bus_t *bus, void *context)
     if (cm1e_bus_scan(bus, &diag) != CM1E_OK || cm1e_bus_identify(bus, &diag) != CM1E_OK)
         return fail(&diag);
     run->position = cm1e_bus_axis_position(bus, run->axis_number);
-    params_of(cm1e_bus_slave(bus, run->position)->device, &run->known);
+    params_of(cm1e_bus_slave(bus, run->position), 0, &run->known);
     if (run->known.count == 0 || run->config->channel) {
         complain("--set is for a CM1-E: of other motors no parameters are known");
         return EXIT_WRONG_USE;

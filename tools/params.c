@@ -8,15 +8,30 @@
 
 #include "core/bytes.h"
 #include "core/near.h"
+#include "device/bridge.h"
+#include "device/cml.h"
 
-void params_of(const cm1e_device_t *device, params_t *params)
+static bool is_parameter(const cm1e_entry_t *entry, unsigned channel)
 {
+    return entry->use != CM1E_USE_COMMAND && entry->availability == CM1E_AVAILABLE &&
+           (channel == 0 || cm1e_bridge_axis_of(entry->index) == (int)channel - 1);
+}
+
+void params_of(const cm1e_slave_info_t *slave, unsigned channel, params_t *params)
+{
+    const cm1e_device_t *device = slave->device;
     const cm1e_object_t *object;
     params->count = 0;
     for (size_t n = 0; device && (object = device->object(device, n)) != NULL; n++)
         for (uint16_t i = 0; i < object->entry_count; i++)
-            if (object->entries[i].use != CM1E_USE_COMMAND && params->count < PARAMS_MAX)
+            if (is_parameter(&object->entries[i], channel) && params->count < PARAMS_MAX)
                 params->at[params->count++] = (param_t){.entry = &object->entries[i]};
+}
+
+bool param_can_move(const cm1e_entry_t *entry)
+{
+    return cm1e_bridge_axis_of(entry->index) >= 0 && entry->name[0] == 'K' &&
+           cm1e_cml_parameter_can_move((unsigned)strtoul(entry->name + 1, NULL, 10));
 }
 
 /* ---- names ------------------------------------------------------------------------------------------------------- */

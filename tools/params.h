@@ -23,8 +23,11 @@ typedef struct params {
     param_t at[PARAMS_MAX];
 } params_t;
 
-/** All parameters of a device, in order of its dictionary; none where its tables name no settings. */
-void params_of(const cm1e_device_t *device, params_t *params);
+/** All parameters of a motor, in order of the dictionary; none where the tables of its device name no settings.
+ *  `channel`: the connector of a motor behind a bridge, else 0. */
+void params_of(const cm1e_slave_info_t *slave, unsigned channel, params_t *params);
+/** The parameter may move its motor as soon as it is written, by an input that is on. */
+bool param_can_move(const cm1e_entry_t *entry);
 
 /** The parameter of a word: "K47", "h3", "Home offset", "home_offset", "0x60F6:1B", "60F6:1B", "0x60F6:27d". NULL and a
  *  complaint, with the word that may have been meant: there is none. */

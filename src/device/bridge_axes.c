@@ -35,9 +35,15 @@
 
 #define METHOD(sub, name) ENTRY(INDEX(0x60E3), sub, RO, INT, name, "", sub, )
 /* K48 may be negative, so all of them are signed: they are elements of one array. */
-#define K(sub, number, cm1, cm2) ENTRY(INDEX(0x60F6), sub, RW, DINT, "K" #number, "", 0, OF_MOTOR(cm1, cm2))
-#define K_RANGE(sub, number) ROW(INDEX(0x60F6), sub, RW, DINT, "K" #number, RANGE(K##number), )
-#define STIFFNESS(sub, name, cm2) ENTRY(INDEX(0x60FB), sub, RW, DINT, name, "", 0, OF_MOTOR(NA, cm2))
+#define KEPT(text) .use = CM1E_USE_KEPT, .meaning = text
+#define K_MEANS(sub, number, cm1, cm2, text)                                                                        \
+    ENTRY(INDEX(0x60F6), sub, RW, DINT, "K" #number, "", 0, OF_MOTOR(cm1, cm2), KEPT(text))
+#define K(sub, number, cm1, cm2)                                                                                    \
+    K_MEANS(sub, number, cm1, cm2, "parameter of the motor: see the Cool Muscle manuals; kept (BR 7.5)")
+#define K_INPUT "what an input does: written while it is on, the motor may move; kept (BR 7.5)"
+#define K_RANGE(sub, number, text) ROW(INDEX(0x60F6), sub, RW, DINT, "K" #number, RANGE(K##number), KEPT(text))
+#define STIFFNESS(sub, name, cm2)                                                                                   \
+    ENTRY(INDEX(0x60FB), sub, RW, DINT, name, "", 0, OF_MOTOR(NA, cm2), KEPT("stiffness of the servo; kept (BR 7.5)"))
 
 #define AXIS 0
 #define MOTOR CM1

@@ -4,9 +4,7 @@
 
 enum { QUERY_PARAMETERS = 90, QUERY_POSITION = 96, QUERY_STATUS = 99, OUTPUTS = 4, MOTORS = 4, DIGITS_MOST = 9 };
 
-/* Written while an input is on, what an input does (manual feed, a jog, a program, motor enable: K26 ... K32) or what
- * pulses do (K36) moves the motor; K37 is how far a count is. (Quick reference of the CM1, RT3.) */
-static bool parameter_can_move(unsigned number)
+bool cm1e_cml_parameter_can_move(unsigned number)
 {
     return (number >= 26 && number <= 32) || number == 36 || number == 37;
 }
@@ -80,7 +78,7 @@ static void judge(cm1e_cml_command_t *command)
     command->reply = CM1E_CML_UNKNOWN;
     if (command->sign == 'K' && command->numbered) {
         command->kind = !command->valued ? CM1E_CML_QUERY
-                        : parameter_can_move(number) ? CM1E_CML_MOTION : CM1E_CML_PARAMETER;
+                        : cm1e_cml_parameter_can_move(number) ? CM1E_CML_MOTION : CM1E_CML_PARAMETER;
         command->reply = command->valued ? CM1E_CML_SILENT : CM1E_CML_ONE_LINE;
     } else if (command->valued) {
         return;

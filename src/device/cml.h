@@ -32,6 +32,9 @@ enum { CM1E_CML_COMMANDS = CM1E_CML_BYTES / 2 }; /**< most of one string: a sign
 
 /** Reads the command that begins at `*text` and goes on behind its comma; `*text` NULL after the last one. */
 cm1e_cml_command_t cm1e_cml_next(const char **text);
+/** Written while an input is on, what an input does (manual feed, a jog, a program, motor enable: K26 ... K32) or what
+ *  pulses do (K36) moves the motor; K37 is how far a count is. (Quick reference of the CM1, RT3.) */
+bool cm1e_cml_parameter_can_move(unsigned number);
 /** The line answers the command. */
 bool cm1e_cml_answers(const cm1e_cml_command_t *command, const cm1e_cml_answer_t *answer);
 

@@ -139,7 +139,8 @@ typedef struct cm1e_entry {
     uint32_t round_to;
     int64_t kept_minimum;  /**< a smaller value is accepted and kept as this one (UG 6.2.2: 0x6083, 0x6084); 0: none */
     uint8_t use;           /**< cm1e_use_t */
-    const char *meaning;   /**< one line with its clause, of every entry of the CM1-E that can be written; else NULL */
+    const char *meaning;   /**< one line with its clause, of every entry of the CM1-E that can be written, and of the
+                                parameters of a motor behind a bridge; else NULL */
     const char *default_string; /**< CM1E_TYPE_STRING only; "": not known */
     cm1e_firmware_t since;
 } cm1e_entry_t;

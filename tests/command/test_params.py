@@ -159,9 +159,35 @@ def check_broken(folder, text):
 def check_bridge(folder):
     bus = os.path.join(folder, "bridge.yaml")
     with open(bus, "w", encoding="utf-8") as file:
-        file.write("bus: {interface: sim}\naxes: [{position: 1, channel: 1, motor: CM1, k37: 10}]\n")
-    result = run("list", "-b", bus, "1")
-    expect(result.returncode == FAILED and "cm1e cml" in result.stderr, "a bridge", result)
+        file.write("bus: {interface: sim}\naxes:\n  - {name: X, position: 1, channel: 1, motor: CM1, k37: 10}\n"
+                   "  - {name: lift, position: 1, channel: 3, motor: CM2, k37: 10}\n  - {name: Z, position: 2}\n")
+    lists = {where: json.loads(run("list", "-b", bus, where, "--json").stdout) for where in ("X", "1.1", "lift", "1.4")}
+    names = {where: [row["name"] for row in rows] for where, rows in lists.items()}
+    expect(lists["X"] == lists["1.1"] and names["lift"] == names["1.4"] and "K52" in names["X"] and
+           "K52" not in names["lift"] and "Servo Stiffness Adjustment" in names["lift"] and "K37" not in names["X"] and
+           [row["number"][:6] for row in lists["lift"]] == ["0x70F6"] * 16 + ["0x70FB"], "the parameters of CM1 and CM2",
+           run("list", "-b", bus, "X"))
+    for row in lists["X"] + lists["lift"]:
+        expect(row["kept"] and "(BR " in row["meaning"], f"meaning: {row}", run("list", "-b", bus, "X"))
+    result = run("set", "-b", bus, "X", "K42=200", "K53=7")
+    expect(result.returncode == 0 and "K42                      100 -> 200 100 pulses/s" in result.stdout and
+           "2 values written to slave 1, connector 1" in result.stdout, "set behind a bridge", result)
+    result = run("set", "-b", bus, "X", "K53=7", "K26=1")
+    expect(result.returncode == FAILED and "nothing was written" in result.stderr and "--allow-motion" in result.stderr,
+           "what may move", result)
+    result = run("set", "-b", bus, "X", "K26=1", "--allow-motion")
+    expect(result.returncode == 0 and "1 value written" in result.stdout, "what may move, allowed", result)
+    for words, why in ((("list", "1"), "name the connector of the motor, 1.1 ... 1.4"), (("list", "1.5"), "1.1 ... 1.4"),
+                       (("list", "2.1"), "is no bridge"), (("get", "X", "K37"), "cm1e cml"),
+                       (("set", "X", "K42=0"), "1 ... 5000"), (("list", "9.1"), "no slave 9")):
+        result = run(words[0], "-b", bus, *words[1:])
+        expect(result.returncode in (FAILED, WRONG_USE) and why in result.stderr, f"{words}", result)
+    kept = os.path.join(folder, "motor.yaml")
+    result = run("backup", "-b", bus, "lift", kept)
+    expect(result.returncode == 0 and "17 parameters of slave 1, connector 3" in result.stdout, "backup", result)
+    for where, good in (("lift", True), ("1.4", True), ("X", False), ("Z", False)):
+        result = run("restore", "-b", bus, where, kept, "--yes")
+        expect((result.returncode == 0) == good, f"restore to {where}", result)
     with open(bus, "w", encoding="utf-8") as file:
         file.write("bus: {interface: sim}\naxes: [{name: a}, {name: lift}]\n")
     named = run("get", "-b", bus, "lift", "K47")
