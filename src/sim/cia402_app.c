@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/bytes.h"
 #include "description/describe.h"
@@ -67,41 +68,67 @@ static int64_t **place_of(cm1e_sim_cia402_t *drive, size_t n)
     return (int64_t **)(void *)((char *)&drive->v + values[n].offset);
 }
 
-static bool create_dictionary(cm1e_sim_cia402_t *drive)
+static void find_places(cm1e_sim_cia402_t *drive)
 {
-    if (!cm1e_sim_store_create(&drive->store, &cm1e_device_cia402, CM1E_FIRMWARE_1_2_0))
-        return false;
     for (size_t n = 0; n < VALUES; n++) {
         cm1e_sim_cell_t cell;
         cm1e_sim_store_find(&drive->store, values[n].index, values[n].subindex, &cell);
         *place_of(drive, n) = cell.value;
     }
+}
+
+static bool create_dictionary(cm1e_sim_cia402_t *drive)
+{
+    if (!cm1e_sim_store_create(&drive->store, &cm1e_device_cia402, CM1E_FIRMWARE_1_2_0))
+        return false;
+    find_places(drive);
     return true;
 }
 
+/** Those of the tables, or of the profile that is played. */
 static void set_defaults(cm1e_sim_cia402_t *drive)
 {
-    for (size_t n = 0; n < VALUES; n++)
-        **place_of(drive, n) = cm1e_cia402_entry(values[n].index, values[n].subindex)->default_value;
+    for (size_t n = 0; n < VALUES; n++) {
+        cm1e_sim_cell_t cell;
+        cm1e_sim_store_find(&drive->store, values[n].index, values[n].subindex, &cell);
+        *cell.value = cell.entry->default_value;
+    }
+    cm1e_sim_store_set_profile_values(&drive->store);
+}
+
+/** A number of a mapping object; 0: the drive has no such entry. */
+static uint32_t mapped(const cm1e_sim_cia402_t *drive, uint16_t index, uint8_t subindex)
+{
+    cm1e_sim_cell_t cell;
+    return cm1e_sim_store_find(&drive->store, index, subindex, &cell) == 0 ? (uint32_t)*cell.value : 0;
+}
+
+/** A word of a mapping object: index, sub-index, bits. What the drive does not have, or has in more than 32 bits, is a
+ *  gap. */
+static cm1e_sim_cia402_slot_t slot_of(const cm1e_sim_cia402_t *drive, uint32_t word)
+{
+    cm1e_sim_cia402_slot_t slot = {.bytes = (uint8_t)((word & 0xFF) / 8)};
+    cm1e_sim_cell_t cell;
+    const bool known = word >> 16 &&
+                       cm1e_sim_store_find(&drive->store, (uint16_t)(word >> 16), (uint8_t)(word >> 8), &cell) == 0;
+    if (known && slot.bytes >= 1 && slot.bytes <= 4) {
+        slot.value = cell.value;
+        slot.is_signed = cm1e_sim_is_signed(cell.entry->type);
+    }
+    return slot;
 }
 
 /* Resolves the objects of the assigned PDO once, so that the cycle need not search. */
 static void resolve(cm1e_sim_cia402_t *drive, int direction)
 {
     cm1e_sim_cia402_image_t *image = &drive->images[direction];
-    cm1e_pdo_t pdo = {0};
-    if (*drive->v.assigned[direction])
-        cm1e_cia402_pdo(&pdo, (unsigned)*drive->v.pdo[direction] & 0xF, direction == 1);
-    *image = (cm1e_sim_cia402_image_t){.slot_count = pdo.entry_count};
-    for (uint8_t i = 0; i < pdo.entry_count; i++) {
-        const cm1e_pdo_entry_t *entry = &pdo.entries[i];
-        cm1e_sim_cell_t cell = {0};
-        if (entry->index)
-            cm1e_sim_store_find(&drive->store, entry->index, entry->subindex, &cell);
-        image->slots[i] = (cm1e_sim_cia402_slot_t){
-            .value = cell.value, .bytes = entry->bits / 8,
-            .is_signed = cell.entry && cm1e_sim_is_signed(cell.entry->type)};
-        image->bytes = (uint16_t)(image->bytes + entry->bits / 8);
+    const uint16_t pdo = *drive->v.assigned[direction] ? (uint16_t)*drive->v.pdo[direction] : 0;
+    const uint32_t count = mapped(drive, pdo, 0);
+    *image = (cm1e_sim_cia402_image_t){.slot_count = (uint8_t)(count < CM1E_PDO_MAX_ENTRIES ? count
+                                                                                            : CM1E_PDO_MAX_ENTRIES)};
+    for (uint8_t i = 0; i < image->slot_count; i++) {
+        image->slots[i] = slot_of(drive, mapped(drive, pdo, (uint8_t)(i + 1)));
+        image->bytes = (uint16_t)(image->bytes + image->slots[i].bytes);
     }
 }
 
@@ -183,9 +210,10 @@ static void outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_n
     const cm1e_sim_cia402_image_t *image = &drive->images[0];
     for (uint8_t i = 0; i < image->slot_count && size >= image->bytes; i++) {
         const cm1e_sim_cia402_slot_t *slot = &image->slots[i];
-        const uint64_t raw = cm1e_get_uint(data, slot->bytes), sign = UINT64_C(1) << (8 * slot->bytes - 1);
-        if (slot->value)
+        if (slot->value) {
+            const uint64_t raw = cm1e_get_uint(data, slot->bytes), sign = UINT64_C(1) << (8 * slot->bytes - 1);
             *slot->value = slot->is_signed ? (int64_t)(raw ^ sign) - (int64_t)sign : (int64_t)raw;
+        }
         data += slot->bytes;
     }
     cm1e_sim_cia402_command(drive);
@@ -198,7 +226,10 @@ static void inputs(void *app, uint8_t *data, uint16_t size)
     cm1e_sim_cia402_refresh(drive);
     for (uint8_t i = 0; i < image->slot_count && size >= image->bytes; i++) {
         const cm1e_sim_cia402_slot_t *slot = &image->slots[i];
-        cm1e_put_uint(data, slot->bytes, slot->value ? (uint32_t)*slot->value : 0);
+        if (slot->value)
+            cm1e_put_uint(data, slot->bytes, (uint32_t)*slot->value);
+        else
+            memset(data, 0, slot->bytes);
         data += slot->bytes;
     }
 }
@@ -336,12 +367,22 @@ static uint32_t file_read(void *app, const char *name, uint32_t password, size_t
     return cm1e_sim_files_read(&((cm1e_sim_cia402_t *)app)->files, name, offset, data, size);
 }
 
+static bool play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns)
+{
+    cm1e_sim_cia402_t *drive = app;
+    if (!cm1e_sim_store_play(&drive->store, profile))
+        return false;
+    find_places(drive);
+    power_on(drive, now_ns);
+    return true;
+}
+
 static const cm1e_sim_app_ops_t ops = {
     .advance = advance, .due = due, .state_change = state_change, .process_data_sizes = process_data_sizes,
     .outputs = outputs, .inputs = inputs, .watchdog_expired = watchdog_expired, .sdo_read = sdo_read,
     .sdo_write = sdo_write, .object = object, .entry = entry, .explicit_device_id = explicit_device_id,
     .file_begin = file_begin, .file_data = file_data, .file_read = file_read, .files_in_operation = true,
-    .power_on = power_on, .destroy = destroy, .runs_by_sync0 = true,
+    .power_on = power_on, .destroy = destroy, .play = play, .runs_by_sync0 = true,
 };
 
 cm1e_sim_cia402_t *cm1e_sim_cia402_of(cm1e_sim_slave_t *slave)

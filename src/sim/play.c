@@ -46,7 +46,7 @@ cm1e_error_t cm1e_sim_segment_play(cm1e_sim_segment_t *segment, uint32_t positio
                              "segment has %u slaves", (unsigned)position, (unsigned)cm1e_sim_segment_slave_count(segment));
     if (!slave->ops->play)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "the simulated slave %u cannot play a profile: only a "
-                             "CM1-E and a bridge can", (unsigned)position);
+                             "CM1-E, a bridge and a drive by CiA 402 can", (unsigned)position);
     if (profile->sii && profile->sii_size < CM1E_SII_HEADER_BYTES)
         return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "the SII image of the profile has %zu bytes; expected %d or "
                              "more", profile->sii_size, CM1E_SII_HEADER_BYTES);

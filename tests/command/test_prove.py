@@ -163,6 +163,24 @@ def check_bridge(folder):
     expect(differs == {"dict.objects", "dict.defaults", "abort.no-object"}, f"bridge: {differs}")
 
 
+def check_cia402(folder):
+    """A drive of another maker agrees; what it is not like is found; its own profile plays it again."""
+    network = write(os.path.join(folder, "drive.yaml"), VIRTUAL + "axes: [{position: 1, device: cia402, unit: "
+                    "{counts_per_unit: 10000}, drive: {counts_per_revolution: 131072, max_speed_rpm: 3000}}]\n")
+    again = os.path.join(folder, "drive")
+    report, differs = report_of("-b", network, "-o", again)
+    expect(differs == set() and unknown(report) == {"esc.clock", "sii.contents"}, f"drive: {differs}, {unknown(report)}")
+    second, differs = report_of("-b", network, "--profile", again + ".profile.json")
+    expect(differs == set() and verdicts(second) == verdicts(report), f"its own profile: {differs}")
+    profile = write(os.path.join(folder, "drive.json"), {"cm1e_profile": 1, "missing": ["0x60B8"], "entries": [
+        {"entry": "0x6065", "default": 7}, {"entry": "0x6098", "type": 2, "bits": 8, "access": 7},
+        {"entry": "0x1A01:00", "value": 2}]})
+    report, differs = report_of("-b", network, "--profile", profile, "-o", again)
+    expect(differs == {"dict.objects", "dict.defaults", "dict.access"}, f"another drive: {differs}")
+    second, _ = report_of("-b", network, "--profile", again + ".profile.json")
+    expect(verdicts(second) == verdicts(report), f"its profile plays another drive: {verdicts(second)}")
+
+
 def check_motion(folder):
     """Every point with motion agrees, each homing method on a machine that has its switch in that direction."""
     home = {f"home.{method}" for method in range(-6, 0)}
@@ -227,6 +245,7 @@ with tempfile.TemporaryDirectory() as work:
     check_eeprom(work)
     check_damage(work)
     check_bridge(work)
+    check_cia402(work)
     check_motion(work)
     check_interruption()
     check_refusals(work)

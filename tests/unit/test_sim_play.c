@@ -114,12 +114,49 @@ static void test_refusals_say_why(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_NOT_FOUND, cm1e_sim_segment_play(segment, 3, &nothing, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "2 slaves"));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_UNSUPPORTED, cm1e_sim_segment_play(segment, 1, &nothing, &diag));
-    TEST_ASSERT_NOT_NULL(strstr(diag.text, "only a CM1-E and a bridge"));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "only a CM1-E, a bridge and a drive by CiA 402"));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, cm1e_sim_segment_play(segment, 2, &cut, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "16 bytes"));
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_sim_segment_play(segment, 2, &nothing, &diag));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_STATE, cm1e_sim_segment_play(segment, 2, &nothing, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "already"));
+}
+
+/* A drive by CiA 402: values, defaults and mappings of the profile, and odd ones do no harm. */
+static void test_a_drive_by_cia402_plays(void)
+{
+    const cm1e_sim_profile_entry_t entries[] = {
+        {.index = 0x6065, .has_default = true, .default_value = 4711},
+        {.index = 0x6502, .has_value = true, .value = 0x25},
+        {.index = 0x100A, .text = "7.3"},
+        {.index = 0x1600, .subindex = 0, .has_value = true, .value = 4},
+        {.index = 0x1600, .subindex = 1, .has_value = true, .value = 0x60400010},
+        {.index = 0x1600, .subindex = 2, .has_value = true, .value = 0x607A0040}, /* more than an object has */
+        {.index = 0x1600, .subindex = 3, .has_value = true, .value = 0xABCD00FF}, /* not there */
+        {.index = 0x1600, .subindex = 4, .has_value = true, .value = 0x60600003}, /* less than a byte */
+        {.index = 0x1A00, .subindex = 0, .has_value = true, .value = INT64_MAX},
+    };
+    uint32_t value;
+    uint16_t outputs, inputs;
+    uint8_t data[256] = {0x0F};
+    cm1e_sim_segment_destroy(segment);
+    strcpy(config.axes[0].device, "cia402");
+    config.axes[0].counts_per_revolution = 131072;
+    config.axes[0].max_speed_rpm = 3000;
+    segment = cm1e_sim_segment_create(&config, &diag);
+    TEST_ASSERT_NOT_NULL_MESSAGE(segment, diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, play(entries, sizeof entries / sizeof entries[0]), diag.text);
+    TEST_ASSERT_EQUAL_HEX32(0, read(0x6065, 0, &value));
+    TEST_ASSERT_EQUAL_UINT32(4711, value);
+    TEST_ASSERT_EQUAL_HEX32(0, read(0x6502, 0, &value));
+    TEST_ASSERT_EQUAL_HEX32(0x25, value);
+    TEST_ASSERT_EQUAL_STRING("7.3", cm1e_sim_coe_entry(slave(), 0x100A, 0)->default_string);
+    slave()->ops->process_data_sizes(slave()->app, &outputs, &inputs);
+    TEST_ASSERT_EQUAL_UINT16(2 + 8 + 31 + 0, outputs);
+    slave()->ops->outputs(slave()->app, data, outputs, 0);
+    slave()->ops->inputs(slave()->app, data, inputs);
+    TEST_ASSERT_EQUAL_HEX32(0, read(0x6040, 0, &value));
+    TEST_ASSERT_EQUAL_HEX32(0x0F, value);
 }
 
 int main(void)
@@ -129,5 +166,6 @@ int main(void)
     RUN_TEST(test_odd_profiles_do_no_harm);
     RUN_TEST(test_a_profile_that_is_all_zero_changes_nothing);
     RUN_TEST(test_refusals_say_why);
+    RUN_TEST(test_a_drive_by_cia402_plays);
     return UNITY_END();
 }
