@@ -192,18 +192,18 @@ void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLING_LIMIT, guard.asked, guard.allowed);
 }
 
-/* Each sentence is followed by the numbers asked and allowed. */
+/* What was commanded, with the numbers commanded and allowed. */
 static const char *const said[GUARD_COUNT] = {
     [GUARD_KEPT] = "nothing",
     [GUARD_FINITE] = "a set-point that is not a finite number, or too far away",
-    [GUARD_PAUSE] = "to go on behind a pause of the cycle (the motor ran on at %.6g u/s meanwhile)",
+    [GUARD_PAUSE] = "motion after a pause of the cycle, in which the motor ran on at %.6g u/s",
     [GUARD_DIRECTION] = "a velocity of %.6g u/s, in a direction that MC_Power does not enable",
     [GUARD_VELOCITY] = "a velocity of %.6g u/s; up to %.6g u/s is right",
     [GUARD_ACCELERATION] = "an acceleration of %.6g u/s2; up to %.6g u/s2 is right",
     [GUARD_DECELERATION] = "a deceleration of %.6g u/s2; up to %.6g u/s2 is right",
     [GUARD_JERK] = "a jerk of %.6g u/s3; up to %.6g u/s3 is right",
-    [GUARD_STEP] = "a step of %.6g u in a cycle whose velocity is good for %.6g u",
-    [GUARD_SOFTWARE_LIMIT] = "to be at %.6g u, where it could not stop before the software limit at %.6g u",
+    [GUARD_STEP] = "a step of %.6g u in a cycle in which its velocity covers %.6g u",
+    [GUARD_SOFTWARE_LIMIT] = "the position %.6g u, from which it cannot stop before the software limit at %.6g u",
 };
 
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -211,11 +211,10 @@ void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
     char asked[160];
     snprintf(asked, sizeof asked, said[axis->broken.limit], axis->broken.asked, axis->broken.allowed);
     snprintf(text, size,
-             "Axis \"%s\": what it was coupled with, or its axes group, asked it for %s. That set-point was not given "
-             "to the motor, which was braked. Reduce the dynamics of what leads it, or raise the limits of this "
+             "Axis \"%s\": its coupling or its axes group commanded %s. That set-point was not given to the motor, and "
+             "the axis was braked. Reduce the dynamics of the master or of the group, or raise the limits of this "
              "axis%s; then reset the axis with MC_Reset.",
              axis->config->name, asked,
-             axis->broken.by_actual ? ", or smooth the actual value of its master more (encoder_filter_s of the "
-                                           "master)"
-                                         : "");
+             axis->broken.by_actual ? ", or filter the actual value of its master more (encoder_filter_s of the master)"
+                                    : "");
 }

@@ -141,9 +141,9 @@ static const char *probable_cause(float torque)
         return "Look for a mechanical stop or an obstacle, a load or a friction that is too large for the motor, and a "
                "torque limit in the drive";
     return torque >= pushing_torque
-               ? "It pushes, so look for a mechanical stop, an obstacle or a load that is too heavy"
-               : "It does not push, so look for a torque limit in the drive or for friction, and whether the window "
-                 "and the time suit this axis";
+               ? "The motor pushes: look for a mechanical stop, an obstacle or a load that is too heavy"
+               : "The motor does not push: look for a torque limit in the drive and for friction, and check whether "
+                 "the window and the time suit this axis";
 }
 
 static void where(const cm1e_axis_t *axis, char *text, size_t size)

@@ -28,10 +28,11 @@ static cm1e_error_t check_configuration(const cm1e_axis_t *axis, cm1e_diag_t *di
         good = good && isfinite(numbers[i]) && numbers[i] >= 0.0;
     if (!good)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a limit or the scale of the axis is negative "
-                             "or not a finite number.", c->name);
+                             "or not a finite number; expected finite numbers from 0 on.", c->name);
     const bool limited = c->software_limit_negative != 0.0 || c->software_limit_positive != 0.0;
     if (limited && c->modulo_range > 0.0)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a modulo axis has no software limits.", c->name);
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a modulo axis has no software limits; leave "
+                             "out the limits or the modulo range.", c->name);
     if (limited && !(c->software_limit_negative < c->software_limit_positive))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": the negative software limit %g is not below "
                              "the positive one %g.", c->name, c->software_limit_negative, c->software_limit_positive);
@@ -84,8 +85,8 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
                                      : or_default(c->backlash_velocity, cm1e_unit_backlash_velocity(c) / counts);
     const double peak = cm1e_unit_peak_velocity(axis->config) / counts - backlash_velocity;
     if (!cm1e_axis_position_init(axis) || !(peak > 0.0))
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": backlash velocity, unit or a turn of %.17g u "
-                             "are numbers that the axis cannot compute with.", c->name, c->modulo_range);
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": the backlash velocity, the unit or the turn of "
+                             "%.17g u is too large or too small to compute with.", c->name, c->modulo_range);
     axis->limits.maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
     axis->limits.maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts * count / counts);
     axis->limits.maximum.deceleration = or_default(c->max_deceleration, axis->limits.maximum.acceleration);

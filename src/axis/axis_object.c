@@ -249,8 +249,8 @@ void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size)
                  "code 0x%08X (%s).", name, refused->number, entry->index, entry->subindex, entry->name,
                  (unsigned)refused->abort_code, cm1e_sdo_abort_text(refused->abort_code));
     else if (refused->error == CM1E_ERROR_AXIS_PARAMETER_RANGE)
-        snprintf(text, size, "Axis \"%s\": parameter %d, object 0x%04X:%02X \"%s\": %.10g was to be written; a whole "
-                 "number, %lld ... %lld is right.", name, refused->number, entry->index, entry->subindex, entry->name,
+        snprintf(text, size, "Axis \"%s\": parameter %d, object 0x%04X:%02X \"%s\": %.10g was given; a whole number, "
+                 "%lld ... %lld is right.", name, refused->number, entry->index, entry->subindex, entry->name,
                  refused->value, (long long)entry->minimum, (long long)entry->maximum);
     else
         snprintf(text, size, "Axis \"%s\": parameter %d, object 0x%04X:%02X \"%s\": %s.", name, refused->number,

@@ -220,27 +220,27 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
     double least, largest;
     switch (parameter->rule) {
     case APPLICATION:
-        snprintf(text, size, "%.6g was to be written; %.6g ... %.6g is right, which is %s.", value,
+        snprintf(text, size, "%.6g was given; %.6g ... %.6g is right, which is %s.", value,
                  parameter->least_counts * axis->position.count / scale, double_at(axis, parameter->system),
                  (parameter - 1)->name);
         break;
     case LAG:
-        snprintf(text, size, "%.6g was to be written; %.6g ... %.6g u is right.", value, CM1E_LEAST_LAG_COUNTS / scale,
+        snprintf(text, size, "%.6g was given; %.6g ... %.6g u is right.", value, CM1E_LEAST_LAG_COUNTS / scale,
                  CM1E_LARGEST_LAG_COUNTS / scale);
         break;
     case IN_POSITION:
         bounds_of_time(axis, axis->not_set.number, &least, &largest);
-        snprintf(text, size, "%.6g was to be written; %.6g ... %.6g s is right.", value, least, largest);
+        snprintf(text, size, "%.6g was given; %.6g ... %.6g s is right.", value, least, largest);
         break;
     case SWITCH:
         if (value != 0.0 && value != 1.0)
-            snprintf(text, size, "%.6g was to be written; 0 or 1 is right.", value);
+            snprintf(text, size, "%.6g was given; 0 or 1 is right.", value);
         else
-            snprintf(text, size, "%.6g was to be written; SWLimitNeg, %.6g u, has to be below SWLimitPos, %.6g u.",
+            snprintf(text, size, "%.6g was given; SWLimitNeg, %.6g u, has to be below SWLimitPos, %.6g u.",
                      value, axis->limits.negative, axis->limits.positive);
         break;
     default:
-        snprintf(text, size, "%.6g was to be written; a finite value is right, SWLimitNeg (%.6g u) below SWLimitPos "
+        snprintf(text, size, "%.6g was given; a finite value is right, SWLimitNeg (%.6g u) below SWLimitPos "
                  "(%.6g u).", value, axis->limits.negative, axis->limits.positive);
         break;
     }
@@ -259,7 +259,7 @@ void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size)
         if (length > 0 && (size_t)length < size)
             range_text(axis, row(refused->number), text + length, size - (size_t)length);
     } else {
-        snprintf(text, size, "Axis \"%s\": parameter %d, %s: %.6g was to be written: %s.", name, refused->number,
+        snprintf(text, size, "Axis \"%s\": parameter %d, %s: %.6g was given: %s.", name, refused->number,
                  row(refused->number)->name, refused->value, cm1e_strerror(refused->error));
     }
 }

@@ -79,23 +79,23 @@ static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t si
     const char *name = axis->config->name;
     const bool fits = refused->velocity > 0.0 && refused->velocity <= most;
     if (refused->kind == CM1E_COMMAND_MOVE_VELOCITY)
-        snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for; -%.6g ... %.6g u/s is right, but not 0.", name,
+        snprintf(text, size, "Axis \"%s\": velocity %.6g was commanded; -%.6g ... %.6g u/s is right, but not 0.", name,
                  refused->velocity, most, most);
     else if (refused->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED && fits)
-        snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for, on top of the motion under way and those that "
-                 "wait; together up to %.6g u/s is right.", name, refused->velocity, most);
+        snprintf(text, size, "Axis \"%s\": velocity %.6g was commanded, in addition to the present motion and to those "
+                 "that wait; the sum may be up to %.6g u/s.", name, refused->velocity, most);
     else if (refused->end_velocity != 0.0 && fits)
-        snprintf(text, size, "Axis \"%s\": end velocity %.6g was asked for; -%.6g ... %.6g u/s is right.", name,
+        snprintf(text, size, "Axis \"%s\": end velocity %.6g was commanded; -%.6g ... %.6g u/s is right.", name,
                  refused->end_velocity, most, most);
     else
-        snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for; above 0, up to %.6g u/s is right.", name,
+        snprintf(text, size, "Axis \"%s\": velocity %.6g was commanded; above 0, up to %.6g u/s is right.", name,
                  refused->velocity, most);
 }
 
 static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     snprintf(text, size,
-             "Axis \"%s\": acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; right is 0 (the maximum), "
+             "Axis \"%s\": acceleration %.6g, deceleration %.6g, jerk %.6g were commanded; right is 0 (the maximum), "
              "or up to %.6g u/s2, %.6g u/s2 and %.6g u/s3.",
              axis->config->name, axis->commands.refused.acceleration, axis->commands.refused.deceleration,
              axis->commands.refused.jerk, axis->limits.maximum.acceleration, axis->limits.maximum.deceleration,
@@ -120,7 +120,7 @@ static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cm1e_axis_command_t *refused = &axis->commands.refused;
     snprintf(text, size,
-             "Axis \"%s\": velocity %.6g, acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; one of them "
+             "Axis \"%s\": velocity %.6g, acceleration %.6g, deceleration %.6g, jerk %.6g were commanded; one of them "
              "is too small to compute with, after the factors %.6g (acceleration) and %.6g (jerk) of MC_SetOverride.",
              axis->config->name, refused->velocity, refused->acceleration, refused->deceleration, refused->jerk,
              axis->override.acceleration, axis->override.jerk);
@@ -133,11 +133,11 @@ static void refused_on_top_text(const cm1e_axis_t *axis, char *text, size_t size
     const bool goes = axis_on_profile(axis) && !axis->setpoint.stands && axis->commands.active &&
                       !kind_row(axis->commands.kind)->is_endless;
     snprintf(text, size,
-             "Axis \"%s\": a distance of %.6g on top of a motion that is at %.6g and ends at %.6g%s would leave the "
-             "software limits %.6g ... %.6g u.",
+             "Axis \"%s\": the superimposed distance %.6g, added to a motion that is at %.6g and ends at %.6g%s, "
+             "would leave the software limits %.6g ... %.6g u.",
              axis->config->name, axis->commands.refused.position, cm1e_axis_units(axis, base.position),
              cm1e_axis_units(axis, goes ? axis->setpoint.target : base.position),
-             axis->commands.waiting.count > 0 ? ", and of those that wait," : "", axis->limits.lower,
+             axis->commands.waiting.count > 0 ? ", and to those that wait" : "", axis->limits.lower,
              axis->limits.upper);
 }
 
@@ -146,15 +146,15 @@ static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t si
     const bool limited = axis->limits.negative_enabled || axis->limits.positive_enabled;
     const double position = cm1e_axis_units(axis, axis->setpoint.position);
     if (axis->position.modulo_range > 0.0)
-        snprintf(text, size, "Axis \"%s\": position or distance %.6g was asked for; positions of this modulo axis are "
+        snprintf(text, size, "Axis \"%s\": position or distance %.6g was commanded; positions of this modulo axis are "
                  "0 ... below %.6g u.", axis->config->name, axis->commands.refused.position,
                  axis->position.modulo_range);
     else if (axis->limits.software_limits && axis->commands.refused.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED)
         refused_on_top_text(axis, text, size);
     else if (axis->limits.software_limits)
         snprintf(text, size,
-                 "Axis \"%s\": a motion from %.6g with target, distance or stopping way %.6g would leave the %slimits "
-                 "%.6g ... %.6g u.",
+                 "Axis \"%s\": a motion from %.6g with target, distance or stopping distance %.6g would leave the "
+                 "%slimits %.6g ... %.6g u.",
                  axis->config->name, position, axis->commands.refused.position, limited ? "software " : "",
                  axis->limits.lower, axis->limits.upper);
     else
@@ -166,19 +166,20 @@ static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t si
 static void refused_virtual_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     if (axis->config->type == CM1E_AXIS_ENCODER)
-        snprintf(text, size, "Axis \"%s\" is an encoder (type: encoder): it is neither enabled nor moved. Others "
-                 "follow its actual value, and MC_SetPosition says where it is.", axis->config->name);
+        snprintf(text, size, "Axis \"%s\" is an encoder (type: encoder): it can be neither enabled nor moved. "
+                 "Other axes can follow its actual value, and MC_SetPosition sets its position.", axis->config->name);
     else
-        snprintf(text, size, "Axis \"%s\" is virtual (type: virtual): without a motor there is no homing by a drive or "
-                 "a switch, and there are no digital signals, probes, torque, objects of a drive or CML. "
-                 "MC_HomeDirect and MC_SetPosition say where it is.", axis->config->name);
+        snprintf(text, size, "Axis \"%s\" is virtual (type: virtual): it has no motor, so it has no homing by a drive "
+                 "or a switch, no digital signals, probes, torque, objects of a drive, and no CML. MC_HomeDirect and "
+                 "MC_SetPosition set its position.", axis->config->name);
 }
 
 static void refused_by_drive_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    snprintf(text, size, "Axis \"%s\" moves by profiles of its drive (motion: drive): single moves from standstill, "
-             "whose Jerk is 0 and whose Deceleration, if it goes to a position, is 0 or Acceleration. To follow a "
-             "master, and for all other motions, it needs `motion: host` in the bus file.", axis->config->name);
+    snprintf(text, size, "Axis \"%s\" moves by profiles of its drive (motion: drive). Its drive makes single moves "
+             "from standstill with a Jerk of 0; if they go to a position, their Deceleration must be 0 or equal to "
+             "their Acceleration. To follow a master, and for all other motions, it needs `motion: host` in the bus "
+             "file.", axis->config->name);
 }
 
 /* The sentences for a refused command; the axis itself has no error. */

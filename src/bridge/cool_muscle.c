@@ -49,15 +49,15 @@ typedef struct cool_muscle cool_muscle_t;
 enum { K37 = 37 };
 static const int64_t release_ns = 2000 * MS_IN_NS;
 
-static const char abnormal[] = "In CMD and CPIO the way to CML and back ends in abnormal operation (BR 6 note 2): "
-                               "CM_SetMode with Insist goes it all the same";
-static const char no_way_to_power[] = "From CMD no way leads to a mode of motion: switch the bridge off and on, or "
-                                      "insist on the way by CML with CM_SetMode";
-static const char not_in_cmd[] = "Commands are for CMD mode: CM_SetMode leads there, and no way back but switching the "
-                                 "bridge off and on";
+static const char abnormal[] = "From CMD and CPIO the way to CML and back ends in abnormal operation (BR 6 note 2): "
+                               "CM_SetMode goes that way with Insist only";
+static const char no_way_to_power[] = "No way leads from CMD to a mode of motion: switch the bridge off and on, or "
+                                      "go by CML with CM_SetMode and Insist";
+static const char not_in_cmd[] = "Commands need CMD mode: CM_SetMode leads there, and the only way back is to switch "
+                                 "the bridge off and on";
 static const char not_in_cpio[] = "Homing begins in CSP only: home first, then switch to CPIO";
-static const char keeps_k37[] = "writes K37: counts would mean another way under a running axis. Write it with cm1e "
-                                "cml while nothing runs, and state it in the bus file";
+static const char keeps_k37[] = "writes K37, which would change what the counts of a running axis mean. Write it "
+                                "with cm1e cml while nothing runs, and state it in the bus file";
 
 static cm1e_drive_cml_t *cml_of(const cm1e_axis_t *axis)
 {
@@ -437,11 +437,11 @@ static bool text_of(const cm1e_axis_t *axis, cm1e_error_t error, char *text, siz
         return true;
     case CM1E_ERROR_CML_MOTION:
         snprintf(text, size, "Axis \"%s\": the CML string \"%s\" may move the motor, change its power or what its "
-                 "positions mean, or is not known: it is sent where AllowMotion is TRUE.", name, muscle->text);
+                 "positions mean, or is not known: it is sent only if AllowMotion is TRUE.", name, muscle->text);
         return true;
     case CM1E_ERROR_CANCELLED:
-        snprintf(text, size, "Axis \"%s\": \"%s\" was cancelled: MC_Power, CM_SetMode or the end of the run came "
-                 "between.", name, muscle->text);
+        snprintf(text, size, "Axis \"%s\": \"%s\" was cancelled by MC_Power, by CM_SetMode or by the end of the "
+                 "run.", name, muscle->text);
         return muscle->text[0] != '\0';
     case CM1E_ERROR_CML_TIMEOUT:
     case CM1E_ERROR_CM_SEARCH_TIMEOUT:
@@ -457,7 +457,7 @@ static bool text_of(const cm1e_axis_t *axis, cm1e_error_t error, char *text, siz
         snprintf(text, size, "Axis \"%s\": the motor is in %s. %s.", name, mode ? mode : "another mode", why);
         return true;
     case CM1E_ERROR_CM_NOT_DISABLED:
-        snprintf(text, size, "Axis \"%s\", %s: %s. MC_Power.Enable FALSE leads there.", name,
+        snprintf(text, size, "Axis \"%s\", %s: %s. Set MC_Power.Enable to FALSE first.", name,
                  cm1e_axis_state_name(axis->state), cm1e_strerror(error));
         return true;
     default: return false;

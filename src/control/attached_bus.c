@@ -143,7 +143,8 @@ static cm1e_error_t transfer(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
     sdo->error = CM1E_OK;
     const char *data = json_string_value(json_object_get(reply, "data"));
     if (error == CM1E_OK && !sdo->write && !take_data(sdo->data, &sdo->size, data))
-        error = cm1e_diag_set(&told, CM1E_ERROR_FILE, 0, "The program answered with something that is no data.");
+        error = cm1e_diag_set(&told, CM1E_ERROR_FILE, 0,
+                              "The answer of the program has no data in hexadecimal digits.");
     json_decref(reply);
     if (error == CM1E_OK)
         return CM1E_OK;
@@ -179,7 +180,8 @@ static cm1e_error_t run_errand(void *state, cm1e_errand_t *errand, cm1e_diag_t *
                                                 : take_data(errand->data, &errand->size, data) && errand->size == size);
     json_decref(reply);
     if (error == CM1E_OK && !good)
-        error = cm1e_diag_set(&told, CM1E_ERROR_FILE, 0, "The program answered with something that is no data.");
+        error = cm1e_diag_set(&told, CM1E_ERROR_FILE, 0,
+                              "The answer of the program has no data in hexadecimal digits.");
     errand->error = CM1E_OK;
     if (answered && is_of_transfer(error)) {
         errand->error = error;

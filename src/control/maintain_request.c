@@ -117,7 +117,8 @@ static json_t *refuse(const control_request_t *request, const char *name)
         snprintf(text, sizeof text, "Axis \"%s\" is held by another connection, which moves or enables it.", name);
         break;
     case MAINTAIN_NOT_HELD:
-        snprintf(text, sizeof text, "Axis \"%s\" is not %s through the control socket: the program %s what it has %s.",
+        snprintf(text, sizeof text, "Axis \"%s\" was not %s through the control socket. The program %s what the "
+                 "program has %s.",
                  name, order->what == MAINTAIN_STOP ? "moved" : "enabled",
                  order->what == MAINTAIN_STOP ? "stops" : "disables",
                  order->what == MAINTAIN_STOP ? "begun" : "enabled");

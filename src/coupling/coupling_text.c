@@ -42,11 +42,11 @@ static void not_coupled_text(const cm1e_axis_t *axis, char *text, size_t size)
 static void ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     if (axis->commands.refused.kind == CM1E_COMMAND_CAM_IN)
-        snprintf(text, size, "Axis \"%s\": MasterScaling or SlaveScaling is not a number of 1e-9 ... 1e9, of either "
-                 "sign, nor 0, which acts as 1.", axis->config->name);
+        snprintf(text, size, "Axis \"%s\": MasterScaling or SlaveScaling is out of range; right is 1e-9 ... 1e9, "
+                 "positive or negative, or 0, which acts as 1.", axis->config->name);
     else
-        snprintf(text, size, "Axis \"%s\": the ratio %ld / %lu was asked for; neither may be 0; for the opposite "
-                 "direction use a negative numerator.", axis->config->name, (long)axis->coupling->numerator,
+        snprintf(text, size, "Axis \"%s\": the ratio %ld / %lu was commanded; neither number may be 0; for the "
+                 "opposite direction use a negative numerator.", axis->config->name, (long)axis->coupling->numerator,
                  (unsigned long)axis->coupling->denominator);
 }
 

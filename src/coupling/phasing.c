@@ -272,9 +272,10 @@ bool cm1e_phasing_text(const cm1e_axis_t *axis, char *text, size_t size)
     const link_t *link = &axis->coupling->now->links[0];
     const cm1e_motion_limits_t most = most_of(axis);
     snprintf(text, size, "Axis \"%s\": a phase shift of %.6g with velocity %.6g, acceleration %.6g, deceleration %.6g, "
-             "jerk %.6g was asked for; in u of the master a finite one is right, with a velocity above 0, together "
-             "with that of the master (%.6g now) up to %.6g u/s, and 0 (half of what the axis can do) or up to %.6g "
-             "u/s2, %.6g u/s2 and %.6g u/s3.", axis->config->name, refused->position, refused->velocity,
+             "jerk %.6g was commanded, in u of the master. The shift must be finite. The velocity must be above 0, and "
+             "with that of the master (%.6g now) not above %.6g u/s. The others must be 0 (half of what the axis can "
+             "do), or up to %.6g u/s2, %.6g u/s2 and %.6g u/s3.", axis->config->name, refused->position,
+             refused->velocity,
              refused->acceleration, refused->deceleration, refused->jerk,
              link->seen.velocity - axis->coupling->phase.velocity, most.velocity, most.acceleration, most.deceleration,
              most.jerk);

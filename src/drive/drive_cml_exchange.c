@@ -89,8 +89,9 @@ static cm1e_error_t not_confirmed(const place_t *at, int8_t wanted, int8_t shown
     if (error == CM1E_OK && size == sizeof status)
         cm1e_bridge_status_text(cm1e_bridge_motor(model, at->channel - 1u), cm1e_get_u32(status), words, sizeof words);
     return cm1e_diag_set(at->diag, CM1E_ERROR_DRIVE_MODE_TIMEOUT, 0,
-                         "Slave %u, connector %u: mode of operation %d was asked for, object 0x%04X shows %d. The "
-                         "motor has to stand and to have no error for that; it says: %s.", at->position, at->channel,
+                         "Slave %u, connector %u: mode of operation %d was commanded, but object 0x%04X shows %d. "
+                         "The motor must be at standstill without an error for that; its status is: %s.",
+                         at->position, at->channel,
                          wanted, index_of(at, OBJ_6061_MODES_OF_OPERATION_DISPLAY), shown, words);
 }
 
@@ -155,8 +156,9 @@ static cm1e_error_t describe(const place_t *at, const cm1e_drive_cml_t *cml, con
                              "Slave %u, connector %u: %s came to \"%s\" within %lld ms%s%s%s. Is the motor switched "
                              "on, and does it know this command?", at->position, at->channel,
                              request->lines ? "not every answer" : "no answer", request->text,
-                             (long long)(request->timeout_ns / MS_IN_NS), request->strays ? "; but \"" : "",
-                             cml->stray, request->strays ? "\" did" : "");
+                             (long long)(request->timeout_ns / MS_IN_NS),
+                             request->strays ? "; another line came: \"" : "", cml->stray,
+                             request->strays ? "\"" : "");
     case CM1E_ERROR_CML_ANSWER:
         return cm1e_diag_set(at->diag, error, 0,
                              "Slave %u, connector %u: the answer to \"%s\" is damaged: \"%s\". Check the cable between "

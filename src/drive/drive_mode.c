@@ -16,7 +16,7 @@ static const int64_t interval_ns = CM1E_BRIDGE_MODE_INTERVAL_NS + MS_IN_NS;
 static const int64_t silence_ns = 10 * MS_IN_NS;    /* 0000h for five cycles before words of another coding */
 
 static const char abnormal[] = "Since power-on the motor was in CMD or CPIO: by way of CML, CSP \"will possibly result "
-                               "in operating abnormal\" (BR 6 note 2). Switch the bridge off and on, or insist";
+                               "in operating abnormal\" (BR 6 note 2). Switch the bridge off and on, or use Insist";
 
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
 {
@@ -49,7 +49,7 @@ cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, 
     cm1e_error_t error = CM1E_OK;
     if (!cm1e_drive_supports(drive, mode)) {
         error = CM1E_ERROR_UNSUPPORTED;
-        text = "The drive, or the mapping that it runs with, has no such mode of operation";
+        text = "The drive, or the mapping that it runs with, does not have this mode of operation";
     } else if (!leads(drive, from, to)) {
         error = CM1E_ERROR_STATE;
         text = drive->kind->no_way;

@@ -38,14 +38,15 @@ static const advice_t advices[] = {
     {CM1E_ERROR_DRIVE_POWER, "Motor power (24 V, statusword bit 4) is missing: check supply, fuse and emergency stop"},
     {CM1E_ERROR_DRIVE_ENABLE_LOST, "The drive dropped its torque without a fault. Check its watchdog, its power and "
                                    "whether another tool controls it"},
-    {CM1E_ERROR_DRIVE_ENABLE_TIMEOUT, "The drive stayed in the state named here although it was told to go on. Check "
-                                      "motor power and whether another tool controls it"},
+    {CM1E_ERROR_DRIVE_ENABLE_TIMEOUT, "The drive stayed in the state named here although the next one was commanded. "
+                                      "Check motor power and whether another tool controls it"},
     {CM1E_ERROR_DRIVE_MODE_TIMEOUT, "Object 0x6061 does not show the mode that was commanded"},
     {CM1E_ERROR_DRIVE_MODE_LOST, "Object 0x6061 left the commanded mode by itself. Check whether another tool controls "
                                  "the drive"},
-    {CM1E_ERROR_DRIVE_POSITION, "For several cycles object 0x6064 showed a place that the motor cannot have come to since "
-                                "the last good one; its set-points were ramped down without it. Check the motor's "
-                                "encoder, what else writes to the drive (homing, position preset), and its PDO mapping"},
+    {CM1E_ERROR_DRIVE_POSITION, "For several cycles object 0x6064 showed a position that the motor cannot have reached "
+                                "since the last good one. The set-points were ramped down without that position. Check "
+                                "the motor's encoder, what else writes to the drive (homing, position preset), and its "
+                                "PDO mapping"},
     {CM1E_ERROR_AXIS_POSITION_RANGE, "The actual position, or a target, is beyond what the resolution of the motor "
                                      "(K37) allows"},
     {CM1E_ERROR_DRIVE_RESET_TIMEOUT, "The fault came back or stayed. Remove its cause, or switch the drive off and on"},

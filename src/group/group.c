@@ -9,7 +9,8 @@
 cm1e_error_t cm1e_group_create(AXES_GROUP_REF_t *reference, const cm1e_group_config_t *config, cm1e_diag_t *diag)
 {
     if (!reference)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "No place to put the group's handle.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_group_create() needs a place for the handle "
+                             "of the group.");
     *reference = (AXES_GROUP_REF_t){0};
     cm1e_group_t *group = calloc(1, sizeof *group);
     if (!group)

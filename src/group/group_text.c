@@ -88,7 +88,7 @@ static void refusal_text(const cm1e_group_t *group, char *text, size_t size)
                  (unsigned)refusal->ident);
     char asked[64] = "";
     if (refusal->value != 0.0)
-        snprintf(asked, sizeof asked, " %.6g was asked for.", refusal->value);
+        snprintf(asked, sizeof asked, " %.6g was given.", refusal->value);
     snprintf(text, size, "Axes group \"%s\", %s: %s.%s%s%s%s%s", group->config.name,
              cm1e_group_state_name(group->state), cm1e_strerror(refusal->error), about, asked,
              path_texts[refusal->path], refusal->why ? " " : "", refusal->why ? refusal->why : "");

@@ -11,8 +11,8 @@ bool cm1e_homing_failed_text(const cm1e_axis_t *axis, char *text, size_t size)
     const unsigned bits = (unsigned)axis->fault.value;
     const drive_homing_t *home = &axis->homing->drive;
     if (home->unstoppable) {
-        snprintf(text, size, "Axis \"%s\": homing was to stop, the motor did not come to rest, and has no torque now. "
-                 "Reset the axis with MC_Reset, and home it again.", axis->config->name);
+        snprintf(text, size, "Axis \"%s\": the homing was stopped, but the motor did not come to rest, so its torque "
+                 "was taken away. Reset the axis with MC_Reset, and home it again.", axis->config->name);
         return true;
     }
     snprintf(text, size,

@@ -312,7 +312,8 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_run()", "", diag);
     if (duration_ns < 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The duration of the run is negative.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The duration of the run is negative; expected 0 "
+                             "(no end) or above.");
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "A scheduler runs once; start the bus again and make a new one.");
@@ -392,10 +393,11 @@ static cm1e_error_t take_config(cm1e_scheduler_t *s, const cm1e_scheduler_config
         s->config.stop_timeout_ns = DEFAULT_STOP_TIMEOUT_NS;
     if (s->config.realtime_priority < -1 || s->config.realtime_priority > 98)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
-                             "The real-time priority %d is not one of 1 ... 98, 0 (the default) or -1 (none).",
+                             "The real-time priority is %d; expected 1 ... 98, 0 (the default) or -1 (none).",
                              s->config.realtime_priority);
     if (s->config.cpu < 0 || s->config.stop_timeout_ns < 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The CPU or the stop timeout is negative.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The CPU or the stop timeout is negative; expected "
+                             "0 or above.");
     return CM1E_OK;
 }
 
@@ -496,7 +498,7 @@ cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t
         if (axis.Handle != 0 && cm1e_axis_reference(scheduler->axes[i]).Handle == axis.Handle)
             return cm1e_trace_add_object(&scheduler->trace, scheduler->bus, cm1e_bus_axis_position(scheduler->bus, i),
                                          cm1e_axis_name(axis), index, subindex, diag);
-    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The axis is none of this scheduler.");
+    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The axis does not belong to this scheduler.");
 }
 
 cm1e_error_t cm1e_scheduler_trace_trigger(cm1e_scheduler_t *scheduler, const cm1e_trace_trigger_t *trigger,

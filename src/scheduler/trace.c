@@ -137,7 +137,7 @@ static cm1e_error_t check_trigger(const trace_t *trace, const cm1e_trace_trigger
                              "The trigger of a trace is set before the scheduler runs, and trace_capacity is not 0.");
     if ((unsigned)trigger->kind > CM1E_TRACE_ON_CHANGE || !isfinite(trigger->level))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
-                             "The trigger of the trace is of no known kind, or its level is not a number.");
+                             "The kind of the trigger is unknown, or its level is not a number.");
     if (trigger->samples_before >= trace->capacity)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
                              "The trigger of the trace keeps %u samples before it, but trace_capacity is %u.",

@@ -63,7 +63,7 @@ START_TEST(test_text_of_a_copy_needs_nothing_of_the_axis)
     ck_assert_int_eq(order(CM1E_COMMAND_GEAR_IN, (cm1e_axis_command_t){0},
                            (cm1e_axis_coupling_t){.master[0] = {.numerator = 0, .denominator = 7}}),
                      CM1E_ERROR_AXIS_RATIO);
-    check("the ratio 0 / 7 was asked for");
+    check("the ratio 0 / 7 was commanded");
     ck_assert_int_eq(order(CM1E_COMMAND_CAM_IN, (cm1e_axis_command_t){0}, (cm1e_axis_coupling_t){.cam = 77}),
                      CM1E_ERROR_AXIS_CAM_ID);
     check("now: none");

@@ -543,7 +543,7 @@ START_TEST(test_a_string_that_a_switch_overtakes_is_cancelled)
     set_mode[0].Execute = TRUE;
     scan(3);
     ck_assert_int_eq(ERROR_OF(cml[0]), CM1E_ERROR_CANCELLED);
-    ck_assert_msg(strstr(text_of(0), "\"?99.1\" was cancelled: MC_Power, CM_SetMode"), "%s", text_of(0));
+    ck_assert_msg(strstr(text_of(0), "\"?99.1\" was cancelled by MC_Power, by CM_SetMode"), "%s", text_of(0));
     wait_for(&set_mode[0].Busy, 1000);
     ck_assert(set_mode[0].Done);
     close_segment();

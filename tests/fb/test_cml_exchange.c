@@ -167,7 +167,7 @@ START_TEST(test_a_mode_that_cannot_be_read_is_an_error)
     ck_assert_str_eq(modes_written(1), "");
     forged_index = 0xF530;
     simulate("motor 2 2 error overload");
-    fails(CM1E_ERROR_DRIVE_MODE_TIMEOUT, send(2, "?99.2", false), "it says: unknown.");
+    fails(CM1E_ERROR_DRIVE_MODE_TIMEOUT, send(2, "?99.2", false), "its status is: unknown.");
     stop();
 }
 END_TEST

@@ -121,7 +121,7 @@ START_TEST(a_stop_before_the_target_is_an_error_in_words)
     ck_assert_int_eq(absolute.ErrorID, cm1e_error_id(_i / VARIANTS ? CM1E_ERROR_AXIS_NOT_IN_POSITION
                                                                    : CM1E_ERROR_AXIS_ERROR_STOP));
     const char *const words[] = {_i / VARIANTS ? "in time, which is 0.4 s" : "torque overload", "stood at 5.4 u",
-                                 "below it, with", "It pushes", "mechanical stop", "MC_Reset"};
+                                 "below it, with", "The motor pushes", "mechanical stop", "MC_Reset"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         ck_assert_msg(strstr(text(), words[i]), "%s: %s", words[i], text());
     ck_assert_double_eq_tol(info().actual_position, 5.0, 0.01);

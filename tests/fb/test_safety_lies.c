@@ -67,7 +67,7 @@ static void judge(void)
     const bool impossible = lie <= A_FAR_JUMP;
     MUST(&bench, !probe.torque_on, "torque in ErrorStop");
     MUST(&bench, length >= LOST_LIMIT, "an error after %d frames: %s", length, text);
-    MUST(&bench, !impossible || strstr(text, "cannot have come to"), "\"%s\"", text);
+    MUST(&bench, !impossible || strstr(text, "cannot have reached"), "\"%s\"", text);
 }
 
 static void program(bench_t *b)

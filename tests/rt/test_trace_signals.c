@@ -235,7 +235,7 @@ START_TEST(test_objects_that_no_cycle_brings_are_refused)
     expect(cm1e_scheduler_trace_object(machine.scheduler, machine.axis[0], 0x607C, 0, &diag), CM1E_ERROR_PDO_MAPPING,
            "0x607C:00 is not in the process data");
     expect(cm1e_scheduler_trace_object(machine.scheduler, (AXIS_REF_t){0}, 0x6064, 0, &diag),
-           CM1E_ERROR_INVALID_ARGUMENT, "none of this scheduler");
+           CM1E_ERROR_INVALID_ARGUMENT, "does not belong to this scheduler");
     expect(cm1e_scheduler_trace_object(machine.scheduler, machine.axis[0], 0x6064, 0, &diag), CM1E_OK, "");
     expect(cm1e_scheduler_trace_object(machine.scheduler, machine.axis[0], 0x6064, 0, &diag),
            CM1E_ERROR_INVALID_ARGUMENT, "already");
@@ -373,7 +373,7 @@ START_TEST(test_triggers_that_cannot_be_are_refused)
         {{.kind = CM1E_TRACE_ON_RISING, .signal = "no such"}, "\"no such\""},
         {{.kind = CM1E_TRACE_ON_CHANGE}, "no signal \"\""},
         {{.kind = CM1E_TRACE_ON_RISING, .signal = "overruns", .level = NAN}, "not a number"},
-        {{.kind = (cm1e_trace_trigger_kind_t)9, .signal = "overruns"}, "no known kind"},
+        {{.kind = (cm1e_trace_trigger_kind_t)9, .signal = "overruns"}, "kind of the trigger is unknown"},
         {{.kind = CM1E_TRACE_ON_RISING, .signal = "overruns", .level = 1, .samples_before = 20}, "trace_capacity is 20"},
     };
     open_machine(20);

@@ -62,7 +62,7 @@ static void test_mc_stop_ends_in_error_stop_without_torque(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(stop));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_HOMING_FAILED, cm1e_axis_command_status(axis, stop).error);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
-    bench_told("has no torque now");
+    bench_told("its torque was taken away");
     TEST_ASSERT_FALSE(bench_info().homed);
 }
 

@@ -248,7 +248,7 @@ static void test_the_text_says_what_the_torque_tells(void)
         bench_wait(id, 1000);
         TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
         bench_told(pushes ? "90 % of its rated torque" : "12 % of its rated torque");
-        bench_told(pushes ? "It pushes" : "friction");
+        bench_told(pushes ? "The motor pushes" : "friction");
         bench_told("0.0006 u above");
         bench_told("which is 0.3 s");
     }

@@ -314,7 +314,7 @@ static void test_what_it_cannot_follow_is_not_given_to_the_motor(void)
         {large_acceleration, "of 150 u/s2; up to 100 u/s2"},
         {reversed, "an acceleration of 4000 u/s2"},
         {no_direction, "a direction that MC_Power does not enable"},
-        {over_the_limit, "could not stop before the software limit"},
+        {over_the_limit, "cannot stop before the software limit"},
     };
     for (size_t n = 0; n < sizeof cases / sizeof cases[0]; n++) {
         fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
@@ -352,7 +352,7 @@ static void test_a_step_is_within_what_the_acceleration_can_do_in_a_cycle(void)
         bench_cycles(1);
         TEST_ASSERT_EQUAL_INT(cases[n].kept ? CM1E_AXIS_SYNCHRONIZED_MOTION : CM1E_AXIS_ERROR_STOP, bench_info().state);
         if (!cases[n].kept)
-            bench_told("in a cycle whose velocity is good for 0.002 u");
+            bench_told("in a cycle in which its velocity covers 0.002 u");
     }
 }
 
@@ -400,7 +400,7 @@ static void test_a_motor_that_ran_on_by_its_velocity_stops_with_an_error(void)
     cm1e_axis_after_pause(axis, 5 * cycle_ns);
     bench_outputs();
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_COUPLING_LIMIT, bench_info().error);
-    bench_told("behind a pause of the cycle");
+    bench_told("after a pause of the cycle");
     TEST_ASSERT_EQUAL_UINT(1, lead.lost);
 }
 

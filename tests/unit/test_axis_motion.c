@@ -488,7 +488,7 @@ static void test_refused_numbers_are_told_as_they_are_judged(void)
     cm1e_command_id_t id;
     const cm1e_axis_command_t fast = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = -1e9};
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &fast, &id));
-    bench_told("velocity -1e+09 was asked for; -");
+    bench_told("velocity -1e+09 was commanded; -");
     bench_told("u/s is right, but not 0");
     static const cm1e_axis_command_t small[] = {
         {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1e-300},

@@ -177,7 +177,7 @@ static void test_values_out_of_range_are_refused(void)
         refused(number, 0.5, CM1E_ERROR_AXIS_PARAMETER_RANGE);
         refused(number, NAN, CM1E_ERROR_AXIS_PARAMETER_RANGE);
         refused(number, 2, CM1E_ERROR_AXIS_PARAMETER_RANGE);
-        bench_told(": 2 was to be written; 0 or 1 is right.");
+        bench_told(": 2 was given; 0 or 1 is right.");
     }
 }
 
@@ -459,7 +459,7 @@ static void test_the_text_is_of_what_was_refused_last(void)
     const cm1e_axis_command_t move = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .velocity = 1e9};
     for (int i = 0; i < 2; i++) {
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &move, &id));
-        bench_told("velocity 1e+09 was asked for");
+        bench_told("velocity 1e+09 was commanded");
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, NAN, false));
         bench_told("MC_SetPosition to nan");
         TEST_ASSERT_NOT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, 99, 5.0));
@@ -468,7 +468,7 @@ static void test_the_text_is_of_what_was_refused_last(void)
     const cm1e_axis_command_t fast = {.kind = CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, .position = 1.0, .velocity = 1.0,
                                       .end_velocity = -1e9};
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &fast, &id));
-    bench_told("end velocity -1e+09 was asked for");
+    bench_told("end velocity -1e+09 was commanded");
 }
 
 static void test_modulo_position_is_set_within_a_turn(void)

@@ -592,7 +592,7 @@ static void test_numbers_that_the_slave_cannot_follow_are_refused_in_words(void)
     for (size_t i = 0; i < sizeof velocities / sizeof velocities[0]; i++) {
         c = shift(true, 100.0, velocities[i]);
         axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_VELOCITY_RANGE);
-        axes_told(SLAVE, "up to 25 u/s");
+        axes_told(SLAVE, "not above 25 u/s");
     }
     for (size_t i = 0; i < sizeof positions / sizeof positions[0]; i++) {
         c = shift(false, positions[i], 1.0);

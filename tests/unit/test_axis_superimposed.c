@@ -326,11 +326,11 @@ static void test_refusals(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, refusal(1.0, 20.1, 0.0)); /* 10 + 20.1 > 30 */
     char text[300];
     cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "together up to 30 u/s"), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "the sum may be up to 30 u/s"), text);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, refusal(1.0, 0.0, 0.0));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, refusal(5.1, 5.0, 0.0));
-    bench_told("a distance of 5.1 on top of a motion that is at ");
-    bench_told(" and ends at 20 would leave the software limits");
+    bench_told("the superimposed distance 5.1, added to a motion that is at ");
+    bench_told(" and ends at 20, would leave the software limits");
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, refusal(NAN, 5.0, 0.0));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, refusal(1.0, 5.0, 101.0));
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_power(axis, &owner, true, true, false));

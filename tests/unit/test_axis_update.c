@@ -132,7 +132,7 @@ static void test_a_refused_update_changes_nothing(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, update(id, inputs(good.kind, 10.0, -5.0)));
     char text[300];
     cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "velocity -5 was asked for"), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "velocity -5 was commanded"), text);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, update(id, inputs(good.kind, 10.0, NAN)));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, update(id, bad));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, update(id, inputs(CM1E_COMMAND_MOVE_RELATIVE, 1.0, 5.0)));

@@ -334,7 +334,7 @@ static void test_a_limit_that_is_lowered_on_the_way_stops_it(void)
     axes_cycles(800);
     group_must_be(CM1E_GROUP_ERROR_STOP);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_COUPLING_LIMIT, axes_info(1).error);
-    group_told("could not stop before the software limit");
+    group_told("cannot stop before the software limit");
     TEST_ASSERT_TRUE(group_at(1) <= axes_axis(1)->limits.positive + 1e-6);
 }
 

@@ -397,7 +397,7 @@ def check_refusals(segment, cm1e):
     time.sleep(0.1)
     for axis, says, words in (("right", "The motor (CM2) says: overload", ["move", "--by", "0.1"]),
                               ("left", "The motor (CM1) says: serial communication error", ["move", "--by", "0.1"]),
-                              ("left", "it says: serial communication error", ["cml", "?99.1", "--axis"])):
+                              ("left", "its status is: serial communication error", ["cml", "?99.1", "--axis"])):
         result = segment.run([cm1e, *words, axis, "-b", path])
         wire.check(result.returncode == 1 and says in result.stderr, f"cm1e {words[0]} {axis}: {result.stderr}")
     segment.console("motor 1 1 replug")
