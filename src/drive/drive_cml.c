@@ -19,6 +19,9 @@ static cm1e_drive_cml_request_t *request_of(cm1e_drive_cml_t *cml, uint32_t tick
     return &cml->requests[ticket % CM1E_DRIVE_CML_QUEUE];
 }
 
+/* 0 is no ticket. */
+static uint32_t ticket_after(uint32_t ticket) { return ticket == UINT32_MAX ? 1 : ticket + 1; }
+
 void cm1e_drive_cml_init(cm1e_drive_cml_t *cml, uint16_t position, uint8_t channel,
                          cm1e_error_t (*submit)(void *context, cm1e_sdo_t *sdo), void *context)
 {
@@ -27,7 +30,7 @@ void cm1e_drive_cml_init(cm1e_drive_cml_t *cml, uint16_t position, uint8_t chann
     cml->channel = channel;
     cml->submit = submit;
     cml->context = context;
-    cml->head = cml->next = 1; /* 0 is no ticket */
+    cml->head = cml->next = ticket_after(0);
 }
 
 /* ---- requests ---------------------------------------------------------------------------------------------------- */
@@ -54,9 +57,8 @@ cm1e_error_t cm1e_drive_cml_send(cm1e_drive_cml_t *cml, const char *text, int64_
     *request = (cm1e_drive_cml_request_t){.ticket = cml->next, .state = CM1E_DRIVE_CML_WAITING};
     request->timeout_ns = timeout_ns ? timeout_ns : is_search(text) ? search_ns : answer_ns;
     memcpy(request->text, text, strlen(text) + 1);
-    *ticket = cml->next++;
-    if (cml->next == 0) /* 0 is no ticket; nobody sends so many strings */
-        cml->next = cml->head = 1;
+    *ticket = cml->next;
+    cml->next = ticket_after(cml->next);
     return CM1E_OK;
 }
 
@@ -80,7 +82,7 @@ static void finish(cm1e_drive_cml_t *cml, cm1e_error_t error)
     request->state = error != CM1E_OK ? CM1E_DRIVE_CML_ERROR : CM1E_DRIVE_CML_DONE;
     request->error = error;
     request->abort_code = error == CM1E_ERROR_SDO_ABORT ? cml->sdo.abort_code : 0;
-    cml->head++;
+    cml->head = ticket_after(cml->head);
     cml->phase = CML_IDLE;
 }
 
@@ -100,7 +102,7 @@ void cm1e_drive_cml_cancel(cm1e_drive_cml_t *cml, uint32_t ticket, cm1e_error_t 
 void cm1e_drive_cml_cancel_all(cm1e_drive_cml_t *cml, cm1e_error_t error)
 {
     const uint32_t end = cml->next;
-    for (uint32_t ticket = cml->head; ticket != end; ticket++)
+    for (uint32_t ticket = cml->head; ticket != end; ticket = ticket_after(ticket))
         cm1e_drive_cml_cancel(cml, ticket, error);
 }
 
@@ -252,7 +254,7 @@ static void begin(cm1e_drive_cml_t *cml)
 {
     cm1e_drive_cml_request_t *request = request_of(cml, cml->head);
     if (request->state != CM1E_DRIVE_CML_WAITING) { /* cancelled meanwhile */
-        cml->head++;
+        cml->head = ticket_after(cml->head);
         return;
     }
     request->state = CM1E_DRIVE_CML_ACTIVE;

@@ -10,7 +10,7 @@
 
 #define MS INT64_C(1000000)
 
-enum { CHANNEL = 2, ANSWERS = 256, STRINGS = 8, LOG = 512 };
+enum { CHANNEL = 2, ANSWERS = 256, STRINGS = 9, LOG = 512 };
 
 static cm1e_drive_cml_t cml;
 static int64_t now_ns;
@@ -151,7 +151,7 @@ static void test_a_query_waits_for_its_answer(void)
     TEST_ASSERT_NULL(cm1e_drive_cml_line(&cml, ticket, 1));
     TEST_ASSERT_EQUAL_STRING("K53.2", box.sent[0]);
     TEST_ASSERT_TRUE(box.reads_behind > 3); /* "Null" several times before */
-    TEST_ASSERT_TRUE(box.first_read_ns - box.sent_ns[0] > MS);
+    TEST_ASSERT_EQUAL_INT64(3 * MS, box.first_read_ns - box.sent_ns[0]); /* taken in after 1 ms, and 2 ms then */
     TEST_ASSERT_TRUE(cm1e_drive_cml_idle(&cml));
 }
 
@@ -164,7 +164,9 @@ static void test_nothing_goes_out_before_mode_and_controlword_are_right(void)
     TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_ACTIVE, cm1e_drive_cml_request(&cml, ticket)->state);
     TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_DONE, finish(ticket)->state);
     const uint32_t late = send("?99.2");
-    steps(2100, false);
+    steps(2000, false);
+    TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_ACTIVE, cm1e_drive_cml_request(&cml, late)->state);
+    steps(1, false);
     TEST_ASSERT_EQUAL(CM1E_ERROR_DRIVE_MODE_TIMEOUT, cm1e_drive_cml_request(&cml, late)->error);
     TEST_ASSERT_FALSE(cm1e_drive_cml_request(&cml, late)->sent);
 }
@@ -200,8 +202,28 @@ static void test_a_mailbox_that_never_is_empty_does_not_hold_up_for_ever(void)
     for (int i = 0; i < ANSWERS; i++)
         answers("Ux.2=8\r\n", 0, 0);
     const uint32_t ticket = send("K53.2");
+    while (box.sent_count == 0)
+        steps(1, true);
+    TEST_ASSERT_EQUAL(64, box.answer_next); /* read before the string */
     TEST_ASSERT_EQUAL(CM1E_ERROR_CML_TIMEOUT, finish(ticket)->error);
     TEST_ASSERT_EQUAL(1, box.sent_count);
+}
+
+/* A line that was cut has no end of its own. Characters that are not printable ASCII are shown as "?". */
+static void test_a_stray_is_shown_alone_and_printable_until_the_next_string(void)
+{
+    answers("K54.2=123456789\r\n", 0, 0);
+    answers("Ux.2=8", 0, 0);
+    answers("K53.2=1\r\n", 1, 4);
+    TEST_ASSERT_EQUAL(2, finish(send("K53.2"))->strays);
+    TEST_ASSERT_EQUAL_STRING("Ux.2=8", cml.stray);
+    answers("K53.2=1\r\n", 2, 4);
+    TEST_ASSERT_EQUAL(0, finish(send("K53.2"))->strays);
+    TEST_ASSERT_EQUAL_STRING("", cml.stray);
+    answers("a ~\x7f\x01\xe4" "b\r\n", 2, 0);
+    answers("K53.2=1\r\n", 3, 4);
+    TEST_ASSERT_EQUAL(1, finish(send("K53.2"))->strays);
+    TEST_ASSERT_EQUAL_STRING("a ~???b", cml.stray);
 }
 
 static void test_no_answer_is_a_time_out(void)
@@ -209,8 +231,13 @@ static void test_no_answer_is_a_time_out(void)
     answers("K54.2=7\r\n", 1, 4);
     const uint32_t ticket = send("K53.2");
     TEST_ASSERT_EQUAL(CM1E_ERROR_CML_TIMEOUT, finish(ticket)->error);
+    TEST_ASSERT_EQUAL_INT64(1000 * MS, cm1e_drive_cml_request(&cml, ticket)->timeout_ns);
     TEST_ASSERT_INT64_WITHIN(20 * MS, 1000 * MS, now_ns - box.sent_ns[0]);
     uint32_t other;
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_drive_cml_send(&cml, "K53.2", -1, &other));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT,
+                      cm1e_drive_cml_send(&cml, "K53.2", CM1E_DRIVE_LONGEST_NS + 1, &other));
+    TEST_ASSERT_EQUAL(0, other);
     TEST_ASSERT_EQUAL(CM1E_OK, cm1e_drive_cml_send(&cml, "K53.2", 50 * MS, &other));
     finish(other);
     TEST_ASSERT_INT64_WITHIN(10 * MS, 50 * MS, now_ns - box.sent_ns[1]);
@@ -228,6 +255,15 @@ static void test_several_queries_in_one_string(void)
     TEST_ASSERT_EQUAL_STRING("Ux.2=8", cm1e_drive_cml_line(&cml, ticket, 2));
     answers("K53.2=3\r\n", 2, 4); /* half of them */
     TEST_ASSERT_EQUAL(CM1E_ERROR_CML_TIMEOUT, finish(send("K53.2,K54.2"))->error);
+}
+
+/* Not every line that is as long as the string is its echo. */
+static void test_an_answer_as_long_as_its_string_is_an_answer(void)
+{
+    answers("Ux.2=128\r\n", 1, 4);
+    const cm1e_drive_cml_request_t *request = finish(send("?99.2,O1"));
+    TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_DONE, request->state);
+    TEST_ASSERT_EQUAL_STRING("Ux.2=128", request->first);
 }
 
 static void test_an_echo_is_no_stray(void)
@@ -267,7 +303,9 @@ static void test_a_search_ends_with_origin_or_fails_with_the_state(void)
     request = finish(send("|.2"));
     TEST_ASSERT_EQUAL(CM1E_ERROR_CM_SEARCH, request->error);
     TEST_ASSERT_EQUAL_STRING("Ux.2=4", request->first);
-    TEST_ASSERT_EQUAL(CM1E_ERROR_CM_SEARCH_TIMEOUT, finish(send("|.2"))->error);
+    request = finish(send("|.2"));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CM_SEARCH_TIMEOUT, request->error);
+    TEST_ASSERT_EQUAL_INT64(70000 * MS, request->timeout_ns);
     TEST_ASSERT_INT64_WITHIN(20 * MS, 70000 * MS, now_ns - box.sent_ns[2]);
 }
 
@@ -289,6 +327,17 @@ static void test_a_list_is_read_every_10_ms_until_it_is_empty(void)
         TEST_ASSERT_TRUE(box.read_ns[i] - box.read_ns[i - 1] >= 10 * MS);
 }
 
+/* A list is looked for every 2 ms until it begins. */
+static void test_a_list_of_one_line_ends_behind_it(void)
+{
+    answers("K53.2=1\r\n", 1, 30);
+    const cm1e_drive_cml_request_t *request = finish(send("?90.2"));
+    TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_DONE, request->state);
+    TEST_ASSERT_EQUAL(1, request->lines);
+    for (unsigned i = 1; i + 2 < box.reads_behind; i++)
+        TEST_ASSERT_EQUAL_INT64(3 * MS, box.read_ns[i] - box.read_ns[i - 1]);
+}
+
 static void test_lines_beyond_the_most_are_counted_and_other_kinds_set_aside(void)
 {
     for (int i = 0; i < CM1E_CML_LINES + 5; i++)
@@ -305,6 +354,7 @@ static void test_an_empty_list_is_a_time_out_and_an_unknown_command_may_be_silen
     TEST_ASSERT_EQUAL(CM1E_ERROR_CML_TIMEOUT, finish(send("?90.2"))->error);
     TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_DONE, finish(send("^.2"))->state);
     TEST_ASSERT_EQUAL(1, box.reads_behind);
+    TEST_ASSERT_EQUAL_INT64(51 * MS, box.first_read_ns - box.sent_ns[1]);
     answers("H0=1\r\n", 3, 20);
     answers("H1=2\r\n", 3, 28);
     const cm1e_drive_cml_request_t *request = finish(send("%87"));
@@ -335,6 +385,20 @@ static void test_a_string_of_exactly_32_bytes_counts_as_long(void)
     send(text);
     finish(send("K53.2=3"));
     TEST_ASSERT_TRUE(box.sent_ns[1] - box.sent_ns[0] >= 8 * MS);
+}
+
+/* Whether a transfer that was under way arrives is not known: what comes next keeps the longer distance from its end. */
+static void test_a_string_that_is_cancelled_on_its_way_keeps_its_distance(void)
+{
+    box.delay = 10;
+    const uint32_t first = send("O2.2");
+    while (!box.sdo || !box.sdo->write)
+        steps(1, true);
+    cm1e_drive_cml_cancel(&cml, first, CM1E_ERROR_CANCELLED);
+    box.delay = 0;
+    finish(send("F2.2"));
+    TEST_ASSERT_EQUAL(2, box.sent_count);
+    TEST_ASSERT_INT64_WITHIN(MS, 10 * MS, box.sent_ns[1] - box.sent_ns[0]); /* 8 ms, from the step that sees the end */
 }
 
 /* ---- the queue --------------------------------------------------------------------------------------------------- */
@@ -452,13 +516,39 @@ static void test_a_waiting_string_can_be_cancelled_and_all(void)
     TEST_ASSERT_EQUAL(0, cm1e_drive_cml_request(&cml, 0) != NULL);
 }
 
+static void test_who_cancels_an_unknown_string_cancels_none(void)
+{
+    const uint32_t ticket = send("O2.2");
+    for (uint32_t other = 0; other < 3 * CM1E_DRIVE_CML_QUEUE; other++)
+        if (other != ticket)
+            cm1e_drive_cml_cancel(&cml, other, CM1E_ERROR_CANCELLED);
+    TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_DONE, finish(ticket)->state);
+    TEST_ASSERT_TRUE(cm1e_drive_cml_idle(&cml)); /* in the same step */
+}
+
+/* After 4 billion strings the numbers begin anew. */
+static void test_no_string_has_the_ticket_0(void)
+{
+    cml.head = cml.next = UINT32_MAX - 5;
+    for (int i = 0; i < 3; i++) {
+        uint32_t tickets[3];
+        for (int k = 0; k < 3; k++)
+            tickets[k] = send("O2.2");
+        for (int k = 0; k < 3; k++) {
+            TEST_ASSERT_NOT_EQUAL_UINT32(0, tickets[k]);
+            TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_DONE, finish(tickets[k])->state);
+        }
+    }
+    TEST_ASSERT_EQUAL(STRINGS, box.sent_count);
+}
+
 static void test_a_full_queue_of_transfers_is_waited_for_but_not_for_ever(void)
 {
     box.full = true;
     const uint32_t ticket = send("O2.2");
-    steps(100, true);
-    TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_ACTIVE, cm1e_drive_cml_request(&cml, ticket)->state);
     steps(2000, true);
+    TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_ACTIVE, cm1e_drive_cml_request(&cml, ticket)->state);
+    steps(1, true);
     TEST_ASSERT_EQUAL(CM1E_ERROR_FULL, cm1e_drive_cml_request(&cml, ticket)->error);
     box.full = false;
     TEST_ASSERT_EQUAL(CM1E_DRIVE_CML_DONE, finish(send("O2.2"))->state);
@@ -507,7 +597,13 @@ int main(void)
     RUN_TEST(test_a_mailbox_that_never_is_empty_does_not_hold_up_for_ever);
     RUN_TEST(test_no_answer_is_a_time_out);
     RUN_TEST(test_several_queries_in_one_string);
+    RUN_TEST(test_a_stray_is_shown_alone_and_printable_until_the_next_string);
+    RUN_TEST(test_an_answer_as_long_as_its_string_is_an_answer);
     RUN_TEST(test_an_echo_is_no_stray);
+    RUN_TEST(test_a_list_of_one_line_ends_behind_it);
+    RUN_TEST(test_a_string_that_is_cancelled_on_its_way_keeps_its_distance);
+    RUN_TEST(test_who_cancels_an_unknown_string_cancels_none);
+    RUN_TEST(test_no_string_has_the_ticket_0);
     RUN_TEST(test_a_write_is_done_when_it_is_sent);
     RUN_TEST(test_a_search_ends_with_origin_or_fails_with_the_state);
     RUN_TEST(test_a_list_is_read_every_10_ms_until_it_is_empty);
