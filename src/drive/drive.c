@@ -12,7 +12,7 @@ static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
  * for this time. Otherwise the answer to the old command would look like a loss of the new torque. */
 static const int64_t torque_pause_ns = 20 * MS_IN_NS;
 
-/* The slave has been matched with the axis (cm1e_bus_identify()); a bus that was made otherwise may have another. */
+/* cm1e_bus_identify() has matched the slave with the axis. A bus without that step may have another device there. */
 static cm1e_error_t find_device(cm1e_drive_t *drive, const cm1e_drive_kind_t **kind, cm1e_diag_t *diag)
 {
     const cm1e_slave_info_t *slave = cm1e_bus_slave(drive->bus, drive->position);

@@ -9,8 +9,8 @@
  *
  * A latched fault takes the torque away until a reset succeeded, with one exception: after CM1E_ERROR_BUS_LOST and
  * CM1E_ERROR_BUS_WORKING_COUNTER the drive stays enabled while `enable` stays true, so that the caller can stop a drive
- * that may still listen. A reset that succeeds while `enable` is true enables again: who does not want that takes
- * `enable` away first.
+ * that may still listen. A reset that succeeds while `enable` is true enables again: a caller that does not want that
+ * sets `enable` to false first.
  *
  * What the drive holds is known as long as every frame comes back with every slave's part in it. After a cycle without
  * that, the drive may hold the target of any frame sent since then. A target position (CSP) is therefore repeated
@@ -27,8 +27,8 @@
  *  as is a motor behind a bridge without its K37. CM1E_ERROR_STATE: it is found in a mode without a way back to csp.
  *  @rt init */
 cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag);
-/** Frees what cm1e_drive_init() made, also where it failed. After cm1e_bus_stop(), which ends the transfers of the
- *  drive that wait: they would end in this memory. @rt init */
+/** Frees what cm1e_drive_init() made, also if that failed. Call it after cm1e_bus_stop(), which ends the transfers of
+ *  the drive that wait: they would end in this memory. @rt init */
 void cm1e_drive_free(cm1e_drive_t *drive);
 /** Decodes the inputs of this cycle; `bus_ok` false: they are old. Latches faults. @rt cycle */
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);
@@ -47,7 +47,7 @@ static inline bool cm1e_drive_contradicts_itself(const cm1e_drive_t *drive)
 static inline void cm1e_drive_slew(cm1e_drive_t *drive) { drive->target.slewing = true; }
 /** true while a commanded reset is under way. @rt cycle */
 bool cm1e_drive_resetting(const cm1e_drive_t *drive);
-/** Takes what 0x6081 or 0x6083 (`index`) carries from now on; false: it is not in the process data. @rt cycle */
+/** Sets what 0x6081 or 0x6083 (`index`) carries from now on; false: it is not in the process data. @rt cycle */
 bool cm1e_drive_carry(cm1e_drive_t *drive, uint16_t index, uint32_t raw);
 /** Whether the slave answers and is in Operational, as far as the supervision has seen. @rt cycle */
 static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
@@ -56,8 +56,8 @@ static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
 }
 /** Whether there is no device: the axis is virtual, or an encoder. @rt any */
 static inline bool cm1e_drive_is_virtual(const cm1e_drive_t *drive) { return drive->position == 0; }
-/** On the wire, the index of an object that the dictionary of a first axis has at `index`; what is the device's and no
- *  axis's stays where it is. @rt any */
+/** The index on the wire of an object that has `index` for the first axis of the device. Objects of the device itself
+ *  keep their index. @rt any */
 static inline uint16_t cm1e_drive_index(const cm1e_drive_t *drive, uint16_t index)
 {
     const unsigned channel = drive->config->channel;
@@ -71,9 +71,9 @@ const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, 
 /** Whether the mapping allows a mode: its target is mapped. The mode itself goes over SDO where 0x6060 is not mapped.
  *  @rt cycle */
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode);
-/** Whether the device can be switched to `mode` from the one it was last told. CM1E_ERROR_UNSUPPORTED: it has no such
- *  mode; CM1E_ERROR_STATE: no way leads there. `*why` (may be NULL) is a sentence then. A command for a mode that no
- *  way leads to is not carried out: the caller asks here first. @rt cycle */
+/** Whether the device can be switched to `mode` from its present one. CM1E_ERROR_UNSUPPORTED: it has no such mode;
+ *  CM1E_ERROR_STATE: no way leads there. `*why` (may be NULL) is a sentence then. A command for a mode to which no way
+ *  leads is ignored, so the caller checks it here first. @rt cycle */
 cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, bool insist, const char **why);
 
 /** "CSP", "HM", "CML" ...; NULL: none of its modes. @rt any */
@@ -81,9 +81,9 @@ const char *cm1e_drive_mode_name(const cm1e_drive_t *drive, int8_t mode);
 /** The motor behind the bridge. @rt any */
 cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive);
 
-/** Behind a bridge digital signals go by SDO, in csp, while the motor is enabled (BR 6.5). Who reads inputs says so, as
- *  often as he reads: for a second from then on they are polled, and `feedback.digital_known` tells when they are
- *  fresh. Does nothing with other drives. @rt cycle */
+/** Behind a bridge digital signals go by SDO, in csp, while the motor is enabled (BR 6.5). A caller calls this at every
+ *  read of an input: the inputs are polled for a second from then on, and `feedback.digital_known` tells whether they
+ *  are fresh. It does nothing with other drives. @rt cycle */
 void cm1e_drive_want_inputs(cm1e_drive_t *drive);
 /** How `command.digital_outputs` stands with the motor. */
 typedef enum cm1e_drive_outputs {
@@ -96,8 +96,8 @@ typedef enum cm1e_drive_outputs {
 cm1e_drive_outputs_t cm1e_drive_outputs(const cm1e_drive_t *drive);
 /** Whether digital signals are in the process data: in CPIO, and without a bridge. @rt cycle */
 bool cm1e_drive_signals_in_cycle(const cm1e_drive_t *drive);
-/** Bit 0: input 1, output 1. Those that can be reached from the bus: all of the mapping, or what the motor behind a
- *  bridge leaves to its user (BR 6.5). 0: none. @rt cycle */
+/** The inputs and the outputs that can be reached from the bus, bit 0: number 1. They are those of the mapping, or
+ *  those that the motor behind a bridge leaves to its user (BR 6.5). 0: none. @rt cycle */
 uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive);
 uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive);
 /** The drive itself latches the position at this edge of input 1 or 2 (its touch probe 1 or 2), and the objects for it

@@ -1,5 +1,5 @@
-/* A motor behind an EtherCAT Cool MUSCLE Bridge: what its configuration has to state, and what of it is asked over SDO
- * beside the cycle. */
+/* A motor behind an EtherCAT Cool MUSCLE Bridge: the check of its configuration, whether it is at rest, and its status
+ * (F530), which is read by SDO beside the cycle. */
 #include "drive/drive_bridge.h"
 
 #include <stdlib.h>
@@ -116,8 +116,8 @@ bool cm1e_drive_bridge_sound(cm1e_drive_t *drive)
     return known && behind->status_sound;
 }
 
-/* BR 6.1.3, note: the statusword shows that there is an error, F530 which. One question, asked again where the answer
- * fails; it is not worth more than that. */
+/* BR 6.1.3, note: the statusword shows that there is an error, and F530 shows which one. F530 is read once for an
+ * error, and again only if that transfer fails. */
 static void ask_status(cm1e_drive_t *drive)
 {
     cm1e_drive_fault_t *fault = &drive->fault;

@@ -1,7 +1,6 @@
 /**
  * @file drive_bridge.h
- * What a drive has beside the rest where its motor stands behind a bridge; made by cm1e_drive_init(). The cycle thread
- * owns it.
+ * The data that only the drive of a motor behind a bridge has; made by cm1e_drive_init(). The cycle thread owns it.
  */
 #ifndef CM1E_DRIVE_DRIVE_BRIDGE_H
 #define CM1E_DRIVE_DRIVE_BRIDGE_H

@@ -1,4 +1,5 @@
-/* A servo drive of another maker (ETG.6010): what it is told at start-up, and its touch probes (0x60B8 ... 0x60BD). */
+/* A servo drive of another maker (ETG.6010): the objects that are written at start-up, and its touch probes (0x60B8 ...
+ * 0x60BD). */
 #include "device/cia402_drive.h"
 
 #include "core/bytes.h"

@@ -10,7 +10,7 @@ enum { DRAIN_MOST = 64 };
 
 static const int64_t look_ns = 2 * MS_IN_NS;  /* "more than 1 msec" (BR appendix 2.1) */
 static const int64_t line_ns = 10 * MS_IN_NS; /* between the lines of a list (2.5) */
-static const int64_t unknown_ns = 50 * MS_IN_NS; /* without a word then, a motor has nothing to say to a command */
+static const int64_t unknown_ns = 50 * MS_IN_NS; /* a motor that has not answered an unknown command then never will */
 static const int64_t prepare_ns = 2000 * MS_IN_NS;
 static const int64_t answer_ns = 1000 * MS_IN_NS, search_ns = 70000 * MS_IN_NS;
 
@@ -19,7 +19,7 @@ static cm1e_drive_cml_request_t *request_of(cm1e_drive_cml_t *cml, uint32_t tick
     return &cml->requests[ticket % CM1E_DRIVE_CML_QUEUE];
 }
 
-/* 0 is no ticket. */
+/* No request has the ticket 0. */
 static uint32_t ticket_after(uint32_t ticket) { return ticket == UINT32_MAX ? 1 : ticket + 1; }
 
 void cm1e_drive_cml_init(cm1e_drive_cml_t *cml, uint16_t position, uint8_t channel,
@@ -141,8 +141,8 @@ static void set_aside(cm1e_drive_cml_t *cml, const char *line, size_t size)
     copy_line(cml->stray, line, size);
 }
 
-/* The command that the line answers, of those whose answer is missing; -1: none. A state "it moves", which a motor may
- * be set to tell by itself, is not the end of a search. */
+/* Returns the index of the command that this line answers, among those whose answer is missing; -1: none. A motor may
+ * be set to report its state by itself: the state "it moves" does not end a search. */
 static int answered(const cm1e_drive_cml_t *cml, const cm1e_cml_answer_t *answer)
 {
     for (unsigned i = 0; i < cml->command_count; i++) {
@@ -156,7 +156,7 @@ static int answered(const cm1e_drive_cml_t *cml, const cm1e_cml_answer_t *answer
     return -1;
 }
 
-/* One line, with what ends it. false: the request has ended. */
+/* Takes one line, with the characters that end it. Returns false if the request has ended. */
 static bool take_line(cm1e_drive_cml_t *cml, const char *line, size_t size)
 {
     cm1e_drive_cml_request_t *request = request_of(cml, cml->head);
@@ -188,7 +188,7 @@ static bool take_line(cm1e_drive_cml_t *cml, const char *line, size_t size)
     return true;
 }
 
-/* Commands of which one line is missing still. */
+/* Whether the answer of one line to a command is still missing. */
 static bool incomplete(const cm1e_drive_cml_t *cml)
 {
     for (unsigned i = 0; i < cml->command_count; i++)
@@ -297,7 +297,7 @@ static void sent(cm1e_drive_cml_t *cml)
         look_again(cml, cml->unknown ? unknown_ns : look_ns);
 }
 
-/* The transfer has ended. */
+/* Called when a transfer has ended. */
 static void transferred(cm1e_drive_cml_t *cml)
 {
     const bool failed = cm1e_sdo_state(&cml->sdo) == CM1E_SDO_ERROR;

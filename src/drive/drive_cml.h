@@ -1,12 +1,12 @@
 /**
  * @file drive_cml.h
  * CML strings to one motor behind a bridge (BR 7.2, flows of appendix 2), one after the other: controlword 0000h and
- * CML mode, the string to 0xF581 ... 0xF584, the answer from 0xF591 ... 0xF594. Steps without a clock; whoever steps it
- * owns it. What asked polls by ticket and may vanish.
+ * CML mode, the string to 0xF581 ... 0xF584, the answer from 0xF591 ... 0xF594. Its owner advances it in steps, without
+ * a clock. A caller polls its request by ticket, and may stop polling at any time.
  *
- * Before a string is sent, what waits in the mailbox is taken out: it answers nothing that is asked now. So is what
- * comes later and belongs to another query. Both are counted and shown as strays, never taken for an answer. A string
- * is never sent twice: it may move the motor.
+ * Before a string is sent, the lines that wait in the mailbox are taken out, because they answer earlier strings. Later
+ * lines that belong to another query are set aside. Both are counted and shown as strays, never as an answer. A string
+ * is never sent twice, because it may move the motor.
  */
 #ifndef CM1E_DRIVE_DRIVE_CML_H
 #define CM1E_DRIVE_DRIVE_CML_H
@@ -15,7 +15,7 @@
 #include "device/cml.h"
 
 enum { CM1E_DRIVE_CML_QUEUE = 4 };
-#define CM1E_DRIVE_LONGEST_NS (INT64_C(1000000000) * 1000000) /**< of a timeout: so that times can be added to it */
+#define CM1E_DRIVE_LONGEST_NS (INT64_C(1000000000) * 1000000) /**< maximum of a timeout: times can be added to it */
 
 typedef enum cm1e_drive_cml_state {
     CM1E_DRIVE_CML_FORGOTTEN = 0, /**< no such ticket, or so many came after it */
@@ -74,15 +74,15 @@ typedef struct cm1e_drive_cml {
 /** `submit` hands a transfer over as cm1e_sdo_submit() does. @rt init */
 void cm1e_drive_cml_init(cm1e_drive_cml_t *cml, uint16_t position, uint8_t channel,
                          cm1e_error_t (*submit)(void *context, cm1e_sdo_t *sdo), void *context);
-/** Puts a string behind those that wait. `timeout_ns`: between it, or a line of its answer, and the next line; 0: 1 s,
- *  of an origin search 70 s. CM1E_ERROR_INVALID_ARGUMENT: it is negative, or above CM1E_DRIVE_LONGEST_NS.
- *  CM1E_ERROR_CML_STRING: see cm1e_cml_check(). CM1E_ERROR_FULL: four wait. Whether it may move the motor is the
- *  caller's to judge. @rt cycle */
+/** Puts a string behind those that wait. `timeout_ns` is the time between the string, or a line of its answer, and the
+ *  next line; 0 selects 1 s, for an origin search 70 s. CM1E_ERROR_INVALID_ARGUMENT: it is negative, or above
+ *  CM1E_DRIVE_LONGEST_NS. CM1E_ERROR_CML_STRING: see cm1e_cml_check(). CM1E_ERROR_FULL: four strings wait. The caller
+ *  decides whether a string may move the motor. @rt cycle */
 cm1e_error_t cm1e_drive_cml_send(cm1e_drive_cml_t *cml, const char *text, int64_t timeout_ns, uint32_t *ticket);
 /** Makes one step. `ready`: 0x6061 shows CML, and the controlword has been 0000h for five cycles of process data. @rt
  *  cycle */
 void cm1e_drive_cml_step(cm1e_drive_cml_t *cml, int64_t now_ns, bool ready);
-/** NULL: forgotten. @rt cycle */
+/** The request with this ticket; NULL: it is forgotten. @rt cycle */
 const cm1e_drive_cml_request_t *cm1e_drive_cml_request(const cm1e_drive_cml_t *cml, uint32_t ticket);
 /** A line of its answer, 0 = first; NULL: there is none, or another string has come since (the first line is in the
  *  request). @rt cycle */

@@ -1,5 +1,5 @@
-/* CML without a cycle: the same steps, with transfers that are waited for, and the flows of appendix 3.2 and 3.3 around
- * them. */
+/* CML while no cycle runs: the steps of drive_cml.c with transfers that block, and before and after them the flows of
+ * appendix 3.2 and 3.3. */
 #include <string.h>
 
 #include "bus/bus_image.h"
@@ -29,7 +29,7 @@ static void sleep_for(cm1e_bus_t *bus, int64_t time_ns)
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
 }
 
-/* A transfer that has ended when this returns. What it tells of an abort is in the diag. */
+/* The transfer has ended when this returns. The code of an abort is in the diag. */
 static cm1e_error_t transfer(void *context, cm1e_sdo_t *sdo)
 {
     const place_t *at = context;
@@ -77,7 +77,7 @@ static cm1e_error_t read_mode(const place_t *at, int8_t *mode)
     return error;
 }
 
-/* Why a bridge may refuse: it moves, or the motor has an error. */
+/* Explains why a mode was not reached. A bridge refuses while the motor moves or has an error. */
 static cm1e_error_t not_confirmed(const place_t *at, int8_t wanted, int8_t shown)
 {
     char words[CM1E_BRIDGE_STATUS_TEXT] = "unknown";
@@ -140,7 +140,7 @@ static cm1e_error_t run(place_t *at, cm1e_drive_cml_t *cml, const char *text, co
         if (!cm1e_drive_cml_idle(cml))
             sleep_for(at->bus, step_ns);
     }
-    cm1e_clock_sleep_until(clock, cml->free_ns); /* of the string that may come next, which knows nothing of this one */
+    cm1e_clock_sleep_until(clock, cml->free_ns); /* the next string may have another cml, which does not know it */
     return error != CM1E_OK ? error : cm1e_drive_cml_request(cml, *ticket)->error;
 }
 
@@ -170,7 +170,7 @@ static cm1e_error_t describe(const place_t *at, const cm1e_drive_cml_t *cml, con
     case CM1E_ERROR_CANCELLED:
         return cm1e_diag_set(at->diag, error, 0, "Slave %u, connector %u: \"%s\" was cancelled.", at->position,
                              at->channel, request->text);
-    default: return error; /* of a transfer, and described there */
+    default: return error; /* the transfer has described it */
     }
 }
 
@@ -213,7 +213,7 @@ static void free_motor(const place_t *at, cm1e_drive_cml_t *cml)
     place_t quiet = {at->bus, at->position, at->channel, NULL};
     cm1e_drive_cml_init(cml, at->position, at->channel, transfer, &quiet);
     run(&quiet, cml, cm1e_drive_cml_motor_free(cml, text), NULL, &ticket);
-    sleep_for(at->bus, 2 * CM1E_BRIDGE_MODE_INTERVAL_NS); /* and this one arrives */
+    sleep_for(at->bus, 2 * CM1E_BRIDGE_MODE_INTERVAL_NS); /* it has to arrive before the mode changes */
 }
 
 cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, cm1e_diag_t *diag)

@@ -38,7 +38,7 @@ typedef enum cm1e_drive_cmd_state {
     CM1E_DRIVE_CMD_LOST,            /**< the bus was away or CMD was left meanwhile: nobody knows */
 } cm1e_drive_cmd_state_t;
 
-/** How it went with the last command. `timeout_ns` of cm1e_drive_cmd_start() is for the search alone. */
+/** The state of the last command. `timeout_ns` of cm1e_drive_cmd_start() is for the search alone. */
 typedef struct cm1e_drive_cmd_run {
     cm1e_drive_cmd_state_t state;
     cm1e_drive_cmd_t command;       /**< what the caller started */
@@ -52,7 +52,7 @@ typedef struct cm1e_drive_cmd_run {
     int64_t heard_ns, deadline_ns, timeout_ns, release_ns;
 } cm1e_drive_cmd_run_t;
 
-/** Starts a command. CM1E_ERROR_STATE: the motor is not in CMD; CM1E_ERROR_AXIS_OFFLINE: it is not heard;
+/** Starts a command. CM1E_ERROR_STATE: the motor is not in CMD; CM1E_ERROR_AXIS_OFFLINE: it does not answer;
  *  CM1E_ERROR_BUSY: another one is under way, or a search that has not ended (Motor free and Origin search abort take
  *  the place of any). `timeout_ns`: of an origin search; 0: 90 s. @rt cycle */
 cm1e_error_t cm1e_drive_cmd_start(struct cm1e_drive *drive, cm1e_drive_cmd_t command, int64_t timeout_ns);
@@ -64,7 +64,7 @@ static inline bool cm1e_drive_cmd_busy(cm1e_drive_cmd_state_t state)
     return state == CM1E_DRIVE_CMD_SENDING || state == CM1E_DRIVE_CMD_SEARCHING;
 }
 /** At the end of a run: ends a search and frees the motor (F607h, F107h); call it in every cycle until true. In other
- *  modes, and where nothing is heard of the motor, true at once; never later than 2 s after the first call.
+ *  modes, and if the motor does not answer, it is true at once; never later than 2 s after the first call.
  *  @rt cycle */
 bool cm1e_drive_cmd_release(struct cm1e_drive *drive);
 

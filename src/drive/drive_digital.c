@@ -1,7 +1,7 @@
 /*
- * Digital inputs and outputs of a motor behind a bridge: by SDO, in csp, while the motor is enabled (BR 6.5), or in the
- * words of CPIO. Inputs are asked for while somebody reads them. Outputs are written when they are to change, and once
- * whenever they become reachable: what they are by then, nobody knows.
+ * Digital inputs and outputs of a motor behind a bridge. In CPIO they are in its words. In csp they are transferred by
+ * SDO, while the motor is enabled (BR 6.5). Inputs are polled while a caller reads them. Outputs are written when they
+ * are to change, and once whenever they become reachable, because their state is unknown then.
  */
 #include "core/bytes.h"
 #include "drive/drive_kind.h"

@@ -185,7 +185,7 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
     return clamp_i32(velocity);
 }
 
-/* Of a mode that is not known: no state, no torque, controlword 0000h. */
+/* The words of an unknown mode: no state, no torque, controlword 0000h. */
 static const cm1e_device_words_t unknown_words = {0};
 
 static void derive(cm1e_drive_t *drive)

@@ -1,7 +1,7 @@
 /**
  * @file drive_kind.h
- * What serving one kind of device needs beside its table (device/devices.h): code that runs at start-up and in every
- * cycle. The other sources of this room ask the table and name no device, but for those whose names say so.
+ * The code that one kind of device needs in addition to its table (device/devices.h), at start-up and in every cycle.
+ * The other sources of this room use the table and name no device, except those whose names say so.
  */
 #ifndef CM1E_DRIVE_DRIVE_KIND_H
 #define CM1E_DRIVE_DRIVE_KIND_H

@@ -1,7 +1,8 @@
 /*
- * The mode of operation: in the process data where 0x6060 and 0x6061 are mapped, else over SDO (UG 6.2.1; BR 6.2.2 and
- * appendix 3): 0x6060 written, 0x6061 read until it shows the mode. A kind of drive with ways that cannot be gone back
- * is asked where it is before anything is written, and gets a write at rest and without an error only.
+ * The mode of operation. It is in the process data if 0x6060 and 0x6061 are mapped. Otherwise 0x6060 is written by SDO,
+ * and 0x6061 is read until it shows the mode (UG 6.2.1; BR 6.2.2 and appendix 3). Some switches of a motor behind a
+ * bridge cannot be undone (`asks_mode_first`): its mode is read before the first write, and 0x6060 is written only at
+ * rest and without an error.
  */
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
@@ -170,8 +171,8 @@ static bool shows_fault(const cm1e_drive_t *drive, const cm1e_device_mode_t *mod
 }
 
 /* BR appendix 3: "Confirm No Error Occurs". While a switch is under way the feedback shows no fault, because the
- * statusword may be of either mode: a fault is one in both. In CMD the statusword does not tell (BR 7.1.3), so F530 is
- * asked. */
+ * statusword may be of either mode: a fault is one in both. In CMD the statusword shows no fault (BR 7.1.3), so F530 is
+ * read. */
 static bool is_sound(cm1e_drive_t *drive)
 {
     if (place(drive)->words->commands)

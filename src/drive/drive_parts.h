@@ -1,7 +1,7 @@
 /**
  * @file drive_parts.h
- * The data of a drive: a struct for each of its parts, and the drive, which is made of them. Who reads a part may do so
- * anywhere; the sources that its comment names are the only ones that write it (test `structs`).
+ * The data of a drive: a struct for each of its parts, and the drive, which is made of them. Any source may read a
+ * part; only the sources that its comment names write it (test `structs`).
  */
 #ifndef CM1E_DRIVE_DRIVE_PARTS_H
 #define CM1E_DRIVE_DRIVE_PARTS_H
@@ -103,9 +103,9 @@ typedef struct cm1e_drive_range {
 typedef struct cm1e_drive_actual {
     int64_t read_ns;                /**< time of the last good one */
     bool seen;                      /**< inputs were valid at least once */
-    uint8_t rejected;               /**< in a row: positions that the motor cannot have come to */
+    uint8_t rejected;               /**< in a row: positions that the motor cannot have reached */
     uint8_t contradictions;         /**< positions that contradicted the actual velocity, less those that agreed */
-    uint8_t distrusted;             /**< good positions that are still to come before torque is asked for */
+    uint8_t distrusted;             /**< good positions still to come before torque is requested */
 } cm1e_drive_actual_t;
 
 /** The set-point on the wire. Written by drive.h, drive.c, drive_io.c and drive_virtual.c. */
@@ -145,10 +145,10 @@ typedef struct cm1e_drive_change {
     cm1e_sdo_t sdo;
 } cm1e_drive_change_t;
 
-/** Torque as it is asked for. Written by drive.c, drive_mode.c, drive_reset.c and drive_virtual.c. */
+/** The torque that is requested. Written by drive.c, drive_mode.c, drive_reset.c and drive_virtual.c. */
 typedef struct cm1e_drive_torque {
     bool asked;                     /**< by the last write */
-    bool was_enabled;               /**< Operation enabled was seen since torque is asked for */
+    bool was_enabled;               /**< Operation enabled was seen since torque was requested */
     bool confirmed;                 /**< the commanded mode was shown in Operation enabled */
 } cm1e_drive_torque_t;
 

@@ -1,6 +1,6 @@
 /*
- * Fault reset: wait until the drive takes part in the cycle, one short edge of controlword bit 7, then wait for the
- * fault bit to go. From V1.3.5 on clearing a power-up fault 0x7510 resets the device (UG 10.1): it leaves the bus,
+ * Fault reset: waits until the drive takes part in the cycle, gives one short edge of controlword bit 7, and waits for
+ * the fault bit to go. From V1.3.5 on clearing a power-up fault 0x7510 resets the device (UG 10.1): it leaves the bus,
  * comes back, and would do so again and again while the bit stayed set. So the bit is set once and never for long.
  */
 #include "drive/drive_kind.h"

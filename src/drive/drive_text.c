@@ -1,4 +1,4 @@
-/* The latched fault in sentences: whose, what, with which numbers, and what to do about it. */
+/* Describes the latched fault in sentences: the axis, the cause, its numbers, and the cure. */
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -93,7 +93,7 @@ static void say_status(writer_t *w, const cm1e_drive_t *drive)
         say(w, " Cure: %s.", cure);
 }
 
-/* A cure that is better than the common one; NULL: there is none. */
+/* The cure of the device's own error; NULL: the common advice applies. */
 static const char *further(const cm1e_drive_t *drive)
 {
     const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->fault.mode_shown);

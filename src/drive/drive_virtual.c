@@ -1,5 +1,5 @@
-/* A drive without a device. That of a virtual axis is enabled when it is told to be, and is where its target is; that
- * of an encoder shows what the program has written, and is never enabled. */
+/* Drives without a device. The drive of a virtual axis is enabled on command, and its actual position is its target.
+ * The drive of an encoder axis shows the counts that the program has written, and is never enabled. */
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
@@ -38,14 +38,14 @@ cm1e_error_t cm1e_drive_init_virtual(cm1e_drive_t *drive)
     return CM1E_OK;
 }
 
-/* Its velocity is the difference of two positions, as that of a motor that shows none. */
+/* The velocity is the difference of two positions, as for a motor whose mapping lacks 0x606C. */
 static void read_encoder(cm1e_drive_t *drive)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
     const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
     const int32_t way = (int32_t)(drive->encoder.counts - (uint32_t)f->position);
     f->online = f->fresh = drive->encoder.valid;
-    drive->encoder.valid = false; /* written anew in every cycle, or it is not there */
+    drive->encoder.valid = false; /* it has to be written in every cycle, otherwise it is offline */
     if (!f->fresh)
         return;
     if (drive->actual.seen && elapsed_ns > 0) {
