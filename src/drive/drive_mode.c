@@ -200,7 +200,6 @@ static void give_up(cm1e_drive_t *drive)
 {
     cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_MODE_TIMEOUT);
     drive->change.phase = PHASE_GIVEN_UP;
-    drive->change.uncertain = false;
     drive->change.shown = drive->change.read;
 }
 

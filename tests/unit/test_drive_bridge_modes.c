@@ -345,6 +345,111 @@ static void test_a_full_queue_is_waited_for(void)
     TEST_ASSERT_TRUE(bench_mode(CML, 200));
 }
 
+/* What fails is tried again every 50 ms: the write, and, if the writes arrive, the read behind it. */
+static void test_failed_transfers_are_not_repeated_at_once(void)
+{
+    for (int reads = 0; reads < 2; reads++) {
+        bench_open(CM1E_DEVICE_EB12, 1);
+        drive.command.mode = (cm1e_mode_t)CML;
+        fake_bridge.mode_shown = CSP;
+        for (int i = 0; i < 300; i++) {
+            fake_bridge.broken_sdo = !reads || !drive.change.sdo.write;
+            bench_cycle();
+        }
+        TEST_ASSERT_GREATER_THAN_UINT(4, writes_of_mode());
+        TEST_ASSERT_LESS_THAN_UINT(8, writes_of_mode());
+    }
+}
+
+static void leave_operational(int cycles)
+{
+    bus.watch.al_state = CM1E_AL_SAFE_OP;
+    bench_cycles(cycles);
+    bus.watch.al_state = CM1E_AL_OP;
+}
+
+/* The time in which a bridge is away is none in which it could have switched. */
+static void test_a_switch_has_its_time_anew_after_an_absence(void)
+{
+    fake_bridge.mode_shown = CSP;
+    drive.command.mode = (cm1e_mode_t)CML;
+    bench_cycles(500);
+    leave_operational(1000);
+    fake_bridge_axis()->mode = CSP;
+    fake_bridge.mode_shown = -1;
+    TEST_ASSERT_TRUE(bench_mode(CML, 300));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
+}
+
+/* It comes back in the same mode: it was not switched off. */
+static void test_an_absence_alone_makes_no_dead_end_normal(void)
+{
+    go_to(CMD);
+    go_to(CML);
+    leave_operational(20);
+    bench_cycles(100);
+    TEST_ASSERT_EQUAL_INT8(CML, drive.feedback.mode);
+    TEST_ASSERT_TRUE(drive.change.abnormal);
+    TEST_ASSERT_FALSE(bench_mode(CSP, 500));
+}
+
+/* Which mode the motor is in is unknown until 0x6061 shows the one that was written. */
+static void test_a_switch_is_not_overtaken_by_the_next_one(void)
+{
+    const unsigned before = bus.sdo_count;
+    fake_bridge.mode_shown = CSP;
+    drive.command.mode = (cm1e_mode_t)CML;
+    while (writes_of_mode() == 0)
+        bench_cycle();
+    TEST_ASSERT_TRUE(bus.sdo_log[before].write); /* the mode was read at the start */
+    drive.command.mode = (cm1e_mode_t)CPIO;
+    for (int i = 0; i < 100; i++) {
+        bench_cycle();
+        TEST_ASSERT_EQUAL_INT(CML, drive.mode.commanded);
+    }
+    fake_bridge.mode_shown = -1;
+    TEST_ASSERT_TRUE(bench_mode(CPIO, 200));
+}
+
+static void test_after_a_switch_that_was_given_up_another_mode_can_be_commanded(void)
+{
+    fake_bridge.mode_shown = CSP;
+    drive.command.mode = (cm1e_mode_t)CML;
+    bench_cycles(1100);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_MODE_TIMEOUT, drive.fault.error);
+    fake_bridge_axis()->mode = CSP;
+    fake_bridge.mode_shown = -1;
+    TEST_ASSERT_TRUE(bench_mode(CPIO, 200));
+}
+
+/* A write of CMD or CPIO may have arrived, whatever comes of it. */
+static void test_a_dead_end_counts_from_its_write_on(void)
+{
+    bus.sdo_delay = 20;
+    drive.command.mode = (cm1e_mode_t)CMD;
+    bench_cycles(15);
+    TEST_ASSERT_EQUAL_INT8(CSP, fake_bridge_axis()->mode);
+    TEST_ASSERT_TRUE(drive.change.abnormal);
+}
+
+/* Words of another coding wait for a state without torque, though nobody requests torque any more. */
+static void test_a_state_with_torque_keeps_words_of_another_coding_away(void)
+{
+    static const int with_torque[] = {0x0233, 0x0237}; /* Switched on, Operation enabled */
+    for (int i = 0; i < 2; i++) {
+        bench_open(CM1E_DEVICE_EB12, 3);
+        fake_bridge.statusword = with_torque[i];
+        bench_cycles(3);
+        TEST_ASSERT_EQUAL_INT(i == 0 ? SWITCHED_ON : OPERATION_ENABLED, drive.feedback.state);
+        drive.command.mode = (cm1e_mode_t)CML;
+        bench_cycles(100);
+        TEST_ASSERT_EQUAL_UINT(0, writes_of_mode());
+        TEST_ASSERT_EQUAL_INT(CSP, drive.mode.commanded);
+        fake_bridge.statusword = -1;
+        go_to(CML);
+    }
+}
+
 /* ---- with torque ------------------------------------------------------------------------------------------------ */
 
 static void test_hm_and_back_with_torque_never_jumps(void)
@@ -447,6 +552,13 @@ int main(void)
     RUN_TEST(test_a_switch_survives_broken_transfers_and_lost_frames);
     RUN_TEST(test_a_full_queue_is_waited_for);
     RUN_TEST(test_hm_and_back_with_torque_never_jumps);
+    RUN_TEST(test_failed_transfers_are_not_repeated_at_once);
+    RUN_TEST(test_a_switch_has_its_time_anew_after_an_absence);
+    RUN_TEST(test_an_absence_alone_makes_no_dead_end_normal);
+    RUN_TEST(test_a_switch_is_not_overtaken_by_the_next_one);
+    RUN_TEST(test_after_a_switch_that_was_given_up_another_mode_can_be_commanded);
+    RUN_TEST(test_a_dead_end_counts_from_its_write_on);
+    RUN_TEST(test_a_state_with_torque_keeps_words_of_another_coding_away);
     RUN_TEST(test_homing_starts_by_bit_4_in_hm_alone);
     RUN_TEST(test_a_refused_way_to_hm_takes_the_torque);
     RUN_TEST(test_torque_that_no_mode_gives_is_an_error);
