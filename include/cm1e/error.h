@@ -104,7 +104,7 @@ extern "C" {
     X(ERROR_AXIS_MASTER, -120, "the master is not an axis of this scheduler")                                       \
     X(ERROR_AXIS_COUPLING_CYCLE, -121, "an axis cannot follow itself, directly or through other axes")              \
     X(ERROR_AXIS_MASTER_LOST, -122, "the master failed, lost its position or does not answer")                      \
-    X(ERROR_AXIS_COUPLING_LIMIT, -123, "the coupling asks for more than the axis limits allow")                     \
+    X(ERROR_AXIS_COUPLING_LIMIT, -123, "the coupling commands more than the axis limits allow")                     \
     X(ERROR_AXIS_COUPLED, -124, "an axis that this one is coupled with has stopped with an error")                  \
     X(ERROR_AXIS_NOT_COUPLED, -125, "the axis is not coupled by this kind of block")                                \
     X(ERROR_AXIS_RATIO, -126, "a ratio or a scaling is zero, not finite or too large")                              \

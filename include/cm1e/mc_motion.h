@@ -310,7 +310,7 @@ typedef struct MC_Jog_t {
     LREAL Deceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
     LREAL Jerk;         /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     /* outputs */
-    BOOL Done;          /**< the jog has ended and the axis stands */
+    BOOL Done;          /**< the jog has ended and the axis is at standstill */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
     cm1e_jog_private_t Private;

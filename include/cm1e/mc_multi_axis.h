@@ -136,7 +136,7 @@ typedef struct MC_GearInPos_t {
 #define MC_GEARINPOS_DEFAULTS .RatioNumerator = 1, .RatioDenominator = 1
 CM1E_API void MC_GearInPos(MC_GearInPos_t *fb);
 
-/** 4.8. Shifts the master's position for this slave to a phase shift. @rt cycle */
+/** 4.8. Shifts the position of the master, as this slave sees it, until the phase shift is PhaseShift. @rt cycle */
 typedef struct MC_PhasingAbsolute_t {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
@@ -156,7 +156,7 @@ typedef struct MC_PhasingAbsolute_t {
 } MC_PhasingAbsolute_t;
 CM1E_API void MC_PhasingAbsolute(MC_PhasingAbsolute_t *fb);
 
-/** 4.9. Shifts the master's position for this slave by a further phase shift. @rt cycle */
+/** 4.9. Shifts the position of the master, as this slave sees it, further by PhaseShift. @rt cycle */
 typedef struct MC_PhasingRelative_t {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
