@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """scripts/mutate: which defects it can plant in a source, and that it leaves comments, texts and the lines alone;
-which tests it counts as near a source.
+which tests it counts as near a source; that no entry of its list of equivalent defects is old.
 
     test_mutate.py <source folder>
 """
@@ -45,6 +45,11 @@ def main():
                           ("test_bridge_cml_exchange", True), ("test_cml_exchanges", False),
                           ("test_drives", False), ("test_axis_home", False)):
         assert bool(re.search(regex, name)) == is_near, (name, regex)
+    for known in mutate.EQUIVALENT: # each is a defect that its source still has
+        text = (Path(sys.argv[1]) / known[0]).read_text()
+        planted = ((known[0], text[text.rfind("\n", 0, begin) + 1:].split("\n", 1)[0].strip(), text[begin:end], new)
+                   for _, begin, end, new in mutate.defects(known[0], text))
+        assert known in planted, known
     print(f"{len(found)} defects in {SOURCE.count(chr(10))} lines")
 
 

@@ -393,6 +393,31 @@ static void test_an_absence_alone_makes_no_dead_end_normal(void)
     TEST_ASSERT_FALSE(bench_mode(CSP, 500));
 }
 
+/* Another tool may have switched it meanwhile, and a switch of before is not gone on with. */
+static void test_after_an_absence_the_mode_that_is_found_counts(void)
+{
+    leave_operational(20);
+    fake_bridge_axis()->mode = CMD;
+    bench_cycles(100);
+    TEST_ASSERT_TRUE(drive.change.abnormal);
+
+    bench_open(CM1E_DEVICE_EB12, 3);
+    fake_bridge.mode_shown = CSP;
+    drive.command.mode = (cm1e_mode_t)CML;
+    while (writes_of_mode() == 0)
+        bench_cycle();
+    bench_cycles(3);
+    bus.watch.al_state = CM1E_AL_SAFE_OP;
+    bench_cycles(20);
+    fake_bridge_axis()->mode = CSP;
+    drive.command.mode = CM1E_MODE_CSP;
+    bus.watch.al_state = CM1E_AL_OP;
+    const unsigned before = writes_of_mode();
+    bench_cycles(200);
+    TEST_ASSERT_EQUAL_UINT(before, writes_of_mode());
+    TEST_ASSERT_EQUAL_INT8(CSP, drive.feedback.mode);
+}
+
 /* Which mode the motor is in is unknown until 0x6061 shows the one that was written. */
 static void test_a_switch_is_not_overtaken_by_the_next_one(void)
 {
@@ -555,6 +580,7 @@ int main(void)
     RUN_TEST(test_failed_transfers_are_not_repeated_at_once);
     RUN_TEST(test_a_switch_has_its_time_anew_after_an_absence);
     RUN_TEST(test_an_absence_alone_makes_no_dead_end_normal);
+    RUN_TEST(test_after_an_absence_the_mode_that_is_found_counts);
     RUN_TEST(test_a_switch_is_not_overtaken_by_the_next_one);
     RUN_TEST(test_after_a_switch_that_was_given_up_another_mode_can_be_commanded);
     RUN_TEST(test_a_dead_end_counts_from_its_write_on);

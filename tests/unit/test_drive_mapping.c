@@ -324,12 +324,29 @@ static void test_mode_over_sdo_is_set_before_and_switched_in_the_cycle(void)
     }
 }
 
+static void answer_without_data(cm1e_bus_t *slave, cm1e_sdo_t *sdo)
+{
+    (void)slave;
+    sdo->size = sdo->write ? sdo->size : 0;
+    sdo->state = CM1E_SDO_DONE;
+}
+
+static void test_mode_that_cannot_be_read_is_an_error_in_words(void)
+{
+    fake_bus_init(&bus, CM1E_MAPPING_CSP, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.device_sdo = answer_without_data;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_MAILBOX, cm1e_drive_init(&drive, &bus, 0, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "object 0x6061 was read with 0 bytes instead of 1"), diag.text);
+}
+
 static void test_mode_over_sdo_that_is_refused_ends_in_a_timeout(void)
 {
     fake_bus_init(&bus, CM1E_MAPPING_CSP, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_init(&drive, &bus, 0, &diag));
     fake_bus_show(&bus);
+    const unsigned transfers = bus.sdo_count;
     enable(CM1E_MODE_CSP);
+    TEST_ASSERT_EQUAL_UINT(transfers, bus.sdo_count); /* it was shown at the start */
     drive.command.target_position = bus.position;
     bus.sdo_abort_index = 0x6060;
     drive.command.mode = CM1E_MODE_HM;
@@ -357,6 +374,7 @@ int main(void)
     RUN_TEST(test_24_bit_torque_has_a_sign);
     RUN_TEST(test_profile_objects_carry_the_limits_of_the_configuration);
     RUN_TEST(test_mappings_support_the_modes_whose_targets_they_have);
+    RUN_TEST(test_mode_that_cannot_be_read_is_an_error_in_words);
     RUN_TEST(test_mode_over_sdo_is_set_before_and_switched_in_the_cycle);
     RUN_TEST(test_mode_over_sdo_that_is_refused_ends_in_a_timeout);
     return UNITY_END();
