@@ -191,6 +191,22 @@ static void test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write(void
     fake_bridge.shortest_mode_interval_ns = INT64_MAX;
 }
 
+/* A write that arrived may take effect late: 0x6061 is read also while a motor that moves keeps the next write back. */
+static void test_a_late_switch_is_seen_while_the_motor_moves(void)
+{
+    fake_bridge.mode_shown = CSP;
+    drive.command.mode = (cm1e_mode_t)CML;
+    while (writes_of_mode() == 0)
+        bench_cycle();
+    for (int i = 0; i < 300; i++) {
+        fake_bridge_axis()->zero += 10;
+        fake_bridge.mode_shown = i < 150 ? CSP : -1;
+        bench_cycle();
+    }
+    TEST_ASSERT_EQUAL_UINT(1, writes_of_mode());
+    TEST_ASSERT_EQUAL_INT8(CML, drive.feedback.mode);
+}
+
 /* 200 pulses in a revolution and a tenth of it a second: in 20 ms that is not half a pulse. */
 static void test_a_coarse_resolution_does_not_hide_that_the_motor_turns(void)
 {
@@ -568,6 +584,7 @@ int main(void)
     RUN_TEST(test_words_of_another_coding_wait_until_the_torque_is_gone);
     RUN_TEST(test_a_switch_waits_for_rest);
     RUN_TEST(test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write);
+    RUN_TEST(test_a_late_switch_is_seen_while_the_motor_moves);
     RUN_TEST(test_a_coarse_resolution_does_not_hide_that_the_motor_turns);
     RUN_TEST(test_an_error_of_the_motor_keeps_every_mode_but_cmd_shut);
     RUN_TEST(test_an_error_of_the_motor_in_cmd_keeps_it_there);
