@@ -19,12 +19,13 @@ static bool far(const axis_t *axis, double way)
         return false;
     axis->now = stop(axis);
     write(text);
-    return way < -turn / 2.0;
+    return way < -turn / 2.0 + 0.0;
 }
 '''
 WANTED = {
     (" > ", " >= "), (" && ", " || "), (" == ", " != "), (" < ", " <= "), (" / ", " * "), ("false;", "true;"),
-    ("2.5", "(2.5 * 4.0)"), ("2.0", "(2.0 * 4.0)"), ("1", "2"), ("axis->now = stop(axis);", ";"), ("write(text);", ";"),
+    ("2.5", "(2.5 * 4.0)"), ("2.0", "(2.0 * 4.0)"), ("0.0", "1.0"), (" + ", " - "),
+    ("1", "2"), ("axis->now = stop(axis);", ";"), ("write(text);", ";"),
     ("way > 2.5 && axis->count == 1", "!(way > 2.5 && axis->count == 1)"),
 }
 
