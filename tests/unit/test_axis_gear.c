@@ -219,6 +219,21 @@ static void test_it_does_not_take_over_where_it_can_no_longer_stop(void)
     }
 }
 
+/* The catch-up is planned with the jerk that the master leaves, and takes 228 cycles here. With less jerk it takes more
+ * than 300. */
+static void test_the_way_into_step_uses_the_jerk_that_the_master_leaves(void)
+{
+    axes_begin(2);
+    (void)axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 20,
+                                                      .acceleration = 50, .jerk = 500});
+    axes_cycles(200);
+    const cm1e_command_id_t id = axes_gear_in(SLAVE, MASTER, 1, 1);
+    int cycles = 0;
+    for (; !axes_status(SLAVE, id).reached && cycles < 5000; cycles++)
+        axes_cycles(1);
+    TEST_ASSERT_LESS_THAN_INT(260, cycles);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -233,5 +248,6 @@ int main(void)
     RUN_TEST(test_gear_out_does_not_end_a_cam_nor_anything_else);
     RUN_TEST(test_another_ratio_takes_over_without_a_step);
     RUN_TEST(test_what_cannot_be_followed_is_refused);
+    RUN_TEST(test_the_way_into_step_uses_the_jerk_that_the_master_leaves);
     return UNITY_END();
 }
