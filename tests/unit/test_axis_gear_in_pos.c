@@ -589,6 +589,36 @@ static void test_a_single_shot_whose_master_hesitates_at_its_beginning(void)
     axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
 }
 
+/* ContinuousUpdate on the way: a new offset counts from the end of the approach on, which itself goes on as planned. */
+static void test_an_offset_that_changes_on_the_way_counts_from_its_end_on(void)
+{
+    double on_the_way[2];
+    for (int changes = 0; changes < 2; changes++) {
+        axes_begin(2);
+        const MC_CAM_POINT points[] = {{0, 0, 0, 0}, {10, 4, 0, 0}};
+        const MC_CAM_REF table = {points, 2, mcCamPolynomial5};
+        cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .numerator = 1, .denominator = 1}},
+                                         .master_start_distance = 5, .start_mode = mcRampIn};
+        axes_wait(MASTER, axes_move_to(MASTER, -10, 10), 5000);
+        axes_wait(SLAVE, axes_move_to(SLAVE, -3, 10), 5000);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK,
+                              cm1e_axis_cam_select(axes_axis(SLAVE), &table, false, true, true, &coupling.cam));
+        const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling};
+        const cm1e_command_id_t id = axes_command(SLAVE, &command);
+        axes_move_velocity(MASTER, 4);
+        AXES_UNTIL(set_of(MASTER) > -3);
+        coupling.slave_offset = changes ? 0.3 : 0;
+        for (int cycles = 0; set_of(MASTER) < 12; cycles++) {
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axes_axis(SLAVE), id, &command));
+            axes_cycles(1);
+            if (cycles == 500)
+                on_the_way[changes] = set_of(SLAVE); /* the master is at about -1 */
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, changes ? 4.3 : 4, set_of(SLAVE));
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(on_the_way[0], on_the_way[1]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -617,5 +647,6 @@ int main(void)
     RUN_TEST(test_a_cam_by_way_is_in_step_at_its_place);
     RUN_TEST(test_a_single_shot_that_begins_with_a_slope);
     RUN_TEST(test_a_single_shot_whose_master_hesitates_at_its_beginning);
+    RUN_TEST(test_an_offset_that_changes_on_the_way_counts_from_its_end_on);
     return UNITY_END();
 }
