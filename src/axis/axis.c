@@ -78,6 +78,13 @@ AXIS_REF_t cm1e_axis_reference(const cm1e_axis_t *axis) { return (AXIS_REF_t){.H
 
 const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis) { return axis->drive.bus; }
 
+void cm1e_axis_share_cycle(cm1e_axis_t *axis, const void *cycle) { axis->cycle = cycle; }
+
+bool cm1e_axis_shares_cycle(const cm1e_axis_t *axis, const cm1e_axis_t *other)
+{
+    return axis->drive.bus == other->drive.bus || (axis->cycle && axis->cycle == other->cycle);
+}
+
 const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis) { return axis->config; }
 
 static bool powered_state(cm1e_axis_state_t state)

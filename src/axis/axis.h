@@ -256,6 +256,11 @@ bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context);
 double cm1e_axis_place(const cm1e_axis_t *axis, bool actual);
 /** The bus of the axis. @rt cycle */
 const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis);
+/** Axes with the same `cycle` may follow each other, even on different buses: one thread advances all of them in the same
+ *  cycle. @rt init */
+void cm1e_axis_share_cycle(cm1e_axis_t *axis, const void *cycle);
+/** Whether one of the two may follow the other. @rt cycle */
+bool cm1e_axis_shares_cycle(const cm1e_axis_t *axis, const cm1e_axis_t *other);
 /** After a silence: the part of the set velocity (0 ... 1) with which the motor can go on. With more it would exceed
  *  the maximum velocity of the axis while it catches up. @rt cycle */
 double cm1e_axis_part_left(const cm1e_axis_t *axis);

@@ -329,6 +329,7 @@ struct cm1e_axis {
     not_set_t not_set;
     override_t override, override_refused; /**< the second: the last refused one, for the text */
     const void *group;              /**< the group of the axis; NULL: none */
+    const void *cycle;              /**< what runs its cycle: cm1e_axis_share_cycle(); NULL: its bus alone */
     tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
     driving_t driving;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */

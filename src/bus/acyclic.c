@@ -58,9 +58,9 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
     cm1e_errand_serve(bus, now_ns);
     cm1e_sdo_queue_serve(bus, now_ns);
     listen_in_turn(bus, now_ns);
-    uint32_t place = bus->next_slave;
+    uint32_t place = bus->acyclic.next;
     for (uint32_t n = 0; n < bus->slave_count && limit > 0; n++) {
-        if (bus->sent_count == CM1E_DATAGRAMS_IN_FLIGHT)
+        if (bus->acyclic.count == CM1E_DATAGRAMS_IN_FLIGHT)
             break;
         place = place + 1 < bus->slave_count ? place + 1 : 0;
         cm1e_bus_slave_t *slave = &bus->slaves[place];
@@ -71,8 +71,8 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
             continue;
         }
         cm1e_soem_post(bus->soem, &slave->datagram, now_ns);
-        bus->sent[bus->sent_count++] = slave;
-        bus->next_slave = place;
+        bus->acyclic.sent[bus->acyclic.count++] = slave;
+        bus->acyclic.next = place;
         limit--;
     }
 }
@@ -103,12 +103,12 @@ static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns)
 {
     unsigned kept = 0;
-    for (unsigned i = 0; i < bus->sent_count; i++) {
-        cm1e_bus_slave_t *slave = bus->sent[i];
+    for (unsigned i = 0; i < bus->acyclic.count; i++) {
+        cm1e_bus_slave_t *slave = bus->acyclic.sent[i];
         const bool back = cm1e_soem_take(bus->soem, &slave->datagram, wait_ns);
         const int64_t now_ns = cm1e_clock_now(bus->clock);
         if (!back && now_ns - slave->datagram.sent_ns < CM1E_FRAME_LOST_NS) {
-            bus->sent[kept++] = slave;
+            bus->acyclic.sent[kept++] = slave;
             continue;
         }
         if (!back)
@@ -117,16 +117,16 @@ void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns)
             bus->counters.mailbox_retries++;
         deliver(bus, slave, now_ns);
     }
-    bus->sent_count = kept;
+    bus->acyclic.count = kept;
 }
 
 void cm1e_acyclic_cancel(cm1e_bus_t *bus)
 {
-    for (unsigned i = 0; i < bus->sent_count; i++) {
-        cm1e_soem_drop(bus->soem, &bus->sent[i]->datagram);
-        bus->sent[i]->owner = OWNER_NONE;
+    for (unsigned i = 0; i < bus->acyclic.count; i++) {
+        cm1e_soem_drop(bus->soem, &bus->acyclic.sent[i]->datagram);
+        bus->acyclic.sent[i]->owner = OWNER_NONE;
     }
-    bus->sent_count = 0;
+    bus->acyclic.count = 0;
     if (bus->supervised.sent)
         cm1e_soem_drop(bus->soem, &bus->supervised.datagram);
     bus->supervised.sent = false;

@@ -125,6 +125,13 @@ typedef struct cm1e_safe_outputs {
     bool released;                           /**< the program has ended */
 } cm1e_safe_outputs_t;
 
+/** Acyclic datagrams on their way (acyclic.c). */
+typedef struct cm1e_acyclic {
+    cm1e_bus_slave_t *sent[CM1E_DATAGRAMS_IN_FLIGHT];
+    unsigned count;
+    uint32_t next;                           /**< round robin: the slave whose turn it is */
+} cm1e_acyclic_t;
+
 struct cm1e_bus {
     cm1e_bus_config_t config;                /**< zeros of the bus itself replaced by their defaults */
     int phase;                               /**< cm1e_bus_phase_t; atomic: cm1e_sdo_submit() looks at it */
@@ -149,15 +156,14 @@ struct cm1e_bus {
     bool exchanging;                         /**< process data goes with every pump or cycle */
     bool in_flight;                          /**< a process data frame is on its way */
     int64_t next_cycle_ns;                   /**< blocking phases only */
+    int64_t sent_ns;                         /**< of the last process data frame */
     uint32_t bad_cycles;                     /**< in a row */
     bool any_silent;                         /**< some slave did not take part in the last cycle that came back */
     bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
     cm1e_error_t last_error;
     cm1e_bus_counters_t counters;
 
-    cm1e_bus_slave_t *sent[CM1E_DATAGRAMS_IN_FLIGHT];
-    unsigned sent_count;
-    uint32_t next_slave;                     /**< round robin of acyclic datagrams */
+    cm1e_acyclic_t acyclic;
     cm1e_listening_t listening;
     cm1e_supervised_t supervised;
 

@@ -1,4 +1,5 @@
 #include "bus/bus_internal.h"
+#include "bus/kept.h"
 #include "core/bytes.h"
 #include "core/in_task.h"
 
@@ -58,6 +59,7 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
     }
     bus->operations++;
     cm1e_bus_set_phase(bus, BUS_OPERATING);
+    cm1e_bus_keep(bus);
     return CM1E_OK;
 }
 
@@ -139,6 +141,7 @@ void cm1e_bus_stop(cm1e_bus_t *bus)
 {
     if (!bus || bus->phase < BUS_OPEN || !bus->soem || cm1e_in_task_note("cm1e_bus_stop()"))
         return;
+    cm1e_bus_unkeep(bus);
     cm1e_bus_enter(bus);
     if (bus->phase == BUS_OPERATING && bus->safe.any)
         send_safe_outputs(bus);

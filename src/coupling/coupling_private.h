@@ -41,6 +41,7 @@ typedef struct link {
     cm1e_axis_t *master;           /**< NULL: no master, or it was destroyed */
     MC_SOURCE source;
     bool listed;
+    bool apart;                    /**< the master is on another bus */
     position_t origin;             /**< position of the master, as seen, when the slave began to follow it */
     double ratio;                  /**< u of the slave per u of the master; of gears and combinations */
     double counts_ratio;           /**< the ratio in counts */
@@ -103,6 +104,7 @@ typedef enum master_trouble {
     MASTER_HOMING,                 /**< the master is homed by its drive */
     MASTER_UNSEEN,                 /**< the actual position of the master is unknown */
     MASTER_JUMPED,
+    MASTER_SILENT,                 /**< on another bus, whose frames do not come back while those of the slave do */
 } master_trouble_t;
 
 /** The data of a waiting coupling in addition to its move. */

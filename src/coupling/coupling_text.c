@@ -13,6 +13,7 @@ static const char *const troubles[] = {
                     "(mcActualValue)",
     [MASTER_HOMING] = "is homed by its drive, which changes its positions: wait for the end of the homing",
     [MASTER_UNSEEN] = "does not say where it is: its inputs are missing",
+    [MASTER_SILENT] = "is on another bus, of which a frame was lost",
     [MASTER_JUMPED] = "jumped: its position was set to where its motor is, which no slave can follow",
 };
 
@@ -98,7 +99,7 @@ bool cm1e_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refuse
     switch (error) {
     case CM1E_ERROR_AXIS_MASTER:
         snprintf(text, size, "Axis \"%s\": Master names no axis of its scheduler; expected the AXIS_REF of another "
-                 "axis in the same bus file.", name);
+                 "axis of a bus in this scheduler.", name);
         return true;
     case CM1E_ERROR_AXIS_COUPLING_CYCLE:
         snprintf(text, size, "Axis \"%s\" cannot follow \"%s\", which is this axis or follows it, perhaps through "

@@ -194,6 +194,8 @@ static master_trouble_t see(link_t *link, position_t *position)
         return MASTER_DESTROYED;
     if (link->source == mcActualValue)
         return see_actual(link, position);
+    if (link->apart && master->silence.silent > 0 && link->slave->silence.silent == 0)
+        return MASTER_SILENT;
     const master_trouble_t trouble = trouble_of_set_value(master);
     if (trouble && trouble != MASTER_STOPPING)
         return trouble;
@@ -278,7 +280,7 @@ master_trouble_t cm1e_coupling_see(cm1e_axis_t *slave, follow_t *follow) { retur
 cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *asked)
 {
     cm1e_axis_t *master = cm1e_axis_from_reference(&asked->axis);
-    if (!master || master->drive.bus != slave->drive.bus)
+    if (!master || !cm1e_axis_shares_cycle(slave, master))
         return CM1E_ERROR_AXIS_MASTER;
     memcpy(slave->coupling->other_name, master->config->name, sizeof slave->coupling->other_name);
     if (would_follow_itself(slave, master))
@@ -288,7 +290,8 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
     if (slave->advanced && !master->advanced) /* a waiting command begins in this cycle */
         cm1e_axis_advance(master);
     link_t *link = &follow->links[follow->count];
-    *link = (link_t){.master = master, .slave = slave, .source = asked->source};
+    *link = (link_t){.master = master, .slave = slave, .source = asked->source,
+                     .apart = master->drive.bus != slave->drive.bus};
     if (master->config->type == CM1E_AXIS_ENCODER || drive_profiles(master)) /* it has only an actual value */
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;

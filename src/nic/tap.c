@@ -1,4 +1,5 @@
 /* The path of every frame between port and backend. Without tap, pcap and held frames it is a plain call. */
+#include <stdatomic.h>
 #include <string.h>
 
 #include "nic/nic_private.h"
@@ -50,10 +51,21 @@ static bool pass_tap(cm1e_nic_t *nic, cm1e_tap_frame_t *t)
     return t->length > 0 && t->copies > 0;
 }
 
+typedef void (*before_send_t)(const cm1e_nic_t *nic);
+static _Atomic(before_send_t) before_send;
+
+void cm1e_nic_before_send(before_send_t function)
+{
+    atomic_store_explicit(&before_send, function, memory_order_relaxed);
+}
+
 bool cm1e_nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
 {
+    const before_send_t before = atomic_load_explicit(&before_send, memory_order_relaxed);
     if (length == 0 || length > CM1E_FRAME_MAX || port >= nic->link.ports)
         return false;
+    if (before)
+        before(nic);
     if (!nic->tap && !nic->pcap)
         return nic->backend->send(&nic->link, port, frame, length);
 

@@ -87,55 +87,58 @@ void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64
     look_at_counter(log, CM1E_LOG_SYNC_LOST, sync_losses, run_ns);
 }
 
-static void write_emergency(log_t *log, uint32_t position, const cm1e_emergency_t *emergency, int64_t run_ns)
+static void write_emergency(log_t *log, uint32_t number, uint32_t position, const cm1e_emergency_t *emergency, int64_t run_ns)
 {
     uint64_t bytes = 0;
     for (size_t i = sizeof emergency->data; i-- > 0;)
         bytes = bytes << 8 | emergency->data[i];
     write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_EMERGENCY, .axis = -1, .code = emergency->code,
-                                        .detail = (uint32_t)emergency->error_register << 16 | position,
+                                        .detail = number << 24 | (uint32_t)emergency->error_register << 16 | position,
                                         .value = (double)bytes}, run_ns);
 }
 
-void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, int64_t run_ns)
+void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
 {
     cm1e_emergency_t news[CM1E_EMERGENCIES];
-    if (log->emergencies == cm1e_bus_emergencies(bus))
+    log_slaves_t *slaves = &log->slaves[number];
+    if (slaves->emergencies == cm1e_bus_emergencies(bus))
         return;
-    log->emergencies = cm1e_bus_emergencies(bus);
-    if (log->operation != cm1e_bus_operation(bus)) /* after another scan they count from 1 again */
-        memset(log->told, 0, sizeof log->told);
-    log->operation = cm1e_bus_operation(bus);
+    slaves->emergencies = cm1e_bus_emergencies(bus);
+    if (slaves->operation != cm1e_bus_operation(bus)) /* after another scan they count from 1 again */
+        memset(slaves->told, 0, sizeof slaves->told);
+    slaves->operation = cm1e_bus_operation(bus);
     for (uint32_t i = 0; i < cm1e_bus_slave_count(bus); i++) {
-        const size_t count = cm1e_bus_emergency(bus, (uint16_t)(i + 1), log->told[i], news, CM1E_EMERGENCIES, NULL);
+        const size_t count = cm1e_bus_emergency(bus, (uint16_t)(i + 1), slaves->told[i], news, CM1E_EMERGENCIES, NULL);
         for (size_t n = 0; n < count; n++)
-            write_emergency(log, i + 1, &news[n], run_ns);
+            write_emergency(log, number, i + 1, &news[n], run_ns);
         if (count > 0)
-            log->told[i] = news[count - 1].number;
+            slaves->told[i] = news[count - 1].number;
     }
 }
 
-static void look_at_port(log_t *log, const cm1e_bus_t *bus, uint32_t position, unsigned port, int64_t run_ns)
+static void look_at_port(log_t *log, const cm1e_bus_t *bus, uint32_t number, uint32_t position, unsigned port,
+                         int64_t run_ns)
 {
     for (unsigned fault = 0; fault < CM1E_PORT_FAULTS; fault++) {
-        uint32_t *told = &log->port_faults[position - 1][port][fault];
+        uint32_t *told = &log->slaves[number].port_faults[position - 1][port][fault];
         const uint32_t total = cm1e_bus_port_fault(bus, position, port, (cm1e_port_fault_t)fault);
         if (total > *told)
             write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_PORT, .axis = -1, .code = (int32_t)(total - *told),
-                                                .detail = fault << 24 | port << 16 | position}, run_ns);
+                                                .detail = fault << 24 | number << 20 | port << 16 | position}, run_ns);
         *told = total;
     }
 }
 
-void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, int64_t run_ns)
+void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
 {
-    if (log->port_news == cm1e_bus_port_news(bus) || run_ns < log->ports_quiet_until_ns)
+    log_slaves_t *slaves = &log->slaves[number];
+    if (slaves->port_news == cm1e_bus_port_news(bus) || run_ns < slaves->ports_quiet_until_ns)
         return;
-    log->port_news = cm1e_bus_port_news(bus);
-    log->ports_quiet_until_ns = run_ns + PORTS_QUIET_NS;
+    slaves->port_news = cm1e_bus_port_news(bus);
+    slaves->ports_quiet_until_ns = run_ns + PORTS_QUIET_NS;
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
         for (unsigned port = 0; port < CM1E_PORTS; port++)
-            look_at_port(log, bus, position, port, run_ns);
+            look_at_port(log, bus, number, position, port, run_ns);
 }
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */

@@ -27,18 +27,23 @@ typedef struct log_counter {
 } log_counter_t;
 enum { CM1E_LOG_COUNTERS = CM1E_LOG_SYNC_LOST + 1 - CM1E_LOG_OVERRUN };
 
+/** What was told of the slaves of a bus. */
+typedef struct log_slaves {
+    uint64_t emergencies;       /**< of all slaves */
+    uint32_t operation;         /**< of the bus, in which they were counted */
+    uint64_t told[CM1E_MAX_SLAVES];
+    uint64_t port_news;         /**< faults of all ports, told */
+    int64_t ports_quiet_until_ns;
+    uint32_t port_faults[CM1E_MAX_SLAVES][CM1E_PORTS][CM1E_PORT_FAULTS]; /**< told */
+} log_slaves_t;
+
 typedef struct log {
     log_place_t *places;
     _Atomic uint64_t last;      /**< number of the newest complete record */
     const cm1e_clock_t *clock;
     cm1e_axis_news_t seen[CM1E_MAX_AXES];
     log_counter_t counters[CM1E_LOG_COUNTERS];
-    uint64_t emergencies;       /**< of all slaves, told */
-    uint32_t operation;         /**< of the bus, in which they were counted */
-    uint64_t told[CM1E_MAX_SLAVES];
-    uint64_t port_news;         /**< faults of all ports, told */
-    int64_t ports_quiet_until_ns;
-    uint32_t port_faults[CM1E_MAX_SLAVES][CM1E_PORTS][CM1E_PORT_FAULTS]; /**< told */
+    log_slaves_t slaves[CM1E_MAX_BUSES];
 } log_t;
 
 /** CM1E_ERROR_NO_MEMORY. @rt init */
@@ -49,10 +54,10 @@ void cm1e_log_run(log_t *log, bool begins, int64_t run_ns);
 /** Called in every cycle, after its work. @rt cycle */
 void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
                    const cm1e_bus_counters_t *bus, uint64_t sync_losses, int64_t run_ns);
-/** The emergencies that came since the last call. @rt cycle */
-void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, int64_t run_ns);
-/** What the ports of the slaves have counted since the last call. @rt cycle */
-void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, int64_t run_ns);
+/** The emergencies of a bus that came since the last call. `number`: of the bus, below CM1E_MAX_BUSES. @rt cycle */
+void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
+/** What the ports of its slaves have counted since the last call. @rt cycle */
+void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost);
 
 #endif

@@ -83,10 +83,11 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
         snprintf(text, size, "%s: %" PRId32 " (%" PRIu32 " since the start)", counter_texts[event->kind], event->code,
                  event->detail);
     else if (event->kind == CM1E_LOG_EMERGENCY)
-        emergency_text(cm1e_scheduler_bus(scheduler), event, text, size);
+        emergency_text(cm1e_scheduler_bus_at(scheduler, event->detail >> 24), event, text, size);
     else if (event->kind == CM1E_LOG_PORT)
-        cm1e_port_sentence(cm1e_scheduler_bus(scheduler), (uint16_t)event->detail, event->detail >> 16 & 0xFF,
-                           (cm1e_port_fault_t)(event->detail >> 24), (uint32_t)event->code, text, size);
+        cm1e_port_sentence(cm1e_scheduler_bus_at(scheduler, event->detail >> 20 & 0x0F), (uint16_t)event->detail,
+                           event->detail >> 16 & 0x0F, (cm1e_port_fault_t)(event->detail >> 24), (uint32_t)event->code,
+                           text, size);
     else if (of_axis && event->kind == CM1E_LOG_STATE)
         snprintf(text, size, "%s: %s (was %s)", name, cm1e_axis_state_name((cm1e_axis_state_t)event->code),
                  cm1e_axis_state_name((cm1e_axis_state_t)event->detail));

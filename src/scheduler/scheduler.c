@@ -7,6 +7,7 @@
 #include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "bus/bus_image.h"
+#include "bus/kept.h"
 #include "cm1e/scan_time.h"
 #include "core/in_task.h"
 #include "core/output.h"
@@ -21,9 +22,17 @@
 
 #define DEFAULT_STOP_TIMEOUT_NS INT64_C(10000000000)
 
-struct cm1e_scheduler {
+/** A bus of the scheduler, and its axes. */
+typedef struct member {
     cm1e_bus_t *bus;
-    uint32_t operation;    /**< start number of the bus for which the axes were made */
+    uint32_t operation;     /**< start number of the bus for which the axes were made */
+    uint32_t first, end;    /**< its axes: axes[first] ... axes[end - 1] */
+    cm1e_error_t received;  /**< in this cycle */
+} member_t;
+
+struct cm1e_scheduler {
+    member_t members[CM1E_MAX_BUSES];
+    uint32_t member_count;  /**< at least 1; members[0] is the bus that the scheduler was made for */
     cm1e_clock_t *clock;
     cm1e_scheduler_config_t config;
     int64_t cycle_time_ns;
@@ -34,6 +43,7 @@ struct cm1e_scheduler {
     log_t log;
     void *windows[CM1E_WINDOWS]; /**< of this run, by kind; NULL: it has none */
     statistics_t statistics;
+    cm1e_bus_counters_t counters; /**< of all buses together, after this cycle */
     atomic_bool stop;      /**< a stop was requested */
     bool run;              /**< cm1e_scheduler_run() was called */
     bool shutting_down;    /**< programs no longer run */
@@ -83,7 +93,12 @@ cm1e_axis_t *const *cm1e_scheduler_axes(const cm1e_scheduler_t *scheduler, uint3
     return scheduler->axes;
 }
 
-cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler) { return scheduler->bus; }
+cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler) { return scheduler->members[0].bus; }
+
+cm1e_bus_t *cm1e_scheduler_bus_at(const cm1e_scheduler_t *scheduler, uint32_t index)
+{
+    return index < scheduler->member_count ? scheduler->members[index].bus : NULL;
+}
 
 bool cm1e_scheduler_is_ending(const cm1e_scheduler_t *scheduler) { return scheduler->shutting_down; }
 
@@ -102,17 +117,33 @@ size_t cm1e_log_read(const cm1e_scheduler_t *scheduler, uint64_t after, cm1e_log
 
 static int64_t planned_ns(const cm1e_scheduler_t *s, int64_t number) { return s->start_ns + number * s->cycle_time_ns; }
 
-static void take_inputs(cm1e_scheduler_t *s, cm1e_error_t received)
+static void take_inputs(cm1e_scheduler_t *s, const member_t *member)
 {
-    const cm1e_error_t health = cm1e_bus_health(s->bus);
-    for (uint32_t i = 0; i < s->axis_count; i++)
-        cm1e_axis_inputs(s->axes[i], received, health, planned_ns(s, s->number));
+    const cm1e_error_t health = cm1e_bus_health(member->bus);
+    for (uint32_t i = member->first; i < member->end; i++)
+        cm1e_axis_inputs(s->axes[i], member->received, health, planned_ns(s, s->number));
+}
+
+/** The frames of all buses were sent before the first of them is waited for. */
+static void receive_all(cm1e_scheduler_t *s)
+{
+    for (uint32_t i = 0; i < s->member_count; i++)
+        s->members[i].received = cm1e_bus_receive(s->members[i].bus);
+    for (uint32_t i = 0; i < s->member_count; i++)
+        take_inputs(s, &s->members[i]);
+}
+
+static void send_all(cm1e_scheduler_t *s)
+{
+    for (uint32_t i = 0; i < s->member_count; i++)
+        cm1e_bus_send(s->members[i].bus);
 }
 
 static void shut_down_axes(cm1e_scheduler_t *s)
 {
-    cm1e_bus_release_outputs(s->bus);
     s->shut_down = true;
+    for (uint32_t i = 0; i < s->member_count; i++)
+        cm1e_bus_release_outputs(s->members[i].bus);
     for (uint32_t i = 0; i < s->axis_count; i++)
         s->shut_down &= cm1e_axis_shut_down(s->axes[i]);
 }
@@ -153,27 +184,26 @@ static void run_tasks(cm1e_scheduler_t *s)
     cm1e_scheduler_stop(s);
 }
 
-/** receive -> inputs -> programs -> axes -> outputs -> send. At the end of a run the shut-down of the axes replaces the
- *  programs. */
-/** The plan follows the reference clock of the bus, and what was planned before moves with it. */
+/** The plan follows the reference clock of the first bus, and what was planned before moves with it. */
 static void follow_clock(cm1e_scheduler_t *s)
 {
-    const int64_t later_ns = cm1e_bus_pace(s->bus);
+    const int64_t later_ns = cm1e_bus_pace(s->members[0].bus);
     s->start_ns += later_ns;
     s->sent_ns += later_ns;
 }
 
+/** receive -> inputs -> programs -> axes -> outputs -> send. At the end of a run the shut-down of the axes replaces the
+ *  programs. */
 static void scan(cm1e_scheduler_t *s)
 {
-    const cm1e_error_t received = cm1e_bus_receive(s->bus);
-    take_inputs(s, received);
+    receive_all(s);
     cm1e_scan_time_set(planned_ns(s, s->number));
     if (s->shutting_down)
         shut_down_axes(s);
     else
         run_tasks(s);
     set_outputs(s);
-    cm1e_bus_send(s->bus);
+    send_all(s);
     follow_clock(s);
 }
 
@@ -206,7 +236,7 @@ static void end_cycle(cm1e_scheduler_t *s)
 {
     const int64_t end_ns = cm1e_clock_now(s->clock);
     cm1e_distribution_add(&s->statistics.execution_time, end_ns - s->begin_ns);
-    cm1e_statistics_note_bus(&s->statistics, cm1e_bus_counters(s->bus));
+    cm1e_statistics_note_bus(&s->statistics, &s->counters);
     s->trace.timing.execution_time_us = (double)(end_ns - s->begin_ns) * 1e-3;
     atomic_fetch_add_explicit(&s->statistics.cycles, 1, memory_order_relaxed);
     s->number++;
@@ -216,19 +246,37 @@ static void end_cycle(cm1e_scheduler_t *s)
     s->number = (end_ns - s->start_ns + s->cycle_time_ns - 1) / s->cycle_time_ns;
 }
 
+/** Of all buses together. */
+static void add_up_counters(cm1e_scheduler_t *s)
+{
+    s->counters = *cm1e_bus_counters(s->members[0].bus);
+    for (uint32_t i = 1; i < s->member_count; i++) {
+        const cm1e_bus_counters_t *more = cm1e_bus_counters(s->members[i].bus);
+        s->counters.lost_frames += more->lost_frames;
+        s->counters.working_counter_errors += more->working_counter_errors;
+        s->counters.late_frames += more->late_frames;
+        s->counters.foreign_frames += more->foreign_frames;
+        s->counters.unsent_frames += more->unsent_frames;
+        s->counters.mailbox_retries += more->mailbox_retries;
+    }
+}
+
 /** What others see of a cycle. */
 static void show(cm1e_scheduler_t *s)
 {
     const uint64_t overruns = atomic_load_explicit(&s->statistics.overruns, memory_order_relaxed);
     cm1e_bus_clocks_t clocks;
-    cm1e_bus_clocks(s->bus, &clocks);
+    cm1e_bus_clocks(s->members[0].bus, &clocks);
     cm1e_statistics_note_clocks(&s->statistics, &clocks);
-    s->trace.timing.lost_frames = cm1e_bus_counters(s->bus)->lost_frames;
+    add_up_counters(s);
+    s->trace.timing.lost_frames = s->counters.lost_frames;
     cm1e_trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
-    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, cm1e_bus_counters(s->bus), clocks.sync_losses,
+    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, &s->counters, clocks.sync_losses,
                   cm1e_scheduler_time_ns(s));
-    cm1e_log_emergencies(&s->log, s->bus, cm1e_scheduler_time_ns(s));
-    cm1e_log_ports(&s->log, s->bus, cm1e_scheduler_time_ns(s));
+    for (uint32_t i = 0; i < s->member_count; i++) {
+        cm1e_log_emergencies(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
+        cm1e_log_ports(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
+    }
     for (int i = 0; i < CM1E_WINDOWS; i++)
         if (s->windows[i])
             kinds[i]->cycle(s->windows[i]);
@@ -281,14 +329,15 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     open_windows(s);
     cm1e_error_t error = take_real_time(s, &realtime, diag);
     if (error == CM1E_OK) {
-        s->start_ns = s->sent_ns = cm1e_bus_next_start(s->bus, cm1e_clock_now(s->clock));
+        s->start_ns = s->sent_ns = cm1e_bus_next_start(s->members[0].bus, cm1e_clock_now(s->clock));
         cm1e_log_run(&s->log, true, 0);
         while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
             cycle(s);
         error = shut_down(s, diag);
         cm1e_log_run(&s->log, false, cm1e_scheduler_time_ns(s));
     }
-    cm1e_bus_stop(s->bus);
+    for (uint32_t i = 0; i < s->member_count; i++)
+        cm1e_bus_stop(s->members[i].bus);
     cm1e_realtime_end(&realtime);
     close_windows(s);
     return error;
@@ -296,12 +345,12 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
 
 /** Without this check the cycles of a stopped bus would pass without a frame and without an error. The cycles of a
  *  restarted bus would write to the old place of the process data. */
-static cm1e_error_t check_operation(const cm1e_scheduler_t *s, cm1e_diag_t *diag)
+static cm1e_error_t check_operation(const member_t *member, cm1e_diag_t *diag)
 {
-    const uint32_t present = cm1e_bus_operation(s->bus);
+    const uint32_t present = cm1e_bus_operation(member->bus);
     if (present == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is not in operation: call cm1e_bus_start() first.");
-    if (present != s->operation)
+    if (present != member->operation)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "The bus was started again since this scheduler was made: make a new one.");
     return CM1E_OK;
@@ -317,16 +366,22 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "A scheduler runs once; start the bus again and make a new one.");
-    const cm1e_error_t other_operation = check_operation(scheduler, diag);
-    if (other_operation != CM1E_OK)
-        return other_operation;
+    for (uint32_t i = 0; i < scheduler->member_count; i++) {
+        const cm1e_error_t other_operation = check_operation(&scheduler->members[i], diag);
+        if (other_operation != CM1E_OK)
+            return other_operation;
+    }
     const cm1e_error_t no_memory = cm1e_trace_begin(&scheduler->trace, diag);
     if (no_memory != CM1E_OK)
         return no_memory;
     scheduler->run = true;
     cm1e_clock_t *clock_before = cm1e_clock_current();
     cm1e_clock_make_current(scheduler->clock); /* this thread may differ from the one that opened the bus */
+    for (uint32_t i = 0; i < scheduler->member_count; i++)
+        cm1e_bus_unkeep(scheduler->members[i].bus);
+    cm1e_bus_keep_none(true);
     const cm1e_error_t error = run(scheduler, duration_ns, diag);
+    cm1e_bus_keep_none(false);
     cm1e_clock_make_current(clock_before);
     return error;
 }
@@ -401,16 +456,30 @@ static cm1e_error_t take_config(cm1e_scheduler_t *s, const cm1e_scheduler_config
     return CM1E_OK;
 }
 
-static cm1e_error_t make_axes(cm1e_scheduler_t *s, cm1e_diag_t *diag)
+static cm1e_error_t make_axes(cm1e_scheduler_t *s, member_t *member, cm1e_diag_t *diag)
 {
-    const uint32_t count = cm1e_bus_configuration(s->bus)->axis_count;
-    for (uint32_t i = 0; i < count && i < CM1E_MAX_AXES; i++) {
-        const cm1e_error_t error = cm1e_axis_create(&s->axes[i], s->bus, i, diag);
+    const uint32_t count = cm1e_bus_configuration(member->bus)->axis_count;
+    member->first = member->end = s->axis_count;
+    for (uint32_t i = 0; i < count && s->axis_count < CM1E_MAX_AXES; i++) {
+        const cm1e_error_t error = cm1e_axis_create(&s->axes[s->axis_count], member->bus, i, diag);
         if (error != CM1E_OK)
             return error;
-        s->axis_count++;
+        cm1e_axis_share_cycle(s->axes[s->axis_count], s);
+        member->end = ++s->axis_count;
     }
     return CM1E_OK;
+}
+
+/** Makes the bus a member, with its axes. */
+static cm1e_error_t join(cm1e_scheduler_t *s, cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    member_t *member = &s->members[s->member_count];
+    *member = (member_t){.bus = bus, .operation = cm1e_bus_operation(bus)};
+    const cm1e_error_t error = check_operation(member, diag);
+    if (error != CM1E_OK)
+        return error;
+    s->member_count++;
+    return make_axes(s, member, diag);
 }
 
 static cm1e_error_t make_trace(cm1e_scheduler_t *s, cm1e_diag_t *diag)
@@ -432,15 +501,11 @@ cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, cm1e_bus_
     cm1e_scheduler_t *s = calloc(1, sizeof *s);
     if (!s)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the scheduler.");
-    s->bus = bus;
     s->clock = cm1e_bus_clock(bus);
     s->cycle_time_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
-    s->operation = cm1e_bus_operation(bus);
-    cm1e_error_t error = check_operation(s, diag);
+    cm1e_error_t error = take_config(s, config, size, diag);
     if (error == CM1E_OK)
-        error = take_config(s, config, size, diag);
-    if (error == CM1E_OK)
-        error = make_axes(s, diag);
+        error = join(s, bus, diag);
     if (error == CM1E_OK)
         error = make_trace(s, diag);
     if (error == CM1E_OK)
@@ -451,6 +516,70 @@ cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, cm1e_bus_
     }
     *scheduler = s;
     return CM1E_OK;
+}
+
+/** Why a bus cannot be run beside the others; "": it can. */
+static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
+{
+    cm1e_bus_clocks_t clocks;
+    cm1e_bus_clocks(bus, &clocks);
+    for (uint32_t i = 0; i < s->member_count; i++)
+        if (s->members[i].bus == bus)
+            return "it is in this scheduler already";
+    if (s->member_count == CM1E_MAX_BUSES)
+        return "a scheduler has at most four buses";
+    if (cm1e_bus_clock(bus) != s->clock)
+        return "it runs on another time: either all buses of a scheduler have virtual_time and were opened in one thread, "
+               "or none has it";
+    if (cm1e_bus_configuration(bus)->cycle_time_ns != s->cycle_time_ns)
+        return "its cycle_time_us differs from that of the first bus";
+    if (clocks.used)
+        return "it has distributed clocks, which the cycle follows on the first bus only: make the scheduler for this bus "
+               "and add the other one";
+    if (s->axis_count + cm1e_bus_configuration(bus)->axis_count > CM1E_MAX_AXES)
+        return "a scheduler has at most 128 axes";
+    return "";
+}
+
+/** NULL: every axis of the bus has a name of its own. */
+static const char *name_taken(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
+{
+    const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
+    for (uint32_t i = 0; i < config->axis_count; i++)
+        if (cm1e_scheduler_axis_by_name(s, config->axes[i].name).Handle != 0)
+            return config->axes[i].name;
+    return NULL;
+}
+
+cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_add_bus()", "", diag);
+    if (!scheduler || !bus)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler or a bus is missing.");
+    if (scheduler->run)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Buses are added before the scheduler runs.");
+    const char *refused = other_bus_refused(scheduler, bus), *taken = name_taken(scheduler, bus);
+    if (refused[0])
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The bus on \"%s\" cannot be added to the scheduler: "
+                             "%s.", cm1e_bus_configuration(bus)->interface_name, refused);
+    if (taken)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Two buses have an axis with the name \"%s\": give "
+                             "each axis of a program a name of its own.", taken);
+    const member_t before = {.first = scheduler->axis_count, .end = scheduler->member_count};
+    cm1e_error_t error = join(scheduler, bus, diag);
+    if (error == CM1E_OK) {
+        cm1e_trace_free(&scheduler->trace);
+        error = make_trace(scheduler, diag);
+    }
+    if (error == CM1E_OK)
+        return error;
+    while (scheduler->axis_count > before.first) {
+        cm1e_axis_destroy(scheduler->axes[--scheduler->axis_count]);
+        scheduler->axes[scheduler->axis_count] = NULL;
+    }
+    scheduler->member_count = before.end;
+    return error;
 }
 
 void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler)
@@ -491,13 +620,22 @@ cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const ch
     return cm1e_trace_add(&scheduler->trace, &column, diag);
 }
 
+static cm1e_error_t trace_object_of(cm1e_scheduler_t *s, uint32_t axis, uint16_t index, uint8_t subindex,
+                                    cm1e_diag_t *diag)
+{
+    const member_t *member = s->members;
+    while (axis >= member->end)
+        member++;
+    return cm1e_trace_add_object(&s->trace, member->bus, cm1e_bus_axis_position(member->bus, axis - member->first),
+                                 cm1e_axis_name(cm1e_axis_reference(s->axes[axis])), index, subindex, diag);
+}
+
 cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t axis, uint16_t index, uint8_t subindex,
                                          cm1e_diag_t *diag)
 {
     for (uint32_t i = 0; i < scheduler->axis_count; i++)
         if (axis.Handle != 0 && cm1e_axis_reference(scheduler->axes[i]).Handle == axis.Handle)
-            return cm1e_trace_add_object(&scheduler->trace, scheduler->bus, cm1e_bus_axis_position(scheduler->bus, i),
-                                         cm1e_axis_name(axis), index, subindex, diag);
+            return trace_object_of(scheduler, i, index, subindex, diag);
     return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The axis does not belong to this scheduler.");
 }
 

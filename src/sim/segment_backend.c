@@ -1,4 +1,5 @@
 /* The simulated segment in this process: "sim", or "sim:<bus file>" for a segment as that file describes it. */
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,9 +17,21 @@ enum {
     NS_PER_SLAVE = 1200,
 };
 
+/** Virtual time of a thread: all segments that it has opened on virtual time share it, so one program can run several.
+ *  The first begins it at 0, and it ends with the last. */
+typedef struct shared_clock {
+    struct shared_clock *next;
+    cm1e_clock_t clock;
+    pthread_t thread;
+    int users;
+} shared_clock_t;
+
+static pthread_mutex_t clocks_lock = PTHREAD_MUTEX_INITIALIZER;
+static shared_clock_t *clocks;
+
 typedef struct sim {
     cm1e_sim_segment_t *segment;
-    cm1e_clock_t virtual_clock;
+    shared_clock_t *virtual_clock; /**< NULL: the clock of the machine */
     int64_t wire_free_ns[CM1E_NIC_PORTS]; /**< a port sends one frame after the other */
     frame_queue_t in_flight;
 } sim_t;
@@ -52,6 +65,45 @@ static cm1e_error_t make_segment(sim_t *sim, const char *name, const cm1e_bus_co
     return error;
 }
 
+/* ---- virtual time ------------------------------------------------------------------------------------------------ */
+
+/** NULL: no memory. */
+static shared_clock_t *take_clock(void)
+{
+    pthread_mutex_lock(&clocks_lock);
+    shared_clock_t *shared = clocks;
+    while (shared && !pthread_equal(shared->thread, pthread_self()))
+        shared = shared->next;
+    if (!shared) {
+        shared = calloc(1, sizeof *shared);
+        if (shared) {
+            shared->thread = pthread_self();
+            cm1e_clock_init_virtual(&shared->clock, 0);
+            shared->next = clocks;
+            clocks = shared;
+        }
+    }
+    if (shared)
+        shared->users++;
+    pthread_mutex_unlock(&clocks_lock);
+    return shared;
+}
+
+static void give_clock_back(shared_clock_t *shared)
+{
+    pthread_mutex_lock(&clocks_lock);
+    if (shared && --shared->users == 0) {
+        shared_clock_t **link = &clocks;
+        while (*link != shared)
+            link = &(*link)->next;
+        *link = shared->next;
+        free(shared);
+    }
+    pthread_mutex_unlock(&clocks_lock);
+}
+
+/* ---- the backend ------------------------------------------------------------------------------------------------- */
+
 static cm1e_error_t sim_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     sim_t *sim = calloc(1, sizeof *sim);
@@ -62,11 +114,14 @@ static cm1e_error_t sim_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *con
         free(sim);
         return error;
     }
-    link->state = sim;
-    if (config->virtual_time) {
-        cm1e_clock_init_virtual(&sim->virtual_clock, 0);
-        link->clock = &sim->virtual_clock;
+    if (config->virtual_time && !(sim->virtual_clock = take_clock())) {
+        cm1e_sim_segment_destroy(sim->segment);
+        free(sim);
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the virtual time.");
     }
+    link->state = sim;
+    if (sim->virtual_clock)
+        link->clock = &sim->virtual_clock->clock;
     if (link->ports > 1)
         cm1e_sim_segment_close_ring(sim->segment);
     return CM1E_OK;
@@ -76,6 +131,7 @@ static void sim_close(cm1e_nic_link_t *link)
 {
     sim_t *sim = link->state;
     cm1e_sim_segment_destroy(sim->segment);
+    give_clock_back(sim->virtual_clock);
     free(sim);
 }
 
@@ -83,7 +139,7 @@ static void sim_close(cm1e_nic_link_t *link)
 static int64_t arrival(cm1e_nic_link_t *link, int port, size_t length, int64_t now_ns)
 {
     sim_t *sim = link->state;
-    if (link->clock != &sim->virtual_clock)
+    if (!sim->virtual_clock)
         return now_ns;
     const size_t bytes = (length < SHORTEST_FRAME ? SHORTEST_FRAME : length) + FRAME_GAP_BYTES;
     int64_t start = now_ns > sim->wire_free_ns[port] ? now_ns : sim->wire_free_ns[port];

@@ -423,6 +423,15 @@ def check_from_elsewhere():
     expect(done.returncode == 0 and "8 rows of" in done.stdout, f"13_xy_table elsewhere: {done.stdout}{done.stderr}")
 
 
+def check_two_networks():
+    """16_two_networks on two simulated segments, in real time."""
+    done = subprocess.run([os.path.join(BIN, "16_two_networks")], capture_output=True, text=True, timeout=60)
+    expect(done.returncode == 0 and done.stdout == "3000 cycles on two networks; the velocities differed by at most 0 u/s\n",
+           f"16_two_networks: {done}")
+    wrong = subprocess.run([os.path.join(BIN, "16_two_networks"), "one.yaml"], capture_output=True, text=True, timeout=60)
+    expect(wrong.returncode == 2 and "usage" in wrong.stderr, f"16_two_networks: {wrong}")
+
+
 def check_service():
     """14_service tells systemd that it is ready, feeds its watchdog, and ends in order on SIGTERM."""
     with tempfile.TemporaryDirectory() as folder:
@@ -460,7 +469,8 @@ def check_traces():
 def main():
     real_time.run_above_others()
     real_time.together(check_jog_panel_on_a_terminal, check_jog_panel_whose_terminal_goes, check_traces,
-                       check_interrupted, check_error_in_words, check_from_elsewhere, check_service)
+                       check_interrupted, check_error_in_words, check_from_elsewhere, check_two_networks,
+                       check_service)
     real_time.end(faults, "the examples: their traces show what they are about")
 
 

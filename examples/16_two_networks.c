@@ -1,0 +1,104 @@
+/*
+ * One program on two networks: the first axis of the second network follows the first axis of the first one (MC_GearIn).
+ * Both are exchanged in the same cycle. It turns for three seconds.
+ *
+ *     16_two_networks                         two simulated segments
+ *     16_two_networks left.yaml right.yaml    the networks of these bus files (the motors turn!)
+ */
+#include <stdio.h>
+
+#include <cm1e/plcopen.h>
+#include <cm1e/scheduler.h>
+
+enum { LEFT, RIGHT, NETWORKS, TURN_CYCLES = 3000 };
+
+static AXIS_REF_t axes[NETWORKS];
+static MC_Power_t powers[NETWORKS];
+static MC_GearIn_t gear = {.Master = &axes[LEFT], .Slave = &axes[RIGHT], .RatioNumerator = 2, .RatioDenominator = 1};
+static MC_MoveVelocity_t turn = {.Axis = &axes[LEFT], .Velocity = 1, .Acceleration = 5, .Deceleration = 5, .Jerk = 50};
+static int cycles;
+static double greatest_difference; /* of the velocities, while the gear is in step */
+
+static void program(void *scheduler)
+{
+    cm1e_axis_info_t left, right;
+    for (int i = 0; i < NETWORKS; i++) {
+        powers[i] = (MC_Power_t){.Axis = &axes[i], .Enable = TRUE, .EnablePositive = TRUE, .EnableNegative = TRUE,
+                                 .Status = powers[i].Status};
+        MC_Power(&powers[i]);
+    }
+    gear.Execute = powers[LEFT].Status && powers[RIGHT].Status;
+    MC_GearIn(&gear);
+    turn.Execute = gear.InGear;
+    MC_MoveVelocity(&turn);
+    if (cm1e_axis_read(axes[LEFT], &left) == CM1E_OK && cm1e_axis_read(axes[RIGHT], &right) == CM1E_OK && turn.Busy) {
+        const double difference = right.set_velocity - 2 * left.set_velocity;
+        if (difference > greatest_difference || -difference > greatest_difference)
+            greatest_difference = difference < 0 ? -difference : difference;
+    }
+    cycles += turn.Busy;
+    if (cycles == TURN_CYCLES || gear.Error || turn.Error)
+        cm1e_scheduler_stop(scheduler);
+}
+
+static cm1e_error_t open_network(cm1e_bus_t **bus, const char *bus_file, const char *axis_name, cm1e_diag_t *why)
+{
+    cm1e_bus_config_t config;
+    cm1e_error_t error = bus_file ? cm1e_bus_config_load(&config, bus_file, why)
+                                  : cm1e_bus_config_init(&config, "sim", 1);
+    if (error != CM1E_OK)
+        return error;
+    if (!bus_file) {
+        snprintf(config.axes[0].name, sizeof config.axes[0].name, "%s", axis_name);
+        config.axes[0].sim.no_stops = true;
+    }
+    error = cm1e_bus_open(bus, &config, why);
+    cm1e_bus_config_free(&config);
+    return error == CM1E_OK ? cm1e_bus_start(*bus, why) : error; /* the first one is kept while the second starts */
+}
+
+static cm1e_error_t run(cm1e_bus_t *buses[NETWORKS], cm1e_diag_t *why)
+{
+    cm1e_scheduler_t *scheduler = NULL;
+    cm1e_error_t error = cm1e_scheduler_create(&scheduler, buses[LEFT], NULL, why);
+    const uint32_t first_right = cm1e_bus_configuration(buses[LEFT])->axis_count;
+    if (error == CM1E_OK)
+        error = cm1e_scheduler_add_bus(scheduler, buses[RIGHT], why);
+    if (error == CM1E_OK)
+        error = cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = program, .context = scheduler}, why);
+    if (error == CM1E_OK) {
+        axes[LEFT] = cm1e_scheduler_axis(scheduler, 0);
+        axes[RIGHT] = cm1e_scheduler_axis(scheduler, first_right);
+        cm1e_scheduler_stop_on_signals(scheduler);
+        error = cm1e_scheduler_run(scheduler, 0, why);
+    }
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    for (int i = 0; i < NETWORKS && cycles < TURN_CYCLES; i++) {
+        cm1e_axis_error_text(axes[i], text, sizeof text);
+        fprintf(stderr, "%s%s", text, text[0] ? "\n" : "");
+    }
+    cm1e_scheduler_destroy(scheduler);
+    return error;
+}
+
+int main(int argc, char **argv)
+{
+    cm1e_bus_t *buses[NETWORKS] = {NULL};
+    cm1e_diag_t why = {0};
+    if (argc != 1 && argc != 1 + NETWORKS) {
+        fprintf(stderr, "usage: %s [LEFT.yaml RIGHT.yaml]\n", argv[0]);
+        return 2;
+    }
+    cm1e_error_t error = open_network(&buses[LEFT], argc > 1 ? argv[1] : NULL, "left", &why);
+    if (error == CM1E_OK)
+        error = open_network(&buses[RIGHT], argc > 1 ? argv[2] : NULL, "right", &why);
+    if (error == CM1E_OK)
+        error = run(buses, &why);
+    if (error != CM1E_OK)
+        fprintf(stderr, "%s\n", why.text);
+    else
+        printf("%d cycles on two networks; the velocities differed by at most %.3g u/s\n", cycles, greatest_difference);
+    for (int i = NETWORKS - 1; i >= 0; i--)
+        cm1e_bus_close(buses[i]);
+    return error == CM1E_OK && cycles == TURN_CYCLES ? 0 : 1;
+}

@@ -1,0 +1,19 @@
+/**
+ * @file kept.h
+ * Buses in Operational that no scheduler runs yet. Their slaves need frames, or their watchdogs end Operational. So while
+ * the thread that started them waits for another bus, as in the start of a second one, their process data goes on.
+ */
+#ifndef CM1E_BUS_KEPT_H
+#define CM1E_BUS_KEPT_H
+
+#include "core/guest_api.h"
+#include "bus/bus_image.h"
+
+/** From now on the calling thread keeps this bus, whenever it sends a frame on another one. @rt init */
+void cm1e_bus_keep(cm1e_bus_t *bus);
+/** Not any more: it is stopped, or its cycle is run. Again: nothing happens. @rt init */
+void cm1e_bus_unkeep(cm1e_bus_t *bus);
+/** The calling thread runs a cycle (true), so that no other bus may use its time. @rt init */
+void cm1e_bus_keep_none(bool none);
+
+#endif

@@ -1,0 +1,331 @@
+/**
+ * Several buses in one scheduler: started one after the other, run in one cycle, a gear from one to the other, and one
+ * that is lost. On virtual time, which they share.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "cm1e/sim.h"
+#include "machine.h"
+
+#define MS INT64_C(1000000)
+enum { A = 0, B, BUSES };
+enum { MOST_VELOCITY = 20, MOST_ACCELERATION = 200 }; /* u/s, u/s2 */
+
+static cm1e_bus_t *buses[BUSES];
+static cm1e_scheduler_t *scheduler;
+static AXIS_REF_t axes[BUSES];
+static cm1e_diag_t diag;
+
+static void must(cm1e_error_t error) { ck_assert_msg(error == CM1E_OK, "%s", diag.text); }
+
+/** A simulated segment with so many axes, the first of them X, Y ... */
+static cm1e_bus_t *open_bus(const char *name, uint32_t count, int64_t cycle_time_ns, bool virtual_time)
+{
+    cm1e_bus_config_t config;
+    cm1e_bus_t *bus;
+    cm1e_bus_config_init(&config, "sim", count);
+    for (uint32_t i = 0; i < count; i++)
+        snprintf(config.axes[i].name, sizeof config.axes[i].name, "%s%u", name, i + 1);
+    for (uint32_t i = 0; i < count; i++)
+        config.axes[i].sim.no_stops = true;
+    for (uint32_t i = 0; i < count; i++) {
+        config.axes[i].max_velocity = MOST_VELOCITY;
+        config.axes[i].max_acceleration = MOST_ACCELERATION;
+        config.axes[i].max_jerk = 20000;
+    }
+    config.virtual_time = virtual_time;
+    config.cycle_time_ns = cycle_time_ns;
+    must(cm1e_bus_open(&bus, &config, &diag));
+    cm1e_bus_config_free(&config);
+    return bus;
+}
+
+static void start_both(void)
+{
+    buses[A] = open_bus("X", 1, MS, true);
+    buses[B] = open_bus("Y", 1, MS, true);
+    must(cm1e_bus_start(buses[A], &diag));
+    must(cm1e_bus_start(buses[B], &diag));
+    must(cm1e_scheduler_create(&scheduler, buses[A], NULL, &diag));
+    must(cm1e_scheduler_add_bus(scheduler, buses[B], &diag));
+    for (int i = 0; i < BUSES; i++)
+        axes[i] = cm1e_scheduler_axis(scheduler, (uint32_t)i);
+}
+
+static void close_all(void)
+{
+    cm1e_scheduler_destroy(scheduler);
+    for (int i = 0; i < BUSES; i++)
+        cm1e_bus_close(buses[i]);
+    scheduler = NULL;
+}
+
+/* ---- the program ------------------------------------------------------------------------------------------------- */
+
+static MC_Power_t powers[BUSES];
+static MC_MoveAbsolute_t moves[BUSES];
+static MC_MoveVelocity_t turn;
+static MC_GearIn_t gear;
+
+static struct {
+    int cycle, lose_at, lost, out_of_step; /* lose_at 0: nothing is lost */
+    int lost_bus;
+    bool geared;
+    double worst_step[BUSES], worst_change[BUSES], before[BUSES], step[BUSES]; /* u in a cycle, and its change */
+} run;
+
+static cm1e_axis_info_t see(int i)
+{
+    cm1e_axis_info_t info;
+    cm1e_axis_read(axes[i], &info);
+    return info;
+}
+
+static const char *text_of(int i)
+{
+    static char texts[BUSES][400];
+    cm1e_axis_error_text(axes[i], texts[i], sizeof texts[i]);
+    return texts[i];
+}
+
+static void look(void)
+{
+    for (int i = 0; i < BUSES; i++) {
+        const cm1e_axis_info_t info = see(i);
+        const double at = info.set_position, step = at - run.before[i];
+        /* Without torque the set position is where the motor is. */
+        if (run.cycle > 20 && (info.state != CM1E_AXIS_ERROR_STOP || info.set_velocity != 0.0)) {
+            run.worst_step[i] = fmax(run.worst_step[i], fabs(step));
+            run.worst_change[i] = fmax(run.worst_change[i], fabs(step - run.step[i]));
+        }
+        run.before[i] = at;
+        run.step[i] = step;
+    }
+    if (gear.InGear && run.lose_at == 0 && fabs(see(B).set_velocity - 2.0 * see(A).set_velocity) > 1e-6)
+        run.out_of_step++;
+}
+
+/** Both move, or the axis on the other bus follows. */
+static void program(void *context)
+{
+    (void)context;
+    run.cycle++;
+    for (int i = 0; i < BUSES; i++) {
+        MC_Power(&powers[i]);
+        powers[i].Enable = run.cycle > 5;
+    }
+    turn.Execute = gear.Execute = run.geared && powers[A].Status && powers[B].Status;
+    MC_MoveVelocity(&turn);
+    MC_GearIn(&gear);
+    for (int i = 0; i < BUSES; i++) {
+        moves[i].Execute = !run.geared && powers[i].Status;
+        MC_MoveAbsolute(&moves[i]);
+    }
+    if (run.lose_at > 0 && run.cycle == run.lose_at) {
+        char line[40], answer[200];
+        snprintf(line, sizeof line, "lose %d", run.lost);
+        must(cm1e_bus_simulate(buses[run.lost_bus], line, answer, sizeof answer));
+    }
+    look();
+}
+
+static void prepare(void)
+{
+    memset(&run, 0, sizeof run);
+    run.lost_bus = B;
+    run.lost = 100000;
+    for (int i = 0; i < BUSES; i++) {
+        powers[i] = (MC_Power_t){.Axis = &axes[i], .EnablePositive = TRUE, .EnableNegative = TRUE};
+        moves[i] = (MC_MoveAbsolute_t){.Axis = &axes[i], .Position = 2.0 + i, .Velocity = 5};
+    }
+    turn = (MC_MoveVelocity_t){.Axis = &axes[A], .Velocity = 3, .Acceleration = 20, .Deceleration = 20, .Jerk = 500};
+    gear = (MC_GearIn_t){.Master = &axes[A], .Slave = &axes[B], .RatioNumerator = 2, .RatioDenominator = 1};
+    start_both();
+    const cm1e_task_config_t task = {.name = "both", .program = program};
+    must(cm1e_scheduler_add_task(scheduler, &task, &diag));
+}
+
+/* ---- tests ------------------------------------------------------------------------------------------------------- */
+
+START_TEST(test_the_first_bus_stays_operational_while_the_second_starts)
+{
+    buses[A] = open_bus("X", 2, MS, true);
+    buses[B] = open_bus("Y", 1, MS, true);
+    must(cm1e_bus_start(buses[A], &diag));
+    must(cm1e_bus_start(buses[B], &diag));
+    char answer[200];
+    for (int slave = 1; slave <= 2; slave++) {
+        char line[40];
+        snprintf(line, sizeof line, "status %d", slave);
+        must(cm1e_bus_simulate(buses[A], line, answer, sizeof answer));
+        ck_assert_msg(strstr(answer, "Operational") && !strstr(answer, "Safe-Operational"), "%s", answer);
+    }
+    ck_assert_uint_gt(cm1e_bus_counters(buses[A])->cycles, 20);
+    ck_assert_uint_eq(cm1e_bus_counters(buses[A])->lost_frames, 0);
+    for (int i = 0; i < BUSES; i++)
+        cm1e_bus_close(buses[i]);
+}
+END_TEST
+
+START_TEST(test_axes_of_both_buses_move_in_one_program)
+{
+    prepare();
+    must(cm1e_scheduler_run(scheduler, 1500 * MS, &diag));
+    ck_assert(moves[A].Done && moves[B].Done);
+    ck_assert_double_eq_tol(see(A).actual_position, 2.0, 0.002);
+    ck_assert_double_eq_tol(see(B).actual_position, 3.0, 0.002);
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(scheduler, &statistics);
+    ck_assert_uint_eq(statistics.bus.lost_frames, 0);
+    ck_assert_uint_eq(statistics.overruns, 0);
+    close_all();
+}
+END_TEST
+
+START_TEST(test_a_gear_from_one_bus_to_the_other_is_in_step)
+{
+    prepare();
+    run.geared = true;
+    must(cm1e_scheduler_run(scheduler, 1500 * MS, &diag));
+    ck_assert_msg(gear.InGear && turn.InVelocity, "%s; %s", text_of(A), text_of(B));
+    ck_assert_int_eq(run.out_of_step, 0);
+    close_all();
+}
+END_TEST
+
+/** An axis that is heard changes its velocity within its limits; one that is not heard keeps its target, and goes on with
+ *  at most its maximum velocity. */
+static void expect_no_leap(void)
+{
+    for (int i = 0; i < BUSES; i++) {
+        ck_assert_msg(run.worst_step[i] <= MOST_VELOCITY * 1e-3 * (1 + 1e-6), "a step of %g u", run.worst_step[i]);
+        ck_assert_msg(i == run.lost_bus || run.worst_change[i] <= MOST_ACCELERATION * 1e-6 * (1 + 1e-6),
+                      "axis %d: a step that is %g u longer than the one before", i, run.worst_change[i]);
+    }
+}
+
+START_TEST(test_a_lost_bus_concerns_its_own_axes)
+{
+    prepare();
+    moves[A].Position = moves[B].Position = 10;
+    run.lose_at = 300; /* both are on their way */
+    must(cm1e_scheduler_run(scheduler, 4000 * MS, &diag));
+    ck_assert(moves[A].Done && !moves[A].Error);
+    ck_assert_double_eq_tol(see(A).actual_position, 10.0, 0.002);
+    ck_assert_msg(see(B).state == CM1E_AXIS_ERROR_STOP, "%s", text_of(B));
+    ck_assert_uint_eq(cm1e_bus_counters(buses[A])->lost_frames, 0);
+    ck_assert_uint_ge(cm1e_bus_counters(buses[A])->cycles, 3900);
+    expect_no_leap();
+    close_all();
+}
+END_TEST
+
+/** A gear from one bus to the other, while frames of one are lost, at many moments and for so many cycles: the slave goes
+ *  on in step, or it stops with an error; the master of a lost slave does not notice. */
+static void lose_beside_a_gear(int lost_bus, int moment, int lost)
+{
+    prepare();
+    run.geared = true;
+    run.lost_bus = lost_bus;
+    run.lose_at = 20 + 7 * moment;
+    run.lost = lost;
+    must(cm1e_scheduler_run(scheduler, 1500 * MS, &diag));
+    expect_no_leap();
+    const bool follows = see(B).state == CM1E_AXIS_SYNCHRONIZED_MOTION && gear.InGear;
+    ck_assert_msg(follows || see(B).state == CM1E_AXIS_ERROR_STOP, "%s in state %d", text_of(B), see(B).state);
+    ck_assert_msg(!follows || fabs(see(B).set_velocity - 2.0 * see(A).set_velocity) < 1e-6, "out of step");
+    if (lost_bus == B)
+        ck_assert_msg(turn.InVelocity, "%s", text_of(A));
+    close_all();
+}
+
+static const int lost_cycles[] = {1, 2, 3, 8, 100000};
+
+START_TEST(test_a_gear_while_the_bus_of_the_slave_is_silent)
+{
+    for (size_t i = 0; i < sizeof lost_cycles / sizeof lost_cycles[0]; i++)
+        lose_beside_a_gear(B, _i, lost_cycles[i]);
+}
+END_TEST
+
+START_TEST(test_a_gear_while_the_bus_of_the_master_is_silent)
+{
+    for (size_t i = 0; i < sizeof lost_cycles / sizeof lost_cycles[0]; i++)
+        lose_beside_a_gear(A, _i, lost_cycles[i]);
+}
+END_TEST
+
+START_TEST(test_what_cannot_run_together_is_refused)
+{
+    prepare();
+    ck_assert_int_eq(cm1e_scheduler_add_bus(scheduler, buses[B], &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(diag.text, "in this scheduler already"));
+    static const struct {
+        const char *name;
+        int64_t cycle_time_ns;
+        bool virtual_time, started;
+        const char *says;
+    } others[] = {
+        {"Z", MS / 2, true, true, "cycle_time_us differs"},
+        {"Z", MS, false, true, "another time"},
+        {"X", MS, true, true, "name \"X1\""},
+        {"Z", MS, true, false, "not in operation"},
+    };
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        cm1e_bus_t *bus = open_bus(others[i].name, 1, others[i].cycle_time_ns, others[i].virtual_time);
+        if (others[i].started)
+            must(cm1e_bus_start(bus, &diag));
+        ck_assert(cm1e_scheduler_add_bus(scheduler, bus, &diag) != CM1E_OK);
+        ck_assert_msg(strstr(diag.text, others[i].says), "%s", diag.text);
+        cm1e_bus_close(bus);
+    }
+    ck_assert_int_eq(cm1e_scheduler_add_bus(scheduler, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    run.cycle = 0; /* what was refused has changed nothing */
+    must(cm1e_scheduler_run(scheduler, 1500 * MS, &diag));
+    ck_assert(moves[A].Done && moves[B].Done);
+    ck_assert_int_eq(cm1e_scheduler_add_bus(scheduler, buses[B], &diag), CM1E_ERROR_STATE);
+    close_all();
+}
+END_TEST
+
+START_TEST(test_four_buses_and_no_more)
+{
+    cm1e_bus_t *many[CM1E_MAX_BUSES + 1];
+    for (int i = 0; i <= CM1E_MAX_BUSES; i++) {
+        char name[8];
+        snprintf(name, sizeof name, "N%d_", i);
+        many[i] = open_bus(name, 1, MS, true);
+        must(cm1e_bus_start(many[i], &diag));
+    }
+    must(cm1e_scheduler_create(&scheduler, many[0], NULL, &diag));
+    for (int i = 1; i < CM1E_MAX_BUSES; i++)
+        must(cm1e_scheduler_add_bus(scheduler, many[i], &diag));
+    ck_assert_int_eq(cm1e_scheduler_add_bus(scheduler, many[CM1E_MAX_BUSES], &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(diag.text, "at most"));
+    must(cm1e_scheduler_run(scheduler, 100 * MS, &diag));
+    cm1e_scheduler_destroy(scheduler);
+    for (int i = 0; i <= CM1E_MAX_BUSES; i++)
+        cm1e_bus_close(many[i]);
+}
+END_TEST
+
+int main(void)
+{
+    TCase *all = tcase_create("several buses");
+    tcase_add_test(all, test_the_first_bus_stays_operational_while_the_second_starts);
+    tcase_add_test(all, test_axes_of_both_buses_move_in_one_program);
+    tcase_add_test(all, test_a_gear_from_one_bus_to_the_other_is_in_step);
+    tcase_add_test(all, test_a_lost_bus_concerns_its_own_axes);
+    tcase_add_loop_test(all, test_a_gear_while_the_bus_of_the_slave_is_silent, 0, 60);
+    tcase_add_loop_test(all, test_a_gear_while_the_bus_of_the_master_is_silent, 0, 60);
+    tcase_add_test(all, test_what_cannot_run_together_is_refused);
+    tcase_add_test(all, test_four_buses_and_no_more);
+    Suite *suite = suite_create("scheduler with several buses");
+    suite_add_tcase(suite, all);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
