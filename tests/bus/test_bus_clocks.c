@@ -427,6 +427,23 @@ START_TEST(a_drive_without_pulses_leaves_operational_and_comes_back)
 }
 END_TEST
 
+/** Shorter than the watchdog of the process data: what acts is the supervision by SYNC0. */
+START_TEST(a_drive_without_process_data_at_its_pulses_leaves_operational)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 10, 0);
+    run(bus, 100);
+    cm1e_clock_sleep_until(cm1e_bus_clock(bus), now_of(bus) + 40 * CYCLE_NS);
+    plan_ns += 40 * CYCLE_NS;
+    run(bus, 300);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, DRIVE).al_state, CM1E_AL_OP);
+    cm1e_clock_sleep_until(cm1e_bus_clock(bus), now_of(bus) + 70 * CYCLE_NS);
+    plan_ns += 70 * CYCLE_NS;
+    expect_left(bus, 0x001A);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(a_drive_whose_clock_runs_away_leaves_operational)
 {
     describe(1000);
@@ -584,6 +601,7 @@ int main(void)
     tcase_add_test(refused, a_clock_that_does_not_follow_is_told_before_operational);
     tcase_add_test(lost, a_clock_that_leaves_the_reference_is_counted_once);
     tcase_add_test(lost, a_drive_without_pulses_leaves_operational_and_comes_back);
+    tcase_add_test(lost, a_drive_without_process_data_at_its_pulses_leaves_operational);
     tcase_add_test(lost, a_drive_whose_clock_runs_away_leaves_operational);
     tcase_add_test(lost, the_clock_of_a_drive_that_was_off_is_set_again);
     tcase_add_test(lost, lost_frames_do_not_disturb_the_clocks);
