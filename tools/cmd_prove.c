@@ -8,7 +8,7 @@
 #include "files.h"
 #include "prove/prove.h"
 
-enum { KEY_LIST = 0x800, KEY_WRITES, KEY_MOTION, KEY_VELOCITY, KEY_TRAVEL, KEY_PROFILE, KEY_POINT };
+enum { KEY_LIST = 0x800, KEY_WRITES, KEY_MOTION, KEY_VELOCITY, KEY_TRAVEL, KEY_PROFILE, KEY_POINT, KEY_DEAD_ENDS };
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -17,6 +17,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
     case KEY_LIST: options->list = true; return 0;
     case KEY_WRITES: options->allow_writes = true; return 0;
+    case KEY_DEAD_ENDS: options->allow_dead_ends = true; return 0;
     case KEY_MOTION: options->allow_motion = true; return 0;
     case KEY_VELOCITY: return parse_positive(arg, "the maximum velocity", &options->max_velocity) ? 0 : EINVAL;
     case KEY_TRAVEL: return parse_positive(arg, "the maximum travel", &options->max_travel) ? 0 : EINVAL;
@@ -40,7 +41,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 static int list_points(bool json)
 {
-    static const char *const levels[] = {"", "--allow-writes", "--allow-motion"};
+    static const char *const levels[] = {"", "--allow-writes", "--allow-motion", "--allow-dead-ends"};
     json_t *all = json_array();
     for (size_t n = 0; prove_point(n); n++) {
         const point_t *point = prove_point(n);
@@ -116,7 +117,8 @@ static bool choose(prove_t *prove)
 static bool is_allowed(const prove_t *prove, const point_t *point)
 {
     return point->level == LEVEL_READ || (point->level == LEVEL_WRITE && prove->options->allow_writes)
-           || (point->level == LEVEL_MOTION && prove->options->allow_motion);
+           || (point->level == LEVEL_MOTION && prove->options->allow_motion)
+           || (point->level == LEVEL_DEAD_END && prove->options->allow_dead_ends);
 }
 
 /** By the patterns of the options. The motor is always enabled at rest before it moves. */
@@ -139,7 +141,9 @@ static void look_at(prove_t *prove, const point_t *point)
         point->look(prove, point);
         verdict = json_array_size(prove->differences) > 0 ? "differs" : prove->compared > 0 ? "agrees" : "unknown";
     } else {
-        prove_note(prove, "needs --allow-%s", point->level == LEVEL_WRITE ? "writes" : "motion");
+        static const char *const needs[] = {[LEVEL_WRITE] = "writes", [LEVEL_MOTION] = "motion",
+                                            [LEVEL_DEAD_END] = "dead-ends"};
+        prove_note(prove, "needs --allow-%s", needs[point->level]);
     }
     json_array_append_new(prove->results,
                           json_pack("{s:s, s:s, s:s, s:s, s:s, s:i, s:o, s:o}", "id", point->id, "what", point->what,
@@ -222,6 +226,8 @@ static const struct argp_option table[] = {
      "before", 0},
     {"allow-motion", KEY_MOTION, NULL, 0, "Also enable the motor and move it, within the next two limits; homing runs "
      "against the hard stops or to the switches, as far as the travel allows", 0},
+    {"allow-dead-ends", KEY_DEAD_ENDS, NULL, 0, "Also bring a motor behind a bridge to modes that only switching the "
+     "bridge off and on ends", 0},
     {"max-velocity", KEY_VELOCITY, "REV/S", 0, "With --allow-motion: revolutions of the motor a second", 0},
     {"max-travel", KEY_TRAVEL, "REV", 0, "With --allow-motion: revolutions of the motor to either side", 0},
     {"profile", KEY_PROFILE, "FILE", 0, "With -i sim: the simulated motor behaves as this device", 0},

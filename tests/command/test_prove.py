@@ -41,7 +41,8 @@ PLANTED = [
      {"dict.sizes", "dict.types"}, "0x6079:00"),
     ("another abort code", {"codes": {"aborts": {"0x06070012": "0x06070010"}}}, {"abort.too-long"}, "0x06070010"),
     ("another AL status code", {"codes": {"al_status": {"0x0011": "0x0001"}}},
-     {"state.init-safeop", "state.init-op", "state.preop-op", "state.preop-boot"}, "0x0001"),
+     {"state.init-safeop", "state.init-op", "state.preop-op", "state.preop-boot", "boot.preop"},
+     "0x0001"),
     ("another error code", {"codes": {"errors": {"0x4502": "0x0000"}}}, {"error.no-mode"}, "0x0000"),
     ("another mapping", {"entries": [{"entry": "0x1601:00", "value": 2},
                                      {"entry": "0x1601:02", "value": 0x607A0020}]}, {"map.1601"}, "6040/16 607A/32"),
@@ -104,8 +105,11 @@ def check_agreement(folder):
     for motors in (("CM1", "CM1"), ("CM2", "CM2"), ("CM1", "CM2")):
         write(network, VIRTUAL + "axes:\n  - {position: 2, channel: 1, motor: %s, k37: 10}\n  - {position: 2, channel: 3, "
                        "motor: %s, k37: 10}\n" % motors)
-        report, differs = report_of("-b", network, "2")
+        report, differs = report_of("-b", network, "2", "--allow-writes", "--allow-dead-ends")
         expect(differs == set() and unknown(report) == {"esc.clock"}, f"bridge {motors}: {report}")
+        told = verdicts(report)
+        expect({told[point] for point in ("cml.mode", "cml.status", "cml.parameter", "mode.dead-ends")} == {"agrees"},
+               f"modes of a bridge {motors}: {told}")
 
 
 def check_planted(folder):

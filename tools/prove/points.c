@@ -80,6 +80,18 @@ static const point_t points[] = {
     {"state.op", "The whole way to Operational and back, with the motor disabled", "UG 4.1, 4.3, BR 5.2",
      "start of the library, controlword 0", NULL, 0, look_state, 9},
 
+    {"boot.enter", "Init to Bootstrap and back, without a file", "UG 4.1", "AL control, mailboxes of the EEPROM", CM1E,
+     LEVEL_WRITE, look_boot, BOOT_ENTER},
+    {"boot.preop", "Bootstrap to Pre-Operational is refused", "UG 4.1", "AL control, mailboxes of the EEPROM", CM1E,
+     LEVEL_WRITE, look_boot, BOOT_PREOP},
+
+    {"cml.mode", "From csp to CML and back to csp", "BR 6, appendix 3", "objects 0x6060, 0x6061", BRIDGE, LEVEL_WRITE,
+     look_cml, CML_MODE},
+    {"cml.status", "The state of the motor by a string", "BR 7.2, appendix 2", "?99, 0xF530:5 ... 8", BRIDGE,
+     LEVEL_WRITE, look_cml, CML_STATUS},
+    {"cml.parameter", "K parameters by a string", "BR 7.2, 7.5", "K42, 0x60F6:16", BRIDGE, LEVEL_WRITE, look_cml,
+     CML_PARAMETER},
+
     {"cycle.1000", "A cycle of 1000 us is found", "UG 4.3", "0xFE00:1 in Operational, controlword 0", CM1E, 0,
      look_cycle, 1000},
     {"cycle.500", "A cycle of 500 us is found", "UG 4.3, 10.1 (V1.3.2)", "0xFE00:1 in Operational, controlword 0", CM1E,
@@ -126,6 +138,10 @@ static const point_t points[] = {
     {"home.4", "Homing to the home switch CCW", "BR 6.4.1", "MC_Home", BRIDGE, LEVEL_MOTION, look_motion,
      MOVE_HOME_BRIDGE + 3},
     {"home.-6", "Homing to input 3 CCW", "UG 6.2.4", "MC_Home", CM1E, LEVEL_MOTION, look_motion, MOVE_HOME + 5},
+
+    /* The last one: no other point holds behind it. */
+    {"mode.dead-ends", "CPIO and CMD are reached, and csp is not from there", "BR 6, notes 1 and 2",
+     "objects 0x6060, 0x6061; then switch the bridge off and on", BRIDGE, LEVEL_DEAD_END, look_dead_ends, 0},
 };
 
 const point_t *prove_point(size_t n) { return n < sizeof points / sizeof points[0] ? &points[n] : NULL; }

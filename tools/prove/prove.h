@@ -3,8 +3,9 @@
  * What `cm1e prove` looks at: a table of points, each with the clause of the guide that it settles, and a function that
  * compares the device with our tables. Results are JSON values, which become the report.
  *
- * Three levels: reading, states and refused requests need no permission; settings are written and written back with
- * --allow-writes; the motor is enabled and moved with --allow-motion and limits.
+ * Levels: reading, states and refused requests need no permission; settings are written and written back with
+ * --allow-writes; the motor is enabled and moved with --allow-motion and limits. Behind a point with --allow-dead-ends
+ * the device must be switched off and on.
  */
 #ifndef CM1E_TOOLS_PROVE_H
 #define CM1E_TOOLS_PROVE_H
@@ -16,7 +17,7 @@
 #include "command.h"
 #include "device/devices.h"
 
-typedef enum point_level { LEVEL_READ = 0, LEVEL_WRITE, LEVEL_MOTION } point_level_t;
+typedef enum point_level { LEVEL_READ = 0, LEVEL_WRITE, LEVEL_MOTION, LEVEL_DEAD_END } point_level_t;
 
 typedef struct prove prove_t;
 typedef struct point point_t;
@@ -37,7 +38,7 @@ typedef struct prove_options {
     const char *output, *profile, *patterns[PROVE_PATTERNS];
     int pattern_count;
     long long position;        /**< 0: the only motor or bridge */
-    bool list, allow_writes, allow_motion;
+    bool list, allow_writes, allow_motion, allow_dead_ends;
     double max_velocity, max_travel; /**< revolutions of the motor and revolutions/s; 0: not given */
 } prove_options_t;
 
@@ -122,6 +123,9 @@ void look_dictionary(prove_t *prove, const point_t *point);
 void look_mapping(prove_t *prove, const point_t *point);
 void look_controller(prove_t *prove, const point_t *point);
 void look_state(prove_t *prove, const point_t *point);
+void look_boot(prove_t *prove, const point_t *point);
+void look_cml(prove_t *prove, const point_t *point);
+void look_dead_ends(prove_t *prove, const point_t *point);
 void look_abort(prove_t *prove, const point_t *point);
 void look_write(prove_t *prove, const point_t *point);
 void look_error(prove_t *prove, const point_t *point);
@@ -134,6 +138,8 @@ enum { ID_VENDOR, ID_PRODUCT, ID_REVISION, ID_FIRMWARE, ID_TYPE, ID_NAME, ID_HAR
 enum { SII_CHECKSUM, SII_IDENTITY, SII_CONTENTS };
 enum { DICT_OBJECTS, DICT_READABLE, DICT_SIZES, DICT_TYPES, DICT_ACCESS, DICT_DEFAULTS, DICT_RANGES, DICT_VALUES };
 enum { ESC_UNITS, ESC_ALIAS, ESC_CONFIGURATION, ESC_WATCHDOG, ESC_CLOCK, ESC_ID };
+enum { BOOT_ENTER, BOOT_PREOP };
+enum { CML_MODE, CML_STATUS, CML_PARAMETER };
 enum { WRITE_KEPT, WRITE_TOO_HIGH, WRITE_TOO_LOW, WRITE_ROUNDED };
 enum { MOVE_ENABLE, MOVE_CSP, MOVE_CSV, MOVE_PP, MOVE_PV, MOVE_UNIT, MOVE_WATCHDOG, MOVE_HOME,
        MOVE_HOME_BRIDGE = MOVE_HOME + 6 };

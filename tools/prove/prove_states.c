@@ -3,9 +3,11 @@
 #include <string.h>
 
 #include "cm1e/esc.h"
+#include "core/bytes.h"
+#include "description/sii.h"
 #include "prove/prove.h"
 
-enum { REG_AL_STATUS = 0x0130, REG_SM0_ACTIVATE = 0x0806, NO_STATE = 5 };
+enum { REG_AL_STATUS = 0x0130, REG_SM0 = 0x0800, REG_SM0_ACTIVATE = 0x0806, NO_STATE = 5 };
 #define TIMEOUT_NS INT64_C(3000000000)
 
 /** The codes are those of ETG.1000.6 table 11; the guides do not say which request gets which. */
@@ -54,6 +56,50 @@ static void walk(prove_t *prove, int row)
     if (row == ROW_WITHOUT_MAILBOX)
         switch_mailbox(prove, true);
     prove_scan(prove);
+}
+
+/* ---- Bootstrap --------------------------------------------------------------------------------------------------- */
+
+/** The mailboxes of Bootstrap, as the EEPROM has them (ETG.1000.6 5.4). */
+static bool set_boot_mailboxes(prove_t *prove)
+{
+    for (unsigned n = 0; n < 2; n++) {
+        const uint8_t *place = prove->sii + CM1E_SII_BOOTSTRAP + 4 * n;
+        const uint8_t manager[8] = {place[0], place[1], place[2], place[3], n == 0 ? 0x26 : 0x22, 0, 1, 0};
+        if (prove->sii_size < CM1E_SII_BOOTSTRAP + CM1E_SII_BOOTSTRAP_BYTES || cm1e_get_uint(place + 2, 2) == 0) {
+            prove_note(prove, "the EEPROM names no mailboxes for Bootstrap");
+            return false;
+        }
+        if (cm1e_esc_write(prove->bus, prove->position, (uint16_t)(REG_SM0 + 8 * n), manager, 8, NULL) != CM1E_OK)
+            return false;
+    }
+    return true;
+}
+
+static void compare_state(prove_t *prove, const char *thing, uint16_t expected, const cm1e_al_answer_t *answer)
+{
+    char wanted[40], found[40];
+    const char *name = al_state_name(expected, wanted, sizeof wanted);
+    prove_compare(prove, thing, name, al_state_name(answer->state, found, sizeof found));
+}
+
+/** No file is sent: the device keeps what it has. A loss of its power in Bootstrap loses nothing. */
+void look_boot(prove_t *prove, const point_t *point)
+{
+    cm1e_al_answer_t answer = {0};
+    if (prove_scan(prove) && request(prove, CM1E_AL_INIT, &answer) && set_boot_mailboxes(prove) &&
+        request(prove, CM1E_AL_BOOT, &answer)) {
+        compare_state(prove, "Init to Bootstrap", CM1E_AL_BOOT, &answer);
+        if (point->row == BOOT_PREOP && answer.state == CM1E_AL_BOOT && request(prove, CM1E_AL_PRE_OP, &answer)) {
+            compare_state(prove, "Bootstrap to Pre-Operational", CM1E_AL_BOOT | CM1E_AL_ERROR, &answer);
+            prove_compare_code(prove, "al_status", "AL status code", 0x0011, answer.code);
+        }
+    }
+    if (request(prove, CM1E_AL_INIT, &answer))
+        compare_state(prove, "Bootstrap to Init", CM1E_AL_INIT, &answer);
+    const cm1e_slave_info_t before = *prove->slave;
+    if (prove_scan(prove))
+        prove_compare(prove, "firmware", before.software_version, prove->slave->software_version);
 }
 
 /** Nobody commands the axes: their outputs are zeros, and the controlword 0 enables nothing. */
