@@ -1,6 +1,5 @@
 #include "bus/port_watch.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "bus/bus_internal.h"
@@ -8,15 +7,6 @@
 /* Registers from 0x0300 on (ETG.1000.4 section 6.2): per port a byte of invalid frames and one of receive errors, then
  * a byte of forwarded errors per port, and from 0x0310 on one of lost links. */
 enum { REG_RECEIVE_ERRORS = 0x0300, COUNTER_BYTES = 20, FORWARDED_AT = 8, LOST_LINKS_AT = 16 };
-
-void cm1e_port_watch_begin(cm1e_bus_t *bus)
-{
-    static const cm1e_slave_place_t unknown;
-    cm1e_slave_place_t places[CM1E_MAX_SLAVES];
-    const bool known = cm1e_bus_read_topology(bus, places, CM1E_MAX_SLAVES, NULL) == CM1E_OK;
-    for (uint32_t i = 0; i < bus->slave_count; i++)
-        bus->slaves[i].ports = (cm1e_port_watch_t){.place = known ? places[i] : unknown};
-}
 
 void cm1e_port_watch_ask(const cm1e_bus_slave_t *slave, cm1e_datagram_t *datagram)
 {
@@ -63,19 +53,4 @@ cm1e_port_faults_t cm1e_bus_port_faults(const cm1e_bus_t *bus, uint16_t position
         .forwarded_errors = cm1e_bus_port_fault(bus, position, at, FAULT_FORWARDED_ERRORS),
         .lost_links = cm1e_bus_port_fault(bus, position, at, FAULT_LOST_LINKS),
     };
-}
-
-void cm1e_port_sentence(const cm1e_bus_t *bus, uint16_t position, int port, cm1e_port_fault_t fault, uint32_t count,
-                        char *text, size_t size)
-{
-    static const char *const words[CM1E_PORT_FAULTS] = {
-        "damaged frames", "receive errors", "frames that were damaged before it", "lost links",
-    };
-    char cable[96];
-    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
-    const cm1e_slave_place_t unknown = {.known = false};
-    cm1e_cable_text(slave ? &slave->ports.place : &unknown, position, port, cable, sizeof cable);
-    snprintf(text, size, "Slave %u counts %u %s more: %s.%s", position, count,
-             (unsigned)fault < CM1E_PORT_FAULTS ? words[fault] : "faults", cable,
-             fault == FAULT_FORWARDED_ERRORS ? "" : " Check that cable, its plugs and its shield.");
 }
