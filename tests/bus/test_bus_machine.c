@@ -133,6 +133,7 @@ START_TEST(start_with_a_frame_lost_at_every_moment)
             ck_assert_msg(strlen(diag.text) > 20, "frame %u: %s", at, diag.text);
             ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "after frame %u: %s", at, diag.text);
         }
+        cycle(bus); /* the lost frame may be the one that the start has left on its way */
         expect_works(bus, at & 255);
         cm1e_bus_close(bus);
     }
