@@ -5,7 +5,8 @@
  * Only the ends of cycles are known. So a cycle is judged by the gentlest motion that leads from one end to the other:
  * a step of the velocity or of the acceleration inside a cycle is seen if it needs more than the limits at its ends, or
  * more jerk inside. What stays unseen is a detour of the position that is over at the end of the cycle, which no motor
- * is sent, and a step of the position of less than a quarter of (acceleration * cycle time^2). Without a limit of jerk
+ * is sent, and a step of the position of less than a quarter of (acceleration * cycle time^2). Of an axis of a group the
+ * ends alone are judged, because the time of its path may run slower from within a cycle on. Without a limit of jerk
  * (a linear cam, an actual value, a stop) the velocity may step by what the acceleration makes of it in a cycle.
  */
 #include <math.h>
@@ -105,7 +106,7 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     const double jerk_noise = 1e-9 * fmax(most->acceleration, most->deceleration) / axis->cycle_s;
     if (kept_jerk && jerk > most->jerk * (1.0 + slack) + jerk_noise)
         return broken(GUARD_JERK, jerk, most->jerk);
-    if (kept_jerk) {
+    if (kept_jerk && !axis_led(axis)) {
         const double inside = jerk_inside(axis, next);
         if (inside > most->jerk * (1.0 + slack) + jerk_noise)
             return broken(GUARD_JERK, inside, most->jerk);
@@ -176,7 +177,7 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
         .down = most->deceleration * t,
         .acceleration = either,
         .jerk = most->jerk * t,
-        .twice_jerk = 2.0 * most->jerk,
+        .twice_jerk = axis_led(axis) ? 0.0 : 2.0 * most->jerk, /* the time of a path may change within a cycle */
         .ease = axis_led(axis) ? 0.0 : 0.5 / most->jerk, /* the group has planned its path with these limits */
         .half_cycle = axis->position.scale * t / 2.0,
         .step = either * t * t / 4.0 * fabs(axis->position.scale) + slack_counts,

@@ -64,7 +64,7 @@ typedef struct guarding {
     double velocity;         /**< u/s */
     double up, down;         /**< u/s in a cycle */
     double acceleration;     /**< u/s2 */
-    double jerk, twice_jerk; /**< u/s2 in a cycle; u/s3 */
+    double jerk, twice_jerk; /**< u/s2 in a cycle; u/s3, 0 in a group */
     double ease;             /**< s3/u; times the square of an acceleration: the velocity that it adds until it ends */
     double half_cycle, step; /**< counts in half a cycle at 1 u/s; tolerance in counts around the mean velocity */
     double per_count;        /**< u, signed */

@@ -403,7 +403,7 @@ def check_no_motor(folder):
            "simulated network: no real device\n", "no motor", status)
     status = run("cm1e", "status", "-b", bus, "--json")
     expect(json.loads(status.stdout) == [{"position": 1, "name": "Coupler", "firmware": "", "is_motor": False,
-                                          "al_state": "Pre-Operational"}], "no motor", status)
+                                          "al_state": "Pre-Operational", "emergencies": []}], "no motor", status)
     with open(bus, "w", encoding="utf-8") as file:
         file.write("bus: {sim_gaps: terminal, virtual_time: true}\naxes: [{position: 2}]\n")
     status = run("cm1e", "status", "-b", bus)

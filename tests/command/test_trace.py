@@ -190,9 +190,13 @@ def check_variables():
     process = subprocess.Popen([os.path.join(os.path.dirname(CM1E), "03_plc_program"), "-i", "sim", "--seconds", "60"],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
     wait_for(lambda: os.path.exists(os.path.join(RUNTIME, f"cm1e-{process.pid}-0.sock")), "no control socket")
-    names = trace(process, "--list").stdout.splitlines()
+    def trace(*words):
+        return subprocess.run([CM1E, "trace", "--attach", str(process.pid), *words], capture_output=True, text=True,
+                              timeout=60, env=ENVIRONMENT)
+
+    names = trace("--list").stdout.splitlines()
     expect("step" in names and "homed" in names, "variables are listed", names)
-    told = trace(process, "--for", "1.5", "--before", "0.5", "--trigger", "change:step", "--csv", path_of("step.csv"))
+    told = trace("--for", "1.5", "--before", "0.5", "--trigger", "change:step", "--csv", path_of("step.csv"))
     process.terminate()
     process.communicate(timeout=30)
     head, *samples = rows("step.csv")

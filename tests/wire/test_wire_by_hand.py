@@ -16,7 +16,7 @@ def check_reset(segment, cm1e):
     bus = segment.bus_file()
     segment.console("error 1 7310 hold")
     stays = segment.run([cm1e, "reset", "-b", bus])
-    wire.check(stays.returncode == 1 and "still there" in stays.stderr and "7310" in stays.stderr,
+    wire.check(stays.returncode == 1 and "did not clear" in stays.stderr and "7310" in stays.stderr,
                f"an error whose cause is still there: {stays}")
     segment.console("error 1 clear")
     segment.console("error 1 7310")
