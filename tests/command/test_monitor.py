@@ -133,7 +133,7 @@ def check_attached():
         terminal.press("Right")
         terminal.shows("commanded by the program (ContinuousMotion, MC_MoveVelocity)")
         terminal.press("e")
-        terminal.shows("program disables what it has enabled")
+        terminal.shows("disables what the program has enabled")
         terminal.press("Down", "Right")
         terminal.shows("Enable it first")
         terminal.press("e")
