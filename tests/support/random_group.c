@@ -192,12 +192,14 @@ static void judge_group_state(struct random_group *g, const instance_t *fb)
     const bool own = fb && group_of(fb) == g->group;
     const bool edge = own && fb->now.trigger && !fb->before.trigger && !fb->now.error;
     const bool released = own && is(fb, "MC_GroupStop") && !fb->now.trigger;
+    /* A block of an axis has taken the last one from a group at rest in GroupStopping: no step of the path follows. */
+    const bool let_go = fb && !group_of(fb) && before == CM1E_GROUP_STOPPING && !g->group->led && !g->group->stop_held;
     g->edge_in_cycle = g->edge_in_cycle || edge;
     if (own && is(fb, "MC_GroupReset") && edge)
         g->reset_asked = true;
     if (after == before)
         return;
-    const unsigned alone = group_goes_by_itself(g, before, !fb || released);
+    const unsigned alone = group_goes_by_itself(g, before, !fb || released || let_go);
     unsigned allowed = alone;
     for (int state = 0; state < CM1E_GROUP_STATE_COUNT && edge; state++)
         if (alone >> state & 1u)
