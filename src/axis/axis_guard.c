@@ -87,6 +87,39 @@ static double jerk_inside(const cm1e_axis_t *axis, const from_t *next)
     return 2.0 * beside + sqrt(4.0 * beside * beside + mean * mean);
 }
 
+/* The limits of the acceleration by its sign, u/s2. If the velocity changes its sign, both limits apply in turn. */
+typedef struct bounds {
+    double up, down;
+} bounds_t;
+
+static bounds_t bounds_between(const cm1e_motion_limits_t *most, double v0, double v)
+{
+    const double either = fmax(most->acceleration, most->deceleration);
+    if (v0 > 0.0 && v > 0.0)
+        return (bounds_t){most->acceleration, most->deceleration};
+    if (v0 < 0.0 && v < 0.0)
+        return (bounds_t){most->deceleration, most->acceleration};
+    return (bounds_t){either, either};
+}
+
+/* Checks the second difference of the set positions. Two ways make it: what the acceleration adds in a cycle to the way
+ * of its first velocity, and what was missing in the cycle before to the way of its last velocity. Each of them may use
+ * half of the limit. */
+static guard_t guard_second_difference(const cm1e_axis_t *axis, const from_t *next)
+{
+    const double v0 = axis->setpoint.velocity, v = next->velocity, t = axis->cycle_s;
+    const bounds_t bounds = bounds_between(limits_of(axis), v0, v);
+    const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
+    const double early = 2.0 * (step - v0 * t) / (t * t), late = 2.0 * (v * t - step) / (t * t);
+    const double most = fmax(early, late), least = fmin(early, late);
+    const double noise = 2e-9 / fabs(axis->position.scale) / (t * t) + 2e-13 * fabs(v) / t;
+    if (most > bounds.up * (1.0 + slack) + noise)
+        return broken(v < 0.0 ? GUARD_DECELERATION : GUARD_ACCELERATION, most, bounds.up);
+    if (least < -bounds.down * (1.0 + slack) - noise)
+        return broken(v > 0.0 ? GUARD_DECELERATION : GUARD_ACCELERATION, -least, bounds.down);
+    return broken(GUARD_KEPT, 0.0, 0.0);
+}
+
 CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
@@ -110,6 +143,9 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
         const double inside = jerk_inside(axis, next);
         if (inside > most->jerk * (1.0 + slack) + jerk_noise)
             return broken(GUARD_JERK, inside, most->jerk);
+        guard = guard_second_difference(axis, next);
+        if (guard.limit)
+            return guard;
     }
     guard = guard_step(axis, next, kept_jerk);
     if (guard.limit)
@@ -138,33 +174,22 @@ static double farthest(double x, double y)
     return 1.0 / 6.0 - against * (middle * middle + against * against / 12.0);
 }
 
-/* Whether the second difference of the set positions keeps the limits. `early` and `late` are the ways that the
- * acceleration adds in a cycle, counted from its first and from its last velocity; two of them are a second
- * difference. */
-static bool keeps_second_difference(double early, double late, double up, double down, double noise)
-{
-    const double most = fmax(early, late), least = fmin(early, late);
-    return most <= up * (1.0 + slack) / 2.0 + noise && least >= -down * (1.0 + slack) / 2.0 - noise;
-}
-
 CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
     const double t = axis->cycle_s, jerk = most->jerk, v0 = axis->setpoint.velocity, a0 = axis->setpoint.acceleration;
-    const double v = next->velocity, a = next->acceleration, either = fmax(most->acceleration, most->deceleration);
-    const double up = v0 < 0.0 && v < 0.0 ? most->deceleration : v0 > 0.0 && v > 0.0 ? most->acceleration : either;
-    const double down = v0 < 0.0 && v < 0.0 ? most->acceleration : v0 > 0.0 && v > 0.0 ? most->deceleration : either;
+    const double v = next->velocity, a = next->acceleration;
+    const bounds_t bounds = bounds_between(most, v0, v);
     const double noise = slack * jerk * t * t + 1e-12 * fabs(v), gain = v - v0;
-    if (gain > largest_gain(a0, a, t, jerk, fmax(up, fmax(a0, a))) + noise ||
-        -gain > largest_gain(-a0, -a, t, jerk, fmax(down, fmax(-a0, -a))) + noise)
+    if (gain > largest_gain(a0, a, t, jerk, fmax(bounds.up, fmax(a0, a))) + noise ||
+        -gain > largest_gain(-a0, -a, t, jerk, fmax(bounds.down, fmax(-a0, -a))) + noise)
         return false;
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
     const double x = (a - a0) / (jerk * t), y = (gain - a0 * t) / (jerk * t * t);
     const double z = (step - t * (v0 + t * a0 / 2.0)) / (jerk * t * t * t);
     const double step_noise = 1e-9 / fabs(axis->position.scale) + 1e-13 * fabs(step);
     const double few = slack + step_noise / (jerk * t * t * t);
-    return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few &&
-           keeps_second_difference((step - v0 * t) / (t * t), (v * t - step) / (t * t), up, down, step_noise / (t * t));
+    return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few;
 }
 
 void cm1e_axis_guard_renew(cm1e_axis_t *axis)
@@ -182,6 +207,7 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
         .half_cycle = axis->position.scale * t / 2.0,
         .step = either * t * t / 4.0 * fabs(axis->position.scale) + slack_counts,
         .per_count = 1.0 / axis->position.scale,
+        .per_step = axis_led(axis) ? 0.0 : 2.0 / (fabs(axis->position.scale) * t),
     };
 }
 

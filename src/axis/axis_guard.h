@@ -23,12 +23,14 @@ static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *
     const guarding_t *g = &axis->guarding;
     const double v0 = axis->setpoint.velocity, v = next->velocity, a = next->acceleration, speed = fabs(v);
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) - (v0 + v) * g->half_cycle;
-    if (!(speed <= g->velocity && fabs(v - v0) <= (speed >= fabs(v0) ? g->up : g->down) &&
+    const double change = fabs(v - v0), most = speed >= fabs(v0) ? g->up : g->down;
+    if (!(speed <= g->velocity && change <= most &&
           fabs(a) <= g->acceleration && fabs(step) <= g->step && axis->power.enable_positive &&
               axis->power.enable_negative))
         return false;
     const double a0 = axis->setpoint.acceleration, beside = fabs(2.0 * (v - v0) - (a0 + a) * axis->cycle_s);
     if (kept_jerk && !((a - a0) * (a - a0) + beside * g->twice_jerk <= g->jerk * g->jerk &&
+                       change + fabs(step) * g->per_step <= most &&
                        (a * v <= 0.0 || speed + a * a * g->ease <= g->velocity)))
         return false;
     if (!axis->limits.software_limits)

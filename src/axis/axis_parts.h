@@ -68,6 +68,7 @@ typedef struct guarding {
     double ease;             /**< s3/u; times the square of an acceleration: the velocity that it adds until it ends */
     double half_cycle, step; /**< counts in half a cycle at 1 u/s; tolerance in counts around the mean velocity */
     double per_count;        /**< u, signed */
+    double per_step;         /**< u/s for a count beside the mean velocity, in the second difference; 0 in a group */
 } guarding_t;
 
 /** The limits of the axis: dynamics, software limits, directions. Written by axis_limits.c and axis_parameter.c. */

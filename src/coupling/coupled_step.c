@@ -46,7 +46,7 @@ static double velocity_to_place(const cm1e_axis_t *axis, const from_t *f)
 /* The limits of the catch-up: those of the axis without what the coupling function uses. The velocity of the catch-up
  * goes to 0 while the velocity of the axis changes to that of the function. Where the acceleration of the function
  * helps that change, the catch-up has the whole limits. */
-static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t *f, double f_jerk, bool full_jerk)
+static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t *f, double jerk)
 {
     const catch_up_t *catch_up = &axis->coupling->catch_up;
     if (axis->coupling->now->to_position)
@@ -58,7 +58,6 @@ static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t 
     const double up = at_most(catch_up->asked.acceleration, most->acceleration, used);
     const double down = at_most(catch_up->asked.deceleration, most->deceleration, used);
     const double change = now * f->velocity < 0.0 ? fmin(up, down) : fabs(f->velocity) > fabs(now) ? up : down;
-    const double jerk = full_jerk ? catch_up->asked.jerk : at_most(catch_up->asked.jerk, most->jerk, fabs(f_jerk));
     const double velocity = catch_up->to_place ? velocity_to_place(axis, f)
                                                : 2.0 * (most->velocity + fabs(catch_up->now.velocity));
     return (cm1e_motion_limits_t){velocity, change, change, jerk};
@@ -124,9 +123,14 @@ static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
 }
 
 /* How the catch-up may go on in a cycle, in the order in which it is tried: by its plan; by a new plan with the whole
- * jerk, which may act against the jerk of the coupling function; by a new plan with the jerk that the function leaves;
- * without jerk. */
-typedef enum attempt { AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITHOUT_JERK, ATTEMPTS } attempt_t;
+ * jerk, which may act against the jerk of the coupling function; by a new plan with the jerk that the function leaves,
+ * and with parts of it, because the function may have begun its jerk within the cycle; without jerk. */
+typedef enum attempt {
+    AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITH_HALF_OF_IT, WITH_QUARTER_OF_IT, WITHOUT_JERK, ATTEMPTS
+} attempt_t;
+
+static const double part_of_jerk_left[ATTEMPTS] = {
+    [WITH_JERK_LEFT] = 1.0, [WITH_HALF_OF_IT] = 0.5, [WITH_QUARTER_OF_IT] = 0.25};
 
 /* The smallest jerk that explains what the coupling function did in this cycle, if the jerk may change once in it. */
 static double jerk_of_function(const cm1e_axis_t *axis, const from_t *f)
@@ -137,14 +141,22 @@ static double jerk_of_function(const cm1e_axis_t *axis, const from_t *f)
     return 2.0 * fabs(beside) + sqrt(4.0 * beside * beside + mean * mean);
 }
 
+static double jerk_of_attempt(const cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
+{
+    const double asked = axis->coupling->catch_up.asked.jerk;
+    if (attempt == WITH_ALL_JERK)
+        return asked;
+    return part_of_jerk_left[attempt] * at_most(asked, axis->limits.maximum.jerk, jerk_of_function(axis, f));
+}
+
 static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
     const double t = axis->cycle_s;
-    if (attempt == WITH_ALL_JERK || attempt == WITH_JERK_LEFT) {
+    if (attempt > AS_PLANNED && attempt < WITHOUT_JERK) {
         const bool steady = f->acceleration == 0.0 && axis->coupling->f_acceleration == 0.0;
         catch_up->to_place = goes_to_place(axis, f, steady);
-        const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_function(axis, f), attempt == WITH_ALL_JERK);
+        const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_attempt(axis, f, attempt));
         plan_catch_up(axis, &limits);
     }
     const double v = catch_up->now.velocity, a = catch_up->now.acceleration;
@@ -247,7 +259,7 @@ static void catch_up_ended(cm1e_axis_t *axis, const from_t *f)
     catch_up->to_place = goes_to_place(axis, f, f->acceleration == 0.0);
     if (!catch_up->to_place)
         return;
-    const cm1e_motion_limits_t limits = limits_beside(axis, f, 0.0, true);
+    const cm1e_motion_limits_t limits = limits_beside(axis, f, catch_up->asked.jerk);
     plan_catch_up(axis, &limits);
 }
 
@@ -393,7 +405,7 @@ static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
     if (is_nothing(axis, &c->catch_up.now))
         c->catch_up.now = (cm1e_motion_state_t){0};
     c->catch_up.to_place = goes_to_place(axis, &f, f.acceleration == 0.0);
-    const cm1e_motion_limits_t limits = limits_beside(axis, &f, 0.0, true);
+    const cm1e_motion_limits_t limits = limits_beside(axis, &f, asked->jerk);
     plan_catch_up(axis, &limits);
 }
 
