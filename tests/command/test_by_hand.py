@@ -6,9 +6,7 @@ test_by_hand.py BIN-DIRECTORY SOURCE-DIRECTORY
 """
 import json
 import os
-import pty
 import re
-import select
 import subprocess
 import sys
 import tempfile
@@ -17,10 +15,10 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import real_time  # noqa: E402
+from terminal import LEFT, RIGHT, Terminal  # noqa: E402
 
 BIN, SOURCE = sys.argv[1], sys.argv[2]
 FAILED, WRONG_USE = 1, 2
-RIGHT, LEFT = b"\x1b[C", b"\x1b[D"
 faults = []
 
 
@@ -38,74 +36,31 @@ def expect(condition, what, result=""):
         faults.append(f"{what}\n{result}")
 
 
-class Terminal:
-    """The command in a terminal, its output a pipe of its own, so that both can be looked at."""
-
-    def __init__(self, *words):
-        self.master, slave = pty.openpty()
-        self.before = termios.tcgetattr(slave)
-        self.slave = slave
-        self.seen = ""
-        self.process = subprocess.Popen(["setsid", "--ctty", os.path.join(BIN, "cm1e"), *words], stdin=slave,
-                                        stderr=slave, stdout=subprocess.PIPE, text=True)
-
-    def look(self, seconds):
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            if select.select([self.master], [], [], 0.02)[0]:
-                self.seen += os.read(self.master, 65536).decode(errors="replace")
-        return self.seen
-
-    def wait(self, text, seconds=20):
-        end = time.monotonic() + seconds
-        while text not in self.seen and time.monotonic() < end and self.process.poll() is None:
-            self.look(0.05)
-        return text in self.seen
-
-    def hold(self, key, seconds):
-        """As a keyboard: the key, and its repetitions."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            os.write(self.master, key)
-            self.look(0.04)
-
-    def position(self):
-        self.seen = ""
-        self.look(0.3)
-        shown = re.findall(r"axis1: +(-?[\d.e+-]+) ", self.seen)
-        return float(shown[-1]) if shown else None
-
-    def end(self, seconds=20):
-        try:
-            out = self.process.communicate(timeout=seconds)[0]
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            return None, ""
-        self.look(0.1)
-        return self.process.returncode, out
+def in_terminal(*words):
+    return Terminal([os.path.join(BIN, "cm1e"), *words])
 
 
 def check_jog():
     """Velocity 1: held for a second it goes about one revolution, and no further when the key is let go."""
-    jog = Terminal("jog", "-i", "sim", "-v", "1", "--json")
+    jog = in_terminal("jog", "-i", "sim", "-v", "1", "--json")
     expect(jog.wait("stands"), "jog does not begin", jog.seen)
     start = time.monotonic()
     jog.hold(RIGHT, 1.0)
     held = time.monotonic() - start
     jog.look(1.0)
-    there = jog.position()
+    there = jog.position("axis1")
     expect(there is not None and 0.3 < there < held + 0.4, f"jog to the right for {held:.2f} s: at {there}", jog.seen)
     jog.look(0.5)
-    expect(jog.position() == there, "the motor moves without a key", jog.seen)
+    expect(jog.position("axis1") == there, "the motor moves without a key", jog.seen)
     jog.hold(LEFT, 0.5)
     jog.look(1.0)
-    back = jog.position()
+    back = jog.position("axis1")
     expect(back is not None and back < there - 0.1, f"jog to the left: from {there} to {back}", jog.seen)
     os.write(jog.master, b"[[")
     jog.look(0.2)
     os.write(jog.master, RIGHT)
     jog.look(1.0)
-    tap = jog.position()
+    tap = jog.position("axis1")
     expect(tap is not None and 0 < tap - back < 0.25, f"a tap at a quarter of the velocity: from {back} to {tap}", jog.seen)
     os.write(jog.master, b"q")
     status, out = jog.end()
@@ -116,7 +71,7 @@ def check_jog():
 
 def check_end_of_jog(what):
     """Ctrl-C and a closed terminal while the key is held end in order: ramp, disabled, the terminal as it was."""
-    jog = Terminal("jog", "-i", "sim", "--dead-man", "1")
+    jog = in_terminal("jog", "-i", "sim", "--dead-man", "1")
     expect(jog.wait("stands"), "jog does not begin", jog.seen)
     jog.hold(RIGHT, 0.4)
     if what == "Ctrl-C":
@@ -132,7 +87,7 @@ def check_end_of_jog(what):
 
 
 def check_enable():
-    enable = Terminal("enable", "-i", "sim")
+    enable = in_terminal("enable", "-i", "sim")
     expect(enable.wait("Any key ends it"), "enable does not begin", enable.seen)
     enable.look(0.5)
     os.write(enable.master, b"x")

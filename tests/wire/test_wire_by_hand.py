@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""`cm1e reset`, `led` and `alias` over the wire, on a motor that goes on when the command has ended.
+"""`cm1e reset`, `led` and `alias` over the wire, on a motor that goes on when the command has ended; `jog` and `monitor`
+in a terminal, alone and the one beside the other.
 
 test_wire_by_hand.py CM1E
 """
@@ -10,6 +11,7 @@ import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import wire  # noqa: E402
+from terminal import RIGHT, Terminal  # noqa: E402
 
 
 def check_reset(segment, cm1e):
@@ -54,12 +56,47 @@ def check_alias(segment, cm1e, folder):
                   == 0, 10, "the alias is still there after the backup was written back")
 
 
+def shows(terminal, words, what):
+    wire.check(terminal.wait(words), f"{what}: {terminal.seen}")
+
+
+def jog_by(segment, cm1e, bus):
+    """Returns what a jog of half a second says at its end."""
+    jog = Terminal(segment.command([cm1e, "jog", "-b", bus, "-v", "1", "--json"]))
+    shows(jog, "stands", "jog does not begin")
+    jog.hold(RIGHT, 0.5)
+    jog.look(0.7)
+    os.write(jog.master, b"q")
+    status, out = jog.end()
+    wire.check(status == 0, f"jog: {status} {out} {jog.seen}")
+    return json.loads(out)
+
+
+def check_jog_and_monitor(segment, cm1e, folder):
+    bus = os.path.join(folder, "maintain.yaml")
+    with open(segment.bus_file(), encoding="utf-8") as plain, open(bus, "w", encoding="utf-8") as file:
+        file.write(plain.read().replace("bus:\n", "bus:\n  control: maintain\n", 1))
+    way = jog_by(segment, cm1e, bus)
+    wire.check(way["done"] and 0.1 < way["to"] - way["from"] < 1.2, f"jog alone: {way}")
+    monitor = Terminal(segment.command(["env", "TERM=xterm", cm1e, "monitor", "-b", bus]), screen=True)
+    shows(monitor, "Disabled", "monitor alone does not show the axis")
+    watched = Terminal(segment.command(["env", "TERM=xterm", cm1e, "monitor", "-b", bus]), screen=True)
+    shows(watched, "Disabled", "monitor beside the other one")
+    way = jog_by(segment, cm1e, bus)
+    wire.check(way["done"] and 0.1 < way["to"] - way["from"] < 1.2, f"jog beside the monitor that has the bus: {way}")
+    for terminal in (watched, monitor):
+        os.write(terminal.master, b"q")
+        status, _ = terminal.end()
+        wire.check(status == 0, f"q ends the monitor: {status} {terminal.seen}")
+
+
 def main(cm1e):
     with wire.segment(cm1e) as segment, tempfile.TemporaryDirectory() as folder:
         check_reset(segment, cm1e)
         check_led(segment, cm1e)
+        check_jog_and_monitor(segment, cm1e, folder)
         check_alias(segment, cm1e, folder)
-    print("reset, led and alias over the wire")
+    print("reset, led, jog, monitor and alias over the wire")
 
 
 if __name__ == "__main__":
