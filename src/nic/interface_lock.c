@@ -15,8 +15,8 @@
 #include "core/program.h"
 #include "core/text.h"
 
-/** The record follows the name within a moment, or the owner has just ended. */
-enum { RECORD_TRIES = 20, RECORD_PAUSE_US = 500 };
+/** The record follows the name within a moment, or the owner has just ended: on a busy machine after some 10 ms. */
+enum { RECORD_TRIES = 200, RECORD_PAUSE_US = 500, TAKE_TRIES = 5 };
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
@@ -111,15 +111,13 @@ void cm1e_interface_owner_text(char *text, size_t size, const cm1e_interface_own
              owner->pid == getpid() ? ", this program itself," : "", since);
 }
 
-static cm1e_error_t in_use(const char *interface_name, cm1e_diag_t *diag)
+static cm1e_error_t in_use(const char *interface_name, const cm1e_interface_owner_t *owner, cm1e_diag_t *diag)
 {
-    cm1e_interface_owner_t owner;
     char who[128];
-    cm1e_interface_owner(interface_name, &owner);
-    cm1e_interface_owner_text(who, sizeof who, &owner);
+    cm1e_interface_owner_text(who, sizeof who, owner);
     /* A process that is forked off inherits the socket and keeps the name. */
-    const bool ended = owner.pid > 0 && kill(owner.pid, 0) != 0 && errno == ESRCH;
-    return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, (uint32_t)owner.pid,
+    const bool ended = owner->pid > 0 && kill(owner->pid, 0) != 0 && errno == ESRCH;
+    return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, (uint32_t)owner->pid,
                          "Network interface \"%s\" is in use by %s. An interface has one owner at a time: two masters, "
                          "or two simulated segments, on one network disturb each other, and motors lose their torque.%s "
                          "End that program first, or use another interface.", interface_name, who,
@@ -127,17 +125,32 @@ static cm1e_error_t in_use(const char *interface_name, cm1e_diag_t *diag)
                                  "still hold the interface." : "");
 }
 
+/* The name of an interface. One that has just been given back, or that another looks at only, is tried again. */
+static int take_interface(const char *name, const char *interface_name, cm1e_interface_owner_t *owner)
+{
+    for (int i = 0; i < TAKE_TRIES; i++) {
+        const int taken = take_name(name);
+        if (taken >= 0 || errno != EADDRINUSE)
+            return taken;
+        if (cm1e_interface_owner(interface_name, owner))
+            break;
+    }
+    errno = EADDRINUSE;
+    return -1;
+}
+
 cm1e_error_t cm1e_interface_lock_take(cm1e_interface_lock_t *lock, const char *interface_name, cm1e_diag_t *diag)
 {
     char name[40], record[108], program[48];
+    cm1e_interface_owner_t owner = {0};
     const unsigned index = if_nametoindex(interface_name);
     *lock = CM1E_INTERFACE_UNLOCKED;
     if (index == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "There is no network interface \"%s\".", interface_name);
     write_name(name, sizeof name, index);
-    lock->name_fd = take_name(name);
+    lock->name_fd = take_interface(name, interface_name, &owner);
     if (lock->name_fd < 0 && errno == EADDRINUSE)
-        return in_use(interface_name, diag);
+        return in_use(interface_name, &owner, diag);
     if (lock->name_fd < 0)
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "Network interface \"%s\" cannot be locked: %s.", interface_name,
                              strerror(errno));
