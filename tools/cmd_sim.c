@@ -19,10 +19,10 @@ static void request_stop(int signal_number)
     stop_requested = 1;
 }
 
-enum { KEY_SII = 0x400, KEY_BRIDGE, KEY_IO, KEY_PROFILE };
+enum { KEY_SII = 0x400, KEY_BRIDGE, KEY_IO, KEY_PROFILE, KEY_SECOND };
 
 typedef struct sim_options {
-    const char *interface_name, *bus_file, *order;
+    const char *interface_name, *second, *bus_file, *order;
     const char *sii[CM1E_MAX_SLAVES]; /* files, by place on the line */
     const char *profiles[CM1E_MAX_SLAVES]; /* likewise */
     uint32_t sii_count, profile_count;
@@ -71,6 +71,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "-i needs a name; it is empty");
         options->interface_name = arg;
         return 0;
+    case KEY_SECOND: options->second = arg; return 0;
     case 'o': options->order = arg; return 0;
     case KEY_SII:
         if (options->sii_count == CM1E_MAX_SLAVES)
@@ -171,17 +172,24 @@ static void end_by_signals(void)
         sigaction(SIGHUP, &action, NULL);
 }
 
-static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_name, cm1e_diag_t *diag)
+static cm1e_error_t open_server(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment, const sim_options_t *options,
+                                cm1e_diag_t *diag)
+{
+    return options->second ? cm1e_sim_server_open_ring(server, segment, options->interface_name, options->second, diag)
+                           : cm1e_sim_server_open(server, segment, options->interface_name, diag);
+}
+
+static cm1e_error_t serve(cm1e_sim_segment_t *segment, const sim_options_t *options, cm1e_diag_t *diag)
 {
     static const cm1e_sim_streams_t console = {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO};
     cm1e_sim_server_t *server;
-    const cm1e_error_t error = cm1e_sim_server_open(&server, segment, interface_name, diag);
+    const cm1e_error_t error = open_server(&server, segment, options, diag);
     if (error != CM1E_OK)
         return error;
     end_by_signals();
-    printf("%u simulated slave%s on %s; `help` lists the commands\n",
-           cm1e_sim_segment_slave_count(segment), cm1e_sim_segment_slave_count(segment) == 1 ? "" : "s",
-           interface_name);
+    printf("%u simulated slave%s on %s%s%s; `help` lists the commands\n", cm1e_sim_segment_slave_count(segment),
+           cm1e_sim_segment_slave_count(segment) == 1 ? "" : "s", options->interface_name,
+           options->second ? " and " : "", options->second ? options->second : "");
     fflush(stdout);
     cm1e_sim_server_run(server, &console, &stop_requested);
     cm1e_sim_server_close(server);
@@ -190,6 +198,8 @@ static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_nam
 
 static const struct argp_option table[] = {
     {"interface", 'i', "INTERFACE", 0, "Network interface to answer on", 0},
+    {"second-interface", KEY_SECOND, "INTERFACE", 0, "Network interface at the other end of a redundant ring, behind the "
+     "last slave", 0},
     {"pdo-order", 'o', ORDERS, 0, "The order of objects in the PDO mappings; default ug-4.4", 0},
     {"sii", KEY_SII, "FILE", 0, "A slave boots from this SII image instead of the tables; the first option is for "
      "the first slave, the second for the second, and so on", 0},
@@ -224,7 +234,7 @@ int command_sim(int argc, char **argv)
         cm1e_sim_segment_destroy(segment);
         return EXIT_FAILED;
     }
-    const cm1e_error_t error = serve(segment, options.interface_name, &diag);
+    const cm1e_error_t error = serve(segment, &options, &diag);
     cm1e_sim_segment_destroy(segment);
     return error == CM1E_OK ? EXIT_OK : fail(&diag);
 }

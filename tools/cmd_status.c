@@ -7,6 +7,7 @@
 #include "attach.h"
 #include "cm1e/clocks.h"
 #include "cm1e/emergency.h"
+#include "cm1e/topology.h"
 #include "command.h"
 #include "device/devices.h"
 #include "device/unit.h"
@@ -188,6 +189,26 @@ static void show_clock(const cm1e_bus_t *bus, uint16_t position, json_t *all)
                                   (json_int_t)clock.losses));
 }
 
+/* ---- a redundant ring ------------------------------------------------------------------------------------------- */
+
+/** Below the slaves; in JSON at both slaves that adjoin the break, because the list has slaves only. */
+static void show_ring(const cm1e_bus_t *bus, json_t *all)
+{
+    cm1e_bus_ring_t ring;
+    char text[512];
+    cm1e_bus_ring(bus, &ring);
+    if (!ring.used)
+        return;
+    cm1e_bus_ring_text(bus, &ring, text, sizeof text);
+    if (!all)
+        printf("%s\n", text);
+    for (unsigned end = 0; all && ring.placed && end < 2; end++) {
+        json_t *slave = json_array_get(all, (end ? ring.before : ring.behind) - 1u);
+        if (slave)
+            json_object_set_new(slave, "ring", json_string(text));
+    }
+}
+
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
                                  "Shows state, error, measurements and the last emergencies of every drive, and which "
@@ -221,6 +242,7 @@ int command_status(int argc, char **argv)
         show_clock(bus, slave->position, all);
         show_emergencies(bus, slave->position, all);
     }
+    show_ring(bus, all);
     if (all)
         print_json(all);
     else

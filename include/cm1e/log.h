@@ -38,6 +38,9 @@ typedef enum cm1e_log_kind {
                                    detail: the position of the slave, 65536 times the port, and 16777216 times the kind
                                    of fault: 0 damaged frames, 1 receive errors, 2 frames damaged before, 3 lost
                                    links */
+    CM1E_LOG_RING,            /**< of a redundant ring; code 1: it is broken, 0: it is whole again; detail: the number
+                                   of the bus times 16777216; value: the last slave that the first interface reaches,
+                                   bound: the first one of the second interface; both 0: not known */
     CM1E_LOG_KIND_COUNT,
 } cm1e_log_kind_t;
 

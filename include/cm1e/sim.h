@@ -136,6 +136,11 @@ typedef struct cm1e_sim_streams {
  *  @rt init */
 CM1E_API cm1e_error_t cm1e_sim_server_open(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment,
                                            const char *interface_name, cm1e_diag_t *diag);
+/** As cm1e_sim_server_open(), for a redundant ring: the second interface is connected behind the last slave. While an
+ *  interface has no link, the cable there counts as cut. CM1E_ERROR_INVALID_ARGUMENT: both names are the same.
+ *  @rt init */
+CM1E_API cm1e_error_t cm1e_sim_server_open_ring(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment,
+                                                const char *first, const char *second, cm1e_diag_t *diag);
 /** Serves until `*stop` is not 0. An interface that goes down, or away, is said in a notice and waited for.
  *
  *  A frame that came from another simulated segment, where the two face each other, would go round for ever. Slave

@@ -49,6 +49,30 @@ typedef struct cm1e_port_faults {
 /** The faults of one port; zeros if there is no such slave or port. @rt any */
 CM1E_API cm1e_port_faults_t cm1e_bus_port_faults(const cm1e_bus_t *bus, uint16_t position, int port);
 
+/** A redundant ring (cm1e_bus_config_t.second_interface): whether it is whole, and where it is broken. */
+typedef struct cm1e_bus_ring_t {
+    bool used;       /**< false: there is no second interface, and the other members are zero */
+    bool broken;     /**< frames do not pass from one interface to the other */
+    bool placed;     /**< it is known where; some cycles after it broke */
+    uint16_t behind; /**< position of the last slave that the first interface reaches; 0: none */
+    uint16_t before; /**< position of the first slave that the second interface reaches; behind the last slave: none.
+                          Slaves between the two are reached from neither side: a second cable is broken, or they have
+                          no power */
+    uint64_t breaks; /**< times that it was found broken since the bus was opened; only grows */
+} cm1e_bus_ring_t;
+
+/** Does the work of cm1e_bus_ring(), for a program with this size of the struct. @rt cycle */
+CM1E_API void cm1e_bus_ring_sized(const cm1e_bus_t *bus, cm1e_bus_ring_t *ring, size_t size);
+/** The ring of an Operational bus, as the last frames have shown it. Belongs to the thread that owns the bus.
+ *  @rt cycle */
+static inline void cm1e_bus_ring(const cm1e_bus_t *bus, cm1e_bus_ring_t *ring)
+{
+    cm1e_bus_ring_sized(bus, ring, sizeof *ring);
+}
+/** Writes it as sentences: 'The ring is broken between slave 2 ("Y", CM1-E) and slave 3 ("Z", CM1-E). ...'. 512 bytes
+ *  are enough. @rt block */
+CM1E_API void cm1e_bus_ring_text(const cm1e_bus_t *bus, const cm1e_bus_ring_t *ring, char *text, size_t size);
+
 #ifdef __cplusplus
 }
 #endif

@@ -16,6 +16,7 @@
 #include "bus/recognise.h"
 #include "bus/recovery.h"
 #include "bus/remote.h"
+#include "bus/ring_watch.h"
 #include "bus/slave_setup.h"
 #include "bus/soem_adapter.h"
 
@@ -166,6 +167,7 @@ struct cm1e_bus {
     cm1e_acyclic_t acyclic;
     cm1e_listening_t listening;
     cm1e_supervised_t supervised;
+    cm1e_ring_watch_t ring;
 
     cm1e_sdo_queue_t queue;
     cm1e_errand_t *errand;                   /**< atomic; NULL: none */

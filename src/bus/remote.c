@@ -38,7 +38,8 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
     uint32_t count = 0;
     if (!told)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the slaves of another program.");
-    const cm1e_error_t error = bus->remote->scan(bus->remote_state, told, CM1E_MAX_SLAVES, &count, diag);
+    const cm1e_error_t error = bus->remote->scan(bus->remote_state, told, CM1E_MAX_SLAVES, &count,
+                                                 &bus->ring.ring, diag);
     for (uint32_t i = 0; i < count && error == CM1E_OK; i++) {
         memset(&bus->slaves[i], 0, sizeof bus->slaves[i]);
         bus->slaves[i].info = told[i].info;

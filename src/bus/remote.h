@@ -8,6 +8,7 @@
 #include "bus/errand.h"
 #include "cm1e/clocks.h"
 #include "cm1e/emergency.h"
+#include "cm1e/topology.h"
 #include "core/guest_api.h"
 
 /** A slave as the other program found it. */
@@ -22,7 +23,8 @@ typedef struct cm1e_remote_slave {
 } cm1e_remote_slave_t;
 
 typedef struct cm1e_bus_remote {
-    cm1e_error_t (*scan)(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count, cm1e_diag_t *diag);
+    cm1e_error_t (*scan)(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count,
+                         cm1e_bus_ring_t *ring, cm1e_diag_t *diag);
     /** Executes a transfer; an error is in `sdo` as after any other transfer. Returns CM1E_OK, or why it could not even
      *  be tried, with `diag`. */
     cm1e_error_t (*transfer)(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag);

@@ -185,6 +185,7 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
     for (position = 1; position <= found; position++)
         set_up_slave(bus, position);
     bus->slave_count = (uint32_t)found;
+    cm1e_ring_watch_begin(bus);
     cm1e_error_t error = cm1e_bus_all_to_state(bus, CM1E_AL_INIT, CM1E_STATE_TIMEOUT_NS, diag);
     if (error == CM1E_OK) {
         cm1e_soem_set_up_mailboxes(bus->soem);

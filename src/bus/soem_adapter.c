@@ -7,6 +7,7 @@
 #include "core/bytes.h"
 #include "core/clock.h"
 #include "device/device.h"
+#include "nic/ring.h"
 
 cm1e_soem_t *cm1e_soem_create(cm1e_nic_t *nic, const cm1e_bus_config_t *config)
 {
@@ -201,6 +202,18 @@ int cm1e_soem_receive_process_data(cm1e_soem_t *soem, int64_t timeout_ns)
 uint64_t cm1e_soem_late_frames(const cm1e_soem_t *soem) { return soem->port.counters.late; }
 uint64_t cm1e_soem_foreign_frames(const cm1e_soem_t *soem) { return soem->port.counters.foreign; }
 uint64_t cm1e_soem_unsent_frames(const cm1e_soem_t *soem) { return soem->port.counters.send_failed; }
+
+bool cm1e_soem_ring_is_broken(const cm1e_soem_t *soem)
+{
+    return soem->port.redundant && soem->port.ring.state != RING_INTACT;
+}
+
+bool cm1e_soem_ring_reach(const cm1e_soem_t *soem, uint32_t reach[2])
+{
+    for (int i = 0; i < 2; i++)
+        reach[i] = (uint32_t)soem->port.ring.reach[i];
+    return soem->port.redundant && soem->port.ring.reach_known;
+}
 
 /* ---- single datagrams ------------------------------------------------------------------------------------------ */
 

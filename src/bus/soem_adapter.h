@@ -91,6 +91,11 @@ uint64_t cm1e_soem_foreign_frames(const cm1e_soem_t *soem);
 /** Number of frames that the network interface did not take; only grows. */
 uint64_t cm1e_soem_unsent_frames(const cm1e_soem_t *soem);
 
+/** The ring with a second interface is broken, as far as frames have shown it. */
+bool cm1e_soem_ring_is_broken(const cm1e_soem_t *soem);
+/** How many slaves either interface reaches, by the broadcast read that was answered last; false: it does not tell. */
+bool cm1e_soem_ring_reach(const cm1e_soem_t *soem, uint32_t reach[2]);
+
 /** Sends a datagram in a frame of its own. */
 void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *datagram, int64_t now_ns);
 /** Whether a datagram is back; its working counter and data are then filled in. */

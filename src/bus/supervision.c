@@ -37,6 +37,11 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
     if (bus->supervised.sent || bus->slave_count == 0)
         return;
     bus->supervised.ports.asked = false;
+    if (cm1e_ring_watch_ask(bus, &bus->supervised.datagram, now_ns)) {
+        cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
+        bus->supervised.sent = true;
+        return;
+    }
     if (cm1e_dc_next_look(bus, &bus->supervised.datagram)) {
         cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
         bus->supervised.sent = true;
@@ -72,6 +77,11 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
         cm1e_soem_drop(bus->soem, d);
     }
     bus->supervised.sent = false;
+    if (d->command == COMMAND_BRD) {
+        if (d->working_counter > 0)
+            cm1e_ring_watch_take(bus);
+        return;
+    }
     if (d->offset == REG_DC_DIFFERENCE) {
         cm1e_dc_looked(bus, d);
         return;

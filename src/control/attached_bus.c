@@ -79,7 +79,20 @@ static void take_slave(cm1e_remote_slave_t *slave, uint16_t position, const json
     take_clock(slave, json_object_get(told, "clock"));
 }
 
-static cm1e_error_t scan(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count, cm1e_diag_t *diag)
+/* Without a second interface there is nothing told. */
+static void take_ring(cm1e_bus_ring_t *ring, const json_t *told, uint32_t slaves)
+{
+    const json_int_t behind = number(told, "behind"), before = number(told, "before");
+    const bool placed = behind >= 0 && before > behind && before <= (json_int_t)slaves + 1;
+    *ring = (cm1e_bus_ring_t){.used = json_is_object(told), .breaks = (uint64_t)number(told, "breaks"),
+                              .broken = json_is_true(json_object_get(told, "broken"))};
+    ring->placed = placed && ring->broken;
+    ring->behind = ring->placed ? (uint16_t)behind : 0;
+    ring->before = ring->placed ? (uint16_t)before : 0;
+}
+
+static cm1e_error_t scan(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count,
+                         cm1e_bus_ring_t *ring, cm1e_diag_t *diag)
 {
     json_t *reply = NULL;
     const cm1e_error_t error = cm1e_control_call(state, json_pack("{s:s}", "request", "slaves"), &reply, diag);
@@ -88,6 +101,7 @@ static cm1e_error_t scan(void *state, cm1e_remote_slave_t *slaves, uint32_t room
     *count = found < room ? (uint32_t)found : room;
     for (uint32_t i = 0; i < *count; i++)
         take_slave(&slaves[i], (uint16_t)(i + 1), json_array_get(told, i));
+    take_ring(ring, json_object_get(reply, "ring"), *count);
     json_decref(reply);
     return error;
 }

@@ -417,7 +417,12 @@ static json_t *continue_snapshot(control_request_t *request, control_run_t *run)
         cm1e_view_want(&run->view);
         return NULL;
     }
-    return cm1e_view_filled(&run->view) ? accept(request->id, request->name, request->show(&run->view)) : NULL;
+    if (!cm1e_view_filled(&run->view))
+        return NULL;
+    json_t *reply = accept(request->id, request->name, request->show(&run->view));
+    if (request->show == cm1e_show_slaves && run->view.ring.used)
+        json_object_set_new(reply, "ring", cm1e_show_ring(&run->view));
+    return reply;
 }
 
 /** The order of a request that the cycle decides on; NULL: it is none. */

@@ -179,6 +179,15 @@ json_t *cm1e_show_slaves(const view_t *view)
     return all;
 }
 
+json_t *cm1e_show_ring(const view_t *view)
+{
+    char text[EVENT_TEXT];
+    const cm1e_bus_ring_t *ring = &view->ring;
+    cm1e_bus_ring_text(view->bus, ring, text, sizeof text);
+    return json_pack("{s:b, s:i, s:i, s:I, s:o}", "broken", ring->broken, "behind", ring->behind, "before",
+                     ring->before, "breaks", (json_int_t)ring->breaks, "text", cm1e_show_text(text));
+}
+
 /* ---- statistics ------------------------------------------------------------------------------------------------- */
 
 static json_t *distribution(const cm1e_distribution_t *d)

@@ -12,6 +12,7 @@
 /** Of a filled snapshot. */
 json_t *cm1e_show_axes(const view_t *view);
 json_t *cm1e_show_slaves(const view_t *view);
+json_t *cm1e_show_ring(const view_t *view);
 
 json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler);
 /** Records after number `after`, as many as fit into a reply: {"events": [...], "lost": n, "last": n}. */

@@ -50,6 +50,7 @@ static void begin(view_t *view)
         view->slaves[i].al_status_code = slave->al_status_code;
         cm1e_bus_slave_clock(view->bus, slave->position, &view->slaves[i].clock);
     }
+    cm1e_bus_ring(view->bus, &view->ring);
 }
 
 static void fill(view_t *view)

@@ -10,6 +10,7 @@
 #include <stdatomic.h>
 
 #include "axis/axis_signals.h"
+#include "cm1e/topology.h"
 #include "control/guest_outputs.h"
 #include "scheduler/scheduler_window.h"
 
@@ -75,6 +76,7 @@ typedef struct view {
         uint16_t al_state, al_status_code;
         cm1e_slave_clock_t clock;
     } slaves[CM1E_MAX_SLAVES];
+    cm1e_bus_ring_t ring;
 
     maintained_t maintained;
     guest_outputs_t outputs;

@@ -96,13 +96,14 @@ ring_companion_t cm1e_ring_companion(const ecx_portt *port, uint8 idx)
 
 /* ---- one frame --------------------------------------------------------------------------------------------------- */
 
-/** Slaves that the first half's answer passed: every one adds 1 to the address of a frame by position. */
-static int slaves_in_first_half(const ecx_portt *port, uint8 idx)
+/** Slaves that an answer passed: every one adds 1 to the address of a broadcast and of a frame by position. */
+static int slaves_passed(const ecx_portt *port, uint8 idx, const uint8_t *answer)
 {
-    const uint8_t *answer = port->rxbuf[idx] + DATAGRAM_ADDRESS - ETHERNET_HEADER;
     const uint8_t *sent = port->txbuf[idx] + DATAGRAM_ADDRESS;
-    return (uint16_t)(cm1e_get_u16(answer) - cm1e_get_u16(sent));
+    return (uint16_t)(cm1e_get_u16(answer + DATAGRAM_ADDRESS - ETHERNET_HEADER) - cm1e_get_u16(sent));
 }
+
+static int slaves_in_first_half(const ecx_portt *port, uint8 idx) { return slaves_passed(port, idx, port->rxbuf[idx]); }
 
 /** With slaves out of reach between the halves, or in a first half that is merely not heard, a frame by position would
  *  reach slaves that are not meant, and an ordered one slaves too early. So all slaves must be known to be in reach. */
@@ -156,8 +157,26 @@ static void send_second(ecx_portt *port, uint8 idx, action_t action)
     port->counters.resent++;
 }
 
+/** A broadcast whose halves are those that the ring is known to have tells where it is broken. A half that got lost
+ *  tells nothing. */
+static void learn_reach(ecx_portt *port, uint8 idx)
+{
+    static const uint8_t halves_of[] = {
+        [RING_CUT] = RING_HALVES, [RING_FIRST_ONLY] = RING_FIRST_HALF, [RING_SECOND_ONLY] = RING_SECOND_HALF,
+    };
+    const cm1e_port_slot_t *slot = &port->slots[idx];
+    const unsigned halves = slot->answers & RING_HALVES;
+    const bool second_is_dead = port->ring.state == RING_FIRST_ONLY;
+    port->ring.reach_known = port->ring.state != RING_INTACT && halves == halves_of[port->ring.state] &&
+                             (second_is_dead || slot->companion == RING_COPY);
+    port->ring.reach[0] = halves & RING_FIRST_HALF ? slaves_in_first_half(port, idx) : 0;
+    port->ring.reach[1] = halves & RING_SECOND_HALF ? slaves_passed(port, idx, port->redport->rxbuf[idx]) : 0;
+}
+
 static int take(ecx_portt *port, uint8 idx, action_t action, bool complete)
 {
+    if (port->txbuf[idx][FRAME_HEADER] == COMMAND_BRD)
+        learn_reach(port, idx);
     const size_t body = (size_t)port->txbuflength[idx] - ETHERNET_HEADER;
     if (action == TAKE_SECOND)
         memcpy(port->rxbuf[idx], port->redport->rxbuf[idx], body);

@@ -141,6 +141,26 @@ void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t 
             look_at_port(log, bus, number, position, port, run_ns);
 }
 
+/** A break is told when its place is known. One that was mended before that is told without. */
+void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
+{
+    log_slaves_t *told = &log->slaves[number];
+    cm1e_bus_ring_t ring;
+    cm1e_bus_ring(bus, &ring);
+    const bool news = ring.breaks != told->ring_breaks || ring.broken != told->ring_broken;
+    if (!news || run_ns < told->ring_quiet_until_ns || (ring.broken && !ring.placed))
+        return;
+    const uint32_t detail = number << 24;
+    if (ring.breaks != told->ring_breaks)
+        write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_RING, .axis = -1, .code = 1, .detail = detail,
+                                            .value = ring.behind, .bound = ring.before}, run_ns);
+    if (!ring.broken)
+        write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_RING, .axis = -1, .detail = detail}, run_ns);
+    told->ring_broken = ring.broken;
+    told->ring_breaks = ring.breaks;
+    told->ring_quiet_until_ns = run_ns + QUIET_NS;
+}
+
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 
 /** false: the record has been overwritten meanwhile. */

@@ -34,6 +34,9 @@ typedef struct log_slaves {
     uint64_t told[CM1E_MAX_SLAVES];
     uint64_t port_news;         /**< faults of all ports, told */
     int64_t ports_quiet_until_ns;
+    bool ring_broken;           /**< told */
+    uint64_t ring_breaks;       /**< told */
+    int64_t ring_quiet_until_ns;
     uint32_t port_faults[CM1E_MAX_SLAVES][CM1E_PORTS][CM1E_PORT_FAULTS]; /**< told */
 } log_slaves_t;
 
@@ -58,6 +61,8 @@ void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64
 void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 /** What the ports of its slaves have counted since the last call. @rt cycle */
 void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
+/** Where its ring is broken, or that it is whole again. @rt cycle */
+void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost);
 
 #endif

@@ -19,6 +19,7 @@ static const char *const kind_names[] = {
     [CM1E_LOG_SYNC_LOST] = "sync lost",
     [CM1E_LOG_EMERGENCY] = "emergency",
     [CM1E_LOG_PORT] = "port",
+    [CM1E_LOG_RING] = "ring",
 };
 _Static_assert(sizeof kind_names / sizeof *kind_names == CM1E_LOG_KIND_COUNT, "a kind of the log has no name");
 
@@ -68,6 +69,18 @@ static void emergency_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event,
     cm1e_emergency_sentence(bus, (uint16_t)event->detail, &emergency, text, size);
 }
 
+static void ring_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char *text, size_t size)
+{
+    const cm1e_bus_ring_t ring = {.used = true, .broken = true, .placed = event->bound > 0.0,
+                                  .behind = (uint16_t)event->value, .before = (uint16_t)event->bound};
+    if (event->code && !ring.placed)
+        snprintf(text, size, "The ring was broken for a moment, too short to see where: look for a loose plug.");
+    else if (event->code)
+        cm1e_bus_ring_text(bus, &ring, text, size);
+    else
+        snprintf(text, size, "The ring is whole again.");
+}
+
 void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
 {
     uint32_t count;
@@ -88,6 +101,8 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
         cm1e_port_sentence(cm1e_scheduler_bus_at(scheduler, event->detail >> 20 & 0x0F), (uint16_t)event->detail,
                            event->detail >> 16 & 0x0F, (cm1e_port_fault_t)(event->detail >> 24), (uint32_t)event->code,
                            text, size);
+    else if (event->kind == CM1E_LOG_RING)
+        ring_text(cm1e_scheduler_bus_at(scheduler, event->detail >> 24), event, text, size);
     else if (of_axis && event->kind == CM1E_LOG_STATE)
         snprintf(text, size, "%s: %s (was %s)", name, cm1e_axis_state_name((cm1e_axis_state_t)event->code),
                  cm1e_axis_state_name((cm1e_axis_state_t)event->detail));

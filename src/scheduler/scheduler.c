@@ -276,6 +276,7 @@ static void show(cm1e_scheduler_t *s)
     for (uint32_t i = 0; i < s->member_count; i++) {
         cm1e_log_emergencies(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
         cm1e_log_ports(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
+        cm1e_log_ring(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
     }
     for (int i = 0; i < CM1E_WINDOWS; i++)
         if (s->windows[i])

@@ -34,19 +34,20 @@ cm1e_error_t cm1e_console_power_cycle(call_t *call)
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_console_unplug(call_t *call)
+/* The cable to a slave, or the one behind it: of the last slave of a ring that leads to the second interface. */
+static cm1e_error_t cut(call_t *call, bool unplug)
 {
-    cm1e_sim_segment_cut(call->segment, call->position, true);
-    say(call, "slave %u: cable to it unplugged", call->position);
+    const char *word = argument(call, 0), *done = unplug ? "unplugged" : "plugged in";
+    const bool behind = strcmp(word, "behind") == 0;
+    if (word[0] && !behind)
+        return REFUSE(call, "\"%s\": expected \"behind\", or nothing for the cable to slave %u", word, call->position);
+    cm1e_sim_segment_cut(call->segment, call->position + behind, unplug);
+    say(call, behind ? "slave %u: cable behind it %s" : "slave %u: cable to it %s", call->position, done);
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_console_replug(call_t *call)
-{
-    cm1e_sim_segment_cut(call->segment, call->position, false);
-    say(call, "slave %u: cable to it plugged in", call->position);
-    return CM1E_OK;
-}
+cm1e_error_t cm1e_console_unplug(call_t *call) { return cut(call, true); }
+cm1e_error_t cm1e_console_replug(call_t *call) { return cut(call, false); }
 
 /* As a bad cable does: the slave behind it counts an invalid frame, those behind that one a forwarded error, and the
  * frame is destroyed. */

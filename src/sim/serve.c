@@ -1,4 +1,4 @@
-/* A simulated segment on a network interface: frames in, answers out, a console beside it. */
+/* A simulated segment on a network interface, or a ring on two: frames in, answers out, a console beside it. */
 #include <errno.h>
 #include <limits.h>
 #include <poll.h>
@@ -16,6 +16,7 @@
 #include "core/clock.h"
 #include "nic/frame.h"
 #include "nic/frame_queue.h"
+#include "nic/nic.h"
 #include "nic/raw_socket.h"
 
 enum {
@@ -23,19 +24,29 @@ enum {
     TICK_NS = 1000000,                  /* while a motor moves */
     SLEEP_NS = 50000000,                /* while all is at rest: to look whether it is to stop, and to count time up */
     RETRY_NS = 200000000,               /* to look for an interface that is away */
+    LINKS_NS = 1000000,                 /* to look whether the ends of a ring have a link */
     ANSWER_LENGTH = 1 << 15,            /* the status of 128 slaves */
 };
 enum { SOURCE_MAC = 6, LOCALLY_ADMINISTERED = 0x02 };
+enum { CONSOLE = CM1E_NIC_PORTS, WAITED }; /* what is waited for: the ends, the console */
+
+/** The interface at an end of the segment. */
+typedef struct end {
+    char interface_name[64];
+    cm1e_raw_socket_t socket;
+    int64_t retry_ns;                   /**< without a socket: when the interface is looked for again */
+    cm1e_error_t told;                  /**< why there is none, as last said */
+    bool away;                          /**< of a ring: it has no link, so the cable there is cut */
+} end_t;
 
 struct cm1e_sim_server {
     cm1e_sim_segment_t *segment;
     cm1e_clock_t *clock;
-    char interface_name[64];
-    cm1e_raw_socket_t socket;
+    end_t ends[CM1E_NIC_PORTS];
+    int end_count;                      /**< 2: a ring */
     cm1e_sim_streams_t console;
     int64_t advanced_ns;                /**< the segment's time */
-    int64_t retry_ns;                   /**< without a socket: when the interface is looked for again */
-    cm1e_error_t told;                  /**< why there is none, as last said */
+    int64_t links_due_ns;               /**< of a ring: when the links are looked at again */
     bool circulation_told;
     frame_queue_t delayed;              /**< answers that the console delays */
     uint8_t frame[CM1E_FRAME_MAX];
@@ -141,34 +152,34 @@ static bool read_console(server_t *server)
 
 /* ---- frames ------------------------------------------------------------------------------------------------------ */
 
-static void reply(const server_t *server, const uint8_t *frame, size_t length)
+static void reply(const server_t *server, int end, const uint8_t *frame, size_t length)
 {
     /* A full transmit queue loses the answer, as a wire would. */
-    const ssize_t sent = send(server->socket.fd, frame, length, MSG_DONTWAIT | MSG_NOSIGNAL);
+    const ssize_t sent = send(server->ends[end].socket.fd, frame, length, MSG_DONTWAIT | MSG_NOSIGNAL);
     (void)sent;
 }
 
 /* The reason is reported by cm1e_sim_server_run(). */
-static bool goes_round(server_t *server, size_t length)
+static bool goes_round(server_t *server, const end_t *end, size_t length)
 {
     if (!(server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED) || !cm1e_frame_has_circulated(server->frame, length))
         return false;
     if (!server->circulation_told)
         notice(server, "A frame came back to \"%s\" from another simulated segment and was destroyed: two segments "
-               "face each other. At the other end there has to be a master.", server->interface_name);
+               "face each other. At the other end there has to be a master.", end->interface_name);
     server->circulation_told = true;
     return true;
 }
 
-static void answer_frame(server_t *server, size_t length, int64_t now_ns)
+static void answer_frame(server_t *server, int end, size_t length, int64_t now_ns)
 {
-    if (length < ETHERNET_HEADER || goes_round(server, length))
+    if (length < ETHERNET_HEADER || goes_round(server, &server->ends[end], length))
         return;
     const bool again = server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED;
     const bool counted = cm1e_frame_is_counted(server->frame, length);
     server->advanced_ns = now_ns;
-    const int out = cm1e_sim_segment_process(server->segment, CM1E_SIM_PORT_PRIMARY, server->frame, length, now_ns);
-    if (out != CM1E_SIM_PORT_PRIMARY)
+    const int out = cm1e_sim_segment_process(server->segment, end, server->frame, length, now_ns);
+    if (out < 0 || out >= server->end_count)
         return;
     if (again && (counted || !cm1e_frame_is_counted(server->frame, length)))
         cm1e_frame_mark_circulated(server->frame, length);
@@ -187,21 +198,22 @@ static void answer_frame(server_t *server, size_t length, int64_t now_ns)
         if (place) {
             memcpy(place->bytes, server->frame, length);
             place->length = length;
+            place->port = out;
             cm1e_frame_queue_insert(&server->delayed, place, now_ns + delay_ns);
         }
         return;
     }
-    reply(server, server->frame, length);
+    reply(server, out, server->frame, length);
 }
 
 /* false: the socket is of no use any more. */
-static bool answer_frames(server_t *server)
+static bool answer_frames(server_t *server, int end)
 {
     for (int i = 0; i < FRAMES_AT_ONCE; i++) {
-        const int n = cm1e_raw_socket_receive(server->socket.fd, server->frame, sizeof server->frame);
+        const int n = cm1e_raw_socket_receive(server->ends[end].socket.fd, server->frame, sizeof server->frame);
         if (n <= 0)
             return n == 0;
-        answer_frame(server, (size_t)n, cm1e_clock_now(server->clock));
+        answer_frame(server, end, (size_t)n, cm1e_clock_now(server->clock));
     }
     return true;
 }
@@ -209,7 +221,7 @@ static bool answer_frames(server_t *server)
 static void release_delayed(server_t *server, int64_t now_ns)
 {
     for (queued_frame_t *f; (f = frame_queue_first(&server->delayed)) && f->ready_ns <= now_ns;) {
-        reply(server, f->bytes, f->length);
+        reply(server, f->port, f->bytes, f->length);
         cm1e_frame_queue_remove_first(&server->delayed);
     }
 }
@@ -217,25 +229,41 @@ static void release_delayed(server_t *server, int64_t now_ns)
 /* ---- the interface ----------------------------------------------------------------------------------------------- */
 
 /* A socket is bound to the interface that was there. One that went down, or was made anew, needs another socket. */
-static void lose_interface(server_t *server)
+static void lose_interface(end_t *end)
 {
-    cm1e_raw_socket_close(&server->socket);
-    server->retry_ns = 0;
-    server->told = CM1E_OK;
+    cm1e_raw_socket_close(&end->socket);
+    end->retry_ns = 0;
+    end->told = CM1E_OK;
 }
 
-static void find_interface(server_t *server, int64_t now_ns)
+static void find_interface(server_t *server, end_t *end, int64_t now_ns)
 {
     cm1e_diag_t why = {0};
-    if (server->socket.fd >= 0 || now_ns < server->retry_ns)
+    if (end->socket.fd >= 0 || now_ns < end->retry_ns)
         return;
-    const cm1e_error_t error = cm1e_raw_socket_open(&server->socket, server->interface_name, &why);
-    if (error != CM1E_OK && error != server->told)
+    const cm1e_error_t error = cm1e_raw_socket_open(&end->socket, end->interface_name, &why);
+    if (error != CM1E_OK && error != end->told)
         notice(server, "%s The simulated segment waits for it.", why.text);
-    if (error == CM1E_OK && server->told)
-        notice(server, "Network interface \"%s\" is there again.", server->interface_name);
-    server->told = error;
-    server->retry_ns = now_ns + RETRY_NS;
+    if (error == CM1E_OK && end->told)
+        notice(server, "Network interface \"%s\" is there again.", end->interface_name);
+    end->told = error;
+    end->retry_ns = now_ns + RETRY_NS;
+}
+
+/* In a ring the slave behind an end without a link closes its port there, so that frames of the other end turn around at
+ * it. A line has nobody else who would send frames. */
+static void look_at_links(server_t *server, int64_t now_ns)
+{
+    if (server->end_count < 2 || now_ns < server->links_due_ns)
+        return;
+    server->links_due_ns = now_ns + LINKS_NS;
+    for (int i = 0; i < server->end_count; i++) {
+        end_t *end = &server->ends[i];
+        const bool away = end->socket.fd < 0 || cm1e_nic_lacks_link(end->interface_name);
+        if (away != end->away)
+            cm1e_sim_segment_cut(server->segment, i == 0 ? 1 : cm1e_sim_segment_slave_count(server->segment) + 1, away);
+        end->away = away;
+    }
 }
 
 /* ---- time -------------------------------------------------------------------------------------------------------- */
@@ -243,7 +271,7 @@ static void find_interface(server_t *server, int64_t now_ns)
 static int64_t earlier(int64_t a, int64_t b) { return a < b ? a : b; }
 
 /* Sleeps until a frame or a line arrives, or as long as the segment needs no step. */
-static int wait(server_t *server, struct pollfd fds[2])
+static int wait(server_t *server, struct pollfd fds[WAITED])
 {
     const queued_frame_t *delayed = frame_queue_first(&server->delayed);
     const int64_t tick_ns = server->advanced_ns + TICK_NS, due_ns = cm1e_sim_segment_due(server->segment);
@@ -254,8 +282,9 @@ static int wait(server_t *server, struct pollfd fds[2])
     if (left_ns < 0)
         left_ns = 0;
     const struct timespec left = {.tv_sec = left_ns / S_IN_NS, .tv_nsec = left_ns % S_IN_NS};
-    fds[0].fd = server->socket.fd;
-    return ppoll(fds, 2, &left, NULL);
+    for (int i = 0; i < server->end_count; i++)
+        fds[i].fd = server->ends[i].socket.fd;
+    return ppoll(fds, WAITED, &left, NULL);
 }
 
 static void tell_news(server_t *server)
@@ -265,27 +294,39 @@ static void tell_news(server_t *server)
         notice(server, "%s", text);
 }
 
+/* What came on the interfaces, and whether they are there. */
+static void serve_ends(server_t *server, const struct pollfd fds[WAITED], int64_t now_ns)
+{
+    for (int i = 0; i < server->end_count; i++) {
+        /* A socket in error would be reported without end. */
+        if (fds[i].revents && (!answer_frames(server, i) || !(fds[i].revents & POLLIN)))
+            lose_interface(&server->ends[i]);
+        find_interface(server, &server->ends[i], now_ns);
+    }
+    look_at_links(server, now_ns);
+}
+
 void cm1e_sim_server_run(cm1e_sim_server_t *server, const cm1e_sim_streams_t *console, const volatile int *stop)
 {
-    struct pollfd fds[2] = {{.events = POLLIN}, {.fd = console->lines, .events = POLLIN}};
+    struct pollfd fds[WAITED] = {{.fd = -1, .events = POLLIN}, {.fd = -1, .events = POLLIN},
+                                 [CONSOLE] = {.fd = console->lines, .events = POLLIN}};
     const scheduling_t before = ask_for_realtime();
     server->console = *console;
     server->advanced_ns = cm1e_clock_now(server->clock);
     while (!*stop) {
         const int ready = wait(server, fds);
-        /* A socket in error would be reported without end. */
-        if (ready > 0 && fds[0].revents && (!answer_frames(server) || !(fds[0].revents & POLLIN)))
-            lose_interface(server);
+        for (int i = 0; i < WAITED && ready <= 0; i++)
+            fds[i].revents = 0;
         const int64_t now_ns = cm1e_clock_now(server->clock);
-        find_interface(server, now_ns);
+        serve_ends(server, fds, now_ns);
         release_delayed(server, now_ns);
-        const bool line = ready > 0 && fds[1].revents;
+        const bool line = fds[CONSOLE].revents != 0;
         if (ready == 0 || line || now_ns >= server->advanced_ns + TICK_NS) {
             cm1e_sim_segment_advance(server->segment, now_ns);
             server->advanced_ns = now_ns;
         }
         if (line && !read_console(server))
-            fds[1].fd = -1;
+            fds[CONSOLE].fd = -1;
         tell_news(server);
     }
     restore(&before);
@@ -295,13 +336,29 @@ void cm1e_sim_server_run(cm1e_sim_server_t *server, const cm1e_sim_streams_t *co
 
 void cm1e_sim_server_close(cm1e_sim_server_t *server)
 {
-    if (server)
-        cm1e_raw_socket_close(&server->socket);
+    for (int i = 0; server && i < server->end_count; i++)
+        cm1e_raw_socket_close(&server->ends[i].socket);
     free(server);
 }
 
-cm1e_error_t cm1e_sim_server_open(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment, const char *interface_name,
-                                  cm1e_diag_t *diag)
+static cm1e_error_t open_ends(cm1e_sim_server_t *server, const char *const names[], int count, cm1e_diag_t *diag)
+{
+    if (count > 1 && strcmp(names[0], names[1]) == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "Both interfaces of the ring are \"%s\": a ring needs two network interfaces.", names[0]);
+    for (int i = 0; i < count; i++) {
+        end_t *end = &server->ends[i];
+        snprintf(end->interface_name, sizeof end->interface_name, "%s", names[i]);
+        const cm1e_error_t error = cm1e_raw_socket_open(&end->socket, names[i], diag);
+        if (error != CM1E_OK)
+            return error;
+        server->end_count++;
+    }
+    return CM1E_OK;
+}
+
+static cm1e_error_t open_server(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment, const char *const names[],
+                                int count, cm1e_diag_t *diag)
 {
     cm1e_sim_server_t *made = calloc(1, sizeof *made);
     *server = NULL;
@@ -309,11 +366,26 @@ cm1e_error_t cm1e_sim_server_open(cm1e_sim_server_t **server, cm1e_sim_segment_t
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the simulated segment's server.");
     made->segment = segment;
     made->clock = cm1e_clock_monotonic();
-    snprintf(made->interface_name, sizeof made->interface_name, "%s", interface_name);
-    const cm1e_error_t error = cm1e_raw_socket_open(&made->socket, interface_name, diag);
+    const cm1e_error_t error = open_ends(made, names, count, diag);
     if (error != CM1E_OK)
         cm1e_sim_server_close(made);
     else
         *server = made;
+    return error;
+}
+
+cm1e_error_t cm1e_sim_server_open(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment, const char *interface_name,
+                                  cm1e_diag_t *diag)
+{
+    return open_server(server, segment, &interface_name, 1, diag);
+}
+
+cm1e_error_t cm1e_sim_server_open_ring(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment, const char *first,
+                                       const char *second, cm1e_diag_t *diag)
+{
+    const char *const names[] = {first, second};
+    const cm1e_error_t error = open_server(server, segment, names, 2, diag);
+    if (error == CM1E_OK)
+        cm1e_sim_segment_close_ring(segment);
     return error;
 }

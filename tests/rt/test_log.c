@@ -120,6 +120,53 @@ START_TEST(test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away)
 }
 END_TEST
 
+/* ---- a redundant ring -------------------------------------------------------------------------------------------- */
+
+/** A cable is broken for 300 ms; another one for a cycle only. */
+static void break_cables(void *context)
+{
+    const machine_t *machine = context;
+    cm1e_sim_segment_t *segment = cm1e_bus_segment(machine->bus);
+    const int64_t now = cm1e_scheduler_time_ns(machine->scheduler);
+    if (now == 500 * MS || now == 800 * MS)
+        cm1e_sim_segment_cut(segment, 2, now == 500 * MS);
+    if (now == 1000 * MS || now == 1001 * MS)
+        cm1e_sim_segment_cut(segment, 1, now == 1000 * MS);
+}
+
+START_TEST(test_a_ring_that_breaks_is_told_with_its_place)
+{
+    static const struct {
+        int ms, code;
+        const char *words;
+    } expected[] = {
+        {502, 1, "The ring is broken between slave 1 (\"axis1\", CM1-E) and slave 2 (\"axis2\", CM1-E). All slaves"},
+        {801, 0, "The ring is whole again."},
+        {1002, 1, "The ring was broken for a moment, too short to see where"},
+        {1002, 0, "The ring is whole again."},
+    };
+    machine_t machine = {.axis_count = 2, .ring = true};
+    machine_open(&machine);
+    machine_add(&machine, "", 0, 0, break_cables, &machine);
+    machine_run(&machine, 1500 * MS);
+    const size_t n = cm1e_log_read(machine.scheduler, 0, events, CM1E_LOG_EVENTS, NULL);
+    size_t told = 0;
+    for (size_t i = 0; i < n; i++) {
+        ck_assert_int_ne(events[i].kind, CM1E_LOG_LOST_FRAMES);
+        ck_assert_int_ne(events[i].kind, CM1E_LOG_WORKING_COUNTER);
+        if (events[i].kind != CM1E_LOG_RING)
+            continue;
+        ck_assert_uint_lt(told, sizeof expected / sizeof *expected);
+        ck_assert_int_eq(events[i].code, expected[told].code);
+        ck_assert_int_le(labs(events[i].run_ns / MS - expected[told].ms), 2);
+        expect_text(machine.scheduler, &events[i], expected[told++].words);
+    }
+    ck_assert_uint_eq(told, sizeof expected / sizeof *expected);
+    ck_assert_str_eq(cm1e_log_kind_name(CM1E_LOG_RING), "ring");
+    machine_close(&machine);
+}
+END_TEST
+
 START_TEST(test_a_reader_goes_on_where_it_was)
 {
     machine_t machine = {.axis_count = 1};
@@ -207,6 +254,7 @@ int main(void)
     Suite *suite = suite_create("log");
     TCase *tcase = tcase_create("log");
     tcase_add_test(tcase, test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away);
+    tcase_add_test(tcase, test_a_ring_that_breaks_is_told_with_its_place);
     tcase_add_test(tcase, test_a_reader_goes_on_where_it_was);
     tcase_add_test(tcase, test_a_full_ring_keeps_the_newest_and_counts_the_others);
     tcase_add_test(tcase, test_a_reader_beside_the_writer_gets_whole_records_in_a_row);

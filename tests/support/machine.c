@@ -12,6 +12,7 @@ void machine_open(machine_t *machine)
     for (uint32_t i = 0; i < machine->axis_count; i++)
         if (machine->types[i] != CM1E_AXIS_MOTOR)
             config.axes[i] = (cm1e_axis_config_t){.type = machine->types[i], .counts_per_unit = 1000};
+    strcpy(config.second_interface, machine->ring ? "sim-second" : "");
     config.virtual_time = !machine->real_time;
     config.cycle_time_ns = machine->cycle_time_ns;
     ck_assert_msg(cm1e_bus_open(&machine->bus, &config, &diag) == CM1E_OK, "%s", diag.text);

@@ -20,6 +20,7 @@ typedef struct machine {
     uint32_t axis_count;
     bool real_time;                      /**< FALSE: virtual time */
     int64_t cycle_time_ns;               /**< 0: 1 ms */
+    bool ring;                           /**< a second interface behind the last motor */
     bool bridged;                        /**< all axes are CM1 behind one bridge */
     cm1e_axis_type_t types[MACHINE_AXES];
     cm1e_scheduler_config_t config;

@@ -79,7 +79,7 @@ static void test_wrong_lines_are_refused_in_words(void)
         {"error 1 clear hold", "clear"}, {"error 1 73100", "7310"}, {"error 1 7310 hold on", "too much"},
         {"power-up-fault 1 never", "always"}, {"power-up-fault 1 -1", "0 to 1000"}, {"power-up-fault 1", "usage"},
         {"power-cycle 1 0", "1 to 60000"}, {"power-cycle 1 60001", "1 to 60000"}, {"power-cycle", "slave is missing"},
-        {"unplug", "slave is missing"}, {"unplug 1 2", "too much"}, {"replug 9", "1 to 4"},
+        {"unplug", "slave is missing"}, {"unplug 1 2", "expected \"behind\""}, {"unplug 1 behind it", "too much"}, {"replug 9", "1 to 4"},
         {"lose", "usage"}, {"lose many", "frames"}, {"lose -1", "frames"}, {"lose 1000001", "1000000"},
         {"clock 1", "usage"}, {"clock 1 fast", "drift, temperature"}, {"clock 1 drift", "ppm, -500 to 500"},
         {"clock 1 drift 501", "ppm, -500 to 500"}, {"clock 1 free 3", "too much behind free"},

@@ -17,6 +17,7 @@ import real_time  # noqa: E402
 
 SKIPPED = 77
 MASTER_INTERFACE, SLAVE_INTERFACE = "ecm0", "ecs0"
+MASTER_SECOND, SLAVE_SECOND = "ecm1", "ecs1"  # of a ring
 NOTICES = "notices.txt"
 # Makes its namespace's home: no stray frames of the kernel's own on the wire, and it ends with the test, whose end closes
 # its standard input. /proc/sys/net shows the namespace of the process that opens it.
@@ -66,18 +67,18 @@ def make_namespace():
     return holder
 
 
-def join(master, slave):
-    """The wire between two namespaces."""
+def join(master, slave, master_end=MASTER_INTERFACE, slave_end=SLAVE_INTERFACE):
+    """A wire between two namespaces."""
     def ip(holder, *words):
         return subprocess.run(enter(holder, ["ip", "link", *words]), capture_output=True, text=True)
 
-    made = ip(master, "add", MASTER_INTERFACE, "type", "veth", "peer", "name", SLAVE_INTERFACE, "netns", str(slave.pid))
+    made = ip(master, "add", master_end, "type", "veth", "peer", "name", slave_end, "netns", str(slave.pid))
     if made.returncode != 0:
         skip(f"this machine has no virtual Ethernet (veth): {made.stderr.strip()}")
-    for holder, interface in ((master, MASTER_INTERFACE), (slave, SLAVE_INTERFACE)):
+    for holder, interface in ((master, master_end), (slave, slave_end)):
         up = ip(holder, "set", interface, "up")
         check(up.returncode == 0, f"{interface} does not come up: {up.stderr}")
-    for holder, interface in ((master, MASTER_INTERFACE), (slave, SLAVE_INTERFACE)):
+    for holder, interface in ((master, master_end), (slave, slave_end)):
         # The kernel tells of the link a moment later: until then cm1e says that there is none.
         wait_for(lambda: " state UP " in ip(holder, "show", interface).stdout, 10, f"{interface} has no link")
 
@@ -134,8 +135,8 @@ class Segment:
 
 
 @contextlib.contextmanager
-def segment(cm1e, *arguments):
-    """Starts `cm1e sim -i <interface> <arguments>` and yields a Segment."""
+def segment(cm1e, *arguments, ring=False):
+    """Starts `cm1e sim -i <interface> <arguments>` and yields a Segment; a ring has a second wire behind the slaves."""
     if not shutil.which("ip"):
         skip("the package iproute2 is not installed")
     become_root()
@@ -148,6 +149,9 @@ def segment(cm1e, *arguments):
 
         master, slave = ends_with_us(make_namespace()), ends_with_us(make_namespace())
         join(master, slave)
+        if ring:
+            join(master, slave, MASTER_SECOND, SLAVE_SECOND)
+            arguments = ("--second-interface", SLAVE_SECOND, *arguments)
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         notices = stack.enter_context(open(os.path.join(folder, NOTICES), "w", encoding="utf-8"))
         simulator = ends_with_us(subprocess.Popen(

@@ -72,6 +72,8 @@ typedef struct ecx_port {
         uint32_t learned_from;  /**< transmission from which it is known */
         int slaves;             /**< most slaves that answered a broadcast read */
         int slaves_behind;      /**< slaves that answered the last dummy of the second interface */
+        bool reach_known;       /**< the last broadcast read tells how far either interface reaches */
+        int reach[2];           /**< slaves that its halves have passed */
     } ring;
     ec_bufT scratch;
 } ecx_portt;
