@@ -197,6 +197,8 @@ static cm1e_error_t set_pulses(cm1e_bus_t *bus, uint32_t index, const cm1e_dc_co
     uint8_t on = (uint8_t)cm1e_dc_activation(clock);
     cm1e_dc_keep(bus); /* tells the time */
     cm1e_dc_put_pulses(&bus->dc, clock, bus->dc.reference_ns, start, cycles);
+    const int64_t first_ns = (int64_t)cm1e_get_u64(start);
+    bus->dc.pulses_ns = first_ns > bus->dc.pulses_ns ? first_ns : bus->dc.pulses_ns;
     const bool written = transfer(bus, slave, COMMAND_FPWR, REG_DC_CONTROL, off, 2) &&
                          transfer(bus, slave, COMMAND_FPWR, REG_DC_CYCLES, cycles, 8) &&
                          transfer(bus, slave, COMMAND_FPWR, REG_DC_START, start, 8) &&

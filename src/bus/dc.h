@@ -43,6 +43,7 @@ typedef struct cm1e_dc {
     uint16_t candidate;   /**< a slave whose clock was set while there was no reference; 0: none */
     uint16_t looked;      /**< slave whose deviation was read last */
     bool turn;            /**< supervision looks at a clock next, not at an AL status */
+    int64_t pulses_ns;    /**< system time by which the first pulses of all slaves have come */
     int64_t phase_maximum_ns;
     uint64_t losses;
     cm1e_dc_slave_t slaves[CM1E_MAX_SLAVES];

@@ -2,8 +2,8 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** After the first pulse is due, the slave may go to Operational. */
-#define PULSES_NS INT64_C(50000000)
+/** So long after its first pulse is due, the slave may go to Operational. */
+#define PULSES_NS INT64_C(30000000)
 
 enum { TIMES_BYTES = REG_DC_DELAY + 4 - REG_DC_SYSTEM_TIME, OFFSET_AT = REG_DC_OFFSET - REG_DC_SYSTEM_TIME,
        DELAY_AT = REG_DC_DELAY - REG_DC_SYSTEM_TIME, OFFSET_AND_DELAY_BYTES = 12 };
@@ -88,8 +88,8 @@ void cm1e_dc_recovered(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_
     const uint32_t difference = own->step == TOGETHER ? cm1e_get_u32(d->data) & 0x7FFFFFFFu : 0;
     if (own->step == TIMES)
         take_times(dc, own, d);
-    if (own->step == ON)
-        own->deadline_ns = now_ns + PULSES_NS;
+    if (own->step == START)
+        own->deadline_ns = now_ns + ((int64_t)cm1e_get_u64(d->data) - dc->reference_ns) + PULSES_NS;
     if (own->step == TOGETHER && dc->reference == 0)
         dc->candidate = slave->info.position;
     if (difference <= CM1E_CLOCK_TOLERANCE_NS)

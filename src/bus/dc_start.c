@@ -31,6 +31,12 @@ static const cm1e_bus_slave_t *find_apart(const cm1e_bus_t *bus)
     return NULL;
 }
 
+/** A slave may refuse Operational before its first pulse (AL status code 0x002D). */
+static bool pulses_are_to_come(const cm1e_dc_t *dc)
+{
+    return dc->reference_ns < dc->pulses_ns + dc->pace.cycle_ns;
+}
+
 static void forget_maxima(cm1e_dc_t *dc)
 {
     dc->phase_maximum_ns = 0;
@@ -43,7 +49,7 @@ cm1e_error_t cm1e_dc_wait(cm1e_bus_t *bus, cm1e_diag_t *diag)
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + WAIT_NS;
     char label[CM1E_LABEL_LENGTH];
     cm1e_dc_t *dc = &bus->dc;
-    while (dc->used && (find_apart(bus) || !cm1e_dc_pace_settled(&dc->pace))) {
+    while (dc->used && (find_apart(bus) || !cm1e_dc_pace_settled(&dc->pace) || pulses_are_to_come(dc))) {
         const cm1e_bus_slave_t *apart = find_apart(bus);
         cm1e_bus_pump(bus);
         if (cm1e_clock_now(bus->clock) < deadline_ns)

@@ -44,8 +44,6 @@ static cm1e_bus_t *start_drifting(double first, double second, double third)
     return bus;
 }
 
-
-
 /** Cycles as the scheduler has them: the plan follows the reference clock. */
 static void run(cm1e_bus_t *bus, unsigned n)
 {
@@ -181,6 +179,16 @@ static cm1e_tap_verdict_t count_times(void *context, cm1e_tap_frame_t *frame)
     return CM1E_TAP_PASS;
 }
 
+/** Runs so many cycles. Returns how many frames of process data carried the time. */
+static unsigned frames_with_time(cm1e_bus_t *bus, unsigned count)
+{
+    process_frames = with_time = 0;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), count_times, NULL);
+    run(bus, count);
+    ck_assert_uint_eq(process_frames, count);
+    return with_time;
+}
+
 static int64_t first_time_ns;
 
 static cm1e_tap_verdict_t take_first_time(void *context, cm1e_tap_frame_t *frame)
@@ -214,11 +222,7 @@ START_TEST(the_time_goes_in_the_frame_of_the_process_data)
 {
     describe(1000);
     cm1e_bus_t *bus = start_drifting(0, 10, 20);
-    process_frames = with_time = 0;
-    cm1e_nic_set_tap(cm1e_bus_nic(bus), count_times, NULL);
-    run(bus, 100);
-    ck_assert_uint_eq(process_frames, 100);
-    ck_assert_uint_eq(with_time, 100);
+    ck_assert_uint_eq(frames_with_time(bus, 100), 100);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -228,11 +232,7 @@ START_TEST(clocks_that_nobody_asked_for_are_left_alone)
 {
     describe(0);
     cm1e_bus_t *bus = start_drifting(0, 10, 20);
-    process_frames = with_time = 0;
-    cm1e_nic_set_tap(cm1e_bus_nic(bus), count_times, NULL);
-    run(bus, 100);
-    ck_assert_uint_eq(process_frames, 100);
-    ck_assert_uint_eq(with_time, 0);
+    ck_assert_uint_eq(frames_with_time(bus, 100), 0);
     ck_assert(!clocks_of(bus).used);
     ck_assert_int_eq(cm1e_bus_pace(bus), 0);
     cm1e_bus_close(bus);
@@ -275,6 +275,37 @@ START_TEST(a_slave_without_an_axis_gets_pulses_too)
     slave->dc.sync0_us = 333;
     ck_assert_int_eq(cm1e_bus_config_check(&config, &diag), CM1E_ERROR_CONFIG);
     ck_assert_msg(strstr(diag.text, "slave encoder: dc.sync0_us") != NULL, "%s", diag.text);
+}
+END_TEST
+
+/** Pulses so far apart that the first one comes long after all clocks are together: no slave is asked for Operational
+ *  before it, at the start and when it comes back. At 250 us that matters with short pulses too. */
+START_TEST(no_slave_is_asked_for_operational_before_its_first_pulse)
+{
+    static const struct {
+        uint32_t cycle_ns;
+        double sync0_us;
+    } rows[] = {{250000, 250}, {1000000, 300000}};
+    sim_config(1);
+    config.cycle_time_ns = rows[_i].cycle_ns;
+    config.axes[0].firmware[0] = '\0'; /* an old one knows 1 ms only */
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "encoder");
+    slave->address = 2;
+    slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_ANALOG, .inputs = 2};
+    slave->dc.sync0_us = rows[_i].sync0_us;
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 500);
+    simulate(bus, "power-cycle 2 50");
+    bool seen_away = false;
+    for (unsigned n = 0; n < 12000; n++) {
+        cycle(bus);
+        const cm1e_slave_watch_t watch = cm1e_bus_slave_watch(bus, 2);
+        seen_away |= watch.lost;
+        ck_assert_msg(watch.al_status_code == 0, "cycle %u: AL status code 0x%04X", n, watch.al_status_code);
+    }
+    ck_assert(seen_away);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 2).al_state, CM1E_AL_OP);
+    cm1e_bus_close(bus);
 }
 END_TEST
 
@@ -594,6 +625,7 @@ int main(void)
     tcase_add_test(good, clocks_that_nobody_asked_for_are_left_alone);
     tcase_add_test(good, a_bus_of_motors_may_follow_a_clock_without_sync0);
     tcase_add_test(good, a_slave_without_an_axis_gets_pulses_too);
+    tcase_add_loop_test(good, no_slave_is_asked_for_operational_before_its_first_pulse, 0, 2);
     tcase_add_test(good, a_start_with_lost_frames_gives_right_clocks);
     tcase_add_test(refused, sync0_of_a_device_without_clocks_is_refused);
     tcase_add_test(refused, a_bus_without_any_clock_is_refused);

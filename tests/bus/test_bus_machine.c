@@ -1,7 +1,8 @@
-/* A whole machine on one bus: a coupler with eight digital terminals, an analog device each way with CoE, a CM1-E, a
- * servo drive of another maker and a bridge. Its start with a frame lost at every moment, and every slave going away
+/* A whole machine on one bus: a coupler with eight digital terminals, an analog device each way with CoE, of which the
+ * inputs run by SYNC0, a CM1-E, a servo drive of another maker and a bridge. Its start with a frame lost at every moment, and every slave going away
  * and coming back. */
 #include "bus_support.h"
+#include "cm1e/clocks.h"
 #include "cm1e/io.h"
 #include "effort.h"
 
@@ -48,6 +49,7 @@ static void machine(bool bridge)
     analog->inputs_pdos[0] = 0x1A03;
     analog->inputs_pdos[1] = 0x1A00;
     analog->inputs_pdo_count = 2;
+    analog->dc.sync0_us = bridge ? 1000 : 250; /* takes its samples by SYNC0 */
     analog->sdos[0] = (cm1e_sdo_config_t){0x8000, 0x12, 2, false, 7};
     analog->sdos[1] = (cm1e_sdo_config_t){0x8010, 0x12, 2, true, 9};
     analog->sdo_count = 2;
@@ -94,6 +96,12 @@ START_TEST(whole_machine_runs)
     cycles(bus, 2000); /* longer than any watchdog */
     for (uint16_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
         ck_assert_uint_eq(cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), position)), CM1E_AL_OP);
+    cm1e_slave_clock_t clock;
+    cm1e_bus_slave_clock(bus, ANALOG_IN, &clock);
+    ck_assert(clock.has_clock && !clock.is_reference && !clock.lost && clock.losses == 0);
+    cm1e_sim_clock_t shown;
+    cm1e_sim_segment_clock(segment_of(bus), ANALOG_IN, &shown);
+    ck_assert_uint_gt(shown.sync0_pulses, 2000);
     cm1e_bus_close(bus);
 }
 END_TEST
