@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """A whole machine over a veth pair: a coupler with eight digital terminals of 1 to 8 bits, an analog device each way
-with CoE, a CM1-E, a servo drive of another maker and a bridge. Our master, pysoem, and a master that knows nothing but
-the ENI of our scan exchange the same bits with it.
+with CoE, of which the inputs run by SYNC0, two CM1-Es, a servo drive of another maker and a bridge. Our master, pysoem,
+and a master that knows nothing but the ENI of our scan exchange the same bits with it. The PLC program of the examples
+moves its motors, over the wire and on virtual time.
 
 test_whole_machine.py CM1E PYTHON: starts the segment and runs itself with --master in the master's namespace.
 """
 import json
 import os
 import struct
+import subprocess
 import sys
 import tempfile
 import time
@@ -16,17 +18,23 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import wire  # noqa: E402
 
 CHANNELS = [8, 4, 1, 7]  # of the terminals with outputs; behind each stands one with as many inputs, wired to it
-DIGITAL, ANALOG_OUT, ANALOG_IN, MOTOR, DRIVE, BRIDGE = 2, 10, 11, 12, 13, 14
-EACH_WAY = len(CHANNELS) + 3  # slaves with outputs, and with inputs
+DIGITAL, ANALOG_OUT, ANALOG_IN, MOTOR, SECOND, DRIVE, BRIDGE = 2, 10, 11, 12, 13, 14, 15
+EACH_WAY = len(CHANNELS) + 4  # slaves with outputs, and with inputs
 PATTERNS = [0b10110101, 0b01001010, 0b11111111, 0b00000000]
 
 
-def bus_file(folder, cycle_time_us, bridge):
-    lines = ["bus:", f"  interface: {wire.MASTER_INTERFACE}", f"  cycle_time_us: {cycle_time_us}",
-             f"  lost_cycles_limit: {wire.PAUSE_US // cycle_time_us}", "axes:",
-             f"  - {{name: motor, position: {MOTOR}}}",
-             f"  - {{name: drive, position: {DRIVE}, device: cia402,",
-             "     drive: {counts_per_revolution: 131072, max_speed_rpm: 3000}}"]
+def bus_file(folder, cycle_time_us, bridge, virtual=False):
+    limits = "limits: {velocity: 100, acceleration: 800, deceleration: 800, jerk: 16000, position_lag: 5}"
+    homing = "velocity: 20, acceleration: 400, timeout_s: 20}"
+    lines = ["bus:", f"  interface: {'sim' if virtual else wire.MASTER_INTERFACE}", f"  cycle_time_us: {cycle_time_us}",
+             f"  lost_cycles_limit: {wire.PAUSE_US // cycle_time_us}", *["  virtual_time: true"] * virtual, "axes:",
+             f"  - {{name: motor, position: {MOTOR}, unit: {{counts_per_unit: 5000}}, {limits},",
+             f"     homing: {{method: -3, offset: -5, torque: 30, {homing}}}",
+             f"  - {{name: second, position: {SECOND}, unit: {{counts_per_unit: 5000}}, {limits},",
+             f"     homing: {{method: -6, offset: 5, torque: 30, {homing}}}",
+             f"  - {{name: drive, position: {DRIVE}, device: cia402, {limits}, unit: {{counts_per_unit: 13107.2}},",
+             "     drive: {counts_per_revolution: 131072, max_speed_rpm: 3000},",
+             f"     homing: {{method: 22, offset: 5, {homing}}}"]
     if bridge:
         lines.append(f"  - {{name: left, position: {BRIDGE}, channel: 2, motor: CM1, k37: 10}}")
     lines += ["slaves:", "  - {name: coupler, position: 1, sim: {device: coupler}}"]
@@ -35,20 +43,34 @@ def bus_file(folder, cycle_time_us, bridge):
         lines.append(f"  - {{name: in{n}, position: {DIGITAL + 2 * n + 1}, "
                      f"sim: {{device: digital, inputs: {count}, wired_to: out{n}}}}}")
     lines += [f"  - {{name: set, position: {ANALOG_OUT}, sim: {{device: analog, outputs: 2}}}}",
-              f"  - {{name: level, position: {ANALOG_IN}, sim: {{device: analog, inputs: 2, wired_to: set}}}}"]
-    path = os.path.join(folder, f"machine_{cycle_time_us}.yaml")
+              f"  - {{name: level, position: {ANALOG_IN}, sim: {{device: analog, inputs: 2, wired_to: set}},",
+              f"     dc: {{sync0_us: {cycle_time_us}}}}}"]
+    path = os.path.join(folder, f"machine_{cycle_time_us}_{virtual}.yaml")
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")
     return path
 
 
+# ---- the PLC program of the examples ---------------------------------------------------------------------------------
+
+def run_example(cm1e, path, run):
+    """The program as it is: homing, moves of three axes together, constant speed, off. Returns what it printed."""
+    done = run([os.path.join(os.path.dirname(cm1e), "03_plc_program"), "-b", path, "--seconds", "1"])
+    wire.check(done.returncode == 0, f"03_plc_program -b {path}: {done.stdout}{done.stderr}")
+    for axis in ("motor", "second", "drive"):
+        wire.check(axis in done.stdout, f"03_plc_program does not tell of {axis}: {done.stdout}")
+    return done.stdout
+
+
+def run_here(command):
+    return subprocess.run(command, capture_output=True, text=True, timeout=60)
+
+
 # ---- our master ------------------------------------------------------------------------------------------------------
 
 def check_our_master(segment, cm1e, path, cycle_time_us):
-    """The motors beside it move, and every output comes back at its input, and nowhere else."""
-    for axis in ("motor", "drive"):
-        done = segment.run([cm1e, "move", "--json", "-b", path, axis, "--by", "1", "--velocity", "5"])
-        wire.check(done.returncode == 0 and json.loads(done.stdout)["done"], f"{cycle_time_us} us, {axis}: {done}")
+    """The PLC program moves the motors beside it, and every output comes back at its input, and nowhere else."""
+    run_example(cm1e, path, segment.run)
     for pattern in PATTERNS[:2]:
         writes = [f"out{n}.output {channel + 1}={pattern >> channel & 1}"
                   for n, count in enumerate(CHANNELS) for channel in range(min(count, 3))]
@@ -64,7 +86,7 @@ def check_our_master(segment, cm1e, path, cycle_time_us):
             wire.check(values[f"in{n}"] == expected, f"{cycle_time_us} us: in{n} is {values[f'in{n}']}, not {expected}")
         level = [value for place, value in enumerate(values["level"]) if place % 3 == 2]
         wire.check(level == [-1234 + pattern, pattern], f"{cycle_time_us} us: level is {values['level']}")
-    print(f"our master, {cycle_time_us} us: two motors moved, {sum(CHANNELS)} bits and two words came back")
+    print(f"our master, {cycle_time_us} us: the PLC program ran, {sum(CHANNELS)} bits and two words came back")
 
 
 # ---- pysoem ----------------------------------------------------------------------------------------------------------
@@ -112,7 +134,8 @@ def run_master():
     master.config_map()
     wire.check(master.state_check(pysoem.SAFEOP_STATE, 2_000_000) == pysoem.SAFEOP_STATE, "Safe-Op not reached")
     slaves = master.slaves
-    slaves[MOTOR - 1].output = bytes(12) + b"\x08"  # CSP, controlword 0
+    for motor in (MOTOR, SECOND):
+        slaves[motor - 1].output = bytes(12) + b"\x08"  # CSP, controlword 0
     exchange(master, 3)
     master.state = pysoem.OP_STATE
     master.write_state()
@@ -184,6 +207,8 @@ def check_eni(segment, cm1e):
 
 def main(cm1e, python):
     with tempfile.TemporaryDirectory() as folder:
+        for cycle_time_us, bridge in ((1000, True), (250, False)):
+            print(run_example(cm1e, bus_file(folder, cycle_time_us, bridge, virtual=True), run_here).splitlines()[-1])
         slow = bus_file(folder, 1000, True)
         with wire.segment(cm1e, slow) as segment:
             check_our_master(segment, cm1e, slow, 1000)
