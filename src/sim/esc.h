@@ -98,7 +98,7 @@ struct cm1e_sim_slave {
 
     /* the frame that passes */
     int64_t frame_ns;         /**< when its first bit arrived at this slave */
-    int64_t return_ns;        /**< when it comes back into the other port; -1: that port is closed */
+    const int64_t *returns_ns; /**< of that frame: so long after it, it comes back into each port; -1: it does not */
     bool inputs_stale;        /**< the inputs in the RAM are older than now_ns */
     bool outputs_arrived;
     esc_clock_t clock;
@@ -209,8 +209,9 @@ void cm1e_sim_profile_free(cm1e_sim_profile_t *profile);
 void cm1e_sim_esc_dc_power_on(cm1e_sim_slave_t *slave, int64_t now_ns);
 /** Lets the clock run, and gives the pulses that are due. */
 void cm1e_sim_esc_dc_advance(cm1e_sim_slave_t *slave, int64_t now_ns);
-/** A frame arrives, and comes back into the other port at `return_ns`; -1: that port is closed. */
-void cm1e_sim_esc_dc_frame(cm1e_sim_slave_t *slave, int64_t frame_ns, int64_t return_ns);
+/** A frame arrives, and comes back into each port after so long (four times); -1: it does not. They stay the
+ *  caller's until it has been processed. */
+void cm1e_sim_esc_dc_frame(cm1e_sim_slave_t *slave, int64_t frame_ns, const int64_t *returns_ns);
 void cm1e_sim_esc_dc_latch(cm1e_sim_slave_t *slave);
 void cm1e_sim_esc_dc_refresh(cm1e_sim_slave_t *slave);
 /** 0x0910, 0x0930 and 0x0981 were written. */

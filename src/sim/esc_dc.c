@@ -16,7 +16,7 @@
 
 enum {
     LOOP_STEP_NS = 64, SPEED_MARGIN = 0x7F, DEPTH_MASK = 0x0F, SIGN_BIT = 31, INTERVAL_MAX_NS = 2000000000,
-    ACTIVATE = 0x01, SYNC0 = 0x02, SYNC1 = 0x04, PENDING_0 = 0x01, PENDING_1 = 0x02,
+    ESC_DC_PORTS = 4, ACTIVATE = 0x01, SYNC0 = 0x02, SYNC1 = 0x04, PENDING_0 = 0x01, PENDING_1 = 0x02,
 };
 #define SIGN (1u << SIGN_BIT)
 /* Warming or cooling reaches the crystal through its housing. */
@@ -82,11 +82,11 @@ static uint64_t system_time(const cm1e_sim_slave_t *slave, uint64_t local)
 }
 
 /* A frame arrives: all that it does to the clock is stamped with one time. */
-void cm1e_sim_esc_dc_frame(cm1e_sim_slave_t *slave, int64_t frame_ns, int64_t return_ns)
+void cm1e_sim_esc_dc_frame(cm1e_sim_slave_t *slave, int64_t frame_ns, const int64_t *returns_ns)
 {
     esc_crystal_t *crystal = &slave->clock.crystal;
     slave->frame_ns = frame_ns;
-    slave->return_ns = return_ns;
+    slave->returns_ns = returns_ns;
     run_to(slave, frame_ns);
     if (!crystal->jitter_ns)
         return;
@@ -110,8 +110,9 @@ void cm1e_sim_esc_dc_latch(cm1e_sim_slave_t *slave)
     uint8_t *ports = slave->memory + ESC_DC_PORT_TIMES;
     const uint64_t arrival = frame_time(slave);
     cm1e_put_u32(ports, (uint32_t)arrival);
-    if (slave->return_ns >= 0)
-        cm1e_put_u32(ports + 4, (uint32_t)(arrival + (uint64_t)(slave->return_ns - slave->frame_ns)));
+    for (int port = 1; slave->returns_ns && port < ESC_DC_PORTS; port++)
+        if (slave->returns_ns[port] >= 0)
+            cm1e_put_u32(ports + 4 * port, (uint32_t)(arrival + (uint64_t)slave->returns_ns[port]));
     cm1e_put_u64(slave->memory + ESC_DC_UNIT_TIME, arrival);
 }
 

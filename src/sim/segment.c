@@ -13,11 +13,18 @@ enum {
 enum { LENGTH_MASK = 0x07FF, CIRCULATED = 0x4000, MORE_FOLLOW = 0x8000, TYPE_SHIFT = 12, TYPE_COMMANDS = 1 };
 enum { LOCALLY_ADMINISTERED = 0x02, LOOP_CLOSED_ALWAYS = 3, PORT_1_SHIFT = 2, PORTS = 4 };
 
+/* A place of the segment: a slave, and the cable before it. */
+typedef struct place {
+    bool cut;                /* the cable */
+    bool reached;            /* a frame from the first interface passes this slave */
+    int64_t arrival_ns;      /* such a frame is there so long after it entered */
+    int64_t return_ns[PORTS]; /* and comes back into each port so long after that; -1: it does not */
+} place_t;
+
 struct cm1e_sim_segment {
     cm1e_sim_slave_t **slaves;
     uint32_t count;
-    bool *cuts;              /* [1] = before the first slave ... [count + 1] = behind the last */
-    bool *reached;           /* likewise: a frame from the first interface passes this slave */
+    place_t *places;         /* [0] = the master, [1] = the first slave ... [count + 1] = behind the last */
     bool ring;
     bool topology_changed;
     bool fell_back;          /* any slave, since somebody asked */
@@ -37,15 +44,13 @@ struct cm1e_sim_segment {
 cm1e_sim_segment_t *cm1e_sim_segment_create_empty(void)
 {
     cm1e_sim_segment_t *segment = calloc(1, sizeof *segment);
-    bool *cuts = calloc(2, sizeof *cuts), *reached = calloc(2, sizeof *reached);
-    if (!segment || !cuts || !reached) {
+    place_t *places = calloc(2, sizeof *places);
+    if (!segment || !places) {
         free(segment);
-        free(cuts);
-        free(reached);
+        free(places);
         return NULL;
     }
-    segment->cuts = cuts;
-    segment->reached = reached;
+    segment->places = places;
     segment->topology_changed = true;
     return segment;
 }
@@ -58,14 +63,11 @@ cm1e_error_t cm1e_sim_segment_add(cm1e_sim_segment_t *segment, cm1e_sim_slave_t 
     cm1e_sim_slave_t **slaves = realloc(segment->slaves, count * sizeof *slaves);
     if (slaves)
         segment->slaves = slaves;
-    bool *cuts = slaves ? realloc(segment->cuts, (count + 2) * sizeof *cuts) : NULL;
-    if (cuts)
-        segment->cuts = cuts;
-    bool *reached = cuts ? realloc(segment->reached, (count + 2) * sizeof *reached) : NULL;
-    if (!reached)
+    place_t *places = slaves ? realloc(segment->places, (count + 2) * sizeof *places) : NULL;
+    if (!places)
         return CM1E_ERROR_NO_MEMORY;
-    cuts[count + 1] = reached[count + 1] = false;
-    segment->reached = reached;
+    places[count + 1] = (place_t){.cut = false};
+    segment->places = places;
     segment->slaves[segment->count] = slave;
     segment->count = count;
     slave->topology_changed = &segment->topology_changed;
@@ -81,8 +83,7 @@ void cm1e_sim_segment_destroy(cm1e_sim_segment_t *segment)
     for (uint32_t i = 0; i < segment->count; i++)
         cm1e_sim_slave_destroy(segment->slaves[i]);
     free(segment->slaves);
-    free(segment->cuts);
-    free(segment->reached);
+    free(segment->places);
     free(segment);
 }
 
@@ -114,7 +115,7 @@ void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool c
 {
     if (position < 1 || position > segment->count + 1)
         return;
-    segment->cuts[position] = cut;
+    segment->places[position].cut = cut;
     segment->topology_changed = true;
 }
 
@@ -138,7 +139,7 @@ static int port_of_parent(const cm1e_sim_segment_t *segment, uint32_t position)
 static bool cable_connects(const cm1e_sim_segment_t *segment, uint32_t position)
 {
     const uint32_t count = segment->count;
-    if (segment->cuts[position] || (position == count + 1 && !segment->ring))
+    if (segment->places[position].cut || (position == count + 1 && !segment->ring))
         return false;
     const uint32_t parent = parent_of(segment, position);
     const bool before = parent == 0 || cm1e_sim_esc_present(segment->slaves[parent - 1]);
@@ -163,7 +164,33 @@ static bool is_reached(const cm1e_sim_segment_t *segment, uint32_t position)
     const uint32_t parent = parent_of(segment, position);
     const bool closed = parent > 0 && port_of_parent(segment, position) == 1 &&
                         port_1_ordered_closed(segment->slaves[parent - 1]);
-    return cable_connects(segment, position) && !closed && (parent == 0 || segment->reached[parent]);
+    return cable_connects(segment, position) && !closed && (parent == 0 || segment->places[parent].reached);
+}
+
+/* A frame goes from slave to slave in their order, and so out of the branches that it has been through. One time from a
+ * slave to the next is as long as the way back. */
+static void time_frame(cm1e_sim_segment_t *segment, bool returns)
+{
+    uint32_t at = 0;
+    int64_t now_ns = -ESC_HOP_NS;
+    for (uint32_t next = 1; next <= segment->count + 1; next++) {
+        const bool out = next > segment->count;
+        if (!out && !segment->places[next].reached)
+            continue;
+        const uint32_t parent = out ? 0 : parent_of(segment, next);
+        for (; at && at != parent && (returns || !out); at = parent_of(segment, at)) {
+            place_t *before = &segment->places[parent_of(segment, at)];
+            now_ns += ESC_HOP_NS;
+            before->return_ns[port_of_parent(segment, at)] = now_ns - before->arrival_ns;
+        }
+        if (out)
+            break;
+        now_ns += ESC_HOP_NS;
+        segment->places[next].arrival_ns = now_ns;
+        for (int port = 0; port < PORTS; port++)
+            segment->places[next].return_ns[port] = -1;
+        at = next;
+    }
 }
 
 /* From the first slave on, into every branch, until a port is closed. */
@@ -173,14 +200,15 @@ static struct route primary_route(cm1e_sim_segment_t *segment)
     if (!cable_connects(segment, 1))
         return route;
     for (uint32_t position = 1; position <= segment->count; position++) {
-        segment->reached[position] = is_reached(segment, position);
-        route.count = segment->reached[position] ? position : route.count;
+        segment->places[position].reached = is_reached(segment, position);
+        route.count = segment->places[position].reached ? position : route.count;
     }
     /* Out of the last open port the ring's end is reached. */
-    const bool through = segment->count == 0 || (segment->reached[segment->count] &&
+    const bool through = segment->count == 0 || (segment->places[segment->count].reached &&
                                                  port_1_open(segment, segment->count));
     route.exit_port = through && cable_connects(segment, segment->count + 1) ? CM1E_SIM_PORT_SECONDARY
                                                                              : CM1E_SIM_PORT_PRIMARY;
+    time_frame(segment, route.exit_port == CM1E_SIM_PORT_PRIMARY);
     return route;
 }
 
@@ -287,17 +315,23 @@ static void mark_circulated(uint8_t *frame, size_t end)
     }
 }
 
+/* From the second interface they are a line. */
+static void stamp_frame(cm1e_sim_segment_t *segment, const struct route *route, uint32_t i)
+{
+    static const int64_t no_returns[PORTS] = {-1, -1, -1, -1};
+    const place_t *place = &segment->places[route->first + i + 1];
+    const int64_t arrival_ns = route->branches ? place->arrival_ns : (int64_t)i * ESC_HOP_NS;
+    cm1e_sim_esc_dc_frame(segment->slaves[route->first + i], segment->now_ns + arrival_ns,
+                          route->branches ? place->return_ns : no_returns);
+}
+
 static void pass_slaves(cm1e_sim_segment_t *segment, const struct route *route, uint8_t *frame, size_t end)
 {
     for (uint32_t i = 0; i < route->count; i++) {
-        cm1e_sim_slave_t *slave = segment->slaves[route->first + i];
-        if (route->branches && !segment->reached[route->first + i + 1])
+        if (route->branches && !segment->places[route->first + i + 1].reached)
             continue;
-        const bool last = i + 1 == route->count && route->exit_port == CM1E_SIM_PORT_PRIMARY;
-        const bool returns = !last && route->exit_port == CM1E_SIM_PORT_PRIMARY;
-        const int64_t return_ns = segment->now_ns + (int64_t)(2 * (route->count - 1) - i) * ESC_HOP_NS;
-        cm1e_sim_esc_dc_frame(slave, segment->now_ns + (int64_t)i * ESC_HOP_NS, returns ? return_ns : -1);
-        cm1e_sim_esc_frame(slave, frame + DATAGRAMS, frame + end);
+        stamp_frame(segment, route, i);
+        cm1e_sim_esc_frame(segment->slaves[route->first + i], frame + DATAGRAMS, frame + end);
     }
     if (route->count)
         frame[SOURCE_MAC] |= LOCALLY_ADMINISTERED;

@@ -278,6 +278,38 @@ START_TEST(a_slave_without_an_axis_gets_pulses_too)
 }
 END_TEST
 
+/** Junctions: a frame comes back out of one branch before it goes into the next one, so what is behind has the delay of
+ *  all that was visited before. The slaves of a tree are as exact as those of a line. */
+START_TEST(clocks_of_a_tree_have_the_delays_of_its_branches)
+{
+    enum { SLAVES_OF_TREE = 6 };
+    static const struct {
+        const char *quirks[3];
+        unsigned hops[SLAVES_OF_TREE]; /* from slave to slave, until a frame is processed there */
+    } trees[] = {
+        {{"quirk 2 branch 3001", "quirk 6 branch 1001"}, {0, 1, 2, 3, 4, 9}},
+        {{"quirk 3 branch 3002", "quirk 5 branch 1002", "quirk 6 branch 2002"}, {0, 1, 2, 3, 6, 8}},
+        {{"quirk 4 branch 3003", "quirk 5 branch 1003", "quirk 6 branch 2002"}, {0, 1, 2, 3, 5, 8}},
+    };
+    sim_config(SLAVES_OF_TREE);
+    config.distributed_clocks = true;
+    cm1e_bus_t *bus = open_bus();
+    for (unsigned i = 0; i < 3; i++)
+        if (trees[_i].quirks[i])
+            simulate(bus, trees[_i].quirks[i]);
+    simulate(bus, "clock 3 drift 30");
+    simulate(bus, "clock 6 drift -40");
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    plan_ns = 0;
+    run(bus, 5000);
+    for (uint32_t i = 0; i < SLAVES_OF_TREE; i++) {
+        ck_assert_uint_eq(clock_of(bus, (uint16_t)(i + 1)).delay_ns, trees[_i].hops[i] * ESC_HOP_NS);
+        ck_assert_msg(fabs(ahead_ns(bus, i + 1)) < 60, "slave %u: %g ns", i + 1, ahead_ns(bus, i + 1));
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** Pulses so far apart that the first one comes long after all clocks are together: no slave is asked for Operational
  *  before it, at the start and when it comes back. At 250 us that matters with short pulses too. */
 START_TEST(no_slave_is_asked_for_operational_before_its_first_pulse)
@@ -625,6 +657,7 @@ int main(void)
     tcase_add_test(good, clocks_that_nobody_asked_for_are_left_alone);
     tcase_add_test(good, a_bus_of_motors_may_follow_a_clock_without_sync0);
     tcase_add_test(good, a_slave_without_an_axis_gets_pulses_too);
+    tcase_add_loop_test(good, clocks_of_a_tree_have_the_delays_of_its_branches, 0, 3);
     tcase_add_loop_test(good, no_slave_is_asked_for_operational_before_its_first_pulse, 0, 2);
     tcase_add_test(good, a_start_with_lost_frames_gives_right_clocks);
     tcase_add_test(refused, sync0_of_a_device_without_clocks_is_refused);
