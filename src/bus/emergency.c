@@ -7,69 +7,14 @@
 #include "core/bytes.h"
 #include "device/emergency_codes.h"
 
-/* ---- the ring --------------------------------------------------------------------------------------------------- */
-
-void cm1e_emergency_add(cm1e_emergency_ring_t *ring, cm1e_emergency_t emergency)
-{
-    const uint64_t number = __atomic_load_n(&ring->last, __ATOMIC_RELAXED) + 1;
-    cm1e_emergency_place_t *place = &ring->places[number % CM1E_EMERGENCIES];
-    uint8_t bytes[8];
-    uint64_t words[2] = {(uint64_t)emergency.time_ns, 0};
-    cm1e_put_u16(bytes, emergency.code);
-    bytes[2] = emergency.error_register;
-    memcpy(bytes + 3, emergency.data, sizeof emergency.data);
-    memcpy(&words[1], bytes, sizeof bytes);
-    /* Release and acquire at every word keep them between the two writes of the sequence, without fences. */
-    __atomic_store_n(&place->sequence, 0, __ATOMIC_RELAXED);
-    for (int i = 0; i < 2; i++)
-        __atomic_store_n(&place->words[i], words[i], __ATOMIC_RELEASE);
-    __atomic_store_n(&place->sequence, number, __ATOMIC_RELEASE);
-    __atomic_store_n(&ring->last, number, __ATOMIC_RELEASE);
-}
-
-/** false: the emergency has been overwritten meanwhile. */
-static bool take(const cm1e_emergency_place_t *place, uint64_t number, cm1e_emergency_t *emergency)
-{
-    uint8_t bytes[8];
-    if (__atomic_load_n(&place->sequence, __ATOMIC_ACQUIRE) != number)
-        return false;
-    const uint64_t time = __atomic_load_n(&place->words[0], __ATOMIC_ACQUIRE);
-    const uint64_t message = __atomic_load_n(&place->words[1], __ATOMIC_ACQUIRE);
-    if (__atomic_load_n(&place->sequence, __ATOMIC_RELAXED) != number)
-        return false;
-    memcpy(bytes, &message, sizeof bytes);
-    *emergency = (cm1e_emergency_t){.number = number, .time_ns = (int64_t)time, .code = cm1e_get_u16(bytes),
-                                    .error_register = bytes[2]};
-    memcpy(emergency->data, bytes + 3, sizeof emergency->data);
-    return true;
-}
-
-size_t cm1e_emergency_copy(const cm1e_emergency_ring_t *ring, uint64_t after, cm1e_emergency_t *emergencies,
-                           size_t room, uint64_t *lost)
-{
-    const uint64_t last = __atomic_load_n(&ring->last, __ATOMIC_ACQUIRE);
-    const uint64_t oldest = last > CM1E_EMERGENCIES ? last - CM1E_EMERGENCIES : 0;
-    uint64_t missing = after < oldest ? oldest - after : 0;
-    size_t count = 0;
-    for (uint64_t number = after < last ? after + missing + 1 : last + 1; number <= last && count < room; number++) {
-        if (take(&ring->places[number % CM1E_EMERGENCIES], number, &emergencies[count])) {
-            count++;
-        } else {
-            missing += 1 + count; /* only the oldest are overwritten: what was copied before them is not in a row */
-            count = 0;
-        }
-    }
-    if (lost)
-        *lost = missing;
-    return count;
-}
+/* ---- what is kept ------------------------------------------------------------------------------------------------ */
 
 size_t cm1e_bus_emergency(const cm1e_bus_t *bus, uint16_t position, uint64_t after, cm1e_emergency_t *emergencies,
                           size_t room, uint64_t *lost)
 {
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (slave)
-        return cm1e_emergency_copy(&slave->emergencies, after, emergencies, room, lost);
+        return cm1e_history_copy(slave->emergencies, CM1E_EMERGENCY_SHAPE, after, emergencies, room, lost);
     if (lost)
         *lost = 0;
     return 0;
@@ -78,10 +23,10 @@ size_t cm1e_bus_emergency(const cm1e_bus_t *bus, uint16_t position, uint64_t aft
 void cm1e_bus_keep_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
     cm1e_emergency_t emergency = slave->coe.emergency;
-    if (emergency.number == slave->emergencies.last)
+    if (emergency.number == cm1e_history_last(slave->emergencies))
         return;
     emergency.time_ns = cm1e_clock_wall(bus->clock);
-    cm1e_emergency_add(&slave->emergencies, emergency);
+    cm1e_history_add(slave->emergencies, CM1E_EMERGENCY_SHAPE, &emergency);
     bus->listening.emergencies++;
 }
 

@@ -1,29 +1,16 @@
 /**
  * @file emergency_ring.h
- * The last emergencies of a slave. The thread that owns the bus writes; readers in other threads see by the sequence
- * whether a place was overwritten meanwhile, as in the event log.
+ * The last emergencies of a slave (core/history.h). The thread that owns the bus writes; any thread reads.
  */
 #ifndef CM1E_BUS_EMERGENCY_RING_H
 #define CM1E_BUS_EMERGENCY_RING_H
 
 #include "cm1e/emergency.h"
-#include "core/guest_api.h"
+#include "core/history.h"
 
-typedef struct cm1e_emergency_place {
-    uint64_t sequence; /**< atomic; number of the emergency, 0: it is being written */
-    uint64_t words[2]; /**< atomic; time, then the eight bytes of the message */
-} cm1e_emergency_place_t;
-
-typedef struct cm1e_emergency_ring {
-    uint64_t last; /**< atomic; number of the newest */
-    cm1e_emergency_place_t places[CM1E_EMERGENCIES];
-} cm1e_emergency_ring_t;
-
-/** Adds an emergency; its number is given here. @rt cycle */
-void cm1e_emergency_add(cm1e_emergency_ring_t *ring, cm1e_emergency_t emergency);
-/** As cm1e_bus_emergency(). @rt any */
-size_t cm1e_emergency_copy(const cm1e_emergency_ring_t *ring, uint64_t after, cm1e_emergency_t *emergencies,
-                           size_t room, uint64_t *lost);
+_Static_assert(sizeof(cm1e_emergency_t) % sizeof(uint64_t) == 0, "a record is whole words");
+#define CM1E_EMERGENCY_SHAPE CM1E_HISTORY_SHAPE(CM1E_EMERGENCIES, cm1e_emergency_t)
+typedef uint64_t cm1e_emergency_ring_t[CM1E_HISTORY_WORDS(CM1E_EMERGENCIES, cm1e_emergency_t)];
 
 /** Emergencies of all slaves since the bus was opened. @rt cycle */
 uint64_t cm1e_bus_emergencies(const cm1e_bus_t *bus);

@@ -25,10 +25,9 @@ static void take_device(cm1e_bus_slave_t *slave, const cm1e_remote_slave_t *told
 
 static void take_emergencies(cm1e_bus_slave_t *slave, const cm1e_remote_slave_t *told)
 {
-    cm1e_emergency_ring_t *ring = &slave->emergencies;
     for (uint32_t i = 0; i < told->emergency_count; i++) {
-        __atomic_store_n(&ring->last, told->emergencies[i].number - 1, __ATOMIC_RELAXED);
-        cm1e_emergency_add(ring, told->emergencies[i]);
+        cm1e_history_go_on_after(slave->emergencies, told->emergencies[i].number - 1);
+        cm1e_history_add(slave->emergencies, CM1E_EMERGENCY_SHAPE, &told->emergencies[i]);
     }
 }
 

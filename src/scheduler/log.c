@@ -10,36 +10,28 @@
 #define PORTS_QUIET_NS INT64_C(1000000000)
 
 _Static_assert(sizeof(cm1e_log_event_t) % sizeof(uint64_t) == 0, "a record is whole words");
+static const cm1e_history_shape_t shape = {CM1E_LOG_EVENTS, sizeof(cm1e_log_event_t) / sizeof(uint64_t)};
 
 cm1e_error_t cm1e_log_init(log_t *log, const cm1e_clock_t *clock, cm1e_diag_t *diag)
 {
     log->clock = clock;
-    log->places = calloc(CM1E_LOG_EVENTS, sizeof *log->places);
-    return log->places ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the event log.");
+    log->ring = calloc(CM1E_HISTORY_WORDS(CM1E_LOG_EVENTS, cm1e_log_event_t), sizeof *log->ring);
+    return log->ring ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the event log.");
 }
 
 void cm1e_log_free(log_t *log)
 {
-    free(log->places);
-    log->places = NULL;
+    free(log->ring);
+    log->ring = NULL;
 }
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */
 
 static void write_event(log_t *log, cm1e_log_event_t event, int64_t run_ns)
 {
-    uint64_t words[CM1E_LOG_WORDS];
-    event.number = atomic_load_explicit(&log->last, memory_order_relaxed) + 1;
     event.time_ns = cm1e_clock_wall(log->clock);
     event.run_ns = run_ns;
-    memcpy(words, &event, sizeof words);
-    log_place_t *place = &log->places[event.number % CM1E_LOG_EVENTS];
-    /* Release and acquire at every word keep them between the two writes of the sequence, without fences. */
-    atomic_store_explicit(&place->sequence, 0, memory_order_relaxed);
-    for (int i = 0; i < CM1E_LOG_WORDS; i++)
-        atomic_store_explicit(&place->words[i], words[i], memory_order_release);
-    atomic_store_explicit(&place->sequence, event.number, memory_order_release);
-    atomic_store_explicit(&log->last, event.number, memory_order_release);
+    cm1e_history_add(log->ring, shape, &event);
 }
 
 void cm1e_log_run(log_t *log, bool begins, int64_t run_ns)
@@ -163,35 +155,7 @@ void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t r
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 
-/** false: the record has been overwritten meanwhile. */
-static bool read_event(const log_place_t *place, uint64_t number, cm1e_log_event_t *event)
-{
-    uint64_t words[CM1E_LOG_WORDS];
-    if (atomic_load_explicit(&place->sequence, memory_order_acquire) != number)
-        return false;
-    for (int i = 0; i < CM1E_LOG_WORDS; i++)
-        words[i] = atomic_load_explicit(&place->words[i], memory_order_acquire);
-    if (atomic_load_explicit(&place->sequence, memory_order_relaxed) != number)
-        return false;
-    memcpy(event, words, sizeof *event);
-    return true;
-}
-
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost)
 {
-    const uint64_t last = atomic_load_explicit(&log->last, memory_order_acquire);
-    const uint64_t oldest = last > CM1E_LOG_EVENTS ? last - CM1E_LOG_EVENTS : 0;
-    uint64_t missing = after < oldest ? oldest - after : 0;
-    size_t count = 0;
-    for (uint64_t number = after < last ? after + missing + 1 : last + 1; number <= last && count < room; number++) {
-        if (read_event(&log->places[number % CM1E_LOG_EVENTS], number, &events[count])) {
-            count++;
-        } else {
-            missing += 1 + count; /* only the oldest are overwritten: what was copied before them is not in a row */
-            count = 0;
-        }
-    }
-    if (lost)
-        *lost = missing;
-    return count;
+    return cm1e_history_copy(log->ring, shape, after, events, room, lost);
 }

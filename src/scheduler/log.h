@@ -5,20 +5,12 @@
 #ifndef CM1E_SCHEDULER_LOG_H
 #define CM1E_SCHEDULER_LOG_H
 
-#include <stdatomic.h>
-
 #include "axis/axis_watch.h"
 #include "bus/emergency_ring.h"
 #include "bus/port_watch.h"
 #include "cm1e/log.h"
 #include "core/clock.h"
-
-/** A record as words, because a reader in another thread may look while it is written: then the sequence tells. */
-enum { CM1E_LOG_WORDS = sizeof(cm1e_log_event_t) / sizeof(uint64_t) };
-typedef struct log_place {
-    _Atomic uint64_t sequence; /**< number of the record; 0: it is being written */
-    _Atomic uint64_t words[CM1E_LOG_WORDS];
-} log_place_t;
+#include "core/history.h"
 
 /** A number that only grows and is looked at in every cycle. */
 typedef struct log_counter {
@@ -41,8 +33,7 @@ typedef struct log_slaves {
 } log_slaves_t;
 
 typedef struct log {
-    log_place_t *places;
-    _Atomic uint64_t last;      /**< number of the newest complete record */
+    uint64_t *ring;             /**< core/history.h */
     const cm1e_clock_t *clock;
     cm1e_axis_news_t seen[CM1E_MAX_AXES];
     log_counter_t counters[CM1E_LOG_COUNTERS];

@@ -124,7 +124,7 @@ START_TEST(transfers_and_emergencies_do_not_disturb_each_other)
     }
     cycles(bus, 50);
     emergencies_of(bus, 1);
-    ck_assert_uint_eq(bus->slaves[0].emergencies.last, sent);
+    ck_assert_uint_eq(cm1e_history_last(bus->slaves[0].emergencies), sent);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -182,7 +182,7 @@ static void *write_many(void *context)
     for (uint32_t i = 1; i <= 200000; i++) {
         cm1e_emergency_t one = {.time_ns = i, .code = (uint16_t)i, .error_register = (uint8_t)i};
         memset(one.data, (uint8_t)i, sizeof one.data);
-        cm1e_emergency_add(&ring, one);
+        cm1e_history_add(ring, CM1E_EMERGENCY_SHAPE, &one);
     }
     ready = true;
     return NULL;
@@ -199,7 +199,7 @@ START_TEST(a_reader_in_another_thread_sees_whole_emergencies_in_order)
         cm1e_emergency_t got[CM1E_EMERGENCIES];
         uint64_t lost = 0;
         last = ready;
-        const size_t count = cm1e_emergency_copy(&ring, after, got, CM1E_EMERGENCIES, &lost);
+        const size_t count = cm1e_history_copy(ring, CM1E_EMERGENCY_SHAPE, after, got, CM1E_EMERGENCIES, &lost);
         for (size_t i = 0; i < count; i++) {
             ck_assert_uint_eq(got[i].number, after + lost + 1 + i);
             ck_assert_int_eq(got[i].time_ns, (int64_t)got[i].number);
