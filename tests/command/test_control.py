@@ -13,37 +13,19 @@ import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 import time
-import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-import real_time  # noqa: E402
+import control_bench as bench  # noqa: E402
+from control_bench import CM1E, ENVIRONMENT, FOLDER, RUNTIME, expect, wait_for  # noqa: E402
 from control_client import Client, Program  # noqa: E402
 
-CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 BUS = """\
 bus: {{interface: sim, control: {control}, lost_cycles_limit: 50}}
 axes:
   - {{name: X, sim: {{no_stops: true}}}}
   - {{name: Y, sim: {{no_stops: true}}}}
 """
-FOLDER = tempfile.mkdtemp()
-RUNTIME = os.path.join(FOLDER, "run")
-ENVIRONMENT = {**os.environ, "CM1E_RUNTIME_DIR": RUNTIME}
-faults = []
-
-
-def expect(condition, what, told=""):
-    if not condition:
-        faults.append(f"{what}\n    {told}")
-
-
-def wait_for(condition, what, seconds=10):
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.01)
-    expect(condition(), what)
 
 
 # ---- the program and its clients ------------------------------------------------------------------------------------
@@ -53,22 +35,11 @@ def started(control="observe"):
 
 
 def moving(control="observe"):
-    program = started(control)
-    wait_for(program.listens, "no control socket")
-    wait_for(program.moves, "the axis does not move")
-    return program
+    return bench.moving(f"{control}.yaml")
 
 
-@contextlib.contextmanager
 def running(control="observe"):
-    program = moving(control)
-    try:
-        yield program
-        wait_for(program.moves, "it does not move any more as if nothing had been")
-    finally:
-        said = program.end()
-        expect("ErrorStop" not in said, "the run ended with an error", said)
-        expect(not os.path.exists(program.path), "the socket is left behind")
+    return bench.running(f"{control}.yaml")
 
 
 # ---- what is told ---------------------------------------------------------------------------------------------------
@@ -357,31 +328,12 @@ def check_more_commands():
         expect(program.attached("params", "get", "2", "K47").returncode == 0, "params get by observe")
 
 
-def judge(check):
-    begin = time.monotonic()
-    try:
-        check()
-    except (KeyError, TypeError, OSError) as error:
-        faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
-    print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
-
-
 def main():
     for control in ("none", "observe", "maintain"):
-        with open(os.path.join(FOLDER, f"{control}.yaml"), "w", encoding="utf-8") as file:
-            file.write(BUS.format(control=control))
-    try:
-        real_time.together(*(lambda check=check: judge(check) for check in (
-            check_bad_clients, check_more_commands, check_end_beside_clients, check_no_socket, check_commands,
-            check_requests, check_reading_slaves, check_writing, check_wrong_messages)))
-        judge(check_rights)  # these two look at the folder that all programs share
-        judge(check_left_behind)
-    finally:
-        shutil.rmtree(FOLDER, ignore_errors=True)
-    if faults:
-        real_time.skip_on_a_busy_machine(faults)
-        print("FAILED:", *faults, sep="\n")
-        sys.exit(1)
+        bench.write(f"{control}.yaml", BUS.format(control=control))
+    bench.run(check_bad_clients, check_more_commands, check_end_beside_clients, check_no_socket, check_commands,
+              check_requests, check_reading_slaves, check_writing, check_wrong_messages,
+              alone=(check_rights, check_left_behind))  # these two look at the folder that all programs share
 
 
 if __name__ == "__main__":

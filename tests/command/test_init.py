@@ -11,6 +11,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import real_time  # noqa: E402
+
 CM1E = os.path.join(sys.argv[1], "cm1e")
 
 MOTORS = """\
@@ -178,12 +181,11 @@ def check_refusals(folder):
         expect(done.returncode in (2, 64) and done.stderr, f"{words}: {done}")
 
 
-with tempfile.TemporaryDirectory() as work:
-    check_motors(work)
-    check_bridge(work)
-    check_servo(work)
-    check_slaves(work)
-    check_without_motor(work)
-    check_pdos(work)
-    check_overwriting(work)
-    check_refusals(work)
+def in_a_folder(check):
+    with tempfile.TemporaryDirectory() as work:
+        check(work)
+
+
+real_time.together(*(lambda check=check: in_a_folder(check) for check in (
+    check_motors, check_bridge, check_servo, check_slaves, check_without_motor, check_pdos, check_overwriting,
+    check_refusals)))

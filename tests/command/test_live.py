@@ -10,23 +10,19 @@ import csv
 import json
 import os
 import re
-import shutil
 import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
-import traceback
 import urllib.error
 import urllib.request
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import browser  # noqa: E402
-import real_time  # noqa: E402
-from control_client import Client  # noqa: E402
+import control_bench as bench  # noqa: E402
+from control_bench import CM1E, ENVIRONMENT, expect, path_of  # noqa: E402
 
-CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 OUTPUT = sys.argv[2]
 SKIP = 77
 BUS = """\
@@ -35,47 +31,16 @@ axes:
   - {name: X, sim: {no_stops: true}}
   - {name: Y}
 """
-FOLDER = tempfile.mkdtemp()
-RUNTIME = os.path.join(FOLDER, "run")
-ENVIRONMENT = {**os.environ, "CM1E_RUNTIME_DIR": RUNTIME}
 ADDRESS = re.compile(r"http://127\.0\.0\.1:(\d+)/[0-9a-f]{32}/$")
 ABOUT = "document.getElementById('about').textContent"
 TAKEN = f"Number({ABOUT}.split(' ')[0])"
-faults = []
-
-
-def expect(condition, what, told=""):
-    if not condition:
-        faults.append(f"{what}\n    {told}")
-
-
-def path_of(name):
-    return os.path.join(FOLDER, name)
 
 
 @contextlib.contextmanager
 def moving(cycle_us=1000):
     """A program that turns X. It is not disturbed by anything here."""
-    with open(path_of("bus.yaml"), "w", encoding="utf-8") as file:
-        file.write(BUS % cycle_us)
-    process = subprocess.Popen([CM1E, "move", "-b", path_of("bus.yaml"), "X", "--speed", "0.5", "--for", "120"],
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
-    path = os.path.join(RUNTIME, f"cm1e-{process.pid}-0.sock")
-    try:
-        end = time.monotonic() + 10
-        while not os.path.exists(path) and time.monotonic() < end:
-            time.sleep(0.01)
-        with Client(path) as client:
-            while client.ask("axes")["axes"][0]["velocity"] < 0.45 and time.monotonic() < end:
-                time.sleep(0.01)
-            yield process
-            if process.poll() is None:
-                expect(client.ask("axes")["axes"][0]["state"] == "ContinuousMotion", "the program was disturbed")
-    finally:
-        if process.poll() is None:
-            process.terminate()
-        out, err = process.communicate(timeout=30)
-        expect("ErrorStop" not in out + err, "the run ended with an error", out + err)
+    with bench.running(f"{cycle_us}.yaml") as program:
+        yield program.process
 
 
 @contextlib.contextmanager
@@ -326,33 +291,27 @@ def check_alone():
         expect(child.wait(timeout=20) == 0, "exit status")
 
 
+def check_in_chromium():
+    """One browser at a time: it takes a processor."""
+    for check in (check_page, check_end_of_program, check_alone):
+        bench.judge(check)
+
+
 def main():
     told = subprocess.run([CM1E, "trace", "-i", "sim", "--live", "--for", "0.1"], capture_output=True, text=True,
                           timeout=60, env=ENVIRONMENT)
     if "libmicrohttpd" in told.stderr or "dygraphs" in told.stderr:
         expect(told.returncode == 1, "a build without", told)
         print("SKIPPED: this build serves no pages:", told.stderr)
-        return SKIP
-    checks = [check_protection, check_stuck]
+        sys.exit(SKIP)
+    for cycle_us in (500, 1000):
+        bench.write(f"{cycle_us}.yaml", BUS % cycle_us)
     if browser.path():
-        checks += [check_page, check_end_of_program, check_alone]
+        bench.run(check_in_chromium, check_stuck, check_protection)
     else:
         print("no Chromium here: the page is not opened")
-    for check in checks:
-        begin = time.monotonic()
-        try:
-            check()
-        except (KeyError, TypeError, OSError, ValueError, IndexError, subprocess.TimeoutExpired) as error:
-            faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
-        print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
-    return 0
+        bench.run(check_stuck, check_protection)
 
 
 if __name__ == "__main__":
-    status = main()
-    shutil.rmtree(FOLDER, ignore_errors=True)
-    if faults:
-        real_time.skip_on_a_busy_machine(faults)
-        print("FAILED:", *faults, sep="\n")
-        sys.exit(1)
-    sys.exit(status)
+    main()

@@ -4,22 +4,18 @@ commands the axis itself, and never longer than they renew it.
 
 test_maintain.py BIN-DIRECTORY
 """
-import contextlib
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-import real_time  # noqa: E402
-from control_client import Client, Program  # noqa: E402
+import control_bench as bench  # noqa: E402
+from control_bench import CM1E, ENVIRONMENT, expect, wait_for  # noqa: E402
+from control_client import Client  # noqa: E402
 
-CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 # Axis Y has stops 5 revolutions away, Z a software limit.
 BUS = """\
 bus: {{interface: sim, control: {control}, lost_cycles_limit: 50}}
@@ -30,40 +26,11 @@ axes:
   - {{name: E, type: encoder}}
 """
 X, Y, Z, E = 1, 2, 3, 4
-FOLDER = tempfile.mkdtemp()
-RUNTIME = os.path.join(FOLDER, "run")
-ENVIRONMENT = {**os.environ, "CM1E_RUNTIME_DIR": RUNTIME}
-faults = []
 
 
-def expect(condition, what, told=""):
-    if not condition:
-        faults.append(f"{what}\n    {told}")
-
-
-def wait_for(condition, what, seconds=10):
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.01)
-    expect(condition(), what)
-
-
-@contextlib.contextmanager
 def running(control="maintain"):
     """A program that moves axis X only. Yields a client, and the program."""
-    bus_file = os.path.join(FOLDER, f"{control}.yaml")
-    with open(bus_file, "w", encoding="utf-8") as file:
-        file.write(BUS.format(control=control))
-    program = Program(CM1E, bus_file, ENVIRONMENT)
-    try:
-        wait_for(program.listens, "no control socket")
-        wait_for(program.moves, "the axis does not move")
-        with Client(program) as client:
-            yield client, program
-        wait_for(program.moves, "the program's own axis was disturbed")
-    finally:
-        said = program.end()
-        expect("ErrorStop" not in said, "the run ended with an error", said)
+    return bench.asked(f"{control}.yaml")
 
 
 def axis(client, number):
@@ -327,17 +294,7 @@ def check_commands():
 
 
 if __name__ == "__main__":
-    try:
-        for check in (check_consent, check_precedence, check_jog, check_power_goes_off, check_software_limit,
-                      check_connection_lost, check_client_suspended, check_home, check_error_and_reset, check_commands):
-            begin = time.monotonic()
-            check()
-            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
-    except (KeyError, TypeError, OSError) as error:
-        faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
-    finally:
-        shutil.rmtree(FOLDER, ignore_errors=True)
-    if faults:
-        real_time.skip_on_a_busy_machine(faults)
-        print("FAILED:", *faults, sep="\n")
-        sys.exit(1)
+    for consent in ("observe", "maintain"):
+        bench.write(f"{consent}.yaml", BUS.format(control=consent))
+    bench.run(check_commands, check_client_suspended, check_error_and_reset, check_power_goes_off, check_home, check_jog,
+              check_connection_lost, check_software_limit, check_precedence, check_consent)

@@ -5,21 +5,20 @@ alone, and that a motor stops when the key, the terminal or the client is lost.
 test_monitor.py BIN-DIRECTORY
 """
 import contextlib
+import itertools
 import json
 import os
 import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
-import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-import real_time  # noqa: E402
-from control_client import Client, Program  # noqa: E402
+import control_bench as bench  # noqa: E402
+from control_bench import CM1E, FOLDER, RUNTIME, expect, faults, path_of, wait_for  # noqa: E402
+from control_client import Client  # noqa: E402
 
-CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 BUS = """\
 bus: {{interface: sim, control: {control}, lost_cycles_limit: 50}}
 axes:
@@ -28,30 +27,12 @@ axes:
   - {{name: Z, sim: {{no_stops: true}}, software_limits: {{negative: -0.5, positive: 0.5}}}}
 """
 X, Y, Z = 1, 2, 3
-FOLDER = tempfile.mkdtemp()
-RUNTIME = os.path.join(FOLDER, "run")
-ENVIRONMENT = {**os.environ, "CM1E_RUNTIME_DIR": RUNTIME, "TERM": "xterm", "LC_ALL": "C.UTF-8",
+ENVIRONMENT = {**bench.ENVIRONMENT, "TERM": "xterm", "LC_ALL": "C.UTF-8",
                "ASAN_OPTIONS": "detect_leaks=0"}  # ncurses keeps what it knows of a terminal
-faults = []
-
-
-def expect(condition, what, told=""):
-    if not condition:
-        faults.append(f"{what}\n    {told}")
-
-
-def wait_for(condition, what, seconds=10):
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.02)
-    expect(condition(), what)
 
 
 def bus_file(control):
-    path = os.path.join(FOLDER, f"{control}.yaml")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(BUS.format(control=control))
-    return path
+    return path_of(f"{control}.yaml")
 
 
 def axis(client, number):
@@ -61,26 +42,17 @@ def axis(client, number):
 @contextlib.contextmanager
 def running(control):
     """A program that moves axis X only. Yields a client, and the program's process."""
-    program = Program(CM1E, bus_file(control), ENVIRONMENT)
-    try:
-        wait_for(program.listens, "no control socket")
-        wait_for(program.moves, "the axis does not move")
-        with Client(program) as client:
-            yield client, program.pid
-        wait_for(program.moves, "the program's own axis was disturbed")
-    finally:
-        said = program.end()
-        expect("ErrorStop" not in said, "the run ended with an error", said)
+    with bench.asked(f"{control}.yaml") as (client, program):
+        yield client, program.pid
 
 
 class Terminal:
     """A terminal with a command in it; afterwards it shows the exit status."""
 
-    count = 0
+    numbers = itertools.count()
 
     def __init__(self, *words, columns=100, lines=30, **environment):
-        Terminal.count += 1
-        self.socket = os.path.join(FOLDER, f"tmux{Terminal.count}")  # a server that ends may still be there
+        self.socket = os.path.join(FOLDER, f"tmux{next(Terminal.numbers)}")  # a server that ends may still be there
         settings = " ".join(f"{name}={value}" for name, value in environment.items())
         self.tmux("-f", "/dev/null", "new-session", "-d", "-x", str(columns), "-y", str(lines),
                   f"env {settings} {' '.join([CM1E, *words])}; echo status $?; sleep 600")
@@ -318,18 +290,7 @@ if __name__ == "__main__":
     if not shutil.which("tmux"):
         print("SKIPPED: tmux is not installed")
         sys.exit(77)
-    try:
-        for check in (check_attached, check_observe, check_error, check_terminal_lost, check_jog,
-                      check_program_ends, check_sizes,
-                      check_no_terminal, check_alone, check_json):
-            begin = time.monotonic()
-            check()
-            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
-    except (KeyError, TypeError, OSError, ValueError) as error:
-        faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
-    finally:
-        shutil.rmtree(FOLDER, ignore_errors=True)
-    if faults:
-        real_time.skip_on_a_busy_machine(faults)
-        print("FAILED:", *faults, sep="\n")
-        sys.exit(1)
+    for consent in ("none", "observe", "maintain"):
+        bench.write(f"{consent}.yaml", BUS.format(control=consent))
+    bench.run(check_jog, check_sizes, check_attached, check_error, check_no_terminal, check_terminal_lost, check_json,
+              check_program_ends, check_observe, alone=(check_alone,))  # which looks at all sockets

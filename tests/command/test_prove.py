@@ -15,6 +15,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import real_time  # noqa: E402
+
 CM1E = os.path.join(sys.argv[1], "cm1e")
 READ, WRITE = 0x0007, 0x0038
 SINT, INT, DINT, USINT, UINT, UDINT = 2, 3, 4, 5, 6, 7
@@ -241,15 +244,20 @@ def check_refusals(folder):
     expect(listed.returncode == 0 and len({point["id"] for point in json.loads(listed.stdout)}) > 60, f"{listed}")
 
 
+def check_eeprom_and_damage(folder):
+    """Both change the profile of a good device."""
+    check_eeprom(folder)
+    check_damage(folder)
+
+
+def in_a_folder(check):
+    with tempfile.TemporaryDirectory() as folder:
+        check(folder)
+
+
 with tempfile.TemporaryDirectory() as work:
     # No point but the clock of the controller needs real time.
     SIM = write(os.path.join(work, "virtual.yaml"), VIRTUAL + "axes: [{position: 1}]\n")
-    check_agreement(work)
-    check_planted(work)
-    check_eeprom(work)
-    check_damage(work)
-    check_bridge(work)
-    check_cia402(work)
-    check_motion(work)
-    check_interruption()
-    check_refusals(work)
+    real_time.together(check_interruption, *(lambda check=check: in_a_folder(check) for check in (
+        check_motion, check_planted, check_agreement, check_eeprom_and_damage, check_bridge, check_cia402,
+        check_refusals)))

@@ -4,49 +4,25 @@ time; and alone.
 
 test_trace.py BIN-DIRECTORY
 """
-import contextlib
 import csv
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-import traceback
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-import real_time  # noqa: E402
-from control_client import Client, Program  # noqa: E402
+import control_bench as bench  # noqa: E402
+from control_bench import CM1E, ENVIRONMENT, RUNTIME, expect, path_of, wait_for  # noqa: E402
+from control_client import Client  # noqa: E402
 
-CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 BUS = """\
 bus: {interface: sim, lost_cycles_limit: 50}
 axes:
   - {name: X, sim: {no_stops: true}}
   - {name: Y}
 """
-FOLDER = tempfile.mkdtemp()
-RUNTIME = os.path.join(FOLDER, "run")
-ENVIRONMENT = {**os.environ, "CM1E_RUNTIME_DIR": RUNTIME}
-faults = []
-
-
-def expect(condition, what, told=""):
-    if not condition:
-        faults.append(f"{what}\n    {told}")
-
-
-def wait_for(condition, what, seconds=10):
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.01)
-    expect(condition(), what)
-
-
-def path_of(name):
-    return os.path.join(FOLDER, name)
 
 
 def rows(name):
@@ -54,21 +30,8 @@ def rows(name):
         return list(csv.reader(file))
 
 
-@contextlib.contextmanager
 def running(*options):
-    with open(path_of("bus.yaml"), "w", encoding="utf-8") as file:
-        file.write(BUS)
-    program = Program(CM1E, path_of("bus.yaml"), ENVIRONMENT, *options)
-    try:
-        wait_for(program.listens, "no control socket")
-        wait_for(program.moves, "the axis does not move")
-        with Client(program) as client:
-            yield client, program
-        if program.process.poll() is None:
-            wait_for(program.moves, "the program was disturbed")
-    finally:
-        said = program.end()
-        expect("ErrorStop" not in said, "the run ended with an error", said)
+    return bench.asked("bus.yaml", *options)
 
 
 # ---- the same as the program's own ----------------------------------------------------------------------------------
@@ -216,17 +179,6 @@ def check_alone():
 
 
 if __name__ == "__main__":
-    try:
-        for check in (check_same_samples, check_gaps_are_counted, check_many_and_gone, check_triggers,
-                      check_variables, check_end_of_program, check_alone):
-            begin = time.monotonic()
-            check()
-            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
-    except (KeyError, TypeError, OSError, ValueError, IndexError) as error:
-        faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
-    finally:
-        shutil.rmtree(FOLDER, ignore_errors=True)
-    if faults:
-        real_time.skip_on_a_busy_machine(faults)
-        print("FAILED:", *faults, sep="\n")
-        sys.exit(1)
+    bench.write("bus.yaml", BUS)
+    bench.run(check_gaps_are_counted, check_same_samples, check_many_and_gone, check_triggers, check_variables,
+              check_end_of_program, check_alone)

@@ -21,8 +21,8 @@ SLAVES = "axes: [{name: X, sim: {no_stops: true}}, {name: Y, sim: {no_stops: tru
 
 
 class Bench:
-    def __init__(self, cm1e, segment, folder):
-        self.cm1e, self.segment, self.folder = cm1e, segment, folder
+    def __init__(self, cm1e, python, segment, folder):
+        self.cm1e, self.python, self.segment, self.folder = cm1e, python, segment, folder
 
     def image(self, version, size=30000, said=None):
         path = os.path.join(self.folder, f"firmware-{version}-{size}.bin")
@@ -186,9 +186,9 @@ def run_master(path):
     print(result)
 
 
-def second_opinion(bench, python):
+def second_opinion(bench):
     def by_pysoem(path):
-        return bench.segment.run([python, os.path.abspath(__file__), "--master", path])
+        return bench.segment.run([bench.python, os.path.abspath(__file__), "--master", path])
 
     for version, size in (("1.3.0", 40 * ROOM), ("1.3.4", 12345)):
         told = by_pysoem(bench.image(version, size))
@@ -203,17 +203,18 @@ def second_opinion(bench, python):
 
 
 def main(cm1e, python):
-    with tempfile.TemporaryDirectory() as folder:
-        slaves = os.path.join(folder, "slaves.yaml")
-        with open(slaves, "w", encoding="utf-8") as file:
-            file.write(SLAVES)
-        with wire.segment(cm1e, slaves) as segment:
-            bench = Bench(cm1e, segment, folder)
-            for check in (updates, disturbed, refused, broken_off, beside_others):
+    def on_a_segment(check):
+        with tempfile.TemporaryDirectory() as folder:
+            slaves = os.path.join(folder, "slaves.yaml")
+            with open(slaves, "w", encoding="utf-8") as file:
+                file.write(SLAVES)
+            with wire.segment(cm1e, slaves) as segment:
                 begin = time.monotonic()
-                check(bench)
+                check(Bench(cm1e, python, segment, folder))
                 print(f"{check.__name__}: {time.monotonic() - begin:.1f} s", flush=True)
-            second_opinion(bench, python)
+
+    wire.together(*(lambda check=check: on_a_segment(check) for check in (
+        broken_off, updates, disturbed, refused, beside_others, second_opinion)))
 
 
 if __name__ == "__main__":
