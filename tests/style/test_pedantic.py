@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Every C file of ours is ISO C as it is compiled, beside what it marks as an extension: -Wpedantic finds nothing.
+"""Every C file of ours is ISO C as it is compiled, beside what it marks as an extension: -Wpedantic finds nothing. A
+file that was built with these words (CM1E_STRICT of the everyday build) is not compiled once more.
 
 test_pedantic.py BUILD-DIRECTORY SOURCE-DIRECTORY
 """
@@ -10,7 +11,7 @@ import shlex
 import subprocess
 import sys
 
-ADDED = ["-Wpedantic", "-Werror=pedantic", "-Werror=overlength-strings", "-fsyntax-only"]
+ADDED = ["-Wpedantic", "-Werror=pedantic", "-Werror=overlength-strings"]
 
 
 def ours(build, source):
@@ -27,9 +28,16 @@ def ours(build, source):
             yield name, words[start:out] + words[out + 2:], entry["directory"]
 
 
+def was_built_so(command):
+    undone = [word for word in command if word.startswith("-Wno-") and word != "-Wno-format-truncation"]
+    return not set(ADDED) - set(command) and not undone
+
+
 def compile_one(item):
     name, command, directory = item
-    result = subprocess.run(command + ADDED, cwd=directory, capture_output=True, text=True)
+    if was_built_so(command):
+        return None
+    result = subprocess.run(command + ADDED + ["-fsyntax-only"], cwd=directory, capture_output=True, text=True)
     return f"{name}:\n{result.stderr}" if result.returncode else None
 
 
@@ -37,7 +45,8 @@ def main(build, source):
     files = list(ours(build, source))
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         faults = [fault for fault in pool.map(compile_one, files) if fault]
-    print("\n".join(faults) or f"-Wpedantic finds nothing in {len(files)} files")
+    print("\n".join(faults) or f"-Wpedantic finds nothing in {len(files)} files, "
+          f"{sum(was_built_so(command) for _, command, _ in files)} of them as they were built")
     return 1 if faults or len(files) < 100 else 0
 
 

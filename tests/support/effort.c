@@ -26,6 +26,11 @@ int sweep_stride(int full, int sampled)
     return slowness() == EFFORT_SANITIZED || stride > sampled ? sampled : stride;
 }
 
+int sweep_stride_everyday(int full, int everyday, int sampled)
+{
+    return slowness() == EFFORT_EVERYDAY && stated_stride() <= 0 ? everyday : sweep_stride(full, sampled);
+}
+
 int sweep_first(int number, int stride)
 {
     const int first = number % stride;

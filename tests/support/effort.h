@@ -24,6 +24,9 @@ int stated_stride(void);
 /** What a sweep goes on by here that goes on by `full` with full effort, and by at most `sampled`. */
 int sweep_stride(int full, int sampled);
 
+/** As sweep_stride(), where the everyday run has a stride of its own, because a quarter would take too long. */
+int sweep_stride_everyday(int full, int everyday, int sampled);
+
 /** Where the sweep number `number` of several over the same moments begins, so that they meet different ones. */
 int sweep_first(int number, int stride);
 
