@@ -1,9 +1,13 @@
 /**
  * @file foe.h
  * Files in a slave (FoE, ETG.1000.6 section 5.8): parameters, logs, firmware. The slave knows a file by its name; what
- * is in it is a matter of its maker. The thread that owns the bus calls these functions after a scan, before the bus
- * operates. They wait; every answer and the whole transfer are bounded. A slave that is busy is asked again. A transfer
- * that is given up is told to the slave, so that the next one begins anew.
+ * is in it is a matter of its maker. The thread that owns the bus calls these functions after a scan. They wait; every
+ * answer and the whole transfer are bounded. A slave that is busy is asked again. A transfer that is given up is told to
+ * the slave, so that the next one begins anew.
+ *
+ * While the bus operates, these functions make its cycles: the packets go beside the process data, one datagram of the
+ * mailbox in a cycle, in turn with the SDO transfers of that slave. A program whose scheduler runs transfers files before
+ * its start, or has them transferred through its control socket (`cm1e foe`).
  */
 #ifndef CM1E_FOE_H
 #define CM1E_FOE_H
@@ -38,7 +42,8 @@ CM1E_API cm1e_error_t cm1e_foe_read_sized(cm1e_bus_t *bus, uint16_t position, co
 /** Reads a file. `*size` is the room in `data`, afterwards the bytes of the file. `options` may be NULL. Returns
  *  CM1E_ERROR_BUS_MAILBOX if the slave refuses, with the error code of FoE in `diag->foreign_code` and its text;
  *  CM1E_ERROR_FULL if the file is larger than the room; CM1E_ERROR_TIMEOUT, CM1E_ERROR_BUS_LOST, CM1E_ERROR_CANCELLED
- *  (by `progress`); CM1E_ERROR_UNSUPPORTED if its SII announces no FoE; CM1E_ERROR_STATE while the bus operates.
+ *  (by `progress`); CM1E_ERROR_UNSUPPORTED if its SII announces no FoE; CM1E_ERROR_STATE before a scan, and for
+ *  Bootstrap while the bus operates; CM1E_ERROR_BUSY if another file is on its way then.
  *  @rt block */
 static inline cm1e_error_t cm1e_foe_read(cm1e_bus_t *bus, uint16_t position, const char *name, void *data,
                                          size_t *size, const cm1e_foe_options_t *options, cm1e_diag_t *diag)

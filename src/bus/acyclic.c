@@ -4,9 +4,9 @@
  * machines. Functions wait only if they are given a time to wait. */
 
 /** Gives the CoE client to the job of a slave when the client is idle. */
-static void feed_job(cm1e_bus_slave_t *slave, int64_t now_ns)
+static void feed_job(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 {
-    if (!cm1e_coe_idle(&slave->coe))
+    if (!cm1e_coe_idle(&slave->coe) || cm1e_foe_job_holds(bus, slave))
         return;
     cm1e_sdo_t *sdo = cm1e_recognise_next(&slave->recognition, now_ns);
     if (!sdo)
@@ -28,10 +28,13 @@ static bool next_datagram(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_
         slave->owner = OWNER_AL;
         return cm1e_al_next(&slave->al, &slave->datagram, now_ns);
     }
-    feed_job(slave, now_ns);
-    bus->errand_sent = !bus->errand_sent && cm1e_errand_next(bus, slave);
-    slave->owner = bus->errand_sent ? OWNER_ERRAND : OWNER_COE;
-    return bus->errand_sent || cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
+    feed_job(bus, slave, now_ns);
+    bus->errands.sent = !bus->errands.sent && cm1e_errand_next(bus, slave);
+    slave->owner = bus->errands.sent ? OWNER_ERRAND : OWNER_FILE;
+    if (bus->errands.sent || cm1e_foe_job_next(bus, slave, now_ns))
+        return true;
+    slave->owner = OWNER_COE;
+    return cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
 }
 
 /** Emergencies come without being asked for. In operation one mailbox after the other is looked into, while its client
@@ -46,7 +49,8 @@ static void listen_in_turn(cm1e_bus_t *bus, int64_t now_ns)
         listening->place = listening->place + 1 < bus->slave_count ? listening->place + 1 : 0;
         cm1e_bus_slave_t *slave = &bus->slaves[listening->place];
         if (!slave->facts.coe || slave->watch.lost || slave->owner != OWNER_NONE || !cm1e_coe_idle(&slave->coe) ||
-            !cm1e_recovery_idle(&slave->recovery) || !cm1e_mapping_idle(&slave->mapping))
+            !cm1e_recovery_idle(&slave->recovery) || !cm1e_mapping_idle(&slave->mapping) ||
+            cm1e_foe_job_holds(bus, slave))
             continue;
         cm1e_coe_listen(&slave->coe, now_ns);
         return;
@@ -56,6 +60,7 @@ static void listen_in_turn(cm1e_bus_t *bus, int64_t now_ns)
 void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
 {
     cm1e_errand_serve(bus, now_ns);
+    cm1e_foe_job_serve(bus, now_ns);
     cm1e_sdo_queue_serve(bus, now_ns);
     listen_in_turn(bus, now_ns);
     uint32_t place = bus->acyclic.next;
@@ -97,6 +102,9 @@ static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
     case OWNER_ERRAND:
         cm1e_errand_result(bus, slave, now_ns);
         break;
+    case OWNER_FILE:
+        cm1e_foe_job_result(bus, slave, now_ns);
+        break;
     }
 }
 
@@ -136,4 +144,5 @@ void cm1e_acyclic_cancel(cm1e_bus_t *bus)
         cm1e_coe_cancel(&slave->coe, CM1E_ERROR_CANCELLED);
     }
     cm1e_errand_cancel(bus);
+    cm1e_foe_job_cancel(bus);
 }

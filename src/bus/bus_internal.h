@@ -11,6 +11,7 @@
 #include "bus/dc.h"
 #include "bus/emergency_ring.h"
 #include "bus/errand.h"
+#include "bus/foe_job.h"
 #include "bus/mapping.h"
 #include "bus/port_watch.h"
 #include "bus/recognise.h"
@@ -52,6 +53,7 @@ typedef enum cm1e_datagram_owner {
     OWNER_COE,
     OWNER_RECOVERY,
     OWNER_ERRAND,
+    OWNER_FILE,
 } cm1e_datagram_owner_t;
 
 typedef struct cm1e_signal_list cm1e_signal_list_t;
@@ -133,6 +135,13 @@ typedef struct cm1e_acyclic {
     uint32_t next;                           /**< round robin: the slave whose turn it is */
 } cm1e_acyclic_t;
 
+/** What others want of slaves beside SDO transfers (errand.h, foe_job.h). */
+typedef struct cm1e_errands {
+    cm1e_errand_t *errand;                   /**< atomic; NULL: none */
+    bool sent;                               /**< CoE has the next turn of that slave */
+    cm1e_foe_t *file;                        /**< atomic; NULL: none */
+} cm1e_errands_t;
+
 struct cm1e_bus {
     cm1e_bus_config_t config;                /**< zeros of the bus itself replaced by their defaults */
     int phase;                               /**< cm1e_bus_phase_t; atomic: cm1e_sdo_submit() looks at it */
@@ -170,8 +179,7 @@ struct cm1e_bus {
     cm1e_ring_watch_t ring;
 
     cm1e_sdo_queue_t queue;
-    cm1e_errand_t *errand;                   /**< atomic; NULL: none */
-    bool errand_sent;                        /**< CoE has the next turn of that slave */
+    cm1e_errands_t errands;
 
     cm1e_dc_t dc;                            /**< distributed clocks */
 

@@ -14,7 +14,7 @@ enum {
 };
 #define ERRAND_TIMEOUT_NS INT64_C(2000000000)
 
-static cm1e_errand_t *present(const cm1e_bus_t *bus) { return __atomic_load_n(&bus->errand, __ATOMIC_ACQUIRE); }
+static cm1e_errand_t *present(const cm1e_bus_t *bus) { return __atomic_load_n(&bus->errands.errand, __ATOMIC_ACQUIRE); }
 
 static cm1e_error_t check(const cm1e_bus_t *bus, const cm1e_errand_t *errand)
 {
@@ -40,11 +40,11 @@ cm1e_error_t cm1e_errand_submit(cm1e_bus_t *bus, cm1e_errand_t *errand)
     errand->begun = false;
     errand->error = CM1E_OK;
     __atomic_store_n(&errand->done, 0, __ATOMIC_RELAXED);
-    if (!__atomic_compare_exchange_n(&bus->errand, &none, errand, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+    if (!__atomic_compare_exchange_n(&bus->errands.errand, &none, errand, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
         return CM1E_ERROR_BUSY;
     /* A bus that stopped meanwhile either sees the errand, or this thread sees the phase of the bus. */
     const bool stopped = __atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST) < BUS_SCANNED;
-    if (stopped && __atomic_compare_exchange_n(&bus->errand, &own, NULL, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+    if (stopped && __atomic_compare_exchange_n(&bus->errands.errand, &own, NULL, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
         return CM1E_ERROR_STATE;
     return CM1E_OK;
 }
@@ -56,14 +56,15 @@ static void finish(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
 {
     if (errand->error == CM1E_OK)
         errand->error = error;
-    __atomic_store_n(&bus->errand, NULL, __ATOMIC_SEQ_CST);
+    __atomic_store_n(&bus->errands.errand, NULL, __ATOMIC_SEQ_CST);
     __atomic_store_n(&errand->done, 1, __ATOMIC_RELEASE);
 }
 
-static void begin(cm1e_bus_slave_t *slave, cm1e_errand_t *errand, int64_t now_ns)
+static void begin(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_errand_t *errand, int64_t now_ns)
 {
     const bool info = errand->kind == ERRAND_INFO;
-    if (info && (!cm1e_coe_idle(&slave->coe) || !cm1e_mapping_idle(&slave->mapping)))
+    if (info && (!cm1e_coe_idle(&slave->coe) || !cm1e_mapping_idle(&slave->mapping) ||
+                 cm1e_foe_job_holds(bus, slave)))
         return;
     errand->begun = true;
     errand->step = STEP_BEGIN;
@@ -90,7 +91,7 @@ void cm1e_errand_serve(cm1e_bus_t *bus, int64_t now_ns)
     if (slave->watch.lost || !cm1e_recovery_idle(&slave->recovery))
         finish(bus, errand, CM1E_ERROR_BUS_LOST);
     else if (!errand->begun)
-        begin(slave, errand, now_ns);
+        begin(bus, slave, errand, now_ns);
 }
 
 void cm1e_errand_cancel(cm1e_bus_t *bus)

@@ -1,6 +1,7 @@
 #include "bus/firmware_update.h"
 
 #include "bus/bootstrap.h"
+#include "bus/bus_internal.h"
 #include "bus/foe_client.h"
 #include "core/in_task.h"
 

@@ -3,19 +3,21 @@
 #include <string.h>
 
 #include "bus/bootstrap.h"
+#include "bus/bus_internal.h"
 #include "bus/foe_client.h"
 #include "core/in_task.h"
 #include "core/sized.h"
 
 #define ANSWER_NS INT64_C(5000000000)
-enum { MAILBOX_MIN = 32 };
 
-static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const char *function, cm1e_diag_t *diag)
+static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, bool bootstrap, const char *function, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse(function, "", diag);
-    if (!bus || bus->phase < BUS_SCANNED || bus->phase >= BUS_OPERATING || bus->exchanging)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s needs a scanned bus that does not operate.", function);
+    const bool operates = bus && bus->phase == BUS_OPERATING;
+    if (!bus || bus->phase < BUS_SCANNED || (bus->exchanging && !operates) || (bus->phase > BUS_SCANNED && bootstrap))
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s needs a scanned bus%s.", function,
+                             bootstrap ? " that does not operate, for Bootstrap" : "");
     const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, function, diag);
     if (attached != CM1E_OK)
         return attached;
@@ -26,24 +28,16 @@ static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const char *functi
     return CM1E_OK;
 }
 
-/** The SII is not trusted. */
-static bool fits(uint16_t length) { return length >= MAILBOX_MIN && length <= CM1E_DATAGRAM_MAX; }
-
 /** The mailbox of Pre-Operational is that of the CoE client: both number their messages together. */
 static cm1e_error_t use_mailbox(cm1e_foe_t *foe)
 {
     cm1e_bus_slave_t *slave = cm1e_bus_at(foe->bus, foe->position);
     foe->slave = slave;
     foe->mailbox = &slave->coe.mailbox;
-    if (!slave->facts.foe)
-        return cm1e_diag_set(foe->diag, CM1E_ERROR_UNSUPPORTED, 0,
-                             "Slave %u has no files: its SII announces no FoE.", foe->position);
-    if (!fits(foe->mailbox->out_length) || !fits(foe->mailbox->in_length))
-        return cm1e_diag_set(foe->diag, CM1E_ERROR_UNSUPPORTED, 0, "The mailbox of slave %u has %u bytes to it and %u "
-                             "from it, as its SII states; expected are %d to %d.", foe->position,
-                             foe->mailbox->out_length, foe->mailbox->in_length, MAILBOX_MIN, CM1E_DATAGRAM_MAX);
-    cm1e_bus_pump_until_idle(foe->bus, cm1e_clock_now(foe->bus->clock) + CM1E_STATE_TIMEOUT_NS);
-    return CM1E_OK;
+    const cm1e_error_t error = cm1e_foe_check_mailbox(slave, foe->diag);
+    if (error == CM1E_OK)
+        cm1e_bus_pump_until_idle(foe->bus, cm1e_clock_now(foe->bus->clock) + CM1E_STATE_TIMEOUT_NS);
+    return error;
 }
 
 typedef struct transfer {
@@ -77,23 +71,45 @@ static cm1e_error_t in_bootstrap(cm1e_foe_t *foe, const transfer_t *transfer)
     return error;
 }
 
+/** Beside the process data, whose cycles are made meanwhile. The transfer is on the stack, so it must end before this
+ *  function returns; the bus ensures that. */
+static cm1e_error_t in_operation(cm1e_foe_t *foe, const transfer_t *transfer)
+{
+    foe->writing = transfer->from != NULL;
+    foe->name = transfer->name;
+    foe->from = transfer->from;
+    foe->to = transfer->to;
+    foe->size = foe->writing ? *transfer->size : 0;
+    foe->room = *transfer->size;
+    cm1e_error_t error = cm1e_foe_submit(foe->bus, foe, foe->diag);
+    if (error != CM1E_OK)
+        return error;
+    while (!cm1e_foe_done(foe))
+        cm1e_bus_pump(foe->bus);
+    if (!foe->writing)
+        *transfer->size = foe->done;
+    return cm1e_foe_result_of(foe, foe->diag);
+}
+
 static cm1e_error_t execute(cm1e_bus_t *bus, uint16_t position, const transfer_t *transfer,
                             const cm1e_foe_options_t *options, size_t options_size, const char *function,
                             cm1e_diag_t *diag)
 {
     static const cm1e_foe_options_t defaults;
     cm1e_foe_t foe = {.bus = bus, .position = position, .diag = diag};
-    cm1e_error_t error = check(bus, position, function, diag);
-    if (error != CM1E_OK)
-        return error;
     if (!transfer->name || (!transfer->from && !transfer->to))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%s needs a name and a buffer.", function);
     cm1e_copy_sized(&foe.options, sizeof foe.options, options ? options : &defaults,
                     options ? options_size : sizeof defaults);
+    cm1e_error_t error = check(bus, position, foe.options.bootstrap, function, diag);
+    if (error != CM1E_OK)
+        return error;
     if (foe.options.answer_ns <= 0)
         foe.options.answer_ns = ANSWER_NS;
     if (foe.options.bootstrap)
         return in_bootstrap(&foe, transfer);
+    if (bus->phase == BUS_OPERATING)
+        return in_operation(&foe, transfer);
     error = use_mailbox(&foe);
     return error == CM1E_OK ? run(&foe, transfer) : error;
 }

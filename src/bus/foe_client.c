@@ -1,10 +1,9 @@
 #include "bus/foe_client.h"
 
-#include <stdio.h>
 #include <string.h>
 
+#include "bus/bus_internal.h"
 #include "core/bytes.h"
-#include "core/text.h"
 
 /*
  * Not SOEM's ecx_FOEread() and ecx_FOEwrite(): they lose the error code and the text of a slave, take "busy" as the
@@ -16,40 +15,25 @@
  * refuses a request while an earlier transfer is open, so a transfer that ends early is ended in the slave, too.
  */
 enum { FOE_READ = 1, FOE_WRITE, FOE_DATA, FOE_ACK, FOE_ERROR, FOE_BUSY };
-enum { FOE_HEADER = 6, TEXT_BYTES = 80, PLACE_BYTES = 64 };
+enum { FOE_HEADER = 6, AGAIN_LIMIT = 3 };
 enum { FOE_ERROR_UNDEFINED = 0x8000, FOE_ERROR_DISK_FULL = 0x8003, FOE_ERROR_PACKET = 0x8005 };
-#define POLL_NS INT64_C(100000)
 #define BUSY_PAUSE_NS INT64_C(20000000)
-#define SILENCE_NS INT64_C(1000000000)
 /** For a last message without an answer. */
 #define FAREWELL_NS INT64_C(200000000)
 
-#define FAIL(foe, error, ...) cm1e_diag_set((foe)->diag, error, 0, __VA_ARGS__)
+/* ---- the end ---------------------------------------------------------------------------------------------------- */
 
-/* ---- time and place --------------------------------------------------------------------------------------------- */
-
-static int64_t now(const cm1e_foe_t *foe) { return cm1e_clock_now(foe->bus->clock); }
-
-static void pause_for(const cm1e_foe_t *foe, int64_t time_ns)
+static void end(cm1e_foe_t *foe)
 {
-    cm1e_clock_sleep_until(foe->bus->clock, now(foe) + time_ns);
+    cm1e_mailbox_stop(foe->mailbox);
+    foe->phase = FOE_PHASE_ENDED;
 }
 
-/** "after 100 of 2000 bytes" */
-static const char *so_far(const cm1e_foe_t *foe, char text[PLACE_BYTES])
+void cm1e_foe_give_up(cm1e_foe_t *foe, cm1e_foe_fault_kind_t fault)
 {
-    if (foe->writing)
-        snprintf(text, PLACE_BYTES, "after %zu of %zu bytes", foe->done, foe->size);
-    else
-        snprintf(text, PLACE_BYTES, "after %zu bytes", foe->done);
-    return text;
-}
-
-static cm1e_error_t lost(const cm1e_foe_t *foe)
-{
-    char place[PLACE_BYTES];
-    return FAIL(foe, CM1E_ERROR_BUS_LOST, "Slave %u stopped answering, %s: check its power and the cables up to it.",
-                foe->position, so_far(foe, place));
+    if (foe->fault.kind == FOE_GOOD)
+        foe->fault.kind = fault;
+    end(foe);
 }
 
 /* ---- messages --------------------------------------------------------------------------------------------------- */
@@ -60,271 +44,269 @@ static uint8_t *start_message(cm1e_foe_t *foe, uint8_t opcode, uint32_t value)
     body[0] = opcode;
     body[1] = 0;
     cm1e_put_u32(body + 2, value);
+    foe->message_bytes = FOE_HEADER;
     return body + FOE_HEADER;
 }
 
-/** Whether the slave is still there: an answer may take long, its controller always answers. */
-static bool is_there(cm1e_foe_t *foe, int64_t *heard_ns)
+/** A last message, without an answer, but the slave must have read it. */
+static void say_farewell(cm1e_foe_t *foe, int64_t now_ns)
 {
-    uint8_t status[2];
-    if (foe->datagram.working_counter != 1 && now(foe) - *heard_ns < SILENCE_NS)
-        return true;
-    if (foe->datagram.working_counter != 1 &&
-        cm1e_soem_transfer(foe->bus->soem, COMMAND_FPRD, foe->mailbox->station, REG_AL_STATUS, status,
-                           sizeof status) != 1)
-        return false;
-    *heard_ns = now(foe);
-    return true;
+    foe->phase = FOE_PHASE_FAREWELL;
+    foe->draining = false;
+    foe->farewell_until_ns = now_ns + FAREWELL_NS;
+    cm1e_mailbox_send(foe->mailbox, MAILBOX_TYPE_FOE, foe->message_bytes);
 }
 
-/** Sends and receives the next datagram of the mailbox. True: it brought a message. */
-static bool step(cm1e_foe_t *foe)
+/** The slave must not wait for the rest. */
+static void end_early(cm1e_foe_t *foe, cm1e_foe_fault_kind_t fault, uint32_t number, uint32_t code, int64_t now_ns)
 {
-    cm1e_soem_post(foe->bus->soem, &foe->datagram, now(foe));
-    if (!cm1e_soem_take(foe->bus->soem, &foe->datagram, CM1E_FRAME_LOST_NS))
-        cm1e_soem_drop(foe->bus->soem, &foe->datagram);
-    return cm1e_mailbox_result(foe->mailbox, &foe->datagram);
+    const bool answered = fault == FOE_NO_FOE || fault == FOE_UNEXPECTED || fault == FOE_OTHER_ACK;
+    if (answered && foe->number == 0)
+        foe->partly = false; /* it has answered the request, and has not seen any of the file */
+    foe->fault.kind = fault;
+    foe->fault.number = number;
+    start_message(foe, FOE_ERROR, code);
+    say_farewell(foe, now_ns);
 }
 
-/** An answer of FoE; false: the message is something else, such as an emergency, which is kept. */
-static bool is_answer(cm1e_foe_t *foe, const uint8_t **body, size_t *length)
+size_t cm1e_foe_room(const cm1e_mailbox_t *mailbox) { return (size_t)cm1e_mailbox_room(mailbox) - FOE_HEADER; }
+
+/** The name of the file is behind its request. */
+static void put_request(cm1e_foe_t *foe)
 {
-    const uint8_t *message = foe->datagram.data;
-    *body = message + CM1E_MAILBOX_HEADER;
-    *length = cm1e_get_u16(message);
-    const bool fits = *length <= (size_t)(foe->mailbox->in_length - CM1E_MAILBOX_HEADER);
-    if (fits && foe->slave && cm1e_coe_take_emergency(&foe->slave->coe, message))
-        cm1e_bus_keep_emergency(foe->bus, foe->slave);
-    return fits && *length >= 2 && (message[5] & 0x0F) == MAILBOX_TYPE_FOE;
+    const size_t bytes = strlen(foe->name);
+    memcpy(start_message(foe, foe->writing ? FOE_WRITE : FOE_READ, foe->options.password), foe->name, bytes);
+    foe->message_bytes = (uint16_t)(FOE_HEADER + bytes);
+    foe->partly |= foe->writing; /* from here on nobody knows what the slave has done */
 }
 
-static bool is_refusal(const cm1e_foe_t *foe) { return (foe->datagram.data[5] & 0x0F) == MAILBOX_TYPE_ERROR; }
-
-/** Sends what is in the mailbox, with `size` bytes, and waits for the answer. */
-static cm1e_error_t exchange(cm1e_foe_t *foe, size_t size, const uint8_t **answer, size_t *length)
+/** A packet that is not full ends the file, so a file of whole packets has an empty one at its end. */
+static void put_packet(cm1e_foe_t *foe)
 {
-    char place[PLACE_BYTES];
-    int64_t heard_ns = now(foe);
-    const int64_t deadline_ns = heard_ns + foe->options.answer_ns;
-    cm1e_mailbox_send(foe->mailbox, MAILBOX_TYPE_FOE, (uint16_t)size);
-    while (cm1e_mailbox_next(foe->mailbox, &foe->datagram)) {
-        const bool message = step(foe);
-        if (!is_there(foe, &heard_ns))
-            return lost(foe);
-        if (message && is_answer(foe, answer, length))
-            return CM1E_OK;
-        if (message && is_refusal(foe))
-            return FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "Slave %u refuses FoE in its mailbox.", foe->position);
-        if (now(foe) > deadline_ns)
-            return FAIL(foe, CM1E_ERROR_TIMEOUT, "Slave %u did not answer for %g s, %s.", foe->position,
-                        (double)foe->options.answer_ns * 1e-9, so_far(foe, place));
-        pause_for(foe, POLL_NS);
-    }
-    return FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "The mailbox of slave %u is not in use.", foe->position);
+    const size_t room = cm1e_foe_room(foe->mailbox);
+    const size_t left = foe->size - foe->done, part = left < room ? left : room;
+    uint8_t *place = start_message(foe, FOE_DATA, foe->number);
+    if (part > 0)
+        memcpy(place, foe->from + foe->done, part);
+    foe->message_bytes = (uint16_t)(FOE_HEADER + part);
+    foe->last = part < room;
+    foe->partly = true;
 }
 
-/** Sends a message that has no answer, and waits until the slave has read it. */
-static void say(cm1e_foe_t *foe, size_t size)
+/** The next message, or the last one once more: others may have used the mailbox meanwhile. The acknowledgement 0 stands
+ *  for a request to read that the slave has had. */
+static void put_message(cm1e_foe_t *foe, bool again)
 {
-    const int64_t deadline_ns = now(foe) + FAREWELL_NS;
-    bool draining = false;
-    cm1e_mailbox_send(foe->mailbox, MAILBOX_TYPE_FOE, (uint16_t)size);
-    while (now(foe) < deadline_ns && !(draining && cm1e_mailbox_drained(foe->mailbox)) &&
-           cm1e_mailbox_next(foe->mailbox, &foe->datagram)) {
-        step(foe);
-        if (!draining && cm1e_mailbox_delivered(foe->mailbox)) {
-            draining = true;
-            cm1e_mailbox_drain(foe->mailbox);
-        }
-        pause_for(foe, POLL_NS);
-    }
+    if (foe->number == 0 && (foe->writing || !again))
+        put_request(foe);
+    else if (foe->writing)
+        put_packet(foe);
+    else
+        start_message(foe, FOE_ACK, foe->number);
 }
 
-/** The slave must not wait for the rest. Returns `error`. */
-static cm1e_error_t end_early(cm1e_foe_t *foe, cm1e_error_t error, uint32_t code)
+void cm1e_foe_begin(cm1e_foe_t *foe, int64_t now_ns)
 {
-    if (error != CM1E_ERROR_BUS_LOST) {
-        start_message(foe, FOE_ERROR, code);
-        say(foe, FOE_HEADER);
-    }
-    return error;
+    foe->phase = FOE_PHASE_READY;
+    foe->number = 0;
+    foe->again = 0;
+    foe->last = foe->partly = false;
+    foe->done = 0;
+    foe->fault = (cm1e_foe_fault_t){FOE_GOOD};
+    foe->busy_until_ns = now_ns + foe->options.answer_ns;
+    const size_t name = strlen(foe->name);
+    if (name == 0 || name > cm1e_foe_room(foe->mailbox))
+        cm1e_foe_give_up(foe, FOE_BAD_NAME);
 }
 
-static cm1e_error_t diagnose(const cm1e_foe_t *foe, const uint8_t *answer, size_t length)
-{
-    char text[TEXT_BYTES] = "", place[PLACE_BYTES];
-    const uint32_t code = length >= FOE_HEADER ? cm1e_get_u32(answer + 2) : 0;
-    if (answer[0] != FOE_ERROR || length < FOE_HEADER)
-        return FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "Slave %u answered with FoE service %u, which is not expected, %s.",
-                    foe->position, answer[0], so_far(foe, place));
-    cm1e_text_of_device(text, sizeof text, answer + FOE_HEADER, length - FOE_HEADER);
-    return cm1e_diag_set(foe->diag, CM1E_ERROR_BUS_MAILBOX, code,
-                         "Slave %u refuses the file %s: FoE error 0x%04X, %s%s%s%s.", foe->position,
-                         so_far(foe, place), (unsigned)code, cm1e_foe_error_text(code), text[0] ? " (\"" : "", text,
-                         text[0] ? "\")" : "");
-}
-
-/** Sends what is in the mailbox until the slave gives another answer than "busy". An answer that nobody expects ends
- *  the transfer. */
-static cm1e_error_t ask(cm1e_foe_t *foe, size_t size, uint8_t expected, const uint8_t **answer, size_t *length)
-{
-    char place[PLACE_BYTES];
-    const int64_t deadline_ns = now(foe) + foe->options.answer_ns;
-    for (;;) {
-        const cm1e_error_t error = exchange(foe, size, answer, length);
-        if (error != CM1E_OK)
-            return end_early(foe, error, FOE_ERROR_UNDEFINED);
-        if ((*answer)[0] == expected && *length >= FOE_HEADER)
-            return CM1E_OK;
-        if ((*answer)[0] == FOE_ERROR)
-            return diagnose(foe, *answer, *length);
-        if ((*answer)[0] != FOE_BUSY)
-            return end_early(foe, diagnose(foe, *answer, *length), FOE_ERROR_UNDEFINED);
-        if (now(foe) > deadline_ns)
-            return end_early(foe, FAIL(foe, CM1E_ERROR_TIMEOUT, "Slave %u says for %g s that it is busy, %s.",
-                                       foe->position, (double)foe->options.answer_ns * 1e-9, so_far(foe, place)),
-                             FOE_ERROR_UNDEFINED);
-        pause_for(foe, BUSY_PAUSE_NS);
-        if (!foe->writing && cm1e_mailbox_body(foe->mailbox)[0] == FOE_READ) {
-            start_message(foe, FOE_ACK, 0);
-            size = FOE_HEADER;
-        }
-    }
-}
+/* ---- progress --------------------------------------------------------------------------------------------------- */
 
 /** false: the user breaks off. */
 static bool goes_on(const cm1e_foe_t *foe)
 {
-    return !foe->options.progress || foe->options.progress(foe->options.context, foe->done, foe->size);
+    return !__atomic_load_n(&foe->cancel, __ATOMIC_RELAXED) &&
+           (!foe->options.progress || foe->options.progress(foe->options.context, foe->done, foe->size));
 }
 
-static cm1e_error_t break_off(cm1e_foe_t *foe)
+static void count(cm1e_foe_t *foe, size_t bytes)
 {
-    char place[PLACE_BYTES];
-    return end_early(foe, FAIL(foe, CM1E_ERROR_CANCELLED, "Broken off %s.", so_far(foe, place)), FOE_ERROR_UNDEFINED);
+    __atomic_store_n(&foe->done, foe->done + bytes, __ATOMIC_RELAXED);
 }
 
-/** The name of the file behind its request. `*size`: bytes of the message. */
-static cm1e_error_t put_name(cm1e_foe_t *foe, uint8_t opcode, const char *name, size_t *size)
+/** The next message, unless the user breaks off. */
+static void go_on(cm1e_foe_t *foe, int64_t now_ns)
 {
-    const size_t bytes = strlen(name), room = (size_t)cm1e_mailbox_room(foe->mailbox) - FOE_HEADER;
-    if (bytes == 0 || bytes > room)
-        return FAIL(foe, CM1E_ERROR_INVALID_ARGUMENT, "The name \"%s\" is %s: expected are 1 to %zu characters.", name,
-                    bytes ? "too long" : "empty", room);
-    memcpy(start_message(foe, opcode, foe->options.password), name, bytes);
-    *size = FOE_HEADER + bytes;
-    return CM1E_OK;
-}
-
-/* ---- writing ---------------------------------------------------------------------------------------------------- */
-
-/** Sends one packet until the slave acknowledges it. */
-static cm1e_error_t send_packet(cm1e_foe_t *foe, size_t size, uint32_t number)
-{
-    const uint8_t *answer = NULL;
-    size_t length = 0;
-    const cm1e_error_t error = ask(foe, size, FOE_ACK, &answer, &length);
-    if (error != CM1E_OK || cm1e_get_u32(answer + 2) == number)
-        return error;
-    FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "Slave %u acknowledges packet %u of the file, packet %u was sent.", foe->position,
-         (unsigned)cm1e_get_u32(answer + 2), (unsigned)number);
-    return end_early(foe, CM1E_ERROR_BUS_MAILBOX, FOE_ERROR_PACKET);
-}
-
-static cm1e_error_t send_file(cm1e_foe_t *foe, const char *name, const uint8_t *bytes)
-{
-    const size_t room = (size_t)cm1e_mailbox_room(foe->mailbox) - FOE_HEADER;
-    size_t request = 0;
-    cm1e_error_t error = put_name(foe, FOE_WRITE, name, &request);
-    if (error != CM1E_OK)
-        return error;
-    foe->partly = true; /* from here on nobody knows what the slave has done */
-    error = send_packet(foe, request, 0);
-    if (error == CM1E_OK || error == CM1E_ERROR_BUS_MAILBOX) /* it has not seen any of the file, or has refused it */
-        foe->partly = false;
-    /* A packet that is not full ends the file, so a file of whole packets has an empty one at its end. */
-    bool more = true;
-    for (uint32_t number = 1; error == CM1E_OK && more; number++) {
-        const size_t left = foe->size - foe->done, part = left < room ? left : room;
-        if (!goes_on(foe))
-            return break_off(foe);
-        uint8_t *place = start_message(foe, FOE_DATA, number);
-        if (part > 0)
-            memcpy(place, bytes + foe->done, part);
-        foe->partly = true;
-        error = send_packet(foe, FOE_HEADER + part, number);
-        foe->done += error == CM1E_OK ? part : 0;
-        more = part == room;
+    if (!goes_on(foe)) {
+        end_early(foe, FOE_BROKEN_OFF, 0, FOE_ERROR_UNDEFINED, now_ns);
+        return;
     }
-    if (error == CM1E_OK)
-        (void)goes_on(foe);
-    return error;
-}
-
-cm1e_error_t cm1e_foe_send(cm1e_foe_t *foe, const char *name, const uint8_t *bytes, size_t size)
-{
-    foe->writing = true;
-    foe->size = size;
-    const cm1e_error_t error = send_file(foe, name, bytes);
+    foe->phase = FOE_PHASE_READY;
+    foe->busy_until_ns = now_ns + foe->options.answer_ns;
     cm1e_mailbox_stop(foe->mailbox);
-    return error;
 }
 
-/* ---- reading ---------------------------------------------------------------------------------------------------- */
+/* ---- answers ---------------------------------------------------------------------------------------------------- */
 
-/** Takes a packet. `*number` is that of the last one taken; one that comes again is acknowledged again. */
-static cm1e_error_t take_packet(cm1e_foe_t *foe, const uint8_t *answer, size_t bytes, uint32_t *number, uint8_t *file,
-                                size_t room)
+/** The slave has taken the request, or a packet. */
+static void on_acknowledge(cm1e_foe_t *foe, uint32_t number, int64_t now_ns)
 {
-    const uint32_t got = cm1e_get_u32(answer + 2);
-    if (got == *number && got > 0)
-        return CM1E_OK;
-    if (got != *number + 1)
-        return end_early(foe, FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "Slave %u sends packet %u of the file, packet %u was "
-                                   "expected.", foe->position, (unsigned)got, (unsigned)*number + 1),
-                         FOE_ERROR_PACKET);
-    if (bytes > room - foe->done)
-        return end_early(foe, FAIL(foe, CM1E_ERROR_FULL, "The file of slave %u has more than %zu bytes.",
-                                   foe->position, room), FOE_ERROR_DISK_FULL);
-    memcpy(file + foe->done, answer + FOE_HEADER, bytes);
-    foe->done += bytes;
-    *number = got;
-    return goes_on(foe) ? CM1E_OK : break_off(foe);
+    const size_t bytes = (size_t)foe->message_bytes - FOE_HEADER;
+    if (number != foe->number) {
+        foe->fault.expected = foe->number;
+        end_early(foe, FOE_OTHER_ACK, number, FOE_ERROR_PACKET, now_ns);
+        return;
+    }
+    if (foe->number == 0)
+        foe->partly = false; /* it has not seen any of the file */
+    else
+        count(foe, bytes);
+    if (foe->number > 0 && foe->last) {
+        (void)goes_on(foe);
+        end(foe);
+        return;
+    }
+    foe->number++;
+    go_on(foe, now_ns);
 }
 
-static cm1e_error_t receive_file(cm1e_foe_t *foe, const char *name, uint8_t *file, size_t room)
+/** Takes a packet; one that comes again is acknowledged again. */
+static void on_packet(cm1e_foe_t *foe, const uint8_t *answer, size_t bytes, int64_t now_ns)
 {
     const size_t full = (size_t)(foe->mailbox->in_length - CM1E_MAILBOX_HEADER - FOE_HEADER);
-    size_t request = 0, length = 0;
-    const uint8_t *answer = NULL;
-    uint32_t number = 0;
-    cm1e_error_t error = put_name(foe, FOE_READ, name, &request);
-    for (unsigned again = 0; error == CM1E_OK; request = FOE_HEADER) {
-        const uint32_t before = number;
-        error = ask(foe, request, FOE_DATA, &answer, &length);
-        const bool last = error == CM1E_OK && length - FOE_HEADER < full;
-        if (error == CM1E_OK)
-            error = take_packet(foe, answer, length - FOE_HEADER, &number, file, room);
-        if (error != CM1E_OK)
-            return error;
-        again = number == before ? again + 1 : 0;
-        if (again > 3)
-            return end_early(foe, FAIL(foe, CM1E_ERROR_BUS_MAILBOX, "Slave %u sends packet %u again and again.",
-                                       foe->position, (unsigned)number), FOE_ERROR_PACKET);
-        start_message(foe, FOE_ACK, number);
-        if (last) {
-            say(foe, FOE_HEADER);
-            return CM1E_OK;
-        }
+    const uint32_t got = cm1e_get_u32(answer + 2);
+    const bool same = got == foe->number && got > 0;
+    foe->fault.expected = foe->number + 1;
+    if (!same && got != foe->number + 1) {
+        end_early(foe, FOE_OTHER_PACKET, got, FOE_ERROR_PACKET, now_ns);
+        return;
     }
-    return error;
+    if (!same && bytes > foe->room - foe->done) {
+        end_early(foe, FOE_TOO_LARGE, 0, FOE_ERROR_DISK_FULL, now_ns);
+        return;
+    }
+    foe->again = same ? foe->again + 1 : 0;
+    if (foe->again > AGAIN_LIMIT) {
+        end_early(foe, FOE_SAME_PACKET, got, FOE_ERROR_PACKET, now_ns);
+        return;
+    }
+    if (!same)
+        memcpy(foe->to + foe->done, answer + FOE_HEADER, bytes);
+    count(foe, same ? 0 : bytes);
+    foe->number = got;
+    foe->last = bytes < full;
+    if (!same || !foe->last)
+        go_on(foe, now_ns);
+    if (foe->last && foe->fault.kind == FOE_GOOD) {
+        start_message(foe, FOE_ACK, got);
+        say_farewell(foe, now_ns);
+    }
 }
 
-cm1e_error_t cm1e_foe_receive(cm1e_foe_t *foe, const char *name, uint8_t *bytes, size_t *size)
+static void on_refusal(cm1e_foe_t *foe, const uint8_t *answer, size_t length)
 {
-    foe->writing = false;
-    const cm1e_error_t error = receive_file(foe, name, bytes, *size);
+    const size_t said = length - FOE_HEADER;
+    foe->fault.kind = FOE_REFUSED;
+    foe->fault.number = cm1e_get_u32(answer + 2);
+    foe->fault.said_bytes = said < CM1E_FOE_SAID ? said : CM1E_FOE_SAID;
+    memcpy(foe->fault.said, answer + FOE_HEADER, foe->fault.said_bytes);
+    if (foe->number == 0)
+        foe->partly = false; /* it has refused the file */
+    end(foe);
+}
+
+static void on_busy(cm1e_foe_t *foe, int64_t now_ns)
+{
+    if (now_ns > foe->busy_until_ns) {
+        end_early(foe, FOE_ALWAYS_BUSY, 0, FOE_ERROR_UNDEFINED, now_ns);
+        return;
+    }
+    foe->phase = FOE_PHASE_PAUSE;
+    foe->resume_ns = now_ns + BUSY_PAUSE_NS;
     cm1e_mailbox_stop(foe->mailbox);
-    *size = foe->done;
-    return error;
+}
+
+static void on_answer(cm1e_foe_t *foe, const uint8_t *answer, size_t length, int64_t now_ns)
+{
+    const uint8_t expected = foe->writing ? FOE_ACK : FOE_DATA;
+    if (answer[0] == expected && length >= FOE_HEADER && foe->writing) {
+        on_acknowledge(foe, cm1e_get_u32(answer + 2), now_ns);
+    } else if (answer[0] == expected && length >= FOE_HEADER) {
+        on_packet(foe, answer, length - FOE_HEADER, now_ns);
+    } else if (answer[0] == FOE_ERROR && length >= FOE_HEADER) {
+        on_refusal(foe, answer, length);
+    } else if (answer[0] == FOE_BUSY) {
+        on_busy(foe, now_ns);
+    } else {
+        end_early(foe, FOE_UNEXPECTED, answer[0], FOE_ERROR_UNDEFINED, now_ns);
+    }
+}
+
+/** A message of the slave: what is no answer of FoE may be an emergency, which is kept. */
+static void on_message(cm1e_foe_t *foe, const uint8_t *message, int64_t now_ns)
+{
+    const size_t length = cm1e_get_u16(message);
+    const unsigned type = message[5] & 0x0F;
+    if (length > (size_t)(foe->mailbox->in_length - CM1E_MAILBOX_HEADER))
+        return;
+    if (foe->slave && cm1e_coe_take_emergency(&foe->slave->coe, message))
+        cm1e_bus_keep_emergency(foe->bus, foe->slave);
+    if (foe->phase != FOE_PHASE_ASKED)
+        return;
+    if (type == MAILBOX_TYPE_FOE && length >= 2)
+        on_answer(foe, message + CM1E_MAILBOX_HEADER, length, now_ns);
+    else if (type == MAILBOX_TYPE_ERROR)
+        end_early(foe, FOE_NO_FOE, 0, FOE_ERROR_UNDEFINED, now_ns);
+}
+
+/* ---- one datagram at a time ------------------------------------------------------------------------------------- */
+
+/** The next message, if it is time for one. */
+static void send_next(cm1e_foe_t *foe, int64_t now_ns)
+{
+    const bool again = foe->phase == FOE_PHASE_PAUSE;
+    if (again && now_ns < foe->resume_ns)
+        return;
+    if (__atomic_load_n(&foe->cancel, __ATOMIC_RELAXED)) {
+        end_early(foe, FOE_BROKEN_OFF, 0, FOE_ERROR_UNDEFINED, now_ns);
+        return;
+    }
+    put_message(foe, again);
+    foe->phase = FOE_PHASE_ASKED;
+    foe->answer_until_ns = now_ns + foe->options.answer_ns;
+    cm1e_mailbox_send(foe->mailbox, MAILBOX_TYPE_FOE, foe->message_bytes);
+}
+
+static void check_time(cm1e_foe_t *foe, int64_t now_ns)
+{
+    if (foe->phase == FOE_PHASE_FAREWELL && now_ns >= foe->farewell_until_ns)
+        end(foe);
+    if (foe->phase == FOE_PHASE_ASKED && now_ns > foe->answer_until_ns)
+        end_early(foe, FOE_SILENT, 0, FOE_ERROR_UNDEFINED, now_ns);
+}
+
+bool cm1e_foe_next(cm1e_foe_t *foe, cm1e_datagram_t *datagram, int64_t now_ns)
+{
+    check_time(foe, now_ns);
+    if (foe->phase == FOE_PHASE_READY || foe->phase == FOE_PHASE_PAUSE)
+        send_next(foe, now_ns);
+    if (!cm1e_foe_holds_mailbox(foe))
+        return false;
+    if (cm1e_mailbox_next(foe->mailbox, datagram))
+        return true;
+    cm1e_foe_give_up(foe, FOE_NO_MAILBOX);
+    return false;
+}
+
+void cm1e_foe_result(cm1e_foe_t *foe, const cm1e_datagram_t *datagram, int64_t now_ns)
+{
+    if (!cm1e_foe_holds_mailbox(foe)) /* ended while the datagram was on its way */
+        return;
+    if (cm1e_mailbox_result(foe->mailbox, datagram))
+        on_message(foe, datagram->data, now_ns);
+    if (foe->phase == FOE_PHASE_FAREWELL && foe->draining && cm1e_mailbox_drained(foe->mailbox)) {
+        end(foe);
+    } else if (foe->phase == FOE_PHASE_FAREWELL && !foe->draining && cm1e_mailbox_delivered(foe->mailbox)) {
+        foe->draining = true;
+        cm1e_mailbox_drain(foe->mailbox);
+    }
 }

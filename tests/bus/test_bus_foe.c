@@ -275,12 +275,130 @@ START_TEST(bootstrap_and_slaves_without_files)
 }
 END_TEST
 
-START_TEST(a_bus_in_operation_refuses)
+/* ---- while the bus operates ------------------------------------------------------------------------------------- */
+
+/** A drive that keeps files, and a CM1-E; both in Operational. */
+static cm1e_bus_t *operating(void)
 {
-    sim_config(1);
-    cm1e_bus_t *bus = start_bus();
-    ck_assert_int_eq(cm1e_foe_write(bus, 1, "x.bin", written, 1, NULL, &diag), CM1E_ERROR_STATE);
+    sim_config(2);
+    strcpy(config.axes[0].device, "cia402");
+    config.axes[0].firmware[0] = 0;
+    config.axes[0].counts_per_revolution = 10000;
+    config.axes[0].max_speed_rpm = 3000;
+    for (size_t i = 0; i < sizeof written; i++)
+        written[i] = (uint8_t)(i * 7 + i / 251);
+    return start_bus();
+}
+
+static void check_cycles(cm1e_bus_t *bus)
+{
+    ck_assert_uint_eq(cm1e_bus_counters(bus)->lost_frames, 0);
+    ck_assert_uint_eq(cm1e_bus_counters(bus)->working_counter_errors, 0);
+    ck_assert_int_eq(cm1e_bus_slave_watch(bus, 1).al_state, CM1E_AL_OP);
+    ck_assert_int_eq(cm1e_bus_slave_watch(bus, 2).al_state, CM1E_AL_OP);
+}
+
+START_TEST(files_go_beside_the_process_data)
+{
+    cm1e_bus_t *bus = operating();
+    const size_t p = packet(bus), sizes[] = {0, 1, p - 1, p, p + 1, 3 * p, 12345, FILE_MAX};
+    const cm1e_foe_options_t options = {.progress = count, .context = &calls};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        files_of(bus)->busy = (unsigned)i;
+        write_and_read(bus, sizes[i], NULL);
+        check_cycles(bus);
+    }
+    const int64_t begun_ns = now_of(bus);
+    const uint64_t cycles = cm1e_bus_counters(bus)->cycles;
+    write_and_read(bus, 12345, NULL);
+    const uint64_t made = cm1e_bus_counters(bus)->cycles - cycles;
+    ck_assert_int_le(llabs((int64_t)made * bus->config.cycle_time_ns - (now_of(bus) - begun_ns)),
+                     2 * bus->config.cycle_time_ns);
+    for (cancel_at = 1; cancel_at < 5; cancel_at++) {
+        calls = 0, last_done = 0;
+        ck_assert_int_eq(cm1e_foe_write(bus, 1, "f", written, 4 * p, &options, &diag), CM1E_ERROR_CANCELLED);
+    }
+    cancel_at = 0, last_done = 0;
+    write_and_read(bus, 100, NULL);
     cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(refusals_in_operation)
+{
+    cm1e_bus_t *bus = operating();
+    const cm1e_foe_options_t in_bootstrap = {.bootstrap = true}, short_time = {.answer_ns = 300000000};
+    size_t room = 10;
+    ck_assert_int_eq(cm1e_foe_write(bus, 2, "x.bin", written, 1, &in_bootstrap, &diag), CM1E_ERROR_STATE);
+    ck_assert_ptr_nonnull(strstr(diag.text, "Bootstrap"));
+    ck_assert_int_eq(cm1e_foe_write(bus, 2, "x.bin", written, 1, NULL, &diag), CM1E_ERROR_BUS_MAILBOX);
+    ck_assert_uint_eq(diag.foreign_code, 0x8008);
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "", written, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_foe_write(bus, 3, "n", written, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_foe_read(bus, 1, "nothing", got, &room, NULL, &diag), CM1E_ERROR_BUS_MAILBOX);
+    ck_assert_ptr_nonnull(strstr(diag.text, "file not found (\"no such file\")"));
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "a", written, 100, NULL, &diag), CM1E_OK);
+    room = 10;
+    ck_assert_int_eq(cm1e_foe_read(bus, 1, "a", got, &room, NULL, &diag), CM1E_ERROR_FULL);
+    files_of(bus)->busy = 1000000;
+    ck_assert_int_eq(cm1e_foe_write(bus, 1, "a", written, 100, &short_time, &diag), CM1E_ERROR_TIMEOUT);
+    files_of(bus)->busy = 0;
+    write_and_read(bus, 100, NULL);
+    check_cycles(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Both get their turn: no SDO transfer waits for a whole file, and no file for an end of the SDO transfers. */
+START_TEST(files_and_sdo_transfers_take_turns)
+{
+    cm1e_bus_t *bus = operating();
+    uint8_t data[4];
+    cm1e_sdo_t sdo = {0};
+    cm1e_foe_t foe = {.position = 1, .writing = true, .name = "turns", .from = written, .size = 20 * packet(bus)};
+    cm1e_foe_t second = foe;
+    unsigned transfers = 0;
+    ck_assert_int_eq(cm1e_foe_submit(bus, &foe, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_foe_submit(bus, &second, &diag), CM1E_ERROR_BUSY);
+    while (!cm1e_foe_done(&foe)) {
+        if (cm1e_sdo_state(&sdo) != CM1E_SDO_BUSY) {
+            ck_assert_int_eq(cm1e_sdo_state(&sdo) == CM1E_SDO_ERROR, false);
+            sdo = (cm1e_sdo_t){.position = 1, .index = 0x1018, .subindex = 1, .data = data, .size = sizeof data};
+            ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+            transfers++;
+        }
+        cm1e_bus_pump(bus);
+    }
+    ck_assert_msg(cm1e_foe_result_of(&foe, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(transfers >= 15 && transfers <= 30, "%u transfers beside 21 packets", transfers);
+    check_cycles(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The slave is gone, or the bus ends, at every moment of a transfer: it ends, and the others go on. */
+START_TEST(the_end_of_a_slave_ends_its_file)
+{
+    for (int at = 0; at < 60; at += 3) {
+        cm1e_bus_t *bus = operating();
+        cm1e_foe_t foe = {.position = 1, .writing = at % 2, .name = "f", .from = written, .size = 5000, .to = got,
+                          .room = FILE_MAX, .options.answer_ns = 300000000};
+        ck_assert_int_eq(cm1e_foe_write(bus, 1, "f", written, 5000, NULL, &diag), CM1E_OK);
+        ck_assert_int_eq(cm1e_foe_submit(bus, &foe, &diag), CM1E_OK);
+        for (int i = 0; i < at; i++)
+            cm1e_bus_pump(bus);
+        if (at < 30)
+            simulate(bus, at % 2 ? "unplug 1" : "power-cycle 1 100");
+        else
+            cm1e_bus_stop(bus);
+        for (int i = 0; i < 2000 && !cm1e_foe_done(&foe) && at < 30; i++)
+            cm1e_bus_pump(bus);
+        ck_assert_msg(cm1e_foe_done(&foe), "at cycle %d", at);
+        const cm1e_error_t error = cm1e_foe_result_of(&foe, &diag);
+        ck_assert_msg(at >= 30 ? error == CM1E_ERROR_CANCELLED
+                               : error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_TIMEOUT, "%s", diag.text);
+        cm1e_bus_close(bus);
+    }
 }
 END_TEST
 
@@ -298,7 +416,10 @@ int main(void)
     tcase_add_test(tests, progress_is_told_and_may_break_off);
     tcase_add_test(tests, the_mailbox_is_shared);
     tcase_add_test(tests, bootstrap_and_slaves_without_files);
-    tcase_add_test(tests, a_bus_in_operation_refuses);
+    tcase_add_test(tests, files_go_beside_the_process_data);
+    tcase_add_test(tests, refusals_in_operation);
+    tcase_add_test(tests, files_and_sdo_transfers_take_turns);
+    tcase_add_test(tests, the_end_of_a_slave_ends_its_file);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
