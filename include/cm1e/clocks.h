@@ -23,6 +23,8 @@ typedef struct cm1e_bus_clocks_t {
     double phase_mean_ns;       /**< the same, averaged over some 32 cycles */
     int64_t phase_maximum_ns;   /**< largest absolute value of the mean since Operational */
     uint64_t sync_losses;       /**< times that the clock of a slave, or the reference, was lost; only grows */
+    bool led;                   /**< the reference follows that of another bus, which was started before in this thread:
+                                     its deviation is in cm1e_bus_slave_clock() */
 } cm1e_bus_clocks_t;
 
 /** The clock of one slave. */

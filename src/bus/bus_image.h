@@ -44,6 +44,12 @@ void cm1e_bus_release_outputs(cm1e_bus_t *bus);
 /** What the next cycle begins later than planned, in ns, so that the cycle follows the reference clock; 0 without
  *  distributed clocks. Taken once a cycle, behind cm1e_bus_receive(). @rt cycle */
 int64_t cm1e_bus_pace(cm1e_bus_t *bus);
+/** Whether the distributed clocks of `bus` lead those of `other`, or `other` uses none. @rt init */
+bool cm1e_bus_leads_clocks(const cm1e_bus_t *bus, const cm1e_bus_t *other);
+/** One of the two leads the other, or a third one leads both, or one of them uses no clocks. @rt init */
+bool cm1e_bus_follow_one_clock(const cm1e_bus_t *bus, const cm1e_bus_t *other);
+/** From now on they are led by another bus whose cycles are run with its own, or by none. @rt init */
+void cm1e_bus_follow_clock(cm1e_bus_t *bus, const cm1e_bus_t *leader);
 /** The first start of a cycle from `now_ns` on that has the phase of the reference clock; `now_ns` itself without
  *  distributed clocks. @rt init */
 int64_t cm1e_bus_next_start(const cm1e_bus_t *bus, int64_t now_ns);

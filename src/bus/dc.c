@@ -5,6 +5,7 @@
 
 #include "bus/bus_internal.h"
 #include "bus/dc_delay.h"
+#include "bus/kept.h"
 #include "config/clocks.h"
 #include "core/bytes.h"
 
@@ -102,7 +103,7 @@ static cm1e_error_t read_stamps(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, uint64_t
 }
 
 /** Time stamps have a resolution of 10 ns, and some jitter: a mean of several frames. The offsets come from the last
- *  one. The system time is that of the clock of this machine. */
+ *  one. The system time is that of the clock of this machine, or of the clocks of another bus that leads. */
 static cm1e_error_t measure(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, uint64_t *local, int64_t *system_ns,
                             cm1e_diag_t *diag)
 {
@@ -118,6 +119,8 @@ static cm1e_error_t measure(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, uint64_t *lo
     }
     for (uint32_t i = 0; i < bus->slave_count; i++)
         bus->dc.slaves[i].clock.delay_ns = (uint32_t)(sums[i] / DELAY_ROUNDS);
+    if (bus->dc.leader)
+        *system_ns = cm1e_dc_time(&bus->dc.leader->dc, *system_ns);
     return CM1E_OK;
 }
 
@@ -215,6 +218,7 @@ cm1e_error_t cm1e_dc_set_up(cm1e_bus_t *bus, cm1e_diag_t *diag)
         bus->slaves[i].dc = NULL;
     if (!cm1e_config_uses_clocks(&bus->config))
         return CM1E_OK;
+    bus->dc.leader = cm1e_bus_kept_leader(bus);
     cm1e_error_t error = set_clocks(bus, diag);
     if (error != CM1E_OK)
         return error;
@@ -239,4 +243,5 @@ void cm1e_dc_stop(cm1e_bus_t *bus)
         return;
     cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_DC_ACTIVATION, &off, 1);
     bus->dc.used = false;
+    bus->dc.leader = NULL;
 }

@@ -30,6 +30,9 @@ typedef struct cm1e_dc_slave {
 
 typedef struct cm1e_dc {
     bool used;
+    const struct cm1e_bus *leader; /**< the bus whose reference clock ours follows; NULL: ours leads */
+    cm1e_datagram_t steering; /**< tells our reference the time of that clock */
+    bool steers;          /**< it is on its way */
     uint16_t reference;   /**< position; 0: none */
     cm1e_dc_pace_t pace;
     int64_t reference_ns; /**< of the last frame that brought one */
@@ -84,6 +87,10 @@ void cm1e_dc_note_status(struct cm1e_bus_slave *slave, uint16_t al_status_code);
 /** Supervision: fills the datagram with a look at a clock; false: it is not the turn of the clocks. @rt cycle */
 bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *datagram);
 void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *datagram);
+
+/** The system time of the reference clock at a moment of this machine; of one that is silent, by the rate that the
+ *  cycle has learnt. @rt cycle */
+int64_t cm1e_dc_time(const cm1e_dc_t *dc, int64_t now_ns);
 
 /* dc_recovery.c */
 void cm1e_dc_recover_begin(struct cm1e_bus_slave *slave);

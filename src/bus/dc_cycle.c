@@ -55,6 +55,40 @@ static void change_reference(cm1e_bus_t *bus)
     set_reference(bus, next < bus->slave_count ? (uint16_t)(next + 1) : 0);
 }
 
+int64_t cm1e_dc_time(const cm1e_dc_t *dc, int64_t now_ns)
+{
+    const int64_t passed_ns = now_ns - dc->sent_ns;
+    const double rate = dc->pace.cycle_ns ? dc->pace.rate_ns / (double)dc->pace.cycle_ns : 0;
+    return dc->reference_ns + passed_ns - (int64_t)((double)passed_ns * rate);
+}
+
+static void fill_steering(const cm1e_bus_t *bus, cm1e_datagram_t *d)
+{
+    cm1e_datagram_set(d, COMMAND_FPWR, bus->slaves[bus->dc.reference - 1].facts.station, REG_DC_SYSTEM_TIME, 8);
+    cm1e_put_u64(d->data, (uint64_t)cm1e_dc_time(&bus->dc.leader->dc, cm1e_clock_now(bus->clock)));
+}
+
+/** The reference of a bus that another one leads follows the time that it is told, as a slave follows its reference
+ *  (IgH does so with the time of the machine). All others of its bus follow it, by the process data's frame. */
+static void steer(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    if (!dc->leader || dc->reference == 0)
+        return;
+    if (dc->steers)
+        cm1e_soem_drop(bus->soem, &dc->steering);
+    fill_steering(bus, &dc->steering);
+    cm1e_soem_post(bus->soem, &dc->steering, now_ns);
+    dc->steers = true;
+}
+
+static void take_steering(cm1e_bus_t *bus)
+{
+    cm1e_dc_t *dc = &bus->dc;
+    if (dc->steers && cm1e_soem_take(bus->soem, &dc->steering, 0))
+        dc->steers = false;
+}
+
 /** The datagram carries the time that is expected. If the reference does not answer, the others get that, and not the
  *  time of an earlier frame, by which they would fall back a whole cycle. */
 void cm1e_dc_send(cm1e_bus_t *bus, int64_t now_ns)
@@ -70,6 +104,7 @@ void cm1e_dc_send(cm1e_bus_t *bus, int64_t now_ns)
     dc->marked = !dc->marked;
     dc->predicted_ns = dc->reference_ns + (now_ns - dc->sent_ns) + (dc->marked ? MARK_NS : 2 * MARK_NS);
     cm1e_soem_set_clock_time(bus->soem, dc->predicted_ns);
+    steer(bus, now_ns);
 }
 
 static void note_phase(cm1e_dc_t *dc)
@@ -84,6 +119,7 @@ void cm1e_dc_receive(cm1e_bus_t *bus, bool returned)
     cm1e_dc_t *dc = &bus->dc;
     if (!dc->used)
         return;
+    take_steering(bus);
     const int64_t time_ns = cm1e_soem_clock_time(bus->soem);
     const bool is_answer = time_ns != dc->predicted_ns && llabs(time_ns - dc->predicted_ns) < IMPLAUSIBLE_NS;
     if (!returned || dc->reference == 0 || !is_answer) {
@@ -135,12 +171,19 @@ bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *d)
     for (uint32_t n = 0; n < bus->slave_count; n++) {
         dc->looked = (uint16_t)(dc->looked < bus->slave_count ? dc->looked + 1 : 1);
         const cm1e_slave_clock_t *clock = &dc->slaves[dc->looked - 1].clock;
-        if (!clock->has_clock || clock->is_reference)
+        if (!clock->has_clock || (clock->is_reference && !dc->leader))
             continue;
         cm1e_datagram_set(d, COMMAND_FPRD, bus->slaves[dc->looked - 1].facts.station, REG_DC_DIFFERENCE, 4);
         return true;
     }
     return false;
+}
+
+/** A reference that another bus leads gets its time from this machine, whose frames are less even than a slave's. */
+static uint32_t tolerance_of(const cm1e_dc_t *dc, const cm1e_slave_clock_t *clock)
+{
+    const uint32_t phase_ns = (uint32_t)(dc->pace.cycle_ns / CM1E_PACE_SETTLED);
+    return clock->is_reference && phase_ns > CM1E_CLOCK_TOLERANCE_NS ? phase_ns : CM1E_CLOCK_TOLERANCE_NS;
 }
 
 void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *d)
@@ -152,7 +195,7 @@ void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *d)
     slave->seen = true;
     slave->clock.deviation_ns = value & SIGN ? -(int32_t)size : (int32_t)size;
     slave->clock.maximum_ns = size > slave->clock.maximum_ns ? size : slave->clock.maximum_ns;
-    if (size <= CM1E_CLOCK_TOLERANCE_NS) {
+    if (size <= tolerance_of(&bus->dc, &slave->clock)) {
         slave->beyond = 0;
         slave->clock.lost = false;
     } else if (slave->beyond < BEYOND_LIMIT && ++slave->beyond == BEYOND_LIMIT && bus->phase == BUS_OPERATING) {
@@ -169,6 +212,10 @@ void cm1e_dc_keep(cm1e_bus_t *bus)
     if (!dc->used || dc->reference == 0)
         return;
     const cm1e_bus_slave_t *reference = &bus->slaves[dc->reference - 1];
+    if (dc->leader) {
+        fill_steering(bus, &dc->steering);
+        cm1e_soem_transfer(bus->soem, COMMAND_FPWR, reference->facts.station, REG_DC_SYSTEM_TIME, dc->steering.data, 8);
+    }
     dc->sent_ns = cm1e_clock_now(bus->clock);
     if (cm1e_soem_transfer(bus->soem, COMMAND_FRMW, reference->facts.station, REG_DC_SYSTEM_TIME, time, 8) > 0)
         dc->reference_ns = (int64_t)cm1e_get_u64(time);

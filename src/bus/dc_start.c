@@ -24,7 +24,7 @@ static const cm1e_bus_slave_t *find_apart(const cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_dc_slave_t *slave = &bus->dc.slaves[i];
-        const bool follows = slave->clock.has_clock && !slave->clock.is_reference;
+        const bool follows = slave->clock.has_clock && (!slave->clock.is_reference || bus->dc.leader);
         if (follows && (!slave->seen || slave->beyond > 0))
             return &bus->slaves[i];
     }

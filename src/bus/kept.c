@@ -8,22 +8,40 @@
 
 /* A bus has one thread, but any thread may close it. */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static struct {
+typedef struct place {
     cm1e_bus_t *bus;
     pthread_t thread;
-} kept[CM1E_MAX_BUSES];
+    int64_t sent_ns; /**< its last frame, as far as it is ours or of its start: a later one is the program's own */
+} place_t;
+static place_t kept[CM1E_MAX_BUSES];
 static atomic_int count;
 
 static _Thread_local bool busy, none_here;
 
-/* One exchange, where the program itself has left out a cycle. */
-static void exchange(cm1e_bus_t *bus)
+/* Distributed clocks need their frames at the phase of their cycle. Else it is enough that the watchdogs get some, and
+ * a program that makes the cycles itself has left one out. */
+static bool is_due(const place_t *place, int64_t now_ns)
 {
-    if (cm1e_bus_enter(bus) < bus->sent_ns + 2 * bus->config.cycle_time_ns)
+    const cm1e_bus_t *bus = place->bus;
+    if (bus->dc.used && bus->sent_ns == place->sent_ns)
+        return now_ns >= bus->next_cycle_ns;
+    return now_ns >= bus->sent_ns + 2 * bus->config.cycle_time_ns;
+}
+
+/* One exchange. */
+static void exchange(place_t *place)
+{
+    cm1e_bus_t *bus = place->bus;
+    const int64_t now_ns = cm1e_bus_enter(bus);
+    if (!is_due(place, now_ns))
         return;
     if (bus->in_flight)
         cm1e_bus_receive(bus);
     cm1e_bus_send(bus);
+    place->sent_ns = bus->sent_ns;
+    bus->next_cycle_ns += bus->config.cycle_time_ns + cm1e_bus_pace(bus);
+    if (bus->next_cycle_ns <= now_ns)
+        bus->next_cycle_ns = cm1e_bus_next_start(bus, now_ns + 1);
 }
 
 /* Before every frame of a nic. In a cycle, and without such buses, it costs two comparisons. */
@@ -36,7 +54,7 @@ static void keep_others(const cm1e_nic_t *nic)
     pthread_mutex_lock(&lock);
     for (int i = 0; i < CM1E_MAX_BUSES; i++)
         if (kept[i].bus && kept[i].bus->nic != nic && pthread_equal(kept[i].thread, pthread_self()))
-            exchange(kept[i].bus);
+            exchange(&kept[i]);
     pthread_mutex_unlock(&lock);
     busy = false;
     cm1e_clock_make_current(clock);
@@ -50,8 +68,7 @@ void cm1e_bus_keep(cm1e_bus_t *bus)
     for (int i = 0; i < CM1E_MAX_BUSES; i++) {
         if (kept[i].bus)
             continue;
-        kept[i].bus = bus;
-        kept[i].thread = pthread_self();
+        kept[i] = (place_t){.bus = bus, .thread = pthread_self(), .sent_ns = bus->sent_ns};
         atomic_fetch_add_explicit(&count, 1, memory_order_relaxed);
         break;
     }
@@ -67,6 +84,27 @@ void cm1e_bus_unkeep(cm1e_bus_t *bus)
         kept[i].bus = NULL;
         atomic_fetch_sub_explicit(&count, 1, memory_order_relaxed);
     }
+    pthread_mutex_unlock(&lock);
+}
+
+const cm1e_bus_t *cm1e_bus_kept_leader(const cm1e_bus_t *bus)
+{
+    const cm1e_bus_t *leader = NULL;
+    pthread_mutex_lock(&lock);
+    for (int i = 0; i < CM1E_MAX_BUSES && !leader; i++)
+        if (kept[i].bus && kept[i].bus != bus && pthread_equal(kept[i].thread, pthread_self()) &&
+            kept[i].bus->dc.used && !kept[i].bus->dc.leader && kept[i].bus->clock == bus->clock)
+            leader = kept[i].bus;
+    pthread_mutex_unlock(&lock);
+    return leader;
+}
+
+void cm1e_bus_kept_lead_alone(const cm1e_bus_t *bus)
+{
+    pthread_mutex_lock(&lock);
+    for (int i = 0; i < CM1E_MAX_BUSES; i++)
+        if (kept[i].bus && kept[i].bus->dc.leader == bus)
+            kept[i].bus->dc.leader = NULL;
     pthread_mutex_unlock(&lock);
 }
 

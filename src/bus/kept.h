@@ -13,6 +13,11 @@
 void cm1e_bus_keep(cm1e_bus_t *bus);
 /** Not any more: it is stopped, or its cycle is run. Again: nothing happens. @rt init */
 void cm1e_bus_unkeep(cm1e_bus_t *bus);
+/** The bus that this thread keeps and whose distributed clocks lead those of a bus that starts now; NULL: none.
+ *  @rt init */
+const cm1e_bus_t *cm1e_bus_kept_leader(const cm1e_bus_t *bus);
+/** `bus` stops: the clocks of kept buses that followed its clocks lead themselves. @rt init */
+void cm1e_bus_kept_lead_alone(const cm1e_bus_t *bus);
 /** The calling thread runs a cycle (true), so that no other bus may use its time. @rt init */
 void cm1e_bus_keep_none(bool none);
 

@@ -142,6 +142,7 @@ void cm1e_bus_stop(cm1e_bus_t *bus)
     if (!bus || bus->phase < BUS_OPEN || !bus->soem || cm1e_in_task_note("cm1e_bus_stop()"))
         return;
     cm1e_bus_unkeep(bus);
+    cm1e_bus_kept_lead_alone(bus);
     cm1e_bus_enter(bus);
     if (bus->phase == BUS_OPERATING && bus->safe.any)
         send_safe_outputs(bus);

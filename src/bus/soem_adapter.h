@@ -15,8 +15,8 @@
 typedef struct cm1e_soem cm1e_soem_t;
 
 /** Maximum number of datagrams on their way at one time, in addition to the process data: SOEM has 16 frame buffers for
- *  all. */
-enum { CM1E_DATAGRAMS_IN_FLIGHT = 8, CM1E_PROCESS_FRAMES_MAX = 7 };
+ *  all, one of supervision and one for the reference clock included. */
+enum { CM1E_DATAGRAMS_IN_FLIGHT = 7, CM1E_PROCESS_FRAMES_MAX = 7 };
 
 /** Data of the SII and the registers of a slave; all of it is unchecked input. */
 typedef struct cm1e_slave_facts {

@@ -33,6 +33,7 @@ typedef struct member {
 struct cm1e_scheduler {
     member_t members[CM1E_MAX_BUSES];
     uint32_t member_count;  /**< at least 1; members[0] is the bus that the scheduler was made for */
+    uint32_t leader;        /**< the bus whose clocks the cycle follows */
     cm1e_clock_t *clock;
     cm1e_scheduler_config_t config;
     int64_t cycle_time_ns;
@@ -184,10 +185,15 @@ static void run_tasks(cm1e_scheduler_t *s)
     cm1e_scheduler_stop(s);
 }
 
-/** The plan follows the reference clock of the first bus, and what was planned before moves with it. */
+/** The plan follows the reference clock of one bus, and what was planned before moves with it. The clocks of the others
+ *  follow that clock too, so what their cycles would be corrected by is left out. */
 static void follow_clock(cm1e_scheduler_t *s)
 {
-    const int64_t later_ns = cm1e_bus_pace(s->members[0].bus);
+    int64_t later_ns = 0;
+    for (uint32_t i = 0; i < s->member_count; i++) {
+        const int64_t own_ns = cm1e_bus_pace(s->members[i].bus);
+        later_ns = i == s->leader ? own_ns : later_ns;
+    }
     s->start_ns += later_ns;
     s->sent_ns += later_ns;
 }
@@ -261,12 +267,25 @@ static void add_up_counters(cm1e_scheduler_t *s)
     }
 }
 
+/** Those of the bus that leads, with the losses of all. */
+static void look_at_clocks(const cm1e_scheduler_t *s, cm1e_bus_clocks_t *clocks)
+{
+    cm1e_bus_clocks_t other;
+    cm1e_bus_clocks(s->members[s->leader].bus, clocks);
+    for (uint32_t i = 0; i < s->member_count; i++) {
+        if (i == s->leader)
+            continue;
+        cm1e_bus_clocks(s->members[i].bus, &other);
+        clocks->sync_losses += other.sync_losses;
+    }
+}
+
 /** What others see of a cycle. */
 static void show(cm1e_scheduler_t *s)
 {
     const uint64_t overruns = atomic_load_explicit(&s->statistics.overruns, memory_order_relaxed);
     cm1e_bus_clocks_t clocks;
-    cm1e_bus_clocks(s->members[0].bus, &clocks);
+    look_at_clocks(s, &clocks);
     cm1e_statistics_note_clocks(&s->statistics, &clocks);
     add_up_counters(s);
     s->trace.timing.lost_frames = s->counters.lost_frames;
@@ -324,13 +343,21 @@ static cm1e_error_t take_real_time(cm1e_scheduler_t *s, realtime_t *realtime, cm
     return CM1E_OK;
 }
 
+/** A bus that led until now may be none of this scheduler. */
+static void lead_clocks(cm1e_scheduler_t *s)
+{
+    for (uint32_t i = 0; i < s->member_count; i++)
+        cm1e_bus_follow_clock(s->members[i].bus, i == s->leader ? NULL : s->members[s->leader].bus);
+}
+
 static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *diag)
 {
     realtime_t realtime = {0};
+    lead_clocks(s);
     open_windows(s);
     cm1e_error_t error = take_real_time(s, &realtime, diag);
     if (error == CM1E_OK) {
-        s->start_ns = s->sent_ns = cm1e_bus_next_start(s->members[0].bus, cm1e_clock_now(s->clock));
+        s->start_ns = s->sent_ns = cm1e_bus_next_start(s->members[s->leader].bus, cm1e_clock_now(s->clock));
         cm1e_log_run(&s->log, true, 0);
         while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
             cycle(s);
@@ -519,11 +546,17 @@ cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, cm1e_bus_
     return CM1E_OK;
 }
 
+/** Of the members with clocks the one that leads. */
+static void find_leader(cm1e_scheduler_t *s)
+{
+    for (uint32_t i = 0; i < s->member_count; i++)
+        if (cm1e_bus_leads_clocks(s->members[i].bus, s->members[s->leader].bus))
+            s->leader = i;
+}
+
 /** Why a bus cannot be run beside the others; "": it can. */
 static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
 {
-    cm1e_bus_clocks_t clocks;
-    cm1e_bus_clocks(bus, &clocks);
     for (uint32_t i = 0; i < s->member_count; i++)
         if (s->members[i].bus == bus)
             return "it is in this scheduler already";
@@ -534,9 +567,9 @@ static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
                "or none has it";
     if (cm1e_bus_configuration(bus)->cycle_time_ns != s->cycle_time_ns)
         return "its cycle_time_us differs from that of the first bus";
-    if (clocks.used)
-        return "it has distributed clocks, which the cycle follows on the first bus only: make the scheduler for this bus "
-               "and add the other one";
+    if (!cm1e_bus_follow_one_clock(s->members[s->leader].bus, bus))
+        return "its distributed clocks and those of another bus do not follow each other: start the buses in one thread, "
+               "each while those before it are in operation";
     if (s->axis_count + cm1e_bus_configuration(bus)->axis_count > CM1E_MAX_AXES)
         return "a scheduler has at most 128 axes";
     return "";
@@ -570,6 +603,7 @@ cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus
     const member_t before = {.first = scheduler->axis_count, .end = scheduler->member_count};
     cm1e_error_t error = join(scheduler, bus, diag);
     if (error == CM1E_OK) {
+        find_leader(scheduler);
         cm1e_trace_free(&scheduler->trace);
         error = make_trace(scheduler, diag);
     }

@@ -174,6 +174,177 @@ START_TEST(test_without_clocks_nothing_is_told_of_them)
 }
 END_TEST
 
+/* ---- several buses ------------------------------------------------------------------------------------------------ */
+
+enum { FIRST = 0, SECOND, BUSES, DRIVE = 2 };
+
+typedef struct pair {
+    cm1e_bus_t *buses[BUSES];
+    cm1e_scheduler_t *scheduler;
+    int64_t cycle, silent_from, silent_to; /* cycles in which the first bus gets no frame */
+    double worst_ns;                       /* of the reference clocks against each other */
+    double settled_ns, phase_ns;           /* the same after 5 s; then the largest mean phase of the second bus */
+    uint64_t losses[BUSES];
+    bool led[BUSES], left[BUSES];          /* `left`: the drive was not in Operational */
+} pair_t;
+
+/** A CM1-E, whose clock is the reference, and a drive by SYNC0. */
+static cm1e_bus_t *start_one(const char *name, const char *reference, const char *drive)
+{
+    cm1e_bus_t *bus;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_config_t config;
+    char answer[200];
+    ck_assert(cm1e_bus_config_init(&config, "sim", AXES) == CM1E_OK);
+    config.virtual_time = true;
+    for (int i = 0; i < AXES; i++)
+        snprintf(config.axes[i].name, sizeof config.axes[i].name, "%s%d", name, i + 1);
+    strcpy(config.axes[1].device, "cia402");
+    config.axes[1].counts_per_revolution = 50000;
+    config.axes[1].max_speed_rpm = 3000;
+    config.axes[1].dc.sync0_us = 1000;
+    ck_assert_msg(cm1e_bus_open(&bus, &config, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_config_free(&config);
+    ck_assert(cm1e_bus_simulate(bus, reference, answer, sizeof answer) == CM1E_OK);
+    ck_assert(cm1e_bus_simulate(bus, drive, answer, sizeof answer) == CM1E_OK);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+static void start_pair(pair_t *p)
+{
+    *p = (pair_t){.silent_from = -1};
+    p->buses[FIRST] = start_one("A", "clock 1 drift 40", "clock 2 drift -20");
+    p->buses[SECOND] = start_one("B", "clock 1 drift -50", "clock 2 drift 30");
+}
+
+/** What the reference clock of the second bus is really ahead of that of the first one. */
+static double ahead_ns(const pair_t *p)
+{
+    cm1e_sim_clock_t clocks[BUSES];
+    for (int i = 0; i < BUSES; i++) {
+        cm1e_sim_segment_advance(cm1e_bus_segment(p->buses[i]), cm1e_clock_now(cm1e_bus_clock(p->buses[i])));
+        cm1e_sim_segment_clock(cm1e_bus_segment(p->buses[i]), 1, &clocks[i]);
+    }
+    return (double)(clocks[SECOND].system_ns - clocks[FIRST].system_ns) -
+           (double)(clocks[SECOND].time_ns - clocks[FIRST].time_ns);
+}
+
+static void watch_clocks(void *context)
+{
+    pair_t *p = context;
+    char answer[200];
+    if (p->cycle == p->silent_from)
+        cm1e_bus_simulate(p->buses[FIRST], "unplug 1", answer, sizeof answer);
+    if (p->cycle == p->silent_to)
+        cm1e_bus_simulate(p->buses[FIRST], "replug 1", answer, sizeof answer);
+    const bool settled = p->cycle > 5000;
+    if (p->cycle++ % 50 == 0) {
+        const double apart_ns = fabs(ahead_ns(p));
+        p->worst_ns = fmax(p->worst_ns, apart_ns);
+        p->settled_ns = fmax(p->settled_ns, settled ? apart_ns : 0);
+    }
+    for (int i = 0; i < BUSES; i++) {
+        cm1e_bus_clocks_t clocks;
+        cm1e_bus_clocks(p->buses[i], &clocks);
+        p->losses[i] = clocks.sync_losses;
+        p->led[i] = clocks.led;
+        p->left[i] |= cm1e_bus_slave_watch(p->buses[i], DRIVE).al_state != CM1E_AL_OP;
+        p->phase_ns = fmax(p->phase_ns, settled && i == SECOND ? fabs(clocks.phase_mean_ns) : 0);
+    }
+}
+
+/** The scheduler is made for the bus `made_for`. */
+static void run_pair(pair_t *p, int made_for, double seconds)
+{
+    cm1e_diag_t diag = {0};
+    const cm1e_task_config_t task = {.name = "program", .program = watch_clocks, .context = p};
+    ck_assert_msg(cm1e_scheduler_create(&p->scheduler, p->buses[made_for], NULL, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_scheduler_add_bus(p->scheduler, p->buses[1 - made_for], &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert(cm1e_scheduler_add_task(p->scheduler, &task, &diag) == CM1E_OK);
+    ck_assert_msg(cm1e_scheduler_run(p->scheduler, (int64_t)(seconds * 1e9), &diag) == CM1E_OK, "%s", diag.text);
+}
+
+static void close_pair(pair_t *p)
+{
+    cm1e_scheduler_destroy(p->scheduler);
+    for (int i = 0; i < BUSES; i++)
+        cm1e_bus_close(p->buses[i]);
+}
+
+/** The clocks of the bus that was started first lead, whichever bus the scheduler was made for. Both buses have their
+ *  frames at a constant phase of their own reference, and their drives stay in Operational. */
+START_TEST(test_the_clocks_of_a_second_bus_follow_those_of_the_first)
+{
+    pair_t p;
+    start_pair(&p);
+    ck_assert_msg(fabs(ahead_ns(&p)) < 1000, "after the start: %g ns", ahead_ns(&p));
+    run_pair(&p, _i, 20);
+    ck_assert_msg(p.worst_ns < 1000, "%g ns", p.worst_ns);
+    printf("references at most %.0f ns apart; after 5 s %.0f ns, phase of the second bus %.0f ns\n", p.worst_ns,
+           p.settled_ns, p.phase_ns);
+    ck_assert_msg(p.settled_ns < 150 && p.phase_ns < 200, "%g ns, %g ns", p.settled_ns, p.phase_ns);
+    ck_assert(!p.led[FIRST] && p.led[SECOND] && !p.left[FIRST] && !p.left[SECOND]);
+    ck_assert_msg(p.losses[FIRST] + p.losses[SECOND] == 0, "%d, %d", (int)p.losses[FIRST], (int)p.losses[SECOND]);
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(p.scheduler, &statistics);
+    ck_assert(statistics.clocks.used && !statistics.clocks.led);
+    ck_assert_msg(fabs(statistics.clocks.rate_ppm + 40) < 1, "%g ppm", statistics.clocks.rate_ppm);
+    ck_assert_uint_eq(statistics.overruns, 0);
+    close_pair(&p);
+}
+END_TEST
+
+/** The bus that leads gets no frame for two seconds: the other one goes on by the rate that the cycle has learnt. */
+START_TEST(test_the_second_bus_keeps_the_time_of_a_first_one_that_is_silent)
+{
+    pair_t p;
+    start_pair(&p);
+    p.silent_from = 8000;
+    p.silent_to = 10000;
+    run_pair(&p, FIRST, 14);
+    ck_assert(p.left[FIRST] && !p.left[SECOND]);
+    ck_assert_uint_eq(p.losses[SECOND], 0);
+    ck_assert_msg(p.worst_ns < 1000, "%g ns", p.worst_ns);
+    close_pair(&p);
+}
+END_TEST
+
+START_TEST(test_clocks_that_follow_no_common_one_are_refused)
+{
+    pair_t p;
+    cm1e_diag_t diag = {0};
+    start_pair(&p);
+    cm1e_bus_clocks_t clocks;
+    cm1e_bus_clocks(p.buses[SECOND], &clocks);
+    ck_assert(clocks.led);
+    cm1e_bus_follow_clock(p.buses[SECOND], NULL); /* as if another thread had started it */
+    ck_assert(cm1e_scheduler_create(&p.scheduler, p.buses[FIRST], NULL, &diag) == CM1E_OK);
+    ck_assert_int_eq(cm1e_scheduler_add_bus(p.scheduler, p.buses[SECOND], &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_msg(strstr(diag.text, "do not follow each other: start the buses in one thread") != NULL, "%s", diag.text);
+    close_pair(&p);
+}
+END_TEST
+
+/** The bus that led is stopped: the other one leads itself, and leads the first one when that is started again. */
+START_TEST(test_the_lead_goes_over_when_a_bus_stops)
+{
+    pair_t p;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_clocks_t clocks;
+    start_pair(&p);
+    cm1e_bus_stop(p.buses[FIRST]);
+    cm1e_bus_clocks(p.buses[SECOND], &clocks);
+    ck_assert(clocks.used && !clocks.led);
+    ck_assert_msg(cm1e_bus_start(p.buses[FIRST], &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_clocks(p.buses[FIRST], &clocks);
+    ck_assert(clocks.used && clocks.led);
+    run_pair(&p, FIRST, 5);
+    ck_assert_msg(p.worst_ns < 1000, "%g ns", p.worst_ns);
+    close_pair(&p);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("scheduler clocks");
@@ -182,6 +353,10 @@ int main(void)
     tcase_add_test(all, test_a_clock_that_is_lost_is_in_log_and_statistics);
     tcase_add_test(all, test_a_drive_whose_pulses_stop_has_lost_synchronism);
     tcase_add_test(all, test_without_clocks_nothing_is_told_of_them);
+    tcase_add_loop_test(all, test_the_clocks_of_a_second_bus_follow_those_of_the_first, 0, BUSES);
+    tcase_add_test(all, test_the_second_bus_keeps_the_time_of_a_first_one_that_is_silent);
+    tcase_add_test(all, test_clocks_that_follow_no_common_one_are_refused);
+    tcase_add_test(all, test_the_lead_goes_over_when_a_bus_stops);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
