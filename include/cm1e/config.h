@@ -150,6 +150,15 @@ typedef enum cm1e_io_type {
     CM1E_IO_BYTES,    /**< more than 64 bits: cm1e_io_bytes() */
 } cm1e_io_type_t;
 
+/** Who brings a slave back to Operational that has left it, or an optional one that has come (docs/BUS-FILE.md). */
+typedef enum cm1e_recover {
+    CM1E_RECOVER_DEFAULT = 0, /**< ASK for a slave with motors, else AUTO */
+    CM1E_RECOVER_NEVER,       /**< nobody, until the bus is started again */
+    CM1E_RECOVER_ASK,         /**< somebody asks: MC_Reset of an axis of it, or cm1e_bus_recover() */
+    CM1E_RECOVER_AUTO,        /**< the bus, as soon as the slave answers. It never enables a motor: after that its axis
+                                   needs MC_Reset and MC_Power as after any loss */
+} cm1e_recover_t;
+
 /** What other programs may do with a running one through its control socket (docs/CONTROL.md). */
 typedef enum cm1e_control_mode {
     CM1E_CONTROL_OBSERVE = 0,        /**< look: axes, slaves, statistics, log, reading objects */
@@ -222,6 +231,10 @@ typedef struct cm1e_axis_config {
                                           those that the drive has assigned itself */
     cm1e_dc_config_t dc;             /**< only with the device cia402: a CM1-E and a bridge take their cycle from the
                                           process data */
+    bool optional;                   /**< true: the slave may be absent at the start, and come and go in operation; it
+                                          is found by its alias or explicit ID. All axes of a bridge say the same */
+    cm1e_recover_t recover;          /**< who brings its slave back; all axes of a bridge say the same */
+    bool sim_absent;                 /**< simulated segment only: true: not plugged in at the start */
 } cm1e_axis_config_t;
 
 /** A start-up SDO of a slave: written at every start, and when the slave has come back. */
@@ -290,6 +303,15 @@ typedef struct cm1e_slave_config {
     cm1e_signal_config_t signals[CM1E_SLAVE_SIGNALS];
     cm1e_sim_slave_config_t sim;
     cm1e_dc_config_t dc;             /**< SYNC0 and SYNC1; all zero: it takes its cycle from the process data */
+    bool optional;                   /**< true: the slave may be absent at the start, and come and go in operation. It
+                                          is found by its alias or explicit ID, or as a member of a group, and it states
+                                          vendor and product */
+    char hot_connect[CM1E_NAME_LENGTH]; /**< name of its Hot Connect group: optional slaves that come and go together,
+                                          one behind the other. The first in the list, its head, has an alias or
+                                          explicit ID; the position of each other one is its place in the group, and
+                                          the head is 1. "": none */
+    cm1e_recover_t recover;          /**< who brings it back */
+    bool sim_absent;                 /**< simulated segment only: true: not plugged in at the start */
 } cm1e_slave_config_t;
 
 /** The whole bus. The configuration owns its axes and slaves: make it with cm1e_bus_config_init() or

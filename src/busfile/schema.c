@@ -62,6 +62,12 @@ static const cyaml_strval_t acceleration_units[] = {
     {"kcounts_per_s2", 1},
 };
 
+static const cyaml_strval_t recoveries[] = {
+    {"never", CM1E_RECOVER_NEVER},
+    {"ask", CM1E_RECOVER_ASK},
+    {"auto", CM1E_RECOVER_AUTO},
+};
+
 static const cyaml_schema_field_t bus_fields[] = {
     BUS_STRING("interface", config.interface_name),
     BUS_STRING("second_interface", config.second_interface),
@@ -163,6 +169,7 @@ static const cyaml_schema_field_t sim_fields[] = {
     AXIS_FLOAT("sensor_input2_counts", sim.sensor_input2),
     AXIS_FLOAT("sensor_input3_counts", sim.sensor_input3),
     AXIS_BOOL("no_sensors", sim.no_sensors),
+    AXIS_BOOL("absent", sim_absent),
     CYAML_FIELD_END,
 };
 
@@ -172,6 +179,8 @@ static const cyaml_schema_field_t axis_fields[] = {
     CYAML_FIELD_UINT("position", OPTIONAL, cm1e_busfile_axis_t, position),
     CYAML_FIELD_UINT("alias", OPTIONAL, cm1e_busfile_axis_t, alias),
     CYAML_FIELD_UINT("explicit_id", OPTIONAL, cm1e_busfile_axis_t, explicit_id),
+    AXIS_BOOL("optional", optional),
+    ENUM_OF("recover", cm1e_busfile_axis_t, axis.recover, recoveries),
     AXIS_UINT("channel", channel),
     AXIS_STRING("device", device),
     AXIS_STRING("motor", motor),
@@ -202,6 +211,7 @@ static const cyaml_schema_value_t axis_value = {
 };
 
 #define SLAVE_UINT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_slave_t, member)
+#define SLAVE_BOOL(key, member) CYAML_FIELD_BOOL(key, OPTIONAL, cm1e_busfile_slave_t, member)
 #define SLAVE_GROUP(key, fields) GROUP(key, cm1e_busfile_slave_t, fields)
 #define SLAVE_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_slave_t, member, 1)
 /* A list of entries of one kind, each required to be there. */
@@ -264,6 +274,7 @@ static const cyaml_schema_field_t sim_slave_fields[] = {
     SLAVE_UINT("inputs", slave.sim.inputs),
     SLAVE_UINT("outputs", slave.sim.outputs),
     SLAVE_STRING("wired_to", slave.sim.wired_to),
+    SLAVE_BOOL("absent", slave.sim_absent),
     CYAML_FIELD_END,
 };
 
@@ -279,6 +290,9 @@ static const cyaml_schema_field_t slave_fields[] = {
     SLAVE_UINT("position", position),
     SLAVE_UINT("alias", alias),
     SLAVE_UINT("explicit_id", explicit_id),
+    SLAVE_BOOL("optional", slave.optional),
+    SLAVE_STRING("hot_connect", slave.hot_connect),
+    ENUM_OF("recover", cm1e_busfile_slave_t, slave.recover, recoveries),
     SLAVE_STRING("vendor", vendor),
     SLAVE_STRING("product", product),
     SLAVE_STRING("revision", revision),

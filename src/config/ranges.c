@@ -210,7 +210,7 @@ static bool check_axis(check_t *check)
         return false;
     if ((unsigned)check->axis->mapping > CM1E_MAPPING_PROFILE)
         return axis_wrong(check, "mapping", "is %d; expected one of the enumeration", (int)check->axis->mapping);
-    return check_motion(check) && cm1e_config_check_numbers(check) && check_homing(check) && check_inputs(check) &&
+    return check_motion(check) && cm1e_config_check_optional(check) && cm1e_config_check_numbers(check) && check_homing(check) && check_inputs(check) &&
            check_sim(check);
 }
 

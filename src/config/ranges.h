@@ -47,6 +47,12 @@ bool cm1e_config_check_slaves(const cm1e_bus_config_t *config, cm1e_config_probl
 enum { CM1E_WRONG_PULSES = 160 };
 const char *cm1e_config_wrong_pulses(const cm1e_bus_config_t *config, const cm1e_dc_config_t *dc,
                                      char text[CM1E_WRONG_PULSES]);
+/** Slaves that may be absent (ranges_optional.c): an axis; a slave of the list, of which the key that is wrong, and
+ *  why; NULL: none. */
+bool cm1e_config_check_optional(const check_t *check);
+enum { CM1E_WRONG_OPTIONAL = 224 };
+const char *cm1e_config_wrong_optional(const cm1e_bus_config_t *config, uint32_t index,
+                                       char text[CM1E_WRONG_OPTIONAL]);
 /** Checks that a virtual axis or an encoder has no keys of a motor. */
 bool cm1e_config_check_without_motor(const check_t *check);
 

@@ -98,12 +98,15 @@ static bool check_address(const slave_check_t *check)
         return slave_wrong(check, "position", "is missing; expected position, alias or explicit_id");
     if (slave->address > addresses[kind].maximum)
         return slave_wrong(check, key, "is %u; expected 1 ... %u", slave->address, addresses[kind].maximum);
+    const bool is_member = cm1e_slave_is_member(slave);
     for (uint32_t i = 0; i < check->index; i++)
-        if (config->slaves[i].address_kind == slave->address_kind && config->slaves[i].address == slave->address)
+        if (config->slaves[i].address_kind == slave->address_kind && config->slaves[i].address == slave->address &&
+            is_member == cm1e_slave_is_member(&config->slaves[i]) &&
+            (!is_member || strcmp(config->slaves[i].hot_connect, slave->hot_connect) == 0))
             return slave_wrong(check, key, "is %u, which entry %u of the list has already; expected one slave at each "
                                "address", slave->address, i + 1);
     for (uint32_t i = 0; i < config->axis_count; i++)
-        if (cm1e_axis_has_motor(&config->axes[i]) && config->axes[i].address_kind == slave->address_kind &&
+        if (!is_member && cm1e_axis_has_motor(&config->axes[i]) && config->axes[i].address_kind == slave->address_kind &&
             cm1e_axis_address(config, i) == slave->address)
             return slave_wrong(check, key, "is %u, where the axis %.31s is; expected another place, or an axis that "
                                "states its own", slave->address, config->axes[i].name);
@@ -303,7 +306,10 @@ static bool check_slave(slave_check_t *check)
         return false;
     if (slave->watchdog_ms > WATCHDOG_MS_MAX)
         return slave_wrong(check, "watchdog_ms", "is %u; expected 1 ... %d", slave->watchdog_ms, WATCHDOG_MS_MAX);
-    char text[CM1E_WRONG_PULSES];
+    char text[CM1E_WRONG_PULSES], absent[CM1E_WRONG_OPTIONAL];
+    const char *wrong = cm1e_config_wrong_optional(check->config, check->index, absent);
+    if (wrong)
+        return slave_wrong(check, wrong, "%s", absent);
     const char *key = cm1e_config_wrong_pulses(check->config, &slave->dc, text);
     if (key)
         return slave_wrong(check, key, "%s", text);

@@ -22,12 +22,28 @@ static inline uint32_t cm1e_motors_before(const cm1e_bus_config_t *config, uint3
     return motors;
 }
 
-/** What the slave of an axis is found by; of a position that is not stated its place among the motors of the list. */
+/** What the slave of an axis is found by; of a position that is not stated its place among the motors of the list.
+ *  Optional slaves are no part of the count: a position is that of a slave while all of them are absent. */
 static inline uint16_t cm1e_axis_address(const cm1e_bus_config_t *config, uint32_t index)
 {
     const cm1e_axis_config_t *axis = &config->axes[index];
     const bool stated = axis->address != 0 || axis->address_kind != CM1E_ADDRESS_POSITION;
-    return stated || !cm1e_axis_has_motor(axis) ? axis->address : (uint16_t)(cm1e_motors_before(config, index) + 1);
+    uint32_t optional = 0;
+    for (uint32_t i = 0; i < index && i < CM1E_MAX_AXES; i++)
+        optional += cm1e_axis_has_motor(&config->axes[i]) && config->axes[i].optional;
+    return stated || !cm1e_axis_has_motor(axis)
+               ? axis->address : (uint16_t)(cm1e_motors_before(config, index) - optional + 1);
+}
+
+/** Whether a slave of the list may be absent: it is optional, or in a Hot Connect group. */
+static inline bool cm1e_slave_is_optional(const cm1e_slave_config_t *slave)
+{
+    return slave->optional || slave->hot_connect[0];
+}
+/** Whether its position counts in its Hot Connect group, and not on the wire. */
+static inline bool cm1e_slave_is_member(const cm1e_slave_config_t *slave)
+{
+    return slave->hot_connect[0] && slave->address_kind == CM1E_ADDRESS_POSITION;
 }
 
 #endif

@@ -142,7 +142,18 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
     static const struct {
         const char *keys, *place, *part;
     } cases[] = {
-        {"optional: true", "3:19", "unknown key 'optional' in slaves[0]; expected one of: name, position"},
+        {"option: true", "3:19", "unknown key 'option' in slaves[0]; expected one of: name, position"},
+        {"optional: true", "3:29", "neither alias nor explicit_id"},
+        {"recover: soon", "3:28", "expected one of: never, ask, auto"},
+        {"hot_connect: tool, vendor: 0x1, product: 0x2", "3:32", "whose first entry has a position"},
+        {"name: a}\n  - {alias: 5, optional: true, product: 0x1", "4:5", "expected vendor and product"},
+        {"name: a}\n  - {alias: 5, hot_connect: t, vendor: 0x1, product: 0x1}\n  - {alias: 6, hot_connect: t, vendor: "
+         "0x1, product: 0x1", "5:29", "whose first entry has an address already"},
+        {"name: a}\n  - {alias: 5, hot_connect: t, vendor: 0x1, product: 0x1}\n  - {position: 1, hot_connect: t, "
+         "vendor: 0x1, product: 0x1", "5:16", "the place of the first one of the group"},
+        {"name: a}\n  - {alias: 5, hot_connect: t, vendor: 0x1, product: 0x1}\n  - {position: 2, hot_connect: t, "
+         "vendor: 0x1, product: 0x1}\n  - {position: 2, hot_connect: t, vendor: 0x1, product: 0x1", "6:16",
+         "which entry 3 of the list has already"},
         {"esi: a.xml", "3:19", "unknown key 'esi'"},
         {"alias: 4", "3:26", "addressed twice"},
         {"name: a.b", "3:25", "expected a name without '.'"},
@@ -199,6 +210,26 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
         expect_wrong(cases[i].keys, cases[i].place, cases[i].part);
 }
 
+static void test_optional_slaves_groups_and_who_brings_them_back(void)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(
+        "axes:\n  - {name: a}\n  - {name: tool, explicit_id: 7, optional: true, recover: auto, sim: {absent: true}}\n"
+        "  - {name: b}\n"
+        "slaves:\n  - {name: changer, alias: 5, hot_connect: gripper, vendor: 0x1, product: 0x2, recover: never}\n"
+        "  - {name: fingers, position: 3, hot_connect: gripper, vendor: 0x1, product: 0x3, recover: ask}\n"
+        "  - {name: lamp, explicit_id: 8, optional: true, vendor: 0x1, product: 0x4, sim: {device: coupler, "
+        "absent: true}}\n"), diag.text);
+    TEST_ASSERT_TRUE(config.axes[1].optional && config.axes[1].sim_absent && !config.axes[0].optional);
+    TEST_ASSERT_EQUAL(CM1E_RECOVER_AUTO, config.axes[1].recover);
+    TEST_ASSERT_EQUAL(CM1E_RECOVER_DEFAULT, config.axes[0].recover);
+    TEST_ASSERT_EQUAL_MESSAGE(2, config.axes[2].address, "places count without optional slaves");
+    TEST_ASSERT_EQUAL_STRING("gripper", config.slaves[0].hot_connect);
+    TEST_ASSERT_EQUAL(CM1E_RECOVER_NEVER, config.slaves[0].recover);
+    TEST_ASSERT_EQUAL(3, config.slaves[1].address);
+    TEST_ASSERT_EQUAL(CM1E_RECOVER_ASK, config.slaves[1].recover);
+    TEST_ASSERT_TRUE(config.slaves[2].optional && config.slaves[2].sim_absent);
+}
+
 static void test_slaves_of_an_older_or_newer_program(void)
 {
     const size_t old = offsetof(cm1e_bus_config_t, slave_size);
@@ -249,6 +280,7 @@ int main(void)
     RUN_TEST(test_sdos_have_the_bits_of_their_values);
     RUN_TEST(test_mapping_and_signals_are_in_their_order);
     RUN_TEST(test_wrong_keys_are_told_with_place_and_cure);
+    RUN_TEST(test_optional_slaves_groups_and_who_brings_them_back);
     RUN_TEST(test_slaves_of_an_older_or_newer_program);
     RUN_TEST(test_a_file_has_axes_or_slaves);
     RUN_TEST(test_no_more_slaves_than_the_maximum);
