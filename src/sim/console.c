@@ -419,6 +419,8 @@ static const command_t commands[] = {
     {"power-cycle", ANY_SLAVE, 0, 1, cm1e_console_power_cycle, "<slave> [ms]", "control power off and on again"},
     {"unplug", ANY_SLAVE, 0, 1, cm1e_console_unplug, "<slave> [behind]", "pull the cable before it, or behind it"},
     {"replug", ANY_SLAVE, 0, 1, cm1e_console_replug, "<slave> [behind]", "plug the cable in again"},
+    {"detach", ANY_SLAVE, 0, 1, cm1e_console_detach, "<slave> [powered]", "pull it out; its neighbours are connected"},
+    {"attach", ANY_SLAVE, 0, 0, cm1e_console_attach, "<slave>", "put it in again"},
     {"input", ANY_SLAVE, 2, 2, cm1e_console_input, "<slave> <1...8> on|off|<value>|wire",
      "hold an input of a digital or analog device"},
     {"clock", ANY_SLAVE, 1, 2, cm1e_console_clock, "<slave> drift|temperature|jitter|step|...",

@@ -95,6 +95,8 @@ cm1e_error_t cm1e_console_quirk(call_t *call);
 cm1e_error_t cm1e_console_power_cycle(call_t *call);
 cm1e_error_t cm1e_console_unplug(call_t *call);
 cm1e_error_t cm1e_console_replug(call_t *call);
+cm1e_error_t cm1e_console_detach(call_t *call);
+cm1e_error_t cm1e_console_attach(call_t *call);
 cm1e_error_t cm1e_console_damage(call_t *call);
 cm1e_error_t cm1e_console_lose(call_t *call);
 cm1e_error_t cm1e_console_corrupt(call_t *call);

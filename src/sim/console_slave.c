@@ -49,6 +49,27 @@ static cm1e_error_t cut(call_t *call, bool unplug)
 cm1e_error_t cm1e_console_unplug(call_t *call) { return cut(call, true); }
 cm1e_error_t cm1e_console_replug(call_t *call) { return cut(call, false); }
 
+cm1e_error_t cm1e_console_detach(call_t *call)
+{
+    static const char *const words[] = {"powered", NULL};
+    if (argument(call, 0)[0] && choice(argument(call, 0), words) < 0)
+        return REFUSE(call, "\"%s\": expected powered or nothing", argument(call, 0));
+    const bool powered = argument(call, 0)[0] != '\0';
+    if (call->drive && !powered)
+        cm1e_sim_fsa_off(call->drive);
+    cm1e_sim_segment_detach(call->segment, call->position, powered);
+    say(call, "slave %u: pulled out, its neighbours are connected%s", call->position,
+        powered ? "; it keeps its power" : "");
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_console_attach(call_t *call)
+{
+    cm1e_sim_segment_attach(call->segment, call->position);
+    say(call, "slave %u: plugged in", call->position);
+    return CM1E_OK;
+}
+
 /* As a bad cable does: the slave behind it counts an invalid frame, those behind that one a forwarded error, and the
  * frame is destroyed. */
 cm1e_error_t cm1e_console_damage(call_t *call)

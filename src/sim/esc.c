@@ -76,6 +76,8 @@ void cm1e_sim_esc_power_on(cm1e_sim_slave_t *slave, int64_t now_ns)
     slave->powered_on_ns = now_ns;
     slave->now_ns = now_ns;
     slave->absent_until_ns = 0;
+    slave->detached = slave->detached && !slave->attaching;
+    slave->attaching = false;
     cm1e_sim_esc_dc_power_on(slave, now_ns);
     slave->outputs_arrived = false;
     slave->inputs_stale = true;

@@ -92,6 +92,8 @@ struct cm1e_sim_slave {
 
     int64_t now_ns;        /**< last time given */
     int64_t powered_on_ns;
+    bool detached;           /**< pulled out: its neighbours are connected to each other */
+    bool attaching;          /**< put in again when it has its power */
     int64_t absent_until_ns; /**< off the bus until then; 0: present */
     bool *topology_changed;  /**< of the segment */
     bool *segment_fell_back;

@@ -10,6 +10,8 @@ enum {
     SOURCE_MAC = 6, ETHER_TYPE = 12, ECAT_HEADER = 14, DATAGRAMS = 16, DATAGRAM_HEADER = 10, WORKING_COUNTER = 2,
     DATAGRAM_LENGTH = 6,
 };
+/* Of a controller that is switched on, until it answers. */
+#define START_UP_NS INT64_C(20000000)
 enum { LENGTH_MASK = 0x07FF, CIRCULATED = 0x4000, MORE_FOLLOW = 0x8000, TYPE_SHIFT = 12, TYPE_COMMANDS = 1 };
 enum { LOCALLY_ADMINISTERED = 0x02, LOOP_CLOSED_ALWAYS = 3, PORT_1_SHIFT = 2, PORTS = 4 };
 
@@ -119,14 +121,44 @@ void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool c
     segment->topology_changed = true;
 }
 
+void cm1e_sim_segment_detach(cm1e_sim_segment_t *segment, uint32_t position, bool keeps_power)
+{
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment, position);
+    if (!slave)
+        return;
+    slave->detached = true;
+    slave->attaching = false;
+    if (!keeps_power)
+        cm1e_sim_slave_reset(slave, ESC_NEVER);
+    segment->topology_changed = true;
+}
+
+void cm1e_sim_segment_attach(cm1e_sim_segment_t *segment, uint32_t position)
+{
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment, position);
+    if (!slave)
+        return;
+    if (slave->detached && !cm1e_sim_esc_present(slave)) {
+        slave->attaching = true;
+        cm1e_sim_slave_reset(slave, segment->now_ns + START_UP_NS);
+        return;
+    }
+    slave->detached = false;
+    segment->topology_changed = true;
+}
+
 /* ---- topology -------------------------------------------------------------------------------------------------- */
 
-/* The slave that a slave is connected to: the one before it, or that of its branch; 0: the master. */
+/* The slave that a slave is connected to: the one before it that is not pulled out, or that of its branch; 0: the
+ * master. */
 static uint32_t parent_of(const cm1e_sim_segment_t *segment, uint32_t position)
 {
     const cm1e_sim_slave_t *slave = position <= segment->count ? segment->slaves[position - 1] : NULL;
     const bool branch = slave && slave->quirks.branch_of > 0 && slave->quirks.branch_of < position;
-    return branch ? slave->quirks.branch_of : position - 1;
+    uint32_t parent = branch ? slave->quirks.branch_of : position - 1;
+    while (!branch && parent > 0 && segment->slaves[parent - 1]->detached)
+        parent--;
+    return parent;
 }
 
 static int port_of_parent(const cm1e_sim_segment_t *segment, uint32_t position)
@@ -143,7 +175,8 @@ static bool cable_connects(const cm1e_sim_segment_t *segment, uint32_t position)
         return false;
     const uint32_t parent = parent_of(segment, position);
     const bool before = parent == 0 || cm1e_sim_esc_present(segment->slaves[parent - 1]);
-    const bool behind = position == count + 1 || cm1e_sim_esc_present(segment->slaves[position - 1]);
+    const cm1e_sim_slave_t *slave = position <= count ? segment->slaves[position - 1] : NULL;
+    const bool behind = !slave || (cm1e_sim_esc_present(slave) && !slave->detached);
     return before && behind;
 }
 

@@ -105,7 +105,8 @@ static bool place_slaves(const cm1e_bus_config_t *config, place_t *places, bool 
     uint32_t next = 0;
     for (uint32_t i = 0; i < config->slave_count; i++) {
         const cm1e_slave_config_t *slave = &config->slaves[i];
-        if ((slave->address_kind == CM1E_ADDRESS_POSITION) != by_position)
+        const bool has_position = slave->address_kind == CM1E_ADDRESS_POSITION && !cm1e_slave_is_member(slave);
+        if (has_position != by_position)
             continue;
         while (!by_position && next < CM1E_MAX_SLAVES && !is_free(&places[next]))
             next++;
@@ -237,6 +238,8 @@ static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config
     if (error != CM1E_OK)
         return cm1e_diag_set(diag, error, 0, "the simulated slave %u cannot be made: out of memory",
                              cm1e_sim_segment_slave_count(segment) + 1);
+    if ((axis && axis->sim_absent) || (place->slave && place->slave->sim_absent))
+        cm1e_sim_segment_detach(segment, cm1e_sim_segment_slave_count(segment), false);
     return CM1E_OK;
 }
 
