@@ -41,6 +41,11 @@ typedef enum cm1e_log_kind {
     CM1E_LOG_RING,            /**< of a redundant ring; code 1: it is broken, 0: it is whole again; detail: the number
                                    of the bus times 16777216; value: the last slave that the first interface reaches,
                                    bound: the first one of the second interface; both 0: not known */
+    CM1E_LOG_SLAVE,           /**< a slave came, went, waits or was refused; code: the new cm1e_presence_t, detail: its
+                                   position, and 16777216 times the number of its bus */
+    CM1E_LOG_STRANGER,        /**< a device that is none of the configured slaves was refused; code: its product code,
+                                   detail: its place on the wire and 16777216 times the number of the bus, value: its
+                                   vendor, bound: 65536 times its explicit device ID, and its alias */
     CM1E_LOG_KIND_COUNT,
 } cm1e_log_kind_t;
 

@@ -29,6 +29,10 @@ typedef struct cm1e_slave_watch {
     uint16_t al_state, al_status_code;
     bool lost;
     bool silent; /**< it gave no inputs for more cycles than are tolerated, while other slaves did */
+    bool out;    /**< it may come and go, and takes no part now: a good cycle is one of the others */
+    uint32_t bound; /**< number of times that its process data were placed in operation, because it came for the first
+                         time: what was located before must be located again */
+    bool absent; /**< it is optional, and nothing on the wire is identified as this slave */
     bool fresh;  /**< its own inputs are those of this cycle, even if the working counter is wrong */
 } cm1e_slave_watch_t;
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position);

@@ -12,6 +12,7 @@
 #include "bus/emergency_ring.h"
 #include "bus/errand.h"
 #include "bus/foe_job.h"
+#include "bus/hot_connect.h"
 #include "bus/mapping.h"
 #include "bus/port_watch.h"
 #include "bus/recognise.h"
@@ -86,6 +87,7 @@ struct cm1e_bus_slave {
     cm1e_slave_watch_t watch;
     cm1e_dc_t *dc;                           /**< the clocks of the bus; NULL: they are not used */
     cm1e_port_watch_t ports;
+    cm1e_hot_t hot;
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
     uint32_t silent_cycles;                  /**< in a row, in which it did not take part */
 };
@@ -151,6 +153,7 @@ struct cm1e_bus {
     cm1e_clock_t *clock;
 
     uint32_t slave_count;
+    uint32_t scanned;                        /**< of these the scan has found; optional ones that are absent follow */
     cm1e_bus_slave_t *slaves;                /**< CM1E_MAX_SLAVES; [0] is the first */
     uint16_t axis_position[CM1E_MAX_AXES];
 
@@ -173,6 +176,7 @@ struct cm1e_bus {
     cm1e_error_t last_error;
     cm1e_bus_counters_t counters;
 
+    cm1e_search_t search;                    /**< for slaves that come */
     cm1e_acyclic_t acyclic;
     cm1e_listening_t listening;
     cm1e_supervised_t supervised;
@@ -221,6 +225,9 @@ static inline bool cm1e_bus_has_motors(const cm1e_bus_slave_t *slave)
     return slave->info.device && (slave->info.device->extra_is_error || cm1e_bus_is_used(slave));
 }
 
+/** It was there at the start, or has come since. */
+static inline bool cm1e_bus_was_there(const cm1e_bus_slave_t *slave) { return !slave->hot.planned; }
+
 /** Ordered with the ring of transfers: see cm1e_sdo_submit(). */
 static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
 {
@@ -230,8 +237,9 @@ static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
 /** A diagnosis that ends with what the scan found; what a slave is addressed by (identify.c). */
 cm1e_error_t cm1e_bus_identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, const char *problem);
 uint32_t cm1e_bus_address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t kind);
-/** Finds the slaves that the configuration names beside the axes (identify_slaves.c). */
-cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, cm1e_diag_t *diag);
+/** Finds the slaves that the configuration names beside the axes: the optional ones, or the others
+ *  (identify_slaves.c). */
+cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, bool optional, cm1e_diag_t *diag);
 /** configure_slaves.c: writes what the configuration states for them; then reads which process data they have. */
 cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_diagnose_setup(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
@@ -272,6 +280,8 @@ bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns);
 void cm1e_sdo_queue_serve(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
 
+/** Whether a slave left the marker in its inputs in the frame that came back: it took no part (cycle.c). */
+bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave);
 /** Supervision: one slave's AL status in every cycle. */
 void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns);

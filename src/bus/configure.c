@@ -45,7 +45,7 @@ static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + MAPPING_TIMEOUT_NS;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (!cm1e_bus_has_motors(slave))
+        if (!cm1e_bus_has_motors(slave) || !cm1e_bus_was_there(slave))
             continue;
         const cm1e_pdo_choice_t choice = slave->info.device->pdos(cm1e_bus_axis_of(bus, slave, 0));
         cm1e_mapping_begin(&slave->mapping, slave->info.position, &choice);
@@ -55,7 +55,7 @@ static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
         char label[CM1E_LABEL_LENGTH];
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         cm1e_mapping_job_t *job = &slave->mapping;
-        if (!cm1e_bus_has_motors(slave))
+        if (!cm1e_bus_has_motors(slave) || !cm1e_bus_was_there(slave))
             continue;
         if (!ended && !cm1e_mapping_idle(job)) {
             cm1e_acyclic_cancel(bus);
@@ -78,7 +78,10 @@ static cm1e_error_t set_process_data(cm1e_bus_t *bus, cm1e_diag_t *diag)
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         const uint16_t position = slave->info.position, outputs = slave->mapped[0].bits, inputs = slave->mapped[1].bits;
-        const bool ok = cm1e_bus_has_motors(slave)
+        const uint16_t *room = slave->hot.room;
+        const bool ok = slave->hot.planned
+                            ? cm1e_soem_set_process_data(bus->soem, position, 8 * room[0], 8 * room[1])
+                        : cm1e_bus_has_motors(slave)
                             ? cm1e_soem_set_process_data(bus->soem, position, outputs, inputs)
                         : slave->by_pdos ? cm1e_soem_set_process_data_by_pdos(bus->soem, position, outputs, inputs)
                                          : cm1e_soem_set_process_data_by_sii(bus->soem, position);
@@ -131,13 +134,13 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
                              "The process data of all slaves (%zu bytes) needs more than %d frames a cycle.", room,
                              CM1E_PROCESS_FRAMES_MAX);
     bus->layout = ++bus->layouts;
-    bus->expected_working_counter = cm1e_soem_expected_working_counter(bus->soem);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         cm1e_soem_placement(bus->soem, slave->info.position, &slave->placement);
         slave->info.output_bytes = slave->placement.output_bytes;
         slave->info.input_bytes = slave->placement.input_bytes;
     }
+    cm1e_hot_count_begin(bus);
     return CM1E_OK;
 }
 
@@ -180,7 +183,7 @@ static bool write_word(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, uint16_t 
 static cm1e_error_t set_watchdogs(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     char label[CM1E_LABEL_LENGTH];
-    for (uint32_t i = 0; i < bus->slave_count; i++) {
+    for (uint32_t i = 0; i < bus->scanned; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         const bool set = write_word(bus, slave, REG_WATCHDOG_DIVIDER, CM1E_WATCHDOG_DIVIDER) &&
                          write_word(bus, slave, REG_WATCHDOG_PROCESS_DATA, cm1e_bus_watchdog(slave));
@@ -214,6 +217,8 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
         error = cm1e_bus_set_up_slaves(bus, false, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_read_pdos(bus, diag);
+    for (uint32_t i = bus->scanned; i < bus->slave_count && error == CM1E_OK; i++)
+        error = cm1e_hot_reserve(bus, &bus->slaves[i], diag);
     if (error == CM1E_OK)
         error = set_process_data(bus, diag);
     if (error == CM1E_OK)

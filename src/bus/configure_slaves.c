@@ -25,7 +25,7 @@ cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         slave->setup = (cm1e_setup_job_t){0};
-        if (cm1e_setup_is_needed(slave->config, before_op))
+        if (cm1e_bus_was_there(slave) && cm1e_setup_is_needed(slave->config, before_op))
             cm1e_setup_begin(&slave->setup, slave->info.position, slave->config, before_op);
     }
     const bool ended = cm1e_bus_pump_until_idle(bus, deadline_ns);
@@ -47,7 +47,7 @@ cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t
 /** Its PDOs are asked of the slave: what it has assigned may differ from its SII. */
 static bool is_asked(const cm1e_bus_slave_t *slave)
 {
-    return slave->config && slave->facts.coe && !cm1e_bus_has_motors(slave);
+    return slave->config && slave->facts.coe && !cm1e_bus_has_motors(slave) && cm1e_bus_was_there(slave);
 }
 
 static cm1e_error_t take_pdos(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_diag_t *diag)

@@ -5,7 +5,7 @@
 /** Marker in the input bytes of a frame: a slave that takes part in the cycle overwrites all of it. */
 enum { INPUT_PATTERN = 0xA5 };
 
-static bool is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
     const uint8_t *inputs = bus->image + bus->output_bytes + slave->placement.input_offset;
     for (unsigned i = 0; i < slave->placement.input_bytes; i++)
@@ -22,7 +22,9 @@ static bool find_silent_slaves(cm1e_bus_t *bus, int working_counter)
     bus->any_silent = false;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        const bool silent = is_silent(bus, slave), takes = slave->placement.output_bytes > 0;
+        if (!slave->hot.counted)
+            continue;
+        const bool silent = cm1e_bus_is_silent(bus, slave), takes = slave->placement.output_bytes > 0;
         slave->silent_cycles = silent ? slave->silent_cycles + (slave->silent_cycles < UINT32_MAX) : 0;
         bus->any_silent |= silent;
         missing -= silent ? 1 + 2 * takes : 0;
@@ -38,7 +40,7 @@ static void take_slave_by_slave(cm1e_bus_t *bus, int working_counter)
     bus->partly_fresh = find_silent_slaves(bus, working_counter);
     for (uint32_t i = 0; i < bus->slave_count && bus->partly_fresh; i++) {
         const cm1e_slave_placement_t *placement = &bus->slaves[i].placement;
-        if (bus->slaves[i].silent_cycles == 0)
+        if (bus->slaves[i].silent_cycles == 0 && bus->slaves[i].hot.counted)
             memcpy(bus->inputs + placement->input_offset, bus->image + bus->output_bytes + placement->input_offset,
                    placement->input_bytes);
     }
@@ -64,7 +66,7 @@ static cm1e_error_t judge(cm1e_bus_t *bus, int working_counter)
         bus->counters.lost_frames++;
         return CM1E_ERROR_BUS_LOST;
     }
-    if (working_counter != bus->expected_working_counter) {
+    if (!cm1e_hot_judge(bus, working_counter)) {
         bus->counters.working_counter_errors++;
         return CM1E_ERROR_BUS_WORKING_COUNTER;
     }
@@ -86,7 +88,7 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
         take_slave_by_slave(bus, working_counter);
     if (error == CM1E_OK) {
         forget_silence(bus);
-        memcpy(bus->inputs, bus->image + bus->output_bytes, bus->input_bytes);
+        cm1e_hot_take_inputs(bus);
         bus->bad_cycles = 0;
     } else {
         bus->bad_cycles += bus->bad_cycles < UINT32_MAX;

@@ -53,7 +53,7 @@ static uint8_t open_ports(uint16_t dl_status)
 static cm1e_error_t find_clocks(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, cm1e_diag_t *diag)
 {
     char label[CM1E_LABEL_LENGTH];
-    for (uint32_t i = 0; i < bus->slave_count; i++) {
+    for (uint32_t i = 0; i < bus->scanned; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         uint8_t features[2], ports[2];
         if (!transfer(bus, slave, COMMAND_FPRD, REG_FEATURES, features, 2) ||
@@ -113,7 +113,7 @@ static cm1e_error_t measure(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, uint64_t *lo
         const cm1e_error_t error = read_stamps(bus, nodes, local, diag);
         if (error != CM1E_OK)
             return error;
-        cm1e_dc_delays(nodes, bus->slave_count);
+        cm1e_dc_delays(nodes, bus->scanned);
         for (uint32_t i = 0; i < bus->slave_count; i++)
             sums[i] += nodes[i].delay_ns;
     }
@@ -227,7 +227,7 @@ cm1e_error_t cm1e_dc_set_up(cm1e_bus_t *bus, cm1e_diag_t *diag)
     for (uint32_t i = 0; i < bus->slave_count; i++)
         bus->slaves[i].dc = &bus->dc;
     align(bus);
-    for (uint32_t i = 0; i < bus->slave_count && error == CM1E_OK; i++) {
+    for (uint32_t i = 0; i < bus->scanned && error == CM1E_OK; i++) {
         const cm1e_dc_config_t *pulses = pulses_of(bus, &bus->slaves[i]);
         if (pulses)
             error = set_pulses(bus, i, pulses, diag);

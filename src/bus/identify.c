@@ -17,7 +17,7 @@ uint32_t cm1e_bus_address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t 
 {
     switch (kind) {
     case CM1E_ADDRESS_POSITION:
-        return slave->info.position;
+        return slave->hot.optional ? 0 : slave->info.position - slave->hot.before;
     case CM1E_ADDRESS_ALIAS:
         return slave->info.alias;
     case CM1E_ADDRESS_EXPLICIT_ID:
@@ -166,6 +166,8 @@ static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_axis_config_t *a
         }
         match = slave;
     }
+    if (!match && axis->optional)
+        return cm1e_hot_plan(bus, axis->address_kind, axis->address, diag);
     if (!match) {
         snprintf(problem, sizeof problem, "Axis \"%s\": expected a %s at %s, which is missing.", axis->name,
                  cm1e_device_configured(axis)->label, address_text(axis, where));
@@ -196,6 +198,12 @@ static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t
     if (!slave)
         return CM1E_ERROR_BUS_IDENTITY;
     cm1e_error_t error = check_alone(bus, axis, slave, diag);
+    slave->hot.optional = axis->optional;
+    if (error == CM1E_OK && slave->hot.planned) {
+        slave->axes[axis->channel] = (uint8_t)(axis_index + 1);
+        bus->axis_position[axis_index] = slave->info.position;
+        return CM1E_OK;
+    }
     if (error == CM1E_OK)
         error = check_kind(bus, axis, slave, diag);
     if (error == CM1E_OK)
@@ -228,6 +236,25 @@ static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+/** The optional ones first: they have no position, and positions count without them. */
+static cm1e_error_t match_all(cm1e_bus_t *bus, bool optional, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = CM1E_OK;
+    for (uint32_t axis = 0; axis < bus->config.axis_count && error == CM1E_OK; axis++)
+        if (cm1e_axis_has_motor(&bus->config.axes[axis]) && bus->config.axes[axis].optional == optional)
+            error = match_axis(bus, axis, diag);
+    return error == CM1E_OK ? cm1e_bus_identify_slaves(bus, optional, diag) : error;
+}
+
+static void count_optional(cm1e_bus_t *bus)
+{
+    uint8_t before = 0;
+    for (uint32_t i = 0; i < bus->scanned; i++) {
+        bus->slaves[i].hot.before = before;
+        before = (uint8_t)(before + bus->slaves[i].hot.optional);
+    }
+}
+
 cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
@@ -236,16 +263,17 @@ cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before identifying the slaves.");
     cm1e_bus_set_phase(bus, BUS_SCANNED);
     memset(bus->axis_position, 0, sizeof bus->axis_position);
+    cm1e_hot_forget(bus);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         memset(bus->slaves[i].axes, 0, sizeof bus->slaves[i].axes);
         bus->slaves[i].config = NULL;
     }
-    cm1e_error_t error = CM1E_OK;
-    for (uint32_t axis = 0; axis < bus->config.axis_count && error == CM1E_OK; axis++)
-        if (cm1e_axis_has_motor(&bus->config.axes[axis]))
-            error = match_axis(bus, axis, diag);
+    cm1e_error_t error = match_all(bus, true, diag);
+    count_optional(bus);
     if (error == CM1E_OK)
-        error = cm1e_bus_identify_slaves(bus, diag);
+        error = match_all(bus, false, diag);
+    if (error == CM1E_OK)
+        error = cm1e_hot_describe(bus, diag);
     if (error == CM1E_OK)
         error = check_extra(bus, diag);
     if (error == CM1E_OK)

@@ -1,7 +1,9 @@
 /* Finds the slaves that the configuration names beside the axes, and checks their identity. */
 #include <stdio.h>
+#include <string.h>
 
 #include "bus/bus_internal.h"
+#include "device/place.h"
 
 static const char *address_text(const cm1e_slave_config_t *slave, char text[32])
 {
@@ -27,12 +29,31 @@ static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_slave_config_t *
         }
         match = slave;
     }
+    if (!match && cm1e_slave_is_optional(config))
+        return cm1e_hot_plan(bus, config->address_kind, config->address, diag);
     if (!match) {
         snprintf(problem, sizeof problem, "Slave \"%s\": expected at %s, where there is none.", config->name,
                  address_text(config, where));
         cm1e_bus_identity_error(bus, diag, problem);
     }
     return match;
+}
+
+/** A member of a Hot Connect group is behind its head, at its place in the group. What else is there is none of ours,
+ *  and the member is absent. */
+static cm1e_bus_slave_t *find_member(cm1e_bus_t *bus, const cm1e_slave_config_t *config, cm1e_diag_t *diag)
+{
+    const cm1e_bus_slave_t *head = NULL;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_slave_config_t *other = bus->slaves[i].config;
+        if (other && !cm1e_slave_is_member(other) && strcmp(other->hot_connect, config->hot_connect) == 0)
+            head = &bus->slaves[i];
+    }
+    const uint32_t position = head && !head->hot.planned ? head->info.position + config->address - 1u : 0;
+    cm1e_bus_slave_t *slave = position <= bus->scanned ? cm1e_bus_at(bus, position) : NULL;
+    const bool same = slave && !slave->config && slave->info.vendor_id == config->vendor &&
+                      slave->info.product_code == config->product;
+    return same ? slave : cm1e_hot_plan(bus, config->address_kind, 0, diag);
 }
 
 /** Another axis or entry has the slave, or it is a motor, which needs an axis. */
@@ -89,10 +110,17 @@ static cm1e_error_t check_mailbox(const cm1e_bus_t *bus, const cm1e_slave_config
 
 static cm1e_error_t match_slave(cm1e_bus_t *bus, const cm1e_slave_config_t *config, cm1e_diag_t *diag)
 {
-    cm1e_bus_slave_t *slave = find_slave(bus, config, diag);
+    cm1e_bus_slave_t *slave = cm1e_slave_is_member(config) ? find_member(bus, config, diag)
+                                                           : find_slave(bus, config, diag);
     if (!slave)
         return CM1E_ERROR_BUS_IDENTITY;
     cm1e_error_t error = check_free(bus, config, slave, diag);
+    if (error == CM1E_OK)
+        slave->hot.optional = cm1e_slave_is_optional(config);
+    if (error == CM1E_OK && slave->hot.planned) {
+        slave->config = config;
+        return CM1E_OK;
+    }
     if (error == CM1E_OK)
         error = check_identity(bus, config, slave, diag);
     if (error != CM1E_OK)
@@ -101,10 +129,11 @@ static cm1e_error_t match_slave(cm1e_bus_t *bus, const cm1e_slave_config_t *conf
     return check_mailbox(bus, config, slave, diag);
 }
 
-cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, cm1e_diag_t *diag)
+cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, bool optional, cm1e_diag_t *diag)
 {
     cm1e_error_t error = CM1E_OK;
     for (uint32_t i = 0; i < bus->config.slave_count && error == CM1E_OK; i++)
-        error = match_slave(bus, &bus->config.slaves[i], diag);
+        if (cm1e_slave_is_optional(&bus->config.slaves[i]) == optional)
+            error = match_slave(bus, &bus->config.slaves[i], diag);
     return error;
 }

@@ -39,6 +39,8 @@ static void succeed(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_stat
     cm1e_supervision_note(slave, al_state, al_status_code);
     slave->recovery.step = RECOVERY_IDLE;
     slave->recovery.failed_at = RECOVERY_IDLE;
+    slave->hot.planned = false;
+    slave->hot.refused = NULL;
     slave->recovery.successes++;
 }
 
@@ -60,11 +62,44 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
     succeed(slave, slave->al.state, slave->al.code);
 }
 
-/** A device that got the address but is not the expected one must not keep it: the expected one, plugged in elsewhere,
- *  would answer at the same address. */
-static bool must_release(const cm1e_recovery_t *recovery)
+/** A device that is not the expected one must not keep the address, whoever has given it: the expected one, plugged in
+ *  elsewhere, would answer at the same address. An optional slave is searched for again in any case. */
+static bool must_release(const cm1e_bus_slave_t *slave)
 {
-    return recovery->address_given && recovery->step >= RECOVERY_ADDRESS && recovery->step <= RECOVERY_OBJECTS;
+    const cm1e_recovery_t *recovery = &slave->recovery;
+    const cm1e_recovery_step_t first = recovery->address_given ? RECOVERY_ADDRESS : RECOVERY_ID;
+    if (slave->hot.optional && recovery->step >= RECOVERY_EEPROM && recovery->step < RECOVERY_RELEASE)
+        return true;
+    return recovery->step >= first && recovery->step <= RECOVERY_OBJECTS;
+}
+
+/** Why an optional slave that answers was not taken. */
+static const char *refusal(cm1e_recovery_step_t step)
+{
+    static const char *const reasons[RECOVERY_STEPS] = {
+        [RECOVERY_INIT] = "it does not go to Init", [RECOVERY_PRE_OP] = "it does not go to Pre-Operational",
+        [RECOVERY_ID] = "its explicit device ID is another one",
+        [RECOVERY_VENDOR] = "its vendor (0x1018:1) is not that of its EEPROM",
+        [RECOVERY_PRODUCT] = "its product code (0x1018:2) is not that of its EEPROM",
+        [RECOVERY_SERIAL] = "its serial number (0x1018:4) is not that of its EEPROM",
+        [RECOVERY_OBJECTS] = "it is not of the expected kind, or its motors are others",
+        [RECOVERY_VERSION] = "its firmware is not the expected one",
+        [RECOVERY_SETUP] = "it does not take what the configuration writes into it",
+        [RECOVERY_MAPPING] = "its PDO mapping cannot be used, or is another one than before",
+        [RECOVERY_SAFE_OP] = "it does not go to Safe-Operational",
+        [RECOVERY_SETUP_OP] = "it does not take what the configuration writes into it",
+        [RECOVERY_OP] = "it does not go to Operational",
+    };
+    return reasons[step] ? reasons[step] : "it cannot be configured";
+}
+
+/** The search goes on where the recovery of an optional slave has ended. */
+static void give_to_search(cm1e_bus_slave_t *slave, const char *reason)
+{
+    slave->recovery.step = RECOVERY_IDLE;
+    if (!slave->hot.refused)
+        slave->hot.refused = reason;
+    cm1e_hot_lose(slave);
 }
 
 static void cancel_jobs(cm1e_bus_slave_t *slave)
@@ -77,11 +112,16 @@ static void cancel_jobs(cm1e_bus_slave_t *slave)
 
 static void fail(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
+    const bool releases = must_release(slave);
+    const bool gone = slave->recovery.step == RECOVERY_RELEASE && slave->hot.optional;
     if (slave->recovery.step != RECOVERY_RELEASE)
         slave->recovery.failed_at = slave->recovery.step;
     cancel_jobs(slave);
     cm1e_coe_cancel(&slave->coe, CM1E_ERROR_BUS_LOST);
-    enter(slave, must_release(&slave->recovery) ? RECOVERY_RELEASE : RECOVERY_PAUSE, now_ns);
+    if (gone)
+        give_to_search(slave, NULL);
+    else
+        enter(slave, releases ? RECOVERY_RELEASE : RECOVERY_PAUSE, now_ns);
 }
 
 void cm1e_recovery_begin(cm1e_bus_slave_t *slave)
@@ -92,6 +132,14 @@ void cm1e_recovery_begin(cm1e_bus_slave_t *slave)
     slave->recovery.deadline_ns = 0; /* over */
 }
 
+void cm1e_recovery_begin_found(cm1e_bus_slave_t *slave, int64_t now_ns)
+{
+    slave->recovery.attempts++;
+    slave->recovery.address_given = true;
+    slave->recovery.failed_at = RECOVERY_IDLE;
+    enter(slave, RECOVERY_EEPROM, now_ns);
+}
+
 void cm1e_recovery_cancel(cm1e_bus_slave_t *slave)
 {
     slave->recovery.step = RECOVERY_IDLE;
@@ -100,7 +148,8 @@ void cm1e_recovery_cancel(cm1e_bus_slave_t *slave)
 
 /* ---- registers ------------------------------------------------------------------------------------------------- */
 
-static uint16_t by_place(const cm1e_bus_slave_t *slave) { return (uint16_t)(1 - slave->info.position); }
+/** Its place moves when optional slaves before it come and go. */
+static uint16_t by_place(const cm1e_bus_slave_t *slave) { return (uint16_t)(1 - slave->hot.place); }
 
 static bool next_find(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
@@ -113,7 +162,9 @@ static void result_find(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64
 {
     const uint16_t station = cm1e_get_u16(d->data), alias = cm1e_get_u16(d->data + 2);
     /* Another station address: a later slave is now at this place, and the expected one is still missing. */
-    if ((station != 0 && station != slave->facts.station) || alias != slave->facts.alias)
+    if (station == slave->facts.station && alias != slave->facts.alias)
+        enter(slave, RECOVERY_RELEASE, now_ns);
+    else if ((station != 0 && station != slave->facts.station) || alias != slave->facts.alias)
         fail(slave, now_ns);
     else
         enter(slave, station ? RECOVERY_LOOK : RECOVERY_ADDRESS, now_ns);
@@ -129,11 +180,15 @@ static bool next_address(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     return true;
 }
 
-/** Addressed by its place, because another slave may answer at the address too. */
+/** Addressed by its place, because another slave may answer at the address too. The place of an optional one is not
+ *  fixed, and it was identified at its address. */
 static bool next_release(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
-    cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
+    if (slave->hot.optional)
+        cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_STATION_ADDRESS, 2);
+    else
+        cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
     cm1e_put_u16(d->data, 0);
     return true;
 }
@@ -141,7 +196,10 @@ static bool next_release(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
 static void result_release(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)d;
-    enter(slave, RECOVERY_PAUSE, now_ns);
+    if (slave->hot.optional)
+        give_to_search(slave, refusal(slave->recovery.failed_at));
+    else
+        enter(slave, RECOVERY_PAUSE, now_ns);
 }
 
 static void result_next_step(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
@@ -340,11 +398,31 @@ static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return check_identity(slave, d, now_ns, 4, slave->info.serial_number);
 }
 
-/** The identity of a bridge does not tell its motors. */
+/** Whether its objects are those of the expected device. What comes for the first time is compared with the
+ *  configuration, what has come back with what it was. */
+static bool is_recognised(cm1e_bus_slave_t *slave)
+{
+    const cm1e_recognition_t *job = &slave->recognition;
+    cm1e_device_model_t model;
+    if (slave->info.device->recognised == CM1E_BY_PROFILE)
+        return (job->device_type & 0xFFFF) == slave->info.device->profile;
+    if (!slave->hot.planned)
+        return job->recognised && memcmp(&job->facts, &slave->bridge, sizeof job->facts) == 0;
+    if (!job->recognised || !cm1e_recognise_model(&job->facts, &model) || model != slave->info.model)
+        return false;
+    slave->bridge = job->facts;
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        slave->info.motors[i] = (uint8_t)job->facts.motors[i];
+    return true;
+}
+
+/** The identity of a bridge does not tell its motors, and that of another drive not that it is one. */
 static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_recognition_t *job = &slave->recognition;
-    if (!slave->info.device || slave->info.device->recognised != CM1E_BY_OBJECTS) {
+    const cm1e_device_t *device = slave->info.device;
+    const bool drive = device && device->recognised == CM1E_BY_PROFILE && slave->hot.planned;
+    if (!device || (device->recognised != CM1E_BY_OBJECTS && !drive)) {
         advance(slave, now_ns);
         return false;
     }
@@ -355,7 +433,7 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_recognise_next(job, now_ns);
         if (!sdo) {
-            if (job->recognised && memcmp(&job->facts, &slave->bridge, sizeof job->facts) == 0)
+            if (is_recognised(slave))
                 advance(slave, now_ns);
             else
                 fail(slave, now_ns);
@@ -364,6 +442,56 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
         cm1e_coe_begin(&slave->coe, sdo, now_ns);
     }
     return cm1e_coe_next(&slave->coe, d, now_ns);
+}
+
+/** The firmware of a motor that comes for the first time: its units depend on it. */
+static bool takes_version(cm1e_bus_slave_t *slave)
+{
+    const cm1e_axis_config_t *axis = slave->hot.axis;
+    const size_t size = slave->version_sdo.size < sizeof slave->version - 1 ? slave->version_sdo.size
+                                                                            : sizeof slave->version - 1;
+    slave->version[slave->version_sdo.error == CM1E_OK ? size : 0] = '\0';
+    memcpy(slave->info.software_version, slave->version, sizeof slave->info.software_version - 1);
+    if (slave->info.device && slave->info.device->firmware)
+        slave->firmware = slave->info.device->firmware(slave->info.software_version);
+    const char *shown = slave->info.software_version + (slave->info.software_version[0] == 'V');
+    return !axis || !axis->firmware[0] || strcmp(axis->firmware, shown) == 0;
+}
+
+static bool next_version(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    if (!slave->facts.coe || !slave->hot.planned) {
+        advance(slave, now_ns);
+        return false;
+    }
+    if (!slave->recovery.entered) {
+        slave->recovery.entered = true;
+        memset(slave->version, 0, sizeof slave->version);
+        slave->version_sdo = (cm1e_sdo_t){.position = slave->info.position, .index = OBJ_100A_SOFTWARE_VERSION,
+                                          .data = slave->version, .size = sizeof slave->version - 1,
+                                          .timeout_ns = SDO_STEP_NS, .state = CM1E_SDO_BUSY};
+        cm1e_coe_begin(&slave->coe, &slave->version_sdo, now_ns);
+    }
+    if (cm1e_coe_next(&slave->coe, d, now_ns))
+        return true;
+    if (cm1e_coe_idle(&slave->coe)) {
+        if (takes_version(slave))
+            advance(slave, now_ns);
+        else
+            fail(slave, now_ns);
+    }
+    return false;
+}
+
+/** What has no PDO mapping to be read has the process data of its SII. */
+static bool next_place(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)d;
+    if (!slave->hot.planned || cm1e_hot_place(slave))
+        advance(slave, now_ns);
+    else
+        fail(slave, now_ns);
+    return false;
 }
 
 static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, bool before_op)
@@ -396,30 +524,48 @@ static bool next_setup_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
     return run_setup(slave, d, now_ns, true);
 }
 
+/** A slave that comes for the first time has the layout that it has: only its room is fixed, and what the signals of the
+ *  configuration were found by. */
+static bool takes_mapping(cm1e_bus_slave_t *slave)
+{
+    const cm1e_mapping_job_t *job = &slave->mapping;
+    const bool motors = cm1e_bus_has_motors(slave);
+    for (int direction = 0; direction < 2; direction++) {
+        const bool free = slave->hot.planned && (motors || slave->mapped[direction].entry_count == 0);
+        if (!free && !cm1e_mapping_equal(&job->mapped[direction], &slave->mapped[direction]))
+            return false;
+    }
+    if (!slave->hot.planned)
+        return true;
+    slave->by_pdos = !motors && job->unknown < 2;
+    memcpy(slave->mapped, job->mapped, sizeof slave->mapped);
+    return true;
+}
+
 /** Assigns the PDOs again; the layout must not change, because the image of the running bus is fixed. */
 static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_mapping_job_t *job = &slave->mapping;
-    if (!cm1e_bus_has_motors(slave) && !slave->by_pdos) {
+    const bool motors = cm1e_bus_has_motors(slave);
+    if (!motors && !slave->by_pdos && !(slave->hot.planned && slave->facts.coe)) {
         advance(slave, now_ns);
         return false;
     }
     if (!slave->recovery.entered) {
         slave->recovery.entered = true;
-        const cm1e_pdo_choice_t choice = job->choice;
-        if (slave->by_pdos)
-            cm1e_mapping_begin_any(job, slave->info.position);
-        else
+        const cm1e_pdo_choice_t choice = slave->hot.planned && motors ? slave->info.device->pdos(slave->hot.axis)
+                                                                      : job->choice;
+        if (motors)
             cm1e_mapping_begin(job, slave->info.position, &choice);
+        else
+            cm1e_mapping_begin_any(job, slave->info.position);
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_mapping_next(job);
         if (sdo) {
             cm1e_coe_begin(&slave->coe, sdo, now_ns);
         } else {
-            const bool same = job->error == CM1E_OK && cm1e_mapping_equal(&job->mapped[0], &slave->mapped[0]) &&
-                              cm1e_mapping_equal(&job->mapped[1], &slave->mapped[1]);
-            if (same)
+            if (job->error == CM1E_OK && takes_mapping(slave))
                 advance(slave, now_ns);
             else
                 fail(slave, now_ns);
@@ -449,8 +595,10 @@ static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_PRODUCT] = {SDO_STEP_NS, next_product, result_coe},
     [RECOVERY_SERIAL] = {SDO_STEP_NS, next_serial, result_coe},
     [RECOVERY_OBJECTS] = {OBJECTS_STEP_NS, next_objects, result_coe},
+    [RECOVERY_VERSION] = {SDO_STEP_NS, next_version, result_coe},
     [RECOVERY_SETUP] = {MAPPING_STEP_NS, next_setup, result_coe},
     [RECOVERY_MAPPING] = {MAPPING_STEP_NS, next_mapping, result_coe},
+    [RECOVERY_PLACE] = {STEP_NS, next_place, result_next_step},
     [RECOVERY_PROCESS_DATA] = {STEP_NS, next_process_data, result_next_step},
     [RECOVERY_FMMUS] = {STEP_NS, next_fmmus, result_next_step},
     [RECOVERY_WATCHDOG_DIVIDER] = {STEP_NS, next_watchdog_divider, result_next_step},

@@ -27,8 +27,10 @@ typedef enum cm1e_recovery_step {
     RECOVERY_PRODUCT,
     RECOVERY_SERIAL,
     RECOVERY_OBJECTS,         /**< still a bridge, of the same revision, with the same motors */
+    RECOVERY_VERSION,         /**< its firmware, where it comes for the first time */
     RECOVERY_SETUP,           /**< what the configuration writes into it in Pre-Operational */
     RECOVERY_MAPPING,
+    RECOVERY_PLACE,          /**< the place of its process data, where it comes for the first time */
     RECOVERY_PROCESS_DATA,   /**< SM2, SM3 */
     RECOVERY_FMMUS,
     RECOVERY_WATCHDOG_DIVIDER,
@@ -57,6 +59,8 @@ typedef struct cm1e_recovery {
 static inline bool cm1e_recovery_mutes(const cm1e_recovery_t *recovery) { return recovery->step >= RECOVERY_EEPROM; }
 static inline bool cm1e_recovery_idle(const cm1e_recovery_t *recovery) { return recovery->step == RECOVERY_IDLE; }
 void cm1e_recovery_begin(struct cm1e_bus_slave *slave);
+/** Begins with the configuration of a slave that the search has just identified. */
+void cm1e_recovery_begin_found(struct cm1e_bus_slave *slave, int64_t now_ns);
 void cm1e_recovery_cancel(struct cm1e_bus_slave *slave);
 /** Fills the datagram to be sent next; false: none in this cycle. */
 bool cm1e_recovery_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns);

@@ -50,7 +50,7 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
     free(told);
     if (error != CM1E_OK)
         return error;
-    bus->slave_count = count;
+    bus->slave_count = bus->scanned = count;
     cm1e_bus_set_phase(bus, BUS_SCANNED);
     return CM1E_OK;
 }

@@ -32,7 +32,7 @@ static cm1e_error_t check_slave(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, 
 cm1e_error_t cm1e_bus_check_resources(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     cm1e_error_t error = CM1E_OK;
-    for (uint32_t i = 0; i < bus->slave_count && error == CM1E_OK; i++)
+    for (uint32_t i = 0; i < bus->scanned && error == CM1E_OK; i++)
         error = check_slave(bus, &bus->slaves[i], diag);
     return error;
 }

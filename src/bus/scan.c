@@ -34,6 +34,7 @@ static void set_up_slave(cm1e_bus_t *bus, uint16_t position)
     memcpy(slave->info.name, facts->name, sizeof slave->info.name);
     cm1e_text_clean(slave->info.name);
     slave->al.station = facts->station;
+    slave->hot = (cm1e_hot_t){.counted = true, .member = 1, .place = position, .group = ""};
     const bool used = facts->coe || facts->foe;
     slave->coe.mailbox = (cm1e_mailbox_t){
         .station = facts->station,
@@ -173,7 +174,8 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
     cm1e_acyclic_cancel(bus);
     cm1e_bus_free_image(bus);
     cm1e_bus_set_phase(bus, BUS_OPEN);
-    bus->slave_count = 0;
+    bus->slave_count = bus->scanned = 0;
+    bus->search = (cm1e_search_t){0};
     bus->dc.used = false; /* set up anew by cm1e_bus_configure() */
     memset(bus->axis_position, 0, sizeof bus->axis_position);
     uint16_t position;
@@ -184,7 +186,7 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return nobody_answers(bus, diag);
     for (position = 1; position <= found; position++)
         set_up_slave(bus, position);
-    bus->slave_count = (uint32_t)found;
+    bus->slave_count = bus->scanned = (uint32_t)found;
     cm1e_ring_watch_begin(bus);
     cm1e_error_t error = cm1e_bus_all_to_state(bus, CM1E_AL_INIT, CM1E_STATE_TIMEOUT_NS, diag);
     if (error == CM1E_OK) {

@@ -57,6 +57,8 @@ void cm1e_soem_set_up_mailboxes(cm1e_soem_t *soem);
 const struct cm1e_sii_signals *cm1e_soem_signals(const cm1e_soem_t *soem, uint16_t position);
 void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts);
 
+/** Changes the number of slaves. Those beyond the present ones are absent, with the station address of their place. */
+void cm1e_soem_set_count(cm1e_soem_t *soem, uint16_t count);
 /** Sets the process data of a slave; zero bits: none. False: its sync managers cannot carry it. */
 bool cm1e_soem_set_process_data(cm1e_soem_t *soem, uint16_t position, uint16_t output_bits, uint16_t input_bits);
 /** Sets the process data of a slave as its SII states it. Returns false if the SII is contradictory. */

@@ -203,6 +203,16 @@ int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
     return count;
 }
 
+void cm1e_soem_set_count(cm1e_soem_t *soem, uint16_t count)
+{
+    for (uint16_t position = (uint16_t)(soem->slave_count + 1); position <= count; position++) {
+        memset(&soem->slaves[position], 0, sizeof soem->slaves[position]);
+        memset(&soem->siis[position], 0, sizeof soem->siis[position]);
+        soem->slaves[position].configadr = (uint16)(EC_NODEOFFSET + position);
+    }
+    soem->slave_count = count;
+}
+
 void cm1e_soem_set_up_mailboxes(cm1e_soem_t *soem)
 {
     for (uint16 position = 1; position <= soem->slave_count; position++) {

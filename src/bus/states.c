@@ -46,12 +46,12 @@ cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *sl
 cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t timeout_ns, cm1e_diag_t *diag)
 {
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + timeout_ns;
-    for (uint32_t i = 0; i < bus->slave_count; i++)
+    for (uint32_t i = 0; i < bus->scanned; i++)
         cm1e_al_request(&bus->slaves[i].al, target, deadline_ns);
     /* The machines end by themselves; the margin is for datagrams that are still on their way. */
     cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
     cm1e_error_t first = CM1E_OK;
-    for (uint32_t i = 0; i < bus->slave_count; i++) {
+    for (uint32_t i = 0; i < bus->scanned; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         slave->info.al_state = slave->al.state;
         slave->info.al_status_code = slave->al.code;

@@ -10,16 +10,34 @@ void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t 
     slave->unanswered = 0;
     if (al_status_code != slave->watch.al_status_code)
         cm1e_dc_note_status(slave, al_status_code);
-    slave->watch = (cm1e_slave_watch_t){.al_state = al_state, .al_status_code = al_status_code};
+    slave->watch = (cm1e_slave_watch_t){.al_state = al_state, .al_status_code = al_status_code,
+                                        .absent = slave->hot.away};
     slave->info.al_state = al_state;
     slave->info.al_status_code = al_status_code;
 }
 
 static uint32_t next_of(const cm1e_bus_t *bus, uint32_t place) { return place + 1 < bus->slave_count ? place + 1 : 0; }
 
+/** One that may have left is asked first. */
+static uint32_t next_in_doubt(cm1e_bus_t *bus)
+{
+    for (uint32_t n = 0; n < bus->slave_count; n++) {
+        bus->search.doubted = next_of(bus, bus->search.doubted);
+        const cm1e_bus_slave_t *slave = &bus->slaves[bus->search.doubted];
+        if (slave->hot.optional && slave->hot.counted)
+            return bus->search.doubted;
+    }
+    return next_of(bus, bus->supervised.place);
+}
+
 static void ask_state(cm1e_bus_t *bus)
 {
-    bus->supervised.place = next_of(bus, bus->supervised.place);
+    if (bus->search.doubt > 0)
+        bus->supervised.place = next_in_doubt(bus);
+    else
+        bus->supervised.place = next_of(bus, bus->supervised.place);
+    for (uint32_t n = 0; n < bus->slave_count && bus->slaves[bus->supervised.place].hot.away; n++)
+        bus->supervised.place = next_of(bus, bus->supervised.place);
     cm1e_datagram_set(&bus->supervised.datagram, COMMAND_FPRD, bus->slaves[bus->supervised.place].facts.station,
                       REG_AL_STATUS, AL_STATUS_BYTES);
 }
@@ -28,8 +46,22 @@ static void ask_state(cm1e_bus_t *bus)
 static void ask_ports(cm1e_bus_t *bus, int64_t now_ns)
 {
     bus->supervised.ports.due_ns = now_ns + CM1E_PORTS_PACE_NS;
-    bus->supervised.ports.place = next_of(bus, bus->supervised.ports.place);
+    for (uint32_t n = 0; n < bus->slave_count; n++) {
+        bus->supervised.ports.place = next_of(bus, bus->supervised.ports.place);
+        if (!bus->slaves[bus->supervised.ports.place].hot.away)
+            break;
+    }
     cm1e_port_watch_ask(&bus->slaves[bus->supervised.ports.place], &bus->supervised.datagram);
+}
+
+/** What is asked before the states of the slaves and their counters. */
+static bool ask_what_comes_first(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_datagram_t *d = &bus->supervised.datagram;
+    if (cm1e_ring_watch_ask(bus, d, now_ns) || cm1e_dc_next_look(bus, d))
+        return true;
+    bus->search.sent = bus->phase == BUS_OPERATING && bus->search.doubt == 0 && cm1e_search_next(bus, d, now_ns);
+    return bus->search.sent;
 }
 
 void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
@@ -37,32 +69,37 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
     if (bus->supervised.sent || bus->slave_count == 0)
         return;
     bus->supervised.ports.asked = false;
-    if (cm1e_ring_watch_ask(bus, &bus->supervised.datagram, now_ns)) {
-        cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
-        bus->supervised.sent = true;
-        return;
+    if (!ask_what_comes_first(bus, now_ns)) {
+        bus->supervised.ports.asked = bus->phase == BUS_OPERATING && now_ns >= bus->supervised.ports.due_ns;
+        if (bus->supervised.ports.asked)
+            ask_ports(bus, now_ns);
+        else
+            ask_state(bus);
     }
-    if (cm1e_dc_next_look(bus, &bus->supervised.datagram)) {
-        cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
-        bus->supervised.sent = true;
-        return;
-    }
-    bus->supervised.ports.asked = bus->phase == BUS_OPERATING && now_ns >= bus->supervised.ports.due_ns;
-    if (bus->supervised.ports.asked)
-        ask_ports(bus, now_ns);
-    else
-        ask_state(bus);
     cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
     bus->supervised.sent = true;
 }
 
 /** No axis requests the recovery of a device between the axes, but while it is missing, the working counter of all is
- *  wrong. So it is brought back without a request, always with zeros as outputs. A motor is never brought back without
- *  a request. */
+ *  wrong. So it is brought back without a request, always with zeros as outputs. A motor is brought back without a
+ *  request only if the configuration says so. */
 static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
-    if (!cm1e_bus_has_motors(slave) && slave->watch.al_state != CM1E_AL_OP)
-        cm1e_bus_request_recovery(bus, slave->info.position);
+    if (bus->phase == BUS_OPERATING && slave->watch.al_state != CM1E_AL_OP && cm1e_hot_may_recover(slave, false))
+        cm1e_recovery_begin(slave);
+}
+
+/** An optional slave that is lost is searched for. */
+static void lose(cm1e_bus_slave_t *slave)
+{
+    slave->watch = (cm1e_slave_watch_t){.lost = true, .absent = slave->hot.away};
+    slave->info.al_state = slave->info.al_status_code = 0;
+    if (!slave->hot.optional)
+        return;
+    cm1e_recovery_cancel(slave);
+    cm1e_coe_cancel(&slave->coe, CM1E_ERROR_BUS_LOST);
+    slave->hot.refused = NULL;
+    cm1e_hot_lose(slave);
 }
 
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
@@ -77,6 +114,11 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
         cm1e_soem_drop(bus->soem, d);
     }
     bus->supervised.sent = false;
+    if (bus->search.sent) {
+        bus->search.sent = false;
+        cm1e_search_result(bus, d, now_ns);
+        return;
+    }
     if (d->command == COMMAND_BRD) {
         if (d->working_counter > 0)
             cm1e_ring_watch_take(bus);
@@ -94,10 +136,10 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
     if (d->working_counter == 1) {
         cm1e_supervision_note(slave, cm1e_get_u16(d->data), cm1e_get_u16(d->data + 4));
     } else if (d->working_counter == 0 && ++slave->unanswered >= UNANSWERED_LIMIT) {
-        slave->watch = (cm1e_slave_watch_t){.lost = true};
-        slave->info.al_state = slave->info.al_status_code = 0;
+        lose(slave);
     }
     recover_unasked(bus, slave);
+    cm1e_hot_note(bus, slave);
 }
 
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position)
@@ -107,13 +149,19 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
         return (cm1e_slave_watch_t){.lost = true};
     cm1e_slave_watch_t watch = slave->watch;
     watch.silent = slave->silent_cycles >= bus->config.lost_cycles_limit;
-    watch.fresh = bus->last_error == CM1E_OK || (bus->partly_fresh && slave->silent_cycles == 0);
+    watch.fresh = slave->hot.counted &&
+                  (bus->last_error == CM1E_OK || (bus->partly_fresh && slave->silent_cycles == 0));
+    watch.out = !slave->hot.counted;
+    watch.bound = slave->hot.bound;
+    if (!slave->hot.counted && bus->counters.cycles - slave->hot.out_since >= bus->config.lost_cycles_limit)
+        watch.lost = true; /* its inputs showed it, long before the supervision has asked three times */
     return watch;
 }
 
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position)
 {
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
-    if (slave && bus->phase == BUS_OPERATING && cm1e_recovery_idle(&slave->recovery))
+    if (slave && bus->phase == BUS_OPERATING && cm1e_recovery_idle(&slave->recovery) &&
+        cm1e_hot_may_recover(slave, true))
         cm1e_recovery_begin(slave);
 }

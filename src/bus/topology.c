@@ -70,7 +70,7 @@ cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size
 cm1e_error_t cm1e_bus_read_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag)
 {
     walk_t walk = {.count = 0};
-    for (uint16_t position = 1; position <= bus->slave_count && position <= room; position++) {
+    for (uint16_t position = 1; position <= bus->scanned && position <= room; position++) {
         uint8_t status[2] = {0};
         if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status))
             return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer when its ports are read.",

@@ -75,6 +75,24 @@ const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, 
     return entry && entry->availability == CM1E_AVAILABLE ? entry : NULL;
 }
 
+/* The slave has come for the first time: its process data lie elsewhere in its room, and its firmware is known. */
+static void bind(cm1e_drive_t *drive)
+{
+    const cm1e_drive_image_t before = drive->image;
+    const cm1e_drive_kind_t *kind = cm1e_drive_kind(drive->device);
+    drive->bound = drive->watch.bound;
+    drive->unbound = kind && kind->bind ? kind->bind(drive) : CM1E_OK;
+    if (drive->unbound == CM1E_OK)
+        drive->unbound = cm1e_drive_resolve(drive, NULL);
+    if (drive->unbound != CM1E_OK) {
+        drive->image = before;
+        cm1e_drive_fail(drive, drive->unbound);
+        return;
+    }
+    drive->actual = (cm1e_drive_actual_t){0};
+    cm1e_drive_mode_forget(drive);
+}
+
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
@@ -84,9 +102,12 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
         return;
     }
     drive->watch = cm1e_bus_slave_watch(drive->bus, drive->position);
+    bus_ok = bus_ok && !drive->watch.out && drive->unbound == CM1E_OK;
     drive->answered = bus_ok;
+    if (drive->bound != drive->watch.bound)
+        bind(drive);
     cm1e_drive_mode_step(drive);
-    f->fresh = bus_ok || drive->watch.fresh;
+    f->fresh = bus_ok || (drive->watch.fresh && drive->unbound == CM1E_OK);
     if (f->fresh)
         cm1e_drive_decode(drive);
     f->online = bus_ok && cm1e_drive_operational(drive);

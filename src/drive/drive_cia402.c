@@ -8,34 +8,59 @@
 
 /* ---- start-up ---------------------------------------------------------------------------------------------------- */
 
-/* A drive that does not have the object has no use for the value: its refusal is no error. */
-static void tell(cm1e_drive_t *drive, uint16_t index, uint8_t subindex, uint32_t value, unsigned bytes)
-{
-    uint8_t data[4];
-    cm1e_diag_t refusal;
-    cm1e_put_uint(data, bytes, value);
-    (void)cm1e_sdo_write(drive->bus, drive->position, index, subindex, data, bytes, &refusal);
-}
+enum { TOLD = 3 /* objects */ };
 
 /* The cycle time as value * 10^index seconds in 8 bits: 1, 2, 5 or 25, in the largest unit that has it whole. */
-static void tell_cycle_time(cm1e_drive_t *drive)
+static uint32_t cycle_time_value(const cm1e_drive_t *drive, bool index)
 {
     const int64_t value = cm1e_bus_configuration(drive->bus)->cycle_time_ns;
     int64_t unit = 1000000;
-    int8_t index = -3;
+    int8_t exponent = -3;
     for (; value % unit != 0; unit /= 10)
-        index--;
-    tell(drive, OBJ_60C2_INTERPOLATION_TIME, 2, (uint8_t)index, 1);
-    tell(drive, OBJ_60C2_INTERPOLATION_TIME, 1, (uint32_t)(value / unit), 1);
+        exponent--;
+    return index ? (uint8_t)exponent : (uint32_t)(value / unit);
 }
 
+/* What the drive is told before it moves: object number `n`. */
+static cm1e_sdo_t told(const cm1e_drive_t *drive, unsigned n, uint8_t data[4])
+{
+    static const struct {
+        uint16_t index;
+        uint8_t subindex, bytes;
+    } objects[TOLD] = {{OBJ_60C2_INTERPOLATION_TIME, 2, 1}, {OBJ_60C2_INTERPOLATION_TIME, 1, 1},
+                       {OBJ_60FE_DIGITAL_OUTPUTS, 2, 4}};
+    const uint32_t value = n < 2 ? cycle_time_value(drive, n == 0) : CM1E_CIA402_OUTPUTS << CM1E_CIA402_OUTPUT_SHIFT;
+    cm1e_put_uint(data, objects[n].bytes, value);
+    return (cm1e_sdo_t){.position = drive->position, .index = objects[n].index, .subindex = objects[n].subindex,
+                        .write = true, .data = data, .size = objects[n].bytes};
+}
+
+/* A drive that does not have the object has no use for the value: its refusal is no error. */
 cm1e_error_t cm1e_drive_init_cia402(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
     (void)diag;
+    cm1e_diag_t refusal;
     drive->range.velocity_most = (int32_t)cm1e_unit_peak_velocity(drive->config);
-    tell_cycle_time(drive);
-    tell(drive, OBJ_60FE_DIGITAL_OUTPUTS, 2, CM1E_CIA402_OUTPUTS << CM1E_CIA402_OUTPUT_SHIFT, 4);
+    for (unsigned n = 0; n < TOLD && !cm1e_drive_is_absent(drive); n++) {
+        const cm1e_sdo_t sdo = told(drive, n, drive->tell.data);
+        (void)cm1e_sdo_write(drive->bus, drive->position, sdo.index, sdo.subindex, sdo.data, sdo.size, &refusal);
+    }
+    drive->tell.next = TOLD;
     return CM1E_OK;
+}
+
+/* It may have been switched off, and has forgotten it. One object after the other, beside the cycle. */
+static void tell_again(cm1e_drive_t *drive)
+{
+    cm1e_drive_tell_t *tell = &drive->tell;
+    const bool busy = cm1e_sdo_state(&tell->sdo) == CM1E_SDO_BUSY;
+    if (drive->watch.lost || drive->watch.absent)
+        tell->next = 0;
+    if (busy || tell->next == TOLD || !cm1e_drive_operational(drive) || drive->watch.al_state == CM1E_AL_NONE)
+        return;
+    tell->sdo = told(drive, tell->next, tell->data);
+    if (cm1e_sdo_submit(drive->bus, &tell->sdo) == CM1E_OK)
+        tell->next++;
 }
 
 /* ---- touch probes ------------------------------------------------------------------------------------------------ */
@@ -97,7 +122,7 @@ static unsigned step(cm1e_drive_t *drive, unsigned n, unsigned status)
            (probe->wanted & 2 ? CM1E_PROBE_NEGATIVE : 0u);
 }
 
-void cm1e_drive_probe_step(cm1e_drive_t *drive)
+static void step_probes(cm1e_drive_t *drive)
 {
     if (!drive->image.in_probe.bytes || !drive->feedback.fresh)
         return;
@@ -106,4 +131,10 @@ void cm1e_drive_probe_step(cm1e_drive_t *drive)
     for (unsigned n = 0; n < PROBES; n++)
         function |= step(drive, n, status >> BITS * n & 0xFF) << BITS * n;
     drive->probes.function = (uint16_t)function;
+}
+
+void cm1e_drive_cia402_step(cm1e_drive_t *drive)
+{
+    tell_again(drive);
+    step_probes(drive);
 }

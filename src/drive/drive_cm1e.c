@@ -32,5 +32,15 @@ cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": there is no motor \"%s\".",
                              drive->config->name, drive->config->motor);
     drive->firmware = cm1e_bus_slave_firmware(drive->bus, drive->position);
+    if (!drive->firmware && cm1e_drive_is_absent(drive)) {
+        set_velocity_unit(drive, drive->config->velocity_unit_stated && drive->config->velocity_in_counts_per_ms);
+        return CM1E_OK; /* until it comes */
+    }
     return velocity_unit(drive, diag);
+}
+
+cm1e_error_t cm1e_drive_bind_cm1e(cm1e_drive_t *drive)
+{
+    drive->firmware = cm1e_bus_slave_firmware(drive->bus, drive->position);
+    return velocity_unit(drive, NULL);
 }

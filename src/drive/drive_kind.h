@@ -13,6 +13,8 @@ typedef struct cm1e_drive_kind {
     const char *device;             /**< the kind of the device */
     cm1e_error_t (*init)(cm1e_drive_t *drive, cm1e_diag_t *diag); /**< what the configuration has to state */
     void (*step)(cm1e_drive_t *drive); /**< in every cycle, after the inputs; NULL: nothing */
+    /** The device was absent at the start and has come: what init() could not know. In the cycle; NULL: nothing. */
+    cm1e_error_t (*bind)(cm1e_drive_t *drive);
 } cm1e_drive_kind_t;
 
 /** NULL: no such device. */

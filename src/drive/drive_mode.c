@@ -109,6 +109,10 @@ cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
     drive->command.mode = first;
     if (drive->image.out_mode.bytes)
         return CM1E_OK;
+    if (cm1e_drive_is_absent(drive)) {
+        cm1e_drive_mode_forget(drive);
+        return CM1E_OK;
+    }
     if (drive->kind->asks_mode_first)
         return ask_first(drive, diag);
     const int8_t mode = (int8_t)drive->mode.commanded;

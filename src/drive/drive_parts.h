@@ -180,6 +180,13 @@ typedef struct cm1e_drive_probes {
     cm1e_drive_probe_t probe[2];
 } cm1e_drive_probes_t;
 
+/** What a drive of another maker is told of the cycle, again after it was away. Written by drive_cia402.c. */
+typedef struct cm1e_drive_tell {
+    uint8_t next;                   /**< object that is told next */
+    uint8_t data[4];
+    cm1e_sdo_t sdo;
+} cm1e_drive_tell_t;
+
 /** The order is that of the memory: what every cycle looks at comes first, and lies together. */
 typedef struct cm1e_drive {
     cm1e_bus_t *bus;
@@ -188,6 +195,8 @@ typedef struct cm1e_drive {
     void (*step)(struct cm1e_drive *drive); /**< of the kind; NULL: nothing */
     uint16_t position;              /**< slave; 0: there is no device */
     cm1e_slave_watch_t watch;
+    uint32_t bound;                 /**< cm1e_slave_watch_t.bound that the image was resolved for */
+    cm1e_error_t unbound;           /**< why the slave that came cannot be this drive; CM1E_OK: it can */
     bool answered;                  /**< the last frame came back, with every slave's part in it */
     cm1e_drive_torque_t torque;
     cm1e_drive_mode_t mode;
@@ -204,6 +213,7 @@ typedef struct cm1e_drive {
     cm1e_drive_waits_t waits;
     cm1e_drive_change_t change;
     cm1e_drive_probes_t probes;
+    cm1e_drive_tell_t tell;
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
     const cm1e_device_t *device;    /**< NULL: there is none */

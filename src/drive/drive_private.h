@@ -18,12 +18,19 @@ static inline bool drive_fault_allows_ramp(cm1e_error_t error)
     return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER || error == CM1E_ERROR_DRIVE_POSITION;
 }
 
+/** The slave is optional and not there. */
+static inline bool cm1e_drive_is_absent(const cm1e_drive_t *drive)
+{
+    return cm1e_bus_slave_watch(drive->bus, drive->position).absent;
+}
+
 /* drive_fault.c */
 /** Latches what this cycle's inputs show. A latched fault only collects its details. */
 void cm1e_drive_latch_faults(cm1e_drive_t *drive);
 
 /* drive_cm1e.c */
 cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag);
+cm1e_error_t cm1e_drive_bind_cm1e(cm1e_drive_t *drive);
 
 /* drive_io.c */
 /** Where the object of a role lies in the process image. */
@@ -55,7 +62,7 @@ void cm1e_drive_reset_step(cm1e_drive_t *drive);
 
 /* drive_cia402.c: a servo drive of another maker */
 cm1e_error_t cm1e_drive_init_cia402(cm1e_drive_t *drive, cm1e_diag_t *diag);
-void cm1e_drive_probe_step(cm1e_drive_t *drive);
+void cm1e_drive_cia402_step(cm1e_drive_t *drive);
 
 /* drive_virtual.c: without a device */
 cm1e_error_t cm1e_drive_init_virtual(cm1e_drive_t *drive);

@@ -56,7 +56,9 @@ static void give_up(cm1e_drive_t *drive)
 
 static void wait_online(cm1e_drive_t *drive)
 {
-    if (drive->feedback.online && !drive->feedback.fault) {
+    if (drive->watch.absent) {
+        finish(drive, CM1E_ERROR_AXIS_OFFLINE);
+    } else if (drive->feedback.online && !drive->feedback.fault) {
         finish(drive, CM1E_OK);
     } else if (drive->feedback.online && drive->mode.words != drive->mode.wanted->words) {
         /* The error stopped a switch of mode. That switch is given up first, because the words have no meaning until

@@ -137,5 +137,9 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
         say_status(&w, drive);
     say_words(&w, drive);
     const char *more = further(drive);
+    if (fault->error == CM1E_ERROR_AXIS_OFFLINE && drive->watch.absent) {
+        say(&w, ". The slave is optional and absent. Plug it in, then reset the axis with MC_Reset.");
+        return;
+    }
     say(&w, ". %s%s%s, then reset the axis with MC_Reset.", advice(fault->error), more ? ". " : "", more ? more : "");
 }

@@ -133,6 +133,41 @@ void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t 
             look_at_port(log, bus, number, position, port, run_ns);
 }
 
+static void look_at_strangers(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
+{
+    log_slaves_t *slaves = &log->slaves[number];
+    cm1e_stranger_t now[CM1E_STRANGERS];
+    const size_t count = cm1e_bus_strangers(bus, now, CM1E_STRANGERS);
+    for (size_t i = 0; i < count; i++) {
+        bool told = false;
+        for (size_t n = 0; n < slaves->stranger_count; n++)
+            told = told || memcmp(&slaves->strangers[n], &now[i], sizeof now[i]) == 0;
+        if (!told)
+            write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_STRANGER, .axis = -1,
+                                                .code = (int32_t)now[i].product_code,
+                                                .detail = number << 24 | now[i].place, .value = now[i].vendor_id,
+                                                .bound = 65536.0 * now[i].explicit_id + now[i].alias}, run_ns);
+    }
+    memcpy(slaves->strangers, now, count * sizeof *now);
+    slaves->stranger_count = count;
+}
+
+void cm1e_log_presence(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
+{
+    log_slaves_t *slaves = &log->slaves[number];
+    if (slaves->presence_news == cm1e_bus_presence_news(bus))
+        return;
+    slaves->presence_news = cm1e_bus_presence_news(bus);
+    for (uint32_t i = 0; i < cm1e_bus_slave_count(bus); i++) {
+        const cm1e_presence_t now = cm1e_bus_presence(bus, i + 1);
+        if (slaves->presence[i] != (uint8_t)now)
+            write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_SLAVE, .axis = -1, .code = (int32_t)now,
+                                                .detail = number << 24 | (i + 1)}, run_ns);
+        slaves->presence[i] = (uint8_t)now;
+    }
+    look_at_strangers(log, bus, number, run_ns);
+}
+
 /** A break is told when its place is known. One that was mended before that is told without. */
 void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
 {

@@ -8,6 +8,7 @@
 #include "axis/axis_watch.h"
 #include "bus/emergency_ring.h"
 #include "bus/port_watch.h"
+#include "cm1e/hot_connect.h"
 #include "cm1e/log.h"
 #include "core/clock.h"
 #include "core/history.h"
@@ -24,6 +25,10 @@ typedef struct log_slaves {
     uint64_t emergencies;       /**< of all slaves */
     uint32_t operation;         /**< of the bus, in which they were counted */
     uint64_t told[CM1E_MAX_SLAVES];
+    uint64_t presence_news;     /**< of all slaves, told */
+    uint8_t presence[CM1E_MAX_SLAVES];
+    cm1e_stranger_t strangers[CM1E_STRANGERS];
+    size_t stranger_count;
     uint64_t port_news;         /**< faults of all ports, told */
     int64_t ports_quiet_until_ns;
     bool ring_broken;           /**< told */
@@ -54,6 +59,8 @@ void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, in
 void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 /** Where its ring is broken, or that it is whole again. @rt cycle */
 void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
+/** The slaves of a bus that came or went since the last call, and the strangers. @rt cycle */
+void cm1e_log_presence(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "bus/emergency_ring.h"
 #include "bus/port_watch.h"
+#include "bus/presence_text.h"
 #include "scheduler/scheduler_window.h"
 
 static const char *const kind_names[] = {
@@ -20,6 +21,8 @@ static const char *const kind_names[] = {
     [CM1E_LOG_EMERGENCY] = "emergency",
     [CM1E_LOG_PORT] = "port",
     [CM1E_LOG_RING] = "ring",
+    [CM1E_LOG_SLAVE] = "slave",
+    [CM1E_LOG_STRANGER] = "stranger",
 };
 _Static_assert(sizeof kind_names / sizeof *kind_names == CM1E_LOG_KIND_COUNT, "a kind of the log has no name");
 
@@ -81,6 +84,15 @@ static void ring_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char
         snprintf(text, size, "The ring is whole again.");
 }
 
+static void stranger_text(const cm1e_log_event_t *event, char *text, size_t size)
+{
+    const uint32_t addresses = (uint32_t)event->bound;
+    const cm1e_stranger_t stranger = {
+        .place = (uint16_t)event->detail, .alias = (uint16_t)addresses, .explicit_id = (uint16_t)(addresses >> 16),
+        .vendor_id = (uint32_t)event->value, .product_code = (uint32_t)event->code};
+    cm1e_stranger_text(&stranger, text, size);
+}
+
 void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
 {
     uint32_t count;
@@ -97,6 +109,11 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
                  event->detail);
     else if (event->kind == CM1E_LOG_EMERGENCY)
         emergency_text(cm1e_scheduler_bus_at(scheduler, event->detail >> 24), event, text, size);
+    else if (event->kind == CM1E_LOG_SLAVE)
+        cm1e_presence_sentence(cm1e_scheduler_bus_at(scheduler, event->detail >> 24), (uint16_t)event->detail,
+                               (cm1e_presence_t)event->code, text, size);
+    else if (event->kind == CM1E_LOG_STRANGER)
+        stranger_text(event, text, size);
     else if (event->kind == CM1E_LOG_PORT)
         cm1e_port_sentence(cm1e_scheduler_bus_at(scheduler, event->detail >> 20 & 0x0F), (uint16_t)event->detail,
                            event->detail >> 16 & 0x0F, (cm1e_port_fault_t)(event->detail >> 24), (uint32_t)event->code,

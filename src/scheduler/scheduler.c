@@ -296,6 +296,7 @@ static void show(cm1e_scheduler_t *s)
         cm1e_log_emergencies(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
         cm1e_log_ports(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
         cm1e_log_ring(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
+        cm1e_log_presence(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
     }
     for (int i = 0; i < CM1E_WINDOWS; i++)
         if (s->windows[i])

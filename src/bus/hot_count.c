@@ -1,0 +1,116 @@
+/* The working counter of the slaves that are there. A slave that may come and go is counted while it takes part in
+ * Operational. Its inputs show when it has left: a slave that takes part overwrites the marker in them. */
+#include <string.h>
+
+#include "bus/bus_internal.h"
+
+/** A slave is asked so often before it counts as lost; a question and its answer take so many cycles more. */
+enum { ASKED_TIMES = 3, ON_THE_WAY = 4 };
+
+static int takes(const cm1e_bus_slave_t *slave) { return slave->placement.output_bytes > 0 ? 2 : 0; }
+static int gives(const cm1e_bus_slave_t *slave) { return slave->placement.input_bytes > 0; }
+
+static bool is_operational(const cm1e_bus_slave_t *slave) { return slave->watch.al_state == CM1E_AL_OP; }
+
+void cm1e_hot_count_begin(cm1e_bus_t *bus)
+{
+    bus->expected_working_counter = cm1e_soem_expected_working_counter(bus->soem);
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        slave->hot.counted = !slave->hot.planned;
+        slave->hot.outputs_begin = slave->placement.output_offset;
+        slave->hot.inputs_begin = (uint32_t)bus->output_bytes + slave->placement.input_offset;
+        if (slave->hot.planned)
+            bus->expected_working_counter -= takes(slave) + gives(slave);
+    }
+}
+
+/** Those whose inputs show that they have left are taken out. Without inputs nothing shows it: the supervision does. */
+static void take_out(cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const bool silent = gives(slave) && cm1e_bus_is_silent(bus, slave);
+        slave->silent_cycles = silent ? slave->silent_cycles + (slave->silent_cycles < UINT32_MAX) : 0;
+        if (!slave->hot.optional || !slave->hot.counted || !(silent || slave->watch.lost))
+            continue;
+        slave->hot.counted = false;
+        slave->hot.out_since = bus->counters.cycles;
+        bus->expected_working_counter -= takes(slave) + gives(slave);
+        cm1e_hot_note(bus, slave);
+    }
+}
+
+/** Those that take part again are counted, as far as the working counter shows it. */
+static void take_in(cm1e_bus_t *bus, int working_counter)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const int share = takes(slave) + gives(slave);
+        if (slave->hot.counted || slave->hot.away || !is_operational(slave) || slave->silent_cycles > 0 ||
+            !cm1e_recovery_idle(&slave->recovery) || working_counter - bus->expected_working_counter < share)
+            continue;
+        slave->hot.counted = true;
+        bus->expected_working_counter += share;
+        cm1e_hot_note(bus, slave);
+    }
+}
+
+/** Slaves that are not counted may take part or not: on their way to Operational first the inputs count, then the
+ *  outputs. A slave that is counted may have stopped to take outputs, or may have left if it has no inputs: nothing
+ *  shows which one it is, so the optional ones are asked for their state at once. Until each of them can have
+ *  answered, the others go on; after that the working counter is wrong. */
+static bool explains(cm1e_bus_t *bus, int working_counter)
+{
+    int more = working_counter - bus->expected_working_counter, most = 0, least = 0;
+    unsigned asked = 0;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const bool optional = slave->hot.optional && slave->hot.counted;
+        if (!slave->hot.counted && !slave->hot.away) {
+            more -= gives(slave) && slave->silent_cycles == 0;
+            most += takes(slave);
+        }
+        least -= optional ? takes(slave) : 0;
+        asked += optional && takes(slave);
+    }
+    if (more % 2 != 0 || more > most || more < least)
+        return false;
+    bus->search.doubt = more < 0 ? bus->search.doubt + 1 : 0;
+    return bus->search.doubt <= ASKED_TIMES * asked + ON_THE_WAY;
+}
+
+static bool has_lost_one(const cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        if (bus->slaves[i].hot.optional && bus->slaves[i].hot.counted && bus->slaves[i].watch.lost)
+            return true;
+    return false;
+}
+
+bool cm1e_hot_judge(cm1e_bus_t *bus, int working_counter)
+{
+    const bool same = working_counter == bus->expected_working_counter;
+    if (!bus->search.used || (same && !has_lost_one(bus))) {
+        bus->search.doubt = 0;
+        return same;
+    }
+    take_out(bus);
+    take_in(bus, working_counter);
+    return explains(bus, working_counter);
+}
+
+void cm1e_hot_take_inputs(cm1e_bus_t *bus)
+{
+    const uint8_t *inputs = bus->image + bus->output_bytes;
+    if (!bus->search.used) {
+        memcpy(bus->inputs, inputs, bus->input_bytes);
+        return;
+    }
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const cm1e_slave_placement_t *placement = &slave->placement;
+        if (slave->hot.counted)
+            memcpy(bus->inputs + placement->input_offset, inputs + placement->input_offset, placement->input_bytes);
+    }
+}

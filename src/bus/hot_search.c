@@ -1,0 +1,438 @@
+/* Looks for devices that have come: those without a station address of ours. Each gets an address for the search only,
+ * its FMMUs are cleared and it is brought to Init, so that it cannot touch the process data, whoever has configured it
+ * before. Then it is identified by SII, alias and explicit device ID. One that is expected gets its station address, a
+ * stranger none. One datagram at a time, in place of the supervision's own. */
+#include <string.h>
+
+#include "bus/bus_internal.h"
+#include "core/bytes.h"
+#include "device/place.h"
+
+/** Between two counts of the devices, between two walks while somebody is missing, and until a stranger is identified
+ *  again: its switches may have been turned. */
+#define COUNT_PACE_NS INT64_C(20000000)
+#define WALK_PACE_NS INT64_C(300000000)
+#define STRANGER_PACE_NS INT64_C(2000000000)
+/** For one datagram; for the state Init; for the SII; for the explicit device ID, which comes at once or never. */
+#define ANSWER_NS INT64_C(10000000)
+#define INIT_NS INT64_C(500000000)
+#define SCOUT_NS INT64_C(5000000000)
+#define ID_NS INT64_C(100000000)
+
+enum { PROTOCOL_COE = 0x04, PROTOCOL_FOE = 0x08, MAILBOX_OUT_CONTROL = 0x26, MAILBOX_IN_CONTROL = 0x22 };
+
+static void enter(cm1e_search_t *search, cm1e_search_step_t step, int64_t now_ns)
+{
+    static const int64_t times_ns[] = {
+        [SEARCH_INIT] = INIT_NS, [SEARCH_SCOUT] = SCOUT_NS, [SEARCH_ID] = ID_NS + INIT_NS, [SEARCH_RELEASE] = ANSWER_NS,
+    };
+    const int64_t time_ns = (size_t)step < sizeof times_ns / sizeof times_ns[0] ? times_ns[step] : 0;
+    search->step = step;
+    search->entered = false;
+    search->deadline_ns = now_ns + (time_ns ? time_ns : ANSWER_NS);
+}
+
+static uint16_t by_place(uint16_t place) { return (uint16_t)(1 - place); }
+
+static bool is_missing(const cm1e_bus_slave_t *slave) { return slave->hot.away || slave->watch.lost; }
+
+static bool any_missing(const cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        if (is_missing(&bus->slaves[i]))
+            return true;
+    return false;
+}
+
+static void tell_news(cm1e_bus_t *bus) { __atomic_store_n(&bus->search.news, bus->search.news + 1, __ATOMIC_RELAXED); }
+
+/* ---- strangers --------------------------------------------------------------------------------------------------- */
+
+static bool is_known_stranger(const cm1e_search_t *search, uint16_t place)
+{
+    for (uint32_t i = 0; i < search->stranger_count; i++)
+        if (search->strangers[i].place == place)
+            return true;
+    return false;
+}
+
+static void keep_stranger(cm1e_bus_t *bus)
+{
+    cm1e_search_t *search = &bus->search;
+    const cm1e_scouted_t *found = &search->scout.found;
+    const cm1e_stranger_t stranger = {
+        .place = search->place, .alias = search->alias, .explicit_id = search->al.explicit_id,
+        .vendor_id = found->vendor_id, .product_code = found->product_code, .revision = found->revision,
+        .serial_number = found->serial_number};
+    uint32_t at = 0;
+    while (at < search->stranger_count && search->strangers[at].place != stranger.place)
+        at++;
+    if (at == CM1E_STRANGERS)
+        return;
+    const bool same = at < search->stranger_count && memcmp(&search->strangers[at], &stranger, sizeof stranger) == 0;
+    search->strangers[at] = stranger;
+    search->seen_strangers |= 1u << at;
+    if (at == search->stranger_count)
+        __atomic_store_n(&search->stranger_count, at + 1, __ATOMIC_RELEASE);
+    if (!same)
+        tell_news(bus);
+}
+
+/** After a walk: those that are gone. */
+static void forget_strangers(cm1e_bus_t *bus)
+{
+    cm1e_search_t *search = &bus->search;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < search->stranger_count; i++)
+        if (search->seen_strangers >> i & 1)
+            search->strangers[kept++] = search->strangers[i];
+    if (kept != search->stranger_count) {
+        __atomic_store_n(&search->stranger_count, kept, __ATOMIC_RELEASE);
+        tell_news(bus);
+    }
+}
+
+/* ---- who it is --------------------------------------------------------------------------------------------------- */
+
+static cm1e_address_kind_t kind_of(const cm1e_bus_slave_t *slave)
+{
+    const cm1e_axis_config_t *axis = slave->hot.axis;
+    return axis ? axis->address_kind : slave->config ? slave->config->address_kind : CM1E_ADDRESS_POSITION;
+}
+
+/** A vendor of 0: it is recognised by its objects, when it is in Pre-Operational. */
+static bool has_identity(const cm1e_bus_slave_t *slave, const cm1e_scouted_t *found)
+{
+    const bool unknown = slave->info.vendor_id == 0;
+    const bool revision = !slave->config || !slave->config->revision || slave->config->revision == found->revision;
+    return unknown || (slave->info.vendor_id == found->vendor_id && slave->info.product_code == found->product_code &&
+                       revision);
+}
+
+static const cm1e_bus_slave_t *head_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        if (bus->slaves[i].hot.member == 1 && strcmp(bus->slaves[i].hot.group, slave->hot.group) == 0)
+            return &bus->slaves[i];
+    return NULL;
+}
+
+static bool has_address(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+{
+    const cm1e_search_t *search = &bus->search;
+    const cm1e_bus_slave_t *head = slave->hot.member > 1 ? head_of(bus, slave) : NULL;
+    if (slave->hot.member > 1)
+        return head && !is_missing(head) && head->hot.place + slave->hot.member - 1 == search->place;
+    const cm1e_axis_config_t *axis = slave->hot.axis;
+    const unsigned address = axis ? axis->address : slave->config ? slave->config->address : 0;
+    const bool by_alias = kind_of(slave) == CM1E_ADDRESS_ALIAS;
+    return address && address == (by_alias ? search->alias : search->al.explicit_id);
+}
+
+/** The optional slave that it is; NULL: none. */
+static cm1e_bus_slave_t *find_candidate(cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (!slave->hot.optional || !slave->hot.away || !has_address(bus, slave))
+            continue;
+        if (has_identity(slave, &bus->search.scout.found))
+            return slave;
+        slave->hot.refused = "its vendor, product or revision is another one";
+        cm1e_hot_note(bus, slave);
+    }
+    return NULL;
+}
+
+/** A slave that is not optional, and that has lost its station address: its own recovery verifies it. */
+static bool is_one_that_was_lost(cm1e_bus_t *bus)
+{
+    const cm1e_search_t *search = &bus->search;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const cm1e_scouted_t *found = &search->scout.found;
+        if (slave->hot.optional || !slave->watch.lost || slave->facts.alias != search->alias ||
+            slave->info.vendor_id != found->vendor_id || slave->info.product_code != found->product_code ||
+            (slave->info.serial_number && slave->info.serial_number != found->serial_number))
+            continue;
+        if (slave->hot.place != search->place && slave->hot.found)
+            continue; /* another one of the same kind, that is at its own place */
+        slave->hot.place = search->place;
+        slave->hot.found = true;
+        return true;
+    }
+    return false;
+}
+
+/** Whether its explicit device ID decides. */
+static bool is_asked_for_id(const cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->hot.away && slave->hot.member == 1 && kind_of(slave) == CM1E_ADDRESS_EXPLICIT_ID &&
+            has_identity(slave, &bus->search.scout.found))
+            return true;
+    }
+    return false;
+}
+
+static void decide(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    search->candidate = search->scout.good ? find_candidate(bus) : NULL;
+    if (!search->candidate && !(search->scout.good && is_one_that_was_lost(bus)))
+        keep_stranger(bus);
+    enter(search, search->candidate ? SEARCH_GIVE : SEARCH_RELEASE, now_ns);
+}
+
+/* ---- it is one of ours ------------------------------------------------------------------------------------------- */
+
+static void put_mailbox(uint8_t *sync_manager, uint16_t start, uint16_t length, uint8_t control)
+{
+    memset(sync_manager, 0, SYNC_MANAGER_BYTES);
+    cm1e_put_u16(sync_manager, start);
+    cm1e_put_u16(sync_manager + 2, length);
+    sync_manager[4] = control;
+    sync_manager[6] = length > 0;
+}
+
+/** What the scan would have found. */
+static void take_facts(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
+{
+    const cm1e_scouted_t *found = &bus->search.scout.found;
+    const bool mailbox = found->mailbox_out_length > 0 && found->mailbox_in_length > 0;
+    const bool coe = mailbox && found->protocols & PROTOCOL_COE, foe = mailbox && found->protocols & PROTOCOL_FOE;
+    slave->hot.scouted = *found;
+    slave->info.vendor_id = slave->facts.vendor_id = found->vendor_id;
+    slave->info.product_code = slave->facts.product_code = found->product_code;
+    slave->info.revision = slave->facts.revision = found->revision;
+    slave->info.serial_number = slave->facts.serial_number = found->serial_number;
+    slave->info.alias = slave->facts.alias = bus->search.alias;
+    slave->facts.coe = coe;
+    slave->facts.foe = foe;
+    slave->coe.mailbox = (cm1e_mailbox_t){
+        .station = slave->facts.station, .out_start = found->mailbox_out_start,
+        .out_length = coe || foe ? found->mailbox_out_length : 0, .in_start = found->mailbox_in_start,
+        .in_length = coe || foe ? found->mailbox_in_length : 0,
+    };
+    put_mailbox(slave->placement.sync_managers[0], found->mailbox_out_start, found->mailbox_out_length,
+                MAILBOX_OUT_CONTROL);
+    put_mailbox(slave->placement.sync_managers[1], found->mailbox_in_start, found->mailbox_in_length,
+                MAILBOX_IN_CONTROL);
+}
+
+/** The serial number of a slave that may come and go is not compared: a tool is known by its address. */
+static void welcome(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
+{
+    slave->hot.place = bus->search.place;
+    slave->hot.away = false;
+    slave->hot.refused = NULL;
+    slave->unanswered = 0;
+    if (slave->hot.planned) {
+        take_facts(bus, slave);
+    } else {
+        slave->info.serial_number = slave->facts.serial_number = bus->search.scout.found.serial_number;
+        slave->info.alias = slave->facts.alias = bus->search.alias;
+    }
+    slave->watch = (cm1e_slave_watch_t){.al_state = CM1E_AL_INIT};
+    slave->info.al_state = CM1E_AL_INIT;
+    if (cm1e_hot_may_recover(slave, false))
+        cm1e_recovery_begin_found(slave, now_ns);
+    cm1e_hot_note(bus, slave);
+}
+
+/* ---- the walk ---------------------------------------------------------------------------------------------------- */
+
+static void pause_search(cm1e_search_t *search, int64_t now_ns)
+{
+    cm1e_scout_cancel(&search->scout);
+    search->step = SEARCH_PAUSE;
+    search->due_ns = now_ns + COUNT_PACE_NS;
+}
+
+static void next_place(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    if (search->place < search->count) {
+        search->place++;
+        enter(search, SEARCH_WALK, now_ns);
+        return;
+    }
+    forget_strangers(bus);
+    search->walk_ns = now_ns + (any_missing(bus) ? WALK_PACE_NS : STRANGER_PACE_NS);
+    pause_search(search, now_ns);
+}
+
+static void take_count(cm1e_bus_t *bus, int working_counter, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    const uint16_t count = working_counter > CM1E_MAX_SLAVES ? CM1E_MAX_SLAVES : (uint16_t)working_counter;
+    const bool changed = count != search->count;
+    const bool due = now_ns >= search->walk_ns && (any_missing(bus) || search->stranger_count);
+    search->count = count;
+    if (!changed && !due) {
+        pause_search(search, now_ns);
+        return;
+    }
+    if (changed)
+        search->strangers_ns = 0;
+    search->again = now_ns >= search->strangers_ns;
+    if (search->again)
+        search->strangers_ns = now_ns + STRANGER_PACE_NS;
+    search->seen_strangers = 0;
+    search->place = 0;
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        bus->slaves[i].hot.seen = bus->slaves[i].hot.found = false;
+    next_place(bus, now_ns);
+}
+
+/** One of ours is where it answers. The second one with its address is none of ours. */
+static bool take_known(cm1e_bus_t *bus, uint16_t station)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->facts.station != station || slave->hot.away || slave->hot.seen)
+            continue;
+        slave->hot.seen = true;
+        slave->hot.place = bus->search.place;
+        return true;
+    }
+    return false;
+}
+
+static void take_device(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    search->station = cm1e_get_u16(d->data);
+    search->alias = cm1e_get_u16(d->data + 2);
+    if (search->station && take_known(bus, search->station)) {
+        next_place(bus, now_ns);
+        return;
+    }
+    if (search->station == 0 && !search->again && is_known_stranger(search, search->place)) {
+        for (uint32_t i = 0; i < search->stranger_count; i++)
+            if (search->strangers[i].place == search->place)
+                search->seen_strangers |= 1u << i;
+        next_place(bus, now_ns);
+        return;
+    }
+    search->al = (cm1e_al_machine_t){.station = CM1E_SEARCH_STATION};
+    search->scout.found = (cm1e_scouted_t){0};
+    enter(search, SEARCH_ADDRESS, now_ns);
+}
+
+/* ---- one datagram at a time -------------------------------------------------------------------------------------- */
+
+static bool fill(cm1e_search_t *search, cm1e_datagram_t *d)
+{
+    switch (search->step) {
+    case SEARCH_COUNT:
+        cm1e_datagram_set(d, COMMAND_BRD, 0, 0, 1);
+        return true;
+    case SEARCH_WALK:
+        cm1e_datagram_set(d, COMMAND_APRD, by_place(search->place), REG_STATION_ADDRESS, 4);
+        return true;
+    case SEARCH_ADDRESS:
+        cm1e_datagram_set(d, COMMAND_APWR, by_place(search->place), REG_STATION_ADDRESS, 2);
+        cm1e_put_u16(d->data, CM1E_SEARCH_STATION);
+        return true;
+    case SEARCH_CLEAR:
+        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_FMMU0, 4 * FMMU_BYTES);
+        memset(d->data, 0, 4 * FMMU_BYTES);
+        return true;
+    case SEARCH_GIVE:
+        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_STATION_ADDRESS, 2);
+        cm1e_put_u16(d->data, search->candidate->facts.station);
+        return true;
+    case SEARCH_RELEASE:
+        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_STATION_ADDRESS, 2);
+        cm1e_put_u16(d->data, 0);
+        return true;
+    default:
+        return false;
+    }
+}
+
+/** Runs a machine of several datagrams; the step after it follows when it has ended. */
+static bool run_machine(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    const bool begins = !search->entered;
+    search->entered = true;
+    if (search->step == SEARCH_SCOUT) {
+        if (begins)
+            cm1e_scout_begin(&search->scout, CM1E_SEARCH_STATION, search->deadline_ns);
+        if (cm1e_scout_next(&search->scout, d, now_ns))
+            return true;
+        if (search->scout.good && is_asked_for_id(bus))
+            enter(search, SEARCH_ID, now_ns);
+        else
+            decide(bus, now_ns);
+        return false;
+    }
+    if (begins && search->step == SEARCH_INIT)
+        cm1e_al_request(&search->al, CM1E_AL_INIT, search->deadline_ns);
+    else if (begins)
+        cm1e_al_read_id(&search->al, now_ns + ID_NS);
+    if (cm1e_al_next(&search->al, d, now_ns))
+        return true;
+    if (!cm1e_al_idle(&search->al))
+        return false;
+    if (search->step == SEARCH_ID)
+        decide(bus, now_ns);
+    else /* a device that does not reach Init is still starting up */
+        enter(search, search->al.error == CM1E_OK ? SEARCH_SCOUT : SEARCH_RELEASE, now_ns);
+    return false;
+}
+
+bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    if (!search->used || (search->step == SEARCH_PAUSE && now_ns < search->due_ns))
+        return false;
+    search->turn = !search->turn; /* every second look is the supervision's own */
+    if (search->turn)
+        return false;
+    if (search->step == SEARCH_PAUSE)
+        enter(search, SEARCH_COUNT, now_ns);
+    const bool machine = search->step == SEARCH_INIT || search->step == SEARCH_SCOUT || search->step == SEARCH_ID;
+    if (!machine && now_ns >= search->deadline_ns) { /* it is gone */
+        pause_search(search, now_ns);
+        search->count = 0;
+        return false;
+    }
+    return machine ? run_machine(bus, d, now_ns) : fill(search, d);
+}
+
+void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    if (search->step == SEARCH_INIT || search->step == SEARCH_ID)
+        cm1e_al_result(&search->al, d, now_ns);
+    else if (search->step == SEARCH_SCOUT)
+        cm1e_scout_result(&search->scout, d);
+    else if (search->step == SEARCH_COUNT && d->working_counter >= 0)
+        take_count(bus, d->working_counter, now_ns);
+    if (d->working_counter != 1)
+        return; /* repeated until the deadline */
+    switch (search->step) {
+    case SEARCH_WALK:
+        take_device(bus, d, now_ns);
+        break;
+    case SEARCH_ADDRESS:
+        enter(search, SEARCH_CLEAR, now_ns);
+        break;
+    case SEARCH_CLEAR:
+        enter(search, SEARCH_INIT, now_ns);
+        break;
+    case SEARCH_GIVE:
+        welcome(bus, search->candidate, now_ns);
+        next_place(bus, now_ns);
+        break;
+    case SEARCH_RELEASE:
+        next_place(bus, now_ns);
+        break;
+    default:
+        break;
+    }
+}
