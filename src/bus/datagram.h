@@ -16,6 +16,7 @@ enum { CM1E_DATAGRAM_MAX = 1486 };
 typedef enum cm1e_command {
     COMMAND_APRD = 1,
     COMMAND_APWR = 2,
+    COMMAND_APRW = 3,  /**< what was there before comes back; the working counter is 3 */
     COMMAND_FPRD = 4,
     COMMAND_FPWR = 5,
     COMMAND_BRD = 7,

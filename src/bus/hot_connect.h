@@ -20,9 +20,9 @@ typedef struct cm1e_bus_slave cm1e_bus_slave_t;
 typedef struct cm1e_hot {
     bool optional;
     bool planned;            /**< it was never there: its process data are planned, and not read */
+    bool moves;              /**< there are optional slaves, which move places when they come and go */
     bool away;               /**< nothing on the wire is identified as this slave */
     bool seen;               /**< in this walk of the search */
-    bool found;              /**< in this walk a device was found that may be this slave, which is not optional */
     bool counted;            /**< its share is in the expected working counter; else it may take part, and need not */
     uint8_t member;          /**< its place in its group; 1: it has an address of its own */
     uint8_t before;          /**< optional slaves before it on the wire at the scan */
@@ -45,6 +45,8 @@ typedef enum cm1e_search_step {
     SEARCH_COUNT,            /**< how many devices are on the wire? */
     SEARCH_WALK,             /**< station address and alias of one after the other */
     SEARCH_ADDRESS,          /**< a device without an address of ours gets one for the search */
+    SEARCH_RETURN,           /**< it was another device, because places have moved: it gets its own address again */
+    SEARCH_ALIAS,
     SEARCH_CLEAR,            /**< its FMMUs: it must not touch our process data */
     SEARCH_INIT,
     SEARCH_SCOUT,            /**< its SII */
@@ -61,7 +63,12 @@ typedef struct cm1e_search {
     int64_t due_ns, deadline_ns, walk_ns;
     uint16_t count;          /**< devices on the wire */
     uint16_t place, alias, station; /**< of the device that is looked at */
+    uint16_t returned;       /**< station address that is given back */
+    uint16_t orphan;         /**< place of a device with the address of the search; 0: none */
     bool entered, turn;
+    bool only_looks;         /**< in this walk no device gets the address of the search */
+    uint8_t doubles;         /**< walks in a row in which a slave was met twice */
+    bool ends;               /**< the walk, with the device that is looked at */
     bool again;              /**< strangers are identified again in this walk */
     int64_t strangers_ns;    /**< when that is due next */
     unsigned doubt;          /**< cycles in a row in which an optional slave may have left (hot_count.c) */

@@ -67,7 +67,7 @@ static bool explains(cm1e_bus_t *bus, int working_counter)
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         const bool optional = slave->hot.optional && slave->hot.counted;
-        if (!slave->hot.counted && !slave->hot.away) {
+        if (!slave->hot.counted && !(slave->hot.planned && slave->hot.away)) {
             more -= gives(slave) && slave->silent_cycles == 0;
             most += takes(slave);
         }

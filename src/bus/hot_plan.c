@@ -100,7 +100,10 @@ cm1e_error_t cm1e_hot_describe(cm1e_bus_t *bus, cm1e_diag_t *diag)
         }
         take_settings(bus, slave);
         bus->search.used = bus->search.used || slave->hot.optional;
-        cm1e_hot_note(bus, slave);
+    }
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        bus->slaves[i].hot.moves = bus->search.used;
+        cm1e_hot_note(bus, &bus->slaves[i]);
     }
     return CM1E_OK;
 }

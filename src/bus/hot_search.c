@@ -19,6 +19,7 @@
 #define SCOUT_NS INT64_C(5000000000)
 #define ID_NS INT64_C(100000000)
 
+enum { APRW_WORKING_COUNTER = 3, DOUBLES_IN_A_ROW = 3 };
 enum { PROTOCOL_COE = 0x04, PROTOCOL_FOE = 0x08, MAILBOX_OUT_CONTROL = 0x26, MAILBOX_IN_CONTROL = 0x22 };
 
 static void enter(cm1e_search_t *search, cm1e_search_step_t step, int64_t now_ns)
@@ -144,24 +145,33 @@ static cm1e_bus_slave_t *find_candidate(cm1e_bus_t *bus)
     return NULL;
 }
 
-/** A slave that is not optional, and that has lost its station address: its own recovery verifies it. */
-static bool is_one_that_was_lost(cm1e_bus_t *bus)
+/** Whether a slave that is not optional can be at this place: their order on the wire does not change. */
+static bool is_in_order(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *other = &bus->slaves[i];
+        if (other == slave || other->hot.optional || other->watch.lost)
+            continue;
+        if ((other->info.position < slave->info.position) != (other->hot.place < bus->search.place))
+            return false;
+    }
+    return true;
+}
+
+/** The slave that is not optional and that has lost its station address; NULL: none. */
+static cm1e_bus_slave_t *find_lost(cm1e_bus_t *bus)
 {
     const cm1e_search_t *search = &bus->search;
+    const cm1e_scouted_t *found = &search->scout.found;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        const cm1e_scouted_t *found = &search->scout.found;
-        if (slave->hot.optional || !slave->watch.lost || slave->facts.alias != search->alias ||
-            slave->info.vendor_id != found->vendor_id || slave->info.product_code != found->product_code ||
-            (slave->info.serial_number && slave->info.serial_number != found->serial_number))
-            continue;
-        if (slave->hot.place != search->place && slave->hot.found)
-            continue; /* another one of the same kind, that is at its own place */
-        slave->hot.place = search->place;
-        slave->hot.found = true;
-        return true;
+        const bool same = slave->facts.alias == search->alias && slave->info.vendor_id == found->vendor_id &&
+                          slave->info.product_code == found->product_code &&
+                          slave->info.serial_number == found->serial_number;
+        if (!slave->hot.optional && slave->watch.lost && same && is_in_order(bus, slave))
+            return slave;
     }
-    return false;
+    return NULL;
 }
 
 /** Whether its explicit device ID decides. */
@@ -180,7 +190,9 @@ static void decide(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_search_t *search = &bus->search;
     search->candidate = search->scout.good ? find_candidate(bus) : NULL;
-    if (!search->candidate && !(search->scout.good && is_one_that_was_lost(bus)))
+    if (!search->candidate && search->scout.good)
+        search->candidate = find_lost(bus);
+    if (!search->candidate)
         keep_stranger(bus);
     enter(search, search->candidate ? SEARCH_GIVE : SEARCH_RELEASE, now_ns);
 }
@@ -225,11 +237,15 @@ static void take_facts(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 static void welcome(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     slave->hot.place = bus->search.place;
+    if (!slave->hot.optional)
+        return; /* its recovery goes on, or waits for a request */
     slave->hot.away = false;
     slave->hot.refused = NULL;
     slave->unanswered = 0;
     if (slave->hot.planned) {
         take_facts(bus, slave);
+        if (!slave->facts.coe) /* also its first sync managers carry process data; whether it fits is judged later */
+            (void)cm1e_hot_place(slave);
     } else {
         slave->info.serial_number = slave->facts.serial_number = bus->search.scout.found.serial_number;
         slave->info.alias = slave->facts.alias = bus->search.alias;
@@ -250,15 +266,54 @@ static void pause_search(cm1e_search_t *search, int64_t now_ns)
     search->due_ns = now_ns + COUNT_PACE_NS;
 }
 
+/** A device has the address of the search, and nobody knows which one it had: an answer was lost. It is the one of ours
+ *  that was not seen; else it is a new one. */
+static void take_orphan(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    search->place = search->orphan;
+    search->orphan = 0;
+    search->ends = true; /* all places have been seen */
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->hot.seen || slave->hot.away)
+            continue;
+        search->returned = slave->facts.station;
+        enter(search, SEARCH_RETURN, now_ns);
+        return;
+    }
+    enter(search, SEARCH_ALIAS, now_ns);
+}
+
+/** At once, from the beginning. A device may have the address of the search: until it is known which one, no other
+ *  gets it. */
+static void walk_again(cm1e_search_t *search, int64_t now_ns)
+{
+    pause_search(search, now_ns);
+    search->due_ns = now_ns;
+    search->count = 0;
+    search->only_looks = true;
+}
+
 static void next_place(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_search_t *search = &bus->search;
-    if (search->place < search->count) {
+    if (search->place < search->count && !search->ends) {
         search->place++;
         enter(search, SEARCH_WALK, now_ns);
         return;
     }
+    if (search->orphan) {
+        take_orphan(bus, now_ns);
+        return;
+    }
+    if (search->only_looks) {
+        walk_again(search, now_ns);
+        search->only_looks = false;
+        return;
+    }
     forget_strangers(bus);
+    search->doubles = 0;
     search->walk_ns = now_ns + (any_missing(bus) ? WALK_PACE_NS : STRANGER_PACE_NS);
     pause_search(search, now_ns);
 }
@@ -280,24 +335,40 @@ static void take_count(cm1e_bus_t *bus, int working_counter, int64_t now_ns)
     if (search->again)
         search->strangers_ns = now_ns + STRANGER_PACE_NS;
     search->seen_strangers = 0;
-    search->place = 0;
+    search->place = search->orphan = 0;
+    search->ends = false;
     for (uint32_t i = 0; i < bus->slave_count; i++)
-        bus->slaves[i].hot.seen = bus->slaves[i].hot.found = false;
+        bus->slaves[i].hot.seen = false;
     next_place(bus, now_ns);
 }
 
-/** One of ours is where it answers. The second one with its address is none of ours. */
-static bool take_known(cm1e_bus_t *bus, uint16_t station)
+/** The slave of ours with this station address; NULL: none. */
+static cm1e_bus_slave_t *find_known(cm1e_bus_t *bus, uint16_t station)
 {
-    for (uint32_t i = 0; i < bus->slave_count; i++) {
-        cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (slave->facts.station != station || slave->hot.away || slave->hot.seen)
-            continue;
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        if (bus->slaves[i].facts.station == station && !bus->slaves[i].hot.away)
+            return &bus->slaves[i];
+    return NULL;
+}
+
+/** One of ours is where it answers. If it seems to be there twice, a slave has come meanwhile, and it was met again at
+ *  its next place; or there are two with its address, and the second one is none of ours. */
+static bool take_known(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    cm1e_bus_slave_t *slave = search->station ? find_known(bus, search->station) : NULL;
+    if (!slave)
+        return false;
+    if (!slave->hot.seen) {
         slave->hot.seen = true;
-        slave->hot.place = bus->search.place;
+        slave->hot.place = search->place;
+        next_place(bus, now_ns);
         return true;
     }
-    return false;
+    if (++search->doubles > DOUBLES_IN_A_ROW)
+        return false;
+    walk_again(search, now_ns);
+    return true;
 }
 
 static void take_device(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_ns)
@@ -305,10 +376,8 @@ static void take_device(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
     cm1e_search_t *search = &bus->search;
     search->station = cm1e_get_u16(d->data);
     search->alias = cm1e_get_u16(d->data + 2);
-    if (search->station && take_known(bus, search->station)) {
-        next_place(bus, now_ns);
+    if (take_known(bus, now_ns))
         return;
-    }
     if (search->station == 0 && !search->again && is_known_stranger(search, search->place)) {
         for (uint32_t i = 0; i < search->stranger_count; i++)
             if (search->strangers[i].place == search->place)
@@ -318,7 +387,26 @@ static void take_device(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
     }
     search->al = (cm1e_al_machine_t){.station = CM1E_SEARCH_STATION};
     search->scout.found = (cm1e_scouted_t){0};
-    enter(search, SEARCH_ADDRESS, now_ns);
+    if (search->station == CM1E_SEARCH_STATION || search->only_looks) {
+        search->orphan = search->station == CM1E_SEARCH_STATION ? search->place : search->orphan;
+        next_place(bus, now_ns);
+    } else {
+        enter(search, SEARCH_ADDRESS, now_ns);
+    }
+}
+
+/** Between two datagrams a slave before this place may have come or gone: then one that runs got the address of the
+ *  search, and gets its own back before anything else is written to it. */
+static void take_address(cm1e_search_t *search, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    const uint16_t before = cm1e_get_u16(d->data);
+    search->returned = before;
+    if (before == search->station)
+        enter(search, SEARCH_ALIAS, now_ns);
+    else if (before != CM1E_SEARCH_STATION)
+        enter(search, SEARCH_RETURN, now_ns);
+    else
+        walk_again(search, now_ns);
 }
 
 /* ---- one datagram at a time -------------------------------------------------------------------------------------- */
@@ -333,8 +421,15 @@ static bool fill(cm1e_search_t *search, cm1e_datagram_t *d)
         cm1e_datagram_set(d, COMMAND_APRD, by_place(search->place), REG_STATION_ADDRESS, 4);
         return true;
     case SEARCH_ADDRESS:
-        cm1e_datagram_set(d, COMMAND_APWR, by_place(search->place), REG_STATION_ADDRESS, 2);
+        cm1e_datagram_set(d, COMMAND_APRW, by_place(search->place), REG_STATION_ADDRESS, 2);
         cm1e_put_u16(d->data, CM1E_SEARCH_STATION);
+        return true;
+    case SEARCH_RETURN:
+        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_STATION_ADDRESS, 2);
+        cm1e_put_u16(d->data, search->returned);
+        return true;
+    case SEARCH_ALIAS:
+        cm1e_datagram_set(d, COMMAND_FPRD, CM1E_SEARCH_STATION, REG_STATION_ALIAS, 2);
         return true;
     case SEARCH_CLEAR:
         cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_FMMU0, 4 * FMMU_BYTES);
@@ -397,8 +492,8 @@ bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
         enter(search, SEARCH_COUNT, now_ns);
     const bool machine = search->step == SEARCH_INIT || search->step == SEARCH_SCOUT || search->step == SEARCH_ID;
     if (!machine && now_ns >= search->deadline_ns) { /* it is gone */
-        pause_search(search, now_ns);
-        search->count = 0;
+        walk_again(search, now_ns);
+        search->due_ns = now_ns + COUNT_PACE_NS;
         return false;
     }
     return machine ? run_machine(bus, d, now_ns) : fill(search, d);
@@ -413,13 +508,19 @@ void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
         cm1e_scout_result(&search->scout, d);
     else if (search->step == SEARCH_COUNT && d->working_counter >= 0)
         take_count(bus, d->working_counter, now_ns);
+    if (d->working_counter == APRW_WORKING_COUNTER && search->step == SEARCH_ADDRESS)
+        take_address(search, d, now_ns);
     if (d->working_counter != 1)
         return; /* repeated until the deadline */
     switch (search->step) {
     case SEARCH_WALK:
         take_device(bus, d, now_ns);
         break;
-    case SEARCH_ADDRESS:
+    case SEARCH_RETURN:
+        walk_again(search, now_ns);
+        break;
+    case SEARCH_ALIAS:
+        search->alias = cm1e_get_u16(d->data);
         enter(search, SEARCH_CLEAR, now_ns);
         break;
     case SEARCH_CLEAR:

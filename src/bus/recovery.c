@@ -164,6 +164,8 @@ static void result_find(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64
     /* Another station address: a later slave is now at this place, and the expected one is still missing. */
     if (station == slave->facts.station && alias != slave->facts.alias)
         enter(slave, RECOVERY_RELEASE, now_ns);
+    else if (station == 0 && slave->hot.moves)
+        fail(slave, now_ns); /* the search gives the address to whom it has identified */
     else if ((station != 0 && station != slave->facts.station) || alias != slave->facts.alias)
         fail(slave, now_ns);
     else
@@ -174,18 +176,44 @@ static bool next_address(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
 {
     (void)now_ns;
     slave->recovery.address_given = true;
-    cm1e_dc_was_off(slave);
-    cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
+    cm1e_datagram_set(d, COMMAND_APRW, by_place(slave), REG_STATION_ADDRESS, 2);
     cm1e_put_u16(d->data, slave->facts.station);
     return true;
 }
 
-/** Addressed by its place, because another slave may answer at the address too. The place of an optional one is not
- *  fixed, and it was identified at its address. */
+static void result_address(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    const uint16_t before = cm1e_get_u16(d->data);
+    memcpy(slave->recovery.data, d->data, sizeof before);
+    if (before != 0 && before != slave->facts.station) {
+        enter(slave, RECOVERY_RETURN, now_ns);
+        return;
+    }
+    cm1e_dc_was_off(slave);
+    enter(slave, RECOVERY_LOOK, now_ns);
+}
+
+static bool next_return(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    slave->recovery.address_given = false;
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_STATION_ADDRESS, 2);
+    memcpy(d->data, slave->recovery.data, 2);
+    return true;
+}
+
+static void result_return(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)d;
+    enter(slave, RECOVERY_PAUSE, now_ns);
+}
+
+/** Addressed by its place, because another slave may answer at the address too; but where optional slaves come and go,
+ *  the slave at a place may be another one by now. */
 static bool next_release(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
-    if (slave->hot.optional)
+    if (slave->hot.moves)
         cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_STATION_ADDRESS, 2);
     else
         cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
@@ -584,7 +612,8 @@ static void result_coe(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_
 
 static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_FIND] = {STEP_NS, next_find, result_find},
-    [RECOVERY_ADDRESS] = {STEP_NS, next_address, result_next_step},
+    [RECOVERY_ADDRESS] = {STEP_NS, next_address, result_address},
+    [RECOVERY_RETURN] = {STEP_NS, next_return, result_return},
     [RECOVERY_LOOK] = {STEP_NS, next_look, result_look},
     [RECOVERY_EEPROM] = {STEP_NS, next_eeprom, result_next_step},
     [RECOVERY_INIT] = {CM1E_STATE_TIMEOUT_NS, next_init, result_al},
@@ -635,6 +664,6 @@ void cm1e_recovery_result(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int
         return;
     /* The sub-machines handle losses themselves; a register without an answer is read again until the deadline. */
     const bool machine = actions[step].result == result_al || actions[step].result == result_coe;
-    if (machine || d->working_counter == 1)
+    if (machine || d->working_counter == (d->command == COMMAND_APRW ? 3 : 1))
         actions[step].result(slave, d, now_ns);
 }

@@ -17,6 +17,7 @@ typedef enum cm1e_recovery_step {
     RECOVERY_PAUSE,
     RECOVERY_FIND,           /**< station address and alias at its place on the wire */
     RECOVERY_ADDRESS,        /**< give it its station address again */
+    RECOVERY_RETURN,         /**< places have moved, and a slave that runs got the address: it gets its own again */
     RECOVERY_LOOK,           /**< AL status: how much is left of its configuration? */
     RECOVERY_EEPROM,         /**< leave the SII to the device */
     RECOVERY_INIT,

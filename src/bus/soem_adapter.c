@@ -245,7 +245,8 @@ bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t timeout_ns)
     const bool ours = is_answer(d, frame);
     if (ours) {
         d->working_counter = cm1e_get_u16(frame + EC_HEADERSIZE + d->length);
-        if (d->command == COMMAND_FPRD || d->command == COMMAND_APRD || d->command == COMMAND_BRD)
+        if (d->command == COMMAND_FPRD || d->command == COMMAND_APRD || d->command == COMMAND_APRW ||
+            d->command == COMMAND_BRD)
             memcpy(d->data, frame + EC_HEADERSIZE, d->length);
     }
     ecx_setbufstat(&soem->port, d->frame_index, EC_BUF_EMPTY);

@@ -89,7 +89,6 @@ static void bind(cm1e_drive_t *drive)
         cm1e_drive_fail(drive, drive->unbound);
         return;
     }
-    drive->actual = (cm1e_drive_actual_t){0};
     cm1e_drive_mode_forget(drive);
 }
 

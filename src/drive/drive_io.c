@@ -110,6 +110,7 @@ cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              out ? 0x6061 : 0x6060, out ? 0x6060 : 0x6061);
     }
     profile_objects(drive);
+    drive->actual = (cm1e_drive_actual_t){0};
     drive->feedback.digital_known = drive->image.in_digital.bytes > 0;
     return CM1E_OK;
 }
