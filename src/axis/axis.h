@@ -166,6 +166,9 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns);
 /** Called before cm1e_axis_outputs() after a few cycles without a frame. The target is repeated until the next answer
  *  shows whether the motor has slowed down. @rt cycle */
 void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed);
+/** Called before cm1e_axis_outputs() where axes of several buses share a cycle: a bus may have been silent while the
+ *  others were not, and all slaves see it before any axis goes on. @rt cycle */
+void cm1e_axis_meet(cm1e_axis_t *const *axes, uint32_t count);
 
 /** Starts a command, or refuses it; then *id is 0 and nothing has changed. CM1E_ERROR_UNSUPPORTED: the profiles of a
  *  drive (`motion: drive`) cannot do it. @rt cycle */

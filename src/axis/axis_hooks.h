@@ -53,6 +53,8 @@ typedef struct coupling_hooks {
      *  their master. */
     void (*resume_masters)(cm1e_axis_t *axis, int64_t pause_ns);
     void (*resume_slaves)(cm1e_axis_t *axis);
+    /** Called before any axis makes its set-point, while the axis follows: masters on another bus may be silent. */
+    void (*look_across)(cm1e_axis_t *axis);
     /** Ends running and waiting phase shifts. */
     void (*phasing_end)(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
     /** The status of a phase shift; false: `id` neither runs nor waits. */

@@ -156,6 +156,11 @@ static bool motor_goes_on(const cm1e_axis_t *axis)
     return axis->mode == CM1E_MODE_CSV || cm1e_drive_is_virtual(&axis->drive);
 }
 
+bool cm1e_axis_stops_unheard(const cm1e_axis_t *axis)
+{
+    return !motor_goes_on(axis) && axis->silence.silent > CM1E_AXIS_RIDDEN_OUT_CYCLES;
+}
+
 /* u/s; no more, so that the motor does not exceed its maximum velocity while it gets back to its speed. */
 static double highest_after(const cm1e_axis_t *axis, int silent_cycles)
 {
@@ -299,4 +304,14 @@ void cm1e_axis_after_silence(cm1e_axis_t *axis)
         go_on_or_begin_anew(axis);
     if (axis->coupling_hooks)
         axis->coupling_hooks->resume_slaves(axis);
+}
+
+/* First the axes of buses that were silent, then those that saw them from other buses: these go on without a step. */
+void cm1e_axis_meet(cm1e_axis_t *const *axes, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        cm1e_axis_after_silence(axes[i]);
+    for (uint32_t i = 0; i < count; i++)
+        if (axis_follows(axes[i]))
+            axes[i]->coupling_hooks->look_across(axes[i]);
 }

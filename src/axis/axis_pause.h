@@ -14,6 +14,8 @@ void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost);
 static inline bool cm1e_axis_note_blind(cm1e_axis_t *axis, bool blind) { return axis->silence.blind = blind; }
 /** Called before the set-point of the first cycle in which a frame has come back. */
 void cm1e_axis_after_silence(cm1e_axis_t *axis);
+/** Whether the motor has no new target for so long that it stops (CSP). */
+bool cm1e_axis_stops_unheard(const cm1e_axis_t *axis);
 /** Counts by which a motor has gone on in a silence that ended just now (CSV). */
 double cm1e_axis_ran_on(const cm1e_axis_t *axis);
 

@@ -49,7 +49,7 @@ static double velocity_to_place(const cm1e_axis_t *axis, const from_t *f)
 static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t *f, double jerk)
 {
     const catch_up_t *catch_up = &axis->coupling->catch_up;
-    if (axis->coupling->now->to_position)
+    if (axis->coupling->now->to_position && !catch_up->momentary)
         return cm1e_cam_leaves(axis, axis->coupling->now, &catch_up->asked);
     const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const double now = f->velocity + catch_up->now.velocity, way = catch_up->now.velocity > 0.0 ? -1.0 : 1.0;
@@ -82,7 +82,9 @@ static bool goes_to_place(const cm1e_axis_t *axis, const from_t *f, bool steady)
 {
     const double next_to_nothing = 1e-4 * axis->limits.maximum.velocity;
     const coupling_t *c = axis->coupling;
-    return c->now->to_position || (c->catch_up.made_up && steady && room_beside(axis, f) > next_to_nothing);
+    if (c->now->to_position)
+        return !c->catch_up.momentary;
+    return (c->catch_up.made_up && steady && room_beside(axis, f) > next_to_nothing);
 }
 
 static void next_of_catch_up(cm1e_axis_t *axis)
@@ -255,7 +257,7 @@ static void catch_up_ended(cm1e_axis_t *axis, const from_t *f)
         end_catch_up(axis);
         return;
     }
-    catch_up->held_back = false;
+    catch_up->held_back = catch_up->momentary = false;
     catch_up->to_place = goes_to_place(axis, f, f->acceleration == 0.0);
     if (!catch_up->to_place)
         return;
@@ -384,8 +386,11 @@ static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *left)
 }
 
 /* Begins the catch-up from the state `from`. If lost distance is not made up, the coupling function begins at the
- * position of the axis. A difference that is only rounding does not move the anchor, because it would add up. */
-static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up)
+ * position of the axis. A difference that is only rounding does not move the anchor, because it would add up. `across`:
+ * a master on another bus may have changed its velocity at any place of a cam. Then the velocity comes first, with all
+ * that the cam leaves there, and the position after it, as at the beginning of a cam. */
+static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up,
+                           bool across)
 {
     coupling_t *c = axis->coupling;
     from_t f;
@@ -398,7 +403,7 @@ static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
     }
     c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
-    c->catch_up = (catch_up_t){.asked = *asked, .made_up = made_up,
+    c->catch_up = (catch_up_t){.asked = *asked, .made_up = made_up, .momentary = across && c->now->to_position,
                        .now = {counts / axis->position.scale, from->velocity - f.velocity,
                                from->acceleration - f.acceleration},
                        .held_back = f.acceleration != 0.0};
@@ -420,7 +425,7 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     cm1e_coupling_list_links(follow);
     c->now = follow;
     c->end_of_profile = c->stopping = c->due = false;
-    begin_catch_up(axis, from, asked, c->now->to_position);
+    begin_catch_up(axis, from, asked, c->now->to_position, false);
     cm1e_axis_set_source(axis, &cm1e_source_coupling);
     cm1e_axis_guard_renew(axis);
     cm1e_axis_set_synchronizing(axis, !follow->in_step);
@@ -437,6 +442,7 @@ static void begin_anew(cm1e_axis_t *axis)
     const from_t from = from_set(axis);
     const cm1e_motion_limits_t asked = c->catch_up.asked;
     cm1e_phasing_stand(axis);
+    const bool across = cm1e_coupling_settle(axis);
     const master_trouble_t trouble = cm1e_coupling_look(axis, c->now);
     if (trouble && !(c->stopping && trouble == MASTER_STOPPING)) {
         (void)stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
@@ -446,7 +452,20 @@ static void begin_anew(cm1e_axis_t *axis)
      * motor in CSV that went on by itself: it is not moved back. */
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up, comes_back = axis->mode == CM1E_MODE_CSP ||
                                                                           axis->silence.silent_before > 0;
-    begin_catch_up(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back));
+    begin_catch_up(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back), across);
+    cm1e_axis_set_synchronizing(axis, !c->now->in_step);
+    cm1e_axis_set_reached(axis, false);
+}
+
+void cm1e_coupling_go_on(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    const from_t from = from_base(axis);
+    const cm1e_motion_limits_t asked = c->catch_up.asked;
+    const bool was_in_step = !c->catch_up.on || c->catch_up.made_up;
+    if (cm1e_coupling_look(axis, c->now) != MASTER_GOOD && !c->stopping)
+        return; /* the next set-point deals with it */
+    begin_catch_up(axis, &from, &asked, c->now->to_position || was_in_step, true);
     cm1e_axis_set_synchronizing(axis, !c->now->in_step);
     cm1e_axis_set_reached(axis, false);
 }

@@ -36,12 +36,20 @@ typedef struct master_view {
     uint32_t jumps;                /**< number of jumps of its set-point so far */
 } master_view_t;
 
+/** How a slave sees the set value of a master. */
+typedef enum sight {
+    SEEN = 0,
+    RUNS_ON,                       /**< on another bus, whose frames do not come back: it may still run */
+    STOPS,                         /**< ... for so long that it stops */
+} sight_t;
+
 /** The link of a slave to its master. What every cycle looks at comes first. */
 typedef struct link {
     cm1e_axis_t *master;           /**< NULL: no master, or it was destroyed */
     MC_SOURCE source;
     bool listed;
     bool apart;                    /**< the master is on another bus */
+    uint8_t sight;                 /**< sight_t */
     position_t origin;             /**< position of the master, as seen, when the slave began to follow it */
     double ratio;                  /**< u of the slave per u of the master; of gears and combinations */
     double counts_ratio;           /**< the ratio in counts */
@@ -49,6 +57,7 @@ typedef struct link {
     double most_unexplained;       /**< counts; tolerance of the way in a cycle that its velocities explain */
     master_view_t seen;
     /* not in every cycle */
+    double ran_on;                 /**< counts of the master beyond its set-point, while it is not SEEN */
     cm1e_axis_t *slave;
     struct link *next;             /**< of the same master; in force while `listed` */
 } link_t;
@@ -87,6 +96,7 @@ typedef struct catch_up {
     bool on;
     bool made_up;                  /**< its position is brought to 0 too: lost distance is made up */
     bool to_place;                 /**< the profile makes up distance, while the velocity of the function is constant */
+    bool momentary;                /**< of a cam: velocity first, with what it leaves in this place */
     bool held_back;                /**< the function needs more of the limits than when this was planned */
     int64_t cycles;
     cm1e_motion_state_t now;
@@ -104,7 +114,6 @@ typedef enum master_trouble {
     MASTER_HOMING,                 /**< the master is homed by its drive */
     MASTER_UNSEEN,                 /**< the actual position of the master is unknown */
     MASTER_JUMPED,
-    MASTER_SILENT,                 /**< on another bus, whose frames do not come back while those of the slave do */
 } master_trouble_t;
 
 /** The data of a waiting coupling in addition to its move. */
@@ -147,6 +156,7 @@ typedef struct coupling {
     bool keeps_ratio;              /**< CM1E_COUPLING_STOP_KEEP_RATIO, of the configuration */
     bool due;                      /**< the awaited command begins in this cycle */
     bool at_end;                   /**< the coupling in preparation waited for that */
+    bool left_behind;              /**< a master on another bus went on while the slave was silent */
     phasing_t phasing;             /**< the motion that changes the phase */
     catch_up_t catch_up;
     follow_t follows[FOLLOWS];     /**< two places in turn, because links are in lists and must not move */
@@ -172,6 +182,11 @@ void cm1e_coupling_advance_masters(cm1e_axis_t *axis);
 void cm1e_coupling_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
 /** Lets the slaves that follow this axis begin anew after silence. */
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis);
+/** Takes notice of masters on another bus whose frames stop or come back. */
+void cm1e_coupling_look_across(cm1e_axis_t *axis);
+/** From now on masters on another bus are seen as their frames come. true: one is seen in another way than before, or went on
+ *  alone. */
+bool cm1e_coupling_settle(cm1e_axis_t *axis);
 /** Whether a master began anew in this cycle, or is followed by its actual value. */
 bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis);
 /** Fills in a master of a `follow` that is not in force yet: its origin and its view, for the slave's present
@@ -203,6 +218,8 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
 /** Puts the coupling `follow` in force. The difference to the state `from` becomes the catch-up. The caller changes the
  *  active command. */
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
+/** Goes on from the present set-point, without a step, after what is seen of a master has changed. */
+void cm1e_coupling_go_on(cm1e_axis_t *axis);
 /** Makes a superimposed distance (u) a part of the base motion. */
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way);
 /** Makes the set-point of the cycle in which a coupling began, without advancing its masters. */

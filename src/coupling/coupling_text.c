@@ -13,7 +13,6 @@ static const char *const troubles[] = {
                     "(mcActualValue)",
     [MASTER_HOMING] = "is homed by its drive, which changes its positions: wait for the end of the homing",
     [MASTER_UNSEEN] = "does not say where it is: its inputs are missing",
-    [MASTER_SILENT] = "is on another bus, of which a frame was lost",
     [MASTER_JUMPED] = "jumped: its position was set to where its motor is, which no slave can follow",
 };
 

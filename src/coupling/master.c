@@ -53,10 +53,61 @@ static bool master_began_anew(const follow_t *follow)
     return false;
 }
 
+/* ---- masters on another bus -------------------------------------------------------------------------------------- */
+
+/* Time stands still for the axes of a silent bus only. While the bus of the master is silent, its slave assumes that its
+ * motor does what is likely: it runs on at first, and stops where it gets no new target for longer. While the bus of the
+ * slave is silent, the master goes on without it. Behind both the slave goes on from its own set-point, and makes up the
+ * distance as after any other loss. */
+static sight_t sight(const link_t *link)
+{
+    if (!link->apart || link->source != mcSetValue || !link->master || !link->master->silence.frozen)
+        return SEEN;
+    return cm1e_axis_stops_unheard(link->master) ? STOPS : RUNS_ON;
+}
+
+static bool sees_other_way(const follow_t *follow)
+{
+    for (int i = 0; i < follow->count; i++)
+        if (sight(&follow->links[i]) != (sight_t)follow->links[i].sight)
+            return true;
+    return false;
+}
+
+bool cm1e_coupling_settle(cm1e_axis_t *axis)
+{
+    follow_t *now = axis->coupling->now;
+    const bool changed = sees_other_way(now) || axis->coupling->left_behind;
+    axis->coupling->left_behind = false;
+    for (int i = 0; i < now->count && changed; i++) {
+        link_t *link = &now->links[i];
+        link->sight = (uint8_t)sight(link);
+        link->ran_on = link->sight == SEEN ? 0.0 : link->ran_on;
+    }
+    return changed;
+}
+
+static bool is_left_behind(const follow_t *follow)
+{
+    for (int i = 0; i < follow->count; i++)
+        if (follow->links[i].apart && sight(&follow->links[i]) == SEEN)
+            return true;
+    return false;
+}
+
+void cm1e_coupling_look_across(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    if (axis->silence.frozen)
+        c->left_behind |= is_left_behind(c->now);
+    else if (cm1e_coupling_settle(axis))
+        cm1e_coupling_go_on(axis);
+}
+
 bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis)
 {
     const follow_t *now = axis->coupling->now;
-    return now->by_actual || master_began_anew(now);
+    return now->by_actual || axis->coupling->left_behind || master_began_anew(now) || sees_other_way(now);
 }
 
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis)
@@ -185,17 +236,26 @@ static master_trouble_t see_actual(link_t *link, position_t *position)
     return MASTER_GOOD;
 }
 
+/* Where the motor of a master is likely to be that is not seen. */
+static void run_on(link_t *link, bool on_the_way, position_t *position)
+{
+    if (link->sight == STOPS)
+        link->seen.velocity = 0.0;
+    if (on_the_way)
+        link->ran_on += 2.0 * link->half_cycle * link->seen.velocity;
+    *position = cm1e_position_plus(*position, link->ran_on);
+    link->seen.acceleration = 0.0;
+}
+
 /* The position of the master. It is counted from the place where the slave began to follow. So a shift of the master's
  * coordinates is no motion, and no count is lost however far the master goes. */
-static master_trouble_t see(link_t *link, position_t *position)
+static master_trouble_t see(link_t *link, bool on_the_way, position_t *position)
 {
     const cm1e_axis_t *master = link->master;
     if (!master)
         return MASTER_DESTROYED;
     if (link->source == mcActualValue)
         return see_actual(link, position);
-    if (link->apart && master->silence.silent > 0 && link->slave->silence.silent == 0)
-        return MASTER_SILENT;
     const master_trouble_t trouble = trouble_of_set_value(master);
     if (trouble && trouble != MASTER_STOPPING)
         return trouble;
@@ -203,6 +263,8 @@ static master_trouble_t see(link_t *link, position_t *position)
     link->seen.velocity = master->setpoint.velocity;
     link->seen.acceleration = master->setpoint.acceleration;
     link->seen.jumps = master->setpoint.jumps;
+    if (link->sight != SEEN)
+        run_on(link, on_the_way, position);
     return trouble;
 }
 
@@ -260,7 +322,7 @@ static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool o
         link_t *link = &follow->links[i];
         const master_view_t before = link->seen;
         position_t position = {0};
-        const master_trouble_t trouble = see(link, &position);
+        const master_trouble_t trouble = see(link, on_the_way, &position);
         if (trouble)
             worst = trouble_with(slave, link, trouble);
         if (trouble && trouble != MASTER_STOPPING)
@@ -296,7 +358,7 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;
     know_ways(link, slave->cycle_s);
-    const master_trouble_t trouble = see(link, &link->origin);
+    const master_trouble_t trouble = see(link, false, &link->origin);
     if (trouble) {
         trouble_with(slave, link, trouble);
         return CM1E_ERROR_AXIS_MASTER_LOST;

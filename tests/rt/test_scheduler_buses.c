@@ -1,6 +1,6 @@
 /**
  * Several buses in one scheduler: started one after the other, run in one cycle, a gear from one to the other, and one
- * that is lost. On virtual time, which they share.
+ * that is lost. On virtual time, which they share. Single lost frames are in test_buses_silence.c.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -221,41 +221,6 @@ START_TEST(test_a_lost_bus_concerns_its_own_axes)
 }
 END_TEST
 
-/** A gear from one bus to the other, while frames of one are lost, at many moments and for so many cycles: the slave goes
- *  on in step, or it stops with an error; the master of a lost slave does not notice. */
-static void lose_beside_a_gear(int lost_bus, int moment, int lost)
-{
-    prepare();
-    run.geared = true;
-    run.lost_bus = lost_bus;
-    run.lose_at = 20 + 7 * moment;
-    run.lost = lost;
-    must(cm1e_scheduler_run(scheduler, 1500 * MS, &diag));
-    expect_no_leap();
-    const bool follows = see(B).state == CM1E_AXIS_SYNCHRONIZED_MOTION && gear.InGear;
-    ck_assert_msg(follows || see(B).state == CM1E_AXIS_ERROR_STOP, "%s in state %d", text_of(B), see(B).state);
-    ck_assert_msg(!follows || fabs(see(B).set_velocity - 2.0 * see(A).set_velocity) < 1e-6, "out of step");
-    if (lost_bus == B)
-        ck_assert_msg(turn.InVelocity, "%s", text_of(A));
-    close_all();
-}
-
-static const int lost_cycles[] = {1, 2, 3, 8, 100000};
-
-START_TEST(test_a_gear_while_the_bus_of_the_slave_is_silent)
-{
-    for (size_t i = 0; i < sizeof lost_cycles / sizeof lost_cycles[0]; i++)
-        lose_beside_a_gear(B, _i, lost_cycles[i]);
-}
-END_TEST
-
-START_TEST(test_a_gear_while_the_bus_of_the_master_is_silent)
-{
-    for (size_t i = 0; i < sizeof lost_cycles / sizeof lost_cycles[0]; i++)
-        lose_beside_a_gear(A, _i, lost_cycles[i]);
-}
-END_TEST
-
 START_TEST(test_what_cannot_run_together_is_refused)
 {
     prepare();
@@ -317,8 +282,6 @@ int main(void)
     tcase_add_test(all, test_axes_of_both_buses_move_in_one_program);
     tcase_add_test(all, test_a_gear_from_one_bus_to_the_other_is_in_step);
     tcase_add_test(all, test_a_lost_bus_concerns_its_own_axes);
-    tcase_add_loop_test(all, test_a_gear_while_the_bus_of_the_slave_is_silent, 0, 60);
-    tcase_add_loop_test(all, test_a_gear_while_the_bus_of_the_master_is_silent, 0, 60);
     tcase_add_test(all, test_what_cannot_run_together_is_refused);
     tcase_add_test(all, test_four_buses_and_no_more);
     Suite *suite = suite_create("scheduler with several buses");
