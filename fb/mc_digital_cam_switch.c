@@ -232,6 +232,24 @@ static bool look_at(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, look_t *
     return true;
 }
 
+/** The tracks that have an output: the first one, and on other slaves all that a switch uses. */
+static DWORD tracks_with_output(const MC_DigitalCamSwitch_t *fb, int number)
+{
+    DWORD tracks = 1;
+    for (int i = 0; number >= CM1E_WIRED_FIRST && i < fb->Switches->NumberOfSwitches; i++)
+        tracks |= (DWORD)1 << (fb->Switches->Switches[i].TrackNumber - 1);
+    return tracks;
+}
+
+/** A bit of `written`; 0: there is no such output. */
+static WORD bit_of_output(int number)
+{
+    const int n = number - CM1E_WIRED_FIRST;
+    if (n >= 0 && n < CM1E_WIRED_SIGNALS)
+        return (WORD)(1u << n);
+    return number >= 1 && number <= CM1E_AXIS_OUTPUTS ? (WORD)(0x80u << number) : 0;
+}
+
 static cm1e_error_t write_output(MC_DigitalCamSwitch_t *fb, DWORD tracks, TIME lease)
 {
     fb->Outputs->Values = tracks;
@@ -240,8 +258,17 @@ static cm1e_error_t write_output(MC_DigitalCamSwitch_t *fb, DWORD tracks, TIME l
     cm1e_axis_t *axis = cm1e_axis_from_reference(&fb->Outputs->Axis);
     if (!axis)
         return CM1E_ERROR_FB_AXIS_REF;
+    const int number = fb->Outputs->Number ? fb->Outputs->Number : 1;
+    const DWORD with_output = tracks_with_output(fb, number);
+    cm1e_error_t error = CM1E_OK;
     fb->Private.output = fb->Outputs->Axis.Handle;
-    return cm1e_axis_hold_output(axis, fb->Outputs->Number ? fb->Outputs->Number : 1, tracks & 1, lease);
+    for (int i = 0; i < CM1E_CAM_TRACKS && error == CM1E_OK; i++) {
+        if (!(with_output >> i & 1))
+            continue;
+        fb->Private.written |= bit_of_output(number + i);
+        error = cm1e_axis_hold_output(axis, number + i, tracks >> i & 1, lease);
+    }
+    return error;
 }
 
 static void outputs_off(MC_DigitalCamSwitch_t *fb)
@@ -250,9 +277,10 @@ static void outputs_off(MC_DigitalCamSwitch_t *fb)
     cm1e_axis_t *axis = reference.Handle ? cm1e_axis_from_reference(&reference) : NULL;
     if (fb->Outputs)
         fb->Outputs->Values = 0;
-    if (axis)
-        cm1e_axis_write_output(axis, 1, false);
-    fb->Private.output = 0;
+    for (int number = 1; axis && number < CM1E_WIRED_FIRST + CM1E_WIRED_SIGNALS; number++)
+        if (fb->Private.written & bit_of_output(number))
+            cm1e_axis_write_output(axis, number, false);
+    fb->Private.output = fb->Private.written = 0;
 }
 
 static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, TIME called)

@@ -65,7 +65,7 @@ CM1E_API cm1e_error_t cm1e_axis_read(AXIS_REF_t axis, cm1e_axis_info_t *info);
 /** Writes the present counts of the encoder of an axis with `type: encoder`. The 32 bits may wrap; the axis counts on.
  *  Call it in every cycle, in a program of the scheduler that owns the axis: in a cycle without a call, or with `valid`
  *  false, the axis is offline. The value is used from the beginning of the next cycle on, like the positions of motors.
- *  Returns CM1E_ERROR_UNSUPPORTED if the axis is not an encoder. @rt cycle */
+ *  Returns CM1E_ERROR_UNSUPPORTED if the axis is not an encoder, or its counts come from a slave. @rt cycle */
 CM1E_API cm1e_error_t cm1e_axis_write_encoder(AXIS_REF_t axis, uint32_t counts, bool valid);
 /** The configured name of an axis; "" for a handle that names no axis. @rt any */
 CM1E_API const char *cm1e_axis_name(AXIS_REF_t axis);

@@ -82,8 +82,9 @@ typedef struct cm1e_homing_config {
     double timeout_s;    /**< s; 0 selects 60 */
 } cm1e_homing_config_t;
 
-/** The inputs IN1 ... IN4 of the motor to which switches are wired; 0: none. MC_ReadAxisInfo shows the switches, and
- *  the homing steps of the host use them. They stop nothing by themselves. */
+/** The inputs to which switches are wired: IN1 ... IN4 of the motor, or signals of other slaves from
+ *  CM1E_WIRED_FIRST on (cm1e_wiring_config_t); 0: none. MC_ReadAxisInfo shows the switches, and the homing steps of the
+ *  host use them. They stop nothing by themselves. */
 typedef struct cm1e_input_config {
     uint8_t limit_positive;         /**< 1 ... 4; reached in the positive direction of the axis */
     uint8_t limit_negative;         /**< 1 ... 4; reached in the negative direction; not limit_positive */
@@ -92,6 +93,21 @@ typedef struct cm1e_input_config {
                                          active */
     bool home_normally_closed;      /**< true: the home switch is active while its input is off */
 } cm1e_input_config_t;
+
+#define CM1E_WIRED_FIRST 11   /**< number of the first input and of the first output of an axis on other slaves */
+#define CM1E_WIRED_SIGNALS 8  /**< maximum number of such inputs, and of such outputs, of an axis */
+#define CM1E_SIGNAL_LENGTH 64 /**< maximum length of "SLAVE.SIGNAL" (cm1e/io.h), with its final 0 */
+
+/** Signals of listed slaves (cm1e_slave_config_t) that belong to an axis, as cm1e_io_find() takes their names. Blocks
+ *  that read an input, wait for a trigger or write an output reach them under the numbers CM1E_WIRED_FIRST,
+ *  CM1E_WIRED_FIRST + 1 and so on, in the order of the list. Each is a single bit. */
+typedef struct cm1e_wiring_config {
+    uint8_t input_count, output_count; /**< 0 ... CM1E_WIRED_SIGNALS */
+    char inputs[CM1E_WIRED_SIGNALS][CM1E_SIGNAL_LENGTH];
+    char outputs[CM1E_WIRED_SIGNALS][CM1E_SIGNAL_LENGTH];
+    char encoder[CM1E_SIGNAL_LENGTH];  /**< only with the type CM1E_AXIS_ENCODER: the signal with its counts, a whole
+                                            number of any bits; it needs `max_velocity`. "": the program writes them */
+} cm1e_wiring_config_t;
 
 /** The mechanics that the simulator puts behind one axis; ignored on a real network. Positions are counts of the motor
  *  shaft, from its position at power-on. A zeroed struct is a linear axis with a light load, a hard stop 250,000 counts
@@ -123,8 +139,9 @@ typedef enum cm1e_axis_type {
     CM1E_AXIS_MOTOR = 0,             /**< a motor on the bus */
     CM1E_AXIS_VIRTUAL,               /**< no motor: its actual position is its set position; a master for others, or
                                           for trials */
-    CM1E_AXIS_ENCODER,               /**< an encoder whose counts the program writes (cm1e_axis_write_encoder()); a
-                                          master that others follow by its actual value */
+    CM1E_AXIS_ENCODER,               /**< an encoder whose counts come from a signal of a slave (`wiring.encoder`), or
+                                          from the program (cm1e_axis_write_encoder()); a master that others follow by
+                                          its actual value */
 } cm1e_axis_type_t;
 
 /** What an axis does that cannot go on following its master, because of its limits or because the master failed. */
@@ -235,6 +252,7 @@ typedef struct cm1e_axis_config {
                                           is found by its alias or explicit ID. All axes of a bridge say the same */
     cm1e_recover_t recover;          /**< who brings its slave back; all axes of a bridge say the same */
     bool sim_absent;                 /**< simulated segment only: true: not plugged in at the start */
+    cm1e_wiring_config_t wiring;     /**< signals of other slaves */
 } cm1e_axis_config_t;
 
 /** A start-up SDO of a slave: written at every start, and when the slave has come back. */

@@ -91,6 +91,7 @@ extern "C" {
     X(ERROR_AXIS_SIGNAL, -85, "there is no digital input or output with this number")                               \
     X(ERROR_AXIS_PROBE, -86, "a trigger came while the position was not known")                                     \
     X(ERROR_AXIS_NO_TORQUE_MODE, -87, "the drive has no torque mode, only positions and velocities")                \
+    X(ERROR_AXIS_SIGNAL_AWAY, -88, "the slave with this digital signal does not take part in the bus cycle")        \
     X(ERROR_AXIS_TABLE, -100, "the table of a profile is empty, too long, not finite or its times do not rise")     \
     X(ERROR_AXIS_TABLE_LATE, -101, "frames were lost or not sent for too long for a table over time")               \
     X(ERROR_AXIS_NO_TABLES, -117, "the axis has no memory for tables: set table_profiles in its configuration")     \

@@ -107,7 +107,7 @@ CM1E_API void MC_WriteBoolParameter(MC_WriteBoolParameter_t *fb);
 typedef struct MC_ReadDigitalInput_t {
     const MC_INPUT_REF *Input;
     BOOL Enable;
-    INT InputNumber; /**< 1 ... 4; IN1 ... IN4; 0: Input.Number */
+    INT InputNumber; /**< 1 ... 4; IN1 ... IN4, {11 ... 18} signals of other slaves; 0: Input.Number */
     /* outputs */
     BOOL Valid, Busy, Error;
     WORD ErrorID;
@@ -120,7 +120,7 @@ CM1E_API void MC_ReadDigitalInput(MC_ReadDigitalInput_t *fb);
 typedef struct MC_ReadDigitalOutput_t {
     const MC_OUTPUT_REF *Output;
     BOOL Enable;
-    INT OutputNumber; /**< 1; 0: Output.Number */
+    INT OutputNumber; /**< 1; or {11 ... 18} of other slaves; 0: Output.Number */
     /* outputs */
     BOOL Valid, Busy, Error;
     WORD ErrorID;
@@ -133,7 +133,7 @@ CM1E_API void MC_ReadDigitalOutput(MC_ReadDigitalOutput_t *fb);
 typedef struct MC_WriteDigitalOutput_t {
     const MC_OUTPUT_REF *Output;
     BOOL Execute;
-    INT OutputNumber; /**< 1; 0: Output.Number */
+    INT OutputNumber; /**< 1; or {11 ... 18} of other slaves; 0: Output.Number */
     BOOL Value;
     MC_EXECUTION_MODE ExecutionMode;
     /* outputs */

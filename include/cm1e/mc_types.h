@@ -115,31 +115,32 @@ typedef struct MC_CAM_REF {
 /** Identifies a cam that MC_CamTableSelect has prepared for its slave; 0: none. */
 typedef UDINT MC_CAM_ID;
 
-/** Digital input of a motor, for MC_ReadDigitalInput. */
+/** Digital input of an axis, for MC_ReadDigitalInput. */
 typedef struct MC_INPUT_REF {
-    AXIS_REF_t Axis; /**< whose motor */
-    INT Number;      /**< 1 ... 4; IN1 ... IN4, used if InputNumber of the block is 0 */
+    AXIS_REF_t Axis; /**< whose input */
+    INT Number;      /**< 1 ... 4; IN1 ... IN4, {11 ... 18} signals of other slaves; used if InputNumber is 0 */
 } MC_INPUT_REF;
 
-/** Digital output of a motor, for MC_ReadDigitalOutput and MC_WriteDigitalOutput; the outputs of
+/** Digital output of an axis, for MC_ReadDigitalOutput and MC_WriteDigitalOutput; the outputs of
  *  MC_DigitalCamSwitch. */
 typedef struct MC_OUTPUT_REF {
-    AXIS_REF_t Axis; /**< whose motor; Handle 0 (MC_DigitalCamSwitch only): no output is written, see Values */
-    INT Number;      /**< 1; used if OutputNumber of the block is 0; with MC_DigitalCamSwitch the output of track 1 */
+    AXIS_REF_t Axis; /**< whose output; Handle 0 (MC_DigitalCamSwitch only): no output is written, see Values */
+    INT Number;      /**< 1; or {11 ... 18}, used if OutputNumber is 0; with MC_DigitalCamSwitch the output of track
+                          1 */
     DWORD Values;    /**< MC_DigitalCamSwitch shows all its tracks here, bit 0 = track 1 */
 } MC_OUTPUT_REF;
 
 /** The trigger of MC_TouchProbe. */
 typedef struct MC_TRIGGER_REF {
-    AXIS_REF_t Axis;  /**< whose motor has the input; Handle 0: the block's Axis */
-    INT InputNumber;  /**< 1 ... 4; IN1 ... IN4; 0 acts as 1 */
+    AXIS_REF_t Axis;  /**< whose input; Handle 0: the block's Axis */
+    INT InputNumber;  /**< 1 ... 4; IN1 ... IN4, {11 ... 18} signals of other slaves; 0 acts as 1 */
     BOOL FallingEdge; /**< TRUE: the input goes off; FALSE: it goes on */
 } MC_TRIGGER_REF;
 
 /** The signal of a homing step (Part 5). */
 typedef struct MC_REF_SIGNAL_REF {
-    AXIS_REF_t Axis; /**< whose motor has the input; Handle 0: the block's Axis */
-    INT InputNumber; /**< 1 ... 4; IN1 ... IN4; 0 selects the configured home switch of the axis */
+    AXIS_REF_t Axis; /**< whose input; Handle 0: the block's Axis */
+    INT InputNumber; /**< 1 ... 4; IN1 ... IN4, {11 ... 18} signals of other slaves; 0 selects the home switch */
 } MC_REF_SIGNAL_REF;
 
 /** Maximum number of pairs of a profile, of switches and of tracks of MC_DigitalCamSwitch. */
@@ -281,7 +282,8 @@ typedef struct cm1e_cam_private {
     BOOL running;   /**< the last call knew the position */
     BOOL negative;  /**< direction of the last motion */
     BOOL moved;     /**< the axis has moved */
-    UINT output;    /**< handle of the axis whose output is written */
+    UINT output;    /**< handle of the axis whose outputs are written */
+    WORD written;   /**< bit 0 ... 7: outputs 11 ... 18, bit 8 ... 11: outputs 1 ... 4 */
     cm1e_cam_switch_t switches[CM1E_CAM_SWITCHES];
 } cm1e_cam_private_t;
 

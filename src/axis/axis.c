@@ -37,6 +37,8 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     }
     if (error == CM1E_OK)
         error = cm1e_axis_table_init(axis, diag);
+    if (error == CM1E_OK)
+        error = cm1e_axis_probe_init(axis, diag);
     axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
     axis->mode = error == CM1E_OK && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
     if (error != CM1E_OK) {
@@ -65,6 +67,7 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
         cm1e_handle_give_back(cm1e_axis_places, axis->handle);
     cm1e_drive_free(&axis->drive);
     free(axis->tables);
+    cm1e_axis_probe_free(axis);
     if (axis->motor_hooks)
         axis->motor_hooks->free(axis);
     if (axis->coupling_hooks)
@@ -191,7 +194,7 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
         cm1e_axis_after_silence(axis);
     if (axis_follows(axis) || axis->commands.awaits)
         axis->coupling_hooks->advance_masters(axis);
-    if (axis->commands.kept != 0 || axis->drive.command.digital_outputs != 0)
+    if (axis->commands.kept != 0 || axis->drive.command.digital_outputs != 0 || axis->drive.wiring)
         cm1e_axis_signals_step(axis);
     const bool undisturbed = moves_on(axis);
     if (!undisturbed) {

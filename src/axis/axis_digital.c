@@ -4,6 +4,7 @@
 #include "axis/axis_signals.h"
 #include "axis/axis_text.h"
 #include "core/clock.h"
+#include "drive/drive_wiring.h"
 
 /* ---- behind a bridge --------------------------------------------------------------------------------------------- */
 
@@ -34,9 +35,29 @@ const char *cm1e_axis_signals_advice(const cm1e_axis_t *axis, cm1e_error_t error
 
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */
 
-static bool input_bit(const cm1e_axis_t *axis, int number)
+bool cm1e_axis_input_level(const cm1e_axis_t *axis, int number)
 {
+    const int wired = cm1e_drive_wired_input(&axis->drive, number);
+    if (wired >= 0)
+        return axis->drive.wiring->values >> wired & 1;
     return axis->drive.feedback.digital_inputs >> (number - 1) & 1;
+}
+
+/* The bits of an input on another slave; those of the motor itself are known where the motor is. */
+static bool wired_bit(const cm1e_axis_t *axis, int number, uint8_t bits)
+{
+    const int wired = cm1e_drive_wired_input(&axis->drive, number);
+    return wired < 0 || (bits >> wired & 1);
+}
+
+bool cm1e_axis_input_fresh(const cm1e_axis_t *axis, int number)
+{
+    return !axis->drive.wiring || wired_bit(axis, number, axis->drive.wiring->fresh);
+}
+
+bool cm1e_axis_input_away(const cm1e_axis_t *axis, int number)
+{
+    return axis->drive.wiring && !wired_bit(axis, number, axis->drive.wiring->known);
 }
 
 /* Checks the number of a signal. The drive has the signals in `there`; those in `mask` can be reached now. */
@@ -51,13 +72,17 @@ cm1e_error_t cm1e_axis_check_input(const cm1e_axis_t *axis, int number)
 {
     const cm1e_device_signals_t *signals = &axis->drive.kind->signals;
     const unsigned mask = cm1e_drive_input_mask(&axis->drive);
+    if (cm1e_drive_wired_input(&axis->drive, number) >= 0)
+        return CM1E_OK;
     if (cm1e_drive_is_virtual(&axis->drive))
-        return CM1E_ERROR_AXIS_VIRTUAL;
+        return number < CM1E_WIRED_FIRST ? CM1E_ERROR_AXIS_VIRTUAL : CM1E_ERROR_AXIS_SIGNAL;
     return check_signal(number, CM1E_AXIS_INPUTS, signals->by_sdo ? mask : signals->inputs, mask);
 }
 
-bool cm1e_axis_sees_inputs(const cm1e_axis_t *axis)
+bool cm1e_axis_sees_input(const cm1e_axis_t *axis, int number)
 {
+    if (cm1e_drive_wired_input(&axis->drive, number) >= 0)
+        return true;
     return cm1e_drive_input_mask(&axis->drive) != 0 && in_process_data(axis);
 }
 
@@ -85,42 +110,59 @@ cm1e_error_t cm1e_axis_read_input(cm1e_axis_t *axis, int number, bool *value)
     const cm1e_error_t error = cm1e_axis_check_input(axis, number);
     if (error != CM1E_OK)
         return error;
-    *value = input_bit(axis, number);
+    *value = cm1e_axis_input_level(axis, number);
+    if (cm1e_drive_wired_input(&axis->drive, number) >= 0)
+        return cm1e_axis_input_away(axis, number) ? CM1E_ERROR_AXIS_SIGNAL_AWAY : CM1E_OK;
     if (!axis->drive.feedback.online)
         return CM1E_ERROR_AXIS_OFFLINE;
     return in_process_data(axis) ? CM1E_OK : ask(axis);
 }
 
-static int input_of(const cm1e_axis_t *axis, cm1e_axis_switch_t which, bool *normally_closed)
+static bool normally_closed(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
 {
     const cm1e_input_config_t *inputs = &axis->config->inputs;
-    *normally_closed = which == CM1E_SWITCH_HOME ? inputs->home_normally_closed : inputs->limits_normally_closed;
+    return which == CM1E_SWITCH_HOME ? inputs->home_normally_closed : inputs->limits_normally_closed;
+}
+
+int cm1e_axis_switch_input(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
+{
+    const cm1e_input_config_t *inputs = &axis->config->inputs;
     return which == CM1E_SWITCH_LIMIT_POSITIVE   ? inputs->limit_positive
            : which == CM1E_SWITCH_LIMIT_NEGATIVE ? inputs->limit_negative : inputs->home;
 }
 
 bool cm1e_axis_has_switch(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
 {
-    bool normally_closed;
-    const int number = input_of(axis, which, &normally_closed);
-    return cm1e_axis_check_input(axis, number) == CM1E_OK;
+    return cm1e_axis_check_input(axis, cm1e_axis_switch_input(axis, which)) == CM1E_OK;
+}
+
+bool cm1e_axis_switch_away(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
+{
+    return cm1e_axis_has_switch(axis, which) && cm1e_axis_input_away(axis, cm1e_axis_switch_input(axis, which));
 }
 
 void cm1e_axis_want_switches(cm1e_axis_t *axis)
 {
     bool any = false;
-    for (int which = 0; which < CM1E_SWITCH_COUNT; which++)
-        any = any || cm1e_axis_has_switch(axis, (cm1e_axis_switch_t)which);
+    for (int i = 0; i < CM1E_SWITCH_COUNT; i++) {
+        const cm1e_axis_switch_t which = (cm1e_axis_switch_t)i;
+        const bool wired = cm1e_drive_wired_input(&axis->drive, cm1e_axis_switch_input(axis, which)) >= 0;
+        any = any || (!wired && cm1e_axis_has_switch(axis, which));
+    }
     if (any && !in_process_data(axis))
         (void)ask(axis);
 }
 
 bool cm1e_axis_switch_active(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
 {
-    bool normally_closed;
-    const int number = input_of(axis, which, &normally_closed);
-    const bool known = in_process_data(axis) || axis->drive.feedback.digital_known;
-    return known && cm1e_axis_has_switch(axis, which) && input_bit(axis, number) != normally_closed;
+    const int number = cm1e_axis_switch_input(axis, which);
+    const bool wired = cm1e_drive_wired_input(&axis->drive, number) >= 0;
+    const bool known = wired || in_process_data(axis) || axis->drive.feedback.digital_known;
+    if (!known || !cm1e_axis_has_switch(axis, which))
+        return false;
+    if (cm1e_axis_input_away(axis, number))
+        return which != CM1E_SWITCH_HOME; /* a limit switch that nobody sees may be pressed */
+    return cm1e_axis_input_level(axis, number) != normally_closed(axis, which);
 }
 
 /* ---- output ------------------------------------------------------------------------------------------------------ */
@@ -129,14 +171,27 @@ static cm1e_error_t check_output(const cm1e_axis_t *axis, int number)
 {
     const cm1e_device_signals_t *signals = &axis->drive.kind->signals;
     const unsigned mask = cm1e_drive_output_mask(&axis->drive);
+    if (cm1e_drive_wired_output(&axis->drive, number) >= 0)
+        return CM1E_OK;
     if (cm1e_drive_is_virtual(&axis->drive))
-        return CM1E_ERROR_AXIS_VIRTUAL;
+        return number < CM1E_WIRED_FIRST ? CM1E_ERROR_AXIS_VIRTUAL : CM1E_ERROR_AXIS_SIGNAL;
     return check_signal(number, CM1E_AXIS_OUTPUTS, signals->by_sdo ? mask : signals->outputs, mask);
+}
+
+static cm1e_error_t set_wired_output(cm1e_axis_t *axis, int number, bool value, int64_t until_ns)
+{
+    const int wired = cm1e_drive_wired_output(&axis->drive, number);
+    const bool set = cm1e_drive_wired_write(&axis->drive, wired, value, until_ns);
+    const cm1e_error_t error = set ? CM1E_OK : CM1E_ERROR_AXIS_SIGNAL_AWAY;
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OUTPUT, .number = number});
+    return error;
 }
 
 static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_t until_ns)
 {
     cm1e_error_t error = check_output(axis, number);
+    if (cm1e_drive_wired_output(&axis->drive, number) >= 0)
+        return set_wired_output(axis, number, value, until_ns);
     if (error == CM1E_OK && !cm1e_drive_operational(&axis->drive))
         error = CM1E_ERROR_AXIS_OFFLINE;
     if (error == CM1E_OK)
@@ -159,6 +214,8 @@ cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
 cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_error_t *error)
 {
     *error = CM1E_OK;
+    if (cm1e_drive_wired_output(&axis->drive, number) >= 0) /* sent with the frame of its cycle */
+        return CM1E_COMMAND_DONE;
     switch (cm1e_drive_outputs(&axis->drive)) {
     case CM1E_DRIVE_OUTPUTS_SET:
         return CM1E_COMMAND_DONE;
@@ -180,7 +237,8 @@ cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns)
 {
     const cm1e_error_t error = check_output(axis, number);
-    if (error != CM1E_OK || !in_process_data(axis))
+    const bool in_cycle = cm1e_drive_wired_output(&axis->drive, number) >= 0 || in_process_data(axis);
+    if (error != CM1E_OK || !in_cycle)
         return error != CM1E_OK ? error : CM1E_ERROR_PDO_MAPPING;
     return set_output(axis, number, value, axis->now_ns + keep_ns);
 }
@@ -188,6 +246,11 @@ cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, in
 cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value)
 {
     const cm1e_error_t error = check_output(axis, number);
+    const int wired = cm1e_drive_wired_output(&axis->drive, number);
+    if (wired >= 0) {
+        *value = cm1e_drive_wired_output_value(&axis->drive, wired);
+        return cm1e_drive_wired_reached(&axis->drive, wired) ? CM1E_OK : CM1E_ERROR_AXIS_SIGNAL_AWAY;
+    }
     *value = error == CM1E_OK && (axis->drive.command.digital_outputs >> (number - 1) & 1);
     return error;
 }

@@ -20,7 +20,7 @@ cm1e_error_t cm1e_axis_write_encoder(AXIS_REF_t reference, uint32_t counts, bool
     cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
     if (!axis)
         return CM1E_ERROR_FB_AXIS_REF;
-    if (axis->config->type != CM1E_AXIS_ENCODER)
+    if (axis->config->type != CM1E_AXIS_ENCODER || axis->config->wiring.encoder[0])
         return CM1E_ERROR_UNSUPPORTED;
     axis->drive.encoder = (cm1e_drive_encoder_t){.counts = counts, .valid = valid};
     return CM1E_OK;

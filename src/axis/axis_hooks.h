@@ -69,6 +69,9 @@ typedef struct coupling_hooks {
     /** Another axis follows it, or waits for it. */
     bool (*is_followed)(const cm1e_axis_t *axis);
 
+    /** u/s: the velocity that the filter of the actual value has estimated; 0 before its first value. */
+    double (*observed_velocity)(const cm1e_axis_t *axis);
+
     /** Makes the set-point of the cycle in which the coupling has begun, without advancing the masters. */
     void (*first_set_point)(cm1e_axis_t *axis);
     /** Whether waiting commands may begin when the command has reached its aim. */

@@ -8,6 +8,14 @@
 #include "axis/axis_signals.h"
 #include "config/interface.h"
 
+/* u/s. One count a cycle is too coarse for the velocity of an encoder, so its filter gives it. */
+static double actual_velocity(const cm1e_axis_t *axis)
+{
+    if (axis->config->wiring.encoder[0] && axis->coupling_hooks)
+        return axis->coupling_hooks->observed_velocity(axis);
+    return (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale;
+}
+
 void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
@@ -15,7 +23,7 @@ void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
         .state = axis->state,
         .set_velocity = axis->setpoint.velocity,
         .set_acceleration = axis->setpoint.acceleration,
-        .actual_velocity = (f->velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale,
+        .actual_velocity = actual_velocity(axis),
         .actual_torque = f->torque * (axis->position.scale < 0.0 ? -0.1 : 0.1),
         .position_lag = cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) / axis->position.scale,
         .powered = cm1e_axis_powered(axis),

@@ -1,6 +1,7 @@
 /* Outputs and motions that end when no call renews them. */
 #include "axis/axis_device.h"
 #include "axis/axis_signals.h"
+#include "drive/drive_wiring.h"
 
 void cm1e_axis_keep(cm1e_axis_t *axis, cm1e_command_id_t id, int64_t keep_ns, double deceleration, double jerk)
 {
@@ -15,6 +16,8 @@ void cm1e_axis_signals_step(cm1e_axis_t *axis)
     /* A slave that left Operational may have been switched off: its output does not come on again by itself. */
     if (!cm1e_drive_operational(&axis->drive) || axis->now_ns >= axis->signals.output_until_ns)
         axis->drive.command.digital_outputs = 0;
+    if (axis->drive.wiring)
+        cm1e_drive_wired_expire(&axis->drive);
     if (axis->commands.kept == 0 || axis->now_ns < axis->commands.kept_until_ns)
         return;
     cm1e_command_id_t halt;

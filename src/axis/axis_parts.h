@@ -182,7 +182,7 @@ typedef struct in_position {
 
 /* ---- touch probes, digital signals, objects: axis_device.h ------------------------------------------------------- */
 
-enum { PROBES = 2 * 6 }; /* every input, both edges */
+enum { PROBES = 2 * 6, WIRED_PROBES = 2 * CM1E_WIRED_SIGNALS }; /* every input, both edges */
 
 /** A touch probe. Its place in the list states its input and edge. */
 typedef struct probe {
@@ -199,13 +199,20 @@ typedef struct probe {
 typedef struct probe_sample {
     int64_t time_ns;
     position_t position;            /**< position of the load */
-    uint16_t inputs;
+    uint16_t inputs;                /**< those of the motor, or bit 0: that of the one signal of another slave */
 } probe_sample_t;
+
+/** Touch probes on signals of other slaves. */
+typedef struct wired_probes {
+    probe_t probes[WIRED_PROBES];
+    probe_sample_t last[CM1E_WIRED_SIGNALS]; /**< of each signal, the last one that its slave has given */
+} wired_probes_t;
 
 /** Digital signals and touch probes. Written by axis_probe.c, axis_digital.c and axis_keep.c. */
 typedef struct signals {
     probe_t probes[PROBES];
     probe_sample_t probe_sample;    /**< the last one, while probes are armed */
+    wired_probes_t *wired;          /**< NULL: no inputs on other slaves */
     int64_t inputs_asked_ns, inputs_since_ns; /**< inputs by SDO: last request; since when without an answer */
     /* read in every cycle */
     int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */

@@ -2,8 +2,12 @@
  * Touch probes (3.33, 3.34). The CM1-E has no latch (no 0x60B8). An edge is seen as an input that differs between two
  * samples, and its position is taken as the middle of the two positions. So the uncertainty is half the way between two
  * samples, plus the delay of the input in the device, which the manual does not state.
+ *
+ * A trigger on another slave is compared with the position that came with the same exchange. Each such signal has its
+ * own sample before, because its slave may miss a cycle in which the motor did not.
  */
 #include <math.h>
+#include <stdlib.h>
 
 #include "axis/axis_backlash.h"
 #include "axis/axis_device.h"
@@ -12,7 +16,26 @@
 #include "axis/axis_signals.h"
 #include "axis/axis_text.h"
 
+enum { ALL_PROBES = PROBES + WIRED_PROBES };
+
 static uint16_t bit_of(cm1e_axis_trigger_t trigger) { return (uint16_t)(1u << (trigger.input - 1)); }
+
+/* The place of a probe states its trigger. Those on other slaves are behind those of the motor. */
+static unsigned place_of(cm1e_axis_trigger_t trigger)
+{
+    const int n = trigger.input >= CM1E_WIRED_FIRST ? CM1E_AXIS_INPUTS + trigger.input - CM1E_WIRED_FIRST
+                                                    : trigger.input - 1;
+    return 2u * (unsigned)n + trigger.falling;
+}
+
+static cm1e_axis_trigger_t trigger_at(int place)
+{
+    const int n = place / 2;
+    return (cm1e_axis_trigger_t){
+        .input = n >= CM1E_AXIS_INPUTS ? n - CM1E_AXIS_INPUTS + CM1E_WIRED_FIRST : n + 1,
+        .falling = place % 2,
+    };
+}
 
 /* Whether the drive itself latches the position at this edge. */
 static bool is_latched(const cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
@@ -20,19 +43,29 @@ static bool is_latched(const cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
     return !cm1e_drive_is_virtual(&axis->drive) && cm1e_drive_has_probe(&axis->drive, trigger.input, trigger.falling);
 }
 
+static probe_t *probe_at(cm1e_axis_t *axis, unsigned place)
+{
+    return place < PROBES ? &axis->signals.probes[place] : &axis->signals.wired->probes[place - PROBES];
+}
+
+static const probe_t *probe_seen(const cm1e_axis_t *axis, unsigned place)
+{
+    return place < PROBES ? &axis->signals.probes[place] : &axis->signals.wired->probes[place - PROBES];
+}
+
 static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, probe_t **probe)
 {
     *probe = NULL;
     if (is_latched(axis, trigger)) {
-        *probe = &axis->signals.probes[2 * (trigger.input - 1) + trigger.falling];
+        *probe = probe_at(axis, place_of(trigger));
         return CM1E_OK;
     }
     const cm1e_error_t error = cm1e_axis_check_input(axis, trigger.input);
     if (error != CM1E_OK)
         return error;
-    if (!cm1e_axis_sees_inputs(axis)) /* inputs by SDO are too late for this */
+    if (!cm1e_axis_sees_input(axis, trigger.input)) /* inputs by SDO are too late for this */
         return CM1E_ERROR_PDO_MAPPING;
-    *probe = &axis->signals.probes[2 * (trigger.input - 1) + trigger.falling];
+    *probe = probe_at(axis, place_of(trigger));
     return CM1E_OK;
 }
 
@@ -43,6 +76,14 @@ static probe_sample_t sample(const cm1e_axis_t *axis)
         .position = axis_actual(axis),
         .inputs = axis->drive.feedback.digital_inputs,
     };
+}
+
+/* The sample of a signal of another slave. */
+static probe_sample_t wired_sample(const cm1e_axis_t *axis, int input)
+{
+    probe_sample_t now = sample(axis);
+    now.inputs = cm1e_axis_input_level(axis, input);
+    return now;
 }
 
 static void end(cm1e_axis_t *axis, probe_t *probe, cm1e_command_state_t state, cm1e_error_t error)
@@ -72,6 +113,12 @@ static bool in_window(const cm1e_axis_t *axis, const probe_t *probe, double posi
 
 /* ---- triggers ---------------------------------------------------------------------------------------------------- */
 
+/* Whether a probe waits for the other edge of this input, so that the sample before it must stay. */
+static bool other_edge_waits(const cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
+{
+    return probe_seen(axis, place_of(trigger) ^ 1u)->state == CM1E_COMMAND_ACTIVE;
+}
+
 static cm1e_error_t arm(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool window, double first, double last,
                         uint32_t *id)
 {
@@ -80,17 +127,21 @@ static cm1e_error_t arm(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool win
     cm1e_error_t error = probe_of(axis, trigger, &probe);
     if (error == CM1E_OK && window)
         error = check_window(axis, first, last);
+    if (error == CM1E_OK && cm1e_axis_input_away(axis, trigger.input))
+        error = CM1E_ERROR_AXIS_SIGNAL_AWAY;
     if (error != CM1E_OK)
         return error;
     if (!axis->drive.actual.seen || !axis->position.known)
         return CM1E_ERROR_AXIS_OFFLINE;
     if (axis->signals.probes_armed == 0)
         axis->signals.probe_sample = sample(axis);
+    if (trigger.input >= CM1E_WIRED_FIRST && !other_edge_waits(axis, trigger))
+        axis->signals.wired->last[trigger.input - CM1E_WIRED_FIRST] = wired_sample(axis, trigger.input);
     if (probe->state != CM1E_COMMAND_ACTIVE)
         axis->signals.probes_armed++;
     /* The number contains the place of the probe, by which it is found. */
-    axis->signals.probe_count = axis->signals.probe_count % (UINT32_MAX / PROBES - 1) + 1;
-    *id = axis->signals.probe_count * PROBES + (uint32_t)(probe - axis->signals.probes);
+    axis->signals.probe_count = axis->signals.probe_count % (UINT32_MAX / ALL_PROBES - 1) + 1;
+    *id = axis->signals.probe_count * ALL_PROBES + place_of(trigger);
     *probe = (probe_t){.id = *id, .state = CM1E_COMMAND_ACTIVE, .window = window, .first = first, .last = last};
     if (is_latched(axis, trigger))
         cm1e_drive_probe_arm(&axis->drive, trigger.input, trigger.falling);
@@ -107,9 +158,10 @@ cm1e_error_t cm1e_axis_probe(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, boo
 
 cm1e_probe_status_t cm1e_axis_probe_status(const cm1e_axis_t *axis, uint32_t id)
 {
-    const probe_t *probe = &axis->signals.probes[id % PROBES];
-    if (id == 0 || probe->id != id)
+    const uint32_t place = id % ALL_PROBES;
+    if (id == 0 || (place >= PROBES && !axis->signals.wired) || probe_seen(axis, place)->id != id)
         return (cm1e_probe_status_t){.state = CM1E_COMMAND_UNKNOWN};
+    const probe_t *probe = probe_seen(axis, place);
     cm1e_probe_status_t status = {.state = (cm1e_command_state_t)probe->state, .error = (cm1e_error_t)probe->error};
     if (status.state == CM1E_COMMAND_DONE) {
         status.position = probe->position;
@@ -175,18 +227,52 @@ static void take_latched(cm1e_axis_t *axis, probe_t *probe, cm1e_axis_trigger_t 
     end(axis, probe, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
+static void step_own(cm1e_axis_t *axis, int place, const probe_sample_t *before, const probe_sample_t *now)
+{
+    probe_t *probe = &axis->signals.probes[place];
+    const cm1e_axis_trigger_t trigger = trigger_at(place);
+    const unsigned bit = bit_of(trigger);
+    if (is_latched(axis, trigger))
+        take_latched(axis, probe, trigger);
+    else if ((before->inputs ^ now->inputs) & bit && !(now->inputs & bit) == trigger.falling)
+        triggered(axis, probe, before, now);
+}
+
+/* Both edges of a signal of another slave, if its slave took part in this exchange. */
+static void step_wired(cm1e_axis_t *axis, int place)
+{
+    const int input = trigger_at(place).input;
+    probe_sample_t *last = &axis->signals.wired->last[input - CM1E_WIRED_FIRST];
+    const probe_sample_t before = *last, now = wired_sample(axis, input);
+    if (!cm1e_axis_input_fresh(axis, input))
+        return;
+    *last = now;
+    probe_t *probe = probe_at(axis, (unsigned)place + (now.inputs == 0));
+    if (before.inputs != now.inputs && probe->state == CM1E_COMMAND_ACTIVE)
+        triggered(axis, probe, &before, &now);
+}
+
 void cm1e_axis_probe_step(cm1e_axis_t *axis)
 {
     const probe_sample_t before = axis->signals.probe_sample, now = sample(axis);
+    const probe_t *probes = axis->signals.probes;
+    const wired_probes_t *wired = axis->signals.wired;
     axis->signals.probe_sample = now;
-    const unsigned changed = (unsigned)(before.inputs ^ now.inputs);
-    for (int i = 0; i < PROBES; i++) {
-        const cm1e_axis_trigger_t trigger = {.input = i / 2 + 1, .falling = i % 2};
-        const unsigned bit = bit_of(trigger);
-        if (axis->signals.probes[i].state == CM1E_COMMAND_ACTIVE && is_latched(axis, trigger))
-            take_latched(axis, &axis->signals.probes[i], trigger);
-        else if (axis->signals.probes[i].state == CM1E_COMMAND_ACTIVE && changed & bit &&
-                 !(now.inputs & bit) == trigger.falling)
-            triggered(axis, &axis->signals.probes[i], &before, &now);
-    }
+    for (int i = 0; i < PROBES; i++)
+        if (probes[i].state == CM1E_COMMAND_ACTIVE)
+            step_own(axis, i, &before, &now);
+    for (int i = 0; wired && i < WIRED_PROBES; i += 2)
+        if (wired->probes[i].state == CM1E_COMMAND_ACTIVE || wired->probes[i + 1].state == CM1E_COMMAND_ACTIVE)
+            step_wired(axis, PROBES + i);
 }
+
+cm1e_error_t cm1e_axis_probe_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    if (axis->config->wiring.input_count == 0)
+        return CM1E_OK;
+    axis->signals.wired = calloc(1, sizeof *axis->signals.wired);
+    return axis->signals.wired ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the touch probes "
+                                                         "of axis \"%s\".", axis->config->name);
+}
+
+void cm1e_axis_probe_free(cm1e_axis_t *axis) { free(axis->signals.wired); }

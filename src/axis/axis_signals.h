@@ -13,7 +13,8 @@
 /** The largest numbers. A CM1-E has inputs 1 ... 4 and output 1 on the bus; output 2 belongs to the motor itself (UG
  *  7.3.24, 7.3.25, K34). Behind a bridge a CM1 has inputs 2 ... 4 and output 2, a CM2 has inputs 1 ... 6 and outputs 1
  *  ... 4 (BR 6.5). There they are reached by SDO, only while the motor is enabled in csp; in CPIO in every cycle, but
- *  without inputs 5 and 6. */
+ *  without inputs 5 and 6. Numbers from CM1E_WIRED_FIRST on are signals of other slaves (drive_wiring.h), of any kind
+ *  of axis. While such a slave is away they are errors (CM1E_ERROR_AXIS_SIGNAL_AWAY). */
 enum { CM1E_AXIS_INPUTS = 6, CM1E_AXIS_OUTPUTS = 4 };
 
 /** The planned time of this cycle in ns, which the times below use. @rt cycle */
@@ -37,8 +38,8 @@ cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns);
 /** The commanded value of an output. @rt cycle */
 cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value);
-/** Whether the inputs are in the process data, so that they are seen in every cycle. @rt cycle */
-bool cm1e_axis_sees_inputs(const cm1e_axis_t *axis);
+/** Whether an input is in the process data, so that it is seen in every cycle. @rt cycle */
+bool cm1e_axis_sees_input(const cm1e_axis_t *axis, int number);
 /** Reads the actual torque in % of rated torque. CM1E_ERROR_PDO_MAPPING: it is not in the process data.
  *  CM1E_ERROR_AXIS_OFFLINE: it is not known now. @rt cycle */
 cm1e_error_t cm1e_axis_read_torque(const cm1e_axis_t *axis, double *percent);
@@ -50,8 +51,13 @@ typedef enum cm1e_axis_switch {
 bool cm1e_axis_has_switch(const cm1e_axis_t *axis, cm1e_axis_switch_t which);
 /** Called in every cycle by a block that shows the switches. Behind a bridge it requests them by SDO. @rt cycle */
 void cm1e_axis_want_switches(cm1e_axis_t *axis);
-/** The last known state of a switch; false if there is none, or if an SDO has not brought it lately. @rt cycle */
+/** The last known state of a switch; false if there is none, or if an SDO has not brought it lately. A limit switch
+ *  whose slave is away is active, a home switch is not. @rt cycle */
 bool cm1e_axis_switch_active(const cm1e_axis_t *axis, cm1e_axis_switch_t which);
+/** Whether a switch is on another slave that is away. @rt cycle */
+bool cm1e_axis_switch_away(const cm1e_axis_t *axis, cm1e_axis_switch_t which);
+/** The number of its input as configured; 0: none. @rt cycle */
+int cm1e_axis_switch_input(const cm1e_axis_t *axis, cm1e_axis_switch_t which);
 
 /** Further values of MC_ReadAxisInfo (3.29). */
 typedef struct cm1e_axis_condition {
@@ -77,7 +83,7 @@ CM1E_GUEST_API cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis);
 
 /** A trigger is an input and an edge of it; each has at most one probe. */
 typedef struct cm1e_axis_trigger {
-    int input;     /**< 1 ... CM1E_AXIS_INPUTS */
+    int input;     /**< 1 ... CM1E_AXIS_INPUTS, or from CM1E_WIRED_FIRST on */
     bool falling;  /**< the edge from on to off instead of from off to on */
 } cm1e_axis_trigger_t;
 

@@ -12,6 +12,8 @@ void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 static inline void cm1e_axis_forget_not_set(cm1e_axis_t *axis) { axis->not_set.error = CM1E_OK; }
 void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);      /* axis_text_not_set.c */
+/** "SLAVE.SIGNAL" of an input or output on another slave; "": it is none of these. */
+const char *cm1e_axis_wired_name(const cm1e_axis_t *axis, int number, bool output); /* axis_text_not_set.c */
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size); /* axis_text.c */
 
 #endif

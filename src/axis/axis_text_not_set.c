@@ -5,6 +5,23 @@
 #include "axis/axis_parameters.h"
 #include "axis/axis_text.h"
 
+const char *cm1e_axis_wired_name(const cm1e_axis_t *axis, int number, bool output)
+{
+    const cm1e_wiring_config_t *wiring = &axis->config->wiring;
+    const int n = number - CM1E_WIRED_FIRST, count = output ? wiring->output_count : wiring->input_count;
+    return n < 0 || n >= count ? "" : output ? wiring->outputs[n] : wiring->inputs[n];
+}
+
+/* Names a signal by its number, and one of another slave also by its name. */
+static void signal_text(const cm1e_axis_t *axis, const char *before, const char *behind, char *text, size_t size)
+{
+    const not_set_t *refused = &axis->not_set;
+    const char *wired = cm1e_axis_wired_name(axis, refused->number, refused->what == NOT_SET_OUTPUT);
+    snprintf(text, size, "Axis \"%s\": %s %d%s%s%s%s: %s.%s", axis->config->name, before, refused->number,
+             wired[0] ? " (" : "", wired, wired[0] ? ")" : "", behind, cm1e_strerror(refused->error),
+             cm1e_axis_signals_advice(axis, refused->error));
+}
+
 static void override_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const override_t *asked = &axis->override_refused;
@@ -26,11 +43,9 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
         snprintf(text, size, "Axis \"%s\": MC_SetPosition to %.6g u: %s.", name, refused->value,
                  cm1e_strerror(refused->error));
     } else if (refused->what == NOT_SET_OUTPUT) {
-        snprintf(text, size, "Axis \"%s\": digital output %d was not written: %s.%s", name, refused->number,
-                 cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
+        signal_text(axis, "digital output", " was not written", text, size);
     } else if (refused->what == NOT_SET_PROBE) {
-        snprintf(text, size, "Axis \"%s\": no touch probe at input %d: %s.%s", name, refused->number,
-                 cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
+        signal_text(axis, "no touch probe at input", "", text, size);
     } else if (refused->what == NOT_SET_CAM) {
         axis->coupling_hooks->cam_text(axis, text, size);
     } else if (cm1e_axis_parameter_is_object(refused->number)) {

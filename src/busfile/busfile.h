@@ -32,6 +32,9 @@ void cm1e_busfile_locate(yaml_document_t *document, cm1e_config_problem_t *probl
 
 enum { CM1E_BUSFILE_VELOCITY_COUNTS_PER_S = 1, CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS = 2 };
 
+/** "SLAVE.SIGNAL" */
+typedef char cm1e_busfile_signal_name_t[CM1E_SIGNAL_LENGTH];
+
 /** One axis of the file: values that are copied into the configuration, and values that are converted. */
 typedef struct cm1e_busfile_axis {
     cm1e_axis_config_t axis;
@@ -39,6 +42,9 @@ typedef struct cm1e_busfile_axis {
     double *software_limit_negative, *software_limit_positive; /**< NULL: none on this side */
     uint8_t *k37;          /**< NULL: not stated */
     char outputs_pdo[8], inputs_pdo[8]; /**< "": not stated */
+    char limit_positive[CM1E_SIGNAL_LENGTH], limit_negative[CM1E_SIGNAL_LENGTH], home[CM1E_SIGNAL_LENGTH];
+    cm1e_busfile_signal_name_t input_signals[CM1E_WIRED_SIGNALS], output_signals[CM1E_WIRED_SIGNALS];
+    uint32_t input_count, output_count;
     int velocity_unit;     /**< 0: not stated */
     int acceleration_unit; /**< 1: kcounts/s2 */
 } cm1e_busfile_axis_t;
@@ -103,12 +109,16 @@ extern const char *const cm1e_busfile_zero_allowed[];
 /** Compares every node of the document with the schema. Numbers are read in the thread's locale: it must be "C". */
 bool cm1e_busfile_compare(yaml_document_t *document, cm1e_config_problem_t *problem);
 
-/* ---- load.c, load_slaves.c: conversion --------------------------------------------------------------------------- */
+/* ---- load*.c: conversion -------------------------------------------------------------------------------------- */
 
 /** Takes the one address that is stated of position, alias and explicit ID; 0: the others are. false: more than one
  *  is. `list`: "axes" or "slaves". */
 bool cm1e_busfile_convert_address(const uint16_t stated[3], cm1e_address_kind_t *kind, uint16_t *address,
                                   const char *list, uint32_t index, cm1e_config_problem_t *problem);
+/** Takes the inputs of switches, by number or by signal, and the signals on other slaves (load_wiring.c). `index`: of the
+ *  axis in the list. */
+bool cm1e_busfile_convert_wiring(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
+                                 cm1e_config_problem_t *problem);
 /** Adds the slaves of the file to the configuration. */
 bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t *from,
                                  cm1e_config_problem_t *problem);

@@ -100,7 +100,8 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
     axis->k37 = from->k37 ? *from->k37 : 0;
     convert_software_limits(axis, from);
     if (!convert_pdo(&axis->outputs_pdo, from->outputs_pdo, "outputs_pdo", 0x1600, index, problem) ||
-        !convert_pdo(&axis->inputs_pdo, from->inputs_pdo, "inputs_pdo", 0x1A00, index, problem))
+        !convert_pdo(&axis->inputs_pdo, from->inputs_pdo, "inputs_pdo", 0x1A00, index, problem) ||
+        !cm1e_busfile_convert_wiring(axis, from, index, problem))
         return false;
     const uint16_t stated[] = {from->position, from->alias, from->explicit_id}; /* 0: its place in the list */
     return cm1e_busfile_convert_address(stated, &axis->address_kind, &axis->address, "axes", index, problem);

@@ -10,6 +10,7 @@
 #define BUS_UINT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_t, member)
 #define BUS_BOOL(key, member) CYAML_FIELD_BOOL(key, OPTIONAL, cm1e_busfile_t, member)
 #define AXIS_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_axis_t, axis.member, 1)
+#define FILE_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_axis_t, member, 1)
 #define AXIS_FLOAT(key, member) CYAML_FIELD_FLOAT(key, OPTIONAL, cm1e_busfile_axis_t, axis.member)
 #define AXIS_UINT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_axis_t, axis.member)
 #define AXIS_BOOL(key, member) CYAML_FIELD_BOOL(key, OPTIONAL, cm1e_busfile_axis_t, axis.member)
@@ -17,6 +18,10 @@
     CYAML_FIELD_ENUM(key, OPTIONAL, structure, member, strings, COUNT_OF(strings))
 #define GROUP(key_, structure, fields_)                                                                             \
     {.key = (key_), .data_offset = 0, .value = {CYAML_VALUE_MAPPING(CYAML_FLAG_OPTIONAL, structure, fields_)}}
+/* A list of entries of one kind, each required to be there. */
+#define LIST_OF(key, structure, member, count, entry)                                                               \
+    CYAML_FIELD_SEQUENCE_COUNT(key, OPTIONAL, structure, member, count, entry, 1, COUNT_OF(((structure *)0)->member))
+#define TEXT_OF(type) {CYAML_VALUE_STRING(CYAML_FLAG_DEFAULT, type, 1, sizeof(type) - 1)}
 #define AXIS_GROUP(key, fields) GROUP(key, cm1e_busfile_axis_t, fields)
 
 static const cyaml_strval_t mappings[] = {
@@ -127,8 +132,8 @@ static const cyaml_schema_field_t wire_fields[] = {
 static const cyaml_schema_field_t drive_fields[] = {
     AXIS_UINT("counts_per_revolution", counts_per_revolution),
     AXIS_FLOAT("max_speed_rpm", max_speed_rpm),
-    CYAML_FIELD_STRING("outputs_pdo", OPTIONAL, cm1e_busfile_axis_t, outputs_pdo, 1),
-    CYAML_FIELD_STRING("inputs_pdo", OPTIONAL, cm1e_busfile_axis_t, inputs_pdo, 1),
+    FILE_STRING("outputs_pdo", outputs_pdo),
+    FILE_STRING("inputs_pdo", inputs_pdo),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_field_t dc_fields[] = {
@@ -146,12 +151,18 @@ static const cyaml_schema_field_t homing_fields[] = {
     AXIS_FLOAT("timeout_s", homing.timeout_s),
     CYAML_FIELD_END,
 };
+static const cyaml_schema_value_t signal_name_value = TEXT_OF(cm1e_busfile_signal_name_t);
 static const cyaml_schema_field_t input_fields[] = {
-    AXIS_UINT("limit_positive", inputs.limit_positive),
-    AXIS_UINT("limit_negative", inputs.limit_negative),
-    AXIS_UINT("home", inputs.home),
+    FILE_STRING("limit_positive", limit_positive),
+    FILE_STRING("limit_negative", limit_negative),
+    FILE_STRING("home", home),
+    LIST_OF("signals", cm1e_busfile_axis_t, input_signals, input_count, &signal_name_value),
     AXIS_BOOL("limits_normally_closed", inputs.limits_normally_closed),
     AXIS_BOOL("home_normally_closed", inputs.home_normally_closed),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_field_t output_fields[] = {
+    LIST_OF("signals", cm1e_busfile_axis_t, output_signals, output_count, &signal_name_value),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_field_t jog_fields[] = {
@@ -199,6 +210,8 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_GROUP("backlash", backlash_fields),
     AXIS_GROUP("jog", jog_fields),
     AXIS_GROUP("inputs", input_fields),
+    AXIS_GROUP("outputs", output_fields),
+    AXIS_STRING("encoder_signal", wiring.encoder),
     AXIS_GROUP("homing", homing_fields),
     AXIS_GROUP("drive", drive_fields),
     AXIS_GROUP("dc", dc_fields),
@@ -214,10 +227,6 @@ static const cyaml_schema_value_t axis_value = {
 #define SLAVE_BOOL(key, member) CYAML_FIELD_BOOL(key, OPTIONAL, cm1e_busfile_slave_t, member)
 #define SLAVE_GROUP(key, fields) GROUP(key, cm1e_busfile_slave_t, fields)
 #define SLAVE_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_slave_t, member, 1)
-/* A list of entries of one kind, each required to be there. */
-#define LIST_OF(key, structure, member, count, entry)                                                               \
-    CYAML_FIELD_SEQUENCE_COUNT(key, OPTIONAL, structure, member, count, entry, 1, COUNT_OF(((structure *)0)->member))
-#define TEXT_OF(type) {CYAML_VALUE_STRING(CYAML_FLAG_DEFAULT, type, 1, sizeof(type) - 1)}
 
 static const cyaml_schema_value_t text_value = TEXT_OF(cm1e_busfile_text_t);
 
@@ -338,7 +347,6 @@ const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
     {"cam_points", CM1E_CAM_POINTS_MINIMUM, CM1E_CAM_POINTS_MAXIMUM},
     {"watchdog_ms", 1, 6000},
     {"bit", 0, 8 * 1486 - 1}, {"bits", 1, 8 * 1486}, {"inputs", 1, 8}, {"outputs", 1, 8},
-    {"limit_positive", 1, 4}, {"limit_negative", 1, 4}, {"home", 1, 4},
     {NULL, INT32_MIN, INT32_MAX},
 };
 

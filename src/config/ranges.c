@@ -140,6 +140,12 @@ static bool check_homing(const check_t *check)
     return true;
 }
 
+/* Whether an input is a signal of another slave. */
+static bool is_wired(const check_t *check, unsigned number)
+{
+    return number >= CM1E_WIRED_FIRST && number < CM1E_WIRED_FIRST + (unsigned)check->axis->wiring.input_count;
+}
+
 static bool check_inputs(const check_t *check)
 {
     const cm1e_input_config_t *inputs = &check->axis->inputs;
@@ -149,8 +155,11 @@ static bool check_inputs(const check_t *check)
     } switches[] = {{"inputs.limit_positive", inputs->limit_positive},
                     {"inputs.limit_negative", inputs->limit_negative}, {"inputs.home", inputs->home}};
     for (int i = 0; i < 3; i++)
-        if (switches[i].number > 4)
-            return axis_wrong(check, switches[i].key, "is %u; expected 1 ... 4", switches[i].number);
+        if (is_wired(check, switches[i].number))
+            continue;
+        else if (switches[i].number > 4)
+            return axis_wrong(check, switches[i].key, "is %u; expected 1 ... 4, or the name of a signal as in "
+                              "\"switches.home\"", switches[i].number);
         else if (switches[i].number == 1 && !(drive_of(check)->signals.inputs & 1))
             return axis_wrong(check, switches[i].key, "is 1, through which a CM1 talks to the bridge; expected 2 ... "
                               "4");
@@ -210,8 +219,8 @@ static bool check_axis(check_t *check)
         return false;
     if ((unsigned)check->axis->mapping > CM1E_MAPPING_PROFILE)
         return axis_wrong(check, "mapping", "is %d; expected one of the enumeration", (int)check->axis->mapping);
-    return check_motion(check) && cm1e_config_check_optional(check) && cm1e_config_check_numbers(check) && check_homing(check) && check_inputs(check) &&
-           check_sim(check);
+    return check_motion(check) && cm1e_config_check_optional(check) && cm1e_config_check_numbers(check) &&
+           check_homing(check) && check_inputs(check) && cm1e_config_check_wiring(check) && check_sim(check);
 }
 
 bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_problem_t *problem)

@@ -53,6 +53,8 @@ bool cm1e_config_check_optional(const check_t *check);
 enum { CM1E_WRONG_OPTIONAL = 224 };
 const char *cm1e_config_wrong_optional(const cm1e_bus_config_t *config, uint32_t index,
                                        char text[CM1E_WRONG_OPTIONAL]);
+/** Signals on other slaves (ranges_wiring.c). */
+bool cm1e_config_check_wiring(const check_t *check);
 /** Checks that a virtual axis or an encoder has no keys of a motor. */
 bool cm1e_config_check_without_motor(const check_t *check);
 

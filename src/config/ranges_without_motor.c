@@ -56,7 +56,7 @@ bool cm1e_config_check_without_motor(const check_t *check)
         {"wire.velocity_unit", axis->velocity_unit_stated},
         {"wire.acceleration_unit", axis->acceleration_in_kpulses},
         {"sim", any_sim(&axis->sim)},
-        {"limits.velocity", encoder && axis->max_velocity != 0},
+        {"limits.velocity", encoder && axis->max_velocity != 0 && axis->wiring.encoder[0] == '\0'},
         {"limits.acceleration", encoder && axis->max_acceleration != 0},
         {"limits.deceleration", encoder && axis->max_deceleration != 0},
         {"limits.jerk", encoder && axis->max_jerk != 0},

@@ -77,6 +77,7 @@ static const struct {
     {CM1E_ERROR_AXIS_PARAMETER_RANGE, "give a value within the range"},
     {CM1E_ERROR_AXIS_OVERRIDE, "give factors within their ranges"},
     {CM1E_ERROR_AXIS_SIGNAL, "give a number that the drive has"},
+    {CM1E_ERROR_AXIS_SIGNAL_AWAY, "look at the power and the cable of that slave: cm1e io and cm1e status name it"},
     {CM1E_ERROR_AXIS_PROBE, "arm the probe again when inputs come"},
     {CM1E_ERROR_AXIS_NO_TORQUE_MODE, "limit the torque otherwise (K parameters)"},
     {CM1E_ERROR_AXIS_TABLE, "correct the table"},

@@ -239,6 +239,7 @@ cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const
 /* observe.c */
 /** Updates the actual value that slaves see. Called with the inputs of every cycle. */
 void cm1e_coupling_observe(cm1e_axis_t *axis);
+double cm1e_coupling_observed_velocity(const cm1e_axis_t *axis);
 /** The actual state of a master in this cycle, or in the previous one. MASTER_UNSEEN: no value has arrived for too
  *  long. */
 master_trouble_t cm1e_coupling_see_actual(cm1e_axis_t *master, bool of_this_cycle, from_t *seen);

@@ -69,6 +69,7 @@ static const coupling_hooks_t hooks = {
     .free = forget,
     .own = {sizeof(coupling_t) + sizeof(cams_t), copy_own},
     .observe = cm1e_coupling_observe,
+    .observed_velocity = cm1e_coupling_observed_velocity,
     .advance_masters = cm1e_coupling_advance_masters,
     .first_set_point = cm1e_coupling_first_set_point,
     .await_step = cm1e_coupling_await_step,

@@ -74,6 +74,11 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
     look(axis);
 }
 
+double cm1e_coupling_observed_velocity(const cm1e_axis_t *axis)
+{
+    return axis->coupling->own.begun ? axis->coupling->own.now.velocity : 0.0;
+}
+
 master_trouble_t cm1e_coupling_see_actual(cm1e_axis_t *master, bool of_this_cycle, from_t *seen)
 {
     const observed_t *own = &master->coupling->own;

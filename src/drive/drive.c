@@ -6,6 +6,7 @@
 
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
+#include "drive/drive_wiring.h"
 
 static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
 /* A controlword shows in the statusword some cycles later. After the torque was taken away, it is not requested again
@@ -28,19 +29,9 @@ static cm1e_error_t find_device(cm1e_drive_t *drive, const cm1e_drive_kind_t **k
                          drive->config->channel, CM1E_BRIDGE_AXES);
 }
 
-cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag)
+static cm1e_error_t init_motor(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
-    memset(drive, 0, sizeof *drive);
-    const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
-    if (axis >= config->axis_count)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no axis %u: the configuration has %u.",
-                             (unsigned)axis, (unsigned)config->axis_count);
-    drive->bus = bus;
-    drive->axis = axis;
-    drive->config = &config->axes[axis];
-    if (drive->config->type != CM1E_AXIS_MOTOR)
-        return cm1e_drive_init_virtual(drive);
-    drive->position = cm1e_bus_axis_position(bus, axis);
+    drive->position = cm1e_bus_axis_position(drive->bus, drive->axis);
     if (drive->position == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "Axis \"%s\" has no slave on the bus.",
                              drive->config->name);
@@ -61,10 +52,27 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     return error != CM1E_OK ? error : cm1e_drive_mode_init(drive, diag);
 }
 
+cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag)
+{
+    memset(drive, 0, sizeof *drive);
+    const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
+    if (axis >= config->axis_count)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no axis %u: the configuration has %u.",
+                             (unsigned)axis, (unsigned)config->axis_count);
+    drive->bus = bus;
+    drive->axis = axis;
+    drive->config = &config->axes[axis];
+    const bool has_motor = drive->config->type == CM1E_AXIS_MOTOR;
+    const cm1e_error_t error = has_motor ? init_motor(drive, diag) : cm1e_drive_init_virtual(drive);
+    return error != CM1E_OK ? error : cm1e_drive_wire(drive, diag);
+}
+
 void cm1e_drive_free(cm1e_drive_t *drive)
 {
     free(drive->behind);
+    free(drive->wiring);
     drive->behind = NULL;
+    drive->wiring = NULL;
 }
 
 const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, uint8_t subindex)
@@ -96,6 +104,8 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
     drive->now_ns = now_ns;
+    if (drive->wiring)
+        cm1e_drive_wiring_read(drive);
     if (cm1e_drive_is_virtual(drive)) {
         cm1e_drive_virtual_read(drive);
         return;

@@ -220,6 +220,7 @@ typedef struct cm1e_drive {
     const cm1e_motor_t *motor;      /**< NULL behind a bridge */
     const cm1e_firmware_info_t *firmware;
     struct cm1e_drive_bridge *behind; /**< what a motor behind a bridge has beside this; else NULL */
+    struct cm1e_drive_wiring *wiring; /**< signals of other slaves (drive_wiring.h); NULL: none */
 } cm1e_drive_t;
 
 #endif

@@ -49,7 +49,24 @@ static bool level_of(const cm1e_axis_t *axis, const stepping_t *s)
         return cm1e_axis_switch_active(axis, limit_switch(s->search));
     if (s->step.input == 0)
         return cm1e_axis_switch_active(axis, CM1E_SWITCH_HOME);
-    return axis->drive.feedback.digital_inputs >> (s->step.input - 1) & 1;
+    return cm1e_axis_input_level(axis, s->step.input);
+}
+
+/* The input that a step searches for. */
+static int input_of(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, double way)
+{
+    if (step->kind == CM1E_STEP_LIMIT_SWITCH)
+        return cm1e_axis_switch_input(axis, limit_switch(way));
+    return step->input != 0 ? step->input : cm1e_axis_switch_input(axis, CM1E_SWITCH_HOME);
+}
+
+/* Whether the slave with the signal of the step, or with the limit switch ahead, is away. Nobody would see the place
+ * at which the search has to end. */
+static bool signal_away(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, double search, double way)
+{
+    const bool switches = step->kind == CM1E_STEP_ABSOLUTE_SWITCH || step->kind == CM1E_STEP_LIMIT_SWITCH;
+    return cm1e_axis_switch_away(axis, limit_switch(way)) ||
+           (switches && cm1e_axis_input_away(axis, input_of(axis, step, search)));
 }
 
 /* ---- check ------------------------------------------------------------------------------------------------------- */
@@ -96,8 +113,13 @@ static bool position_valid(const cm1e_axis_t *axis, double position)
 static cm1e_error_t check_signal(const cm1e_axis_t *axis, const cm1e_homing_step_t *step)
 {
     const bool torque = step->torque_limit > 0.0;
-    if ((torque && axis->drive.image.in_torque.bytes == 0) || (by_switch(step->kind) && !cm1e_axis_sees_inputs(axis)))
+    const int input = input_of(axis, step, search_direction(step));
+    if ((torque && axis->drive.image.in_torque.bytes == 0) ||
+        (by_switch(step->kind) && !cm1e_axis_sees_input(axis, input)))
         return CM1E_ERROR_PDO_MAPPING;
+    for (double way = -1.0; way <= 1.0; way += 2.0)
+        if (signal_away(axis, step, search_direction(step), way))
+            return CM1E_ERROR_AXIS_SIGNAL_AWAY;
     if (step->kind == CM1E_STEP_ABSOLUTE_SWITCH && step->input != 0)
         return cm1e_axis_check_input(axis, step->input) != CM1E_OK ? CM1E_ERROR_AXIS_STEP_INPUT : CM1E_OK;
     if (step->kind == CM1E_STEP_LIMIT_SWITCH)
@@ -123,7 +145,7 @@ cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_s
         return CM1E_ERROR_AXIS_VIRTUAL;
     if (!direction_valid(step))
         return CM1E_ERROR_AXIS_DIRECTION;
-    if (!mode_valid(step) || step->input < 0 || step->input > CM1E_AXIS_INPUTS || !usable(step->torque_limit) ||
+    if (!mode_valid(step) || step->input < 0 || !usable(step->torque_limit) ||
         !usable(step->distance_limit) || !usable(step->detection_velocity) || step->time_limit_ns < 0 ||
         step->detection_ns < 0)
         return CM1E_ERROR_AXIS_STEP_INPUT;
@@ -524,6 +546,8 @@ static bool over_a_limit(cm1e_axis_t *axis)
     }
     if (!cm1e_axis_direction_enabled(axis, s->way))
         error = CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    else if (signal_away(axis, &s->step, s->search, s->way))
+        error = CM1E_ERROR_AXIS_SIGNAL_AWAY;
     else if (axis->now_ns >= s->deadline_ns)
         error = CM1E_ERROR_AXIS_STEP_TIME;
     else if (s->step.distance_limit > 0.0 && s->travel >= s->step.distance_limit)
@@ -540,8 +564,10 @@ static void search(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
     s->travel += fabs(axis->setpoint.velocity) * axis->cycle_s;
-    const bool look = axis->drive.feedback.fresh;
-    if (look && by_switch(s->step.kind) && look_at_switch(axis))
+    const bool by_input = by_switch(s->step.kind);
+    const bool look = axis->drive.feedback.fresh &&
+                      (!by_input || cm1e_axis_input_fresh(axis, input_of(axis, &s->step, s->search)));
+    if (look && by_input && look_at_switch(axis))
         return;
     if (over_a_limit(axis))
         return;

@@ -1,6 +1,9 @@
 /* Sentences about homings: why one was refused, and why one failed. */
 #include <stdio.h>
+#include <string.h>
 
+#include "axis/axis_signals.h"
+#include "axis/axis_text.h"
 #include "cm1e/error.h"
 #include "homing/homing_private.h"
 
@@ -50,9 +53,30 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
                  axis->config->name, sdo->index, sdo->subindex, cm1e_strerror(axis->homing->drive.refused));
 }
 
+/* Which switches the step needs that are on other slaves. */
+static void away_text(const cm1e_axis_t *axis, int input, char *text, size_t size)
+{
+    const cm1e_input_config_t *inputs = &axis->config->inputs;
+    const int numbers[] = {input ? input : inputs->home, inputs->limit_positive, inputs->limit_negative};
+    char names[3 * CM1E_SIGNAL_LENGTH + 8] = "";
+    for (int i = 0; i < 3; i++) {
+        const char *name = cm1e_axis_wired_name(axis, numbers[i], false);
+        const size_t used = strlen(names);
+        if (name[0] && used < sizeof names)
+            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", name);
+    }
+    snprintf(text, size, "Axis \"%s\": the homing step did not begin, or was stopped, because the slave of a switch "
+             "does not take part in the bus cycle. Its switches are %s. Look at power and cable of these slaves; then "
+             "begin the homing anew.", axis->config->name, names);
+}
+
 bool cm1e_homing_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const not_set_t *ended = &axis->not_set;
+    if (ended->number == CM1E_COMMAND_HOMING_STEP && ended->error == CM1E_ERROR_AXIS_SIGNAL_AWAY) {
+        away_text(axis, axis->homing->stepping.step.input, text, size);
+        return true;
+    }
     if (ended->number != CM1E_COMMAND_HOME || ended->error != axis->homing->drive.refused)
         return false;
     refused_homing_text(axis, text, size);
@@ -61,6 +85,10 @@ bool cm1e_homing_not_finished_text(const cm1e_axis_t *axis, char *text, size_t s
 
 bool cm1e_homing_refused_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    if (axis->commands.refusal == CM1E_ERROR_AXIS_SIGNAL_AWAY) {
+        away_text(axis, 0, text, size);
+        return true;
+    }
     if (axis->commands.refusal != CM1E_ERROR_AXIS_HOMING_METHOD &&
         axis->commands.refusal != CM1E_ERROR_AXIS_HOMING_PARAMETER) return false;
     cm1e_homing_wrong_text(axis, text, size);

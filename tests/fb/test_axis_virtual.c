@@ -203,7 +203,7 @@ START_TEST(test_what_needs_a_motor_is_refused_in_words)
         ck_assert_int_eq(cm1e_axis_object_start(axes[n], 1500, false, 0.0, &id), CM1E_ERROR_AXIS_VIRTUAL);
         ck_assert_int_eq(cm1e_axis_object_start(axes[n], 1400, true, 0.0, &id), CM1E_ERROR_AXIS_VIRTUAL);
         ck_assert_int_eq(cm1e_axis_cml_send(axes[n], "?96.1", 5, 0, false, &id), CM1E_ERROR_AXIS_VIRTUAL);
-        ck_assert(!cm1e_axis_sees_inputs(axes[n]));
+        ck_assert(!cm1e_axis_sees_input(axes[n], 1));
         ck_assert(!cm1e_axis_has_switch(axes[n], CM1E_SWITCH_HOME));
     }
     cycles(100);

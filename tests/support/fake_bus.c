@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cm1e/io.h"
+
 void fake_bus_init(cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_pdo_order_t order, cm1e_firmware_t firmware)
 {
     memset(bus, 0, sizeof *bus);
@@ -308,4 +310,20 @@ cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, u
         return cm1e_diag_set(diag, sdo.error, sdo.abort_code, "read refused");
     *size = sdo.size;
     return CM1E_OK;
+}
+
+/* Signals of other slaves: the fake bus has none. */
+cm1e_error_t cm1e_io_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io, cm1e_diag_t *diag)
+{
+    (void)bus;
+    *io = (cm1e_io_t){0};
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "\"%s\" names no slave.", name);
+}
+cm1e_io_quality_t cm1e_io_quality(const cm1e_io_t *io) { return io->bus ? CM1E_IO_GOOD : CM1E_IO_INVALID; }
+bool cm1e_io_bool(const cm1e_io_t *io) { return cm1e_io_integer(io) != 0; }
+int64_t cm1e_io_integer(const cm1e_io_t *io) { return io->shift; }
+cm1e_error_t cm1e_io_set_bool(const cm1e_io_t *io, bool value)
+{
+    (void)value;
+    return io->bus ? CM1E_OK : CM1E_ERROR_STATE;
 }
