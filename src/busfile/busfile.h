@@ -79,6 +79,7 @@ typedef struct cm1e_busfile_slave {
     cm1e_slave_config_t slave;
     uint16_t position, alias, explicit_id;
     char vendor[12], product[12], revision[12];
+    char esi[256], esi_mode[64]; /**< "": not stated */
     uint32_t sdo_count, mapping_count, outputs_pdo_count, inputs_pdo_count, output_count, input_count;
     cm1e_busfile_sdo_t sdos[CM1E_SLAVE_SDOS];
     cm1e_busfile_mapping_t mappings[CM1E_SLAVE_PDOS];
@@ -119,8 +120,9 @@ bool cm1e_busfile_convert_address(const uint16_t stated[3], cm1e_address_kind_t 
  *  axis in the list. */
 bool cm1e_busfile_convert_wiring(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
                                  cm1e_config_problem_t *problem);
-/** Adds the slaves of the file to the configuration. */
-bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t *from,
+/** Adds the slaves of the file to the configuration. The path of an ESI is as seen from the folder of `path`, the bus
+ *  file. */
+bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t *from, const char *path,
                                  cm1e_config_problem_t *problem);
 
 #endif

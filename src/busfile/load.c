@@ -107,7 +107,8 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
     return cm1e_busfile_convert_address(stated, &axis->address_kind, &axis->address, "axes", index, problem);
 }
 
-static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_config_problem_t *problem)
+static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, const char *path,
+                    cm1e_config_problem_t *problem)
 {
     *config = from->config;
     if (config->interface_name[0] == '\0')
@@ -128,12 +129,12 @@ static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_
             return false;
     for (uint32_t i = 0; i < from->axis_count; i++)
         config->axes[i].address = cm1e_axis_address(config, i);
-    return cm1e_busfile_convert_slaves(config, from, problem);
+    return cm1e_busfile_convert_slaves(config, from, path, problem);
 }
 
 /* ---- loading ----------------------------------------------------------------------------------------------------- */
 
-static cm1e_error_t fill(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
+static cm1e_error_t fill(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size, const char *path,
                          cm1e_config_problem_t *problem)
 {
     cyaml_config_t settings;
@@ -146,19 +147,19 @@ static cm1e_error_t fill(cm1e_bus_config_t *config, const uint8_t *bytes, size_t
             snprintf(problem->text, sizeof problem->text, "%s", cyaml_strerror(load_error));
         return load_error == CYAML_ERR_OOM ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_CONFIG;
     }
-    const bool good = convert(config, file, problem) && cm1e_config_find_problem(config, problem);
+    const bool good = convert(config, file, path, problem) && cm1e_config_find_problem(config, problem);
     cyaml_free(&settings, &cm1e_busfile_schema, file, 0);
     return good ? CM1E_OK : CM1E_ERROR_CONFIG;
 }
 
-static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
+static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size, const char *path,
                                cm1e_config_problem_t *problem)
 {
     yaml_document_t document;
     cm1e_error_t error = cm1e_busfile_parse(bytes, size, &document, problem);
     if (error != CM1E_OK)
         return error;
-    error = cm1e_busfile_compare(&document, problem) ? fill(config, bytes, size, problem) : CM1E_ERROR_CONFIG;
+    error = cm1e_busfile_compare(&document, problem) ? fill(config, bytes, size, path, problem) : CM1E_ERROR_CONFIG;
     if (error != CM1E_OK && problem->line == 0)
         cm1e_busfile_locate(&document, problem);
     yaml_document_delete(&document);
@@ -166,7 +167,7 @@ static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, 
 }
 
 /* strtod(), here and in libcyaml, takes the decimal point of the thread's locale: under a German one 4.5 would be 4. */
-static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
+static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size, const char *path,
                                      cm1e_config_problem_t *problem)
 {
     const locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
@@ -175,7 +176,7 @@ static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *b
         return CM1E_ERROR_NO_MEMORY;
     }
     const locale_t callers = uselocale(c_locale);
-    const cm1e_error_t error = load_bytes(config, bytes, size, problem);
+    const cm1e_error_t error = load_bytes(config, bytes, size, path, problem);
     uselocale(callers);
     freelocale(c_locale);
     return error;
@@ -208,7 +209,7 @@ cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, 
     cm1e_error_t error = cm1e_busfile_read(path, &bytes, &length, &problem);
     cm1e_bus_config_t loaded = {0};
     if (error == CM1E_OK)
-        error = load_in_c_locale(&loaded, bytes, length, &problem);
+        error = load_in_c_locale(&loaded, bytes, length, path, &problem);
     if (error == CM1E_OK) {
         error = cm1e_config_copy_sized(config, size, axis_size, &loaded);
         if (error != CM1E_OK)

@@ -7,7 +7,10 @@
 #include <strings.h>
 
 #include "busfile/busfile.h"
+#include "config/esi_reader.h"
 #include "config/io_types.h"
+
+enum { PATH_BYTES = 4096 };
 
 typedef struct place {
     cm1e_config_problem_t *problem;
@@ -271,6 +274,29 @@ static bool convert_signals(const place_t *place, const cm1e_busfile_slave_t *fr
     return true;
 }
 
+/* ---- ESI --------------------------------------------------------------------------------------------------------- */
+
+/* An ESI stands beside the bus file, unless its path begins with a slash. */
+static bool take_esi(const place_t *place, cm1e_slave_config_t *slave, const cm1e_busfile_slave_t *from,
+                     const char *path, int64_t cycle_time_ns)
+{
+    char file[PATH_BYTES];
+    cm1e_diag_t diag = {0};
+    const char *slash = strrchr(path, '/');
+    const int folder = slash && from->esi[0] != '/' ? (int)(slash - path) + 1 : 0;
+    if (!from->esi[0])
+        return !from->esi_mode[0] || wrong(place, "esi_mode", "esi_mode is given without esi; expected both");
+    if (!cm1e_esi_reader())
+        return wrong(place, "esi", "esi is given, and this program cannot read ESI files: it has to be linked with "
+                     "cm1e::generate");
+    if (snprintf(file, sizeof file, "%.*s%s", folder, path, from->esi) >= (int)sizeof file)
+        return wrong(place, "esi", "the path of the ESI is too long");
+    if (cm1e_esi_reader()(slave, file, from->esi_mode, cycle_time_ns, &diag) == CM1E_OK)
+        return true;
+    return wrong(place, diag.error == CM1E_ERROR_NOT_FOUND && from->esi_mode[0] && strstr(diag.text, "OpMode")
+                 ? "esi_mode" : "esi", "%.100s: %.280s", from->esi, diag.text);
+}
+
 /* ---- all together ------------------------------------------------------------------------------------------------ */
 
 static bool convert_slave(const place_t *place, cm1e_slave_config_t *slave, const cm1e_busfile_slave_t *from)
@@ -300,7 +326,8 @@ static bool convert_slave(const place_t *place, cm1e_slave_config_t *slave, cons
            convert_signals(place, from, false, slave) && convert_signals(place, from, true, slave);
 }
 
-bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_config_problem_t *problem)
+bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t *from, const char *path,
+                                 cm1e_config_problem_t *problem)
 {
     for (uint32_t i = 0; i < from->slave_count; i++) {
         cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(config, NULL);
@@ -309,7 +336,8 @@ bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t
             snprintf(problem->text, sizeof problem->text, "out of memory");
             return false;
         }
-        if (!convert_slave(&place, slave, &from->slaves[i]))
+        if (!convert_slave(&place, slave, &from->slaves[i]) ||
+            !take_esi(&place, slave, &from->slaves[i], path, config->cycle_time_ns))
             return false;
     }
     return true;

@@ -305,6 +305,8 @@ static const cyaml_schema_field_t slave_fields[] = {
     SLAVE_STRING("vendor", vendor),
     SLAVE_STRING("product", product),
     SLAVE_STRING("revision", revision),
+    SLAVE_STRING("esi", esi),
+    SLAVE_STRING("esi_mode", esi_mode),
     SLAVE_UINT("watchdog_ms", slave.watchdog_ms),
     LIST_OF("sdo", cm1e_busfile_slave_t, sdos, sdo_count, &sdo_value),
     LIST_OF("mapping", cm1e_busfile_slave_t, mappings, mapping_count, &mapping_value),

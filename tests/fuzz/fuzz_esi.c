@@ -3,6 +3,7 @@
 #include "description/describe.h"
 #include "fuzz.h"
 #include "generate/esi.h"
+#include "generate/esi_take.h"
 #include "xml_mutator.h"
 
 enum { SEED_OBJECTS = 5, SEED_ENTRIES = 4, SEED_MODULES = 1 }; /* small seeds are run more often */
@@ -17,6 +18,8 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
             fuzz_fail("what the writer wrote cannot be read: %s", diag.text);
         return false;
     }
+    cm1e_slave_config_t slave = {0};
+    cm1e_esi_take(&slave, bytes, size, "DC", 1000000, &diag);
     cm1e_findings_t *findings = fuzz_findings();
     cm1e_check_description(findings, &file);
     fuzz_use_findings(findings);

@@ -1,0 +1,366 @@
+#include "generate/esi_take.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "config/esi_reader.h"
+#include "config/io_types.h"
+#include "description/expand.h"
+#include "generate/esi.h"
+
+enum { FILE_MAX = 64 << 20, BITS_MAX = 8 * 1486 }; /* of process data: those of a frame */
+enum { FIRST_RXPDO = 0x1600, END_OF_PDOS = 0x1C00, ASSIGNMENTS = 0x1C10, END_OF_ASSIGNMENTS = 0x1C30 };
+
+/* ---- which device ------------------------------------------------------------------------------------------------ */
+
+static bool fits(const cm1e_slave_config_t *slave, const cm1e_description_t *device)
+{
+    return (!slave->vendor || slave->vendor == device->vendor_id) &&
+           (!slave->product || slave->product == device->product_code) &&
+           (!slave->revision || slave->revision == device->revision);
+}
+
+static cm1e_error_t no_device(const cm1e_slave_config_t *slave, const cm1e_description_file_t *file, bool several,
+                              cm1e_diag_t *diag)
+{
+    char list[200] = "";
+    for (size_t i = 0, used = 0; i < file->devices.count && used + 60 < sizeof list; i++)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%.20s (0x%08X)", used ? ", " : "",
+                                 file->devices.at[i].type, (unsigned)file->devices.at[i].product_code);
+    if (several)
+        return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "describes %zu devices, %s; expected the product of this "
+                             "slave beside it", file->devices.count, list);
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "does not describe vendor 0x%08X, product 0x%08X, revision "
+                         "0x%08X (0: any), but vendor 0x%08X: %s; expected the file of this device",
+                         (unsigned)slave->vendor, (unsigned)slave->product, (unsigned)slave->revision,
+                         (unsigned)file->vendor_id, list);
+}
+
+/** The device with the identity of the slave; of several revisions the highest one. */
+static cm1e_error_t find_device(const cm1e_slave_config_t *slave, const cm1e_description_file_t *file,
+                                const cm1e_description_t **found, cm1e_diag_t *diag)
+{
+    bool several = false;
+    *found = NULL;
+    for (size_t i = 0; i < file->devices.count; i++) {
+        const cm1e_description_t *device = &file->devices.at[i];
+        if (!fits(slave, device))
+            continue;
+        several |= *found && (*found)->product_code != device->product_code;
+        if (!*found || device->revision > (*found)->revision)
+            *found = device;
+    }
+    return *found && !several ? CM1E_OK : no_device(slave, file, several, diag);
+}
+
+/* ---- process data ------------------------------------------------------------------------------------------------ */
+
+static bool is_listed(const uint16_t *pdos, unsigned count, unsigned index)
+{
+    for (unsigned i = 0; i < count; i++)
+        if (pdos[i] == index)
+            return true;
+    return false;
+}
+
+/** Whether a PDO is assigned: as the bus file says, else by default. */
+static bool is_assigned(const cm1e_slave_config_t *stated, const cm1e_described_pdo_t *pdo)
+{
+    const unsigned count = pdo->transmit ? stated->inputs_pdo_count : stated->outputs_pdo_count;
+    if (count)
+        return is_listed(pdo->transmit ? stated->inputs_pdos : stated->outputs_pdos, count, pdo->index);
+    return pdo->sync_manager != CM1E_NO_SYNC_MANAGER;
+}
+
+static bool is_rewritten(const cm1e_slave_config_t *slave, unsigned pdo)
+{
+    for (unsigned i = 0; i < slave->entry_count; i++)
+        if (slave->entries[i].pdo == pdo)
+            return true;
+    return false;
+}
+
+static cm1e_error_t assign(cm1e_slave_config_t *slave, const cm1e_slave_config_t *stated,
+                           const cm1e_description_t *device, cm1e_diag_t *diag)
+{
+    for (size_t i = 0; i < device->pdos.count; i++) {
+        const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        uint16_t *count = pdo->transmit ? &slave->inputs_pdo_count : &slave->outputs_pdo_count;
+        const bool by_file = pdo->transmit ? stated->inputs_pdo_count : stated->outputs_pdo_count;
+        if (by_file || !is_assigned(stated, pdo))
+            continue;
+        if (*count == CM1E_SLAVE_PDOS)
+            return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "assigns more than %d PDOs in a direction; expected "
+                                 "inputs_pdos or outputs_pdos beside it", CM1E_SLAVE_PDOS);
+        (pdo->transmit ? slave->inputs_pdos : slave->outputs_pdos)[(*count)++] = pdo->index;
+    }
+    return CM1E_OK;
+}
+
+/* ---- names ------------------------------------------------------------------------------------------------------- */
+
+static bool is_taken(const cm1e_slave_config_t *slave, const char *name)
+{
+    for (unsigned i = 0; i < slave->signal_count; i++)
+        if (strcasecmp(slave->signals[i].name, name) == 0)
+            return true;
+    return false;
+}
+
+/** "input 3", "output 3" and "0x6000:01" would be places. */
+static bool is_a_name(const char *name)
+{
+    return name[0] && strncasecmp(name, "input ", 6) != 0 && strncasecmp(name, "output ", 7) != 0 &&
+           strncasecmp(name, "0x", 2) != 0;
+}
+
+/** Whether several entries of the assigned PDOs have this name. */
+static bool is_common(const cm1e_slave_config_t *stated, const cm1e_description_t *device, const char *entry)
+{
+    unsigned same = 0;
+    for (size_t i = 0; i < device->pdos.count && same < 2; i++) {
+        const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        for (size_t e = 0; is_assigned(stated, pdo) && e < pdo->entries.count && same < 2; e++)
+            same += pdo->entries.at[e].name && strcasecmp(pdo->entries.at[e].name, entry) == 0;
+    }
+    return same > 1;
+}
+
+/** The name of the entry, with that of its PDO where several entries have it. A long one is cut. false: none is
+ *  left. */
+static bool make_name(const cm1e_slave_config_t *slave, const char *pdo, const char *entry,
+                      char name[CM1E_NAME_LENGTH])
+{
+    char words[2 * CM1E_SIGNAL_LENGTH];
+    snprintf(words, sizeof words, "%.60s%s%.60s", pdo, pdo[0] ? " " : "", entry);
+    for (char *c = words; *c; c++)
+        *c = (unsigned char)*c < ' ' || *c == 0x7F ? '_' : *c;
+    const size_t length = strlen(words);
+    /* The end tells channels apart, so a long name loses its middle. */
+    if (length < CM1E_NAME_LENGTH)
+        memcpy(name, words, length + 1);
+    else
+        snprintf(name, CM1E_NAME_LENGTH, "%.14s~%s", words, words + length - (CM1E_NAME_LENGTH - 16));
+    return is_a_name(name) && !is_taken(slave, name);
+}
+
+static bool is_named(const cm1e_slave_config_t *stated, bool output, unsigned index, unsigned subindex, unsigned bit)
+{
+    for (unsigned i = 0; i < stated->signal_count; i++) {
+        const cm1e_signal_config_t *signal = &stated->signals[i];
+        const bool same = signal->index ? signal->index == index && signal->subindex == subindex : signal->bit == bit;
+        if (signal->output == output && same)
+            return true;
+    }
+    return false;
+}
+
+/** `bit`: where the entry lies by default. */
+static void name_entry(cm1e_slave_config_t *slave, const cm1e_slave_config_t *stated, const cm1e_description_t *device,
+                       const cm1e_described_pdo_t *pdo, const cm1e_described_pdo_entry_t *entry, unsigned bit)
+{
+    cm1e_signal_config_t signal = {.output = !pdo->transmit, .index = entry->index, .subindex = entry->subindex};
+    const unsigned type = cm1e_io_type_of_name(entry->type);
+    if (entry->index == 0 || entry->bits == 0 || !entry->name || slave->signal_count == CM1E_SLAVE_SIGNALS ||
+        is_named(stated, signal.output, entry->index, entry->subindex, bit))
+        return;
+    if (!make_name(slave, is_common(stated, device, entry->name) ? pdo->name : "", entry->name, signal.name))
+        return;
+    signal.type_stated = type < CM1E_IO_BYTES && cm1e_io_types[type].bits == entry->bits;
+    signal.type = signal.type_stated ? (cm1e_io_type_t)type : CM1E_IO_BOOL;
+    if (!device->mailbox.coe) { /* such a slave cannot be asked for objects: its process data is what its file says */
+        signal.index = 0;
+        signal.subindex = 0;
+        signal.bit = (uint16_t)bit;
+        signal.bits = (uint16_t)entry->bits;
+    }
+    slave->signals[slave->signal_count++] = signal;
+}
+
+static void name_all(cm1e_slave_config_t *slave, const cm1e_slave_config_t *stated, const cm1e_description_t *device)
+{
+    unsigned bits[2] = {0, 0};
+    for (size_t i = 0; i < device->pdos.count; i++) {
+        const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        if (!is_assigned(stated, pdo) || is_rewritten(stated, pdo->index))
+            continue;
+        for (size_t e = 0; e < pdo->entries.count && bits[pdo->transmit] < BITS_MAX; e++) {
+            name_entry(slave, stated, device, pdo, &pdo->entries.at[e], bits[pdo->transmit]);
+            bits[pdo->transmit] += pdo->entries.at[e].bits;
+        }
+    }
+}
+
+/* ---- start-up commands ------------------------------------------------------------------------------------------- */
+
+/** Whether the bus file writes this object itself, so that its value counts. */
+static bool is_overruled(const cm1e_slave_config_t *stated, const cm1e_init_command_t *command)
+{
+    for (unsigned i = 0; i < stated->sdo_count; i++)
+        if (stated->sdos[i].index == command->index &&
+            (command->complete_access || stated->sdos[i].subindex == command->subindex))
+            return true;
+    if (command->index >= FIRST_RXPDO && command->index < END_OF_PDOS)
+        return is_rewritten(stated, command->index);
+    const bool outputs = command->index == 0x1C12, inputs = command->index == 0x1C13;
+    return (outputs && stated->outputs_pdo_count) || (inputs && stated->inputs_pdo_count);
+}
+
+static cm1e_error_t take_command(cm1e_slave_config_t *slave, const cm1e_init_command_t *command, cm1e_diag_t *diag)
+{
+    const bool too_long = command->data.size < 1 || command->data.size > 8;
+    if (command->complete_access || too_long)
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "line %u: the start-up command for object 0x%04X:%02X "
+                             "has %zu bytes%s; expected 1 ... 8 bytes of one sub-index: state it under `sdo`, which "
+                             "replaces it", (unsigned)command->place, command->index, command->subindex,
+                             command->data.size, command->complete_access ? " by complete access" : "");
+    if (slave->sdo_count == CM1E_SLAVE_SDOS)
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "has more start-up commands than %d, those of the bus "
+                             "file included", CM1E_SLAVE_SDOS);
+    slave->sdos[slave->sdo_count++] = (cm1e_sdo_config_t){
+        .index = command->index, .subindex = command->subindex, .bytes = (uint8_t)command->data.size,
+        .before_op = !(command->transitions & (CM1E_TRANSITION_IP | CM1E_TRANSITION_PS)),
+        .value = cm1e_bytes_unsigned(command->data)};
+    return CM1E_OK;
+}
+
+/** Those of a start: IP and PS before Safe-Operational, SO in it. */
+static cm1e_error_t take_commands(cm1e_slave_config_t *slave, const cm1e_slave_config_t *stated,
+                                  const cm1e_description_t *device, cm1e_diag_t *diag)
+{
+    const unsigned of_a_start = CM1E_TRANSITION_IP | CM1E_TRANSITION_PS | CM1E_TRANSITION_SO;
+    cm1e_error_t error = CM1E_OK;
+    for (size_t i = 0; i < device->init_commands.count && error == CM1E_OK; i++)
+        if (device->init_commands.at[i].transitions & of_a_start && !is_overruled(stated, &device->init_commands.at[i]))
+            error = take_command(slave, &device->init_commands.at[i], diag);
+    return error;
+}
+
+static bool commands_assign(const cm1e_description_t *device)
+{
+    for (size_t i = 0; i < device->init_commands.count; i++)
+        if (device->init_commands.at[i].index >= ASSIGNMENTS && device->init_commands.at[i].index < END_OF_ASSIGNMENTS)
+            return true;
+    return false;
+}
+
+/* ---- clocks ------------------------------------------------------------------------------------------------------ */
+
+/** ETG.2000: a time of its own, or the cycle time of the bus, multiplied by a positive factor, divided by a negative
+ *  one. */
+static double period_us(int32_t own_ns, int32_t factor, int64_t cycle_time_ns)
+{
+    const double cycle_us = (double)(cycle_time_ns ? cycle_time_ns : 1000000) * 1e-3;
+    if (own_ns > 0)
+        return own_ns * 1e-3;
+    return factor < 0 ? cycle_us / -(double)factor : factor > 0 ? cycle_us * factor : cycle_us;
+}
+
+static cm1e_error_t take_mode(cm1e_slave_config_t *slave, const cm1e_description_t *device, const char *name,
+                              int64_t cycle_time_ns, cm1e_diag_t *diag)
+{
+    enum { SYNC0_ACTIVE = 0x0200, SYNC1_ACTIVE = 0x0400 };
+    char list[200] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < device->dc_modes.count; i++) {
+        const cm1e_dc_mode_t *mode = &device->dc_modes.at[i];
+        if (used + 50 < sizeof list)
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%.40s", used ? ", " : "", mode->name);
+        if (strcasecmp(mode->name, name) != 0)
+            continue;
+        if (mode->assign_activate & SYNC0_ACTIVE) {
+            slave->dc.sync0_us = period_us(mode->sync0_cycle_ns, mode->sync0_factor, cycle_time_ns);
+            slave->dc.shift_us = mode->sync0_shift_ns * 1e-3;
+        }
+        if (mode->assign_activate & SYNC1_ACTIVE)
+            slave->dc.sync1_us = mode->sync1_shift_ns > 0 ? mode->sync1_shift_ns * 1e-3
+                                 : period_us(mode->sync1_cycle_ns, mode->sync1_factor, cycle_time_ns);
+        return CM1E_OK;
+    }
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "has no OpMode '%s'; it has %s", name, used ? list : "none");
+}
+
+/* ---- all together ------------------------------------------------------------------------------------------------ */
+
+static cm1e_error_t take_device(cm1e_slave_config_t *slave, const cm1e_description_t *device, const char *mode,
+                                int64_t cycle_time_ns, cm1e_diag_t *diag)
+{
+    const cm1e_slave_config_t stated = *slave;
+    cm1e_error_t error = CM1E_OK;
+    slave->vendor = device->vendor_id;
+    if (device->product_given)
+        slave->product = device->product_code;
+    name_all(slave, &stated, device);
+    if (device->mailbox.coe && device->mailbox.pdo_assign && !commands_assign(device))
+        error = assign(slave, &stated, device, diag);
+    if (error == CM1E_OK && device->mailbox.coe)
+        error = take_commands(slave, &stated, device, diag);
+    return error == CM1E_OK && mode[0] ? take_mode(slave, device, mode, cycle_time_ns, diag) : error;
+}
+
+cm1e_error_t cm1e_esi_take(cm1e_slave_config_t *slave, const void *bytes, size_t size, const char *mode,
+                           int64_t cycle_time_ns, cm1e_diag_t *diag)
+{
+    cm1e_description_file_t file = {0};
+    cm1e_arena_t arena = {0};
+    cm1e_description_t expanded;
+    const cm1e_description_t *device = NULL;
+    cm1e_error_t error = cm1e_esi_read(&file, bytes, size, diag);
+    if (error == CM1E_OK)
+        error = find_device(slave, &file, &device, diag);
+    if (error == CM1E_OK && device->slots.count > 0) { /* with the modules that it has when nobody chooses */
+        uint32_t idents[CM1E_PLACES_MAX];
+        const size_t places = cm1e_description_places(device);
+        cm1e_description_default_modules(device, idents, places);
+        cm1e_description_expand(&arena, &expanded, &file, device, idents, places);
+        device = &expanded;
+        if (arena.failed)
+            error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "needs more memory than there is");
+    }
+    if (error == CM1E_OK)
+        error = take_device(slave, device, mode, cycle_time_ns, diag);
+    cm1e_arena_free(&arena);
+    cm1e_description_file_free(&file);
+    return error;
+}
+
+static cm1e_error_t read_file(const char *path, uint8_t **bytes, size_t *size, cm1e_diag_t *diag)
+{
+    FILE *file = fopen(path, "rb");
+    *size = 0;
+    *bytes = NULL;
+    if (!file)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "cannot be read: %s", strerror(errno));
+    for (size_t room = 1 << 20; !ferror(file) && !feof(file) && room <= FILE_MAX; room *= 2) {
+        uint8_t *larger = realloc(*bytes, room);
+        if (!larger)
+            break;
+        *bytes = larger;
+        *size += fread(*bytes + *size, 1, room - *size, file);
+    }
+    const bool whole = feof(file);
+    fclose(file);
+    return whole ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "cannot be read whole; expected an ESI of at most "
+                                           "%d bytes", FILE_MAX);
+}
+
+static cm1e_error_t take_from_file(cm1e_slave_config_t *slave, const char *path, const char *mode,
+                                   int64_t cycle_time_ns, cm1e_diag_t *diag)
+{
+    uint8_t *bytes;
+    size_t size;
+    cm1e_error_t error = read_file(path, &bytes, &size, diag);
+    if (error == CM1E_OK)
+        error = cm1e_esi_take(slave, bytes, size, mode, cycle_time_ns, diag);
+    free(bytes);
+    return error;
+}
+
+void cm1e_generate_register(void) { cm1e_esi_register_reader(take_from_file); }
+
+/* Runs before main(). The target cm1e::generate has the linker ask for cm1e_generate_register(), which brings this
+ * object. */
+__attribute__((constructor)) static void register_at_start(void) { cm1e_generate_register(); }

@@ -1,0 +1,186 @@
+/* ESI files that the bus file names at its slaves: what is taken from them, what the bus file overrules, what is
+ * refused and in which words; and that a simulated slave is configured by it. */
+#include "bus_support.h"
+#include "cm1e/io.h"
+
+static const char bus_path[] = CM1E_TEST_OUTPUT "/bus_esi.yaml", esi_path[] = CM1E_TEST_OUTPUT "/bus_esi.xml";
+
+/* Two channels, each with a PDO for state and value and one for the value alone, as the simulated analog device has.
+ * The second device is another one; of the first there are two revisions. */
+#define ENTRY(INDEX, SUB, BITS, NAME, TYPE)                                                                          \
+    "<Entry><Index>#x" #INDEX "</Index><SubIndex>#x" #SUB "</SubIndex><BitLen>" #BITS "</BitLen><Name>" NAME         \
+    "</Name><DataType>" TYPE "</DataType></Entry>"
+#define GAP(BITS) "<Entry><Index>0</Index><BitLen>" #BITS "</BitLen></Entry>"
+#define TXPDO(SM, INDEX, NAME, ENTRIES)                                                                              \
+    "<TxPdo" SM "><Index>#x" #INDEX "</Index><Name>" NAME "</Name>" ENTRIES "</TxPdo>"
+#define COMMAND(TRANSITION, INDEX, SUB, DATA)                                                                        \
+    "<InitCmd><Transition>" TRANSITION "</Transition><Index>#x" #INDEX "</Index><SubIndex>" #SUB "</SubIndex><Data>"  \
+    DATA "</Data></InitCmd>"
+#define DEVICE(PRODUCT, REVISION, TYPE, COE, PDOS, REST)                                                              \
+    "<Device Physics='YY'><Type ProductCode='#x" #PRODUCT "' RevisionNo='#x" #REVISION "'>" TYPE "</Type><Name>" TYPE  \
+    "</Name><GroupType>G</GroupType>" PDOS COE REST "</Device>"
+#define COMPACT TXPDO(" Sm='3'", 1A01, "Compact 1", ENTRY(6000, 11, 16, "Value", "INT"))                              \
+                TXPDO(" Sm='3'", 1A03, "Compact 2", ENTRY(6010, 11, 16, "Value", "INT"))
+#define STANDARD TXPDO("", 1A00, "Standard 1", ENTRY(6000, 1, 1, "Underrange", "BOOL")                                \
+                       ENTRY(6000, 2, 1, "Overrange of the first of all channels", "BOOL") GAP(14)                     \
+                       ENTRY(6000, 11, 16, "Value", "INT"))
+#define COE(COMMANDS) "<Mailbox><CoE SdoInfo='1' PdoAssign='1'>" COMMANDS "</CoE></Mailbox>"
+#define MODE(NAME, ACTIVATE, TIMES) "<OpMode><Name>" NAME "</Name><AssignActivate>#x" #ACTIVATE "</AssignActivate>"  \
+                                    TIMES "</OpMode>"
+#define MODES "<Dc>" MODE("SM", 0, "") MODE("DC", 300, "<CycleTimeSync0 Factor='-2'>0</CycleTimeSync0>"              \
+              "<ShiftTimeSync0>25000</ShiftTimeSync0>") "</Dc>"
+#define COMMANDS COMMAND("PS", 8000, 18, "0700") COMMAND("SO", 8010, 18, "F7FF") COMMAND("SP", 8010, 18, "1111")
+#define FILE_OF(DEVICES)                                                                                              \
+    "<EtherCATInfo><Vendor><Id>#x12</Id><Name>Maker</Name></Vendor><Descriptions><Groups><Group><Type>G</Type>"       \
+    "<Name>G</Name></Group></Groups><Devices>" DEVICES "</Devices></Descriptions></EtherCATInfo>"
+
+static const char good[] = FILE_OF(DEVICE(A0002, 1, "AI-old", COE(""), COMPACT, "")
+                                   DEVICE(A0002, 2, "AI", COE(COMMANDS), STANDARD COMPACT, MODES)
+                                   DEVICE(A0003, 1, "Other", "", TXPDO(" Sm='0'", 1A00, "", GAP(3)
+                                          ENTRY(6000, 1, 1, "Input 4", "BOOL") ENTRY(6000, 2, 12, "Counter", "UINT")),
+                                          "")
+                                   DEVICE(A0004, 1, "Whole", COE("<InitCmd CompleteAccess='1'><Transition>PS"
+                                          "</Transition><Index>#x8000</Index><SubIndex>0</SubIndex><Data>0102</Data>"
+                                          "</InitCmd>"), COMPACT, ""));
+
+static void write_text(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_uint_eq(fwrite(text, 1, strlen(text), file), strlen(text));
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+/** A bus file with one slave, which has these keys beside its ESI, and an ESI. */
+static cm1e_error_t load(const char *esi, const char *keys)
+{
+    char text[2000];
+    snprintf(text, sizeof text, "bus: {virtual_time: true}\nslaves:\n  - {name: ai, position: 1, esi: bus_esi.xml, %s\n"
+             "     sim: {device: analog, inputs: 2}}\n", keys);
+    write_text(bus_path, text);
+    if (esi)
+        write_text(esi_path, esi);
+    cm1e_bus_config_free(&config);
+    return cm1e_bus_config_load(&config, bus_path, &diag);
+}
+
+static const cm1e_signal_config_t *signal_at(unsigned n)
+{
+    ck_assert_uint_lt(n, config.slaves[0].signal_count);
+    return &config.slaves[0].signals[n];
+}
+
+START_TEST(test_what_is_taken)
+{
+    ck_assert_msg(load(good, "product: 0x000A0002,") == CM1E_OK, "%s", diag.text);
+    const cm1e_slave_config_t *slave = &config.slaves[0];
+    ck_assert_uint_eq(slave->vendor, 0x12);
+    ck_assert_uint_eq(slave->product, 0xA0002);
+    ck_assert_uint_eq(slave->revision, 0); /* that of the file is no condition */
+    ck_assert_uint_eq(slave->inputs_pdo_count, 2);
+    ck_assert_uint_eq(slave->inputs_pdos[0], 0x1A01);
+    ck_assert_uint_eq(slave->inputs_pdos[1], 0x1A03);
+    ck_assert_uint_eq(slave->outputs_pdo_count, 0);
+    ck_assert_uint_eq(slave->sdo_count, 2);
+    ck_assert(slave->sdos[0].index == 0x8000 && slave->sdos[0].subindex == 0x12 && slave->sdos[0].value == 7);
+    ck_assert(!slave->sdos[0].before_op && slave->sdos[0].bytes == 2);
+    ck_assert(slave->sdos[1].index == 0x8010 && slave->sdos[1].value == 0xFFF7 && slave->sdos[1].before_op);
+    ck_assert_uint_eq(slave->signal_count, 2);
+    ck_assert_str_eq(signal_at(0)->name, "Compact 1 Value");
+    ck_assert_str_eq(signal_at(1)->name, "Compact 2 Value");
+    ck_assert(signal_at(0)->index == 0x6000 && signal_at(0)->subindex == 0x11 && signal_at(0)->type == CM1E_IO_INT);
+    ck_assert_double_eq(slave->dc.sync0_us, 0.0);
+}
+END_TEST
+
+/* PDOs, values and names of the bus file stay; the names of other PDOs are those of the ESI; pulses by the name of the
+ * mode. */
+START_TEST(test_the_bus_file_overrules)
+{
+    ck_assert_msg(load(good, "product: 0x000A0002, inputs_pdos: [0x1A00], esi_mode: dc,\n"
+                       "     sdo: [{object: 0x8000:12, type: INT, value: 3}],\n"
+                       "     inputs: [{name: boiler, object: 0x6000:11}],") == CM1E_OK, "%s", diag.text);
+    const cm1e_slave_config_t *slave = &config.slaves[0];
+    ck_assert_uint_eq(slave->inputs_pdo_count, 1);
+    ck_assert_uint_eq(slave->inputs_pdos[0], 0x1A00);
+    ck_assert_uint_eq(slave->sdo_count, 2);
+    ck_assert_uint_eq(slave->sdos[0].value, 3);
+    ck_assert_uint_eq(slave->sdos[1].index, 0x8010);
+    ck_assert_uint_eq(slave->signal_count, 3);
+    ck_assert_str_eq(signal_at(0)->name, "boiler");
+    ck_assert_str_eq(signal_at(1)->name, "Underrange");
+    ck_assert_str_eq(signal_at(2)->name, "Overrange of t~ of all channels"); /* its middle is cut */
+    ck_assert_double_eq(slave->dc.sync0_us, 500.0);
+    ck_assert_double_eq(slave->dc.shift_us, 25.0);
+}
+END_TEST
+
+/* Without CoE the process data lies as the file says, so a name is one of bits; "Input 4" would be a place. */
+START_TEST(test_a_slave_without_a_mailbox_is_named_by_its_bits)
+{
+    ck_assert_msg(load(good, "product: 0x000A0003,") == CM1E_OK, "%s", diag.text);
+    const cm1e_slave_config_t *slave = &config.slaves[0];
+    ck_assert_uint_eq(slave->inputs_pdo_count, 0);
+    ck_assert_uint_eq(slave->signal_count, 1);
+    ck_assert_str_eq(signal_at(0)->name, "Counter");
+    ck_assert(signal_at(0)->index == 0 && signal_at(0)->bit == 4 && signal_at(0)->bits == 12);
+}
+END_TEST
+
+START_TEST(test_a_bad_file_is_told_in_words)
+{
+    static const struct {
+        const char *esi, *keys, *place, *words;
+    } cases[] = {
+        {good, "", ":3:34: ", "describes 4 devices, AI-old (0x000A0002)"},
+        {good, "vendor: 0x00000013,", ":3:34: ", "does not describe vendor 0x00000013"},
+        {good, "product: 0x000A0002, revision: 0x00000003,", ":3:34: ", "revision 0x00000003"},
+        {good, "product: 0x000A0002, esi_mode: FreeRun,", ":3:", "has no OpMode 'FreeRun'; it has SM, DC"},
+        {good, "product: 0x000A0004,", ":3:34: ", "object 0x8000:00 has 2 bytes by complete access"},
+        {"", "", ":3:34: ", "bus_esi.xml: "},
+        {"<EtherCATInfo>", "", ":3:34: ", "bus_esi.xml: "},
+        {"<Devices/>", "", ":3:34: ", "the root element of an ESI is EtherCATInfo"},
+        {FILE_OF(""), "", ":3:34: ", "there is neither a device nor a module"},
+        {good, "product: 0x000A0002, inputs: [{name: a, object: 0x6010:11}, {name: A, bit: 0}],", ":3:",
+         "the name 'A'"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        ck_assert_msg(load(cases[i].esi, cases[i].keys) == CM1E_ERROR_CONFIG, "case %zu", i);
+        ck_assert_msg(strstr(diag.text, cases[i].words) && strstr(diag.text, cases[i].place), "case %zu: %s", i,
+                      diag.text);
+    }
+    ck_assert_int_eq(remove(esi_path), 0);
+    ck_assert_int_eq(load(NULL, ""), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "bus_esi.xml: cannot be read: No such file"), "%s", diag.text);
+    ck_assert_int_eq(load(good, "product: 0x000A0004, sdo: [{object: 0x8000:01, type: INT, value: 3}],"), CM1E_OK);
+}
+END_TEST
+
+START_TEST(test_a_slave_is_configured_by_it)
+{
+    cm1e_io_t io;
+    ck_assert_msg(load(good, "product: 0x000A0002,") == CM1E_OK, "%s", diag.text);
+    cm1e_bus_t *bus = start_bus();
+    simulate(bus, "input 1 1 100");
+    simulate(bus, "input 1 2 1000");
+    cycles(bus, 5);
+    ck_assert_msg(cm1e_io_find(bus, "ai.Compact 1 Value", &io, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_io_integer(&io), 107);
+    ck_assert_msg(cm1e_io_find(bus, "ai.compact 2 value", &io, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_io_integer(&io), 991);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus esi");
+    TCase *tests = tcase_create("esi");
+    tcase_add_test(tests, test_what_is_taken);
+    tcase_add_test(tests, test_the_bus_file_overrules);
+    tcase_add_test(tests, test_a_slave_without_a_mailbox_is_named_by_its_bits);
+    tcase_add_test(tests, test_a_bad_file_is_told_in_words);
+    tcase_add_test(tests, test_a_slave_is_configured_by_it);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
