@@ -1,0 +1,42 @@
+/**
+ * @file st.h
+ * The translator of Structured Text (IEC 61131-3, 3rd edition): sources in, C11 out. It knows the function blocks of
+ * the library from fb/interface/, which is Structured Text itself. One thread uses a translation at a time.
+ */
+#ifndef CM1E_ST_H
+#define CM1E_ST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "cm1e/error.h"
+
+typedef struct st st_t;
+
+/** A translation without sources, which knows the blocks of the library. */
+st_t *cm1e_st_new(void);
+void cm1e_st_free(st_t *st);
+/** Adds a source file. Errors within it are reported; an error of this function is one of reading the file. */
+cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag);
+/** Adds a source that is in memory. */
+void cm1e_st_add_text(st_t *st, const char *name, const char *text, size_t size);
+/** Checks all sources together. True: there are no errors. */
+bool cm1e_st_check(st_t *st);
+/** Writes the program as one C file, after cm1e_st_check(). */
+void cm1e_st_emit(st_t *st, FILE *file, const char *name);
+/** Number of errors that are kept; further ones are counted by cm1e_st_suppressed(). */
+unsigned cm1e_st_errors(const st_t *st);
+unsigned cm1e_st_suppressed(const st_t *st);
+/** Error `n` (0 = first) by line: "program.st:3:5: error: ...", then the line and a mark below the column. */
+void cm1e_st_print_error(const st_t *st, unsigned n, FILE *file);
+/** Error `n` alone: file, line, column and text. */
+typedef struct st_error {
+    const char *file, *text;
+    uint32_t line, column;
+} st_error_t;
+st_error_t cm1e_st_error(const st_t *st, unsigned n);
+/** A number that changes with the interface of the blocks: a program runs only with the library it was made for. */
+uint64_t cm1e_st_interface(void);
+
+#endif

@@ -1,0 +1,277 @@
+/* Builds the tree: what the actions of the parser call. */
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "st/st_parsing.h"
+
+enum { STATEMENT_DEPTH = 60 };
+
+expr_t *cm1e_st_node(st_t *st, expr_kind_t kind, place_t place, expr_t *a, expr_t *b)
+{
+    expr_t *expr = cm1e_st_take(st->arena, sizeof *expr);
+    const int left = a ? a->depth : 0, right = b ? b->depth : 0;
+    *expr = (expr_t){.kind = kind, .place = place, .a = a, .b = b, .depth = 1 + (left > right ? left : right)};
+    if (expr->depth <= ST_DEPTH)
+        return expr;
+    cm1e_st_report(st, place, "this expression is nested deeper than %d: divide it into several statements", ST_DEPTH);
+    *expr = (expr_t){.kind = E_LITERAL, .place = place, .depth = 1, .type = st->elementary[T_WRONG]};
+    return expr;
+}
+
+expr_t *cm1e_st_operation(st_t *st, operation_t op, place_t place, expr_t *a, expr_t *b)
+{
+    expr_t *expr = cm1e_st_node(st, b ? E_BINARY : E_UNARY, place, a, b);
+    expr->op = op;
+    return expr;
+}
+
+expr_t *cm1e_st_named(st_t *st, expr_kind_t kind, place_t place, expr_t *a, const char *name)
+{
+    expr_t *expr = cm1e_st_node(st, kind, place, a, NULL);
+    expr->name = name;
+    return expr;
+}
+
+expr_t *cm1e_st_with_args(st_t *st, expr_kind_t kind, place_t place, expr_t *a, args_t args)
+{
+    expr_t *deepest = NULL;
+    for (arg_t *arg = args.first; arg; arg = arg->next)
+        if (arg->value && (!deepest || arg->value->depth > deepest->depth))
+            deepest = arg->value;
+    expr_t *expr = cm1e_st_node(st, kind, place, a, deepest);
+    if (expr->kind != kind)
+        return expr;
+    expr->b = NULL;
+    expr->args = args.first;
+    return expr;
+}
+
+expr_t *cm1e_st_qualified(st_t *st, place_t place, const char *text)
+{
+    const char *mark = strchr(text, '#');
+    if (strncasecmp(text, "BOOL#", 5) == 0)
+        return cm1e_st_literal(st, place, text);
+    expr_t *expr = cm1e_st_named(st, E_QUALIFIED, place, NULL, mark + 1);
+    expr->prefix = cm1e_st_copy(st->arena, text, (size_t)(mark - text));
+    return expr;
+}
+
+arg_t *cm1e_st_arg(st_t *st, place_t place, const char *name, expr_t *value)
+{
+    arg_t *arg = cm1e_st_take(st->arena, sizeof *arg);
+    *arg = (arg_t){.name = name, .value = value, .place = place};
+    return arg;
+}
+
+void cm1e_st_deepen(st_t *st, stmt_t *stmt)
+{
+    for (const branch_t *branch = stmt->branches; branch; branch = branch->next)
+        for (const stmt_t *inner = branch->body; inner; inner = inner->next)
+            if (inner->depth >= stmt->depth)
+                stmt->depth = inner->depth + 1;
+    for (const stmt_t *inner = stmt->body; inner; inner = inner->next)
+        if (inner->depth >= stmt->depth)
+            stmt->depth = inner->depth + 1;
+    if (stmt->depth <= STATEMENT_DEPTH)
+        return;
+    cm1e_st_report(st, stmt->place, "this statement has more than %d others around what is within it", STATEMENT_DEPTH);
+    stmt->depth = 1;
+    stmt->branches = NULL;
+    stmt->body = NULL;
+}
+
+stmt_t *cm1e_st_stmt(st_t *st, stmt_kind_t kind, place_t place, expr_t *value, stmts_t body)
+{
+    stmt_t *stmt = cm1e_st_take(st->arena, sizeof *stmt);
+    *stmt = (stmt_t){.kind = kind, .place = place, .value = value, .body = body.first, .depth = 1};
+    cm1e_st_deepen(st, stmt);
+    return stmt;
+}
+
+branch_t *cm1e_st_branch(st_t *st, place_t place, expr_t *condition, stmt_t *body)
+{
+    branch_t *branch = cm1e_st_take(st->arena, sizeof *branch);
+    *branch = (branch_t){.condition = condition, .body = body, .place = place};
+    return branch;
+}
+
+void cm1e_st_group_case(st_t *st, stmt_t *stmt, stmts_t items, stmts_t otherwise, bool has_else, place_t place)
+{
+    branches_t branches = {0};
+    stmts_t body = {0};
+    for (stmt_t *item = items.first, *next; item; item = next) {
+        next = item->next;
+        item->next = NULL;
+        if (item->kind == S_LABEL) {
+            if (branches.last)
+                branches.last->body = body.first;
+            body = (stmts_t){0};
+            ST_APPEND(branches, item->branches);
+        } else if (branches.last) {
+            ST_APPEND(body, item);
+        } else {
+            cm1e_st_report(st, item->place, "a statement within CASE stands behind a label, as in \"1: x := 2;\"");
+        }
+    }
+    if (branches.last)
+        branches.last->body = body.first;
+    if (has_else) {
+        branch_t *branch = cm1e_st_branch(st, place, NULL, otherwise.first);
+        ST_APPEND(branches, branch);
+    }
+    stmt->branches = branches.first;
+    cm1e_st_deepen(st, stmt);
+}
+
+/* ---- declarations ------------------------------------------------------------------------------------------------ */
+
+type_t *cm1e_st_type_node(st_t *st, type_kind_t kind, place_t place, const char *name)
+{
+    type_t *type = cm1e_st_take(st->arena, sizeof *type);
+    *type = (type_t){.kind = kind, .place = place, .name = name};
+    return type;
+}
+
+var_t *cm1e_st_var_name(parsing_t *parsing, place_t place, const char *name)
+{
+    var_t *var = cm1e_st_take(parsing->st->arena, sizeof *var);
+    *var = (var_t){.name = name, .place = place};
+    return var;
+}
+
+vars_t cm1e_st_vars(parsing_t *parsing, vars_t names, expr_t *address, type_t *type, expr_t *initial)
+{
+    for (var_t *var = names.first; var; var = var->next) {
+        var->section = parsing->section;
+        var->qualifiers |= parsing->qualifiers;
+        var->address = address;
+        var->type = type;
+        var->initial = initial;
+    }
+    if (address && names.first && names.first->next)
+        cm1e_st_report(parsing->st, names.first->next->place, "only one variable can be at an address");
+    return names;
+}
+
+void cm1e_st_edge(parsing_t *parsing, place_t place, const char *word, vars_t vars)
+{
+    const bool rising = strcasecmp(word, "R_EDGE") == 0;
+    if (!rising && strcasecmp(word, "F_EDGE") != 0) {
+        cm1e_st_report(parsing->st, place, "\"%s\" cannot stand here; expected \";\" or \":=\"", word);
+        return;
+    }
+    cm1e_st_report(parsing->st, place, "%s is not supported; declare an instance of %s and call it", rising ?
+                   "R_EDGE" : "F_EDGE", rising ? "R_TRIG" : "F_TRIG");
+    (void)vars;
+}
+
+static bool is_external(const st_t *st, place_t place) { return st->sources[place.file].external; }
+
+/** In our interface the type CM_COMMAND and the block CM_Command differ in case only. The later one is kept under a name
+ * that nobody can write, where cm1e_st_resolve() finds it by its exact spelling. */
+static bool keep_beside(st_t *st, map_t *map, place_t place, const char *name, void *value)
+{
+    if (map != st->types || !is_external(st, place))
+        return false;
+    cm1e_st_map_put(map, cm1e_st_format(st->arena, "%s'", ((type_t *)cm1e_st_map_get(map, name))->name),
+                    cm1e_st_map_get(map, name));
+    cm1e_st_map_put(map, name, value);
+    return true;
+}
+
+/** Enters a name; an earlier one of the same kind is an error. */
+static bool enter(st_t *st, map_t *map, const char *what, place_t place, const char *name, void *value)
+{
+    if (cm1e_st_map_get(map, name) && !keep_beside(st, map, place, name, value)) {
+        cm1e_st_report(st, place, "there is a %s \"%s\" already", what, name);
+        return false;
+    }
+    cm1e_st_map_put(map, name, value);
+    return true;
+}
+
+void cm1e_st_add_type(parsing_t *parsing, place_t place, const char *name, type_t *type, expr_t *initial)
+{
+    st_t *st = parsing->st;
+    if (!type->name || type->kind == T_NONE || type->ranged) { /* an alias */
+        type_t *alias = cm1e_st_type_node(st, T_NONE, place, name);
+        alias->same = type;
+        type = alias;
+    }
+    type->initial = initial;
+    type->place = place;
+    type->external = is_external(st, place);
+    if (cm1e_st_elementary(st, name))
+        cm1e_st_report(st, place, "\"%s\" is an elementary type", name);
+    else if (enter(st, st->types, "type", place, name, type)) {
+        type->next = st->tree.types;
+        st->tree.types = type;
+    }
+}
+
+void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const char *name, type_t *result,
+                      vars_t vars, stmts_t body)
+{
+    static const char *const kinds[] = {"function", "function block", "program"};
+    st_t *st = parsing->st;
+    unit_t *unit = cm1e_st_take(st->arena, sizeof *unit);
+    *unit = (unit_t){.kind = kind, .name = name, .place = place, .vars = vars.first, .body = body.first,
+                     .result_type = result, .external = is_external(st, place)};
+    if (kind == U_FUNCTION && result) {
+        var_t *var = cm1e_st_var_name(parsing, place, name);
+        var->section = V_RESULT;
+        var->type = result;
+        unit->result = var;
+        ST_APPEND(vars, var);
+        unit->vars = vars.first;
+    }
+    if (kind != U_FUNCTION) {
+        unit->type = cm1e_st_type_node(st, T_BLOCK, place, name);
+        unit->type->unit = unit;
+        unit->type->members = unit->vars;
+        unit->type->external = unit->external;
+    }
+    if (!enter(st, st->units, kinds[kind], place, name, unit))
+        return;
+    if (kind != U_FUNCTION && enter(st, st->types, "type", place, name, unit->type)) {
+        unit->type->next = st->tree.types;
+        st->tree.types = unit->type;
+    }
+    unit->next = st->tree.units;
+    st->tree.units = unit;
+}
+
+void cm1e_st_add_globals(st_t *st, vars_t vars)
+{
+    for (var_t *var = vars.first, *next; var; var = next) {
+        next = var->next;
+        var->next = NULL;
+        if (enter(st, st->globals, "global variable", var->place, var->name, var)) {
+            var->next = st->tree.globals;
+            st->tree.globals = var;
+        }
+    }
+}
+
+void cm1e_st_add_task(st_t *st, place_t place, const char *name, args_t settings)
+{
+    task_t *task = cm1e_st_take(st->arena, sizeof *task);
+    *task = (task_t){.name = name, .place = place, .settings = settings.first, .next = NULL};
+    task_t **end = &st->tree.tasks;
+    while (*end)
+        end = &(*end)->next;
+    *end = task;
+}
+
+void cm1e_st_add_instance(st_t *st, place_t place, const char *name, const char *task, const char *program,
+                          args_t args)
+{
+    instance_t *instance = cm1e_st_take(st->arena, sizeof *instance);
+    *instance = (instance_t){.name = name, .task_name = task, .program_name = program, .place = place,
+                             .args = args.first};
+    instance_t **end = &st->tree.instances;
+    while (*end)
+        end = &(*end)->next;
+    *end = instance;
+}

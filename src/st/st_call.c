@@ -1,0 +1,275 @@
+/* Calls of functions and function blocks: which argument is for which parameter, and its type. */
+#include <string.h>
+#include <strings.h>
+
+#include "core/near.h"
+#include "st/st_parsing.h"
+
+bool cm1e_st_is_fixed(const expr_t *expr) { return !expr || (expr->value.known && !expr->impure); }
+
+bool cm1e_st_alone(st_t *st, const expr_t *a, const expr_t *b)
+{
+    if (!a || !b || !((a->impure && !cm1e_st_is_fixed(b)) || (b->impure && !cm1e_st_is_fixed(a))))
+        return true;
+    cm1e_st_report(st, (a->impure ? a : b)->place, "this call can change variables that the rest of the expression may "
+                   "use: give its result to a variable in a statement of its own");
+    return false;
+}
+
+static void look_at_unit(const char *name, void *value, void *context)
+{
+    const unit_t *unit = value;
+    if (unit->kind == U_FUNCTION)
+        cm1e_near_look(context, name);
+}
+static void look_at_standard(const char *name, void *context) { cm1e_near_look(context, name); }
+
+static void unknown_function(st_t *st, expr_t *call, const char *name)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = name};
+    cm1e_st_map_each(st->units, look_at_unit, &near);
+    cm1e_st_standard_names(look_at_standard, &near);
+    cm1e_st_report(st, call->place, "there is no function or instance \"%s\"%s", name,
+                   cm1e_near_text(&near, text, sizeof text));
+    call->type = st->elementary[T_WRONG];
+}
+
+/** Notes that the present unit calls another one. */
+static void note_call(st_t *st, unit_t *callee)
+{
+    unit_t *unit = st->unit;
+    if (!unit || callee->external)
+        return;
+    for (size_t i = 0; i < unit->call_count; i++)
+        if (unit->calls[i] == callee)
+            return;
+    if (unit->call_count == unit->call_capacity) {
+        unit_t **calls = cm1e_st_take(st->arena, (unit->call_capacity * 2 + 8) * sizeof(unit_t *));
+        if (unit->call_count)
+            memcpy(calls, unit->calls, unit->call_count * sizeof(unit_t *));
+        unit->call_capacity = unit->call_capacity * 2 + 8;
+        unit->calls = calls;
+    }
+    unit->calls[unit->call_count++] = callee;
+}
+
+/* ---- parameters -------------------------------------------------------------------------------------------------- */
+
+static bool is_parameter(const var_t *var)
+{
+    return var->section == V_INPUT || var->section == V_OUTPUT || var->section == V_IN_OUT;
+}
+
+static var_t *named_parameter(st_t *st, const unit_t *unit, const arg_t *arg)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = arg->name};
+    var_t *var = cm1e_st_map_get(unit->names, arg->name);
+    if (var && is_parameter(var) && arg->output == (var->section == V_OUTPUT))
+        return var;
+    if (var && is_parameter(var)) {
+        cm1e_st_report(st, arg->place, arg->output ? "\"%s\" is an input of %s: use :="
+                                                   : "\"%s\" is an output of %s: use =>", var->name, unit->name);
+        return NULL;
+    }
+    if (strcasecmp(arg->name, "EN") == 0 || strcasecmp(arg->name, "ENO") == 0) {
+        cm1e_st_report(st, arg->place, "EN and ENO are not supported; put the call into IF ... END_IF");
+        return NULL;
+    }
+    for (const var_t *other = unit->vars; other; other = other->next)
+        if (is_parameter(other))
+            cm1e_near_look(&near, other->name);
+    cm1e_st_report(st, arg->place, "%s has no %s \"%s\"%s", unit->name, arg->output ? "output" : "input", arg->name,
+                   cm1e_near_text(&near, text, sizeof text));
+    return NULL;
+}
+
+/** By position: inputs and VAR_IN_OUT in the order of their declaration. */
+static void match_positions(st_t *st, const unit_t *unit, expr_t *call)
+{
+    var_t *var = unit->vars;
+    unsigned count = 0;
+    for (arg_t *arg = call->args; arg; arg = arg->next) {
+        if (arg->name) {
+            cm1e_st_report(st, arg->place, "arguments are either all by position or all by name");
+            return;
+        }
+        while (var && var->section != V_INPUT && var->section != V_IN_OUT)
+            var = var->next;
+        if (!var) {
+            cm1e_st_report(st, arg->place, "%s takes %u argument%s", unit->name, count, count == 1 ? "" : "s");
+            return;
+        }
+        arg->parameter = var;
+        var = var->next;
+        count++;
+    }
+    for (; var && unit->kind == U_FUNCTION; var = var->next)
+        if (var->section == V_INPUT || var->section == V_IN_OUT) {
+            cm1e_st_report(st, call->place, "%s needs a value for \"%s\" too", unit->name, var->name);
+            return;
+        }
+}
+
+static void match_names(st_t *st, const unit_t *unit, expr_t *call)
+{
+    for (arg_t *arg = call->args; arg; arg = arg->next) {
+        if (!arg->name) {
+            cm1e_st_report(st, arg->place, "arguments are either all by position or all by name");
+            return;
+        }
+        arg->parameter = named_parameter(st, unit, arg);
+        for (const arg_t *other = call->args; other != arg; other = other->next)
+            if (other->parameter && other->parameter == arg->parameter)
+                cm1e_st_report(st, arg->place, "\"%s\" is given twice", arg->name);
+    }
+}
+
+/* ---- values ------------------------------------------------------------------------------------------------------ */
+
+/** What an output is given to: the output converted to the type of the variable. */
+static void check_output(st_t *st, const unit_t *unit, const expr_t *callee, arg_t *arg)
+{
+    cm1e_st_expression(st, arg->value);
+    if (!cm1e_st_assignable(st, arg->value))
+        return;
+    var_t *var = arg->parameter;
+    var->type = cm1e_st_resolve(st, var->type);
+    if (unit->kind == U_FUNCTION) {
+        if (arg->value->type != var->type || arg->value->bit || arg->inverted)
+            cm1e_st_report(st, arg->place, "the output \"%s\" needs a variable of type %s", var->name,
+                           cm1e_st_type_name(var->type));
+        return;
+    }
+    expr_t *output = cm1e_st_node(st, E_MEMBER, arg->place, (expr_t *)(uintptr_t)callee, NULL);
+    output->name = var->name;
+    output->var = var;
+    output->type = var->type;
+    if (arg->inverted) {
+        output = cm1e_st_operation(st, OP_NOT, arg->place, output, NULL);
+        output->type = var->type;
+        if (var->type->kind != T_BOOL)
+            cm1e_st_report(st, arg->place, "NOT in front of an output is for BOOL; this is %s",
+                           cm1e_st_type_name(var->type));
+    }
+    arg->source = cm1e_st_coerce(st, output, arg->value->type, "the variable behind =>");
+}
+
+static void check_in_out(st_t *st, arg_t *arg)
+{
+    var_t *var = arg->parameter;
+    cm1e_st_expression(st, arg->value);
+    var->type = cm1e_st_resolve(st, var->type);
+    if (arg->value->type->kind == T_WRONG || var->type->kind == T_WRONG)
+        return;
+    if (arg->value->type != var->type)
+        cm1e_st_report(st, arg->place, "\"%s\" is a VAR_IN_OUT of type %s and needs a variable of this type, not %s",
+                       var->name, cm1e_st_type_name(var->type), cm1e_st_type_name(arg->value->type));
+    else if (arg->value->bit)
+        cm1e_st_report(st, arg->place, "a single bit cannot be a VAR_IN_OUT");
+    else if (!(var->qualifiers & Q_CONSTANT) && cm1e_st_assignable(st, arg->value) && st->unit)
+        cm1e_st_note_change(st, arg->value);
+}
+
+static void check_arg(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
+{
+    var_t *var = arg->parameter;
+    if (!arg->value && var->section == V_INPUT)
+        cm1e_st_report(st, arg->place, "a value for \"%s\" is missing behind :=", var->name);
+    if (!arg->value)
+        return;
+    if (var->section == V_OUTPUT) {
+        check_output(st, unit, call->a, arg);
+    } else if (var->section == V_IN_OUT) {
+        check_in_out(st, arg);
+    } else {
+        cm1e_st_expression(st, arg->value);
+        var->type = cm1e_st_resolve(st, var->type);
+        arg->value = cm1e_st_coerce(st, arg->value, var->type, var->name);
+    }
+}
+
+static void check_args(st_t *st, const unit_t *unit, expr_t *call)
+{
+    if (call->args && !call->args->name)
+        match_positions(st, unit, call);
+    else
+        match_names(st, unit, call);
+    for (arg_t *arg = call->args; arg; arg = arg->next) {
+        if (arg->parameter)
+            check_arg(st, unit, call, arg);
+        else if (arg->value)
+            cm1e_st_expression(st, arg->value);
+        if (arg->value && arg->value->type)
+            call->impure |= arg->value->impure;
+        for (const arg_t *other = call->args; unit->kind == U_FUNCTION && other != arg; other = other->next)
+            if (other->value && arg->value && !cm1e_st_alone(st, other->value, arg->value))
+                return;
+    }
+    for (const var_t *var = unit->vars; var; var = var->next) {
+        bool given = var->section != V_IN_OUT;
+        for (const arg_t *arg = call->args; arg && !given; arg = arg->next)
+            given = arg->parameter == var;
+        if (!given)
+            cm1e_st_report(st, call->place, "%s needs a variable for its VAR_IN_OUT \"%s\" in every call", unit->name,
+                           var->name);
+    }
+}
+
+static void call_block(st_t *st, expr_t *call, bool statement)
+{
+    unit_t *unit = call->a->type->unit;
+    call->type = st->elementary[T_NONE];
+    call->unit = unit;
+    call->impure = true;
+    if (!statement)
+        cm1e_st_report(st, call->place, "a function block has no result: call it in a statement of its own, and then read "
+                       "its outputs");
+    note_call(st, unit);
+    cm1e_st_note_change(st, call->a);
+    check_args(st, unit, call);
+}
+
+static void call_function(st_t *st, expr_t *call, unit_t *unit)
+{
+    call->unit = unit;
+    call->type = unit->result_type ? cm1e_st_resolve(st, unit->result_type) : st->elementary[T_NONE];
+    for (var_t *var = unit->vars; var; var = var->next)
+        call->impure |= var->section == V_OUTPUT || var->section == V_IN_OUT ||
+                        (var->section == V_INPUT && cm1e_st_resolve(st, var->type)->kind == T_REF);
+    note_call(st, unit);
+    check_args(st, unit, call);
+}
+
+void cm1e_st_call(st_t *st, expr_t *call, bool statement)
+{
+    if (call->a->kind == E_NAME) {
+        unit_t *unit = cm1e_st_map_get(st->units, call->a->name);
+        const bool is_variable = cm1e_st_find_var(st, call->a->name) && !(unit && unit->kind == U_FUNCTION);
+        if (!is_variable && unit && unit->kind == U_FUNCTION) {
+            call_function(st, call, unit);
+            return;
+        }
+        if (!is_variable && cm1e_st_standard_call(st, call, call->a->name))
+            return;
+        if (!is_variable) {
+            if (unit)
+                cm1e_st_report(st, call->place, unit->kind == U_BLOCK ?
+                               "\"%s\" is a function block: declare an instance of it, and call that" :
+                               "\"%s\" is a program: a task calls it", unit->name);
+            else
+                unknown_function(st, call, call->a->name);
+            call->type = st->elementary[T_WRONG];
+            return;
+        }
+    }
+    cm1e_st_expression(st, call->a);
+    if (call->a->type->kind == T_BLOCK) {
+        call_block(st, call, statement);
+        return;
+    }
+    if (call->a->type->kind != T_WRONG)
+        cm1e_st_report(st, call->place, "%s cannot be called", cm1e_st_type_name(call->a->type));
+    call->type = st->elementary[T_WRONG];
+}

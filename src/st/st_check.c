@@ -1,0 +1,168 @@
+/* The check of all sources together: declarations, bodies, who calls whom, tasks. */
+#include <string.h>
+#include <strings.h>
+
+#include "st/st_parsing.h"
+
+enum { CALL_DEPTH = 100, STACK_BYTES = 256 * 1024 };
+#define MS INT64_C(1000000)
+
+/** Bytes of the locals of a function, which are on the stack. */
+static uint64_t locals_of(const unit_t *unit)
+{
+    uint64_t bytes = 0;
+    for (const var_t *var = unit->vars; var; var = var->next)
+        if (unit->kind == U_FUNCTION || var->section == V_TEMP)
+            bytes += var->type->size;
+    return bytes;
+}
+
+/** Follows the calls of a unit: nothing calls itself, and the stack they need is bounded. */
+static uint64_t follow_calls(st_t *st, unit_t *unit, int depth)
+{
+    if (unit->mark == 2)
+        return unit->stack;
+    if (unit->mark == 1 || depth > CALL_DEPTH) {
+        cm1e_st_report(st, unit->place, unit->mark == 1 ? "\"%s\" calls itself, over others or directly: recursion is not "
+                       "permitted (IEC 61131-3), because its end is not known" :
+                       "calls are nested too deeply below \"%s\"", unit->name);
+        return 0;
+    }
+    uint64_t deepest = 0;
+    unit->mark = 1;
+    for (size_t i = 0; i < unit->call_count; i++) {
+        const uint64_t below = follow_calls(st, unit->calls[i], depth + 1);
+        deepest = below > deepest ? below : deepest;
+    }
+    unit->mark = 2;
+    unit->stack = deepest + locals_of(unit);
+    if (unit->stack > STACK_BYTES)
+        cm1e_st_report(st, unit->place, "the local variables of \"%s\" and of the functions that it calls need %llu bytes; "
+                       "%d are the most: make large ones variables of a function block or a program", unit->name,
+                       (unsigned long long)unit->stack, STACK_BYTES);
+    return unit->stack;
+}
+
+static void check_units(st_t *st)
+{
+    for (st->unit = st->tree.units; st->unit; st->unit = st->unit->next) {
+        st->loops = 0;
+        cm1e_st_statements(st, st->unit->body);
+    }
+    for (unit_t *unit = st->tree.units; unit; unit = unit->next)
+        follow_calls(st, unit, 0);
+}
+
+/* ---- tasks ------------------------------------------------------------------------------------------------------- */
+
+static void setting(st_t *st, task_t *task, arg_t *arg)
+{
+    cm1e_st_expression(st, arg->value);
+    const bool interval = strcasecmp(arg->name, "INTERVAL") == 0, priority = strcasecmp(arg->name, "PRIORITY") == 0;
+    int64_t value = 0;
+    if (!interval && !priority) {
+        cm1e_st_report(st, arg->place, "a task has INTERVAL and PRIORITY here, not %s%s", arg->name,
+                       strcasecmp(arg->name, "SINGLE") == 0 ? ": tasks by event are not supported" : "");
+    } else if (interval) {
+        const expr_t *expr = cm1e_st_coerce(st, arg->value, st->elementary[T_TIME], "INTERVAL");
+        task->interval_ns = expr->value.integer;
+        if (expr->type->kind != T_WRONG && (!expr->value.known || expr->value.integer <= 0))
+            cm1e_st_report(st, arg->place, "INTERVAL is a time above 0, for instance T#10ms");
+    } else if (cm1e_st_integer_constant(st, arg->value, &value, "PRIORITY")) {
+        task->priority = value;
+        if (value < 0 || value > 65535)
+            cm1e_st_report(st, arg->place, "PRIORITY is 0 (the highest) to 65535");
+    }
+}
+
+static task_t *find_task(st_t *st, const instance_t *instance)
+{
+    for (task_t *task = st->tree.tasks; task; task = task->next)
+        if (strcasecmp(task->name, instance->task_name) == 0)
+            return task;
+    cm1e_st_report(st, instance->place, "there is no task \"%s\"", instance->task_name);
+    return NULL;
+}
+
+/** PROGRAM x : Type (input := constant or global variable, ...): what the task does before and behind the program. */
+static void instance_args(st_t *st, instance_t *instance)
+{
+    for (arg_t *arg = instance->args; arg; arg = arg->next) {
+        var_t *var = arg->name ? cm1e_st_map_get(instance->unit->names, arg->name) : NULL;
+        if (!var || var->section != (arg->output ? V_OUTPUT : V_INPUT) || !arg->value) {
+            cm1e_st_report(st, arg->place, "the program \"%s\" has no %s \"%s\"", instance->unit->name,
+                           arg->output ? "output" : "input", arg->name ? arg->name : "?");
+            continue;
+        }
+        arg->parameter = var;
+        cm1e_st_expression(st, arg->value);
+        if (!arg->output) {
+            arg->value = cm1e_st_coerce(st, arg->value, var->type, var->name);
+        } else if (cm1e_st_assignable(st, arg->value) && arg->value->type != var->type) {
+            cm1e_st_report(st, arg->place, "the output \"%s\" needs a variable of type %s", var->name,
+                           cm1e_st_type_name(var->type));
+        }
+    }
+}
+
+static void check_instance(st_t *st, instance_t *instance)
+{
+    unit_t *unit = cm1e_st_map_get(st->units, instance->program_name);
+    if (!unit || unit->kind != U_PROGRAM) {
+        cm1e_st_report(st, instance->place, "there is no program \"%s\"", instance->program_name);
+        return;
+    }
+    instance->unit = unit;
+    if (instance->task_name)
+        instance->task = find_task(st, instance);
+    for (const instance_t *other = st->tree.instances; other != instance; other = other->next)
+        if (strcasecmp(other->name, instance->name) == 0)
+            cm1e_st_report(st, instance->place, "there is an instance \"%s\" already", instance->name);
+    instance_args(st, instance);
+    for (const var_t *var = unit->vars; var; var = var->next)
+        if (var->section == V_IN_OUT)
+            cm1e_st_report(st, var->place, "a program has no VAR_IN_OUT here: use VAR_EXTERNAL");
+}
+
+/** Without a CONFIGURATION every program has one instance of its own name, in every cycle of the bus. */
+static void default_instances(st_t *st)
+{
+    args_t none = {0};
+    unit_t *units[256];
+    int count = 0;
+    for (unit_t *unit = st->tree.units; unit && count < 256; unit = unit->next)
+        if (unit->kind == U_PROGRAM)
+            units[count++] = unit;
+    while (count-- > 0) /* the list has the last one first */
+        cm1e_st_add_instance(st, units[count]->place, units[count]->name, NULL, units[count]->name, none);
+}
+
+static void check_configuration(st_t *st)
+{
+    st->unit = NULL;
+    if (!st->tree.configuration)
+        default_instances(st);
+    for (task_t *task = st->tree.tasks; task; task = task->next) {
+        for (arg_t *arg = task->settings; arg; arg = arg->next)
+            setting(st, task, arg);
+        for (const task_t *other = st->tree.tasks; other != task; other = other->next)
+            if (strcasecmp(other->name, task->name) == 0)
+                cm1e_st_report(st, task->place, "there is a task \"%s\" already", task->name);
+    }
+    for (instance_t *instance = st->tree.instances; instance; instance = instance->next)
+        check_instance(st, instance);
+    if (st->tree.configuration && !st->tree.instances)
+        cm1e_st_report(st, st->tree.configuration_place, "this configuration runs no program: PROGRAM name WITH task : "
+                       "Type;");
+}
+
+bool cm1e_st_check(st_t *st)
+{
+    cm1e_st_parse(st);
+    if (st->error_count > 0)
+        return false;
+    cm1e_st_declare(st);
+    check_units(st);
+    check_configuration(st);
+    return st->error_count == 0;
+}

@@ -1,0 +1,145 @@
+/* Implicit conversions, which never lose anything, and what can be assigned to. */
+#include <string.h>
+
+#include "st/st_parsing.h"
+
+const char *cm1e_st_type_name(const type_t *type) { return type->name ? type->name : "this type"; }
+
+expr_t *cm1e_st_convert_node(st_t *st, expr_t *expr, type_t *type)
+{
+    expr_t *node = cm1e_st_node(st, E_CONVERT, expr->place, expr, NULL);
+    if (node->kind != E_CONVERT)
+        return node;
+    node->type = type;
+    node->impure = expr->impure;
+    node->value = expr->value;
+    const type_kind_t from = expr->type->kind;
+    if (cm1e_st_is_floating(type->kind) && !cm1e_st_is_floating(from))
+        node->value.real = expr->value.huge ? (double)(uint64_t)expr->value.integer : (double)expr->value.integer;
+    if (type->kind == T_REAL)
+        node->value.real = (float)node->value.real;
+    return node;
+}
+
+static const char *plain_name(const type_t *type) { return type->kind == T_STRING ? "STRING" : type->name; }
+
+static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *what)
+{
+    const type_kind_t from = expr->type->kind, to = type->kind;
+    if (from == T_ANY_INT && to <= T_LREAL && expr->value.known)
+        cm1e_st_report(st, expr->place, "%s%lld is not a value of %s, which \"%s\" is", expr->value.huge ? "(as LINT) " : "",
+                       (long long)expr->value.integer, type->name, what);
+    else if (from == T_NONE)
+        cm1e_st_report(st, expr->place, "this has no value, and \"%s\" is %s", what, cm1e_st_type_name(type));
+    else if (from <= T_DT && (to <= T_DT || to == T_STRING))
+        cm1e_st_report(st, expr->place, "\"%s\" is %s, and this is %s: without a conversion a value could be lost or "
+                       "change its meaning; %s_TO_%s(...) converts it", what, cm1e_st_type_name(type), expr->type->name,
+                       expr->type->name, plain_name(type));
+    else if (to == T_ENUM && from != T_ENUM)
+        cm1e_st_report(st, expr->place, "\"%s\" is %s, and takes its enumerators, for instance %s", what,
+                       cm1e_st_type_name(type), type->members ? type->members->name : "none");
+    else
+        cm1e_st_report(st, expr->place, "\"%s\" is %s, and this is %s", what, cm1e_st_type_name(type),
+                       cm1e_st_type_name(expr->type));
+    expr_t *wrong = cm1e_st_node(st, E_LITERAL, expr->place, NULL, NULL);
+    wrong->type = st->elementary[T_WRONG];
+    return wrong;
+}
+
+/** A number without a type gets one. */
+static expr_t *give_type(st_t *st, expr_t *expr, type_t *type)
+{
+    expr_t *node = cm1e_st_node(st, E_LITERAL, expr->place, NULL, NULL);
+    node->type = type;
+    node->value = expr->value;
+    if (cm1e_st_is_floating(type->kind) && expr->type->kind == T_ANY_INT)
+        node->value = (constant_t){.known = true, .real = expr->value.huge ? (double)(uint64_t)expr->value.integer
+                                                                          : (double)expr->value.integer};
+    if (type->kind == T_REAL)
+        node->value.real = (float)node->value.real;
+    return node;
+}
+
+static bool takes_literal(const expr_t *expr, const type_t *type)
+{
+    const type_kind_t from = expr->type->kind, to = type->kind;
+    if (!expr->value.known || to > T_ANY_REAL || cm1e_st_is_time(to))
+        return false;
+    if (from == T_ANY_REAL)
+        return cm1e_st_is_floating(to) && cm1e_st_fits(to, &expr->value);
+    return from == T_ANY_INT && (cm1e_st_is_floating(to) || to == T_ANY_INT || cm1e_st_fits(to, &expr->value));
+}
+
+expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
+{
+    const type_kind_t from = expr->type->kind, to = type->kind;
+    if (expr->type == type || from == T_WRONG || to == T_WRONG)
+        return expr;
+    if (takes_literal(expr, type))
+        return give_type(st, expr, type);
+    if (from <= T_DT && to <= T_DT && cm1e_st_widens(from, to))
+        return cm1e_st_convert_node(st, expr, type);
+    if (from == T_ENUM && cm1e_st_is_integer(to) && to != T_ANY_INT && cm1e_st_widens(expr->type->element->kind, to))
+        return cm1e_st_convert_node(st, expr, type);
+    if ((from == T_STRING && to == T_STRING) || (from == T_NULL && to == T_REF))
+        return expr;
+    return refuse(st, expr, type, what);
+}
+
+expr_t *cm1e_st_settle(st_t *st, expr_t *expr)
+{
+    if (expr->type->kind == T_ANY_REAL)
+        return give_type(st, expr, st->elementary[T_LREAL]);
+    if (expr->type->kind != T_ANY_INT)
+        return expr;
+    type_kind_t kind = expr->value.huge ? T_ULINT : cm1e_st_fits(T_DINT, &expr->value) ? T_DINT : T_LINT;
+    return give_type(st, expr, st->elementary[kind]);
+}
+
+static bool is_constant(const var_t *var)
+{
+    return (var->qualifiers & Q_CONSTANT) || (var->section == V_EXTERNAL && var->global &&
+                                              (var->global->qualifiers & Q_CONSTANT));
+}
+
+bool cm1e_st_assignable(st_t *st, const expr_t *expr)
+{
+    const expr_t *at = expr;
+    for (; at->kind == E_MEMBER || at->kind == E_INDEX; at = at->a) {
+        if (at->type->kind == T_WRONG || !at->a)
+            return false;
+        if (at->kind == E_MEMBER && at->var && at->a->type->kind == T_BLOCK && at->var->section == V_OUTPUT) {
+            cm1e_st_report(st, at->place, "\"%s\" is an output of %s, which only the block itself writes", at->var->name,
+                           at->a->type->name);
+            return false;
+        }
+    }
+    if (at->type->kind == T_WRONG)
+        return false;
+    if (at->kind == E_DEREF)
+        return true;
+    if (at->kind != E_NAME || !at->var || at->var->owner) {
+        cm1e_st_report(st, expr->place, "only a variable can get a value here");
+        return false;
+    }
+    if (is_constant(at->var)) {
+        cm1e_st_report(st, expr->place, "\"%s\" is CONSTANT", at->var->name);
+        return false;
+    }
+    if (at->var->controls)
+        cm1e_st_report(st, expr->place, "the FOR around this counts with \"%s\": it must not be changed within (EXIT leaves "
+                       "the loop)", at->var->name);
+    return !at->var->controls;
+}
+
+void cm1e_st_note_change(st_t *st, const expr_t *expr)
+{
+    const expr_t *at = expr;
+    while ((at->kind == E_MEMBER || at->kind == E_INDEX || at->kind == E_DEREF) && at->a)
+        at = at->a;
+    if (!st->unit || st->unit->kind != U_FUNCTION || at->kind != E_NAME || !at->var)
+        return;
+    if (at->var->section == V_GLOBAL || at->var->section == V_EXTERNAL)
+        cm1e_st_report(st, expr->place, "a function changes no global variable: take \"%s\" as VAR_IN_OUT, or make a "
+                       "function block of the function", at->var->name);
+}

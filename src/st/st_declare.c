@@ -1,0 +1,221 @@
+/* Declarations: names of types, units and variables, their types, and the values of constants. */
+#include <string.h>
+#include <strings.h>
+
+#include "st/st_parsing.h"
+
+enum { NEW, BUSY, READY };
+
+/* ---- names of the emitted C -------------------------------------------------------------------------------------- */
+
+/** A prefix by kind, or an underscore behind it: no name of a program is a word of C, or a name of ours. */
+static void name_types(st_t *st)
+{
+    static const char *const prefixes[] = {[T_STRUCT] = "T", [T_ENUM] = "E"};
+    for (type_t *type = st->tree.types; type; type = type->next) {
+        if (type->kind == T_STRUCT || type->kind == T_ENUM)
+            type->c_name = cm1e_st_format(st->arena, "%s_%s", prefixes[type->kind], type->name);
+        for (var_t *var = type->kind == T_STRUCT ? type->members : NULL; var; var = var->next)
+            var->c_name = cm1e_st_format(st->arena, "%s_", var->name);
+        for (var_t *var = type->kind == T_ENUM ? type->members : NULL; var; var = var->next) {
+            var->c_name = cm1e_st_format(st->arena, "E_%s__%s", type->name, var->name);
+            var->owner = type;
+        }
+    }
+}
+
+static void name_units(st_t *st)
+{
+    static const char *const prefixes[] = {[U_FUNCTION] = "FUN", [U_BLOCK] = "FB", [U_PROGRAM] = "PRG"};
+    for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
+        const char *symbol = st->sources[unit->place.file].symbol;
+        unit->c_name = unit->external ? cm1e_st_format(st->arena, "%s%s", symbol, unit->name)
+            : unit->kind == U_FUNCTION ? cm1e_st_format(st->arena, "FUN_%s", unit->name)
+            : cm1e_st_format(st->arena, "run_%s", unit->name);
+        unit->c_type = cm1e_st_format(st->arena, "%s_%s", prefixes[unit->kind], unit->name);
+        if (unit->type)
+            unit->type->c_name = unit->c_type;
+        for (var_t *var = unit->vars; var; var = var->next) {
+            var->c_name = cm1e_st_format(st->arena, "%s_", var->name);
+            var->unit = unit;
+        }
+    }
+    for (var_t *var = st->tree.globals; var; var = var->next)
+        var->c_name = cm1e_st_format(st->arena, "G_%s", var->name);
+}
+
+/* ---- maps of names ----------------------------------------------------------------------------------------------- */
+
+static void map_vars(st_t *st, map_t *map, var_t *vars, const char *where)
+{
+    for (var_t *var = vars; var; var = var->next) {
+        if (cm1e_st_map_get(map, var->name))
+            cm1e_st_report(st, var->place, "%s has \"%s\" already", where, var->name);
+        else
+            cm1e_st_map_put(map, var->name, var);
+    }
+}
+
+/** An enumerator can be written without its type where only one type has it. */
+static void map_enumerators(st_t *st, type_t *type)
+{
+    static var_t several;
+    for (var_t *var = type->members; var; var = var->next)
+        cm1e_st_map_put(st->enumerators, var->name,
+                        cm1e_st_map_get(st->enumerators, var->name) ? &several : var);
+}
+
+static void map_names(st_t *st)
+{
+    for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
+        unit->names = cm1e_st_map_new(st->arena);
+        map_vars(st, unit->names, unit->vars, unit->name);
+    }
+    for (type_t *type = st->tree.types; type; type = type->next) {
+        if (type->kind == T_ENUM)
+            map_enumerators(st, type);
+        if (type->kind == T_STRUCT || type->kind == T_ENUM)
+            map_vars(st, cm1e_st_map_new(st->arena), type->members, type->name);
+    }
+    for (unit_t *unit = st->tree.units; unit; unit = unit->next)
+        if (cm1e_st_map_get(st->globals, unit->name))
+            cm1e_st_report(st, unit->place, "there is a global variable \"%s\" already", unit->name);
+}
+
+/* ---- variables --------------------------------------------------------------------------------------------------- */
+
+static void check_section(st_t *st, var_t *var)
+{
+    const unit_t *unit = var->unit;
+    if ((var->qualifiers & Q_RETAIN) && var->section != V_LOCAL && var->section != V_GLOBAL)
+        cm1e_st_report(st, var->place, "RETAIN is for VAR and VAR_GLOBAL only");
+    if ((var->qualifiers & Q_RETAIN) && unit && unit->kind == U_FUNCTION)
+        cm1e_st_report(st, var->place, "a function keeps nothing: RETAIN is for programs, blocks and global variables");
+    if ((var->qualifiers & Q_CONSTANT) && (var->section == V_OUTPUT || var->section == V_TEMP))
+        cm1e_st_report(st, var->place, "an output or a temporary variable cannot be CONSTANT");
+    if ((var->qualifiers & Q_CONSTANT) && var->section != V_EXTERNAL && var->section != V_IN_OUT && !var->initial)
+        cm1e_st_report(st, var->place, "the constant \"%s\" needs a value: := ...", var->name);
+    if (var->section == V_IN_OUT && var->initial)
+        cm1e_st_report(st, var->place, "a VAR_IN_OUT has no initial value: the call gives the variable");
+    if (var->address && var->section != V_LOCAL && var->section != V_GLOBAL)
+        cm1e_st_report(st, var->address->place, "only variables of VAR and VAR_GLOBAL are at an address");
+    if (var->address && unit && unit->kind != U_PROGRAM)
+        cm1e_st_report(st, var->address->place, "an address is for variables of a program and global ones: a %s may "
+                       "have several instances", unit->kind == U_BLOCK ? "function block" : "function");
+}
+
+static void check_external(st_t *st, var_t *var)
+{
+    var->type = cm1e_st_resolve(st, var->type);
+    var->global = cm1e_st_map_get(st->globals, var->name);
+    if (!var->global) {
+        cm1e_st_report(st, var->place, "there is no global variable \"%s\" (VAR_GLOBAL)", var->name);
+        return;
+    }
+    var->global->type = cm1e_st_resolve(st, var->global->type);
+    if (var->global->type != var->type && var->type->kind != T_WRONG && var->global->type->kind != T_WRONG)
+        cm1e_st_report(st, var->place, "the global variable \"%s\" is %s, not %s", var->name,
+                       cm1e_st_type_name(var->global->type), cm1e_st_type_name(var->type));
+}
+
+static void declare_var(st_t *st, var_t *var)
+{
+    if (var->section == V_EXTERNAL) {
+        check_external(st, var);
+        return;
+    }
+    var->type = cm1e_st_resolve(st, var->type);
+    check_section(st, var);
+    if (var->type->kind == T_BLOCK && var->type->unit->kind == U_PROGRAM)
+        cm1e_st_report(st, var->place, "\"%s\" is a program: only a CONFIGURATION makes instances of programs",
+                       var->type->name);
+    if (var->unit && var->unit->kind == U_FUNCTION && var->type->kind == T_BLOCK && var->section != V_IN_OUT)
+        cm1e_st_report(st, var->place, "a function keeps nothing, so an instance of %s in it would begin anew in every "
+                       "call: put it in a function block or a program, or take it as VAR_IN_OUT", var->type->name);
+    if (var->section == V_TEMP && var->type->kind == T_BLOCK)
+        cm1e_st_report(st, var->place, "an instance of a function block keeps its state: VAR_TEMP cannot");
+}
+
+/** An initial value of a type that has one, where the variable has none. */
+static void check_initials(st_t *st, var_t *vars)
+{
+    for (var_t *var = vars; var; var = var->next)
+        cm1e_st_check_initial(st, var);
+}
+
+void cm1e_st_declare(st_t *st)
+{
+    name_types(st);
+    name_units(st);
+    map_names(st);
+    for (type_t *type = st->tree.types; type; type = type->next)
+        cm1e_st_resolve(st, type);
+    for (var_t *var = st->tree.globals; var; var = var->next)
+        declare_var(st, var);
+    for (st->unit = st->tree.units; st->unit; st->unit = st->unit->next)
+        for (var_t *var = st->unit->vars; var; var = var->next)
+            declare_var(st, var);
+    check_initials(st, st->tree.globals);
+    for (type_t *type = st->tree.types; type; type = type->next)
+        if (type->kind == T_STRUCT)
+            check_initials(st, type->members);
+    for (st->unit = st->tree.units; st->unit; st->unit = st->unit->next) {
+        if (st->unit->result_type)
+            st->unit->result_type = cm1e_st_resolve(st, st->unit->result_type);
+        check_initials(st, st->unit->vars);
+    }
+}
+
+var_t *cm1e_st_member(const type_t *type, const char *name)
+{
+    if (type->kind == T_BLOCK)
+        return cm1e_st_map_get(type->unit->names, name);
+    for (var_t *var = type->members; var; var = var->next)
+        if (strcasecmp(var->name, name) == 0)
+            return var;
+    return NULL;
+}
+
+var_t *cm1e_st_find_var(st_t *st, const char *name)
+{
+    var_t *var = st->unit ? cm1e_st_map_get(st->unit->names, name) : NULL;
+    if (!var)
+        var = cm1e_st_map_get(st->globals, name);
+    if (var && var->section != V_EXTERNAL && var->type->state != READY)
+        var->type = cm1e_st_resolve(st, var->type);
+    else if (var && var->type->same)
+        var->type = var->type->same;
+    return var;
+}
+
+const constant_t *cm1e_st_constant_of(st_t *st, var_t *var)
+{
+    if (var->section == V_EXTERNAL && var->global)
+        return cm1e_st_constant_of(st, var->global);
+    if (!(var->qualifiers & Q_CONSTANT) || var->section == V_IN_OUT || var->section == V_INPUT)
+        return &var->value;
+    if (var->state == BUSY) {
+        cm1e_st_report(st, var->place, "the value of \"%s\" depends on itself", var->name);
+    } else if (var->state == NEW) {
+        var->state = BUSY;
+        cm1e_st_check_initial(st, var);
+    }
+    return &var->value;
+}
+
+void cm1e_st_check_initial(st_t *st, var_t *var)
+{
+    unit_t *const unit = st->unit;
+    if (!var->initial || var->state == READY || var->section == V_EXTERNAL || st->resolving == ST_DEPTH)
+        return;
+    var->state = BUSY;
+    st->resolving++;
+    st->unit = var->unit;
+    var->type = cm1e_st_resolve(st, var->type);
+    var->initial = cm1e_st_initialiser(st, var->initial, var->type, var->name);
+    if (var->qualifiers & Q_CONSTANT)
+        var->value = var->initial->value;
+    st->unit = unit;
+    st->resolving--;
+    var->state = READY;
+}

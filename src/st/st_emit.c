@@ -1,0 +1,107 @@
+/* The C file of a program: the run-time part, types, variables, units, tables. */
+#include "st/st_emit.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+#include "st/st_embedded.h"
+
+void cm1e_st_put(st_t *st, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    vfprintf(st->out, format, values);
+    va_end(values);
+}
+
+void cm1e_st_begin_line(st_t *st) { fprintf(st->out, "%*s", st->indent * 4, ""); }
+
+void cm1e_st_line(st_t *st, const char *format, ...)
+{
+    va_list values;
+    cm1e_st_begin_line(st);
+    va_start(values, format);
+    vfprintf(st->out, format, values);
+    va_end(values);
+}
+
+void cm1e_st_put_quoted(st_t *st, const char *text)
+{
+    fputc('"', st->out);
+    for (; *text; text++) {
+        const unsigned char byte = (unsigned char)*text;
+        if (byte < ' ' || byte >= 0x7F || byte == '?')
+            fprintf(st->out, "\\%03o", byte); /* "??/" would be a trigraph */
+        else
+            fprintf(st->out, byte == '"' || byte == '\\' ? "\\%c" : "%c", byte);
+    }
+    fputc('"', st->out);
+}
+
+void cm1e_st_place(st_t *st, place_t place)
+{
+    cm1e_st_put(st, "#line %u ", place.line);
+    cm1e_st_put_quoted(st, st->sources[place.file].name);
+    cm1e_st_put(st, "\n");
+}
+
+static void emit_embedded(st_t *st, const char *name, const char *begin, const char *end)
+{
+    cm1e_st_put(st, "#line 1 \"%s\"\n", name);
+    fwrite(begin, 1, (size_t)(end - begin), st->out);
+}
+
+static void emit_functions(st_t *st, bool bodies)
+{
+    for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
+        if (unit->external)
+            continue;
+        if (bodies)
+            cm1e_st_emit_unit(st, unit);
+        else
+            cm1e_st_emit_prototype(st, unit);
+    }
+}
+
+static void emit_types(st_t *st)
+{
+    for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
+        if (unit->external)
+            continue;
+        if (unit->type)
+            cm1e_st_emit_type(st, unit->type);
+        for (var_t *var = unit->vars; var; var = var->next)
+            cm1e_st_emit_type(st, var->type);
+    }
+    for (var_t *var = st->tree.globals; var; var = var->next)
+        if (!st->sources[var->place.file].external)
+            cm1e_st_emit_type(st, var->type);
+}
+
+static void emit_variables(st_t *st)
+{
+    for (const var_t *var = st->tree.globals; var; var = var->next)
+        if (!st->sources[var->place.file].external)
+            cm1e_st_line(st, "static %s %s ST_UNUSED;\n", cm1e_st_c_type(st, var->type), var->c_name);
+    for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
+        cm1e_st_line(st, "static %s I_%s;\n", instance->unit->c_type, instance->name);
+}
+
+void cm1e_st_emit(st_t *st, FILE *file, const char *name)
+{
+    st->out = file;
+    st->unit = NULL;
+    cm1e_st_put(st, "/* Translated from Structured Text by cm1e st build. Compile with -std=c11 -fwrapv -fPIC -shared. */\n");
+    emit_embedded(st, "st_program.h", cm1e_st_program_begin, cm1e_st_program_end);
+    emit_embedded(st, "st_runtime.h", cm1e_st_runtime_begin, cm1e_st_runtime_end);
+    cm1e_st_put(st, "\n#line 1 \"%s.c\"\n", name);
+    cm1e_st_put(st, "/* ---- types ---- */\n\n");
+    emit_types(st);
+    cm1e_st_put(st, "\n/* ---- variables ---- */\n\n");
+    emit_variables(st);
+    emit_functions(st, false);
+    emit_functions(st, true);
+    st->unit = NULL;
+    cm1e_st_put(st, "#line 1 \"%s.c\"\n", name);
+    cm1e_st_emit_tables(st, name);
+}

@@ -1,0 +1,49 @@
+/**
+ * @file st_emit.h
+ * The parts of the emitter. All write to the file of the translation.
+ */
+#ifndef CM1E_ST_EMIT_H
+#define CM1E_ST_EMIT_H
+
+#include "st/st_parsing.h"
+#include "st/st_standard.h"
+
+/** Writes to the output. */
+void cm1e_st_put(st_t *st, const char *format, ...) CM1E_PRINTF(2, 3);
+/** Begins a line with the present indentation. */
+void cm1e_st_line(st_t *st, const char *format, ...) CM1E_PRINTF(2, 3);
+void cm1e_st_begin_line(st_t *st);
+/** The C that follows comes from this line of a source. */
+void cm1e_st_place(st_t *st, place_t place);
+void cm1e_st_put_quoted(st_t *st, const char *text);
+
+/* st_emit_type.c */
+/** The name of a type in C; its declaration must have been emitted. */
+const char *cm1e_st_c_type(st_t *st, const type_t *type);
+/** Emits the declaration of a type, and before it those that it needs. */
+void cm1e_st_emit_type(st_t *st, type_t *type);
+/** The type of runtime functions that takes these values: enumerations and times are integers there. */
+const char *cm1e_st_plain_type(const type_t *type);
+/** Gives something of this type, which is zeroed, its initial value: that of the variable or else that of its type. */
+void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr_t *initial);
+bool cm1e_st_needs_initial(const type_t *type);
+
+/* st_emit_expression.c */
+void cm1e_st_emit_expression(st_t *st, const expr_t *expr);
+void cm1e_st_emit_constant(st_t *st, const type_t *type, const constant_t *value);
+/** A text as a `const char *`. */
+void cm1e_st_emit_text(st_t *st, const expr_t *expr);
+/* st_emit_call.c */
+void cm1e_st_emit_call(st_t *st, const expr_t *call);
+void cm1e_st_emit_conversion(st_t *st, const expr_t *expr);
+/* st_emit_statement.c */
+void cm1e_st_emit_statements(st_t *st, const stmt_t *list);
+/** target := value; with what texts and single bits need. */
+void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value);
+/* st_emit_unit.c */
+void cm1e_st_emit_prototype(st_t *st, const unit_t *unit);
+void cm1e_st_emit_unit(st_t *st, unit_t *unit);
+/* st_emit_tables.c */
+void cm1e_st_emit_tables(st_t *st, const char *name);
+
+#endif

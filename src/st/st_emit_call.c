@@ -1,0 +1,283 @@
+/* Calls of functions, and conversions, in C. */
+#include "st/st_emit.h"
+
+#include <ctype.h>
+#include <string.h>
+
+static const arg_t *arg_of(const expr_t *call, const var_t *var)
+{
+    for (const arg_t *arg = call->args; arg; arg = arg->next)
+        if (arg->parameter == var)
+            return arg;
+    return NULL;
+}
+
+static void emit_address(st_t *st, const expr_t *expr)
+{
+    cm1e_st_put(st, "&");
+    cm1e_st_emit_expression(st, expr);
+}
+
+/** An input that a call leaves out has its initial value, or 0. */
+static void emit_missing(st_t *st, const var_t *var)
+{
+    if (var->type->kind == T_STRING) {
+        if (var->initial)
+            cm1e_st_emit_text(st, var->initial);
+        else
+            cm1e_st_put(st, "\"\"");
+    } else if (var->initial && var->initial->value.known)
+        cm1e_st_emit_expression(st, var->initial);
+    else if (var->type->kind == T_STRUCT || var->type->kind == T_ARRAY)
+        cm1e_st_put(st, "(%s){0}", var->type->c_name);
+    else if (var->type->kind == T_ENUM && var->type->members)
+        cm1e_st_put(st, "%lld", (long long)var->type->members->value.integer);
+    else
+        cm1e_st_put(st, "0");
+}
+
+static void emit_function_call(st_t *st, const expr_t *call)
+{
+    const char *comma = "";
+    cm1e_st_put(st, "%s(", call->unit->c_name);
+    for (const var_t *var = call->unit->vars; var; var = var->next) {
+        const arg_t *arg = arg_of(call, var);
+        if (var->section != V_INPUT && var->section != V_OUTPUT && var->section != V_IN_OUT)
+            continue;
+        cm1e_st_put(st, "%s", comma);
+        comma = ", ";
+        if (var->section == V_INPUT && (!arg || !arg->value))
+            emit_missing(st, var);
+        else if (var->section == V_INPUT && var->type->kind == T_STRING)
+            cm1e_st_emit_text(st, arg->value);
+        else if (var->section == V_INPUT)
+            cm1e_st_emit_expression(st, arg->value);
+        else if (arg && arg->value)
+            emit_address(st, arg->value);
+        else
+            cm1e_st_put(st, "NULL");
+    }
+    cm1e_st_put(st, ")");
+}
+
+/* ---- standard functions ------------------------------------------------------------------------------------------ */
+
+static void emit_lower(st_t *st, const char *name)
+{
+    for (; *name; name++)
+        cm1e_st_put(st, "%c", tolower((unsigned char)*name));
+}
+
+/** st_max_INT(st_max_INT(a, b), c) */
+static void emit_chain(st_t *st, const char *function, const arg_t *args)
+{
+    int count = 0;
+    for (const arg_t *arg = args; arg; arg = arg->next)
+        count++;
+    for (int i = 1; i < count; i++)
+        cm1e_st_put(st, "%s(", function);
+    for (const arg_t *arg = args; arg; arg = arg->next) {
+        if (arg != args)
+            cm1e_st_put(st, ", ");
+        if (arg->value->type->kind == T_STRING && arg == args && count > 1)
+            cm1e_st_emit_text(st, arg->value);
+        else if (arg->value->type->kind == T_STRING)
+            cm1e_st_emit_text(st, arg->value);
+        else
+            cm1e_st_emit_expression(st, arg->value);
+        if (arg != args)
+            cm1e_st_put(st, arg->value->type->kind == T_STRING && arg->next ? ").text" : ")");
+    }
+}
+
+static void emit_args(st_t *st, const arg_t *args)
+{
+    for (const arg_t *arg = args; arg; arg = arg->next) {
+        if (arg->value->type->kind == T_STRING)
+            cm1e_st_emit_text(st, arg->value);
+        else
+            cm1e_st_emit_expression(st, arg->value);
+        if (arg->next)
+            cm1e_st_put(st, ", ");
+    }
+}
+
+static void emit_mux(st_t *st, const expr_t *call)
+{
+    const char *type = cm1e_st_plain_type(call->type);
+    int count = 0;
+    for (const arg_t *arg = call->args->next; arg; arg = arg->next)
+        count++;
+    cm1e_st_put(st, "st_mux_%s((int64_t)", type);
+    cm1e_st_emit_expression(st, call->args->value);
+    cm1e_st_put(st, ", %d, (const %s[]){", count, type);
+    emit_args(st, call->args->next);
+    cm1e_st_put(st, "}, ST_HERE)");
+}
+
+static void emit_real_function(st_t *st, const expr_t *call, const char *name)
+{
+    static const struct { const char *st, *c; } names[] = {{"LN", "log"}, {"LOG", "log10"}};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (strcmp(name, names[i].st) == 0)
+            name = names[i].c;
+    emit_lower(st, name);
+    cm1e_st_put(st, call->type->kind == T_REAL ? "f(" : "(");
+    emit_args(st, call->args);
+    cm1e_st_put(st, ")");
+}
+
+static void emit_standard(st_t *st, const expr_t *call)
+{
+    static const char *const typed[] = {"ABS", "LIMIT", "SEL", "SHL", "SHR", "ROL", "ROR", NULL};
+    static const char *const plain[] = {"LEFT", "RIGHT", "MID", "INSERT", "DELETE", "REPLACE", "FIND", NULL};
+    const char *name = cm1e_st_standard_name(call->standard);
+    const char *type = cm1e_st_plain_type(call->type);
+    for (int i = 0; typed[i]; i++)
+        if (strcmp(name, typed[i]) == 0) {
+            cm1e_st_put(st, "st_");
+            emit_lower(st, name);
+            cm1e_st_put(st, "_%s(", strcmp(name, "ABS") == 0 ? call->type->name : type);
+            emit_args(st, call->args);
+            cm1e_st_put(st, ")");
+            return;
+        }
+    for (int i = 0; plain[i]; i++)
+        if (strcmp(name, plain[i]) == 0) {
+            cm1e_st_put(st, "st_");
+            emit_lower(st, name);
+            cm1e_st_put(st, "(");
+            emit_args(st, call->args);
+            cm1e_st_put(st, ")");
+            return;
+        }
+    if (strcmp(name, "MIN") == 0 || strcmp(name, "MAX") == 0)
+        emit_chain(st, cm1e_st_format(st->arena, "st_%s_%s", strcmp(name, "MIN") == 0 ? "min" : "max", type), call->args);
+    else if (strcmp(name, "CONCAT") == 0)
+        emit_chain(st, "st_concat", call->args);
+    else if (strcmp(name, "MUX") == 0)
+        emit_mux(st, call);
+    else if (strcmp(name, "LEN") == 0) {
+        cm1e_st_put(st, "(INT)strlen(");
+        emit_args(st, call->args);
+        cm1e_st_put(st, ")");
+    } else if (strcmp(name, "TRUNC") == 0) {
+        cm1e_st_put(st, "(DINT)st_round(trunc((double)");
+        emit_args(st, call->args);
+        cm1e_st_put(st, "), INT32_MIN, INT32_MAX)");
+    } else if (strcmp(name, "TIME") == 0) {
+        cm1e_st_put(st, "cm1e_scan_time()");
+    } else if (strcmp(name, "REF") == 0 || strcmp(name, "ADR") == 0) {
+        emit_address(st, call->args->value);
+    } else {
+        emit_real_function(st, call, name);
+    }
+}
+
+void cm1e_st_emit_call(st_t *st, const expr_t *call)
+{
+    if (call->standard)
+        emit_standard(st, call);
+    else
+        emit_function_call(st, call);
+}
+
+/* ---- conversions ------------------------------------------------------------------------------------------------- */
+
+static void around(st_t *st, const char *before, const expr_t *expr, const char *after)
+{
+    cm1e_st_put(st, "%s", before);
+    if (expr->type->kind == T_STRING)
+        cm1e_st_emit_text(st, expr);
+    else
+        cm1e_st_emit_expression(st, expr);
+    cm1e_st_put(st, "%s", after);
+}
+
+/** The ends of an integer type, as C. */
+static const char *ends_of(type_kind_t kind)
+{
+    switch (kind) {
+    case T_SINT: return "INT8_MIN, INT8_MAX";
+    case T_INT: return "INT16_MIN, INT16_MAX";
+    case T_DINT: return "INT32_MIN, INT32_MAX";
+    case T_BYTE:
+    case T_USINT: return "0, UINT8_MAX";
+    case T_WORD:
+    case T_UINT: return "0, UINT16_MAX";
+    case T_DWORD:
+    case T_UDINT: return "0, UINT32_MAX";
+    default: return "INT64_MIN, INT64_MAX";
+    }
+}
+
+static void from_text(st_t *st, const expr_t *expr)
+{
+    const type_kind_t to = expr->type->kind;
+    if (to == T_BOOL)
+        around(st, "(BOOL)(strcmp(", expr->a, ", \"TRUE\") == 0)");
+    else if (cm1e_st_is_floating(to))
+        around(st, cm1e_st_format(st->arena, "(%s)st_real_of(", expr->type->name), expr->a, ")");
+    else
+        around(st, cm1e_st_format(st->arena, "(%s)st_integer_of(", expr->type->name), expr->a,
+               cm1e_st_format(st->arena, ", %s)", ends_of(to)));
+}
+
+static void to_text(st_t *st, const expr_t *expr)
+{
+    const type_kind_t from = expr->a->type->kind == T_ENUM ? expr->a->type->element->kind : expr->a->type->kind;
+    if (from == T_BOOL)
+        around(st, "st_text_of_bool(", expr->a, ")");
+    else if (from == T_TIME)
+        around(st, "st_text_of_time(", expr->a, ")");
+    else if (cm1e_st_is_floating(from))
+        around(st, "st_text_of_real(", expr->a, from == T_REAL ? ", 7)" : ", 15)");
+    else if (cm1e_st_is_signed(from))
+        around(st, "st_text_of_integer(", expr->a, ")");
+    else
+        around(st, "st_text_of_unsigned(", expr->a, ")");
+}
+
+/** TIME counts milliseconds where it becomes a number. */
+static void with_time(st_t *st, const expr_t *expr)
+{
+    const type_kind_t from = expr->a->type->kind, to = expr->type->kind;
+    const char *name = expr->type->name;
+    if (from == T_DT && to == T_DATE)
+        around(st, "st_date_of(", expr->a, ")");
+    else if (from == T_DT)
+        around(st, "st_time_of_day(", expr->a, ")");
+    else if (from == T_DATE)
+        around(st, "(DT)", expr->a, "");
+    else if (from == T_TIME && cm1e_st_is_floating(to))
+        around(st, cm1e_st_format(st->arena, "(%s)((double)", name), expr->a, " / 1e6)");
+    else if (from == T_TIME)
+        around(st, cm1e_st_format(st->arena, "(%s)(", name), expr->a, to == T_BOOL ? " != 0)" : " / 1000000)");
+    else if (cm1e_st_is_floating(from))
+        around(st, "st_time_scaled(1000000, ", expr->a, ")");
+    else
+        around(st, "(TIME)((TIME)", expr->a, " * 1000000)");
+}
+
+void cm1e_st_emit_conversion(st_t *st, const expr_t *expr)
+{
+    const type_kind_t from = expr->a->type->kind, to = expr->type->kind;
+    const char *name = expr->type->name;
+    if (from == to && from != T_ENUM)
+        cm1e_st_emit_expression(st, expr->a);
+    else if (from == T_STRING)
+        from_text(st, expr);
+    else if (to == T_STRING)
+        to_text(st, expr);
+    else if (cm1e_st_is_time(from) || cm1e_st_is_time(to))
+        with_time(st, expr);
+    else if (to == T_BOOL)
+        around(st, "(BOOL)(", expr->a, " != 0)");
+    else if (cm1e_st_is_floating(from) && to == T_ULINT)
+        around(st, "st_round_unsigned(", expr->a, ")");
+    else if (cm1e_st_is_floating(from) && !cm1e_st_is_floating(to))
+        around(st, cm1e_st_format(st->arena, "(%s)st_round(", name), expr->a,
+               cm1e_st_format(st->arena, ", %s)", ends_of(to)));
+    else
+        around(st, cm1e_st_format(st->arena, "(%s)", name), expr->a, "");
+}

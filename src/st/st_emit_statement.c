@@ -1,0 +1,226 @@
+/* Statements in C, each with the line of ST that it comes from. */
+#include "st/st_emit.h"
+
+static void emit_body(st_t *st, const stmt_t *list)
+{
+    st->indent++;
+    cm1e_st_emit_statements(st, list);
+    st->indent--;
+}
+
+static void emit_bit(st_t *st, const expr_t *target, const expr_t *value)
+{
+    const char *type = target->a->type->name;
+    cm1e_st_begin_line(st);
+    cm1e_st_emit_expression(st, target->a);
+    cm1e_st_put(st, " = (%s)(((ULINT)", type);
+    cm1e_st_emit_expression(st, target->a);
+    cm1e_st_put(st, " & ~(1ULL << %s)) | ((ULINT)((", target->name);
+    cm1e_st_emit_expression(st, value);
+    cm1e_st_put(st, ") != 0) << %s));\n", target->name);
+}
+
+void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value)
+{
+    if (target->kind == E_MEMBER && target->bit) {
+        emit_bit(st, target, value);
+        return;
+    }
+    if (target->type->kind == T_STRING) {
+        cm1e_st_line(st, "st_assign(");
+        cm1e_st_emit_text(st, target);
+        cm1e_st_put(st, ", %lld, ", (long long)target->type->length + 1);
+        cm1e_st_emit_text(st, value);
+        cm1e_st_put(st, ");\n");
+        return;
+    }
+    cm1e_st_begin_line(st);
+    cm1e_st_emit_expression(st, target);
+    cm1e_st_put(st, " = ");
+    cm1e_st_emit_expression(st, value);
+    cm1e_st_put(st, ";\n");
+}
+
+/* ---- calls of blocks --------------------------------------------------------------------------------------------- */
+
+static void emit_input(st_t *st, const arg_t *arg)
+{
+    const var_t *var = arg->parameter;
+    if (var->section == V_IN_OUT) {
+        cm1e_st_line(st, "fb->%s = &", var->c_name);
+        cm1e_st_emit_expression(st, arg->value);
+    } else if (var->type->kind == T_STRING) {
+        cm1e_st_line(st, "st_assign(fb->%s.text, %lld, ", var->c_name, (long long)var->type->length + 1);
+        cm1e_st_emit_text(st, arg->value);
+        cm1e_st_put(st, ")");
+    } else {
+        cm1e_st_line(st, "fb->%s = ", var->c_name);
+        cm1e_st_emit_expression(st, arg->value);
+    }
+    cm1e_st_put(st, ";\n");
+}
+
+static void emit_block_call(st_t *st, const expr_t *call)
+{
+    cm1e_st_line(st, "{\n");
+    st->indent++;
+    cm1e_st_line(st, "%s *const fb = &", call->unit->c_type);
+    cm1e_st_emit_expression(st, call->a);
+    cm1e_st_put(st, ";\n");
+    for (const arg_t *arg = call->args; arg; arg = arg->next)
+        if (arg->value && arg->parameter->section != V_OUTPUT)
+            emit_input(st, arg);
+    cm1e_st_line(st, "%s(fb);\n", call->unit->c_name);
+    st->callee = call->a;
+    for (const arg_t *arg = call->args; arg; arg = arg->next)
+        if (arg->value && arg->parameter->section == V_OUTPUT)
+            cm1e_st_emit_assignment(st, arg->value, arg->source);
+    st->callee = NULL;
+    st->indent--;
+    cm1e_st_line(st, "}\n");
+}
+
+static void emit_call(st_t *st, const stmt_t *stmt)
+{
+    if (stmt->value->unit->kind == U_BLOCK) {
+        emit_block_call(st, stmt->value);
+        return;
+    }
+    cm1e_st_line(st, "%s", stmt->value->unit->result_type ? "(void)" : "");
+    cm1e_st_emit_expression(st, stmt->value);
+    cm1e_st_put(st, ";\n");
+}
+
+/* ---- branches ---------------------------------------------------------------------------------------------------- */
+
+static void emit_label(st_t *st, const arg_t *arg, unsigned selector)
+{
+    const bool range = arg->value->kind == E_REPEAT;
+    const expr_t *low = range ? arg->value->a : arg->value;
+    cm1e_st_put(st, range ? "(selector%u >= " : "selector%u == ", selector);
+    cm1e_st_emit_constant(st, st->elementary[T_LINT], &low->value);
+    if (!range)
+        return;
+    cm1e_st_put(st, " && selector%u <= ", selector);
+    cm1e_st_emit_constant(st, st->elementary[T_LINT], &arg->value->b->value);
+    cm1e_st_put(st, ")");
+}
+
+static void emit_condition(st_t *st, const branch_t *branch, unsigned selector)
+{
+    if (branch->condition)
+        cm1e_st_emit_expression(st, branch->condition);
+    for (const arg_t *arg = branch->labels; arg; arg = arg->next) {
+        emit_label(st, arg, selector);
+        if (arg->next)
+            cm1e_st_put(st, " || ");
+    }
+}
+
+static void emit_branches(st_t *st, const stmt_t *stmt, unsigned selector)
+{
+    for (const branch_t *branch = stmt->branches; branch; branch = branch->next) {
+        const bool is_else = !branch->condition && !branch->labels, first = branch == stmt->branches;
+        cm1e_st_place(st, branch->place);
+        if (is_else) {
+            cm1e_st_line(st, first ? "{\n" : "} else {\n");
+        } else {
+            cm1e_st_line(st, first ? "if (" : "} else if (");
+            emit_condition(st, branch, selector);
+            cm1e_st_put(st, ") {\n");
+        }
+        emit_body(st, branch->body);
+    }
+    if (stmt->branches)
+        cm1e_st_line(st, "}\n");
+}
+
+static void emit_case(st_t *st, const stmt_t *stmt)
+{
+    const unsigned selector = ++st->temporaries;
+    cm1e_st_line(st, "{\n");
+    st->indent++;
+    cm1e_st_line(st, "ST_UNUSED const int64_t selector%u = (int64_t)", selector);
+    cm1e_st_emit_expression(st, stmt->value);
+    cm1e_st_put(st, ";\n");
+    emit_branches(st, stmt, selector);
+    st->indent--;
+    cm1e_st_line(st, "}\n");
+}
+
+/* ---- loops ------------------------------------------------------------------------------------------------------- */
+
+static void emit_for(st_t *st, const stmt_t *stmt)
+{
+    const unsigned n = ++st->temporaries;
+    cm1e_st_line(st, "for (st_for_t for%u = st_for((int64_t)", n);
+    cm1e_st_emit_expression(st, stmt->value);
+    cm1e_st_put(st, ", (int64_t)");
+    cm1e_st_emit_expression(st, stmt->to);
+    cm1e_st_put(st, ", ");
+    if (stmt->by)
+        cm1e_st_emit_expression(st, stmt->by);
+    else
+        cm1e_st_put(st, "1");
+    cm1e_st_put(st, ", ST_HERE); ");
+    cm1e_st_emit_expression(st, stmt->target);
+    cm1e_st_put(st, " = (%s)for%u.now, st_goes(&for%u); st_next(&for%u)) {\n", stmt->target->type->name, n, n, n);
+    st->indent++;
+    cm1e_st_line(st, "st_loop(ST_HERE);\n");
+    cm1e_st_emit_statements(st, stmt->body);
+    st->indent--;
+    cm1e_st_line(st, "}\n");
+}
+
+static void emit_while(st_t *st, const stmt_t *stmt)
+{
+    cm1e_st_line(st, "while (");
+    cm1e_st_emit_expression(st, stmt->value);
+    cm1e_st_put(st, ") {\n");
+    st->indent++;
+    cm1e_st_line(st, "st_loop(ST_HERE);\n");
+    cm1e_st_emit_statements(st, stmt->body);
+    st->indent--;
+    cm1e_st_line(st, "}\n");
+}
+
+static void emit_repeat(st_t *st, const stmt_t *stmt)
+{
+    cm1e_st_line(st, "do {\n");
+    st->indent++;
+    cm1e_st_line(st, "st_loop(ST_HERE);\n");
+    cm1e_st_emit_statements(st, stmt->body);
+    st->indent--;
+    cm1e_st_place(st, stmt->value->place);
+    cm1e_st_line(st, "} while (!(");
+    cm1e_st_emit_expression(st, stmt->value);
+    cm1e_st_put(st, "));\n");
+}
+
+static void emit_statement(st_t *st, const stmt_t *stmt)
+{
+    if (stmt->kind != S_IF)
+        cm1e_st_place(st, stmt->place);
+    switch (stmt->kind) {
+    case S_ASSIGN: cm1e_st_emit_assignment(st, stmt->target, stmt->value); break;
+    case S_CALL: emit_call(st, stmt); break;
+    case S_IF: emit_branches(st, stmt, 0); break;
+    case S_CASE: emit_case(st, stmt); break;
+    case S_FOR: emit_for(st, stmt); break;
+    case S_WHILE: emit_while(st, stmt); break;
+    case S_REPEAT: emit_repeat(st, stmt); break;
+    case S_EXIT: cm1e_st_line(st, "break;\n"); break;
+    case S_CONTINUE: cm1e_st_line(st, "continue;\n"); break;
+    case S_RETURN:
+        st->leaves = true;
+        cm1e_st_line(st, "goto leave;\n");
+        break;
+    default: break;
+    }
+}
+
+void cm1e_st_emit_statements(st_t *st, const stmt_t *list)
+{
+    for (; list; list = list->next)
+        emit_statement(st, list);
+}

@@ -1,0 +1,435 @@
+/* The types of expressions: names, members, elements, operations. Calls are in st_call.c, conversions in
+ * st_conversion.c. */
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/near.h"
+#include "st/st_parsing.h"
+#include "st/st_standard.h"
+
+static const char *const operators[] = {
+    "OR", "OR_ELSE", "XOR", "AND", "AND_THEN", "=", "<>", "<", ">", "<=", ">=", "+", "-", "*", "/", "MOD", "**", "-",
+    "NOT",
+};
+
+static void set_wrong(st_t *st, expr_t *expr) { expr->type = st->elementary[T_WRONG]; }
+
+/* ---- names ------------------------------------------------------------------------------------------------------- */
+
+static void look_at(const char *name, void *value, void *context)
+{
+    (void)value;
+    cm1e_near_look(context, name);
+}
+
+static void unknown_name(st_t *st, expr_t *expr)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = expr->name};
+    if (st->unit)
+        cm1e_st_map_each(st->unit->names, look_at, &near);
+    cm1e_st_map_each(st->globals, look_at, &near);
+    cm1e_st_map_each(st->enumerators, look_at, &near);
+    const char *what = cm1e_st_map_get(st->units, expr->name) ? "a value or variable" : "a variable or enumerator";
+    cm1e_st_report(st, expr->place, "there is no %s \"%s\"%s", what, expr->name,
+                   cm1e_near_text(&near, text, sizeof text));
+    set_wrong(st, expr);
+}
+
+static void use_enumerator(expr_t *expr, var_t *var)
+{
+    expr->var = var;
+    expr->type = var->owner;
+    expr->value = var->value;
+}
+
+static void name(st_t *st, expr_t *expr)
+{
+    var_t *var = cm1e_st_find_var(st, expr->name);
+    if (var) {
+        expr->var = var;
+        expr->type = var->type;
+        expr->value = *cm1e_st_constant_of(st, var);
+        expr->type = var->type;
+        return;
+    }
+    var = cm1e_st_map_get(st->enumerators, expr->name);
+    if (var && var->owner) {
+        cm1e_st_resolve(st, var->owner);
+        use_enumerator(expr, var);
+    } else if (var) {
+        cm1e_st_report(st, expr->place, "several enumerations have \"%s\": write the type too, TYPE#%s", expr->name,
+                       expr->name);
+        set_wrong(st, expr);
+    } else {
+        unknown_name(st, expr);
+    }
+}
+
+/** TYPE#NAME, and TYPE.NAME as in TwinCAT. */
+static void enumerator_of(st_t *st, expr_t *expr, const char *type_name)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    type_t *type = cm1e_st_map_get(st->types, type_name);
+    type = type ? cm1e_st_resolve(st, type) : NULL;
+    if (!type || type->kind != T_ENUM) {
+        cm1e_st_report(st, expr->place, "there is no enumeration \"%s\"", type_name);
+        set_wrong(st, expr);
+        return;
+    }
+    var_t *var = cm1e_st_member(type, expr->name);
+    if (var) {
+        use_enumerator(expr, var);
+        return;
+    }
+    cm1e_near_t near = {.word = expr->name};
+    for (const var_t *other = type->members; other; other = other->next)
+        cm1e_near_look(&near, other->name);
+    cm1e_st_report(st, expr->place, "%s has no \"%s\"%s", type->name, expr->name,
+                   cm1e_near_text(&near, text, sizeof text));
+    set_wrong(st, expr);
+}
+
+static void bit(st_t *st, expr_t *expr)
+{
+    const type_t *type = expr->a->type;
+    const long number = strtol(expr->name, NULL, 10);
+    const bool has_bits = type->kind != T_BOOL && (cm1e_st_is_bits(type->kind) || cm1e_st_is_integer(type->kind));
+    expr->type = st->elementary[T_BOOL];
+    if (has_bits && strspn(expr->name, "0123456789") == strlen(expr->name) && number < cm1e_st_bits(type->kind))
+        return;
+    if (has_bits)
+        cm1e_st_report(st, expr->place, "%s has the bits .0 to .%d", type->name, cm1e_st_bits(type->kind) - 1);
+    else
+        cm1e_st_report(st, expr->place, "%s has no single bits", cm1e_st_type_name(type));
+    set_wrong(st, expr);
+}
+
+static void unknown_member(st_t *st, expr_t *expr, const type_t *type)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = expr->name};
+    for (const var_t *other = type->members; other; other = other->next)
+        if (other->section != V_LOCAL && other->section != V_TEMP)
+            cm1e_near_look(&near, other->name);
+    cm1e_st_report(st, expr->place, "%s has no \"%s\"%s", type->name, expr->name,
+                   cm1e_near_text(&near, text, sizeof text));
+    set_wrong(st, expr);
+}
+
+static void member(st_t *st, expr_t *expr)
+{
+    if (!expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name) &&
+        !cm1e_st_map_get(st->enumerators, expr->a->name) && cm1e_st_map_get(st->types, expr->a->name)) {
+        enumerator_of(st, expr, expr->a->name);
+        return;
+    }
+    cm1e_st_expression(st, expr->a);
+    type_t *type = expr->a->type;
+    expr->impure = expr->a->impure;
+    if (type->kind == T_WRONG) {
+        set_wrong(st, expr);
+        return;
+    }
+    if (expr->bit) {
+        bit(st, expr);
+        return;
+    }
+    if (type->kind != T_STRUCT && type->kind != T_BLOCK) {
+        cm1e_st_report(st, expr->place, "%s has no members%s", cm1e_st_type_name(type),
+                       type->kind == T_REF ? "; write ^ in front of the point" : "");
+        set_wrong(st, expr);
+        return;
+    }
+    expr->var = cm1e_st_member(type, expr->name);
+    if (!expr->var) {
+        unknown_member(st, expr, type);
+        return;
+    }
+    expr->type = expr->var->type = cm1e_st_resolve(st, expr->var->type);
+    if (type->kind == T_BLOCK && expr->var->section != V_INPUT && expr->var->section != V_OUTPUT) {
+        cm1e_st_report(st, expr->place, "\"%s\" is within %s: from outside its inputs and outputs can be reached",
+                       expr->var->name, type->name);
+        set_wrong(st, expr);
+    }
+}
+
+static void element(st_t *st, expr_t *expr)
+{
+    int count = 0;
+    cm1e_st_expression(st, expr->a);
+    const type_t *type = expr->a->type;
+    expr->impure = expr->a->impure;
+    for (arg_t *arg = expr->args; arg; arg = arg->next, count++) {
+        cm1e_st_expression(st, arg->value);
+        arg->value = cm1e_st_settle(st, arg->value);
+        if (arg->value->impure)
+            cm1e_st_report(st, arg->value->place, "this call can change variables: give its result to a variable first, and "
+                           "use that as the index");
+        const type_kind_t kind = arg->value->type->kind;
+        if (!cm1e_st_is_integer(kind) && !(cm1e_st_is_bits(kind) && kind != T_BOOL) && kind != T_ENUM && kind != T_WRONG)
+            cm1e_st_report(st, arg->value->place, "an index is an integer, not %s", cm1e_st_type_name(arg->value->type));
+        if (kind == T_ULINT || kind == T_LWORD)
+            cm1e_st_report(st, arg->value->place, "an index has at most the range of LINT, not %s", arg->value->type->name);
+    }
+    if (type->kind == T_WRONG) {
+        set_wrong(st, expr);
+        return;
+    }
+    if (type->kind != T_ARRAY || count != type->dimension_count) {
+        if (type->kind == T_ARRAY)
+            cm1e_st_report(st, expr->place, "%s takes %d indices; found %d", type->name, type->dimension_count, count);
+        else
+            cm1e_st_report(st, expr->place, "%s is no array%s", cm1e_st_type_name(type), type->kind == T_STRING ?
+                           "; MID(s, 1, n) is its character n" : "");
+        set_wrong(st, expr);
+        return;
+    }
+    const arg_t *arg = expr->args;
+    for (int i = 0; i < count; i++, arg = arg->next)
+        if (arg->value->value.known && (arg->value->value.integer < type->dimensions[i].first ||
+                                        arg->value->value.integer > type->dimensions[i].last))
+            cm1e_st_report(st, arg->value->place, "the index %lld is outside %lld..%lld",
+                           (long long)arg->value->value.integer, (long long)type->dimensions[i].first,
+                           (long long)type->dimensions[i].last);
+    expr->type = type->element;
+}
+
+static void dereference(st_t *st, expr_t *expr)
+{
+    cm1e_st_expression(st, expr->a);
+    expr->impure = expr->a->impure;
+    if (expr->a->type->kind == T_REF) {
+        expr->type = cm1e_st_resolve(st, expr->a->type->element);
+        return;
+    }
+    if (expr->a->type->kind != T_WRONG)
+        cm1e_st_report(st, expr->place, "^ is for REF_TO; this is %s", cm1e_st_type_name(expr->a->type));
+    set_wrong(st, expr);
+}
+
+/* ---- operations -------------------------------------------------------------------------------------------------- */
+
+static void wrong_operands(st_t *st, expr_t *expr)
+{
+    const char *a = cm1e_st_type_name(expr->a->type), *b = expr->b ? cm1e_st_type_name(expr->b->type) : "";
+    const char *op = operators[expr->op];
+    const char *hint = "";
+    const type_kind_t ka = expr->a->type->kind, kb = expr->b ? expr->b->type->kind : T_NONE;
+    if (expr->op == OP_POWER)
+        hint = "; the base is REAL or LREAL";
+    else if (cm1e_st_is_number(ka) && cm1e_st_is_number(kb) && expr->op >= OP_EQ)
+        hint = "; no type has all values of both: convert one of them";
+    else if ((ka == T_BOOL || kb == T_BOOL) && expr->op >= OP_ADD && expr->op <= OP_MOD)
+        hint = "; BOOL_TO_INT(...) makes a number of a BOOL";
+    else if (cm1e_st_is_bits(ka) && expr->op >= OP_ADD && expr->op <= OP_MOD)
+        hint = "; bits are no number: convert them, as in WORD_TO_UINT(...)";
+    else if (expr->op <= OP_AND_THEN || expr->op == OP_NOT)
+        hint = "; it is for BOOL, BYTE, WORD, DWORD and LWORD";
+    if (expr->b)
+        cm1e_st_report(st, expr->place, "%s %s %s is not defined%s", a, op, b, hint);
+    else
+        cm1e_st_report(st, expr->place, "%s %s is not defined%s", op, a, hint);
+    set_wrong(st, expr);
+}
+
+/** A literal without a type beside an operand that has one. */
+static type_kind_t literal_beside(const expr_t *literal, type_kind_t other)
+{
+    if (literal->type->kind == T_ANY_REAL)
+        return cm1e_st_is_floating(other) ? other : !cm1e_st_is_integer(other) ? T_NONE
+            : cm1e_st_widens(other, T_REAL) ? T_REAL : cm1e_st_widens(other, T_LREAL) ? T_LREAL : T_NONE;
+    if (other == T_BOOL || other > T_LREAL)
+        return T_NONE;
+    if (cm1e_st_is_floating(other) || cm1e_st_fits(other, &literal->value))
+        return other;
+    for (type_kind_t kind = T_SINT; kind <= T_ULINT && !cm1e_st_is_bits(other); kind++)
+        if (cm1e_st_widens(other, kind) && cm1e_st_fits(kind, &literal->value))
+            return kind;
+    return T_NONE;
+}
+
+type_kind_t cm1e_st_type_for_both(const expr_t *a, const expr_t *b)
+{
+    const type_kind_t ka = a->type->kind, kb = b->type->kind;
+    if (ka == kb)
+        return ka;
+    if ((ka == T_ANY_INT || ka == T_ANY_REAL) && (kb == T_ANY_INT || kb == T_ANY_REAL))
+        return T_ANY_REAL;
+    if (ka == T_ANY_INT || ka == T_ANY_REAL)
+        return literal_beside(a, kb);
+    if (kb == T_ANY_INT || kb == T_ANY_REAL)
+        return literal_beside(b, ka);
+    return ka <= T_DT && kb <= T_DT ? cm1e_st_common(ka, kb) : T_NONE;
+}
+
+static void both_as(st_t *st, expr_t *expr, type_kind_t kind)
+{
+    expr->a = cm1e_st_coerce(st, expr->a, st->elementary[kind], "the left side");
+    expr->b = cm1e_st_coerce(st, expr->b, st->elementary[kind], "the right side");
+}
+
+static void logical(st_t *st, expr_t *expr)
+{
+    const type_kind_t kind = cm1e_st_type_for_both(expr->a, expr->b);
+    const bool lazy = expr->op == OP_AND_THEN || expr->op == OP_OR_ELSE;
+    if (!(cm1e_st_is_bits(kind) || kind == T_ANY_INT) || (lazy && kind != T_BOOL)) {
+        wrong_operands(st, expr);
+        return;
+    }
+    both_as(st, expr, kind);
+    expr->type = st->elementary[kind];
+    cm1e_st_fold(st, expr);
+}
+
+static bool is_comparable(const expr_t *expr, type_kind_t kind)
+{
+    const type_t *a = expr->a->type, *b = expr->b->type;
+    const bool equality = expr->op == OP_EQ || expr->op == OP_NE;
+    if (a->kind == T_STRING)
+        return b->kind == T_STRING;
+    if (a->kind == T_ENUM || b->kind == T_ENUM)
+        return a == b;
+    if (a->kind == T_REF || b->kind == T_REF)
+        return equality && (a == b || a->kind == T_NULL || b->kind == T_NULL);
+    return kind != T_NONE && kind <= T_ANY_REAL && (equality || kind != T_BOOL);
+}
+
+static void comparison(st_t *st, expr_t *expr)
+{
+    type_kind_t kind = cm1e_st_type_for_both(expr->a, expr->b);
+    if (!is_comparable(expr, kind)) {
+        wrong_operands(st, expr);
+        return;
+    }
+    if (kind == T_ANY_INT && !expr->a->value.huge && !expr->b->value.huge)
+        kind = T_LINT;
+    else if (kind == T_ANY_INT)
+        kind = T_ULINT;
+    if (kind == T_ANY_REAL)
+        kind = T_LREAL;
+    if (kind <= T_DT && kind != T_NONE)
+        both_as(st, expr, kind);
+    expr->type = st->elementary[T_BOOL];
+}
+
+/** + - * / with times: what comes out, T_NONE if nothing. */
+static type_kind_t time_result(const expr_t *expr)
+{
+    const type_kind_t a = expr->a->type->kind, b = expr->b->type->kind;
+    switch (expr->op) {
+    case OP_ADD:
+        return b == T_TIME && a != T_DATE && cm1e_st_is_time(a) ? a : a == T_TIME && (b == T_TOD || b == T_DT) ? b : T_NONE;
+    case OP_SUB:
+        return b == T_TIME && a != T_DATE && cm1e_st_is_time(a) ? a : a == b ? T_TIME : T_NONE;
+    case OP_MUL:
+        return a == T_TIME && cm1e_st_is_number(b) ? T_TIME : b == T_TIME && cm1e_st_is_number(a) ? T_TIME : T_NONE;
+    case OP_DIV: return a == T_TIME && cm1e_st_is_number(b) && b != T_ULINT ? T_TIME : T_NONE;
+    default: return T_NONE;
+    }
+}
+
+static void arithmetic(st_t *st, expr_t *expr)
+{
+    if (cm1e_st_is_time(expr->a->type->kind) || cm1e_st_is_time(expr->b->type->kind)) {
+        const type_kind_t result = time_result(expr);
+        if (result == T_NONE) {
+            wrong_operands(st, expr);
+            return;
+        }
+        expr->a = cm1e_st_settle(st, expr->a);
+        expr->b = cm1e_st_settle(st, expr->b);
+        expr->type = st->elementary[result];
+        cm1e_st_fold(st, expr);
+        return;
+    }
+    const type_kind_t kind = cm1e_st_type_for_both(expr->a, expr->b);
+    if (!cm1e_st_is_number(kind) || (expr->op == OP_MOD && cm1e_st_is_floating(kind))) {
+        wrong_operands(st, expr);
+        return;
+    }
+    both_as(st, expr, kind);
+    expr->type = st->elementary[kind];
+    if (expr->op == OP_DIV && cm1e_st_is_integer(kind) && expr->b->value.known && expr->b->value.integer == 0)
+        cm1e_st_report(st, expr->place, "this divides by zero");
+    cm1e_st_fold(st, expr);
+}
+
+/** The base is real, the exponent any number; all is computed in the type of the base. */
+static void power(st_t *st, expr_t *expr)
+{
+    const type_kind_t base = expr->a->type->kind, exponent = expr->b->type->kind;
+    if (!(cm1e_st_is_floating(base) || base == T_ANY_INT) || !cm1e_st_is_number(exponent)) {
+        wrong_operands(st, expr);
+        return;
+    }
+    const type_kind_t kind = base == T_REAL && exponent != T_LREAL ? T_REAL : T_LREAL;
+    expr->a = cm1e_st_coerce(st, expr->a, st->elementary[kind], "the base");
+    if (cm1e_st_is_integer(exponent) && exponent != T_ANY_INT)
+        expr->b = cm1e_st_convert_node(st, expr->b, st->elementary[kind]);
+    else
+        expr->b = cm1e_st_coerce(st, expr->b, st->elementary[kind], "the exponent");
+    expr->type = st->elementary[kind];
+    cm1e_st_fold(st, expr);
+}
+
+static void binary(st_t *st, expr_t *expr)
+{
+    cm1e_st_expression(st, expr->a);
+    cm1e_st_expression(st, expr->b);
+    expr->impure = expr->a->impure || expr->b->impure;
+    const bool lazy = expr->op == OP_AND_THEN || expr->op == OP_OR_ELSE;
+    if (expr->a->type->kind == T_WRONG || expr->b->type->kind == T_WRONG ||
+        (!lazy && !cm1e_st_alone(st, expr->a, expr->b)))
+        set_wrong(st, expr);
+    else if (expr->op <= OP_AND_THEN)
+        logical(st, expr);
+    else if (expr->op <= OP_GE)
+        comparison(st, expr);
+    else if (expr->op == OP_POWER)
+        power(st, expr);
+    else
+        arithmetic(st, expr);
+}
+
+static void unary(st_t *st, expr_t *expr)
+{
+    cm1e_st_expression(st, expr->a);
+    const type_kind_t kind = expr->a->type->kind;
+    expr->type = expr->a->type;
+    expr->impure = expr->a->impure;
+    if (kind == T_WRONG)
+        return;
+    const bool good = expr->op == OP_NOT ? cm1e_st_is_bits(kind)
+                                         : (cm1e_st_is_number(kind) && !cm1e_st_is_unsigned(kind)) || kind == T_TIME;
+    if (good)
+        cm1e_st_fold(st, expr);
+    else
+        wrong_operands(st, expr);
+}
+
+void cm1e_st_expression(st_t *st, expr_t *expr)
+{
+    if (expr->type)
+        return;
+    switch (expr->kind) {
+    case E_NAME: name(st, expr); break;
+    case E_QUALIFIED: enumerator_of(st, expr, expr->prefix); break;
+    case E_MEMBER: member(st, expr); break;
+    case E_INDEX: element(st, expr); break;
+    case E_DEREF: dereference(st, expr); break;
+    case E_CALL: cm1e_st_call(st, expr, false); break;
+    case E_UNARY: unary(st, expr); break;
+    case E_BINARY: binary(st, expr); break;
+    case E_ADDRESS:
+        cm1e_st_report(st, expr->place, "give the address %s a name: VAR_GLOBAL name AT %s : ...; END_VAR", expr->name,
+                       expr->name);
+        set_wrong(st, expr);
+        break;
+    default:
+        cm1e_st_report(st, expr->place, "a list of values can only stand behind := in a declaration");
+        set_wrong(st, expr);
+        break;
+    }
+}

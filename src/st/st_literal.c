@@ -1,0 +1,276 @@
+/* Literals: their text becomes a constant and a type. A number without a type is of T_ANY_INT or T_ANY_REAL, until what
+ * it is used for says more. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "st/st_parsing.h"
+
+#define NS_PER_S INT64_C(1000000000)
+enum { DAY_S = 86400, TEXT_BYTES = 128 };
+
+/** The text in capitals, without underscores. Too long for any literal: cut, which no literal survives. */
+static void clean(const char *text, char *cleaned)
+{
+    size_t used = 0;
+    for (; *text && used < TEXT_BYTES - 1; text++)
+        if (*text != '_')
+            cleaned[used++] = (char)(*text >= 'a' && *text <= 'z' ? *text - 'a' + 'A' : *text);
+    cleaned[used] = '\0';
+}
+
+static expr_t *made(st_t *st, place_t place, type_kind_t kind, constant_t value)
+{
+    expr_t *expr = cm1e_st_node(st, E_LITERAL, place, NULL, NULL);
+    expr->type = st->elementary[kind];
+    expr->value = value;
+    expr->value.known = true;
+    return expr;
+}
+
+static expr_t *wrong(st_t *st, place_t place)
+{
+    expr_t *expr = cm1e_st_node(st, E_LITERAL, place, NULL, NULL);
+    expr->type = st->elementary[T_WRONG];
+    return expr;
+}
+
+/** "12", "16#FF", "-3". False: no number, or more than 64 bits. */
+static bool read_integer(const char *text, constant_t *value)
+{
+    const bool negative = *text == '-';
+    char *end = NULL;
+    text += *text == '-' || *text == '+';
+    const char *mark = strchr(text, '#');
+    int base = 10;
+    if (mark) {
+        base = (int)strtol(text, &end, 10);
+        if (end != mark || (base != 2 && base != 8 && base != 16))
+            return false;
+        text = mark + 1;
+    }
+    errno = 0;
+    const uint64_t number = strtoull(text, &end, base);
+    if (errno != 0 || end == text || *end != '\0' || *text == '-' || *text == '+')
+        return false;
+    if (negative && number > (uint64_t)INT64_MAX + 1)
+        return false;
+    value->huge = !negative && number > INT64_MAX;
+    value->integer = (int64_t)(negative ? 0 - number : number);
+    return true;
+}
+
+static expr_t *number(st_t *st, place_t place, const char *text)
+{
+    constant_t value = {0};
+    if (strchr(text, '#') || !strpbrk(text, ".E")) {
+        if (read_integer(text, &value))
+            return made(st, place, T_ANY_INT, value);
+        cm1e_st_report(st, place, "\"%s\" is not a number of at most 64 bits; a base is 2, 8 or 16, as in 16#FF", text);
+        return wrong(st, place);
+    }
+    value.real = strtod(text, NULL);
+    if (isfinite(value.real))
+        return made(st, place, T_ANY_REAL, value);
+    cm1e_st_report(st, place, "\"%s\" is larger than any LREAL", text);
+    return wrong(st, place);
+}
+
+/** INT#5, REAL#1.5, BOOL#1: a number of an elementary type. */
+static expr_t *typed_number(st_t *st, place_t place, const char *name, const char *text)
+{
+    type_t *type = cm1e_st_elementary(st, name);
+    if (!type || cm1e_st_is_time(type->kind)) {
+        cm1e_st_report(st, place, "\"%s\" is no type of numbers; write for instance INT#5 or WORD#16#FF", name);
+        return wrong(st, place);
+    }
+    expr_t *expr = number(st, place, text);
+    if (expr->type->kind == T_WRONG)
+        return expr;
+    if (cm1e_st_is_floating(type->kind) && expr->type->kind == T_ANY_INT)
+        expr->value = (constant_t){.known = true, .real = expr->value.huge ? (double)(uint64_t)expr->value.integer
+                                                                          : (double)expr->value.integer};
+    else if ((expr->type->kind == T_ANY_REAL) != cm1e_st_is_floating(type->kind) ||
+             !cm1e_st_fits(type->kind, &expr->value)) {
+        cm1e_st_report(st, place, "%s is not a value of %s", text, type->name);
+        return wrong(st, place);
+    }
+    expr->type = type;
+    return expr;
+}
+
+/** "1H2M3.5S" in ns; false: not a duration. Units come in falling order, only the last may have a fraction. */
+static bool read_duration(const char *text, int64_t *result)
+{
+    static const struct { const char *name; int64_t ns; } units[] = {
+        {"D", DAY_S * NS_PER_S}, {"H", 3600 * NS_PER_S}, {"MS", 1000000}, {"M", 60 * NS_PER_S}, {"S", NS_PER_S},
+        {"US", 1000}, {"NS", 1},
+    };
+    long double sum = 0;
+    int64_t last = INT64_MAX;
+    bool fraction = false;
+    const bool negative = *text == '-';
+    text += *text == '-' || *text == '+';
+    if (!*text)
+        return false;
+    while (*text) {
+        char *end;
+        const size_t digits = strspn(text, "0123456789.");
+        const long double count = strtold(text, &end);
+        size_t unit = 0;
+        if (digits == 0 || fraction || end != text + digits)
+            return false;
+        fraction = memchr(text, '.', digits) != NULL;
+        for (text = end; unit < sizeof units / sizeof units[0]; unit++) {
+            const size_t length = strlen(units[unit].name);
+            if (strncmp(text, units[unit].name, length) == 0 && (!text[length] || strchr("0123456789", text[length])))
+                break;
+        }
+        if (unit == sizeof units / sizeof units[0] || units[unit].ns >= last)
+            return false;
+        last = units[unit].ns;
+        sum += count * (long double)last;
+        text += strlen(units[unit].name);
+    }
+    if (sum > (long double)INT64_MAX)
+        return false;
+    *result = (int64_t)roundl(negative ? -sum : sum);
+    return true;
+}
+
+static bool is_leap(long year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
+
+/** "2024-01-31" in ns since 1970-01-01; `end` is behind it. */
+static bool read_date(const char *text, char **end, int64_t *result)
+{
+    static const int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+    const long year = strtol(text, end, 10);
+    const long month = **end == '-' ? strtol(*end + 1, end, 10) : 0;
+    const long day = **end == '-' ? strtol(*end + 1, end, 10) : 0;
+    if (year < 1970 || year > 2262 || month < 1 || month > 12)
+        return false;
+    if (day < 1 || day > days[month - 1] + (month == 2 && is_leap(year)))
+        return false;
+    int64_t count = day - 1;
+    for (long y = 1970; y < year; y++)
+        count += is_leap(y) ? 366 : 365;
+    for (long m = 1; m < month; m++)
+        count += days[m - 1] + (m == 2 && is_leap(year));
+    if (count > INT64_MAX / (DAY_S * NS_PER_S) - 1)
+        return false;
+    *result = count * DAY_S * NS_PER_S;
+    return true;
+}
+
+/** "12:30:15.5" in ns since midnight. */
+static bool read_clock(const char *text, int64_t *result)
+{
+    char *end;
+    const long hour = strtol(text, &end, 10);
+    const long minute = *end == ':' ? strtol(end + 1, &end, 10) : 60;
+    const double second = *end == ':' ? strtod(end + 1, &end) : 0;
+    if (*end != '\0' || hour > 23 || minute > 59 || second >= 60)
+        return false;
+    *result = (hour * 3600 + minute * 60) * NS_PER_S + (int64_t)round(second * 1e9);
+    return true;
+}
+
+static expr_t *time_literal(st_t *st, place_t place, type_kind_t kind, const char *text, const char *whole)
+{
+    constant_t value = {0};
+    int64_t clock = 0;
+    char *end = NULL;
+    bool good;
+    if (kind == T_TIME) {
+        good = read_duration(text, &value.integer);
+    } else if (kind == T_TOD) {
+        good = read_clock(text, &value.integer);
+    } else {
+        good = read_date(text, &end, &value.integer);
+        if (good && kind == T_DT)
+            good = *end == '-' && read_clock(end + 1, &clock);
+        else if (good)
+            good = *end == '\0';
+        value.integer += clock;
+    }
+    if (good)
+        return made(st, place, kind, value);
+    static const char *const right[] = {
+        [T_TIME] = "T#1h30m or T#2.5s, the largest unit first, up to 106751 days", [T_TOD] = "TOD#23:59:59.999",
+        [T_DATE] = "D#2024-02-29, from 1970 to 2262", [T_DT] = "DT#2024-02-29-23:59:59",
+    };
+    cm1e_st_report(st, place, "\"%s\" is not a value of %s; right is for instance %s", whole,
+                   st->elementary[kind]->name, right[kind]);
+    return wrong(st, place);
+}
+
+expr_t *cm1e_st_literal(st_t *st, place_t place, const char *text)
+{
+    char cleaned[TEXT_BYTES], prefix[TEXT_BYTES];
+    if (strlen(text) >= TEXT_BYTES) {
+        cm1e_st_report(st, place, "no literal is longer than %d characters", TEXT_BYTES - 1);
+        return wrong(st, place);
+    }
+    clean(text, cleaned);
+    if (strcmp(cleaned, "TRUE") == 0 || strcmp(cleaned, "FALSE") == 0)
+        return made(st, place, T_BOOL, (constant_t){.integer = cleaned[0] == 'T'});
+    if (strcmp(cleaned, "BOOL#TRUE") == 0 || strcmp(cleaned, "BOOL#FALSE") == 0)
+        return made(st, place, T_BOOL, (constant_t){.integer = cleaned[5] == 'T'});
+    if (strcmp(cleaned, "NULL") == 0)
+        return made(st, place, T_NULL, (constant_t){0});
+    const char *mark = strchr(cleaned, '#');
+    if (!mark || (cleaned[0] >= '0' && cleaned[0] <= '9'))
+        return number(st, place, cleaned);
+    snprintf(prefix, sizeof prefix, "%.*s", (int)(strchr(text, '#') - text), text);
+    if (strcasecmp(prefix, "T") == 0 || strcasecmp(prefix, "LT") == 0)
+        return time_literal(st, place, T_TIME, mark + 1, text);
+    if (strcasecmp(prefix, "D") == 0 || strcasecmp(prefix, "LD") == 0)
+        return time_literal(st, place, T_DATE, mark + 1, text);
+    const type_t *type = cm1e_st_elementary(st, prefix);
+    if (type && cm1e_st_is_time(type->kind))
+        return time_literal(st, place, type->kind, mark + 1, text);
+    return typed_number(st, place, prefix, mark + 1);
+}
+
+/** The byte of an escape behind a $; `length`: how many characters it has. -1: there is no such escape. */
+static int escape(const char *text, size_t *length)
+{
+    static const char from[] = "$'NnLlRrTtPp\"", to[] = "$'\n\n\n\n\r\r\t\t\f\f\"";
+    const char *at = *text ? strchr(from, *text) : NULL;
+    *length = 1;
+    if (at)
+        return to[at - from];
+    char digits[3] = {text[0], text[0] ? text[1] : '\0', '\0'}, *end;
+    const long byte = strtol(digits, &end, 16);
+    *length = 2;
+    return end == digits + 2 && byte > 0 && digits[0] != '-' && digits[0] != '+' && digits[0] != ' ' ? (int)byte : -1;
+}
+
+expr_t *cm1e_st_string_literal(st_t *st, place_t place, const char *text)
+{
+    char bytes[ST_STRING_BYTES + 1];
+    size_t used = 0;
+    while (*text) {
+        int byte = (unsigned char)*text++;
+        if (byte == '$') {
+            size_t skip;
+            byte = escape(text, &skip);
+            if (byte < 0) {
+                cm1e_st_report(st, place, "\"$%.2s\" means nothing in a text; right are $$, $', $N, $L, $R, $T, $P and "
+                               "$41 (a byte other than 0)", text);
+                return wrong(st, place);
+            }
+            text += skip;
+        }
+        if (used == ST_STRING_BYTES) {
+            cm1e_st_report(st, place, "a text has at most %d bytes", ST_STRING_BYTES);
+            return wrong(st, place);
+        }
+        bytes[used++] = (char)byte;
+    }
+    expr_t *expr = made(st, place, T_WRONG, (constant_t){.text = cm1e_st_copy(st->arena, bytes, used)});
+    expr->type = cm1e_st_string_type(st, (int64_t)used);
+    return expr;
+}

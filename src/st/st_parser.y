@@ -1,0 +1,318 @@
+/* The grammar of Structured Text (IEC 61131-3, 3rd edition, annex A; without the elements of object orientation). */
+%define api.pure full
+%define api.prefix {cm1e_st_yy}
+%define api.location.type {place_t}
+%define parse.error custom
+%define parse.lac full
+%locations
+%parse-param {parsing_t *parsing}
+%lex-param {parsing_t *parsing}
+%code requires {
+#include "st/st_parsing.h"
+}
+%code {
+#define YYLLOC_DEFAULT(Current, Rhs, N) ((Current) = (N) ? YYRHSLOC(Rhs, 1) : YYRHSLOC(Rhs, 0))
+#undef yylex
+#define yylex(value, place, parsing) cm1e_st_yylex(value, place, (parsing)->scanner)
+#define ST (parsing->st)
+int cm1e_st_yylex(YYSTYPE *value, place_t *place, void *scanner);
+static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
+}
+%union {
+    const char *text;
+    expr_t *expr;
+    arg_t *arg;
+    stmt_t *stmt;
+    type_t *type;
+    var_t *var;
+    args_t args;
+    stmts_t stmts;
+    branches_t branches;
+    vars_t vars;
+    int number;
+}
+%token <text> NAME "a name" LITERAL "a number" CHARACTERS "a text" QUALIFIED "a value of a type" ADDRESS "an address"
+%token <text> TRUTH "TRUE"
+%token IF "IF" THEN "THEN" ELSIF "ELSIF" ELSE "ELSE" END_IF "END_IF" CASE "CASE" OF "OF" END_CASE "END_CASE"
+%token FOR "FOR" TO "TO" BY "BY" DO "DO" END_FOR "END_FOR" WHILE "WHILE" END_WHILE "END_WHILE"
+%token REPEAT "REPEAT" UNTIL "UNTIL" END_REPEAT "END_REPEAT" EXIT "EXIT" CONTINUE "CONTINUE" RETURN "RETURN"
+%token OR "OR" OR_ELSE "OR_ELSE" XOR "XOR" AND "AND" AND_THEN "AND_THEN" NOT "NOT" MOD "MOD" NULL_REF "NULL"
+%token TYPE "TYPE" END_TYPE "END_TYPE" STRUCT "STRUCT" END_STRUCT "END_STRUCT" ARRAY "ARRAY" STRING "STRING"
+%token REF_TO "REF_TO" POINTER_TO "POINTER TO" REFERENCE_TO "REFERENCE TO"
+%token FUNCTION "FUNCTION" END_FUNCTION "END_FUNCTION" FUNCTION_BLOCK "FUNCTION_BLOCK"
+%token END_FUNCTION_BLOCK "END_FUNCTION_BLOCK" PROGRAM "PROGRAM" END_PROGRAM "END_PROGRAM"
+%token VAR "VAR" VAR_INPUT "VAR_INPUT" VAR_OUTPUT "VAR_OUTPUT" VAR_IN_OUT "VAR_IN_OUT" VAR_TEMP "VAR_TEMP"
+%token VAR_GLOBAL "VAR_GLOBAL" VAR_EXTERNAL "VAR_EXTERNAL" END_VAR "END_VAR"
+%token CONSTANT "CONSTANT" RETAIN "RETAIN" NON_RETAIN "NON_RETAIN" AT "AT"
+%token CONFIGURATION "CONFIGURATION" END_CONFIGURATION "END_CONFIGURATION" RESOURCE "RESOURCE" ON "ON"
+%token END_RESOURCE "END_RESOURCE" TASK "TASK" WITH "WITH"
+%token ASSIGN ":=" REF_ASSIGN "REF=" SENDS "=>" LE "<=" GE ">=" NE "<>" POWER "**" RANGE ".."
+%left OR OR_ELSE
+%left XOR
+%left AND AND_THEN
+%left '=' NE
+%left '<' '>' LE GE
+%left '+' '-'
+%left '*' '/' MOD
+%left POWER
+%precedence UNARY
+
+%type <expr> expr variable value constant_initial initial address label signed
+%type <arg> argument member_init element_init setting
+%type <args> arguments argument_list expr_list labels member_inits element_inits settings setting_list
+%type <stmts> stmts case_items
+%type <stmt> stmt
+%type <branches> elsifs
+%type <type> type simple_type result base
+%type <vars> names declarations declaration sections section enumerators members member
+%type <var> enumerator
+%type <number> qualifiers qualifier
+%type <text> with
+%%
+sources: %empty | sources source_item | sources ';';
+source_item: type_section | function | function_block | program | globals | configuration;
+
+/* ---- types ---- */
+type_section: TYPE type_declarations END_TYPE;
+type_declarations: %empty | type_declarations type_declaration | type_declarations ';';
+type_declaration: NAME ':' type initial ';' { cm1e_st_add_type(parsing, @1, $1, $3, $4); }
+    | NAME ':' '(' enumerators ')' base initial ';' {
+        type_t *type = cm1e_st_type_node(ST, T_ENUM, @1, $1);
+        type->members = $4.first;
+        type->element = $6;
+        cm1e_st_add_type(parsing, @1, $1, type, $7); }
+    | NAME ':' STRUCT members END_STRUCT {
+        type_t *type = cm1e_st_type_node(ST, T_STRUCT, @1, $1);
+        type->members = $4.first;
+        cm1e_st_add_type(parsing, @1, $1, type, NULL); };
+base: %empty { $$ = NULL; } | NAME { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); };
+enumerators: enumerator { $$ = (vars_t){$1, $1}; } | enumerators ',' enumerator { $$ = $1; ST_APPEND($$, $3); };
+enumerator: NAME { $$ = cm1e_st_var_name(parsing, @1, $1); $$->section = V_ENUMERATOR; }
+    | NAME ASSIGN expr { $$ = cm1e_st_var_name(parsing, @1, $1); $$->section = V_ENUMERATOR; $$->initial = $3; };
+members: %empty { $$ = (vars_t){0}; } | members member { $$ = $1; ST_JOIN($$, $2); };
+member: names address ':' type initial ';' {
+        parsing->section = V_MEMBER; parsing->qualifiers = 0;
+        $$ = cm1e_st_vars(parsing, $1, $2, $4, $5); }
+    | error ';' { $$ = (vars_t){0}; };
+
+type: simple_type { $$ = $1; }
+    | ARRAY '[' dimensions ']' OF type { $$ = parsing->st->made; parsing->st->made = $$->next; $$->next = NULL;
+                                         $$->element = $6; };
+dimensions: dimension_first | dimensions ',' expr RANGE expr {
+        type_t *type = parsing->st->made;
+        if (type->dimension_count == ST_DIMENSIONS)
+            cm1e_st_report(ST, @3, "an array has at most %d dimensions", ST_DIMENSIONS);
+        else
+            type->dimensions[type->dimension_count++] = (dimension_t){.low = $3, .high = $5}; };
+dimension_first: expr RANGE expr {
+        type_t *type = cm1e_st_type_node(ST, T_ARRAY, @1, NULL);
+        type->dimensions[type->dimension_count++] = (dimension_t){.low = $1, .high = $3};
+        type->next = parsing->st->made;
+        parsing->st->made = type; };
+simple_type: NAME { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); }
+    | NAME '(' expr RANGE expr ')' { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); $$->low = $3; $$->high = $5; }
+    | STRING { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); }
+    | STRING '[' expr ']' { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); $$->length_expr = $3; }
+    | STRING '(' expr ')' { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); $$->length_expr = $3; }
+    | REF_TO type { $$ = cm1e_st_type_node(ST, T_REF, @1, NULL); $$->element = $2; }
+    | POINTER_TO type { $$ = cm1e_st_type_node(ST, T_REF, @1, NULL); $$->element = $2; }
+    | REFERENCE_TO type {
+        cm1e_st_report(ST, @1, "REFERENCE TO is not supported; use REF_TO, and ^ to reach what it refers to");
+        $$ = $2; };
+
+/* ---- variables ---- */
+initial: %empty { $$ = NULL; } | ASSIGN constant_initial { $$ = $2; };
+constant_initial: expr { $$ = $1; }
+    | '[' element_inits ']' { $$ = cm1e_st_with_args(ST, E_ARRAY_INIT, @1, NULL, $2); }
+    | '(' member_inits ')' { $$ = cm1e_st_with_args(ST, E_STRUCT_INIT, @1, NULL, $2); };
+member_inits: member_init { $$ = (args_t){$1, $1}; } | member_inits ',' member_init { $$ = $1; ST_APPEND($$, $3); };
+member_init: NAME ASSIGN constant_initial { $$ = cm1e_st_arg(ST, @1, $1, $3); };
+element_inits: element_init { $$ = (args_t){$1, $1}; } | element_inits ',' element_init { $$ = $1; ST_APPEND($$, $3); };
+element_init: constant_initial { $$ = cm1e_st_arg(ST, @1, NULL, $1); }
+    | LITERAL '(' constant_initial ')' {
+        expr_t *count = cm1e_st_literal(ST, @1, $1);
+        $$ = cm1e_st_arg(ST, @1, NULL, cm1e_st_node(ST, E_REPEAT, @1, count, $3)); };
+sections: %empty { $$ = (vars_t){0}; } | sections section { $$ = $1; ST_JOIN($$, $2); };
+section: begin_section qualifiers_of_section declarations END_VAR { $$ = $3; };
+begin_section: VAR { parsing->section = V_LOCAL; } | VAR_INPUT { parsing->section = V_INPUT; }
+    | VAR_OUTPUT { parsing->section = V_OUTPUT; } | VAR_IN_OUT { parsing->section = V_IN_OUT; }
+    | VAR_TEMP { parsing->section = V_TEMP; } | VAR_EXTERNAL { parsing->section = V_EXTERNAL; };
+qualifiers_of_section: qualifiers { parsing->qualifiers = $1; };
+qualifiers: %empty { $$ = 0; } | qualifiers qualifier { $$ = $1 | $2; };
+qualifier: CONSTANT { $$ = Q_CONSTANT; } | RETAIN { $$ = Q_RETAIN; } | NON_RETAIN { $$ = Q_NON_RETAIN; };
+declarations: %empty { $$ = (vars_t){0}; } | declarations declaration { $$ = $1; ST_JOIN($$, $2); };
+declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1, $2, $4, $5); }
+    | names address ':' '(' enumerators ')' initial ';' {
+        cm1e_st_report(ST, @4, "an enumeration needs a name here: declare it with TYPE ... END_TYPE");
+        $$ = (vars_t){0}; }
+    | names address ':' type NAME ';' { $$ = cm1e_st_vars(parsing, $1, $2, $4, NULL);
+        cm1e_st_edge(parsing, @5, $5, $1); }
+    | error ';' { $$ = (vars_t){0}; };
+names: NAME { var_t *var = cm1e_st_var_name(parsing, @1, $1); $$ = (vars_t){var, var}; }
+    | names ',' NAME { var_t *var = cm1e_st_var_name(parsing, @3, $3); $$ = $1; ST_APPEND($$, var); };
+address: %empty { $$ = NULL; } | AT ADDRESS { $$ = cm1e_st_named(ST, E_ADDRESS, @2, NULL, $2); };
+globals: VAR_GLOBAL begin_globals qualifiers_of_section declarations END_VAR { cm1e_st_add_globals(ST, $4); };
+begin_globals: %empty { parsing->section = V_GLOBAL; };
+
+/* ---- units ---- */
+result: %empty { $$ = NULL; } | ':' type { $$ = $2; };
+function: FUNCTION NAME result sections stmts END_FUNCTION
+    { cm1e_st_add_unit(parsing, U_FUNCTION, @2, $2, $3, $4, $5); };
+function_block: FUNCTION_BLOCK NAME sections stmts END_FUNCTION_BLOCK
+    { cm1e_st_add_unit(parsing, U_BLOCK, @2, $2, NULL, $3, $4); };
+program: PROGRAM NAME sections stmts END_PROGRAM
+    { cm1e_st_add_unit(parsing, U_PROGRAM, @2, $2, NULL, $3, $4); };
+
+/* ---- configuration ---- */
+configuration: CONFIGURATION NAME { ST->tree.configuration = $2; ST->tree.configuration_place = @2; }
+    configuration_items END_CONFIGURATION;
+configuration_items: %empty | configuration_items configuration_item;
+configuration_item: globals | resource | task | instance;
+resource: RESOURCE NAME ON NAME resource_items END_RESOURCE;
+resource_items: %empty | resource_items resource_item;
+resource_item: globals | task | instance;
+task: TASK NAME '(' settings ')' ';' { cm1e_st_add_task(ST, @2, $2, $4); };
+settings: %empty { $$ = (args_t){0}; } | setting_list { $$ = $1; };
+setting_list: setting { $$ = (args_t){$1, $1}; } | setting_list ',' setting { $$ = $1; ST_APPEND($$, $3); };
+setting: NAME ASSIGN expr { $$ = cm1e_st_arg(ST, @1, $1, $3); };
+instance: PROGRAM qualifiers NAME with ':' NAME ';'
+        { cm1e_st_add_instance(ST, @3, $3, $4, $6, (args_t){0}); }
+    | PROGRAM qualifiers NAME with ':' NAME '(' arguments ')' ';'
+        { cm1e_st_add_instance(ST, @3, $3, $4, $6, $8); };
+with: %empty { $$ = NULL; } | WITH NAME { $$ = $2; };
+
+/* ---- statements ---- */
+stmts: %empty { $$ = (stmts_t){0}; } | stmts stmt { $$ = $1; if ($2) ST_APPEND($$, $2); };
+stmt: ';' { $$ = NULL; }
+    | error ';' { $$ = NULL; }
+    | variable ASSIGN expr ';' { $$ = cm1e_st_stmt(ST, S_ASSIGN, @1, $3, (stmts_t){0}); $$->target = $1; }
+    | variable REF_ASSIGN expr ';' { $$ = cm1e_st_stmt(ST, S_ASSIGN, @1, $3, (stmts_t){0}); $$->target = $1;
+                                     $$->reference = true; }
+    | variable ';' {
+        cm1e_st_report(ST, @1, "this does nothing: expected \":=\" and a value, or \"(\" of a call");
+        $$ = NULL; }
+    | variable '(' arguments ')' ';' {
+        expr_t *call = cm1e_st_with_args(ST, E_CALL, @1, $1, $3);
+        $$ = cm1e_st_stmt(ST, S_CALL, @1, call, (stmts_t){0}); }
+    | IF expr THEN stmts elsifs END_IF {
+        $$ = cm1e_st_stmt(ST, S_IF, @1, NULL, (stmts_t){0});
+        $$->branches = cm1e_st_branch(ST, @1, $2, $4.first);
+        $$->branches->next = $5.first; cm1e_st_deepen(ST, $$); }
+    | IF expr THEN stmts elsifs ELSE stmts END_IF {
+        branch_t *otherwise = cm1e_st_branch(ST, @6, NULL, $7.first);
+        $$ = cm1e_st_stmt(ST, S_IF, @1, NULL, (stmts_t){0});
+        ST_APPEND($5, otherwise);
+        $$->branches = cm1e_st_branch(ST, @1, $2, $4.first);
+        $$->branches->next = $5.first; cm1e_st_deepen(ST, $$); }
+    | CASE expr OF case_items END_CASE {
+        $$ = cm1e_st_stmt(ST, S_CASE, @1, $2, (stmts_t){0});
+        cm1e_st_group_case(ST, $$, $4, (stmts_t){0}, false, @5); }
+    | CASE expr OF case_items ELSE stmts END_CASE {
+        $$ = cm1e_st_stmt(ST, S_CASE, @1, $2, (stmts_t){0});
+        cm1e_st_group_case(ST, $$, $4, $6, true, @5); }
+    | FOR variable ASSIGN expr TO expr DO stmts END_FOR {
+        $$ = cm1e_st_stmt(ST, S_FOR, @1, $4, $8); $$->target = $2; $$->to = $6; }
+    | FOR variable ASSIGN expr TO expr BY expr DO stmts END_FOR {
+        $$ = cm1e_st_stmt(ST, S_FOR, @1, $4, $10); $$->target = $2; $$->to = $6; $$->by = $8; }
+    | WHILE expr DO stmts END_WHILE { $$ = cm1e_st_stmt(ST, S_WHILE, @1, $2, $4); }
+    | REPEAT stmts UNTIL expr END_REPEAT { $$ = cm1e_st_stmt(ST, S_REPEAT, @1, $4, $2); }
+    | EXIT ';' { $$ = cm1e_st_stmt(ST, S_EXIT, @1, NULL, (stmts_t){0}); }
+    | CONTINUE ';' { $$ = cm1e_st_stmt(ST, S_CONTINUE, @1, NULL, (stmts_t){0}); }
+    | RETURN ';' { $$ = cm1e_st_stmt(ST, S_RETURN, @1, NULL, (stmts_t){0}); };
+elsifs: %empty { $$ = (branches_t){0}; } | elsifs ELSIF expr THEN stmts {
+        branch_t *branch = cm1e_st_branch(ST, @2, $3, $5.first);
+        $$ = $1; ST_APPEND($$, branch); };
+case_items: %empty { $$ = (stmts_t){0}; }
+    | case_items stmt { $$ = $1; if ($2) ST_APPEND($$, $2); }
+    | case_items labels ':' {
+        stmt_t *mark = cm1e_st_stmt(ST, S_LABEL, @2, NULL, (stmts_t){0});
+        mark->branches = cm1e_st_branch(ST, @2, NULL, NULL);
+        mark->branches->labels = $2.first;
+        $$ = $1; ST_APPEND($$, mark); };
+labels: label { arg_t *arg = cm1e_st_arg(ST, @1, NULL, $1); $$ = (args_t){arg, arg}; }
+    | labels ',' label { arg_t *arg = cm1e_st_arg(ST, @3, NULL, $3); $$ = $1; ST_APPEND($$, arg); };
+label: signed { $$ = $1; }
+    | signed RANGE signed { $$ = cm1e_st_node(ST, E_REPEAT, @1, $1, $3); };
+signed: variable { $$ = $1; } | value { $$ = $1; }
+    | '-' LITERAL { $$ = cm1e_st_operation(ST, OP_NEGATE, @1, cm1e_st_literal(ST, @2, $2), NULL); };
+
+/* ---- expressions ---- */
+variable: NAME { $$ = cm1e_st_named(ST, E_NAME, @1, NULL, $1); }
+    | ADDRESS { $$ = cm1e_st_named(ST, E_ADDRESS, @1, NULL, $1); }
+    | variable '.' NAME { $$ = cm1e_st_named(ST, E_MEMBER, @3, $1, $3); }
+    | variable '.' LITERAL { $$ = cm1e_st_named(ST, E_MEMBER, @3, $1, $3); $$->bit = true; }
+    | variable '[' expr_list ']' { $$ = cm1e_st_with_args(ST, E_INDEX, @1, $1, $3); }
+    | variable '^' { $$ = cm1e_st_node(ST, E_DEREF, @1, $1, NULL); };
+value: LITERAL { $$ = cm1e_st_literal(ST, @1, $1); }
+    | TRUTH { $$ = cm1e_st_literal(ST, @1, $1); }
+    | NULL_REF { $$ = cm1e_st_literal(ST, @1, "NULL"); }
+    | CHARACTERS { $$ = cm1e_st_string_literal(ST, @1, $1); }
+    | QUALIFIED { $$ = cm1e_st_qualified(ST, @1, $1); };
+expr: variable { $$ = $1; }
+    | value { $$ = $1; }
+    | variable '(' arguments ')' { $$ = cm1e_st_with_args(ST, E_CALL, @1, $1, $3); }
+    | '(' expr ')' { $$ = $2; }
+    | expr OR expr { $$ = cm1e_st_operation(ST, OP_OR, @2, $1, $3); }
+    | expr OR_ELSE expr { $$ = cm1e_st_operation(ST, OP_OR_ELSE, @2, $1, $3); }
+    | expr XOR expr { $$ = cm1e_st_operation(ST, OP_XOR, @2, $1, $3); }
+    | expr AND expr { $$ = cm1e_st_operation(ST, OP_AND, @2, $1, $3); }
+    | expr AND_THEN expr { $$ = cm1e_st_operation(ST, OP_AND_THEN, @2, $1, $3); }
+    | expr '=' expr { $$ = cm1e_st_operation(ST, OP_EQ, @2, $1, $3); }
+    | expr NE expr { $$ = cm1e_st_operation(ST, OP_NE, @2, $1, $3); }
+    | expr '<' expr { $$ = cm1e_st_operation(ST, OP_LT, @2, $1, $3); }
+    | expr '>' expr { $$ = cm1e_st_operation(ST, OP_GT, @2, $1, $3); }
+    | expr LE expr { $$ = cm1e_st_operation(ST, OP_LE, @2, $1, $3); }
+    | expr GE expr { $$ = cm1e_st_operation(ST, OP_GE, @2, $1, $3); }
+    | expr '+' expr { $$ = cm1e_st_operation(ST, OP_ADD, @2, $1, $3); }
+    | expr '-' expr { $$ = cm1e_st_operation(ST, OP_SUB, @2, $1, $3); }
+    | expr '*' expr { $$ = cm1e_st_operation(ST, OP_MUL, @2, $1, $3); }
+    | expr '/' expr { $$ = cm1e_st_operation(ST, OP_DIV, @2, $1, $3); }
+    | expr MOD expr { $$ = cm1e_st_operation(ST, OP_MOD, @2, $1, $3); }
+    | expr POWER expr { $$ = cm1e_st_operation(ST, OP_POWER, @2, $1, $3); }
+    | '-' expr %prec UNARY { $$ = cm1e_st_operation(ST, OP_NEGATE, @1, $2, NULL); }
+    | '+' expr %prec UNARY { $$ = $2; }
+    | NOT expr %prec UNARY { $$ = cm1e_st_operation(ST, OP_NOT, @1, $2, NULL); };
+expr_list: expr { arg_t *arg = cm1e_st_arg(ST, @1, NULL, $1); $$ = (args_t){arg, arg}; }
+    | expr_list ',' expr { arg_t *arg = cm1e_st_arg(ST, @3, NULL, $3); $$ = $1; ST_APPEND($$, arg); };
+arguments: %empty { $$ = (args_t){0}; } | argument_list { $$ = $1; };
+argument_list: argument { $$ = (args_t){$1, $1}; } | argument_list ',' argument { $$ = $1; ST_APPEND($$, $3); };
+argument: expr { $$ = cm1e_st_arg(ST, @1, NULL, $1); }
+    | NAME ASSIGN expr { $$ = cm1e_st_arg(ST, @1, $1, $3); }
+    | NAME ASSIGN { $$ = cm1e_st_arg(ST, @1, $1, NULL); }
+    | NAME SENDS { $$ = cm1e_st_arg(ST, @1, $1, NULL); $$->output = true; }
+    | NAME SENDS variable { $$ = cm1e_st_arg(ST, @1, $1, $3); $$->output = true; }
+    | NOT NAME SENDS variable { $$ = cm1e_st_arg(ST, @2, $2, $4); $$->output = $$->inverted = true; };
+%%
+enum { SHOWN = 6 };
+
+/** "expected X, Y or Z": the words that could stand here, or nothing if they are too many. */
+static void expectations(const yypcontext_t *context, char *text, size_t size)
+{
+    yysymbol_kind_t expected[SHOWN + 1];
+    const int count = yypcontext_expected_tokens(context, expected, SHOWN + 1);
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; count > 0 && count <= SHOWN && i < count && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i == 0 ? "; expected " : i == count - 1 ? " or " : ", ",
+                                 yysymbol_name(expected[i]));
+}
+
+static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing)
+{
+    char text[300];
+    const yysymbol_kind_t found = yypcontext_token(context);
+    if (cm1e_st_unsupported(parsing, *yypcontext_location(context)))
+        return 0;
+    expectations(context, text, sizeof text);
+    if (found == YYSYMBOL_YYEOF)
+        cm1e_st_report(ST, *yypcontext_location(context), "the source ends here, before something is complete%s", text);
+    else
+        cm1e_st_report(ST, *yypcontext_location(context), "\"%s\" cannot stand here%s", parsing->last, text);
+    return 0;
+}
+
+static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text)
+{
+    (void)text; /* only "memory exhausted" comes here: the stack of the parser is full */
+    cm1e_st_report(ST, *place, "this is nested too deeply");
+}

@@ -1,0 +1,150 @@
+/* Reading sources: files, our own interface, and the run of lexer and parser over each. */
+#include "st/st_parsing.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "st/st_embedded.h"
+
+typedef void *yyscan_t;
+int cm1e_st_yylex_init_extra(parsing_t *parsing, yyscan_t *scanner);
+int cm1e_st_yylex_destroy(yyscan_t scanner);
+struct yy_buffer_state;
+struct yy_buffer_state *cm1e_st_yy_scan_bytes(const char *bytes, int length, yyscan_t scanner);
+int cm1e_st_yyparse(parsing_t *parsing);
+
+st_t *cm1e_st_new(void)
+{
+    st_t *st = calloc(1, sizeof *st);
+    if (!st)
+        return NULL;
+    st->arena = cm1e_st_arena_new();
+    st->types = cm1e_st_map_new(st->arena);
+    st->units = cm1e_st_map_new(st->arena);
+    st->globals = cm1e_st_map_new(st->arena);
+    st->enumerators = cm1e_st_map_new(st->arena);
+    cm1e_st_begin_types(st);
+    for (const embedded_t *part = cm1e_st_interface_parts; part->begin; part++) {
+        cm1e_st_add_text(st, part->name, part->begin, (size_t)(part->end - part->begin));
+        st->sources[st->source_count - 1].external = true;
+        st->sources[st->source_count - 1].symbol = part->symbol;
+    }
+    return st;
+}
+
+void cm1e_st_free(st_t *st)
+{
+    if (!st)
+        return;
+    cm1e_st_arena_free(st->arena);
+    free(st);
+}
+
+uint64_t cm1e_st_interface(void)
+{
+    uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */
+    for (const embedded_t *part = cm1e_st_interface_parts; part->begin; part++)
+        for (const char *at = part->begin; at < part->end; at++)
+            hash = (hash ^ (unsigned char)*at) * UINT64_C(1099511628211);
+    return hash;
+}
+
+void cm1e_st_add_text(st_t *st, const char *name, const char *text, size_t size)
+{
+    if (st->source_count == ST_SOURCES) {
+        cm1e_st_report(st, (place_t){0}, "there are more than %d sources", ST_SOURCES);
+        return;
+    }
+    source_t *source = &st->sources[st->source_count++];
+    *source = (source_t){.name = cm1e_st_copy(st->arena, name, strlen(name)), .size = size,
+                         .text = cm1e_st_copy(st->arena, text, size)};
+}
+
+cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, errno, "%s cannot be read: %s", path, strerror(errno));
+    char *text = malloc(ST_SOURCE_BYTES + 1);
+    const size_t size = text ? fread(text, 1, ST_SOURCE_BYTES + 1, file) : 0;
+    const bool failed = !text || ferror(file);
+    cm1e_error_t error = CM1E_OK;
+    if (failed)
+        error = cm1e_diag_set(diag, CM1E_ERROR_IO, errno, "%s cannot be read: %s", path, strerror(errno));
+    else if (size > ST_SOURCE_BYTES)
+        error = cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s is larger than %d MB; divide it", path,
+                              ST_SOURCE_BYTES >> 20);
+    else
+        cm1e_st_add_text(st, path, text, size);
+    free(text);
+    fclose(file);
+    return error;
+}
+
+/* ---- what the lexer calls ---------------------------------------------------------------------------------------- */
+
+void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, place_t *place)
+{
+    *place = (place_t){.file = (uint16_t)parsing->st->source, .line = parsing->line, .column = parsing->column};
+    const size_t kept = length < sizeof parsing->last - 1 ? length : sizeof parsing->last - 1;
+    if (kept > 0 && (unsigned char)text[0] > ' ') { /* blanks between words do not count */
+        memcpy(parsing->before, parsing->last, sizeof parsing->before);
+        memcpy(parsing->last, text, kept);
+        parsing->last[kept] = '\0';
+    }
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] == '\n') {
+            parsing->line++;
+            parsing->column = 1;
+        } else if (((unsigned char)text[i] & 0xC0) != 0x80) { /* the bytes of a character of UTF-8 count once */
+            parsing->column++;
+        }
+    }
+}
+
+/* They are names wherever a name makes sense: programs have variables that are called step or reference. */
+static const char *const missing[] = {
+    "METHOD", "END_METHOD", "INTERFACE", "PROPERTY", "EXTENDS", "IMPLEMENTS", "CLASS", "NAMESPACE", "USING", "ACTION",
+    "VAR_ACCESS", "VAR_CONFIG", "VAR_STAT", "VAR_INST", "UNION", "GOTO", "JMP", "STEP", "INITIAL_STEP", "TRANSITION",
+    "ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL", "SUPER", "THIS",
+};
+
+bool cm1e_st_unsupported(parsing_t *parsing, place_t place)
+{
+    for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++)
+        if (strcasecmp(parsing->last, missing[i]) == 0 || strcasecmp(parsing->before, missing[i]) == 0) {
+            cm1e_st_report(parsing->st, place, "%s is not supported by this translator (docs/STRUCTURED-TEXT.md says what "
+                           "is)", missing[i]);
+            return true;
+        }
+    return false;
+}
+
+void cm1e_st_bad_character(parsing_t *parsing, place_t place, char character)
+{
+    if (character > ' ' && character < 0x7F)
+        cm1e_st_report(parsing->st, place, "\"%c\" is not a character of the language here", character);
+    else
+        cm1e_st_report(parsing->st, place, "the byte 0x%02X is not a character of the language; only comments and "
+                       "texts have others than those of ASCII", (unsigned char)character);
+}
+
+static void parse_source(st_t *st)
+{
+    parsing_t parsing = {.st = st, .line = 1, .column = 1};
+    const source_t *source = &st->sources[st->source];
+    if (cm1e_st_yylex_init_extra(&parsing, &parsing.scanner) != 0)
+        return;
+    if (cm1e_st_yy_scan_bytes(source->text, (int)source->size, parsing.scanner))
+        cm1e_st_yyparse(&parsing);
+    cm1e_st_yylex_destroy(parsing.scanner);
+}
+
+void cm1e_st_parse(st_t *st)
+{
+    for (st->source = 0; st->source < st->source_count; st->source++)
+        parse_source(st);
+}

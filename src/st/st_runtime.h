@@ -1,0 +1,303 @@
+/**
+ * @file st_runtime.h
+ * The run-time part of a program translated from Structured Text; it is a part of the translated program. It needs
+ * -fwrapv: integers wrap at the ends of their types. What cannot go on (a wrong index, a division of integers by zero, a
+ * reference to nothing, a loop without an end) is a fault: the task returns at once, no task runs again, and whoever runs
+ * the program stops the axes.
+ */
+#ifndef CM1E_ST_RUNTIME_H
+#define CM1E_ST_RUNTIME_H
+
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if defined __GNUC__
+#define ST_UNUSED __attribute__((unused))
+#define ST_EXPORT __attribute__((visibility("default")))
+#define ST_NO_RETURN __attribute__((noreturn, cold))
+#else
+#define ST_UNUSED
+#define ST_EXPORT
+#define ST_NO_RETURN
+#endif
+
+typedef uint8_t BOOL, BYTE, USINT;
+typedef uint16_t WORD, UINT;
+typedef uint32_t DWORD, UDINT;
+typedef uint64_t LWORD, ULINT;
+typedef int8_t SINT;
+typedef int16_t INT;
+typedef int32_t DINT;
+typedef int64_t LINT, TIME, DATE, TOD, DT;
+typedef float REAL;
+typedef double LREAL;
+#define TRUE 1
+#define FALSE 0
+
+/* ---- faults ------------------------------------------------------------------------------------------------------ */
+
+static jmp_buf st_leave;
+static st_fault_t st_fault;
+static int64_t st_loop_limit = 1000000, st_loops_left;
+#define ST_HERE __FILE__, __LINE__
+
+ST_NO_RETURN ST_UNUSED static void st_fail(const char *file, int line, const char *text, long long a, long long b,
+                                           long long c)
+{
+    st_fault = (st_fault_t){1, file, (unsigned)line, text, {a, b, c}};
+    longjmp(st_leave, 1);
+}
+
+ST_UNUSED static inline void st_loop(const char *file, int line)
+{
+    if (--st_loops_left < 0)
+        st_fail(file, line, "this loop, with those around and before it, has been passed more than %lld times in one call "
+                            "of the task", st_loop_limit, 0, 0);
+}
+
+/** The place of an element in its array. */
+ST_UNUSED static inline size_t st_at(int64_t index, int64_t first, int64_t last, const char *file, int line)
+{
+    if (index < first || index > last)
+        st_fail(file, line, "the index %lld is outside %lld..%lld", index, first, last);
+    return (size_t)(index - first);
+}
+#define ST_AT(index, first, last) st_at((int64_t)(index), first, last, ST_HERE)
+
+ST_UNUSED static inline void *st_reach(void *to, const char *file, int line)
+{
+    if (!to)
+        st_fail(file, line, "this reference refers to nothing (NULL)", 0, 0, 0);
+    return to;
+}
+
+/* ---- arithmetic -------------------------------------------------------------------------------------------------- */
+
+/* A division of integers by zero is a fault; x MOD 0 is 0 (IEC 61131-3). The quotient that is one too large for its type
+ * wraps, as a product does. */
+#define ST_SIGNED_DIVISION(T)                                                                                         \
+    ST_UNUSED static inline T st_div_##T(T a, T b, const char *file, int line)                                        \
+    {                                                                                                                 \
+        if (b == 0)                                                                                                   \
+            st_fail(file, line, "%lld is divided by zero", (long long)a, 0, 0);                                       \
+        return b == -1 ? (T)-a : (T)(a / b);                                                                          \
+    }                                                                                                                 \
+    ST_UNUSED static inline T st_mod_##T(T a, T b) { return b == 0 || b == -1 ? 0 : (T)(a % b); }                     \
+    ST_UNUSED static inline T st_abs_##T(T a) { return a < 0 ? (T)-a : a; }
+#define ST_UNSIGNED_DIVISION(T)                                                                                       \
+    ST_UNUSED static inline T st_div_##T(T a, T b, const char *file, int line)                                        \
+    {                                                                                                                 \
+        if (b == 0)                                                                                                   \
+            st_fail(file, line, "%lld is divided by zero", (long long)a, 0, 0);                                       \
+        return (T)(a / b);                                                                                            \
+    }                                                                                                                 \
+    ST_UNUSED static inline T st_mod_##T(T a, T b) { return b == 0 ? 0 : (T)(a % b); }                                \
+    ST_UNUSED static inline T st_abs_##T(T a) { return a; }
+ST_SIGNED_DIVISION(SINT) ST_SIGNED_DIVISION(INT) ST_SIGNED_DIVISION(DINT) ST_SIGNED_DIVISION(LINT)
+ST_UNSIGNED_DIVISION(USINT) ST_UNSIGNED_DIVISION(UINT) ST_UNSIGNED_DIVISION(UDINT) ST_UNSIGNED_DIVISION(ULINT)
+ST_UNUSED static inline REAL st_abs_REAL(REAL a) { return fabsf(a); }
+ST_UNUSED static inline LREAL st_abs_LREAL(LREAL a) { return fabs(a); }
+
+#define ST_SELECTION(T)                                                                                               \
+    ST_UNUSED static inline T st_min_##T(T a, T b) { return b < a ? b : a; }                                          \
+    ST_UNUSED static inline T st_max_##T(T a, T b) { return b > a ? b : a; }                                          \
+    ST_UNUSED static inline T st_limit_##T(T low, T value, T high)                                                    \
+    {                                                                                                                 \
+        return st_min_##T(st_max_##T(value, low), high);                                                              \
+    }                                                                                                                 \
+    ST_UNUSED static inline T st_sel_##T(BOOL which, T a, T b) { return which ? b : a; }                              \
+    ST_UNUSED static inline T st_mux_##T(int64_t which, int64_t count, const T *values, const char *file, int line)   \
+    {                                                                                                                 \
+        return values[st_at(which, 0, count - 1, file, line)];                                                        \
+    }
+ST_SELECTION(BYTE) ST_SELECTION(WORD) ST_SELECTION(DWORD) ST_SELECTION(LWORD)
+ST_SELECTION(SINT) ST_SELECTION(INT) ST_SELECTION(DINT) ST_SELECTION(LINT) ST_SELECTION(REAL) ST_SELECTION(LREAL)
+
+/* Shifting by all bits or more leaves 0, by a negative number nothing changes. */
+#define ST_SHIFTS(T, BITS)                                                                                            \
+    ST_UNUSED static inline T st_shl_##T(T a, int64_t n) { return n <= 0 ? a : n >= BITS ? 0 : (T)((T)a << n); }      \
+    ST_UNUSED static inline T st_shr_##T(T a, int64_t n) { return n <= 0 ? a : n >= BITS ? 0 : (T)(a >> n); }         \
+    ST_UNUSED static inline T st_rol_##T(T a, int64_t n)                                                              \
+    {                                                                                                                 \
+        const int places = n <= 0 ? 0 : (int)(n % BITS);                                                              \
+        return places == 0 ? a : (T)((T)(a << places) | (T)(a >> (BITS - places)));                                   \
+    }                                                                                                                 \
+    ST_UNUSED static inline T st_ror_##T(T a, int64_t n)                                                              \
+    {                                                                                                                 \
+        const int places = n <= 0 ? 0 : (int)(n % BITS);                                                              \
+        return places == 0 ? a : (T)((T)(a >> places) | (T)(a << (BITS - places)));                                   \
+    }
+ST_SHIFTS(BYTE, 8) ST_SHIFTS(WORD, 16) ST_SHIFTS(DWORD, 32) ST_SHIFTS(LWORD, 64)
+
+/* ---- conversions ------------------------------------------------------------------------------------------------- */
+
+/** To the nearest integer, halves to the even one; beyond the type its end; 0 of what is no number. */
+ST_UNUSED static inline int64_t st_round(double value, int64_t low, int64_t high)
+{
+    const double rounded = nearbyint(value);
+    if (rounded != rounded)
+        return 0;
+    return rounded <= (double)low ? low : rounded >= (double)high ? high : (int64_t)rounded;
+}
+
+ST_UNUSED static inline uint64_t st_round_unsigned(double value)
+{
+    const double rounded = nearbyint(value);
+    if (!(rounded > 0))
+        return 0;
+    return rounded >= 18446744073709551616.0 ? UINT64_MAX : (uint64_t)rounded;
+}
+
+ST_UNUSED static inline TIME st_time_scaled(TIME time, double factor)
+{
+    return st_round((double)time * factor, INT64_MIN, INT64_MAX);
+}
+
+ST_UNUSED static inline TIME st_time_divided(TIME time, double divisor, const char *file, int line)
+{
+    if (divisor == 0)
+        st_fail(file, line, "a time is divided by zero", 0, 0, 0);
+    return st_round((double)time / divisor, INT64_MIN, INT64_MAX);
+}
+
+#define ST_DAY INT64_C(86400000000000)
+ST_UNUSED static inline int64_t st_time_of_day(int64_t time) { return (time % ST_DAY + ST_DAY) % ST_DAY; }
+
+ST_UNUSED static inline DATE st_date_of(DT time) { return time - st_time_of_day(time); }
+
+/** Time of the scan. */
+int64_t cm1e_scan_time(void);
+
+/* ---- texts: at most 254 bytes and a final 0 ----------------------------------------------------------------------- */
+
+typedef struct STRING_254 {
+    char text[255];
+} STRING_254;
+
+ST_UNUSED static inline void st_assign(char *to, size_t size, const char *from)
+{
+    size_t length = strlen(from);
+    if (length >= size)
+        length = size - 1;
+    memmove(to, from, length);
+    to[length] = '\0';
+}
+
+/** `count` characters from position `at` (1 = first); what is outside the text is left out. */
+ST_UNUSED static inline STRING_254 st_mid(const char *text, int64_t count, int64_t at)
+{
+    STRING_254 result = {{0}};
+    const int64_t length = (int64_t)strlen(text);
+    if (at < 1 || at > length || count <= 0)
+        return result;
+    if (count > length - at + 1)
+        count = length - at + 1;
+    memcpy(result.text, text + at - 1, (size_t)count);
+    return result;
+}
+ST_UNUSED static inline STRING_254 st_left(const char *text, int64_t count) { return st_mid(text, count, 1); }
+ST_UNUSED static inline STRING_254 st_right(const char *text, int64_t count)
+{
+    const int64_t length = (int64_t)strlen(text);
+    return st_mid(text, count, count >= length ? 1 : count < 0 ? length + 1 : length - count + 1);
+}
+ST_UNUSED static inline STRING_254 st_concat(const char *a, const char *b)
+{
+    STRING_254 result = {{0}};
+    st_assign(result.text, sizeof result.text, a);
+    const size_t used = strlen(result.text);
+    st_assign(result.text + used, sizeof result.text - used, b);
+    return result;
+}
+/** Without `count` characters from position `at`, with `put` in their place. */
+ST_UNUSED static inline STRING_254 st_replace(const char *text, const char *put, int64_t count, int64_t at)
+{
+    const int64_t length = (int64_t)strlen(text);
+    if (count < 0 || at < 1 || at > length + 1)
+        return st_mid(text, length, 1);
+    const STRING_254 before = st_left(text, at - 1), joined = st_concat(before.text, put);
+    return count >= length - at + 1 ? joined : st_concat(joined.text, text + at - 1 + count);
+}
+ST_UNUSED static inline STRING_254 st_insert(const char *text, const char *put, int64_t behind)
+{
+    return behind < 0 ? st_replace(text, put, -1, 1) : st_replace(text, put, 0, behind + 1);
+}
+ST_UNUSED static inline STRING_254 st_delete(const char *text, int64_t count, int64_t at)
+{
+    return st_replace(text, "", count, at);
+}
+ST_UNUSED static inline INT st_find(const char *text, const char *part)
+{
+    const char *found = *part ? strstr(text, part) : NULL;
+    return found ? (INT)(found - text + 1) : 0;
+}
+
+ST_UNUSED static inline STRING_254 st_text_of_integer(int64_t value)
+{
+    STRING_254 result;
+    snprintf(result.text, sizeof result.text, "%lld", (long long)value);
+    return result;
+}
+ST_UNUSED static inline STRING_254 st_text_of_unsigned(uint64_t value)
+{
+    STRING_254 result;
+    snprintf(result.text, sizeof result.text, "%llu", (unsigned long long)value);
+    return result;
+}
+ST_UNUSED static inline STRING_254 st_text_of_real(double value, int digits)
+{
+    STRING_254 result;
+    snprintf(result.text, sizeof result.text, "%.*g", digits, value);
+    return result;
+}
+ST_UNUSED static inline STRING_254 st_text_of_time(int64_t value)
+{
+    STRING_254 result;
+    const long long us = (long long)((value < 0 ? 0 - (uint64_t)value : (uint64_t)value) / 1000);
+    snprintf(result.text, sizeof result.text, "T#%s%lld.%03lldms", value < 0 ? "-" : "", us / 1000, us % 1000);
+    return result;
+}
+ST_UNUSED static inline STRING_254 st_text_of_bool(BOOL value)
+{
+    return value ? (STRING_254){"TRUE"} : (STRING_254){"FALSE"};
+}
+/** The number that a text begins with; 0: it begins with none. */
+ST_UNUSED static inline int64_t st_integer_of(const char *text, int64_t low, int64_t high)
+{
+    const long long value = strtoll(text, NULL, 10);
+    return value < low ? low : value > high ? high : value;
+}
+ST_UNUSED static inline double st_real_of(const char *text) { return strtod(text, NULL); }
+
+/* ---- loops ------------------------------------------------------------------------------------------------------- */
+
+/** A FOR loop counts in 64 bits, so that it ends at the end of any type. */
+typedef struct st_for {
+    int64_t now, to, by;
+    int ended;
+} st_for_t;
+
+ST_UNUSED static inline st_for_t st_for(int64_t from, int64_t to, int64_t by, const char *file, int line)
+{
+    if (by == 0)
+        st_fail(file, line, "a FOR in steps of 0 would not end", 0, 0, 0);
+    return (st_for_t){from, to, by, 0};
+}
+ST_UNUSED static inline int st_goes(const st_for_t *loop)
+{
+    return !loop->ended && (loop->by > 0 ? loop->now <= loop->to : loop->now >= loop->to);
+}
+ST_UNUSED static inline void st_next(st_for_t *loop)
+{
+    loop->ended = loop->by > 0 ? loop->now > INT64_MAX - loop->by : loop->now < INT64_MIN - loop->by;
+    if (!loop->ended)
+        loop->now += loop->by;
+}
+
+#endif

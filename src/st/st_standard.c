@@ -1,0 +1,282 @@
+/* The standard functions (IEC 61131-3, 6.6.2.5): which arguments they take, and the type of their result. */
+#include "st/st_standard.h"
+
+#include <string.h>
+#include <strings.h>
+
+#include "st/st_parsing.h"
+
+enum { MANY = 32 };
+
+/* How the types of arguments and result follow from each other. */
+typedef enum rule {
+    R_REAL,      /* all arguments REAL or all LREAL, so is the result */
+    R_NUMBER,    /* all of one type of numbers, so is the result */
+    R_ORDERED,   /* as R_NUMBER; also bits, times and BOOL */
+    R_SELECT,    /* BOOL, then two of one type */
+    R_MUX,       /* an integer, then values of one type */
+    R_SHIFT,     /* bits and a number of places */
+    R_OPERATION, /* what an operator does with all */
+    R_COMPARE,
+    R_TRUNC,
+    R_MOVE,
+    R_NOW,
+    R_REF,
+    R_SIZE,
+    R_STRING,    /* the letters of `types` say which: S string, I integer; the first one is the result */
+} rule_t;
+
+struct standard {
+    const char *name;
+    rule_t rule;
+    int fewest, most;
+    operation_t op;
+    const char *types, *parameters;
+};
+
+static const standard_t standards[] = {
+    {"ABS", R_NUMBER, 1, 1, 0, "", "IN"}, {"SQRT", R_REAL, 1, 1, 0, "", "IN"}, {"LN", R_REAL, 1, 1, 0, "", "IN"},
+    {"LOG", R_REAL, 1, 1, 0, "", "IN"}, {"EXP", R_REAL, 1, 1, 0, "", "IN"}, {"SIN", R_REAL, 1, 1, 0, "", "IN"},
+    {"COS", R_REAL, 1, 1, 0, "", "IN"}, {"TAN", R_REAL, 1, 1, 0, "", "IN"}, {"ASIN", R_REAL, 1, 1, 0, "", "IN"},
+    {"ACOS", R_REAL, 1, 1, 0, "", "IN"}, {"ATAN", R_REAL, 1, 1, 0, "", "IN"},
+    {"ATAN2", R_REAL, 2, 2, 0, "", "Y X"}, {"MIN", R_ORDERED, 2, MANY, 0, "", ""},
+    {"MAX", R_ORDERED, 2, MANY, 0, "", ""}, {"LIMIT", R_ORDERED, 3, 3, 0, "", "MN IN MX"},
+    {"SEL", R_SELECT, 3, 3, 0, "", "G IN0 IN1"}, {"MUX", R_MUX, 3, MANY, 0, "", ""},
+    {"SHL", R_SHIFT, 2, 2, 0, "", "IN N"}, {"SHR", R_SHIFT, 2, 2, 0, "", "IN N"}, {"ROL", R_SHIFT, 2, 2, 0, "", "IN N"},
+    {"ROR", R_SHIFT, 2, 2, 0, "", "IN N"}, {"ADD", R_OPERATION, 2, MANY, OP_ADD, "", ""},
+    {"MUL", R_OPERATION, 2, MANY, OP_MUL, "", ""}, {"SUB", R_OPERATION, 2, 2, OP_SUB, "", ""},
+    {"DIV", R_OPERATION, 2, 2, OP_DIV, "", ""}, {"EXPT", R_OPERATION, 2, 2, OP_POWER, "", ""},
+    {"GT", R_COMPARE, 2, 2, OP_GT, "", ""}, {"GE", R_COMPARE, 2, 2, OP_GE, "", ""},
+    {"EQ", R_COMPARE, 2, 2, OP_EQ, "", ""}, {"NE", R_COMPARE, 2, 2, OP_NE, "", ""},
+    {"LE", R_COMPARE, 2, 2, OP_LE, "", ""}, {"LT", R_COMPARE, 2, 2, OP_LT, "", ""},
+    {"TRUNC", R_TRUNC, 1, 1, 0, "", "IN"}, {"MOVE", R_MOVE, 1, 1, 0, "", "IN"}, {"TIME", R_NOW, 0, 0, 0, "", ""},
+    {"REF", R_REF, 1, 1, 0, "", ""}, {"ADR", R_REF, 1, 1, 0, "", ""}, {"SIZEOF", R_SIZE, 1, 1, 0, "", ""},
+    {"LEN", R_STRING, 1, 1, 0, "IS", "IN"}, {"LEFT", R_STRING, 2, 2, 0, "SSI", "IN L"},
+    {"RIGHT", R_STRING, 2, 2, 0, "SSI", "IN L"}, {"MID", R_STRING, 3, 3, 0, "SSII", "IN L P"},
+    {"CONCAT", R_STRING, 2, MANY, 0, "SSS", ""}, {"INSERT", R_STRING, 3, 3, 0, "SSSI", "IN1 IN2 P"},
+    {"DELETE", R_STRING, 3, 3, 0, "SSII", "IN L P"}, {"REPLACE", R_STRING, 4, 4, 0, "SSSII", "IN1 IN2 L P"},
+    {"FIND", R_STRING, 2, 2, 0, "ISS", "IN1 IN2"},
+};
+enum { STANDARDS = sizeof standards / sizeof standards[0] };
+
+const char *cm1e_st_standard_name(const standard_t *standard) { return standard->name; }
+
+void cm1e_st_standard_names(void (*visit)(const char *name, void *context), void *context)
+{
+    for (int i = 0; i < STANDARDS; i++)
+        visit(standards[i].name, context);
+}
+
+/* ---- arguments --------------------------------------------------------------------------------------------------- */
+
+static bool refuse(st_t *st, const expr_t *call, const expr_t *arg, const char *wanted)
+{
+    if (arg->type->kind != T_WRONG)
+        cm1e_st_report(st, arg->place, "%s takes %s here, not %s", call->standard->name, wanted,
+                       cm1e_st_type_name(arg->type));
+    return false;
+}
+
+/** Gives the arguments from `first` on one type, the smallest that has all their values. */
+static bool one_type(st_t *st, expr_t *call, arg_t *first, bool (*good)(type_kind_t kind), const char *wanted)
+{
+    expr_t *sum = NULL;
+    for (arg_t *arg = first; arg; arg = arg->next) {
+        const type_kind_t kind = arg->value->type->kind;
+        if (!good(kind))
+            return refuse(st, call, arg->value, wanted);
+        if (!sum) {
+            sum = arg->value;
+            continue;
+        }
+        const type_kind_t both = cm1e_st_type_for_both(sum, arg->value);
+        if (both == T_NONE) {
+            cm1e_st_report(st, arg->value->place, "%s needs values of one type; no type has all values of %s and %s",
+                           call->standard->name, cm1e_st_type_name(sum->type), cm1e_st_type_name(arg->value->type));
+            return false;
+        }
+        sum = both == sum->type->kind ? sum : cm1e_st_coerce(st, sum, st->elementary[both], "the argument");
+    }
+    sum = cm1e_st_settle(st, sum);
+    call->type = sum->type;
+    for (arg_t *arg = first; arg; arg = arg->next)
+        arg->value = cm1e_st_coerce(st, arg->value, sum->type, "the argument");
+    return true;
+}
+
+static bool is_real(type_kind_t kind) { return cm1e_st_is_floating(kind) || kind == T_ANY_INT; }
+static bool is_any(type_kind_t kind) { return kind != T_NONE && kind <= T_ANY_REAL; }
+
+static bool select_one(st_t *st, expr_t *call)
+{
+    expr_t **selector = &call->args->value;
+    if (call->standard->rule == R_SELECT) {
+        if ((*selector)->type->kind != T_BOOL)
+            return refuse(st, call, *selector, "a BOOL");
+    } else {
+        *selector = cm1e_st_settle(st, *selector);
+        if (!cm1e_st_is_integer((*selector)->type->kind) || (*selector)->type->kind == T_ULINT)
+            return refuse(st, call, *selector, "an integer");
+    }
+    const type_t *type = call->args->next->value->type;
+    bool same = type->kind == T_ENUM;
+    for (const arg_t *arg = call->args->next; arg; arg = arg->next)
+        same = same && arg->value->type == type;
+    if (same) {
+        call->type = call->args->next->value->type;
+        return true;
+    }
+    return one_type(st, call, call->args->next, is_any, "values of an elementary type");
+}
+
+static bool shift(st_t *st, expr_t *call)
+{
+    expr_t **places = &call->args->next->value;
+    const type_kind_t kind = call->args->value->type->kind;
+    *places = cm1e_st_settle(st, *places);
+    if (!cm1e_st_is_bits(kind) || kind == T_BOOL)
+        return refuse(st, call, call->args->value, "BYTE, WORD, DWORD or LWORD");
+    if (!cm1e_st_is_integer((*places)->type->kind) || (*places)->type->kind == T_ULINT)
+        return refuse(st, call, *places, "an integer");
+    call->type = call->args->value->type;
+    return true;
+}
+
+/** ADD(a, b, c) is a + b + c. */
+static bool operation(st_t *st, expr_t *call)
+{
+    expr_t *sum = call->args->value;
+    for (arg_t *arg = call->args->next; arg; arg = arg->next)
+        sum = cm1e_st_operation(st, call->standard->op, call->place, sum, arg->value);
+    cm1e_st_expression(st, sum);
+    *call = *sum;
+    return true;
+}
+
+static bool strings(st_t *st, expr_t *call)
+{
+    const char *types = call->standard->types;
+    const char *at = types + 1;
+    for (arg_t *arg = call->args; arg; arg = arg->next) {
+        arg->value = cm1e_st_settle(st, arg->value);
+        const type_kind_t kind = arg->value->type->kind;
+        if (*at == 'S' && kind != T_STRING)
+            return refuse(st, call, arg->value, "a STRING");
+        if (*at == 'I' && (!cm1e_st_is_integer(kind) || kind == T_ULINT))
+            return refuse(st, call, arg->value, "an integer");
+        at += at[1] != '\0';
+    }
+    call->type = types[0] == 'S' ? cm1e_st_string_type(st, ST_STRING_BYTES) : st->elementary[T_INT];
+    return true;
+}
+
+static bool reference(st_t *st, expr_t *call)
+{
+    expr_t *of = call->args->value;
+    if (!cm1e_st_assignable(st, of))
+        return false;
+    const expr_t *root = of;
+    while ((root->kind == E_MEMBER || root->kind == E_INDEX) && root->a)
+        root = root->a;
+    const var_t *var = root->kind == E_NAME ? root->var : NULL;
+    if (of->bit || (var && (var->section == V_TEMP || (var->unit && var->unit->kind == U_FUNCTION)))) {
+        cm1e_st_report(st, of->place, of->bit ? "there is no reference to a single bit"
+                                              : "this variable ends with the call: a reference to it would outlive it");
+        return false;
+    }
+    cm1e_st_note_change(st, of);
+    call->type = cm1e_st_ref_type(st, of->type);
+    return true;
+}
+
+static bool give_type(st_t *st, expr_t *call)
+{
+    expr_t *first = call->args ? call->args->value : NULL;
+    switch (call->standard->rule) {
+    case R_REAL: return one_type(st, call, call->args, is_real, "REAL or LREAL");
+    case R_NUMBER: return one_type(st, call, call->args, cm1e_st_is_number, "a number");
+    case R_ORDERED: return one_type(st, call, call->args, is_any, "values of an elementary type");
+    case R_SELECT:
+    case R_MUX: return select_one(st, call);
+    case R_SHIFT: return shift(st, call);
+    case R_OPERATION:
+    case R_COMPARE: return operation(st, call);
+    case R_TRUNC:
+        call->args->value = first = cm1e_st_settle(st, first);
+        if (!cm1e_st_is_floating(first->type->kind))
+            return refuse(st, call, first, "REAL or LREAL");
+        call->type = st->elementary[T_DINT];
+        return true;
+    case R_MOVE: *call = *cm1e_st_settle(st, first); return true;
+    case R_NOW: call->type = st->elementary[T_TIME]; return true;
+    case R_REF: return reference(st, call);
+    case R_SIZE:
+        call->type = st->elementary[T_UDINT];
+        call->value = (constant_t){.known = true, .integer = (int64_t)cm1e_st_settle(st, first)->type->size};
+        return true;
+    case R_STRING: return strings(st, call);
+    }
+    return false;
+}
+
+/** Named arguments of a standard function come into the order of its parameters. */
+static bool order_args(st_t *st, expr_t *call)
+{
+    args_t ordered = {0};
+    const char *at = call->standard->parameters;
+    while (*at) {
+        const size_t length = strcspn(at, " ");
+        arg_t *found = NULL;
+        for (arg_t *arg = call->args; arg; arg = arg->next)
+            if (arg->name && strncasecmp(arg->name, at, length) == 0 && arg->name[length] == '\0')
+                found = arg;
+        if (!found || found->output || !found->value) {
+            cm1e_st_report(st, call->place, "%s needs the input \"%.*s\"", call->standard->name, (int)length, at);
+            return false;
+        }
+        arg_t *copy = cm1e_st_arg(st, found->place, NULL, found->value);
+        ST_APPEND(ordered, copy);
+        at += length + (at[length] == ' ');
+    }
+    call->args = ordered.first;
+    return true;
+}
+
+static bool check_args(st_t *st, expr_t *call)
+{
+    int count = 0;
+    bool named = false;
+    for (const arg_t *arg = call->args; arg; arg = arg->next, count++)
+        named |= arg->name != NULL;
+    if (count < call->standard->fewest || count > call->standard->most) {
+        cm1e_st_report(st, call->place, "%s takes %d%s argument%s; found %d", call->standard->name,
+                       call->standard->fewest, call->standard->most > call->standard->fewest ? " or more" : "",
+                       call->standard->most == 1 ? "" : "s", count);
+        return false;
+    }
+    if (named && !order_args(st, call))
+        return false;
+    for (arg_t *arg = call->args; arg; arg = arg->next) {
+        cm1e_st_expression(st, arg->value);
+        call->impure |= arg->value->impure;
+        if (arg->value->type->kind == T_WRONG)
+            return false;
+        for (const arg_t *other = call->args; other != arg; other = other->next)
+            if (!cm1e_st_alone(st, other->value, arg->value))
+                return false;
+    }
+    return true;
+}
+
+bool cm1e_st_standard_call(st_t *st, expr_t *call, const char *name)
+{
+    for (int i = 0; i < STANDARDS; i++) {
+        if (strcasecmp(standards[i].name, name) != 0)
+            continue;
+        call->standard = &standards[i];
+        if (!check_args(st, call) || !give_type(st, call))
+            call->type = st->elementary[T_WRONG];
+        return true;
+    }
+    return cm1e_st_conversion_call(st, call, name);
+}

@@ -1,0 +1,121 @@
+/**
+ * @file st_state.h
+ * One translation: its sources, its tree, its names and its errors. For the sources of this room.
+ */
+#ifndef CM1E_ST_STATE_H
+#define CM1E_ST_STATE_H
+
+#include "st/st.h"
+#include "st/st_memory.h"
+#include "st/st_tree.h"
+
+enum { ST_ERRORS = 20, ST_DEPTH = 200, ST_SOURCES = 1000, ST_SOURCE_BYTES = 16 << 20, ST_STRING_BYTES = 254 };
+
+typedef struct source {
+    const char *name, *text;
+    size_t size;
+    bool external;      /**< of our interface */
+    const char *symbol; /**< prefix of its symbols */
+} source_t;
+
+struct st {
+    arena_t *arena;
+    source_t sources[ST_SOURCES];
+    unsigned source_count;
+    unsigned source;      /**< that is parsed */
+    tree_t tree;
+    map_t *types, *units, *globals, *enumerators;
+    type_t *elementary[T_WRONG + 1];
+    type_t *made;         /**< arrays, strings and references, each once */
+    unit_t *unit;         /**< that is checked or emitted */
+    int resolving;        /**< types that are being resolved */
+    int loops;            /**< around the statement that is checked */
+    st_error_t errors[ST_ERRORS];
+    unsigned error_count, suppressed;
+    FILE *out;
+    const expr_t *callee; /**< instance whose call is emitted: it is `fb` there */
+    bool leaves;          /**< the unit that is emitted has a RETURN */
+    int indent;
+    unsigned temporaries;
+    uint64_t elements;    /**< of initial values */
+};
+
+/** Reports an error; at most one for each line, ST_ERRORS in all. */
+void cm1e_st_report(st_t *st, place_t place, const char *format, ...) CM1E_PRINTF(3, 4);
+
+/* st_parser.y */
+void cm1e_st_parse(st_t *st);
+
+/* st_literal.c: the constant of a literal's text. Report what is wrong with it. */
+expr_t *cm1e_st_literal(st_t *st, place_t place, const char *text);
+expr_t *cm1e_st_string_literal(st_t *st, place_t place, const char *text);
+
+/* st_type.c */
+void cm1e_st_begin_types(st_t *st);
+/** The type itself, behind names and aliases; reports what does not exist. Never NULL. */
+type_t *cm1e_st_resolve(st_t *st, type_t *type);
+/** The type of an elementary name; NULL: it is none. */
+type_t *cm1e_st_elementary(const st_t *st, const char *name);
+type_t *cm1e_st_string_type(st_t *st, int64_t length);
+type_t *cm1e_st_ref_type(st_t *st, type_t *to);
+int cm1e_st_bits(type_kind_t kind);
+bool cm1e_st_is_signed(type_kind_t kind);
+bool cm1e_st_is_unsigned(type_kind_t kind);
+bool cm1e_st_is_bits(type_kind_t kind);    /* BOOL too */
+bool cm1e_st_is_integer(type_kind_t kind); /* T_ANY_INT too */
+bool cm1e_st_is_floating(type_kind_t kind); /* T_ANY_REAL too */
+bool cm1e_st_is_number(type_kind_t kind);
+bool cm1e_st_is_time(type_kind_t kind);    /* TIME, DATE, TOD, DT */
+bool cm1e_st_fits(type_kind_t kind, const constant_t *value);
+/** Whether every value of `from` is a value of `to`. */
+bool cm1e_st_widens(type_kind_t from, type_kind_t to);
+/** The smallest type to which both widen; T_NONE: there is none. */
+type_kind_t cm1e_st_common(type_kind_t a, type_kind_t b);
+int64_t cm1e_st_wrap(type_kind_t kind, int64_t value);
+
+/* st_declare.c */
+/** Enters all declarations and resolves their types. */
+void cm1e_st_declare(st_t *st);
+/** A variable of a block, structure or unit by its name; NULL: there is none. */
+var_t *cm1e_st_member(const type_t *type, const char *name);
+/** What a name means in the present unit; NULL: nothing. */
+var_t *cm1e_st_find_var(st_t *st, const char *name);
+/** The value of a constant variable, computed now if it was not yet. */
+const constant_t *cm1e_st_constant_of(st_t *st, var_t *var);
+/** Checks the initial value of a variable. */
+void cm1e_st_check_initial(st_t *st, var_t *var);
+
+/* st_expression.c */
+void cm1e_st_expression(st_t *st, expr_t *expr);
+/** The expression as a value of this type: converted, if that is lossless; else reported. */
+expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what);
+/** A literal without a type gets the one it has if nothing else says so. */
+expr_t *cm1e_st_settle(st_t *st, expr_t *expr);
+expr_t *cm1e_st_convert_node(st_t *st, expr_t *expr, type_t *type);
+/** Checks that something can be assigned to; reports why not. */
+bool cm1e_st_assignable(st_t *st, const expr_t *expr);
+/** A function may change nothing but its result, its locals and what it was given as VAR_IN_OUT. */
+void cm1e_st_note_change(st_t *st, const expr_t *expr);
+const char *cm1e_st_type_name(const type_t *type);
+/** An integer that is known now; reports if it is not. */
+bool cm1e_st_integer_constant(st_t *st, expr_t *expr, int64_t *value, const char *what);
+void cm1e_st_fold(st_t *st, expr_t *expr);
+
+/* st_call.c */
+/** The value is known, and evaluating it changes nothing. */
+bool cm1e_st_is_fixed(const expr_t *expr);
+/** Two operands of which C does not say which one comes first: reports if that could matter. */
+bool cm1e_st_alone(st_t *st, const expr_t *a, const expr_t *b);
+void cm1e_st_call(st_t *st, expr_t *call, bool statement);
+/** st_standard.c: true: the name is that of a standard function. */
+bool cm1e_st_standard_call(st_t *st, expr_t *call, const char *name);
+void cm1e_st_standard_names(void (*visit)(const char *name, void *context), void *context);
+
+/* st_statement.c */
+void cm1e_st_statements(st_t *st, stmt_t *list);
+
+/* st_initial.c */
+/** The initial value of something of this type as the checker wants it. */
+expr_t *cm1e_st_initialiser(st_t *st, expr_t *initial, type_t *type, const char *what);
+
+#endif

@@ -1,0 +1,150 @@
+/** cm1e run: runs a program that `cm1e st build` has translated from Structured Text. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "attach.h"
+#include "cm1e/plot.h"
+#include "command.h"
+#include "st_loaded.h"
+
+enum { KEY_VIRTUAL_TIME = 0x800, KEY_CSV, KEY_SVG, KEY_HTML, KEY_LOOPS, FILES = 3, SAMPLES = 120000 };
+
+typedef struct run_options {
+    common_options_t common;
+    const char *program;
+    const char *files[FILES];
+    double seconds;
+    long long loops;
+    bool virtual_time;
+} run_options_t;
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    run_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case 's': return parse_seconds(arg, 86400, &options->seconds) ? 0 : EINVAL;
+    case KEY_VIRTUAL_TIME: options->virtual_time = true; return 0;
+    case KEY_LOOPS:
+        return parse_number(arg, "the number of passes", 1, 1000000000, &options->loops) ? 0 : EINVAL;
+    case KEY_CSV:
+    case KEY_SVG:
+    case KEY_HTML: options->files[key - KEY_CSV] = arg; return 0;
+    case ARGP_KEY_ARG:
+        if (options->program)
+            argp_error(state, "one program at a time; \"%s\" is too many", arg);
+        options->program = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->program)
+            argp_error(state, "which program? `cm1e st build machine.st` makes machine.so");
+        if (!options->common.bus_file)
+            argp_error(state, "-b BUS-FILE is needed: it says which axes there are");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option table[] = {
+    {"seconds", 's', "N", 0, "End the run after N seconds (default: Ctrl-C ends it)", 0},
+    {"virtual-time", KEY_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
+    {"loop-limit", KEY_LOOPS, "N", 0, "A task that passes through loops more often in one call is stopped (1000000)", 0},
+    {"csv", KEY_CSV, "FILE", 0, "Write what the axes and variables did as CSV", 0},
+    {"svg", KEY_SVG, "FILE", 0, "Write it as a plot", 0},
+    {"html", KEY_HTML, "FILE", 0, "Write it as a page for a browser", 0},
+    {0},
+};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_run = {
+    table, parse, "PROGRAM.so",
+    "Runs a program that `cm1e st build` has translated, on the network of the bus file. A variable of type AXIS_REF is "
+    "the axis of its name. Meanwhile `cm1e monitor`, `cm1e trace` and `cm1e log` show axes and variables. An error of the "
+    "program while it runs, as an index outside an array, ends the run: the axes ramp down, and are disabled.",
+    children, NULL, NULL};
+
+static cm1e_error_t write_files(const cm1e_scheduler_t *scheduler, const run_options_t *options, cm1e_diag_t *diag)
+{
+    cm1e_error_t (*const writers[FILES])(const cm1e_scheduler_t *, const char *, cm1e_diag_t *) = {
+        cm1e_scheduler_write_csv, cm1e_scheduler_write_svg, cm1e_scheduler_write_html};
+    cm1e_error_t error = CM1E_OK;
+    for (int i = 0; i < FILES && error == CM1E_OK; i++)
+        if (options->files[i])
+            error = writers[i](scheduler, options->files[i], diag);
+    return error;
+}
+
+static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const run_options_t *options)
+{
+    char text[400];
+    cm1e_diag_t diag = {0};
+    cm1e_scheduler_stop_on_signals(scheduler);
+    const cm1e_error_t ran = cm1e_scheduler_run(scheduler, (int64_t)(options->seconds * 1e9), &diag);
+    const bool failed = ran != CM1E_OK;
+    if (failed)
+        fail(&diag);
+    st_fault_text(loaded, text, sizeof text);
+    if (text[0])
+        complain("the program was stopped, and the axes with it: %s", text);
+    complain_of_control(scheduler);
+    const bool written = write_files(scheduler, options, &diag) == CM1E_OK;
+    if (!written)
+        fail(&diag);
+    return failed || text[0] || !written ? EXIT_FAILED : EXIT_OK;
+}
+
+static int run_program(st_loaded_t *loaded, cm1e_bus_t *bus, const run_options_t *options)
+{
+    cm1e_diag_t diag = {0};
+    cm1e_scheduler_t *scheduler = NULL;
+    const bool traced = options->files[0] || options->files[1] || options->files[2];
+    const cm1e_scheduler_config_t config = {.trace_capacity = traced ? SAMPLES : 0};
+    cm1e_error_t error = cm1e_scheduler_create(&scheduler, bus, &config, &diag);
+    if (error == CM1E_OK)
+        error = st_attach(loaded, scheduler, bus, &diag);
+    if (error == CM1E_OK && loaded->unregistered > 0)
+        complain("%u of %u variables can be seen by others; name fewer, or look at those of programs and global ones",
+                 loaded->program->variables.count - loaded->unregistered, loaded->program->variables.count);
+    const int status = error == CM1E_OK ? run_scheduler(loaded, scheduler, options) : fail(&diag);
+    cm1e_scheduler_destroy(scheduler);
+    return status;
+}
+
+static int run_on_network(st_loaded_t *loaded, const run_options_t *options)
+{
+    static cm1e_bus_config_t config;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    if (!load_configuration(&options->common, &config))
+        return EXIT_WRONG_USE;
+    if (options->virtual_time && !is_simulated(&config)) {
+        complain("--virtual-time is for the simulated network; a real one takes its time");
+        return EXIT_WRONG_USE;
+    }
+    config.virtual_time |= options->virtual_time;
+    if (options->loops > 0)
+        *loaded->program->loop_limit = options->loops;
+    int status;
+    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
+        status = fail(&diag);
+    else
+        status = run_program(loaded, bus, options);
+    cm1e_bus_config_free(&config);
+    return close_bus(bus, &options->common, status);
+}
+
+int command_run(int argc, char **argv)
+{
+    run_options_t options = {0};
+    st_loaded_t loaded;
+    cm1e_diag_t diag = {0};
+    if (parse_options(&argp_run, argc, argv, &options))
+        return EXIT_WRONG_USE;
+    for (int i = 0; i < FILES; i++)
+        if (options.files[i] && cm1e_scheduler_check_path(options.files[i], &diag) != CM1E_OK)
+            return fail(&diag);
+    const int status = st_load(&loaded, options.program, &diag) == CM1E_OK ? run_on_network(&loaded, &options)
+                                                                           : fail(&diag);
+    st_unload(&loaded);
+    return status;
+}

@@ -1,0 +1,185 @@
+/** cm1e st: checks programs in Structured Text, and translates them into programs that `cm1e run` runs. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "command.h"
+#include "core/output.h"
+#include "files.h"
+#include "st/st.h"
+
+enum { SOURCES = 200, ARGUMENTS = 32, KEY_C = 0x700 };
+
+typedef struct st_options {
+    const char *word, *output, *c_file;
+    const char *sources[SOURCES];
+    int source_count;
+    bool json;
+} st_options_t;
+
+enum { KEY_JSON = 0x701 };
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    st_options_t *options = state->input;
+    switch (key) {
+    case 'o':
+    case KEY_C:
+        if (!arg[0])
+            argp_error(state, "the file needs a name; it is empty");
+        *(key == 'o' ? &options->output : &options->c_file) = arg;
+        return 0;
+    case KEY_JSON: options->json = true; return 0;
+    case ARGP_KEY_ARG:
+        if (!options->word)
+            options->word = arg;
+        else if (options->source_count < SOURCES)
+            options->sources[options->source_count++] = arg;
+        else
+            argp_error(state, "at most %d sources", SOURCES);
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->word || choose_word("the first word", options->word, "check|build") < 0)
+            argp_error(state, "what is to be done? check or build");
+        if (options->source_count == 0)
+            argp_error(state, "which program? Name its sources, for instance machine.st");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option table[] = {
+    {"output", 'o', "FILE", 0, "build: the translated program (default: the first source, with .so)", 0},
+    {"c", KEY_C, "FILE", 0, "build: keep the C that the program became", 0},
+    {"json", KEY_JSON, NULL, 0, "check: write JSON", 0},
+    {0},
+};
+const struct argp argp_st = {
+    table, parse, "check SOURCE...\nbuild SOURCE... [-o PROGRAM.so]",
+    "Checks sources in Structured Text (IEC 61131-3), or translates them to C and compiles that with the C compiler of "
+    "the machine (CC, else cc) into a program for `cm1e run`. All function blocks of the library are known. An error "
+    "is told with file, line and column. docs/STRUCTURED-TEXT.md describes the language.", NULL, NULL, NULL};
+
+/* ---- errors ------------------------------------------------------------------------------------------------------ */
+
+static void print_errors(const st_t *st, bool json)
+{
+    json_t *all = json ? json_array() : NULL;
+    for (unsigned i = 0; i < cm1e_st_errors(st); i++) {
+        const st_error_t error = cm1e_st_error(st, i);
+        if (json)
+            json_array_append_new(all, json_pack("{s:o, s:I, s:I, s:o}", "file", text_as_json(error.file), "line",
+                                                 (json_int_t)error.line, "column", (json_int_t)error.column, "text",
+                                                 text_as_json(error.text)));
+        else
+            cm1e_st_print_error(st, i, stderr);
+    }
+    if (json)
+        print_json(all);
+    else if (cm1e_st_suppressed(st) > 0)
+        fprintf(stderr, "and %u more\n", cm1e_st_suppressed(st));
+}
+
+/* ---- the compiler ------------------------------------------------------------------------------------------------ */
+
+/** Runs the C compiler; its output is the user's to see, for a complaint of it is a fault of ours. */
+static int compile(const char *c_file, const char *output)
+{
+    static const char *const flags[] = {"-std=c11", "-O2", "-g", "-fwrapv", "-ffp-contract=off", "-fPIC", "-shared"};
+    const char *compiler = getenv("CC");
+    const char *arguments[ARGUMENTS];
+    size_t count = 0;
+    arguments[count++] = compiler && compiler[0] ? compiler : "cc";
+    for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++)
+        arguments[count++] = flags[i];
+    arguments[count++] = "-o";
+    arguments[count++] = output;
+    arguments[count++] = "-x";
+    arguments[count++] = "c";
+    arguments[count++] = c_file;
+    arguments[count++] = "-lm";
+    arguments[count] = NULL;
+    int status = 0;
+    fflush(NULL);
+    const pid_t child = fork();
+    if (child == 0) {
+        execvp(arguments[0], (char *const *)(uintptr_t)arguments);
+        _exit(127);
+    }
+    if (child < 0 || waitpid(child, &status, 0) != child) {
+        complain("the compiler %s cannot be started: %s", arguments[0], strerror(errno));
+        return EXIT_FAILED;
+    }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+        complain("there is no C compiler \"%s\"; install one (Debian: apt install gcc), or name it in the environment "
+                 "variable CC", arguments[0]);
+    else if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        complain("the compiler %s could not compile %s", arguments[0], c_file);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? EXIT_OK : EXIT_FAILED;
+}
+
+/** The name of the first source with another ending. */
+static void name_beside(const char *source, const char *ending, char *name, size_t size)
+{
+    const char *dot = strrchr(source, '.'), *slash = strrchr(source, '/');
+    const size_t length = dot && (!slash || dot > slash + 1) && dot != source ? (size_t)(dot - source) : strlen(source);
+    snprintf(name, size, "%.*s%s", (int)length, source, ending);
+}
+
+/** The C goes into a file of its own beside the program: the debugger needs it no longer, thanks to #line. */
+static int build(st_t *st, const st_options_t *options)
+{
+    char output[4096], c_file[4200], made[4200];
+    cm1e_diag_t diag = {0};
+    cm1e_output_t file;
+    if (options->output)
+        snprintf(output, sizeof output, "%s", options->output);
+    else
+        name_beside(options->sources[0], ".so", output, sizeof output);
+    snprintf(c_file, sizeof c_file, options->c_file ? "%s" : "%s.c", options->c_file ? options->c_file : output);
+    snprintf(made, sizeof made, "%s.%ld.new", output, (long)getpid());
+    if (cm1e_output_open(&file, c_file, &diag) != CM1E_OK)
+        return fail(&diag);
+    const char *slash = strrchr(output, '/');
+    cm1e_st_emit(st, file.file, slash ? slash + 1 : output);
+    if (cm1e_output_close(&file, &diag) != CM1E_OK)
+        return fail(&diag);
+    int status = compile(c_file, made);
+    if (status == EXIT_OK && rename(made, output) != 0) {
+        complain("%s cannot be written: %s", output, strerror(errno));
+        status = EXIT_FAILED;
+    }
+    if (status != EXIT_OK)
+        remove(made);
+    if (!options->c_file)
+        remove(c_file);
+    return status;
+}
+
+int command_st(int argc, char **argv)
+{
+    st_options_t options = {0};
+    cm1e_diag_t diag = {0};
+    if (parse_options(&argp_st, argc, argv, &options))
+        return EXIT_WRONG_USE;
+    st_t *st = cm1e_st_new();
+    if (!st) {
+        complain("out of memory");
+        return EXIT_FAILED;
+    }
+    int status = EXIT_OK;
+    for (int i = 0; i < options.source_count && status == EXIT_OK; i++)
+        if (cm1e_st_add_file(st, options.sources[i], &diag) != CM1E_OK)
+            status = fail(&diag);
+    if (status == EXIT_OK && !cm1e_st_check(st))
+        status = EXIT_FAILED;
+    if (status == EXIT_OK && strcmp(options.word, "build") == 0)
+        status = build(st, &options);
+    else if (diag.text[0] == '\0')
+        print_errors(st, options.json);
+    cm1e_st_free(st);
+    return status;
+}

@@ -1,0 +1,190 @@
+#include "st_loaded.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "cm1e/axis.h"
+#include "cm1e/group.h"
+#include "cm1e/trace.h"
+#include "core/near.h"
+#include "st/st.h"
+
+cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
+{
+    *loaded = (st_loaded_t){0};
+    char *full = realpath(path, NULL); /* a name without a slash would be looked for in the folders of libraries */
+    loaded->library = dlopen(full ? full : path, RTLD_NOW | RTLD_LOCAL);
+    free(full);
+    if (!loaded->library)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s cannot be loaded: %s", path, dlerror());
+    loaded->program = dlsym(loaded->library, "cm1e_st_program");
+    if (!loaded->program)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s is no program that `cm1e st build` made", path);
+    if (loaded->program->version != ST_PROGRAM_VERSION || loaded->program->interface != cm1e_st_interface())
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "%s was made for another version of the library: translate "
+                             "it again with `cm1e st build`", path);
+    return CM1E_OK;
+}
+
+void st_unload(st_loaded_t *loaded)
+{
+    if (loaded->library)
+        dlclose(loaded->library);
+    *loaded = (st_loaded_t){0};
+}
+
+void st_fault_text(const st_loaded_t *loaded, char *text, size_t size)
+{
+    const st_fault_t *fault = loaded->program->fault;
+    text[0] = '\0';
+    if (!fault->happened)
+        return;
+    const int used = snprintf(text, size, "%s:%u: ", fault->file, fault->line);
+    if (used < 0 || (size_t)used >= size)
+        return;
+    /* The texts are those of st_runtime.h, with up to three %lld. */
+    char *at = text + used;
+    const char *from = fault->text;
+    int value = 0;
+    while (*from && (size_t)(at - text) + 24 < size) {
+        if (strncmp(from, "%lld", 4) == 0 && value < 3) {
+            at += snprintf(at, size - (size_t)(at - text), "%lld", fault->values[value++]);
+            from += 4;
+        } else {
+            *at++ = *from++;
+        }
+    }
+    *at = '\0';
+}
+
+/** Task of the scheduler: the task of the program, and the end of the run after a fault. */
+static void run_task(void *context)
+{
+    const struct st_running_task *task = context;
+    task->run();
+    if (task->loaded->program->fault->happened)
+        cm1e_scheduler_stop(task->loaded->scheduler);
+}
+
+/* ---- axes and groups --------------------------------------------------------------------------------------------- */
+
+static AXIS_REF_t axis_named(const cm1e_scheduler_t *scheduler, const char *name, cm1e_near_t *near)
+{
+    AXIS_REF_t axis = {0};
+    for (uint32_t i = 0; i < CM1E_MAX_AXES; i++) {
+        axis = cm1e_scheduler_axis(scheduler, i);
+        if (axis.Handle == 0 || strcasecmp(cm1e_axis_name(axis), name) == 0)
+            break;
+        cm1e_near_look(near, cm1e_axis_name(axis));
+    }
+    return axis;
+}
+
+static cm1e_error_t bind_axes(const st_loaded_t *loaded, cm1e_diag_t *diag)
+{
+    const st_list_t *axes = &loaded->program->axes;
+    for (uint32_t i = 0; i < axes->count; i++) {
+        char text[CM1E_NEAR_TEXT_BYTES];
+        cm1e_near_t near = {.word = axes->first[i].name};
+        const AXIS_REF_t axis = axis_named(loaded->scheduler, axes->first[i].name, &near);
+        if (axis.Handle == 0)
+            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the program has the axis \"%s\" (%s : AXIS_REF), which the "
+                                 "bus file has not%s", axes->first[i].name, axes->first[i].detail,
+                                 cm1e_near_text(&near, text, sizeof text));
+        *(AXIS_REF_t *)axes->first[i].data = axis;
+    }
+    return CM1E_OK;
+}
+
+static cm1e_error_t make_groups(const st_loaded_t *loaded, cm1e_diag_t *diag)
+{
+    const st_list_t *groups = &loaded->program->groups;
+    for (uint32_t i = 0; i < groups->count; i++) {
+        cm1e_group_config_t config = {{0}};
+        snprintf(config.name, sizeof config.name, "%s", groups->first[i].name);
+        const cm1e_error_t error = cm1e_group_create(groups->first[i].data, &config, diag);
+        if (error != CM1E_OK)
+            return error;
+    }
+    return CM1E_OK;
+}
+
+/* ---- variables --------------------------------------------------------------------------------------------------- */
+
+static bool trace_type(st_kind_t kind, cm1e_trace_type_t *type)
+{
+    static const cm1e_trace_type_t types[] = {
+        [ST_KIND_BOOL] = CM1E_TRACE_BOOL, [ST_KIND_SINT] = CM1E_TRACE_SINT, [ST_KIND_INT] = CM1E_TRACE_INT,
+        [ST_KIND_DINT] = CM1E_TRACE_DINT, [ST_KIND_LINT] = CM1E_TRACE_LINT, [ST_KIND_USINT] = CM1E_TRACE_USINT,
+        [ST_KIND_UINT] = CM1E_TRACE_UINT, [ST_KIND_UDINT] = CM1E_TRACE_UDINT, [ST_KIND_ULINT] = CM1E_TRACE_ULINT,
+        [ST_KIND_REAL] = CM1E_TRACE_REAL, [ST_KIND_LREAL] = CM1E_TRACE_LREAL, [ST_KIND_TIME] = CM1E_TRACE_LINT,
+    };
+    if (kind > ST_KIND_TIME)
+        return false;
+    *type = types[kind];
+    return true;
+}
+
+/** What a trace, a monitor and others who attach see: variables of the program before those within its blocks. */
+static cm1e_error_t register_variables(st_loaded_t *loaded, cm1e_diag_t *diag)
+{
+    const st_list_t *variables = &loaded->program->variables;
+    uint32_t registered = 0;
+    for (int depth = 0; depth < 8; depth++)
+        for (uint32_t i = 0; i < variables->count; i++) {
+            const st_variable_t *variable = &variables->first[i];
+            cm1e_trace_type_t type;
+            int points = 0;
+            for (const char *at = variable->name; *at; at++)
+                points += *at == '.' || *at == '[';
+            if (points != depth || !trace_type(variable->kind, &type))
+                continue;
+            if (registered == CM1E_TRACE_VARIABLES / 2) { /* the other half is for objects of drives */
+                loaded->unregistered++;
+                continue;
+            }
+            const cm1e_error_t error = cm1e_scheduler_trace_variable(
+                loaded->scheduler, variable->name, variable->kind == ST_KIND_TIME ? "ns" : "", type, variable->data, diag);
+            if (error != CM1E_OK)
+                return error;
+            registered++;
+        }
+    return CM1E_OK;
+}
+
+static cm1e_error_t add_tasks(st_loaded_t *loaded, cm1e_diag_t *diag)
+{
+    const st_program_t *program = loaded->program;
+    cm1e_error_t error = CM1E_OK;
+    if (program->task_count > CM1E_MAX_TASKS)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the program has %u tasks; %d are the most", program->task_count,
+                             CM1E_MAX_TASKS);
+    for (uint32_t i = 0; i < program->task_count && error == CM1E_OK; i++) {
+        loaded->tasks[i].loaded = loaded;
+        loaded->tasks[i].run = program->tasks[i].run;
+        const cm1e_task_config_t task = {.name = program->tasks[i].name, .interval_ns = program->tasks[i].interval_ns,
+                                         .priority = program->tasks[i].priority, .program = run_task,
+                                         .context = &loaded->tasks[i]};
+        error = cm1e_scheduler_add_task(loaded->scheduler, &task, diag);
+    }
+    return error;
+}
+
+cm1e_error_t st_attach(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    (void)bus;
+    loaded->scheduler = scheduler;
+    loaded->program->begin();
+    cm1e_error_t error = CM1E_OK;
+    if (loaded->program->located.count > 0 || loaded->program->retained.count > 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "variables AT an address and RETAIN are not supported yet");
+    error = bind_axes(loaded, diag);
+    if (error == CM1E_OK)
+        error = make_groups(loaded, diag);
+    if (error == CM1E_OK)
+        error = register_variables(loaded, diag);
+    return error == CM1E_OK ? add_tasks(loaded, diag) : error;
+}

@@ -1,0 +1,32 @@
+/**
+ * @file st_loaded.h
+ * A program that was translated from Structured Text, loaded into this process: its tasks become tasks of a scheduler,
+ * its axes get their handles by the names of the bus file, its variables can be traced.
+ */
+#ifndef CM1E_TOOLS_ST_LOADED_H
+#define CM1E_TOOLS_ST_LOADED_H
+
+#include "cm1e/scheduler.h"
+#include "st/st_program.h"
+
+typedef struct st_loaded {
+    void *library;
+    const st_program_t *program;
+    cm1e_scheduler_t *scheduler;
+    struct st_running_task {
+        struct st_loaded *loaded;
+        void (*run)(void);
+    } tasks[CM1E_MAX_TASKS];
+    uint32_t unregistered; /**< variables beyond what a trace can have */
+} st_loaded_t;
+
+/** Loads the program. CM1E_ERROR_IO: it cannot be loaded; CM1E_ERROR_UNSUPPORTED: it was made for another version of the
+ *  library. @rt init */
+cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag);
+/** Gives variables their initial values, binds axes and adds the tasks. @rt init */
+cm1e_error_t st_attach(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, cm1e_bus_t *bus, cm1e_diag_t *diag);
+/** "" or why the program was stopped: "machine.st:12: the index 11 is outside 1..10". @rt block */
+void st_fault_text(const st_loaded_t *loaded, char *text, size_t size);
+void st_unload(st_loaded_t *loaded);
+
+#endif
