@@ -287,13 +287,15 @@ static void supervision_program(void *context)
 typedef struct options {
     const char *interface_name, *bus_file, *csv_file, *svg_file, *html_file;
     double seconds;
+    bool virtual_time;
 } options_t;
 
-enum { KEY_CSV = 0x100, KEY_SVG, KEY_HTML };
+enum { KEY_CSV = 0x100, KEY_SVG, KEY_HTML, KEY_VIRTUAL_TIME };
 static const struct argp_option option_list[] = {
     {"interface", 'i', "INTERFACE", 0, "Network interface, or sim (default: the bus file's)", 0},
     {"bus", 'b', "FILE", 0, "Bus file; needed on a network interface", 0},
     {"seconds", 's', "N", 0, "Begin no new round after N seconds (12)", 0},
+    {"virtual-time", KEY_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
     {"csv", KEY_CSV, "FILE", 0, "Write what the axes did as CSV", 0},
     {"svg", KEY_SVG, "FILE", 0, "Write what the axes did as a plot", 0},
     {"html", KEY_HTML, "FILE", 0, "Write what the axes did as a page for a browser, with the steps of the program", 0},
@@ -310,6 +312,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case KEY_CSV: options->csv_file = arg; break;
     case KEY_SVG: options->svg_file = arg; break;
     case KEY_HTML: options->html_file = arg; break;
+    case KEY_VIRTUAL_TIME: options->virtual_time = true; break;
     case 's':
         options->seconds = strtod(arg, &end);
         if (*end != '\0' || !(options->seconds > 0 && options->seconds <= 86400))
@@ -354,6 +357,7 @@ static cm1e_error_t describe(cm1e_bus_config_t *config, const options_t *options
         return error;
     if (options->interface_name)
         snprintf(config->interface_name, sizeof config->interface_name, "%s", options->interface_name);
+    config->virtual_time = options->virtual_time;
     for (uint32_t i = 0; i < config->axis_count && i < MAX_UNITS; i++)
         if (config->axes[i].homing.method == 0)
             return cm1e_diag_set(why, CM1E_ERROR_CONFIG, 0, "Axis %u has no homing.method in the bus file.", i + 1);
