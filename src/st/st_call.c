@@ -5,17 +5,6 @@
 #include "core/near.h"
 #include "st/st_parsing.h"
 
-bool cm1e_st_is_fixed(const expr_t *expr) { return !expr || (expr->value.known && !expr->impure); }
-
-bool cm1e_st_alone(st_t *st, const expr_t *a, const expr_t *b)
-{
-    if (!a || !b || !((a->impure && !cm1e_st_is_fixed(b)) || (b->impure && !cm1e_st_is_fixed(a))))
-        return true;
-    cm1e_st_report(st, (a->impure ? a : b)->place, "this call can change variables that the rest of the expression may "
-                   "use: give its result to a variable in a statement of its own");
-    return false;
-}
-
 static void look_at_unit(const char *name, void *value, void *context)
 {
     const unit_t *unit = value;
@@ -192,7 +181,7 @@ static void check_arg(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
 
 static void check_args(st_t *st, const unit_t *unit, expr_t *call)
 {
-    if (call->args && !call->args->name)
+    if (call->args ? !call->args->name : unit->kind == U_FUNCTION)
         match_positions(st, unit, call);
     else
         match_names(st, unit, call);

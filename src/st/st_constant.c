@@ -112,7 +112,7 @@ void cm1e_st_fold(st_t *st, expr_t *expr)
         fold_typed(expr);
 }
 
-bool cm1e_st_integer_constant(st_t *st, expr_t *expr, int64_t *value, const char *what)
+bool cm1e_st_check_integer(st_t *st, expr_t *expr, int64_t *value, const char *what)
 {
     cm1e_st_expression(st, expr);
     const type_kind_t kind = expr->type->kind;

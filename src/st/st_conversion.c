@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "st/st_parsing.h"
+#include "st/st_standard.h"
 
 const char *cm1e_st_type_name(const type_t *type) { return type->name ? type->name : "this type"; }
 
@@ -142,4 +143,47 @@ void cm1e_st_note_change(st_t *st, const expr_t *expr)
     if (at->var->section == V_GLOBAL || at->var->section == V_EXTERNAL)
         cm1e_st_report(st, expr->place, "a function changes no global variable: take \"%s\" as VAR_IN_OUT, or make a "
                        "function block of the function", at->var->name);
+}
+
+/* ---- two operands ------------------------------------------------------------------------------------------------ */
+
+/** A literal without a type beside an operand that has one. */
+static type_kind_t literal_beside(const expr_t *literal, type_kind_t other)
+{
+    if (literal->type->kind == T_ANY_REAL)
+        return cm1e_st_is_floating(other) ? other : !cm1e_st_is_integer(other) ? T_NONE
+            : cm1e_st_widens(other, T_REAL) ? T_REAL : cm1e_st_widens(other, T_LREAL) ? T_LREAL : T_NONE;
+    if (other == T_BOOL || other > T_LREAL)
+        return T_NONE;
+    if (cm1e_st_is_floating(other) || cm1e_st_fits(other, &literal->value))
+        return other;
+    for (type_kind_t kind = T_SINT; kind <= T_ULINT && !cm1e_st_is_bits(other); kind++)
+        if (cm1e_st_widens(other, kind) && cm1e_st_fits(kind, &literal->value))
+            return kind;
+    return T_NONE;
+}
+
+type_kind_t cm1e_st_type_for_both(const expr_t *a, const expr_t *b)
+{
+    const type_kind_t ka = a->type->kind, kb = b->type->kind;
+    if (ka == kb)
+        return ka;
+    if ((ka == T_ANY_INT || ka == T_ANY_REAL) && (kb == T_ANY_INT || kb == T_ANY_REAL))
+        return T_ANY_REAL;
+    if (ka == T_ANY_INT || ka == T_ANY_REAL)
+        return literal_beside(a, kb);
+    if (kb == T_ANY_INT || kb == T_ANY_REAL)
+        return literal_beside(b, ka);
+    return ka <= T_DT && kb <= T_DT ? cm1e_st_common(ka, kb) : T_NONE;
+}
+
+bool cm1e_st_is_fixed(const expr_t *expr) { return !expr || (expr->value.known && !expr->impure); }
+
+bool cm1e_st_alone(st_t *st, const expr_t *a, const expr_t *b)
+{
+    if (!a || !b || !((a->impure && !cm1e_st_is_fixed(b)) || (b->impure && !cm1e_st_is_fixed(a))))
+        return true;
+    cm1e_st_report(st, (a->impure ? a : b)->place, "this call can change variables that the rest of the expression may "
+                   "use: give its result to a variable in a statement of its own");
+    return false;
 }

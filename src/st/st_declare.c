@@ -4,8 +4,6 @@
 
 #include "st/st_parsing.h"
 
-enum { NEW, BUSY, READY };
-
 /* ---- names of the emitted C -------------------------------------------------------------------------------------- */
 
 /** A prefix by kind, or an underscore behind it: no name of a program is a word of C, or a name of ours. */
@@ -181,7 +179,7 @@ var_t *cm1e_st_find_var(st_t *st, const char *name)
     var_t *var = st->unit ? cm1e_st_map_get(st->unit->names, name) : NULL;
     if (!var)
         var = cm1e_st_map_get(st->globals, name);
-    if (var && var->section != V_EXTERNAL && var->type->state != READY)
+    if (var && var->section != V_EXTERNAL && var->type->state != ST_READY)
         var->type = cm1e_st_resolve(st, var->type);
     else if (var && var->type->same)
         var->type = var->type->same;
@@ -194,10 +192,10 @@ const constant_t *cm1e_st_constant_of(st_t *st, var_t *var)
         return cm1e_st_constant_of(st, var->global);
     if (!(var->qualifiers & Q_CONSTANT) || var->section == V_IN_OUT || var->section == V_INPUT)
         return &var->value;
-    if (var->state == BUSY) {
+    if (var->state == ST_BUSY) {
         cm1e_st_report(st, var->place, "the value of \"%s\" depends on itself", var->name);
-    } else if (var->state == NEW) {
-        var->state = BUSY;
+    } else if (var->state == ST_NEW) {
+        var->state = ST_BUSY;
         cm1e_st_check_initial(st, var);
     }
     return &var->value;
@@ -206,9 +204,9 @@ const constant_t *cm1e_st_constant_of(st_t *st, var_t *var)
 void cm1e_st_check_initial(st_t *st, var_t *var)
 {
     unit_t *const unit = st->unit;
-    if (!var->initial || var->state == READY || var->section == V_EXTERNAL || st->resolving == ST_DEPTH)
+    if (!var->initial || var->state == ST_READY || var->section == V_EXTERNAL || st->resolving == ST_DEPTH)
         return;
-    var->state = BUSY;
+    var->state = ST_BUSY;
     st->resolving++;
     st->unit = var->unit;
     var->type = cm1e_st_resolve(st, var->type);
@@ -217,5 +215,5 @@ void cm1e_st_check_initial(st_t *st, var_t *var)
         var->value = var->initial->value;
     st->unit = unit;
     st->resolving--;
-    var->state = READY;
+    var->state = ST_READY;
 }

@@ -1,49 +1,9 @@
 /* The C file of a program: the run-time part, types, variables, units, tables. */
 #include "st/st_emit.h"
 
-#include <stdarg.h>
 #include <string.h>
 
 #include "st/st_embedded.h"
-
-void cm1e_st_put(st_t *st, const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    vfprintf(st->out, format, values);
-    va_end(values);
-}
-
-void cm1e_st_begin_line(st_t *st) { fprintf(st->out, "%*s", st->indent * 4, ""); }
-
-void cm1e_st_line(st_t *st, const char *format, ...)
-{
-    va_list values;
-    cm1e_st_begin_line(st);
-    va_start(values, format);
-    vfprintf(st->out, format, values);
-    va_end(values);
-}
-
-void cm1e_st_put_quoted(st_t *st, const char *text)
-{
-    fputc('"', st->out);
-    for (; *text; text++) {
-        const unsigned char byte = (unsigned char)*text;
-        if (byte < ' ' || byte >= 0x7F || byte == '?')
-            fprintf(st->out, "\\%03o", byte); /* "??/" would be a trigraph */
-        else
-            fprintf(st->out, byte == '"' || byte == '\\' ? "\\%c" : "%c", byte);
-    }
-    fputc('"', st->out);
-}
-
-void cm1e_st_place(st_t *st, place_t place)
-{
-    cm1e_st_put(st, "#line %u ", place.line);
-    cm1e_st_put_quoted(st, st->sources[place.file].name);
-    cm1e_st_put(st, "\n");
-}
 
 static void emit_embedded(st_t *st, const char *name, const char *begin, const char *end)
 {

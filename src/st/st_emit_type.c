@@ -3,32 +3,6 @@
 
 #include <string.h>
 
-const char *cm1e_st_c_type(st_t *st, const type_t *type)
-{
-    if (type->kind == T_REF)
-        return cm1e_st_format(st->arena, "%s *", cm1e_st_c_type(st, type->element));
-    if (type->kind == T_NONE)
-        return "void";
-    return type->c_name;
-}
-
-const char *cm1e_st_plain_type(const type_t *type)
-{
-    switch (type->kind) {
-    case T_ENUM: return cm1e_st_plain_type(type->element);
-    case T_BOOL:
-    case T_USINT: return "BYTE";
-    case T_UINT: return "WORD";
-    case T_UDINT: return "DWORD";
-    case T_ULINT: return "LWORD";
-    case T_TIME:
-    case T_DATE:
-    case T_TOD:
-    case T_DT: return "LINT";
-    default: return type->name;
-    }
-}
-
 static bool is_stored(const var_t *var) { return var->section != V_TEMP && var->section != V_EXTERNAL; }
 
 bool cm1e_st_needs_initial(const type_t *type)

@@ -31,7 +31,8 @@ static void unknown_name(st_t *st, expr_t *expr)
         cm1e_st_map_each(st->unit->names, look_at, &near);
     cm1e_st_map_each(st->globals, look_at, &near);
     cm1e_st_map_each(st->enumerators, look_at, &near);
-    const char *what = cm1e_st_map_get(st->units, expr->name) ? "a value or variable" : "a variable or enumerator";
+    const char *what = cm1e_st_map_get(st->units, expr->name) ? "variable (it is called, or an instance of it is)"
+                                                                   : "variable or enumerator";
     cm1e_st_report(st, expr->place, "there is no %s \"%s\"%s", what, expr->name,
                    cm1e_near_text(&near, text, sizeof text));
     set_wrong(st, expr);
@@ -223,7 +224,7 @@ static void wrong_operands(st_t *st, expr_t *expr)
         hint = "; no type has all values of both: convert one of them";
     else if ((ka == T_BOOL || kb == T_BOOL) && expr->op >= OP_ADD && expr->op <= OP_MOD)
         hint = "; BOOL_TO_INT(...) makes a number of a BOOL";
-    else if (cm1e_st_is_bits(ka) && expr->op >= OP_ADD && expr->op <= OP_MOD)
+    else if ((cm1e_st_is_bits(ka) || cm1e_st_is_bits(kb)) && expr->op >= OP_ADD && expr->op <= OP_MOD)
         hint = "; bits are no number: convert them, as in WORD_TO_UINT(...)";
     else if (expr->op <= OP_AND_THEN || expr->op == OP_NOT)
         hint = "; it is for BOOL, BYTE, WORD, DWORD and LWORD";
@@ -232,36 +233,6 @@ static void wrong_operands(st_t *st, expr_t *expr)
     else
         cm1e_st_report(st, expr->place, "%s %s is not defined%s", op, a, hint);
     set_wrong(st, expr);
-}
-
-/** A literal without a type beside an operand that has one. */
-static type_kind_t literal_beside(const expr_t *literal, type_kind_t other)
-{
-    if (literal->type->kind == T_ANY_REAL)
-        return cm1e_st_is_floating(other) ? other : !cm1e_st_is_integer(other) ? T_NONE
-            : cm1e_st_widens(other, T_REAL) ? T_REAL : cm1e_st_widens(other, T_LREAL) ? T_LREAL : T_NONE;
-    if (other == T_BOOL || other > T_LREAL)
-        return T_NONE;
-    if (cm1e_st_is_floating(other) || cm1e_st_fits(other, &literal->value))
-        return other;
-    for (type_kind_t kind = T_SINT; kind <= T_ULINT && !cm1e_st_is_bits(other); kind++)
-        if (cm1e_st_widens(other, kind) && cm1e_st_fits(kind, &literal->value))
-            return kind;
-    return T_NONE;
-}
-
-type_kind_t cm1e_st_type_for_both(const expr_t *a, const expr_t *b)
-{
-    const type_kind_t ka = a->type->kind, kb = b->type->kind;
-    if (ka == kb)
-        return ka;
-    if ((ka == T_ANY_INT || ka == T_ANY_REAL) && (kb == T_ANY_INT || kb == T_ANY_REAL))
-        return T_ANY_REAL;
-    if (ka == T_ANY_INT || ka == T_ANY_REAL)
-        return literal_beside(a, kb);
-    if (kb == T_ANY_INT || kb == T_ANY_REAL)
-        return literal_beside(b, ka);
-    return ka <= T_DT && kb <= T_DT ? cm1e_st_common(ka, kb) : T_NONE;
 }
 
 static void both_as(st_t *st, expr_t *expr, type_kind_t kind)
@@ -345,7 +316,8 @@ static void arithmetic(st_t *st, expr_t *expr)
         return;
     }
     const type_kind_t kind = cm1e_st_type_for_both(expr->a, expr->b);
-    if (!cm1e_st_is_number(kind) || (expr->op == OP_MOD && cm1e_st_is_floating(kind))) {
+    const bool bits = cm1e_st_is_bits(expr->a->type->kind) || cm1e_st_is_bits(expr->b->type->kind);
+    if (!cm1e_st_is_number(kind) || bits || (expr->op == OP_MOD && cm1e_st_is_floating(kind))) {
         wrong_operands(st, expr);
         return;
     }
@@ -409,7 +381,7 @@ static void unary(st_t *st, expr_t *expr)
         wrong_operands(st, expr);
 }
 
-void cm1e_st_expression(st_t *st, expr_t *expr)
+void cm1e_st_check_expression(st_t *st, expr_t *expr)
 {
     if (expr->type)
         return;

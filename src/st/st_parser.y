@@ -11,6 +11,8 @@
 #include "st/st_parsing.h"
 }
 %code {
+#include <string.h>
+
 #define YYLLOC_DEFAULT(Current, Rhs, N) ((Current) = (N) ? YYRHSLOC(Rhs, 1) : YYRHSLOC(Rhs, 0))
 #undef yylex
 #define yylex(value, place, parsing) cm1e_st_yylex(value, place, (parsing)->scanner)
@@ -285,16 +287,19 @@ argument: expr { $$ = cm1e_st_arg(ST, @1, NULL, $1); }
 %%
 enum { SHOWN = 6 };
 
-/** "expected X, Y or Z": the words that could stand here, or nothing if they are too many. */
+/** "expected X, Y or Z": the words that could stand here. Of many only the semicolon is worth a word: it is missing. */
 static void expectations(const yypcontext_t *context, char *text, size_t size)
 {
-    yysymbol_kind_t expected[SHOWN + 1];
-    const int count = yypcontext_expected_tokens(context, expected, SHOWN + 1);
+    yysymbol_kind_t expected[YYNTOKENS];
+    const int count = yypcontext_expected_tokens(context, expected, YYNTOKENS);
     size_t used = 0;
     text[0] = '\0';
-    for (int i = 0; count > 0 && count <= SHOWN && i < count && used < size; i++)
+    for (int i = 0; i < count && count <= SHOWN && used < size; i++)
         used += (size_t)snprintf(text + used, size - used, "%s%s", i == 0 ? "; expected " : i == count - 1 ? " or " : ", ",
                                  yysymbol_name(expected[i]));
+    for (int i = 0; i < count && count > SHOWN; i++)
+        if (strcmp(yysymbol_name(expected[i]), "';'") == 0)
+            snprintf(text, size, "; is a \";\" missing before it?");
 }
 
 static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing)

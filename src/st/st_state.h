@@ -18,8 +18,18 @@ typedef struct source {
     const char *symbol; /**< prefix of its symbols */
 } source_t;
 
+/** How far a type or the value of a constant is. */
+enum { ST_NEW, ST_BUSY, ST_READY };
+
+/** Expressions contain calls, and types contain expressions: the parts of the checker reach each other through this. */
+typedef struct checker {
+    void (*expression)(st_t *st, expr_t *expr);
+    bool (*integer_constant)(st_t *st, expr_t *expr, int64_t *value, const char *what);
+} checker_t;
+
 struct st {
     arena_t *arena;
+    const checker_t *checker;
     source_t sources[ST_SOURCES];
     unsigned source_count;
     unsigned source;      /**< that is parsed */
@@ -86,7 +96,8 @@ const constant_t *cm1e_st_constant_of(st_t *st, var_t *var);
 void cm1e_st_check_initial(st_t *st, var_t *var);
 
 /* st_expression.c */
-void cm1e_st_expression(st_t *st, expr_t *expr);
+void cm1e_st_check_expression(st_t *st, expr_t *expr);
+static inline void cm1e_st_expression(st_t *st, expr_t *expr) { st->checker->expression(st, expr); }
 /** The expression as a value of this type: converted, if that is lossless; else reported. */
 expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what);
 /** A literal without a type gets the one it has if nothing else says so. */
@@ -98,7 +109,11 @@ bool cm1e_st_assignable(st_t *st, const expr_t *expr);
 void cm1e_st_note_change(st_t *st, const expr_t *expr);
 const char *cm1e_st_type_name(const type_t *type);
 /** An integer that is known now; reports if it is not. */
-bool cm1e_st_integer_constant(st_t *st, expr_t *expr, int64_t *value, const char *what);
+bool cm1e_st_check_integer(st_t *st, expr_t *expr, int64_t *value, const char *what);
+static inline bool cm1e_st_integer_constant(st_t *st, expr_t *expr, int64_t *value, const char *what)
+{
+    return st->checker->integer_constant(st, expr, value, what);
+}
 void cm1e_st_fold(st_t *st, expr_t *expr);
 
 /* st_call.c */

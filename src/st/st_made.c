@@ -1,0 +1,32 @@
+/* Types without a declaration: texts and references, each once. */
+#include "st/st_parsing.h"
+
+type_t *cm1e_st_string_type(st_t *st, int64_t length)
+{
+    for (type_t *type = st->made; type; type = type->next)
+        if (type->kind == T_STRING && type->length == length)
+            return type;
+    type_t *type = cm1e_st_type_node(st, T_STRING, (place_t){0}, NULL);
+    type->length = length;
+    type->name = cm1e_st_format(st->arena, "STRING[%lld]", (long long)length);
+    type->c_name = cm1e_st_format(st->arena, "STRING_%lld", (long long)length);
+    type->state = ST_READY;
+    type->size = (uint64_t)length + 1;
+    type->alignment = 1;
+    type->next = st->made;
+    return st->made = type;
+}
+
+type_t *cm1e_st_ref_type(st_t *st, type_t *to)
+{
+    for (type_t *type = st->made; type; type = type->next)
+        if (type->kind == T_REF && type->element == to)
+            return type;
+    type_t *type = cm1e_st_type_node(st, T_REF, (place_t){0}, NULL);
+    type->element = to;
+    type->name = cm1e_st_format(st->arena, "REF_TO %s", to->name);
+    type->state = ST_READY;
+    type->size = type->alignment = sizeof(void *);
+    type->next = st->made;
+    return st->made = type;
+}

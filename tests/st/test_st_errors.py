@@ -1,0 +1,266 @@
+#!/usr/bin/env python3
+"""What is wrong in a program is told with line, column and words, and never ends the translator: each case below is a
+program with one mistake, the place of the mistake, and words that the text must have.
+
+test_st_errors.py BIN-DIRECTORY
+"""
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+
+BIN = sys.argv[1]
+faults = []
+
+# (declarations and statements of a program, or a whole source; line:column; words)
+PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRING; l : LREAL; u : UINT; t : TON; d : DINT;\n" \
+          "  a : ARRAY[1..3] OF INT; tm : TIME; c : E_Color; p : Point; q : REF_TO INT; k : LINT; x : ULINT; d1 : DATE;\nEND_VAR\n" \
+          "VAR CONSTANT\n  N : INT := 3;\nEND_VAR\n{}\nEND_PROGRAM\nTYPE E_Color : (Red, Green); Point : STRUCT x, y : INT; " \
+          "END_STRUCT; END_TYPE\nFUNCTION Twice : INT\nVAR_INPUT v : INT; END_VAR\nTwice := 2 * v;\nEND_FUNCTION\n" \
+          "FUNCTION Change : INT\nVAR_IN_OUT v : INT; END_VAR\nv := v + 1; Change := v;\nEND_FUNCTION\n"
+STATEMENTS = [
+    ("i := 1", "10:1", ["cannot stand here", '";"']),
+    ("i = 1;", "9:3", ["cannot stand here"]),
+    ("j := 1;", "9:1", ["no variable", '"j"']),
+    ("ii := 1;", "9:1", ['did you mean "i"']),
+    ("i := 1.5;", "9:6", ["INT"]),
+    ("i := 40000;", "9:6", ["40000", "INT"]),
+    ("i := -32769;", "9:6", ["INT"]),
+    ("i := d;", "9:6", ["DINT_TO_INT"]),
+    ("u := i;", "9:6", ["INT_TO_UINT"]),
+    ("r := d;", "9:6", ["DINT_TO_REAL"]),
+    ("r := l;", "9:6", ["LREAL_TO_REAL"]),
+    ("l := k;", "9:6", ["LINT_TO_LREAL"]),
+    ("b := i;", "9:6", ["INT_TO_BOOL"]),
+    ("i := b;", "9:6", ["BOOL_TO_INT"]),
+    ("i := w;", "9:6", ["WORD_TO_INT"]),
+    ("w := i;", "9:6", ["INT_TO_WORD"]),
+    ("s := i;", "9:6", ["INT_TO_STRING"]),
+    ("i := s;", "9:6", ["STRING"]),
+    ("tm := i;", "9:7", ["INT_TO_TIME"]),
+    ("b := i AND b;", "9:8", ["INT AND BOOL"]),
+    ("i := i AND 1;", "9:8", ["INT AND"]),
+    ("i := NOT i;", "9:6", ["NOT INT"]),
+    ("b := -b;", "9:6", ["- BOOL"]),
+    ("u := -u;", "9:6", ["- UINT"]),
+    ("w := w + 1;", "9:8", ["WORD_TO_UINT"]),
+    ("i := b + 1;", "9:8", ["BOOL + "]),
+    ("x := x + i;", "9:8", ["ULINT + INT"]),
+    ("b := k < x;", "9:8", ["LINT < ULINT"]),
+    ("r := r MOD 2;", "9:8", ["REAL MOD"]),
+    ("l := i ** 2;", "9:8", ["base is REAL"]),
+    ("tm := tm * tm;", "9:10", ["TIME * TIME"]),
+    ("d1 := d1 + d1;", "9:10", ["DATE + DATE"]),
+    ("b := s = 1;", "9:8", ["STRING[80] ="]),
+    ("b := c = 1;", "9:8", ["E_Color ="]),
+    ("b := b < b;", "9:8", ["BOOL < BOOL"]),
+    ("i := i / 0;", "9:8", ["divides by zero"]),
+    ("i := 1 / 0;", "9:8", ["divides by zero"]),
+    ("i := 5 MOD 0;", "9:8", ["divides by zero"]),
+    ("k := 9223372036854775807 + 1;", "9:26", ["64 bits"]),
+    ("x := 18446744073709551616;", "9:6", ["64 bits"]),
+    ("i := 16#G;", "9:6", ["16#"]),
+    ("i := 3#12;", "9:6", ["base"]),
+    ("i := 12abc;", "9:6", ["neither a number nor a name"]),
+    ("i := INT#70000;", "9:6", ["70000"]),
+    ("i := FOO#7;", "9:6", ["FOO"]),
+    ("l := 1.0E999;", "9:6", ["LREAL"]),
+    ("tm := T#5;", "9:7", ["TIME"]),
+    ("tm := T#5x;", "9:7", ["TIME"]),
+    ("tm := T#1s1h;", "9:7", ["largest unit first"]),
+    ("tm := T#200000d;", "9:7", ["106751"]),
+    ("d1 := D#2023-02-29;", "9:7", ["D#"]),
+    ("d1 := D#2024-13-01;", "9:7", ["DATE"]),
+    ("s := 'abc;", "9:6", ["no ' at its end"]),
+    ("s := \"abc\";", "9:6", ["WSTRING"]),
+    ("s := 'a$Zb';", "9:6", ["$Z"]),
+    ("a[0] := 1;", "9:3", ["0 is outside 1..3"]),
+    ("a[i, 1] := 1;", "9:1", ["1 indices; found 2"]),
+    ("a[r] := 1;", "9:3", ["integer"]),
+    ("i[1] := 1;", "9:1", ["INT is no array"]),
+    ("i := a;", "9:6", ["ARRAY"]),
+    ("p.z := 1;", "9:3", ["Point has no"]),
+    ("i.x := 1;", "9:3", ["INT has no members"]),
+    ("i.16 := TRUE;", "9:3", [".15"]),
+    ("r.1 := TRUE;", "9:3", ["no single bits"]),
+    ("i := q;", "9:6", ["REF_TO INT"]),
+    ("i := i^;", "9:6", ["^ is for REF_TO"]),
+    ("q := REF(d);", "9:6", ["REF_TO"]),
+    ("c := 1;", "9:6", ["enumerators"]),
+    ("c := Blue;", "9:6", ["Blue"]),
+    ("c := E_Color#Blue;", "9:6", ["E_Color has no"]),
+    ("c := E_Colour#Red;", "9:6", ["no enumeration"]),
+    ("N := 4;", "9:1", ["CONSTANT"]),
+    ("t.Q := TRUE;", "9:3", ["output"]),
+    ("b := t.Priv;", "9:8", ["within TON"]),
+    ("b := t.P;", "9:8", ["TON has no"]),
+    ("t := t;", "9:1", ["cannot be assigned"]),
+    ("t(IM := TRUE);", "9:3", ['did you mean "IN"']),
+    ("t(IN := TRUE, IN := FALSE);", "9:15", ["twice"]),
+    ("t(IN => b);", "9:3", ["use :="]),
+    ("t(Q := b);", "9:3", ["use =>"]),
+    ("t(Q => i);", "9:3", ["BOOL"]),
+    ("t(TRUE, PT := T#1s);", "9:9", ["all by position"]),
+    ("t(TRUE, T#1s, 3);", "9:15", ["2 arguments"]),
+    ("t(EN := TRUE);", "9:3", ["ENO"]),
+    ("b := t(IN := TRUE);", "9:6", ["no result"]),
+    ("i := Twice();", "9:6", ["needs a value"]),
+    ("i := Twice(1, 2);", "9:15", ["1 argument"]),
+    ("i := Twice(1.5);", "9:12", ["INT"]),
+    ("i := Twise(1);", "9:6", ['did you mean "Twice"']),
+    ("i := Change(3);", "9:13", ["variable"]),
+    ("i := Change(d);", "9:13", ["VAR_IN_OUT of type INT"]),
+    ("i := Change();", "9:6", ["needs a value"]),
+    ("i := Change(i) + i;", "9:6", ["statement of its own"]),
+    ("a[i] := Change(i);", "9:1", ["on the left"]),
+    ("TON(IN := TRUE);", "9:1", ["declare an instance"]),
+    ("Main();", "9:1", ["a task calls it"]),
+    ("ABS(i);", "9:1", ["not used"]),
+    ("i := ABS();", "9:6", ["1 argument"]),
+    ("r := SQRT(i);", "9:11", ["REAL or LREAL"]),
+    ("i := MAX(i, s);", "9:13", ["elementary"]),
+    ("k := MAX(k, x);", "9:13", ["one type"]),
+    ("i := LEN(i);", "9:10", ["STRING"]),
+    ("w := SHL(w, w);", "9:13", ["integer"]),
+    ("d1 := REAL_TO_DATE(r);", "9:7", ["no conversion"]),
+    ("EXIT;", "9:1", ["within FOR"]),
+    ("IF i THEN END_IF", "9:4", ["BOOL"]),
+    ("IF b THEN i := 1;", "10:1", ["END_PROGRAM"]),
+    ("WHILE 1 DO END_WHILE", "9:7", ["BOOL"]),
+    ("FOR r := 1 TO 3 DO END_FOR", "9:5", ["integers"]),
+    ("FOR i := 1 TO 40000 DO END_FOR", "9:15", ["40000"]),
+    ("FOR i := 1 TO 3 BY 0 DO END_FOR", "9:20", ["0"]),
+    ("FOR i := 1 TO 3 DO i := 2; END_FOR", "9:20", ["EXIT"]),
+    ("FOR i := 1 TO 3 DO FOR i := 1 TO 2 DO END_FOR END_FOR", "9:24", ["EXIT"]),
+    ("CASE r OF 1: ; END_CASE", "9:6", ["integer"]),
+    ("CASE i OF 1: ; 1: ; END_CASE", "9:16", ["label already"]),
+    ("CASE i OF 1..5: ; 3: ; END_CASE", "9:19", ["label already"]),
+    ("CASE i OF 5..1: ; END_CASE", "9:11", ["empty"]),
+    ("CASE i OF d: ; END_CASE", "9:11", ["DINT"]),
+    ("CASE i OF a[1]: ; END_CASE", "9:11", ["before the program runs"]),
+    ("CASE i OF i := 1; END_CASE", "9:11", ["label"]),
+    ("CASE c OF Red: ; 1: ; END_CASE", "9:18", ["enumerators"]),
+    ("%QX0.0 := TRUE;", "9:1", ["name"]),
+    ("i := #;", "9:6", ["#"]),
+    ("i := 1; (* no end", "9:9", ["no end"]),
+    ("i;", "9:1", ["does nothing"]),
+]
+SOURCES = [
+    ("PROGRAM Main VAR i : INTT; END_VAR END_PROGRAM", "1:22", ['did you mean "INT"']),
+    ("PROGRAM Main VAR i : INT; I : INT; END_VAR END_PROGRAM", "1:27", ["already"]),
+    ("PROGRAM Main END_PROGRAM PROGRAM main END_PROGRAM", "1:34", ["already"]),
+    ("PROGRAM Main VAR CONSTANT i : INT; END_VAR END_PROGRAM", "1:27", ["needs a value"]),
+    ("PROGRAM Main VAR CONSTANT i : INT := j; j : INT := i; END_VAR END_PROGRAM", "1:27", ["itself"]),
+    ("PROGRAM Main VAR i : INT := k; k : INT; END_VAR END_PROGRAM", "1:29", ["before the program runs"]),
+    ("TYPE A : STRUCT b : B; END_STRUCT; B : STRUCT a : A; END_STRUCT; END_TYPE", "1:36", ["contains itself"]),
+    ("TYPE A : ARRAY[1..2] OF A; END_TYPE", "1:6", ["contains itself"]),
+    ("TYPE A : ARRAY[3..2] OF INT; END_TYPE", "1:16", ["no range"]),
+    ("TYPE A : ARRAY[1..1000000000] OF LREAL; END_TYPE", "1:16", ["MB"]),
+    ("TYPE A : INT (0..10); END_TYPE", "1:10", ["range is not supported"]),
+    ("TYPE A : (Red, red); END_TYPE", "1:16", ["already"]),
+    ("TYPE A : (Red := 200) SINT; END_TYPE", "1:11", ["SINT"]),
+    ("TYPE INT : REAL; END_TYPE", "1:6", ["elementary"]),
+    ("PROGRAM P VAR s : STRING[1000]; END_VAR END_PROGRAM", "1:19", ["254"]),
+    ("PROGRAM P VAR x : REFERENCE TO INT; END_VAR END_PROGRAM", "1:19", ["REF_TO"]),
+    ("PROGRAM P VAR x : BOOL R_EDGE; END_VAR END_PROGRAM", "1:24", ["R_TRIG"]),
+    ("PROGRAM P VAR a : ARRAY[1..2] OF INT := [1, 2, 3]; END_VAR END_PROGRAM", "1:48", ["2 elements"]),
+    ("PROGRAM P VAR t : TON := (PP := T#1s); END_VAR END_PROGRAM", "1:27", ["PP"]),
+    ("PROGRAM P VAR t : TON := (PT := 1); END_VAR END_PROGRAM", "1:33", ["PT"]),
+    ("FUNCTION F : INT F := F(); END_FUNCTION", "1:10", ["recursion"]),
+    ("FUNCTION F : INT F := G(); END_FUNCTION FUNCTION G : INT G := F(); END_FUNCTION", "1:", ["recursion"]),
+    ("FUNCTION F : INT VAR t : TON; END_VAR F := 1; END_FUNCTION", "1:22", ["keeps nothing"]),
+    ("VAR_GLOBAL g : INT; END_VAR FUNCTION F : INT g := 1; F := 1; END_FUNCTION", "1:46", ["global"]),
+    ("FUNCTION F : INT VAR a : ARRAY[1..100000] OF LREAL; END_VAR F := 1; END_FUNCTION", "1:10", ["bytes"]),
+    ("PROGRAM P VAR_EXTERNAL g : INT; END_VAR END_PROGRAM", "1:24", ["VAR_GLOBAL"]),
+    ("VAR_GLOBAL g : DINT; END_VAR PROGRAM P VAR_EXTERNAL g : INT; END_VAR END_PROGRAM", "1:53", ["is DINT"]),
+    ("FUNCTION_BLOCK F METHOD M : INT END_METHOD END_FUNCTION_BLOCK", "1:25", ["METHOD is not supported"]),
+    ("FUNCTION_BLOCK F EXTENDS G END_FUNCTION_BLOCK", "1:26", ["EXTENDS is not supported"]),
+    ("INTERFACE I END_INTERFACE", "1:1", ["INTERFACE is not supported"]),
+    ("CONFIGURATION C RESOURCE R ON PC TASK t(INTERVAL := T#0s); PROGRAM a WITH t : P; END_RESOURCE END_CONFIGURATION "
+     "PROGRAM P END_PROGRAM", "1:41", ["above 0"]),
+    ("CONFIGURATION C RESOURCE R ON PC PROGRAM a WITH t : P; END_RESOURCE END_CONFIGURATION PROGRAM P END_PROGRAM",
+     "1:42", ["no task"]),
+    ("CONFIGURATION C RESOURCE R ON PC TASK t(SINGLE := TRUE); PROGRAM a : Q; END_RESOURCE END_CONFIGURATION", "1:41",
+     ["SINGLE"]),
+    ("CONFIGURATION C RESOURCE R ON PC PROGRAM a : Q; END_RESOURCE END_CONFIGURATION", "1:42", ["no program"]),
+    ("CONFIGURATION C END_CONFIGURATION", "1:15", ["no program"]),
+    ("MC_Power", "1:1", ["cannot stand here"]),
+    ("FUNCTION_BLOCK MC_Power END_FUNCTION_BLOCK", "1:16", ["already"]),
+]
+# Sources that are large, deep or no text at all: an answer in words, whatever it is.
+HUGE = [
+    "PROGRAM P VAR i : INT; END_VAR i := " + "(" * 1000000 + "1" + ")" * 1000000 + "; END_PROGRAM",
+    "PROGRAM P VAR i : INT; END_VAR i := 1" + " + 1" * 1000000 + "; END_PROGRAM",
+    "PROGRAM P VAR i : INT; END_VAR i := " + "-" * 1000000 + "1; END_PROGRAM",
+    "PROGRAM P " + "IF TRUE THEN " * 100000 + "END_PROGRAM",
+    "PROGRAM P VAR i : INT; END_VAR " + "IF TRUE THEN " * 3000 + "i := 1; " + "END_IF " * 3000 + "END_PROGRAM",
+    "TYPE A : " + "ARRAY[1..2] OF " * 100000 + "INT; END_TYPE",
+    "(*" * 1000000, "a" * 1000000, "%" * 10000, "'" + "a" * 1000000, "\0" * 1000, "\xff" * 1000, "PROGRAM",
+    "".join(f"TYPE T{i} : STRUCT a : T{i + 1}; END_STRUCT; END_TYPE\n" for i in range(100000)),
+    "".join(f"TYPE T{i} : T{i + 1}; END_TYPE\n" for i in range(100000)),
+    "".join(f"FUNCTION F{i} : INT F{i} := F{i + 1}(); END_FUNCTION\n" for i in range(30000)),
+    "PROGRAM P VAR CONSTANT " + "".join(f"c{i} : INT := c{i + 1};" for i in range(100000)) + " END_VAR END_PROGRAM",
+    "PROGRAM P VAR i : INT; END_VAR i := a" + ".b" * 1000000 + "; END_PROGRAM",
+    "PROGRAM P VAR a : ARRAY[1..1000000] OF INT := [1000000(1)]; b : ARRAY[1..10] OF INT := [10(10(1))]; END_VAR END_PROGRAM",
+]
+
+
+def run(*words):
+    return subprocess.run([os.path.join(BIN, "cm1e"), "st", *words], capture_output=True, timeout=120)
+
+
+def answer(folder, text):
+    path = os.path.join(folder, "case.st")
+    with open(path, "w", encoding="latin-1") as file:
+        file.write(text)
+    result = run("check", path, "--json")
+    if result.returncode not in (0, 1):
+        sys.exit(f"{text[:300]}\nexit status {result.returncode}: {result.stderr.decode()[-500:]}")
+    return json.loads(result.stdout) if result.stdout else [], result
+
+
+def check_case(folder, text, place, words, shown):
+    errors, _ = answer(folder, text)
+    if not errors:
+        faults.append(f"{shown}: no error")
+        return
+    found = "".join(f"{error['line']}:{error['column']}: {error['text']}\n" for error in errors)
+    first = f"{errors[0]['line']}:{errors[0]['column']}"
+    if not (first == place or place.endswith(":") and first.startswith(place)) or \
+            not all(word in errors[0]["text"] for word in words):
+        faults.append(f"{shown}: expected {place} and {words}, found {found}")
+    if len(errors) > 2:
+        faults.append(f"{shown}: one mistake, and {len(errors)} errors: {found}")
+
+
+def damaged(source, generator):
+    """A good program with some of its words changed, left out or doubled."""
+    words = source.split(" ")
+    for _ in range(generator.randrange(1, 4)):
+        at = generator.randrange(len(words))
+        words[at] = generator.choice(["", words[generator.randrange(len(words))], words[at] + " " + words[at], "(", ";"])
+    return " ".join(words)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    good = PROGRAM.format("t(IN := b, PT := T#1s, Q => b); FOR i := 1 TO N DO a[i] := Twice(i); END_FOR\n"
+                          "CASE c OF Red: c := Green; ELSE c := E_Color.Red; END_CASE q := REF(i); q^ := 3;")
+    if answer(folder, good)[0]:
+        sys.exit(f"the good program has errors: {answer(folder, good)[0]}")
+    for statement, place, words in STATEMENTS:
+        check_case(folder, PROGRAM.format(statement), place, words, statement)
+    for source, place, words in SOURCES:
+        check_case(folder, source, place, words, source)
+    for source in HUGE:
+        errors, result = answer(folder, source)
+        if any(not error["text"] for error in errors) or (result.returncode == 1) != bool(errors):
+            faults.append(f"{source[:60]}: exit status {result.returncode}, {errors[:2]}")
+    seed = random.randrange(10 ** 9)
+    generator = random.Random(seed)
+    for _ in range(2000 if os.environ.get("CM1E_TEST_EFFORT") == "full" else 100):
+        answer(folder, damaged(good, generator))
+if faults:
+    sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
+print(f"{len(STATEMENTS) + len(SOURCES) + len(HUGE)} cases, seed {seed}")
