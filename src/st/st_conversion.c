@@ -71,9 +71,27 @@ static bool takes_literal(const expr_t *expr, const type_t *type)
     return from == T_ANY_INT && (cm1e_st_is_floating(to) || to == T_ANY_INT || cm1e_st_fits(to, &expr->value));
 }
 
+/** MAX(1, 2), SIN(0.5): the literals, and with them the result, take the type that is wanted. */
+static bool retype(st_t *st, expr_t *call, type_t *type)
+{
+    const bool of_reals = cm1e_st_is_floating(call->type->kind);
+    if (of_reals && !cm1e_st_is_floating(type->kind))
+        return false;
+    for (const arg_t *arg = call->typed_args; arg; arg = arg->next)
+        if (!takes_literal(arg->value, type))
+            return false;
+    for (arg_t *arg = call->typed_args; arg; arg = arg->next)
+        arg->value = give_type(st, arg->value, type);
+    call->type = type;
+    call->untyped = false;
+    return true;
+}
+
 expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
 {
     const type_kind_t from = expr->type->kind, to = type->kind;
+    if (expr->untyped && to <= T_LREAL && retype(st, expr, type))
+        return expr;
     if (expr->type == type || from == T_WRONG || to == T_WRONG)
         return expr;
     if (takes_literal(expr, type))
@@ -89,6 +107,8 @@ expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
 
 expr_t *cm1e_st_settle(st_t *st, expr_t *expr)
 {
+    if (expr->untyped)
+        return cm1e_st_coerce(st, expr, expr->type, "the value");
     if (expr->type->kind == T_ANY_REAL)
         return give_type(st, expr, st->elementary[T_LREAL]);
     if (expr->type->kind != T_ANY_INT)

@@ -166,6 +166,7 @@ static void emit_for(st_t *st, const stmt_t *stmt)
     cm1e_st_emit_expression(st, stmt->target);
     cm1e_st_put(st, " = (%s)for%u.now, st_goes(&for%u); st_next(&for%u)) {\n", stmt->target->type->name, n, n, n);
     st->indent++;
+    cm1e_st_place(st, stmt->place);
     cm1e_st_line(st, "st_loop(ST_HERE);\n");
     cm1e_st_emit_statements(st, stmt->body);
     st->indent--;
@@ -178,6 +179,7 @@ static void emit_while(st_t *st, const stmt_t *stmt)
     cm1e_st_emit_expression(st, stmt->value);
     cm1e_st_put(st, ") {\n");
     st->indent++;
+    cm1e_st_place(st, stmt->place);
     cm1e_st_line(st, "st_loop(ST_HERE);\n");
     cm1e_st_emit_statements(st, stmt->body);
     st->indent--;
@@ -188,6 +190,7 @@ static void emit_repeat(st_t *st, const stmt_t *stmt)
 {
     cm1e_st_line(st, "do {\n");
     st->indent++;
+    cm1e_st_place(st, stmt->place);
     cm1e_st_line(st, "st_loop(ST_HERE);\n");
     cm1e_st_emit_statements(st, stmt->body);
     st->indent--;

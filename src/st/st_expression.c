@@ -336,7 +336,8 @@ static void power(st_t *st, expr_t *expr)
         wrong_operands(st, expr);
         return;
     }
-    const type_kind_t kind = base == T_REAL && exponent != T_LREAL ? T_REAL : T_LREAL;
+    const bool literals = base > T_DT && exponent > T_DT;
+    const type_kind_t kind = literals ? T_ANY_REAL : base == T_REAL && exponent != T_LREAL ? T_REAL : T_LREAL;
     expr->a = cm1e_st_coerce(st, expr->a, st->elementary[kind], "the base");
     if (cm1e_st_is_integer(exponent) && exponent != T_ANY_INT)
         expr->b = cm1e_st_convert_node(st, expr->b, st->elementary[kind]);
@@ -368,6 +369,8 @@ static void binary(st_t *st, expr_t *expr)
 static void unary(st_t *st, expr_t *expr)
 {
     cm1e_st_expression(st, expr->a);
+    if (expr->a->untyped)
+        expr->a = cm1e_st_settle(st, expr->a);
     const type_kind_t kind = expr->a->type->kind;
     expr->type = expr->a->type;
     expr->impure = expr->a->impure;

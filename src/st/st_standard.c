@@ -97,10 +97,12 @@ static bool one_type(st_t *st, expr_t *call, arg_t *first, bool (*good)(type_kin
         }
         sum = both == sum->type->kind ? sum : cm1e_st_coerce(st, sum, st->elementary[both], "the argument");
     }
+    call->untyped = sum->type->kind == T_ANY_INT || sum->type->kind == T_ANY_REAL;
     sum = cm1e_st_settle(st, sum);
     call->type = sum->type;
-    for (arg_t *arg = first; arg; arg = arg->next)
+    for (arg_t *arg = first; arg && !call->untyped; arg = arg->next)
         arg->value = cm1e_st_coerce(st, arg->value, sum->type, "the argument");
+    call->typed_args = first;
     return true;
 }
 

@@ -130,6 +130,8 @@ struct expr {
     const struct standard *standard; /**< E_CALL: the standard function */
     bool impure;         /**< has a call that may change something */
     bool explicitly;     /**< E_CONVERT: the program says so */
+    arg_t *typed_args;   /**< E_CALL of a standard function: its arguments from here on have the type of the result */
+    bool untyped;        /**< E_CALL of a standard function with literals without a type only: it can take another */
     bool bit;            /**< E_MEMBER: bit access of `integer` */
 };
 

@@ -77,6 +77,8 @@ def divided(a, b):
 
 
 def real_divided(a, b):
+    if math.isnan(b):
+        return b
     if b != 0:
         return a / b if math.isfinite(b) else (math.nan if math.isinf(a) else math.copysign(0.0, a) *
                                                math.copysign(1, b))

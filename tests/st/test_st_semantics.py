@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+"""What statements, function blocks and initial values do, by cases from the rules of IEC 61131-3 and from
+docs/STRUCTURED-TEXT.md; and what stops a program.
+
+test_st_semantics.py BIN-DIRECTORY
+"""
+import sys
+import tempfile
+
+from st_host import Host
+
+BIN = sys.argv[1]
+UNITS = """
+TYPE E_Color : (Red, Green := 5, Blue); E_Small : (One := 1, Two) USINT;
+  Point : STRUCT x : INT := 7; y : INT; END_STRUCT;
+  Box : STRUCT low : Point; high : Point := (x := 9, y := 8); list : ARRAY[0..2] OF Point; END_STRUCT;
+  Row : ARRAY[-1..1] OF INT; END_TYPE
+FUNCTION Twice : INT VAR_INPUT v : INT := 4; END_VAR Twice := 2 * v; END_FUNCTION
+FUNCTION Early : INT VAR_INPUT v : INT; END_VAR
+  Early := 1; IF v > 0 THEN RETURN; END_IF Early := 2; END_FUNCTION
+FUNCTION Split : BOOL VAR_INPUT v : INT; END_VAR VAR_OUTPUT tens, ones : INT; END_VAR VAR_IN_OUT calls : INT; END_VAR
+  tens := v / 10; ones := v MOD 10; calls := calls + 1; Split := TRUE; END_FUNCTION
+FUNCTION Greet : STRING VAR_INPUT who : STRING(10); END_VAR Greet := CONCAT('hi ', who); END_FUNCTION
+FUNCTION Sum : DINT VAR_INPUT v : Row; END_VAR VAR i : INT; END_VAR
+  FOR i := -1 TO 1 DO Sum := Sum + v[i]; END_FOR END_FUNCTION
+FUNCTION Move1 : Point VAR_INPUT p : Point; END_VAR Move1 := p; Move1.x := Move1.x + 1; END_FUNCTION
+FUNCTION_BLOCK Counter VAR_INPUT step : INT := 2; END_VAR VAR_OUTPUT total : INT := 100; END_VAR
+  total := total + step; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Outer VAR_IN_OUT shared : INT; END_VAR VAR inner : Counter := (step := 5); END_VAR
+  VAR_OUTPUT seen : INT; END_VAR VAR_TEMP t : INT; END_VAR
+  t := t + 1; inner(total => seen); shared := shared + t; END_FUNCTION_BLOCK
+VAR_GLOBAL g : INT := 3; END_VAR
+VAR_GLOBAL CONSTANT KK : INT := 4; KK2 : INT := KK * 2 + 1; END_VAR
+"""
+VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Small; p : Point; x : Box; r : Row; " \
+       "w : WORD; q : REF_TO INT; q2 : REF_TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
+       "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;"
+# (statements, {variable: value after one call})
+CASES = [
+    ("IF TRUE THEN i := 1; ELSE i := 2; END_IF", {"i": 1}),
+    ("IF i = 1 THEN j := 1; ELSIF i = 0 THEN j := 2; ELSIF TRUE THEN j := 3; ELSE j := 4; END_IF;", {"j": 2}),
+    ("i := 4; CASE i OF 1, 2: j := 1; 3..5, 9: j := 2; n := 7; ELSE j := 3; END_CASE", {"j": 2, "n": 7}),
+    ("i := 6; CASE i OF 1, 2: j := 1; 3..5: j := 2; ELSE j := 3; n := 1; END_CASE", {"j": 3, "n": 1}),
+    ("i := -3; CASE i OF -5..-1: j := 1; END_CASE", {"j": 1}),
+    ("i := 9; CASE i OF 1: j := 1; END_CASE", {"j": 0}),
+    ("c := Green; CASE c OF Red: j := 1; E_Color#Green: j := 2; E_Color.Blue: j := 3; END_CASE", {"j": 2}),
+    ("CASE 3 OF KK: j := 1; 3: j := 2; END_CASE", {"j": 2}),
+    ("FOR i := 1 TO 5 DO j := j + i; END_FOR", {"i": 6, "j": 15}),
+    ("FOR i := 5 TO 1 BY -2 DO j := j * 10 + i; END_FOR", {"i": -1, "j": 531}),
+    ("FOR i := 3 TO 1 DO j := 1; END_FOR", {"i": 3, "j": 0}),
+    ("n := 3; FOR i := 1 TO n DO n := 1; j := j + 1; END_FOR", {"j": 3}),
+    ("FOR u := 250 TO 255 DO j := j + 1; END_FOR", {"j": 6}),
+    ("FOR i := 32760 TO 32767 BY 5 DO j := j + 1; END_FOR", {"j": 2}),
+    ("FOR big := 9223372036854775806 TO 9223372036854775807 DO j := j + 1; END_FOR", {"j": 2}),
+    ("FOR i := 1 TO 9 DO IF i = 3 THEN CONTINUE; END_IF IF i = 6 THEN EXIT; END_IF j := j + i; END_FOR", {"j": 12, "i": 6}),
+    ("FOR i := 1 TO 3 DO FOR n := 1 TO 3 DO IF n = 2 THEN EXIT; END_IF j := j + 1; END_FOR END_FOR", {"j": 3}),
+    ("FOR i := 1 TO 3 DO CASE i OF 2: EXIT; END_CASE j := i; END_FOR", {"i": 2, "j": 1}),
+    ("WHILE i < 4 DO i := i + 1; IF i = 2 THEN CONTINUE; END_IF j := j + i; END_WHILE", {"i": 4, "j": 8}),
+    ("REPEAT i := i + 1; IF i = 2 THEN CONTINUE; END_IF j := j + i; UNTIL i >= 4 END_REPEAT", {"i": 4, "j": 8}),
+    ("REPEAT i := 7; UNTIL TRUE END_REPEAT", {"i": 7}),
+    ("i := 1; RETURN; i := 2;", {"i": 1}),
+    ("i := Twice(3); j := Twice(v := 5); n := Early(1) * 10 + Early(0);", {"i": 6, "j": 10, "n": 12}),
+    ("b := Split(v := 47, tens => i, ones => j, calls := n); b := Split(v := 8, calls := n);", {"i": 4, "j": 7, "n": 2}),
+    ("s := Greet('abcdefghijklmnop');", {"s": b"hi abcdefg"}),
+    ("r[-1] := 3; r[1] := 4; d := Sum(r);", {"d": 7}),
+    ("p := Move1(p); p := Move1(p);", {"p.x": 9}),
+    ("k(); i := k.total; k(step := 10); j := k.total; k(5); n := k.total;", {"i": 102, "j": 112, "n": 117}),
+    ("k.step := 6; k(total => d);", {"d": 106}),
+    ("o(shared := g); o(shared := g, seen => i);", {"g": 5, "i": 110}),
+    ("i := x.low.x; j := x.high.x * 10 + x.high.y; n := x.list[2].x;", {"i": 7, "j": 98, "n": 7}),
+    ("x.list[1] := x.high; i := x.list[1].y; x.list[1].y := 1; j := x.high.y;", {"i": 8, "j": 8}),
+    ("i := grid[1, 0] * 100 + grid[2, 0] * 10 + grid[2, 2]; grid[2, 1] := 4; j := grid[2, 1];", {"i": 196, "j": 4}),
+    ("i := a[3]; j := a[4];", {"i": 7, "j": 0}),
+    ("d := c; j := m; c := Blue; big := c;", {"d": 0, "j": 1, "big": 6}),
+    ("f := MAX(1, 2.5, -3); u := MIN(7, 200); l := SIN(0.0) + ABS(-3); w := SEL(b, 1, 2);", {"f": 2.5, "u": 7, "l": 3, "w": 1}),
+    ("q := REF(i); q^ := 5; q2 := REF(p); q2^.y := 6; b := q2 <> NULL;", {"i": 5, "p.y": 6, "b": 1}),
+    ("w.0 := TRUE; w.15 := TRUE; i.1 := TRUE; b := w.15;", {"w": 0x8001, "i": 2, "b": 1}),
+    ("w := 16#FFFF; w.3 := FALSE;", {"w": 0xFFF7}),
+    ("i := KK; j := KK2;", {"i": 4, "j": 9}),
+    ("i := 32767; i := i + 1; u := 0; u := u - 1;", {"i": -32768, "u": 255}),
+    ("i := -32768; i := -i; j := -32768; n := -1; j := j / n;", {"i": -32768, "j": -32768}),
+    ("i := -7 / 2; j := -7 MOD 2; n := 7; n := n MOD -2;", {"i": -3, "j": -1, "n": 1}),
+    ("n := 0; i := 5 + 3 MOD 2 * 4; j := 7; j := j MOD n;", {"i": 9, "j": 0}),
+    ("l := -2.0 ** 2; f := 2.0 ** 3;", {"l": 4.0, "f": 8.0}),
+    ("i := REAL_TO_INT(2.5); j := REAL_TO_INT(3.5); n := LREAL_TO_INT(-1E9); d := TRUNC(-2.9);",
+     {"i": 2, "j": 4, "n": -32768, "d": -2}),
+    ("i := DINT_TO_INT(70000); u := INT_TO_USINT(-1); w := INT_TO_WORD(-2); b := INT_TO_BOOL(2);",
+     {"i": 4464, "u": 255, "w": 65534, "b": 1}),
+    ("t := T#1h2m3s4ms; d := TIME_TO_DINT(t); t := DINT_TO_TIME(1500);", {"d": 3723004, "t": 1500000000}),
+    ("t := T#1.5s * 2; t := t + T#-500ms; t := t / 5;", {"t": 500000000}),
+    ("t := T#1s * 1.5; b := t = T#1500ms;", {"b": 1}),
+    ("b := TOD#12:30:00 - TOD#12:00:00 = T#30m; t := DT#2024-03-01-00:00:00 - DT#2024-02-28-00:00:00;",
+     {"b": 1, "t": 2 * 86400 * 10 ** 9}),
+    ("s := 'a$'b$$$41'; i := LEN(s);", {"s": b"a'b$A", "i": 5}),
+    ("s := 'abcdefghijklmnop'; i := LEN(s);", {"s": b"abcdefghij", "i": 10}),
+    ("s := 'abc'; s := CONCAT(s, s, s); i := FIND(s, 'ca'); j := FIND(s, 'x');", {"s": b"abcabcabc", "i": 3, "j": 0}),
+    ("s := INT_TO_STRING(-42); i := STRING_TO_INT('123abc'); l := STRING_TO_LREAL('2.5'); b := STRING_TO_BOOL('TRUE');",
+     {"s": b"-42", "i": 123, "l": 2.5, "b": 1}),
+    ("i := SEL(TRUE, 1, 2); j := MUX(1, 10, 20, 30); n := LIMIT(MN := 0, IN := 9, MX := 5);", {"i": 2, "j": 20, "n": 5}),
+    ("i := ADD(1, 2, 3); b := GT(3, 2); l := EXPT(2.0, 10); l := SQRT(l * l);", {"i": 6, "b": 1, "l": 1024.0}),
+    ("b := FALSE; IF b AND_THEN q^ = 1 THEN i := 1; END_IF IF TRUE OR_ELSE q^ = 1 THEN j := 1; END_IF", {"i": 0, "j": 1}),
+    ("i := 2#1010 + 8#17 + 16#F + 1_000;", {"i": 1040}),
+    ("x64 := 18446744073709551615; x64 := x64 / 2; big := -9223372036854775808;", {"x64": 2 ** 63 - 1, "big": -2 ** 63}),
+    ("(* a (* nested *) comment *) i := 1; // line\n j := 2; /* other */ {pragma} n := 3;", {"i": 1, "j": 2, "n": 3}),
+    ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
+]
+# (statements, words of the fault): the line is that of the statement
+FAULTS = [
+    ("i := 5; a[i] := 1;", "5 is outside 1..4"), ("i := -2; r[i] := 1;", "-2 is outside -1..1"),
+    ("i := 3; grid[1, i] := 1;", "3 is outside 0..2"), ("j := 7; i := j / n;", "7 is divided by zero"),
+    ("q^ := 1;", "NULL"), ("i := q2^.x;", "NULL"), ("WHILE TRUE DO i := i; END_WHILE", "1000000 times"),
+    ("REPEAT b := FALSE; UNTIL b END_REPEAT", "1000000 times"),
+    ("FOR i := 1 TO 30000 DO FOR d := 1 TO 30000 DO j := 1; END_FOR END_FOR", "1000000 times"),
+    ("FOR i := 1 TO 3 BY n DO j := 1; END_FOR", "steps of 0"), ("i := MUX(n + 3, 1, 2);", "3 is outside 0..1"),
+    ("t := t / f;", "divided by zero"),
+]
+faults = []
+
+
+def program(number, body):
+    return f"PROGRAM P{number}\nVAR_OUTPUT {VARS} END_VAR\n{body}\nEND_PROGRAM\n"
+
+
+def check_cases(folder):
+    host = Host(BIN, folder, UNITS + "".join(program(n, body) for n, (body, _) in enumerate(CASES)), "cases")
+    for n, (body, expected) in enumerate(CASES):
+        host.table.begin()
+        for i in range(host.table.task_count):
+            if host.table.tasks[i].name == f"P{n}".encode():
+                host.table.tasks[i].run()
+        if host.fault():
+            sys.exit(f"{body}: {host.fault()}")
+        for name, value in expected.items():
+            found = host.value(name if name == "g" else f"P{n}.{name}")
+            if found != value:
+                faults.append(f"{body}: {name} is {found!r}; expected {value!r}")
+
+
+def check_faults(folder):
+    for n, (body, words) in enumerate(FAULTS):
+        host = Host(BIN, folder, UNITS + program(n, body), f"fault{n}")
+        line = (UNITS + program(n, "")).count("\n") - 1
+        ran = host.run()
+        if ran or words not in host.fault()[1] or host.fault()[0] != line:
+            faults.append(f"{body}: line {line}, {words}; found {host.fault()}")
+        elif host.run():
+            faults.append(f"{body}: a task ran after the fault")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    check_cases(folder)
+    check_faults(folder)
+if faults:
+    sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
+print(f"{len(CASES)} cases, {len(FAULTS)} faults")
