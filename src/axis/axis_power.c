@@ -210,7 +210,8 @@ void cm1e_axis_enable_step(cm1e_axis_t *axis)
 cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 {
     axis->power.reset_error = CM1E_OK;
-    if (axis->state != CM1E_AXIS_ERROR_STOP) {
+    const bool waits = axis->state == CM1E_AXIS_DISABLED && cm1e_drive_waits(&axis->drive);
+    if (axis->state != CM1E_AXIS_ERROR_STOP && !waits) {
         axis->power.reset_state = CM1E_COMMAND_DONE; /* there is nothing to reset */
     } else if (axis->power.reset_state != CM1E_COMMAND_ACTIVE) {
         axis->power.reset_state = CM1E_COMMAND_ACTIVE;
@@ -232,8 +233,10 @@ static void reset_finished(cm1e_axis_t *axis)
     axis->drive.command.reset = false;
     axis->power.reset_error = error;
     axis->power.reset_state = error != CM1E_OK ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
-    axis->fault.error = error;
-    axis->fault.device_error = axis->drive.fault.device_code;
+    if (axis->state == CM1E_AXIS_ERROR_STOP) {
+        axis->fault.error = error;
+        axis->fault.device_error = axis->drive.fault.device_code;
+    }
     if (error == CM1E_OK)
         cm1e_axis_go(axis, ON_RESET);
 }

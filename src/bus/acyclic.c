@@ -22,7 +22,9 @@ static bool next_datagram(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_
 {
     if (!cm1e_recovery_idle(&slave->recovery)) {
         slave->owner = OWNER_RECOVERY;
-        return cm1e_recovery_next(slave, &slave->datagram, now_ns);
+        const bool sends = cm1e_recovery_next(slave, &slave->datagram, now_ns);
+        cm1e_hot_note(bus, slave);
+        return sends;
     }
     if (!cm1e_al_idle(&slave->al)) {
         slave->owner = OWNER_AL;
@@ -98,6 +100,7 @@ static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
         break;
     case OWNER_RECOVERY:
         cm1e_recovery_result(slave, &slave->datagram, now_ns);
+        cm1e_hot_note(bus, slave);
         break;
     case OWNER_ERRAND:
         cm1e_errand_result(bus, slave, now_ns);

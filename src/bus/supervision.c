@@ -153,7 +153,8 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
                   (bus->last_error == CM1E_OK || (bus->partly_fresh && slave->silent_cycles == 0));
     watch.out = !slave->hot.counted;
     watch.bound = slave->hot.bound;
-    if (!slave->hot.counted && bus->counters.cycles - slave->hot.out_since >= bus->config.lost_cycles_limit)
+    const bool seems_there = watch.al_state == CM1E_AL_NONE || watch.al_state == CM1E_AL_OP;
+    if (!slave->hot.counted && seems_there && bus->counters.cycles - slave->hot.out_since >= bus->config.lost_cycles_limit)
         watch.lost = true; /* its inputs showed it, long before the supervision has asked three times */
     return watch;
 }

@@ -54,6 +54,11 @@ static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
 {
     return !drive->watch.lost && (drive->watch.al_state == CM1E_AL_NONE || drive->watch.al_state == CM1E_AL_OP);
 }
+/** Whether the slave answers and is out of Operational: a reset brings it back. @rt cycle */
+static inline bool cm1e_drive_waits(const cm1e_drive_t *drive)
+{
+    return drive->position != 0 && !drive->watch.lost && !cm1e_drive_operational(drive);
+}
 /** Whether there is no device: the axis is virtual, or an encoder. @rt any */
 static inline bool cm1e_drive_is_virtual(const cm1e_drive_t *drive) { return drive->position == 0; }
 /** The index on the wire of an object that has `index` for the first axis of the device. Objects of the device itself
