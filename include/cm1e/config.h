@@ -132,6 +132,8 @@ typedef struct cm1e_dc_config {
     double sync1_us;     /**< us, SYNC1 behind SYNC0 (register 0x09A4); 0: no SYNC1 */
     double shift_us;     /**< us, SYNC0 behind the process data, less than a cycle time to both sides; 0 selects half a
                               cycle time */
+    char mode[32];       /**< name of an operation mode in the EEPROM of the slave (category DC), which gives the two
+                              periods and adds to the shift; "first": its first mode with SYNC0. "": none */
 } cm1e_dc_config_t;
 
 /** The kinds of axes. */

@@ -85,6 +85,8 @@ struct cm1e_bus_slave {
     cm1e_mapped_direction_t mapped[2];       /**< 0 outputs, 1 inputs; as configured */
     cm1e_slave_placement_t placement;
     cm1e_slave_watch_t watch;
+    cm1e_dc_config_t pulses;                 /**< as configured, or as its mode has them; all zero: none */
+    uint8_t dc_control;                      /**< of register 0x0980, by its mode */
     cm1e_dc_t *dc;                           /**< the clocks of the bus; NULL: they are not used */
     cm1e_port_watch_t ports;
     cm1e_hot_t hot;
@@ -247,6 +249,17 @@ cm1e_error_t cm1e_bus_read_pdos(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** safe_outputs.c: where safe values go; puts them where they are needed in this cycle. */
 cm1e_error_t cm1e_bus_prepare_safe_outputs(cm1e_bus_t *bus, cm1e_diag_t *diag);
 void cm1e_bus_make_outputs_safe(cm1e_bus_t *bus);
+/** What a setup of the slave writes: for an axis only what its clock needs. */
+static inline const cm1e_slave_config_t *cm1e_bus_setup_of(const cm1e_bus_slave_t *slave)
+{
+    static const cm1e_slave_config_t nothing;
+    return slave->config ? slave->config : &nothing;
+}
+/** Its objects of synchronisation are set: it runs by SYNC0 alone. What SYNC1 means is its maker's. */
+static inline bool cm1e_bus_runs_by_sync0(const cm1e_bus_slave_t *slave)
+{
+    return slave->facts.coe && slave->pulses.sync0_us != 0 && slave->pulses.sync1_us == 0;
+}
 /** Process data watchdog of a slave, in units of 100 us. */
 static inline uint16_t cm1e_bus_watchdog(const cm1e_bus_slave_t *slave)
 {

@@ -212,6 +212,8 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
             error = check_cycle_time(bus, &bus->slaves[i], diag);
     }
     if (error == CM1E_OK)
+        error = cm1e_dc_find_pulses(bus, diag);
+    if (error == CM1E_OK)
         error = read_mappings(bus, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_set_up_slaves(bus, false, diag);

@@ -34,11 +34,9 @@ static cm1e_error_t no_answer(const cm1e_bus_t *bus, const cm1e_bus_slave_t *sla
 
 /* ---- who has a clock --------------------------------------------------------------------------------------------- */
 
-static const cm1e_dc_config_t *pulses_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+static const cm1e_dc_config_t *pulses_of(const cm1e_bus_slave_t *slave)
 {
-    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave, 0);
-    const cm1e_dc_config_t *dc = axis ? &axis->dc : slave->config ? &slave->config->dc : NULL;
-    return dc && cm1e_config_has_pulses(dc) ? dc : NULL;
+    return slave->pulses.sync0_us != 0 ? &slave->pulses : NULL;
 }
 
 static uint8_t open_ports(uint16_t dl_status)
@@ -64,7 +62,7 @@ static cm1e_error_t find_clocks(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, cm1e_dia
         bus->dc.slaves[i].clock = (cm1e_slave_clock_t){.has_clock = nodes[i].has_clock};
         if (nodes[i].has_clock && bus->dc.reference == 0)
             bus->dc.reference = (uint16_t)(i + 1);
-        if (!nodes[i].has_clock && pulses_of(bus, slave))
+        if (!nodes[i].has_clock && pulses_of(slave))
             return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "%s has no distributed clocks (register 0x0008 says so), "
                                  "so there is no SYNC0: remove dc from its configuration.",
                                  cm1e_bus_label_first(bus, slave, label));
@@ -192,7 +190,8 @@ static cm1e_error_t set_pulses(cm1e_bus_t *bus, uint32_t index, const cm1e_dc_co
 {
     const cm1e_bus_slave_t *slave = &bus->slaves[index];
     cm1e_slave_clock_t *clock = &bus->dc.slaves[index].clock;
-    uint8_t off[2] = {0}, start[8], cycles[8];
+    uint8_t off[2] = {slave->dc_control, 0}, start[8], cycles[8];
+    bus->dc.slaves[index].control = slave->dc_control;
     clock->sync0_ns = (uint32_t)ns_of(config->sync0_us);
     clock->sync1_ns = (uint32_t)ns_of(config->sync1_us);
     clock->shift_ns = config->shift_us != 0 ? (int32_t)ns_of(config->shift_us)
@@ -228,7 +227,7 @@ cm1e_error_t cm1e_dc_set_up(cm1e_bus_t *bus, cm1e_diag_t *diag)
         bus->slaves[i].dc = &bus->dc;
     align(bus);
     for (uint32_t i = 0; i < bus->scanned && error == CM1E_OK; i++) {
-        const cm1e_dc_config_t *pulses = pulses_of(bus, &bus->slaves[i]);
+        const cm1e_dc_config_t *pulses = pulses_of(&bus->slaves[i]);
         if (pulses)
             error = set_pulses(bus, i, pulses, diag);
     }

@@ -23,6 +23,7 @@ typedef struct cm1e_dc_slave {
     cm1e_slave_clock_t clock;
     uint8_t beyond;       /**< looks in a row that found it beyond its tolerance */
     bool seen;            /**< looked at since Operational was prepared */
+    uint8_t control;      /**< register 0x0980: who has the unit for SYNC and latch */
     uint8_t step;         /**< of its recovery (dc_recovery.c), and what that remembers */
     int64_t deadline_ns;
     uint64_t offset;
@@ -59,6 +60,10 @@ struct cm1e_bus_slave;
 cm1e_error_t cm1e_dc_set_up(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Ends the pulses. */
 void cm1e_dc_stop(cm1e_bus_t *bus);
+
+/* dc_modes.c */
+/** Before the slaves are written: takes the pulses of each from the configuration, or from the mode in its SII. */
+cm1e_error_t cm1e_dc_find_pulses(cm1e_bus_t *bus, cm1e_diag_t *diag);
 
 /* dc_pulses.c */
 /** First pulse and periods, as registers have them; `now_ns` is the system time. */

@@ -33,7 +33,7 @@ static void fill(const cm1e_dc_t *dc, const cm1e_dc_slave_t *own, uint16_t stati
         cm1e_put_u32(d->data + 8, own->clock.delay_ns);
         break;
     case RESTART: cm1e_put_u16(d->data, DC_SPEED_START); break;
-    case OFF: cm1e_put_u16(d->data, 0); break;
+    case OFF: cm1e_put_u16(d->data, own->control); break;
     case CYCLES:
         cm1e_dc_put_pulses(dc, &own->clock, dc->reference_ns, start, d->data);
         break;

@@ -49,7 +49,9 @@ static cm1e_recovery_step_t step_behind(const cm1e_bus_slave_t *slave, cm1e_reco
 {
     const cm1e_recovery_step_t next = (cm1e_recovery_step_t)(step + 1);
     const bool setup = next == RECOVERY_SETUP || next == RECOVERY_SETUP_OP;
-    return setup && !cm1e_setup_is_needed(slave->config, next == RECOVERY_SETUP_OP) ? step_behind(slave, next) : next;
+    const bool needed = setup && cm1e_setup_is_needed(cm1e_bus_setup_of(slave), cm1e_bus_runs_by_sync0(slave),
+                                                      next == RECOVERY_SETUP_OP);
+    return setup && !needed ? step_behind(slave, next) : next;
 }
 
 static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
@@ -527,7 +529,7 @@ static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
     cm1e_setup_job_t *job = &slave->setup;
     if (!slave->recovery.entered) {
         slave->recovery.entered = true;
-        cm1e_setup_begin(job, slave->info.position, slave->config, before_op);
+        cm1e_setup_begin(job, slave->info.position, cm1e_bus_setup_of(slave), cm1e_bus_runs_by_sync0(slave), before_op);
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_setup_next(job);

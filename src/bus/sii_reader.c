@@ -97,6 +97,19 @@ static void take_sync_managers(cm1e_sii_t *sii, const cm1e_description_t *device
     }
 }
 
+static void take_dc_modes(cm1e_sii_t *sii, const cm1e_description_t *device)
+{
+    for (size_t i = 0; i < device->dc_modes.count && i < CM1E_SII_DC_MODES; i++) {
+        const cm1e_dc_mode_t *mode = &device->dc_modes.at[i];
+        cm1e_sii_dc_mode_t *taken = &sii->dc_modes[sii->dc_mode_count++];
+        cm1e_text_of_device(taken->name, sizeof taken->name, mode->name, strlen(mode->name));
+        taken->facts = (cm1e_dc_facts_t){
+            .assign_activate = mode->assign_activate, .sync0_cycle_ns = mode->sync0_cycle_ns,
+            .sync0_factor = mode->sync0_factor, .sync0_shift_ns = mode->sync0_shift_ns,
+            .sync1_factor = mode->sync1_factor, .sync1_shift_ns = mode->sync1_shift_ns};
+    }
+}
+
 /** Adds up the bits that each sync manager carries; a PDO without one is not assigned. */
 static void take_pdos(cm1e_sii_t *sii, const cm1e_description_t *device)
 {
@@ -197,6 +210,7 @@ cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, cm1e_sii_reader read
         sii->complete_access = device->mailbox.complete_access;
         sii->no_lrw = device->no_lrw;
         take_sync_managers(sii, device);
+        take_dc_modes(sii, device);
         take_pdos(sii, device);
         if (!take_signals(sii, device))
             result = SII_NO_MEMORY;

@@ -10,7 +10,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CM1E_SII_SYNC_MANAGERS = 8, CM1E_SII_NAME = 48, CM1E_SII_SIGNAL_NAME = 64 };
+#include "config/clocks.h"
+
+enum { CM1E_SII_DC_MODES = 4, CM1E_SII_DC_MODE_NAME = 32, CM1E_SII_SYNC_MANAGERS = 8, CM1E_SII_NAME = 48, CM1E_SII_SIGNAL_NAME = 64 };
 
 /** An entry of a PDO that a sync manager carries; gaps are left out. */
 typedef struct cm1e_sii_signal {
@@ -33,6 +35,12 @@ typedef struct cm1e_sii_sync_manager {
     uint8_t control, enable;
 } cm1e_sii_sync_manager_t;
 
+/** An operation mode of category 60; further ones are not kept. */
+typedef struct cm1e_sii_dc_mode {
+    char name[CM1E_SII_DC_MODE_NAME];
+    cm1e_dc_facts_t facts;
+} cm1e_sii_dc_mode_t;
+
 typedef struct cm1e_sii {
     uint32_t vendor_id, product_code, revision, serial_number;
     uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length;
@@ -42,6 +50,8 @@ typedef struct cm1e_sii {
     uint8_t sync_manager_count;
     cm1e_sii_sync_manager_t sync_managers[CM1E_SII_SYNC_MANAGERS];
     uint32_t bits[2][CM1E_SII_SYNC_MANAGERS];          /**< process data: [0] outputs (RxPDO), [1] inputs, by SM */
+    uint8_t dc_mode_count;
+    cm1e_sii_dc_mode_t dc_modes[CM1E_SII_DC_MODES];
     cm1e_sii_signals_t *signals;                       /**< NULL: none; freed by cm1e_sii_free() */
 } cm1e_sii_t;
 

@@ -4,12 +4,14 @@
 #include "device/device.h"
 
 enum { SDO_TIMEOUT_NS = 1000000000, COUNT_BYTES = 1, PDO_BYTES = 2, ENTRY_BYTES = 4 };
+enum { SYNC_TYPE = 1, SYNC_BYTES = 2, BY_SYNC0 = 2 }; /* ETG.1020: sub-index, and its value for DC with SYNC0 */
 
 /** One transfer of the list. */
 typedef struct step {
     uint16_t index;
     uint8_t subindex, bytes;
     bool check; /**< reads what was written; false: writes */
+    bool optional; /**< a write that may be refused; then what follows, its check, is left out */
     uint64_t value;
 } step_t;
 
@@ -18,6 +20,7 @@ typedef struct walk {
     unsigned left;
     step_t *step;
     bool check; /**< the steps are those that read */
+    bool optional;
 } walk_t;
 
 /** false: go on; true: this is the step. */
@@ -25,7 +28,7 @@ static bool visit(walk_t *walk, unsigned index, unsigned subindex, unsigned byte
 {
     if (walk->left-- > 0)
         return false;
-    *walk->step = (step_t){(uint16_t)index, (uint8_t)subindex, (uint8_t)bytes, walk->check, value};
+    *walk->step = (step_t){(uint16_t)index, (uint8_t)subindex, (uint8_t)bytes, walk->check, walk->optional, value};
     return true;
 }
 
@@ -88,34 +91,65 @@ static bool walk_assignment(walk_t *walk, const cm1e_slave_config_t *config)
     return false;
 }
 
-static bool find_step(const cm1e_slave_config_t *config, bool before_op, unsigned number, step_t *step)
+static bool is_stated(const cm1e_slave_config_t *config, unsigned index)
+{
+    for (unsigned i = 0; i < config->sdo_count; i++)
+        if (config->sdos[i].index == index && config->sdos[i].subindex == SYNC_TYPE)
+            return true;
+    return false;
+}
+
+static bool walk_synchronisation(walk_t *walk, const cm1e_slave_config_t *config)
+{
+    for (unsigned index = OBJ_1C32_SM_OUTPUT_PARAMETER; index <= OBJ_1C32_SM_OUTPUT_PARAMETER + 1; index++) {
+        if (is_stated(config, index))
+            continue;
+        for (int check = 0; check < 2; check++) {
+            walk->check = check != 0;
+            walk->optional = !walk->check;
+            if (visit(walk, index, SYNC_TYPE, SYNC_BYTES, BY_SYNC0))
+                return true;
+        }
+    }
+    walk->check = walk->optional = false;
+    return false;
+}
+
+static bool find_step(const cm1e_slave_config_t *config, bool by_sync0, bool before_op, unsigned number, step_t *step)
 {
     walk_t walk = {.left = number, .step = step};
     if (walk_sdos(&walk, config, before_op))
         return true;
     if (before_op)
         return false;
+    if (by_sync0 && walk_synchronisation(&walk, config))
+        return true;
     if (walk_clearing(&walk, config) || walk_mapping(&walk, config) || walk_assignment(&walk, config))
         return true;
     walk.check = true;
     return walk_mapping(&walk, config) || walk_assignment(&walk, config);
 }
 
-bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, bool before_op)
+bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, bool by_sync0, bool before_op)
 {
     step_t step;
-    return config && find_step(config, before_op, 0, &step);
+    return config && find_step(config, by_sync0, before_op, 0, &step);
 }
 
-void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config, bool before_op)
+void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config, bool by_sync0,
+                      bool before_op)
 {
-    *job = (cm1e_setup_job_t){.config = config, .before_op = before_op, .sdo = {.position = position}};
+    *job = (cm1e_setup_job_t){.config = config, .by_sync0 = by_sync0, .before_op = before_op, .sdo = {.position = position}};
 }
 
 /** false: the job has failed. */
 static bool took(cm1e_setup_job_t *job)
 {
     if (cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR) {
+        if (job->optional && job->sdo.error == CM1E_ERROR_SDO_ABORT) {
+            job->step++; /* without its check */
+            return true;
+        }
         job->error = job->sdo.error;
         return false;
     }
@@ -133,12 +167,13 @@ cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job)
     step_t step;
     if (!job->config)
         return NULL;
-    if ((job->started && !took(job)) || !find_step(job->config, job->before_op, job->step, &step)) {
+    if ((job->started && !took(job)) || !find_step(job->config, job->by_sync0, job->before_op, job->step, &step)) {
         job->config = NULL;
         return NULL;
     }
     job->step++;
     job->started = true;
+    job->optional = step.optional;
     job->expected = step.value;
     cm1e_put_uint(job->data, sizeof job->data, step.check ? 0 : step.value);
     job->sdo = (cm1e_sdo_t){.position = job->sdo.position, .index = step.index, .subindex = step.subindex,

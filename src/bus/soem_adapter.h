@@ -55,6 +55,9 @@ uint16_t cm1e_soem_address(cm1e_soem_t *soem, uint16_t position);
 void cm1e_soem_set_up_mailboxes(cm1e_soem_t *soem);
 /** What the process data mean by the SII; NULL: nothing is known. Valid until the next scan. */
 const struct cm1e_sii_signals *cm1e_soem_signals(const cm1e_soem_t *soem, uint16_t position);
+/** The operation modes of its distributed clock, by its SII. Returns how many there are. */
+struct cm1e_sii_dc_mode;
+unsigned cm1e_soem_dc_modes(const cm1e_soem_t *soem, uint16_t position, const struct cm1e_sii_dc_mode **modes);
 void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts);
 
 /** Changes the number of slaves. Those beyond the present ones are absent, with the station address of their place. */

@@ -100,6 +100,12 @@ const cm1e_sii_signals_t *cm1e_soem_signals(const cm1e_soem_t *soem, uint16_t po
     return soem->siis[position].signals;
 }
 
+unsigned cm1e_soem_dc_modes(const cm1e_soem_t *soem, uint16_t position, const cm1e_sii_dc_mode_t **modes)
+{
+    *modes = soem->siis[position].dc_modes;
+    return soem->siis[position].dc_mode_count;
+}
+
 /** The categories are the same for the same product and revision: they are read once. */
 static const cm1e_sii_t *same_kind_before(const cm1e_soem_t *soem, uint16_t position)
 {

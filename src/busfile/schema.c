@@ -140,6 +140,7 @@ static const cyaml_schema_field_t dc_fields[] = {
     AXIS_FLOAT("sync0_us", dc.sync0_us),
     AXIS_FLOAT("sync1_us", dc.sync1_us),
     AXIS_FLOAT("shift_us", dc.shift_us),
+    AXIS_STRING("mode", dc.mode),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_field_t homing_fields[] = {
@@ -291,6 +292,7 @@ static const cyaml_schema_field_t dc_slave_fields[] = {
     CYAML_FIELD_FLOAT("sync0_us", OPTIONAL, cm1e_busfile_slave_t, slave.dc.sync0_us),
     CYAML_FIELD_FLOAT("sync1_us", OPTIONAL, cm1e_busfile_slave_t, slave.dc.sync1_us),
     CYAML_FIELD_FLOAT("shift_us", OPTIONAL, cm1e_busfile_slave_t, slave.dc.shift_us),
+    SLAVE_STRING("mode", slave.dc.mode),
     CYAML_FIELD_END,
 };
 

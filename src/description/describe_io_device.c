@@ -77,6 +77,21 @@ static void describe_eeprom(cm1e_arena_t *arena, cm1e_description_t *device, con
 
 /* ---- analog ------------------------------------------------------------------------------------------------------ */
 
+/* As devices of this kind have them: by process data, by SYNC0 with every cycle, and several samples a cycle, with SYNC1
+ * for the last one. */
+static void add_dc_modes(cm1e_arena_t *arena, cm1e_description_t *device)
+{
+    static const cm1e_dc_mode_t modes[] = {
+        {.name = "SM-Synchron"},
+        {.name = "DC-Synchron", .assign_activate = 0x0300, .sync0_given = true, .sync0_factor = 1,
+         .sync0_shift_ns = 10000},
+        {.name = "DC-Oversampling", .assign_activate = 0x0730, .sync0_given = true, .sync1_given = true,
+         .sync0_factor = -4, .sync1_factor = 4},
+    };
+    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
+        *(cm1e_dc_mode_t *)CM1E_APPEND(arena, &device->dc_modes) = modes[i];
+}
+
 static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_sim_slave_config_t *sim)
 {
     const cm1e_device_options_t options = {0};
@@ -95,6 +110,7 @@ static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, con
         add_entry(arena, pdo, index, VALUE, 16, "Value");
     }
     cm1e_describe_communication(arena, device, &options);
+    add_dc_modes(arena, device);
     cm1e_describe_eeprom(arena, device, &options, false);
     cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &device->pdos);
 }

@@ -95,6 +95,16 @@ static void add_assignment(cm1e_sim_io_objects_t *o, const cm1e_description_t *d
         add_entry(o, i + 1, RW_PREOP, CM1E_TYPE_UINT, "Assigned PDO", assigned[i]);
 }
 
+/* How it is synchronised (ETG.1020): 1 by process data, 2 by SYNC0. */
+static void add_synchronisation(cm1e_sim_io_objects_t *o)
+{
+    for (unsigned index = OBJ_1C32_SM_OUTPUT_PARAMETER; index <= OBJ_1C32_SM_OUTPUT_PARAMETER + 1; index++) {
+        add_object(o, index, CM1E_OBJECT_RECORD, 1, "Synchronisation");
+        add_count(o, RO, 1);
+        add_entry(o, 1, RW_PREOP, CM1E_TYPE_UINT, "Synchronisation type", 1);
+    }
+}
+
 static void add_channels(cm1e_sim_io_objects_t *o, const cm1e_sim_slave_config_t *config)
 {
     for (unsigned n = 0; n < config->inputs; n++) {
@@ -138,6 +148,7 @@ bool cm1e_sim_io_objects_create(cm1e_sim_io_device_t *device, const cm1e_slave_c
     add_sync_managers(o);
     add_assignment(o, described, false);
     add_assignment(o, described, true);
+    add_synchronisation(o);
     add_channels(o, &device->config);
     for (size_t i = 0; i < o->object_count; i++)
         if (o->objects[i].index >= 0x1600 && o->objects[i].index < 0x1C00)

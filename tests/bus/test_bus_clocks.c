@@ -278,6 +278,83 @@ START_TEST(a_slave_without_an_axis_gets_pulses_too)
 }
 END_TEST
 
+static cm1e_slave_config_t *add_encoder(int64_t cycle_ns)
+{
+    sim_config(1);
+    config.cycle_time_ns = cycle_ns;
+    config.axes[0].firmware[0] = '\0'; /* an old one knows 1 ms only */
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "encoder");
+    slave->address = 2;
+    slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_ANALOG, .inputs = 2};
+    return slave;
+}
+
+/** The pulses of a mode in the EEPROM of the slave (category 60), and the objects that say how it is synchronised. */
+START_TEST(a_mode_of_the_eeprom_gives_the_pulses)
+{
+    static const struct {
+        const char *mode;
+        int64_t cycle_ns;
+        double shift_us;
+        uint32_t sync0_ns, sync1_ns;
+        int32_t shift_ns;
+        unsigned control, type; /* of 0x0980, 0x1C32:01 */
+    } rows[] = {
+        {"DC-Synchron", 1000000, 0, 1000000, 0, 510000, 0x0300, 2},
+        {"first", 250000, -20, 250000, 0, -10000, 0x0300, 2},
+        {"DC-Oversampling", 1000000, 100, 250000, 750000, 100000, 0x0730, 1},
+        {"SM-Synchron", 1000000, 0, 0, 0, 0, 0, 1},
+    };
+    cm1e_slave_config_t *slave = add_encoder(rows[_i].cycle_ns);
+    strcpy(slave->dc.mode, rows[_i].mode);
+    slave->dc.shift_us = rows[_i].shift_us;
+    cm1e_bus_t *bus = start_bus();
+    const cm1e_slave_clock_t clock = clock_of(bus, 2);
+    ck_assert_uint_eq(clock.sync0_ns, rows[_i].sync0_ns);
+    ck_assert_uint_eq(clock.sync1_ns, rows[_i].sync1_ns);
+    ck_assert_int_eq(clock.shift_ns, rows[_i].shift_ns);
+    const uint8_t *memory = cm1e_sim_segment_slave(segment_of(bus), 2)->memory;
+    ck_assert_uint_eq(memory[0x0980] & 0xF0u, rows[_i].control & 0xF0u);
+    ck_assert_uint_eq(memory[0x0981], rows[_i].control >> 8);
+    for (unsigned round = 0; round < 2; round++) { /* at the start, and when it comes back */
+        uint8_t type[4];
+        for (uint16_t index = 0x1C32; index <= 0x1C33; index++) {
+            size_t size = sizeof type;
+            ck_assert_int_eq(cm1e_sdo_read(bus, 2, index, 1, type, &size, &diag), CM1E_OK);
+            ck_assert_uint_eq(cm1e_get_u16(type), rows[_i].type);
+        }
+        if (round == 0)
+            simulate(bus, "power-cycle 2 20");
+        for (unsigned n = 0; n < 6000; n++)
+            cycle(bus);
+        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 2).al_state, CM1E_AL_OP);
+        ck_assert_uint_eq(memory[0x0980] & 0xF0u, rows[_i].control & 0xF0u);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_mode_that_there_is_not_is_told_with_those_there_are)
+{
+    cm1e_slave_config_t *slave = add_encoder(1000000);
+    strcpy(slave->dc.mode, "DC-Latch");
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "has no mode \"DC-Latch\"") && strstr(diag.text, "\"DC-Synchron\", \"DC-Over"), "%s",
+                  diag.text);
+    cm1e_bus_close(bus);
+    strcpy(slave->dc.mode, "DC-Oversampling"); /* 200 us / 4 is shorter than any controller can do */
+    config.cycle_time_ns = 200000;
+    bus = open_bus();
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "cannot be used: dc.sync0_us is 50"), "%s", diag.text);
+    cm1e_bus_close(bus);
+    slave->dc.sync0_us = 1000;
+    ck_assert_int_eq(cm1e_bus_config_check(&config, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "slave encoder: dc.mode is given together"), "%s", diag.text);
+}
+END_TEST
+
 /** Junctions: a frame comes back out of one branch before it goes into the next one, so what is behind has the delay of
  *  all that was visited before. The slaves of a tree are as exact as those of a line. */
 START_TEST(clocks_of_a_tree_have_the_delays_of_its_branches)
@@ -318,13 +395,7 @@ START_TEST(no_slave_is_asked_for_operational_before_its_first_pulse)
         uint32_t cycle_ns;
         double sync0_us;
     } rows[] = {{250000, 250}, {1000000, 300000}};
-    sim_config(1);
-    config.cycle_time_ns = rows[_i].cycle_ns;
-    config.axes[0].firmware[0] = '\0'; /* an old one knows 1 ms only */
-    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "encoder");
-    slave->address = 2;
-    slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_ANALOG, .inputs = 2};
-    slave->dc.sync0_us = rows[_i].sync0_us;
+    add_encoder(rows[_i].cycle_ns)->dc.sync0_us = rows[_i].sync0_us;
     cm1e_bus_t *bus = start_bus();
     cycles(bus, 500);
     simulate(bus, "power-cycle 2 50");
@@ -657,6 +728,8 @@ int main(void)
     tcase_add_test(good, clocks_that_nobody_asked_for_are_left_alone);
     tcase_add_test(good, a_bus_of_motors_may_follow_a_clock_without_sync0);
     tcase_add_test(good, a_slave_without_an_axis_gets_pulses_too);
+    tcase_add_loop_test(good, a_mode_of_the_eeprom_gives_the_pulses, 0, 4);
+    tcase_add_test(good, a_mode_that_there_is_not_is_told_with_those_there_are);
     tcase_add_loop_test(good, clocks_of_a_tree_have_the_delays_of_its_branches, 0, 3);
     tcase_add_loop_test(good, no_slave_is_asked_for_operational_before_its_first_pulse, 0, 2);
     tcase_add_test(good, a_start_with_lost_frames_gives_right_clocks);

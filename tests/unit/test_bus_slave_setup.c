@@ -8,6 +8,7 @@
 
 static cm1e_slave_config_t config;
 static cm1e_setup_job_t job;
+static bool by_sync0;
 
 void setUp(void)
 {
@@ -18,7 +19,7 @@ void setUp(void)
         .sdo_count = 3,
     };
 }
-void tearDown(void) {}
+void tearDown(void) { by_sync0 = false; }
 
 typedef struct transfer {
     bool write;
@@ -47,7 +48,7 @@ typedef enum harm { NOTHING = 0, REFUSED, OTHER_VALUE } harm_t;
 static int run(bool before_op, const transfer_t *expected, int harmed, harm_t harm)
 {
     int count = 0;
-    cm1e_setup_begin(&job, 3, &config, before_op);
+    cm1e_setup_begin(&job, 3, &config, by_sync0, before_op);
     for (cm1e_sdo_t *sdo; (sdo = cm1e_setup_next(&job)) != NULL; count++) {
         const transfer_t *one = &expected[count];
         const bool hit = harm != NOTHING && count == harmed;
@@ -103,16 +104,42 @@ static void test_every_other_value_is_noticed(void)
 
 static void test_nothing_to_write_is_no_job(void)
 {
-    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false));
-    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, true));
+    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false, false));
+    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false, true));
     config.sdo_count = 0;
-    TEST_ASSERT_FALSE(cm1e_setup_is_needed(&config, true));
-    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false));
+    TEST_ASSERT_FALSE(cm1e_setup_is_needed(&config, false, true));
+    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false, false));
     config.entry_count = config.outputs_pdo_count = config.inputs_pdo_count = 0;
-    TEST_ASSERT_FALSE(cm1e_setup_is_needed(&config, false));
-    TEST_ASSERT_FALSE(cm1e_setup_is_needed(NULL, false));
+    TEST_ASSERT_FALSE(cm1e_setup_is_needed(&config, false, false));
+    TEST_ASSERT_FALSE(cm1e_setup_is_needed(NULL, false, false));
     TEST_ASSERT_EQUAL(0, run(false, before_safe_op, 0, NOTHING));
     TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+}
+
+/* 0x1C32:01 and 0x1C33:01 of a slave that has them, of one that refuses them, and of one that takes another value. */
+static void test_synchronisation_by_sync0_is_written_where_the_slave_lets_it(void)
+{
+    static const transfer_t expected[] = {
+        {true, 0x1C32, 1, 2, 2}, {false, 0x1C32, 1, 2, 2}, {true, 0x1C33, 1, 2, 2}, {false, 0x1C33, 1, 2, 2},
+    };
+    static const transfer_t refused[] = {{true, 0x1C32, 1, 2, 2}, {true, 0x1C33, 1, 2, 2}, {false, 0x1C33, 1, 2, 2}};
+    by_sync0 = true;
+    config = (cm1e_slave_config_t){.sdo_count = 0};
+    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, true, false));
+    TEST_ASSERT_FALSE(cm1e_setup_is_needed(&config, true, true));
+    TEST_ASSERT_EQUAL(4, run(false, expected, 0, NOTHING));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+    TEST_ASSERT_EQUAL(3, run(false, refused, 0, REFUSED));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+    TEST_ASSERT_EQUAL(2, run(false, expected, 1, OTHER_VALUE));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_PDO_MAPPING, job.error);
+    TEST_ASSERT_EQUAL_HEX16(0x1C32, job.sdo.index);
+    TEST_ASSERT_EQUAL(2, run(false, expected, 1, REFUSED)); /* one that lets it be written lets it be read */
+    TEST_ASSERT_EQUAL(CM1E_ERROR_SDO_ABORT, job.error);
+    config.sdos[0] = (cm1e_sdo_config_t){0x1C32, 1, 2, false, 3};
+    config.sdo_count = 1;
+    static const transfer_t stated[] = {{true, 0x1C32, 1, 2, 3}, {true, 0x1C33, 1, 2, 2}, {false, 0x1C33, 1, 2, 2}};
+    TEST_ASSERT_EQUAL(3, run(false, stated, 0, NOTHING));
 }
 
 int main(void)
@@ -122,5 +149,6 @@ int main(void)
     RUN_TEST(test_every_refusal_ends_the_job_there);
     RUN_TEST(test_every_other_value_is_noticed);
     RUN_TEST(test_nothing_to_write_is_no_job);
+    RUN_TEST(test_synchronisation_by_sync0_is_written_where_the_slave_lets_it);
     return UNITY_END();
 }

@@ -379,12 +379,16 @@ static void test_pulses_of_axes_and_slaves(void)
          "  - {device: cia402, drive: {counts_per_revolution: 4096, max_speed_rpm: 3000},\n"
          "     dc: {sync0_us: 500, sync1_us: 125, shift_us: -62.5}}\n"
          "slaves:\n"
-         "  - {name: encoder, position: 2, dc: {sync0_us: 2000}}\n");
+         "  - {name: encoder, position: 2, dc: {sync0_us: 2000}}\n"
+         "  - {name: scale, position: 3, dc: {mode: DC-Synchron, shift_us: 20}}\n");
     TEST_ASSERT_TRUE(config.distributed_clocks);
     TEST_ASSERT_EQUAL_DOUBLE(500, config.axes[0].dc.sync0_us);
     TEST_ASSERT_EQUAL_DOUBLE(125, config.axes[0].dc.sync1_us);
     TEST_ASSERT_EQUAL_DOUBLE(-62.5, config.axes[0].dc.shift_us);
+    TEST_ASSERT_EQUAL_STRING("", config.axes[0].dc.mode);
     TEST_ASSERT_EQUAL_DOUBLE(2000, config.slaves[0].dc.sync0_us);
+    TEST_ASSERT_EQUAL_STRING("DC-Synchron", config.slaves[1].dc.mode);
+    TEST_ASSERT_EQUAL_DOUBLE(20, config.slaves[1].dc.shift_us);
 }
 
 int main(void)
