@@ -21,6 +21,7 @@
 #ifndef CM1E_GENERATE_ENI_H
 #define CM1E_GENERATE_ENI_H
 
+#include "cm1e/config.h"
 #include "cm1e/generate.h"
 #include "description/check.h"
 #include "description/description.h"
@@ -191,12 +192,15 @@ typedef struct cm1e_eni_slave {
     const cm1e_description_t *device; /**< its PDOs by the default assignment; outlives the document */
     const char *name;                 /**< in the network: "x_axis"; must be unique */
     uint16_t alias;                   /**< configured station alias by which it is to be found; 0: by position */
+    bool has_clock;                   /**< its distributed clock is used; the first one is the reference */
+    cm1e_dc_config_t pulses;          /**< of that clock; all zero: none */
+    uint16_t assign_activate;         /**< registers 0x0980 and 0x0981 with pulses; 0: what they need */
 } cm1e_eni_slave_t;
 
 void cm1e_eni_free(cm1e_eni_t *document);
 cm1e_error_t cm1e_eni_read(cm1e_eni_t *document, const void *bytes, size_t size, cm1e_diag_t *diag);
 cm1e_error_t cm1e_eni_write(cm1e_file_t *out, const cm1e_eni_t *document, cm1e_diag_t *diag);
-/** A line of slaves, in the given order, without distributed clocks. CM1E_ERROR_CONFIG: a name twice, or process data
+/** A line of slaves, in the given order. CM1E_ERROR_CONFIG: a name twice, or process data
  *  that no frame can hold. */
 cm1e_error_t cm1e_eni_make(cm1e_eni_t *document, const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns,
                            cm1e_diag_t *diag);
@@ -229,8 +233,10 @@ bool cm1e_eni_add_pdo_bits(const cm1e_eni_device_t *device, const cm1e_eni_sync_
 cm1e_description_t cm1e_eni_describe(cm1e_arena_t *arena, const cm1e_eni_device_t *device);
 /** The InitCmds that start a slave of our making; its addresses, sync managers, PDOs and mailbox are already there.
  *  `logical` is the address of its process data, `alias` 0: none. */
-void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, uint32_t logical, uint16_t alias);
-void cm1e_eni_make_master_commands(cm1e_arena_t *arena, cm1e_eni_command_list_t *list);
+void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, uint32_t logical, uint16_t alias,
+                            uint16_t assign_activate);
+/** `clocks`: there is a slave whose clock is used. */
+void cm1e_eni_make_master_commands(cm1e_arena_t *arena, cm1e_eni_command_list_t *list, bool clocks);
 /** The rules about cyclic frames and images. */
 void cm1e_eni_check_frames(cm1e_findings_t *findings, const cm1e_eni_t *document);
 

@@ -264,6 +264,35 @@ static void clear_fmmus(maker_t *maker, unsigned count)
               (uint16_t)(FMMU + n * FMMU_BYTES), FMMU_BYTES, cm1e_arena_format(maker->arena, "clear fmmu %u", n));
 }
 
+/* ---- clock ------------------------------------------------------------------------------------------------------ */
+
+static void write_zeros(maker_t *maker, uint16_t reg, size_t size, const char *comment)
+{
+    write_number(maker, CM1E_ENI_PS, CM1E_ENI_FPWR, reg, 0, size, comment);
+}
+
+/* Offset, delay and start time are of the moment: a file has the place for them, and the master puts its values there
+ * (TwinCAT's files have the start time so). */
+static void make_clock(maker_t *maker, uint16_t assign_activate)
+{
+    const cm1e_eni_dc_t *dc = &maker->device->dc;
+    uint8_t cycles[8];
+    if (!dc->present)
+        return;
+    write_zeros(maker, DC_OFFSET, 8, "set dc system time offset (of the master)");
+    write_zeros(maker, DC_DELAY, 4, "set dc propagation delay (of the master)");
+    if (dc->cycle0_ns == 0)
+        return;
+    cm1e_put_u32(cycles, (uint32_t)dc->cycle0_ns);
+    cm1e_put_u32(cycles + 4, (uint32_t)dc->cycle1_ns);
+    write_zeros(maker, DC_CONTROL, 2, "clear dc activation");
+    set_bytes(maker, to_slave(maker, CM1E_ENI_PS, CM1E_ENI_FPWR, DC_CYCLES, "set dc cycle time"), cycles, sizeof cycles);
+    write_zeros(maker, DC_START, 8, "set dc start time (of the master)");
+    write_number(maker, CM1E_ENI_PS, CM1E_ENI_FPWR, DC_CONTROL, assign_activate, 2, "set dc activation");
+    clear(maker, CM1E_ENI_SP | CM1E_ENI_SI | CM1E_ENI_OP | CM1E_ENI_OI, CM1E_ENI_FPWR, DC_CONTROL, 2,
+          "clear dc activation");
+}
+
 /* ---- a slave ---------------------------------------------------------------------------------------------------- */
 
 static void make_forward(maker_t *maker, uint32_t entry)
@@ -285,7 +314,8 @@ static void make_forward(maker_t *maker, uint32_t entry)
     await(maker, CM1E_ENI_SO, CM1E_ENI_FPRD, AL_OP, true, TIME_OP, "check device state for OP");
 }
 
-void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, uint32_t logical, uint16_t alias)
+void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, uint32_t logical, uint16_t alias,
+                            uint16_t assign_activate)
 {
     maker_t maker = {arena, device};
     const uint32_t entry = CM1E_ENI_IP | (device->mailbox.has_bootstrap ? CM1E_ENI_IB : 0);
@@ -301,6 +331,7 @@ void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, uint
     clear_fmmus(&maker, fmmus);
     await(&maker, CM1E_ENI_SP | CM1E_ENI_OP, CM1E_ENI_FPRD, AL_PREOP, false, TIME_BACK_PREOP,
           "check device state for PREOP");
+    make_clock(&maker, assign_activate);
     make_forward(&maker, entry);
 }
 
@@ -308,7 +339,7 @@ void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, uint
 
 /* Before any slave, to all of them at once: what another master may have left. How many answer is not stated, since
  * a controller need not have every register. */
-void cm1e_eni_make_master_commands(cm1e_arena_t *arena, cm1e_eni_command_list_t *list)
+void cm1e_eni_make_master_commands(cm1e_arena_t *arena, cm1e_eni_command_list_t *list, bool clocks)
 {
     enum { FMMU_TRANSITIONS = CM1E_ENI_IP | TO_INIT };
     static const struct {
@@ -330,8 +361,10 @@ void cm1e_eni_make_master_commands(cm1e_arena_t *arena, cm1e_eni_command_list_t 
         {CM1E_ENI_IP, CM1E_ENI_BWR, DC_SPEED, 0x1000, 2, "reset dc speed"},
         {CM1E_ENI_IP, CM1E_ENI_BWR, DC_FILTER, 0x0C00, 2, "configure dc filter"},
         {CM1E_ENI_IP, CM1E_ENI_BWR, DL_CONTROL_ALIAS, 0, 1, "disable second physical address"},
+        {CM1E_ENI_PS, CM1E_ENI_BWR, DC_RECEIVE_TIMES, 0, 4, "latch dc receive times"}, /* with clocks only */
     };
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    const size_t count = sizeof rows / sizeof rows[0] - !clocks;
+    for (size_t i = 0; i < count; i++) {
         cm1e_eni_command_t *command =
             add(arena, list, rows[i].transitions, rows[i].code, 0, rows[i].reg, rows[i].comment);
         command->before_slave = true;

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ enum { FIRST_STATION = 0x1001, FIRST_LOGICAL = 0x01000000, LOGICAL_PER_FRAME = 0
  * and EtherCAT. */
 enum { IMAGE_PER_FRAME = 1536, FRAME_HEADERS = 16 };
 enum { COE_TIMEOUT_MS = 3000, MAILBOX_POLL_MS = 50 };
+enum { BY_SYNC0 = 0x0300, BY_SYNC0_AND_SYNC1 = 0x0700 };
 
 typedef struct maker {
     cm1e_eni_t *document;
@@ -21,6 +23,9 @@ typedef struct maker {
     cm1e_eni_frame_t *frame;     /* that slaves are being put into; NULL: none yet */
     cm1e_eni_command_t *process_data; /* its LRW */
     uint32_t frames;
+    int64_t cycle_time_ns;
+    bool reference;              /* there is a reference clock */
+    uint16_t reference_position; /* its AutoIncAddr */
 } maker_t;
 
 static cm1e_error_t wrong(maker_t *maker, const cm1e_eni_slave_t *slave, const char *what)
@@ -137,6 +142,29 @@ static void make_mailbox(maker_t *maker, cm1e_eni_device_t *device, const cm1e_d
         make_sdos(maker, mailbox, described);
 }
 
+static int64_t ns_of(double us) { return llround(us * 1000); }
+
+static void make_clock(maker_t *maker, cm1e_eni_device_t *device, const cm1e_eni_slave_t *slave)
+{
+    const bool pulses = slave->pulses.sync0_us != 0;
+    if (!slave->has_clock)
+        return;
+    device->dc = (cm1e_eni_dc_t){.present = true, .potential_reference = true, .reference = !maker->reference,
+                                 .cycle0_ns = ns_of(slave->pulses.sync0_us), .cycle1_ns = ns_of(slave->pulses.sync1_us)};
+    if (pulses)
+        device->dc.shift_ns = slave->pulses.shift_us != 0 ? ns_of(slave->pulses.shift_us) : maker->cycle_time_ns / 2;
+    if (!maker->reference) {
+        maker->reference = true;
+        maker->reference_position = device->position;
+    }
+}
+
+static uint16_t assign_activate(const cm1e_eni_slave_t *slave)
+{
+    const uint16_t needed = slave->pulses.sync1_us != 0 ? BY_SYNC0_AND_SYNC1 : BY_SYNC0;
+    return slave->assign_activate ? slave->assign_activate : needed;
+}
+
 static void make_device(maker_t *maker, cm1e_eni_device_t *device, const cm1e_eni_slave_t *slave, size_t place)
 {
     const cm1e_description_t *described = slave->device;
@@ -149,6 +177,7 @@ static void make_device(maker_t *maker, cm1e_eni_device_t *device, const cm1e_en
     device->product_code = described->product_code;
     device->revision = described->revision;
     device->serial_number = described->eeprom.serial_number;
+    make_clock(maker, device, slave);
     make_sync_managers(maker, device, described);
     make_pdos(maker, device, described);
     make_mailbox(maker, device, described);
@@ -285,6 +314,21 @@ static void add_state_check(maker_t *maker, size_t slaves)
     command->count = (int32_t)slaves;
 }
 
+/* The time of the reference clock for all others, with every cycle from Pre-Operational on. It goes with the first frame,
+ * behind the process data, so that their places are those of a network without clocks. How many answer is not stated:
+ * not every controller has the register. */
+static void add_drift_compensation(maker_t *maker)
+{
+    enum { TIME_BYTES = 8 };
+    if (!maker->frame || frame_bytes(maker->frame) + CM1E_ENI_DATAGRAM_OVERHEAD + TIME_BYTES > CM1E_ENI_FRAME_BYTES)
+        begin_frame(maker);
+    cm1e_eni_command_t *command =
+        add_command(maker, CM1E_ENI_ARMW, CM1E_ENI_PREOP | CM1E_ENI_SAFEOP | CM1E_ENI_OPERATIONAL, "dc drift compensation");
+    command->adp = maker->reference_position;
+    command->ado = DC_SYSTEM_TIME;
+    command->length = TIME_BYTES;
+}
+
 /* ---- the network ------------------------------------------------------------------------------------------------ */
 
 static cm1e_error_t check_size(maker_t *maker, const cm1e_eni_slave_t *slave)
@@ -330,7 +374,10 @@ static void make_network(maker_t *maker, const cm1e_eni_slave_t *slaves, size_t 
     document->destination = (cm1e_bytes_t){broadcast, sizeof broadcast};
     document->source = (cm1e_bytes_t){cm1e_arena_bytes(maker->arena, none, sizeof none), sizeof none};
     document->ether_type = cm1e_bytes_of(maker->arena, 0x88A4, 2);
-    cm1e_eni_make_master_commands(maker->arena, &document->commands);
+    bool clocks = false;
+    for (size_t i = 0; i < count; i++)
+        clocks |= slaves[i].has_clock;
+    cm1e_eni_make_master_commands(maker->arena, &document->commands, clocks);
     cm1e_eni_cyclic_t *cyclic = CM1E_APPEND(maker->arena, &document->cyclics);
     cyclic->cycle_time_us = cycle_time_ns / 1000;
     cyclic->priority = 1;
@@ -342,10 +389,12 @@ static void make_network(maker_t *maker, const cm1e_eni_slave_t *slaves, size_t 
         if (maker->arena->failed)
             return;
         place_process_data(maker, device, &logical);
-        cm1e_eni_make_commands(maker->arena, device, logical, slaves[i].alias);
+        cm1e_eni_make_commands(maker->arena, device, logical, slaves[i].alias, assign_activate(&slaves[i]));
     }
     if (maker->arena->failed)
         return;
+    if (clocks)
+        add_drift_compensation(maker);
     add_state_check(maker, count);
     document->has_image = true;
     document->inputs.bytes = document->outputs.bytes = maker->frames * IMAGE_PER_FRAME;
@@ -354,7 +403,8 @@ static void make_network(maker_t *maker, const cm1e_eni_slave_t *slaves, size_t 
 cm1e_error_t cm1e_eni_make(cm1e_eni_t *document, const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns,
                            cm1e_diag_t *diag)
 {
-    maker_t maker = {.document = document, .arena = &document->arena, .diag = diag};
+    maker_t maker = {.document = document, .arena = &document->arena, .diag = diag,
+                     .cycle_time_ns = cycle_time_ns};
     const cm1e_error_t error = check_slaves(&maker, slaves, count, cycle_time_ns);
     if (error != CM1E_OK)
         return error;

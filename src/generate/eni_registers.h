@@ -21,10 +21,16 @@ enum {
     SII_DATA = 0x0508,          /**< 6.4 */
     FMMU = 0x0600,              /**< FMMU_BYTES each, 6.6 */
     SYNC_MANAGER = 0x0800,      /**< SYNC_MANAGER_BYTES each, 6.7 */
+    DC_RECEIVE_TIMES = 0x0900,  /**< a write latches when this frame came in at every port; 6.8 */
     DC_SYSTEM_TIME = 0x0910,    /**< 6.8 */
+    DC_OFFSET = 0x0920,         /**< 6.8 */
+    DC_DELAY = 0x0928,          /**< 6.8 */
     DC_SPEED = 0x0930,          /**< 6.8 */
     DC_FILTER = 0x0934,         /**< 6.8 */
+    DC_CONTROL = 0x0980,        /**< with the activation behind it; 6.8 */
     DC_ACTIVATION = 0x0981,     /**< 6.8 */
+    DC_START = 0x0990,          /**< of SYNC0; 6.8 */
+    DC_CYCLES = 0x09A0,         /**< of SYNC0 and SYNC1; 6.8 */
     REGISTERS_END = 0x1000,     /**< where the memory begins */
 };
 enum { FMMUS = 16, FMMU_BYTES = 16, FMMU_READ = 1, FMMU_WRITE = 2, SYNC_MANAGERS = 16, SYNC_MANAGER_BYTES = 8 };

@@ -1,6 +1,9 @@
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "cm1e/esc.h"
+#include "config/clocks.h"
 #include "description/describe.h"
 #include "core/in_task.h"
 #include "device/devices.h"
@@ -37,6 +40,12 @@ static bool is_in_tables(const cm1e_slave_info_t *slave)
     return device->recognised == CM1E_BY_IDENTITY || (slave->vendor_id && slave->product_code && slave->revision);
 }
 
+static uint16_t address_of(const cm1e_slave_info_t *slave, cm1e_address_kind_t kind)
+{
+    return kind == CM1E_ADDRESS_ALIAS ? slave->alias : kind == CM1E_ADDRESS_EXPLICIT_ID ? slave->explicit_id
+                                                                                        : slave->position;
+}
+
 /* The configured axis that this slave is, or the first behind it; NULL: none. `name`: of all of them. */
 static const cm1e_axis_config_t *axis_of(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
                                          char name[CM1E_SLAVE_NAME])
@@ -45,15 +54,63 @@ static const cm1e_axis_config_t *axis_of(const cm1e_bus_config_t *config, const 
     name[0] = 0;
     for (uint32_t i = 0; i < config->axis_count; i++) {
         const cm1e_axis_config_t *axis = &config->axes[i];
-        const uint16_t address = axis->address_kind == CM1E_ADDRESS_ALIAS         ? slave->alias
-                                 : axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? slave->explicit_id
-                                                                                  : slave->position;
+        const uint16_t address = address_of(slave, axis->address_kind);
         if (!cm1e_axis_has_motor(axis) || axis->address != address || address == 0)
             continue;
         first = first ? first : axis;
         cm1e_slave_name_add(name, axis);
     }
     return first;
+}
+
+static const cm1e_slave_config_t *slave_config_of(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave)
+{
+    for (uint32_t i = 0; i < config->slave_count; i++) {
+        const cm1e_slave_config_t *one = &config->slaves[i];
+        if (one->address == address_of(slave, one->address_kind) && one->address != 0)
+            return one;
+    }
+    return NULL;
+}
+
+/* The mode that a configuration names, by the EEPROM of the slave. */
+static cm1e_error_t take_mode(cm1e_eni_slave_t *slave, const cm1e_dc_config_t *stated, int64_t cycle_time_ns,
+                              cm1e_diag_t *diag)
+{
+    for (size_t i = 0; i < slave->device->dc_modes.count; i++) {
+        const cm1e_dc_mode_t *mode = &slave->device->dc_modes.at[i];
+        const cm1e_dc_facts_t facts = {mode->assign_activate, mode->sync0_cycle_ns, mode->sync0_factor,
+                                       mode->sync0_shift_ns, mode->sync1_factor, mode->sync1_shift_ns};
+        const bool first = strcmp(stated->mode, "first") == 0 && cm1e_config_mode_has_sync0(&facts);
+        if (strcmp(mode->name, stated->mode) != 0 && !first)
+            continue;
+        slave->pulses = cm1e_config_pulses_of_mode(&facts, stated->shift_us, cycle_time_ns);
+        slave->assign_activate = mode->assign_activate;
+        return CM1E_OK;
+    }
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "%s: its EEPROM has no mode \"%s\" for its distributed clock",
+                         slave->name, stated->mode);
+}
+
+/* Whether its clock is used, and which pulses it gets: as the bus does it. */
+static cm1e_error_t take_clock(cm1e_eni_slave_t *made, cm1e_bus_t *bus, const cm1e_slave_info_t *slave,
+                               cm1e_diag_t *diag)
+{
+    enum { FEATURES = 0x0008, FEATURE_CLOCKS = 0x04 };
+    const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
+    char name[CM1E_SLAVE_NAME];
+    uint8_t features[2] = {0};
+    if (!cm1e_config_uses_clocks(config))
+        return CM1E_OK;
+    const cm1e_error_t error = cm1e_esc_read(bus, slave->position, FEATURES, features, sizeof features, diag);
+    const cm1e_axis_config_t *axis = axis_of(config, slave, name);
+    const cm1e_slave_config_t *other = axis ? NULL : slave_config_of(config, slave);
+    const cm1e_dc_config_t *stated = axis ? &axis->dc : other ? &other->dc : NULL;
+    made->has_clock = features[0] & FEATURE_CLOCKS;
+    if (error != CM1E_OK || !stated || !made->has_clock)
+        return error;
+    made->pulses = *stated;
+    return stated->mode[0] ? take_mode(made, stated, config->cycle_time_ns, diag) : CM1E_OK;
 }
 
 /* An entry of the live mapping with the name and type that the tables have for it. */
@@ -145,8 +202,10 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
     if (error == CM1E_OK && described.arena.failed)
         error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
     /* Set at the end, because the list of devices moves while it grows. */
-    for (uint32_t i = 0; error == CM1E_OK && i < count; i++)
+    for (uint32_t i = 0; error == CM1E_OK && i < count; i++) {
         slaves[i].device = &described.devices.at[i];
+        error = take_clock(&slaves[i], bus, cm1e_bus_slave(bus, i + 1), diag);
+    }
     if (error == CM1E_OK)
         error = cm1e_file_of_eni(file, slaves, count, cm1e_bus_configuration(bus)->cycle_time_ns, diag);
     cm1e_description_file_free(&described);

@@ -321,6 +321,69 @@ static void test_more_than_a_frame_holds_goes_into_the_next(void)
     }
 }
 
+/* ---- distributed clocks ------------------------------------------------------------------------------------------ */
+
+static const cm1e_eni_command_t *find_of_master(uint16_t ado)
+{
+    for (size_t i = 0; i < document.commands.count; i++)
+        if (document.commands.at[i].ado == ado)
+            return &document.commands.at[i];
+    return NULL;
+}
+
+static bool writes(const cm1e_eni_device_t *device, uint16_t ado)
+{
+    for (size_t i = 0; i < device->commands.count; i++)
+        if (device->commands.at[i].ado == ado)
+            return true;
+    return false;
+}
+
+static void expect_bytes(const cm1e_eni_device_t *device, const char *comment, uint16_t ado, const void *bytes, size_t size)
+{
+    const cm1e_eni_command_t *command = find_command(device, comment, CM1E_ENI_PS);
+    TEST_ASSERT_NOT_NULL_MESSAGE(command, comment);
+    TEST_ASSERT_EQUAL_HEX16(ado, command->ado);
+    TEST_ASSERT_EQUAL(CM1E_ENI_FPWR, command->code);
+    TEST_ASSERT_EQUAL(size, command->data.size);
+    TEST_ASSERT_EQUAL_MEMORY(bytes, command->data.data, size);
+}
+
+/* The second slave has no clock, the third one is the first with SYNC0. The first clock is the reference. */
+static void test_clocks_are_set_up_and_kept_together(void)
+{
+    static const uint8_t zeros[8], cycles[8] = {0x90, 0xD0, 3, 0, 0x48, 0xE8, 1, 0}, by_both[2] = {0x30, 7};
+    TEST_ASSERT_EQUAL(CM1E_OK, eni_describe(&described, ENI_CM1E, &diag));
+    const cm1e_description_t *device = &described.devices.at[0];
+    const cm1e_eni_slave_t slaves[] = {
+        {.device = device, .name = "first", .has_clock = true}, {.device = device, .name = "none"},
+        {.device = device, .name = "last", .has_clock = true, .assign_activate = 0x0730,
+         .pulses = {.sync0_us = 250, .sync1_us = 125}},
+    };
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_eni_make(&document, slaves, 3, 1000000, &diag));
+    const cm1e_eni_device_t *devices = document.devices.at;
+    TEST_ASSERT_TRUE(devices[0].dc.present && devices[0].dc.reference && devices[0].dc.cycle0_ns == 0);
+    TEST_ASSERT_TRUE(!devices[1].dc.present && !writes(&devices[1], 0x0920));
+    TEST_ASSERT_TRUE(devices[2].dc.present && !devices[2].dc.reference);
+    TEST_ASSERT_EQUAL(250000, devices[2].dc.cycle0_ns);
+    TEST_ASSERT_EQUAL(125000, devices[2].dc.cycle1_ns);
+    TEST_ASSERT_EQUAL(500000, devices[2].dc.shift_ns); /* half a cycle, as with our own master */
+    expect_bytes(&devices[0], "set dc system time offset (of the master)", 0x0920, zeros, 8);
+    expect_bytes(&devices[2], "set dc propagation delay (of the master)", 0x0928, zeros, 4);
+    expect_bytes(&devices[2], "set dc cycle time", 0x09A0, cycles, 8);
+    expect_bytes(&devices[2], "set dc start time (of the master)", 0x0990, zeros, 8);
+    expect_bytes(&devices[2], "set dc activation", 0x0980, by_both, 2);
+    TEST_ASSERT_FALSE(writes(&devices[0], 0x0980));
+    TEST_ASSERT_EQUAL(CM1E_ENI_PS, find_of_master(0x0900)->transitions);
+    TEST_ASSERT_TRUE(find_of_master(0x0900)->before_slave);
+    const cm1e_eni_frame_t *frame = &document.cyclics.at[0].frames.at[0];
+    const cm1e_eni_command_t *time = &frame->commands.at[frame->commands.count - 2];
+    TEST_ASSERT_EQUAL(CM1E_ENI_ARMW, time->code);
+    TEST_ASSERT_EQUAL_HEX16(devices[0].position, time->adp);
+    TEST_ASSERT_EQUAL_HEX16(0x0910, time->ado);
+    TEST_ASSERT_EQUAL(CM1E_ENI_PREOP | CM1E_ENI_SAFEOP | CM1E_ENI_OPERATIONAL, time->states);
+}
+
 /* ---- what cannot be made ---------------------------------------------------------------------------------------- */
 
 static void refused(const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns, const char *what)
@@ -332,8 +395,9 @@ static void refused(const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_
 static void test_networks_that_no_file_can_describe_are_refused(void)
 {
     TEST_ASSERT_EQUAL(CM1E_OK, eni_describe(&described, ENI_CM1E, &diag));
-    const cm1e_eni_slave_t twice[] = {{&described.devices.at[0], "x", 0}, {&described.devices.at[0], "x", 0}};
-    const cm1e_eni_slave_t nameless = {&described.devices.at[0], "", 0};
+    const cm1e_eni_slave_t twice[] = {{.device = &described.devices.at[0], .name = "x"},
+                                      {.device = &described.devices.at[0], .name = "x"}};
+    const cm1e_eni_slave_t nameless = {.device = &described.devices.at[0], .name = ""};
     refused(twice, 0, 1000000, "1 to 128");
     refused(twice, 2, 1000000, "twice");
     refused(&nameless, 1, 1000000, "name");
@@ -346,7 +410,7 @@ static void test_networks_that_no_file_can_describe_are_refused(void)
     cm1e_described_pdo_entry_t *entry = CM1E_APPEND(&described.arena, &pdo->entries);
     entry->index = 0x7000;
     entry->bits = 1487 * 8;
-    const cm1e_eni_slave_t too_large = {&large, "x", 0};
+    const cm1e_eni_slave_t too_large = {.device = &large, .name = "x"};
     refused(&too_large, 1, 1000000, "1486");
     /* Two sync managers of one direction count together. */
     large.sync_managers.at = NULL;
@@ -378,7 +442,7 @@ static void test_the_same_names_of_entries_get_numbers(void)
         cm1e_described_pdo_entry_t *entry = CM1E_APPEND(&described.arena, &pdo->entries);
         *entry = (cm1e_described_pdo_entry_t){.index = 0x7000, .subindex = 1, .bits = 8, .type = ""};
     }
-    const cm1e_eni_slave_t slave = {&device, "x", 0};
+    const cm1e_eni_slave_t slave = {.device = &device, .name = "x"};
     TEST_ASSERT_EQUAL(CM1E_OK, cm1e_eni_make(&document, &slave, 1, 1000000, &diag));
     TEST_ASSERT_EQUAL_STRING("x.0x1600.0x7000:01", document.outputs.variables.at[0].name);
     TEST_ASSERT_EQUAL_STRING("x.0x1600.0x7000:01 (2)", document.outputs.variables.at[1].name);
@@ -397,6 +461,7 @@ int main(void)
     RUN_TEST(test_start_up_commands_of_the_description_go_through_the_mailbox);
     RUN_TEST(test_an_io_module_has_no_mailbox_and_no_sdo);
     RUN_TEST(test_variables_lie_where_their_slaves_data_do);
+    RUN_TEST(test_clocks_are_set_up_and_kept_together);
     RUN_TEST(test_the_alias_is_asked_for);
     RUN_TEST(test_more_than_a_frame_holds_goes_into_the_next);
     RUN_TEST(test_axes_behind_a_bridge_are_one_slave);

@@ -11,7 +11,9 @@ import time
 import xml.etree.ElementTree as ElementTree
 
 ETHER_TYPE, OUTGOING = 0x88A4, 4
-APRD, APWR, FPRD, FPWR, BRD, LRD, LWR, LRW = 1, 2, 4, 5, 7, 10, 11, 12
+APRD, APWR, FPRD, FPWR, BRD, BWR, LRD, LWR, LRW, ARMW = 1, 2, 4, 5, 7, 8, 10, 11, 12, 13
+DC_TIMES, DC_SYSTEM_TIME, DC_OFFSET, DC_DELAY, DC_DIFFERENCE, DC_START = 0x0900, 0x0910, 0x0920, 0x0928, 0x092C, 0x0990
+DC_LEAD_NS = 200_000_000  # from the setting of SYNC0 to its first pulse
 DATAGRAM_HEADER = 10
 STATES = {"I": "INIT", "P": "PREOP", "S": "SAFEOP", "O": "OP"}
 
@@ -77,6 +79,11 @@ class Slave:
             node, "Mailbox/Send/Start", "Mailbox/Send/Length", "Mailbox/Recv/Start", "Mailbox/Recv/Length")
         self.out, self.into = numbers(node, "ProcessData/Send/BitStart", "ProcessData/Recv/BitStart")
         self.counter = 0
+        dc = node.find("DC")
+        self.has_clock = dc is not None
+        self.reference = dc is not None and dc.findtext("ReferenceClock") in ("1", "true")
+        self.sync0_ns, self.shift_ns = (0, 0) if dc is None else numbers(dc, "CycleTime0", "ShiftTime")
+        self.ours = {}            # what the master puts in place of the zeros of the file, by register
 
 
 class Master:
@@ -93,6 +100,7 @@ class Master:
         self.state = "INIT"
         self.cyclic = {}          # working counter and data of every cyclic command, as they came last
         self.cycles = self.lost = 0
+        self.dc_time = 0          # of the reference clock, as the last cycle brought it
         self.next = time.monotonic()
         self.socket = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(ETHER_TYPE))
         self.socket.bind((interface, ETHER_TYPE))
@@ -174,6 +182,8 @@ class Master:
             return
         for c, (data, count) in zip(commands, answers):
             self.cyclic[c] = data, count
+            if c.code == ARMW and count > 0:
+                self.dc_time = int.from_bytes(data, "little")
             if c.code in (LRD, LRW):
                 start = c.input + DATAGRAM_HEADER
                 self.inputs[start:start + len(data)] = data
@@ -182,16 +192,56 @@ class Master:
 
     # ---- start-up --------------------------------------------------------------------------------------------------
 
-    def send(self, who, command):
+    def measure_clocks(self):
+        """Delays along the line and offsets, from the times at which the latched frame came in at the ports: a frame is
+        as long on its way back. The clock of the reference is the system time."""
+        clocks, loops, locals_ns = [s for s in self.slaves if s.has_clock], [], []
+        for slave in clocks:
+            answer = self.exchange([(FPRD, struct.pack("<HH", slave.station, DC_TIMES), bytes(32))])
+            if not answer or answer[0][1] != 1:
+                raise Failed(f"{slave.name}: its receive times cannot be read")
+            first, second = struct.unpack_from("<II", answer[0][0])
+            loops.append((second - first) & 0xFFFFFFFF if slave is not self.slaves[-1] else 0)
+            locals_ns.append(struct.unpack_from("<Q", answer[0][0], 24)[0])
+        reference = next(i for i, slave in enumerate(clocks) if slave.reference)
+        delay = 0
+        for i, slave in enumerate(clocks):
+            delay += (loops[i - 1] - loops[i]) // 2 if i > 0 else 0
+            offset = (locals_ns[reference] + delay - locals_ns[i]) & 0xFFFFFFFFFFFFFFFF
+            slave.ours = {DC_OFFSET: struct.pack("<Q", offset), DC_DELAY: struct.pack("<I", delay)}
+
+    def start_time(self, slave):
+        period = max(slave.sync0_ns, round(self.cycle_s * 1e9))
+        slave.starts = (self.dc_time + DC_LEAD_NS) // period * period + slave.shift_ns
+        return struct.pack("<Q", slave.starts)
+
+    def data_of(self, slave, command):
+        """As the file has it, but for what only a master can know."""
+        if slave is None or command.code != FPWR or not slave.has_clock:
+            return command.data
+        return self.start_time(slave) if command.ado == DC_START else slave.ours.get(command.ado, command.data)
+
+    def differences(self):
+        """What each clock deviates from the reference, ns."""
+        found = {}
+        for slave in (s for s in self.slaves if s.has_clock and not s.reference):
+            answer = self.exchange([(FPRD, struct.pack("<HH", slave.station, DC_DIFFERENCE), bytes(4))])
+            if answer and answer[0][1] == 1:
+                found[slave.name] = int.from_bytes(answer[0][0], "little") & 0x7FFFFFFF
+        return found
+
+    def send(self, who, command, slave=None):
         """One InitCmd, in a cycle of its own; again where nobody answered, or the answer is not the one awaited."""
         end = time.monotonic() + (command.timeout_s or 0)
         tries = 0
         while True:
             self.cycle()
-            answer = self.exchange([(command.code, command.address, command.data)])
+            answer = self.exchange([(command.code, command.address, self.data_of(slave, command))])
             data, count = answer[0] if answer else (b"", 0)
             answered = answer is not None and (command.count is None or count == command.count)
             if answered and (command.expected is None or command.satisfied(data)):
+                if command.code == BWR and command.ado == DC_TIMES:
+                    self.measure_clocks()
                 return
             tries += 1
             if command.expected is not None and time.monotonic() < end:
@@ -232,6 +282,8 @@ class Master:
 
     def transition(self, name):
         """All slaves, one after the other: the master's commands that come first, SDOs, the slave's commands."""
+        while name == "SO" and any(self.dc_time < getattr(slave, "starts", 0) for slave in self.slaves):
+            self.cycle()  # a slave may refuse Operational before its first SYNC0
         for command in self.commands:
             if name in command.transitions and command.before_slave:
                 self.send("master", command)
@@ -241,7 +293,7 @@ class Master:
                     self.download(slave, sdo)
             for command in slave.commands:
                 if name in command.transitions:
-                    self.send(slave.name, command)
+                    self.send(slave.name, command, slave)
         for command in self.commands:
             if name in command.transitions and not command.before_slave:
                 self.send("master", command)

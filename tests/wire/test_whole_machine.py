@@ -195,12 +195,26 @@ def play(master):
 """
 
 
-def check_eni(segment, cm1e):
+PLAY_CLOCKS = PLAY.replace("def play(master):", "def play_bits(master):") + """
+def play(master):
+    play_bits(master)
+    found = master.differences()
+    if len(found) != len(master.slaves) - 1 or max(found.values()) > 1000:
+        raise Failed(f"the clocks are apart: {found}")
+    if not any(getattr(slave, "starts", 0) for slave in master.slaves):
+        raise Failed("no slave has SYNC0")
+    print("its clocks:", len(found), "follow the reference, at most", max(found.values()), "ns apart")
+"""
+
+
+def check_eni(segment, cm1e, play, *bus_file_options):
     path = os.path.join(segment.folder, "scan.xml")
-    made = segment.run([cm1e, "generate", "eni", "-i", wire.MASTER_INTERFACE, "-o", path])
+    made = segment.run([cm1e, "generate", "eni", "-i", wire.MASTER_INTERFACE, *bus_file_options, "-o", path])
     wire.check(made.returncode == 0, f"generate eni: {made}")
+    checked = segment.run([cm1e, "check", path])
+    wire.check(checked.returncode == 0, f"check of the ENI: {checked.stdout}{checked.stderr}")
     played = segment.run([sys.executable, PLAYER, path, wire.MASTER_INTERFACE,
-                          f"PATTERNS, CHANNELS = {PATTERNS}, {CHANNELS}\n{PLAY}"])
+                          f"PATTERNS, CHANNELS = {PATTERNS}, {CHANNELS}\n{play}"])
     print(played.stdout + played.stderr, end="")
     wire.check(played.returncode == 0, f"the player of the ENI ended with {played.returncode}")
 
@@ -218,7 +232,10 @@ def main(cm1e, python):
             result = segment.run([python, os.path.abspath(__file__), "--master"])
             print(result.stdout + result.stderr, end="")
             wire.check(result.returncode == 0, f"pysoem ended with {result.returncode}")
-            check_eni(segment, cm1e)
+            check_eni(segment, cm1e, PLAY)
+            for position in (MOTOR, ANALOG_IN):
+                segment.console(f"clock {position} drift {4 * position}")
+            check_eni(segment, cm1e, PLAY_CLOCKS, "-b", fast)
 
 
 if __name__ == "__main__":
