@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "attach.h"
 #include "command.h"
 #include "files.h"
 #include "terminal.h"
@@ -48,7 +49,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     foe_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
     case KEY_NAME: options->name = arg; return 0;
     case KEY_PASSWORD: return parse_number(arg, "the password", 0, 0xFFFFFFFF, &options->password) ? 0 : EINVAL;
     case KEY_MAXIMUM: return parse_number(arg, "the maximum", 1, MAXIMUM_LARGEST, &options->maximum) ? 0 : EINVAL;
@@ -129,18 +130,36 @@ static int write_file(cm1e_bus_t *bus, uint16_t position, const foe_options_t *o
     return status;
 }
 
-static int transfer_file(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
+static int transfer_file(cm1e_bus_t *bus, const foe_options_t *options, uint16_t position)
 {
-    const foe_options_t *options = context;
     size_t shown = 0;
     const cm1e_foe_options_t transfer = {.password = (uint32_t)options->password, .bootstrap = options->bootstrap,
                                          .answer_ns = (int64_t)(options->timeout_s * 1e9),
                                          .progress = show_progress, .context = &shown};
-    (void)config;
     signal(SIGINT, on_interrupt);
     signal(SIGTERM, on_interrupt);
     return is_writing(options) ? write_file(bus, position, options, &transfer)
                                : read_file(bus, position, options, &transfer);
+}
+
+/** Of the network, or of the program that runs it. */
+static int transfer_of_network(const foe_options_t *options)
+{
+    static cm1e_bus_config_t config;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    uint16_t position;
+    if (!load_network(&options->common, &config))
+        return EXIT_WRONG_USE;
+    if (options->bootstrap && refuse_to_attach(&options->common, &config, "Bootstrap", "it takes the slave out of the "
+                                               "cycle", &diag) != CM1E_OK)
+        return fail(&diag);
+    if (open_network(&options->common, &config, &bus, &diag) != CM1E_OK)
+        return fail(&diag);
+    int status = find_slave(bus, &config, options->words[1], &position);
+    if (status == EXIT_OK)
+        status = transfer_file(bus, options, position);
+    return close_bus(bus, &options->common, status);
 }
 
 static const struct argp_option table[] = {
@@ -151,17 +170,18 @@ static const struct argp_option table[] = {
     {"maximum", KEY_MAXIMUM, "BYTES", 0, "Most bytes that are read; default: 16777216", 0},
     {"allow-write", KEY_ALLOW, NULL, 0, "Write: what the file does in the slave is in its manual", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_foe = {
     table, parse, "read|write POSITION|AXIS FILE",
     "Reads a file of a slave into FILE, or writes FILE into it (FoE), in Pre-Operational or, with --bootstrap, in "
-    "Bootstrap. FILE may be -, with --name. For the firmware of a CM1-E use `cm1e firmware update`.", children, NULL,
-    NULL};
+    "Bootstrap. FILE may be -, with --name. Where a program runs the network with `control: maintain`, it transfers "
+    "the file beside its cycle; Bootstrap needs the network for itself. For the firmware of a CM1-E use "
+    "`cm1e firmware update`.", children, NULL, NULL};
 
 int command_foe(int argc, char **argv)
 {
     foe_options_t options = {.timeout_s = 5, .maximum = MAXIMUM_DEFAULT};
     if (parse_options(&argp_foe, argc, argv, &options))
         return EXIT_WRONG_USE;
-    return run_on_slave(&options.common, options.words[1], transfer_file, &options);
+    return transfer_of_network(&options);
 }

@@ -18,7 +18,7 @@ static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, bool bootstrap, co
     if (!bus || bus->phase < BUS_SCANNED || (bus->exchanging && !operates) || (bus->phase > BUS_SCANNED && bootstrap))
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s needs a scanned bus%s.", function,
                              bootstrap ? " that does not operate, for Bootstrap" : "");
-    const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, function, diag);
+    const cm1e_error_t attached = bootstrap ? cm1e_bus_refuse_attached(bus, function, diag) : CM1E_OK;
     if (attached != CM1E_OK)
         return attached;
     if (!cm1e_bus_at(bus, position))
@@ -71,9 +71,7 @@ static cm1e_error_t in_bootstrap(cm1e_foe_t *foe, const transfer_t *transfer)
     return error;
 }
 
-/** Beside the process data, whose cycles are made meanwhile. The transfer is on the stack, so it must end before this
- *  function returns; the bus ensures that. */
-static cm1e_error_t in_operation(cm1e_foe_t *foe, const transfer_t *transfer)
+static void describe(cm1e_foe_t *foe, const transfer_t *transfer)
 {
     foe->writing = transfer->from != NULL;
     foe->name = transfer->name;
@@ -81,6 +79,23 @@ static cm1e_error_t in_operation(cm1e_foe_t *foe, const transfer_t *transfer)
     foe->to = transfer->to;
     foe->size = foe->writing ? *transfer->size : 0;
     foe->room = *transfer->size;
+}
+
+/** By the program that runs the network. */
+static cm1e_error_t remotely(cm1e_foe_t *foe, const transfer_t *transfer)
+{
+    describe(foe, transfer);
+    const cm1e_error_t error = foe->bus->remote->file(foe->bus->remote_state, foe, foe->diag);
+    if (!foe->writing)
+        *transfer->size = foe->done;
+    return error;
+}
+
+/** Beside the process data, whose cycles are made meanwhile. The transfer is on the stack, so it must end before this
+ *  function returns; the bus ensures that. */
+static cm1e_error_t in_operation(cm1e_foe_t *foe, const transfer_t *transfer)
+{
+    describe(foe, transfer);
     cm1e_error_t error = cm1e_foe_submit(foe->bus, foe, foe->diag);
     if (error != CM1E_OK)
         return error;
@@ -108,6 +123,8 @@ static cm1e_error_t execute(cm1e_bus_t *bus, uint16_t position, const transfer_t
         foe.options.answer_ns = ANSWER_NS;
     if (foe.options.bootstrap)
         return in_bootstrap(&foe, transfer);
+    if (bus->remote)
+        return remotely(&foe, transfer);
     if (bus->phase == BUS_OPERATING)
         return in_operation(&foe, transfer);
     error = use_mailbox(&foe);

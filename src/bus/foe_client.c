@@ -93,8 +93,8 @@ static void put_packet(cm1e_foe_t *foe)
     foe->partly = true;
 }
 
-/** The next message, or the last one once more: others may have used the mailbox meanwhile. The acknowledgement 0 stands
- *  for a request to read that the slave has had. */
+/** The next message, or the last one once more: others may have used the mailbox meanwhile. The acknowledgement 0
+ *  stands for a request to read that the slave has had. */
 static void put_message(cm1e_foe_t *foe, bool again)
 {
     if (foe->number == 0 && (foe->writing || !again))

@@ -17,17 +17,18 @@ cm1e_error_t cm1e_foe_check_mailbox(const cm1e_bus_slave_t *slave, cm1e_diag_t *
     const cm1e_mailbox_t *mailbox = &slave->coe.mailbox;
     const unsigned position = slave->info.position;
     if (!slave->facts.foe)
-        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "Slave %u has no files: its SII announces no FoE.", position);
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "Slave %u has no files: its SII announces no FoE.",
+                             position);
     if (!fits(mailbox->out_length) || !fits(mailbox->in_length))
-        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "The mailbox of slave %u has %u bytes to it and %u from it, "
-                             "as its SII states; expected are %d to %d.", position, mailbox->out_length,
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "The mailbox of slave %u has %u bytes to it and %u from "
+                             "it, as its SII states; expected are %d to %d.", position, mailbox->out_length,
                              mailbox->in_length, MAILBOX_MIN, CM1E_DATAGRAM_MAX);
     return CM1E_OK;
 }
 
 /* ---- handing in ------------------------------------------------------------------------------------------------- */
 
-static cm1e_error_t check(const cm1e_bus_t *bus, cm1e_foe_t *foe, cm1e_diag_t *diag)
+cm1e_error_t cm1e_foe_check(const cm1e_bus_t *bus, const cm1e_foe_t *foe, cm1e_diag_t *diag)
 {
     if (__atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST) != BUS_OPERATING || bus->remote)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus does not operate.");
@@ -48,7 +49,7 @@ static cm1e_error_t stopped(cm1e_diag_t *diag)
 cm1e_error_t cm1e_foe_submit(cm1e_bus_t *bus, cm1e_foe_t *foe, cm1e_diag_t *diag)
 {
     cm1e_foe_t *none = NULL, *own = foe;
-    const cm1e_error_t error = check(bus, foe, diag);
+    const cm1e_error_t error = cm1e_foe_check(bus, foe, diag);
     if (error != CM1E_OK)
         return error;
     foe->bus = bus;

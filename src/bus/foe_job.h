@@ -13,6 +13,8 @@
  *  `progress` and `bootstrap` are given, and stay until it is done. CM1E_ERROR_BUSY: another one is under way; STATE,
  *  INVALID_ARGUMENT, UNSUPPORTED: not begun. @rt any */
 CM1E_GUEST_API cm1e_error_t cm1e_foe_submit(cm1e_bus_t *bus, cm1e_foe_t *foe, cm1e_diag_t *diag);
+/** What cm1e_foe_submit() refuses. @rt any */
+CM1E_GUEST_API cm1e_error_t cm1e_foe_check(const cm1e_bus_t *bus, const cm1e_foe_t *foe, cm1e_diag_t *diag);
 /** It belongs to its thread again; cm1e_foe_result_of() says what came of it. @rt any */
 CM1E_GUEST_API bool cm1e_foe_done(const cm1e_foe_t *foe);
 /** Ends it early; it is done a moment later. @rt any */

@@ -29,9 +29,9 @@ static cm1e_error_t refused(const cm1e_foe_t *foe, const char *place, cm1e_diag_
     char text[CM1E_FOE_SAID] = "";
     const unsigned code = (unsigned)foe->fault.number;
     cm1e_text_of_device(text, sizeof text, foe->fault.said, foe->fault.said_bytes);
-    return cm1e_diag_set(diag, CM1E_ERROR_BUS_MAILBOX, code, "Slave %u refuses the file %s: FoE error 0x%04X, %s%s%s%s.",
-                         foe->position, place, code, cm1e_foe_error_text(code), text[0] ? " (\"" : "", text,
-                         text[0] ? "\")" : "");
+    return cm1e_diag_set(diag, CM1E_ERROR_BUS_MAILBOX, code,
+                         "Slave %u refuses the file %s: FoE error 0x%04X, %s%s%s%s.", foe->position, place, code,
+                         cm1e_foe_error_text(code), text[0] ? " (\"" : "", text, text[0] ? "\")" : "");
 }
 
 /** A name that is empty or too long. */
@@ -49,16 +49,16 @@ static cm1e_error_t misbehaved(const cm1e_foe_t *foe, const char *place, cm1e_di
     switch (foe->fault.kind) {
     case FOE_NO_FOE: return FAIL(CM1E_ERROR_BUS_MAILBOX, "Slave %u refuses FoE in its mailbox.", position);
     case FOE_OTHER_ACK:
-        return FAIL(CM1E_ERROR_BUS_MAILBOX, "Slave %u acknowledges packet %u of the file, packet %u was sent.", position,
-                    number, expected);
+        return FAIL(CM1E_ERROR_BUS_MAILBOX, "Slave %u acknowledges packet %u of the file, packet %u was sent.",
+                    position, number, expected);
     case FOE_OTHER_PACKET:
         return FAIL(CM1E_ERROR_BUS_MAILBOX, "Slave %u sends packet %u of the file, packet %u was expected.", position,
                     number, expected);
     case FOE_SAME_PACKET:
         return FAIL(CM1E_ERROR_BUS_MAILBOX, "Slave %u sends packet %u again and again.", position, number);
     default:
-        return FAIL(CM1E_ERROR_BUS_MAILBOX, "Slave %u answered with FoE service %u, which is not expected, %s.", position,
-                    number, place);
+        return FAIL(CM1E_ERROR_BUS_MAILBOX, "Slave %u answered with FoE service %u, which is not expected, %s.",
+                    position, number, place);
     }
 }
 

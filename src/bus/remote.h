@@ -6,6 +6,7 @@
 #define CM1E_BUS_REMOTE_H
 
 #include "bus/errand.h"
+#include "bus/foe_job.h"
 #include "cm1e/clocks.h"
 #include "cm1e/emergency.h"
 #include "cm1e/topology.h"
@@ -30,6 +31,8 @@ typedef struct cm1e_bus_remote {
     cm1e_error_t (*transfer)(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag);
     /** As `transfer`, of what is not an object. */
     cm1e_error_t (*errand)(void *state, cm1e_errand_t *errand, cm1e_diag_t *diag);
+    /** Transfers a file as `foe` says; `done` is set after reading. */
+    cm1e_error_t (*file)(void *state, cm1e_foe_t *foe, cm1e_diag_t *diag);
     void (*close)(void *state);
 } cm1e_bus_remote_t;
 

@@ -4,8 +4,14 @@
 #include <string.h>
 
 #include "bus/remote.h"
+#include "control/arguments.h"
 #include "control/client.h"
+#include "control/file_request.h"
+#include "core/clock.h"
 #include "core/text.h"
+
+/** Between two looks at a file that is on its way. */
+#define LOOK_NS INT64_C(20000000)
 
 static json_int_t number(const json_t *object, const char *name)
 {
@@ -205,9 +211,86 @@ static cm1e_error_t run_errand(void *state, cm1e_errand_t *errand, cm1e_diag_t *
     return error == CM1E_OK ? CM1E_OK : cm1e_diag_set(diag, error, told.foreign_code, "%s", told.text);
 }
 
+/* ---- files ------------------------------------------------------------------------------------------------------ */
+
+/** A request whose reply says nothing but that it is accepted. */
+static cm1e_error_t order(void *state, json_t *request, cm1e_diag_t *diag)
+{
+    json_t *reply = NULL;
+    const cm1e_error_t error = cm1e_control_call(state, request, &reply, diag);
+    json_decref(reply);
+    return error;
+}
+
+static cm1e_error_t send_bytes(void *state, const cm1e_foe_t *foe, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = CM1E_OK;
+    for (size_t at = 0; error == CM1E_OK && (at < foe->size || at == 0); at += CM1E_FILE_PIECE) {
+        const size_t left = foe->size - at, piece = left < CM1E_FILE_PIECE ? left : CM1E_FILE_PIECE;
+        error = order(state, json_pack("{s:s, s:I, s:o}", "request", "file_data", "offset", (json_int_t)at, "data",
+                                       cm1e_show_bytes(foe->from + at, piece)), diag);
+    }
+    return error;
+}
+
+static cm1e_error_t fetch_bytes(void *state, cm1e_foe_t *foe, size_t size, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = CM1E_OK;
+    for (foe->done = 0; error == CM1E_OK && foe->done < size;) {
+        json_t *reply = NULL;
+        size_t piece = size - foe->done;
+        json_t *request = json_pack("{s:s, s:I}", "request", "file_data", "offset", (json_int_t)foe->done);
+        error = cm1e_control_call(state, request, &reply, diag);
+        if (error == CM1E_OK &&
+            (!take_data(foe->to + foe->done, &piece, json_string_value(json_object_get(reply, "data"))) || piece == 0))
+            error = cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The answer of the program has no data of the file.");
+        foe->done += error == CM1E_OK ? piece : 0;
+        json_decref(reply);
+    }
+    return error;
+}
+
+/** Looks how far it is, until it has ended. `*done`: bytes. */
+static cm1e_error_t follow(void *state, const cm1e_foe_t *foe, size_t *done, cm1e_diag_t *diag)
+{
+    bool stop = false, ended = false;
+    cm1e_error_t error = CM1E_OK;
+    while (error == CM1E_OK && !ended) {
+        json_t *reply = NULL;
+        error = cm1e_control_call(state, json_pack("{s:s, s:b}", "request", "file", "stop", stop), &reply, diag);
+        const json_t *file = json_object_get(reply, "file");
+        *done = (size_t)number(file, "done");
+        ended = json_is_true(json_object_get(file, "ended"));
+        json_decref(reply);
+        if (error == CM1E_OK && foe->options.progress)
+            stop |= !foe->options.progress(foe->options.context, *done, foe->size);
+        if (!ended)
+            cm1e_clock_sleep_until(cm1e_clock_monotonic(), cm1e_clock_now(cm1e_clock_monotonic()) + LOOK_NS);
+    }
+    return error;
+}
+
+static cm1e_error_t transfer_file(void *state, cm1e_foe_t *foe, cm1e_diag_t *diag)
+{
+    size_t done = 0;
+    const json_int_t maximum = (json_int_t)(foe->room < CM1E_FILE_MAX ? foe->room : CM1E_FILE_MAX);
+    cm1e_error_t error = foe->writing ? send_bytes(state, foe, diag) : CM1E_OK;
+    if (error == CM1E_OK)
+        error = order(state, json_pack("{s:s, s:i, s:s, s:b, s:I, s:I, s:I}", "request", "file_begin", "slave",
+                                       foe->position, "name", foe->name, "write", foe->writing, "password",
+                                       (json_int_t)foe->options.password, "timeout_ms",
+                                       (json_int_t)(foe->options.answer_ns / 1000000 + 1), "maximum",
+                                       foe->writing ? 1 : maximum), diag);
+    if (error == CM1E_OK)
+        error = follow(state, foe, &done, diag);
+    if (error == CM1E_OK && !foe->writing)
+        error = fetch_bytes(state, foe, done < foe->room ? done : foe->room, diag);
+    return error;
+}
+
 static void close_connection(void *state) { cm1e_control_close(state); }
 
-static const cm1e_bus_remote_t through_control = {scan, transfer, run_errand, close_connection};
+static const cm1e_bus_remote_t through_control = {scan, transfer, run_errand, transfer_file, close_connection};
 
 cm1e_error_t cm1e_bus_open_attached(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_control_t *control,
                                     cm1e_diag_t *diag)

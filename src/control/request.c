@@ -1,12 +1,13 @@
 #include "control/request.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "cm1e/version.h"
+#include "control/arguments.h"
+#include "control/file_request.h"
 #include "control/maintain_request.h"
 #include "control/message.h"
 #include "control/record_request.h"
@@ -16,77 +17,14 @@ enum { SDO_MAX = 1 << 15, INFO_MAX = 2 + 2 * 0x10000, SII_WORDS = 1 << 18 };
 #define PATIENCE_NS INT64_C(2000000000)
 #define SDO_TIMEOUT_MAX_MS 60000
 
-/* ---- replies ---------------------------------------------------------------------------------------------------- */
-
-static json_t *with_id(json_t *reply, json_t *id)
+static json_t *accept(const control_request_t *request, const char *name, json_t *value)
 {
-    if (id)
-        json_object_set(reply, "id", id);
-    return reply;
-}
-
-json_t *cm1e_request_refuse(json_t *id, cm1e_error_t error, uint32_t foreign_code, const char *text)
-{
-    json_t *reply = json_pack("{s:b, s:{s:i, s:I, s:o}}", "ok", 0, "error", "code", (int)error, "foreign_code",
-                              (json_int_t)foreign_code, "text", cm1e_show_text(text));
-    return with_id(reply, id);
-}
-
-static json_t *accept(json_t *id, const char *name, json_t *value)
-{
-    return with_id(json_pack("{s:b, s:o}", "ok", 1, name, value), id);
+    return cm1e_request_accept(request->id, name, value);
 }
 
 static json_t *wrong(const control_request_t *request, const char *text)
 {
     return cm1e_request_refuse(request->id, CM1E_ERROR_INVALID_ARGUMENT, 0, text);
-}
-
-/* ---- arguments -------------------------------------------------------------------------------------------------- */
-
-/** A whole number; false: it is missing without a default, of another type or out of its range. */
-static bool take_number(const json_t *message, const char *name, json_int_t minimum, json_int_t maximum,
-                        json_int_t otherwise, json_int_t *value)
-{
-    const json_t *member = json_object_get(message, name);
-    *value = member ? json_integer_value(member) : otherwise;
-    return (!member || json_is_integer(member)) && *value >= minimum && *value <= maximum;
-}
-
-static int nibble(char c)
-{
-    static const char digits[] = "0123456789abcdef";
-    const char *found = c ? strchr(digits, tolower((unsigned char)c)) : NULL;
-    return found ? (int)(found - digits) : -1;
-}
-
-/** Bytes as hexadecimal digits; false: they are not. */
-static bool take_bytes(const json_t *message, const char *name, uint8_t *bytes, size_t room, size_t *length)
-{
-    const char *text = json_string_value(json_object_get(message, name));
-    const size_t digits = text ? strlen(text) : 1;
-    if (digits % 2 != 0 || digits / 2 > room)
-        return false;
-    for (size_t i = 0; i < digits; i += 2) {
-        const int high = nibble(text[i]), low = nibble(text[i + 1]);
-        if (high < 0 || low < 0)
-            return false;
-        bytes[i / 2] = (uint8_t)(high << 4 | low);
-    }
-    *length = digits / 2;
-    return true;
-}
-
-static json_t *show_bytes(const uint8_t *bytes, size_t length)
-{
-    char *text = malloc(2 * length + 1);
-    for (size_t i = 0; text && i < length; i++)
-        snprintf(text + 2 * i, 3, "%02x", bytes[i]);
-    if (text)
-        text[2 * length] = 0;
-    json_t *value = json_string(text ? text : "");
-    free(text);
-    return value;
 }
 
 /* ---- the requests ----------------------------------------------------------------------------------------------- */
@@ -103,7 +41,7 @@ static json_t *hello(control_request_t *request, control_run_t *run, const json_
                              "since", (json_int_t)run->since, "interface", cm1e_show_text(config->interface_name),
                              "control", names[run->control], "cycle_ns", (json_int_t)config->cycle_time_ns, "axes",
                              (int)run->view.axis_count, "slaves", (int)run->view.slave_count);
-    return accept(request->id, "hello", told);
+    return accept(request, "hello", told);
 }
 
 static json_t *want(control_request_t *request, const char *name, json_t *(*show)(const view_t *view))
@@ -130,15 +68,15 @@ static json_t *slaves(control_request_t *request, control_run_t *run, const json
 static json_t *statistics(control_request_t *request, control_run_t *run, const json_t *message)
 {
     (void)message;
-    return accept(request->id, "statistics", cm1e_show_statistics(run->view.scheduler));
+    return accept(request, "statistics", cm1e_show_statistics(run->view.scheduler));
 }
 
 static json_t *event_log(control_request_t *request, control_run_t *run, const json_t *message)
 {
     json_int_t after;
-    if (!take_number(message, "after", 0, INT64_MAX, 0, &after))
+    if (!cm1e_take_number(message, "after", 0, INT64_MAX, 0, &after))
         return wrong(request, "\"after\" is expected to be the number of a record, or to be left out.");
-    return accept(request->id, "log", cm1e_show_log(run->view.scheduler, (uint64_t)after));
+    return accept(request, "log", cm1e_show_log(run->view.scheduler, (uint64_t)after));
 }
 
 /** What reading and writing have in common; NULL: good. */
@@ -146,12 +84,12 @@ static json_t *take_object(control_request_t *request, const json_t *message)
 {
     json_int_t slave, index, subindex, timeout_ms;
     const json_t *complete = json_object_get(message, "complete_access");
-    if (!take_number(message, "slave", 1, CM1E_MAX_SLAVES, 0, &slave))
+    if (!cm1e_take_number(message, "slave", 1, CM1E_MAX_SLAVES, 0, &slave))
         return wrong(request, "\"slave\" is expected to be the position of a slave, 1 = first.");
-    if (!take_number(message, "index", 1, 0xFFFF, 0, &index) ||
-        !take_number(message, "subindex", 0, 0xFF, 0, &subindex))
+    if (!cm1e_take_number(message, "index", 1, 0xFFFF, 0, &index) ||
+        !cm1e_take_number(message, "subindex", 0, 0xFF, 0, &subindex))
         return wrong(request, "\"index\" is expected to be 1 ... 65535 and \"subindex\" 0 ... 255.");
-    if (!take_number(message, "timeout_ms", 1, SDO_TIMEOUT_MAX_MS, 1000, &timeout_ms))
+    if (!cm1e_take_number(message, "timeout_ms", 1, SDO_TIMEOUT_MAX_MS, 1000, &timeout_ms))
         return wrong(request, "\"timeout_ms\" is expected to be 1 ... 60000, or to be left out.");
     if (complete && !json_is_boolean(complete))
         return wrong(request, "\"complete_access\" is expected to be true or false.");
@@ -171,7 +109,7 @@ static json_t *end_transfer(control_request_t *request)
         return cm1e_request_refuse(request->id, sdo->error, sdo->abort_code,
                                    sdo->error == CM1E_ERROR_SDO_ABORT ? cm1e_sdo_abort_text(sdo->abort_code)
                                                                       : cm1e_strerror(sdo->error));
-    return accept(request->id, "data", sdo->write ? json_null() : show_bytes(request->data, sdo->size));
+    return accept(request, "data", sdo->write ? json_null() : cm1e_show_bytes(request->data, sdo->size));
 }
 
 static json_t *submitted(control_request_t *request, cm1e_error_t error)
@@ -186,7 +124,7 @@ static json_t *sdo_read(control_request_t *request, control_run_t *run, const js
     json_t *refused = take_object(request, message);
     if (refused)
         return refused;
-    if (!take_number(message, "size", 1, SDO_MAX, SDO_MAX, &size))
+    if (!cm1e_take_number(message, "size", 1, SDO_MAX, SDO_MAX, &size))
         return wrong(request, "\"size\" is expected to be 1 ... 32768, or to be left out.");
     request->sdo.size = (size_t)size;
     return submitted(request, cm1e_sdo_submit(run->view.bus, &request->sdo));
@@ -210,7 +148,7 @@ static json_t *sdo_write(control_request_t *request, control_run_t *run, const j
         refused = take_object(request, message);
     if (refused)
         return refused;
-    if (!take_bytes(message, "data", request->data, SDO_MAX, &request->sdo.size))
+    if (!cm1e_take_bytes(message, "data", request->data, SDO_MAX, &request->sdo.size))
         return wrong(request, "\"data\" is expected to be the bytes to write as hexadecimal digits, as on the wire.");
     request->sdo.write = true;
     request->write = (view_write_t){.order.decide = cm1e_view_decide_write, .sdo = &request->sdo};
@@ -218,6 +156,18 @@ static json_t *sdo_write(control_request_t *request, control_run_t *run, const j
     request->wanted = false;
     return NULL;
 }
+
+/* ---- files ------------------------------------------------------------------------------------------------------ */
+
+#define FILE_REQUEST(name)                                                                                            \
+    static json_t *name(control_request_t *request, control_run_t *run, const json_t *message)                        \
+    {                                                                                                                 \
+        json_t *refused = check_consent(request, run, "Transferring a file");                                         \
+        return refused ? refused : cm1e_##name(request, run, message);                                                \
+    }
+FILE_REQUEST(file_data)
+FILE_REQUEST(file_begin)
+FILE_REQUEST(file_look)
 
 /* ---- errands ---------------------------------------------------------------------------------------------------- */
 
@@ -243,20 +193,20 @@ static json_t *continue_errand(control_request_t *request, control_run_t *run)
         return cm1e_request_refuse(request->id, errand->error, errand->info.abort_code,
                                    errand->error == CM1E_ERROR_SDO_ABORT ? cm1e_sdo_abort_text(errand->info.abort_code)
                                                                          : cm1e_strerror(errand->error));
-    return accept(request->id, "data", info ? show_bytes(errand->info.answer, errand->info.size)
-                                            : show_bytes(errand->data, errand->size));
+    return accept(request, "data", info ? cm1e_show_bytes(errand->info.answer, errand->info.size)
+                                        : cm1e_show_bytes(errand->data, errand->size));
 }
 
 static json_t *errand_of(control_request_t *request, control_run_t *run, const json_t *message,
                          cm1e_errand_kind_t kind, const char *place, json_int_t place_max)
 {
     json_int_t slave, start, size;
-    if (!take_number(message, "slave", 1, run->view.slave_count, 0, &slave))
+    if (!cm1e_take_number(message, "slave", 1, run->view.slave_count, 0, &slave))
         return wrong(request, "\"slave\" is expected to be the position of a slave, 1 = first.");
-    if (!take_number(message, place, 0, place_max, -1, &start))
+    if (!cm1e_take_number(message, place, 0, place_max, -1, &start))
         return wrong(request, kind == ERRAND_SII ? "\"word\" is expected to be 0 ... 262143."
                                                  : "\"address\" is expected to be 0 ... 2303 (0x08FF).");
-    if (!take_number(message, "size", 1, CM1E_ERRAND_BYTES, 2, &size) || (kind == ERRAND_SII && size % 2 != 0) ||
+    if (!cm1e_take_number(message, "size", 1, CM1E_ERRAND_BYTES, 2, &size) || (kind == ERRAND_SII && size % 2 != 0) ||
         (kind == ERRAND_REGISTERS && start + size > CM1E_ERRAND_REGISTERS_END))
         return wrong(request, "\"size\" is expected to be 1 ... 128, even for an SII, up to register 0x08FF.");
     request->errand = (cm1e_errand_t){.kind = kind, .position = (uint16_t)slave, .place = (uint32_t)start,
@@ -277,13 +227,13 @@ static json_t *sii_read(control_request_t *request, control_run_t *run, const js
 static json_t *sdo_info(control_request_t *request, control_run_t *run, const json_t *message)
 {
     json_int_t slave, kind, index, subindex, values;
-    if (!take_number(message, "slave", 1, run->view.slave_count, 0, &slave))
+    if (!cm1e_take_number(message, "slave", 1, run->view.slave_count, 0, &slave))
         return wrong(request, "\"slave\" is expected to be the position of a slave, 1 = first.");
-    if (!take_number(message, "kind", INFO_LIST, INFO_ENTRY, 0, &kind) || kind % 2 == 0)
+    if (!cm1e_take_number(message, "kind", INFO_LIST, INFO_ENTRY, 0, &kind) || kind % 2 == 0)
         return wrong(request, "\"kind\" is expected to be 1 (list), 3 (object) or 5 (entry).");
-    if (!take_number(message, "index", 0, 0xFFFF, -1, &index) ||
-        !take_number(message, "subindex", 0, 0xFF, 0, &subindex) ||
-        !take_number(message, "values", 0, 0xFF, 0, &values))
+    if (!cm1e_take_number(message, "index", 0, 0xFFFF, -1, &index) ||
+        !cm1e_take_number(message, "subindex", 0, 0xFF, 0, &subindex) ||
+        !cm1e_take_number(message, "values", 0, 0xFF, 0, &values))
         return wrong(request, "\"index\" is expected to be 0 ... 65535, \"subindex\" and \"values\" 0 ... 255.");
     request->data = malloc(INFO_MAX);
     if (!request->data)
@@ -295,7 +245,7 @@ static json_t *sdo_info(control_request_t *request, control_run_t *run, const js
     return start_errand(request, run);
 }
 
-/* ---- motion -------------------------------------------------------------------------------------------------------- */
+/* ---- motion ----------------------------------------------------------------------------------------------------- */
 
 static json_t *maintain(control_request_t *request, control_run_t *run, const json_t *message, maintain_what_t what)
 {
@@ -330,7 +280,7 @@ static json_t *io(control_request_t *request, control_run_t *run, const json_t *
     if (!request->io)
         return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
     if (!cm1e_io_list_next(request->io, &run->view))
-        return accept(request->id, "io", json_incref(request->io->told));
+        return accept(request, "io", json_incref(request->io->told));
     request->state = REQUEST_IO;
     request->wanted = false;
     return NULL;
@@ -342,7 +292,7 @@ static json_t *continue_io(control_request_t *request, control_run_t *run)
     cm1e_io_list_take(request->io, &run->view);
     request->wanted = false;
     return cm1e_io_list_next(request->io, &run->view) ? NULL
-                                                      : accept(request->id, "io", json_incref(request->io->told));
+                                                      : accept(request, "io", json_incref(request->io->told));
 }
 
 static json_t *output(control_request_t *request, control_run_t *run, const json_t *message)
@@ -365,7 +315,7 @@ static json_t *end_output(const control_request_t *request)
 {
     const char *refusal = cm1e_output_refusal(&request->output);
     return refusal ? cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, refusal)
-                   : accept(request->id, "output", json_null());
+                   : accept(request, "output", json_null());
 }
 
 static const struct {
@@ -377,6 +327,7 @@ static const struct {
     {"sii_read", sii_read}, {"registers", registers}, {"enable", enable}, {"disable", disable}, {"jog", jog},
     {"home", home},     {"stop", stop},         {"reset", reset},         {"keep", keep},
     {"record", cm1e_record_begin}, {"samples", cm1e_record_samples}, {"io", io}, {"output", output},
+    {"file_data", file_data}, {"file_begin", file_begin}, {"file", file_look},
 };
 
 static json_t *unknown(const control_request_t *request)
@@ -393,7 +344,7 @@ json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const
     json_int_t protocol;
     request->id = json_incref(json_object_get(message, "id"));
     request->begun_ns = now_ns;
-    if (!take_number(message, "protocol", 1, CM1E_CONTROL_PROTOCOL, CM1E_CONTROL_PROTOCOL, &protocol))
+    if (!cm1e_take_number(message, "protocol", 1, CM1E_CONTROL_PROTOCOL, CM1E_CONTROL_PROTOCOL, &protocol))
         return cm1e_request_refuse(request->id, CM1E_ERROR_UNSUPPORTED, 0,
                                    "This program speaks version 1 of the protocol only.");
     for (size_t i = 0; name && i < sizeof requests / sizeof *requests; i++)
@@ -419,7 +370,7 @@ static json_t *continue_snapshot(control_request_t *request, control_run_t *run)
     }
     if (!cm1e_view_filled(&run->view))
         return NULL;
-    json_t *reply = accept(request->id, request->name, request->show(&run->view));
+    json_t *reply = accept(request, request->name, request->show(&run->view));
     if (request->show == cm1e_show_slaves && run->view.ring.used)
         json_object_set_new(reply, "ring", cm1e_show_ring(&run->view));
     return reply;
@@ -451,10 +402,10 @@ static json_t *end_write(control_request_t *request, control_run_t *run)
     char text[160];
     view_write_t *write = &request->write;
     if (write->commanded < 0)
-        return submitted(request, write->result);
+        return request->file ? cm1e_file_decided(request) : submitted(request, write->result);
     snprintf(text, sizeof text, "Axis \"%s\" is commanded by the program: nothing is written to slave %u until it "
              "stands without a command.", cm1e_axis_configuration(run->view.axes[write->commanded])->name,
-             request->sdo.position);
+             write->file ? write->file->position : request->sdo.position);
     request->state = REQUEST_NONE;
     return cm1e_request_refuse(request->id, write->result, 0, text);
 }
@@ -477,7 +428,7 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
     else if (request->state == REQUEST_WRITE && continue_order(request, run))
         reply = end_write(request, run);
     else if (request->state == REQUEST_MAINTAIN && continue_order(request, run))
-        reply = with_id(cm1e_maintain_reply(request, run), request->id);
+        reply = cm1e_request_with_id(cm1e_maintain_reply(request, run), request->id);
     else if (request->state == REQUEST_IO && continue_order(request, run))
         reply = continue_io(request, run);
     else if (request->state == REQUEST_OUTPUT && continue_order(request, run))

@@ -9,13 +9,17 @@
 #include <time.h>
 
 #include "bus/errand.h"
+#include "control/arguments.h"
 #include "control/io_request.h"
 #include "control/maintain.h"
 
-/** Facts of a run that do not change. */
+typedef struct control_file control_file_t;
+
+/** Facts of a run, and what its clients have beyond one request. */
 typedef struct control_run {
     view_t view;
     cm1e_control_mode_t control;
+    control_file_t *files[CM1E_CONTROL_CLIENTS]; /**< file_request.h; NULL: the client has none */
     bool serves_own;           /**< connections of this process may do everything */
     char program[64];
     time_t since;
@@ -45,6 +49,7 @@ typedef struct control_request {
     cm1e_sdo_t sdo;
     uint8_t *data;             /**< of the transfer */
     view_write_t write;
+    control_file_t *file; /**< WRITE: what is written is a file; NULL: an object */
     cm1e_errand_t errand;
     maintain_order_t maintain;
     io_list_t *io;             /**< IO */
@@ -59,7 +64,5 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
 bool cm1e_request_must_end(const control_request_t *request);
 /** Frees what belongs to a request, which may be used again. */
 void cm1e_request_clear(control_request_t *request);
-/** A reply that refuses; `id` may be NULL. */
-json_t *cm1e_request_refuse(json_t *id, cm1e_error_t error, uint32_t foreign_code, const char *text);
 
 #endif

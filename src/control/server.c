@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "cm1e/control.h"
+#include "control/file_request.h"
 #include "control/message.h"
 #include "control/recorder.h"
 #include "control/request.h"
@@ -68,7 +69,8 @@ static void leave(server_t *server, client_t *client)
     cm1e_maintain_leave(&server->run.view, client->place);
     cm1e_guest_outputs_leave(&server->run.view.outputs, client->place);
     const bool recorded = !cm1e_recorder_end(&server->run.view, client->place, atomic_load(&server->stop));
-    if (cm1e_request_must_end(&client->request) || recorded)
+    const bool transfers = !cm1e_file_leave(&server->run, client->place);
+    if (cm1e_request_must_end(&client->request) || recorded || transfers)
         return;
     cm1e_request_clear(&client->request);
     free(client->in);

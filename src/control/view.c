@@ -80,11 +80,16 @@ static bool is_commanded(const cm1e_axis_t *axis)
 void cm1e_view_decide_write(view_t *view, view_order_t *order)
 {
     view_write_t *write = (view_write_t *)order;
+    const uint16_t position = write->file ? write->file->position : write->sdo->position;
     write->commanded = -1;
     for (uint32_t i = 0; i < view->axis_count && write->commanded < 0; i++)
-        if (cm1e_bus_axis_position(view->bus, i) == write->sdo->position && is_commanded(view->axes[i]))
+        if (cm1e_bus_axis_position(view->bus, i) == position && is_commanded(view->axes[i]))
             write->commanded = (int32_t)i;
-    write->result = write->commanded >= 0 ? CM1E_ERROR_AXIS_STATE : cm1e_sdo_submit(view->bus, write->sdo);
+    if (write->commanded >= 0)
+        write->result = CM1E_ERROR_AXIS_STATE;
+    else
+        write->result = write->file ? cm1e_foe_submit(view->bus, write->file, NULL)
+                                    : cm1e_sdo_submit(view->bus, write->sdo);
 }
 
 void cm1e_view_cycle(view_t *view)

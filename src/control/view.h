@@ -10,6 +10,7 @@
 #include <stdatomic.h>
 
 #include "axis/axis_signals.h"
+#include "bus/foe_job.h"
 #include "cm1e/topology.h"
 #include "control/guest_outputs.h"
 #include "scheduler/scheduler_window.h"
@@ -28,8 +29,9 @@ typedef struct view_order {
 typedef struct view_write {
     view_order_t order;
     cm1e_sdo_t *sdo;
+    cm1e_foe_t *file;          /**< NULL: it is the object of `sdo` */
     int32_t commanded;         /**< the axis that is commanded, 0 = first; -1: none */
-    cm1e_error_t result;       /**< valid when decided: of cm1e_sdo_submit(), or CM1E_ERROR_AXIS_STATE */
+    cm1e_error_t result;       /**< valid when decided: of the submission, or CM1E_ERROR_AXIS_STATE */
 } view_write_t;
 
 typedef enum hold_motion { HOLD_NONE = 0, HOLD_JOG, HOLD_HOME, HOLD_END } hold_motion_t;
