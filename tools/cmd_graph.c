@@ -24,6 +24,8 @@ typedef struct graph {
     const cm1e_bus_config_t *config;
     uint32_t count;
     cm1e_slave_place_t places[CM1E_MAX_SLAVES];
+    const char *second;   /* the interface at the other end of a ring; "": there is none */
+    uint32_t from_second; /* slaves that only that interface reaches, because the ring is broken: the last ones */
     unsigned row[CM1E_MAX_SLAVES], column[CM1E_MAX_SLAVES], rows, columns; /* of the SVG */
 } graph_t;
 
@@ -69,12 +71,39 @@ static int describe(const graph_t *graph, uint32_t i, char lines[LINES][LINE_BYT
     return n;
 }
 
-static bool is_troubled(const cm1e_slave_info_t *slave, const cm1e_slave_place_t *place)
+/** It is behind the break of a ring, at the cable that ends at the second interface. */
+static bool is_from_second(const graph_t *graph, uint32_t i) { return i >= graph->count - graph->from_second; }
+
+static bool is_troubled(const graph_t *graph, uint32_t i)
 {
-    bool loop = !place->known || (slave->al_state & CM1E_AL_ERROR);
+    const cm1e_slave_place_t *place = &graph->places[i];
+    const bool lost = !place->known && !is_from_second(graph, i);
+    bool loop = lost || (cm1e_bus_slave(graph->bus, i + 1)->al_state & CM1E_AL_ERROR);
     for (int port = 0; port < CM1E_PORTS; port++)
         loop = loop || loops_back(place, port);
     return loop;
+}
+
+/* ---- rings ------------------------------------------------------------------------------------------------------ */
+
+/** The port of the last slave that leads to the second interface; -1: it has no link there. */
+static int last_port(const graph_t *graph)
+{
+    const cm1e_slave_place_t *last = graph->count ? &graph->places[graph->count - 1] : NULL;
+    for (int port = 1; last && port < CM1E_PORTS; port++)
+        if (last->open[port] && last->next[port] == 0)
+            return port;
+    return -1;
+}
+
+/** In a ring that is broken, the slaves behind the break are in a line, whose end is the second interface. */
+static void find_ring(graph_t *graph)
+{
+    uint32_t first = 0;
+    graph->second = graph->config->second_interface;
+    while (first < graph->count && graph->places[first].known && (first > 0 || graph->places[first].open[0]))
+        first++;
+    graph->from_second = graph->second[0] ? graph->count - first : 0;
 }
 
 /* ---- DOT -------------------------------------------------------------------------------------------------------- */
@@ -100,8 +129,14 @@ static void print_dot_slave(FILE *file, const graph_t *graph, uint32_t i)
         fputs(n ? "\\n" : "", file);
         print_quoted(file, lines[n]);
     }
-    fprintf(file, "\"%s];\n", is_troubled(slave, place) ? ", color=red" : "");
-    if (place->parent)
+    fprintf(file, "\"%s];\n", is_troubled(graph, i) ? ", color=red" : "");
+    if (is_from_second(graph, i) && place->open[0])
+        fprintf(file, "  s%u -> s%u [taillabel=\"1\", headlabel=\"0\"];\n", i, slave->position);
+    else if (is_from_second(graph, i) && i > 0)
+        fprintf(file, "  s%u -> s%u [style=dotted, color=red];\n", i, slave->position);
+    else if (is_from_second(graph, i))
+        fprintf(file, "  master -> s1 [style=dotted, color=red];\n");
+    else if (place->parent)
         fprintf(file, "  s%u -> s%u [taillabel=\"%u\", headlabel=\"%u\"];\n", place->parent, slave->position,
                 place->parent_port, place->entry_port);
     else
@@ -116,6 +151,12 @@ static void print_dot(FILE *file, const graph_t *graph)
     fprintf(file, "\"];\n");
     for (uint32_t i = 0; i < graph->count; i++)
         print_dot_slave(file, graph, i);
+    if (graph->second[0] && graph->count > 0) {
+        fprintf(file, "  second [label=\"");
+        print_quoted(file, graph->second);
+        fprintf(file, "\"];\n  s%u -> second [%s];\n", graph->count,
+                last_port(graph) < 0 ? "style=dotted, color=red" : "");
+    }
     fprintf(file, "}\n");
 }
 
@@ -164,37 +205,93 @@ static void print_box(FILE *file, int x, int y, bool troubled, char lines[LINES]
     }
 }
 
+/** A cable from the right side of a box to the left side of another, with the ports at both ends (-1: no port), on its
+ *  last part, which belongs to no other cable. Broken: it is where one should be. */
+typedef struct cable {
+    unsigned from_column, from_row, column, row;
+    int from_port, port;
+    bool broken;
+} cable_t;
+
+static void print_cable(FILE *file, const cable_t *cable)
+{
+    const bool straight = cable->row == cable->from_row;
+    const int from_x = left_of(cable->from_column) + BOX_WIDTH, from_y = top_of(cable->from_row) + BOX_HEIGHT / 2;
+    const int x = left_of(cable->column), y = top_of(cable->row) + BOX_HEIGHT / 2, turn = from_x + GAP_X / 3;
+    fprintf(file, "<polyline points=\"%d,%d %d,%d %d,%d %d,%d\" fill=\"none\" stroke=\"%s\"%s/>\n", from_x, from_y,
+            turn, from_y, turn, y, x, y, cable->broken ? "#c62828" : "#455a64",
+            cable->broken ? " stroke-dasharray=\"5 4\"" : "");
+    if (cable->from_port >= 0)
+        fprintf(file, "<text x=\"%d\" y=\"%d\">%d</text>\n", (straight ? from_x : turn) + 4, y - 4,
+                cable->from_port);
+    if (cable->port >= 0)
+        fprintf(file, "<text x=\"%d\" y=\"%d\">%d</text>\n", x - 12, y - 4, cable->port);
+    if (cable->broken)
+        fprintf(file, "<text x=\"%d\" y=\"%d\" fill=\"#c62828\">broken</text>\n", from_x + 12, y - 4);
+}
+
+/** The cable by which a slave is reached. */
+static cable_t cable_to(const graph_t *graph, uint32_t i)
+{
+    const cm1e_slave_place_t *place = &graph->places[i];
+    const bool has_parent = i > 0 && place->known && place->parent > 0;
+    const bool at_break = is_from_second(graph, i) && !place->open[0];
+    const unsigned from = has_parent ? place->parent - 1u : i > 0 ? i - 1 : 0;
+    cable_t cable = {.from_column = i > 0 ? graph->column[from] + 1 : 0, .from_row = i > 0 ? graph->row[from] : 0,
+                     .column = graph->column[i] + 1, .row = graph->row[i], .broken = i > 0 && !has_parent,
+                     .from_port = has_parent ? place->parent_port : -1, .port = place->entry_port};
+    if (is_from_second(graph, i)) {
+        cable.broken = at_break;
+        cable.from_port = at_break ? -1 : 1;
+        cable.port = at_break ? -1 : 0;
+    } else if (cable.broken) {
+        cable.port = -1;
+    }
+    return cable;
+}
+
 static void print_svg_slave(FILE *file, const graph_t *graph, uint32_t i)
 {
     char lines[LINES][LINE_BYTES];
-    const cm1e_slave_place_t *place = &graph->places[i];
-    const bool has_parent = i > 0 && place->known && place->parent > 0;
     const int x = left_of(graph->column[i] + 1), y = top_of(graph->row[i]);
-    const int from_x = has_parent ? left_of(graph->column[place->parent - 1] + 1) + BOX_WIDTH : MARGIN + BOX_WIDTH;
-    const int from_y = (has_parent ? top_of(graph->row[place->parent - 1]) : MARGIN) + BOX_HEIGHT / 2;
-    const int middle = y + BOX_HEIGHT / 2;
-    if (i == 0 || has_parent) {
-        fprintf(file, "<polyline points=\"%d,%d %d,%d %d,%d %d,%d\" fill=\"none\" stroke=\"#455a64\"/>\n", from_x,
-                from_y, x - GAP_X / 2, from_y, x - GAP_X / 2, middle, x, middle);
-        fprintf(file, "<text x=\"%d\" y=\"%d\">%u</text>\n", x - 12, middle - 4, place->entry_port);
-    }
-    if (has_parent)
-        fprintf(file, "<text x=\"%d\" y=\"%d\">%u</text>\n", from_x + 4,
-                (graph->row[i] == graph->row[place->parent - 1] ? from_y : middle) - 4, place->parent_port);
+    const cable_t cable = cable_to(graph, i);
+    print_cable(file, &cable);
     const int count = describe(graph, i, lines);
-    print_box(file, x, y, is_troubled(cm1e_bus_slave(graph->bus, i + 1), place), lines, count);
+    print_box(file, x, y, is_troubled(graph, i), lines, count);
+}
+
+/** A computer at an end of the network. */
+static void print_svg_computer(FILE *file, unsigned column, unsigned row, const char *interface_name)
+{
+    char lines[LINES][LINE_BYTES] = {"this computer"};
+    snprintf(lines[1], LINE_BYTES, "%s", interface_name);
+    print_box(file, left_of(column), top_of(row), false, lines, interface_name[0] ? 2 : 1);
+}
+
+static void print_svg_second(FILE *file, const graph_t *graph)
+{
+    const uint32_t last = graph->count - 1;
+    const int port = last_port(graph);
+    const cable_t cable = {.from_column = graph->column[last] + 1, .from_row = graph->row[last],
+                           .column = graph->column[last] + 2, .row = graph->row[last], .from_port = port, .port = -1,
+                           .broken = port < 0};
+    print_cable(file, &cable);
+    print_svg_computer(file, graph->column[last] + 2, graph->row[last], graph->second);
 }
 
 static void print_svg(FILE *file, const graph_t *graph)
 {
-    char computer[LINES][LINE_BYTES] = {"this computer"};
-    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" font-family=\"sans-serif\" "
-            "font-size=\"11\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
-            left_of(graph->columns + 1) - GAP_X + MARGIN, top_of(graph->rows ? graph->rows : 1) - GAP_Y + MARGIN);
-    snprintf(computer[1], LINE_BYTES, "%s", graph->config->interface_name);
-    print_box(file, MARGIN, MARGIN, false, computer, 2);
+    const bool ring = graph->second[0] && graph->count > 0;
+    const int width = left_of(graph->columns + (ring ? 2 : 1)) - GAP_X + MARGIN;
+    const int height = top_of(graph->rows ? graph->rows : 1) - GAP_Y + MARGIN;
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+            "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
+            width, height, width, height);
+    print_svg_computer(file, 0, 0, graph->config->interface_name);
     for (uint32_t i = 0; i < graph->count; i++)
         print_svg_slave(file, graph, i);
+    if (ring)
+        print_svg_second(file, graph);
     fprintf(file, "</svg>\n");
 }
 
@@ -235,6 +332,7 @@ static int write_svg(const graph_t *graph, const char *path)
 
 static int show(graph_t *graph, const graph_options_t *options)
 {
+    find_ring(graph);
     place_boxes(graph);
     if (options->svg)
         return write_svg(graph, options->svg);
