@@ -4,24 +4,36 @@
 #include "axis/axis_commands.h"
 #include "axis/axis_pause.h"
 #include "axis/axis_setpoint.h"
+#include "core/rare.h"
 #include "coupling/coupling_private.h"
 
 /* Tolerance in counts between the way of a master and what its velocities explain. A ramp without a limit of jerk has
  * its corner between two set-points. */
 static const double same_way_counts = 1.0;
 
-static void advance_masters(follow_t *follow)
+static bool have_advanced(const follow_t *follow)
 {
-    for (int i = 0; follow && i < follow->count; i++)
+    for (int i = 0; i < follow->count; i++)
+        if (follow->links[i].master && !follow->links[i].master->advanced)
+            return false;
+    return true;
+}
+
+/* A function of its own, so that a slave whose masters have advanced saves no registers. */
+CM1E_RARE static void advance_masters(follow_t *follow)
+{
+    for (int i = 0; i < follow->count; i++)
         if (follow->links[i].master && !follow->links[i].master->advanced)
             cm1e_axis_advance(follow->links[i].master);
 }
 
 void cm1e_coupling_advance_masters(cm1e_axis_t *axis)
 {
-    if (axis_follows(axis))
-        advance_masters(axis->coupling->now);
-    advance_masters(axis->coupling->awaited);
+    coupling_t *c = axis->coupling;
+    if (axis_follows(axis) && !have_advanced(c->now))
+        advance_masters(c->now);
+    if (c->awaited)
+        advance_masters(c->awaited);
 }
 
 static void resume(cm1e_axis_t *master, int64_t pause_ns)
@@ -224,47 +236,47 @@ static master_trouble_t trouble_of_set_value(const cm1e_axis_t *master)
 }
 
 /* The actual position of the master: of this cycle if the slave has advanced, else of the previous cycle. */
-static master_trouble_t see_actual(link_t *link, position_t *position)
+static inline master_trouble_t see_actual(const link_t *link, position_t *position, master_view_t *view)
 {
     from_t seen;
     const master_trouble_t trouble = cm1e_coupling_see_actual(link->master, link->slave->advanced, &seen);
     if (trouble)
         return trouble;
     *position = seen.position;
-    link->seen.velocity = seen.velocity;
-    link->seen.acceleration = seen.acceleration;
+    view->velocity = seen.velocity;
+    view->acceleration = seen.acceleration;
+    view->jumps = link->seen.jumps; /* the guard of the slave judges jumps of an actual value */
     return MASTER_GOOD;
 }
 
 /* Where the motor of a master is likely to be that is not seen. */
-static void run_on(link_t *link, bool on_the_way, position_t *position)
+static void run_on(link_t *link, bool on_the_way, position_t *position, master_view_t *view)
 {
     if (link->sight == STOPS)
-        link->seen.velocity = 0.0;
+        view->velocity = 0.0;
     if (on_the_way)
-        link->ran_on += 2.0 * link->half_cycle * link->seen.velocity;
+        link->ran_on += 2.0 * link->half_cycle * view->velocity;
     *position = cm1e_position_plus(*position, link->ran_on);
-    link->seen.acceleration = 0.0;
+    view->acceleration = 0.0;
 }
 
-/* The position of the master. It is counted from the place where the slave began to follow. So a shift of the master's
- * coordinates is no motion, and no count is lost however far the master goes. */
-static master_trouble_t see(link_t *link, bool on_the_way, position_t *position)
+/* The position and the view of the master in this cycle, all but the counts of the view. */
+static inline master_trouble_t see(link_t *link, bool on_the_way, position_t *position, master_view_t *view)
 {
     const cm1e_axis_t *master = link->master;
     if (!master)
         return MASTER_DESTROYED;
     if (link->source == mcActualValue)
-        return see_actual(link, position);
+        return see_actual(link, position, view);
     const master_trouble_t trouble = trouble_of_set_value(master);
     if (trouble && trouble != MASTER_STOPPING)
         return trouble;
     *position = master->setpoint.position;
-    link->seen.velocity = master->setpoint.velocity;
-    link->seen.acceleration = master->setpoint.acceleration;
-    link->seen.jumps = master->setpoint.jumps;
+    view->velocity = master->setpoint.velocity;
+    view->acceleration = master->setpoint.acceleration;
+    view->jumps = master->setpoint.jumps;
     if (link->sight != SEEN)
-        run_on(link, on_the_way, position);
+        run_on(link, on_the_way, position, view);
     return trouble;
 }
 
@@ -275,12 +287,12 @@ static bool keeps_phase(const cm1e_axis_t *slave, const link_t *link)
 }
 
 /* Adds the phase shift of the slave against its first master (4.8). */
-static void add_phase(const cm1e_axis_t *slave, link_t *link)
+static inline void add_phase(const cm1e_axis_t *slave, const link_t *link, master_view_t *view)
 {
     const cm1e_motion_state_t *phase = &slave->coupling->phase;
-    link->seen.counts += phase->position * link->master->position.scale;
-    link->seen.velocity += phase->velocity;
-    link->seen.acceleration += phase->acceleration;
+    view->counts += phase->position * link->master->position.scale;
+    view->velocity += phase->velocity;
+    view->acceleration += phase->acceleration;
 }
 
 /* Computes how far the way of a master in a cycle may differ from what its velocities explain: its acceleration may
@@ -296,12 +308,13 @@ static void know_ways(link_t *link, double cycle_s)
 }
 
 /* Whether the set-point of the master jumped: even a short jump breaks its limits. */
-static bool jumped(const link_t *link, const master_view_t *before)
+static inline bool jumped(const link_t *link, const master_view_t *view)
 {
-    if (link->seen.jumps != before->jumps)
+    const master_view_t *before = &link->seen;
+    if (view->jumps != before->jumps)
         return true;
-    const double way = (link->seen.velocity + before->velocity) * link->half_cycle;
-    return fabs(link->seen.counts - before->counts - way) > link->most_unexplained;
+    const double way = (view->velocity + before->velocity) * link->half_cycle;
+    return fabs(view->counts - before->counts - way) > link->most_unexplained;
 }
 
 static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, master_trouble_t trouble)
@@ -315,22 +328,26 @@ static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, mas
     return trouble;
 }
 
+/* Makes the view of every master. The positions count from the place where the slave began to follow. So a shift of
+ * the coordinates of a master is no motion, and no count is lost however far the master goes. */
 static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool on_the_way)
 {
     master_trouble_t worst = MASTER_GOOD;
     for (int i = 0; i < follow->count; i++) {
         link_t *link = &follow->links[i];
-        const master_view_t before = link->seen;
         position_t position = {0};
-        const master_trouble_t trouble = see(link, on_the_way, &position);
+        master_view_t view;
+        const master_trouble_t trouble = see(link, on_the_way, &position, &view);
         if (trouble)
             worst = trouble_with(slave, link, trouble);
         if (trouble && trouble != MASTER_STOPPING)
             return trouble;
-        link->seen.counts = cm1e_position_minus(position, link->origin);
+        view.counts = cm1e_position_minus(position, link->origin);
         if (i == 0 && (follow == slave->coupling->now || keeps_phase(slave, link)))
-            add_phase(slave, link);
-        if (on_the_way && jumped(link, &before))
+            add_phase(slave, link, &view);
+        const bool jump = on_the_way && jumped(link, &view);
+        link->seen = view;
+        if (jump)
             return trouble_with(slave, link, MASTER_JUMPED);
     }
     return worst;
@@ -358,12 +375,12 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;
     know_ways(link, slave->cycle_s);
-    const master_trouble_t trouble = see(link, false, &link->origin);
+    const master_trouble_t trouble = see(link, false, &link->origin, &link->seen);
     if (trouble) {
         trouble_with(slave, link, trouble);
         return CM1E_ERROR_AXIS_MASTER_LOST;
     }
     if (follow->count++ == 0 && keeps_phase(slave, link))
-        add_phase(slave, link);
+        add_phase(slave, link, &link->seen);
     return CM1E_OK;
 }

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "core/bytes.h"
+#include "core/rare.h"
 #include "drive/drive_private.h"
 
 #define SLOT(member) offsetof(cm1e_drive_image_t, member)
@@ -144,15 +145,20 @@ static int32_t get_i32(const uint8_t *image, cm1e_image_slot_t slot)
     return slot.bytes ? (int32_t)cm1e_get_u32(image + slot.offset) : 0;
 }
 
-static int32_t get_signed(const uint8_t *image, cm1e_image_slot_t slot)
+CM1E_RARE static int32_t get_odd(const uint8_t *image, cm1e_image_slot_t slot)
 {
-    if (slot.bytes == 2)
-        return (int16_t)cm1e_get_u16(image + slot.offset);
-    if (slot.bytes == 4 || slot.bytes == 0)
-        return get_i32(image, slot);
     const uint32_t raw = (uint32_t)cm1e_get_uint(image + slot.offset, slot.bytes);
     const uint32_t sign = UINT32_C(1) << (8u * slot.bytes - 1);
     return (int32_t)(raw ^ sign) - (int32_t)sign;
+}
+
+static inline int32_t get_signed(const uint8_t *image, cm1e_image_slot_t slot)
+{
+    if (slot.bytes == 0)
+        return 0;
+    if (slot.bytes == 2)
+        return (int16_t)cm1e_get_u16(image + slot.offset);
+    return slot.bytes == 4 ? get_i32(image, slot) : get_odd(image, slot);
 }
 
 static int16_t get_i16(const uint8_t *image, cm1e_image_slot_t slot)
@@ -165,6 +171,14 @@ static void put_u32(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
 {
     if (slot.bytes)
         cm1e_put_u32(image + slot.offset, value);
+}
+
+static void put_by_size(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
+{
+    if (slot.bytes == 2)
+        cm1e_put_u16(image + slot.offset, (uint16_t)value);
+    else
+        cm1e_put_uint(image + slot.offset, slot.bytes, value);
 }
 
 /* The velocity is 0x606C, unless the mapping lacks it or the firmware shows a quarter of it (below V1.3.0 in HM and PP,
@@ -329,8 +343,8 @@ void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t positi
     if (drive->image.out_mode.bytes)
         out[drive->image.out_mode.offset] = (uint8_t)drive->mode.commanded;
     if (drive->image.out_digital.bytes)
-        cm1e_put_uint(out + drive->image.out_digital.offset, drive->image.out_digital.bytes,
-                      (uint32_t)drive->command.digital_outputs << drive->kind->signals.output_shift);
+        put_by_size(out, drive->image.out_digital,
+                    (uint32_t)drive->command.digital_outputs << drive->kind->signals.output_shift);
     if (drive->image.out_probe.bytes)
         cm1e_put_u16(out + drive->image.out_probe.offset, drive->probes.function);
     put_u32(out, drive->image.out_profile_velocity, drive->image.profile_velocity);
