@@ -136,7 +136,6 @@ static void submit(cm1e_drive_t *drive, bool write)
         .timeout_ns = sdo_timeout_ns,
     };
     if (cm1e_sdo_submit(drive->bus, &drive->change.sdo) != CM1E_OK) {
-        drive->change.phase = PHASE_IDLE;
         drive->change.retry_ns = drive->now_ns + write_again_ns;
         return;
     }
@@ -257,8 +256,8 @@ void cm1e_drive_mode_step(cm1e_drive_t *drive)
         written(drive, state == CM1E_SDO_DONE);
     } else if (state == CM1E_SDO_DONE) {
         read_done(drive);
-    } else {
-        drive->change.phase = PHASE_IDLE;
+    } else { /* a motor that moves keeps the next write back, but 0x6061 is read again */
+        drive->change.phase = drive->change.uncertain ? PHASE_WAIT : PHASE_IDLE;
         drive->change.retry_ns = drive->now_ns + write_again_ns;
     }
 }

@@ -187,7 +187,7 @@ static void test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write(void
     TEST_ASSERT_EQUAL_UINT(0, writes_of_mode());
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_MODE_TIMEOUT, drive.fault.error);
     bench_text_has("101 (CML) commanded, 8 (CSP) shown");
-    bench_text_has("stands");
+    bench_text_has("at standstill");
     fake_bridge.shortest_mode_interval_ns = INT64_MAX;
 }
 
@@ -205,6 +205,27 @@ static void test_a_late_switch_is_seen_while_the_motor_moves(void)
     }
     TEST_ASSERT_EQUAL_UINT(1, writes_of_mode());
     TEST_ASSERT_EQUAL_INT8(CML, drive.feedback.mode);
+}
+
+/* Also if a read fails meanwhile, or finds the queue full. */
+static void test_a_late_switch_is_seen_after_a_read_that_failed(void)
+{
+    for (int full = 0; full < 2; full++) {
+        bench_open(CM1E_DEVICE_EB12, 3);
+        fake_bridge.mode_shown = CSP;
+        drive.command.mode = (cm1e_mode_t)CML;
+        while (writes_of_mode() == 0)
+            bench_cycle();
+        for (int i = 0; i < 300; i++) {
+            fake_bridge_axis()->zero += 10;
+            fake_bridge.mode_shown = i < 150 ? CSP : -1;
+            bus.sdo_full = full && i >= 2 && i < 100;
+            fake_bridge.broken_sdo = !full && i >= 2 && i < 100;
+            bench_cycle();
+        }
+        TEST_ASSERT_EQUAL_UINT(1, writes_of_mode());
+        TEST_ASSERT_EQUAL_INT8(CML, drive.feedback.mode);
+    }
 }
 
 /* 200 pulses in a revolution and a tenth of it a second: in 20 ms that is not half a pulse. */
@@ -434,6 +455,25 @@ static void test_after_an_absence_the_mode_that_is_found_counts(void)
     TEST_ASSERT_EQUAL_INT8(CSP, drive.feedback.mode);
 }
 
+/* A write whose answer comes during the absence proves nothing either. */
+static void test_after_an_absence_a_write_that_was_under_way_is_not_repeated(void)
+{
+    fake_bridge.mode_shown = CSP;
+    bus.sdo_delay = 10;
+    drive.command.mode = (cm1e_mode_t)CML;
+    while (drive.change.sdo.index == 0 || !drive.change.sdo.write)
+        bench_cycle();
+    bus.watch.al_state = CM1E_AL_SAFE_OP;
+    bench_cycles(20);
+    fake_bridge_axis()->mode = CSP;
+    drive.command.mode = CM1E_MODE_CSP;
+    bus.watch.al_state = CM1E_AL_OP;
+    const unsigned before = writes_of_mode();
+    bench_cycles(200);
+    TEST_ASSERT_EQUAL_UINT(before, writes_of_mode());
+    TEST_ASSERT_EQUAL_INT8(CSP, drive.feedback.mode);
+}
+
 /* Which mode the motor is in is unknown until 0x6061 shows the one that was written. */
 static void test_a_switch_is_not_overtaken_by_the_next_one(void)
 {
@@ -518,6 +558,21 @@ static void test_hm_and_back_with_torque_never_jumps(void)
     }
 }
 
+/* Its words have another coding: 0000h for 10 ms before them, also in the first cycles of a run. */
+static void test_a_bridge_found_in_cml_gets_zeros_before_the_switch(void)
+{
+    fake_bridge_open(&bus, CM1E_DEVICE_EB12, 3);
+    fake_bridge_axis()->mode = CML;
+    bench_init();
+    drive.command.mode = CM1E_MODE_CSP;
+    for (int i = 0; i < 5; i++) {
+        bench_cycle();
+        TEST_ASSERT_EQUAL_UINT(0, writes_of_mode());
+        TEST_ASSERT_EQUAL_HEX16(0, bench_word());
+    }
+    TEST_ASSERT_TRUE(bench_mode(CSP, 100));
+}
+
 static void test_homing_starts_by_bit_4_in_hm_alone(void)
 {
     bench_enable();
@@ -585,6 +640,7 @@ int main(void)
     RUN_TEST(test_a_switch_waits_for_rest);
     RUN_TEST(test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write);
     RUN_TEST(test_a_late_switch_is_seen_while_the_motor_moves);
+    RUN_TEST(test_a_late_switch_is_seen_after_a_read_that_failed);
     RUN_TEST(test_a_coarse_resolution_does_not_hide_that_the_motor_turns);
     RUN_TEST(test_an_error_of_the_motor_keeps_every_mode_but_cmd_shut);
     RUN_TEST(test_an_error_of_the_motor_in_cmd_keeps_it_there);
@@ -598,10 +654,12 @@ int main(void)
     RUN_TEST(test_a_switch_has_its_time_anew_after_an_absence);
     RUN_TEST(test_an_absence_alone_makes_no_dead_end_normal);
     RUN_TEST(test_after_an_absence_the_mode_that_is_found_counts);
+    RUN_TEST(test_after_an_absence_a_write_that_was_under_way_is_not_repeated);
     RUN_TEST(test_a_switch_is_not_overtaken_by_the_next_one);
     RUN_TEST(test_after_a_switch_that_was_given_up_another_mode_can_be_commanded);
     RUN_TEST(test_a_dead_end_counts_from_its_write_on);
     RUN_TEST(test_a_state_with_torque_keeps_words_of_another_coding_away);
+    RUN_TEST(test_a_bridge_found_in_cml_gets_zeros_before_the_switch);
     RUN_TEST(test_homing_starts_by_bit_4_in_hm_alone);
     RUN_TEST(test_a_refused_way_to_hm_takes_the_torque);
     RUN_TEST(test_torque_that_no_mode_gives_is_an_error);
