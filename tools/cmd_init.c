@@ -231,7 +231,7 @@ static void print_file(init_t *init, const char *interface_name)
 {
     fprintf(init->file,
             "# The network on %s, written by `cm1e init`. docs/BUS-FILE.md explains every key.\n"
-            "# Behind # stand facts, and keys with examples.\n"
+            "# A comment has a fact, or a key with an example.\n"
             "bus:\n"
             "  interface: %s\n"
             "  # cycle_time_us: 1000   # 200, 250, 500 or 1000; with a bridge 1000\n",
@@ -280,7 +280,7 @@ static int write_file(init_t *init, const init_options_t *options)
     if (!written)
         return EXIT_FAILED;
     if (init->axes == 0 && has_motors(init))
-        complain("none of the motors can be an axis without what the comments ask for");
+        complain("none of the motors can be an axis before the keys in the comments are filled in");
     else if (strcmp(options->output, "-") != 0)
         print_counts(init, options->output);
     if (init->gaps > 0)

@@ -38,7 +38,7 @@ void jog_keys_read(jog_keys_t *keys, int timeout_ms)
 void jog_line(const char *name, double position, bool moves, double velocity)
 {
     fprintf(stderr, "\r\033[K%s: %12.6g  %s  %.4g u/s  arrow keys move, [ ] slower and faster, q ends", name, position,
-            moves ? "moves " : "stands", velocity);
+            moves ? "moves  " : "at rest", velocity);
     fflush(stderr);
 }
 

@@ -104,7 +104,7 @@ static void read_parameter(reader_t *reader, const yaml_node_t *key, const yaml_
     }
     for (size_t i = 0; i < reader->params->count; i++)
         if (reader->params->at[i].entry == param.entry) {
-            wrong(reader, key, "%s stands in line %zu already", param.entry->name, reader->params->at[i].line);
+            wrong(reader, key, "%s is already in line %zu", param.entry->name, reader->params->at[i].line);
             return;
         }
     if (reader->params->count < PARAMS_MAX)

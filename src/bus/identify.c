@@ -69,7 +69,7 @@ static const char *other_kind_text(const cm1e_bus_slave_t *slave, const cm1e_dev
     return text;
 }
 
-/** What the axis asks for, where what stands there is something else; "": it is right. */
+/** Writes what the axis expects and which other kind of device was found; "": the kind is right. */
 static void wrong_kind(const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave, char *text, size_t size)
 {
     char why[112], kind[CM1E_KIND_LENGTH];
@@ -79,10 +79,10 @@ static void wrong_kind(const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *s
     if (cm1e_device_same_kind(expected, found))
         return;
     if (found && expected->channels && !found->channels && found->recognised == CM1E_BY_IDENTITY)
-        snprintf(text, size, "expected a %s, found slave %u, a %s, which is one axis: leave its channel out.",
+        snprintf(text, size, "expected a %s, found slave %u, a %s. It is one axis: remove the key channel.",
                  expected->label, position, found->label);
     else if (found && found->channels && !expected->channels)
-        snprintf(text, size, "expected a %s, found slave %u, the %s: an axis behind it has a channel, 1 ... %d.",
+        snprintf(text, size, "expected a %s, found slave %u, the %s. An axis behind it needs a channel, 1 ... %d.",
                  expected->label, position, cm1e_bus_kind(slave, kind), found->channels);
     else if (expected->recognised == CM1E_BY_IDENTITY)
         snprintf(text, size, "expected a %s (vendor 0x%08X, product 0x%08X), found slave %u of another kind.",

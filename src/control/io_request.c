@@ -135,8 +135,8 @@ const char *cm1e_output_take(output_order_t *order, view_t *view, const json_t *
         return NULL;
     if (*error == CM1E_OK) {
         *error = CM1E_ERROR_AXIS_STATE;
-        snprintf(text, size, "The output \"%.100s\" belongs to the program, which uses it (cm1e/io.h): nobody else "
-                 "writes it.", name);
+        snprintf(text, size, "The output \"%.100s\" belongs to the program, which uses it (cm1e/io.h): no other "
+                 "program writes it.", name);
     } else {
         snprintf(text, size, "%s", diag.text);
     }

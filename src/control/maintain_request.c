@@ -70,8 +70,8 @@ const char *cm1e_maintain_take(control_request_t *request, const control_run_t *
 static void commanded_text(const maintain_order_t *order, const char *name, char *text, size_t size)
 {
     snprintf(text, size, "Axis \"%s\" is commanded by the program (%s%s%s): it has precedence. Wait until the axis "
-             "stands without a command.", name, cm1e_axis_state_name(order->state), order->command ? ", " : "",
-             order->command ? cm1e_command_name(order->kind) : "");
+             "is at standstill without a command.", name, cm1e_axis_state_name(order->state),
+             order->command ? ", " : "", order->command ? cm1e_command_name(order->kind) : "");
 }
 
 static void guest_text(const maintain_order_t *order, const char *name, char *text, size_t size)

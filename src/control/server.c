@@ -220,7 +220,7 @@ static void welcome(server_t *server, int fd)
         client = server->clients[i].used ? NULL : &server->clients[i];
     if (!may_connect(server, fd, &pid)) {
         turn_away(fd, CM1E_ERROR_PERMISSION, server->run.control == CM1E_CONTROL_NONE
-                  ? "The program lets nobody look (control: none)." : "This program belongs to another user.");
+                  ? "The program refuses connections (control: none)." : "This program belongs to another user.");
         return;
     }
     uint8_t *in = client ? malloc(IN_ROOM) : NULL;

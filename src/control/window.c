@@ -18,7 +18,8 @@ static void *open_window(cm1e_scheduler_t *scheduler, cm1e_window_told_t *told)
     if (cm1e_scheduler_is_virtual(scheduler) || (!wanted && !serves_own))
         return NULL;
     if (cm1e_control_server_start(&server, scheduler, told->socket, told->socket_size, &diag) != CM1E_OK)
-        snprintf(told->advice, told->advice_size, "No control socket, so nobody can watch this run: %.340s", diag.text);
+        snprintf(told->advice, told->advice_size, "No control socket, so cm1e cannot watch this run: %.340s",
+                 diag.text);
     return server;
 }
 

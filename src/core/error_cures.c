@@ -71,7 +71,7 @@ static const struct {
     {CM1E_ERROR_AXIS_OFFLINE, "check power and cable of the slave; then MC_Reset"},
     {CM1E_ERROR_AXIS_NOT_AT_REST, "remove what drives the motor, or retune it"},
     {CM1E_ERROR_AXIS_NOT_IN_POSITION,
-     "the motor stands against a stop, is blocked or overloaded, or in_position is too narrow; then MC_Reset"},
+     "the motor is pressed against a stop, is blocked or overloaded, or in_position is too narrow; then MC_Reset"},
     {CM1E_ERROR_AXIS_PARAMETER, "give the number of a parameter that the axis has"},
     {CM1E_ERROR_AXIS_PARAMETER_READ_ONLY, "set it in the bus file"},
     {CM1E_ERROR_AXIS_PARAMETER_RANGE, "give a value within the range"},

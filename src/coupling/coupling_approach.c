@@ -313,6 +313,6 @@ void cm1e_coupling_approach_text(const cm1e_axis_t *axis, char *text, size_t siz
                  "%.6g is allowed. Use a larger MasterStartDistance, or a slower master.",
                  axis->config->name, r->what, r->asked, r->unit, r->allowed);
     else
-        snprintf(text, size, "Axis \"%s\": no approach is possible, because the master stands while the slave moves, "
-                 "or the master passes the whole distance within a cycle.", axis->config->name);
+        snprintf(text, size, "Axis \"%s\": no approach is possible, because the master is at standstill while the "
+                 "slave moves, or the master passes the whole distance within a cycle.", axis->config->name);
 }

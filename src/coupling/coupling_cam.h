@@ -57,7 +57,7 @@ typedef struct approach {
 
 /** What an approach would have demanded of the slave, for the text. */
 typedef struct approach_refused {
-    const char *what;              /**< NULL: the master stands while the slave moves, or passed it in a cycle */
+    const char *what;              /**< NULL: the master is at standstill, or passed it in a cycle */
     const char *unit;
     double asked, allowed;
 } approach_refused_t;

@@ -299,6 +299,6 @@ void cm1e_check_mailbox(const cm1e_check_t *check)
                        "there are sync managers for a mailbox, but no protocol for it is described");
     if (out && in && device->mailbox.present)
         check_fmmu(check, CM1E_RULE_FMMU_MAILBOX_MISSING, CM1E_FMMU_MAILBOX_STATE,
-                   "no FMMU shows the state of the mailbox in the process data: a master has to ask for it");
+                   "no FMMU shows the state of the mailbox in the process data: a master has to poll it");
     check_bootstrap(check);
 }

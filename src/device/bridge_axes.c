@@ -2,7 +2,7 @@
 
 /*
  * The table of one axis, bridge_axis_objects.inc, for all axes and both kinds of motor: 0x800 lies between the axes,
- * and what differs by motor stands in pairs (CM1, CM2).
+ * and what differs by motor is there in pairs (CM1, CM2).
  */
 
 #define INDEX(index) ((index) + CM1E_BRIDGE_INDEX_INCREMENT * AXIS)

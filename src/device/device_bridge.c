@@ -79,9 +79,9 @@ static const cm1e_device_homing_t cm2_homing = {HOMING, .steps = {HOME_READ, STE
     .modes = modes, .mode_count = COUNT(modes),                                                                     \
     .no_way = "HM is reached from CSP only, CSP from HM and CML only, the other modes from each other and from CSP " \
               "(BR 6): from CMD and CPIO the way back to CSP is switching the bridge off and on",                   \
-    .refusal = "The bridge switches when the motor stands, without an error of the motor, and not from every mode to " \
-               "every other one: look at its state with cm1e status; from CMD and CPIO there is no way back but "   \
-               "switching it off and on",                                                                           \
+    .refusal = "The bridge switches while the motor is at standstill and shows no error, and not from every mode to "  \
+               "every other one. cm1e status shows its state. The only way back from CMD and CPIO is to switch it " \
+               "off and on",                                                                                        \
     .asks_mode_first = true, .mode_supervised = true, .position_limited = true, .reset_settle_ns = 100 * MS_IN_NS,  \
     .error = cm1e_device_error
 
@@ -212,7 +212,7 @@ static const int64_t cycle_times_ns[] = {CM1E_BRIDGE_CYCLE_TIME_NS};
     .questions = questions, .question_count = COUNT(questions), .channels = CM1E_BRIDGE_AXES,                       \
     .described = true, .extra_is_error = true, .cycle_times_ns = cycle_times_ns, .cycle_time_count = 1,             \
     .object = object, .entry = entry, .pdos = pdos, .counts_per_revolution = counts_per_revolution,                 \
-    .peak_velocity = peak_velocity, .motor = motor, .motors_note = ", which stand behind a bridge", .absent = absent, \
+    .peak_velocity = peak_velocity, .motor = motor, .motors_note = ", which are behind a bridge", .absent = absent, \
     .check_axis = check_axis, .position_limit = position_limit, .with_motors = with_motors,                         \
     .models_note = "CM1 at all channels (EB01), CM2 at all (EB02), or CM1 at 1 and 2 and CM2 at 3 and 4 (EB12)"
 

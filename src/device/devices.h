@@ -1,7 +1,7 @@
 /**
  * @file devices.h
  * The devices that the library can drive, one const table each. What the bus, the drive, the axis, the configuration,
- * the description, the simulator and the tools have to know of a device stands here; they name no device. A device is
+ * the description, the simulator and the tools have to know of a device is here; they name no device. A device is
  * one slave. The motor of each axis on it is a cm1e_device_drive_t: a CM1-E has one, a bridge has four.
  *
  * A new device is a source beside device_cm1e.c and a row in devices.c; docs/DESIGN.md lists the few other places.
@@ -102,14 +102,14 @@ typedef struct cm1e_homing_object {
 /** The order in which the steps of a homing come is the device's. */
 typedef enum cm1e_home_step {
     HOME_READ = 0,  /**< the unit of the offset over SDO; the axis holds its position */
-    HOME_REST,      /**< it holds its position until the motor stands */
-    HOME_WRITE,     /**< parameters over SDO; the axis holds its position, or stands in homing mode */
+    HOME_REST,      /**< it holds its position until the motor is at standstill */
+    HOME_WRITE,     /**< parameters over SDO; the axis holds its position, or is at rest in homing mode */
     HOME_SWITCH,    /**< to homing mode */
     HOME_TAKEN,     /**< the drive takes the parameters over */
     HOME_START,     /**< start bit set; the status bits are still those of before */
     HOME_RUN,
-    HOME_SETTLE,    /**< the drive has ended: until the motor stands */
-    HOME_HALT,      /**< halt bit set, or start bit taken away, until the motor stands */
+    HOME_SETTLE,    /**< the drive has ended: until the motor is at standstill */
+    HOME_HALT,      /**< halt bit set, or start bit cleared, until standstill */
     HOME_RETURN,    /**< back to the axis's own mode */
 } cm1e_home_step_t;
 enum { CM1E_HOME_STEPS_MAX = 10 };
@@ -119,7 +119,7 @@ typedef struct cm1e_device_homing {
     int8_t first_by_switch, last_by_switch; /**< those that look for a switch and not for a stop */
     int8_t positive_stop, negative_stop;    /**< methods that run against a hard stop; 0: none */
     bool halts;                /**< it has a halt bit */
-    bool attained_is_enough;   /**< bit 12 alone and a motor that stands (BR appendix 4.2) */
+    bool attained_is_enough;   /**< bit 12 alone and standstill (BR appendix 4.2) */
     bool offset_by_axis;       /**< the drive stays at the reference; where the axis's 0 is, the axis reckons */
     cm1e_homing_object_t objects[CM1E_HOMING_PARAMETERS];
     uint8_t subindex_by_stop;  /**< of SPEED, for the methods without a switch; 0: the same */

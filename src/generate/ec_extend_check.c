@@ -20,11 +20,11 @@ enum { WRITTEN_BY_MASTER = 0x04, DIRECTION_MASK = 0x0C, MODE_MASK = 0x03, MODE_M
             for (size_t j = 0; j < i; j++) {                                                                        \
                 if ((list).at[i].index == (list).at[j].index)                                                       \
                     cm1e_findings_add(findings, CM1E_RULE_TRIO_INDEX, (list).at[i].place,                           \
-                                      "%s %u stands twice; each needs an Index of its own", what,                   \
+                                      "%s %u is there twice; each needs an Index of its own", what,                   \
                                       (unsigned)(list).at[i].index);                                                \
                 if (strcmp(name_of(i), name_of(j)) == 0 && *name_of(i))                                             \
                     cm1e_findings_add(findings, CM1E_RULE_TRIO_NAME, (list).at[i].place,                            \
-                                      "%s \"" SHORT "\" stands twice; a reference by name finds one of them", what, \
+                                      "%s \"" SHORT "\" is there twice; a reference by name finds one of them", what, \
                                       name_of(i));                                                                  \
             }                                                                                                       \
     } while (0)
@@ -61,13 +61,13 @@ static void check_entries(cm1e_findings_t *findings, const cm1e_ec_pdo_t *pdo, b
         const bool end = strcmp(entry->name, CM1E_EC_END_ENTRY) == 0;
         if (end && (entry->length != 0 || i + 1 < pdo->entries.count))
             cm1e_findings_add(findings, CM1E_RULE_TRIO_PDO_ENTRY, entry->place,
-                              CM1E_EC_END_ENTRY " ends a list: it stands last, with length 0");
+                              CM1E_EC_END_ENTRY " ends a list: it must be the last entry, with length 0");
         if (!end && entry->length == 0)
             cm1e_findings_add(findings, CM1E_RULE_TRIO_PDO_ENTRY, entry->place,
                               SHORT " has length 0; only " CM1E_EC_END_ENTRY ", which ends a list, has", entry->name);
         if (name && name->transmit != transmit)
             cm1e_findings_add(findings, CM1E_RULE_TRIO_PDO_ENTRY, entry->place,
-                              "%s is what the %s sends; it stands in a list of the other direction", entry->name,
+                              "%s is what the %s sends; this list is of the other direction", entry->name,
                               name->transmit ? "device" : "controller");
         if (!name && !end)
             cm1e_findings_add(findings, CM1E_RULE_TRIO_UNKNOWN, entry->place,
@@ -123,7 +123,7 @@ static void check_controller(cm1e_findings_t *findings, const cm1e_ec_controller
         cm1e_ec_use(manager->function, &bootstrap);
         if (seen[bootstrap] >> manager->index & 1)
             cm1e_findings_add(findings, CM1E_RULE_TRIO_SYNC_MANAGER, manager->place,
-                              "sync manager %u stands twice", (unsigned)manager->index);
+                              "sync manager %u is there twice", (unsigned)manager->index);
         seen[bootstrap] |= 1u << manager->index;
         check_sync_manager(findings, manager);
     }
@@ -327,7 +327,7 @@ static void check_profiles(cm1e_findings_t *findings, const cm1e_ec_extend_t *do
         for (size_t j = 0; j < i; j++)
             if (document->vendors.at[i].vendor_id == document->vendors.at[j].vendor_id)
                 cm1e_findings_add(findings, CM1E_RULE_TRIO_VENDOR, document->vendors.at[i].place,
-                                  "vendor 0x%08X stands twice", (unsigned)document->vendors.at[i].vendor_id);
+                                  "vendor 0x%08X is there twice", (unsigned)document->vendors.at[i].vendor_id);
 }
 
 /* ---- our own devices -------------------------------------------------------------------------------------------- */

@@ -54,7 +54,7 @@ static const xmlNode *field(cm1e_xml_reader_t *reader, const xmlNode *parent, co
     const xmlNode *node = cm1e_xml_child(parent, name);
     const xmlNode *again = cm1e_xml_next(node, name);
     if (again)
-        cm1e_xml_fail(reader, again, "<%s> stands twice in this <%s>", name, (const char *)parent->name);
+        cm1e_xml_fail(reader, again, "<%s> is there twice in this <%s>", name, (const char *)parent->name);
     return node;
 }
 

@@ -159,7 +159,7 @@ static cm1e_error_t place_unknown(const cm1e_bus_config_t *network, const cm1e_a
 {
     return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                          "axis %td (%s): its place on the wire does not follow from the configuration, or another "
-                         "device stands between the axes; make the ENI from a scan of the network",
+                         "device is between the axes; make the ENI from a scan of the network",
                          axis - network->axes + 1, axis->name);
 }
 

@@ -13,7 +13,7 @@ static const char head[] =
     "'\n"
     "' Motion Perfect: a new BASIC program of this name, this text into it. EC_EXTEND has to be loaded before.\n"
     "' Input run_input on: the axes are enabled and go to and fro. Off: they stop. Nothing moves before it was\n"
-    "' seen off once. Input reset_input on: errors are cleared. Place where an axis stands when it is enabled: 0.\n"
+    "' seen off once. Input reset_input on: errors are cleared. The place of an axis when it is enabled: 0.\n"
     "'\n"
     "' This is no safety function: a safe stop takes the motors' power away.\n"
     "' [UG] is what CM1-E User Guide 11.2.1 shows, [T] what public programs for Trio controllers show.\n"
@@ -101,7 +101,7 @@ static const char program[] =
     "        FE_LIMIT = fe_most '[T]\n"
     "        DEFPOS(0) '[T] here is 0\n"
     "        WAIT UNTIL OFFPOS = 0 '[T]\n"
-    "        FS_LIMIT = travel_counts + fe_most 'no motion beyond what this program asks for\n"
+    "        FS_LIMIT = travel_counts + fe_most 'no motion beyond what this program commands\n"
     "        RS_LIMIT = -fe_most\n"
     "        SERVO = 1 '[UG]\n"
     "    NEXT axis_no\n"
@@ -205,7 +205,7 @@ static cm1e_error_t generate(cm1e_file_t *file, const cm1e_generate_options_t *o
     file->size = size;
     if (text)
         snprintf(file->warning, sizeof file->warning,
-                 "nobody has run this program on a controller yet: read it, and run it with the motors uncoupled");
+                 "this program has not run on a controller yet: read it, and run it with the motors uncoupled");
     return error;
 }
 

@@ -221,7 +221,7 @@ uint16_t cm1e_sim_bridge_state_bits(const cm1e_sim_bridge_axis_t *axis);
 
 /* ---- bridge_axis.c ---------------------------------------------------------------------------------------------- */
 void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number, const cm1e_axis_config_t *config);
-/** Control power comes: the motor stands where it stands, which is 0 now. */
+/** Control power comes on: the present place of the motor becomes 0. */
 void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 /** New process data has come over the serial line. */
 void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);

@@ -327,7 +327,7 @@ static uint16_t explicit_device_id(void *app)
     return 0;
 }
 
-/* The position counts from where the motor stands. */
+/* The position counts from the place of the motor. */
 static void power_on(void *app, int64_t now_ns)
 {
     cm1e_sim_cia402_t *drive = app;

@@ -119,7 +119,7 @@ uint16_t cm1e_sim_cia402_statusword(const cm1e_sim_cia402_t *drive);
 /** NULL: not a mode of the drive. */
 const cm1e_sim_cia402_mode_t *cm1e_sim_cia402_mode(int8_t mode);
 void cm1e_sim_cia402_probe_step(cm1e_sim_cia402_t *drive);
-/** Brakes by the quick stop deceleration; true: it stands. */
+/** Brakes by the quick stop deceleration; true: it is at standstill. */
 bool cm1e_sim_cia402_brake(cm1e_sim_cia402_t *drive, double step_s);
 
 #endif

@@ -112,7 +112,7 @@ static void watchdog_expired(void *app) { cm1e_sim_fsa_disable(app); }
 
 /* ---- life ------------------------------------------------------------------------------------------------------- */
 
-/* Until now the axis ran out without torque. The motor does not know where it stands: the position counts from 0. */
+/* Until now the axis ran out without torque. The motor does not know its place: the position counts from 0. */
 void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns)
 {
     cm1e_sim_cm1e_t *drive = app;

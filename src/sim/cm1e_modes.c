@@ -128,7 +128,7 @@ static uint16_t pv_status_bits(const cm1e_sim_cm1e_t *drive)
 
 /* ---- profile position ------------------------------------------------------------------------------------------- */
 
-/* No set-point yet: where it stands, or where it can stop, is the target. */
+/* Before the first set-point, the target is its place, or the place where it can stop. */
 static void pp_enter(cm1e_sim_cm1e_t *drive)
 {
     cm1e_servo_t *servo = &drive->servo;

@@ -1,4 +1,4 @@
-/* The motor of the drive as the other parts see it: where it is, whether it stands, what its sensors show. */
+/* The motor of the drive as the other parts see it: its place, whether it is at standstill, what its sensors show. */
 #include "sim/cm1e_app.h"
 
 #define STANDSTILL_TIME_S 0.005

@@ -43,7 +43,7 @@ def in_terminal(*words):
 def check_jog():
     """Velocity 1: held for a second it goes about one revolution, and no further when the key is let go."""
     jog = in_terminal("jog", "-i", "sim", "-v", "1", "--json")
-    expect(jog.wait("stands"), "jog does not begin", jog.seen)
+    expect(jog.wait("at rest"), "jog does not begin", jog.seen)
     start = time.monotonic()
     jog.hold(RIGHT, 1.0)
     held = time.monotonic() - start
@@ -72,7 +72,7 @@ def check_jog():
 def check_end_of_jog(what):
     """Ctrl-C and a closed terminal while the key is held end in order: ramp, disabled, the terminal as it was."""
     jog = in_terminal("jog", "-i", "sim", "--dead-man", "1")
-    expect(jog.wait("stands"), "jog does not begin", jog.seen)
+    expect(jog.wait("at rest"), "jog does not begin", jog.seen)
     jog.hold(RIGHT, 0.4)
     if what == "Ctrl-C":
         os.write(jog.master, b"\x03")

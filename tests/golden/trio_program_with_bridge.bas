@@ -2,7 +2,7 @@
 '
 ' Motion Perfect: a new BASIC program of this name, this text into it. EC_EXTEND has to be loaded before.
 ' Input run_input on: the axes are enabled and go to and fro. Off: they stop. Nothing moves before it was
-' seen off once. Input reset_input on: errors are cleared. Place where an axis stands when it is enabled: 0.
+' seen off once. Input reset_input on: errors are cleared. The place of an axis when it is enabled: 0.
 '
 ' This is no safety function: a safe stop takes the motors' power away.
 ' [UG] is what CM1-E User Guide 11.2.1 shows, [T] what public programs for Trio controllers show.
@@ -91,7 +91,7 @@ set_up:
         FE_LIMIT = fe_most '[T]
         DEFPOS(0) '[T] here is 0
         WAIT UNTIL OFFPOS = 0 '[T]
-        FS_LIMIT = travel_counts + fe_most 'no motion beyond what this program asks for
+        FS_LIMIT = travel_counts + fe_most 'no motion beyond what this program commands
         RS_LIMIT = -fe_most
         SERVO = 1 '[UG]
     NEXT axis_no

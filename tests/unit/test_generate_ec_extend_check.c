@@ -118,9 +118,9 @@ static const struct {
     const char *part;
 } breaks[] = {
     {"trio-index", "</RxPdo>\n", 1, "</RxPdo><RxPdo><Index>0</Index><Name>B</Name></RxPdo>\n", "<Name>B</Name>", 0,
-     "RxPdo 0 stands twice"},
+     "RxPdo 0 is there twice"},
     {"trio-index", "</Profile>\n", 1, "</Profile><Profile><Index>0</Index><Vid>0x4441</Vid><Pid>1</Pid><Rev>1</Rev>"
-     "<SlvCfgIndex>0</SlvCfgIndex></Profile>\n", "<Pid>1</Pid>", 0, "Profile 0 stands twice"},
+     "<SlvCfgIndex>0</SlvCfgIndex></Profile>\n", "<Pid>1</Pid>", 0, "Profile 0 is there twice"},
     {"trio-name", "</TxPdo>\n", 1, "</TxPdo><TxPdo><Index>1</Index><Name>TXPDO_PROFILE</Name></TxPdo>\n",
      "<TxPdo><Index>1", 0, "TXPDO_PROFILE"},
     {"trio-name", "</SdoInitCmd>\n", 1,
@@ -155,7 +155,7 @@ static const struct {
     {"trio-sync-manager", "<Size>128</Size>", 1, "", "<Sm>", 0, "needs a Size"},
     {"trio-sync-manager", "<Size>128</Size>", 2, "<Size>0</Size>", "<Size>0<", -3, "needs a Size"},
     {"trio-sync-manager", "<Index>3</Index>\n        <Startaddress>0x1400", 1,
-     "<Index>2</Index>\n        <Startaddress>0x1400", "0x1400", -2, "stands twice"},
+     "<Index>2</Index>\n        <Startaddress>0x1400", "0x1400", -2, "is there twice"},
     {"trio-init-command", DATA_OF("0x6060", "0", "1", "8"), 1, DATA_OF("0x6060", "0", "1", "256"), "0x6060", -1,
      "does not fit"},
     {"trio-init-command", DATA_OF("0x6060", "0", "1", "8"), 1, DATA_OF("0x6060", "0", "1", "-129"), "0x6060", -1,

@@ -63,7 +63,7 @@ def shows(terminal, words, what):
 def jog_by(segment, cm1e, bus):
     """Returns what a jog of half a second says at its end."""
     jog = Terminal(segment.command([cm1e, "jog", "-b", bus, "-v", "1", "--json"]))
-    shows(jog, "stands", "jog does not begin")
+    shows(jog, "at rest", "jog does not begin")
     jog.hold(RIGHT, 0.5)
     jog.look(0.7)
     os.write(jog.master, b"q")

@@ -78,7 +78,7 @@ static void look_at_clock(prove_t *prove)
         return;
     const double passed = (double)(now_ns() - begin_ns), shown = (double)(cm1e_get_u32(second) - cm1e_get_u32(first));
     prove_compare_truth(prove, "system time", shown > 0.9 * passed && shown < 1.1 * passed + 5e6, "runs in ns",
-                        shown == 0 ? "stands still" : "runs at another rate");
+                        shown == 0 ? "does not change" : "runs at another rate");
     prove_note(prove, "%.1f ms in %.1f ms", shown * 1e-6, passed * 1e-6);
 }
 

@@ -67,7 +67,7 @@ static const point_t points[] = {
     {"state.init-safeop", "Init to Safe-Operational is refused", "UG 4.1, BR 5.2", "AL control", NULL, 0, look_state,
      0},
     {"state.init-op", "Init to Operational is refused", "UG 4.1, BR 5.2", "AL control", NULL, 0, look_state, 1},
-    {"state.unknown", "A state that is none is refused", "UG 4.1, BR 5.2", "AL control", NULL, 0, look_state, 2},
+    {"state.unknown", "A state that does not exist is refused", "UG 4.1, BR 5.2", "AL control", NULL, 0, look_state, 2},
     {"state.mailbox", "Pre-Operational without a mailbox is refused", "UG 4.1, BR 5.2", "AL control", NULL, 0,
      look_state, 3},
     {"state.preop", "Init to Pre-Operational", "UG 4.1, BR 5.2", "AL control", NULL, 0, look_state, 4},

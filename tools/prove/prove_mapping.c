@@ -54,7 +54,7 @@ static void look_at_pdo(prove_t *prove, uint16_t index)
         prove_note(prove, "order of %s", is_second ? "UG 7.2" : "UG 4.4");
 }
 
-/** Every row of the mappings of the bridge stands in its dictionary. */
+/** Every row of the mappings of the bridge is in its dictionary. */
 static void look_at_bridge(prove_t *prove)
 {
     for (size_t i = 0; i < prove->entry_count; i++) {
