@@ -8,15 +8,15 @@
 #include "command.h"
 #include "st_loaded.h"
 
-enum { KEY_VIRTUAL_TIME = 0x800, KEY_CSV, KEY_SVG, KEY_HTML, KEY_LOOPS, FILES = 3, SAMPLES = 120000 };
+enum { KEY_VIRTUAL_TIME = 0x800, KEY_CSV, KEY_SVG, KEY_HTML, KEY_LOOPS, KEY_RETAIN, KEY_COLD, FILES = 3, SAMPLES = 120000 };
 
 typedef struct run_options {
     common_options_t common;
-    const char *program;
+    const char *program, *retain;
     const char *files[FILES];
     double seconds;
     long long loops;
-    bool virtual_time;
+    bool virtual_time, cold;
 } run_options_t;
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -25,6 +25,12 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
     case 's': return parse_seconds(arg, 86400, &options->seconds) ? 0 : EINVAL;
+    case KEY_RETAIN:
+        if (!arg[0])
+            argp_error(state, "--retain needs a name; it is empty");
+        options->retain = arg;
+        return 0;
+    case KEY_COLD: options->cold = true; return 0;
     case KEY_VIRTUAL_TIME: options->virtual_time = true; return 0;
     case KEY_LOOPS:
         return parse_number(arg, "the number of passes", 1, 1000000000, &options->loops) ? 0 : EINVAL;
@@ -50,6 +56,8 @@ static const struct argp_option table[] = {
     {"seconds", 's', "N", 0, "End the run after N seconds (default: Ctrl-C ends it)", 0},
     {"virtual-time", KEY_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
     {"loop-limit", KEY_LOOPS, "N", 0, "A task that passes through loops more often in one call is stopped (1000000)", 0},
+    {"retain", KEY_RETAIN, "FILE", 0, "File of the RETAIN variables (default: the program with .retain)", 0},
+    {"cold-start", KEY_COLD, NULL, 0, "Begin with initial values, and replace the file of the RETAIN variables", 0},
     {"csv", KEY_CSV, "FILE", 0, "Write what the axes and variables did as CSV", 0},
     {"svg", KEY_SVG, "FILE", 0, "Write it as a plot", 0},
     {"html", KEY_HTML, "FILE", 0, "Write it as a page for a browser", 0},
@@ -110,6 +118,20 @@ static int run_program(st_loaded_t *loaded, cm1e_bus_t *bus, const run_options_t
     return status;
 }
 
+static int begin_program(st_loaded_t *loaded, const run_options_t *options)
+{
+    char path[4096];
+    cm1e_diag_t diag = {0};
+    const size_t length = strlen(options->program), ending = length > 3 && strcmp(options->program + length - 3, ".so") == 0;
+    snprintf(path, sizeof path, "%.*s.retain", (int)(length - 3 * ending), options->program);
+    const cm1e_error_t error = st_begin(loaded, options->retain ? options->retain : path, options->cold, &diag);
+    if (error == CM1E_OK)
+        return EXIT_OK;
+    fail(&diag);
+    st_retain_end(&loaded->retain, &diag);
+    return EXIT_FAILED;
+}
+
 static int run_on_network(st_loaded_t *loaded, const run_options_t *options)
 {
     static cm1e_bus_config_t config;
@@ -124,12 +146,18 @@ static int run_on_network(st_loaded_t *loaded, const run_options_t *options)
     config.virtual_time |= options->virtual_time;
     if (options->loops > 0)
         *loaded->program->loop_limit = options->loops;
-    int status;
+    int status = begin_program(loaded, options);
+    if (status != EXIT_OK) {
+        cm1e_bus_config_free(&config);
+        return status;
+    }
     if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
         status = fail(&diag);
     else
         status = run_program(loaded, bus, options);
     cm1e_bus_config_free(&config);
+    if (st_retain_end(&loaded->retain, &diag) != CM1E_OK)
+        status = fail(&diag);
     return close_bus(bus, &options->common, status);
 }
 

@@ -29,8 +29,15 @@ cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+cm1e_error_t st_begin(st_loaded_t *loaded, const char *retain_path, bool cold, cm1e_diag_t *diag)
+{
+    loaded->program->begin();
+    return st_retain_begin(&loaded->retain, loaded->program, retain_path, cold, diag);
+}
+
 void st_unload(st_loaded_t *loaded)
 {
+    st_located_free(&loaded->located);
     if (loaded->library)
         dlclose(loaded->library);
     *loaded = (st_loaded_t){0};
@@ -60,11 +67,14 @@ void st_fault_text(const st_loaded_t *loaded, char *text, size_t size)
     *at = '\0';
 }
 
-/** Task of the scheduler: the task of the program, and the end of the run after a fault. */
+/** Task of the scheduler: the task of the program between its inputs and outputs, and the end of the run after a fault. */
 static void run_task(void *context)
 {
     const struct st_running_task *task = context;
+    st_located_read(&task->loaded->located);
     task->run();
+    st_located_write(&task->loaded->located);
+    st_retain_cycle(&task->loaded->retain, cm1e_scheduler_time_ns(task->loaded->scheduler));
     if (task->loaded->program->fault->happened)
         cm1e_scheduler_stop(task->loaded->scheduler);
 }
@@ -175,13 +185,10 @@ static cm1e_error_t add_tasks(st_loaded_t *loaded, cm1e_diag_t *diag)
 
 cm1e_error_t st_attach(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
-    (void)bus;
     loaded->scheduler = scheduler;
-    loaded->program->begin();
-    cm1e_error_t error = CM1E_OK;
-    if (loaded->program->located.count > 0 || loaded->program->retained.count > 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "variables AT an address and RETAIN are not supported yet");
-    error = bind_axes(loaded, diag);
+    cm1e_error_t error = bind_axes(loaded, diag);
+    if (error == CM1E_OK)
+        error = st_located_find(&loaded->located, &loaded->program->located, bus, diag);
     if (error == CM1E_OK)
         error = make_groups(loaded, diag);
     if (error == CM1E_OK)

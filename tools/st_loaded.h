@@ -8,6 +8,8 @@
 
 #include "cm1e/scheduler.h"
 #include "st/st_program.h"
+#include "st_located.h"
+#include "st_retain.h"
 
 typedef struct st_loaded {
     void *library;
@@ -17,14 +19,19 @@ typedef struct st_loaded {
         struct st_loaded *loaded;
         void (*run)(void);
     } tasks[CM1E_MAX_TASKS];
+    st_located_t located;
+    st_retain_t retain;
     uint32_t unregistered; /**< variables beyond what a trace can have */
 } st_loaded_t;
 
 /** Loads the program. CM1E_ERROR_IO: it cannot be loaded; CM1E_ERROR_UNSUPPORTED: it was made for another version of the
  *  library. @rt init */
 cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag);
-/** Gives variables their initial values, binds axes and adds the tasks. @rt init */
+/** Binds axes and located variables, and adds the tasks. @rt init */
 cm1e_error_t st_attach(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, cm1e_bus_t *bus, cm1e_diag_t *diag);
+/** Before anything is started: gives the variables their initial values, and the RETAIN variables those of the file.
+ *  @rt init */
+cm1e_error_t st_begin(st_loaded_t *loaded, const char *retain_path, bool cold, cm1e_diag_t *diag);
 /** "" or why the program was stopped: "machine.st:12: the index 11 is outside 1..10". @rt block */
 void st_fault_text(const st_loaded_t *loaded, char *text, size_t size);
 void st_unload(st_loaded_t *loaded);

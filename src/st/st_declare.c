@@ -100,6 +100,16 @@ static void check_section(st_t *st, var_t *var)
     if (var->address && unit && unit->kind != U_PROGRAM)
         cm1e_st_report(st, var->address->place, "an address is for variables of a program and global ones: a %s may "
                        "have several instances", unit->kind == U_BLOCK ? "function block" : "function");
+    else if (var->address && (var->qualifiers & (Q_CONSTANT | Q_RETAIN)))
+        cm1e_st_report(st, var->address->place, "a variable at an address is neither CONSTANT nor RETAIN");
+    else if (var->address)
+        cm1e_st_check_address(st, var);
+    if ((var->qualifiers & Q_RETAIN) && !(unit && unit->kind == U_BLOCK) && !cm1e_st_can_be_kept(var->type))
+        cm1e_st_report(st, var->place, "RETAIN keeps values, not %s: it is for elementary types, enumerations, texts, and "
+                       "arrays and structures of these", cm1e_st_type_name(var->type));
+    if ((var->qualifiers & Q_RETAIN) && unit && unit->kind == U_BLOCK)
+        cm1e_st_report(st, var->place, "RETAIN in a function block is not supported: put the variable into the program, or "
+                       "VAR_GLOBAL, and give it as VAR_IN_OUT");
 }
 
 static void check_external(st_t *st, var_t *var)

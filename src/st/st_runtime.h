@@ -18,6 +18,7 @@
 #include <string.h>
 
 #if defined __GNUC__
+#pragma GCC diagnostic ignored "-Woverflow" /* integers wrap, constants too */
 #define ST_UNUSED __attribute__((unused))
 #define ST_EXPORT __attribute__((visibility("default")))
 #define ST_NO_RETURN __attribute__((noreturn, cold))

@@ -129,6 +129,10 @@ void cm1e_st_standard_names(void (*visit)(const char *name, void *context), void
 /* st_statement.c */
 void cm1e_st_statements(st_t *st, stmt_t *list);
 
+/* st_located.c */
+void cm1e_st_check_address(st_t *st, const var_t *var);
+bool cm1e_st_can_be_kept(const type_t *type);
+
 /* st_initial.c */
 /** The initial value of something of this type as the checker wants it. */
 expr_t *cm1e_st_initialiser(st_t *st, expr_t *initial, type_t *type, const char *what);

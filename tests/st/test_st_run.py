@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""`cm1e run` as a user calls it, on the simulated segment: axes by name, located variables, RETAIN, and faults, after
+which the axes come to rest.
+
+test_st_run.py BIN-DIRECTORY SOURCE-DIRECTORY
+"""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+
+BIN, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+MACHINE = os.path.join(SOURCE, "examples", "machine.yaml")
+BUS = "bus: {interface: sim, cycle_time_us: 1000}\naxes:\n" \
+      "  - {name: X, position: 1, motor: CM1-E-17S30D, unit: {counts_per_unit: 5000}, sim: {no_stops: true}}\n"
+MOVE = "VAR_GLOBAL X : AXIS_REF; END_VAR\nPROGRAM Main\nVAR power : MC_Power := (EnablePositive := TRUE, EnableNegative := " \
+       "TRUE); turn : MC_MoveVelocity; n, zero : INT; a : ARRAY[1..400] OF INT; END_VAR\n" \
+       "power(Axis := X, Enable := TRUE); turn(Axis := X, Execute := power.Status, Velocity := 20);\n" \
+       "n := n + 1;\n{}\nEND_PROGRAM\n"
+faults = []
+
+
+def cm1e(*words):
+    return subprocess.run([os.path.join(BIN, "cm1e"), *words], capture_output=True, text=True, timeout=60)
+
+
+def build(name, text):
+    with open(name + ".st", "w", encoding="ascii") as file:
+        file.write(text)
+    result = cm1e("st", "build", name + ".st")
+    if result.returncode != 0:
+        sys.exit(f"{name}: {result.stderr}")
+    return name + ".so"
+
+
+def run(program, *words, bus="bus.yaml", status=0, says=""):
+    result = cm1e("run", program, "-b", bus, "--virtual-time", *words)
+    if result.returncode != status or says not in result.stderr:
+        faults.append(f"{program} {' '.join(words)}: exit status {result.returncode}, \"{says}\" expected in: {result.stderr}")
+    return result
+
+
+def trace(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return rows
+
+
+def check_faults():
+    for name, statement, says in (("index", "a[n] := 1;", "index.st:6: the index 401 is outside 1..400"),
+                                  ("zero", "IF n > 400 THEN a[1] := n / zero; END_IF", "zero.st:6: 401 is divided by zero"),
+                                  ("loop", "WHILE n > 400 DO ; END_WHILE", "loop.st:6: this loop")):
+        csv_file = name + ".csv"
+        run(build(name, MOVE.format(statement)), "-s", "3", "--csv", csv_file, status=1, says=says)
+        rows = trace(csv_file)
+        velocities = [float(row["X set velocity [u/s]"]) for row in rows]
+        steps = [abs(b - a) for a, b in zip(velocities, velocities[1:])]
+        if max(velocities) < 19 or velocities[-1] != 0 or rows[-1]["X state"] != "Disabled" or max(steps) > 5:
+            faults.append(f"{name}: top velocity {max(velocities)}, last {velocities[-1]}, state {rows[-1]['X state']}, "
+                          f"largest step {max(steps)}")
+        if len(rows) > 1500:
+            faults.append(f"{name}: {len(rows)} samples, so the fault did not end the run")
+    run("loop.so", "-s", "3", "--loop-limit", "100", status=1, says="more than 100 times")
+
+
+def check_names():
+    program = build("names", "VAR_GLOBAL XX : AXIS_REF; END_VAR PROGRAM Main END_PROGRAM")
+    run(program, status=1, says='did you mean "X"?')
+    run("nothing.so", status=1, says="cannot be loaded")
+    run(os.path.join(BIN, "cm1e"), status=1, says="cannot")
+    build("slow", "CONFIGURATION C RESOURCE R ON P TASK t(INTERVAL := T#1500us); PROGRAM a WITH t : Main; END_RESOURCE "
+          "END_CONFIGURATION PROGRAM Main END_PROGRAM")
+    run("slow.so", status=1, says="interval")
+
+
+LOCATED = """PROGRAM Main
+VAR lamp AT %QX2.0.2 : BOOL; seen AT %IX3.0.2 : BOOL; all AT %QB2.0 : BYTE; n : INT; END_VAR
+    n := n + 1;
+    lamp := n MOD 20 >= 10;
+END_PROGRAM
+"""
+
+
+def check_located():
+    run(build("located", LOCATED.replace(" all AT %QB2.0 : BYTE;", "")), "-s", "0.2", "--csv", "located.csv", bus=MACHINE)
+    rows = trace("located.csv")
+    lamp = [row["Main.lamp"] for row in rows]
+    seen = [row["Main.seen"] for row in rows]
+    delay = next((d for d in range(1, 6) if lamp[20:180] == seen[20 + d:180 + d]), 0)
+    if delay == 0 or len(set(lamp)) != 2:
+        faults.append(f"the input does not follow the output: {lamp[20:50]} {seen[20:50]}")
+    run(build("nowhere", "PROGRAM P VAR x AT %QX9.0.0 : BOOL; END_VAR END_PROGRAM"), bus=MACHINE, status=1,
+        says="P.x AT %QX9.0.0")
+    run(build("beyond", "PROGRAM P VAR x AT %QW2.7 : WORD; END_VAR END_PROGRAM"), bus=MACHINE, status=1,
+        says="P.x AT %QW2.7")
+
+
+RETAIN = "VAR_GLOBAL RETAIN parts : DINT := 5; name : STRING[8] := 'ab'; END_VAR PROGRAM Main VAR plain : DINT; END_VAR\n" \
+         "IF plain = 0 THEN parts := parts + 1; name := CONCAT(name, 'c'); END_IF plain := plain + 1; END_PROGRAM"
+
+
+def retained(expected, *words, program="retain.so", status=0, says=""):
+    run(program, "-s", "0.05", "--csv", "retain.csv", *words, status=status, says=says)
+    if status == 0:
+        found = trace("retain.csv")[-1]["parts"]
+        if found != str(expected):
+            faults.append(f"RETAIN {words}: parts is {found}; expected {expected}")
+
+
+def check_retain():
+    build("retain", RETAIN)
+    for expected in (6, 7, 8):
+        retained(expected)
+    retained(6, "--cold-start")
+    retained(7)
+    retained(6, "--retain", "other.retain")
+    with open("retain.retain", "rb") as file:
+        good = file.read()
+    if not good.startswith(b"cm1e retain ") or b"abcc" not in good:
+        faults.append(f"the file of RETAIN variables is {good!r}")
+    for at in (0, 14, 40, len(good) - 1):
+        with open("retain.retain", "wb") as file:
+            file.write(good[:at] + bytes([good[at] ^ 1]) + good[at + 1:])
+        retained(0, status=1, says="--cold-start")
+    for text in (b"", good[:-1], good + b"x"):
+        with open("retain.retain", "wb") as file:
+            file.write(text)
+        retained(0, status=1, says="damaged")
+    with open("retain.retain", "wb") as file:
+        file.write(good)
+    build("changed", RETAIN.replace("parts : DINT := 5;", "parts : LINT := 5;"))
+    retained(0, "--retain", "retain.retain", program="changed.so", status=1, says="other RETAIN variables")
+    with open("retain.retain", "rb") as file:
+        if file.read() != good:
+            faults.append("a refused file of RETAIN variables was changed")
+    retained(8)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    with open("bus.yaml", "w", encoding="ascii") as file:
+        file.write(BUS)
+    check_faults()
+    check_names()
+    check_located()
+    check_retain()
+if faults:
+    sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
