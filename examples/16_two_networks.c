@@ -2,8 +2,8 @@
  * One program on two networks: the first axis of the second network follows the first axis of the first one (MC_GearIn).
  * Both are exchanged in the same cycle. It turns for three seconds.
  *
- *     16_two_networks                         two simulated segments
- *     16_two_networks left.yaml right.yaml    the networks of these bus files (the motors turn!)
+ *     16_two_networks                     two simulated segments
+ *     16_two_networks two_buses.yaml      the networks of a bus file with two of them (the motors turn!)
  */
 #include <stdio.h>
 
@@ -43,19 +43,29 @@ static void program(void *scheduler)
         cm1e_scheduler_stop(scheduler);
 }
 
-static cm1e_error_t open_network(cm1e_bus_t **bus, const char *bus_file, const char *axis_name, cm1e_diag_t *why)
+/** Two simulated networks, or those of the bus file. */
+static cm1e_error_t configure(cm1e_bus_config_t configs[NETWORKS], const char *bus_file, cm1e_diag_t *why)
 {
-    cm1e_bus_config_t config;
-    cm1e_error_t error = bus_file ? cm1e_bus_config_load(&config, bus_file, why)
-                                  : cm1e_bus_config_init(&config, "sim", 1);
-    if (error != CM1E_OK)
-        return error;
+    static const char *const names[NETWORKS] = {"left", "right"};
+    uint32_t count;
     if (!bus_file) {
-        snprintf(config.axes[0].name, sizeof config.axes[0].name, "%s", axis_name);
-        config.axes[0].sim.no_stops = true;
+        for (int i = 0; i < NETWORKS; i++) {
+            cm1e_bus_config_init(&configs[i], "sim", 1);
+            snprintf(configs[i].axes[0].name, sizeof configs[i].axes[0].name, "%s", names[i]);
+            configs[i].axes[0].sim.no_stops = true;
+        }
+        return CM1E_OK;
     }
-    error = cm1e_bus_open(bus, &config, why);
-    cm1e_bus_config_free(&config);
+    const cm1e_error_t error = cm1e_bus_config_load_all(configs, NETWORKS, &count, bus_file, why);
+    if (error != CM1E_OK || count == NETWORKS)
+        return error;
+    snprintf(why->text, sizeof why->text, "%s has one network; this program needs two (`buses`).", bus_file);
+    return CM1E_ERROR_CONFIG;
+}
+
+static cm1e_error_t open_network(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *why)
+{
+    const cm1e_error_t error = cm1e_bus_open(bus, config, why);
     return error == CM1E_OK ? cm1e_bus_start(*bus, why) : error; /* the first one is kept while the second starts */
 }
 
@@ -87,13 +97,14 @@ int main(int argc, char **argv)
 {
     cm1e_bus_t *buses[NETWORKS] = {NULL};
     cm1e_diag_t why = {0};
-    if (argc != 1 && argc != 1 + NETWORKS) {
-        fprintf(stderr, "usage: %s [LEFT.yaml RIGHT.yaml]\n", argv[0]);
+    if (argc > 2) {
+        fprintf(stderr, "usage: %s [BUS-FILE]\n", argv[0]);
         return 2;
     }
-    cm1e_error_t error = open_network(&buses[LEFT], argc > 1 ? argv[1] : NULL, "left", &why);
-    if (error == CM1E_OK)
-        error = open_network(&buses[RIGHT], argc > 1 ? argv[2] : NULL, "right", &why);
+    static cm1e_bus_config_t configs[NETWORKS];
+    cm1e_error_t error = configure(configs, argc > 1 ? argv[1] : NULL, &why);
+    for (int i = 0; i < NETWORKS && error == CM1E_OK; i++)
+        error = open_network(&buses[i], &configs[i], &why);
     if (error == CM1E_OK)
         error = run(buses, &why);
     if (error != CM1E_OK)
@@ -101,7 +112,9 @@ int main(int argc, char **argv)
     else
         printf("%d cycles on two networks, %d of them in step; there the velocities differed by at most %.3g u/s\n",
                cycles, in_step, greatest_difference);
-    for (int i = NETWORKS - 1; i >= 0; i--)
+    for (int i = 0; i < NETWORKS; i++) {
         cm1e_bus_close(buses[i]);
+        cm1e_bus_config_free(&configs[i]);
+    }
     return error == CM1E_OK && cycles == TURN_CYCLES ? 0 : 1;
 }

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "cm1e/sim.h"
-#include "command.h"
+#include "choose_bus.h"
 #include "files.h"
 #include "prove/prove_play.h"
 
@@ -19,10 +19,10 @@ static void request_stop(int signal_number)
     stop_requested = 1;
 }
 
-enum { KEY_SII = 0x400, KEY_BRIDGE, KEY_IO, KEY_PROFILE, KEY_SECOND };
+enum { KEY_SII = 0x400, KEY_BRIDGE, KEY_IO, KEY_PROFILE, KEY_SECOND, KEY_NETWORK };
 
 typedef struct sim_options {
-    const char *interface_name, *second, *bus_file, *order;
+    const char *interface_name, *second, *bus_file, *order, *network;
     const char *sii[CM1E_MAX_SLAVES]; /* files, by place on the line */
     const char *profiles[CM1E_MAX_SLAVES]; /* likewise */
     uint32_t sii_count, profile_count;
@@ -73,6 +73,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_SECOND: options->second = arg; return 0;
     case 'o': options->order = arg; return 0;
+    case KEY_NETWORK: options->network = arg; return 0;
     case KEY_SII:
         if (options->sii_count == CM1E_MAX_SLAVES)
             argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
@@ -100,15 +101,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
 {
-    cm1e_diag_t diag = {0};
     const uint32_t axes = options->has_bridges ? 0 : options->sii_count > options->profile_count ? options->sii_count
                           : options->profile_count > 0 ? options->profile_count : 1;
-    const cm1e_error_t error = options->bus_file ? cm1e_bus_config_load(config, options->bus_file, &diag)
-                                                 : cm1e_bus_config_init(config, "sim", axes);
-    if (error != CM1E_OK) {
-        fail(&diag);
+    const common_options_t network = {.bus_file = options->bus_file, .network = options->network};
+    if (options->bus_file ? !load_chosen_bus(&network, config) : cm1e_bus_config_init(config, "sim", axes) != CM1E_OK)
         return false;
-    }
     const int order = options->order ? choose_word("PDO order", options->order, ORDERS) : 0;
     if (order < 0)
         return false;
@@ -201,6 +198,7 @@ static const struct argp_option table[] = {
     {"second-interface", KEY_SECOND, "INTERFACE", 0, "Network interface at the other end of a redundant ring, behind the "
      "last slave", 0},
     {"pdo-order", 'o', ORDERS, 0, "The order of objects in the PDO mappings; default ug-4.4", 0},
+    {"network", KEY_NETWORK, "NAME", 0, "Of a bus file with several buses: this one, by its name or interface", 0},
     {"sii", KEY_SII, "FILE", 0, "A slave boots from this SII image instead of the tables; the first option is for "
      "the first slave, the second for the second, and so on", 0},
     {"profile", KEY_PROFILE, "FILE", 0, "A slave behaves as the device of this profile, which `cm1e prove` has "

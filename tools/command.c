@@ -7,17 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "choose_bus.h"
 #include "cm1e/bridge.h"
 #include "core/near.h"
 #include "core/text.h"
 #include "device/devices.h"
 #include "device/place.h"
 
-enum { KEY_PCAP = 0x100, KEY_JSON };
+enum { KEY_PCAP = 0x100, KEY_JSON, KEY_NETWORK };
 
 static const struct argp_option common_option_table[] = {
     {"interface", 'i', "INTERFACE", 0, "Network interface, or sim, or sim:BUS-FILE", 1},
     {"bus", 'b', "BUS-FILE", 0, "Description of the network (YAML, see docs/BUS-FILE.md)", 1},
+    {"network", KEY_NETWORK, "NAME", 0, "Of a bus file with several buses: this one, by its name or interface", 1},
     {"json", KEY_JSON, NULL, 0, "Write JSON", 1},
     {"pcap", KEY_PCAP, "FILE", 0, "Record every frame for Wireshark", 1},
     {0},
@@ -26,13 +28,15 @@ static const struct argp_option common_option_table[] = {
 static error_t parse_common(int key, char *arg, struct argp_state *state)
 {
     common_options_t *options = state->input;
-    if ((key == 'i' || key == 'b' || key == KEY_PCAP) && !arg[0])
-        argp_error(state, "%s needs a name; it is empty", key == 'i' ? "-i" : key == 'b' ? "-b" : "--pcap");
+    if ((key == 'i' || key == 'b' || key == KEY_PCAP || key == KEY_NETWORK) && !arg[0])
+        argp_error(state, "%s needs a name; it is empty", key == 'i' ? "-i" : key == 'b' ? "-b"
+                   : key == KEY_PCAP ? "--pcap" : "--network");
     if (key == 'i' && strcmp(arg, "sim:") == 0)
         argp_error(state, "-i sim: needs the name of a bus file behind the colon, as in sim:examples/three_axes.yaml");
     switch (key) {
     case 'i': options->interface_name = arg; return 0;
     case 'b': options->bus_file = arg; return 0;
+    case KEY_NETWORK: options->network = arg; return 0;
     case KEY_JSON: options->json = true; return 0;
     case KEY_PCAP: options->pcap_file = arg; return 0;
     default: return ARGP_ERR_UNKNOWN;
@@ -90,19 +94,14 @@ static bool copy_word(char *field, size_t size, const char *word, const char *wh
 
 bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config)
 {
-    cm1e_diag_t diag = {0};
     if (!options->interface_name && !options->bus_file) {
         complain("the network is missing: -i INTERFACE (\"-i sim\" for a simulated one) or -b BUS-FILE");
         return false;
     }
-    if (options->bus_file) {
-        if (cm1e_bus_config_load(config, options->bus_file, &diag) != CM1E_OK) {
-            fail(&diag);
-            return false;
-        }
-    } else {
+    if (!options->bus_file)
         cm1e_bus_config_init(config, options->interface_name, 0);
-    }
+    else if (!load_chosen_bus(options, config))
+        return false;
     if (options->interface_name && !copy_word(config->interface_name, sizeof config->interface_name,
                                               options->interface_name, "the interface name"))
         return false;

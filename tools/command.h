@@ -88,6 +88,7 @@ int choose_word(const char *what, const char *word, const char *words);
 typedef struct common_options {
     const char *interface_name; /**< -i */
     const char *bus_file;       /**< -b */
+    const char *network;        /**< --network: of a bus file with several buses */
     const char *pcap_file;      /**< --pcap */
     bool json;                  /**< --json */
     const char *attach;         /**< --attach, of commands that have attach_argp (attach.h) */
@@ -95,7 +96,8 @@ typedef struct common_options {
 extern const struct argp common_argp;
 
 /** Loads the configuration of the options: the bus file, with the interface of -i in place of its own. Without a bus
- *  file no axes are expected. After an error it complains on standard error and returns false. */
+ *  file no axes are expected. Of several buses it loads the one that is meant (choose_bus.h). After an error it
+ *  complains on standard error and returns false. */
 bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config);
 
 /** As load_configuration(), but without a bus file the network is scanned and every CM1-E found becomes an axis with

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "choose_bus.h"
 #include "cm1e/version.h"
 #include "command.h"
 #include "core/near.h"
@@ -65,6 +66,7 @@ int main(int argc, char **argv)
             char name[32];
             snprintf(name, sizeof name, "cm1e %s", commands[i].name);
             argv[1] = program_invocation_name = name;
+            remember_words(commands[i].name, argc - 1, argv + 1);
             return finish(commands[i].run(argc - 1, argv + 1));
         }
     return complain_unknown(argv[1]);

@@ -359,6 +359,7 @@ typedef struct cm1e_bus_config {
     cm1e_slave_config_t *slaves;     /**< slaves[0] ... slaves[slave_count - 1] */
     bool distributed_clocks;         /**< true: the cycle follows the clock of the first slave that has one, so frames
                                           arrive at a constant phase; also if an axis has `dc` */
+    char name[CM1E_NAME_LENGTH];     /**< of one of several buses of a bus file; "": there is only this one */
 } cm1e_bus_config_t;
 
 /** Does the work of cm1e_bus_config_init(), for a program with these sizes of the structs. @rt init */
@@ -395,6 +396,10 @@ CM1E_API void cm1e_bus_config_free(cm1e_bus_config_t *config);
 /** Does the work of cm1e_bus_config_load(), for a program with these sizes of the structs. @rt init */
 CM1E_API cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, size_t axis_size,
                                                  const char *path, cm1e_diag_t *diag);
+/** Does the work of cm1e_bus_config_load_all(), for a program with these sizes of the structs. @rt init */
+CM1E_API cm1e_error_t cm1e_bus_config_load_all_sized(cm1e_bus_config_t *configs, size_t size, size_t axis_size,
+                                                     uint32_t room, uint32_t *count, const char *path,
+                                                     cm1e_diag_t *diag);
 /** Gives the slaves of a configuration the size that the program has for them. After a failure, CM1E_ERROR_NO_MEMORY,
  *  the configuration is freed. @rt init */
 CM1E_API cm1e_error_t cm1e_bus_config_size_slaves(cm1e_bus_config_t *config, size_t slave_size, cm1e_diag_t *diag);
@@ -406,6 +411,21 @@ static inline cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const
     const cm1e_error_t error = cm1e_bus_config_load_sized(config, sizeof(cm1e_bus_config_t), sizeof(cm1e_axis_config_t),
                                                           path, diag);
     return error != CM1E_OK ? error : cm1e_bus_config_size_slaves(config, sizeof(cm1e_slave_config_t), diag);
+}
+/** As cm1e_bus_config_load(), for a bus file with several buses (`buses`) too: fills in configs[0] ... configs[*count
+ *  - 1], in the order of the file, each to be freed. A file of one bus has a count of 1. `room`: of the array,
+ *  CM1E_MAX_BUSES is always enough; a file with more buses is refused. After a failure there is nothing to be freed. Open
+ *  and start the buses one after the other, then cm1e_scheduler_create() and cm1e_scheduler_add_bus(). @rt init */
+static inline cm1e_error_t cm1e_bus_config_load_all(cm1e_bus_config_t *configs, uint32_t room, uint32_t *count,
+                                                    const char *path, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = cm1e_bus_config_load_all_sized(configs, sizeof(cm1e_bus_config_t), sizeof(cm1e_axis_config_t),
+                                                        room, count, path, diag);
+    for (uint32_t i = 0; error == CM1E_OK && i < *count; i++)
+        error = cm1e_bus_config_size_slaves(&configs[i], sizeof(cm1e_slave_config_t), diag);
+    for (uint32_t i = 0; error == CM1E_ERROR_NO_MEMORY && i < *count; i++)
+        cm1e_bus_config_free(&configs[i]);
+    return error;
 }
 
 /** Checks a configuration made by hand for ranges and contradictions; a bus file is checked when it is loaded. Returns

@@ -25,6 +25,8 @@ cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, 
 /** The one document in `bytes`; the caller deletes it on success. */
 cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document_t *document,
                                 cm1e_config_problem_t *problem);
+/** Whether the file has several buses: the key `buses`. */
+bool cm1e_busfile_has_several(yaml_document_t *document);
 /** Finds line and column of the node at problem->path, or of the deepest existing node on that path. */
 void cm1e_busfile_locate(yaml_document_t *document, cm1e_config_problem_t *problem);
 
@@ -96,7 +98,13 @@ typedef struct cm1e_busfile {
     cm1e_busfile_slave_t *slaves;
 } cm1e_busfile_t;
 
-extern const cyaml_schema_value_t cm1e_busfile_schema;
+/** A file with `buses`. */
+typedef struct cm1e_busfile_several {
+    cm1e_busfile_t *buses;
+    uint32_t count;
+} cm1e_busfile_several_t;
+
+extern const cyaml_schema_value_t cm1e_busfile_schema, cm1e_busfile_several_schema;
 
 /** Range of a whole number by its key. */
 typedef struct cm1e_busfile_integer_range {
@@ -108,9 +116,24 @@ extern const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[];
 extern const char *const cm1e_busfile_zero_allowed[];
 
 /** Compares every node of the document with the schema. Numbers are read in the thread's locale: it must be "C". */
-bool cm1e_busfile_compare(yaml_document_t *document, cm1e_config_problem_t *problem);
+bool cm1e_busfile_compare(yaml_document_t *document, const cyaml_schema_value_t *schema,
+                          cm1e_config_problem_t *problem);
 
 /* ---- load*.c: conversion -------------------------------------------------------------------------------------- */
+
+/** The configurations that are loaded from a file. */
+typedef struct cm1e_busfile_loaded {
+    cm1e_bus_config_t buses[CM1E_MAX_BUSES];
+    uint32_t count;
+    const char *path; /**< of the file */
+} cm1e_busfile_loaded_t;
+
+/** Makes the configuration of one bus. Axes without a name are numbered from `first_axis` on. */
+bool cm1e_busfile_convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, uint32_t first_axis,
+                          const char *path, cm1e_config_problem_t *problem);
+/** Makes the configurations of several buses, and checks what they have in common. */
+bool cm1e_busfile_convert_several(cm1e_busfile_loaded_t *loaded, const cm1e_busfile_several_t *from,
+                                  cm1e_config_problem_t *problem);
 
 /** Takes the one address that is stated of position, alias and explicit ID; 0: the others are. false: more than one
  *  is. `list`: "axes" or "slaves". */

@@ -283,8 +283,9 @@ static bool compare_value(const compare_t *compare, const yaml_node_t *node, con
     }
 }
 
-bool cm1e_busfile_compare(yaml_document_t *document, cm1e_config_problem_t *problem)
+bool cm1e_busfile_compare(yaml_document_t *document, const cyaml_schema_value_t *schema,
+                          cm1e_config_problem_t *problem)
 {
     const compare_t compare = {.document = document, .problem = problem};
-    return compare_value(&compare, yaml_document_get_root_node(document), &cm1e_busfile_schema, "the file");
+    return compare_value(&compare, yaml_document_get_root_node(document), schema, "the file");
 }

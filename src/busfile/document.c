@@ -226,6 +226,12 @@ static yaml_node_t *find_item(yaml_document_t *document, const yaml_node_t *node
     return yaml_document_get_node(document, node->data.sequence.items.start[number]);
 }
 
+bool cm1e_busfile_has_several(yaml_document_t *document)
+{
+    const yaml_node_t *root = yaml_document_get_root_node(document);
+    return root && find_key(document, root, "buses", strlen("buses"));
+}
+
 void cm1e_busfile_locate(yaml_document_t *document, cm1e_config_problem_t *problem)
 {
     yaml_node_t *node = yaml_document_get_root_node(document);

@@ -91,8 +91,6 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
                          cm1e_config_problem_t *problem)
 {
     *axis = from->axis;
-    if (axis->name[0] == '\0')
-        snprintf(axis->name, sizeof axis->name, "axis%u", index + 1);
     axis->velocity_unit_stated = from->velocity_unit != 0;
     axis->velocity_in_counts_per_ms = from->velocity_unit == CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS;
     axis->acceleration_in_kpulses = from->acceleration_unit != 0;
@@ -107,8 +105,14 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
     return cm1e_busfile_convert_address(stated, &axis->address_kind, &axis->address, "axes", index, problem);
 }
 
-static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, const char *path,
-                    cm1e_config_problem_t *problem)
+static void name_axis(cm1e_axis_config_t *axis, uint32_t number)
+{
+    if (axis->name[0] == '\0')
+        snprintf(axis->name, sizeof axis->name, "axis%u", number);
+}
+
+bool cm1e_busfile_convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, uint32_t first_axis,
+                          const char *path, cm1e_config_problem_t *problem)
 {
     *config = from->config;
     if (config->interface_name[0] == '\0')
@@ -127,39 +131,47 @@ static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, const
     for (uint32_t i = 0; i < from->axis_count; i++)
         if (!convert_axis(&config->axes[i], &from->axes[i], i, problem))
             return false;
-    for (uint32_t i = 0; i < from->axis_count; i++)
+    for (uint32_t i = 0; i < from->axis_count; i++) {
         config->axes[i].address = cm1e_axis_address(config, i);
+        name_axis(&config->axes[i], first_axis + i + 1);
+    }
     return cm1e_busfile_convert_slaves(config, from, path, problem);
 }
 
 /* ---- loading ----------------------------------------------------------------------------------------------------- */
 
-static cm1e_error_t fill(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size, const char *path,
-                         cm1e_config_problem_t *problem)
+static cm1e_error_t fill(cm1e_busfile_loaded_t *loaded, const uint8_t *bytes, size_t size,
+                         const cyaml_schema_value_t *schema, cm1e_config_problem_t *problem)
 {
     cyaml_config_t settings;
     set_up_libcyaml(&settings, problem);
-    cm1e_busfile_t *file = NULL;
-    const cyaml_err_t load_error =
-        cyaml_load_data(bytes, size, &settings, &cm1e_busfile_schema, (cyaml_data_t **)&file, NULL);
+    cyaml_data_t *file = NULL;
+    const cyaml_err_t load_error = cyaml_load_data(bytes, size, &settings, schema, &file, NULL);
     if (load_error != CYAML_OK || !file) {
         if (problem->text[0] == '\0')
             snprintf(problem->text, sizeof problem->text, "%s", cyaml_strerror(load_error));
         return load_error == CYAML_ERR_OOM ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_CONFIG;
     }
-    const bool good = convert(config, file, path, problem) && cm1e_config_find_problem(config, problem);
-    cyaml_free(&settings, &cm1e_busfile_schema, file, 0);
+    loaded->count = 1;
+    const bool good = schema == &cm1e_busfile_several_schema
+                          ? cm1e_busfile_convert_several(loaded, file, problem)
+                          : cm1e_busfile_convert(&loaded->buses[0], file, 0, loaded->path, problem) &&
+                                cm1e_config_find_problem(&loaded->buses[0], problem);
+    cyaml_free(&settings, schema, file, 0);
     return good ? CM1E_OK : CM1E_ERROR_CONFIG;
 }
 
-static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size, const char *path,
+static cm1e_error_t load_bytes(cm1e_busfile_loaded_t *loaded, const uint8_t *bytes, size_t size,
                                cm1e_config_problem_t *problem)
 {
     yaml_document_t document;
     cm1e_error_t error = cm1e_busfile_parse(bytes, size, &document, problem);
     if (error != CM1E_OK)
         return error;
-    error = cm1e_busfile_compare(&document, problem) ? fill(config, bytes, size, path, problem) : CM1E_ERROR_CONFIG;
+    const cyaml_schema_value_t *schema = cm1e_busfile_has_several(&document) ? &cm1e_busfile_several_schema
+                                                                             : &cm1e_busfile_schema;
+    error = cm1e_busfile_compare(&document, schema, problem) ? fill(loaded, bytes, size, schema, problem)
+                                                             : CM1E_ERROR_CONFIG;
     if (error != CM1E_OK && problem->line == 0)
         cm1e_busfile_locate(&document, problem);
     yaml_document_delete(&document);
@@ -167,7 +179,7 @@ static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, 
 }
 
 /* strtod(), here and in libcyaml, takes the decimal point of the thread's locale: under a German one 4.5 would be 4. */
-static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size, const char *path,
+static cm1e_error_t load_in_c_locale(cm1e_busfile_loaded_t *loaded, const uint8_t *bytes, size_t size,
                                      cm1e_config_problem_t *problem)
 {
     const locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
@@ -176,7 +188,7 @@ static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *b
         return CM1E_ERROR_NO_MEMORY;
     }
     const locale_t callers = uselocale(c_locale);
-    const cm1e_error_t error = load_bytes(config, bytes, size, path, problem);
+    const cm1e_error_t error = load_bytes(loaded, bytes, size, problem);
     uselocale(callers);
     freelocale(c_locale);
     return error;
@@ -196,29 +208,77 @@ static cm1e_error_t report(cm1e_diag_t *diag, cm1e_error_t error, const char *pa
                          problem->text);
 }
 
-cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, size_t axis_size, const char *path,
-                                        cm1e_diag_t *diag)
+/* Reads and converts the file. What is loaded, also before an error, is freed by the caller. */
+static cm1e_error_t load_file(cm1e_busfile_loaded_t *loaded, const char *path, cm1e_config_problem_t *problem)
+{
+    uint8_t *bytes = NULL;
+    size_t length = 0;
+    cm1e_error_t error = cm1e_busfile_read(path, &bytes, &length, problem);
+    if (error == CM1E_OK)
+        error = load_in_c_locale(loaded, bytes, length, problem);
+    free(bytes);
+    return error;
+}
+
+static void free_loaded(cm1e_busfile_loaded_t *loaded)
+{
+    for (uint32_t i = 0; i < CM1E_MAX_BUSES; i++)
+        cm1e_bus_config_free(&loaded->buses[i]);
+}
+
+/* A configuration with the sizes of the program. */
+static cm1e_error_t give(void *config, size_t size, size_t axis_size, const cm1e_bus_config_t *loaded,
+                         cm1e_config_problem_t *problem)
+{
+    const cm1e_error_t error = cm1e_config_copy_sized(config, size, axis_size, loaded);
+    if (error != CM1E_OK)
+        snprintf(problem->text, sizeof problem->text, "%s",
+                 error == CM1E_ERROR_CONFIG ? "the file has slaves, which the program does not know: it was "
+                                              "compiled with an older version of the library; compile it again"
+                                            : "out of memory");
+    return error;
+}
+
+static cm1e_error_t give_all(void *configs, size_t size, size_t axis_size, const cm1e_busfile_loaded_t *loaded,
+                             cm1e_config_problem_t *problem)
+{
+    for (uint32_t i = 0; i < loaded->count; i++) {
+        const cm1e_error_t error = give((char *)configs + i * size, size, axis_size, &loaded->buses[i], problem);
+        while (error != CM1E_OK && i-- > 0)
+            cm1e_bus_config_free((void *)((char *)configs + i * size));
+        if (error != CM1E_OK)
+            return error;
+    }
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_bus_config_load_all_sized(cm1e_bus_config_t *configs, size_t size, size_t axis_size, uint32_t room,
+                                            uint32_t *count, const char *path, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_config_load()", "", diag);
-    if (!config || !path)
+    if (!configs || !path || !count)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "no configuration or no path given");
+    *count = 0;
     cm1e_config_problem_t problem = {0};
-    uint8_t *bytes = NULL;
-    size_t length = 0;
-    cm1e_error_t error = cm1e_busfile_read(path, &bytes, &length, &problem);
-    cm1e_bus_config_t loaded = {0};
-    if (error == CM1E_OK)
-        error = load_in_c_locale(&loaded, bytes, length, path, &problem);
-    if (error == CM1E_OK) {
-        error = cm1e_config_copy_sized(config, size, axis_size, &loaded);
-        if (error != CM1E_OK)
-            snprintf(problem.text, sizeof problem.text, "%s",
-                     error == CM1E_ERROR_CONFIG ? "the file has slaves, which the program does not know: it was "
-                                                  "compiled with an older version of the library; compile it again"
-                                                : "out of memory");
+    cm1e_busfile_loaded_t loaded = {.path = path};
+    cm1e_error_t error = load_file(&loaded, path, &problem);
+    if (error == CM1E_OK && loaded.count > room) {
+        error = CM1E_ERROR_CONFIG;
+        snprintf(problem.text, sizeof problem.text, "the file has %u buses; expected at most %u here", loaded.count,
+                 room);
     }
-    cm1e_bus_config_free(&loaded);
-    free(bytes);
+    if (error == CM1E_OK)
+        error = give_all(configs, size, axis_size, &loaded, &problem);
+    if (error == CM1E_OK)
+        *count = loaded.count;
+    free_loaded(&loaded);
     return error != CM1E_OK ? report(diag, error, path, &problem) : cm1e_diag_set(diag, CM1E_OK, 0, "%s", "");
+}
+
+cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, size_t axis_size, const char *path,
+                                        cm1e_diag_t *diag)
+{
+    uint32_t count;
+    return cm1e_bus_config_load_all_sized(config, size, axis_size, 1, &count, path, diag);
 }

@@ -324,16 +324,32 @@ static const cyaml_schema_value_t slave_value = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_slave_t, slave_fields),
 };
 
-static const cyaml_schema_field_t file_fields[] = {
-    GROUP("bus", cm1e_busfile_t, bus_fields),
-    CYAML_FIELD_SEQUENCE_COUNT("axes", OPTIONAL, cm1e_busfile_t, axes, axis_count, &axis_value, 1,
-                               CM1E_MAX_AXES),
-    CYAML_FIELD_SEQUENCE_COUNT("slaves", OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_t, slaves, slave_count,
-                               &slave_value, 1, CM1E_MAX_SLAVES),
-    CYAML_FIELD_END,
-};
+#define ONE_BUS                                                                                                     \
+    GROUP("bus", cm1e_busfile_t, bus_fields),                                                                       \
+    CYAML_FIELD_SEQUENCE_COUNT("axes", OPTIONAL, cm1e_busfile_t, axes, axis_count, &axis_value, 1, CM1E_MAX_AXES),  \
+    CYAML_FIELD_SEQUENCE_COUNT("slaves", OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_t, slaves, slave_count,        \
+                               &slave_value, 1, CM1E_MAX_SLAVES)
+static const cyaml_schema_field_t file_fields[] = {ONE_BUS, CYAML_FIELD_END};
 const cyaml_schema_value_t cm1e_busfile_schema = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, cm1e_busfile_t, file_fields),
+};
+
+/* Each entry of `buses` has what a file of that bus alone would have, and a name. */
+static const cyaml_schema_field_t entry_fields[] = {
+    CYAML_FIELD_STRING("name", CYAML_FLAG_STRICT, cm1e_busfile_t, config.name, 1),
+    ONE_BUS,
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t entry_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_t, entry_fields),
+};
+static const cyaml_schema_field_t several_fields[] = {
+    CYAML_FIELD_SEQUENCE_COUNT("buses", CYAML_FLAG_STRICT | CYAML_FLAG_POINTER, cm1e_busfile_several_t, buses, count,
+                               &entry_value, 1, CM1E_MAX_BUSES),
+    CYAML_FIELD_END,
+};
+const cyaml_schema_value_t cm1e_busfile_several_schema = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, cm1e_busfile_several_t, several_fields),
 };
 
 const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {

@@ -429,7 +429,7 @@ def check_two_networks():
     told = re.fullmatch(r"3000 cycles on two networks, (\d+) of them in step; there the velocities differed by at most "
                         r"(\S+) u/s\n", done.stdout)
     expect(done.returncode == 0 and told and int(told[1]) > 300 and float(told[2]) < 1e-9, f"16_two_networks: {done}")
-    wrong = subprocess.run([os.path.join(BIN, "16_two_networks"), "one.yaml"], capture_output=True, text=True, timeout=60)
+    wrong = subprocess.run([os.path.join(BIN, "16_two_networks"), "one.yaml", "two.yaml"], capture_output=True, text=True, timeout=60)
     expect(wrong.returncode == 2 and "usage" in wrong.stderr, f"16_two_networks: {wrong}")
 
 
