@@ -10,12 +10,14 @@
 #include <cm1e/plcopen.h>
 #include <cm1e/scheduler.h>
 
-enum { LEFT, RIGHT, NETWORKS, TURN_CYCLES = 3000 };
+enum { LEFT, RIGHT, NETWORKS };
+#define TURN_NS INT64_C(3000000000)
 
 static AXIS_REF_t axes[NETWORKS];
 static MC_Power_t powers[NETWORKS];
 static MC_GearIn_t gear = {.Master = &axes[LEFT], .Slave = &axes[RIGHT], .RatioNumerator = 2, .RatioDenominator = 1};
 static MC_MoveVelocity_t turn = {.Axis = &axes[LEFT], .Velocity = 1, .Acceleration = 5, .Deceleration = 5, .Jerk = 50};
+static int64_t turn_cycles;
 static int cycles, in_step;
 static double greatest_difference; /* of the velocities, while the gear is in step: not behind a pause of the machine */
 
@@ -39,7 +41,7 @@ static void program(void *scheduler)
             greatest_difference = difference < 0 ? -difference : difference;
     }
     cycles += turn.Busy;
-    if (cycles == TURN_CYCLES || gear.Error || turn.Error)
+    if (cycles == turn_cycles || gear.Error || turn.Error)
         cm1e_scheduler_stop(scheduler);
 }
 
@@ -73,6 +75,7 @@ static cm1e_error_t run(cm1e_bus_t *buses[NETWORKS], cm1e_diag_t *why)
 {
     cm1e_scheduler_t *scheduler = NULL;
     cm1e_error_t error = cm1e_scheduler_create(&scheduler, buses[LEFT], NULL, why);
+    turn_cycles = TURN_NS / cm1e_bus_configuration(buses[LEFT])->cycle_time_ns;
     const uint32_t first_right = cm1e_bus_configuration(buses[LEFT])->axis_count;
     if (error == CM1E_OK)
         error = cm1e_scheduler_add_bus(scheduler, buses[RIGHT], why);
@@ -85,7 +88,7 @@ static cm1e_error_t run(cm1e_bus_t *buses[NETWORKS], cm1e_diag_t *why)
         error = cm1e_scheduler_run(scheduler, 0, why);
     }
     char text[CM1E_AXIS_ERROR_TEXT_BYTES];
-    for (int i = 0; i < NETWORKS && cycles < TURN_CYCLES; i++) {
+    for (int i = 0; i < NETWORKS && cycles < turn_cycles; i++) {
         cm1e_axis_error_text(axes[i], text, sizeof text);
         fprintf(stderr, "%s%s", text, text[0] ? "\n" : "");
     }
@@ -116,5 +119,5 @@ int main(int argc, char **argv)
         cm1e_bus_close(buses[i]);
         cm1e_bus_config_free(&configs[i]);
     }
-    return error == CM1E_OK && cycles == TURN_CYCLES ? 0 : 1;
+    return error == CM1E_OK && cycles == turn_cycles ? 0 : 1;
 }
