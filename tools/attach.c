@@ -39,8 +39,9 @@ cm1e_error_t connect_network(const common_options_t *options, const cm1e_bus_con
                              cm1e_control_t **control, cm1e_diag_t *diag)
 {
     /* A stated program may call the network otherwise than a bus file. */
-    return cm1e_control_connect(control, options->attach,
-                                options->attach ? options->interface_name : config->interface_name, diag);
+    const char *stated = options->network ? options->network : options->interface_name;
+    const char *of_several = config->name[0] ? config->name : stated;
+    return cm1e_control_connect(control, options->attach, options->attach ? of_several : config->interface_name, diag);
 }
 
 static cm1e_error_t attach(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_control_t *control,

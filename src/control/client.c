@@ -178,7 +178,15 @@ static cm1e_error_t connect_to(cm1e_control_t **control, const char *path, cm1e_
                          strerror(why));
 }
 
-/** Of several networks of one program, the one with this interface; NULL or "": the first. */
+/** Whether a program that answers `hello` tells of this network, by its interface or by its name in the bus file. */
+static bool is_network(const json_t *hello, const char *word)
+{
+    const char *interface = json_string_value(json_object_get(hello, "interface"));
+    const char *name = json_string_value(json_object_get(hello, "network"));
+    return (interface && strcmp(interface, word) == 0) || (name && strcmp(name, word) == 0);
+}
+
+/** Of several networks of one program, the one with this interface or name; NULL or "": the first. */
 static cm1e_error_t connect_to_process(cm1e_control_t **control, int pid, const char *interface_name, cm1e_diag_t *diag)
 {
     char path[CM1E_SOCKET_PATH];
@@ -191,8 +199,7 @@ static cm1e_error_t connect_to_process(cm1e_control_t **control, int pid, const 
         if (error != CM1E_OK || !interface_name || !interface_name[0])
             return error;
         error = cm1e_control_call(*control, json_pack("{s:s}", "request", "hello"), &reply, diag);
-        const char *name = json_string_value(json_object_get(json_object_get(reply, "hello"), "interface"));
-        const bool found = name && strcmp(name, interface_name) == 0;
+        const bool found = is_network(json_object_get(reply, "hello"), interface_name);
         json_decref(reply);
         if (error != CM1E_OK || found)
             return error;

@@ -36,11 +36,13 @@ static json_t *hello(control_request_t *request, control_run_t *run, const json_
     };
     (void)message;
     const cm1e_bus_config_t *config = cm1e_bus_configuration(run->view.bus);
-    json_t *told = json_pack("{s:i, s:s, s:o, s:i, s:I, s:o, s:s, s:I, s:i, s:i}", "protocol", CM1E_CONTROL_PROTOCOL,
-                             "version", cm1e_version(), "program", cm1e_show_text(run->program), "pid", (int)getpid(),
-                             "since", (json_int_t)run->since, "interface", cm1e_show_text(config->interface_name),
-                             "control", names[run->control], "cycle_ns", (json_int_t)config->cycle_time_ns, "axes",
-                             (int)run->view.axis_count, "slaves", (int)run->view.slave_count);
+    json_t *told = json_pack("{s:i, s:s, s:o, s:i, s:I, s:o, s:o, s:s, s:I, s:i, s:i}", "protocol",
+                             CM1E_CONTROL_PROTOCOL, "version", cm1e_version(), "program", cm1e_show_text(run->program),
+                             "pid", (int)getpid(), "since", (json_int_t)run->since,
+                             "interface", cm1e_show_text(config->interface_name),
+                             "network", cm1e_show_text(config->name), "control", names[run->control],
+                             "cycle_ns", (json_int_t)config->cycle_time_ns, "axes", (int)run->view.axis_count,
+                             "slaves", (int)run->view.slave_count);
     return accept(request, "hello", told);
 }
 
@@ -76,7 +78,7 @@ static json_t *event_log(control_request_t *request, control_run_t *run, const j
     json_int_t after;
     if (!cm1e_take_number(message, "after", 0, INT64_MAX, 0, &after))
         return wrong(request, "\"after\" is expected to be the number of a record, or to be left out.");
-    return accept(request, "log", cm1e_show_log(run->view.scheduler, (uint64_t)after));
+    return accept(request, "log", cm1e_show_log(&run->view, (uint64_t)after));
 }
 
 /** What reading and writing have in common; NULL: good. */

@@ -348,8 +348,8 @@ static void free_server(server_t *server)
     free(server);
 }
 
-cm1e_error_t cm1e_control_server_start(cm1e_control_server_t **server, cm1e_scheduler_t *scheduler, char *path,
-                                       size_t path_size, cm1e_diag_t *diag)
+cm1e_error_t cm1e_control_server_start(cm1e_control_server_t **server, cm1e_scheduler_t *scheduler, uint32_t bus,
+                                       char *path, size_t path_size, cm1e_diag_t *diag)
 {
     char directory[CM1E_SOCKET_PATH];
     *server = NULL;
@@ -362,13 +362,13 @@ cm1e_error_t cm1e_control_server_start(cm1e_control_server_t **server, cm1e_sche
     made->listener = -1;
     made->wake = eventfd(0, EFD_CLOEXEC);
     made->run.since = time(NULL);
-    made->run.control = cm1e_bus_configuration(cm1e_scheduler_bus(scheduler))->control;
+    made->run.control = cm1e_bus_configuration(cm1e_scheduler_bus_at(scheduler, bus))->control;
     made->run.serves_own = cm1e_control_serves_own();
     cm1e_program_name(made->run.program, sizeof made->run.program);
     for (int i = 0; i < CLIENTS; i++)
         made->clients[i].fd = -1;
     cm1e_runtime_dir_tidy(directory);
-    if (cm1e_view_init(&made->run.view, scheduler) != CM1E_OK || made->wake < 0)
+    if (cm1e_view_init(&made->run.view, scheduler, bus) != CM1E_OK || made->wake < 0)
         error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the control socket.");
     if (error == CM1E_OK)
         error = listen_at(made, directory, diag);

@@ -238,16 +238,18 @@ json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler)
 
 /* ---- log -------------------------------------------------------------------------------------------------------- */
 
-static json_t *event_of(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event)
+static json_t *event_of(const view_t *view, const cm1e_log_event_t *event)
 {
     char text[EVENT_TEXT];
     json_t *shown = json_object();
-    cm1e_log_text(scheduler, event, text, sizeof text);
+    const int64_t axis = (int64_t)event->axis - view->first_axis;
+    const bool own = event->axis >= 0 && axis >= 0 && axis < view->axis_count;
+    cm1e_log_text(view->scheduler, event, text, sizeof text);
     json_object_set_new(shown, "number", number(event->number));
     json_object_set_new(shown, "time_ns", json_integer(event->time_ns));
     json_object_set_new(shown, "run_ns", json_integer(event->run_ns));
     json_object_set_new(shown, "kind", json_string(cm1e_log_kind_name(event->kind)));
-    json_object_set_new(shown, "axis", event->axis >= 0 ? json_integer(event->axis + 1) : json_null());
+    json_object_set_new(shown, "axis", own ? json_integer(axis + 1) : json_null());
     json_object_set_new(shown, "code", json_integer(event->code));
     json_object_set_new(shown, "detail", json_integer(event->detail));
     json_object_set_new(shown, "value", cm1e_show_real(event->value));
@@ -256,14 +258,14 @@ static json_t *event_of(const cm1e_scheduler_t *scheduler, const cm1e_log_event_
     return shown;
 }
 
-json_t *cm1e_show_log(const cm1e_scheduler_t *scheduler, uint64_t after)
+json_t *cm1e_show_log(const view_t *view, uint64_t after)
 {
     cm1e_log_event_t events[EVENTS_OF_REPLY];
     uint64_t lost = 0;
-    const size_t count = cm1e_log_read(scheduler, after, events, EVENTS_OF_REPLY, &lost);
+    const size_t count = cm1e_log_read(view->scheduler, after, events, EVENTS_OF_REPLY, &lost);
     json_t *shown = json_array();
     for (size_t i = 0; i < count; i++)
-        json_array_append_new(shown, event_of(scheduler, &events[i]));
+        json_array_append_new(shown, event_of(view, &events[i]));
     return json_pack("{s:o, s:I, s:I}", "events", shown, "lost", (json_int_t)lost, "last",
                      (json_int_t)(count ? events[count - 1].number : after));
 }

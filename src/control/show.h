@@ -15,8 +15,9 @@ json_t *cm1e_show_slaves(const view_t *view);
 json_t *cm1e_show_ring(const view_t *view);
 
 json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler);
-/** Records after number `after`, as many as fit into a reply: {"events": [...], "lost": n, "last": n}. */
-json_t *cm1e_show_log(const cm1e_scheduler_t *scheduler, uint64_t after);
+/** Records of the run after number `after`, as many as fit into a reply: {"events": [...], "lost": n, "last": n}. Of
+ *  events of other buses only the text has the axis. */
+json_t *cm1e_show_log(const view_t *view, uint64_t after);
 
 /** A text that may come from a device or a file: always valid UTF-8. */
 json_t *cm1e_show_text(const char *text);

@@ -7,11 +7,11 @@
 #include "control/recorder.h"
 #include "core/cache_line.h"
 
-cm1e_error_t cm1e_view_init(view_t *view, cm1e_scheduler_t *scheduler)
+cm1e_error_t cm1e_view_init(view_t *view, cm1e_scheduler_t *scheduler, uint32_t bus)
 {
     view->scheduler = scheduler;
-    view->bus = cm1e_scheduler_bus(scheduler);
-    view->axes = cm1e_scheduler_axes(scheduler, &view->axis_count);
+    view->bus = cm1e_scheduler_bus_at(scheduler, bus);
+    view->axes = cm1e_scheduler_axes_at(scheduler, bus, &view->first_axis, &view->axis_count);
     view->slave_count = cm1e_bus_slave_count(view->bus);
     size_t bytes = 0;
     for (uint32_t i = 0; i < view->axis_count; i++) {

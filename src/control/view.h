@@ -61,6 +61,7 @@ typedef struct view {
     cm1e_bus_t *bus;
     cm1e_axis_t *const *axes;
     uint32_t axis_count, slave_count;
+    uint32_t first_axis;       /**< number of axes[0] in the scheduler, whose other axes are of other buses */
 
     _Atomic int state;         /**< view_state_t. WANTED: what follows belongs to the cycle; else to the thread */
     bool begun;
@@ -87,8 +88,8 @@ typedef struct view {
     _Atomic(view_order_t *) order;
 } view_t;
 
-/** CM1E_ERROR_NO_MEMORY. @rt init */
-cm1e_error_t cm1e_view_init(view_t *view, cm1e_scheduler_t *scheduler);
+/** Of the bus number `bus`. CM1E_ERROR_NO_MEMORY. @rt init */
+cm1e_error_t cm1e_view_init(view_t *view, cm1e_scheduler_t *scheduler, uint32_t bus);
 void cm1e_view_free(view_t *view);
 /** @rt cycle */
 void cm1e_view_cycle(view_t *view);

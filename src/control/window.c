@@ -9,15 +9,15 @@ static bool serves_own;
 void cm1e_control_serve_own(bool serve) { serves_own = serve; }
 bool cm1e_control_serves_own(void) { return serves_own; }
 
-static void *open_window(cm1e_scheduler_t *scheduler, cm1e_window_told_t *told)
+static void *open_window(cm1e_scheduler_t *scheduler, uint32_t bus, cm1e_window_told_t *told)
 {
     cm1e_control_server_t *server;
     cm1e_diag_t diag = {0};
     /* Virtual time is over before anybody could look. */
-    const bool wanted = cm1e_bus_configuration(cm1e_scheduler_bus(scheduler))->control != CM1E_CONTROL_NONE;
+    const bool wanted = cm1e_bus_configuration(cm1e_scheduler_bus_at(scheduler, bus))->control != CM1E_CONTROL_NONE;
     if (cm1e_scheduler_is_virtual(scheduler) || (!wanted && !serves_own))
         return NULL;
-    if (cm1e_control_server_start(&server, scheduler, told->socket, told->socket_size, &diag) != CM1E_OK)
+    if (cm1e_control_server_start(&server, scheduler, bus, told->socket, told->socket_size, &diag) != CM1E_OK)
         snprintf(told->advice, told->advice_size, "No control socket, so cm1e cannot watch this run: %.340s",
                  diag.text);
     return server;

@@ -42,7 +42,7 @@ struct cm1e_scheduler {
     task_list_t tasks;
     trace_t trace;
     log_t log;
-    void *windows[CM1E_WINDOWS]; /**< of this run, by kind; NULL: it has none */
+    void *windows[CM1E_MAX_BUSES][CM1E_WINDOWS]; /**< of this run, by bus and kind; NULL: it has none */
     statistics_t statistics;
     cm1e_bus_counters_t counters; /**< of all buses together, after this cycle */
     atomic_bool stop;      /**< a stop was requested */
@@ -76,15 +76,19 @@ static void open_windows(cm1e_scheduler_t *s)
     statistics_t *statistics = &s->statistics;
     cm1e_window_told_t told = {.socket = statistics->control_socket, .socket_size = sizeof statistics->control_socket,
                                .advice = statistics->control_advice, .advice_size = sizeof statistics->control_advice};
-    for (int i = 0; i < CM1E_WINDOWS; i++)
-        s->windows[i] = kinds[i] ? kinds[i]->open(s, &told) : NULL;
+    char path[sizeof statistics->control_socket], advice[sizeof statistics->control_advice];
+    cm1e_window_told_t untold = {path, advice, sizeof path, sizeof advice}; /* the statistics have the first socket */
+    for (uint32_t bus = 0; bus < s->member_count; bus++)
+        for (int i = 0; i < CM1E_WINDOWS; i++)
+            s->windows[bus][i] = kinds[i] ? kinds[i]->open(s, bus, bus ? &untold : &told) : NULL;
 }
 
 static void close_windows(cm1e_scheduler_t *s)
 {
-    for (int i = 0; i < CM1E_WINDOWS; i++)
-        if (s->windows[i])
-            kinds[i]->close(s->windows[i]);
+    for (uint32_t bus = 0; bus < s->member_count; bus++)
+        for (int i = 0; i < CM1E_WINDOWS; i++)
+            if (s->windows[bus][i])
+                kinds[i]->close(s->windows[bus][i]);
     memset(s->windows, 0, sizeof s->windows);
 }
 
@@ -92,6 +96,15 @@ cm1e_axis_t *const *cm1e_scheduler_axes(const cm1e_scheduler_t *scheduler, uint3
 {
     *count = scheduler->axis_count;
     return scheduler->axes;
+}
+
+cm1e_axis_t *const *cm1e_scheduler_axes_at(const cm1e_scheduler_t *scheduler, uint32_t bus, uint32_t *first,
+                                           uint32_t *count)
+{
+    const member_t *member = &scheduler->members[bus];
+    *first = member->first;
+    *count = member->end - member->first;
+    return scheduler->axes + member->first;
 }
 
 cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler) { return scheduler->members[0].bus; }
@@ -300,9 +313,10 @@ static void show(cm1e_scheduler_t *s)
         cm1e_log_ring(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
         cm1e_log_presence(&s->log, s->members[i].bus, i, cm1e_scheduler_time_ns(s));
     }
-    for (int i = 0; i < CM1E_WINDOWS; i++)
-        if (s->windows[i])
-            kinds[i]->cycle(s->windows[i]);
+    for (uint32_t bus = 0; bus < s->member_count; bus++)
+        for (int i = 0; i < CM1E_WINDOWS; i++)
+            if (s->windows[bus][i])
+                kinds[i]->cycle(s->windows[bus][i]);
 }
 
 static void cycle(cm1e_scheduler_t *s)

@@ -1,7 +1,7 @@
 /**
  * @file scheduler_window.h
  * A window into a running scheduler: a guest that looks at it beside the cycle, as the control socket does. A guest
- * registers its table of functions; every run opens one window of each.
+ * registers its table of functions; every run opens one window of each for each of its buses.
  */
 #ifndef CM1E_SCHEDULER_SCHEDULER_WINDOW_H
 #define CM1E_SCHEDULER_SCHEDULER_WINDOW_H
@@ -18,9 +18,9 @@ typedef struct cm1e_window_told {
 } cm1e_window_told_t;
 
 typedef struct cm1e_window {
-    /** Opens a window before the first cycle. NULL: this run has none. `told` says where it is, or why there is none: a
-     *  run goes on without its window. @rt init */
-    void *(*open)(cm1e_scheduler_t *scheduler, cm1e_window_told_t *told);
+    /** Opens a window on the bus number `bus` (0 = first) before the first cycle. NULL: this run has none. `told` says
+     *  where it is, or why there is none: a run goes on without its window. @rt init */
+    void *(*open)(cm1e_scheduler_t *scheduler, uint32_t bus, cm1e_window_told_t *told);
     /** Runs after the work of every cycle. @rt cycle */
     void (*cycle)(void *window);
     /** After the last cycle and the stop of the bus. @rt init */
@@ -35,6 +35,10 @@ CM1E_GUEST_API bool cm1e_scheduler_register_window(const cm1e_window_t *window);
 
 /** @rt any */
 CM1E_GUEST_API cm1e_axis_t *const *cm1e_scheduler_axes(const cm1e_scheduler_t *scheduler, uint32_t *count);
+/** Those of the bus number `bus` (0 = first), which the scheduler has; `first`: the number of its first one among all.
+ *  @rt any */
+CM1E_GUEST_API cm1e_axis_t *const *cm1e_scheduler_axes_at(const cm1e_scheduler_t *scheduler, uint32_t bus,
+                                                          uint32_t *first, uint32_t *count);
 /** The bus that the scheduler was made for. */
 CM1E_GUEST_API cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler);
 /** 0: that bus; then those that were added, NULL behind the last. */

@@ -51,12 +51,29 @@ def lose_frames(segment, second, command):
     return subprocess.CompletedProcess(command, running.returncode, out, err)
 
 
+def check_attached(segment, cm1e, example, path):
+    """While the program runs, each network has its socket."""
+    running = subprocess.Popen(segment.command([example, path]), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(1.2)
+    left = segment.run([cm1e, "status", "-i", wire.MASTER_INTERFACE])
+    right = segment.run([cm1e, "status", "-b", path, "--network", "right"])
+    both = segment.run([cm1e, "status", "-b", path])
+    named = segment.run([cm1e, "log", "--attach", str(running.pid), "--network", "right"])
+    out, err = running.communicate(timeout=60)
+    wire.check(left.returncode == 0 and "Operation enabled" in left.stdout, left)
+    wire.check(right.returncode == 0 and "axis cutter" in right.stdout and "Operation enabled" in right.stdout, right)
+    wire.check(both.stdout.count("Operation enabled") == 2 and "axis feeder" in both.stdout, both)
+    wire.check(named.returncode == 0, named)
+    judge(subprocess.CompletedProcess([example, path], running.returncode, out, err), 1000, "1000 us, watched")
+
+
 def check_both(segment, second, cm1e, example):
     for cycle_time_us in (1000, 250):
         path = bus_file(segment.folder, cycle_time_us)
         judge(segment.run([example, path]), cycle_time_us, f"{cycle_time_us} us")
         if cycle_time_us == 1000:
             judge(lose_frames(segment, second, [example, path]), cycle_time_us, f"{cycle_time_us} us, frames lost")
+    check_attached(segment, cm1e, example, bus_file(segment.folder, 1000))
     shown = segment.run([cm1e, "scan", "-b", path])
     wire.check(shown.returncode == 0 and f"bus left on {wire.MASTER_INTERFACE}:" in shown.stdout
                and f"bus right on {SECOND[0]}:" in shown.stdout and shown.stdout.count("CM1-E") == 2, shown)
