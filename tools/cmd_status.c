@@ -7,6 +7,7 @@
 #include "attach.h"
 #include "cm1e/clocks.h"
 #include "cm1e/emergency.h"
+#include "cm1e/hot_connect.h"
 #include "cm1e/topology.h"
 #include "command.h"
 #include "device/devices.h"
@@ -209,6 +210,42 @@ static void show_ring(const cm1e_bus_t *bus, json_t *all)
     }
 }
 
+/* ---- slaves that come and go ------------------------------------------------------------------------------------- */
+
+static bool is_away(const cm1e_bus_t *bus, const cm1e_slave_info_t *slave)
+{
+    const cm1e_presence_t presence = cm1e_bus_presence(bus, slave->position);
+    return presence == CM1E_PRESENCE_ABSENT || presence == CM1E_PRESENCE_REFUSED;
+}
+
+/** Which slaves of the bus file are absent is known when the others are identified. What is wrong with them is not the
+ *  business of this command. */
+static void identify(cm1e_bus_t *bus, const cm1e_bus_config_t *config)
+{
+    cm1e_diag_t diag;
+    if (config->axis_count + config->slave_count > 0)
+        (void)cm1e_bus_identify(bus, &diag);
+}
+
+/** An absent slave has nothing to be read; of another one that takes no part it is told below its lines. */
+static void show_presence(const cm1e_bus_t *bus, const cm1e_slave_info_t *slave, json_t *all)
+{
+    char text[CM1E_PRESENCE_TEXT];
+    const cm1e_presence_t presence = cm1e_bus_presence(bus, slave->position);
+    const char *name = cm1e_presence_name(presence);
+    cm1e_bus_presence_text(bus, slave->position, text, sizeof text);
+    if (!text[0])
+        return;
+    if (!all)
+        printf("%s%s\n", is_away(bus, slave) ? "" : "  ", text);
+    else if (is_away(bus, slave))
+        json_array_append_new(all, json_pack("{s:i, s:s, s:s, s:s}", "position", slave->position, "name", slave->name,
+                                             "presence", name, "presence_text", text));
+    else
+        json_object_update_new(json_array_get(all, json_array_size(all) - 1),
+                               json_pack("{s:s, s:s}", "presence", name, "presence_text", text));
+}
+
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
                                  "Shows state, error, measurements and the last emergencies of every drive, and which "
@@ -229,16 +266,22 @@ int command_status(int argc, char **argv)
     cm1e_bus_t *bus = NULL;
     if (open_network(&options, &config, &bus, &diag) != CM1E_OK)
         return fail(&diag);
+    identify(bus, &config);
     json_t *all = options.json ? json_array() : NULL;
     bool readable = true;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
+        if (is_away(bus, slave)) {
+            show_presence(bus, slave, all);
+            continue;
+        }
         if (slave->device && slave->device->channels == 0)
             readable = show_drive(bus, &config, slave, all, &diag) && readable;
         else if (slave->device)
             readable = show_bridge(bus, &config, slave, all, &diag) && readable;
         else
             show_other(slave, all);
+        show_presence(bus, slave, all);
         show_clock(bus, slave->position, all);
         show_emergencies(bus, slave->position, all);
     }

@@ -35,12 +35,14 @@ typedef struct cm1e_stranger {
 
 #define CM1E_STRANGERS 8 /**< so many are kept */
 
+/** Buffer size that is large enough for every text of cm1e_bus_presence_text(). */
+enum { CM1E_PRESENCE_TEXT = 512 };
+
 /** How it stands with a slave. @rt any */
 CM1E_API cm1e_presence_t cm1e_bus_presence(const cm1e_bus_t *bus, uint32_t position);
 /** "there", "absent", "waits" ... Never NULL. @rt any */
 CM1E_API const char *cm1e_presence_name(cm1e_presence_t presence);
-/** How it stands with a slave, as a sentence that says what to do; "" if it takes part. 320 bytes are enough.
- *  @rt block */
+/** How it stands with a slave, as a sentence that says what to do; "" if it takes part. @rt block */
 CM1E_API void cm1e_bus_presence_text(const cm1e_bus_t *bus, uint32_t position, char *text, size_t size);
 /** Allows the bus to bring back a slave that waits. Motors stay disabled. CM1E_ERROR_INVALID_ARGUMENT: there is no such
  *  slave; CM1E_ERROR_STATE: it does not wait, `diag` says how it stands. @rt any */

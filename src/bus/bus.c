@@ -99,6 +99,7 @@ cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus)
     if (bus->remote)
         bus->remote->close(bus->remote_state);
     cm1e_bus_free_image(bus);
+    free(bus->remote_texts);
     free(bus->slaves);
     cm1e_bus_config_free(&bus->config);
     free(bus);

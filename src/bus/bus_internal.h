@@ -191,6 +191,7 @@ struct cm1e_bus {
 
     const cm1e_bus_remote_t *remote;         /**< another program runs the network: there is no nic; NULL: we do */
     void *remote_state;
+    char (*remote_texts)[CM1E_PRESENCE_TEXT]; /**< how it stands with each slave, as that program says */
 };
 
 /** A bus with its configuration and no network yet. */

@@ -15,6 +15,8 @@ enum { ROOM_BYTES = 32, DRIVE_ROOM_BYTES = 64 };
 
 void cm1e_hot_forget(cm1e_bus_t *bus)
 {
+    if (bus->remote)
+        return; /* the program that runs it has told how it stands with each */
     bus->slave_count = bus->scanned;
     cm1e_soem_set_count(bus->soem, (uint16_t)bus->scanned);
     bus->search = (cm1e_search_t){0};
@@ -87,6 +89,8 @@ static void take_settings(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 cm1e_error_t cm1e_hot_describe(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     (void)diag;
+    if (bus->remote)
+        return CM1E_OK;
     cm1e_soem_set_count(bus->soem, (uint16_t)bus->slave_count);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];

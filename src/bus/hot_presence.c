@@ -4,12 +4,14 @@
 #include "bus/bus_internal.h"
 #include "bus/presence_text.h"
 
-static cm1e_presence_t presence_of(const cm1e_bus_slave_t *slave)
+static cm1e_presence_t presence_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
     const bool recovers = !cm1e_recovery_idle(&slave->recovery);
     const unsigned state = slave->watch.al_state;
     if (slave->hot.away)
         return slave->hot.refused ? CM1E_PRESENCE_REFUSED : CM1E_PRESENCE_ABSENT;
+    if (bus->phase != BUS_OPERATING)
+        return CM1E_PRESENCE_THERE;
     if (recovers)
         return slave->watch.lost && slave->recovery.step <= RECOVERY_FIND ? CM1E_PRESENCE_ABSENT
                                                                          : CM1E_PRESENCE_COMING;
@@ -23,7 +25,7 @@ static cm1e_presence_t presence_of(const cm1e_bus_slave_t *slave)
 
 void cm1e_hot_note(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
-    const uint32_t now = (uint32_t)presence_of(slave);
+    const uint32_t now = (uint32_t)presence_of(bus, slave);
     slave->watch.absent = slave->hot.away;
     if (now == slave->hot.presence)
         return;
@@ -118,7 +120,9 @@ void cm1e_bus_presence_text(const cm1e_bus_t *bus, uint32_t position, char *text
     const cm1e_presence_t presence = cm1e_bus_presence(bus, position);
     if (size)
         text[0] = '\0';
-    if (presence != CM1E_PRESENCE_THERE)
+    if (bus && bus->remote && bus->remote_texts && position >= 1 && position <= bus->slave_count)
+        snprintf(text, size, "%s", bus->remote_texts[position - 1]);
+    else if (presence != CM1E_PRESENCE_THERE)
         cm1e_presence_sentence(bus, position, presence, text, size);
 }
 
@@ -135,7 +139,7 @@ void cm1e_stranger_text(const cm1e_stranger_t *stranger, char *text, size_t size
 
 cm1e_error_t cm1e_bus_recover(cm1e_bus_t *bus, uint32_t position, cm1e_diag_t *diag)
 {
-    char text[320];
+    char text[CM1E_PRESENCE_TEXT];
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (!slave)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u.", (unsigned)position);

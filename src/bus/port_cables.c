@@ -10,7 +10,7 @@ void cm1e_port_watch_begin(cm1e_bus_t *bus)
     cm1e_slave_place_t places[CM1E_MAX_SLAVES];
     const bool known = cm1e_bus_read_topology(bus, places, CM1E_MAX_SLAVES, NULL) == CM1E_OK;
     for (uint32_t i = 0; i < bus->slave_count; i++)
-        bus->slaves[i].ports = (cm1e_port_watch_t){.place = known ? places[i] : unknown};
+        bus->slaves[i].ports = (cm1e_port_watch_t){.place = known && i < bus->scanned ? places[i] : unknown};
 }
 
 void cm1e_port_sentence(const cm1e_bus_t *bus, uint16_t position, int port, cm1e_port_fault_t fault, uint32_t count,

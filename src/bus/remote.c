@@ -39,11 +39,16 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the slaves of another program.");
     const cm1e_error_t error = bus->remote->scan(bus->remote_state, told, CM1E_MAX_SLAVES, &count,
                                                  &bus->ring.ring, diag);
+    free(bus->remote_texts);
+    bus->remote_texts = calloc(CM1E_MAX_SLAVES, sizeof *bus->remote_texts);
     for (uint32_t i = 0; i < count && error == CM1E_OK; i++) {
         memset(&bus->slaves[i], 0, sizeof bus->slaves[i]);
         bus->slaves[i].info = told[i].info;
         take_device(&bus->slaves[i], &told[i]);
         take_emergencies(&bus->slaves[i], &told[i]);
+        bus->slaves[i].hot = (cm1e_hot_t){.presence = (uint32_t)told[i].presence, .group = "", .member = 1};
+        if (bus->remote_texts)
+            memcpy(bus->remote_texts[i], told[i].presence_text, sizeof told[i].presence_text);
         bus->dc.used = (i > 0 && bus->dc.used) || told[i].has_clock;
         bus->dc.slaves[i].clock = told[i].clock;
     }

@@ -9,6 +9,7 @@
 #include "bus/foe_job.h"
 #include "cm1e/clocks.h"
 #include "cm1e/emergency.h"
+#include "cm1e/hot_connect.h"
 #include "cm1e/topology.h"
 #include "core/guest_api.h"
 
@@ -17,6 +18,8 @@ typedef struct cm1e_remote_slave {
     cm1e_slave_info_t info; /**< without `device` and `kind` */
     char kind[24];          /**< "": none of ours */
     bool coe;
+    cm1e_presence_t presence;
+    char presence_text[CM1E_PRESENCE_TEXT]; /**< "": it takes part */
     bool has_clock;         /**< distributed clocks are used there */
     cm1e_slave_clock_t clock;
     uint32_t emergency_count;

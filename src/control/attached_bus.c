@@ -81,6 +81,8 @@ static void take_slave(cm1e_remote_slave_t *slave, uint16_t position, const json
     copy_text(info->name, sizeof info->name, told, "name");
     copy_text(info->software_version, sizeof info->software_version, told, "software_version");
     copy_text(slave->kind, sizeof slave->kind, told, "kind");
+    slave->presence = (cm1e_presence_t)(number(told, "presence") & 7);
+    copy_text(slave->presence_text, sizeof slave->presence_text, told, "presence_text");
     take_emergencies(slave, json_object_get(told, "emergencies"));
     take_clock(slave, json_object_get(told, "clock"));
 }

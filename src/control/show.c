@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cm1e/emergency.h"
+#include "cm1e/hot_connect.h"
 #include "core/text.h"
 
 enum { EVENTS_OF_REPLY = 256, EVENT_TEXT = 512 };
@@ -148,6 +149,18 @@ static json_t *clock_of(const cm1e_slave_clock_t *clock)
                      "maximum_ns", (int)clock->maximum_ns, "losses", (json_int_t)clock->losses);
 }
 
+/* Nothing of a slave that takes part. */
+static void tell_presence(json_t *slave, const view_t *view, uint32_t position)
+{
+    char text[CM1E_PRESENCE_TEXT];
+    const cm1e_presence_t presence = cm1e_bus_presence(view->bus, position);
+    if (presence == CM1E_PRESENCE_THERE)
+        return;
+    cm1e_bus_presence_text(view->bus, position, text, sizeof text);
+    json_object_set_new(slave, "presence", json_integer(presence));
+    json_object_set_new(slave, "presence_text", cm1e_show_text(text));
+}
+
 json_t *cm1e_show_slaves(const view_t *view)
 {
     json_t *all = json_array();
@@ -172,6 +185,7 @@ json_t *cm1e_show_slaves(const view_t *view)
         json_object_set_new(slave, "software_version", cm1e_show_text(info->software_version));
         json_object_set_new(slave, "coe", json_boolean(cm1e_bus_slave_has_coe(view->bus, info->position)));
         json_object_set_new(slave, "emergencies", emergencies_of(view->bus, info->position));
+        tell_presence(slave, view, i + 1);
         if (view->slaves[i].clock.has_clock)
             json_object_set_new(slave, "clock", clock_of(&view->slaves[i].clock));
         json_array_append_new(all, slave);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cia402/cia402.h"
+#include "cm1e/hot_connect.h"
 #include "cm1e/topology.h"
 #include "core/bytes.h"
 #include "core/codes.h"
@@ -55,6 +56,12 @@ static void judge_loop(doctor_t *doctor, const char *place, const cm1e_slave_pla
     *clean = false;
 }
 
+static bool is_away(const cm1e_bus_t *bus, uint32_t position)
+{
+    const cm1e_presence_t presence = cm1e_bus_presence(bus, position);
+    return presence == CM1E_PRESENCE_ABSENT || presence == CM1E_PRESENCE_REFUSED;
+}
+
 static void look_at_ports(doctor_t *doctor, cm1e_bus_t *bus)
 {
     static cm1e_slave_place_t places[CM1E_MAX_SLAVES];
@@ -65,6 +72,8 @@ static void look_at_ports(doctor_t *doctor, cm1e_bus_t *bus)
         cm1e_slave_port_t ports[CM1E_PORTS];
         char text[96];
         cm1e_diag_t diag = {0};
+        if (is_away(bus, position))
+            continue;
         if (cm1e_bus_read_ports(bus, (uint16_t)position, ports, &diag) != CM1E_OK) {
             say_failure(doctor, "ports", &diag);
             return;
@@ -233,16 +242,31 @@ static bool look_at_owner(doctor_t *doctor, const common_options_t *options, con
 
 /* ---- the whole -------------------------------------------------------------------------------------------------- */
 
+/** Optional slaves that are absent are no fault. Returns their number. */
+static unsigned look_at_absent(doctor_t *doctor, const cm1e_bus_t *bus)
+{
+    char text[CM1E_PRESENCE_TEXT];
+    unsigned absent = 0;
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++) {
+        cm1e_bus_presence_text(bus, position, text, sizeof text);
+        if (!text[0])
+            continue;
+        doctor_find(doctor, FINDING_NOTE, group, "optional slave", "%s", text);
+        absent++;
+    }
+    return absent;
+}
+
 static void look_at_configuration(doctor_t *doctor, cm1e_bus_t *bus, const cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
     if (config->axis_count + config->slave_count == 0)
         doctor_find(doctor, FINDING_NOTE, group, "bus file", "none given: -b FILE compares one with what is there");
-    else if (cm1e_bus_identify(bus, &diag) == CM1E_OK)
+    else if (cm1e_bus_identify(bus, &diag) != CM1E_OK)
+        say_failure(doctor, "bus file", &diag);
+    else if (look_at_absent(doctor, bus) == 0)
         doctor_find(doctor, FINDING_GOOD, group, "bus file", "its %u axes and %u other slaves are there",
                     config->axis_count, config->slave_count);
-    else
-        say_failure(doctor, "bus file", &diag);
 }
 
 void doctor_look_at_bus(doctor_t *doctor, const common_options_t *options, const cm1e_bus_config_t *config)
@@ -256,7 +280,8 @@ void doctor_look_at_bus(doctor_t *doctor, const common_options_t *options, const
     }
     doctor_find(doctor, FINDING_GOOD, group, "slaves", "%u", cm1e_bus_slave_count(bus));
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
-        look_at_slave(doctor, bus, cm1e_bus_slave(bus, position));
+        if (!is_away(bus, position))
+            look_at_slave(doctor, bus, cm1e_bus_slave(bus, position));
     look_at_configuration(doctor, bus, config);
     look_at_ports(doctor, bus);
     look_at_clocks(doctor, bus);
