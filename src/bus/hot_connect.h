@@ -51,6 +51,11 @@ typedef enum cm1e_search_step {
     SEARCH_INIT,
     SEARCH_SCOUT,            /**< its SII */
     SEARCH_ID,
+    SEARCH_OFFER,            /**< no ID in Init: the EEPROM to the device, its mailbox, and Pre-Operational */
+    SEARCH_MAILBOX,
+    SEARCH_PRE_OP,
+    SEARCH_LATE_ID,
+    SEARCH_BACK,             /**< Init again */
     SEARCH_GIVE,             /**< it is one of ours and gets its address */
     SEARCH_RELEASE,          /**< it is a stranger: the address is taken back */
 } cm1e_search_step_t;

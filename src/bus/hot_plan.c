@@ -1,5 +1,6 @@
 /* An optional slave that is absent at the start: what the configuration knows of it, the room that is kept free for it
  * in the process image, and its place there when it has come. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "bus/bus_internal.h"
@@ -32,6 +33,7 @@ cm1e_bus_slave_t *cm1e_hot_plan(cm1e_bus_t *bus, cm1e_address_kind_t kind, uint1
         return NULL;
     }
     cm1e_bus_slave_t *slave = &bus->slaves[bus->slave_count++];
+    free(slave->signals);
     memset(slave, 0, sizeof *slave);
     slave->info.position = (uint16_t)bus->slave_count;
     slave->info.alias = kind == CM1E_ADDRESS_ALIAS ? address : 0;

@@ -25,7 +25,9 @@ enum { PROTOCOL_COE = 0x04, PROTOCOL_FOE = 0x08, MAILBOX_OUT_CONTROL = 0x26, MAI
 static void enter(cm1e_search_t *search, cm1e_search_step_t step, int64_t now_ns)
 {
     static const int64_t times_ns[] = {
-        [SEARCH_INIT] = INIT_NS, [SEARCH_SCOUT] = SCOUT_NS, [SEARCH_ID] = ID_NS + INIT_NS, [SEARCH_RELEASE] = ANSWER_NS,
+        [SEARCH_INIT] = INIT_NS, [SEARCH_SCOUT] = SCOUT_NS, [SEARCH_ID] = ID_NS + INIT_NS,
+        [SEARCH_PRE_OP] = CM1E_STATE_TIMEOUT_NS, [SEARCH_LATE_ID] = ID_NS + INIT_NS, [SEARCH_BACK] = INIT_NS,
+        [SEARCH_RELEASE] = ANSWER_NS,
     };
     const int64_t time_ns = (size_t)step < sizeof times_ns / sizeof times_ns[0] ? times_ns[step] : 0;
     search->step = step;
@@ -208,6 +210,14 @@ static void put_mailbox(uint8_t *sync_manager, uint16_t start, uint16_t length, 
     sync_manager[6] = length > 0;
 }
 
+/** SM0 and SM1. */
+static void put_mailboxes(uint8_t *sync_managers, const cm1e_scouted_t *found)
+{
+    put_mailbox(sync_managers, found->mailbox_out_start, found->mailbox_out_length, MAILBOX_OUT_CONTROL);
+    put_mailbox(sync_managers + SYNC_MANAGER_BYTES, found->mailbox_in_start, found->mailbox_in_length,
+                MAILBOX_IN_CONTROL);
+}
+
 /** What the scan would have found. */
 static void take_facts(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
@@ -227,10 +237,7 @@ static void take_facts(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
         .out_length = coe || foe ? found->mailbox_out_length : 0, .in_start = found->mailbox_in_start,
         .in_length = coe || foe ? found->mailbox_in_length : 0,
     };
-    put_mailbox(slave->placement.sync_managers[0], found->mailbox_out_start, found->mailbox_out_length,
-                MAILBOX_OUT_CONTROL);
-    put_mailbox(slave->placement.sync_managers[1], found->mailbox_in_start, found->mailbox_in_length,
-                MAILBOX_IN_CONTROL);
+    put_mailboxes(slave->placement.sync_managers[0], found);
 }
 
 /** The serial number of a slave that may come and go is not compared: a tool is known by its address. */
@@ -435,6 +442,14 @@ static bool fill(cm1e_search_t *search, cm1e_datagram_t *d)
         cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_FMMU0, 4 * FMMU_BYTES);
         memset(d->data, 0, 4 * FMMU_BYTES);
         return true;
+    case SEARCH_OFFER:
+        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_EEPROM_CONFIG, 1);
+        d->data[0] = 1;
+        return true;
+    case SEARCH_MAILBOX:
+        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_SM0, 2 * SYNC_MANAGER_BYTES);
+        put_mailboxes(d->data, &search->scout.found);
+        return true;
     case SEARCH_GIVE:
         cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_STATION_ADDRESS, 2);
         cm1e_put_u16(d->data, search->candidate->facts.station);
@@ -445,6 +460,33 @@ static bool fill(cm1e_search_t *search, cm1e_datagram_t *d)
         return true;
     default:
         return false;
+    }
+}
+
+/** ETG.1020 leaves open in which states a device tells its ID; all that do tell it in Pre-Operational. */
+static void after_state(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    const bool good = search->al.error == CM1E_OK, mailbox = search->scout.found.mailbox_out_length > 0;
+    switch (search->step) {
+    case SEARCH_INIT: /* a device that does not reach it is still starting up */
+        enter(search, good ? SEARCH_SCOUT : SEARCH_RELEASE, now_ns);
+        break;
+    case SEARCH_PRE_OP:
+        enter(search, good ? SEARCH_LATE_ID : SEARCH_BACK, now_ns);
+        break;
+    case SEARCH_LATE_ID:
+        enter(search, SEARCH_BACK, now_ns);
+        break;
+    case SEARCH_BACK:
+        decide(bus, now_ns);
+        break;
+    default:
+        if (search->al.explicit_id == 0 && mailbox)
+            enter(search, SEARCH_OFFER, now_ns);
+        else
+            decide(bus, now_ns);
+        break;
     }
 }
 
@@ -465,19 +507,22 @@ static bool run_machine(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
             decide(bus, now_ns);
         return false;
     }
-    if (begins && search->step == SEARCH_INIT)
-        cm1e_al_request(&search->al, CM1E_AL_INIT, search->deadline_ns);
-    else if (begins)
+    if (begins && (search->step == SEARCH_ID || search->step == SEARCH_LATE_ID))
         cm1e_al_read_id(&search->al, now_ns + ID_NS);
+    else if (begins)
+        cm1e_al_request(&search->al, search->step == SEARCH_PRE_OP ? CM1E_AL_PRE_OP : CM1E_AL_INIT,
+                        search->deadline_ns);
     if (cm1e_al_next(&search->al, d, now_ns))
         return true;
-    if (!cm1e_al_idle(&search->al))
-        return false;
-    if (search->step == SEARCH_ID)
-        decide(bus, now_ns);
-    else /* a device that does not reach Init is still starting up */
-        enter(search, search->al.error == CM1E_OK ? SEARCH_SCOUT : SEARCH_RELEASE, now_ns);
+    if (cm1e_al_idle(&search->al))
+        after_state(bus, now_ns);
     return false;
+}
+
+static bool is_machine(cm1e_search_step_t step)
+{
+    return step == SEARCH_SCOUT || step == SEARCH_INIT || step == SEARCH_ID || step == SEARCH_PRE_OP ||
+           step == SEARCH_LATE_ID || step == SEARCH_BACK;
 }
 
 bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
@@ -490,7 +535,7 @@ bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
         return false;
     if (search->step == SEARCH_PAUSE)
         enter(search, SEARCH_COUNT, now_ns);
-    const bool machine = search->step == SEARCH_INIT || search->step == SEARCH_SCOUT || search->step == SEARCH_ID;
+    const bool machine = is_machine(search->step);
     if (!machine && now_ns >= search->deadline_ns) { /* it is gone */
         walk_again(search, now_ns);
         search->due_ns = now_ns + COUNT_PACE_NS;
@@ -502,10 +547,10 @@ bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
 void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_search_t *search = &bus->search;
-    if (search->step == SEARCH_INIT || search->step == SEARCH_ID)
-        cm1e_al_result(&search->al, d, now_ns);
-    else if (search->step == SEARCH_SCOUT)
+    if (search->step == SEARCH_SCOUT)
         cm1e_scout_result(&search->scout, d);
+    else if (is_machine(search->step))
+        cm1e_al_result(&search->al, d, now_ns);
     else if (search->step == SEARCH_COUNT && d->working_counter >= 0)
         take_count(bus, d->working_counter, now_ns);
     if (d->working_counter == APRW_WORKING_COUNTER && search->step == SEARCH_ADDRESS)
@@ -525,6 +570,12 @@ void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
         break;
     case SEARCH_CLEAR:
         enter(search, SEARCH_INIT, now_ns);
+        break;
+    case SEARCH_OFFER:
+        enter(search, SEARCH_MAILBOX, now_ns);
+        break;
+    case SEARCH_MAILBOX:
+        enter(search, SEARCH_PRE_OP, now_ns);
         break;
     case SEARCH_GIVE:
         welcome(bus, search->candidate, now_ns);

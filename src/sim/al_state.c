@@ -200,7 +200,8 @@ void cm1e_sim_al_due(cm1e_sim_slave_t *slave)
     const uint16_t code = decide(slave, to);
     slave->al_error = code != AL_CODE_NONE;
     /* The explicit device ID takes the place of the status code where there is no error (ETG.1020 18.4). */
-    slave->al_id = (request & ID) && !slave->al_error && slave->ops->explicit_device_id;
+    const bool tells = slave->ops->explicit_device_id && !(slave->quirks.late_id && to == CM1E_AL_INIT);
+    slave->al_id = (request & ID) && !slave->al_error && tells;
     show(slave, slave->al_id ? slave->ops->explicit_device_id(slave->app) : code);
 }
 

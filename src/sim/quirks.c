@@ -23,6 +23,7 @@ static void set_fmmus(cm1e_sim_slave_t *slave, long number) { slave->quirks.fmmu
 static void set_sync_managers(cm1e_sim_slave_t *slave, long number) { slave->quirks.sync_managers = (uint8_t)number; }
 static void set_slow_eeprom(cm1e_sim_slave_t *slave, long us) { slave->quirks.sii_extra_ns = us * INT64_C(1000); }
 static void set_abort_info(cm1e_sim_slave_t *slave, long n) { slave->quirks.info_fragments = (unsigned)n; }
+static void set_late_id(cm1e_sim_slave_t *slave, long on) { slave->quirks.late_id = on != 0; }
 static void set_loop(cm1e_sim_slave_t *slave, long on) { slave->quirks.loops = on != 0; }
 
 /** It lasts as long as the EEPROM. The controller sees it when it loads the EEPROM. */
@@ -60,6 +61,7 @@ static const struct quirk {
     {"sync-managers", 1, ESC_SYNC_MANAGERS, set_sync_managers},
     {"slow-eeprom", 1, 1000000, set_slow_eeprom},
     {"abort-info", 1, 1000, set_abort_info},
+    {"late-id", 0, 1, set_late_id},
     {"loop", 0, 1, set_loop},
     {"branch", 1001, 3999, set_branch},
     {"wrong-checksum", 0, 0, break_checksum},

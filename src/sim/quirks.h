@@ -15,6 +15,7 @@ typedef struct cm1e_sim_quirks {
     int64_t sii_extra_ns;         /**< a slow EEPROM: each read takes so much longer */
     unsigned info_fragments;      /**< the list of objects is aborted after so many fragments; 0: never */
     bool loops;                   /**< port 1 sends frames back, though there is a link */
+    bool late_id;                 /**< tells its explicit device ID from Pre-Operational on only */
     uint16_t branch_of;           /**< position of the slave whose port it is connected to; 0: the one before it */
     uint8_t branch_port;          /**< that port: 1, 2 or 3 */
 } cm1e_sim_quirks_t;

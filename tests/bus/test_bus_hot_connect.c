@@ -427,6 +427,29 @@ START_TEST(device_that_kept_its_power_is_identified_again)
 }
 END_TEST
 
+/** Not every device tells its ID in Init. A stranger that does not is in Init again when it is refused. */
+START_TEST(explicit_device_id_is_asked_for_in_pre_operational_too)
+{
+    const kind_t kind = _i % 2 ? ANALOG : MOTOR;
+    describe(&config, kind, false);
+    describe(&wire, kind, true);
+    if (has_axis(kind))
+        wire.axes[2].address += _i / 2;
+    else
+        wire.slaves[1].address += _i / 2;
+    cm1e_bus_t *bus = open_bus_on(&wire);
+    simulate(bus, "quirk 2 late-id 1");
+    detach(bus, kind);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    attach(bus, kind);
+    if (_i / 2)
+        expect_refused(bus, CM1E_PRESENCE_ABSENT, "is optional and absent");
+    else
+        ck_assert_msg(cycles_until_there(bus, ABSENT, kind, COMES) > 0, "%s", how(bus, ABSENT));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- who brings it back ------------------------------------------------------------------------------------------ */
 
 static cm1e_bus_t *start_with_policy(kind_t kind, cm1e_recover_t policy)
@@ -638,6 +661,7 @@ int main(void)
     tcase_add_loop_test(tests, comes_although_frames_are_lost, 0, 2 * KINDS);
     tcase_add_test(tests, stranger_with_another_product_is_refused_and_named);
     tcase_add_loop_test(tests, stranger_with_another_address_is_refused_and_named, 0, 3);
+    tcase_add_loop_test(tests, explicit_device_id_is_asked_for_in_pre_operational_too, 0, 4);
     tcase_add_test(tests, device_that_kept_its_power_is_identified_again);
     tcase_add_loop_test(tests, policy_says_who_brings_it_back, 0, 10);
     tcase_add_loop_test(tests, policy_counts_for_a_slave_that_is_always_there_too, 0, 3);
