@@ -37,6 +37,7 @@ struct machine {
 };
 
 static cm1e_bus_config_t config;
+static int variant; /* of the third motor: order of its process data, firmware with another unit of velocity */
 static cm1e_diag_t diag;
 
 static bool has_torque(const machine_t *machine)
@@ -102,6 +103,8 @@ static void open_machine(machine_t *machine, cm1e_recover_t policy, bool absent,
     config.virtual_time = true;
     for (int i = 0; i < AXES; i++)
         config.axes[i].sim.no_stops = true;
+    config.sim_pdo_order = variant & 1 ? CM1E_PDO_ORDER_UG_7_2 : CM1E_PDO_ORDER_UG_4_4;
+    snprintf(config.axes[2].firmware, sizeof config.axes[2].firmware, "%s", variant & 2 ? "1.2.0" : "");
     config.axes[2].modulo_range = 1;
     config.axes[0].modulo_range = config.axes[1].modulo_range = 1000;
     config.axes[2].address_kind = CM1E_ADDRESS_EXPLICIT_ID;
@@ -306,9 +309,11 @@ START_TEST(reset_brings_a_motor_that_waits_to_operational_without_an_error_befor
 }
 END_TEST
 
+/** What it has is read when it has come: which order, which firmware. */
 START_TEST(motor_that_is_absent_at_the_start_says_so_and_turns_when_it_has_come)
 {
     machine_t machine;
+    variant = _i;
     open_machine(&machine, CM1E_RECOVER_DEFAULT, true, power_an_absent_one);
     run(&machine, 3000);
     ck_assert_int_eq(machine.step, 6);
@@ -327,7 +332,7 @@ int main(void)
     tcase_set_timeout(tests, 120);
     tcase_add_loop_test(tests, motor_is_pulled_at_every_moment_of_its_return_and_the_others_turn_on, 0, 2);
     tcase_add_test(tests, reset_brings_a_motor_that_waits_to_operational_without_an_error_before);
-    tcase_add_test(tests, motor_that_is_absent_at_the_start_says_so_and_turns_when_it_has_come);
+    tcase_add_loop_test(tests, motor_that_is_absent_at_the_start_says_so_and_turns_when_it_has_come, 0, 4);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
