@@ -61,7 +61,8 @@ static void describe_motors(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
     slave->info.model = slave->info.device->model;
     slave->info.vendor_id = slave->info.device->vendor_id;
     slave->info.product_code = slave->info.device->product_code;
-    memcpy(slave->info.name, slave->info.device->label, strnlen(slave->info.device->label, sizeof slave->info.name - 1));
+    const char *label = slave->info.device->label;
+    memcpy(slave->info.name, label, strnlen(label, sizeof slave->info.name - 1));
 }
 
 static void describe_device(cm1e_bus_slave_t *slave)

@@ -1,6 +1,6 @@
 /* Two motors move by the scheduler while a third one, whose slave is optional, comes, leaves and comes back at swept
- * moments: they keep their velocity to the count, the third is in ErrorStop, and has no torque before MC_Power gets a new
- * edge after MC_Reset. */
+ * moments: they keep their velocity to the count, the third is in ErrorStop, and has no torque before MC_Power gets a
+ * new edge after MC_Reset. */
 #include <check.h>
 #include <math.h>
 #include <stdio.h>
@@ -143,7 +143,7 @@ static void pull(machine_t *machine)
 }
 static cm1e_presence_t tool_is(const machine_t *machine) { return cm1e_bus_presence(machine->bus, TOOL); }
 
-/* ---- it turns, is pulled, and comes back at a swept moment of its reset ------------------------------------------- */
+/* ---- it turns, is pulled, and comes back at a swept moment of its reset ------------------------------------------ */
 
 enum { TURN, PULLED, BACK, RESET, PULLED_AGAIN, BACK_AGAIN, RESET_AGAIN, POWER, TURNS_AGAIN };
 
