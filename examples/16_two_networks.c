@@ -1,6 +1,6 @@
 /*
- * One program on two networks: the first axis of the second network follows the first axis of the first one (MC_GearIn).
- * Both are exchanged in the same cycle. It turns for three seconds.
+ * One program on two networks: the first axis of the second network follows the first axis of the first one
+ * (MC_GearIn). Both are exchanged in the same cycle. It turns for three seconds.
  *
  *     16_two_networks                     two simulated segments
  *     16_two_networks two_buses.yaml      the networks of a bus file with two of them (the motors turn!)
@@ -80,7 +80,8 @@ static cm1e_error_t run(cm1e_bus_t *buses[NETWORKS], cm1e_diag_t *why)
     if (error == CM1E_OK)
         error = cm1e_scheduler_add_bus(scheduler, buses[RIGHT], why);
     if (error == CM1E_OK)
-        error = cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = program, .context = scheduler}, why);
+        error = cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = program, .context = scheduler},
+                                        why);
     if (error == CM1E_OK) {
         axes[LEFT] = cm1e_scheduler_axis(scheduler, 0);
         axes[RIGHT] = cm1e_scheduler_axis(scheduler, first_right);

@@ -95,7 +95,8 @@ static int show_each(const buses_t *buses, bool json)
         const pid_t child = fork();
         if (child == 0) {
             if (!json)
-                printf("%sbus %s on %s:\n", i > 0 ? "\n" : "", buses->configs[i].name, buses->configs[i].interface_name);
+                printf("%sbus %s on %s:\n", i > 0 ? "\n" : "", buses->configs[i].name,
+                       buses->configs[i].interface_name);
             return (int)i;
         }
         if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status))

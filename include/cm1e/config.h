@@ -414,8 +414,8 @@ static inline cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const
 }
 /** As cm1e_bus_config_load(), for a bus file with several buses (`buses`) too: fills in configs[0] ... configs[*count
  *  - 1], in the order of the file, each to be freed. A file of one bus has a count of 1. `room`: of the array,
- *  CM1E_MAX_BUSES is always enough; a file with more buses is refused. After a failure there is nothing to be freed. Open
- *  and start the buses one after the other, then cm1e_scheduler_create() and cm1e_scheduler_add_bus(). @rt init */
+ *  CM1E_MAX_BUSES is always enough; a file with more buses is refused. After a failure there is nothing to be freed.
+ *  Open and start the buses one after the other, then cm1e_scheduler_create() and cm1e_scheduler_add_bus(). @rt init */
 static inline cm1e_error_t cm1e_bus_config_load_all(cm1e_bus_config_t *configs, uint32_t room, uint32_t *count,
                                                     const char *path, cm1e_diag_t *diag)
 {

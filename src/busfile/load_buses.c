@@ -1,5 +1,5 @@
-/* A bus file with several buses: `buses`. Each is converted and checked as if it were alone, and then beside the others,
- * because one program runs all of them in one cycle. */
+/* A bus file with several buses: `buses`. Each is converted and checked as if it were alone, and then beside the
+ * others, because one program runs all of them in one cycle. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -50,8 +50,8 @@ static bool check_axes(const cm1e_bus_config_t *config, const cm1e_bus_config_t 
             if (strcmp(config->axes[i].name, other->axes[k].name) == 0) {
                 char path[32];
                 snprintf(path, sizeof path, "axes[%u].name", i);
-                return wrong(problem, bus, path, "bus %s: axis %s: the bus %s has an axis of this name too; expected names "
-                             "that differ over all buses", config->name, config->axes[i].name, other->name);
+                return wrong(problem, bus, path, "bus %s: axis %s: the bus %s has an axis of this name too; expected "
+                             "names that differ over all buses", config->name, config->axes[i].name, other->name);
             }
     return true;
 }
@@ -68,15 +68,15 @@ static bool check_beside(const cm1e_bus_config_t *config, const cm1e_bus_config_
     if (strcmp(config->name, other->name) == 0)
         return wrong(problem, bus, "name", "two buses have the name %s; expected names that differ", config->name);
     if (interface)
-        return wrong(problem, bus, "bus.interface", "bus %s: the bus %s has the interface %s too; expected an interface of "
-                     "its own for each bus", config->name, other->name, interface);
+        return wrong(problem, bus, "bus.interface", "bus %s: the bus %s has the interface %s too; expected an "
+                     "interface of its own for each bus", config->name, other->name, interface);
     if (cycle_us(config) != cycle_us(other))
-        return wrong(problem, bus, "bus.cycle_time_us", "bus %s: cycle_time_us is %lld, and %lld on the bus %s; expected "
-                     "one cycle for all buses", config->name, (long long)cycle_us(config), (long long)cycle_us(other),
-                     other->name);
+        return wrong(problem, bus, "bus.cycle_time_us", "bus %s: cycle_time_us is %lld, and %lld on the bus %s; "
+                     "expected one cycle for all buses", config->name, (long long)cycle_us(config),
+                     (long long)cycle_us(other), other->name);
     if (config->virtual_time != other->virtual_time)
-        return wrong(problem, bus, "bus.virtual_time", "bus %s: virtual_time differs from that of the bus %s; expected one "
-                     "time for all buses", config->name, other->name);
+        return wrong(problem, bus, "bus.virtual_time", "bus %s: virtual_time differs from that of the bus %s; expected "
+                     "one time for all buses", config->name, other->name);
     return check_axes(config, other, bus, problem);
 }
 

@@ -67,10 +67,10 @@ static bool master_began_anew(const follow_t *follow)
 
 /* ---- masters on another bus -------------------------------------------------------------------------------------- */
 
-/* Time stands still for the axes of a silent bus only. While the bus of the master is silent, its slave assumes that its
- * motor does what is likely: it runs on at first, and stops where it gets no new target for longer. While the bus of the
- * slave is silent, the master goes on without it. Behind both the slave goes on from its own set-point, and makes up the
- * distance as after any other loss. */
+/* Time stands still for the axes of a silent bus only. While the bus of the master is silent, its slave assumes that
+ * its motor does what is likely: it runs on at first, and stops where it gets no new target for longer. While the bus
+ * of the slave is silent, the master goes on without it. Behind both the slave goes on from its own set-point, and
+ * makes up the distance as after any other loss. */
 static sight_t sight(const link_t *link)
 {
     if (!link->apart || link->source != mcSetValue || !link->master || !link->master->silence.frozen)

@@ -1,7 +1,7 @@
 /**
- * Each of several buses starts, fails and comes back without the others: a fault of one, in every cycle of enabling and of
- * a move, leaves the motion of the other as it was, to the count; the bus that failed is reset and moves again while the
- * other one never stops. And the orders in which a program may open, start and close them.
+ * Each of several buses starts, fails and comes back without the others: a fault of one, in every cycle of enabling
+ * and of a move, leaves the motion of the other as it was, to the count; the bus that failed is reset and moves again
+ * while the other one never stops. And the orders in which a program may open, start and close them.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +22,8 @@ static cm1e_diag_t diag;
 static const struct {
     const char *breaks, *mends; /**< NULL: it mends itself */
 } faults[] = {
-    {"lose 40", NULL}, {"unplug 1", "replug 1"}, {"power-cycle 1 100", NULL}, {"corrupt 40", NULL}, {"error 1 2310", NULL},
+    {"lose 40", NULL}, {"unplug 1", "replug 1"}, {"power-cycle 1 100", NULL}, {"corrupt 40", NULL},
+    {"error 1 2310", NULL},
 };
 enum { FAULTS = sizeof faults / sizeof faults[0] };
 

@@ -1,11 +1,10 @@
 /**
- * A slave whose master is on another bus, while frames of one of the two buses, or of both, are lost: on the way out or
- * on the way back, 1 ... 9 in a row, at every cycle of a motion, by a gear and by a cam. Up to `lost_cycles_limit` the
- * slave rides it out, as a slave on the bus of its master does, and is in step again at the end. The judge is the
- * configuration and physics alone: set-points of an axis whose drive is heard keep velocity, acceleration and jerk of the
- * axis, and no simulated shaft is faster than undisturbed.
- *
- * The everyday test takes a sample of the combinations, and of the moments at which losses begin. All: CM1E_TEST_STRIDE=1 bin/test_buses_silence.
+ * A slave whose master is on another bus, while frames of one of the two buses, or of both, are lost: on the way out
+ * or on the way back, 1 ... 9 in a row, at every cycle of a motion, by a gear and by a cam. Up to `lost_cycles_limit`
+ * the slave rides it out, as a slave on the bus of its master does, and is in step again at the end. The judge is the
+ * configuration and physics alone: set-points of an axis whose drive is heard keep velocity, acceleration and jerk of
+ * the axis, and no simulated shaft is faster than undisturbed. * The everyday test takes a sample of the
+ * combinations, and of the moments at which losses begin. All: CM1E_TEST_STRIDE=1 bin/test_buses_silence.
  */
 #include <math.h>
 #include <stdarg.h>
@@ -18,9 +17,10 @@
 
 #define MS INT64_C(1000000)
 enum { A = 0, B, BUSES };
-enum { LRW = 12, COMMAND = 16, BEGIN = 60, FIRST_LOSS = 58, LAST_LOSS = 640, END = 2600, STRIDE = 89, SAMPLED_STRIDE = 577 };
+enum { LRW = 12, COMMAND = 16 };
+enum { BEGIN = 60, FIRST_LOSS = 58, LAST_LOSS = 640, END = 2600, STRIDE = 89, SAMPLED_STRIDE = 577 };
 
-/* Of the maximum velocity: what the simulated servo overshoots by itself, in CSP and in CSV, and what losses may add. */
+/* Of the maximum velocity: what the servo overshoots by itself, in CSP and in CSV, and what losses may add. */
 static const double overshoot[] = {1.0016, 1.0034}, braked = 1.005, added = 0.0005;
 static const double most_velocity = 20, most_acceleration = 200, most_jerk = 4000, unit = 50000, cycle_s = 1e-3;
 
@@ -34,8 +34,10 @@ typedef struct pattern {
     bool lost[BUSES][2];
 } pattern_t;
 static const pattern_t patterns[] = {
-    {"the master's bus, out", {{true, false}, {false, false}}},   {"the master's bus, back", {{false, true}, {false, false}}},
-    {"the slave's bus, out", {{false, false}, {true, false}}},    {"the slave's bus, back", {{false, false}, {false, true}}},
+    {"the master's bus, out", {{true, false}, {false, false}}},
+    {"the master's bus, back", {{false, true}, {false, false}}},
+    {"the slave's bus, out", {{false, false}, {true, false}}},
+    {"the slave's bus, back", {{false, false}, {false, true}}},
     {"both, out", {{true, false}, {true, false}}},                {"both, back", {{false, true}, {false, true}}},
     {"both, out and back", {{true, false}, {false, true}}},
 };
@@ -51,8 +53,8 @@ enum { VARIANTS = sizeof variants / sizeof variants[0] };
 
 static const struct {
     int length, times, gap, shift; /**< shift: the slave's bus loses its frames so many cycles later */
-} losses[] = {{1, 1, 1, 0}, {2, 1, 1, 0}, {3, 1, 1, 0}, {5, 1, 1, 0}, {9, 1, 1, 0}, {1, 3, 1, 0}, {2, 3, 2, 1}, {1, 6, 4, 2},
-              {9, 1, 1, 4}};
+} losses[] = {{1, 1, 1, 0}, {2, 1, 1, 0}, {3, 1, 1, 0}, {5, 1, 1, 0}, {9, 1, 1, 0}, {1, 3, 1, 0}, {2, 3, 2, 1},
+              {1, 6, 4, 2}, {9, 1, 1, 4}};
 enum { LOSSES = sizeof losses / sizeof losses[0] };
 
 static cm1e_bus_t *buses[BUSES];
@@ -110,8 +112,8 @@ __attribute__((format(printf, 1, 2), noreturn)) static void wrong(const char *fo
     cm1e_axis_error_text(axes[B], text, sizeof text);
     ck_abort_msg("%s, %s, limit %u, %s: %d lost %d times at cycle %d, gap %d, shift %d; cycle %d: %s. %s",
                  motions[run.motion], run.variant->mapping == CM1E_MAPPING_CSV ? "CSV" : "CSP", run.variant->limit,
-                 run.pattern ? run.pattern->name : "undisturbed", run.length, run.times, run.lose_at, run.gap, run.shift,
-                 run.cycle, what, text);
+                 run.pattern ? run.pattern->name : "undisturbed", run.length, run.times, run.lose_at, run.gap,
+                 run.shift, run.cycle, what, text);
 }
 
 /* ---- the wire ---------------------------------------------------------------------------------------------------- */
@@ -145,9 +147,9 @@ static bool loses(int bus) { return run.pattern && (run.pattern->lost[bus][0] ||
 
 /* ---- the judge --------------------------------------------------------------------------------------------------- */
 
-/** A set-point of an axis without an error. A drive that is not heard keeps its target, and the axis begins anew behind it
- *  with the velocity that the motor has left: that may be less at once, and never more. In CSV it begins where the motor
- * has run on to. */
+/** A set-point of an axis without an error. A drive that is not heard keeps its target, and the axis begins anew behind
+ *  it with the velocity that the motor has left: that may be less at once, and never more. In CSV it begins where the
+ *  motor has run on to. */
 static void judge_set_point(int i)
 {
     const double rounding = 1e-9, v = most_velocity * cycle_s, a = most_acceleration * cycle_s * cycle_s;
@@ -261,7 +263,8 @@ static void make_blocks(void)
     for (int i = 0; i < BUSES; i++)
         powers[i] = (MC_Power_t){.Axis = &axes[i], .EnablePositive = TRUE, .EnableNegative = TRUE};
     move = (MC_MoveAbsolute_t){.Axis = first, .Position = 8, .Velocity = hard ? 15 : 10,
-                               .Acceleration = hard ? 120 : 80, .Deceleration = hard ? 120 : 80, .Jerk = hard ? 1500 : 1000};
+                               .Acceleration = hard ? 120 : 80, .Deceleration = hard ? 120 : 80,
+                               .Jerk = hard ? 1500 : 1000};
     gear = (MC_GearIn_t){.Master = first, .Slave = second, .RatioNumerator = fast ? -2 : 1, .RatioDenominator = 1};
     gear_in_pos = (MC_GearInPos_t){.Master = first, .Slave = second, .RatioNumerator = 1, .RatioDenominator = 1,
                                    .MasterSyncPosition = 4, .SlaveSyncPosition = 3, .MasterStartDistance = 3.8,
