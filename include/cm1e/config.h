@@ -332,6 +332,8 @@ typedef struct cm1e_slave_config {
                                           the head is 1. "": none */
     cm1e_recover_t recover;          /**< who brings it back */
     bool sim_absent;                 /**< simulated segment only: true: not plugged in at the start */
+    char esi[256];                   /**< path of the ESI file from which a bus file took what it did not state; read
+                                          again only where an ENI is made. "": none */
 } cm1e_slave_config_t;
 
 /** The whole bus. The configuration owns its axes and slaves: make it with cm1e_bus_config_init() or

@@ -10,8 +10,6 @@
 #include "config/esi_reader.h"
 #include "config/io_types.h"
 
-enum { PATH_BYTES = 4096 };
-
 typedef struct place {
     cm1e_config_problem_t *problem;
     uint32_t slave;
@@ -280,7 +278,6 @@ static bool convert_signals(const place_t *place, const cm1e_busfile_slave_t *fr
 static bool take_esi(const place_t *place, cm1e_slave_config_t *slave, const cm1e_busfile_slave_t *from,
                      const char *path, int64_t cycle_time_ns)
 {
-    char file[PATH_BYTES];
     cm1e_diag_t diag = {0};
     const char *slash = strrchr(path, '/');
     const int folder = slash && from->esi[0] != '/' ? (int)(slash - path) + 1 : 0;
@@ -289,9 +286,9 @@ static bool take_esi(const place_t *place, cm1e_slave_config_t *slave, const cm1
     if (!cm1e_esi_reader())
         return wrong(place, "esi", "esi is given, and this program cannot read ESI files: it has to be linked with "
                      "cm1e::generate");
-    if (snprintf(file, sizeof file, "%.*s%s", folder, path, from->esi) >= (int)sizeof file)
-        return wrong(place, "esi", "the path of the ESI is too long");
-    if (cm1e_esi_reader()(slave, file, from->esi_mode, cycle_time_ns, &diag) == CM1E_OK)
+    if (snprintf(slave->esi, sizeof slave->esi, "%.*s%s", folder, path, from->esi) >= (int)sizeof slave->esi)
+        return wrong(place, "esi", "the path of the ESI is longer than %zu bytes", sizeof slave->esi - 1);
+    if (cm1e_esi_reader()(slave, slave->esi, from->esi_mode, cycle_time_ns, &diag) == CM1E_OK)
         return true;
     return wrong(place, diag.error == CM1E_ERROR_NOT_FOUND && from->esi_mode[0] && strstr(diag.text, "OpMode")
                  ? "esi_mode" : "esi", "%.100s: %.280s", from->esi, diag.text);

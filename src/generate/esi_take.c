@@ -6,6 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "config/clocks.h"
 #include "config/esi_reader.h"
 #include "config/io_types.h"
 #include "description/expand.h"
@@ -249,35 +250,23 @@ static bool commands_assign(const cm1e_description_t *device)
 
 /* ---- clocks ------------------------------------------------------------------------------------------------------ */
 
-/** ETG.2000: a time of its own, or the cycle time of the bus, multiplied by a positive factor, divided by a negative
- *  one. */
-static double period_us(int32_t own_ns, int32_t factor, int64_t cycle_time_ns)
-{
-    const double cycle_us = (double)(cycle_time_ns ? cycle_time_ns : 1000000) * 1e-3;
-    if (own_ns > 0)
-        return own_ns * 1e-3;
-    return factor < 0 ? cycle_us / -(double)factor : factor > 0 ? cycle_us * factor : cycle_us;
-}
-
 static cm1e_error_t take_mode(cm1e_slave_config_t *slave, const cm1e_description_t *device, const char *name,
                               int64_t cycle_time_ns, cm1e_diag_t *diag)
 {
-    enum { SYNC0_ACTIVE = 0x0200, SYNC1_ACTIVE = 0x0400 };
     char list[200] = "";
     size_t used = 0;
+    if (slave->dc.sync0_us != 0 || slave->dc.sync1_us != 0 || slave->dc.mode[0])
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "gives the pulses of the OpMode '%s', and dc states some too; "
+                             "expected one of them", name);
     for (size_t i = 0; i < device->dc_modes.count; i++) {
         const cm1e_dc_mode_t *mode = &device->dc_modes.at[i];
         if (used + 50 < sizeof list)
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%.40s", used ? ", " : "", mode->name);
         if (strcasecmp(mode->name, name) != 0)
             continue;
-        if (mode->assign_activate & SYNC0_ACTIVE) {
-            slave->dc.sync0_us = period_us(mode->sync0_cycle_ns, mode->sync0_factor, cycle_time_ns);
-            slave->dc.shift_us = mode->sync0_shift_ns * 1e-3;
-        }
-        if (mode->assign_activate & SYNC1_ACTIVE)
-            slave->dc.sync1_us = mode->sync1_shift_ns > 0 ? mode->sync1_shift_ns * 1e-3
-                                 : period_us(mode->sync1_cycle_ns, mode->sync1_factor, cycle_time_ns);
+        const cm1e_dc_facts_t facts = {mode->assign_activate, mode->sync0_cycle_ns, mode->sync0_factor,
+                                       mode->sync0_shift_ns, mode->sync1_factor, mode->sync1_shift_ns};
+        slave->dc = cm1e_config_pulses_of_mode(&facts, slave->dc.shift_us, cycle_time_ns ? cycle_time_ns : 1000000);
         return CM1E_OK;
     }
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "has no OpMode '%s'; it has %s", name, used ? list : "none");
@@ -301,28 +290,36 @@ static cm1e_error_t take_device(cm1e_slave_config_t *slave, const cm1e_descripti
     return error == CM1E_OK && mode[0] ? take_mode(slave, device, mode, cycle_time_ns, diag) : error;
 }
 
+/** Reads the device of a slave, with the modules that it has when nobody chooses. */
+static cm1e_error_t read_device(cm1e_description_file_t *file, cm1e_description_t *device, const void *bytes,
+                                size_t size, const cm1e_slave_config_t *slave, cm1e_diag_t *diag)
+{
+    const cm1e_description_t *found;
+    cm1e_error_t error = cm1e_esi_read(file, bytes, size, diag);
+    if (error == CM1E_OK)
+        error = find_device(slave, file, &found, diag);
+    if (error != CM1E_OK)
+        return error;
+    *device = *found;
+    if (found->slots.count > 0) {
+        uint32_t idents[CM1E_PLACES_MAX];
+        const size_t places = cm1e_description_places(found);
+        cm1e_description_default_modules(found, idents, places);
+        cm1e_description_expand(&file->arena, device, file, found, idents, places);
+    }
+    if (file->arena.failed)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "needs more memory than there is");
+    return CM1E_OK;
+}
+
 cm1e_error_t cm1e_esi_take(cm1e_slave_config_t *slave, const void *bytes, size_t size, const char *mode,
                            int64_t cycle_time_ns, cm1e_diag_t *diag)
 {
     cm1e_description_file_t file = {0};
-    cm1e_arena_t arena = {0};
-    cm1e_description_t expanded;
-    const cm1e_description_t *device = NULL;
-    cm1e_error_t error = cm1e_esi_read(&file, bytes, size, diag);
+    cm1e_description_t device;
+    cm1e_error_t error = read_device(&file, &device, bytes, size, slave, diag);
     if (error == CM1E_OK)
-        error = find_device(slave, &file, &device, diag);
-    if (error == CM1E_OK && device->slots.count > 0) { /* with the modules that it has when nobody chooses */
-        uint32_t idents[CM1E_PLACES_MAX];
-        const size_t places = cm1e_description_places(device);
-        cm1e_description_default_modules(device, idents, places);
-        cm1e_description_expand(&arena, &expanded, &file, device, idents, places);
-        device = &expanded;
-        if (arena.failed)
-            error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "needs more memory than there is");
-    }
-    if (error == CM1E_OK)
-        error = take_device(slave, device, mode, cycle_time_ns, diag);
-    cm1e_arena_free(&arena);
+        error = take_device(slave, &device, mode, cycle_time_ns, diag);
     cm1e_description_file_free(&file);
     return error;
 }
@@ -355,6 +352,18 @@ static cm1e_error_t take_from_file(cm1e_slave_config_t *slave, const char *path,
     cm1e_error_t error = read_file(path, &bytes, &size, diag);
     if (error == CM1E_OK)
         error = cm1e_esi_take(slave, bytes, size, mode, cycle_time_ns, diag);
+    free(bytes);
+    return error;
+}
+
+cm1e_error_t cm1e_esi_device(cm1e_description_file_t *file, cm1e_description_t *device,
+                             const cm1e_slave_config_t *slave, cm1e_diag_t *diag)
+{
+    uint8_t *bytes;
+    size_t size;
+    cm1e_error_t error = read_file(slave->esi, &bytes, &size, diag);
+    if (error == CM1E_OK)
+        error = read_device(file, device, bytes, size, slave, diag);
     free(bytes);
     return error;
 }

@@ -4,6 +4,7 @@
 
 #include "cm1e/generate.h"
 #include "config/copy.h"
+#include "config/interface.h"
 #include "description/describe.h"
 #include "description/expand.h"
 #include "description/sii.h"
@@ -11,6 +12,7 @@
 #include "device/place.h"
 #include "generate/ec_extend.h"
 #include "generate/eni.h"
+#include "generate/eni_slave.h"
 #include "generate/esi.h"
 #include "generate/file.h"
 #include "generate/generate_options.h"
@@ -126,9 +128,10 @@ static cm1e_error_t generate_ec_extend(cm1e_file_t *file, const cm1e_generate_op
 
 /* ---- ENI of a configuration ------------------------------------------------------------------------------------- */
 
-/* A slave of the network: an axis, or a bridge with up to four axes. */
+/* A slave of the network: an axis, a bridge with up to four axes, or a slave without an axis. */
 typedef struct node {
     const cm1e_axis_config_t *axis;       /* its first axis; NULL: no axis is known there */
+    const cm1e_slave_config_t *slave;     /* NULL: it has an axis, or nothing is known there */
     const char *motors[CM1E_BRIDGE_AXES]; /* as configured, "": any */
     char name[CM1E_SLAVE_NAME];
 } node_t;
@@ -140,12 +143,14 @@ static bool is_behind(const node_t *node, const cm1e_axis_config_t *axis)
            node->axis->address == axis->address;
 }
 
+static uint32_t places_of(const cm1e_bus_config_t *network) { return network->axis_count + network->slave_count; }
+
 /* Place on the wire (0 = first) of the slave of an axis, if `count` slaves are known before it. If the configuration
  * does not state it, the result is an invalid place. */
 static uint32_t place_of(const cm1e_bus_config_t *network, uint32_t axis, const node_t *nodes, uint32_t count)
 {
     const cm1e_axis_config_t *config = &network->axes[axis];
-    for (uint32_t place = 0; place < network->axis_count; place++)
+    for (uint32_t place = 0; place < places_of(network); place++)
         if (is_behind(&nodes[place], config))
             return place;
     switch (config->address_kind) {
@@ -158,21 +163,45 @@ static uint32_t place_of(const cm1e_bus_config_t *network, uint32_t axis, const 
 static cm1e_error_t place_unknown(const cm1e_bus_config_t *network, const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
 {
     return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                         "axis %td (%s): its place on the wire does not follow from the configuration, or another "
-                         "device is between the axes; make the ENI from a scan of the network",
+                         "axis %td (%s): its place on the wire does not follow from the configuration, or a device "
+                         "is before it that the file does not list; make the ENI from a scan of the network",
                          axis - network->axes + 1, axis->name);
 }
 
-/* The slaves in the order of the wire, in room for as many as there are axes. */
+static bool is_known(const node_t *node) { return node->axis || node->slave; }
+
+static cm1e_error_t slave_unknown(const cm1e_slave_config_t *slave, cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "slave %s: its place on the wire does not follow from the "
+                         "configuration, is that of another one, or a device is before it that the file does not "
+                         "list; make the ENI from a scan of the network", slave->name);
+}
+
+static cm1e_error_t find_slaves(node_t *nodes, uint32_t *count, const cm1e_bus_config_t *network, cm1e_diag_t *diag)
+{
+    for (uint32_t i = 0; i < network->slave_count; i++) {
+        const cm1e_slave_config_t *slave = &network->slaves[i];
+        const uint32_t place = slave->address - 1u;
+        if (slave->address_kind != CM1E_ADDRESS_POSITION || place >= places_of(network) || is_known(&nodes[place]))
+            return slave_unknown(slave, diag);
+        nodes[place].slave = slave;
+        snprintf(nodes[place].name, sizeof nodes[place].name, "%s", slave->name);
+        ++*count;
+    }
+    return CM1E_OK;
+}
+
+/* The slaves in the order of the wire, in room for as many as there are axes and other slaves. */
 static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_config_t *network, cm1e_diag_t *diag)
 {
-    for (uint32_t axis = 0; axis < network->axis_count; axis++) {
+    const cm1e_error_t error = find_slaves(nodes, count, network, diag);
+    for (uint32_t axis = 0; axis < network->axis_count && error == CM1E_OK; axis++) {
         const cm1e_axis_config_t *config = &network->axes[axis];
         if (!cm1e_axis_has_motor(config))
             continue;
         const uint32_t place = place_of(network, axis, nodes, *count);
-        node_t *node = place < network->axis_count ? &nodes[place] : NULL;
-        if (!node || (node->axis && !is_behind(node, config)))
+        node_t *node = place < places_of(network) ? &nodes[place] : NULL;
+        if (!node || node->slave || (node->axis && !is_behind(node, config)))
             return place_unknown(network, config, diag);
         *count += !node->axis;
         node->axis = node->axis ? node->axis : config;
@@ -180,10 +209,11 @@ static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_co
         if (cm1e_device_is_shared(config))
             node->motors[config->channel - 1] = config->motor;
     }
-    for (uint32_t place = *count; place < network->axis_count; place++)
-        if (nodes[place].axis)
-            return place_unknown(network, nodes[place].axis, diag);
-    return CM1E_OK;
+    for (uint32_t place = *count; place < places_of(network) && error == CM1E_OK; place++)
+        if (is_known(&nodes[place]))
+            return nodes[place].axis ? place_unknown(network, nodes[place].axis, diag)
+                                     : slave_unknown(nodes[place].slave, diag);
+    return error;
 }
 
 /* The guide of the bridge states no identity, so the user must state it. */
@@ -212,10 +242,22 @@ static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const no
     return cm1e_describe(described, found, CM1E_ESI_FLAT, diag);
 }
 
+static cm1e_error_t describe_slave(cm1e_description_file_t *described, const cm1e_slave_config_t *slave,
+                                   const cm1e_bus_config_t *network, cm1e_diag_t *diag)
+{
+    const bool simulated = cm1e_interface_is_simulated(network->interface_name);
+    const cm1e_error_t error = cm1e_eni_describe_slave(described, slave, simulated, diag);
+    if (error != CM1E_OK || described->arena.failed)
+        return error;
+    return cm1e_eni_configure_slave(described, slave, diag);
+}
+
 static cm1e_error_t describe_node(cm1e_description_file_t *described, const node_t *node,
                                   const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *config = node->axis;
+    if (node->slave)
+        return describe_slave(described, node->slave, options->network, diag);
     const cm1e_device_t *expected = cm1e_device_configured(config);
     if (expected->channels)
         return describe_bridge(described, node, options, diag);
@@ -248,8 +290,9 @@ static cm1e_error_t describe_nodes(cm1e_eni_slave_t *slaves, cm1e_description_fi
     for (uint32_t i = 0; i < count && error == CM1E_OK; i++) { /* set at the end, because the list of devices moves
                                                                 * while it grows */
         const cm1e_axis_config_t *config = nodes[i].axis;
-        slaves[i] = (cm1e_eni_slave_t){.device = &described->devices.at[i], .name = nodes[i].name,
-                                       .alias = config->address_kind == CM1E_ADDRESS_ALIAS ? config->address : 0};
+        slaves[i] = (cm1e_eni_slave_t){.device = &described->devices.at[i], .name = nodes[i].name};
+        if (config && config->address_kind == CM1E_ADDRESS_ALIAS)
+            slaves[i].alias = config->address;
     }
     return error;
 }
@@ -258,8 +301,8 @@ static cm1e_error_t eni_of_network(cm1e_file_t *file, const cm1e_bus_config_t *n
                                    const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
     cm1e_error_t error = cm1e_bus_config_check(network, diag);
-    cm1e_eni_slave_t *slaves = calloc(network->axis_count, sizeof *slaves);
-    node_t *nodes = calloc(network->axis_count, sizeof *nodes);
+    cm1e_eni_slave_t *slaves = calloc(places_of(network), sizeof *slaves);
+    node_t *nodes = calloc(places_of(network), sizeof *nodes);
     cm1e_description_file_t described = {0};
     uint32_t count = 0;
     if (!slaves || !nodes)
@@ -285,9 +328,9 @@ static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_
         return cm1e_diag_set(diag, error, 0, "out of memory");
     if (error != CM1E_OK)
         return cm1e_bus_config_check(options->network, diag);
-    if (cm1e_motors_before(&network, network.axis_count) == 0)
+    if (cm1e_motors_before(&network, network.axis_count) + network.slave_count == 0)
         error = cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                              "an ENI describes a network, but no axis with a motor is configured");
+                              "an ENI describes a network, but no axis with a motor and no slave is configured");
     else
         error = eni_of_network(file, &network, options, diag);
     cm1e_bus_config_free(&network);

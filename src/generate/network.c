@@ -8,6 +8,7 @@
 #include "core/in_task.h"
 #include "device/devices.h"
 #include "device/place.h"
+#include "generate/eni_slave.h"
 #include "generate/file.h"
 #include "generate/live.h"
 
@@ -193,9 +194,13 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
         char name[CM1E_SLAVE_NAME];
         const cm1e_axis_config_t *axis = axis_of(cm1e_bus_configuration(bus), slave, name);
         error = describe_slave(&described, bus, slave, axis ? axis->mapping : mapping, findings, diag);
+        const cm1e_slave_config_t *other = axis ? NULL : slave_config_of(cm1e_bus_configuration(bus), slave);
+        if (error == CM1E_OK && other)
+            error = cm1e_eni_configure_slave(&described, other, diag);
         if (error == CM1E_OK)
             slaves[position - 1].name =
-                axis ? cm1e_arena_text(&described.arena, name)
+                other ? cm1e_arena_text(&described.arena, other->name)
+                : axis ? cm1e_arena_text(&described.arena, name)
                      : cm1e_arena_format(&described.arena, "%s %u", slave->name[0] ? slave->name : "Slave",
                                          (unsigned)position);
     }

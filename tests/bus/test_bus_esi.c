@@ -38,7 +38,7 @@ static const char good[] = FILE_OF(DEVICE(A0002, 1, "AI-old", COE(""), COMPACT, 
                                    DEVICE(A0002, 2, "AI", COE(COMMANDS), STANDARD COMPACT, MODES)
                                    DEVICE(A0003, 1, "Other", "", TXPDO(" Sm='0'", 1A00, "", GAP(3)
                                           ENTRY(6000, 1, 1, "Input 4", "BOOL") ENTRY(6000, 2, 12, "Counter", "UINT")),
-                                          "")
+                                          "<Sm StartAddress='#x1000' ControlByte='0' Enable='1'>Inputs</Sm>")
                                    DEVICE(A0004, 1, "Whole", COE("<InitCmd CompleteAccess='1'><Transition>PS"
                                           "</Transition><Index>#x8000</Index><SubIndex>0</SubIndex><Data>0102</Data>"
                                           "</InitCmd>"), COMPACT, ""));
@@ -111,7 +111,7 @@ START_TEST(test_the_bus_file_overrules)
     ck_assert_str_eq(signal_at(1)->name, "Underrange");
     ck_assert_str_eq(signal_at(2)->name, "Overrange of t~ of all channels"); /* its middle is cut */
     ck_assert_double_eq(slave->dc.sync0_us, 500.0);
-    ck_assert_double_eq(slave->dc.shift_us, 25.0);
+    ck_assert_double_eq(slave->dc.shift_us, 525.0); /* half a cycle, and its own */
 }
 END_TEST
 
@@ -136,6 +136,7 @@ START_TEST(test_a_bad_file_is_told_in_words)
         {good, "vendor: 0x00000013,", ":3:34: ", "does not describe vendor 0x00000013"},
         {good, "product: 0x000A0002, revision: 0x00000003,", ":3:34: ", "revision 0x00000003"},
         {good, "product: 0x000A0002, esi_mode: FreeRun,", ":3:", "has no OpMode 'FreeRun'; it has SM, DC"},
+        {good, "product: 0x000A0002, esi_mode: DC, dc: {sync0_us: 500},", ":3:", "and dc states some too"},
         {good, "product: 0x000A0004,", ":3:34: ", "object 0x8000:00 has 2 bytes by complete access"},
         {"", "", ":3:34: ", "bus_esi.xml: "},
         {"<EtherCATInfo>", "", ":3:34: ", "bus_esi.xml: "},
@@ -172,6 +173,92 @@ START_TEST(test_a_slave_is_configured_by_it)
 }
 END_TEST
 
+/* ---- ENI --------------------------------------------------------------------------------------------------------- */
+
+static void eni_of_file(cm1e_file_t *file)
+{
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ENI, .network = &config};
+    ck_assert_msg(cm1e_generate(file, &options, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_findings_t *findings = NULL;
+    ck_assert_int_eq(cm1e_check_file(&findings, file->bytes, file->size, &diag), CM1E_OK);
+    ck_assert_msg(cm1e_findings_count(findings) == 0, "%s", cm1e_findings_at(findings, 0)->text);
+    cm1e_findings_free(findings);
+}
+
+/** How often a text comes in a file, whose bytes end with a 0. */
+static unsigned count_of(const cm1e_file_t *file, const char *text)
+{
+    unsigned count = 0;
+    for (const char *at = strstr((const char *)file->bytes, text); at; at = strstr(at + 1, text))
+        count++;
+    return count;
+}
+
+/** A motor between a coupler, terminals and an analog device with everything that the bus file can write into it. */
+static void load_machine(void)
+{
+    write_text(bus_path, "bus: {virtual_time: true}\n"
+               "axes: [{name: feed, position: 3}]\n"
+               "slaves:\n"
+               "  - {name: coupler, position: 1, sim: {device: coupler}}\n"
+               "  - {name: valves, position: 2, outputs: [{name: clamp, bit: 3}], sim: {device: digital, outputs: 4}}\n"
+               "  - name: ai\n"
+               "    position: 4\n"
+               "    mapping: [{pdo: 0x1A00, entries: [0x6000:01/1, gap/7, 0x6000:11/16]}]\n"
+               "    inputs_pdos: [0x1A03, 0x1A00]\n"
+               "    sdo:\n"
+               "      - {object: 0x8000:12, type: INT, value: -2}\n"
+               "      - {object: 0x8010:12, type: INT, value: 5, before: op}\n"
+               "    inputs: [{name: boiler, object: 0x6000:11}]\n"
+               "    sim: {device: analog, inputs: 2}\n");
+    cm1e_bus_config_free(&config);
+    ck_assert_msg(cm1e_bus_config_load(&config, bus_path, &diag) == CM1E_OK, "%s", diag.text);
+}
+
+/* What the bus file says gives the file that a scan of this network gives with it, byte for byte. */
+START_TEST(test_an_eni_of_the_bus_file_is_that_of_a_scan)
+{
+    cm1e_file_t by_file, by_scan;
+    load_machine();
+    eni_of_file(&by_file);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_generate_eni_of_bus(&by_scan, bus, CM1E_MAPPING_DYNAMIC, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_close(bus);
+    ck_assert_uint_eq(by_file.size, by_scan.size);
+    ck_assert_mem_eq(by_file.bytes, by_scan.bytes, by_file.size);
+    ck_assert_uint_eq(count_of(&by_file, ".boiler</Name>"), 1);
+    ck_assert_uint_eq(count_of(&by_file, ".clamp</Name>"), 1);
+    ck_assert_uint_eq(count_of(&by_file, "<Data>feff</Data>") + count_of(&by_file, "<Data>FEFF</Data>"), 1);
+    ck_assert_uint_eq(count_of(&by_file, "<Index>6656</Index>"), 5); /* 0x1A00: emptied, three entries, counted */
+    cm1e_file_free(&by_file);
+    cm1e_file_free(&by_scan);
+}
+END_TEST
+
+START_TEST(test_an_eni_takes_the_esi)
+{
+    cm1e_file_t file;
+    ck_assert_msg(load(good, "product: 0x000A0003,") == CM1E_OK, "%s", diag.text);
+    strcpy(config.interface_name, "eth1"); /* a real network: what is there says the ESI alone */
+    config.virtual_time = false;
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ENI, .network = &config};
+    ck_assert_msg(cm1e_generate(&file, &options, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(count_of(&file, "Counter</Name>"), 2); /* of the entry and of the variable */
+    cm1e_file_free(&file);
+    strcpy(config.slaves[0].esi, "nowhere.xml");
+    ck_assert_int_eq(cm1e_generate(&file, &options, &diag), CM1E_ERROR_IO);
+    ck_assert_msg(strstr(diag.text, "slave ai: nowhere.xml cannot be read: No such file"), "%s", diag.text);
+    config.slaves[0].esi[0] = '\0';
+    ck_assert_int_eq(cm1e_generate(&file, &options, &diag), CM1E_ERROR_UNSUPPORTED);
+    ck_assert_msg(strstr(diag.text, "slave ai: the bus file does not say what its process data are"), "%s", diag.text);
+    load_machine();
+    config.slaves[2].address = 7;
+    ck_assert_int_eq(cm1e_generate(&file, &options, &diag), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "slave ai: its place on the wire"), "%s", diag.text);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus esi");
@@ -181,6 +268,8 @@ int main(void)
     tcase_add_test(tests, test_a_slave_without_a_mailbox_is_named_by_its_bits);
     tcase_add_test(tests, test_a_bad_file_is_told_in_words);
     tcase_add_test(tests, test_a_slave_is_configured_by_it);
+    tcase_add_test(tests, test_an_eni_of_the_bus_file_is_that_of_a_scan);
+    tcase_add_test(tests, test_an_eni_takes_the_esi);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
