@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""The systemd unit of docs/REALTIME.md, with the example 14_service as its program: systemd-analyze finds nothing wrong
+with it, and a wrong key is found. Skips where there is no systemd-analyze.
+
+test_service.py BIN-DIRECTORY SOURCE-DIRECTORY
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+BIN, SOURCE = os.path.abspath(sys.argv[1]), sys.argv[2]
+SKIPPED = 77
+
+
+def unit(program, folder):
+    with open(os.path.join(SOURCE, "docs/REALTIME.md"), encoding="utf-8") as file:
+        text = re.search(r"```ini\n(# /etc/systemd/system/motion\.service\n.*?)```", file.read(), re.DOTALL)[1]
+    for key, value in (("ExecStart", f"{program} eth1"), ("WorkingDirectory", folder)):
+        text, count = re.subn(rf"^{key}=.*$", f"{key}={value}", text, flags=re.MULTILINE)
+        if count != 1:
+            sys.exit(f"docs/REALTIME.md: the unit has {count} lines with {key}")
+    return text
+
+
+def verify(folder, text):
+    path = os.path.join(folder, "motion.service")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    return subprocess.run(["systemd-analyze", "verify", path], capture_output=True, text=True, timeout=60)
+
+
+def of_unit(told):
+    """What is said of this unit; of others of the machine there may be more."""
+    return [line for line in (told.stdout + told.stderr).splitlines() if "motion.service" in line]
+
+
+def main():
+    if not shutil.which("systemd-analyze"):
+        print("SKIPPED: there is no systemd-analyze")
+        sys.exit(SKIPPED)
+    with tempfile.TemporaryDirectory() as folder:
+        text = unit(os.path.join(BIN, "14_service"), folder)
+        good = verify(folder, text)
+        if of_unit(good):
+            sys.exit(f"the unit of docs/REALTIME.md: {good}")
+        for wrong, key in ((text.replace("WatchdogSec=", "WatchDogSec="), "WatchDogSec"),
+                           (text.replace("Type=notify", "Type=notifies"), "notifies"),
+                           (text.replace("14_service", "15_service"), "not executable")):
+            if not any(key in line for line in of_unit(verify(folder, wrong))):
+                sys.exit(f"{key} is not found by systemd-analyze: this test could not fail")
+    print("systemd-analyze finds nothing wrong with the unit of docs/REALTIME.md")
+
+
+if __name__ == "__main__":
+    main()
