@@ -2,12 +2,12 @@
  * @file foe.h
  * Files in a slave (FoE, ETG.1000.6 section 5.8): parameters, logs, firmware. The slave knows a file by its name; what
  * is in it is a matter of its maker. The thread that owns the bus calls these functions after a scan. They wait; every
- * answer and the whole transfer are bounded. A slave that is busy is asked again. A transfer that is given up is told to
- * the slave, so that the next one begins anew.
+ * answer and the whole transfer are bounded. A slave that is busy is asked again. A transfer that is given up is told
+ * to the slave, so that the next one begins anew.
  *
  * While the bus operates, these functions make its cycles: the packets go beside the process data, one datagram of the
- * mailbox in a cycle, in turn with the SDO transfers of that slave. A program whose scheduler runs transfers files before
- * its start, or has them transferred through its control socket (`cm1e foe`).
+ * mailbox in a cycle, in turn with the SDO transfers of that slave. A program whose scheduler runs transfers files
+ * before its start, or has them transferred through its control socket (`cm1e foe`).
  */
 #ifndef CM1E_FOE_H
 #define CM1E_FOE_H
