@@ -561,6 +561,20 @@ START_TEST(a_drive_without_pulses_leaves_operational_and_comes_back)
 }
 END_TEST
 
+/** Each time from the first step on: without power the controller has forgotten all of it. */
+START_TEST(a_clock_is_set_at_every_recovery)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 10, 0);
+    for (int n = 0; n < 2; n++) {
+        simulate(bus, "power-cycle 2 20");
+        run(bus, 300);
+        expect_back(bus);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** Shorter than the watchdog of the process data: what acts is the supervision by SYNC0. */
 START_TEST(a_drive_without_process_data_at_its_pulses_leaves_operational)
 {
@@ -739,6 +753,7 @@ int main(void)
     tcase_add_test(refused, a_clock_that_does_not_follow_is_told_before_operational);
     tcase_add_test(lost, a_clock_that_leaves_the_reference_is_counted_once);
     tcase_add_test(lost, a_drive_without_pulses_leaves_operational_and_comes_back);
+    tcase_add_test(lost, a_clock_is_set_at_every_recovery);
     tcase_add_test(lost, a_drive_without_process_data_at_its_pulses_leaves_operational);
     tcase_add_test(lost, a_drive_whose_clock_runs_away_leaves_operational);
     tcase_add_test(lost, the_clock_of_a_drive_that_was_off_is_set_again);

@@ -105,6 +105,7 @@ START_TEST(three_unanswered_questions_in_a_row_make_a_slave_lost)
 }
 END_TEST
 
+/** With its watchdog too, whatever is in that register before. */
 START_TEST(without_request_nothing_is_recovered)
 {
     sim_config(2);
@@ -112,10 +113,13 @@ START_TEST(without_request_nothing_is_recovered)
     strike(bus, "power-cycle 2 20");
     for (int n = 0; n < 500; n++)
         cycle(bus);
+    uint8_t *watchdog = cm1e_sim_segment_slave(segment_of(bus), 2)->memory + ESC_WATCHDOG_DATA;
+    cm1e_put_u16(watchdog, 7);
     ck_assert_uint_eq(state_of(bus, 2), CM1E_AL_INIT);
     ck_assert_uint_eq(state_of(bus, 1), CM1E_AL_OP);
     ck_assert(cm1e_bus_slave_watch(bus, 2).lost);
     ck_assert_uint_gt(cycles_until_recovered(bus, 3000), 0);
+    ck_assert_uint_eq(cm1e_get_u16(watchdog), 1000);
     check_all_run(bus);
     cm1e_bus_close(bus);
 }

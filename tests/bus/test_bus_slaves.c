@@ -167,14 +167,16 @@ START_TEST(identity_and_address_are_checked)
         cm1e_address_kind_t kind;
         unsigned address, product, revision;
         const char *told; /* NULL: it starts */
+        unsigned vendor;
     } cases[] = {
-        {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 1, NULL},
-        {CM1E_ADDRESS_POSITION, VALVES, 0xD0401, 0, "expects the product 0x000D0401, the device is \"Digital terminal"},
-        {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 2, "expects the revision 0x00000002"},
-        {CM1E_ADDRESS_POSITION, 9, 0, 0, "\"valves\": expected at position 9, where there is none"},
-        {CM1E_ADDRESS_ALIAS, 77, 0, 0, "expected at alias 77"},
-        {CM1E_ADDRESS_EXPLICIT_ID, 7, 0, 0, "expected at explicit device ID 7"},
-        {CM1E_ADDRESS_POSITION, 7, 0, 0, "is slave 7, a CM1-E: name it among the axes"},
+        {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 1, NULL, 0},
+        {CM1E_ADDRESS_POSITION, VALVES, 0xD0401, 0, "expects the product 0x000D0401, the device is \"Digital", 0},
+        {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 2, "expects the revision 0x00000002", 0},
+        {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 1, "expects the vendor 0x00000009", 9},
+        {CM1E_ADDRESS_POSITION, 9, 0, 0, "\"valves\": expected at position 9, where there is none", 0},
+        {CM1E_ADDRESS_ALIAS, 77, 0, 0, "expected at alias 77", 0},
+        {CM1E_ADDRESS_EXPLICIT_ID, 7, 0, 0, "expected at explicit device ID 7", 0},
+        {CM1E_ADDRESS_POSITION, 7, 0, 0, "is slave 7, a CM1-E: name it among the axes", 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         machine();
@@ -190,6 +192,8 @@ START_TEST(identity_and_address_are_checked)
         config.slaves[VALVES - 1].address = (uint16_t)cases[i].address;
         config.slaves[VALVES - 1].product = cases[i].product;
         config.slaves[VALVES - 1].revision = cases[i].revision;
+        if (cases[i].vendor)
+            config.slaves[VALVES - 1].vendor = cases[i].vendor;
         cm1e_bus_t *bus = open_bus_on(&segment);
         ck_assert_int_eq(cm1e_bus_start(bus, &diag), cases[i].told ? CM1E_ERROR_BUS_IDENTITY : CM1E_OK);
         ck_assert_msg(!cases[i].told || strstr(diag.text, cases[i].told), "%s", diag.text);
