@@ -129,7 +129,7 @@ void cm1e_st_standard_names(void (*visit)(const char *name, void *context), void
 /* st_statement.c */
 void cm1e_st_statements(st_t *st, stmt_t *list);
 
-/* st_located.c */
+/* st_address.c */
 void cm1e_st_check_address(st_t *st, const var_t *var);
 bool cm1e_st_can_be_kept(const type_t *type);
 
