@@ -8,7 +8,8 @@ bison_target(st_parser ${PROJECT_SOURCE_DIR}/src/st/st_parser.y ${made}/st_parse
 flex_target(st_lexer ${PROJECT_SOURCE_DIR}/src/st/st_lexer.l ${made}/st_lexer.c)
 add_flex_bison_dependency(st_lexer st_parser)
 set(parts ${PROJECT_SOURCE_DIR}/src/st/st_embedded_files.S)
-file(GLOB interface CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fb/interface/*.st)
+file(GLOB interface CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fb/interface/*.st
+     ${PROJECT_SOURCE_DIR}/src/st/*.st)
 set_property(SOURCE ${parts} PROPERTY COMPILE_OPTIONS -Wa,-I,${PROJECT_SOURCE_DIR})
 set_property(SOURCE ${parts} PROPERTY OBJECT_DEPENDS ${interface};${PROJECT_SOURCE_DIR}/src/st/st_program.h
              ${PROJECT_SOURCE_DIR}/src/st/st_runtime.h)

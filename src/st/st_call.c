@@ -54,7 +54,8 @@ static var_t *named_parameter(st_t *st, const unit_t *unit, const arg_t *arg)
 {
     char text[CM1E_NEAR_TEXT_BYTES];
     cm1e_near_t near = {.word = arg->name};
-    var_t *var = cm1e_st_map_get(unit->names, arg->name);
+    const char *hint, *ours = cm1e_st_alias(unit->name, arg->name, &hint);
+    var_t *var = cm1e_st_map_get(unit->names, ours ? ours : arg->name);
     if (var && is_parameter(var) && arg->output == (var->section == V_OUTPUT))
         return var;
     if (var && is_parameter(var)) {
@@ -64,6 +65,10 @@ static var_t *named_parameter(st_t *st, const unit_t *unit, const arg_t *arg)
     }
     if (strcasecmp(arg->name, "EN") == 0 || strcasecmp(arg->name, "ENO") == 0) {
         cm1e_st_report(st, arg->place, "EN and ENO are not supported; put the call into IF ... END_IF");
+        return NULL;
+    }
+    if (hint) {
+        cm1e_st_report(st, arg->place, "%s has no input \"%s\": %s", unit->name, arg->name, hint);
         return NULL;
     }
     for (const var_t *other = unit->vars; other; other = other->next)

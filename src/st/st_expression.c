@@ -143,7 +143,13 @@ static void member(st_t *st, expr_t *expr)
         set_wrong(st, expr);
         return;
     }
-    expr->var = cm1e_st_member(type, expr->name);
+    const char *hint, *ours = cm1e_st_alias(type->name, expr->name, &hint);
+    expr->var = cm1e_st_member(type, ours ? ours : expr->name);
+    if (!expr->var && hint) {
+        cm1e_st_report(st, expr->place, "%s has no \"%s\": %s", type->name, expr->name, hint);
+        set_wrong(st, expr);
+        return;
+    }
     if (!expr->var) {
         unknown_member(st, expr, type);
         return;

@@ -16,7 +16,7 @@ struct yy_buffer_state;
 struct yy_buffer_state *cm1e_st_yy_scan_bytes(const char *bytes, int length, yyscan_t scanner);
 int cm1e_st_yyparse(parsing_t *parsing);
 
-st_t *cm1e_st_new(void)
+st_t *cm1e_st_new_bare(void)
 {
     st_t *st = calloc(1, sizeof *st);
     if (!st)
@@ -27,6 +27,14 @@ st_t *cm1e_st_new(void)
     st->globals = cm1e_st_map_new(st->arena);
     st->enumerators = cm1e_st_map_new(st->arena);
     cm1e_st_begin_types(st);
+    return st;
+}
+
+st_t *cm1e_st_new(void)
+{
+    st_t *st = cm1e_st_new_bare();
+    if (!st)
+        return NULL;
     for (const embedded_t *part = cm1e_st_interface_parts; part->begin; part++) {
         cm1e_st_add_text(st, part->name, part->begin, (size_t)(part->end - part->begin));
         st->sources[st->source_count - 1].external = true;

@@ -129,6 +129,9 @@ void cm1e_st_standard_names(void (*visit)(const char *name, void *context), void
 /* st_statement.c */
 void cm1e_st_statements(st_t *st, stmt_t *list);
 
+/** st_alias.c: our name of an input or member that TwinCAT calls `name`; NULL: there is none, `hint` may say what to do. */
+const char *cm1e_st_alias(const char *block, const char *name, const char **hint);
+
 /* st_address.c */
 void cm1e_st_check_address(st_t *st, const var_t *var);
 bool cm1e_st_can_be_kept(const type_t *type);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`cm1e run` as a user calls it, on the simulated segment: axes by name, located variables, RETAIN, and faults, after
+"""`cm1e run` as a user calls it, on the simulated segment: axes by name, located variables, RETAIN, a program with the names of TwinCAT, and faults, after
 which the axes come to rest.
 
 test_st_run.py BIN-DIRECTORY SOURCE-DIRECTORY
@@ -96,6 +96,39 @@ def check_located():
         says="P.x AT %QW2.7")
 
 
+TWINCAT = """PROGRAM MAIN
+VAR
+    X : AXIS_REF;
+    fbPower : MC_Power;
+    fbMove, fbNext : MC_MoveAbsolute;
+    {attribute 'hide'}
+    nErrorId : UDINT;
+    bDone : BOOL;
+END_VAR
+fbPower(Axis := X, Enable := TRUE, Enable_Positive := TRUE, Enable_Negative := TRUE);
+IF fbPower.Status THEN
+    fbMove(Axis := X, Execute := TRUE, Position := 10.0, Velocity := 50.0, BufferMode := MC_Aborting);
+    fbNext(Axis := X, Execute := fbMove.Active OR fbMove.Done, Position := 30.0, Velocity := 50.0,
+           BufferMode := MC_BufferMode.mcBlendingPrevious, Done => bDone, ErrorID => nErrorId);
+END_IF;
+END_PROGRAM
+"""
+
+
+def check_twincat():
+    program = build("twincat", TWINCAT)
+    run(program, "-s", "2", "--csv", "twincat.csv")
+    rows = trace("twincat.csv")
+    if rows[-1]["MAIN.bDone"] != "1" or float(rows[-1]["X set position [u]"]) != 30:
+        faults.append(f"the TwinCAT program ends at {rows[-1]['X set position [u]']}")
+    for text, says in (("Enable := TRUE, Override := 100.0", "VelFactor"), ("Enable := X.NcToPlc.ActPos > 3.0", "MC_ReadStatus")):
+        with open("refused.st", "w", encoding="ascii") as file:
+            file.write(TWINCAT.replace("Enable := TRUE, Enable_Positive", text + ", Enable_Positive"))
+        result = cm1e("st", "check", "refused.st")
+        if result.returncode != 1 or "refused.st:10:" not in result.stderr or says not in result.stderr:
+            faults.append(f"{text}: {result.stderr}")
+
+
 RETAIN = "VAR_GLOBAL RETAIN parts : DINT := 5; name : STRING[8] := 'ab'; END_VAR PROGRAM Main VAR plain : DINT; END_VAR\n" \
          "IF plain = 0 THEN parts := parts + 1; name := CONCAT(name, 'c'); END_IF plain := plain + 1; END_PROGRAM"
 
@@ -145,5 +178,6 @@ with tempfile.TemporaryDirectory() as folder:
     check_names()
     check_located()
     check_retain()
+    check_twincat()
 if faults:
     sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
