@@ -12,6 +12,7 @@
 #include "core/in_task.h"
 #include "core/output.h"
 #include "core/sized.h"
+#include "scheduler/clock_team.h"
 #include "scheduler/log.h"
 #include "scheduler/realtime.h"
 #include "scheduler/scheduler_window.h"
@@ -33,7 +34,7 @@ typedef struct member {
 struct cm1e_scheduler {
     member_t members[CM1E_MAX_BUSES];
     uint32_t member_count;  /**< at least 1; members[0] is the bus that the scheduler was made for */
-    uint32_t leader;        /**< the bus whose clocks the cycle follows */
+    clock_team_t clocks;    /**< of these buses, in their order */
     cm1e_clock_t *clock;
     cm1e_scheduler_config_t config;
     int64_t cycle_time_ns;
@@ -200,15 +201,10 @@ static void run_tasks(cm1e_scheduler_t *s)
     cm1e_scheduler_stop(s);
 }
 
-/** The plan follows the reference clock of one bus, and what was planned before moves with it. The clocks of the others
- *  follow that clock too, so what their cycles would be corrected by is left out. */
+/** The plan follows the reference clock of one bus, and what was planned before moves with it. */
 static void follow_clock(cm1e_scheduler_t *s)
 {
-    int64_t later_ns = 0;
-    for (uint32_t i = 0; i < s->member_count; i++) {
-        const int64_t own_ns = cm1e_bus_pace(s->members[i].bus);
-        later_ns = i == s->leader ? own_ns : later_ns;
-    }
+    const int64_t later_ns = cm1e_clock_team_pace(&s->clocks);
     s->start_ns += later_ns;
     s->sent_ns += later_ns;
 }
@@ -282,25 +278,12 @@ static void add_up_counters(cm1e_scheduler_t *s)
     }
 }
 
-/** Those of the bus that leads, with the losses of all. */
-static void look_at_clocks(const cm1e_scheduler_t *s, cm1e_bus_clocks_t *clocks)
-{
-    cm1e_bus_clocks_t other;
-    cm1e_bus_clocks(s->members[s->leader].bus, clocks);
-    for (uint32_t i = 0; i < s->member_count; i++) {
-        if (i == s->leader)
-            continue;
-        cm1e_bus_clocks(s->members[i].bus, &other);
-        clocks->sync_losses += other.sync_losses;
-    }
-}
-
 /** What others see of a cycle. */
 static void show(cm1e_scheduler_t *s)
 {
     const uint64_t overruns = atomic_load_explicit(&s->statistics.overruns, memory_order_relaxed);
     cm1e_bus_clocks_t clocks;
-    look_at_clocks(s, &clocks);
+    cm1e_clock_team_look(&s->clocks, &clocks);
     cm1e_statistics_note_clocks(&s->statistics, &clocks);
     add_up_counters(s);
     s->trace.timing.lost_frames = s->counters.lost_frames;
@@ -360,21 +343,14 @@ static cm1e_error_t take_real_time(cm1e_scheduler_t *s, realtime_t *realtime, cm
     return CM1E_OK;
 }
 
-/** A bus that led until now may be none of this scheduler. */
-static void lead_clocks(cm1e_scheduler_t *s)
-{
-    for (uint32_t i = 0; i < s->member_count; i++)
-        cm1e_bus_follow_clock(s->members[i].bus, i == s->leader ? NULL : s->members[s->leader].bus);
-}
-
 static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *diag)
 {
     realtime_t realtime = {0};
-    lead_clocks(s);
+    cm1e_clock_team_begin(&s->clocks);
     open_windows(s);
     cm1e_error_t error = take_real_time(s, &realtime, diag);
     if (error == CM1E_OK) {
-        s->start_ns = s->sent_ns = cm1e_bus_next_start(s->members[s->leader].bus, cm1e_clock_now(s->clock));
+        s->start_ns = s->sent_ns = cm1e_bus_next_start(clock_team_leader(&s->clocks), cm1e_clock_now(s->clock));
         cm1e_log_run(&s->log, true, 0);
         while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
             cycle(s);
@@ -524,6 +500,7 @@ static cm1e_error_t join(cm1e_scheduler_t *s, cm1e_bus_t *bus, cm1e_diag_t *diag
     if (error != CM1E_OK)
         return error;
     s->member_count++;
+    cm1e_clock_team_add(&s->clocks, bus);
     return make_axes(s, member, diag);
 }
 
@@ -563,14 +540,6 @@ cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, cm1e_bus_
     return CM1E_OK;
 }
 
-/** Of the members with clocks the one that leads. */
-static void find_leader(cm1e_scheduler_t *s)
-{
-    for (uint32_t i = 0; i < s->member_count; i++)
-        if (cm1e_bus_leads_clocks(s->members[i].bus, s->members[s->leader].bus))
-            s->leader = i;
-}
-
 /** Why a bus cannot be run beside the others; "": it can. */
 static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
 {
@@ -584,7 +553,7 @@ static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
                "or none has it";
     if (cm1e_bus_configuration(bus)->cycle_time_ns != s->cycle_time_ns)
         return "its cycle_time_us differs from that of the first bus";
-    if (!cm1e_bus_follow_one_clock(s->members[s->leader].bus, bus))
+    if (!cm1e_bus_follow_one_clock(clock_team_leader(&s->clocks), bus))
         return "its distributed clocks and those of another bus do not follow each other: start the buses in one thread, "
                "each while those before it are in operation";
     if (s->axis_count + cm1e_bus_configuration(bus)->axis_count > CM1E_MAX_AXES)
@@ -620,7 +589,6 @@ cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus
     const member_t before = {.first = scheduler->axis_count, .end = scheduler->member_count};
     cm1e_error_t error = join(scheduler, bus, diag);
     if (error == CM1E_OK) {
-        find_leader(scheduler);
         cm1e_trace_free(&scheduler->trace);
         error = make_trace(scheduler, diag);
     }
@@ -631,6 +599,7 @@ cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus
         scheduler->axes[scheduler->axis_count] = NULL;
     }
     scheduler->member_count = before.end;
+    cm1e_clock_team_cut(&scheduler->clocks, before.end);
     return error;
 }
 
