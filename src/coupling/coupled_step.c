@@ -457,7 +457,8 @@ static void begin_anew(cm1e_axis_t *axis)
     cm1e_axis_set_reached(axis, false);
 }
 
-void cm1e_coupling_go_on(cm1e_axis_t *axis)
+/* Goes on from the present set-point, without a step, after what is seen of a master has changed. */
+static void go_on_from_here(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     const from_t from = from_base(axis);
@@ -468,6 +469,14 @@ void cm1e_coupling_go_on(cm1e_axis_t *axis)
     begin_catch_up(axis, &from, &asked, c->now->to_position || was_in_step, true);
     cm1e_axis_set_synchronizing(axis, !c->now->in_step);
     cm1e_axis_set_reached(axis, false);
+}
+
+void cm1e_coupling_look_across(cm1e_axis_t *axis)
+{
+    if (axis->silence.frozen)
+        cm1e_coupling_fall_behind(axis);
+    else if (cm1e_coupling_settle(axis))
+        go_on_from_here(axis);
 }
 
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way)

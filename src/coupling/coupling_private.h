@@ -182,8 +182,8 @@ void cm1e_coupling_advance_masters(cm1e_axis_t *axis);
 void cm1e_coupling_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
 /** Lets the slaves that follow this axis begin anew after silence. */
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis);
-/** Takes notice of masters on another bus whose frames stop or come back. */
-void cm1e_coupling_look_across(cm1e_axis_t *axis);
+/** The slave is silent: whether a master on another bus goes on without it. */
+void cm1e_coupling_fall_behind(cm1e_axis_t *axis);
 /** From now on masters on another bus are seen as their frames come. true: one is seen in another way than before, or went on
  *  alone. */
 bool cm1e_coupling_settle(cm1e_axis_t *axis);
@@ -218,8 +218,8 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
 /** Puts the coupling `follow` in force. The difference to the state `from` becomes the catch-up. The caller changes the
  *  active command. */
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
-/** Goes on from the present set-point, without a step, after what is seen of a master has changed. */
-void cm1e_coupling_go_on(cm1e_axis_t *axis);
+/** Takes notice of masters on another bus whose frames stop or come back, and goes on without a step. */
+void cm1e_coupling_look_across(cm1e_axis_t *axis);
 /** Makes a superimposed distance (u) a part of the base motion. */
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way);
 /** Makes the set-point of the cycle in which a coupling began, without advancing its masters. */

@@ -107,13 +107,9 @@ static bool is_left_behind(const follow_t *follow)
     return false;
 }
 
-void cm1e_coupling_look_across(cm1e_axis_t *axis)
+void cm1e_coupling_fall_behind(cm1e_axis_t *axis)
 {
-    coupling_t *c = axis->coupling;
-    if (axis->silence.frozen)
-        c->left_behind |= is_left_behind(c->now);
-    else if (cm1e_coupling_settle(axis))
-        cm1e_coupling_go_on(axis);
+    axis->coupling->left_behind |= is_left_behind(axis->coupling->now);
 }
 
 bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis)
