@@ -50,6 +50,8 @@ static uint32_t write_entry(cm1e_sim_slave_t *slave, uint16_t index, uint8_t sub
     const uint32_t hidden = missing(slave, index, subindex);
     if (hidden)
         return hidden;
+    if (cm1e_sim_quirk_is_fixed(slave, index))
+        return SDO_ABORT_READ_ONLY;
     return slave->ops->sdo_write ? slave->ops->sdo_write(slave->app, index, subindex, slave->al_state, data, size)
                                  : (uint32_t)SDO_ABORT_NO_OBJECT;
 }

@@ -7,6 +7,7 @@
 #include "core/bytes.h"
 #include "description/sii.h"
 #include "description/sii_format.h"
+#include "device/device.h"
 #include "sim/esc.h"
 
 unsigned cm1e_sim_quirk_fmmus(const cm1e_sim_slave_t *slave)
@@ -25,6 +26,26 @@ static void set_slow_eeprom(cm1e_sim_slave_t *slave, long us) { slave->quirks.si
 static void set_abort_info(cm1e_sim_slave_t *slave, long n) { slave->quirks.info_fragments = (unsigned)n; }
 static void set_late_id(cm1e_sim_slave_t *slave, long on) { slave->quirks.late_id = on != 0; }
 static void set_loop(cm1e_sim_slave_t *slave, long on) { slave->quirks.loops = on != 0; }
+
+static void set_fixed_assignment(cm1e_sim_slave_t *slave, long number)
+{
+    (void)number;
+    slave->quirks.fixed_assignment = true;
+}
+
+static void set_fixed_mapping(cm1e_sim_slave_t *slave, long number)
+{
+    (void)number;
+    slave->quirks.fixed_mapping = true;
+}
+
+bool cm1e_sim_quirk_is_fixed(const cm1e_sim_slave_t *slave, uint16_t index)
+{
+    enum { FIRST_RXPDO = 0x1600, END_OF_PDOS = 0x1C00 };
+    if (index == OBJ_1C12_RXPDO_ASSIGN || index == OBJ_1C13_TXPDO_ASSIGN)
+        return slave->quirks.fixed_assignment;
+    return index >= FIRST_RXPDO && index < END_OF_PDOS && slave->quirks.fixed_mapping;
+}
 
 /** It lasts as long as the EEPROM. The controller sees it when it loads the EEPROM. */
 static void break_checksum(cm1e_sim_slave_t *slave, long number)
@@ -62,6 +83,8 @@ static const struct quirk {
     {"slow-eeprom", 1, 1000000, set_slow_eeprom},
     {"abort-info", 1, 1000, set_abort_info},
     {"late-id", 0, 1, set_late_id},
+    {"fixed-assignment", 0, 0, set_fixed_assignment},
+    {"fixed-mapping", 0, 0, set_fixed_mapping},
     {"loop", 0, 1, set_loop},
     {"branch", 1001, 3999, set_branch},
     {"wrong-checksum", 0, 0, break_checksum},

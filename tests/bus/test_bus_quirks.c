@@ -54,6 +54,46 @@ START_TEST(small_controllers)
 }
 END_TEST
 
+/** Two analog inputs, whose channels the bus file orders, or one of which it maps anew. */
+static void analog(bool maps)
+{
+    sim_config(1);
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "ai");
+    slave->address = 2;
+    slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_ANALOG, .inputs = 2};
+    if (maps)
+        slave->entries[slave->entry_count++] = (cm1e_pdo_entry_config_t){0x1A00, 0x6000, 0x11, 16};
+    else
+        slave->inputs_pdos[slave->inputs_pdo_count++] = 0x1A03;
+}
+
+/** Many devices let nobody write the entries of their PDOs, and some not even the list of those that are assigned. As
+ *  they are they run; what the bus file wants to write there is refused with the object and the reason of the slave. */
+START_TEST(fixed_pdos)
+{
+    static const char *const quirks[] = {"quirk 2 fixed-mapping", "quirk 2 fixed-assignment"};
+    analog(false);
+    cm1e_bus_t *ordered = open_bus();
+    simulate(ordered, quirks[0]); /* entries that nobody may write can be assigned */
+    expect_start(ordered);
+    cm1e_bus_close(ordered);
+    for (int fixed = 0; fixed < 2; fixed++) {
+        analog(!fixed);
+        cm1e_bus_t *refused = open_bus();
+        simulate(refused, quirks[fixed]);
+        expect_refusal(refused, CM1E_ERROR_SDO_ABORT, fixed ? "0x1C13:00: SDO abort 0x06010002"
+                                                            : "0x1A00:00: SDO abort 0x06010002");
+        analog(false);
+        config.slaves[0].inputs_pdo_count = 0; /* as it is: the default assignment of both channels */
+        cm1e_bus_t *bus = open_bus();
+        simulate(bus, quirks[fixed]);
+        expect_start(bus);
+        ck_assert_uint_eq(cm1e_bus_slave(bus, 2)->al_state, CM1E_AL_OP);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
 /** An EEPROM that takes 15 ms more for each of its reads delays the scan, and nothing else. */
 START_TEST(a_slow_eeprom)
 {
@@ -206,6 +246,7 @@ int main(void)
     TCase *tests = tcase_create("quirks");
     tcase_set_timeout(tests, 60);
     tcase_add_test(tests, small_controllers);
+    tcase_add_test(tests, fixed_pdos);
     tcase_add_test(tests, a_slow_eeprom);
     tcase_add_test(tests, a_wrong_checksum);
     tcase_add_test(tests, information_that_breaks_off);
