@@ -400,6 +400,41 @@ START_TEST(test_homing_stops_when_only_the_limit_switch_goes_away)
 }
 END_TEST
 
+/* An optional terminal that is not plugged in: the axis moves, a homing by its switch does not begin. Without power it
+ * stops only that homing, and no other axis fails. */
+START_TEST(test_homing_by_a_switch_of_an_optional_slave)
+{
+    describe_machine();
+    cm1e_slave_config_t *more = add_slave("more", CM1E_SIM_SLAVE_DIGITAL, 1, 0);
+    more->signals[more->signal_count++] = (cm1e_signal_config_t){.name = "home", .bits = 1};
+    snprintf(config.axes[MOTOR].wiring.inputs[0], CM1E_SIGNAL_LENGTH, "more.home");
+    more->address_kind = CM1E_ADDRESS_ALIAS;
+    more->address = 1001;
+    more->vendor = 0x12;
+    more->product = 0xD0001;
+    more->optional = true;
+    more->sim_absent = _i == 0;
+    open_segment();
+    take_references();
+    cycles(300);
+    enable_motor();
+    MC_StepAbsoluteSwitch_t fb = search();
+    fb.Execute = TRUE;
+    double before = 0.0;
+    for (int n = 0; n < 1000 && !fb.Error; n++) {
+        if (n == 100)
+            take_away(COUNTER + 1, 500);
+        MC_StepAbsoluteSwitch(&fb);
+        cycles(1);
+        ck_assert_double_le(most_step(&before), 0.101);
+    }
+    ck_assert_uint_eq(fb.ErrorID, id_of(CM1E_ERROR_AXIS_SIGNAL_AWAY));
+    ck_assert_msg(strstr(text_of(MOTOR), "more.home"), "%s", text_of(MOTOR));
+    ck_assert_int_eq(info_of(MOTOR).state, _i == 0 ? CM1E_AXIS_STANDSTILL : CM1E_AXIS_HOMING);
+    close_segment();
+}
+END_TEST
+
 /* ---- touch probes ------------------------------------------------------------------------------------------------ */
 
 static cm1e_command_id_t go(double velocity)
@@ -749,6 +784,7 @@ int main(void)
     tcase_add_test(tests, test_homing_does_not_begin_without_its_switch);
     tcase_add_test(tests, test_homing_stops_when_the_slave_of_its_switch_is_switched_off);
     tcase_add_test(tests, test_homing_stops_when_only_the_limit_switch_goes_away);
+    tcase_add_loop_test(tests, test_homing_by_a_switch_of_an_optional_slave, 0, 2);
     tcase_add_loop_test(tests, test_a_touch_probe_on_another_slave_captures_the_position_of_its_exchange, 0, 2);
     tcase_add_loop_test(tests, test_an_edge_while_the_slave_was_away_is_an_error, 0, 2);
     tcase_add_test(tests, test_a_cam_switch_writes_each_track_to_its_output);
