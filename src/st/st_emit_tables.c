@@ -62,7 +62,9 @@ static void row(listing_t *l, const char *name, const char *c_name, const type_t
 static void list_values(listing_t *l, const char *name, const char *c_name, const type_t *type)
 {
     arena_t *arena = l->st->arena;
-    if (l->count >= VARIABLES || strlen(name) > NAME_BYTES)
+    const bool handle = type->kind == T_STRUCT && type->external && type->members && !type->members->next &&
+        strcmp(type->members->name, "Handle") == 0; /* of an axis or a group: a number that says nothing */
+    if (l->count >= VARIABLES || strlen(name) > NAME_BYTES || handle)
         return;
     if (type->kind <= T_LREAL || type->kind == T_TIME || type->kind == T_ENUM || type->kind == T_STRING) {
         row(l, name, c_name, type, type->name);
