@@ -154,7 +154,8 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
         {"name: a}\n  - {alias: 5, hot_connect: t, vendor: 0x1, product: 0x1}\n  - {position: 2, hot_connect: t, "
          "vendor: 0x1, product: 0x1}\n  - {position: 2, hot_connect: t, vendor: 0x1, product: 0x1", "6:16",
          "which entry 3 of the list has already"},
-        {"esi: a.xml", "3:19", "unknown key 'esi'"},
+        {"esi: a.xml", "3:24", "this program cannot read ESI files: it has to be linked with cm1e::generate"},
+        {"ezi: a.xml", "3:19", "unknown key 'ezi'"},
         {"alias: 4", "3:26", "addressed twice"},
         {"name: a.b", "3:25", "expected a name without '.'"},
         {"name: 7", "3:25", "is '7'; expected a name"},
