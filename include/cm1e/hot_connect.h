@@ -30,6 +30,7 @@ typedef struct cm1e_stranger {
     uint16_t place;           /**< on the wire, 1 = first */
     uint16_t alias;
     uint16_t explicit_id;     /**< 0: none, or not asked for */
+    uint16_t reserved;        /**< 0 */
     uint32_t vendor_id, product_code, revision, serial_number; /**< by its SII; all 0: it cannot be read */
 } cm1e_stranger_t;
 
