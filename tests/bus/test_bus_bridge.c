@@ -124,7 +124,7 @@ static const struct {
     {"the same channel twice", {AN_EB01}, 2, {{1, 2, ""}, {101, 2, ""}}, WRONG,
      {"\"axis1\"", "\"axis2\"", "channel 2 of slave 1"}},
     {"a CM1-E where a bridge should be", {A_MOTOR}, 1, {{1, 1, ""}}, WRONG,
-     {"expected a Cool MUSCLE Bridge", "a CM1-E", "channel out"}},
+     {"expected a Cool MUSCLE Bridge", "a CM1-E", "remove the key channel"}},
     {"a bridge where a CM1-E should be", {AN_EB12}, 1, {{1, 0, ""}}, WRONG,
      {"expected a CM1-E", "slave 1, the bridge EB12", "channel, 1 ... 4"}},
     {"an axis with and one without channel", {AN_EB12}, 2, {{1, 1, ""}, {101, 0, ""}}, WRONG, {"\"axis2\"", "channel"}},

@@ -3,7 +3,29 @@
 #include "bus_support.h"
 #include "cm1e/io.h"
 
-static const char bus_path[] = CM1E_TEST_OUTPUT "/bus_esi.yaml", esi_path[] = CM1E_TEST_OUTPUT "/bus_esi.xml";
+#include <errno.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char bus_path[sizeof CM1E_TEST_OUTPUT + 40], esi_path[sizeof CM1E_TEST_OUTPUT + 40];
+
+/** This test runs several times at once, on other devices: each run has a folder of its own. */
+static void make_folder(void)
+{
+    char folder[sizeof CM1E_TEST_OUTPUT + 24];
+    snprintf(folder, sizeof folder, CM1E_TEST_OUTPUT "/bus_esi.%d", (int)getpid());
+    ck_assert(mkdir(folder, 0700) == 0 || errno == EEXIST);
+    snprintf(bus_path, sizeof bus_path, "%s/bus_esi.yaml", folder);
+    snprintf(esi_path, sizeof esi_path, "%s/bus_esi.xml", folder);
+}
+
+static void remove_folder(void)
+{
+    remove(bus_path);
+    remove(esi_path);
+    *strrchr(bus_path, '/') = '\0';
+    remove(bus_path);
+}
 
 /* Two channels, each with a PDO for state and value and one for the value alone, as the simulated analog device has.
  * The second device is another one; of the first there are two revisions. */
@@ -263,6 +285,7 @@ int main(void)
 {
     Suite *suite = suite_create("bus esi");
     TCase *tests = tcase_create("esi");
+    tcase_add_unchecked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, test_what_is_taken);
     tcase_add_test(tests, test_the_bus_file_overrules);
     tcase_add_test(tests, test_a_slave_without_a_mailbox_is_named_by_its_bits);

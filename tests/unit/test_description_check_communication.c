@@ -202,7 +202,7 @@ static const broken_t breaks[] = {
     BREAKS(FMMU_MISSING, forget_outputs, "there are outputs, but no FMMU for them"),
     BREAKS(FMMU_MISSING, forget_inputs, "there are inputs, but no FMMU for them"),
     BREAKS(FMMU_MAILBOX_MISSING, forget_state,
-           "no FMMU shows the state of the mailbox in the process data: a master has to ask for it"),
+           "no FMMU shows the state of the mailbox in the process data: a master has to poll it"),
     BREAKS(FMMUS_TOO_MANY, have_two_fmmus, "there are 3 FMMUs; the controller has 2"),
     BREAKS(MAILBOX_SIZE, no_mailbox_bytes, "the mailbox in sync manager 0 has 0 bytes; an SDO needs at least 16"),
     BREAKS(MAILBOX_SIZE, mailbox_too_short_for_sdo,
