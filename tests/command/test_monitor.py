@@ -169,7 +169,7 @@ def check_jog():
     """cm1e jog and enable, attached."""
     with running("maintain") as (client, pid):
         with Terminal("jog", "--attach", str(pid), "Y", "-v", "1") as terminal:
-            terminal.shows("stands")
+            terminal.shows("at rest")
             terminal.hold("Right", 1.0)
             there = axis(client, Y)["position"]
             expect(there > 0.3, "a held key does not move the motor", terminal.screen())
@@ -185,7 +185,7 @@ def check_jog():
             terminal.shows("commanded by the program")
             terminal.shows("status 1")
         with Terminal("jog", "--attach", str(pid), "Y") as terminal:
-            terminal.shows("stands")
+            terminal.shows("at rest")
             terminal.hold("Right", 0.6)
             terminal.press("C-c")
             terminal.shows("status 0")

@@ -135,7 +135,7 @@ def check_place(segment, master, place):
     wire.check(expected in master.events()[-1], f"cable {place}: the event log has {master.events()[-1:]}")
     if place == 2:
         told = master.status()
-        wire.check("The ring is broken between slave 1 (CM1-E) and slave 2 (CM1-E)" in told, f"status says {told}")
+        wire.check('The ring is broken between slave 1 ("X", CM1-E) and slave 2 ("Y", CM1-E)' in told, f"status says {told}")
     before = master.counted()
     set_cable(segment, place, True)
     wire.wait_for(lambda: not master.ring()["broken"], 5, f"cable {place}: mended, but {master.ring()}")

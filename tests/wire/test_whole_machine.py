@@ -178,18 +178,19 @@ def play(master):
         raise Failed(f"AL states {master.al_states()}")
     for pattern in PATTERNS:
         for n, count in enumerate(CHANNELS):
-            terminal = f"Digital terminal {count}+0 {2 + 2 * n}"
+            terminal = NAMES["out"].format(n=n, count=count, position=2 + 2 * n)
             for channel in range(count):
                 master.write(terminal, f"Channel {channel + 1}.Output", pattern >> channel & 1)
-        master.write("Analog terminal 2+0 10", "AO Output Channel 1.Value", pattern - 1234)
+        master.write(NAMES["ao"], "AO Output Channel 1.Value", pattern - 1234)
         for _ in range(20):
             master.cycle()
         for n, count in enumerate(CHANNELS):
             for channel in range(count):
-                got = master.read(f"Digital terminal 0+{count} {3 + 2 * n}", f"Channel {channel + 1}.Input")
+                terminal = NAMES["in"].format(n=n, count=count, position=3 + 2 * n)
+                got = master.read(terminal, f"Channel {channel + 1}.Input")
                 if got != pattern >> channel & 1:
                     raise Failed(f"input {channel + 1} of in{n} is {got} with {pattern:#x}")
-        if master.read("Analog terminal 0+2 11", "AI Standard Channel 1.Value", signed=True) != pattern - 1234:
+        if master.read(NAMES["ai"], "AI Standard Channel 1.Value", signed=True) != pattern - 1234:
             raise Failed("the analog value is another")
     print("the ENI of our scan, played by itself:", sum(CHANNELS), "bits and a word came back")
 """
@@ -207,14 +208,20 @@ def play(master):
 """
 
 
-def check_eni(segment, cm1e, play, *bus_file_options):
+# Of the slaves in an ENI: as the slaves say, or as the bus file says.
+SCANNED = {"out": "Digital terminal {count}+0 {position}", "in": "Digital terminal 0+{count} {position}",
+           "ao": "Analog terminal 2+0 10", "ai": "Analog terminal 0+2 11"}
+NAMED = {"out": "out{n}", "in": "in{n}", "ao": "set", "ai": "level"}
+
+
+def check_eni(segment, cm1e, play, names, *bus_file_options):
     path = os.path.join(segment.folder, "scan.xml")
     made = segment.run([cm1e, "generate", "eni", "-i", wire.MASTER_INTERFACE, *bus_file_options, "-o", path])
     wire.check(made.returncode == 0, f"generate eni: {made}")
     checked = segment.run([cm1e, "check", path])
     wire.check(checked.returncode == 0, f"check of the ENI: {checked.stdout}{checked.stderr}")
     played = segment.run([sys.executable, PLAYER, path, wire.MASTER_INTERFACE,
-                          f"PATTERNS, CHANNELS = {PATTERNS}, {CHANNELS}\n{play}"])
+                          f"PATTERNS, CHANNELS, NAMES = {PATTERNS}, {CHANNELS}, {names}\n{play}"])
     print(played.stdout + played.stderr, end="")
     wire.check(played.returncode == 0, f"the player of the ENI ended with {played.returncode}")
 
@@ -232,10 +239,10 @@ def main(cm1e, python):
             result = segment.run([python, os.path.abspath(__file__), "--master"])
             print(result.stdout + result.stderr, end="")
             wire.check(result.returncode == 0, f"pysoem ended with {result.returncode}")
-            check_eni(segment, cm1e, PLAY)
+            check_eni(segment, cm1e, PLAY, SCANNED)
             for position in (MOTOR, ANALOG_IN):
                 segment.console(f"clock {position} drift {4 * position}")
-            check_eni(segment, cm1e, PLAY_CLOCKS, "-b", fast)
+            check_eni(segment, cm1e, PLAY_CLOCKS, NAMED, "-b", fast)
 
 
 if __name__ == "__main__":
