@@ -29,16 +29,19 @@ cm1e_error_t cm1e_drive_wire(cm1e_drive_t *drive, cm1e_diag_t *diag);
 /** Samples the inputs. @rt cycle */
 void cm1e_drive_wiring_read(cm1e_drive_t *drive);
 
+/** The place of signal `number` among `count`, which have the numbers from CM1E_WIRED_FIRST on; -1: it is none of them. */
+static inline int cm1e_drive_wired_place(int number, int count)
+{
+    return number >= CM1E_WIRED_FIRST && number - CM1E_WIRED_FIRST < count ? number - CM1E_WIRED_FIRST : -1;
+}
 /** Place in the wiring of the input or output `number`; -1: it is none of these. @rt cycle */
 static inline int cm1e_drive_wired_input(const cm1e_drive_t *drive, int number)
 {
-    const int n = number - CM1E_WIRED_FIRST;
-    return drive->wiring && n >= 0 && n < drive->wiring->input_count ? n : -1;
+    return drive->wiring ? cm1e_drive_wired_place(number, drive->wiring->input_count) : -1;
 }
 static inline int cm1e_drive_wired_output(const cm1e_drive_t *drive, int number)
 {
-    const int n = number - CM1E_WIRED_FIRST;
-    return drive->wiring && n >= 0 && n < drive->wiring->output_count ? n : -1;
+    return drive->wiring ? cm1e_drive_wired_place(number, drive->wiring->output_count) : -1;
 }
 
 /** Writes output number `n` of the wiring; it goes off at `until_ns`, unless it is written again. INT64_MAX: it stays.

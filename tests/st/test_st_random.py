@@ -344,7 +344,7 @@ def check(binaries, folder, seed, count):
 
 def main():
     full = os.environ.get("CM1E_TEST_EFFORT") == "full"
-    count = int(sys.argv[2]) if len(sys.argv) > 2 else 100000 if full else 800
+    count = int(sys.argv[2]) if len(sys.argv) > 2 else 4000 if full else 800
     seed = int(sys.argv[3]) if len(sys.argv) > 3 else random.randrange(10 ** 9)
     with tempfile.TemporaryDirectory() as folder:
         for done in range(0, count, PER_PROGRAM):

@@ -38,6 +38,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
 # (statements, {variable: value after one call})
 CASES = [
     ("IF TRUE THEN i := 1; ELSE i := 2; END_IF", {"i": 1}),
+    ("b := 1.0 / (LREAL#0.0 - i) > 0.0;", {"b": True}),  # GCC 12 alone makes -0.0 of it
     ("IF i = 1 THEN j := 1; ELSIF i = 0 THEN j := 2; ELSIF TRUE THEN j := 3; ELSE j := 4; END_IF;", {"j": 2}),
     ("i := 4; CASE i OF 1, 2: j := 1; 3..5, 9: j := 2; n := 7; ELSE j := 3; END_CASE", {"j": 2, "n": 7}),
     ("i := 6; CASE i OF 1, 2: j := 1; 3..5: j := 2; ELSE j := 3; n := 1; END_CASE", {"j": 3, "n": 1}),
