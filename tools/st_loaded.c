@@ -19,8 +19,8 @@ cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
     loaded->library = dlopen(full ? full : path, RTLD_NOW | RTLD_LOCAL);
     free(full);
     if (!loaded->library)
-        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s cannot be loaded: %s. Programs are made by `cm1e st build`.", path,
-                             dlerror());
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s cannot be loaded: %s. Programs are made by `cm1e st build`.",
+                             path, dlerror());
     loaded->program = dlsym(loaded->library, "cm1e_st_program");
     if (!loaded->program)
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s is no program that `cm1e st build` made", path);
