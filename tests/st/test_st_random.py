@@ -77,12 +77,12 @@ def divided(a, b):
 
 
 def real_divided(a, b):
-    if math.isnan(b):
-        return b
+    if math.isnan(a) or math.isnan(b):
+        return math.nan
     if b != 0:
         return a / b if math.isfinite(b) else (math.nan if math.isinf(a) else math.copysign(0.0, a) *
                                                math.copysign(1, b))
-    if a == 0 or math.isnan(a):
+    if a == 0:
         return math.nan
     return math.copysign(math.inf, a) * math.copysign(1, b)
 
