@@ -150,6 +150,16 @@ static void emit_case(st_t *st, const stmt_t *stmt)
 
 /* ---- loops ------------------------------------------------------------------------------------------------------- */
 
+/** The body of a loop: each pass counts for the limit of passes. */
+static void emit_passes(st_t *st, const stmt_t *stmt)
+{
+    st->indent++;
+    cm1e_st_place(st, stmt->place);
+    cm1e_st_line(st, "st_loop(ST_HERE);\n");
+    cm1e_st_emit_statements(st, stmt->body);
+    st->indent--;
+}
+
 static void emit_for(st_t *st, const stmt_t *stmt)
 {
     const unsigned n = ++st->temporaries;
@@ -165,11 +175,7 @@ static void emit_for(st_t *st, const stmt_t *stmt)
     cm1e_st_put(st, ", ST_HERE); ");
     cm1e_st_emit_expression(st, stmt->target);
     cm1e_st_put(st, " = (%s)for%u.now, st_goes(&for%u); st_next(&for%u)) {\n", stmt->target->type->name, n, n, n);
-    st->indent++;
-    cm1e_st_place(st, stmt->place);
-    cm1e_st_line(st, "st_loop(ST_HERE);\n");
-    cm1e_st_emit_statements(st, stmt->body);
-    st->indent--;
+    emit_passes(st, stmt);
     cm1e_st_line(st, "}\n");
 }
 
@@ -178,22 +184,14 @@ static void emit_while(st_t *st, const stmt_t *stmt)
     cm1e_st_line(st, "while (");
     cm1e_st_emit_expression(st, stmt->value);
     cm1e_st_put(st, ") {\n");
-    st->indent++;
-    cm1e_st_place(st, stmt->place);
-    cm1e_st_line(st, "st_loop(ST_HERE);\n");
-    cm1e_st_emit_statements(st, stmt->body);
-    st->indent--;
+    emit_passes(st, stmt);
     cm1e_st_line(st, "}\n");
 }
 
 static void emit_repeat(st_t *st, const stmt_t *stmt)
 {
     cm1e_st_line(st, "do {\n");
-    st->indent++;
-    cm1e_st_place(st, stmt->place);
-    cm1e_st_line(st, "st_loop(ST_HERE);\n");
-    cm1e_st_emit_statements(st, stmt->body);
-    st->indent--;
+    emit_passes(st, stmt);
     cm1e_st_place(st, stmt->value->place);
     cm1e_st_line(st, "} while (!(");
     cm1e_st_emit_expression(st, stmt->value);
