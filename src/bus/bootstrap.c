@@ -9,6 +9,7 @@
 
 enum { PROTOCOL_FOE = 0x08 };
 enum { CONTROL_MAILBOX_OUT = 0x26, CONTROL_MAILBOX_IN = 0x22, SM_ENABLED = 1, EEPROM_OF_SLAVE = 1, MAILBOX_MIN = 32 };
+enum { REGISTER_TRIES = 10 };
 #define POLL_NS INT64_C(2000000)
 #define STATE_NS INT64_C(10000000000)
 #define LEAVE_BOOTSTRAP_NS INT64_C(60000000000)
@@ -17,16 +18,26 @@ enum { CONTROL_MAILBOX_OUT = 0x26, CONTROL_MAILBOX_IN = 0x22, SM_ENABLED = 1, EE
 
 static int64_t now(const cm1e_bootstrap_t *bootstrap) { return cm1e_clock_now(bootstrap->bus->clock); }
 
+/** False: the slave has not answered any of several frames. To ask twice for the same does no harm here. */
+static bool transfer(const cm1e_bootstrap_t *bootstrap, cm1e_command_t command, uint16_t offset, void *data,
+                     uint16_t length)
+{
+    for (int tries = 0; tries < REGISTER_TRIES; tries++) {
+        if (cm1e_soem_transfer(bootstrap->bus->soem, command, bootstrap->mailbox.station, offset, data, length) == 1)
+            return true;
+        cm1e_clock_sleep_until(bootstrap->bus->clock, now(bootstrap) + POLL_NS);
+    }
+    return false;
+}
+
 static bool read_register(const cm1e_bootstrap_t *bootstrap, uint16_t offset, void *data, uint16_t length)
 {
-    return cm1e_soem_transfer(bootstrap->bus->soem, COMMAND_FPRD, bootstrap->mailbox.station, offset, data,
-                              length) == 1;
+    return transfer(bootstrap, COMMAND_FPRD, offset, data, length);
 }
 
 static bool write_register(const cm1e_bootstrap_t *bootstrap, uint16_t offset, void *data, uint16_t length)
 {
-    return cm1e_soem_transfer(bootstrap->bus->soem, COMMAND_FPWR, bootstrap->mailbox.station, offset, data,
-                              length) == 1;
+    return transfer(bootstrap, COMMAND_FPWR, offset, data, length);
 }
 
 static cm1e_error_t lost(const cm1e_bootstrap_t *bootstrap)

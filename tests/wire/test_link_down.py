@@ -42,7 +42,7 @@ def set_link(segment, state):
 
 
 def lose_interface(segment, cm1e):
-    """What the master said; None: it ended before the interface was down."""
+    """What the master said; None: it ended, or stopped the motor, before the interface was down."""
     command = [cm1e, "move", "-b", segment.bus_file(), "X", "--speed", str(SPEED), "--for", "60"]
     master = subprocess.Popen(segment.command(command), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     try:
@@ -58,6 +58,9 @@ def lose_interface(segment, cm1e):
     finally:
         master.kill()
     wire.check(master.returncode == 1, f"the master ended with {master.returncode}: {told}")
+    if any(words in told for words in PAUSED) and "did not take" not in told:
+        set_link(segment, "up")
+        return None
     wire.wait_for(lambda: not enabled(segment), 1, "the drive is still under torque")
     time.sleep(0.3)
     stands = position(segment)
