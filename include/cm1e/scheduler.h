@@ -137,8 +137,8 @@ CM1E_API void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text)
 /** Does the work of cm1e_scheduler_statistics(), for a program with this size of the statistics. @rt any */
 CM1E_API void cm1e_scheduler_statistics_sized(const cm1e_scheduler_t *scheduler,
                                               cm1e_scheduler_statistics_t *statistics, size_t size);
-/** Copies the statistics, before, during or after the run, from any thread. Each number is consistent; during the run
- *  two numbers may be of neighbouring cycles. @rt any */
+/** Copies the statistics, before, during or after the run, from any thread. Each number is consistent, and so are the
+ *  numbers of a distribution among each other; others may be of neighbouring cycles during the run. @rt any */
 static inline void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler,
                                              cm1e_scheduler_statistics_t *statistics)
 {

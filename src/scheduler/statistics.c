@@ -5,6 +5,9 @@
 
 #define READ(number) atomic_load_explicit(&(number), memory_order_relaxed)
 #define WRITE(number, value) atomic_store_explicit(&(number), (value), memory_order_relaxed)
+/* Of a distribution: what is written after its sequence, and read before the sequence is read again. */
+#define READ_BEFORE(number) atomic_load_explicit(&(number), memory_order_acquire)
+#define WRITE_AFTER(number, value) atomic_store_explicit(&(number), (value), memory_order_release)
 
 /** Bucket n holds times from 2^(n-1) us to below 2^n us, the first all below 1 us, the last all that are longer. */
 static unsigned bucket_of(int64_t time_ns)
@@ -15,17 +18,26 @@ static unsigned bucket_of(int64_t time_ns)
     return bucket;
 }
 
+static void add_to(distribution_copy_t *copy, int64_t time_ns)
+{
+    const uint64_t count = READ(copy->count);
+    _Atomic uint64_t *bucket = &copy->histogram[bucket_of(time_ns)];
+    if (count == 0 || time_ns < READ(copy->minimum_ns))
+        WRITE_AFTER(copy->minimum_ns, time_ns);
+    if (count == 0 || time_ns > READ(copy->maximum_ns))
+        WRITE_AFTER(copy->maximum_ns, time_ns);
+    WRITE_AFTER(copy->sum_ns, READ(copy->sum_ns) + time_ns);
+    WRITE_AFTER(*bucket, READ(*bucket) + 1);
+    WRITE_AFTER(copy->count, count + 1);
+}
+
 void cm1e_distribution_add(distribution_t *distribution, int64_t time_ns)
 {
-    const uint64_t count = READ(distribution->count);
-    _Atomic uint64_t *bucket = &distribution->histogram[bucket_of(time_ns)];
-    if (count == 0 || time_ns < READ(distribution->minimum_ns))
-        WRITE(distribution->minimum_ns, time_ns);
-    if (count == 0 || time_ns > READ(distribution->maximum_ns))
-        WRITE(distribution->maximum_ns, time_ns);
-    WRITE(distribution->sum_ns, READ(distribution->sum_ns) + time_ns);
-    WRITE(*bucket, READ(*bucket) + 1);
-    WRITE(distribution->count, count + 1);
+    const uint64_t sequence = READ(distribution->sequence);
+    for (unsigned i = 0; i < 2; i++) {
+        WRITE_AFTER(distribution->sequence, sequence + 1 + i); /* readers take the other copy */
+        add_to(&distribution->copies[i], time_ns);
+    }
 }
 
 void cm1e_statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters)
@@ -74,22 +86,32 @@ void cm1e_statistics_publish_realtime(statistics_t *statistics, bool realtime, c
     atomic_store_explicit(&statistics->ready, true, memory_order_release);
 }
 
-static void read_distribution(const distribution_t *distribution, cm1e_distribution_t *copy)
+/** False: a time was added meanwhile. */
+static bool read_between(const distribution_t *distribution, cm1e_distribution_t *copy)
 {
-    copy->minimum_ns = READ(distribution->minimum_ns);
-    copy->maximum_ns = READ(distribution->maximum_ns);
-    copy->sum_ns = READ(distribution->sum_ns);
-    copy->count = READ(distribution->count);
+    const uint64_t sequence = READ_BEFORE(distribution->sequence);
+    const distribution_copy_t *whole = &distribution->copies[sequence & 1];
+    copy->count = READ_BEFORE(whole->count);
+    copy->minimum_ns = READ_BEFORE(whole->minimum_ns);
+    copy->maximum_ns = READ_BEFORE(whole->maximum_ns);
+    copy->sum_ns = READ_BEFORE(whole->sum_ns);
     for (unsigned i = 0; i < CM1E_HISTOGRAM_BUCKETS; i++)
-        copy->histogram[i] = READ(distribution->histogram[i]);
+        copy->histogram[i] = READ_BEFORE(whole->histogram[i]);
+    return READ(distribution->sequence) == sequence;
+}
+
+void cm1e_distribution_read(const distribution_t *distribution, cm1e_distribution_t *copy)
+{
+    while (!read_between(distribution, copy))
+        ;
 }
 
 void cm1e_statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy)
 {
     *copy = (cm1e_scheduler_statistics_t){0};
-    read_distribution(&statistics->cycle_time, &copy->cycle_time);
-    read_distribution(&statistics->wake_up_latency, &copy->wake_up_latency);
-    read_distribution(&statistics->execution_time, &copy->execution_time);
+    cm1e_distribution_read(&statistics->cycle_time, &copy->cycle_time);
+    cm1e_distribution_read(&statistics->wake_up_latency, &copy->wake_up_latency);
+    cm1e_distribution_read(&statistics->execution_time, &copy->execution_time);
     copy->cycles = READ(statistics->cycles);
     copy->overruns = READ(statistics->overruns);
     copy->bus = (cm1e_bus_counters_t){

@@ -1,7 +1,7 @@
 /**
  * @file statistics.h
- * Numbers that the cycle writes and any thread may read: relaxed atomics with one writer. Each number is consistent;
- * two numbers may be of neighbouring cycles.
+ * Numbers that the cycle writes and any thread may read: atomics with one writer. Each number is consistent, and so are
+ * the numbers of a distribution among each other; others may be of neighbouring cycles.
  */
 #ifndef CM1E_SCHEDULER_STATISTICS_H
 #define CM1E_SCHEDULER_STATISTICS_H
@@ -10,10 +10,17 @@
 
 #include "cm1e/scheduler.h"
 
-typedef struct distribution {
+typedef struct distribution_copy {
     _Atomic int64_t minimum_ns, maximum_ns, sum_ns;
     _Atomic uint64_t count;
     _Atomic uint64_t histogram[CM1E_HISTOGRAM_BUCKETS];
+} distribution_copy_t;
+
+/** Two copies, written one after the other: a reader takes the one that is not being written, so a cycle that stands
+ *  still in the middle of its writing holds nobody up. */
+typedef struct distribution {
+    _Atomic uint64_t sequence; /**< even: the first copy is whole; odd: the second */
+    distribution_copy_t copies[2];
 } distribution_t;
 
 typedef struct statistics {
@@ -32,6 +39,8 @@ typedef struct statistics {
 
 /** @rt cycle */
 void cm1e_distribution_add(distribution_t *distribution, int64_t time_ns);
+/** Copies numbers of one moment. @rt any */
+void cm1e_distribution_read(const distribution_t *distribution, cm1e_distribution_t *copy);
 /** @rt cycle */
 void cm1e_statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters);
 /** Without distributed clocks nothing is stored. @rt cycle */
