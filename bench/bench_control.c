@@ -1,8 +1,13 @@
 /**
  * What others cost who are attached to a running program: one run at 250 us on the simulated segment, four axes turning,
  * in turns alone and with three readers of objects, a screen that asks for axes, slaves and statistics, and a recorder
- * of every cycle of 64 signals, half of them variables of the program, each a process of its own. Real time: the figures are those of this machine at this time.
+ * of every cycle of 64 signals, half of them variables of the program, each a process of its own. Real time: the
+ * figures are those of this machine at this time. Overruns are rare and come by chance, so their difference is told with
+ * its standard error.
+ *
+ *     bench_control [TURNS]      of 3 s each, alone and attached; default 10
  */
+#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -20,7 +25,7 @@
 
 enum { AXES = 4, READERS = 3, SCREEN = READERS, RECORDER, CLIENTS, SCREEN_US = 50000, RECORDER_US = 20000 };
 enum { VARIABLES = 32 /* with those of the axes and of the timing 64 signals */ };
-enum { TURNS = 10, TURN_S = 3, LATE_BUCKET = 8 /* from 128 us on */ };
+enum { TURNS = 10, TURNS_MAX = 1000, TURN_S = 3, LATE_BUCKET = 8 /* from 128 us on */ };
 
 /** Shared with the clients. */
 typedef struct shared {
@@ -197,16 +202,33 @@ static void add(side_t *side, const cm1e_scheduler_statistics_t *after, const cm
         side->late += after->wake_up_latency.histogram[i] - before->wake_up_latency.histogram[i];
 }
 
-static void print(const char *name, const side_t *side)
+static void print(const char *name, const side_t *side, int turns)
 {
     printf("%-10s %10llu %10llu %14.1f %18llu %12llu %14.0f\n", name, (unsigned long long)side->cycles,
            (unsigned long long)side->overruns, 1e6 * (double)side->overruns / (double)side->cycles,
            (unsigned long long)side->late, (unsigned long long)side->lost,
-           (double)side->requests / (double)(TURNS * TURN_S));
+           (double)side->requests / (double)(turns * TURN_S));
 }
 
-int main(void)
+/** The variance of a sum of turns is that of the turns, which the run itself shows: overruns come in bursts. */
+static void print_difference(const double *differences, int turns)
 {
+    double sum = 0, squares = 0;
+    for (int i = 0; i < turns; i++)
+        sum += differences[i];
+    for (int i = 0; i < turns; i++)
+        squares += (differences[i] - sum / turns) * (differences[i] - sum / turns);
+    const double error = sqrt(squares * turns / (turns - 1));
+    printf("attached - alone: %+.0f overruns, standard error %.0f: %s\n", sum, error,
+           sum <= 2 * error ? "no more than chance makes" : "more than chance makes");
+}
+
+int main(int count, char *words[])
+{
+    const int turns = count > 1 ? atoi(words[1]) : TURNS;
+    static double differences[TURNS_MAX];
+    if (turns < 2 || turns > TURNS_MAX)
+        fail("bench_control [TURNS]: 2 to 1000 turns");
     shared_t *shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     const pid_t self = getpid();
     pthread_t thread;
@@ -221,7 +243,7 @@ int main(void)
     if (pthread_create(&thread, NULL, run, NULL) != 0)
         fail("no thread");
     sleep(1);
-    for (int turn = 0; turn < 2 * TURNS; turn++) {
+    for (int turn = 0; turn < 2 * turns; turn++) {
         const int side = turn % 2;
         atomic_store(&shared->go, side == 1);
         usleep(100000); /* the others begin or end */
@@ -234,6 +256,7 @@ int main(void)
         for (int i = 0; i < CLIENTS; i++)
             requests += atomic_load(&shared->requests[i]);
         add(&sides[side], &after, &before);
+        differences[turn / 2] += (side == 1 ? 1.0 : -1.0) * (double)(after.overruns - before.overruns);
         sides[side].requests += requests;
     }
     atomic_store(&shared->end, true);
@@ -244,10 +267,11 @@ int main(void)
     printf("%d axes at 250 us, %s\n", AXES, after.realtime ? "real time" : "not real time");
     printf("%-10s %10s %10s %14s %18s %12s %14s\n", "", "cycles", "overruns", "per million", "later than 128 us",
            "lost frames", "requests/s");
-    print("alone", &sides[0]);
-    print("attached", &sides[1]);
-    printf("recorded: %u signals, %u samples, losses in %u replies\n", atomic_load(&shared->columns), atomic_load(&shared->samples),
-           atomic_load(&shared->gaps));
+    print("alone", &sides[0], turns);
+    print("attached", &sides[1], turns);
+    print_difference(differences, turns);
+    printf("recorded: %u signals, %u samples, losses in %u replies\n", atomic_load(&shared->columns),
+           atomic_load(&shared->samples), atomic_load(&shared->gaps));
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(bus);
     return 0;
