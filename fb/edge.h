@@ -8,7 +8,7 @@
 #ifndef CM1E_FB_EDGE_H
 #define CM1E_FB_EDGE_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "cm1e/plcopen.h"
 
 /** Outputs of a block. While Execute is TRUE, exactly one of the last four is TRUE. */

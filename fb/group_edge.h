@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "edge.h"
-#include "group/group.h"
+#include "group/group_api.h"
 
 /** The step of this call. `*group` is valid unless the step is FB_STEP_NONE. */
 fb_step_t cm1e_fb_group_execute(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,

@@ -6,7 +6,7 @@
 
 #include "command.h"
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sii_device.h"
 
 enum { KEY_BACKUP = 0x600 };

@@ -10,7 +10,7 @@
 #include "command.h"
 #include "device/bridge_status.h"
 #include "device/devices.h"
-#include "device/cml.h"
+#include "device/cml_command.h"
 
 enum { KEY_SLAVE = 0x400, KEY_CHANNEL, KEY_TIMEOUT, KEY_ALLOW, KEY_STAY, MAX_STRINGS = 64 };
 

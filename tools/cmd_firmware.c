@@ -12,7 +12,7 @@
 #include "core/bytes.h"
 #include "core/clock.h"
 #include "core/text.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "device/devices.h"
 #include "files.h"
 #include "sii_device.h"

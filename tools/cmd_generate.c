@@ -7,7 +7,7 @@
 #include "command.h"
 #include "core/bytes.h"
 #include "core/near.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "device/devices.h"
 #include "files.h"
 

@@ -9,7 +9,7 @@
 #include "attach.h"
 #include "cm1e/sii.h"
 #include "command.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "files.h"
 #include "sii_device.h"
 #include "sii_text.h"

@@ -9,7 +9,7 @@
 #include "attach.h"
 #include "axis_run.h"
 #include "cm1e/plot.h"
-#include "plot/plot.h"
+#include "plot/plot_files.h"
 #include "recording.h"
 #include "trace_server.h"
 

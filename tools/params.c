@@ -8,8 +8,8 @@
 
 #include "core/bytes.h"
 #include "core/near.h"
-#include "device/bridge.h"
-#include "device/cml.h"
+#include "device/bridge_facts.h"
+#include "device/cml_command.h"
 
 static bool is_parameter(const cm1e_entry_t *entry, unsigned channel)
 {

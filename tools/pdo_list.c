@@ -7,7 +7,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/io.h"
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sii_device.h"
 
 enum { ASSIGNED_MAX = 64, ENTRIES_MAX = 254 };

@@ -9,7 +9,7 @@
 #include <jansson.h>
 
 #include "cm1e/control.h"
-#include "scheduler/trace.h"
+#include "scheduler/trace_recorder.h"
 
 typedef struct recording {
     trace_t trace;

@@ -5,7 +5,7 @@
 
 #include "cia402/cia402.h"
 #include "core/bytes.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "device/bridge_status.h"
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */

@@ -16,7 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "plot/plot.h"
+#include "plot/plot_files.h"
 
 enum { TOKEN_BYTES = 16, MESSAGES = 32, VIEWERS = 8, CONNECTIONS = 2 * VIEWERS, STUCK_S = 30, REQUEST_BYTES = 32768,
        BLOCK_BYTES = 65536, SHOW_NS = 100000000, END_MS = 1000 };

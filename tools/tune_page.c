@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "plot/plot.h"
+#include "plot/plot_files.h"
 
 /** The lag has a unit, and so a chart, of its own. */
 #define LAG_UNIT "0.001 u"

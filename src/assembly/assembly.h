@@ -5,7 +5,7 @@
 #ifndef CM1E_ASSEMBLY_ASSEMBLY_H
 #define CM1E_ASSEMBLY_ASSEMBLY_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** Makes the axis of drive `index`, with all that it can do, and registers its handle. cm1e_axis_destroy() ends it.
  *  @rt init */

@@ -1,5 +1,5 @@
 /* The creation of an axis, and its cycle: inputs, then (after the programs) outputs. */
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 #include <math.h>
 #include <stdlib.h>

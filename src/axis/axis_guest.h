@@ -7,7 +7,7 @@
 #ifndef CM1E_AXIS_AXIS_GUEST_H
 #define CM1E_AXIS_AXIS_GUEST_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** Why a guest may not act on an axis. */
 typedef enum cm1e_guest_refusal {

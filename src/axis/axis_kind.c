@@ -40,4 +40,4 @@ const command_kind_t cm1e_axis_kinds[] = {
 };
 
 _Static_assert(sizeof cm1e_axis_kinds / sizeof cm1e_axis_kinds[0] == CM1E_COMMAND_KIND_COUNT,
-               "the last kinds of axis.h have no row");
+               "the last kinds of axis_api.h have no row");

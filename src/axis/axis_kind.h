@@ -1,7 +1,7 @@
 /**
  * @file axis_kind.h
  * The kinds of commands as a table: a row has all that the axis needs to know of a kind. A new kind is an entry of
- * cm1e_command_kind_t in axis.h, and a row in axis_kind.c. Const data, for any thread.
+ * cm1e_command_kind_t in axis_api.h, and a row in axis_kind.c. Const data, for any thread.
  */
 #ifndef CM1E_AXIS_AXIS_KIND_H
 #define CM1E_AXIS_AXIS_KIND_H

@@ -7,7 +7,7 @@
 #ifndef CM1E_AXIS_AXIS_PARAMETERS_H
 #define CM1E_AXIS_AXIS_PARAMETERS_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** Table 5. */
 enum {

@@ -8,7 +8,7 @@
 #ifndef CM1E_AXIS_AXIS_SIGNALS_H
 #define CM1E_AXIS_AXIS_SIGNALS_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** The largest numbers. A CM1-E has inputs 1 ... 4 and output 1 on the bus; output 2 belongs to the motor itself (UG
  *  7.3.24, 7.3.25, K34). Behind a bridge a CM1 has inputs 2 ... 4 and output 2, a CM2 has inputs 1 ... 6 and outputs 1

@@ -7,7 +7,7 @@
 #ifndef CM1E_AXIS_AXIS_SOURCE_H
 #define CM1E_AXIS_AXIS_SOURCE_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** What follows when a motion by the drive has ended: its command is done, the axis holds, or it has no torque. */
 typedef enum home_goal { HOME_GOAL_DONE = 0, HOME_GOAL_HOLD, HOME_GOAL_OFF } home_goal_t;

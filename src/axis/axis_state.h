@@ -6,7 +6,7 @@
 #ifndef CM1E_AXIS_AXIS_STATE_H
 #define CM1E_AXIS_AXIS_STATE_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** The triggers of the diagram. */
 typedef enum state_trigger {

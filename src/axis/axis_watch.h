@@ -5,7 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_WATCH_H
 #define CM1E_AXIS_AXIS_WATCH_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** The values by which an observer sees a change. */
 typedef struct cm1e_axis_news {

@@ -18,7 +18,7 @@
 #include "axis/axis_setpoint.h"
 #include "cm1e/cml.h"
 #include "core/clock.h"
-#include "device/cml.h"
+#include "device/cml_command.h"
 #include "drive/drive_bridge.h"
 
 /* The last request of one kind. The block that made it polls it by its ticket. */

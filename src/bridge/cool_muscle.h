@@ -7,8 +7,8 @@
 #ifndef CM1E_BRIDGE_COOL_MUSCLE_H
 #define CM1E_BRIDGE_COOL_MUSCLE_H
 
-#include "axis/axis.h"
-#include "device/bridge.h"
+#include "axis/axis_api.h"
+#include "device/bridge_facts.h"
 #include "drive/drive_command.h"
 
 /** Adds these functions to an axis behind a bridge. Does nothing to another axis. @rt init */

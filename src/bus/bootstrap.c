@@ -5,7 +5,7 @@
 #include "bus/bus_internal.h"
 #include "cm1e/sii.h"
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 enum { PROTOCOL_FOE = 0x08 };
 enum { CONTROL_MAILBOX_OUT = 0x26, CONTROL_MAILBOX_IN = 0x22, SM_ENABLED = 1, EEPROM_OF_SLAVE = 1, MAILBOX_MIN = 32 };

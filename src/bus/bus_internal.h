@@ -12,7 +12,7 @@
 #include "bus/emergency_ring.h"
 #include "bus/errand.h"
 #include "bus/foe_job.h"
-#include "bus/hot_connect.h"
+#include "bus/hot_slave.h"
 #include "bus/mapping.h"
 #include "bus/port_watch.h"
 #include "bus/recognise.h"

@@ -6,7 +6,7 @@
 #include "bus/bus_internal.h"
 #include "bus/dc_delay.h"
 #include "bus/kept.h"
-#include "config/clocks.h"
+#include "config/clock_pulses.h"
 #include "core/bytes.h"
 
 enum {

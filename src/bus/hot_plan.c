@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
-#include "config/clocks.h"
+#include "config/clock_pulses.h"
 #include "config/io_types.h"
 #include "core/bytes.h"
 #include "device/place.h"

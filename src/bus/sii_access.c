@@ -10,7 +10,7 @@
 #include "core/bytes.h"
 #include "core/in_task.h"
 #include "core/sized.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 /* An EEPROM is addressed by words. */
 enum {

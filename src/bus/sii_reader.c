@@ -6,7 +6,7 @@
 
 #include "cm1e/io.h"
 #include "core/text.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 /** An SII is at most 8 MiB by its size word, but no device known needs more than this; it bounds the time of a scan. */
 enum { WORDS_MAX = 0x2000, CATEGORIES_MAX = 64 };

@@ -1,8 +1,8 @@
 /**
  * @file sii_reader.h
  * Reads the part of a slave's SII (EEPROM; ETG.2010) that the bus needs, with bounds: no length in it is trusted, and
- * the loop over the categories always goes forward and ends. description/sii.h defines the meaning of the words. Pure
- * functions: a callback reads the words.
+ * the loop over the categories always goes forward and ends. description/sii_image.h defines the meaning of the words.
+ * Pure functions: a callback reads the words.
  */
 #ifndef CM1E_BUS_SII_READER_H
 #define CM1E_BUS_SII_READER_H
@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "config/clocks.h"
+#include "config/clock_pulses.h"
 
 enum { CM1E_SII_DC_MODES = 4, CM1E_SII_DC_MODE_NAME = 32, CM1E_SII_SYNC_MANAGERS = 8, CM1E_SII_NAME = 48, CM1E_SII_SIGNAL_NAME = 64 };
 

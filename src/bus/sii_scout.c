@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 /* Registers, commands and status (ETG.1000.4 section 6.4). */
 enum {

@@ -1,5 +1,5 @@
 #include "busfile/busfile.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 
 /* The keys of a bus file; docs/BUS-FILE.md explains them. A group of keys (limits, homing ...) is no structure of its
  * own in the configuration, so its fields are offsets in the whole axis. */

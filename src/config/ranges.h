@@ -5,7 +5,7 @@
 #ifndef CM1E_CONFIG_RANGES_H
 #define CM1E_CONFIG_RANGES_H
 
-#include "config/clocks.h"
+#include "config/clock_pulses.h"
 #include "config/problem.h"
 #include "device/devices.h"
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "config/clocks.h"
+#include "config/clock_pulses.h"
 #include "config/ranges.h"
 
 #define SYNC0_MINIMUM_US 62.5

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 enum { EVERY_MOST = 10000 };
 

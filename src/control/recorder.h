@@ -11,7 +11,7 @@
 #include <stdatomic.h>
 
 #include "control/view.h"
-#include "scheduler/trace.h"
+#include "scheduler/trace_recorder.h"
 
 typedef struct recorder {
     trace_t trace;             /**< of one sample */

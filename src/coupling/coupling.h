@@ -6,7 +6,7 @@
 #ifndef CM1E_COUPLING_COUPLING_H
 #define CM1E_COUPLING_COUPLING_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** Gives an axis the functions to follow others and to be followed. @rt init */
 cm1e_error_t cm1e_coupling_add(cm1e_axis_t *axis, cm1e_diag_t *diag);

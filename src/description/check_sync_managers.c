@@ -1,5 +1,5 @@
 #include "description/check_private.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 /* Sync managers, FMMUs and the mailbox: registers 0x0800 and 0x0600 of the slave controller (ETG.1000.4 6.6, 6.7). */
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 enum { FIRST_MAPPING_OBJECT = 0x1600, LAST_MAPPING_OBJECT = 0x1BFF };
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 
 /* The guide states neither of the three; without them no master could find the file for a device. */
 static cm1e_error_t check_identity(const cm1e_device_options_t *options, cm1e_diag_t *diag)

@@ -1,7 +1,7 @@
 /* Devices with inputs and outputs as the bus file names them for the simulator: their SII. */
 #include "core/bytes.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 /* In SII word 0: a digital I/O process data interface, and whether the controller emulates the device (0x0141 bit 0). */
 enum { PDI_DIGITAL_IO = 0x0004, DEVICE_EMULATION = 0x0100 };

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 enum { FIRST_OF_AXES = 0x6000, FIRST_ABOVE_AXES = 0xF000 };
 enum { PROFILE_402 = 402, TYPE_SERVO = 4 }; /* 0x1000: profile in the low word, type in the high one */

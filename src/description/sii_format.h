@@ -1,7 +1,7 @@
 /**
  * @file sii_format.h
  * Where what stands in the categories of an SII image (ETG.1000.6 tables 17 to 24); the fixed words before them are in
- * sii.h. Private to sii_read.c and sii_write.c.
+ * sii_image.h. Private to sii_read.c and sii_write.c.
  */
 #ifndef CM1E_DESCRIPTION_SII_FORMAT_H
 #define CM1E_DESCRIPTION_SII_FORMAT_H

@@ -1,4 +1,4 @@
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 
 /* BR appendix 5. Resolutions 0 ... 10 and 40 ... 50 repeat 20 higher with a finer unit of speed (10 pps), and with a
  * CM2 the first ones once more at 80 (1 pps). Of its two tables the first is taken for the CM1's, as its headings

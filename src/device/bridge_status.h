@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 
 /** Several of the first three can be there together, and as one number are all that is known of a motor whose serial
  *  line is broken. */

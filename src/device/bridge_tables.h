@@ -6,7 +6,7 @@
 #ifndef CM1E_DEVICE_BRIDGE_TABLES_H
 #define CM1E_DEVICE_BRIDGE_TABLES_H
 
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "device/objects.h"
 
 /* As the headings of appendix 6 say "ID1". */

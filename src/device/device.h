@@ -111,7 +111,7 @@ enum cm1e_access_flags {
     CM1E_ACCESS_RXPDO = 0x08, CM1E_ACCESS_TXPDO = 0x10,
 };
 
-/** Whether an object does something. Everything of the CM1-E does; of the bridge see bridge.h. */
+/** Whether an object does something. Everything of the CM1-E does; of the bridge see bridge_facts.h. */
 typedef enum cm1e_availability {
     CM1E_AVAILABLE = 0,
     CM1E_NOT_AVAILABLE, /**< "N/A": in the dictionary, but access is answered with an abort */

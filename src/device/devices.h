@@ -10,7 +10,7 @@
 #define CM1E_DEVICE_DEVICES_H
 
 #include "cia402/cia402.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 
 /* ---- process data ------------------------------------------------------------------------------------------------ */
 

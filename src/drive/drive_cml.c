@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/clock.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "device/bridge_status.h"
 
 enum { DRAIN_MOST = 64 };

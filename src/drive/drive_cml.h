@@ -12,7 +12,7 @@
 #define CM1E_DRIVE_DRIVE_CML_H
 
 #include "cm1e/cml.h"
-#include "device/cml.h"
+#include "device/cml_command.h"
 
 enum { CM1E_DRIVE_CML_QUEUE = 4 };
 #define CM1E_DRIVE_LONGEST_NS (INT64_C(1000000000) * 1000000) /**< maximum of a timeout: times can be added to it */

@@ -5,7 +5,7 @@
 #include "core/in_task.h"
 #include "description/compare.h"
 #include "description/expand.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "generate/ec_extend.h"
 #include "generate/eni.h"
 #include "generate/esi.h"

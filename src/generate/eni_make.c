@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "generate/eni.h"
 #include "generate/eni_registers.h"
 

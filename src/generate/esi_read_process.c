@@ -1,7 +1,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "generate/esi_read.h"
 #include "generate/words.h"
 

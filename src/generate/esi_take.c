@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "config/clocks.h"
+#include "config/clock_pulses.h"
 #include "config/esi_reader.h"
 #include "config/io_types.h"
 #include "description/expand.h"

@@ -7,7 +7,7 @@
 #include "config/interface.h"
 #include "description/describe.h"
 #include "description/expand.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "device/devices.h"
 #include "device/place.h"
 #include "generate/ec_extend.h"

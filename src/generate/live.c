@@ -7,7 +7,7 @@
 #include "cm1e/sii.h"
 #include "core/bytes.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 enum { OBJECTS_MAX = 0x10000, ENTRIES_MAX = 254 };
 enum { RXPDO_FIRST = 0x1600, RXPDO_LAST = 0x17FF, TXPDO_FIRST = 0x1A00, TXPDO_LAST = 0x1BFF };

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cm1e/esc.h"
-#include "config/clocks.h"
+#include "config/clock_pulses.h"
 #include "description/describe.h"
 #include "core/in_task.h"
 #include "device/devices.h"

@@ -4,7 +4,7 @@
 
 #include "cm1e/generate.h"
 #include "description/check.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "generate/ec_extend.h"
 #include "generate/eni.h"
 #include "generate/esi.h"

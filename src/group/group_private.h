@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-#include "group/group.h"
+#include "group/group_api.h"
 #include "motion/path.h"
 
 enum { GROUP_HANDLES = 32, GROUP_RECORDS = 64 };

@@ -6,7 +6,7 @@
 #include "cm1e/plot.h"
 #include "core/in_task.h"
 #include "core/text.h"
-#include "plot/plot.h"
+#include "plot/plot_files.h"
 
 /* page_parts.S */
 extern const char cm1e_plot_page_html[], cm1e_plot_page_css[], cm1e_plot_page_js[];

@@ -7,7 +7,7 @@
 
 #include "cm1e/plot.h"
 #include "core/in_task.h"
-#include "plot/plot.h"
+#include "plot/plot_files.h"
 
 /* ---- layout, in pixels ----------------------------------------------------------------------------------------- */
 

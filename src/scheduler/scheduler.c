@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "assembly/assembly.h"
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "bus/bus_image.h"
 #include "bus/kept.h"
 #include "cm1e/scan_time.h"
@@ -13,13 +13,13 @@
 #include "core/output.h"
 #include "core/sized.h"
 #include "scheduler/clock_team.h"
-#include "scheduler/log.h"
+#include "scheduler/event_log.h"
 #include "scheduler/realtime.h"
 #include "scheduler/scheduler_window.h"
 #include "scheduler/signals.h"
 #include "scheduler/statistics.h"
 #include "scheduler/tasks.h"
-#include "scheduler/trace.h"
+#include "scheduler/trace_recorder.h"
 
 #define DEFAULT_STOP_TIMEOUT_NS INT64_C(10000000000)
 

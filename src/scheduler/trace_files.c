@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/output.h"
-#include "scheduler/trace.h"
+#include "scheduler/trace_recorder.h"
 
 /* ---- CSV ------------------------------------------------------------------------------------------------------- */
 

@@ -1,7 +1,7 @@
 /* An object in the process data of a drive as a signal of the trace. */
 #include "bus/bus_image.h"
 #include "device/devices.h"
-#include "scheduler/trace.h"
+#include "scheduler/trace_recorder.h"
 
 /** NULL: the dictionary of the device does not know it. */
 static const cm1e_entry_t *known_entry(const cm1e_slave_info_t *slave, uint16_t index, uint8_t subindex)

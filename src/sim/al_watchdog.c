@@ -1,6 +1,6 @@
 #include "cm1e/bus.h"
 #include "core/bytes.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* The process data watchdog (0x0400, 0x0420, 0x0440): triggered by writes to a sync manager that says so, counted in
  * units of (divider + 2) * 40 ns. */

@@ -1,9 +1,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/cm1e_app.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* An image, and the device that boots from it instead of its own image from the tables. */
 typedef struct boot {

@@ -2,7 +2,7 @@
 
 #include "cm1e/bus.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/app_time.h"
 #include "sim/bridge_app.h"
 

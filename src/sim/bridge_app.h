@@ -21,7 +21,7 @@
 
 #include "cia402/cia402.h"
 #include "cm1e/cml.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "device/bridge_status.h"
 #include "sim/search.h"
 #include "sim/segment.h"

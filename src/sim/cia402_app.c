@@ -4,7 +4,7 @@
 
 #include "core/bytes.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/app_time.h"
 #include "sim/cia402_app.h"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/app_time.h"
 #include "sim/cm1e_app.h"
 

@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/cm1e_app.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /*
  * A new firmware by FoE in Bootstrap (UG 4.3; since V1.2.0, UG 10.1). The format of the real files is not public. A

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* CoE header (ETG.1000.6 table 29): number in bits 0-8, service in bits 12-15. */
 enum { HEADER_BYTES = 2, SERVICE_SHIFT = 12 };

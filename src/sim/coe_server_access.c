@@ -2,7 +2,7 @@
 
 #include "core/bytes.h"
 #include "sim/coe_server.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* In complete access (ETG.1000.6 5.6.2.1) an object is the row of its entries, sub-index 0 as 16 bits. */
 enum { SUBINDEX_0_BYTES = 2 };

@@ -2,7 +2,7 @@
 
 #include "core/bytes.h"
 #include "sim/coe_server.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* SDO information (ETG.1000.6 5.6.3). Layout behind the CoE header. */
 enum { AT_OPCODE = 2, AT_FRAGMENTS = 4, AT_DATA = 6, OPCODE = 0x7F, INCOMPLETE = 0x80 };

@@ -2,7 +2,7 @@
 
 #include "core/bytes.h"
 #include "sim/coe_server.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* Layout behind the CoE header, command specifiers and flags (ETG.1000.6 5.6.2). */
 enum {

@@ -12,7 +12,7 @@
 #include "sim/cia402_app.h"
 #include "sim/cm1e_app.h"
 #include "sim/console_call.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 enum { ERROR_OVERLOAD = 0x2310, ERROR_MOTOR_POWER = 0xFF05 };
 

@@ -1,5 +1,5 @@
 #include "sim/console_call.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/esc_clock_orders.h"
 #include "sim/io_device.h"
 

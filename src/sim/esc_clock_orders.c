@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 enum { FEATURE_DC = 0x000C };
 /* Of a plain crystal: 0.5 ppm for a kelvin. */

@@ -1,5 +1,5 @@
 /* Logical addresses: a datagram passes through the FMMUs to the memory. */
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* Bits first ... last of the logical byte `address` belong to the FMMU. */
 static void byte_bits(const esc_fmmu_t *fmmu, uint32_t address, unsigned *first, unsigned *last)

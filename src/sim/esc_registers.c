@@ -1,4 +1,4 @@
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 #include <string.h>
 

@@ -1,9 +1,9 @@
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 #include <string.h>
 
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 /* SII control/status 0x0502. */
 enum {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 enum { FOE_READ = 1, FOE_WRITE, FOE_DATA, FOE_ACK, FOE_ERROR, FOE_BUSY };
 /* Opcode, reserved, then the password, the number of the packet or the error code. */

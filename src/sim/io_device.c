@@ -6,8 +6,8 @@
 #include "cm1e/bus.h"
 #include "core/bytes.h"
 #include "description/describe.h"
-#include "description/sii.h"
-#include "sim/esc.h"
+#include "description/sii_image.h"
+#include "sim/esc_chip.h"
 
 int64_t cm1e_sim_io_terminal(const cm1e_sim_io_device_t *device, unsigned channel)
 {

@@ -2,8 +2,8 @@
 
 #include "cm1e/bus.h"
 #include "description/describe.h"
-#include "description/sii.h"
-#include "sim/esc.h"
+#include "description/sii_image.h"
+#include "sim/esc_chip.h"
 
 /* A plain module with digital outputs and inputs, each input wired to the output of its number. */
 typedef struct io_module {

@@ -4,7 +4,7 @@
 
 #include "cm1e/bus.h"
 #include "core/bytes.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* Mailbox header (ETG.1000.4 table 29). */
 enum { AT_LENGTH = 0, AT_TYPE = 5, TYPE = 0x0F, COUNTER_SHIFT = 4, COUNTER = 0x07, LAST_COUNTER = 7 };

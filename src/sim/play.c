@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/cm1e_app.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/segment.h"
 
 /* At least one byte, so that NULL means no memory. */

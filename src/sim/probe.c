@@ -3,7 +3,7 @@
 #include "sim/bridge_app.h"
 #include "sim/cia402_app.h"
 #include "sim/cm1e_app.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 static cm1e_sim_cm1e_t *drive_at(cm1e_sim_segment_t *segment, uint32_t position)
 {

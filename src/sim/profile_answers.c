@@ -2,7 +2,7 @@
  * need its own objects. */
 #include <stdlib.h>
 
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 bool cm1e_sim_profile_hides(const cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex)
 {

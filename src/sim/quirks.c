@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "description/sii.h"
 #include "description/sii_format.h"
+#include "description/sii_image.h"
 #include "device/device.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 unsigned cm1e_sim_quirk_fmmus(const cm1e_sim_slave_t *slave)
 {

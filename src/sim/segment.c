@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 enum {
     SOURCE_MAC = 6, ETHER_TYPE = 12, ECAT_HEADER = 14, DATAGRAMS = 16, DATAGRAM_HEADER = 10, WORKING_COUNTER = 2,

@@ -1,6 +1,6 @@
 /**
  * @file slave.h
- * The seam inside a simulated slave: below it the slave controller (esc.h: datagrams, registers, FMMUs, sync
+ * The seam inside a simulated slave: below it the slave controller (esc_chip.h: datagrams, registers, FMMUs, sync
  * managers, SII, AL state machine, mailbox, CoE server), above it the application (a CM1-E, a bridge, an I/O module).
  * One const table of functions plus a context. Everything runs in the thread that feeds the segment frames.
  */
@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 
 /** SDO abort codes (ETG.1000.6 table 41) that the simulator answers with. */
 enum {
@@ -94,7 +94,7 @@ typedef struct cm1e_sim_app_ops {
 
 typedef struct cm1e_sim_slave cm1e_sim_slave_t;
 
-/** A slave controller (esc.c) with an application on top, started from an SII image (copied). NULL: no memory.
+/** A slave controller (esc_chip.c) with an application on top, started from an SII image (copied). NULL: no memory.
  *  The slave owns `app` and calls its destroy(). */
 cm1e_sim_slave_t *cm1e_sim_slave_create(const uint8_t *sii, size_t sii_size, const cm1e_sim_app_ops_t *ops, void *app);
 void cm1e_sim_slave_destroy(cm1e_sim_slave_t *slave);

@@ -4,7 +4,7 @@
 #include "bus/soem_private.h"
 #include "bus_support.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 
 static const char *const firmwares[] = {"1.2.0", "1.3.0", "1.3.2", "1.3.3", "1.3.4", "1.3.5"};
 enum { FIRMWARES = 6, MAPPINGS = 4, ORDERS = 2, SLAVES = 2, SERIAL_NUMBER = 4711 };

@@ -2,7 +2,7 @@
 #include "bus_support.h"
 #include "cm1e/bridge.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/bridge_app.h"
 
 /* ---- a bridge that lies ----------------------------------------------------------------------------------------- */

@@ -1,7 +1,7 @@
 /* A bridge that left the network comes back: for all its axes, whichever asks, and no other device in its place. */
 #include "bridge_segment.h"
 #include "sdo_harm.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /* What a row of a table leaves out is 0. */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"

@@ -5,7 +5,7 @@
 #include "bus_support.h"
 #include "bus/dc_pace.h"
 #include "cm1e/clocks.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 static int64_t plan_ns;
 

@@ -6,9 +6,9 @@
 #include "cm1e/generate.h"
 #include "cm1e/sii.h"
 #include "description/check.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "generate/live.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 static cm1e_findings_t *findings;
 

@@ -1,7 +1,7 @@
 /* Slaves with device emulation between the motors: AL control is copied to AL status, the acknowledge bit too. And when
  * an acknowledgement is sent at all: to who shows an error. */
 #include "bus_support.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 static const cm1e_sim_io_t kinds[] = {CM1E_SIM_IO_TERMINAL, CM1E_SIM_IO_COUPLER};
 enum { KINDS = 2, SLAVES = 5, MOTOR = 2, SIMPLE = 3, ACKNOWLEDGE = 0x10 };

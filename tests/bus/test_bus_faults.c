@@ -2,7 +2,7 @@
  * motor moves. And what a slave can refuse is reported in its own words. */
 #include "bridge_segment.h"
 #include "effort.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 typedef enum fault_kind {
     LOSE_THERE = 0, LOSE_BACK, COUNT_UP, COUNT_DOWN, COUNT_ZERO, CUT, TWICE, LATE, GARBAGE, KINDS,

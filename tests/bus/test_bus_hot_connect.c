@@ -4,7 +4,7 @@
 #include "cm1e/hot_connect.h"
 #include "cm1e/io.h"
 #include "effort.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/segment.h"
 
 /** On the wire: a motor, the optional slave or the group, inputs and outputs, a motor. */

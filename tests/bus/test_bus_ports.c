@@ -1,7 +1,7 @@
 /* The counters of the ports of every slave: each register ends in its own field of its own port. */
 #include "bus/port_watch.h"
 #include "bus_support.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/segment.h"
 
 enum { SLAVES = 3 };

@@ -1,6 +1,6 @@
 /* A slave that left the network comes back: reset, power cycle, replug, watchdog; while the others keep running. */
 #include "bus_support.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 /** Cycles as a program would run them: whoever is not in OP is asked back. Returns how many it took until all are. */
 static unsigned cycles_until_recovered(cm1e_bus_t *bus, unsigned limit)

@@ -3,8 +3,8 @@
 #include "bus/datagram.h"
 #include "bus_support.h"
 #include "cm1e/sii.h"
-#include "description/sii.h"
-#include "sim/esc.h"
+#include "description/sii_image.h"
+#include "sim/esc_chip.h"
 
 enum { WORD_CHECKSUM = 7, WRITE_COMMAND = 0x0201 };
 

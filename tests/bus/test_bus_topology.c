@@ -4,7 +4,7 @@
 #include "cm1e/esc.h"
 #include "cm1e/topology.h"
 #include "core/bytes.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 enum { SLAVES = 8 };
 static cm1e_slave_place_t places[SLAVES];

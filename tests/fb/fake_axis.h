@@ -1,14 +1,14 @@
 /**
  * @file fake_axis.h
  * Axes without anything behind them, for the tests of the function blocks' own logic: the test says what becomes of
- * each command. Include it once in a test program; it defines the functions of axis/axis.h that blocks call.
+ * each command. Include it once in a test program; it defines the functions of axis/axis_api.h that blocks call.
  */
 #ifndef CM1E_TESTS_FAKE_AXIS_H
 #define CM1E_TESTS_FAKE_AXIS_H
 
 #include <string.h>
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "axis/axis_guest.h"
 #include "coupling/coupling.h"
 

@@ -13,7 +13,7 @@
 
 #include "axes_described.h"
 #include "assembly/assembly.h"
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "bus/bus_image.h"
 #include "cm1e/sim.h"
 

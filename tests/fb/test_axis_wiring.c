@@ -5,7 +5,7 @@
 #include "cm1e/io.h"
 #include "cm1e/plcopen.h"
 #include "effort.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/segment.h"
 #undef axis
 

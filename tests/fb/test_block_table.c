@@ -2,7 +2,7 @@
  * and what becomes of its command in every state of the axis (docs/blocks/README.md, from fb/interface/classes.md). */
 #include <stdlib.h>
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "coupling/coupling.h"
 #include "block_table.h"
 #include "fb_bench.h"

@@ -4,8 +4,8 @@
  */
 #include "axis/axis_position.h"
 #include "core/bytes.h"
-#include "device/bridge.h"
-#include "group/group.h"
+#include "device/bridge_facts.h"
+#include "group/group_api.h"
 
 #include "../support/axis_segment.h" /* behind the others: it makes a macro of `axis` */
 

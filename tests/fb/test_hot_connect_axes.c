@@ -14,7 +14,7 @@
 #include "core/bytes.h"
 #include "effort.h"
 #include "nic/nic.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/segment.h"
 #include "sim/segment_backend.h"
 

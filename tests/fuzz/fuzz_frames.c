@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "assembly/assembly.h"
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "bus/bus_image.h"
 #include "cm1e/sdo_info.h"
 #include "cm1e/sii.h"

@@ -7,7 +7,7 @@
 #include "fuzz.h"
 #include "prove/profile_file.h"
 #include "sim/coe_server.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/segment.h"
 
 /* Device profiles: what can be read is played by every device that plays profiles, whose objects are then read and

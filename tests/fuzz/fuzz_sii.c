@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "fuzz.h"
 
 /* EEPROMs are small; most sizes that an input states would only cost the time to fill them. */

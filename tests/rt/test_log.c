@@ -8,7 +8,7 @@
 #include "cm1e/log.h"
 #include "cm1e/sim.h"
 #include "machine.h"
-#include "scheduler/log.h"
+#include "scheduler/event_log.h"
 
 #define MS INT64_C(1000000)
 

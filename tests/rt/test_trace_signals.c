@@ -9,7 +9,7 @@
 #include "cm1e/sim.h"
 #include "cm1e/trace.h"
 #include "machine.h"
-#include "scheduler/trace.h"
+#include "scheduler/trace_recorder.h"
 
 #define MS INT64_C(1000000)
 

@@ -188,16 +188,22 @@ def check_truth(path):
 
 # ---- names of files -------------------------------------------------------------------------------------------------
 
-# Names that other programs look for, and the source of the project that `cm1e new` makes.
-ANY_ROOM = {"CMakeLists.txt", "Makefile", "README.md", "requirements.txt", "main.c"}
+# Names that may be in several folders, and why.
+ANY_ROOM = {
+    "CMakeLists.txt": "CMake looks for it",
+    "Makefile": "make looks for it",
+    "README.md": "GitHub and every reader look for it",
+    "requirements.txt": "pip and its users look for it",
+    "main.c": "the source of each project that `cm1e new` makes",
+}
 
 
 def check_names():
     folders = {}
-    for folder in ("src", "tools", "fb", "examples", "tests"):
+    for folder in FOLDERS:
         for parent, _, names in os.walk(os.path.join(SOURCE, folder)):
             if "__pycache__" not in parent:
-                for name in set(names) - ANY_ROOM:
+                for name in set(names) - ANY_ROOM.keys():
                     folders.setdefault(name, []).append(os.path.relpath(parent, SOURCE))
     for name, rooms in sorted(folders.items()):
         if len(rooms) > 1:

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "assembly/assembly.h"
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "axis/axis_backlash.h"
 #include "axis/axis_commands.h"
 #include "axis/axis_device.h"

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "assembly/assembly.h"
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "bus/bus_image.h"
 #include "cm1e/sim.h"
 #include "nic/nic.h"

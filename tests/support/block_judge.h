@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "assembly/assembly.h"
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "axis/axis_backlash.h"
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"

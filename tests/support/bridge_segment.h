@@ -7,7 +7,7 @@
 #define CM1E_TESTS_BRIDGE_SEGMENT_H
 
 #include "bus_support.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "sim/bridge_app.h"
 
 typedef enum device_kind { NO_DEVICE = 0, A_MOTOR, AN_IO_MODULE, AN_EB01, AN_EB02, AN_EB12 } device_kind_t;

@@ -7,7 +7,7 @@
 #define CM1E_TESTS_GROUP_BENCH_H
 
 #include "axes_bench.h"
-#include "group/group.h"
+#include "group/group_api.h"
 #include "group/group_private.h"
 
 extern AXES_GROUP_REF_t group_reference;

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "bus/bus_image.h"
 #include "chance.h"
 #include "cm1e/plcopen.h"
@@ -24,7 +24,7 @@
 #include "sim/segment_backend.h"
 #include "sim/bridge_app.h"
 #include "sim/cm1e_app.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 
 enum { BENCH_AXES = 3, BENCH_MOST = 8, LRW = 12, LRW_DATA = 26, SLAVE_WORKING_COUNTER = 3 };
 

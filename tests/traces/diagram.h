@@ -7,7 +7,7 @@
 #ifndef CM1E_TESTS_DIAGRAM_H
 #define CM1E_TESTS_DIAGRAM_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "block_table.h"
 #include "cm1e/config.h"
 

@@ -10,7 +10,7 @@
 #include "cm1e/bus.h"
 #include "core/bytes.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 #include "unity.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cm1e/config.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "unity.h"
 
 static cm1e_bus_config_t config;

@@ -1,5 +1,5 @@
 #include "described.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 
 static cm1e_description_file_t file;
 static cm1e_diag_t diag;

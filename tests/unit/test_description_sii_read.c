@@ -6,7 +6,7 @@
 
 #include "core/bytes.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "unity.h"
 
 enum { BYTES = 0x4000 };

@@ -4,7 +4,7 @@
 
 #include "core/bytes.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "unity.h"
 
 static uint8_t image[CM1E_SII_SIZE];

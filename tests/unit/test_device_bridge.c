@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "bridge_appendix_6.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "unity.h"
 
 void setUp(void) {}

@@ -5,7 +5,7 @@
 #include <unity.h>
 
 #include "chance.h"
-#include "device/cml.h"
+#include "device/cml_command.h"
 
 void setUp(void) {}
 void tearDown(void) {}

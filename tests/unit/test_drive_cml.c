@@ -5,7 +5,7 @@
 #include <unity.h>
 
 #include "chance.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "drive/drive_cml.h"
 
 #define MS INT64_C(1000000)

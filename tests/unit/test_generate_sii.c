@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "unity.h"
 
 static cm1e_file_t esi, sii, again;

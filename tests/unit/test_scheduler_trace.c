@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "plot/plot.h"
+#include "plot/plot_files.h"
 #include "unity.h"
 
 void setUp(void) {}

@@ -3,9 +3,9 @@
 
 #include "core/bytes.h"
 #include "description/describe.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "sim/cm1e_app.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/segment.h"
 #include "unity.h"
 

@@ -1,6 +1,6 @@
 /* The simulated bridge in its slave: the image it boots from, complete access, cycle time. */
-#include "description/sii.h"
-#include "sim/esc.h"
+#include "description/sii_image.h"
+#include "sim/esc_chip.h"
 #include "sim_bridge_bench.h"
 
 enum { SYNC_ERROR = 0x001A };

@@ -3,7 +3,7 @@
 
 #include "core/bytes.h"
 #include "sim/cm1e_app.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "unity.h"
 
 enum { MS = 1000000 };

@@ -4,7 +4,7 @@
 #include "cm1e/sdo_info.h"
 #include "core/bytes.h"
 #include "sim/coe_server.h"
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "sim/segment.h"
 #include "unity.h"
 

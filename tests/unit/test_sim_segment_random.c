@@ -1,6 +1,6 @@
 /* Hostile input: frames, registers and mailboxes at random, from printed seeds. What counts is that nothing is read or
  * written out of bounds (address and undefined behaviour sanitizers) and that a power cycle brings every slave back. */
-#include "sim/esc.h"
+#include "sim/esc_chip.h"
 #include "seeds.h"
 #include "sim_fake_app.h"
 

@@ -4,7 +4,7 @@
 
 #include "cm1e/esc.h"
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "prove/prove.h"
 
 enum { REG_FMMUS = 0x0004, REG_FEATURES = 0x0008, REG_ALIAS = 0x0012, REG_PDI = 0x0140, REG_DIVIDER = 0x0400,

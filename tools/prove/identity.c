@@ -8,7 +8,7 @@
 #include "core/text.h"
 #include "description/check.h"
 #include "description/compare.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "prove/prove.h"
 
 static void compare_value(prove_t *prove, const char *thing, uint16_t index, uint8_t subindex, uint32_t expected)

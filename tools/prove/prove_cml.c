@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "cm1e/cml.h"
-#include "device/bridge.h"
+#include "device/bridge_facts.h"
 #include "prove/prove.h"
 
 enum { K_FIRST = 21, K_PROVED = 42, STATUS_QUERY = 99, SWITCH_READS = 40,

@@ -4,7 +4,7 @@
 
 #include "cm1e/esc.h"
 #include "core/bytes.h"
-#include "description/sii.h"
+#include "description/sii_image.h"
 #include "prove/prove.h"
 
 enum { REG_AL_STATUS = 0x0130, REG_SM0 = 0x0800, REG_SM0_ACTIVATE = 0x0806, NO_STATE = 5 };

@@ -1,13 +1,13 @@
 /**
- * @file plot.h
+ * @file plot_files.h
  * What the files of a plot contain, apart from the file itself.
  */
-#ifndef CM1E_PLOT_PLOT_H
-#define CM1E_PLOT_PLOT_H
+#ifndef CM1E_PLOT_PLOT_FILES_H
+#define CM1E_PLOT_PLOT_FILES_H
 
 #include <stdio.h>
 
-#include "scheduler/trace.h"
+#include "scheduler/trace_recorder.h"
 
 /** How a state is shown. In a picture that has not a pixel for every sample, the state with the highest rank is. */
 typedef struct plot_state {

@@ -1,9 +1,9 @@
 /**
- * @file scheduler/log.h
+ * @file scheduler/event_log.h
  * The event log from within: the cycle compares what it sees with what it saw last, and writes what changed.
  */
-#ifndef CM1E_SCHEDULER_LOG_H
-#define CM1E_SCHEDULER_LOG_H
+#ifndef CM1E_SCHEDULER_EVENT_LOG_H
+#define CM1E_SCHEDULER_EVENT_LOG_H
 
 #include "axis/axis_watch.h"
 #include "bus/emergency_ring.h"

@@ -1,4 +1,4 @@
-#include "scheduler/log.h"
+#include "scheduler/event_log.h"
 #include "core/clock.h"
 
 #include <stdlib.h>

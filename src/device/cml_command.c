@@ -1,4 +1,4 @@
-#include "device/cml.h"
+#include "device/cml_command.h"
 
 #include <string.h>
 

@@ -1,11 +1,11 @@
 /**
- * @file esc.h
+ * @file esc_chip.h
  * The simulated EtherCAT slave controller (ESC), private to this room: one struct, worked on by one source per unit of
  * the real chip. Registers follow the Beckhoff ESC register description, states ETG.1000.6. Time comes in with every
  * call; nothing here allocates after cm1e_sim_slave_create().
  */
-#ifndef CM1E_SIM_ESC_H
-#define CM1E_SIM_ESC_H
+#ifndef CM1E_SIM_ESC_CHIP_H
+#define CM1E_SIM_ESC_CHIP_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -130,7 +130,7 @@ struct cm1e_sim_slave {
     cm1e_sim_profile_t profile; /**< played; all of it is the slave's own */
 };
 
-/* esc.c: life, memory as the master sees it */
+/* esc_chip.c: life, memory as the master sees it */
 void cm1e_sim_esc_power_on(cm1e_sim_slave_t *slave, int64_t now_ns);
 /** Lets time pass: everything that is due happens, then the application moves on. */
 void cm1e_sim_esc_advance(cm1e_sim_slave_t *slave, int64_t now_ns);

@@ -1,13 +1,13 @@
 /**
- * @file group/group.h
+ * @file group/group_api.h
  * The axes group as function blocks see it: members, the state diagram of Part 4, commands by number. Blocks post
  * commands and poll them; the axes ask the group for their set-points while their own outputs run. All in the thread of
  * the axes' cycle.
  */
-#ifndef CM1E_GROUP_GROUP_H
-#define CM1E_GROUP_GROUP_H
+#ifndef CM1E_GROUP_GROUP_API_H
+#define CM1E_GROUP_GROUP_API_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "cm1e/group.h"
 #include "cm1e/mc_types.h"
 

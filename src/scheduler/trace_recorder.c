@@ -1,5 +1,5 @@
 /* The recorder: its columns, its ring of samples, its trigger. */
-#include "scheduler/trace.h"
+#include "scheduler/trace_recorder.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 /**
- * @file axis/axis.h
+ * @file axis/axis_api.h
  * The axis as scheduler and function blocks see it. The scheduler calls cm1e_axis_inputs() before and
  * cm1e_axis_outputs() after the programs of a cycle; function blocks post commands between the two and poll them by
  * number. The axis never touches a function block's memory, so a block may vanish at any time. All in the cycle thread.
  */
-#ifndef CM1E_AXIS_AXIS_H
-#define CM1E_AXIS_AXIS_H
+#ifndef CM1E_AXIS_AXIS_API_H
+#define CM1E_AXIS_AXIS_API_H
 
 #include "cm1e/axis.h"
 #include "cm1e/plcopen.h"

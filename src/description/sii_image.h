@@ -1,5 +1,5 @@
 /**
- * @file sii.h
+ * @file sii_image.h
  * The SII image (ETG.1000.6 5.4, ETG.2010): the contents of a slave's EEPROM, which every master reads. An image is
  * written from a description and read into one; the simulator boots from it. Any thread.
  *
@@ -8,8 +8,8 @@
  * reading, so an image of another maker's tool does not come back byte for byte; one that was written here does. To
  * keep an image as it is, keep its bytes.
  */
-#ifndef CM1E_DESCRIPTION_SII_H
-#define CM1E_DESCRIPTION_SII_H
+#ifndef CM1E_DESCRIPTION_SII_IMAGE_H
+#define CM1E_DESCRIPTION_SII_IMAGE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,14 +1,14 @@
 /**
- * @file trace.h
+ * @file trace_recorder.h
  * A recorder: one value per signal and cycle, in a ring that is allocated before the cycle starts, and the writers of
  * files. A signal is a column. The first columns are those of the axes, TRACE_AXIS_COLUMNS each.
  */
-#ifndef CM1E_SCHEDULER_TRACE_H
-#define CM1E_SCHEDULER_TRACE_H
+#ifndef CM1E_SCHEDULER_TRACE_RECORDER_H
+#define CM1E_SCHEDULER_TRACE_RECORDER_H
 
 #include <stdio.h>
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 #include "cm1e/trace.h"
 #include "core/guest_api.h"
 

@@ -1,9 +1,9 @@
 /**
- * @file config/clocks.h
+ * @file config/clock_pulses.h
  * Which distributed clocks a configuration asks for.
  */
-#ifndef CM1E_CONFIG_CLOCKS_H
-#define CM1E_CONFIG_CLOCKS_H
+#ifndef CM1E_CONFIG_CLOCK_PULSES_H
+#define CM1E_CONFIG_CLOCK_PULSES_H
 
 #include "cm1e/config.h"
 

@@ -1,11 +1,11 @@
 /**
- * @file cml.h
+ * @file cml_command.h
  * The commands of CML one by one: what each does, and what answers it. The letters are those of BR 7.2 and its appendix
  * 2, and of Myostat's quick reference of the CM1 (RT3), which BR refers to. What is not known to be harmless may move
  * the motor.
  */
-#ifndef CM1E_DEVICE_CML_H
-#define CM1E_DEVICE_CML_H
+#ifndef CM1E_DEVICE_CML_COMMAND_H
+#define CM1E_DEVICE_CML_COMMAND_H
 
 #include "cm1e/cml.h"
 

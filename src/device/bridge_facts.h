@@ -1,11 +1,11 @@
 /**
- * @file bridge.h
+ * @file bridge_facts.h
  * The EtherCAT Cool MUSCLE Bridge, as device.h has the CM1-E: one slave, up to four Cool Muscle motors behind it, each
  * an axis. Source of the facts: EtherCAT Cool MUSCLE Bridge User's Guide 2016 (BR), and docs/DEVICE.md where it
  * contradicts itself. Axes count from 0 here; the guide's ID is one more.
  */
-#ifndef CM1E_DEVICE_BRIDGE_H
-#define CM1E_DEVICE_BRIDGE_H
+#ifndef CM1E_DEVICE_BRIDGE_FACTS_H
+#define CM1E_DEVICE_BRIDGE_FACTS_H
 
 #include "cm1e/bridge.h"
 #include "device/device.h"

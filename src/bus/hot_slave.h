@@ -1,5 +1,5 @@
 /**
- * @file hot_connect.h
+ * @file hot_slave.h
  * Slaves that come and go while the others run.
  *
  * hot_plan.c keeps room in the process image for an optional slave that is absent at the start, and places what it has
@@ -7,8 +7,8 @@
  * their SII, alias and explicit ID, and refuses strangers. hot_count.c judges the working counter for the slaves that
  * are there. hot_presence.c says how it stands with each.
  */
-#ifndef CM1E_BUS_HOT_CONNECT_H
-#define CM1E_BUS_HOT_CONNECT_H
+#ifndef CM1E_BUS_HOT_SLAVE_H
+#define CM1E_BUS_HOT_SLAVE_H
 
 #include "bus/al_machine.h"
 #include "bus/sii_scout.h"
