@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The code has one form where C allows several: a result of type cm1e_error_t is compared with CM1E_OK or with another
 error, and is never taken for a truth value. A comment about a C bool has true and false; TRUE and FALSE are values of
-PLCopen inputs. No two files in different rooms have one name.
+PLCopen inputs. No two files in different rooms have one name. No source, header or test is longer than 700 lines.
 
 test_code.py SOURCE-DIRECTORY
 """
@@ -210,10 +210,28 @@ def check_names():
             faults.append(f"{name} is in {', '.join(sorted(rooms))}: give all but one a name of their own")
 
 
+# ---- length of files ------------------------------------------------------------------------------------------------
+
+LONGEST = 700
+LANGUAGES = (".c", ".h", ".inc", ".l", ".y", ".py", ".js", ".st")
+# Files that may be longer, and why.
+LONG = {"tests/support/block_table.c": "fb/interface/generate.py writes it"}
+
+
+def check_length():
+    for folder in FOLDERS:
+        for parent, _, names in os.walk(os.path.join(SOURCE, folder)):
+            for path in (os.path.relpath(os.path.join(parent, name), SOURCE) for name in names):
+                lines = read(path).count("\n") if path.endswith(LANGUAGES) and path not in LONG else 0
+                if lines > LONGEST:
+                    faults.append(f"{path} has {lines} lines, {LONGEST} may be: split it by what it is for")
+
+
 for path in files():
     if path.startswith(("src/", "tools/")):
         check_truth(path)
 check_names()
+check_length()
 check_itself()
 faults += check_error_tests({path: code(read(path)) for path in files()})
 print("\n".join(faults) if faults else "code: fine")

@@ -105,6 +105,14 @@ void bench_enable(void)
     TEST_ASSERT_TRUE(cm1e_axis_powered(axis));
 }
 
+void bench_enable_within(double negative, double positive)
+{
+    bus.config.axes[0].software_limit_negative = negative;
+    bus.config.axes[0].software_limit_positive = positive;
+    bench_create();
+    bench_enable();
+}
+
 cm1e_command_id_t bench_start_command(const cm1e_axis_command_t *command)
 {
     cm1e_command_id_t id;
@@ -113,9 +121,21 @@ cm1e_command_id_t bench_start_command(const cm1e_axis_command_t *command)
     return id;
 }
 
+cm1e_error_t bench_try_command(const cm1e_axis_command_t *command)
+{
+    cm1e_command_id_t id;
+    return cm1e_axis_start(axis, command, &id);
+}
+
 cm1e_command_id_t bench_move_to(double position, double velocity)
 {
     return bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = position,
+                                                      .velocity = velocity});
+}
+
+cm1e_command_id_t bench_move_by(double distance, double velocity)
+{
+    return bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = distance,
                                                       .velocity = velocity});
 }
 

@@ -51,8 +51,13 @@ cm1e_axis_info_t bench_info(void);
 void bench_told(const char *words);
 void bench_power(bool enable);
 void bench_enable(void);
+/** Makes the axis with these software limits (u) and enables it. */
+void bench_enable_within(double negative, double positive);
 cm1e_command_id_t bench_start_command(const cm1e_axis_command_t *command);
+/** The error of a command that may be refused. */
+cm1e_error_t bench_try_command(const cm1e_axis_command_t *command);
 cm1e_command_id_t bench_move_to(double position, double velocity);
+cm1e_command_id_t bench_move_by(double distance, double velocity);
 cm1e_command_id_t bench_move_velocity(double velocity);
 cm1e_command_state_t bench_state_of(cm1e_command_id_t id);
 

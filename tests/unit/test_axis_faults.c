@@ -1,0 +1,203 @@
+/* A motor that does not follow, and a bus that goes: ErrorStop, the ramp, and how long the torque stays. */
+#include <math.h>
+
+#include "../support/axis_bench.h"
+
+void setUp(void) { bench_start(); }
+void tearDown(void) { bench_end(); }
+
+/* ---- lag --------------------------------------------------------------------------------------------------------- */
+
+static void test_a_motor_that_does_not_follow_ends_in_error_stop(void)
+{
+    bench_enable();
+    bench_move_velocity(10.0);
+    bench_cycles(400);
+    bus.blocked = true;
+    bench_cycles(200);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_LAG, bench_info().error);
+    char text[512];
+    cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "allowed are 0.5 u"), text);
+    bench_cycles(400);
+    TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+}
+
+/** Milliseconds for which the torque stays from now on. */
+static int torque_left(void)
+{
+    int cycles = 0;
+    while (bus.state == OPERATION_ENABLED && cycles < 1000) {
+        bench_cycles(1);
+        cycles++;
+    }
+    return cycles;
+}
+
+/** The axis brakes from where the motor is. A motor that stands there has no ramp, and what its feedback shows is old:
+ *  it keeps the torque for 20 ms all the same. */
+static void test_a_motor_that_does_not_follow_has_20_ms_to_brake(void)
+{
+    bench_enable();
+    bench_move_velocity(10.0);
+    bench_cycles(400);
+    bus.blocked = true;
+    while (bench_info().state != CM1E_AXIS_ERROR_STOP)
+        bench_cycles(1);
+    const int torque_ms = torque_left();
+    TEST_ASSERT_GREATER_OR_EQUAL_INT(20, torque_ms);
+    TEST_ASSERT_LESS_OR_EQUAL_INT(23, torque_ms); /* the word to the drive and its answer */
+}
+
+/** MC_Power.Enable FALSE, a motor that does not follow the ramp, and TRUE again in any cycle: the lag is told. */
+static void test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again(void)
+{
+    for (int again = 0; again < 150; again++) {
+        bench_start();
+        bench_enable();
+        bench_move_velocity(20.0);
+        bench_cycles(500);
+        bus.blocked = true;
+        bench_power(false);
+        bench_cycles(again);
+        bench_inputs(); /* Enable comes between inputs and outputs of a cycle */
+        bench_power(true);
+        bench_outputs();
+        bench_cycles(200);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_LAG, bench_info().error);
+        TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+        cm1e_axis_reset(axis);
+        bus.blocked = false;
+        bench_cycles(50);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+    }
+}
+
+/* ---- the bus goes ------------------------------------------------------------------------------------------------ */
+
+/** In the cycle the axis is in ErrorStop, and a while later without torque; with the bus back nothing moves by itself. */
+static void lose_the_bus(cm1e_error_t error, bool back_early, cm1e_command_id_t id)
+{
+    received = error;
+    bench_cycles(2); /* two lost frames are nothing */
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_CONTINUOUS_MOTION, bench_info().state);
+    health = error;
+    bench_cycles(1);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+    TEST_ASSERT_EQUAL_INT(error, bench_info().error);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
+    bench_cycles(50);
+    TEST_ASSERT_EQUAL_INT(OPERATION_ENABLED, bus.state); /* for the motor to stop by its torque */
+    if (back_early)
+        health = received = CM1E_OK;
+    bench_cycles(300);
+    TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+    health = received = CM1E_OK;
+    bench_cycles(100); /* nothing by itself */
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+    TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+    cm1e_axis_reset(axis);
+    bench_cycles(50);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+}
+
+static void test_bus_trouble_while_moving_holds_the_target_then_disables(void)
+{
+    static const cm1e_error_t errors[] = {CM1E_ERROR_BUS_LOST, CM1E_ERROR_BUS_WORKING_COUNTER};
+    for (int e = 0; e < 2; e++)
+        for (int back = 0; back < 2; back++) {
+            bench_start();
+            bench_enable();
+            const cm1e_command_id_t id = bench_move_velocity(10.0);
+            bench_cycles(500);
+            const int32_t target = (int32_t)fake_output(&bus, OBJ_607A_TARGET_POSITION, 0);
+            bench_forget_steps();
+            lose_the_bus(errors[e], back, id);
+            TEST_ASSERT_EQUAL_INT64(0, worst_step);
+            TEST_ASSERT_EQUAL_INT32(target, bus.position);
+        }
+}
+
+/** docs/SAFETY.md: torque off after speed / deceleration + 20 ms. */
+static void test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms(void)
+{
+    static const double speeds[] = {0.1, 1.0, 10.0};
+    for (size_t n = 0; n < sizeof speeds / sizeof speeds[0]; n++) {
+        bench_start();
+        bench_enable();
+        bench_move_velocity(speeds[n]);
+        bench_cycles(500);
+        received = health = CM1E_ERROR_BUS_LOST;
+        bench_cycles(1);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+        const int bound_ms = (int)(speeds[n] / axis->limits.emergency.deceleration * 1e3) + 20;
+        const int torque_ms = torque_left();
+        TEST_ASSERT_GREATER_OR_EQUAL_INT(bound_ms, torque_ms);
+        TEST_ASSERT_LESS_OR_EQUAL_INT(bound_ms + 3, torque_ms);
+    }
+}
+
+static double csv_shaft;
+static int32_t csv_worst_change, csv_velocity_before;
+
+/* The fake drive's shaft turns by the target velocity. */
+static void turn(cm1e_bus_t *motor)
+{
+    const int32_t change = motor->target_velocity_raw - csv_velocity_before;
+    csv_worst_change = change > csv_worst_change ? change : -change > csv_worst_change ? -change : csv_worst_change;
+    csv_velocity_before = motor->velocity_raw = motor->target_velocity_raw;
+    csv_shaft += motor->target_velocity_raw * 1e-3;
+    motor->position = (int32_t)lround(csv_shaft);
+}
+
+static void test_bus_trouble_while_moving_by_velocity_ramps_down_blindly(void)
+{
+    for (int back = 0; back < 2; back++) {
+        fake_bus_init(&bus, CM1E_MAPPING_CSV, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.mode = bus.sdo_mode = CM1E_MODE_CSV;
+        bus.world = turn;
+        csv_shaft = csv_worst_change = csv_velocity_before = 0;
+        bench_create();
+        bench_enable();
+        const cm1e_command_id_t id = bench_move_velocity(10.0);
+        bench_cycles(500);
+        TEST_ASSERT_INT32_WITHIN(1000, 500000, bus.target_velocity_raw);
+        lose_the_bus(CM1E_ERROR_BUS_LOST, back, id);
+        TEST_ASSERT_LESS_OR_EQUAL_INT32(5200, csv_worst_change); /* 5,000,000 counts/s2, and the position loop */
+    }
+}
+
+static void test_bus_trouble_while_disabled_is_no_error_until_enable(void)
+{
+    health = received = CM1E_ERROR_BUS_LOST;
+    bench_cycles(10);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISABLED, bench_info().state);
+    TEST_ASSERT_FALSE(bench_info().online);
+    bench_power(true);
+    bench_cycles(2);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_LOST, bench_info().error);
+}
+
+static void test_a_slave_that_was_away_is_no_longer_homed(void)
+{
+    axis->position.homed = true;
+    bus.watch.lost = true;
+    bench_cycles(1);
+    TEST_ASSERT_FALSE(bench_info().homed);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_motor_that_does_not_follow_ends_in_error_stop);
+    RUN_TEST(test_a_motor_that_does_not_follow_has_20_ms_to_brake);
+    RUN_TEST(test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again);
+    RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
+    RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
+    RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
+    RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
+    RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
+    return UNITY_END();
+}

@@ -1,0 +1,279 @@
+/* Software limits, and directions that MC_Power enables: what is refused, and how a motion is braked before them. */
+#include <math.h>
+
+#include "../support/axis_bench.h"
+
+void setUp(void) { bench_start(); }
+void tearDown(void) { bench_end(); }
+
+/* ---- software limits --------------------------------------------------------------------------------------------- */
+
+static void test_targets_outside_the_limits_are_refused_inside_accepted(void)
+{
+    bench_enable_within(-2.0, 3.0);
+    static const struct {
+        double target;
+        cm1e_error_t error;
+    } rows[] = {{3.0, CM1E_OK}, {-2.0, CM1E_OK}, {3.0001, CM1E_ERROR_AXIS_POSITION_RANGE},
+                {-2.0001, CM1E_ERROR_AXIS_POSITION_RANGE}, {1e9, CM1E_ERROR_AXIS_POSITION_RANGE}, {0.0, CM1E_OK}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = rows[i].target,
+                                             .velocity = 20.0};
+        TEST_ASSERT_EQUAL_INT(rows[i].error, bench_try_command(&command));
+        bench_cycles(3000);
+    }
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE,
+                          bench_try_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = 3.01,
+                                                             .velocity = 1.0}));
+}
+
+static void test_a_retarget_that_would_overshoot_a_limit_is_refused(void)
+{
+    bench_enable_within(-2.0, 10.0);
+    const cm1e_command_id_t running = bench_move_to(9.9, 20.0);
+    while (bench_info().set_position < 7.0)
+        bench_cycles(1);
+    /* turning round with a low deceleration would run far beyond 10 */
+    const cm1e_axis_command_t soft = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 0.0, .velocity = 20.0,
+                                      .deceleration = 5.0};
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_try_command(&soft));
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(running));
+    /* but a stop is never refused for that: it brakes harder than it was asked to */
+    const cm1e_command_id_t halt = bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT,
+                                                                              .deceleration = 1.0});
+    bench_wait(halt, 5000);
+    TEST_ASSERT_TRUE(bench_info().set_position <= 10.0);
+}
+
+static void test_velocity_into_a_limit_is_braked_before_it(void)
+{
+    static const double velocities[] = {0.5, 5.0, 20.0, 49.0};
+    for (int sign = -1; sign <= 1; sign += 2)
+        for (size_t i = 0; i < 4; i++) {
+            fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+            bench_enable_within(-20.0, 20.0);
+            const cm1e_command_id_t id = bench_move_velocity(sign * velocities[i]);
+            bench_wait(id, 100000);
+            const cm1e_command_status_t status = cm1e_axis_command_status(axis, id);
+            TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, status.state);
+            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_info().error);
+            char text[512];
+            cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
+            TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, sign > 0 ? "limit at 20" : "limit at -20"), text);
+            bench_cycles(2000);
+            TEST_ASSERT_FALSE(cm1e_axis_powered(axis));
+            const double reached = sign * bench_info().actual_position;
+            TEST_ASSERT_TRUE(reached <= 20.0 + 1e-5);
+            TEST_ASSERT_TRUE(reached > 20.0 - 0.2 - velocities[i] * 0.002);
+            TEST_ASSERT_LESS_OR_EQUAL_INT64(8, worst_change);
+        }
+}
+
+/** Fast towards a limit, with so little jerk that a stop there has to do without a limit of jerk. */
+static void brake_hard_for(int cycles)
+{
+    fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.config.axes[0].max_velocity = 20.0;
+    bus.config.axes[0].max_jerk = 300.0;
+    bus.config.axes[0].software_limit_negative = -30.0;
+    bus.config.axes[0].software_limit_positive = 22.0;
+    bench_create();
+    bench_enable();
+    bench_move_velocity(20.0);
+    while (bench_info().set_position < 19.0)
+        bench_cycles(1);
+    bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
+    bench_cycles(1 + cycles);
+    TEST_ASSERT_EQUAL_DOUBLE(-100.0, bench_info().set_acceleration);
+}
+
+/** What takes over from a ramp without limit of jerk does not carry its acceleration through standstill and back. */
+static void test_a_stop_without_limit_of_jerk_never_swings_back(void)
+{
+    for (int cycles = 0; cycles < 190; cycles += 3)
+        for (int way = 0; way < 4; way++) {
+            brake_hard_for(cycles);
+            if (way < 2)
+                bench_start_command(&(cm1e_axis_command_t){.kind = way ? CM1E_COMMAND_STOP : CM1E_COMMAND_HALT});
+            else if (way == 2)
+                TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, 0.9, 0.9, 0.9));
+            cm1e_command_id_t id;
+            if (way == 3) /* refused where only the present ramp is short enough */
+                (void)cm1e_axis_start(axis, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 0.1},
+                                      &id);
+            for (int n = 0; n < 1500; n++) {
+                bench_cycles(1);
+                TEST_ASSERT_TRUE(bench_info().set_velocity >= 0.0 && bench_info().set_position <= 22.0 + 1e-6);
+            }
+            bench_end();
+        }
+}
+
+/** A stop without limit of jerk that has not begun yet is none: what takes over in the same cycle makes no step. */
+static void test_a_stop_that_is_taken_over_at_once_makes_no_step(void)
+{
+    for (int cycles = 0; cycles < 100; cycles++) {
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.config.axes[0].max_jerk = 300.0;
+        bus.config.axes[0].software_limit_positive = 20.0;
+        bus.config.axes[0].software_limit_negative = -30.0;
+        bench_create();
+        bench_enable();
+        bench_move_to(2.95, 20.0);
+        bench_cycles(400 + cycles);
+        const double before = bench_info().set_acceleration;
+        bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT, .deceleration = 0.1});
+        bench_move_to(2.95, 20.0);
+        bench_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(0.3 * (1 + 1e-6), before, bench_info().set_acceleration);
+        bench_end();
+    }
+}
+
+/** It is on its way there. */
+static void test_a_move_back_inside_is_taken_while_braking_without_limit_of_jerk(void)
+{
+    for (int cycles = 0; cycles < 190; cycles += 3) {
+        brake_hard_for(cycles);
+        const cm1e_command_id_t id = bench_move_to(0.0, 20.0);
+        bench_wait(id, 9000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+    }
+}
+
+static void test_an_axis_outside_its_limits_may_only_come_back(void)
+{
+    bus.position = 500000; /* 10 u */
+    bench_enable_within(-2.0, 3.0);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE,
+                          bench_try_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 10.1,
+                                                             .velocity = 1.0}));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE,
+                          bench_try_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0}));
+    const cm1e_command_id_t id = bench_move_to(5.0, 10.0); /* still outside, but nearer */
+    bench_wait(id, 3000);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+    const cm1e_command_id_t velocity = bench_move_velocity(-1.0);
+    bench_cycles(3000);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(velocity));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
+}
+
+/* ---- enabled directions ------------------------------------------------------------------------------------------ */
+
+static void test_motion_in_a_disabled_direction_is_refused(void)
+{
+    bench_enable();
+    static const double signs[] = {1.0, -1.0};
+    for (int i = 0; i < 2; i++) {
+        cm1e_axis_power(axis, &owner, true, i == 1, i == 0);
+        const double bad = signs[i];
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+                              bench_try_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = bad,
+                                                                 .velocity = 1.0}));
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+                              bench_try_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY,
+                                                                 .velocity = bad}));
+        const cm1e_command_id_t good = bench_move_by(-bad, 5.0);
+        bench_wait(good, 2000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(good));
+    }
+}
+
+static void test_refused_numbers_are_told_as_they_are_judged(void)
+{
+    bench_enable();
+    cm1e_command_id_t id;
+    const cm1e_axis_command_t fast = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = -1e9};
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &fast, &id));
+    bench_told("velocity -1e+09 was commanded; -");
+    bench_told("u/s is right, but not 0");
+    static const cm1e_axis_command_t small[] = {
+        {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1e-300},
+        {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1.0, .acceleration = 1e-300},
+        {.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = 1.0, .velocity = 1.0, .jerk = 1e-300},
+        {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0, .acceleration = 1e-300},
+    };
+    for (size_t i = 0; i < sizeof small / sizeof small[0]; i++) {
+        TEST_ASSERT_NOT_EQUAL_INT(CM1E_OK, cm1e_axis_start(axis, &small[i], &id));
+        bench_told("too small to compute with");
+    }
+}
+
+static void test_direction_disabled_while_running_stops_the_motion(void)
+{
+    bench_enable();
+    const cm1e_command_id_t id = bench_move_velocity(10.0);
+    bench_cycles(400);
+    cm1e_axis_power(axis, &owner, true, false, true);
+    const cm1e_command_status_t status = cm1e_axis_command_status(axis, id);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, status.state);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED, status.error);
+    bench_told("MC_MoveVelocity, running or waiting, was ended: motion in this direction is disabled");
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISCRETE_MOTION, bench_info().state);
+    bench_cycles(20);
+    const cm1e_command_id_t back = bench_move_by(-3.0, 10.0); /* while it still brakes */
+    while (bench_state_of(back) == CM1E_COMMAND_ACTIVE) {
+        cm1e_axis_power(axis, &owner, true, false, true);
+        bench_cycles(1);
+    }
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(back));
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+    TEST_ASSERT_LESS_OR_EQUAL_INT64(7, worst_change);
+}
+
+static void test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped(void)
+{
+    for (int position = 0; position < 2; position++) {
+        bench_start();
+        bench_enable();
+        bench_move_velocity(10.0);
+        bench_cycles(400);
+        const cm1e_command_id_t back = position ? bench_move_to(-5.0, 10.0) : bench_move_velocity(-10.0);
+        bench_cycles(10);
+        cm1e_axis_power(axis, &owner, true, true, false); /* it still goes the other way, but would turn round */
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(back));
+        double farthest = bench_info().set_position;
+        for (int i = 0; i < 500; i++) {
+            bench_cycles(1);
+            TEST_ASSERT_TRUE(bench_info().set_position >= farthest - 1e-9);
+            farthest = bench_info().set_position;
+        }
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+        TEST_ASSERT_LESS_OR_EQUAL_INT64(7, worst_change);
+    }
+}
+
+static void test_a_direction_that_a_motion_does_not_need_may_be_disabled(void)
+{
+    bench_enable();
+    const cm1e_command_id_t move = bench_move_to(5.0, 10.0);
+    bench_cycles(300);
+    cm1e_axis_power(axis, &owner, true, true, false);
+    bench_wait(move, 3000);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(move));
+    cm1e_axis_power(axis, &owner, true, true, true);
+    const cm1e_command_id_t back = bench_move_to(2.0, 10.0);
+    bench_cycles(50);
+    cm1e_axis_power(axis, &owner, true, false, true);
+    bench_wait(back, 3000);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(back));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_targets_outside_the_limits_are_refused_inside_accepted);
+    RUN_TEST(test_a_retarget_that_would_overshoot_a_limit_is_refused);
+    RUN_TEST(test_velocity_into_a_limit_is_braked_before_it);
+    RUN_TEST(test_a_stop_without_limit_of_jerk_never_swings_back);
+    RUN_TEST(test_a_stop_that_is_taken_over_at_once_makes_no_step);
+    RUN_TEST(test_a_move_back_inside_is_taken_while_braking_without_limit_of_jerk);
+    RUN_TEST(test_an_axis_outside_its_limits_may_only_come_back);
+    RUN_TEST(test_motion_in_a_disabled_direction_is_refused);
+    RUN_TEST(test_refused_numbers_are_told_as_they_are_judged);
+    RUN_TEST(test_direction_disabled_while_running_stops_the_motion);
+    RUN_TEST(test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped);
+    RUN_TEST(test_a_direction_that_a_motion_does_not_need_may_be_disabled);
+    return UNITY_END();
+}
