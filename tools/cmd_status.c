@@ -246,6 +246,25 @@ static void show_presence(const cm1e_bus_t *bus, const cm1e_slave_info_t *slave,
                                json_pack("{s:s, s:s}", "presence", name, "presence_text", text));
 }
 
+/** Below the slaves, because they are none of them. */
+static void show_strangers(const cm1e_bus_t *bus, json_t *all)
+{
+    cm1e_stranger_t strangers[CM1E_STRANGERS];
+    char text[CM1E_PRESENCE_TEXT];
+    const size_t count = cm1e_bus_strangers(bus, strangers, CM1E_STRANGERS);
+    for (size_t i = 0; i < count; i++) {
+        const cm1e_stranger_t *one = &strangers[i];
+        cm1e_stranger_text(one, text, sizeof text);
+        if (all)
+            json_array_append_new(all, json_pack("{s:b, s:i, s:I, s:I, s:i, s:i, s:s}", "stranger", true, "place",
+                                                 one->place, "vendor_id", (json_int_t)one->vendor_id, "product_code",
+                                                 (json_int_t)one->product_code, "alias", one->alias, "explicit_id",
+                                                 one->explicit_id, "text", text));
+        else
+            printf("stranger: %s\n", text);
+    }
+}
+
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
                                  "Shows state, error, measurements and the last emergencies of every drive, and which "
@@ -285,6 +304,7 @@ int command_status(int argc, char **argv)
         show_clock(bus, slave->position, all);
         show_emergencies(bus, slave->position, all);
     }
+    show_strangers(bus, all);
     show_ring(bus, all);
     if (all)
         print_json(all);

@@ -33,6 +33,7 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2, AXIS_LINE_BYTES = 1280 
     X(enable, "let one motor hold its position, until a key is pressed", "")                                        \
     X(tune, "measure how one axis follows, before and after a change of its parameters", "step ramp sine chirp")   \
     X(reset, "reset the errors of drives", "")                                                                      \
+    X(recover, "let a running program take back a slave that waits", "")                                            \
     X(io, "show inputs and outputs, write outputs", "")                                                             \
     X(led, "find a motor by its LED", "")                                                                           \
     X(firmware, "write a new firmware into a motor", "update")                                                      \

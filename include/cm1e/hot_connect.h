@@ -51,6 +51,8 @@ CM1E_API cm1e_error_t cm1e_bus_recover(cm1e_bus_t *bus, uint32_t position, cm1e_
 /** Copies the strangers that are on the wire now, at most `room`; returns their number. They are looked for where the
  *  bus has optional slaves. @rt any */
 CM1E_API size_t cm1e_bus_strangers(const cm1e_bus_t *bus, cm1e_stranger_t *strangers, size_t room);
+/** "A device at place 4 of the wire was refused: ...". @rt block */
+CM1E_API void cm1e_stranger_text(const cm1e_stranger_t *stranger, char *text, size_t size);
 /** Number of changes so far: slaves that came, went or wait, strangers. @rt any */
 CM1E_API uint64_t cm1e_bus_presence_news(const cm1e_bus_t *bus);
 

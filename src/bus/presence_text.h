@@ -10,7 +10,5 @@
 /** What is said of a slave whose presence is, or was, this one. */
 void cm1e_presence_sentence(const cm1e_bus_t *bus, uint32_t position, cm1e_presence_t presence, char *text,
                             size_t size);
-/** "A device at place 4 of the wire is none of the configured slaves: ..." */
-void cm1e_stranger_text(const cm1e_stranger_t *stranger, char *text, size_t size);
 
 #endif

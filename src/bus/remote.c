@@ -34,11 +34,14 @@ static void take_emergencies(cm1e_bus_slave_t *slave, const cm1e_remote_slave_t 
 cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     cm1e_remote_slave_t *told = calloc(CM1E_MAX_SLAVES, sizeof *told);
+    cm1e_remote_network_t network = {0};
     uint32_t count = 0;
     if (!told)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the slaves of another program.");
-    const cm1e_error_t error = bus->remote->scan(bus->remote_state, told, CM1E_MAX_SLAVES, &count,
-                                                 &bus->ring.ring, diag);
+    const cm1e_error_t error = bus->remote->scan(bus->remote_state, told, CM1E_MAX_SLAVES, &count, &network, diag);
+    bus->ring.ring = network.ring;
+    bus->search.stranger_count = network.stranger_count;
+    memcpy(bus->search.strangers, network.strangers, sizeof network.strangers);
     free(bus->remote_texts);
     bus->remote_texts = calloc(CM1E_MAX_SLAVES, sizeof *bus->remote_texts);
     for (uint32_t i = 0; i < count && error == CM1E_OK; i++) {

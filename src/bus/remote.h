@@ -26,9 +26,16 @@ typedef struct cm1e_remote_slave {
     cm1e_emergency_t emergencies[CM1E_EMERGENCIES]; /**< in the order of their numbers */
 } cm1e_remote_slave_t;
 
+/** What the other program tells beside its slaves. */
+typedef struct cm1e_remote_network {
+    cm1e_bus_ring_t ring;
+    uint32_t stranger_count;
+    cm1e_stranger_t strangers[CM1E_STRANGERS];
+} cm1e_remote_network_t;
+
 typedef struct cm1e_bus_remote {
     cm1e_error_t (*scan)(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count,
-                         cm1e_bus_ring_t *ring, cm1e_diag_t *diag);
+                         cm1e_remote_network_t *network, cm1e_diag_t *diag);
     /** Executes a transfer; an error is in `sdo` as after any other transfer. Returns CM1E_OK, or why it could not even
      *  be tried, with `diag`. */
     cm1e_error_t (*transfer)(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag);

@@ -99,8 +99,26 @@ static void take_ring(cm1e_bus_ring_t *ring, const json_t *told, uint32_t slaves
     ring->before = ring->placed ? (uint16_t)before : 0;
 }
 
+/* Without strangers there is nothing told. */
+static void take_strangers(cm1e_remote_network_t *network, const json_t *told)
+{
+    const size_t count = json_array_size(told);
+    for (size_t i = 0; i < count && i < CM1E_STRANGERS; i++) {
+        const json_t *one = json_array_get(told, i);
+        network->strangers[network->stranger_count++] = (cm1e_stranger_t){
+            .place = (uint16_t)number(one, "place"),
+            .alias = (uint16_t)number(one, "alias"),
+            .explicit_id = (uint16_t)number(one, "explicit_id"),
+            .vendor_id = (uint32_t)number(one, "vendor_id"),
+            .product_code = (uint32_t)number(one, "product_code"),
+            .revision = (uint32_t)number(one, "revision"),
+            .serial_number = (uint32_t)number(one, "serial_number"),
+        };
+    }
+}
+
 static cm1e_error_t scan(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count,
-                         cm1e_bus_ring_t *ring, cm1e_diag_t *diag)
+                         cm1e_remote_network_t *network, cm1e_diag_t *diag)
 {
     json_t *reply = NULL;
     const cm1e_error_t error = cm1e_control_call(state, json_pack("{s:s}", "request", "slaves"), &reply, diag);
@@ -109,7 +127,8 @@ static cm1e_error_t scan(void *state, cm1e_remote_slave_t *slaves, uint32_t room
     *count = found < room ? (uint32_t)found : room;
     for (uint32_t i = 0; i < *count; i++)
         take_slave(&slaves[i], (uint16_t)(i + 1), json_array_get(told, i));
-    take_ring(ring, json_object_get(reply, "ring"), *count);
+    take_ring(&network->ring, json_object_get(reply, "ring"), *count);
+    take_strangers(network, json_object_get(reply, "strangers"));
     json_decref(reply);
     return error;
 }

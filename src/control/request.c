@@ -11,6 +11,7 @@
 #include "control/maintain_request.h"
 #include "control/message.h"
 #include "control/record_request.h"
+#include "control/recover_request.h"
 #include "control/show.h"
 
 enum { SDO_MAX = 1 << 15, INFO_MAX = 2 + 2 * 0x10000, SII_WORDS = 1 << 18 };
@@ -320,6 +321,12 @@ static json_t *end_output(const control_request_t *request)
                    : accept(request, "output", json_null());
 }
 
+static json_t *recover(control_request_t *request, control_run_t *run, const json_t *message)
+{
+    json_t *refused = check_consent(request, run, "Bringing back a slave");
+    return refused ? refused : cm1e_recover_slave(request, run, message);
+}
+
 static const struct {
     const char *name;
     json_t *(*begin)(control_request_t *request, control_run_t *run, const json_t *message);
@@ -330,6 +337,7 @@ static const struct {
     {"home", home},     {"stop", stop},         {"reset", reset},         {"keep", keep},
     {"record", cm1e_record_begin}, {"samples", cm1e_record_samples}, {"io", io}, {"output", output},
     {"file_data", file_data}, {"file_begin", file_begin}, {"file", file_look},
+    {"recover", recover},
 };
 
 static json_t *unknown(const control_request_t *request)
@@ -362,6 +370,17 @@ static json_t *no_cycle(const control_request_t *request)
     return cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, "The cycle of the program does not run any more.");
 }
 
+/** What is told beside the slaves. */
+static void add_network(json_t *reply, const view_t *view)
+{
+    json_t *strangers = cm1e_show_strangers(view);
+    if (view->ring.used)
+        json_object_set_new(reply, "ring", cm1e_show_ring(view));
+    if (json_array_size(strangers) > 0)
+        json_object_set(reply, "strangers", strangers);
+    json_decref(strangers);
+}
+
 /** A snapshot counts that was wanted after the request came. */
 static json_t *continue_snapshot(control_request_t *request, control_run_t *run)
 {
@@ -373,8 +392,8 @@ static json_t *continue_snapshot(control_request_t *request, control_run_t *run)
     if (!cm1e_view_filled(&run->view))
         return NULL;
     json_t *reply = accept(request, request->name, request->show(&run->view));
-    if (request->show == cm1e_show_slaves && run->view.ring.used)
-        json_object_set_new(reply, "ring", cm1e_show_ring(&run->view));
+    if (request->show == cm1e_show_slaves)
+        add_network(reply, &run->view);
     return reply;
 }
 

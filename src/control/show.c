@@ -202,6 +202,24 @@ json_t *cm1e_show_ring(const view_t *view)
                      ring->before, "breaks", (json_int_t)ring->breaks, "text", cm1e_show_text(text));
 }
 
+json_t *cm1e_show_strangers(const view_t *view)
+{
+    cm1e_stranger_t strangers[CM1E_STRANGERS];
+    char text[EVENT_TEXT];
+    json_t *all = json_array();
+    const size_t count = cm1e_bus_strangers(view->bus, strangers, CM1E_STRANGERS);
+    for (size_t i = 0; i < count; i++) {
+        const cm1e_stranger_t *one = &strangers[i];
+        cm1e_stranger_text(one, text, sizeof text);
+        json_array_append_new(all, json_pack("{s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o}", "place", one->place, "alias",
+                                             one->alias, "explicit_id", one->explicit_id, "vendor_id",
+                                             number(one->vendor_id), "product_code", number(one->product_code),
+                                             "revision", number(one->revision), "serial_number",
+                                             number(one->serial_number), "text", cm1e_show_text(text)));
+    }
+    return all;
+}
+
 /* ---- statistics ------------------------------------------------------------------------------------------------- */
 
 static json_t *distribution(const cm1e_distribution_t *d)

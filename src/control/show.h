@@ -13,6 +13,8 @@
 json_t *cm1e_show_axes(const view_t *view);
 json_t *cm1e_show_slaves(const view_t *view);
 json_t *cm1e_show_ring(const view_t *view);
+/** Devices on the wire that are none of its slaves. */
+json_t *cm1e_show_strangers(const view_t *view);
 
 json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler);
 /** Records of the run after number `after`, as many as fit into a reply: {"events": [...], "lost": n, "last": n}. Of

@@ -257,6 +257,17 @@ static unsigned look_at_absent(doctor_t *doctor, const cm1e_bus_t *bus)
     return absent;
 }
 
+static void look_at_strangers(doctor_t *doctor, const cm1e_bus_t *bus)
+{
+    cm1e_stranger_t strangers[CM1E_STRANGERS];
+    char text[CM1E_PRESENCE_TEXT];
+    const size_t count = cm1e_bus_strangers(bus, strangers, CM1E_STRANGERS);
+    for (size_t i = 0; i < count; i++) {
+        cm1e_stranger_text(&strangers[i], text, sizeof text);
+        doctor_find(doctor, FINDING_NOTE, group, "stranger", "%s", text);
+    }
+}
+
 static void look_at_configuration(doctor_t *doctor, cm1e_bus_t *bus, const cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
@@ -283,6 +294,7 @@ void doctor_look_at_bus(doctor_t *doctor, const common_options_t *options, const
         if (!is_away(bus, position))
             look_at_slave(doctor, bus, cm1e_bus_slave(bus, position));
     look_at_configuration(doctor, bus, config);
+    look_at_strangers(doctor, bus);
     look_at_ports(doctor, bus);
     look_at_clocks(doctor, bus);
     if (!attached && cm1e_bus_counters(bus)->foreign_frames > 0)
