@@ -64,17 +64,30 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 /* ---- the run ----------------------------------------------------------------------------------------------------- */
 
+/** Whether an axis drives the output that was found. */
+static bool is_driven(const io_program_t *p, const cm1e_io_t *io, char use[IO_USE])
+{
+    for (uint32_t i = 0; i < p->count; i++)
+        if (p->infos[i].output && p->signals[i].byte == io->byte && p->signals[i].shift == io->shift &&
+            cm1e_io_use(p->bus, &p->infos[i], use, IO_USE))
+            return true;
+    return false;
+}
+
 /** What is to be written is found before anything is sent. */
 static void find_writes(io_program_t *p)
 {
     for (int i = 0; i < p->options.write_count && !p->refused; i++) {
-        char name[IO_SIGNAL_NAME];
+        char name[IO_SIGNAL_NAME], use[IO_USE];
         cm1e_diag_t diag = {0};
         io_write_t *write = &p->options.writes[i];
         io_name(write, name);
         p->refused = cm1e_io_find(p->bus, name, &write->io, &diag) != CM1E_OK;
         if (p->refused)
             fail(&diag);
+        else if ((p->refused = is_driven(p, &write->io, use)))
+            complain("%s belongs to an axis (%s): its blocks write it, MC_WriteDigitalOutput or MC_DigitalCamSwitch", name,
+                     use);
         else if ((p->refused = cm1e_io_set_real(&write->io, write->value) != CM1E_OK))
             complain("%s cannot be written with %s: it is an input, belongs to a motor (MC_WriteDigitalOutput), or "
                      "its type has no such value", name, write->equals + 1);
@@ -187,6 +200,15 @@ static void list_output(const io_program_t *p, uint32_t number, json_t *list)
     }
 }
 
+static json_t *signal_row(const io_program_t *p, uint32_t i)
+{
+    char use[IO_USE];
+    const cm1e_io_info_t *info = &p->infos[i];
+    cm1e_io_use(p->bus, info, use, sizeof use);
+    return io_signal_row(info->position, cm1e_bus_slave_name(p->bus, info->position), info->name,
+                         cm1e_io_type_name(info->type), info->output, info->of_axis, p->values[i], use);
+}
+
 static int report(void *context)
 {
     io_program_t *p = context;
@@ -203,11 +225,7 @@ static int report(void *context)
     }
     for (uint32_t i = 0; i < p->count; i++)
         if (p->options.all || !p->infos[i].of_axis)
-            json_array_append_new(signals, io_signal_row(p->infos[i].position,
-                                                         cm1e_bus_slave_name(p->bus, p->infos[i].position),
-                                                         p->infos[i].name,
-                                                         cm1e_io_type_name(p->infos[i].type), p->infos[i].output,
-                                                         p->infos[i].of_axis, p->values[i]));
+            json_array_append_new(signals, signal_row(p, i));
     io_print(axes, signals, p->options.common.json, is_simulated(p->config));
     if (!p->options.common.json)
         tell_simulated(p->config);

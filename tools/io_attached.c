@@ -93,7 +93,8 @@ static json_t *signal_rows(const told_t *told, bool all)
         if (all || !of_axis)
             json_array_append_new(rows, io_signal_row(number_of(signal, "slave"), text_of(signal, "slave_name"),
                                                       text_of(signal, "name"), text_of(signal, "type"),
-                                                      json_is_true(json_object_get(signal, "output")), of_axis, value));
+                                                      json_is_true(json_object_get(signal, "output")), of_axis, value,
+                                                      text_of(signal, "use")));
     }
     return rows;
 }

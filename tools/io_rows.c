@@ -26,10 +26,11 @@ json_t *io_output_row(const char *axis, bool on)
 }
 
 json_t *io_signal_row(int slave, const char *slave_name, const char *name, const char *type, bool output, bool of_axis,
-                      const char *value)
+                      const char *value, const char *use)
 {
-    return json_pack("{s:i, s:s, s:o, s:s, s:b, s:b, s:s}", "slave", slave, "slave_name", slave_name, "name",
-                     text_as_json(name), "type", type, "output", output, "of_axis", of_axis, "value", value);
+    return json_pack("{s:i, s:s, s:o, s:s, s:b, s:b, s:s, s:o}", "slave", slave, "slave_name", slave_name, "name",
+                     text_as_json(name), "type", type, "output", output, "of_axis", of_axis, "value", value, "use",
+                     text_as_json(use));
 }
 
 /* ---- as text ----------------------------------------------------------------------------------------------------- */
@@ -57,8 +58,9 @@ static void print_signal_row(const json_t *row)
     char position[16], name[IO_SIGNAL_NAME + CM1E_NAME_LENGTH];
     snprintf(position, sizeof position, "%d", (int)json_integer_value(json_object_get(row, "slave")));
     snprintf(name, sizeof name, "%s.%s", slave[0] ? slave : position, text_of(row, "name"));
-    printf("%-44s %-6s %-4s %s\n", name, text_of(row, "type"),
-           json_is_true(json_object_get(row, "output")) ? "out" : "in", text_of(row, "value"));
+    const char *use = text_of(row, "use");
+    printf("%-44s %-6s %-4s %s%s%s\n", name, text_of(row, "type"),
+           json_is_true(json_object_get(row, "output")) ? "out" : "in", text_of(row, "value"), use[0] ? "    " : "", use);
 }
 
 void io_print(json_t *axes, json_t *signals, bool json, bool simulated)

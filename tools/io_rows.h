@@ -9,7 +9,7 @@
 #include "cm1e/io.h"
 #include "command.h"
 
-enum { IO_WRITES_MAX = 16, IO_SIGNAL_NAME = 96, IO_INPUTS = 4 };
+enum { IO_WRITES_MAX = 16, IO_SIGNAL_NAME = 96, IO_INPUTS = 4, IO_USE = 256 };
 
 /** An output to be written: NAME=VALUE. */
 typedef struct io_write {
@@ -32,8 +32,9 @@ void io_name(const io_write_t *write, char name[IO_SIGNAL_NAME]);
 /** Rows of the two lists. `value` NULL: unknown. */
 json_t *io_input_row(const char *axis, int input, json_t *value, const char *wired);
 json_t *io_output_row(const char *axis, bool on);
+/** `use`: how axes use it; "": none does. */
 json_t *io_signal_row(int slave, const char *slave_name, const char *name, const char *type, bool output, bool of_axis,
-                      const char *value);
+                      const char *value, const char *use);
 /** Adds " (normally closed)" and what else is to be said of a switch to `wired`. */
 void io_add_switch(char *wired, size_t size, const char *name, bool normally_closed);
 

@@ -74,6 +74,11 @@ CM1E_API uint32_t cm1e_io_count(const cm1e_bus_t *bus);
 /** Signal number `n` (0 = first), by slaves, inputs before outputs. False: there are not so many. @rt init */
 CM1E_API bool cm1e_io_at(const cm1e_bus_t *bus, uint32_t n, cm1e_io_info_t *info);
 
+/** Writes how the axes of the configuration use a signal of another slave, as "feed: input 11, home switch"; "" if none
+ *  does. Such an output is written by the blocks of its axis (MC_WriteDigitalOutput, MC_DigitalCamSwitch). Returns
+ *  whether one uses it. After cm1e_bus_configure(). @rt block */
+CM1E_API bool cm1e_io_use(cm1e_bus_t *bus, const cm1e_io_info_t *info, char *text, size_t size);
+
 /** Finds a signal by "SLAVE.SIGNAL", without regard to upper and lower case, after cm1e_bus_configure().
  *  SLAVE: name in the bus file, position ("3"), "slave 3", or the name of its SII where only one slave has it.
  *  SIGNAL: name as listed; "input 2" or "output 2", the second one; or its object, "0x6000:01".

@@ -6,7 +6,7 @@
 
 #include "control/show.h"
 
-enum { KEEP_LEAST_MS = 100, KEEP_MOST_MS = 5000, KEEP_MS = 1000 };
+enum { KEEP_LEAST_MS = 100, KEEP_MOST_MS = 5000, KEEP_MS = 1000, USE_TEXT = 256 };
 #define NS_PER_MS INT64_C(1000000)
 
 /* ---- all signals ------------------------------------------------------------------------------------------------ */
@@ -60,7 +60,9 @@ static json_t *value_of(const io_values_t *values, uint32_t i)
 
 static json_t *show_signal(const io_list_t *list, const view_t *view, uint32_t i)
 {
+    char use[USE_TEXT];
     const cm1e_io_info_t *info = &list->infos[i];
+    cm1e_io_use(view->bus, info, use, sizeof use);
     json_t *signal = json_object();
     json_object_set_new(signal, "slave", json_integer(info->position));
     json_object_set_new(signal, "slave_name", cm1e_show_text(cm1e_bus_slave_name(view->bus, info->position)));
@@ -75,6 +77,7 @@ static json_t *show_signal(const io_list_t *list, const view_t *view, uint32_t i
     json_object_set_new(signal, "bits", json_integer(info->bits));
     json_object_set_new(signal, "quality", json_string(cm1e_io_quality_name(list->values.qualities[i])));
     json_object_set_new(signal, "value", value_of(&list->values, i));
+    json_object_set_new(signal, "use", cm1e_show_text(use));
     return signal;
 }
 
@@ -107,6 +110,23 @@ static void set_output(view_t *view, view_order_t *order)
                                                 cm1e_scheduler_time_ns(view->scheduler) + output->keep_ns);
 }
 
+/** How the axes use the output that was found, as half a sentence. */
+static void say_use(const view_t *view, const cm1e_io_t *io, char *text, size_t size)
+{
+    cm1e_io_info_t info = {0};
+    char use[USE_TEXT] = "";
+    while (!use[0] && cm1e_io_guest_next(view->bus, &info)) {
+        cm1e_io_t listed;
+        if (info.output && cm1e_io_guest_take(view->bus, &info, &listed, NULL) == CM1E_OK &&
+            listed.byte == io->byte && listed.shift == io->shift)
+            cm1e_io_use(view->bus, &info, use, sizeof use);
+    }
+    if (use[0])
+        snprintf(text, size, "whose axis drives it (%s)", use);
+    else
+        snprintf(text, size, "which uses it (cm1e/io.h)");
+}
+
 static const char *wrong(cm1e_error_t *error, cm1e_error_t value, const char *text)
 {
     *error = value;
@@ -134,9 +154,11 @@ const char *cm1e_output_take(output_order_t *order, view_t *view, const json_t *
     if (*error == CM1E_OK && !cm1e_io_is_claimed(&order->io))
         return NULL;
     if (*error == CM1E_OK) {
+        char use[USE_TEXT + 32];
+        say_use(view, &order->io, use, sizeof use);
         *error = CM1E_ERROR_AXIS_STATE;
-        snprintf(text, size, "The output \"%.100s\" belongs to the program, which uses it (cm1e/io.h): no other "
-                 "program writes it.", name);
+        snprintf(text, size, "The output \"%.100s\" belongs to the program, %.150s: no other program writes it.", name,
+                 use);
     } else {
         snprintf(text, size, "%s", diag.text);
     }

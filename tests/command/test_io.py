@@ -24,6 +24,20 @@ axes:
   - {name: X, position: 1, inputs: {home: 2, limit_positive: 3, limits_normally_closed: true}}
   - {name: Y, position: 3}
 """
+WIRED_BUS = """\
+bus: {interface: sim, cycle_time_us: 1000, lost_cycles_limit: 50}
+axes:
+  - name: X
+    position: 1
+    inputs: {signals: [switches.part, switches.home], home: switches.home, limit_positive: switches.end,
+             home_normally_closed: true}
+    outputs: {signals: [valves.glue]}
+slaves:
+  - {name: valves, position: 2, outputs: [{name: glue, bit: 0}, {name: free, bit: 1}],
+     sim: {device: digital, outputs: 4}}
+  - {name: switches, position: 3, inputs: [{name: part, bit: 0}, {name: home, bit: 1}, {name: end, bit: 2}],
+     sim: {device: digital, inputs: 4}}
+"""
 SAFE_BUS = """bus: {interface: sim, lost_cycles_limit: 50}
 axes:
   - {name: X, position: 1}
@@ -146,6 +160,30 @@ def check_safe_value(folder):
         expect(values(io("--json"))[(2, "lamp")] == "1", "the safe value again", io("--json"))
 
 
+def check_wiring(folder):
+    """Signals that axes use are marked, and an output that an axis drives is not written, alone and attached."""
+    uses = {(2, "glue"): "X: output 11", (2, "free"): "", (3, "part"): "X: input 11",
+            (3, "home"): "X: input 12, home switch (normally closed)", (3, "end"): "X: input 13, positive limit switch"}
+
+    def check(io, what, said):
+        told = io("--json")
+        rows = {(row["slave"], row["name"]): row["use"] for row in json.loads(told.stdout)["signals"]}
+        expect({key: rows.get(key) for key in uses} == uses, f"{what}: uses", (rows, told.stderr))
+        expect("X: input 12, home switch (normally closed)" in io().stdout, f"{what}: as text", io().stdout)
+        told = io("valves.glue=1", "--allow-output", "--for", "0.2")
+        expect(told.returncode == 1 and said in told.stderr and "X: output 11" in told.stderr, f"{what}: driven", told)
+        told = io("valves.free=1", "--allow-output", "--for", "0.2", "--json")
+        expect(values(told)[2, "free"] == "1" and values(told)[2, "glue"] == "0", f"{what}: another one", told)
+
+    path = os.path.join(folder, "wired.yaml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(WIRED_BUS)
+    check(lambda *words: subprocess.run([CM1E, "io", "-b", path, *words], capture_output=True, text=True, timeout=60),
+          "alone", "belongs to an axis")
+    with running(folder, "maintain", "move", "X", "--speed", "0.01", "--for", "100", bus=WIRED_BUS) as io:
+        check(io, "attached", "whose axis drives it")
+
+
 def check_ends(io):
     """Whoever holds an output and does not renew it, or is gone, loses it; another one does not get it before."""
     with Client(io.path) as client:
@@ -182,6 +220,7 @@ if __name__ == "__main__":
         main(temporary)
         attached(temporary)
         check_safe_value(temporary)
+        check_wiring(temporary)
     if faults:
         real_time.skip_on_a_busy_machine(faults)
         print("FAILED:", *faults, sep="\n")
