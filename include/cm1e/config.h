@@ -261,9 +261,12 @@ typedef struct cm1e_axis_config {
 typedef struct cm1e_sdo_config {
     uint16_t index;
     uint8_t subindex;
-    uint8_t bytes;                   /**< 1 ... 8 */
+    uint8_t bytes;                   /**< 1 ... 8; 0: `size` bytes of sdo_data */
     bool before_op;                  /**< true: written in Safe-Operational; false: before that, ahead of the PDOs */
-    uint64_t value;                  /**< its bits; the lowest `bytes` bytes are sent, little endian */
+    bool complete_access;            /**< true: the whole object from `subindex` (0 or 1) on; sub-index 0 has 16 bits */
+    uint16_t size;                   /**< with `bytes` 0: 1 ... CM1E_SLAVE_SDO_DATA */
+    uint64_t value;                  /**< its bits; the lowest `bytes` bytes are sent, little endian. With `bytes` 0:
+                                          the place of the first byte in cm1e_slave_config_t.sdo_data */
 } cm1e_sdo_config_t;
 
 /** An entry of a PDO that is written anew. The entries of one PDO stand together, in their order. */
@@ -303,6 +306,7 @@ typedef struct cm1e_sim_slave_config {
 } cm1e_sim_slave_config_t;
 
 #define CM1E_SLAVE_SDOS 32        /**< maximum number of start-up SDOs of a slave */
+#define CM1E_SLAVE_SDO_DATA 2048  /**< maximum number of bytes of all start-up SDOs of more than 8 bytes */
 #define CM1E_SLAVE_PDOS 16        /**< maximum number of PDOs that are assigned in one direction */
 #define CM1E_SLAVE_PDO_ENTRIES 64 /**< maximum number of entries of all PDOs that are written anew */
 #define CM1E_SLAVE_SIGNALS 64     /**< maximum number of named signals */
@@ -334,6 +338,8 @@ typedef struct cm1e_slave_config {
     bool sim_absent;                 /**< simulated segment only: true: not plugged in at the start */
     char esi[256];                   /**< path of the ESI file from which a bus file took what it did not state; read
                                           again only where an ENI is made. "": none */
+    uint16_t sdo_data_count;         /**< bytes of `sdo_data` that are used */
+    uint8_t sdo_data[CM1E_SLAVE_SDO_DATA]; /**< of start-up SDOs with `bytes` 0 */
 } cm1e_slave_config_t;
 
 /** The whole bus. The configuration owns its axes and slaves: make it with cm1e_bus_config_init() or

@@ -13,6 +13,7 @@ typedef struct step {
     bool check; /**< reads what was written; false: writes */
     bool optional; /**< a write that may be refused; then what follows, its check, is left out */
     uint64_t value;
+    const cm1e_sdo_config_t *sdo; /**< as the configuration states it; NULL: it is of a PDO */
 } step_t;
 
 /** Goes along the list until it is at the step that is looked for. */
@@ -28,7 +29,8 @@ static bool visit(walk_t *walk, unsigned index, unsigned subindex, unsigned byte
 {
     if (walk->left-- > 0)
         return false;
-    *walk->step = (step_t){(uint16_t)index, (uint8_t)subindex, (uint8_t)bytes, walk->check, walk->optional, value};
+    *walk->step = (step_t){.index = (uint16_t)index, .subindex = (uint8_t)subindex, .bytes = (uint8_t)bytes,
+                           .check = walk->check, .optional = walk->optional, .value = value};
     return true;
 }
 
@@ -36,8 +38,10 @@ static bool walk_sdos(walk_t *walk, const cm1e_slave_config_t *config, bool befo
 {
     for (unsigned i = 0; i < config->sdo_count; i++) {
         const cm1e_sdo_config_t *sdo = &config->sdos[i];
-        if (sdo->before_op == before_op && visit(walk, sdo->index, sdo->subindex, sdo->bytes, sdo->value))
-            return true;
+        if (sdo->before_op != before_op || !visit(walk, sdo->index, sdo->subindex, sdo->bytes, sdo->value))
+            continue;
+        walk->step->sdo = sdo;
+        return true;
     }
     return false;
 }
@@ -162,6 +166,16 @@ static bool took(cm1e_setup_job_t *job)
     return !job->differs;
 }
 
+/** What the configuration states of a transfer beyond a value of at most 8 bytes. */
+static void take_stated(cm1e_setup_job_t *job, const cm1e_sdo_config_t *stated)
+{
+    job->sdo.complete_access = stated->complete_access;
+    if (stated->bytes > 0)
+        return;
+    job->sdo.data = (void *)(uintptr_t)(job->config->sdo_data + stated->value); /* a transfer that writes reads it only */
+    job->sdo.size = stated->size;
+}
+
 cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job)
 {
     step_t step;
@@ -179,5 +193,7 @@ cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job)
     job->sdo = (cm1e_sdo_t){.position = job->sdo.position, .index = step.index, .subindex = step.subindex,
                             .write = !step.check, .data = job->data, .timeout_ns = SDO_TIMEOUT_NS,
                             .size = step.check ? sizeof job->data : step.bytes, .state = CM1E_SDO_BUSY};
+    if (step.sdo)
+        take_stated(job, step.sdo);
     return &job->sdo;
 }

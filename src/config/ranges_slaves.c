@@ -156,6 +156,13 @@ static bool check_entries(const slave_check_t *check)
     return true;
 }
 
+/** Whether the bytes of an SDO of more than 8 are there. */
+static bool has_data(const cm1e_slave_config_t *slave, const cm1e_sdo_config_t *sdo)
+{
+    return slave->sdo_data_count <= CM1E_SLAVE_SDO_DATA && sdo->size > 0 && sdo->size <= slave->sdo_data_count &&
+           sdo->value <= (uint64_t)slave->sdo_data_count - sdo->size;
+}
+
 static bool check_sdos(const slave_check_t *check)
 {
     const cm1e_slave_config_t *slave = check->slave;
@@ -167,8 +174,11 @@ static bool check_sdos(const slave_check_t *check)
         if (slave->sdos[i].index < FIRST_OBJECT)
             return slave_wrong(check, place, "is 0x%04X:%02X; expected an object from 0x1000 on", slave->sdos[i].index,
                                slave->sdos[i].subindex);
-        if (slave->sdos[i].bytes < 1 || slave->sdos[i].bytes > 8)
-            return slave_wrong(check, place, "has %u bytes; expected 1 ... 8", slave->sdos[i].bytes);
+        if (slave->sdos[i].bytes > 8 || (slave->sdos[i].bytes == 0 && !has_data(slave, &slave->sdos[i])))
+            return slave_wrong(check, place, "has %u bytes; expected 1 ... 8, or some of sdo_data", slave->sdos[i].bytes);
+        if (slave->sdos[i].complete_access && slave->sdos[i].subindex > 1)
+            return slave_wrong(check, place, "has complete access from sub-index %u on; expected 0 or 1",
+                               slave->sdos[i].subindex);
     }
     return true;
 }

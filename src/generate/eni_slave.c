@@ -190,20 +190,26 @@ typedef struct writer {
     cm1e_init_command_list_t list;
 } writer_t;
 
-static void command(writer_t *to, unsigned index, unsigned subindex, uint64_t value, size_t bytes, bool before_op)
+static cm1e_init_command_t *command(writer_t *to, unsigned index, unsigned subindex, uint64_t value, size_t bytes,
+                                    bool before_op)
 {
     cm1e_init_command_t *made = CM1E_APPEND(to->arena, &to->list);
     *made = (cm1e_init_command_t){.transitions = before_op ? CM1E_TRANSITION_SO : CM1E_TRANSITION_PS,
                                   .index = (uint16_t)index, .subindex = (uint8_t)subindex,
                                   .data = cm1e_bytes_of(to->arena, (int64_t)value, bytes)};
+    return made;
 }
 
 static void command_sdos(writer_t *to, const cm1e_slave_config_t *slave, bool before_op)
 {
     for (unsigned i = 0; i < slave->sdo_count; i++) {
         const cm1e_sdo_config_t *sdo = &slave->sdos[i];
-        if (sdo->before_op == before_op)
-            command(to, sdo->index, sdo->subindex, sdo->value, sdo->bytes, before_op);
+        if (sdo->before_op != before_op)
+            continue;
+        cm1e_init_command_t *made = command(to, sdo->index, sdo->subindex, sdo->value, sdo->bytes, before_op);
+        made->complete_access = sdo->complete_access;
+        if (sdo->bytes == 0)
+            made->data = (cm1e_bytes_t){cm1e_arena_bytes(to->arena, slave->sdo_data + sdo->value, sdo->size), sdo->size};
     }
 }
 

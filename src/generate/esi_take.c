@@ -212,19 +212,32 @@ static bool is_overruled(const cm1e_slave_config_t *stated, const cm1e_init_comm
 
 static cm1e_error_t take_command(cm1e_slave_config_t *slave, const cm1e_init_command_t *command, cm1e_diag_t *diag)
 {
-    const bool too_long = command->data.size < 1 || command->data.size > 8;
-    if (command->complete_access || too_long)
+    const size_t size = command->data.size, room = CM1E_SLAVE_SDO_DATA - slave->sdo_data_count;
+    const bool too_long = size > 8 && size > room;
+    if (size < 1 || too_long)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "line %u: the start-up command for object 0x%04X:%02X "
-                             "has %zu bytes%s; expected 1 ... 8 bytes of one sub-index: state it under `sdo`, which "
-                             "replaces it", (unsigned)command->place, command->index, command->subindex,
-                             command->data.size, command->complete_access ? " by complete access" : "");
+                             "has %zu bytes; expected 1 ... %zu: state it under `sdo`, which replaces it",
+                             (unsigned)command->place, command->index, command->subindex, size, room);
+    if (command->complete_access && command->subindex > 1)
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "line %u: the start-up command for object 0x%04X has "
+                             "complete access from sub-index %u on; expected 0 or 1 (ETG.1000.6 section 5.6.2.1)",
+                             (unsigned)command->place, command->index, command->subindex);
     if (slave->sdo_count == CM1E_SLAVE_SDOS)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "has more start-up commands than %d, those of the bus "
                              "file included", CM1E_SLAVE_SDOS);
-    slave->sdos[slave->sdo_count++] = (cm1e_sdo_config_t){
-        .index = command->index, .subindex = command->subindex, .bytes = (uint8_t)command->data.size,
-        .before_op = !(command->transitions & (CM1E_TRANSITION_IP | CM1E_TRANSITION_PS)),
-        .value = cm1e_bytes_unsigned(command->data)};
+    cm1e_sdo_config_t *sdo = &slave->sdos[slave->sdo_count++];
+    *sdo = (cm1e_sdo_config_t){.index = command->index, .subindex = command->subindex,
+                               .complete_access = command->complete_access,
+                               .before_op = !(command->transitions & (CM1E_TRANSITION_IP | CM1E_TRANSITION_PS))};
+    if (size <= 8) {
+        sdo->bytes = (uint8_t)size;
+        sdo->value = cm1e_bytes_unsigned(command->data);
+        return CM1E_OK;
+    }
+    sdo->size = (uint16_t)size;
+    sdo->value = slave->sdo_data_count;
+    memcpy(slave->sdo_data + slave->sdo_data_count, command->data.data, size);
+    slave->sdo_data_count = (uint16_t)(slave->sdo_data_count + size);
     return CM1E_OK;
 }
 

@@ -38,6 +38,9 @@ static void remove_folder(void)
 #define COMMAND(TRANSITION, INDEX, SUB, DATA)                                                                        \
     "<InitCmd><Transition>" TRANSITION "</Transition><Index>#x" #INDEX "</Index><SubIndex>" #SUB "</SubIndex><Data>"  \
     DATA "</Data></InitCmd>"
+#define WHOLE(INDEX, SUB, DATA)                                                                                      \
+    "<InitCmd CompleteAccess='1'><Transition>PS</Transition><Index>#x" #INDEX "</Index><SubIndex>" #SUB              \
+    "</SubIndex><Data>" DATA "</Data></InitCmd>"
 #define DEVICE(PRODUCT, REVISION, TYPE, COE, PDOS, REST)                                                              \
     "<Device Physics='YY'><Type ProductCode='#x" #PRODUCT "' RevisionNo='#x" #REVISION "'>" TYPE "</Type><Name>" TYPE  \
     "</Name><GroupType>G</GroupType>" PDOS COE REST "</Device>"
@@ -61,9 +64,13 @@ static const char good[] = FILE_OF(DEVICE(A0002, 1, "AI-old", COE(""), COMPACT, 
                                    DEVICE(A0003, 1, "Other", "", TXPDO(" Sm='0'", 1A00, "", GAP(3)
                                           ENTRY(6000, 1, 1, "Input 4", "BOOL") ENTRY(6000, 2, 12, "Counter", "UINT")),
                                           "<Sm StartAddress='#x1000' ControlByte='0' Enable='1'>Inputs</Sm>")
-                                   DEVICE(A0004, 1, "Whole", COE("<InitCmd CompleteAccess='1'><Transition>PS"
-                                          "</Transition><Index>#x8000</Index><SubIndex>0</SubIndex><Data>0102</Data>"
-                                          "</InitCmd>"), COMPACT, ""));
+                                   DEVICE(A0007, 1, "Fourth", COE(""), COMPACT, ""));
+
+static const char whole[] = FILE_OF(DEVICE(A0004, 1, "Whole", COE(WHOLE(8000, 1, "0900")
+                                           WHOLE(1A01, 0, "0300010100600700000010110060")
+                                           COMMAND("PS", 8010, 18, "0400")), COMPACT, "")
+                                    DEVICE(A0005, 1, "Wrong", COE(WHOLE(8000, 2, "0102")), COMPACT, "")
+                                    DEVICE(A0006, 1, "Empty", COE(WHOLE(8000, 0, "")), COMPACT, ""));
 
 static void write_text(const char *path, const char *text)
 {
@@ -159,7 +166,8 @@ START_TEST(test_a_bad_file_is_told_in_words)
         {good, "product: 0x000A0002, revision: 0x00000003,", ":3:34: ", "revision 0x00000003"},
         {good, "product: 0x000A0002, esi_mode: FreeRun,", ":3:", "has no OpMode 'FreeRun'; it has SM, DC"},
         {good, "product: 0x000A0002, esi_mode: DC, dc: {sync0_us: 500},", ":3:", "and dc states some too"},
-        {good, "product: 0x000A0004,", ":3:34: ", "object 0x8000:00 has 2 bytes by complete access"},
+        {whole, "product: 0x000A0005,", ":3:34: ", "object 0x8000 has complete access from sub-index 2 on"},
+        {whole, "product: 0x000A0006,", ":3:34: ", "object 0x8000:00 has 0 bytes"},
         {"", "", ":3:34: ", "bus_esi.xml: "},
         {"<EtherCATInfo>", "", ":3:34: ", "bus_esi.xml: "},
         {"<Devices/>", "", ":3:34: ", "the root element of an ESI is EtherCATInfo"},
@@ -175,7 +183,7 @@ START_TEST(test_a_bad_file_is_told_in_words)
     ck_assert_int_eq(remove(esi_path), 0);
     ck_assert_int_eq(load(NULL, ""), CM1E_ERROR_CONFIG);
     ck_assert_msg(strstr(diag.text, "bus_esi.xml: cannot be read: No such file"), "%s", diag.text);
-    ck_assert_int_eq(load(good, "product: 0x000A0004, sdo: [{object: 0x8000:01, type: INT, value: 3}],"), CM1E_OK);
+    ck_assert_int_eq(load(whole, "product: 0x000A0005, sdo: [{object: 0x8000:01, type: INT, value: 3}],"), CM1E_OK);
 }
 END_TEST
 
@@ -215,6 +223,38 @@ static unsigned count_of(const cm1e_file_t *file, const char *text)
         count++;
     return count;
 }
+
+/* Complete access: the whole object in one transfer, also of more than 8 bytes; the bus file overrules it as a whole. */
+START_TEST(test_start_up_commands_with_complete_access)
+{
+    cm1e_io_t io;
+    ck_assert_msg(load(whole, "product: 0x000A0004,") == CM1E_OK, "%s", diag.text);
+    const cm1e_slave_config_t *slave = &config.slaves[0];
+    ck_assert_uint_eq(slave->sdo_count, 3);
+    ck_assert(slave->sdos[0].complete_access && slave->sdos[0].bytes == 2 && slave->sdos[0].value == 9);
+    ck_assert(slave->sdos[1].complete_access && slave->sdos[1].bytes == 0 && slave->sdos[1].size == 14);
+    ck_assert(!slave->sdos[2].complete_access);
+    cm1e_bus_t *bus = start_bus();
+    simulate(bus, "input 1 1 100");
+    cycles(bus, 5);
+    ck_assert_msg(cm1e_io_find(bus, "ai.Compact 1 Value", &io, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_io_integer(&io), 109);
+    ck_assert_uint_eq(cm1e_bus_slave(bus, 1)->input_bytes, 5); /* a bit and a gap before the first value */
+    cm1e_bus_close(bus);
+    cm1e_file_t eni;
+    bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_generate_eni_of_bus(&eni, bus, CM1E_MAPPING_DYNAMIC, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_close(bus);
+    ck_assert_uint_eq(count_of(&eni, "CompleteAccess=\"true\"") + count_of(&eni, "CompleteAccess=\"1\""), 2);
+    ck_assert_uint_eq(count_of(&eni, "0300010100600700000010110060"), 1);
+    cm1e_file_free(&eni);
+    ck_assert_msg(load(whole, "product: 0x000A0004, sdo: [{object: 0x1A01:01, type: UDINT, value: 0x60000101}],") ==
+                  CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(config.slaves[0].sdo_count, 3);
+    ck_assert(config.slaves[0].sdos[1].index == 0x8000 && !config.slaves[0].sdos[0].complete_access);
+}
+END_TEST
 
 /** A motor between a coupler, terminals and an analog device with everything that the bus file can write into it. */
 static void load_machine(void)
@@ -291,6 +331,7 @@ int main(void)
     tcase_add_test(tests, test_a_slave_without_a_mailbox_is_named_by_its_bits);
     tcase_add_test(tests, test_a_bad_file_is_told_in_words);
     tcase_add_test(tests, test_a_slave_is_configured_by_it);
+    tcase_add_test(tests, test_start_up_commands_with_complete_access);
     tcase_add_test(tests, test_an_eni_of_the_bus_file_is_that_of_a_scan);
     tcase_add_test(tests, test_an_eni_takes_the_esi);
     suite_add_tcase(suite, tests);

@@ -50,8 +50,8 @@ static void machine(bool bridge)
     analog->inputs_pdos[1] = 0x1A00;
     analog->inputs_pdo_count = 2;
     analog->dc.sync0_us = bridge ? 1000 : 250; /* takes its samples by SYNC0 */
-    analog->sdos[0] = (cm1e_sdo_config_t){0x8000, 0x12, 2, false, 7};
-    analog->sdos[1] = (cm1e_sdo_config_t){0x8010, 0x12, 2, true, 9};
+    analog->sdos[0] = (cm1e_sdo_config_t){.index = 0x8000, .subindex = 0x12, .bytes = 2, .value = 7};
+    analog->sdos[1] = (cm1e_sdo_config_t){.index = 0x8010, .subindex = 0x12, .bytes = 2, .before_op = true, .value = 9};
     analog->sdo_count = 2;
 }
 

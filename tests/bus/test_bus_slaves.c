@@ -40,8 +40,9 @@ static cm1e_signal_config_t *name_object(unsigned slave, const char *name, bool 
 static void write_object(unsigned slave, unsigned index, unsigned subindex, int value, bool before_op)
 {
     cm1e_slave_config_t *of = &config.slaves[slave - 1];
-    of->sdos[of->sdo_count++] = (cm1e_sdo_config_t){(uint16_t)index, (uint8_t)subindex, 2, before_op,
-                                                    (uint64_t)(int64_t)value};
+    of->sdos[of->sdo_count++] = (cm1e_sdo_config_t){
+        .index = (uint16_t)index, .subindex = (uint8_t)subindex, .bytes = 2, .before_op = before_op,
+        .value = (uint64_t)(int64_t)value};
 }
 
 static void map(unsigned slave, unsigned pdo, unsigned index, unsigned subindex, unsigned bits)

@@ -15,7 +15,9 @@ void setUp(void)
     config = (cm1e_slave_config_t){
         .outputs_pdos = {0x1601}, .inputs_pdos = {0x1A03, 0x1A00}, .outputs_pdo_count = 1, .inputs_pdo_count = 2,
         .entries = {{0x1A00, 0x6000, 1, 1}, {0x1A00, 0, 0, 7}, {0x1601, 0x7000, 0x11, 16}}, .entry_count = 3,
-        .sdos = {{0x8000, 0x12, 2, false, 0xFF9C}, {0x8000, 1, 4, true, 0x3FC00000}, {0x8010, 0, 1, false, 1}},
+        .sdos = {{.index = 0x8000, .subindex = 0x12, .bytes = 2, .value = 0xFF9C},
+                 {.index = 0x8000, .subindex = 1, .bytes = 4, .before_op = true, .value = 0x3FC00000},
+                 {.index = 0x8010, .bytes = 1, .value = 1}},
         .sdo_count = 3,
     };
 }
@@ -136,7 +138,7 @@ static void test_synchronisation_by_sync0_is_written_where_the_slave_lets_it(voi
     TEST_ASSERT_EQUAL_HEX16(0x1C32, job.sdo.index);
     TEST_ASSERT_EQUAL(2, run(false, expected, 1, REFUSED)); /* one that lets it be written lets it be read */
     TEST_ASSERT_EQUAL(CM1E_ERROR_SDO_ABORT, job.error);
-    config.sdos[0] = (cm1e_sdo_config_t){0x1C32, 1, 2, false, 3};
+    config.sdos[0] = (cm1e_sdo_config_t){.index = 0x1C32, .subindex = 1, .bytes = 2, .value = 3};
     config.sdo_count = 1;
     static const transfer_t stated[] = {{true, 0x1C32, 1, 2, 3}, {true, 0x1C33, 1, 2, 2}, {false, 0x1C33, 1, 2, 2}};
     TEST_ASSERT_EQUAL(3, run(false, stated, 0, NOTHING));
