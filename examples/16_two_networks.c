@@ -19,7 +19,8 @@ static MC_GearIn_t gear = {.Master = &axes[LEFT], .Slave = &axes[RIGHT], .RatioN
 static MC_MoveVelocity_t turn = {.Axis = &axes[LEFT], .Velocity = 1, .Acceleration = 5, .Deceleration = 5, .Jerk = 50};
 static int64_t turn_cycles;
 static int cycles, in_step;
-static double greatest_difference; /* of the velocities, while the gear is in step: not behind a pause of the machine */
+static double greatest_difference; /* of the velocities, while the gear is in step: not while a frame is lost */
+static cm1e_scheduler_statistics_t statistics;
 
 static void program(void *scheduler)
 {
@@ -93,6 +94,7 @@ static cm1e_error_t run(cm1e_bus_t *buses[NETWORKS], cm1e_diag_t *why)
         cm1e_axis_error_text(axes[i], text, sizeof text);
         fprintf(stderr, "%s%s", text, text[0] ? "\n" : "");
     }
+    cm1e_scheduler_statistics(scheduler, &statistics);
     cm1e_scheduler_destroy(scheduler);
     return error;
 }
@@ -114,8 +116,9 @@ int main(int argc, char **argv)
     if (error != CM1E_OK)
         fprintf(stderr, "%s\n", why.text);
     else
-        printf("%d cycles on two networks, %d of them in step; there the velocities differed by at most %.3g u/s\n",
-               cycles, in_step, greatest_difference);
+        printf("%d cycles on two networks, %d of them in step; there the velocities differed by at most %.3g u/s; "
+               "%llu frames lost, %llu overruns\n", cycles, in_step, greatest_difference,
+               (unsigned long long)statistics.bus.lost_frames, (unsigned long long)statistics.overruns);
     for (int i = 0; i < NETWORKS; i++) {
         cm1e_bus_close(buses[i]);
         cm1e_bus_config_free(&configs[i]);

@@ -204,6 +204,8 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
     }
     if (!axis->silence.frozen || !set_points_move(axis))
         cm1e_axis_motion_step(axis);
+    else if (axis_follows(axis))
+        axis->coupling_hooks->held(axis);
     if (axis->commands.awaits && !axis->silence.frozen)
         axis->coupling_hooks->await_step(axis);
     if (axis->backlash.gap > 0.0 && !axis->silence.frozen)

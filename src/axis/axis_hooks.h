@@ -55,6 +55,8 @@ typedef struct coupling_hooks {
     void (*resume_slaves)(cm1e_axis_t *axis);
     /** Called before any axis makes its set-point, while the axis follows: masters on another bus may be silent. */
     void (*look_across)(cm1e_axis_t *axis);
+    /** Called in place of the set-point, while the axis follows and its bus is silent. */
+    void (*held)(cm1e_axis_t *axis);
     /** Ends running and waiting phase shifts. */
     void (*phasing_end)(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
     /** The status of a phase shift; false: `id` neither runs nor waits. */

@@ -274,7 +274,7 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
         catch_up_ended(axis, f);
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
-    cm1e_axis_set_reached(axis, !catch_up->on && c->now->in_step);
+    cm1e_axis_set_reached(axis, !catch_up->on && c->now->in_step && coupling_sees_all(c->now));
     if (axis->setpoint.reached && axis->commands.waiting.count > 0 &&
         (!c->now->waits_for_end || c->end_of_profile || c->now->cam.left != 0.0)) {
         const from_t from = from_base(axis);

@@ -176,6 +176,14 @@ typedef struct coupling {
 } coupling_t;
 
 /* master.c */
+/** Whether the frames of all masters come back. The slave is not in step with a master whose place is only likely. */
+static inline bool coupling_sees_all(const follow_t *follow)
+{
+    for (int i = 0; i < follow->count; i++)
+        if (follow->links[i].sight != SEEN)
+            return false;
+    return true;
+}
 /** Advances the masters of the present and of the awaited coupling, unless they have advanced in this cycle. */
 void cm1e_coupling_advance_masters(cm1e_axis_t *axis);
 /** Lets the masters begin anew before their slave (axis_pause.c). `pause_ns` 0: after silence. */
@@ -184,9 +192,11 @@ void cm1e_coupling_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis);
 /** The slave is silent: whether a master on another bus goes on without it. */
 void cm1e_coupling_fall_behind(cm1e_axis_t *axis);
-/** From now on masters on another bus are seen as their frames come. true: one is seen in another way than before, or went on
- *  alone. */
+/** From now on masters on another bus are seen as their frames come. true: one is seen in another way than before, or
+ *  went on alone. */
 bool cm1e_coupling_settle(cm1e_axis_t *axis);
+/** The slave is silent, and its masters have advanced: it is not in step with one on another bus that moves. */
+void cm1e_coupling_held(cm1e_axis_t *axis);
 /** Whether a master began anew in this cycle, or is followed by its actual value. */
 bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis);
 /** Fills in a master of a `follow` that is not in force yet: its origin and its view, for the slave's present

@@ -84,6 +84,7 @@ static const coupling_hooks_t hooks = {
     .resume_slaves = cm1e_coupling_resume_slaves,
     .begins_anew = cm1e_coupling_begins_anew,
     .look_across = cm1e_coupling_look_across,
+    .held = cm1e_coupling_held,
     .phasing_end = cm1e_phasing_end,
     .phasing_status = cm1e_phasing_status,
     .phasing_covered = cm1e_phasing_covered,

@@ -313,6 +313,21 @@ static inline bool jumped(const link_t *link, const master_view_t *view)
     return fabs(view->counts - before->counts - way) > link->most_unexplained;
 }
 
+static bool stands(link_t *link)
+{
+    position_t unused;
+    master_view_t view = {0};
+    return !see(link, false, &unused, &view) && view.velocity == 0.0 && view.acceleration == 0.0;
+}
+
+void cm1e_coupling_held(cm1e_axis_t *axis)
+{
+    follow_t *now = axis->coupling->now;
+    for (int i = 0; i < now->count; i++)
+        if (now->links[i].apart && sight(&now->links[i]) == SEEN && !stands(&now->links[i]))
+            cm1e_axis_set_reached(axis, false);
+}
+
 static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, master_trouble_t trouble)
 {
     coupling_t *c = slave->coupling;
@@ -370,6 +385,7 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
     if (master->config->type == CM1E_AXIS_ENCODER || drive_profiles(master)) /* it has only an actual value */
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;
+    link->sight = (uint8_t)sight(link);
     know_ways(link, slave->cycle_s);
     const master_trouble_t trouble = see(link, false, &link->origin, &link->seen);
     if (trouble) {

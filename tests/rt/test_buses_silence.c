@@ -91,7 +91,7 @@ static struct {
 static double undisturbed_end;
 
 /* no_room: of `failed`, so many would have had to go beyond a limit of the axis to follow. */
-static int followed, failed, no_room;
+static int followed, failed, no_room, in_gear;
 
 static void must(cm1e_error_t error) { ck_assert_msg(error == CM1E_OK, "%s", diag.text); }
 
@@ -174,6 +174,20 @@ static void judge_set_point(int i)
     s->position = info.set_position;
 }
 
+/** In gear means: the set-points are in the ratio in this cycle, whatever the buses lose. A master that fails is judged
+ *  by the next set-point of its slave. */
+static void judge_in_gear(void)
+{
+    const double rounding = 1e-12;
+    const cm1e_axis_info_t master = see(A), slave = see(B);
+    const double ratio = (double)gear.RatioNumerator / (double)gear.RatioDenominator;
+    if (!gear.InGear || run.seen[A].ended || run.seen[B].ended)
+        return;
+    if (fabs(slave.set_velocity - ratio * master.set_velocity) > rounding)
+        wrong("in gear with %g u/s, its master has %g", slave.set_velocity, master.set_velocity);
+    in_gear++;
+}
+
 static void count_lost(int i)
 {
     run.lost_in_row[i] = loses(i) && is_lost_now(i) ? run.lost_in_row[i] + 1 : 0;
@@ -251,6 +265,8 @@ static void program(void *context)
     MC_MoveAbsolute(&move);
     for (int i = 0; i < BUSES; i++)
         judge_set_point(i);
+    if (run.motion == BY_GEAR || run.motion == BY_FAST_GEAR)
+        judge_in_gear();
     if (run.cycle == END)
         judge_end();
 }
@@ -329,6 +345,7 @@ START_TEST(test_a_slave_rides_out_what_either_bus_loses)
     run.motion = (motion_t)(_i % MOTIONS);
     run.variant = &variants[_i / MOTIONS];
     run_once();
+    ck_assert_int_ge(in_gear, run.motion == BY_GEAR || run.motion == BY_FAST_GEAR ? END / 2 : 0);
     int number = _i;
     for (int p = 0; p < PATTERNS; p++)
         for (int l = 0; l < LOSSES; l++) {
