@@ -175,7 +175,7 @@ static bool check_sdos(const slave_check_t *check)
             return slave_wrong(check, place, "is 0x%04X:%02X; expected an object from 0x1000 on", slave->sdos[i].index,
                                slave->sdos[i].subindex);
         if (slave->sdos[i].bytes > 8 || (slave->sdos[i].bytes == 0 && !has_data(slave, &slave->sdos[i])))
-            return slave_wrong(check, place, "has %u bytes; expected 1 ... 8, or some of sdo_data", slave->sdos[i].bytes);
+            return slave_wrong(check, place, "has %u bytes; expected 1 ... 8, or data of its own", slave->sdos[i].bytes);
         if (slave->sdos[i].complete_access && slave->sdos[i].subindex > 1)
             return slave_wrong(check, place, "has complete access from sub-index %u on; expected 0 or 1",
                                slave->sdos[i].subindex);

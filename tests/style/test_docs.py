@@ -68,7 +68,7 @@ def check_errors():
 # ---- keys of the bus file ------------------------------------------------------------------------------------------
 
 # Fields of the configuration that a text may name although they are no keys: it is about a configuration made by hand.
-FIELDS_IN_TEXTS = {"axis_count", "slave_count"}
+FIELDS_IN_TEXTS = {"axis_count", "slave_count", "complete_access"}  # the last is one of the control socket
 
 
 def keys_of_schema():

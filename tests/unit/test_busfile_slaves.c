@@ -82,8 +82,11 @@ static void test_every_key_becomes_what_it_says(void)
 static void test_sdos_have_the_bits_of_their_values(void)
 {
     static const cm1e_sdo_config_t expected[] = {
-        {0x8000, 0x12, 2, false, (uint64_t)-100}, {0x8000, 0x0A, 4, true, 0x3FC00000},
-        {0xF800, 0, 4, false, 0xFFFFFFFF}, {0x8000, 1, 1, false, 1}, {0x8000, 2, 8, false, UINT64_MAX},
+        {.index = 0x8000, .subindex = 0x12, .bytes = 2, .value = (uint64_t)-100},
+        {.index = 0x8000, .subindex = 0x0A, .bytes = 4, .before_op = true, .value = 0x3FC00000},
+        {.index = 0xF800, .subindex = 0, .bytes = 4, .value = 0xFFFFFFFF},
+        {.index = 0x8000, .subindex = 1, .bytes = 1, .value = 1},
+        {.index = 0x8000, .subindex = 2, .bytes = 8, .value = UINT64_MAX},
     };
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(everything), diag.text);
     TEST_ASSERT_EQUAL(5, config.slaves[0].sdo_count);
