@@ -115,6 +115,26 @@ cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config
     return error;
 }
 
+int look_at_loaded(const common_options_t *common, const cm1e_bus_config_t *config, const char *where,
+                   slave_action_t action, const void *options)
+{
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus;
+    uint16_t position = 0;
+    if (open_network(common, config, &bus, &diag) != CM1E_OK)
+        return fail(&diag);
+    int status = where ? find_slave(bus, config, where, &position) : EXIT_OK;
+    if (status == EXIT_OK)
+        status = action(bus, config, options, position);
+    return close_bus(bus, common, status);
+}
+
+int look_at_network(const common_options_t *common, const char *where, slave_action_t action, const void *options)
+{
+    static cm1e_bus_config_t config;
+    return load_network(common, &config) ? look_at_loaded(common, &config, where, action, options) : EXIT_WRONG_USE;
+}
+
 int attach_if_running(const common_options_t *options, cm1e_bus_config_t *config, cm1e_control_t **control)
 {
     cm1e_diag_t diag = {0};

@@ -20,6 +20,13 @@ bool load_network(const common_options_t *options, cm1e_bus_config_t *config);
 cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
                           cm1e_diag_t *diag);
 
+/** As run_on_slave(), but of a network that another program runs that program is asked. `where` NULL: `action` gets the
+ *  position 0. */
+int look_at_network(const common_options_t *common, const char *where, slave_action_t action, const void *options);
+/** As look_at_network(), of a configuration from load_network(). */
+int look_at_loaded(const common_options_t *common, const cm1e_bus_config_t *config, const char *where,
+                   slave_action_t action, const void *options);
+
 /** As open_network(), but our own network is not scanned: a damaged SII stops a scan. */
 cm1e_error_t open_unscanned(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
                             cm1e_diag_t *diag);

@@ -17,14 +17,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case 'j': options->json = true; return 0;
     case ARGP_KEY_ARG:
-        if (options->file)
-            argp_error(state, "one file at a time; \"%s\" is too many", arg);
-        options->file = arg;
-        return 0;
-    case ARGP_KEY_END:
-        if (!options->file)
-            argp_error(state, "which file?");
-        return 0;
+    case ARGP_KEY_END: return parse_file_word(key, arg, state, &options->file);
     default: return ARGP_ERR_UNKNOWN;
     }
 }

@@ -21,14 +21,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
     case 'p': return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
     case ARGP_KEY_ARG:
-        if (options->file)
-            argp_error(state, "one file at a time; \"%s\" is too many", arg);
-        options->file = arg;
-        return 0;
-    case ARGP_KEY_END:
-        if (!options->file)
-            argp_error(state, "which file?");
-        return 0;
+    case ARGP_KEY_END: return parse_file_word(key, arg, state, &options->file);
     default: return ARGP_ERR_UNKNOWN;
     }
 }

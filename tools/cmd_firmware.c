@@ -64,10 +64,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_ARG:
         if (!options->action)
             return choose_word("action", options->action = arg, "update") < 0 ? EINVAL : 0;
-        if (options->file)
-            argp_error(state, "one file at a time; \"%s\" is too many", arg);
-        options->file = arg;
-        return 0;
+        return parse_file_word(key, arg, state, &options->file);
     case ARGP_KEY_END: check_words(options, state); return 0;
     default: return ARGP_ERR_UNKNOWN;
     }

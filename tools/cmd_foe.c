@@ -130,12 +130,14 @@ static int write_file(cm1e_bus_t *bus, uint16_t position, const foe_options_t *o
     return status;
 }
 
-static int transfer_file(cm1e_bus_t *bus, const foe_options_t *options, uint16_t position)
+static int transfer_file(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
+    const foe_options_t *options = context;
     size_t shown = 0;
     const cm1e_foe_options_t transfer = {.password = (uint32_t)options->password, .bootstrap = options->bootstrap,
                                          .answer_ns = (int64_t)(options->timeout_s * 1e9),
                                          .progress = show_progress, .context = &shown};
+    (void)config;
     signal(SIGINT, on_interrupt);
     signal(SIGTERM, on_interrupt);
     return is_writing(options) ? write_file(bus, position, options, &transfer)
@@ -147,19 +149,12 @@ static int transfer_of_network(const foe_options_t *options)
 {
     static cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    uint16_t position;
     if (!load_network(&options->common, &config))
         return EXIT_WRONG_USE;
     if (options->bootstrap && refuse_to_attach(&options->common, &config, "Bootstrap", "it takes the slave out of the "
                                                "cycle", &diag) != CM1E_OK)
         return fail(&diag);
-    if (open_network(&options->common, &config, &bus, &diag) != CM1E_OK)
-        return fail(&diag);
-    int status = find_slave(bus, &config, options->words[1], &position);
-    if (status == EXIT_OK)
-        status = transfer_file(bus, options, position);
-    return close_bus(bus, &options->common, status);
+    return look_at_loaded(&options->common, &config, options->words[1], transfer_file, options);
 }
 
 static const struct argp_option table[] = {

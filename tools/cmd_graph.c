@@ -343,6 +343,16 @@ static int show(graph_t *graph, const graph_options_t *options)
     return EXIT_OK;
 }
 
+static int show_network(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *options, uint16_t position)
+{
+    static graph_t graph;
+    cm1e_diag_t diag = {0};
+    (void)position;
+    graph = (graph_t){.bus = bus, .config = config, .count = cm1e_bus_slave_count(bus)};
+    return cm1e_bus_topology(bus, graph.places, CM1E_MAX_SLAVES, &diag) == CM1E_OK ? show(&graph, options)
+                                                                                     : fail(&diag);
+}
+
 static const struct argp_option table[] = {
     {"svg", KEY_SVG, "FILE", 0, "Write a picture; -: to standard output", 0},
     {0}};
@@ -355,20 +365,8 @@ const struct argp argp_graph = {
 
 int command_graph(int argc, char **argv)
 {
-    static cm1e_bus_config_t config;
-    static graph_t graph;
     graph_options_t options = {.svg = NULL};
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
     if (parse_options(&argp_graph, argc, argv, &options))
         return EXIT_WRONG_USE;
-    if (!load_network(&options.common, &config))
-        return EXIT_WRONG_USE;
-    if (open_network(&options.common, &config, &bus, &diag) != CM1E_OK)
-        return fail(&diag);
-    graph = (graph_t){.bus = bus, .config = &config, .count = cm1e_bus_slave_count(bus)};
-    const int status = cm1e_bus_topology(bus, graph.places, CM1E_MAX_SLAVES, &diag) == CM1E_OK
-                           ? show(&graph, &options)
-                           : fail(&diag);
-    return close_bus(bus, &options.common, status);
+    return look_at_network(&options.common, NULL, show_network, &options);
 }

@@ -462,24 +462,26 @@ const struct argp argp_params = {
     "was written if it breaks off. If a program has the network, its motors are read through it; set and restore need "
     "`control: maintain` in its bus file and an axis that it does not command.", children, NULL, NULL};
 
-int command_params(int argc, char **argv)
+static int act(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
-    static params_options_t options;
-    static cm1e_bus_config_t config;
-    options.action = -1;
-    if (parse_options(&argp_params, argc, argv, &options))
-        return EXIT_WRONG_USE;
-    if (!load_network(&options.common, &config))
-        return EXIT_WRONG_USE;
-    cm1e_diag_t diag = {0};
     static motor_t motor;
-    if (open_network(&options.common, &config, &motor.bus, &diag) != CM1E_OK)
-        return fail(&diag);
-    int status = find_motor(&motor, &config, options.where);
-    motor.slave = status == EXIT_OK ? cm1e_bus_slave(motor.bus, motor.position) : NULL;
+    const params_options_t *options = context;
+    (void)position;
+    motor.bus = bus;
+    int status = find_motor(&motor, config, options->where);
+    motor.slave = status == EXIT_OK ? cm1e_bus_slave(bus, motor.position) : NULL;
     if (status == EXIT_OK)
         status = check_connector(&motor);
     if (status == EXIT_OK)
-        status = run(&motor, &options);
-    return close_bus(motor.bus, &options.common, status);
+        status = run(&motor, options);
+    return status;
+}
+
+int command_params(int argc, char **argv)
+{
+    static params_options_t options;
+    options.action = -1;
+    if (parse_options(&argp_params, argc, argv, &options))
+        return EXIT_WRONG_USE;
+    return look_at_network(&options.common, NULL, act, &options);
 }

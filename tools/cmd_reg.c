@@ -119,10 +119,12 @@ static int show(const reg_options_t *options, uint16_t position, const uint8_t *
     return EXIT_OK;
 }
 
-static int read_registers(cm1e_bus_t *bus, uint16_t position, const reg_options_t *options)
+static int read_registers(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
+    const reg_options_t *options = context;
     uint8_t data[CM1E_ESC_BYTES] = {0};
     cm1e_diag_t diag = {0};
+    (void)config;
     if (cm1e_esc_read(bus, position, (uint16_t)options->address, data, (uint16_t)options->size, &diag) != CM1E_OK)
         return fail(&diag);
     return show(options, position, data);
@@ -135,7 +137,6 @@ static int write_registers(cm1e_bus_t *bus, const cm1e_bus_config_t *config, con
     const reg_options_t *options = context;
     uint8_t data[4] = {0};
     cm1e_diag_t diag = {0};
-    (void)config;
     if (options->size < 4 && options->value >> 8 * options->size != 0) {
         complain("0x%llX does not fit into %lld byte%s: --size", (unsigned long long)options->value, options->size,
                  options->size == 1 ? "" : "s");
@@ -144,26 +145,10 @@ static int write_registers(cm1e_bus_t *bus, const cm1e_bus_config_t *config, con
     cm1e_put_uint(data, (unsigned)options->size, (uint64_t)options->value);
     if (cm1e_esc_write(bus, position, (uint16_t)options->address, data, (uint16_t)options->size, &diag) != CM1E_OK)
         return fail(&diag);
-    return read_registers(bus, position, options); /* what the register says now may be something else */
+    return read_registers(bus, config, options, position); /* what the register says now may be something else */
 }
 
 /* ---- the command ------------------------------------------------------------------------------------------------ */
-
-static int read_of_network(const reg_options_t *options)
-{
-    static cm1e_bus_config_t config;
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    uint16_t position;
-    if (!load_network(&options->common, &config))
-        return EXIT_WRONG_USE;
-    if (open_network(&options->common, &config, &bus, &diag) != CM1E_OK)
-        return fail(&diag);
-    int status = find_slave(bus, &config, options->words[1], &position);
-    if (status == EXIT_OK)
-        status = read_registers(bus, position, options);
-    return close_bus(bus, &options->common, status);
-}
 
 static const struct argp_option table[] = {
     {"size", KEY_SIZE, "BYTES", 0, "Bytes to write, 1 to 4; default: 2", 0},
@@ -182,7 +167,7 @@ int command_reg(int argc, char **argv)
     if (parse_options(&argp_reg, argc, argv, &options))
         return EXIT_WRONG_USE;
     if (!options.writes)
-        return read_of_network(&options);
+        return look_at_network(&options.common, options.words[1], read_registers, &options);
     if (options.common.attach) {
         complain("writing a register needs the network for itself: leave --attach out, and end the program before");
         return EXIT_WRONG_USE;

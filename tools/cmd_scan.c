@@ -147,34 +147,33 @@ static const struct argp_option table[] = {
     {"pdos", KEY_PDOS, NULL, 0, "Show the process data of each slave, as it has them assigned now", 0}, {0}};
 const struct argp argp_scan = {table, parse, NULL, "Lists the slaves of a network.", children, NULL, NULL};
 
-int command_scan(int argc, char **argv)
+static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
-    scan_options_t scan = {0};
-    if (parse_options(&argp_scan, argc, argv, &scan))
-        return EXIT_WRONG_USE;
-    const common_options_t options = scan.common;
-
-    static cm1e_bus_config_t config;
-    if (!load_network(&options, &config))
-        return EXIT_WRONG_USE;
+    const scan_options_t *scan = context;
     cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    if (open_network(&options, &config, &bus, &diag) != CM1E_OK)
-        return fail(&diag);
-    if (options.json) {
+    (void)position;
+    if (scan->common.json) {
         json_t *slaves = json_array();
         for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
             json_t *slave = slave_as_json(cm1e_bus_slave(bus, i));
-            if (scan.pdos)
+            if (scan->pdos)
                 json_object_set_new(slave, "pdos", pdos_as_json(bus, (uint16_t)i));
             json_array_append_new(slaves, slave);
         }
         print_json(slaves);
     } else {
-        print_table(bus, scan.pdos);
-        tell_simulated(&config);
+        print_table(bus, scan->pdos);
+        tell_simulated(config);
     }
     /* A bus file states the expected slaves: compare. */
-    const bool as_expected = config.axis_count + config.slave_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;
-    return close_bus(bus, &options, as_expected ? EXIT_OK : fail(&diag));
+    const bool as_expected = config->axis_count + config->slave_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;
+    return as_expected ? EXIT_OK : fail(&diag);
+}
+
+int command_scan(int argc, char **argv)
+{
+    scan_options_t options = {0};
+    if (parse_options(&argp_scan, argc, argv, &options))
+        return EXIT_WRONG_USE;
+    return look_at_network(&options.common, NULL, show, &options);
 }

@@ -216,6 +216,14 @@ const struct argp argp_sdo = {
     "slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
     children, NULL, NULL};
 
+static int act(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *options, uint16_t position)
+{
+    cm1e_diag_t diag = {0};
+    (void)config;
+    (void)position;
+    return transfer(bus, options, &diag);
+}
+
 int command_sdo(int argc, char **argv)
 {
     sdo_options_t options = {0};
@@ -225,13 +233,5 @@ int command_sdo(int argc, char **argv)
         return EXIT_WRONG_USE;
     if (parse_options(&argp_sdo, count, words, &options))
         return EXIT_WRONG_USE;
-
-    static cm1e_bus_config_t config;
-    if (!load_network(&options.common, &config))
-        return EXIT_WRONG_USE;
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    if (open_network(&options.common, &config, &bus, &diag) != CM1E_OK)
-        return fail(&diag);
-    return close_bus(bus, &options.common, transfer(bus, &options, &diag));
+    return look_at_network(&options.common, NULL, act, &options);
 }

@@ -55,8 +55,10 @@ static void print_state(const cm1e_slave_info_t *slave)
 }
 
 /** All slaves, or the one that is given. */
-static int show(cm1e_bus_t *bus, const states_options_t *options, uint16_t only)
+static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t only)
 {
+    const states_options_t *options = context;
+    (void)config;
     json_t *all = options->common.json ? json_array() : NULL;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
@@ -78,31 +80,14 @@ static int request(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void 
     const uint8_t wanted = codes[options->state];
     cm1e_al_answer_t answer = {0};
     cm1e_diag_t diag = {0};
-    (void)config;
     if (cm1e_esc_request_state(bus, position, wanted, STATE_TIMEOUT_S * INT64_C(1000000000), &answer, &diag) !=
         CM1E_OK)
         return fail(&diag);
-    show(bus, options, position);
+    show(bus, config, options, position);
     if (answer.state == wanted)
         return EXIT_OK;
     complain("slave %u refuses the state", position);
     return EXIT_FAILED;
-}
-
-static int show_network(const states_options_t *options)
-{
-    static cm1e_bus_config_t config;
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    uint16_t position = 0;
-    if (!load_network(&options->common, &config))
-        return EXIT_WRONG_USE;
-    if (open_network(&options->common, &config, &bus, &diag) != CM1E_OK)
-        return fail(&diag);
-    int status = options->where ? find_slave(bus, &config, options->where, &position) : EXIT_OK;
-    if (status == EXIT_OK)
-        status = show(bus, options, position);
-    return close_bus(bus, &options->common, status);
 }
 
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
@@ -118,7 +103,7 @@ int command_states(int argc, char **argv)
     if (parse_options(&argp_states, argc, argv, &options))
         return EXIT_WRONG_USE;
     if (options.state < 0)
-        return show_network(&options);
+        return look_at_network(&options.common, options.where, show, &options);
     if (options.common.attach) {
         complain("a state is requested only where no program runs the network: leave --attach out, and end the "
                  "program");

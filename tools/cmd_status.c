@@ -272,21 +272,13 @@ const struct argp argp_status = {NULL, parse, NULL,
                                  "network is brought to Pre-Operational.",
                                  children, NULL, NULL};
 
-int command_status(int argc, char **argv)
+static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
-    common_options_t options = {0};
-    if (parse_options(&argp_status, argc, argv, &options))
-        return EXIT_WRONG_USE;
-
-    static cm1e_bus_config_t config;
-    if (!load_network(&options, &config))
-        return EXIT_WRONG_USE;
+    const common_options_t *options = context;
     cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    if (open_network(&options, &config, &bus, &diag) != CM1E_OK)
-        return fail(&diag);
-    identify(bus, &config);
-    json_t *all = options.json ? json_array() : NULL;
+    (void)position;
+    identify(bus, config);
+    json_t *all = options->json ? json_array() : NULL;
     bool readable = true;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
@@ -295,9 +287,9 @@ int command_status(int argc, char **argv)
             continue;
         }
         if (slave->device && slave->device->channels == 0)
-            readable = show_drive(bus, &config, slave, all, &diag) && readable;
+            readable = show_drive(bus, config, slave, all, &diag) && readable;
         else if (slave->device)
-            readable = show_bridge(bus, &config, slave, all, &diag) && readable;
+            readable = show_bridge(bus, config, slave, all, &diag) && readable;
         else
             show_other(slave, all);
         show_presence(bus, slave, all);
@@ -309,6 +301,14 @@ int command_status(int argc, char **argv)
     if (all)
         print_json(all);
     else
-        tell_simulated(&config);
-    return close_bus(bus, &options, readable ? EXIT_OK : fail(&diag));
+        tell_simulated(config);
+    return readable ? EXIT_OK : fail(&diag);
+}
+
+int command_status(int argc, char **argv)
+{
+    common_options_t options = {0};
+    if (parse_options(&argp_status, argc, argv, &options))
+        return EXIT_WRONG_USE;
+    return look_at_network(&options, NULL, show, &options);
 }

@@ -12,6 +12,17 @@
 /* More than any reader accepts, so that the readers report their own limits. */
 enum { INPUT_LIMIT = 64 << 20, PIECE = 65536 };
 
+error_t parse_file_word(int key, char *arg, struct argp_state *state, const char **file)
+{
+    if (key == ARGP_KEY_ARG && *file)
+        argp_error(state, "one file at a time; \"%s\" is too many", arg);
+    if (key == ARGP_KEY_ARG)
+        *file = arg;
+    else if (!*file)
+        argp_error(state, "which file?");
+    return 0;
+}
+
 static bool read_all(FILE *file, const char *path, input_t *input)
 {
     size_t room = 0;

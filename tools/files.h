@@ -5,6 +5,7 @@
 #ifndef CM1E_TOOLS_FILES_H
 #define CM1E_TOOLS_FILES_H
 
+#include <argp.h>
 #include <jansson.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -16,6 +17,9 @@ typedef struct input {
     uint8_t *bytes; /**< the caller frees it */
     size_t size;
 } input_t;
+
+/** Takes the argument FILE of a command that has just one: for the keys ARGP_KEY_ARG and ARGP_KEY_END of its parser. */
+error_t parse_file_word(int key, char *arg, struct argp_state *state, const char **file);
 
 /** Reads a whole file ("-": standard input); false and a complaint: it cannot be read, or is larger than any file that
  *  the library reads. */
