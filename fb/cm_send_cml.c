@@ -39,10 +39,7 @@ void CM_SendCML(CM_SendCML_t *fb)
     case FB_STEP_NONE: break;
     }
     const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
-    fb->Done = out.done;
-    fb->Busy = out.busy;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_DONE(fb, out);
     axis = out.done || out.error ? cm1e_fb_axis(&fb->Private) : NULL;
     if (axis) {
         show_answer(fb, axis);

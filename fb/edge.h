@@ -83,10 +83,21 @@ static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *refe
 #define FB_TABLE(table, pair)                                                                                        \
     .read = (table) ? (pair) : NULL, .reference = (table), .count = (table) ? (table)->NumberOfPairs : 0,            \
     .absolute = (table) && (table)->IsAbsolute
+/* Inputs of homing steps. */
+#define FB_STEP_LIMITS(fb)                                                                                           \
+    .torque_limit = (fb)->TorqueLimit, .distance_limit = (fb)->DistanceLimit, .time_limit_ns = (fb)->TimeLimit
+#define FB_STEP_COMMAND(fb, described)                                                                               \
+    .kind = CM1E_COMMAND_HOMING_STEP, .position = (fb)->SetPosition, .buffer_mode = (fb)->BufferMode, .step = (described)
+/* Outputs of motion blocks. */
 #define FB_SHOW(fb, out)                                                                                             \
     ((fb)->Busy = (out).busy, (fb)->CommandAborted = (out).aborted, (fb)->Error = (out).error,                       \
      (fb)->ErrorID = (out).error_id)
 #define FB_SHOW_ACTIVE(fb, out) (FB_SHOW(fb, out), (fb)->Active = (out).active)
+/* Outputs of blocks without Active and CommandAborted. */
+#define FB_SHOW_DONE(fb, out)                                                                                        \
+    ((fb)->Done = (out).done, (fb)->Busy = (out).busy, (fb)->Error = (out).error, (fb)->ErrorID = (out).error_id)
+#define FB_SHOW_READING(fb, out)                                                                                     \
+    ((fb)->Valid = (out).valid, (fb)->Busy = (out).busy, (fb)->Error = (out).error, (fb)->ErrorID = (out).error_id)
 
 /** The axis of the block, latched at its last rising edge; NULL: none. */
 cm1e_axis_t *cm1e_fb_axis(const cm1e_fb_private_t *fb);

@@ -32,11 +32,6 @@ static inline bool fb_group_stands(const cm1e_fb_private_t *fb, const AXES_GROUP
            reference->Handle == fb->axis_handle && cm1e_group_runs(*reference, fb->command);
 }
 
-/* Outputs of blocks without Active and CommandAborted. */
-#define FB_SHOW_DONE(fb, out)                                                                                        \
-    ((fb)->Done = (out).done, (fb)->Busy = (out).busy, (fb)->Error = (out).error, (fb)->ErrorID = (out).error_id)
-#define FB_SHOW_READING(fb, out)                                                                                     \
-    ((fb)->Valid = (out).valid, (fb)->Busy = (out).busy, (fb)->Error = (out).error, (fb)->ErrorID = (out).error_id)
 /* Outputs of blocks that move a group. */
 #define FB_SHOW_GROUP_MOTION(fb, out)                                                                                \
     ((fb)->Done = (out).done, FB_SHOW_ACTIVE(fb, out), (fb)->CommandAccepted = (out).busy || (out).done,             \

@@ -9,9 +9,6 @@ void MC_ReadActualTorque(MC_ReadActualTorque_t *fb)
     if (axis)
         error = cm1e_axis_read_torque(axis, &torque);
     const fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, error);
-    fb->Valid = out.valid;
-    fb->Busy = out.busy;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_READING(fb, out);
     fb->Torque = out.valid ? torque : 0.0;
 }

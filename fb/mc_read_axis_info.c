@@ -14,10 +14,7 @@ void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb)
         condition = cm1e_axis_condition(axis);
     }
     const fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, CM1E_OK);
-    fb->Valid = out.valid;
-    fb->Busy = out.busy;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_READING(fb, out);
     fb->HomeAbsSwitch = axis && cm1e_axis_switch_active(axis, CM1E_SWITCH_HOME);
     fb->LimitSwitchPos = axis && cm1e_axis_switch_active(axis, CM1E_SWITCH_LIMIT_POSITIVE);
     fb->LimitSwitchNeg = axis && cm1e_axis_switch_active(axis, CM1E_SWITCH_LIMIT_NEGATIVE);

@@ -4,9 +4,6 @@ void MC_ReadBoolParameter(MC_ReadBoolParameter_t *fb)
 {
     fb_parameter_t shown = {.valid = fb->Valid, .value = fb->Value};
     cm1e_fb_read_parameter(&fb->Private, fb->Axis, fb->Enable, fb->ParameterNumber, true, &shown);
-    fb->Valid = shown.valid;
-    fb->Busy = shown.busy;
-    fb->Error = shown.error;
-    fb->ErrorID = shown.error_id;
+    FB_SHOW_READING(fb, shown);
     fb->Value = shown.value != 0.0;
 }

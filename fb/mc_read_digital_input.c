@@ -11,9 +11,6 @@ void MC_ReadDigitalInput(MC_ReadDigitalInput_t *fb)
                                      &value);
     fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, error == CM1E_ERROR_BUSY ? CM1E_OK : error);
     out.valid = out.valid && error == CM1E_OK; /* behind a bridge it comes some cycles later */
-    fb->Valid = out.valid;
-    fb->Busy = out.busy;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_READING(fb, out);
     fb->Value = out.valid && value;
 }

@@ -9,9 +9,6 @@ void MC_ReadDigitalOutput(MC_ReadDigitalOutput_t *fb)
     if (axis)
         error = cm1e_axis_read_output(axis, fb->OutputNumber ? fb->OutputNumber : fb->Output->Number, &value);
     const fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, error);
-    fb->Valid = out.valid;
-    fb->Busy = out.busy;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_READING(fb, out);
     fb->Value = out.valid && value;
 }

@@ -67,8 +67,5 @@ void MC_ReadMotionState(MC_ReadMotionState_t *fb)
     else if (out.valid)
         show_set(fb, &info);
     p->measuring = out.valid && fb->Source == mcActualValue;
-    fb->Valid = out.valid;
-    fb->Busy = out.busy;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_READING(fb, out);
 }

@@ -16,17 +16,9 @@ void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb)
         .direction = fb->Direction,
         .mode = fb->SwitchMode,
         .input = fb->ReferenceSignal.InputNumber,
-        .torque_limit = fb->TorqueLimit,
-        .distance_limit = fb->DistanceLimit,
-        .time_limit_ns = fb->TimeLimit,
+        FB_STEP_LIMITS(fb),
     };
-    const cm1e_axis_command_t command = {
-        .kind = CM1E_COMMAND_HOMING_STEP,
-        .velocity = fb->Velocity,
-        .position = fb->SetPosition,
-        .buffer_mode = fb->BufferMode,
-        .step = &step,
-    };
+    const cm1e_axis_command_t command = {FB_STEP_COMMAND(fb, &step), .velocity = fb->Velocity};
     const fb_outputs_t out = cm1e_fb_motion_unless(signal_of_another_axis(fb), &fb->Private, fb->Axis, fb->Execute,
                                                    FALSE, &command);
     fb->Done = out.done;

@@ -7,19 +7,11 @@ void MC_StepBlock(MC_StepBlock_t *fb)
     const cm1e_homing_step_t step = {
         .kind = CM1E_STEP_BLOCK,
         .direction = fb->Direction,
-        .torque_limit = fb->TorqueLimit,
-        .distance_limit = fb->DistanceLimit,
-        .time_limit_ns = fb->TimeLimit,
+        FB_STEP_LIMITS(fb),
         .detection_velocity = fb->DetectionVelocityLimit,
         .detection_ns = fb->DetectionVelocityTime,
     };
-    const cm1e_axis_command_t command = {
-        .kind = CM1E_COMMAND_HOMING_STEP,
-        .velocity = fb->Velocity,
-        .position = fb->SetPosition,
-        .buffer_mode = fb->BufferMode,
-        .step = &step,
-    };
+    const cm1e_axis_command_t command = {FB_STEP_COMMAND(fb, &step), .velocity = fb->Velocity};
     const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);

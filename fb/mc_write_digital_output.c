@@ -30,8 +30,5 @@ void MC_WriteDigitalOutput(MC_WriteDigitalOutput_t *fb)
     case FB_STEP_NONE: break;
     }
     const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
-    fb->Done = out.done;
-    fb->Busy = out.busy;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_DONE(fb, out);
 }
