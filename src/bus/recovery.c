@@ -446,6 +446,19 @@ static bool is_recognised(cm1e_bus_slave_t *slave)
     return true;
 }
 
+/** Begins the next transfer of a step. Without one the step is over, and the recovery goes on if all was `good`; then it
+ *  returns false. */
+static bool begin_or_end(cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo, bool good, int64_t now_ns)
+{
+    if (sdo)
+        cm1e_coe_begin(&slave->coe, sdo, now_ns);
+    else if (good)
+        advance(slave, now_ns);
+    else
+        fail(slave, now_ns);
+    return sdo != NULL;
+}
+
 /** The identity of a bridge does not tell its motors, and that of another drive not that it is one. */
 static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
@@ -462,14 +475,8 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_recognise_next(job, now_ns);
-        if (!sdo) {
-            if (is_recognised(slave))
-                advance(slave, now_ns);
-            else
-                fail(slave, now_ns);
+        if (!begin_or_end(slave, sdo, sdo || is_recognised(slave), now_ns))
             return false;
-        }
-        cm1e_coe_begin(&slave->coe, sdo, now_ns);
     }
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
@@ -533,14 +540,8 @@ static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_setup_next(job);
-        if (!sdo) {
-            if (job->error == CM1E_OK)
-                advance(slave, now_ns);
-            else
-                fail(slave, now_ns);
+        if (!begin_or_end(slave, sdo, job->error == CM1E_OK, now_ns))
             return false;
-        }
-        cm1e_coe_begin(&slave->coe, sdo, now_ns);
     }
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }

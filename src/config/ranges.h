@@ -30,6 +30,13 @@ bool cm1e_config_is_text(const char *text, size_t size);
 #define IS_TEXT(array) cm1e_config_is_text(array, sizeof(array))
 #define NO_TEXT "is not a text of less than %zu bytes without control characters"
 
+/** The ways to state an address, by cm1e_address_kind_t: the key of the bus file, and the largest value. */
+typedef struct cm1e_config_address {
+    const char *key;
+    uint16_t maximum;
+} cm1e_config_address_t;
+extern const cm1e_config_address_t cm1e_config_addresses[];
+
 static inline const cm1e_device_t *device_of(const check_t *check) { return cm1e_device_configured(check->axis); }
 static inline const cm1e_device_drive_t *drive_of(const check_t *check)
 {

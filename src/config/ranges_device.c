@@ -52,10 +52,7 @@ static bool check_firmware(const check_t *check)
     return true;
 }
 
-static const struct {
-    const char *key;
-    uint16_t maximum;
-} addresses[] = {
+const cm1e_config_address_t cm1e_config_addresses[] = {
     [CM1E_ADDRESS_POSITION] = {"position", CM1E_MAX_SLAVES},
     [CM1E_ADDRESS_ALIAS] = {"alias", 65535},
     [CM1E_ADDRESS_EXPLICIT_ID] = {"explicit_id", 254}, /* UG 4.2.3: 0xFF cannot be used */
@@ -74,7 +71,7 @@ static bool may_share(const check_t *check, uint32_t other)
     const bool shares = cm1e_device_is_shared(check->axis);
     const bool other_shares = cm1e_device_is_shared(&check->config->axes[other]);
     const unsigned channel = check->axis->channel;
-    const char *key = addresses[check->axis->address_kind].key;
+    const char *key = cm1e_config_addresses[check->axis->address_kind].key;
     const unsigned address = cm1e_axis_address(check->config, check->index);
     if (!shares && !other_shares)
         return axis_wrong(check, key, "is %u, which entry %u of the list has already; expected one axis at each "
@@ -95,8 +92,8 @@ static bool check_address(const check_t *check)
         return axis_wrong(check, "position", "is of the unknown kind %u; expected position, alias or explicit ID",
                           kind);
     const uint16_t address = cm1e_axis_address(check->config, check->index);
-    if (address == 0 || address > addresses[kind].maximum)
-        return axis_wrong(check, addresses[kind].key, "is %u; expected 1 ... %u", address, addresses[kind].maximum);
+    if (address == 0 || address > cm1e_config_addresses[kind].maximum)
+        return axis_wrong(check, cm1e_config_addresses[kind].key, "is %u; expected 1 ... %u", address, cm1e_config_addresses[kind].maximum);
     for (uint32_t i = 0; i < check->index; i++)
         if (at_same_address(check, i) && !may_share(check, i))
             return false;

@@ -76,15 +76,6 @@ static bool check_name(slave_check_t *check)
     return true;
 }
 
-static const struct {
-    const char *key;
-    uint16_t maximum;
-} addresses[] = {
-    [CM1E_ADDRESS_POSITION] = {"position", CM1E_MAX_SLAVES},
-    [CM1E_ADDRESS_ALIAS] = {"alias", 65535},
-    [CM1E_ADDRESS_EXPLICIT_ID] = {"explicit_id", 254},
-};
-
 static bool check_address(const slave_check_t *check)
 {
     const cm1e_bus_config_t *config = check->config;
@@ -93,11 +84,11 @@ static bool check_address(const slave_check_t *check)
     if (kind > CM1E_ADDRESS_EXPLICIT_ID)
         return slave_wrong(check, "position", "is of the unknown kind %u; expected position, alias or explicit ID",
                            kind);
-    const char *key = addresses[kind].key;
+    const char *key = cm1e_config_addresses[kind].key;
     if (slave->address == 0)
         return slave_wrong(check, "position", "is missing; expected position, alias or explicit_id");
-    if (slave->address > addresses[kind].maximum)
-        return slave_wrong(check, key, "is %u; expected 1 ... %u", slave->address, addresses[kind].maximum);
+    if (slave->address > cm1e_config_addresses[kind].maximum)
+        return slave_wrong(check, key, "is %u; expected 1 ... %u", slave->address, cm1e_config_addresses[kind].maximum);
     const bool is_member = cm1e_slave_is_member(slave);
     for (uint32_t i = 0; i < check->index; i++)
         if (config->slaves[i].address_kind == slave->address_kind && config->slaves[i].address == slave->address &&

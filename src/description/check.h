@@ -159,6 +159,10 @@ void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t
 bool cm1e_findings_has(const cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place);
 /** Sorts by line; call it after the last finding. */
 void cm1e_findings_sort(cm1e_findings_t *findings);
+/** Ends a check with the result `error`: gives the sorted findings to `*given`, or frees them after an error. No memory
+ *  for some of the findings is an error too. */
+cm1e_error_t cm1e_findings_give(cm1e_findings_t *findings, cm1e_error_t error, cm1e_findings_t **given,
+                                cm1e_diag_t *diag);
 
 /** First address behind the memory of a sync manager: process data has three buffers behind each other, a mailbox, or
  *  what has its mode, one (ETG.1000.4 6.7). */

@@ -90,3 +90,17 @@ void cm1e_findings_sort(cm1e_findings_t *findings)
     if (findings->list.count > 0)
         qsort(findings->list.at, findings->list.count, sizeof findings->list.at[0], by_line);
 }
+
+cm1e_error_t cm1e_findings_give(cm1e_findings_t *findings, cm1e_error_t error, cm1e_findings_t **given,
+                                cm1e_diag_t *diag)
+{
+    if (error == CM1E_OK && findings->arena.failed)
+        error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    if (error != CM1E_OK) {
+        cm1e_findings_free(findings);
+        return error;
+    }
+    cm1e_findings_sort(findings);
+    *given = findings;
+    return CM1E_OK;
+}

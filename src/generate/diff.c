@@ -206,14 +206,5 @@ cm1e_error_t cm1e_diff_file(cm1e_findings_t **findings, const void *bytes, size_
     cm1e_findings_t *found = cm1e_findings_create();
     if (!found)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    cm1e_error_t error = diff(found, bytes, size, bus, position, diag);
-    if (error == CM1E_OK && found->arena.failed)
-        error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    if (error != CM1E_OK) {
-        cm1e_findings_free(found);
-        return error;
-    }
-    cm1e_findings_sort(found);
-    *findings = found;
-    return CM1E_OK;
+    return cm1e_findings_give(found, diff(found, bytes, size, bus, position, diag), findings, diag);
 }

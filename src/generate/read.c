@@ -150,18 +150,10 @@ cm1e_error_t cm1e_check_file(cm1e_findings_t **findings, const void *bytes, size
     cm1e_findings_t *found = cm1e_findings_create();
     if (!found)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    cm1e_error_t error = format == CM1E_FILE_EC_EXTEND ? check_ec_extend(found, bytes, size, diag)
-                         : format == CM1E_FILE_ENI     ? check_eni(found, bytes, size, diag)
-                                                       : check_described(found, format, bytes, size, diag);
-    if (error == CM1E_OK && found->arena.failed)
-        error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    if (error != CM1E_OK) {
-        cm1e_findings_free(found);
-        return error;
-    }
-    cm1e_findings_sort(found);
-    *findings = found;
-    return CM1E_OK;
+    const cm1e_error_t error = format == CM1E_FILE_EC_EXTEND ? check_ec_extend(found, bytes, size, diag)
+                               : format == CM1E_FILE_ENI     ? check_eni(found, bytes, size, diag)
+                                                             : check_described(found, format, bytes, size, diag);
+    return cm1e_findings_give(found, error, findings, diag);
 }
 
 /* ---- written anew ----------------------------------------------------------------------------------------------- */

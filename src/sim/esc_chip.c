@@ -128,52 +128,42 @@ int64_t cm1e_sim_esc_due(const cm1e_sim_slave_t *slave)
     return first;
 }
 
-bool cm1e_sim_esc_read(cm1e_sim_slave_t *slave, uint32_t address, uint8_t *data, size_t length)
+/* Reads into `read`, or writes `written` where that is not NULL: registers, memory behind sync managers, other memory. */
+static bool access_memory(cm1e_sim_slave_t *slave, uint32_t address, uint8_t *read, const uint8_t *written,
+                          size_t length)
 {
-    const uint32_t end = address + (uint32_t)length;
+    const uint32_t begin = address, end = address + (uint32_t)length;
     bool any = false;
-    while (address < end && address < ESC_MEMORY_BYTES) {
-        size_t n;
+    for (size_t n; address < end && address < ESC_MEMORY_BYTES; address += (uint32_t)n) {
+        uint8_t *to = read ? read + (address - begin) : NULL;
+        const uint8_t *from = written ? written + (address - begin) : NULL;
         if (address < ESC_REGISTER_BYTES) {
             n = (end < ESC_REGISTER_BYTES ? end : ESC_REGISTER_BYTES) - address;
-            any |= cm1e_sim_esc_registers_read(slave, (uint16_t)address, data, n);
-        } else {
-            esc_sync_manager_t *sm;
-            n = cm1e_sim_esc_sm_span(slave, address, end, &sm);
-            if (sm) {
-                any |= cm1e_sim_esc_sm_read(slave, sm, (uint16_t)(address - sm->start), data, n);
-            } else {
-                memcpy(data, slave->memory + address, n);
-                any = true;
-            }
+            any |= from ? cm1e_sim_esc_registers_write(slave, (uint16_t)address, from, n)
+                        : cm1e_sim_esc_registers_read(slave, (uint16_t)address, to, n);
+            continue;
         }
-        address += (uint32_t)n;
-        data += n;
+        esc_sync_manager_t *sm;
+        n = cm1e_sim_esc_sm_span(slave, address, end, &sm);
+        const uint16_t offset = sm ? (uint16_t)(address - sm->start) : 0;
+        if (sm)
+            any |= from ? cm1e_sim_esc_sm_write(slave, sm, offset, from, n)
+                        : cm1e_sim_esc_sm_read(slave, sm, offset, to, n);
+        else if (from)
+            memcpy(slave->memory + address, from, n);
+        else
+            memcpy(to, slave->memory + address, n);
+        any = any || !sm;
     }
     return any;
 }
 
+bool cm1e_sim_esc_read(cm1e_sim_slave_t *slave, uint32_t address, uint8_t *data, size_t length)
+{
+    return access_memory(slave, address, data, NULL, length);
+}
+
 bool cm1e_sim_esc_write(cm1e_sim_slave_t *slave, uint32_t address, const uint8_t *data, size_t length)
 {
-    const uint32_t end = address + (uint32_t)length;
-    bool any = false;
-    while (address < end && address < ESC_MEMORY_BYTES) {
-        size_t n;
-        if (address < ESC_REGISTER_BYTES) {
-            n = (end < ESC_REGISTER_BYTES ? end : ESC_REGISTER_BYTES) - address;
-            any |= cm1e_sim_esc_registers_write(slave, (uint16_t)address, data, n);
-        } else {
-            esc_sync_manager_t *sm;
-            n = cm1e_sim_esc_sm_span(slave, address, end, &sm);
-            if (sm) {
-                any |= cm1e_sim_esc_sm_write(slave, sm, (uint16_t)(address - sm->start), data, n);
-            } else {
-                memcpy(slave->memory + address, data, n);
-                any = true;
-            }
-        }
-        address += (uint32_t)n;
-        data += n;
-    }
-    return any;
+    return access_memory(slave, address, NULL, data, length);
 }
