@@ -8,16 +8,9 @@
 
 #include "cm1e/sim.h"
 #include "effort.h"
-#include "machine.h"
+#include "two_buses.h"
 
-#define MS INT64_C(1000000)
-enum { A = 0, B, BUSES };
 enum { FAULT_FIRST = 2, FAULT_LAST = 420, MEND_AFTER = 260, END = 2600, STRIDE = 3, SAMPLED_STRIDE = 97 };
-
-static cm1e_bus_t *buses[BUSES];
-static cm1e_scheduler_t *scheduler;
-static AXIS_REF_t axes[BUSES];
-static cm1e_diag_t diag;
 
 static const struct {
     const char *breaks, *mends; /**< NULL: it mends itself */
@@ -37,21 +30,6 @@ static struct {
     double path[END + 2];                /**< set positions of the other axis, without a fault */
 } run;
 
-static void must(cm1e_error_t error) { ck_assert_msg(error == CM1E_OK, "%s", diag.text); }
-
-static cm1e_axis_info_t see(int i)
-{
-    cm1e_axis_info_t info;
-    cm1e_axis_read(axes[i], &info);
-    return info;
-}
-
-static void simulate(int bus, const char *line)
-{
-    char answer[200];
-    ck_assert_msg(cm1e_bus_simulate(buses[bus], line, answer, sizeof answer) == CM1E_OK, "%s: %s", line, answer);
-}
-
 static cm1e_bus_t *open_bus(const char *name)
 {
     cm1e_bus_config_t config;
@@ -63,14 +41,6 @@ static cm1e_bus_t *open_bus(const char *name)
     must(cm1e_bus_open(&bus, &config, &diag));
     cm1e_bus_config_free(&config);
     return bus;
-}
-
-static void open_scheduler(void)
-{
-    must(cm1e_scheduler_create(&scheduler, buses[A], NULL, &diag));
-    must(cm1e_scheduler_add_bus(scheduler, buses[B], &diag));
-    for (int i = 0; i < BUSES; i++)
-        axes[i] = cm1e_scheduler_axis(scheduler, (uint32_t)i);
 }
 
 /* ---- one fails, the other goes on -------------------------------------------------------------------------------- */
@@ -136,7 +106,7 @@ static void run_once(void)
     reset = (MC_Reset_t){.Axis = &axes[run.failing]};
     back = (MC_MoveAbsolute_t){.Axis = &axes[run.failing], .Position = 1, .Velocity = 10};
     must(cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = program}, &diag));
-    must(cm1e_scheduler_run(scheduler, END * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, END * MS_IN_NS, &diag));
     const cm1e_bus_counters_t *other = cm1e_bus_counters(buses[1 - run.failing]);
     ck_assert_msg(other->lost_frames == 0 && other->working_counter_errors == 0 && other->cycles >= END,
                   "the other bus lost %llu frames", (unsigned long long)other->lost_frames);
@@ -169,7 +139,7 @@ static void do_nothing(void *context) { (void)context; }
 static void run_shortly(void)
 {
     must(cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = do_nothing}, &diag));
-    must(cm1e_scheduler_run(scheduler, 50 * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, 50 * MS_IN_NS, &diag));
     cm1e_scheduler_destroy(scheduler);
     for (int i = 0; i < BUSES; i++) {
         ck_assert_uint_eq(cm1e_bus_counters(buses[i])->lost_frames, 0);
@@ -204,7 +174,7 @@ START_TEST(test_a_bus_that_cannot_start_leaves_the_other_one_alone)
     ck_assert(cm1e_bus_start(buses[B], &diag) != CM1E_OK);
     cm1e_bus_close(buses[B]);
     must(cm1e_scheduler_create(&scheduler, buses[A], NULL, &diag));
-    must(cm1e_scheduler_run(scheduler, 50 * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, 50 * MS_IN_NS, &diag));
     ck_assert_uint_eq(cm1e_bus_counters(buses[A])->lost_frames, 0);
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(buses[A]);
@@ -235,10 +205,8 @@ START_TEST(test_a_bus_that_was_stopped_since_is_refused_by_its_name)
         must(cm1e_bus_start(buses[i], &diag));
     open_scheduler();
     cm1e_bus_stop(buses[B]);
-    ck_assert_int_eq(cm1e_scheduler_run(scheduler, 50 * MS, &diag), CM1E_ERROR_STATE);
-    cm1e_scheduler_destroy(scheduler);
-    for (int i = 0; i < BUSES; i++)
-        cm1e_bus_close(buses[i]);
+    ck_assert_int_eq(cm1e_scheduler_run(scheduler, 50 * MS_IN_NS, &diag), CM1E_ERROR_STATE);
+    close_all();
 }
 END_TEST
 

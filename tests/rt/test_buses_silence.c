@@ -12,11 +12,9 @@
 
 #include "cm1e/sim.h"
 #include "effort.h"
-#include "machine.h"
+#include "two_buses.h"
 #include "nic/nic.h"
 
-#define MS INT64_C(1000000)
-enum { A = 0, B, BUSES };
 enum { LRW = 12, COMMAND = 16 };
 enum { BEGIN = 60, FIRST_LOSS = 58, LAST_LOSS = 640, END = 2600, STRIDE = 179, SAMPLED_STRIDE = 577 };
 
@@ -57,11 +55,6 @@ static const struct {
               {1, 6, 4, 2}, {9, 1, 1, 4}};
 enum { LOSSES = sizeof losses / sizeof losses[0] };
 
-static cm1e_bus_t *buses[BUSES];
-static cm1e_scheduler_t *scheduler;
-static AXIS_REF_t axes[BUSES];
-static cm1e_diag_t diag;
-
 static MC_Power_t powers[BUSES];
 static MC_MoveAbsolute_t move;
 static MC_GearIn_t gear;
@@ -92,15 +85,6 @@ static double undisturbed_end;
 
 /* no_room: of `failed`, so many would have had to go beyond a limit of the axis to follow. */
 static int followed, failed, no_room, in_gear;
-
-static void must(cm1e_error_t error) { ck_assert_msg(error == CM1E_OK, "%s", diag.text); }
-
-static cm1e_axis_info_t see(int i)
-{
-    cm1e_axis_info_t info;
-    cm1e_axis_read(axes[i], &info);
-    return info;
-}
 
 __attribute__((format(printf, 1, 2), noreturn)) static void wrong(const char *format, ...)
 {
@@ -303,7 +287,7 @@ static void open_bus(int i)
     axis->counts_per_unit = unit;
     config.lost_cycles_limit = run.variant->limit;
     config.virtual_time = true;
-    config.cycle_time_ns = MS;
+    config.cycle_time_ns = MS_IN_NS;
     must(cm1e_bus_open(&buses[i], &config, &diag));
     cm1e_bus_config_free(&config);
     must(cm1e_bus_start(buses[i], &diag));
@@ -325,7 +309,7 @@ static void run_once(void)
     must(cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = program}, &diag));
     cm1e_nic_set_tap(cm1e_bus_nic(buses[A]), tap_a, NULL);
     cm1e_nic_set_tap(cm1e_bus_nic(buses[B]), tap_b, NULL);
-    must(cm1e_scheduler_run(scheduler, END * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, END * MS_IN_NS, &diag));
     ck_assert_int_ge(run.cycle, END);
     cm1e_scheduler_destroy(scheduler);
     for (int i = 0; i < BUSES; i++)

@@ -1,5 +1,5 @@
-/* Nothing in the cycle allocates, locks, formats, writes or sleeps (promise_bench.h): an axes group, slaves and masters,
- * blocks behind a bridge. */
+/* Nothing in the cycle allocates, locks, formats, writes or sleeps (promise_bench.h): an axes group, slaves and
+ * masters, blocks behind a bridge. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -6,18 +6,9 @@
 #include <stdlib.h>
 
 #include "cm1e/sim.h"
-#include "machine.h"
+#include "two_buses.h"
 
-#define MS INT64_C(1000000)
-enum { A = 0, B, BUSES };
 enum { MOST_VELOCITY = 20, MOST_ACCELERATION = 200 }; /* u/s, u/s2 */
-
-static cm1e_bus_t *buses[BUSES];
-static cm1e_scheduler_t *scheduler;
-static AXIS_REF_t axes[BUSES];
-static cm1e_diag_t diag;
-
-static void must(cm1e_error_t error) { ck_assert_msg(error == CM1E_OK, "%s", diag.text); }
 
 /** A simulated segment with so many axes, the first of them X, Y ... */
 static cm1e_bus_t *open_bus(const char *name, uint32_t count, int64_t cycle_time_ns, bool virtual_time)
@@ -43,22 +34,11 @@ static cm1e_bus_t *open_bus(const char *name, uint32_t count, int64_t cycle_time
 
 static void start_both(void)
 {
-    buses[A] = open_bus("X", 1, MS, true);
-    buses[B] = open_bus("Y", 1, MS, true);
+    buses[A] = open_bus("X", 1, MS_IN_NS, true);
+    buses[B] = open_bus("Y", 1, MS_IN_NS, true);
     must(cm1e_bus_start(buses[A], &diag));
     must(cm1e_bus_start(buses[B], &diag));
-    must(cm1e_scheduler_create(&scheduler, buses[A], NULL, &diag));
-    must(cm1e_scheduler_add_bus(scheduler, buses[B], &diag));
-    for (int i = 0; i < BUSES; i++)
-        axes[i] = cm1e_scheduler_axis(scheduler, (uint32_t)i);
-}
-
-static void close_all(void)
-{
-    cm1e_scheduler_destroy(scheduler);
-    for (int i = 0; i < BUSES; i++)
-        cm1e_bus_close(buses[i]);
-    scheduler = NULL;
+    open_scheduler();
 }
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
@@ -74,13 +54,6 @@ static struct {
     bool geared;
     double worst_step[BUSES], worst_change[BUSES], before[BUSES], step[BUSES]; /* u in a cycle, and its change */
 } run;
-
-static cm1e_axis_info_t see(int i)
-{
-    cm1e_axis_info_t info;
-    cm1e_axis_read(axes[i], &info);
-    return info;
-}
 
 static const char *text_of(int i)
 {
@@ -123,9 +96,9 @@ static void program(void *context)
         MC_MoveAbsolute(&moves[i]);
     }
     if (run.lose_at > 0 && run.cycle == run.lose_at) {
-        char line[40], answer[200];
+        char line[40];
         snprintf(line, sizeof line, "lose %d", run.lost);
-        must(cm1e_bus_simulate(buses[run.lost_bus], line, answer, sizeof answer));
+        simulate(run.lost_bus, line);
     }
     look();
 }
@@ -150,8 +123,8 @@ static void prepare(void)
 
 START_TEST(test_the_first_bus_stays_operational_while_the_second_starts)
 {
-    buses[A] = open_bus("X", 2, MS, true);
-    buses[B] = open_bus("Y", 1, MS, true);
+    buses[A] = open_bus("X", 2, MS_IN_NS, true);
+    buses[B] = open_bus("Y", 1, MS_IN_NS, true);
     must(cm1e_bus_start(buses[A], &diag));
     must(cm1e_bus_start(buses[B], &diag));
     char answer[200];
@@ -171,7 +144,7 @@ END_TEST
 START_TEST(test_axes_of_both_buses_move_in_one_program)
 {
     prepare();
-    must(cm1e_scheduler_run(scheduler, 1500 * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, 1500 * MS_IN_NS, &diag));
     ck_assert(moves[A].Done && moves[B].Done);
     ck_assert_double_eq_tol(see(A).actual_position, 2.0, 0.002);
     ck_assert_double_eq_tol(see(B).actual_position, 3.0, 0.002);
@@ -187,7 +160,7 @@ START_TEST(test_a_gear_from_one_bus_to_the_other_is_in_step)
 {
     prepare();
     run.geared = true;
-    must(cm1e_scheduler_run(scheduler, 1500 * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, 1500 * MS_IN_NS, &diag));
     ck_assert_msg(gear.InGear && turn.InVelocity, "%s; %s", text_of(A), text_of(B));
     ck_assert_int_eq(run.out_of_step, 0);
     close_all();
@@ -210,7 +183,7 @@ START_TEST(test_a_lost_bus_concerns_its_own_axes)
     prepare();
     moves[A].Position = moves[B].Position = 10;
     run.lose_at = 300; /* both are on their way */
-    must(cm1e_scheduler_run(scheduler, 4000 * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, 4000 * MS_IN_NS, &diag));
     ck_assert(moves[A].Done && !moves[A].Error);
     ck_assert_double_eq_tol(see(A).actual_position, 10.0, 0.002);
     ck_assert_msg(see(B).state == CM1E_AXIS_ERROR_STOP, "%s", text_of(B));
@@ -232,10 +205,10 @@ START_TEST(test_what_cannot_run_together_is_refused)
         bool virtual_time, started;
         const char *says;
     } others[] = {
-        {"Z", MS / 2, true, true, "cycle_time_us differs"},
-        {"Z", MS, false, true, "another time"},
-        {"X", MS, true, true, "name \"X1\""},
-        {"Z", MS, true, false, "not in operation"},
+        {"Z", MS_IN_NS / 2, true, true, "cycle_time_us differs"},
+        {"Z", MS_IN_NS, false, true, "another time"},
+        {"X", MS_IN_NS, true, true, "name \"X1\""},
+        {"Z", MS_IN_NS, true, false, "not in operation"},
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         cm1e_bus_t *bus = open_bus(others[i].name, 1, others[i].cycle_time_ns, others[i].virtual_time);
@@ -247,7 +220,7 @@ START_TEST(test_what_cannot_run_together_is_refused)
     }
     ck_assert_int_eq(cm1e_scheduler_add_bus(scheduler, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     run.cycle = 0; /* what was refused has changed nothing */
-    must(cm1e_scheduler_run(scheduler, 1500 * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, 1500 * MS_IN_NS, &diag));
     ck_assert(moves[A].Done && moves[B].Done);
     ck_assert_int_eq(cm1e_scheduler_add_bus(scheduler, buses[B], &diag), CM1E_ERROR_STATE);
     close_all();
@@ -260,7 +233,7 @@ START_TEST(test_four_buses_and_no_more)
     for (int i = 0; i <= CM1E_MAX_BUSES; i++) {
         char name[8];
         snprintf(name, sizeof name, "N%d_", i);
-        many[i] = open_bus(name, 1, MS, true);
+        many[i] = open_bus(name, 1, MS_IN_NS, true);
         must(cm1e_bus_start(many[i], &diag));
     }
     must(cm1e_scheduler_create(&scheduler, many[0], NULL, &diag));
@@ -268,7 +241,7 @@ START_TEST(test_four_buses_and_no_more)
         must(cm1e_scheduler_add_bus(scheduler, many[i], &diag));
     ck_assert_int_eq(cm1e_scheduler_add_bus(scheduler, many[CM1E_MAX_BUSES], &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_ptr_nonnull(strstr(diag.text, "at most"));
-    must(cm1e_scheduler_run(scheduler, 100 * MS, &diag));
+    must(cm1e_scheduler_run(scheduler, 100 * MS_IN_NS, &diag));
     cm1e_scheduler_destroy(scheduler);
     for (int i = 0; i <= CM1E_MAX_BUSES; i++)
         cm1e_bus_close(many[i]);

@@ -191,13 +191,19 @@ static void test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write(void
     fake_bridge.shortest_mode_interval_ns = INT64_MAX;
 }
 
-/* A write that arrived may take effect late: 0x6061 is read also while a motor that moves keeps the next write back. */
-static void test_a_late_switch_is_seen_while_the_motor_moves(void)
+/* CML is written, and 0x6061 goes on to show csp. */
+static void write_cml_unseen(void)
 {
     fake_bridge.mode_shown = CSP;
     drive.command.mode = (cm1e_mode_t)CML;
     while (writes_of_mode() == 0)
         bench_cycle();
+}
+
+/* A write that arrived may take effect late: 0x6061 is read also while a motor that moves keeps the next write back. */
+static void test_a_late_switch_is_seen_while_the_motor_moves(void)
+{
+    write_cml_unseen();
     for (int i = 0; i < 300; i++) {
         fake_bridge_axis()->zero += 10;
         fake_bridge.mode_shown = i < 150 ? CSP : -1;
@@ -212,10 +218,7 @@ static void test_a_late_switch_is_seen_after_a_read_that_failed(void)
 {
     for (int full = 0; full < 2; full++) {
         bench_open(CM1E_DEVICE_EB12, 3);
-        fake_bridge.mode_shown = CSP;
-        drive.command.mode = (cm1e_mode_t)CML;
-        while (writes_of_mode() == 0)
-            bench_cycle();
+        write_cml_unseen();
         for (int i = 0; i < 300; i++) {
             fake_bridge_axis()->zero += 10;
             fake_bridge.mode_shown = i < 150 ? CSP : -1;
@@ -430,20 +433,9 @@ static void test_an_absence_alone_makes_no_dead_end_normal(void)
     TEST_ASSERT_FALSE(bench_mode(CSP, 500));
 }
 
-/* Another tool may have switched it meanwhile, and a switch of before is not gone on with. */
-static void test_after_an_absence_the_mode_that_is_found_counts(void)
+/* The slave is away, and in csp when it is back, as it was commanded meanwhile. Nothing is written. */
+static void expect_csp_after_an_absence(void)
 {
-    leave_operational(20);
-    fake_bridge_axis()->mode = CMD;
-    bench_cycles(100);
-    TEST_ASSERT_TRUE(drive.change.abnormal);
-
-    bench_open(CM1E_DEVICE_EB12, 3);
-    fake_bridge.mode_shown = CSP;
-    drive.command.mode = (cm1e_mode_t)CML;
-    while (writes_of_mode() == 0)
-        bench_cycle();
-    bench_cycles(3);
     bus.watch.al_state = CM1E_AL_SAFE_OP;
     bench_cycles(20);
     fake_bridge_axis()->mode = CSP;
@@ -453,6 +445,20 @@ static void test_after_an_absence_the_mode_that_is_found_counts(void)
     bench_cycles(200);
     TEST_ASSERT_EQUAL_UINT(before, writes_of_mode());
     TEST_ASSERT_EQUAL_INT8(CSP, drive.feedback.mode);
+}
+
+/* Another tool may have switched it meanwhile, and a switch of before is not gone on with. */
+static void test_after_an_absence_the_mode_that_is_found_counts(void)
+{
+    leave_operational(20);
+    fake_bridge_axis()->mode = CMD;
+    bench_cycles(100);
+    TEST_ASSERT_TRUE(drive.change.abnormal);
+
+    bench_open(CM1E_DEVICE_EB12, 3);
+    write_cml_unseen();
+    bench_cycles(3);
+    expect_csp_after_an_absence();
 }
 
 /* A write whose answer comes during the absence proves nothing either. */
@@ -463,25 +469,14 @@ static void test_after_an_absence_a_write_that_was_under_way_is_not_repeated(voi
     drive.command.mode = (cm1e_mode_t)CML;
     while (drive.change.sdo.index == 0 || !drive.change.sdo.write)
         bench_cycle();
-    bus.watch.al_state = CM1E_AL_SAFE_OP;
-    bench_cycles(20);
-    fake_bridge_axis()->mode = CSP;
-    drive.command.mode = CM1E_MODE_CSP;
-    bus.watch.al_state = CM1E_AL_OP;
-    const unsigned before = writes_of_mode();
-    bench_cycles(200);
-    TEST_ASSERT_EQUAL_UINT(before, writes_of_mode());
-    TEST_ASSERT_EQUAL_INT8(CSP, drive.feedback.mode);
+    expect_csp_after_an_absence();
 }
 
 /* Which mode the motor is in is unknown until 0x6061 shows the one that was written. */
 static void test_a_switch_is_not_overtaken_by_the_next_one(void)
 {
     const unsigned before = bus.sdo_count;
-    fake_bridge.mode_shown = CSP;
-    drive.command.mode = (cm1e_mode_t)CML;
-    while (writes_of_mode() == 0)
-        bench_cycle();
+    write_cml_unseen();
     TEST_ASSERT_TRUE(bus.sdo_log[before].write); /* the mode was read at the start */
     drive.command.mode = (cm1e_mode_t)CPIO;
     for (int i = 0; i < 100; i++) {
