@@ -46,6 +46,11 @@ def main():
                           ("test_bridge_cml_exchange", True), ("test_cml_exchanges", False),
                           ("test_drives", False), ("test_axis_home", False)):
         assert bool(re.search(regex, name)) == is_near, (name, regex)
+    files = mutate.places(["src/drive/drive_io.c:3", "src/drive/drive_io.c:7-9", "src/drive/drive.c"])
+    assert files == {"src/drive/drive.c": [], "src/drive/drive_io.c": [range(3, 4), range(7, 10)]}, files
+    at = [SOURCE.count("\n", 0, defect[1]) + 1 for defect in found
+          if mutate.is_at(defect, SOURCE, [range(7, 8), range(10, 11)])]
+    assert set(at) == {7, 10}, at
     for known in mutate.EQUIVALENT: # each is a defect that its source still has
         text = (Path(sys.argv[1]) / known[0]).read_text()
         planted = ((known[0], text[text.rfind("\n", 0, begin) + 1:].split("\n", 1)[0].strip(), text[begin:end], new)
