@@ -1,7 +1,7 @@
 #include "bus/bus_internal.h"
 
-/* Datagrams in addition to the process data. Each slave has at most one on its way; `owner` says for which of its state
- * machines. Functions wait only if they are given a time to wait. */
+/* Datagrams in addition to the process data. Each slave has at most one on its way; `owner` says which of its state
+ * machines sent it. A function waits only if it is given a time to wait. */
 
 /** Gives the CoE client to the job of a slave when the client is idle. */
 static void feed_job(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
@@ -39,8 +39,8 @@ static bool next_datagram(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_
     return cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
 }
 
-/** Emergencies come without being asked for. In operation one mailbox after the other is looked into, while its client
- *  has nothing else to do. */
+/** Slaves send emergencies on their own. So in operation the bus looks into one mailbox after the other, while the
+ *  client of that mailbox has nothing else to do. */
 static void listen_in_turn(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_listening_t *listening = &bus->listening;

@@ -41,9 +41,10 @@ static void write_control(const cm1e_al_machine_t *machine, cm1e_datagram_t *d, 
     cm1e_put_u16(d->data, (uint16_t)value);
 }
 
-/** Requests the present state with the acknowledge bit; for Init it requests Init at once, which needs no
- *  configuration. A slave with device emulation copies AL control to AL status, so every acknowledgement shows as a new
- *  error. If the error is still shown, the next request therefore alternately omits the bit. */
+/** The value of AL control that acknowledges an error: the present state with the acknowledge bit, or on the way to
+ *  Init that state at once, because Init needs no configuration. A slave with device emulation copies AL control to AL
+ *  status, so every acknowledgement shows as a new error. If the error is still shown, every second request therefore
+ *  omits the bit. */
 static unsigned acknowledgement(const cm1e_al_machine_t *machine)
 {
     const unsigned state = machine->target == CM1E_AL_INIT ? CM1E_AL_INIT : machine->state & AL_STATE_MASK;
@@ -128,7 +129,7 @@ void cm1e_al_result(cm1e_al_machine_t *machine, const cm1e_datagram_t *d, int64_
 {
     (void)now_ns;
     if (d->working_counter != 1)
-        return; /* lost or not answered: repeated until the deadline */
+        return; /* lost or not answered: the request is repeated until the deadline */
     switch (machine->step) {
     case AL_IDLE:
         break;

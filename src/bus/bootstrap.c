@@ -18,7 +18,8 @@ enum { REGISTER_TRIES = 10 };
 
 static int64_t now(const cm1e_bootstrap_t *bootstrap) { return cm1e_clock_now(bootstrap->bus->clock); }
 
-/** False: the slave has not answered any of several frames. To ask twice for the same does no harm here. */
+/** Sends a datagram until it is answered. false: the slave has answered none of several frames. A repeated request does
+ *  no harm here. */
 static bool transfer(const cm1e_bootstrap_t *bootstrap, cm1e_command_t command, uint16_t offset, void *data,
                      uint16_t length)
 {
@@ -46,8 +47,8 @@ static cm1e_error_t lost(const cm1e_bootstrap_t *bootstrap)
                 bootstrap->position);
 }
 
-/** Waits for a state; the request acknowledges an error of before. A slave may be away for a moment, because it starts
- *  anew: then it has no station address, and the caller scans. */
+/** Requests a state and waits for it. The request acknowledges an earlier error. A slave that starts anew is away for a
+ *  moment. Then it has no station address, and the caller scans. */
 static cm1e_error_t to_state(const cm1e_bootstrap_t *bootstrap, uint8_t target, int64_t timeout_ns)
 {
     uint8_t request[2] = {(uint8_t)(target | AL_ERROR_FLAG), 0}, answer[6] = {0};

@@ -13,12 +13,12 @@ typedef struct cm1e_bootstrap {
     cm1e_bus_t *bus;
     uint16_t position;
     cm1e_diag_t *diag;
-    cm1e_mailbox_t mailbox; /**< once entered */
+    cm1e_mailbox_t mailbox; /**< valid after cm1e_bootstrap_enter() */
 } cm1e_bootstrap_t;
 
-/** From any state by Init into Bootstrap. */
+/** Brings the slave from any state to Init and then to Bootstrap. */
 cm1e_error_t cm1e_bootstrap_enter(cm1e_bootstrap_t *bootstrap);
-/** To Init. A device may copy its memory before it answers. */
+/** Brings the slave to Init. A device may copy its memory before it answers. */
 cm1e_error_t cm1e_bootstrap_leave(cm1e_bootstrap_t *bootstrap);
 
 #endif

@@ -5,7 +5,7 @@
 #include "core/in_task.h"
 #include "device/devices.h"
 
-/* Where a value comes from; of a channel the first one's, and what is added for each next. */
+/* Where a value comes from. The numbers are those of channel 1; each further channel adds the increments. */
 typedef struct source {
     size_t offset;
     uint16_t index;
@@ -29,7 +29,7 @@ static const source_t of_channel[] = {
     OF_CHANNEL(detected_module, OBJ_F050_DETECTED_MODULE_IDENT_LIST, 1, 0, 1),
 };
 
-/* Of F540 the sub-indexes between them are "N/A": there is nothing to ask for. */
+/* The guide calls the other sub-indexes of F540 "N/A", so they are not read. */
 static const source_t of_device[] = {
     OF_DEVICE(pdo_longest_us, OBJ_F530_SYSTEM_INFO, 17), OF_DEVICE(pdo_shortest_us, OBJ_F530_SYSTEM_INFO, 18),
     OF_DEVICE(pdo_late, OBJ_F530_SYSTEM_INFO, 19),       OF_DEVICE(pdo_early, OBJ_F530_SYSTEM_INFO, 20),
@@ -48,7 +48,8 @@ typedef struct reading {
     cm1e_diag_t *diag;
 } reading_t;
 
-/* A refusal, or an answer of another size, concerns one value; silence all. */
+/* Reads one value. A refusal, or an answer of another size, concerns this value alone. Silence ends the whole
+ * reading. */
 static void read_value(reading_t *reading, uint16_t index, uint8_t subindex, cm1e_bridge_value_t *value)
 {
     uint8_t data[8] = {0};

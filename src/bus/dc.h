@@ -21,10 +21,10 @@ enum { DC_ACTIVATE = 0x01, DC_SYNC0 = 0x02, DC_SYNC1 = 0x04 };
 
 typedef struct cm1e_dc_slave {
     cm1e_slave_clock_t clock;
-    uint8_t beyond;       /**< looks in a row that found it beyond its tolerance */
+    uint8_t beyond;       /**< number of looks in a row that found the clock beyond its tolerance */
     bool seen;            /**< looked at since Operational was prepared */
     uint8_t control;      /**< register 0x0980: who has the unit for SYNC and latch */
-    uint8_t step;         /**< of its recovery (dc_recovery.c), and what that remembers */
+    uint8_t step;         /**< step of the recovery of the clock (dc_recovery.c) */
     int64_t deadline_ns;
     uint64_t offset;
 } cm1e_dc_slave_t;
@@ -33,15 +33,15 @@ typedef struct cm1e_dc {
     bool used;
     const struct cm1e_bus *leader; /**< the bus whose reference clock ours follows; NULL: ours leads */
     cm1e_datagram_t steering; /**< tells our reference the time of that clock */
-    bool steers;          /**< it is on its way */
+    bool steers;          /**< the datagram `steering` is on its way */
     uint16_t reference;   /**< position; 0: none */
     cm1e_dc_pace_t pace;
-    int64_t reference_ns; /**< of the last frame that brought one */
+    int64_t reference_ns; /**< time of the reference in the last frame that brought it */
     int64_t sent_ns;      /**< when that frame was sent */
     int64_t frame_ns;     /**< when the frame that is on its way was sent */
     int64_t predicted_ns; /**< what that frame carries to a reference that does not answer */
     int64_t correction_ns; /**< for the next cycle, not yet taken */
-    bool marked;          /**< it is one of every second frame */
+    bool marked;          /**< the frame on its way is one of every second frames */
     unsigned silent;      /**< frames in a row that came back without the time of the reference */
     bool abandoned;       /**< the reference was off: another one is taken before the next frame */
     uint16_t candidate;   /**< a slave whose clock was set while there was no reference; 0: none */
@@ -62,7 +62,8 @@ cm1e_error_t cm1e_dc_set_up(cm1e_bus_t *bus, cm1e_diag_t *diag);
 void cm1e_dc_stop(cm1e_bus_t *bus);
 
 /* dc_modes.c */
-/** Before the slaves are written: takes the pulses of each from the configuration, or from the mode in its SII. */
+/** Takes the pulses of each slave from the configuration, or from the mode in its SII. Called before the slaves are
+ *  written. */
 cm1e_error_t cm1e_dc_find_pulses(cm1e_bus_t *bus, cm1e_diag_t *diag);
 
 /* dc_pulses.c */
@@ -76,7 +77,7 @@ static inline unsigned cm1e_dc_activation(const cm1e_slave_clock_t *clock)
 }
 
 /* dc_start.c */
-/** Before the first exchange: the plan of the cycle gets the phase of the reference clock. */
+/** Gives the plan of the cycle the phase of the reference clock. Called before the first exchange. */
 void cm1e_dc_begin(cm1e_bus_t *bus);
 /** Exchanges until all clocks and the cycle are within their tolerances. */
 cm1e_error_t cm1e_dc_wait(cm1e_bus_t *bus, cm1e_diag_t *diag);
@@ -84,25 +85,25 @@ cm1e_error_t cm1e_dc_wait(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /* dc_cycle.c */
 /** One datagram that keeps the clocks together while no cycle runs. */
 void cm1e_dc_keep(cm1e_bus_t *bus);
-/** Before and behind an exchange. @rt cycle */
+/** Called before and after an exchange. @rt cycle */
 void cm1e_dc_send(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_dc_receive(cm1e_bus_t *bus, bool returned);
-/** A slave shows another AL status code than before: one of synchronism counts as a loss. @rt cycle */
+/** Called when the AL status code of a slave has changed. A code of synchronism counts as a loss. @rt cycle */
 void cm1e_dc_note_status(struct cm1e_bus_slave *slave, uint16_t al_status_code);
-/** Supervision: fills the datagram with a look at a clock; false: it is not the turn of the clocks. @rt cycle */
+/** Fills the datagram of the supervision with a look at a clock; false: it is not the turn of the clocks. @rt cycle */
 bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *datagram);
 void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *datagram);
 
-/** The system time of the reference clock at a moment of this machine; of one that is silent, by the rate that the
- *  cycle has learnt. @rt cycle */
+/** The system time of the reference clock at the time `now_ns` of this machine. If the reference is silent, the rate
+ *  that the cycle has learnt gives it. @rt cycle */
 int64_t cm1e_dc_time(const cm1e_dc_t *dc, int64_t now_ns);
 
 /* dc_recovery.c */
 void cm1e_dc_recover_begin(struct cm1e_bus_slave *slave);
-/** The slave has no address any more: it was off, and its clock with it. */
+/** Notes that the slave was off, and its clock with it, because it has no station address any more. */
 void cm1e_dc_was_off(struct cm1e_bus_slave *slave);
-/** The next register of a slave whose clock is set again; false: nothing to send now. `*is_set`: it is set, or the
- *  slave has none. */
+/** Fills the datagram with the next register of a slave whose clock is set again; false: nothing to send now.
+ *  `*is_set`: the clock is set, or the slave has none. */
 bool cm1e_dc_recover_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns, bool *is_set);
 void cm1e_dc_recovered(struct cm1e_bus_slave *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
 

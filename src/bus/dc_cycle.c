@@ -9,11 +9,12 @@
 enum {
     BEYOND_LIMIT = 3,    /* looks in a row */
     SILENT_LIMIT = 3,    /* frames in a row without the time of the reference clock */
-    MARK_NS = 3,         /* a prediction is off by this in every second frame, and by twice as much in the others: a
-                            clock that follows predictions does not give them back */
+    MARK_NS = 3,         /* a prediction is wrong by this in every second frame, and by twice as much in the others. A
+                            clock that follows predictions never returns just these numbers */
 };
 #define SIGN 0x80000000u
-/** From one frame to the next no clock goes so far wrong: the reference was off, and counts from 0. */
+/** ns; no clock goes so far wrong from one frame to the next. A larger difference means that the reference was off and
+ *  counts from 0. */
 #define IMPLAUSIBLE_NS INT64_C(1000000000)
 
 /* ---- in every cycle ---------------------------------------------------------------------------------------------- */
@@ -89,8 +90,8 @@ static void take_steering(cm1e_bus_t *bus)
         dc->steers = false;
 }
 
-/** The datagram carries the time that is expected. If the reference does not answer, the others get that, and not the
- *  time of an earlier frame, by which they would fall back a whole cycle. */
+/** Sends the expected time in the datagram. If the reference does not answer, the other slaves get that time. With the
+ *  time of an earlier frame they would fall back a whole cycle. */
 void cm1e_dc_send(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_dc_t *dc = &bus->dc;
@@ -142,7 +143,7 @@ int64_t cm1e_bus_pace(cm1e_bus_t *bus)
     return correction_ns;
 }
 
-/** The plan of the cycle that the blocking phases have kept goes on. */
+/** Goes on with the plan of the cycle that the blocking phases have kept. */
 int64_t cm1e_bus_next_start(const cm1e_bus_t *bus, int64_t now_ns)
 {
     const int64_t cycle_ns = bus->config.cycle_time_ns, passed_ns = now_ns - bus->next_cycle_ns;

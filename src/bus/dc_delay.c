@@ -36,7 +36,8 @@ static bool take_port(cm1e_dc_node_t *node, uint8_t *port)
     return false;
 }
 
-/** The slaves come in the order of the frame: each is connected to the last one before it that has a port left. */
+/** Finds the parent of every slave. The slaves stand in the order of the frame, so each is connected to the last slave
+ *  before it that has a port left. */
 static void connect(cm1e_dc_node_t *nodes, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -73,7 +74,7 @@ void cm1e_dc_delays(cm1e_dc_node_t *nodes, uint32_t count)
         const cm1e_dc_node_t *parent = &nodes[at];
         const uint32_t out = parent->times[port_before(parent, port)];
         const uint32_t behind = parent->times[port] - out;                        /* there and back, and all behind */
-        const uint32_t own = node->times[last_port(node)] - node->times[0];       /* all behind this slave */
+        const uint32_t own = node->times[last_port(node)] - node->times[0];       /* all slaves behind this one */
         const uint32_t before = out - parent->times[0];                           /* branches visited before */
         node->delay_ns = parent->delay_ns + before + (behind > own ? (behind - own) / 2 : 0);
     }

@@ -13,7 +13,7 @@ static const cm1e_dc_config_t *stated_for(const cm1e_bus_t *bus, const cm1e_bus_
     return axis ? &axis->dc : slave->config ? &slave->config->dc : &none;
 }
 
-/** A mode may be called "first" itself. NULL: there is none. */
+/** Finds a mode by its name; "first" is the first mode, unless a mode has that name. NULL: there is none. */
 static const cm1e_sii_dc_mode_t *find_mode(const cm1e_sii_dc_mode_t *modes, unsigned count, const char *name)
 {
     for (unsigned i = 0; i < count; i++)
@@ -36,7 +36,7 @@ static cm1e_error_t no_mode(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave
                          "(category 60): %s.", cm1e_bus_label_first(bus, slave, label), name, list);
 }
 
-/** `stated` names a mode. One without SYNC0 gives no pulses. */
+/** Takes the pulses of the mode that `stated` names. A mode without SYNC0 gives no pulses. */
 static cm1e_error_t take_mode(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, const cm1e_dc_config_t *stated,
                               cm1e_diag_t *diag)
 {

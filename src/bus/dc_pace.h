@@ -27,14 +27,14 @@ enum {
 };
 
 void cm1e_dc_pace_begin(cm1e_dc_pace_t *pace, int64_t cycle_ns);
-/** The reference time at which the last frame passed the reference clock. Returns what the next cycle begins later, in
- *  ns. @rt cycle */
+/** Takes the reference time at which the last frame passed the reference clock. Returns by how many ns the next cycle
+ *  begins later. @rt cycle */
 int64_t cm1e_dc_pace_step(cm1e_dc_pace_t *pace, int64_t reference_ns);
-/** As step, without a new time: the frame was lost. @rt cycle */
+/** Does what cm1e_dc_pace_step() does when the frame was lost and no new time is known. @rt cycle */
 int64_t cm1e_dc_pace_coast(cm1e_dc_pace_t *pace);
 /** Distance of a time from the next whole multiple of the cycle time: -cycle/2 ... cycle/2. */
 int64_t cm1e_dc_phase(int64_t reference_ns, int64_t cycle_ns);
-/** The phase has been within its tolerance for a while. */
+/** Whether the phase has been within its tolerance for a while. */
 static inline bool cm1e_dc_pace_settled(const cm1e_dc_pace_t *pace) { return pace->settled >= 64; }
 
 #endif

@@ -1,7 +1,8 @@
 #include "bus/dc.h"
 #include "core/bytes.h"
 
-/** Between the setting of SYNC0 and its first pulse, which must not have passed when the slave gets its start time. */
+/** ns; from the setting of SYNC0 to its first pulse. The pulse must not have passed when the slave gets its start
+ *  time. */
 #define PULSE_LEAD_NS INT64_C(20000000)
 
 /** Pulses of all slaves have one phase: a multiple of all periods, and the shift. */

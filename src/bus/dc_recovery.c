@@ -2,13 +2,13 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** So long after its first pulse is due, the slave may go to Operational. */
+/** ns; so long after its first pulse the slave may go to Operational. */
 #define PULSES_NS INT64_C(30000000)
 
 enum { TIMES_BYTES = REG_DC_DELAY + 4 - REG_DC_SYSTEM_TIME, OFFSET_AT = REG_DC_OFFSET - REG_DC_SYSTEM_TIME,
        DELAY_AT = REG_DC_DELAY - REG_DC_SYSTEM_TIME, OFFSET_AND_DELAY_BYTES = 12 };
 
-/** In this order; without pulses the clock is set after TOGETHER. */
+/** The steps, in their order. Without pulses the clock is set after TOGETHER. */
 enum clock_step { FILTERS = 0, TIMES, OFFSET, RESTART, TOGETHER, OFF, CYCLES, START, ON, PULSES };
 
 static void fill(const cm1e_dc_t *dc, const cm1e_dc_slave_t *own, uint16_t station, cm1e_datagram_t *d)
@@ -66,14 +66,15 @@ bool cm1e_dc_recover_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
     if (*is_set || own->step == PULSES)
         return false;
     if (own->clock.is_reference && own->step < OFF) {
-        own->step = OFF; /* it has its address, so it was not off: it gives the time */
+        own->step = OFF; /* it has its address, so it was not off, and still gives the time */
         return false;
     }
     fill(dc, own, slave->facts.station, d);
     return true;
 }
 
-/** Its system time, as it was read, contains the offset and delay that it had until now. */
+/** Takes the times as they were read. The system time contains the offset and the delay that the slave had until
+ *  now. */
 static void take_times(const cm1e_dc_t *dc, cm1e_dc_slave_t *own, const cm1e_datagram_t *d)
 {
     const uint64_t local = cm1e_get_u64(d->data) - cm1e_get_u64(d->data + OFFSET_AT) + cm1e_get_u32(d->data + DELAY_AT);

@@ -19,7 +19,7 @@ void cm1e_dc_begin(cm1e_bus_t *bus)
         dc->slaves[i].seen = false;
 }
 
-/** NULL: all clocks are within their tolerance. */
+/** A slave whose clock is beyond its tolerance; NULL: there is none. */
 static const cm1e_bus_slave_t *find_apart(const cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
@@ -55,8 +55,8 @@ cm1e_error_t cm1e_dc_wait(cm1e_bus_t *bus, cm1e_diag_t *diag)
         if (cm1e_clock_now(bus->clock) < deadline_ns)
             continue;
         if (apart && !dc->slaves[apart->info.position - 1].seen)
-            return cm1e_diag_set(diag, CM1E_ERROR_BUS_CLOCKS, 0, "%s does not answer when the deviation of its clock is "
-                                 "read. Check its cables and its power.", cm1e_bus_label_first(bus, apart, label));
+            return cm1e_diag_set(diag, CM1E_ERROR_BUS_CLOCKS, 0, "%s does not answer when the deviation of its clock "
+                                 "is read. Check its cables and its power.", cm1e_bus_label_first(bus, apart, label));
         if (apart)
             return cm1e_diag_set(diag, CM1E_ERROR_BUS_CLOCKS, 0,
                                  "The clock of %s does not follow the reference clock: it deviates by %d ns, allowed "

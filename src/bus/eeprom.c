@@ -36,14 +36,14 @@ static bool read_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data,
     return !eeprom->lost;
 }
 
-/** Tried once: a busy interface accepts no request, so a request that was accepted cannot be repeated. */
+/** Writes a register once. A busy interface accepts no request, so a request that was accepted must not be repeated. */
 static bool write_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
 {
     eeprom->lost = cm1e_soem_transfer(eeprom->soem, COMMAND_FPWR, eeprom->station, offset, data, size) != 1;
     return !eeprom->lost;
 }
 
-/** Waits until the interface is idle. False: lost, or it stays busy. */
+/** Waits until the interface is idle. false: the slave is lost, or the interface stays busy. */
 static bool wait_idle(cm1e_eeprom_t *eeprom, int64_t timeout_ns, uint16_t *status)
 {
     cm1e_clock_t *clock = cm1e_clock_current();
@@ -155,7 +155,7 @@ bool cm1e_eeprom_take(cm1e_eeprom_t *eeprom)
     if (!read_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config))
         return false;
     eeprom->was_offered = config & CONFIG_OFFERED;
-    config = CONFIG_FORCE; /* also out of an access that the processor never ended */
+    config = CONFIG_FORCE; /* ends also an access that the processor never ended */
     const bool forced = write_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config);
     config = CONFIG_MASTER;
     return forced && write_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config);

@@ -11,7 +11,7 @@
 typedef struct cm1e_eeprom {
     cm1e_soem_t *soem;
     uint16_t station;
-    bool lost;              /**< the slave itself does not answer */
+    bool lost;              /**< the slave controller does not answer */
     bool was_offered;       /**< the slave's processor had the interface before */
     uint32_t group_word;    /**< address of the words in `group` */
     unsigned group_bytes;   /**< 0: nothing */

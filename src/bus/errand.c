@@ -44,14 +44,15 @@ cm1e_error_t cm1e_errand_submit(cm1e_bus_t *bus, cm1e_errand_t *errand)
         return CM1E_ERROR_BUSY;
     /* A bus that stopped meanwhile either sees the errand, or this thread sees the phase of the bus. */
     const bool stopped = __atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST) < BUS_SCANNED;
-    if (stopped && __atomic_compare_exchange_n(&bus->errands.errand, &own, NULL, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+    if (stopped && __atomic_compare_exchange_n(&bus->errands.errand, &own, NULL, false, __ATOMIC_SEQ_CST,
+                                               __ATOMIC_SEQ_CST))
         return CM1E_ERROR_STATE;
     return CM1E_OK;
 }
 
 bool cm1e_errand_done(const cm1e_errand_t *errand) { return __atomic_load_n(&errand->done, __ATOMIC_ACQUIRE); }
 
-/** Nothing of the errand is touched any more afterwards: it belongs to its thread. */
+/** Ends an errand. Afterwards it belongs to the thread that submitted it, and the bus does not touch it any more. */
 static void finish(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
 {
     if (errand->error == CM1E_OK)
@@ -113,7 +114,7 @@ static void fill_sii(const cm1e_errand_t *errand, uint16_t station, cm1e_datagra
 {
     switch (errand->step) {
     case STEP_BEGIN: cm1e_datagram_set(datagram, COMMAND_FPRD, station, REG_EEPROM_CONFIG, 1); break;
-    case STEP_FORCE: configure(datagram, station, CONFIG_FORCE); break; /* also out of an access that never ended */
+    case STEP_FORCE: configure(datagram, station, CONFIG_FORCE); break; /* ends also an access that never ended */
     case STEP_OWN: configure(datagram, station, CONFIG_MASTER); break;
     case STEP_READY: cm1e_datagram_set(datagram, COMMAND_FPRD, station, REG_EEPROM_CONTROL, 2); break;
     case STEP_CLEAR:
@@ -145,7 +146,7 @@ bool cm1e_errand_next(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 
 /* ---- answers ---------------------------------------------------------------------------------------------------- */
 
-/** The EEPROM goes back to the processor of the slave, if that had it. */
+/** Ends an errand on the EEPROM. The EEPROM goes back to the processor of the slave, if that had it before. */
 static void end_sii(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
 {
     const bool taken = errand->step > STEP_FORCE && errand->step != STEP_GIVE_BACK;
@@ -210,7 +211,7 @@ void cm1e_errand_result(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns
     if (!answered && ++errand->tries >= TRIES) {
         end_sii(bus, errand, CM1E_ERROR_BUS_LOST);
     } else if (!answered) {
-        if (errand->step == STEP_ASK) /* it may have been accepted: a request while it is busy has no effect */
+        if (errand->step == STEP_ASK) /* perhaps accepted: a busy interface ignores another request */
             errand->step = STEP_READY;
     } else if (errand->kind == ERRAND_REGISTERS) {
         memcpy(errand->data, datagram->data, errand->size);

@@ -11,7 +11,7 @@
 
 enum {
     CM1E_ERRAND_BYTES = 128,          /**< of registers or SII at once; an SII has a multiple of it */
-    CM1E_ERRAND_REGISTERS_END = 0x0900, /**< from there on reading changes something: latches, mailboxes */
+    CM1E_ERRAND_REGISTERS_END = 0x0900, /**< reading a register from here on changes something: latches, mailboxes */
 };
 
 typedef enum cm1e_errand_kind { ERRAND_INFO = 0, ERRAND_REGISTERS, ERRAND_SII } cm1e_errand_kind_t;
@@ -36,12 +36,13 @@ typedef struct cm1e_errand {
     size_t taken;
     unsigned tries;
     int64_t deadline_ns;
-    uint32_t done;                    /**< atomic */
+    uint32_t done;                    /**< atomic; 1 when the errand has ended */
 } cm1e_errand_t;
 
 typedef struct cm1e_bus_slave cm1e_bus_slave_t;
 
-/** CM1E_ERROR_BUSY: another one is under way; STATE, INVALID_ARGUMENT, UNSUPPORTED: not begun. @rt any */
+/** Hands in an errand. CM1E_ERROR_BUSY: another one is under way; STATE, INVALID_ARGUMENT, UNSUPPORTED: it was not
+ *  begun. @rt any */
 CM1E_GUEST_API cm1e_error_t cm1e_errand_submit(cm1e_bus_t *bus, cm1e_errand_t *errand);
 CM1E_GUEST_API bool cm1e_errand_done(const cm1e_errand_t *errand);
 

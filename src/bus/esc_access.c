@@ -1,4 +1,4 @@
-/* Registers and state of one slave, as they are asked for. */
+/* Registers and state of one slave, read and written on request. */
 #include "cm1e/esc.h"
 
 #include <string.h>
@@ -24,7 +24,7 @@ bool cm1e_bus_read_registers(cm1e_bus_t *bus, uint16_t position, uint16_t addres
     return true;
 }
 
-/** What another program's slave can be asked for: registers whose reading changes nothing. */
+/** Reads registers of a network that another program runs: only those whose reading changes nothing. */
 static cm1e_error_t read_attached(cm1e_bus_t *bus, uint16_t position, uint16_t address, uint8_t *data, uint16_t size,
                                   cm1e_diag_t *diag)
 {

@@ -35,6 +35,6 @@ cm1e_error_t cm1e_firmware_update(cm1e_bus_t *bus, uint16_t position, const cm1e
         *state = CM1E_FIRMWARE_WRITTEN;
         error = cm1e_bootstrap_leave(&bootstrap);
     }
-    cm1e_bus_set_phase(bus, BUS_OPEN); /* of the other slaves nothing is known any more */
+    cm1e_bus_set_phase(bus, BUS_OPEN); /* the states of the other slaves are no longer known */
     return error;
 }

@@ -28,7 +28,7 @@ static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, bool bootstrap, co
     return CM1E_OK;
 }
 
-/** The mailbox of Pre-Operational is that of the CoE client: both number their messages together. */
+/** Uses the mailbox of the CoE client, because both number their messages together. */
 static cm1e_error_t use_mailbox(cm1e_foe_t *foe)
 {
     cm1e_bus_slave_t *slave = cm1e_bus_at(foe->bus, foe->position);
@@ -53,7 +53,8 @@ static cm1e_error_t run(cm1e_foe_t *foe, const transfer_t *transfer)
                           : cm1e_foe_receive(foe, transfer->name, transfer->to, transfer->size);
 }
 
-/** The slave leaves Bootstrap also after an error, as far as it can; the first error counts. */
+/** Transfers the file in Bootstrap. The slave leaves Bootstrap also after an error, as far as it can. The first error
+ *  is returned. */
 static cm1e_error_t in_bootstrap(cm1e_foe_t *foe, const transfer_t *transfer)
 {
     cm1e_bootstrap_t bootstrap = {.bus = foe->bus, .position = foe->position, .diag = foe->diag};
@@ -67,7 +68,7 @@ static cm1e_error_t in_bootstrap(cm1e_foe_t *foe, const transfer_t *transfer)
         else if (error != CM1E_ERROR_BUS_LOST)
             (void)cm1e_bootstrap_leave(&bootstrap);
     }
-    cm1e_bus_set_phase(foe->bus, BUS_OPEN); /* of the other slaves nothing is known any more */
+    cm1e_bus_set_phase(foe->bus, BUS_OPEN); /* the states of the other slaves are no longer known */
     return error;
 }
 
@@ -81,7 +82,7 @@ static void describe(cm1e_foe_t *foe, const transfer_t *transfer)
     foe->room = *transfer->size;
 }
 
-/** By the program that runs the network. */
+/** Lets the program that runs the network transfer the file. */
 static cm1e_error_t remotely(cm1e_foe_t *foe, const transfer_t *transfer)
 {
     describe(foe, transfer);
@@ -91,8 +92,8 @@ static cm1e_error_t remotely(cm1e_foe_t *foe, const transfer_t *transfer)
     return error;
 }
 
-/** Beside the process data, whose cycles are made meanwhile. The transfer is on the stack, so it must end before this
- *  function returns; the bus ensures that. */
+/** Transfers the file beside the process data of the running cycle. The transfer is on the stack, so it must end before
+ *  this function returns; the bus ensures that. */
 static cm1e_error_t in_operation(cm1e_foe_t *foe, const transfer_t *transfer)
 {
     describe(foe, transfer);

@@ -18,7 +18,7 @@ enum { FOE_READ = 1, FOE_WRITE, FOE_DATA, FOE_ACK, FOE_ERROR, FOE_BUSY };
 enum { FOE_HEADER = 6, AGAIN_LIMIT = 3 };
 enum { FOE_ERROR_UNDEFINED = 0x8000, FOE_ERROR_DISK_FULL = 0x8003, FOE_ERROR_PACKET = 0x8005 };
 #define BUSY_PAUSE_NS INT64_C(20000000)
-/** For a last message without an answer. */
+/** ns; for a last message, which has no answer. */
 #define FAREWELL_NS INT64_C(200000000)
 
 /* ---- the end ---------------------------------------------------------------------------------------------------- */
@@ -48,7 +48,7 @@ static uint8_t *start_message(cm1e_foe_t *foe, uint8_t opcode, uint32_t value)
     return body + FOE_HEADER;
 }
 
-/** A last message, without an answer, but the slave must have read it. */
+/** Sends a last message. It has no answer, but the slave must have read it. */
 static void say_farewell(cm1e_foe_t *foe, int64_t now_ns)
 {
     foe->phase = FOE_PHASE_FAREWELL;
@@ -57,12 +57,12 @@ static void say_farewell(cm1e_foe_t *foe, int64_t now_ns)
     cm1e_mailbox_send(foe->mailbox, MAILBOX_TYPE_FOE, foe->message_bytes);
 }
 
-/** The slave must not wait for the rest. */
+/** Ends the transfer early, and tells the slave, which would wait for the rest. */
 static void end_early(cm1e_foe_t *foe, cm1e_foe_fault_kind_t fault, uint32_t number, uint32_t code, int64_t now_ns)
 {
     const bool answered = fault == FOE_NO_FOE || fault == FOE_UNEXPECTED || fault == FOE_OTHER_ACK;
     if (answered && foe->number == 0)
-        foe->partly = false; /* it has answered the request, and has not seen any of the file */
+        foe->partly = false; /* the slave has answered the request only, and has seen nothing of the file */
     foe->fault.kind = fault;
     foe->fault.number = number;
     start_message(foe, FOE_ERROR, code);
@@ -71,16 +71,16 @@ static void end_early(cm1e_foe_t *foe, cm1e_foe_fault_kind_t fault, uint32_t num
 
 size_t cm1e_foe_room(const cm1e_mailbox_t *mailbox) { return (size_t)cm1e_mailbox_room(mailbox) - FOE_HEADER; }
 
-/** The name of the file is behind its request. */
+/** Writes the request, with the name of the file behind it. */
 static void put_request(cm1e_foe_t *foe)
 {
     const size_t bytes = strlen(foe->name);
     memcpy(start_message(foe, foe->writing ? FOE_WRITE : FOE_READ, foe->options.password), foe->name, bytes);
     foe->message_bytes = (uint16_t)(FOE_HEADER + bytes);
-    foe->partly |= foe->writing; /* from here on nobody knows what the slave has done */
+    foe->partly |= foe->writing; /* from now on it is unknown what the slave has done */
 }
 
-/** A packet that is not full ends the file, so a file of whole packets has an empty one at its end. */
+/** Writes a packet. One that is not full ends the file, so a file of whole packets has an empty one at its end. */
 static void put_packet(cm1e_foe_t *foe)
 {
     const size_t room = cm1e_foe_room(foe->mailbox);
@@ -93,8 +93,8 @@ static void put_packet(cm1e_foe_t *foe)
     foe->partly = true;
 }
 
-/** The next message, or the last one once more: others may have used the mailbox meanwhile. The acknowledgement 0
- *  stands for a request to read that the slave has had. */
+/** Writes the next message, or the last one again, because others may have used the mailbox meanwhile. The
+ *  acknowledgement 0 stands for a request to read that the slave has had. */
 static void put_message(cm1e_foe_t *foe, bool again)
 {
     if (foe->number == 0 && (foe->writing || !again))
@@ -121,7 +121,7 @@ void cm1e_foe_begin(cm1e_foe_t *foe, int64_t now_ns)
 
 /* ---- progress --------------------------------------------------------------------------------------------------- */
 
-/** false: the user breaks off. */
+/** Reports the progress; false: the user breaks the transfer off. */
 static bool goes_on(const cm1e_foe_t *foe)
 {
     return !__atomic_load_n(&foe->cancel, __ATOMIC_RELAXED) &&
@@ -133,7 +133,7 @@ static void count(cm1e_foe_t *foe, size_t bytes)
     __atomic_store_n(&foe->done, foe->done + bytes, __ATOMIC_RELAXED);
 }
 
-/** The next message, unless the user breaks off. */
+/** Goes on with the next message, unless the user breaks the transfer off. */
 static void go_on(cm1e_foe_t *foe, int64_t now_ns)
 {
     if (!goes_on(foe)) {
@@ -147,7 +147,7 @@ static void go_on(cm1e_foe_t *foe, int64_t now_ns)
 
 /* ---- answers ---------------------------------------------------------------------------------------------------- */
 
-/** The slave has taken the request, or a packet. */
+/** Takes an acknowledgement of the request or of a packet. */
 static void on_acknowledge(cm1e_foe_t *foe, uint32_t number, int64_t now_ns)
 {
     const size_t bytes = (size_t)foe->message_bytes - FOE_HEADER;
@@ -241,7 +241,7 @@ static void on_answer(cm1e_foe_t *foe, const uint8_t *answer, size_t length, int
     }
 }
 
-/** A message of the slave: what is no answer of FoE may be an emergency, which is kept. */
+/** Takes a message of the slave. One that is no answer of FoE may be an emergency, which is kept. */
 static void on_message(cm1e_foe_t *foe, const uint8_t *message, int64_t now_ns)
 {
     const size_t length = cm1e_get_u16(message);
@@ -260,7 +260,7 @@ static void on_message(cm1e_foe_t *foe, const uint8_t *message, int64_t now_ns)
 
 /* ---- one datagram at a time ------------------------------------------------------------------------------------- */
 
-/** The next message, if it is time for one. */
+/** Sends the next message, if it is time for one. */
 static void send_next(cm1e_foe_t *foe, int64_t now_ns)
 {
     const bool again = foe->phase == FOE_PHASE_PAUSE;

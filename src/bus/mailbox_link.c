@@ -119,7 +119,7 @@ static void after_poll(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
     const uint8_t *in = both ? d->data + SYNC_MANAGER_BYTES : d->data;
     const bool out_full = both && d->data[SM_STATUS] & SM_STATUS_FULL;
     if (out_full)
-        mailbox->write_lost = false; /* it is there, the slave will read it */
+        mailbox->write_lost = false; /* the message is there, and the slave will read it */
     else
         mailbox->draining = false;
     if (in[SM_STATUS] & SM_STATUS_FULL)

@@ -17,9 +17,9 @@ enum { MAILBOX_TYPE_ERROR = 0, MAILBOX_TYPE_COE = 3, MAILBOX_TYPE_FOE = 4 };
 typedef enum cm1e_mailbox_state {
     MAILBOX_IDLE = 0,
     MAILBOX_WRITE,  /**< the message goes into SM0 */
-    MAILBOX_POLL,   /**< is SM1 full? And, after a lost write: is SM0? */
+    MAILBOX_POLL,   /**< looks whether SM1 is full, and after a lost write also whether SM0 is */
     MAILBOX_READ,
-    MAILBOX_REPEAT, /**< the frame with the answer is lost: ask for it again */
+    MAILBOX_REPEAT, /**< requests the answer again, because its frame was lost */
     MAILBOX_REPEAT_WAIT,
 } cm1e_mailbox_state_t;
 
@@ -34,7 +34,7 @@ typedef struct cm1e_mailbox {
     bool draining;                    /**< looks until the slave has read what is in SM0 */
     bool write_lost;                  /**< it is unknown whether the message was delivered */
     unsigned suspects;                /**< number of following answers that may be repetitions */
-    enum { COUNTING_UNKNOWN = 0, COUNTING, NOT_COUNTING } counting; /**< does the slave number its answers? */
+    enum { COUNTING_UNKNOWN = 0, COUNTING, NOT_COUNTING } counting; /**< whether the slave numbers its answers */
     unsigned tries;                   /**< in the present state */
     uint16_t size;                    /**< of `message` with its header */
     uint8_t message[CM1E_DATAGRAM_MAX];

@@ -25,7 +25,8 @@ static void end(cm1e_mapping_job_t *job, cm1e_error_t error, const char *reason)
     job->reason = reason;
 }
 
-/** The assignment read back is another one. Where the slave refused to have it written, that says more. */
+/** Ends the job because the slave shows another assignment. If the slave refused a write, that refusal is reported,
+ *  because it says more. */
 static void end_wrong_assignment(cm1e_mapping_job_t *job, const char *reason)
 {
     if (job->is_refused)
@@ -126,7 +127,7 @@ static void took_entry(cm1e_mapping_job_t *job)
         read_next_pdo(job);
 }
 
-/** How many PDOs the device has assigned itself. */
+/** Takes the number of PDOs that the device has assigned itself. */
 static void take_count(cm1e_mapping_job_t *job)
 {
     job->assigned.count = job->data[0];
@@ -138,7 +139,7 @@ static void take_count(cm1e_mapping_job_t *job)
         end(job, CM1E_ERROR_PDO_MAPPING, "it has more PDOs assigned than are understood; name PDOs in the bus file");
 }
 
-/** What each transfer brought. */
+/** Takes what a transfer has read. */
 static void took(cm1e_mapping_job_t *job)
 {
     switch (job->step) {
@@ -183,7 +184,8 @@ static void took(cm1e_mapping_job_t *job)
     }
 }
 
-/** A refused write is no error yet: what is read back tells. A slave may have no object for its assignment. */
+/** Whether the job may go on after a transfer. A refused write is no error yet, because what is read back decides. A
+ *  slave may have no object for its assignment. */
 static bool may_go_on(cm1e_mapping_job_t *job)
 {
     if (job->any && job->step == MAPPING_READ_COUNT && job->sdo.error == CM1E_ERROR_SDO_ABORT) {

@@ -32,9 +32,9 @@ typedef enum cm1e_mapping_step {
     MAPPING_ASSIGN,     /**< write a PDO, one after the other */
     MAPPING_COUNT,      /**< write their number */
     MAPPING_READ_COUNT, /**< read the number of assigned PDOs: the one written */
-    MAPPING_READ_PDO,   /**< read which, one after the other: those written */
+    MAPPING_READ_PDO,   /**< read the assigned PDOs, one after the other: those written */
     MAPPING_READ_ENTRIES, /**< read the number of entries of a PDO */
-    MAPPING_READ_ENTRY, /**< read them, one after the other; then on with the next PDO */
+    MAPPING_READ_ENTRY, /**< read the entries, one after the other, then go on with the next PDO */
 } cm1e_mapping_step_t;
 
 typedef struct cm1e_mapping_job {
@@ -42,7 +42,7 @@ typedef struct cm1e_mapping_job {
     cm1e_pdo_choice_t choice;   /**< as asked for; none: the device's own assignment is read */
     cm1e_pdo_choice_t assigned; /**< the choice of the present direction */
     int direction;           /**< 0 outputs, 1 inputs */
-    uint8_t place;           /**< which PDO of the choice, from 0 */
+    uint8_t place;           /**< number of the PDO in the choice, from 0 */
     uint8_t entry, entries;  /**< where the reading of its entries is, from 1 */
     bool started;            /**< `sdo` is in work or done */
     bool any;                /**< cm1e_mapping_begin_any() */
@@ -60,7 +60,8 @@ void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_p
 /** Reads the assignment that a slave has, which may be empty in a direction, or missing. */
 void cm1e_mapping_begin_any(cm1e_mapping_job_t *job, uint16_t position);
 static inline bool cm1e_mapping_idle(const cm1e_mapping_job_t *job) { return job->step == MAPPING_IDLE; }
-/** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
+/** The transfer to begin now; NULL: the job has ended, or is idle. The transfer that was returned before must have
+ *  ended. */
 cm1e_sdo_t *cm1e_mapping_next(cm1e_mapping_job_t *job);
 /** Whether two layouts have equal entries at equal places. */
 bool cm1e_mapping_equal(const cm1e_mapped_direction_t *a, const cm1e_mapped_direction_t *b);

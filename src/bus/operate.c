@@ -3,12 +3,13 @@
 #include "core/bytes.h"
 #include "core/in_task.h"
 
-/** Exchanges in a row before Operational is requested, when the slaves must have valid outputs; and good ones after. */
+/** Exchanges in a row before Operational is requested, so that the slaves have valid outputs; and good exchanges
+ *  afterwards. */
 enum { EXCHANGES = 3 };
 #define EXCHANGE_NS INT64_C(2000000000)
-/** For each of the two steps down of cm1e_bus_stop(). */
+/** ns; for each of the two steps down of cm1e_bus_stop(). */
 #define STOP_STEP_NS INT64_C(500000000)
-/** In which a slave takes an acknowledgement. */
+/** ns; within this time a slave takes an acknowledgement. */
 #define ACKNOWLEDGE_NS INT64_C(20000000)
 
 /** Exchanges until the process data comes back. Whether all slaves count is asked in Operational only: a slave may keep
@@ -86,7 +87,7 @@ static void request_of_all(cm1e_bus_t *bus, unsigned al_control)
     cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_AL_CONTROL, control, sizeof control);
 }
 
-/** Until no slave shows one of these bits of AL status, or the time is over. Returns what they show, ORed. */
+/** Waits until no slave shows one of these bits of AL status, or the time is over. Returns what they show, ORed. */
 static unsigned wait_for_all(cm1e_bus_t *bus, unsigned bits, int64_t time_ns)
 {
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + time_ns;
@@ -99,9 +100,9 @@ static unsigned wait_for_all(cm1e_bus_t *bus, unsigned bits, int64_t time_ns)
     return 0;
 }
 
-/** All slaves, also those that the scan does not know, in one broadcast; waits until none is above `state`. A slave
- *  that shows an error may keep its state until the error is acknowledged. One with device emulation shows the
- *  acknowledge bit as an error, so it gets the request without it last. */
+/** Requests a state of all slaves in one broadcast, also of those that the scan does not know, and waits until none is
+ *  above `state`. A slave that shows an error may keep its state until the error is acknowledged. One with device
+ *  emulation shows the acknowledge bit as an error, so the last request comes without it. */
 static void all_down_to(cm1e_bus_t *bus, uint8_t state)
 {
     const unsigned above = AL_STATE_MASK & ~(2u * state - 1u);
@@ -114,7 +115,8 @@ static void all_down_to(cm1e_bus_t *bus, uint8_t state)
     wait_for_all(bus, above, STOP_STEP_NS);
 }
 
-/** What is left of each slave; ends at the first lost frame: then nothing can be said of the others either. */
+/** Looks at the state of each slave. It ends at the first lost frame, because then nothing is known of the other slaves
+ *  either. */
 static void look_at_states(cm1e_bus_t *bus)
 {
     uint8_t status[6];
@@ -129,7 +131,7 @@ static void look_at_states(cm1e_bus_t *bus)
     }
 }
 
-/** More than once: a frame may be lost. */
+/** Sends the safe outputs more than once, because a frame may be lost. */
 static void send_safe_outputs(cm1e_bus_t *bus)
 {
     cm1e_bus_release_outputs(bus);
@@ -150,7 +152,7 @@ void cm1e_bus_stop(cm1e_bus_t *bus)
         cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns);
     bus->in_flight = bus->exchanging = false;
     const bool configured = bus->phase >= BUS_CONFIGURED;
-    cm1e_bus_set_phase(bus, BUS_OPEN); /* from here on transfers are refused */
+    cm1e_bus_set_phase(bus, BUS_OPEN); /* from now on transfers are refused */
     cm1e_acyclic_cancel(bus);
     cm1e_sdo_queue_cancel(bus, CM1E_ERROR_CANCELLED);
     if (bus->slave_count > 0) {

@@ -13,7 +13,7 @@ void cm1e_port_watch_ask(const cm1e_bus_slave_t *slave, cm1e_datagram_t *datagra
     cm1e_datagram_set(datagram, COMMAND_FPRD, slave->facts.station, REG_RECEIVE_ERRORS, COUNTER_BYTES);
 }
 
-/** A slave that was switched off counts from 0 again. */
+/** By how much a counter has grown. A slave that was switched off counts from 0 again. */
 static uint8_t growth(uint8_t now, uint8_t before) { return now >= before ? (uint8_t)(now - before) : now; }
 
 void cm1e_port_watch_take(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, const cm1e_datagram_t *datagram)

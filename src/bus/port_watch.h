@@ -8,23 +8,23 @@
 #include "bus/datagram.h"
 #include "cm1e/topology.h"
 
-/** In the order of cm1e_port_faults_t. */
+/** The kinds of faults, in the order of cm1e_port_faults_t. */
 typedef enum cm1e_port_fault {
     FAULT_INVALID_FRAMES = 0, FAULT_RECEIVE_ERRORS, FAULT_FORWARDED_ERRORS, FAULT_LOST_LINKS, CM1E_PORT_FAULTS,
 } cm1e_port_fault_t;
 
-/** Of one slave. */
+/** The counters of one slave. */
 typedef struct cm1e_port_watch {
-    cm1e_slave_place_t place;                     /**< as the bus reached Operational */
+    cm1e_slave_place_t place;                     /**< its place when the bus reached Operational */
     bool seen;                                    /**< `last` is known */
     uint8_t last[CM1E_PORTS][CM1E_PORT_FAULTS];   /**< as read last */
     uint32_t total[CM1E_PORTS][CM1E_PORT_FAULTS]; /**< atomic; since Operational */
 } cm1e_port_watch_t;
 
-/** Of the bus: whose counters were read last. */
+/** Whose counters the bus reads in turn. */
 typedef struct cm1e_port_turn {
     uint32_t place;
-    int64_t due_ns;   /**< of the next one */
+    int64_t due_ns;   /**< when the next ones are read */
     uint64_t news;    /**< faults of all ports since the bus was opened */
     bool asked;       /**< the datagram of the supervision asks for counters, not for an AL status */
 } cm1e_port_turn_t;

@@ -7,7 +7,7 @@ void cm1e_bus_pump(cm1e_bus_t *bus)
     const int64_t now_ns = cm1e_bus_enter(bus);
     if (bus->exchanging) {
         if (bus->next_cycle_ns <= now_ns - bus->config.cycle_time_ns)
-            bus->next_cycle_ns = cm1e_bus_next_start(bus, now_ns); /* the first one, or far behind: no burst */
+            bus->next_cycle_ns = cm1e_bus_next_start(bus, now_ns); /* at first, or much too late: no burst */
         if (bus->in_flight)
             cm1e_bus_receive(bus);
         bus->next_cycle_ns += bus->config.cycle_time_ns + cm1e_bus_pace(bus);

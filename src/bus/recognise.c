@@ -2,7 +2,7 @@
 
 #include "core/bytes.h"
 
-/** For one answer (ETG.1020: 200 ms ... 10 s by device). */
+/** ns; for one answer (ETG.1020: 200 ms ... 10 s by device). */
 #define ANSWER_NS INT64_C(1000000000)
 
 static const cm1e_device_t *device(void) { return cm1e_device_recognised(CM1E_BY_OBJECTS); }
@@ -14,7 +14,7 @@ void cm1e_recognise_begin(cm1e_recognition_t *job, uint16_t position, int64_t de
 
 void cm1e_recognise_cancel(cm1e_recognition_t *job) { job->busy = false; }
 
-/** false: no bridge answers so. */
+/** Takes an answer; false: a bridge does not answer so. */
 static bool took(cm1e_recognition_t *job)
 {
     const cm1e_question_t *question = &device()->questions[job->question];
@@ -30,7 +30,7 @@ static bool took(cm1e_recognition_t *job)
         job->facts.revision = value;
     else
         job->facts.motors[question->index - OBJ_F511_CONFIG_AXIS_1] = value;
-    return !failed || job->sdo.error == CM1E_ERROR_SDO_ABORT; /* a refusal is an answer, silence is none */
+    return !failed || job->sdo.error == CM1E_ERROR_SDO_ABORT; /* a refusal is an answer, silence is not */
 }
 
 cm1e_sdo_t *cm1e_recognise_next(cm1e_recognition_t *job, int64_t now_ns)

@@ -22,20 +22,21 @@ typedef struct cm1e_recognition {
     bool started;            /**< `sdo` is in work or done */
     uint8_t question;
     int64_t deadline_ns;
-    cm1e_sdo_t sdo;          /**< the last transfer: where it is no bridge, the one that showed it */
+    cm1e_sdo_t sdo;          /**< the last transfer; if the slave is no bridge, the one that showed it */
     uint8_t data[4];
     uint32_t device_type;    /**< 0x1000; 0: not read */
     bool recognised;         /**< result, valid when idle */
-    uint32_t shown, wanted;  /**< where it is no bridge: what it answered, and what a bridge does */
+    uint32_t shown, wanted;  /**< if the slave is no bridge: what it answered, and what a bridge answers */
     cm1e_bridge_facts_t facts;
 } cm1e_recognition_t;
 
 void cm1e_recognise_begin(cm1e_recognition_t *job, uint16_t position, int64_t deadline_ns);
 void cm1e_recognise_cancel(cm1e_recognition_t *job);
 static inline bool cm1e_recognise_idle(const cm1e_recognition_t *job) { return !job->busy; }
-/** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
+/** The transfer to begin now; NULL: the job has ended, or is idle. The transfer that was returned before must have
+ *  ended. */
 cm1e_sdo_t *cm1e_recognise_next(cm1e_recognition_t *job, int64_t now_ns);
-/** The model with these motors; false, and CM1E_DEVICE_CM1E: there is none. */
+/** Finds the model with these motors. false: there is none, and `*model` is CM1E_DEVICE_CM1E. */
 bool cm1e_recognise_model(const cm1e_bridge_facts_t *facts, cm1e_device_model_t *model);
 
 #endif

@@ -5,22 +5,23 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** Between two attempts: a CM1-E takes longer than that to start (UG 4.1), a missing one costs one datagram. */
+/** ns; between two attempts. A CM1-E needs longer than that to start (UG 4.1), and an attempt on a missing one costs
+ *  one datagram. */
 #define PAUSE_NS INT64_C(50000000)
-/** For one datagram step. */
+/** ns; for a step that is one datagram. */
 #define STEP_NS INT64_C(100000000)
 #define SDO_STEP_NS INT64_C(1000000000)
 #define OBJECTS_STEP_NS INT64_C(3000000000)
 #define MAPPING_STEP_NS INT64_C(10000000000)
 #define CLOCK_STEP_NS INT64_C(10000000000)
-/** Short: a device that is away has no address to give back. */
+/** ns; short, because a device that is away has no address to give back. */
 #define RELEASE_NS INT64_C(10000000)
 
 typedef struct cm1e_recovery_action {
     int64_t time_ns;
     /** Fills a datagram, or starts and runs a sub-machine; false: nothing to send now. */
     bool (*next)(cm1e_bus_slave_t *slave, cm1e_datagram_t *datagram, int64_t now_ns);
-    /** The datagram is back with working counter 1. */
+    /** Called when the datagram is back with working counter 1. */
     void (*result)(cm1e_bus_slave_t *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
 } cm1e_recovery_action_t;
 
@@ -33,7 +34,7 @@ static void enter(cm1e_bus_slave_t *slave, cm1e_recovery_step_t step, int64_t no
     slave->recovery.deadline_ns = now_ns + (step == RECOVERY_PAUSE ? PAUSE_NS : actions[step].time_ns);
 }
 
-/** Noted at once: the axis that requested the recovery must not request it again before the next supervision. */
+/** Notes the success at once, so that the axis does not request the recovery again before the next supervision. */
 static void succeed(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
 {
     cm1e_supervision_note(slave, al_state, al_status_code);
@@ -64,8 +65,9 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
     succeed(slave, slave->al.state, slave->al.code);
 }
 
-/** A device that is not the expected one must not keep the address, whoever has given it: the expected one, plugged in
- *  elsewhere, would answer at the same address. An optional slave is searched for again in any case. */
+/** Whether the device has to give its address back. A device that is not the expected one must not keep the address:
+ *  the expected one, plugged in elsewhere, would answer at the same address. An optional slave is searched for again in
+ *  any case. */
 static bool must_release(const cm1e_bus_slave_t *slave)
 {
     const cm1e_recovery_t *recovery = &slave->recovery;
@@ -95,7 +97,7 @@ static const char *refusal(cm1e_recovery_step_t step)
     return reasons[step] ? reasons[step] : "it cannot be configured";
 }
 
-/** The search goes on where the recovery of an optional slave has ended. */
+/** Hands an optional slave to the search again after its recovery has ended. */
 static void give_to_search(cm1e_bus_slave_t *slave, const char *reason)
 {
     slave->recovery.step = RECOVERY_IDLE;
@@ -150,7 +152,7 @@ void cm1e_recovery_cancel(cm1e_bus_slave_t *slave)
 
 /* ---- registers ------------------------------------------------------------------------------------------------- */
 
-/** Its place moves when optional slaves before it come and go. */
+/** The address by the place on the wire, which moves when optional slaves before it come and go. */
 static uint16_t by_place(const cm1e_bus_slave_t *slave) { return (uint16_t)(1 - slave->hot.place); }
 
 static bool next_find(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
@@ -163,11 +165,11 @@ static bool next_find(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
 static void result_find(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
     const uint16_t station = cm1e_get_u16(d->data), alias = cm1e_get_u16(d->data + 2);
-    /* Another station address: a later slave is now at this place, and the expected one is still missing. */
+    /* Another station address means that a later slave is now at this place, and the expected one is still missing. */
     if (station == slave->facts.station && alias != slave->facts.alias)
         enter(slave, RECOVERY_RELEASE, now_ns);
     else if (station == 0 && slave->hot.moves)
-        fail(slave, now_ns); /* the search gives the address to whom it has identified */
+        fail(slave, now_ns); /* the search gives the address to the slave that it has identified */
     else if ((station != 0 && station != slave->facts.station) || alias != slave->facts.alias)
         fail(slave, now_ns);
     else
@@ -210,8 +212,8 @@ static void result_return(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int
     enter(slave, RECOVERY_PAUSE, now_ns);
 }
 
-/** Addressed by its place, because another slave may answer at the address too; but where optional slaves come and go,
- *  the slave at a place may be another one by now. */
+/** Takes the address back by the place of the device, because another slave may answer at the address too. Where
+ *  optional slaves come and go, the slave at that place may have changed meanwhile. */
 static bool next_release(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
@@ -253,7 +255,7 @@ static void result_look(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64
     const bool above = state == CM1E_AL_SAFE_OP || state == CM1E_AL_OP;
     const bool configured = above && slave->recovery.failed_at != RECOVERY_OP;
     if (status == CM1E_AL_OP)
-        succeed(slave, status, 0); /* it was never away */
+        succeed(slave, status, 0); /* the slave was never away */
     else
         enter(slave, configured ? RECOVERY_OP : RECOVERY_EEPROM, now_ns);
 }
@@ -311,7 +313,7 @@ static bool next_watchdog(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
     return true;
 }
 
-/** A clock that was far away comes nearer by a step with every frame. */
+/** Sets the clock. One that was far off comes nearer by a step with every frame. */
 static bool next_clock(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     bool is_set;
@@ -428,8 +430,8 @@ static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return check_identity(slave, d, now_ns, 4, slave->info.serial_number);
 }
 
-/** Whether its objects are those of the expected device. What comes for the first time is compared with the
- *  configuration, what has come back with what it was. */
+/** Whether its objects are those of the expected device. A device that comes for the first time is compared with the
+ *  configuration; one that has come back is compared with what it was. */
 static bool is_recognised(cm1e_bus_slave_t *slave)
 {
     const cm1e_recognition_t *job = &slave->recognition;
@@ -446,8 +448,8 @@ static bool is_recognised(cm1e_bus_slave_t *slave)
     return true;
 }
 
-/** Begins the next transfer of a step. Without one the step is over, and the recovery goes on if all was `good`; then it
- *  returns false. */
+/** Begins the next transfer of a step. Without one it returns false: the step is over, and the recovery goes on if all
+ *  was `good`. */
 static bool begin_or_end(cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo, bool good, int64_t now_ns)
 {
     if (sdo)
@@ -459,7 +461,8 @@ static bool begin_or_end(cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo, bool good, in
     return sdo != NULL;
 }
 
-/** The identity of a bridge does not tell its motors, and that of another drive not that it is one. */
+/** Reads the objects that tell the kind of the device: the identity of a bridge does not tell its motors, and that of a
+ *  foreign drive does not tell that it is a drive. */
 static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_recognition_t *job = &slave->recognition;
@@ -481,7 +484,7 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
 
-/** The firmware of a motor that comes for the first time: its units depend on it. */
+/** Takes the firmware of a motor that comes for the first time, because its units depend on it. */
 static bool takes_version(cm1e_bus_slave_t *slave)
 {
     const cm1e_axis_config_t *axis = slave->hot.axis;
@@ -520,7 +523,7 @@ static bool next_version(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     return false;
 }
 
-/** What has no PDO mapping to be read has the process data of its SII. */
+/** Places the process data. A slave without a PDO mapping that can be read has the process data of its SII. */
 static bool next_place(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)d;
@@ -555,8 +558,8 @@ static bool next_setup_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
     return run_setup(slave, d, now_ns, true);
 }
 
-/** A slave that comes for the first time has the layout that it has: only its room is fixed, and what the signals of the
- *  configuration were found by. */
+/** Takes the mapping. A slave that comes for the first time may have any layout that fits into its room and has the
+ *  signals of the configuration. */
 static bool takes_mapping(cm1e_bus_slave_t *slave)
 {
     const cm1e_mapping_job_t *job = &slave->mapping;

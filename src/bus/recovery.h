@@ -17,9 +17,9 @@ typedef enum cm1e_recovery_step {
     RECOVERY_PAUSE,
     RECOVERY_FIND,           /**< station address and alias at its place on the wire */
     RECOVERY_ADDRESS,        /**< give it its station address again */
-    RECOVERY_RETURN,         /**< places have moved, and a slave that runs got the address: it gets its own again */
-    RECOVERY_LOOK,           /**< AL status: how much is left of its configuration? */
-    RECOVERY_EEPROM,         /**< leave the SII to the device */
+    RECOVERY_RETURN,         /**< after a move of places a running slave has this address: it gets its own */
+    RECOVERY_LOOK,           /**< reads AL status, which shows how much is left of the configuration */
+    RECOVERY_EEPROM,         /**< gives the SII to the device */
     RECOVERY_INIT,
     RECOVERY_MAILBOX,        /**< SM0, SM1 */
     RECOVERY_PRE_OP,
@@ -27,11 +27,11 @@ typedef enum cm1e_recovery_step {
     RECOVERY_VENDOR,
     RECOVERY_PRODUCT,
     RECOVERY_SERIAL,
-    RECOVERY_OBJECTS,         /**< still a bridge, of the same revision, with the same motors */
-    RECOVERY_VERSION,         /**< its firmware, where it comes for the first time */
+    RECOVERY_OBJECTS,         /**< checks that it is still a bridge of the same revision with the same motors */
+    RECOVERY_VERSION,         /**< reads the firmware, if the slave comes for the first time */
     RECOVERY_SETUP,           /**< what the configuration writes into it in Pre-Operational */
     RECOVERY_MAPPING,
-    RECOVERY_PLACE,          /**< the place of its process data, where it comes for the first time */
+    RECOVERY_PLACE,          /**< places the process data, if the slave comes for the first time */
     RECOVERY_PROCESS_DATA,   /**< SM2, SM3 */
     RECOVERY_FMMUS,
     RECOVERY_WATCHDOG_DIVIDER,

@@ -39,7 +39,7 @@ typedef struct cm1e_bus_remote {
     /** Executes a transfer; an error is in `sdo` as after any other transfer. Returns CM1E_OK, or why it could not even
      *  be tried, with `diag`. */
     cm1e_error_t (*transfer)(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag);
-    /** As `transfer`, of what is not an object. */
+    /** Executes an errand; errors as for `transfer`. */
     cm1e_error_t (*errand)(void *state, cm1e_errand_t *errand, cm1e_diag_t *diag);
     /** Transfers a file as `foe` says; `done` is set after reading. */
     cm1e_error_t (*file)(void *state, cm1e_foe_t *foe, cm1e_diag_t *diag);

@@ -1,4 +1,4 @@
-/* What the mapping needs of each slave controller, compared with what it says that it has. */
+/* Compares what the mapping needs of each slave controller with what the controller has. */
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
@@ -19,8 +19,8 @@ static cm1e_error_t check_slave(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, 
     uint8_t units[2] = {0};
     const unsigned fmmus = slave->placement.fmmu_count, managers = used_sync_managers(&slave->placement);
     if (!cm1e_bus_read_registers(bus, slave->info.position, REG_UNITS, units, sizeof units))
-        return CM1E_OK; /* whoever needs it next tells that it is gone */
-    /* A controller that states none does not tell. */
+        return CM1E_OK; /* the next function that needs the slave reports that it is gone */
+    /* A controller that states 0 does not tell its number. */
     if ((units[0] == 0 || fmmus <= units[0]) && (units[1] == 0 || managers <= units[1]))
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,

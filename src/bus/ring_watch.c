@@ -6,13 +6,14 @@
 #include "bus/bus_internal.h"
 #include "core/sized.h"
 
-/** While the ring is broken its place is asked for again: a second cable may break, or the first be mended. A question
- *  whose halves did not both come back is repeated sooner; between them the slaves are supervised as ever. */
+/** ns; while the ring is broken, its place is asked for again after this time, because a second cable may break, or the
+ *  first be mended. A question whose halves did not both come back is repeated sooner. Between the questions the slaves
+ *  are supervised as always. */
 #define PLACE_PACE_NS INT64_C(20000000)
 #define REPEAT_PACE_NS INT64_C(3000000)
 enum { ANSWER_BYTES = 2 };
 
-/** What frames have shown so far. Returns whether the ring is broken. */
+/** Takes what the frames have shown so far. Returns whether the ring is broken. */
 static bool look(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_ring_watch_t *watch = &bus->ring;
@@ -62,7 +63,7 @@ void cm1e_bus_ring_sized(const cm1e_bus_t *bus, cm1e_bus_ring_t *ring, size_t si
     cm1e_copy_sized(ring, size, &bus->ring.ring, sizeof bus->ring.ring);
 }
 
-/** A slave, or the interface at an end of the ring. */
+/** Names a slave, or the interface at an end of the ring. */
 static void name_end(const cm1e_bus_t *bus, uint32_t position, char *text, size_t size)
 {
     char label[CM1E_LABEL_LENGTH];

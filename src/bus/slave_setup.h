@@ -11,9 +11,10 @@
 
 typedef struct cm1e_setup_job {
     const cm1e_slave_config_t *config; /**< NULL: idle */
-    bool by_sync0;                     /**< 0x1C32 and 0x1C33 say so, where the slave lets them be written */
+    bool by_sync0;                     /**< 0x1C32 and 0x1C33 get 2, if the slave lets them be written */
     bool optional;                     /**< the last transfer may be refused */
-    bool before_op;                    /**< which of the start-up SDOs; PDOs are written with those before Safe-Op */
+    bool before_op;                    /**< true: the start-up SDOs before Operational; false: those before
+                                            Safe-Operational, and PDOs */
     bool started;                      /**< `sdo` is in work or done */
     bool differs;                      /**< the last transfer read another value than the one that was written */
     unsigned step;
@@ -23,15 +24,16 @@ typedef struct cm1e_setup_job {
     cm1e_error_t error;                /**< result, valid when idle; foreign code in sdo.abort_code */
 } cm1e_setup_job_t;
 
-/** Whether anything is written into the slave. `by_sync0`: it has CoE and gets SYNC0. Its objects of synchronisation
- *  (ETG.1020: 0x1C32:01 and 0x1C33:01) are 2 then, and read back, unless it has none or refuses it, or the configuration
- *  writes them itself. */
+/** Whether anything is written into the slave. `by_sync0`: the slave has CoE and gets SYNC0. Then its objects of
+ *  synchronisation (ETG.1020: 0x1C32:01 and 0x1C33:01) are set to 2 and read back, unless the slave lacks or refuses
+ *  them, or the configuration writes them itself. */
 bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, bool by_sync0, bool before_op);
 void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config, bool by_sync0,
                       bool before_op);
 static inline bool cm1e_setup_idle(const cm1e_setup_job_t *job) { return job->config == NULL; }
 static inline void cm1e_setup_cancel(cm1e_setup_job_t *job) { job->config = NULL; }
-/** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
+/** The transfer to begin now; NULL: the job has ended, or is idle. The transfer that was returned before must have
+ *  ended. */
 cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job);
 
 #endif

@@ -39,9 +39,9 @@ static void set_defaults(cm1e_soem_t *soem)
         uint16_t offset, size;
         uint8_t bytes[2];
     } settings[] = {
-        {ECT_REG_DLALIAS, 1, {0, 0}},                            /* configured addresses count, not the alias */
-        {ECT_REG_STADR, 2, {0, 0}},                              /* old addresses would be doubled if places changed */
-        {ECT_REG_ALCTL, 2, {EC_STATE_INIT, 0}},                  /* errors: al_machine.c, where one is shown */
+        {ECT_REG_DLALIAS, 1, {0, 0}},                            /* the configured address is used, not the alias */
+        {ECT_REG_STADR, 2, {0, 0}},                              /* an old address could exist twice */
+        {ECT_REG_ALCTL, 2, {EC_STATE_INIT, 0}},                  /* al_machine.c acknowledges errors */
         {ECT_REG_DLPORT, 1, {0, 0}},                             /* all ports automatic */
         {ECT_REG_IRQMASK, 2, {0x04, 0}},
         {ECT_REG_DCSYNCACT, 1, {0, 0}},                          /* no SYNC signals */

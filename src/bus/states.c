@@ -11,7 +11,8 @@ const char *cm1e_bus_other_master(const cm1e_bus_t *bus, char text[CM1E_OTHER_MA
     return text;
 }
 
-/** A controller that refuses its EEPROM gives its processor no access: the device hears of no state. */
+/** Explains why a slave stays in Init. A controller that refuses its EEPROM gives its processor no access, so the
+ *  device learns of no state. */
 static const char *why_in_init(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
     enum { REG_DL_STATUS = 0x0110, EEPROM_LOADED = 1 };
@@ -36,9 +37,9 @@ cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *sl
                              "%s does not answer when asked to go to %s: check its power and its cable.%s",
                              label, target, other);
     if (al->state & AL_ERROR_FLAG)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s refuses %s and is in %s: AL status 0x%04X, %s.%s",
-                             label, target, cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code),
-                             other);
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code,
+                             "%s refuses %s and is in %s: AL status 0x%04X, %s.%s", label, target,
+                             cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code), other);
     return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s did not reach %s in time; it stays in %s.%s%s",
                          label, target, cm1e_al_state_text(al->state), why_in_init(bus, slave), other);
 }

@@ -1,8 +1,9 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** One slave's AL status in each cycle, in turn; now and then the counters of its ports instead. A slave counts as lost
- *  after three unanswered questions in a row: a single one may be a disturbed frame. */
+/** The supervision reads the AL status of one slave in each cycle, in turn, and sometimes the counters of its ports
+ *  instead. A slave counts as lost after three unanswered questions in a row, because a single one may be a disturbed
+ *  frame. */
 enum { AL_STATUS_BYTES = 6, UNANSWERED_LIMIT = 3 };
 
 void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
@@ -18,7 +19,7 @@ void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t 
 
 static uint32_t next_of(const cm1e_bus_t *bus, uint32_t place) { return place + 1 < bus->slave_count ? place + 1 : 0; }
 
-/** One that may have left is asked first. */
+/** The next slave that may have left: it is asked first. */
 static uint32_t next_in_doubt(cm1e_bus_t *bus)
 {
     for (uint32_t n = 0; n < bus->slave_count; n++) {
@@ -54,7 +55,7 @@ static void ask_ports(cm1e_bus_t *bus, int64_t now_ns)
     cm1e_port_watch_ask(&bus->slaves[bus->supervised.ports.place], &bus->supervised.datagram);
 }
 
-/** What is asked before the states of the slaves and their counters. */
+/** Asks what comes before the states of the slaves and their counters. */
 static bool ask_what_comes_first(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_datagram_t *d = &bus->supervised.datagram;
@@ -80,7 +81,7 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
     bus->supervised.sent = true;
 }
 
-/** No axis requests the recovery of a device between the axes, but while it is missing, the working counter of all is
+/** Requests the recovery of a device that no axis uses. While it is missing, the working counter of all slaves is
  *  wrong. So it is brought back without a request, always with zeros as outputs. A motor is brought back without a
  *  request only if the configuration says so. */
 static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
@@ -89,7 +90,7 @@ static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
         cm1e_recovery_begin(slave);
 }
 
-/** An optional slave that is lost is searched for. */
+/** Notes that a slave is lost. An optional one is then searched for. */
 static void lose(cm1e_bus_slave_t *slave)
 {
     slave->watch = (cm1e_slave_watch_t){.lost = true, .absent = slave->hot.away};
@@ -154,8 +155,9 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
     watch.out = !slave->hot.counted;
     watch.bound = slave->hot.bound;
     const bool seems_there = watch.al_state == CM1E_AL_NONE || watch.al_state == CM1E_AL_OP;
-    if (!slave->hot.counted && seems_there && bus->counters.cycles - slave->hot.out_since >= bus->config.lost_cycles_limit)
-        watch.lost = true; /* its inputs showed it, long before the supervision has asked three times */
+    const uint64_t out_cycles = bus->counters.cycles - slave->hot.out_since;
+    if (!slave->hot.counted && seems_there && out_cycles >= bus->config.lost_cycles_limit)
+        watch.lost = true; /* its inputs showed the loss long before the supervision has asked three times */
     return watch;
 }
 

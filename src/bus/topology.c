@@ -10,7 +10,7 @@
 /* DL status (ETG.1000.4 table 36): a link per port from bit 4 on, then two bits per port from bit 8 on. */
 enum { REG_DL_STATUS = 0x0110, LINK_BIT = 4, LOOP_CLOSED_BIT = 8, COMMUNICATION_BIT = 9 };
 
-/** In the order in which a frame leaves a slave that it entered by port 0. */
+/** The ports in the order in which a frame leaves a slave that it entered by port 0. */
 static const uint8_t order_of_ports[CM1E_PORTS] = {0, 3, 1, 2};
 
 static void take_ports(cm1e_slave_place_t *place, uint16_t status)
@@ -37,7 +37,8 @@ typedef struct walk {
     unsigned count;
 } walk_t;
 
-/** Frames go as deep as they can before they come back, so a slave is at the port that was met last. */
+/** Connects a slave. Frames go as deep as they can before they come back, so a slave is at the port that was met
+ *  last. */
 static void connect_slave(walk_t *walk, cm1e_slave_place_t *places, uint16_t position)
 {
     cm1e_slave_place_t *place = &places[position - 1];

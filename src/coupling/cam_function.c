@@ -16,7 +16,7 @@ static const double largest_scaling = 1e9;
 
 /* ---- the coupling function --------------------------------------------------------------------------------------- */
 
-/* It divides and does not multiply by the inverse: so a master at an end of the cam is exactly at that end. */
+/* A division is exact where a product with the inverse is not: a master at an end of the cam is exactly at it. */
 static double place_in_cam(const cam_place_t *cam, const link_t *link, double counts)
 {
     const double way = (counts + cam->away) / link->master->position.scale - cam->master_offset;
@@ -78,7 +78,7 @@ static void remember(cam_place_t *cam, const cm1e_cam_sample_t *now)
     cam->sampled = true;
 }
 
-/* The approach to the cam has just ended. If it ended at an end of a single-shot cam, the master came by that end. */
+/* Called at the end of an approach. If that is an end of a single-shot cam, the master came onto the cam there. */
 void cm1e_cam_in_enter(follow_t *follow, double counts)
 {
     cam_place_t *cam = &follow->cam;
@@ -161,7 +161,7 @@ static cm1e_motion_limits_t cam_demand(const follow_t *follow)
 
 static double part_of(double asked, double most, double needed)
 {
-    const double minimum_part = 0.1, maximum_part = 0.5; /* not all of the rest: the master may become faster */
+    const double minimum_part = 0.1, maximum_part = 0.5; /* a part: the master may become faster */
     return fmin(asked, fmax(fmin(most - needed, maximum_part * most), minimum_part * most));
 }
 

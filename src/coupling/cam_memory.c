@@ -46,7 +46,7 @@ static bool used(cm1e_axis_t *axis, const cam_slot_t *slot)
 static cam_slot_t *empty_slot(cams_t *cams)
 {
     cam_slot_t *slot = cams->slots;
-    while (slot->id != 0) /* there is always a free one: there is one place more than cams stay */
+    while (slot->id != 0) /* one place is always free: there is one more than cams that stay */
         slot++;
     return slot;
 }
@@ -108,7 +108,7 @@ void cm1e_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
     const char *name = axis->config->name;
     const int point = cams->wrong + 1;
     if (axis->not_set.error == CM1E_ERROR_FULL) {
-        snprintf(text, size, "Axis \"%s\": no cam was selected: the %d for which there is memory are followed, or "
+        snprintf(text, size, "Axis \"%s\": the cam was not selected. There is memory for %d cams; all are followed, or "
                  "commands that wait name them.", name, CM1E_AXIS_CAMS);
         return;
     }

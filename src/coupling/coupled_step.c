@@ -203,7 +203,7 @@ static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdi
     attempt_t kept = ATTEMPTS;
     for (int attempt = first; attempt < ATTEMPTS; attempt++) {
         sum = attempt_to(axis, f, &before, (attempt_t)attempt, verdict);
-        /* If the coupling function leads beyond a limit, a catch-up could hold the axis there for ever. */
+        /* Where the coupling function itself leads beyond a limit, a catch-up could hold the axis at it for ever. */
         if (verdict->smooth || verdict->guard.limit == GUARD_DIRECTION ||
             verdict->guard.limit == GUARD_SOFTWARE_LIMIT)
             return sum;
@@ -303,7 +303,7 @@ static void stand_with_masters(cm1e_axis_t *axis, const from_t *f)
     cm1e_axis_set_source(axis, &cm1e_source_hold);
 }
 
-/* The rare case: there is a catch-up or a superimposed motion, or the set-point is close to a limit. */
+/* Judges a set-point in the rare case: with a catch-up or a superimposed motion, or close to a limit. */
 CM1E_RARE static guard_t judge(cm1e_axis_t *axis, const from_t *f, from_t *next)
 {
     verdict_t verdict;
@@ -357,7 +357,7 @@ static void leave(cm1e_axis_t *axis)
     axis->coupling->stopping = false;
 }
 
-/* Whether an emergency stop ends within the bounds. More is not known, because the masters may do anything. */
+/* Whether an emergency stop would end within the bounds. What the masters will do is not known. */
 static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
     const double v = axis->setpoint.velocity;

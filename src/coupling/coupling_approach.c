@@ -41,9 +41,9 @@ static void arrive(follow_t *follow)
 /* The sign of the way of the master from the beginning of the curve to its end. */
 static double way_sign(const approach_t *approach) { return approach->first < 0.0 ? 1.0 : -1.0; }
 
-/* The point of the curve. A master that turns round, or goes away from the end, comes to before the beginning of the
- * curve. There the curvature fades to 0, because a step of it would be a step of the acceleration. Then the slave
- * continues in a straight line. */
+/* The point of the curve. A master that turns round, or goes away from the end, leaves the curve by its beginning.
+ * There the curvature fades to 0, because a step of it would be a step of the acceleration. Beyond that the slave goes
+ * on in a straight line. */
 static cm1e_curve_point_t point_at(const approach_t *approach, double master)
 {
     const double sign = way_sign(approach), back = (approach->first - master) * sign, fade = approach->fade;
@@ -213,8 +213,8 @@ static bool met_already(const cm1e_axis_t *axis, follow_t *follow, const from_t 
     const double master = approach->again > 0.0 ? remainder(left, approach->again) : left;
     const double u = cm1e_position_minus(approach->end, from->position) / axis->position.scale;
     const double slave = (approach->turn > 0.0 ? remainder(u, approach->turn) : u);
-    if (fabs(master) > tolerance_counts || fabs(slave * axis->position.scale) > tolerance_counts || link->seen.velocity != 0.0 ||
-        from->velocity != 0.0)
+    if (fabs(master) > tolerance_counts || fabs(slave * axis->position.scale) > tolerance_counts ||
+        link->seen.velocity != 0.0 || from->velocity != 0.0)
         return false;
     follow->approach.sync = link->seen.counts + master;
     follow->approach.end = cm1e_position_plus(from->position, slave * axis->position.scale);
@@ -266,7 +266,7 @@ void cm1e_coupling_await_step(cm1e_axis_t *axis)
         return;
     const bool may_come = !trouble && next->approach.awaited == AWAIT_MOTION && next->links[0].seen.acceleration != 0.0;
     if (may_come && cm1e_coupling_approach_begin(axis, next, waiting_move(axis, 0), &from) == CM1E_ERROR_AXIS_SYNC_WAY)
-        return; /* the velocity of the master still changes: it may fit in a later cycle */
+        return; /* the velocity of the master still changes; it may be right in a later cycle */
     c->due = true;
     c->due_error = trouble ? CM1E_ERROR_AXIS_MASTER_LOST : CM1E_OK;
     (void)cm1e_axis_begin_waiting(axis, &from, 0.0);

@@ -34,14 +34,14 @@ enum { CAM_SLOTS = CM1E_AXIS_CAMS + 1 };
 /** What an approach waits for. */
 typedef enum awaited {
     AWAIT_NOTHING = 0,
-    AWAIT_PLACE,                   /**< that the master passes the place where the approach begins */
-    AWAIT_MOTION,                  /**< that the master moves towards the place where it ends */
+    AWAIT_PLACE,                   /**< the master passes the place where the approach begins */
+    AWAIT_MOTION,                  /**< the master moves towards the place where the approach ends */
 } awaited_t;
 
 /** An approach is a curve over the master's position. It leads from the present motion of the slave to the motion that
  *  the slave must have when the master is at a given place. Counts of the master are those of the link. */
 typedef struct approach {
-    const struct coupling_function *then; /**< the coupling function behind it */
+    const struct coupling_function *then; /**< the coupling function after the approach */
     awaited_t awaited;             /**< what the beginning of the approach waits for */
     double start_distance;         /**< counts of the master, in its direction; 0: begins at once */
     double sync;                   /**< counts of the master where it ends */
@@ -57,7 +57,7 @@ typedef struct approach {
 
 /** What an approach would have demanded of the slave, for the text. */
 typedef struct approach_refused {
-    const char *what;              /**< NULL: the master is at standstill, or passed it in a cycle */
+    const char *what;              /**< NULL: the master is at standstill, or passed the approach in a cycle */
     const char *unit;
     double asked, allowed;
 } approach_refused_t;
@@ -88,7 +88,7 @@ typedef struct cam_place {
     double finer;                  /**< 1 / master_scaling */
     cm1e_cam_place_t place;
     cm1e_cam_sample_t before;      /**< sample of the last cycle, without its point */
-    bool sampled;                  /**< there was a last cycle */
+    bool sampled;                  /**< `before` is valid */
     double entered;                /**< side from which the master came onto a single-shot cam; 0: it began on it */
     double left;                   /**< side to which it left the cam at its other end; 0: not yet */
 } cam_place_t;

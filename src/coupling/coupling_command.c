@@ -15,7 +15,7 @@ static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_COMBINE_AXES] = cm1e_gear_prepare,
 };
 
-/* Refuses limits that are too small to compute with, whatever the masters do when the command begins. */
+/* Refuses limits that are too small to compute with. What the masters do when the command begins does not matter. */
 static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
     const double most = axis->limits.maximum.velocity;
@@ -229,7 +229,7 @@ cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const
     if (waiting->kind != (uint8_t)command->kind || command->kind == CM1E_COMMAND_GEAR_IN_POS)
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (waiting == waiting_move(axis, 0) && axis->coupling->awaited)
-        return CM1E_OK; /* it has its place, and waits only for its master */
+        return CM1E_OK; /* it has a place already, and waits for its master alone */
     move_t move = cm1e_axis_move_of(command);
     move.id = id;
     move.buffer_mode = waiting->buffer_mode;

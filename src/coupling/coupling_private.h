@@ -36,12 +36,12 @@ typedef struct master_view {
     uint32_t jumps;                /**< number of jumps of its set-point so far */
 } master_view_t;
 
-/** How a slave sees the set value of a master. */
-typedef enum sight {
-    SEEN = 0,
-    RUNS_ON,                       /**< on another bus, whose frames do not come back: it may still run */
-    STOPS,                         /**< ... for so long that it stops */
-} sight_t;
+/** What a slave assumes of the motor of a master, by the frames of the master's bus. */
+typedef enum assumption {
+    SEEN = 0,                      /**< the frames come: the motor follows its set value */
+    RUNS_ON,                       /**< the other bus is silent: the motor still runs to its last target */
+    STOPS,                         /**< the other bus has been silent for so long that the motor stops */
+} assumption_t;
 
 /** The link of a slave to its master. What every cycle looks at comes first. */
 typedef struct link {
@@ -49,17 +49,17 @@ typedef struct link {
     MC_SOURCE source;
     bool listed;
     bool apart;                    /**< the master is on another bus */
-    uint8_t sight;                 /**< sight_t */
+    uint8_t assumed;               /**< assumption_t */
     position_t origin;             /**< position of the master, as seen, when the slave began to follow it */
     double ratio;                  /**< u of the slave per u of the master; of gears and combinations */
     double counts_ratio;           /**< the ratio in counts */
     double half_cycle;             /**< counts of the master in half a cycle at 1 u/s */
-    double most_unexplained;       /**< counts; tolerance of the way in a cycle that its velocities explain */
+    double most_unexplained;       /**< counts; largest way in a cycle beyond what the velocities explain */
     master_view_t seen;
     /* not in every cycle */
-    double ran_on;                 /**< counts of the master beyond its set-point, while it is not SEEN */
+    double ran_on;                 /**< counts beyond the last set-point that the motor is assumed to have run */
     cm1e_axis_t *slave;
-    struct link *next;             /**< of the same master; in force while `listed` */
+    struct link *next;             /**< next link to this master; valid while `listed` */
 } link_t;
 
 enum { LINKS = 2, FOLLOWS = 3, COUPLINGS_WAITING = 3, PHASINGS_WAITING = 3 };
@@ -71,12 +71,12 @@ typedef struct follow {
     _Alignas(CM1E_CACHE_LINE) const struct coupling_function *function; /**< NULL: nothing */
     position_t anchor;             /**< position of the slave from which the coupling function counts */
     uint8_t count;                 /**< of its links */
-    bool to_position;              /**< the catch-up is brought to 0 in its position too (mcRampIn); else lost distance
-                                        is not made up, and the anchor takes it in at the end */
+    bool to_position;              /**< the catch-up ends with position 0 (mcRampIn). Otherwise the distance that was
+                                        lost is not made up: at the end it becomes a part of the anchor */
     bool in_step;                  /**< the coupling function itself is what was commanded: the approach is over */
-    bool by_actual;                /**< follows the actual value of a master, which has no limit of jerk */
+    bool by_actual;                /**< the slave follows the actual value of a master, which has no limit of jerk */
     bool waits_for_end;            /**< waiting commands begin at EndOfProfile (cams), not at InSync */
-    bool linear;                   /**< the acceleration jumps, so no limit of jerk applies */
+    bool linear;                   /**< the acceleration of the cam jumps, so no limit of jerk applies */
     link_t links[LINKS];
     cam_place_t cam;
     approach_t approach;
@@ -84,10 +84,10 @@ typedef struct follow {
 
 /** A coupling function. */
 typedef struct coupling_function {
-    /** The slave's set-point for the masters as seen in this cycle. It may come over a change within the function (the
-     *  end of an approach, the end of a single-shot cam) and says so in the coupling. */
+    /** Computes the slave's set-point for the masters as seen in this cycle. At the end of an approach or of a
+     *  single-shot cam it also changes the coupling. */
     void (*evaluate)(cm1e_axis_t *axis, follow_t *follow, from_t *point);
-    /** The maximum of |u of the slave per u of that master|. */
+    /** The maximum of |u of the slave per u of the master of this link|. */
     double (*steepest)(const cm1e_axis_t *axis, const follow_t *follow, int link);
 } coupling_function_t;
 
@@ -96,11 +96,11 @@ typedef struct catch_up {
     bool on;
     bool made_up;                  /**< its position is brought to 0 too: lost distance is made up */
     bool to_place;                 /**< the profile makes up distance, while the velocity of the function is constant */
-    bool momentary;                /**< of a cam: velocity first, with what it leaves in this place */
+    bool momentary;                /**< made up is the velocity first, with the limits that the cam leaves here */
     bool held_back;                /**< the function needs more of the limits than when this was planned */
     int64_t cycles;
     cm1e_motion_state_t now;
-    cm1e_motion_limits_t asked;    /**< of the command */
+    cm1e_motion_limits_t asked;    /**< limits of the command */
     cm1e_profile_t profile;
 } catch_up_t;
 
@@ -130,8 +130,8 @@ typedef struct phasing {
     move_t waiting[PHASINGS_WAITING];
     int count;
     double covered;
-    cm1e_command_id_t ended;       /**< the last one that ended; below, the distance it covered */
-    cm1e_command_id_t id;          /**< 0: none, or what moves on belongs to no command any more */
+    cm1e_command_id_t ended;       /**< the phasing that ended last; it covered the distance `covered` */
+    cm1e_command_id_t id;          /**< 0: no phasing runs; a shift that still moves belongs to no command */
     bool moving;
 } phasing_t;
 
@@ -143,23 +143,23 @@ typedef struct observed {
     uint32_t lost;                 /**< cycles in a row without a position */
 } observed_t;
 
-/** Made with the axis. What every cycle looks at fills the first cache line; then it is the end of `phasing`, the begin
- *  of `catch_up`, and what is followed. */
+/** The couplings of an axis, made with it. The first cache line has what every cycle needs. The end of `phasing`, the
+ *  beginning of `catch_up` and the present `follow_t` have the rest of it. */
 typedef struct coupling {
     follow_t *now;                 /**< the present coupling, or the last one; NULL: there was none */
-    follow_t *awaited;             /**< of the first waiting command: it begins at a place of its master (StartSync),
-                                        until when what runs goes on; NULL: none does (cm1e_axis_t.awaits) */
+    follow_t *awaited;             /**< coupling of the first waiting command, if it begins at a place of its master
+                                        (StartSync) and the active command goes on until then (cm1e_axis_t.awaits) */
     cm1e_motion_state_t phase;     /**< u of the master: phase shift of links[0], while it is followed */
     double f_velocity, f_acceleration; /**< u/s, u/s2; of the coupling function, in the last cycle */
-    bool end_of_profile;           /**< the cam passed it in this cycle */
-    bool stopping;                 /**< in ErrorStop, but the coupling goes on until the masters stand (keep_ratio) */
+    bool end_of_profile;           /**< the cam passed an end of its profile in this cycle */
+    bool stopping;                 /**< in ErrorStop; the coupling goes on until the masters stand (keep_ratio) */
     bool keeps_ratio;              /**< CM1E_COUPLING_STOP_KEEP_RATIO, of the configuration */
     bool due;                      /**< the awaited command begins in this cycle */
-    bool at_end;                   /**< the coupling in preparation waited for that */
+    bool at_end;                   /**< the coupling in preparation waited for that end of the profile */
     bool left_behind;              /**< a master on another bus went on while the slave was silent */
     phasing_t phasing;             /**< the motion that changes the phase */
     catch_up_t catch_up;
-    follow_t follows[FOLLOWS];     /**< two places in turn, because links are in lists and must not move */
+    follow_t follows[FOLLOWS];     /**< places in turn, because links are in lists and must not move */
     link_t *slaves;                /**< the slaves of this axis */
     cams_t *cams;                  /**< the cams of this axis */
     observed_t own;
@@ -171,16 +171,16 @@ typedef struct coupling {
     master_trouble_t trouble;      /**< the reason why a master was lost */
     cm1e_error_t master_error;     /**< error of that master */
     char other_name[CM1E_NAME_LENGTH]; /**< name of that master, or of the axis because of which this one stops */
-    int32_t numerator;             /**< of a ratio that was refused; with its denominator */
+    int32_t numerator;             /**< numerator and denominator of a ratio that was refused */
     uint32_t denominator;
 } coupling_t;
 
 /* master.c */
-/** Whether the frames of all masters come back. The slave is not in step with a master whose place is only likely. */
+/** Whether the frames of all masters come. The slave is not in step with a master whose position is only assumed. */
 static inline bool coupling_sees_all(const follow_t *follow)
 {
     for (int i = 0; i < follow->count; i++)
-        if (follow->links[i].sight != SEEN)
+        if (follow->links[i].assumed != SEEN)
             return false;
     return true;
 }
@@ -190,12 +190,13 @@ void cm1e_coupling_advance_masters(cm1e_axis_t *axis);
 void cm1e_coupling_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
 /** Lets the slaves that follow this axis begin anew after silence. */
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis);
-/** The slave is silent: whether a master on another bus goes on without it. */
+/** The bus of the slave is silent. Remembers whether a master on another bus goes on meanwhile. */
 void cm1e_coupling_fall_behind(cm1e_axis_t *axis);
-/** From now on masters on another bus are seen as their frames come. true: one is seen in another way than before, or
- *  went on alone. */
+/** Renews what the slave assumes of masters on other buses. true: an assumption has changed, or a master went on while
+ *  the slave was silent. */
 bool cm1e_coupling_settle(cm1e_axis_t *axis);
-/** The slave is silent, and its masters have advanced: it is not in step with one on another bus that moves. */
+/** The bus of the slave is silent, and its masters have advanced. The slave is not in step with a master on another bus
+ *  that moves. */
 void cm1e_coupling_held(cm1e_axis_t *axis);
 /** Whether a master began anew in this cycle, or is followed by its actual value. */
 bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis);
@@ -228,7 +229,7 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
 /** Puts the coupling `follow` in force. The difference to the state `from` becomes the catch-up. The caller changes the
  *  active command. */
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
-/** Takes notice of masters on another bus whose frames stop or come back, and goes on without a step. */
+/** Notices that the frames of another bus stop or come back. The slave goes on without a step of its set-point. */
 void cm1e_coupling_look_across(cm1e_axis_t *axis);
 /** Makes a superimposed distance (u) a part of the base motion. */
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way);

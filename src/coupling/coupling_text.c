@@ -12,7 +12,7 @@ static const char *const troubles[] = {
     [MASTER_FREE] = "has no torque, and so no set value: enable it with MC_Power before, or follow its actual value "
                     "(mcActualValue)",
     [MASTER_HOMING] = "is homed by its drive, which changes its positions: wait for the end of the homing",
-    [MASTER_UNSEEN] = "does not say where it is: its inputs are missing",
+    [MASTER_UNSEEN] = "shows no position: its inputs are missing",
     [MASTER_JUMPED] = "jumped: its position was set to where its motor is, which no slave can follow",
 };
 

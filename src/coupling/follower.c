@@ -14,7 +14,8 @@ static void forget(cm1e_axis_t *axis)
     free(axis->coupling);
 }
 
-/** In the copy, what pointed into the coupling or its cams points into their copies. Points of cams are in no text. */
+/* Makes the pointers into the coupling and its cams point into their copies. Points of cams stay shared: no text needs
+ * them. */
 static void copy_own(const cm1e_axis_t *axis, cm1e_axis_t *copy, void *place)
 {
     coupling_t *c = place;
@@ -46,7 +47,7 @@ static bool is_of(const link_t *link, const follow_t *follow)
     return follow && link >= follow->links && link < follow->links + follow->count;
 }
 
-/** Links stay in the list until their place is taken for another coupling. */
+/* Links stay in the list until their place is taken for another coupling, so not every link means a slave. */
 static bool is_followed(const cm1e_axis_t *axis)
 {
     for (const link_t *link = axis->coupling->slaves; link; link = link->next) {
@@ -96,7 +97,7 @@ cm1e_error_t cm1e_coupling_add(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     axis->coupling = cm1e_cache_lines(sizeof *axis->coupling);
     if (!axis->coupling)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for what axis \"%s\" may follow.",
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the couplings of axis \"%s\".",
                              axis->config->name);
     axis->coupling->keeps_ratio = axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO;
     axis->coupling_hooks = &hooks;

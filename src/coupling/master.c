@@ -67,21 +67,21 @@ static bool master_began_anew(const follow_t *follow)
 
 /* ---- masters on another bus -------------------------------------------------------------------------------------- */
 
-/* Time stands still for the axes of a silent bus only. While the bus of the master is silent, its slave assumes that
- * its motor does what is likely: it runs on at first, and stops where it gets no new target for longer. While the bus
- * of the slave is silent, the master goes on without it. Behind both the slave goes on from its own set-point, and
- * makes up the distance as after any other loss. */
-static sight_t sight(const link_t *link)
+/* Time stands still for the axes of a silent bus only. While the bus of the master is silent, the slave assumes that
+ * the motor of the master runs on at first, and stops when it has got no new target for longer. While the bus of the
+ * slave is silent, the master goes on without it. After the silence the slave goes on from its own set-point, and makes
+ * up the distance as after any other loss. */
+static assumption_t assumption(const link_t *link)
 {
     if (!link->apart || link->source != mcSetValue || !link->master || !link->master->silence.frozen)
         return SEEN;
     return cm1e_axis_stops_unheard(link->master) ? STOPS : RUNS_ON;
 }
 
-static bool sees_other_way(const follow_t *follow)
+static bool assumes_otherwise(const follow_t *follow)
 {
     for (int i = 0; i < follow->count; i++)
-        if (sight(&follow->links[i]) != (sight_t)follow->links[i].sight)
+        if (assumption(&follow->links[i]) != (assumption_t)follow->links[i].assumed)
             return true;
     return false;
 }
@@ -89,12 +89,12 @@ static bool sees_other_way(const follow_t *follow)
 bool cm1e_coupling_settle(cm1e_axis_t *axis)
 {
     follow_t *now = axis->coupling->now;
-    const bool changed = sees_other_way(now) || axis->coupling->left_behind;
+    const bool changed = assumes_otherwise(now) || axis->coupling->left_behind;
     axis->coupling->left_behind = false;
     for (int i = 0; i < now->count && changed; i++) {
         link_t *link = &now->links[i];
-        link->sight = (uint8_t)sight(link);
-        link->ran_on = link->sight == SEEN ? 0.0 : link->ran_on;
+        link->assumed = (uint8_t)assumption(link);
+        link->ran_on = link->assumed == SEEN ? 0.0 : link->ran_on;
     }
     return changed;
 }
@@ -102,7 +102,7 @@ bool cm1e_coupling_settle(cm1e_axis_t *axis)
 static bool is_left_behind(const follow_t *follow)
 {
     for (int i = 0; i < follow->count; i++)
-        if (follow->links[i].apart && sight(&follow->links[i]) == SEEN)
+        if (follow->links[i].apart && assumption(&follow->links[i]) == SEEN)
             return true;
     return false;
 }
@@ -115,7 +115,7 @@ void cm1e_coupling_fall_behind(cm1e_axis_t *axis)
 bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis)
 {
     const follow_t *now = axis->coupling->now;
-    return now->by_actual || axis->coupling->left_behind || master_began_anew(now) || sees_other_way(now);
+    return now->by_actual || axis->coupling->left_behind || master_began_anew(now) || assumes_otherwise(now);
 }
 
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis)
@@ -245,10 +245,10 @@ static inline master_trouble_t see_actual(const link_t *link, position_t *positi
     return MASTER_GOOD;
 }
 
-/* Where the motor of a master is likely to be that is not seen. */
+/* Where the motor of a master is assumed to be while its bus is silent. */
 static void run_on(link_t *link, bool on_the_way, position_t *position, master_view_t *view)
 {
-    if (link->sight == STOPS)
+    if (link->assumed == STOPS)
         view->velocity = 0.0;
     if (on_the_way)
         link->ran_on += 2.0 * link->half_cycle * view->velocity;
@@ -256,7 +256,7 @@ static void run_on(link_t *link, bool on_the_way, position_t *position, master_v
     view->acceleration = 0.0;
 }
 
-/* The position and the view of the master in this cycle, all but the counts of the view. */
+/* Gives the position of the master in this cycle, and its view without the counts. */
 static inline master_trouble_t see(link_t *link, bool on_the_way, position_t *position, master_view_t *view)
 {
     const cm1e_axis_t *master = link->master;
@@ -271,7 +271,7 @@ static inline master_trouble_t see(link_t *link, bool on_the_way, position_t *po
     view->velocity = master->setpoint.velocity;
     view->acceleration = master->setpoint.acceleration;
     view->jumps = master->setpoint.jumps;
-    if (link->sight != SEEN)
+    if (link->assumed != SEEN)
         run_on(link, on_the_way, position, view);
     return trouble;
 }
@@ -324,7 +324,7 @@ void cm1e_coupling_held(cm1e_axis_t *axis)
 {
     follow_t *now = axis->coupling->now;
     for (int i = 0; i < now->count; i++)
-        if (now->links[i].apart && sight(&now->links[i]) == SEEN && !stands(&now->links[i]))
+        if (now->links[i].apart && assumption(&now->links[i]) == SEEN && !stands(&now->links[i]))
             cm1e_axis_set_reached(axis, false);
 }
 
@@ -385,7 +385,7 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
     if (master->config->type == CM1E_AXIS_ENCODER || drive_profiles(master)) /* it has only an actual value */
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;
-    link->sight = (uint8_t)sight(link);
+    link->assumed = (uint8_t)assumption(link);
     know_ways(link, slave->cycle_s);
     const master_trouble_t trouble = see(link, false, &link->origin, &link->seen);
     if (trouble) {

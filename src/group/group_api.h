@@ -37,7 +37,7 @@ cm1e_error_t cm1e_group_member(const cm1e_group_t *group, uint32_t ident, AXIS_R
 cm1e_error_t cm1e_group_enable(cm1e_group_t *group);
 /** Disables the group, in every state. Commands are aborted, and a moving group is stopped along its path. @rt cycle */
 cm1e_error_t cm1e_group_disable(cm1e_group_t *group);
-/** Also resets the axes that are in ErrorStop. Poll with cm1e_group_reset_state(). @rt cycle */
+/** Resets the group, and its axes that are in ErrorStop. Poll it with cm1e_group_reset_state(). @rt cycle */
 cm1e_error_t cm1e_group_reset(cm1e_group_t *group);
 cm1e_command_state_t cm1e_group_reset_state(cm1e_group_t *group, cm1e_error_t *error);
 
@@ -53,8 +53,8 @@ typedef enum cm1e_group_kind {
     CM1E_GROUP_KIND_COUNT,
 } cm1e_group_kind_t;
 
-/** A motion command. Positions are in u, by IdentInGroup - 1; places without an axis are ignored. Dynamics of 0 select
- *  as much as the axes allow. */
+/** A motion command. Positions are in u and stand at the place IdentInGroup - 1; places without an axis are ignored. A
+ *  limit of 0 selects the largest value that the axes allow. */
 typedef struct cm1e_group_command {
     cm1e_group_kind_t kind;
     double position[CM1E_GROUP_AXES];  /**< target or distance */
@@ -73,17 +73,18 @@ cm1e_error_t cm1e_group_start(cm1e_group_t *group, const cm1e_group_command_t *c
 cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id);
 /** Whether this is the active command of an existing group. @rt cycle */
 bool cm1e_group_runs(AXES_GROUP_REF_t reference, cm1e_command_id_t id);
-/** MC_GroupStop.Execute is (still) TRUE: while it is, the group stays in GroupStopping. @rt cycle */
+/** Tells whether MC_GroupStop.Execute is TRUE. While it is, the group stays in GroupStopping. @rt cycle */
 void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold);
-/** Factor on the velocities of commands, 0 ... 1; kept until changed. CM1E_ERROR_AXIS_OVERRIDE. @rt cycle */
+/** Sets the factor on the velocities of commands, 0 ... 1, which holds until it is changed. CM1E_ERROR_AXIS_OVERRIDE:
+ *  the factor is out of this range. @rt cycle */
 cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity);
 
 /* ---- readings ---------------------------------------------------------------------------------------------------- */
 
 /** Updates the group from the states of its axes, then copies its values. @rt cycle */
 void cm1e_group_get(cm1e_group_t *group, cm1e_group_info_t *info);
-/** Positions and velocities of the axes, by IdentInGroup - 1 (0: no axis); `path` is the velocity along the path. In
- *  u as the axes show them. CM1E_ERROR_AXIS_OFFLINE: actual values of an axis are not known. @rt cycle */
+/** Gives positions and velocities of the axes in u, as the axes show them, at the place IdentInGroup - 1 (0: no axis).
+ *  `path` is the velocity along the path. CM1E_ERROR_AXIS_OFFLINE: actual values of an axis are not known. @rt cycle */
 cm1e_error_t cm1e_group_values(const cm1e_group_t *group, MC_SOURCE source, double *position, double *velocity,
                                double *path);
 

@@ -219,7 +219,7 @@ static cm1e_error_t start_move(cm1e_group_t *group, const cm1e_group_command_t *
     return error;
 }
 
-/* A waiting halt is done when it becomes active and the group is at rest. */
+/* Starts MC_GroupHalt. A waiting halt is done when it becomes active and the group is at rest. */
 static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     if (group->state == CM1E_GROUP_STANDBY) {
@@ -242,7 +242,8 @@ static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *
     return CM1E_OK;
 }
 
-/* A group at rest holds those of its axes that are at rest, so that no other command moves them. */
+/* Starts MC_GroupStop. A group at rest holds those of its axes that are at rest, so that no other command moves
+ * them. */
 static void start_stop(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     if (group->state == CM1E_GROUP_STANDBY && cm1e_group_begin_path(group) == CM1E_OK)
@@ -270,7 +271,7 @@ static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *comma
     if (error != CM1E_OK)
         return error;
     if (group->state == CM1E_GROUP_STANDBY)
-        cm1e_group_let_go(group); /* no axis asks, unless it was left out of its last cycle */
+        cm1e_group_let_go(group); /* no axis asks, but for one left out of its last cycle */
     if (is_move(command->kind))
         error = start_move(group, command, id);
     else if (command->kind == CM1E_GROUP_HALT)

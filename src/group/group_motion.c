@@ -31,7 +31,7 @@ void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit)
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
-/* At rest. false: a command is left, or GroupStopping holds. */
+/* Ends the motion at rest; false: a command is left, or GroupStopping holds. */
 static bool come_to_rest(cm1e_group_t *group)
 {
     if (group->state == CM1E_GROUP_STOPPING && group->queue.count > 0)
@@ -80,7 +80,8 @@ static cm1e_lead_t next(void *context, uint32_t index, double *position, double 
     return CM1E_LEAD_LAST;
 }
 
-/* At rest in GroupStopping an axis may be released: it leaves no path. After the last one no step follows. */
+/* Called when an axis has lost the lead. At rest in GroupStopping that is no error, because the axis leaves no path.
+ * After the last axis no step follows. */
 static void lost(void *context, uint32_t index, cm1e_error_t error)
 {
     cm1e_group_t *group = context;
@@ -92,7 +93,8 @@ static void lost(void *context, uint32_t index, cm1e_error_t error)
         (void)come_to_rest(group);
 }
 
-/* All axes report a pause before the first of them asks again. */
+/* Called when the motor of an axis has come to rest in a pause. All axes report it before the first of them asks for a
+ * set-point again. */
 static void paused(void *context, uint32_t index)
 {
     cm1e_group_t *group = context;
@@ -104,7 +106,7 @@ static void paused(void *context, uint32_t index)
     group->paused |= bit;
 }
 
-/* The part of its velocity that the motor with the least speed left can go on with. */
+/* The smallest part of its velocity with which a motor of the group can go on. */
 static double part_left(const cm1e_group_t *group)
 {
     double least = 1.0;
@@ -116,7 +118,8 @@ static double part_left(const cm1e_group_t *group)
     return least;
 }
 
-/* All axes report a silence too before the first of them asks again, the first before any of them is slower. */
+/* Called after a silence, by all axes before the first of them asks for a set-point again. The first call is made
+ * before any of them is slower. */
 static void slow(void *context, uint32_t index, double *velocity, double *acceleration)
 {
     cm1e_group_t *group = context;

@@ -57,16 +57,16 @@ struct cm1e_group {
     uint16_t handle;
     cm1e_group_config_t config;
     cm1e_group_state_t state;
-    AXIS_REF_t member[CM1E_GROUP_AXES]; /**< by IdentInGroup - 1; handle 0: none */
+    AXIS_REF_t member[CM1E_GROUP_AXES]; /**< at the place IdentInGroup - 1; handle 0: no axis */
     const cm1e_bus_t *bus;              /**< of the members */
-    bool ungroup;                       /**< released when nothing moves any more */
+    bool ungroup;                       /**< the axes are released when nothing moves any more */
 
     /* the motion: axes of the path are members in their order, without the gaps */
     int axes;
     uint8_t ident[CM1E_GROUP_AXES];     /**< IdentInGroup of the axes of the path */
     unsigned led, asked, paused, slowed; /**< bits of axes of the path: led by the group; has had this sample; has
                                               reported this pause, this silence */
-    bool ending;                        /**< the present sample is the last one */
+    bool ending;                        /**< the present set-point is the last one */
     bool halting;                       /**< MC_GroupHalt brakes, with ... */
     double halt_deceleration, halt_jerk;
     double override;

@@ -179,7 +179,7 @@ cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *c
     if (c->method > kind->last_method || c->method < kind->first_method || c->method == 0) /* 0: none selected */
         return wrong(home, METHOD, c->method);
     if (home->submitted && cm1e_sdo_state(&home->sdo) == CM1E_SDO_BUSY)
-        return CM1E_ERROR_BUSY; /* transfer of a stopped homing */
+        return CM1E_ERROR_BUSY; /* a transfer of a stopped homing is still under way */
     if (!isfinite(c->timeout_s) || c->timeout_s < 0.0 || c->timeout_s > longest_timeout_s)
         return wrong(home, TIMEOUT, c->timeout_s);
     const cm1e_error_t error = take_parameters(axis, c);
@@ -282,7 +282,7 @@ static void submit(cm1e_axis_t *axis, uint16_t index, uint8_t subindex, unsigned
     const cm1e_error_t error = cm1e_sdo_submit(axis->drive.bus, &home->sdo);
     if (error == CM1E_OK)
         home->submitted = true;
-    else if (error != CM1E_ERROR_FULL) /* if the queue is full, it is tried again in the next cycle */
+    else if (error != CM1E_ERROR_FULL) /* a full queue: the next cycle tries again */
         refuse(axis, error);
 }
 

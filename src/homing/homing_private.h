@@ -22,10 +22,10 @@ typedef struct drive_homing {
     uint8_t next;          /**< parameter to write next */
     uint8_t place;         /**< number of the step in the order of its kind */
     uint8_t bits_before;   /**< statusword bits 13, 12, 10 before the start */
-    uint8_t wrong;         /**< for the text: the last parameter that was out of its range, and its value */
+    uint8_t wrong;         /**< last parameter that was out of its range, and its value; for the text */
     bool submitted;
     bool away;             /**< the drive is not in the axis's own mode */
-    bool unstoppable;      /**< for the text: it did not stop in time */
+    bool unstoppable;      /**< the motor did not stop in time; for the text */
     uint8_t data[4];
     standstill_t standstill;
     cm1e_error_t refused;  /**< why the last homing could not start; `sdo` has the numbers for the text */
@@ -48,7 +48,7 @@ typedef struct stepping {
     cm1e_homing_step_t step;
     cm1e_motion_limits_t limits;
     stepping_phase_t phase;
-    cm1e_error_t outcome;           /**< from STEPPING_STOP on */
+    cm1e_error_t outcome;           /**< valid from STEPPING_STOP on */
     double position;                /**< u, to set at the reference; NAN: none */
     position_t reference;           /**< where the event was */
     double search, way;             /**< +-1: direction of the search, and the present direction */
@@ -58,7 +58,7 @@ typedef struct stepping {
     int64_t settled_ns;             /**< a motor that is not at its set-point by then is blocked */
     position_t actual_before;       /**< at the last look */
     bool level, seen_on, pressed;
-    bool turned_positive, turned_negative; /**< at a limit switch */
+    bool turned_positive, turned_negative; /**< the search has turned at that limit switch */
     bool referenced;                /**< the last step set a position */
     bool finishing;                 /**< positions are valid again: software limits hold */
 } stepping_t;

@@ -282,7 +282,7 @@ static void settle_cycle(cm1e_axis_t *axis)
         return;
     if (!held_up(axis)) {
         s->phase = STEPPING_RELIEVED;
-        press_on(axis, 0.0); /* at rest already: this profile ends at once */
+        press_on(axis, 0.0); /* the set-point is at rest already, so this profile ends at once */
     } else if (presses(axis) || axis->now_ns >= s->settled_ns) {
         relieve(axis, pushed_way(axis));
     }
@@ -318,7 +318,7 @@ static cm1e_error_t prepare_finish(const cm1e_axis_t *axis, const move_t *move, 
     const from_t from = from_set(axis);
     move_t dynamics = *move;
     if (move->position == 0.0)
-        dynamics.kind = CM1E_COMMAND_HALT; /* a halt: the velocity does not matter */
+        dynamics.kind = CM1E_COMMAND_HALT; /* acts as a halt, whose velocity does not matter */
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &from, &dynamics, &next->limits);
     if (error != CM1E_OK)
         return error;
@@ -476,7 +476,7 @@ static bool stands(const cm1e_axis_t *axis)
     return fabs(actual_velocity(axis)) <= axis->homing->stepping.step.detection_velocity;
 }
 
-/* How clearly the motor presses against a stop: torque or lag relative to its limit; 1 is enough. */
+/* How clearly the motor presses against a stop: its torque or lag relative to the limit. 1 is enough. */
 static double pressure(const cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
@@ -525,8 +525,8 @@ static void look_for_block(cm1e_axis_t *axis)
     }
 }
 
-/* Behind a bridge the counts of the motor have an end, whatever the positions of the axis are. true: the axis has to
- * brake now. */
+/* Whether the axis has to brake now, because the counts of a motor behind a bridge end, whatever the positions of the
+ * axis are. */
 static bool out_of_counts(const cm1e_axis_t *axis)
 {
     const double v = axis->setpoint.velocity, now = cm1e_axis_line(axis, axis->setpoint.position);
@@ -581,7 +581,7 @@ static void search(cm1e_axis_t *axis)
     s->actual_before = axis_actual(axis);
 }
 
-/* After MC_Stop has ended a step: whether the motor still has to be relieved before MC_Stop is Done. */
+/* Whether the motor still has to be relieved after MC_Stop has ended a step. Then MC_Stop is not Done yet. */
 static bool relieving_after_stop(const cm1e_axis_t *axis)
 {
     return axis->homing_step.after_stop && axis->state == CM1E_AXIS_STOPPING;
