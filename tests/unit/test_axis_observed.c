@@ -131,6 +131,22 @@ static void test_slave_is_where_the_encoder_is(void)
 }
 
 /* Over the end of its counter, and however long: what is left at rest is not a count. */
+/* What is shown as acceleration is the change of the velocity, as the drives and the next coupling expect it. */
+static void test_the_acceleration_of_the_slave_is_the_change_of_its_velocity(void)
+{
+    begin_with(swinging, 0.05);
+    follow(1, 50, mcActualValue);
+    double largest = 0.0;
+    for (int n = 0; n < 4000; n++) {
+        const double before = axes_info(SLAVE).set_velocity;
+        axes_cycles(1);
+        const cm1e_axis_info_t now = axes_info(SLAVE);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, (now.set_velocity - before) / 1e-3, now.set_acceleration);
+        largest = fmax(largest, fabs(now.set_acceleration));
+    }
+    TEST_ASSERT_TRUE(largest > 12.0 / 50.0); /* 3 u, 2 rad/s, and the noise of whole counts */
+}
+
 static void test_nothing_is_lost_on_a_long_way(void)
 {
     begin_with(going_and_resting, 0.0);
@@ -225,6 +241,15 @@ static void test_an_encoder_that_was_never_read_is_no_master(void)
     axes_bench.program = read_encoder;
     axes_cycles(200);
     axes_command(SLAVE, &c);
+}
+
+/* docs/BUS-FILE.md: encoder_filter_s is 10 cycles where nothing is given. */
+static void test_the_filter_has_ten_cycles_by_default(void)
+{
+    begin_with(steady, 0.0);
+    const cm1e_observer_t by_default = axes_axis(MASTER)->coupling->own.filter;
+    begin_with(steady, 0.010);
+    TEST_ASSERT_EQUAL_DOUBLE(axes_axis(MASTER)->coupling->own.filter.velocity_gain, by_default.velocity_gain);
 }
 
 /* A shift against it is as against any master. */
@@ -324,6 +349,72 @@ static void test_actual_value_of_a_motor_that_moves(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_info(SLAVE).set_velocity);
 }
 
+/* The slave moves with the master already. To follow its actual value from now on changes no step of its set-point. */
+static void test_from_the_set_value_to_the_actual_value_without_a_step(void)
+{
+    encoder.at = NULL;
+    for (int in_program = 0; in_program < 2; in_program++) {
+        begin_motors();
+        axes_gear_in(SLAVE, MASTER, 1, 10);
+        axes_move_velocity(MASTER, 5.0);
+        axes_cycles(2000);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.5, axes_info(SLAVE).set_velocity);
+        coupled = false;
+        if (in_program)
+            axes_bench.program = couple_in_the_program;
+        else
+            couple_in_the_program();
+        for (int n = 0; n < 100; n++) {
+            const double before = axes_info(SLAVE).set_position;
+            axes_cycles(1);
+            TEST_ASSERT_DOUBLE_WITHIN(1.0 / 50000.0, 0.0005, axes_info(SLAVE).set_position - before);
+        }
+        axes_end();
+    }
+}
+
+static const cm1e_axis_coupling_t by_actual = {.master = {{.source = mcActualValue, .numerator = 1,
+                                                           .denominator = 100}}};
+
+/* Of a motor that moves as it is told the velocity and the acceleration are known: its estimate has no run-in. */
+static void test_the_estimate_of_a_motor_begins_with_its_set_point(void)
+{
+    begin_motors();
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 10.0, .jerk = 1000.0,
+                                                .acceleration = 40.0});
+    axes_cycles(100);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 40.0, axes_info(MASTER).set_acceleration);
+    cm1e_axis_coupling_t coupling = by_actual;
+    coupling.master[0].axis = axes_reference(MASTER);
+    axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling});
+    for (int n = 0; n < 30; n++) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(0.05, axes_info(MASTER).set_velocity, axes_axis(MASTER)->coupling->own.now.velocity);
+    }
+}
+
+/* Without torque the set-point says nothing: the estimate begins with the velocity that the drive reports. */
+static void test_the_estimate_of_a_motor_without_torque_begins_with_its_actual_velocity(void)
+{
+    begin_motors();
+    axes_power(MASTER, false);
+    axes_cycles(20);
+    axes_must_be(MASTER, CM1E_AXIS_DISABLED);
+    for (int n = 0; n < 50; n++) {
+        axes_motor(MASTER)->position += 100;
+        axes_motor(MASTER)->velocity_raw = 100000; /* 2 u/s */
+        axes_cycles(1);
+    }
+    cm1e_axis_coupling_t coupling = by_actual;
+    coupling.master[0].axis = axes_reference(MASTER);
+    axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling});
+    for (int n = 0; n < 30; n++) {
+        axes_motor(MASTER)->position += 100;
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.0, axes_axis(MASTER)->coupling->own.now.velocity);
+    }
+}
+
 /* Without torque, turned by hand. */
 static double turned_by;
 static int turning;
@@ -384,17 +475,22 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_slave_is_where_the_encoder_is);
+    RUN_TEST(test_the_acceleration_of_the_slave_is_the_change_of_its_velocity);
     RUN_TEST(test_nothing_is_lost_on_a_long_way);
     RUN_TEST(test_noise_of_the_encoder_is_smoothed);
     RUN_TEST(test_short_silence_is_ridden_out);
     RUN_TEST(test_long_silence_stops_the_slave);
     RUN_TEST(test_an_encoder_that_jumps_stops_the_slave);
     RUN_TEST(test_an_encoder_that_was_never_read_is_no_master);
+    RUN_TEST(test_the_filter_has_ten_cycles_by_default);
     RUN_TEST(test_an_encoder_is_shifted);
     RUN_TEST(test_a_coupling_from_a_program_begins_without_a_step);
     RUN_TEST(test_after_a_long_silence_an_encoder_is_where_it_says);
     RUN_TEST(test_an_estimate_does_not_go_on_through_a_long_silence);
     RUN_TEST(test_actual_value_of_a_motor_that_moves);
+    RUN_TEST(test_from_the_set_value_to_the_actual_value_without_a_step);
+    RUN_TEST(test_the_estimate_of_a_motor_begins_with_its_set_point);
+    RUN_TEST(test_the_estimate_of_a_motor_without_torque_begins_with_its_actual_velocity);
     RUN_TEST(test_a_master_by_its_actual_value_may_be_disabled);
     RUN_TEST(test_a_virtual_master_by_its_actual_value);
     RUN_TEST(test_a_master_that_fails_is_lost_by_its_actual_value_too);
