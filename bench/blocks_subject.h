@@ -15,8 +15,13 @@ typedef struct blocks_move {
     double position, velocity, acceleration, deceleration, jerk;
 } blocks_move_t;
 
+/** The number of axes. bench_limits has a few only, because they start under an instruction counter. */
+#ifndef BLOCKS_AXES
+#define BLOCKS_AXES 256
+#endif
+
 /** The largest values of the bench's moves. */
-enum { BLOCKS_VELOCITY = 300, BLOCKS_ACCELERATION = 3000, BLOCKS_JERK = 60000, BLOCKS_MAX_AXES = 256 };
+enum { BLOCKS_VELOCITY = 300, BLOCKS_ACCELERATION = 3000, BLOCKS_JERK = 60000, BLOCKS_MAX_AXES = BLOCKS_AXES };
 
 /** What the axes do while they are timed. Every axis has an MC_Power besides, called in every cycle. */
 typedef enum blocks_work {
@@ -33,7 +38,7 @@ typedef enum blocks_work {
 enum {
     BLOCKS_SET = 8,    /**< a master and its slaves: so many fit a group of the peer, which it needs for them */
     BLOCKS_MEMBERS = 3,
-    BLOCKS_GROUPS = 32,     /**< most of them */
+    BLOCKS_GROUPS = BLOCKS_AXES / 8, /**< most of them */
     BLOCKS_CAM_POINTS = 33, /**< 32 pieces of BLOCKS_CAM_PERIOD u of the master */
     BLOCKS_CAM_PERIOD = 100,
     BLOCKS_PIECES = 8, /**< of the path */

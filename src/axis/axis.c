@@ -8,6 +8,7 @@
 #include "axis/axis_commands.h"
 #include "axis/axis_device.h"
 #include "axis/axis_events.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_guard.h"
 #include "axis/axis_handle.h"
 #include "axis/axis_in_position.h"
@@ -20,6 +21,7 @@
 #include "axis/axis_table.h"
 #include "core/cache_line.h"
 #include "core/clock.h"
+#include "core/rare.h"
 
 cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
 {
@@ -47,6 +49,7 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
         free(axis);
         return error;
     }
+    cm1e_axis_signals_changed(axis);
     const int64_t cycle_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
     axis->cycle_s = (double)(cycle_ns > 0 ? cycle_ns : MS_IN_NS) * 1e-9;
     cm1e_axis_guard_renew(axis);
@@ -187,14 +190,25 @@ static bool moves_on(const cm1e_axis_t *axis)
     return set_points_move(axis) && axis->state != CM1E_AXIS_DISABLED && axis_acts(axis);
 }
 
-void cm1e_axis_advance(cm1e_axis_t *axis)
+/* What is beside the motion, after it. */
+CM1E_RARE static void step_extras(cm1e_axis_t *axis)
+{
+    if (axis_awaits(axis) && !axis->silence.frozen)
+        axis->coupling_hooks->await_step(axis);
+    if (axis_has_extra(axis, EXTRA_BACKLASH) && !axis->silence.frozen)
+        cm1e_axis_backlash_step(axis);
+    if (axis_has_extra(axis, EXTRA_OBJECTS))
+        cm1e_axis_objects_step(axis);
+}
+
+void cm1e_axis_advance_any(cm1e_axis_t *axis)
 {
     axis->advanced = true;
     if (axis->silence.silent_before > 0)
         cm1e_axis_after_silence(axis);
-    if (axis_follows(axis) || axis->commands.awaits)
+    if (axis_follows(axis) || axis_awaits(axis))
         axis->coupling_hooks->advance_masters(axis);
-    if (axis->commands.kept != 0 || axis->drive.command.digital_outputs != 0 || axis->drive.wiring)
+    if (axis_has_extra(axis, EXTRA_SIGNALS))
         cm1e_axis_signals_step(axis);
     const bool undisturbed = moves_on(axis);
     if (!undisturbed) {
@@ -206,14 +220,18 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
         cm1e_axis_motion_step(axis);
     else if (axis_follows(axis))
         axis->coupling_hooks->held(axis);
-    if (axis->commands.awaits && !axis->silence.frozen)
-        axis->coupling_hooks->await_step(axis);
-    if (axis->backlash.gap > 0.0 && !axis->silence.frozen)
-        cm1e_axis_backlash_step(axis);
-    if (axis->objects.head != axis->objects.next)
-        cm1e_axis_objects_step(axis);
+    if (axis->extras)
+        step_extras(axis);
     if (!undisturbed || !set_points_move(axis))
         cm1e_axis_enable_step(axis);
+}
+
+void cm1e_axis_advance(cm1e_axis_t *axis)
+{
+    if (cm1e_axis_ordinary_step(axis))
+        axis->advanced = true;
+    else
+        cm1e_axis_advance_any(axis);
 }
 
 void cm1e_axis_outputs(cm1e_axis_t *axis)

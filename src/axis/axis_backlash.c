@@ -11,6 +11,7 @@
 #include <math.h>
 
 #include "axis/axis_backlash.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_power.h"
 #include "axis/axis_setpoint.h"
 
@@ -27,6 +28,7 @@ void cm1e_axis_backlash_init(cm1e_axis_t *axis)
     backlash_t *b = &axis->backlash;
     const double scale = fabs(axis->position.scale);
     b->gap = c->backlash * scale;
+    cm1e_axis_set_extra(axis, EXTRA_BACKLASH, b->gap > 0.0);
     if (b->gap == 0.0)
         return;
     b->velocity = c->backlash_velocity > 0.0 ? c->backlash_velocity * scale : cm1e_unit_backlash_velocity(c);

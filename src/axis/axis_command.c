@@ -1,6 +1,7 @@
 /* Commands: function blocks post them and know them by number; one of them is active. */
 #include "axis/axis_commands.h"
 #include "axis/axis_driving.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_handle.h"
 #include "axis/axis_in_position.h"
 #include "axis/axis_lead.h"
@@ -15,7 +16,7 @@
 
 void cm1e_axis_waiting_end(cm1e_axis_t *axis, cm1e_command_state_t state)
 {
-    if (axis->commands.awaits)
+    if (axis_awaits(axis))
         axis->coupling_hooks->await_nothing(axis);
     for (int i = 0; i < axis->commands.waiting.count; i++)
         cm1e_axis_record(axis, waiting_move(axis, i)->id, state,
@@ -209,7 +210,7 @@ cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t 
 static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     return command->buffer_mode != mcAborting && kind_row(command->kind)->has_buffer_mode &&
-           !is_beside(command->kind) && (axis->commands.active || axis->commands.awaits) &&
+           !is_beside(command->kind) && (axis->commands.active || axis_awaits(axis)) &&
            axis->state != CM1E_AXIS_STOPPING;
 }
 

@@ -39,8 +39,6 @@ static inline void cm1e_axis_shift_move(cm1e_axis_t *axis, double counts)
     axis->commands.move.origin = cm1e_position_plus(axis->commands.move.origin, counts);
     axis->commands.move.target = cm1e_position_plus(axis->commands.move.target, counts);
 }
-/** Whether the first waiting command awaits a place of its master. */
-static inline void cm1e_axis_set_awaits(cm1e_axis_t *axis, bool awaits) { axis->commands.awaits = awaits; }
 /** Remembers why a command was refused, for the text; CM1E_OK: none was. */
 static inline void cm1e_axis_set_refusal(cm1e_axis_t *axis, cm1e_error_t error) { axis->commands.refusal = error; }
 /** The move of a waiting command; 0 is the first one. */

@@ -1,5 +1,6 @@
 /* Digital inputs and outputs of the motor, and the switches that are wired to them. */
 #include "axis/axis_device.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_signals.h"
 #include "axis/axis_text.h"
@@ -203,6 +204,7 @@ static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_
     uint16_t *outputs = &axis->drive.command.digital_outputs;
     *outputs = (uint16_t)(value ? *outputs | bit : *outputs & ~bit);
     axis->signals.output_until_ns = until_ns;
+    cm1e_axis_signals_changed(axis);
     return CM1E_OK;
 }
 

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "axis/axis_parts.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_signals.h"
 
 cm1e_guest_refusal_t cm1e_axis_guest_may(const cm1e_axis_t *axis, cm1e_command_id_t own)
@@ -14,7 +14,7 @@ cm1e_guest_refusal_t cm1e_axis_guest_may(const cm1e_axis_t *axis, cm1e_command_i
         return CM1E_GUEST_NO_MOTOR;
     if (!owned && (axis->commands.active != 0 || !rests))
         return CM1E_GUEST_COMMANDED;
-    if (axis->commands.waiting.count > 0 || axis->commands.awaits || axis->superimposed.id)
+    if (axis->commands.waiting.count > 0 || axis_awaits(axis) || axis->superimposed.id)
         return CM1E_GUEST_COMMANDED;
     if (axis->group || axis->leader.next)
         return CM1E_GUEST_GROUPED;

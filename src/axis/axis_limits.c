@@ -4,6 +4,7 @@
 #include "axis/axis_limits.h"
 #include "axis/axis_backlash.h"
 #include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 
 /* Tolerance of positions: smaller than any useful difference, and larger than the rounding of sums of doubles. */
 static const double tolerance_counts = 0.01;
@@ -60,6 +61,7 @@ void cm1e_axis_apply_limits(cm1e_axis_t *axis)
                               axis->limits.counts_lower);
     axis->limits.software_limits = axis->limits.positive_enabled || axis->limits.negative_enabled ||
                                    axis->limits.counts_limit;
+    cm1e_axis_look_anew(axis);
 }
 
 static void take_software_limits(cm1e_axis_t *axis)

@@ -15,13 +15,6 @@
 /* 1/s. In CSV (a mapping without target position) the position loop is ours. */
 static const double csv_position_gain = 20.0;
 
-/* Cycles: a profile that ends so shortly after a set-point counts as ended. */
-static const double same_moment = 1e-6;
-
-/* Counts: a set-point that is farther from the begin of its profile counts from a new base. At this distance a double
- * still has a resolution of a millionth of a count. */
-static const double farthest_from_base = 0x1p32;
-
 static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
 
 void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t *from, position_t target,
@@ -38,6 +31,7 @@ void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t
     axis->setpoint.reached = false;
     axis->setpoint.paused = false;
     axis->setpoint.stands = false;
+    cm1e_axis_look_anew(axis);
     cm1e_axis_set_source(axis, source);
 }
 
@@ -174,13 +168,10 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     return axis_on_profile(axis);
 }
 
-/* Computes the time a cycle ahead, to keep it out of the way of the next set-point. */
 static double next_time(cm1e_axis_t *axis)
 {
     const double time_s = axis->setpoint.profile_next_s;
-    axis->setpoint.profile_cycles++;
-    axis->setpoint.profile_next_s = axis->setpoint.profile_offset_s +
-                                    (double)(axis->setpoint.profile_cycles + 1) * axis->cycle_s;
+    cm1e_axis_count_cycle(axis);
     return time_s;
 }
 
@@ -211,6 +202,7 @@ CM1E_RARE static void count_anew(cm1e_axis_t *axis)
     axis->setpoint.profile_offset_s = 0.0;
     axis->setpoint.profile_next_s = axis->cycle_s;
     axis->setpoint.stretch = no_stretch;
+    cm1e_axis_look_anew(axis);
 }
 
 CM1E_RARE static void meet_limit(cm1e_axis_t *axis, double velocity);
@@ -233,7 +225,7 @@ static inline void follow(cm1e_axis_t *axis, double time_s)
     }
     const double counts = next.position * axis->position.scale;
     axis->setpoint.position = cm1e_position_plus(axis->setpoint.base, counts);
-    if (axis->setpoint.reached && !on_top && fabs(counts) > farthest_from_base && axis->setpoint.slow.missing == 0.0)
+    if (axis->setpoint.reached && !on_top && fabs(counts) > profile_farthest_from_base && axis->setpoint.slow.missing == 0.0)
         count_anew(axis);
     axis->setpoint.velocity = next.velocity;
     axis->setpoint.acceleration = next.acceleration;
@@ -257,7 +249,7 @@ static void meet_limit(cm1e_axis_t *axis, double velocity)
 
 static bool at_end(const cm1e_axis_t *axis, double time_s)
 {
-    return time_s >= axis->setpoint.profile.duration_s - same_moment * axis->cycle_s && !axis->setpoint.reached &&
+    return time_s >= axis->setpoint.profile.duration_s - profile_same_moment * axis->cycle_s && !axis->setpoint.reached &&
            !axis->setpoint.paused && !axis->setpoint.stands;
 }
 

@@ -91,8 +91,6 @@ typedef struct commands {
     cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
     cm1e_command_id_t stop;         /**< the MC_Stop that holds the axis in Stopping */
     bool stop_held;
-    bool awaits;                    /**< the first waiting command begins at a place of its master (StartSync);
-                                         until then the active one goes on */
     buffer_t waiting;
     move_t move;                    /**< the active one, unless it is a homing */
     command_record_t records[COMMANDS_REMEMBERED];

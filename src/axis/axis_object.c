@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "axis/axis_device.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_parameters.h"
 #include "axis/axis_text.h"
 #include "core/bytes.h"
@@ -141,6 +142,7 @@ cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, d
     *ticket = (uint32_t)number << 16 | sequence;
     *request_of(axis, sequence) = (object_request_t){.ticket = *ticket, .state = CM1E_COMMAND_BUFFERED, .write = write,
                                                      .value = value};
+    cm1e_axis_set_extra(axis, EXTRA_OBJECTS, true);
     return CM1E_OK;
 }
 
@@ -168,6 +170,7 @@ static void finish(cm1e_axis_t *axis, object_request_t *request, cm1e_error_t er
     request->error = (int16_t)error;
     objects->submitted = false;
     objects->head++;
+    cm1e_axis_set_extra(axis, EXTRA_OBJECTS, objects->head != objects->next);
     if (error != CM1E_OK)
         cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = cm1e_axis_object_number(request->ticket),
                                                      .value = request->value, .abort_code = objects->sdo.abort_code});

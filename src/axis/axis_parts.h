@@ -15,8 +15,8 @@
 
 /* ---- set-point: axis_setpoint.h ---------------------------------------------------------------------------------- */
 
-/** The set-point: its source, its state of motion, and the profile that it follows. Written by axis_setpoint.h and
- *  axis_motion.c. */
+/** The set-point: its source, its state of motion, and the profile that it follows. Written by axis_setpoint.h,
+ *  axis_motion.c and axis_ordinary.c. */
 typedef struct setpoint {
     const source_t *source;         /**< cm1e_axis_set_source() */
     bool reached, positive_before;
@@ -29,6 +29,7 @@ typedef struct setpoint {
     position_t position;            /**< set position */
     double velocity, acceleration;  /**< set velocity and acceleration; u/s, u/s2 */
     double profile_next_s;          /**< time of the profile in the next cycle */
+    double ordinary_until_s;        /**< time of the profile until which its cycles are ordinary (axis_ordinary.c) */
     cm1e_profile_stretch_t stretch; /**< the stretch of the profile that the set-point is in */
     position_t base, target;        /**< base: where the profile began; target: where it ends, exactly */
     double base_line;               /**< u; cm1e_axis_line() of base */
@@ -298,6 +299,19 @@ typedef struct not_set {
     uint32_t abort_code;
 } not_set_t;
 
+/* ---- beside the motion: axis_extras.h ---------------------------------------------------------------------------- */
+
+/** What an axis may have to do in a cycle beside its motion. Most axes have nothing of it in most cycles, which one test
+ *  shows. */
+typedef enum extra {
+    EXTRA_SIGNALS = 1,  /**< a digital output is on, a motion has to be kept, or other slaves have its signals */
+    EXTRA_AWAITS = 2,   /**< the first waiting command begins at a place of its master (StartSync); until then the active
+                             one goes on */
+    EXTRA_ON_TOP = 4,   /**< a superimposed motion is a part of the set-point, or waits for room */
+    EXTRA_BACKLASH = 8, /**< there is a gap between motor and load */
+    EXTRA_OBJECTS = 16, /**< vendor parameters are asked for */
+} extra_t;
+
 /* ---- the axis ---------------------------------------------------------------------------------------------------- */
 
 /** The axis. All functions of this room run in the cycle unless marked otherwise. The order of the members keeps those
@@ -310,6 +324,7 @@ struct cm1e_axis {
     cm1e_mode_t mode;               /**< mode of the set-points: CSP, or CSV if the mapping has no target position */
     uint16_t handle;
     bool advanced;                  /**< its set-point is that of this cycle */
+    uint8_t extras;                 /**< extra_t; cm1e_axis_set_extra() */
     bool observed;                  /**< a slave follows its actual value, or has followed it; an encoder: always */
     power_t power;
     silence_t silence;

@@ -42,6 +42,13 @@ static inline bool axis_acts(const cm1e_axis_t *axis)
 
 /** The first half of cm1e_axis_outputs(): state diagram and set-point, before they are written to the drive. */
 void cm1e_axis_advance(cm1e_axis_t *axis);
+/** cm1e_axis_advance() for any cycle. Tests compare it with the short way of an ordinary cycle. */
+void cm1e_axis_advance_any(cm1e_axis_t *axis);
+/** cm1e_axis_advance() for an ordinary cycle of a move; false, and nothing has changed: it is not one
+ *  (axis_ordinary.c). */
+bool cm1e_axis_ordinary_step(cm1e_axis_t *axis);
+/** Something has changed on which it depends whether the next cycles are ordinary. */
+static inline void cm1e_axis_look_anew(cm1e_axis_t *axis) { axis->setpoint.ordinary_until_s = -INFINITY; }
 /* What sources write that are no profile of axis_motion.c, and those who change something beside the motion. */
 /** Writes the set-point of this cycle. */
 static inline void cm1e_axis_put_set_point(cm1e_axis_t *axis, const from_t *point)
@@ -82,6 +89,7 @@ static inline void cm1e_axis_shift_set_point(cm1e_axis_t *axis, double counts)
 static inline void cm1e_axis_renew_base_line(cm1e_axis_t *axis)
 {
     axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
+    cm1e_axis_look_anew(axis);
 }
 /** Shifts the begin and the end of the profile by so many counts. */
 static inline void cm1e_axis_shift_profile(cm1e_axis_t *axis, double counts)
@@ -90,20 +98,46 @@ static inline void cm1e_axis_shift_profile(cm1e_axis_t *axis, double counts)
     axis->setpoint.target = cm1e_position_plus(axis->setpoint.target, counts);
     cm1e_axis_renew_base_line(axis);
 }
+/** Cycles: a profile that ends so shortly after a set-point counts as ended. */
+static const double profile_same_moment = 1e-6;
+/** Counts: a set-point that is farther from the begin of its profile counts from a new base. At this distance a double
+ *  still has a resolution of a millionth of a count. */
+static const double profile_farthest_from_base = 0x1p32;
+/** Counts a cycle of the profile. The next time is computed a cycle ahead, to keep it out of the way of the next
+ *  set-point. */
+static inline void cm1e_axis_count_cycle(cm1e_axis_t *axis)
+{
+    setpoint_t *s = &axis->setpoint;
+    s->profile_cycles++;
+    s->profile_next_s = s->profile_offset_s + (double)(s->profile_cycles + 1) * axis->cycle_s;
+}
 /** Sets the duration and the end, which is all that the profile has of a table over time. */
 static inline void cm1e_axis_put_duration(cm1e_axis_t *axis, double duration_s, cm1e_motion_state_t end)
 {
     axis->setpoint.profile.duration_s = duration_s;
     axis->setpoint.profile.end = end;
     axis->setpoint.profile.segment_count = 0;
+    cm1e_axis_look_anew(axis);
 }
-static inline void cm1e_axis_set_reached(cm1e_axis_t *axis, bool reached) { axis->setpoint.reached = reached; }
+static inline void cm1e_axis_set_reached(cm1e_axis_t *axis, bool reached)
+{
+    axis->setpoint.reached = reached;
+    cm1e_axis_look_anew(axis);
+}
 /** Sets whether a follower is still approaching. */
 static inline void cm1e_axis_set_synchronizing(cm1e_axis_t *axis, bool on) { axis->setpoint.synchronizing = on; }
 /** Of a cam: cm1e_command_status_t.ends */
 static inline void cm1e_axis_set_ends(cm1e_axis_t *axis, uint32_t ends) { axis->setpoint.ends = ends; }
-static inline void cm1e_axis_set_paused(cm1e_axis_t *axis, bool paused) { axis->setpoint.paused = paused; }
-static inline void cm1e_axis_set_stands(cm1e_axis_t *axis, bool stands) { axis->setpoint.stands = stands; }
+static inline void cm1e_axis_set_paused(cm1e_axis_t *axis, bool paused)
+{
+    axis->setpoint.paused = paused;
+    cm1e_axis_look_anew(axis);
+}
+static inline void cm1e_axis_set_stands(cm1e_axis_t *axis, bool stands)
+{
+    axis->setpoint.stands = stands;
+    cm1e_axis_look_anew(axis);
+}
 
 /** Puts a profile in force that began at `from`, `offset_s` before the present set-point. */
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,

@@ -18,6 +18,7 @@
 #include "axis/axis_superimpose.h"
 #include "axis/axis_commands.h"
 #include "axis/axis_events.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_in_position.h"
 #include "axis/axis_limits.h"
 #include "axis/axis_plan.h"
@@ -149,6 +150,12 @@ static void give_to_base(cm1e_axis_t *axis)
     axis->superimposed.now.position = 0.0;
 }
 
+static void set_id(cm1e_axis_t *axis, cm1e_command_id_t id)
+{
+    axis->superimposed.id = id;
+    cm1e_axis_set_extra(axis, EXTRA_ON_TOP, id != 0);
+}
+
 static void record(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
     superimposed_t *on_top = &axis->superimposed;
@@ -156,7 +163,7 @@ static void record(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t e
     cm1e_axis_remember_end(axis, (cm1e_command_kind_t)on_top->move.kind, error);
     on_top->ended = on_top->id;
     on_top->covered = on_top->now.position;
-    on_top->id = 0;
+    set_id(axis, 0);
 }
 
 void cm1e_axis_superimposed_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
@@ -293,7 +300,8 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     if (on_top->id)
         record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     give_to_base(axis);
-    *id = on_top->id = cm1e_axis_next_id(axis);
+    *id = cm1e_axis_next_id(axis);
+    set_id(axis, *id);
     on_top->move = *move;
     on_top->alone = alone;
     on_top->share = share;
@@ -320,7 +328,7 @@ static cm1e_error_t halt(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_
     }
     record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     give_to_base(axis);
-    on_top->id = *id;
+    set_id(axis, *id);
     on_top->move = *move;
     if (on_top->moving)
         (void)plan(axis, on_top);

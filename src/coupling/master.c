@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "axis/axis_commands.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_pause.h"
 #include "axis/axis_setpoint.h"
 #include "core/rare.h"
@@ -206,7 +207,7 @@ follow_t *cm1e_coupling_spare(cm1e_axis_t *axis)
 void cm1e_coupling_await(cm1e_axis_t *axis, follow_t *follow)
 {
     axis->coupling->awaited = follow;
-    cm1e_axis_set_awaits(axis, true);
+    cm1e_axis_set_extra(axis, EXTRA_AWAITS, true);
     axis->coupling->due = false;
     cm1e_coupling_list_links(follow);
 }
@@ -216,7 +217,7 @@ void cm1e_coupling_await_nothing(cm1e_axis_t *axis)
     if (axis->coupling->awaited)
         cm1e_coupling_unlist_links(axis->coupling->awaited);
     axis->coupling->awaited = NULL;
-    cm1e_axis_set_awaits(axis, false);
+    cm1e_axis_set_extra(axis, EXTRA_AWAITS, false);
 }
 
 /* ---- what is seen of them ---------------------------------------------------------------------------------------- */

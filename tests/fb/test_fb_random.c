@@ -17,6 +17,7 @@
  */
 #include "random_program.h"
 #include "fake_bus.h"
+#include "ordinary_witness.h"
 
 enum { CYCLES = 20000, RUNS = 256, BATCHES = 8 };
 
@@ -104,7 +105,7 @@ void cycle_begin(void)
 void cycle_end(void)
 {
     for (int n = 0; n < axis_count; n++)
-        cm1e_axis_outputs(judged_axes[bench.order[n]].axis);
+        ordinary_outputs(judged_axes[bench.order[n]].axis);
     for (int n = 0; n < axis_count; n++) {
         judged_at = n;
         judge_cycle();

@@ -11,6 +11,7 @@
 #include "bus/bus_image.h"
 #include "device/unit.h"
 #include "nic/nic.h"
+#include "ordinary_witness.h"
 #include "sim/bridge_app.h"
 
 enum { MOST_OTHERS = 4, SDO_CYCLES = 5, SEEN_CYCLES = 2, SETTLING = 200 };
@@ -62,9 +63,9 @@ void cycle_begin(void)
 
 void cycle_end(void)
 {
-    cm1e_axis_outputs(judged.axis);
+    ordinary_outputs(judged.axis);
     for (int i = 0; i < bench.other_count; i++)
-        cm1e_axis_outputs(bench.others[i].axis);
+        ordinary_outputs(bench.others[i].axis);
     cm1e_bus_send(bench.bus);
     judge_cycle();
     watch_set_point();

@@ -3,6 +3,7 @@
 #include <check.h>
 
 #include "unity.h"
+#include "ordinary_witness.h"
 
 struct axes_bench axes_bench;
 
@@ -170,7 +171,7 @@ void axes_inputs(void)
 void axes_outputs(void)
 {
     for (int i = 0; i < axes_bench.count; i++)
-        cm1e_axis_outputs(axes_bench.axes[axes_bench.order[i]]);
+        ordinary_outputs(axes_bench.axes[axes_bench.order[i]]);
     for (int n = 0; n < axes_bench.count; n++)
         axes_judge(n);
     axes_bench.cycle++;

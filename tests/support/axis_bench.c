@@ -1,5 +1,7 @@
 #include "axis_bench.h"
 
+#include "ordinary_witness.h"
+
 const int64_t cycle_ns = 1000000;
 cm1e_bus_t bus;
 cm1e_axis_t *axis;
@@ -42,7 +44,7 @@ void bench_inputs(void)
 
 void bench_outputs(void)
 {
-    cm1e_axis_outputs(axis);
+    ordinary_outputs(axis);
     bench_watch();
 }
 

@@ -1,4 +1,6 @@
-#include "axis_segment.h"
+#include "ordinary_witness.h"
+
+#include "axis_segment.h" /* it has macros with short names: last */
 
 cm1e_bus_config_t config;
 cm1e_diag_t diag;
@@ -90,7 +92,7 @@ void inputs(void)
 void outputs(void)
 {
     for (uint32_t i = 0; i < config.axis_count; i++)
-        cm1e_axis_outputs(axes[i]);
+        ordinary_outputs(axes[i]);
     cm1e_bus_send(bus);
     cm1e_clock_sleep_until(cm1e_bus_clock(bus), next_ns);
 }

@@ -1,5 +1,7 @@
 #include "block_bench.h"
 
+#include "ordinary_witness.h"
+
 struct bench bench;
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
@@ -64,9 +66,9 @@ void cycle_begin(void)
 void cycle_end(void)
 {
     judged_at = 0;
-    cm1e_axis_outputs(judged.axis);
+    ordinary_outputs(judged.axis);
     if (bench.master)
-        cm1e_axis_outputs(bench.master);
+        ordinary_outputs(bench.master);
     for (judged_at = bench.master ? 1 : 0; judged_at >= 0; judged_at--) {
         judge_cycle();
         watch_set_point();

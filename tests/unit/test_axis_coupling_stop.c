@@ -2,6 +2,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
+#include "../support/ordinary_witness.h"
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }
@@ -179,7 +180,7 @@ static void test_a_master_that_is_destroyed_is_lost(void)
     axes_bench.axes[MASTER] = NULL;
     axes_bench.cycle = 0;
     cm1e_axis_inputs(axes_axis(SLAVE), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
-    cm1e_axis_outputs(axes_axis(SLAVE));
+    ordinary_outputs(axes_axis(SLAVE));
     failed(SLAVE, CM1E_ERROR_AXIS_MASTER_LOST, "does not exist any more");
 }
 

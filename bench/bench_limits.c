@@ -1,0 +1,142 @@
+/**
+ * What a cycle of the library costs in instructions, which do not depend on the load of the machine: the work of
+ * bench_blocks, with the axes of one set. bench/limits runs it under callgrind and compares the counts with those that
+ * are recorded. Each row runs in a function measured_...(), of which callgrind writes a count of its own.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "blocks_cm1e.h"
+
+enum { CYCLES = 100, WARM = 60, STARTS = 50 };
+
+#define MEASURED __attribute__((noinline, noclone, used)) void
+MEASURED measured_run(const blocks_subject_t *subject, unsigned axes, unsigned cycles);
+
+/* The one function that is counted. The result of `run` keeps it from becoming a jump. */
+MEASURED measured_run(const blocks_subject_t *subject, unsigned axes, unsigned cycles)
+{
+    subject->run(axes, cycles);
+    __asm__ volatile("" ::: "memory");
+}
+
+static size_t heap;
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *memory, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *memory, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+
+void *__wrap_malloc(size_t size)
+{
+    heap += size;
+    return __real_malloc(size);
+}
+void *__wrap_calloc(size_t count, size_t size)
+{
+    heap += count * size;
+    return __real_calloc(count, size);
+}
+void *__wrap_realloc(void *memory, size_t size)
+{
+    heap += size;
+    return __real_realloc(memory, size);
+}
+void *__wrap_aligned_alloc(size_t alignment, size_t size)
+{
+    heap += size;
+    return __real_aligned_alloc(alignment, size);
+}
+size_t blocks_heap_bytes(void) { return heap; }
+
+static void fail(const char *why)
+{
+    fprintf(stderr, "bench_limits: %s\n", why);
+    exit(1);
+}
+
+static const blocks_move_t there = {BLOCKS_FAR, BLOCKS_VELOCITY, BLOCKS_ACCELERATION / 2, BLOCKS_ACCELERATION / 2,
+                                    BLOCKS_JERK / 2};
+static const blocks_move_t home = {0, BLOCKS_VELOCITY, BLOCKS_ACCELERATION, BLOCKS_ACCELERATION, BLOCKS_JERK};
+
+static void run_to_the_end(const blocks_subject_t *subject, unsigned axes)
+{
+    for (unsigned i = 0; i < axes; i++)
+        for (int cycles = 0; !subject->done(i); cycles++) {
+            if (subject->failed(i) || cycles > 100000)
+                fail("a move was not done");
+            subject->run(axes, 1);
+        }
+}
+
+static void give(const blocks_subject_t *subject, unsigned axes, const blocks_move_t *move)
+{
+    for (unsigned i = 0; i < axes; i++)
+        subject->give(i, move);
+}
+
+/* A row: what was counted, in how many axes and cycles. The script divides. */
+static void told(const char *name, unsigned parts, size_t heap_before)
+{
+    printf("%s %u %zu\n", name, parts, heap - heap_before);
+}
+
+static void measure(const char *name, const blocks_subject_t *subject, blocks_work_t work, unsigned axes)
+{
+    if (!subject->begin(work, axes))
+        fail("the work cannot begin");
+    give(subject, axes, &there);
+    subject->run(axes, WARM);
+    const size_t before = heap;
+    measured_run(subject, axes, CYCLES);
+    told(name, axes * CYCLES, before);
+    run_to_the_end(subject, axes);
+    subject->end();
+    give(subject, axes, &home);
+    subject->run(axes, 1);
+    run_to_the_end(subject, axes);
+}
+
+/* The cycles in which all axes start: from rest, and on the way back. */
+static void measure_starts(const blocks_subject_t *subject, unsigned axes)
+{
+    give(subject, axes, &there);
+    const size_t before = heap;
+    measured_run(subject, axes, 1);
+    told("start-from-rest", axes, before);
+    subject->run(axes, WARM);
+    give(subject, axes, &home);
+    measured_run(subject, axes, 1);
+    told("start-on-the-way", axes, before);
+    run_to_the_end(subject, axes);
+}
+
+int main(void)
+{
+    static const struct {
+        const char *name;
+        const blocks_subject_t *subject;
+        blocks_work_t work;
+        unsigned axes;
+    } rows[] = {
+        {"a-move", &blocks_cm1e, BLOCKS_MOVE, BLOCKS_SET},
+        {"ab-move", &blocks_cm1e_whole, BLOCKS_MOVE, BLOCKS_SET},
+        {"a-gear", &blocks_cm1e, BLOCKS_GEAR, BLOCKS_SET},
+        {"ab-gear", &blocks_cm1e_whole, BLOCKS_GEAR, BLOCKS_SET},
+        {"a-cam-linear", &blocks_cm1e, BLOCKS_CAM_LINEAR, BLOCKS_SET},
+        {"a-cam-cubic", &blocks_cm1e, BLOCKS_CAM_CUBIC, BLOCKS_SET},
+        {"ab-cam-cubic", &blocks_cm1e_whole, BLOCKS_CAM_CUBIC, BLOCKS_SET},
+        {"a-group", &blocks_cm1e, BLOCKS_GROUP, BLOCKS_MEMBERS},
+        {"ab-group", &blocks_cm1e_whole, BLOCKS_GROUP, BLOCKS_MEMBERS},
+    };
+    if (!blocks_cm1e.make(BLOCKS_MAX_AXES))
+        fail("the axes are not powered");
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        measure(rows[i].name, rows[i].subject, rows[i].work, rows[i].axes);
+    measure_starts(&blocks_cm1e, BLOCKS_SET);
+    return 0;
+}

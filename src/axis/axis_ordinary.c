@@ -1,0 +1,80 @@
+/*
+ * The short way of an ordinary cycle. Most axes in most cycles are in the middle of a stretch of the profile of their
+ * command: nothing begins, ends or changes. Then a cycle is a sample of the stretch and nothing else, and a few tests
+ * show it. All decisions of the long way (cm1e_axis_advance_any()) that depend on the profile alone are made ahead, for
+ * some cycles at once: look_ahead(). Whatever could change one of them calls cm1e_axis_look_anew(). Both ways give the
+ * same bits (test axis_ordinary).
+ */
+#include <math.h>
+
+#include "axis/axis_commands.h"
+#include "axis/axis_extras.h"
+#include "axis/axis_setpoint.h"
+#include "core/rare.h"
+
+/* So many cycles are looked at together. */
+static const double cycles_ahead = 256.0;
+
+/* The highest speed between two times of the stretch; infinite: the axis turns in between. */
+static double highest_speed(const cm1e_profile_stretch_t *stretch, cm1e_motion_state_t a, cm1e_motion_state_t b)
+{
+    double v = a.velocity;
+    if (a.acceleration * b.acceleration < 0.0) { /* the velocity has an extremum in between */
+        const double t = -stretch->origin.acceleration / stretch->jerk;
+        v = cm1e_profile_stretch_state(stretch, stretch->origin_s + t).velocity;
+    }
+    const bool turns = a.velocity * b.velocity < 0.0 || a.velocity * v < 0.0 || b.velocity * v < 0.0;
+    return turns ? INFINITY : fmax(fabs(v), fmax(fabs(a.velocity), fabs(b.velocity)));
+}
+
+/* Whether no position between two times of the stretch needs more than a sample: the axis could be stopped before its
+ * software limits even from the farthest one at the highest speed, and all of them can be counted from the begin of the
+ * profile. The tolerance of the limits is left to rounding. */
+static bool needs_no_check(const cm1e_axis_t *axis, cm1e_motion_state_t a, cm1e_motion_state_t b)
+{
+    const double highest = fmax(a.position, b.position), lowest = fmin(a.position, b.position);
+    const double speed = highest_speed(&axis->setpoint.stretch, a, b), base = axis->setpoint.base_line;
+    const double way = speed * speed * axis->limits.emergency_way;
+    const double farthest = fmax(fabs(highest), fabs(lowest)) * fabs(axis->position.scale);
+    return isfinite(way) && farthest < profile_farthest_from_base &&
+           cm1e_position_reaches(axis->setpoint.base, 2.0 * profile_farthest_from_base) &&
+           cm1e_position_reaches(axis->setpoint.base, -2.0 * profile_farthest_from_base) &&
+           (!axis->limits.software_limits ||
+            (base + highest + way <= axis->limits.upper && base + lowest - way >= axis->limits.lower));
+}
+
+/* Whether the cycle at `time_s` is ordinary as far as the profile decides it, and until when the next ones are. */
+CM1E_RARE static bool look_ahead(cm1e_axis_t *axis, double time_s)
+{
+    setpoint_t *s = &axis->setpoint;
+    double until_s = fmin(s->stretch.until_s, time_s + cycles_ahead * axis->cycle_s);
+    if (!s->reached && !s->paused && !s->stands) /* else the end of the profile is behind */
+        until_s = fmin(until_s, s->profile.duration_s - profile_same_moment * axis->cycle_s);
+    if (!(time_s >= s->stretch.from_s && time_s < until_s))
+        return false;
+    const cm1e_motion_state_t a = cm1e_profile_stretch_state(&s->stretch, time_s);
+    const cm1e_motion_state_t b = cm1e_profile_stretch_state(&s->stretch, until_s);
+    if (!needs_no_check(axis, a, b))
+        return false;
+    s->ordinary_until_s = until_s;
+    return true;
+}
+
+bool cm1e_axis_ordinary_step(cm1e_axis_t *axis)
+{
+    setpoint_t *s = &axis->setpoint;
+    const bool moves = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION;
+    if (s->source != &cm1e_source_profile || !moves || axis->extras || !axis_acts(axis) ||
+        axis->silence.silent_before > 0 || axis->silence.frozen)
+        return false;
+    const double time_s = s->profile_next_s;
+    if (!(time_s < s->ordinary_until_s) && !look_ahead(axis, time_s))
+        return false;
+    cm1e_axis_count_cycle(axis);
+    const cm1e_motion_state_t next = cm1e_profile_stretch_state(&s->stretch, time_s);
+    s->position = cm1e_position_plus(s->base, next.position * axis->position.scale);
+    cm1e_axis_put_motion(axis, next.velocity, next.acceleration);
+    if (next.velocity != 0.0)
+        s->positive_before = next.velocity > 0.0;
+    return true;
+}
