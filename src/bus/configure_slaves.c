@@ -12,6 +12,11 @@ cm1e_error_t cm1e_bus_diagnose_setup(const cm1e_bus_t *bus, const cm1e_bus_slave
 {
     const cm1e_setup_job_t *job = &slave->setup;
     char label[CM1E_LABEL_LENGTH];
+    if (job->excluded)
+        return cm1e_diag_set(diag, job->error, 0, "The PDOs 0x%04X and 0x%04X of %s exclude each other (object "
+                             "0x%04X:%02X), and the configuration assigns both: leave one of them out of %s.",
+                             job->pdo, job->excluded, cm1e_bus_label(bus, slave, label), job->sdo.index,
+                             job->sdo.subindex, job->pdo < 0x1A00 ? "outputs_pdos" : "inputs_pdos");
     if (!job->differs)
         return cm1e_bus_diagnose_sdo(bus, slave, &job->sdo, "Start-up as the configuration states it", diag);
     return cm1e_diag_set(diag, job->error, 0, "%s did not keep what the configuration writes: object 0x%04X:%02X is "

@@ -4,6 +4,7 @@
 #include "device/device.h"
 
 enum { SDO_TIMEOUT_NS = 1000000000, COUNT_BYTES = 1, PDO_BYTES = 2, ENTRY_BYTES = 4 };
+enum { TO_PARAMETER = 0x200, EXCLUDES = 6, NUMBER_BYTES = 8 }; /* 0x1800:06 is that of the PDO 0x1A00 (ETG.1000.6) */
 enum { SYNC_TYPE = 1, SYNC_BYTES = 2, BY_SYNC0 = 2 }; /* ETG.1020: sub-index, and its value for DC with SYNC0 */
 
 /** One transfer of the list. */
@@ -12,6 +13,7 @@ typedef struct step {
     uint8_t subindex, bytes;
     bool check; /**< reads what was written; false: writes */
     bool optional; /**< a write that may be refused; then what follows, its check, is left out */
+    bool excludes; /**< reads which PDOs the one in `value` excludes; a slave need not have that object */
     uint64_t value;
     const cm1e_sdo_config_t *sdo; /**< as the configuration states it; NULL: it is of a PDO */
 } step_t;
@@ -21,7 +23,7 @@ typedef struct walk {
     unsigned left;
     step_t *step;
     bool check; /**< the steps are those that read */
-    bool optional;
+    bool optional, excludes;
 } walk_t;
 
 /** false: go on; true: this is the step. */
@@ -30,7 +32,8 @@ static bool visit(walk_t *walk, unsigned index, unsigned subindex, unsigned byte
     if (walk->left-- > 0)
         return false;
     *walk->step = (step_t){.index = (uint16_t)index, .subindex = (uint8_t)subindex, .bytes = (uint8_t)bytes,
-                           .check = walk->check, .optional = walk->optional, .value = value};
+                           .check = walk->check, .optional = walk->optional, .excludes = walk->excludes,
+                           .value = value};
     return true;
 }
 
@@ -70,6 +73,21 @@ static bool walk_mapping(walk_t *walk, const cm1e_slave_config_t *config)
 static unsigned assigned_count(const cm1e_slave_config_t *config, int direction)
 {
     return direction ? config->inputs_pdo_count : config->outputs_pdo_count;
+}
+
+/** A PDO alone excludes none. */
+static bool walk_excludes(walk_t *walk, const cm1e_slave_config_t *config)
+{
+    walk->check = walk->excludes = true;
+    for (int direction = 0; direction < 2; direction++) {
+        const unsigned count = assigned_count(config, direction);
+        const uint16_t *pdos = direction ? config->inputs_pdos : config->outputs_pdos;
+        for (unsigned i = 0; i < count && count > 1; i++)
+            if (visit(walk, pdos[i] - TO_PARAMETER, EXCLUDES, NUMBER_BYTES, pdos[i]))
+                return true;
+    }
+    walk->check = walk->excludes = false;
+    return false;
 }
 
 /** A slave may refuse to have a PDO written that is assigned, so assignments are emptied before. */
@@ -128,7 +146,7 @@ static bool find_step(const cm1e_slave_config_t *config, bool by_sync0, bool bef
         return false;
     if (by_sync0 && walk_synchronisation(&walk, config))
         return true;
-    if (walk_clearing(&walk, config) || walk_mapping(&walk, config) || walk_assignment(&walk, config))
+    if (walk_excludes(&walk, config) || walk_clearing(&walk, config) || walk_mapping(&walk, config) || walk_assignment(&walk, config))
         return true;
     walk.check = true;
     return walk_mapping(&walk, config) || walk_assignment(&walk, config);
@@ -146,9 +164,40 @@ void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave
     *job = (cm1e_setup_job_t){.config = config, .by_sync0 = by_sync0, .before_op = before_op, .sdo = {.position = position}};
 }
 
+static bool is_assigned(const cm1e_slave_config_t *config, unsigned pdo)
+{
+    for (int direction = 0; direction < 2; direction++) {
+        const uint16_t *pdos = direction ? config->inputs_pdos : config->outputs_pdos;
+        for (unsigned i = 0; i < assigned_count(config, direction); i++)
+            if (pdos[i] == pdo)
+                return true;
+    }
+    return false;
+}
+
+/** false: the slave says that `pdo` excludes another one that is to be assigned. */
+static bool took_excludes(cm1e_setup_job_t *job)
+{
+    if (cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR) {
+        job->error = job->sdo.error == CM1E_ERROR_SDO_ABORT ? CM1E_OK : job->sdo.error;
+        return job->error == CM1E_OK;
+    }
+    for (size_t at = 0; at + PDO_BYTES <= job->sdo.size; at += PDO_BYTES) {
+        const uint16_t pdo = cm1e_get_u16(job->data + at);
+        if (pdo == job->pdo || !is_assigned(job->config, pdo))
+            continue;
+        job->excluded = pdo;
+        job->error = CM1E_ERROR_PDO_MAPPING;
+        return false;
+    }
+    return true;
+}
+
 /** false: the job has failed. */
 static bool took(cm1e_setup_job_t *job)
 {
+    if (job->asks_excludes)
+        return took_excludes(job);
     if (cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR) {
         if (job->optional && job->sdo.error == CM1E_ERROR_SDO_ABORT) {
             job->step++; /* without its check */
@@ -159,7 +208,7 @@ static bool took(cm1e_setup_job_t *job)
     }
     if (job->sdo.write)
         return true;
-    job->shown = cm1e_get_uint(job->data, (unsigned)job->sdo.size);
+    job->shown = cm1e_get_uint(job->data, (unsigned)(job->sdo.size < NUMBER_BYTES ? job->sdo.size : NUMBER_BYTES));
     job->differs = job->shown != job->expected;
     if (job->differs)
         job->error = CM1E_ERROR_PDO_MAPPING;
@@ -189,10 +238,13 @@ cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job)
     job->started = true;
     job->optional = step.optional;
     job->expected = step.value;
-    cm1e_put_uint(job->data, sizeof job->data, step.check ? 0 : step.value);
+    job->asks_excludes = step.excludes;
+    job->pdo = step.excludes ? (uint16_t)step.value : 0;
+    cm1e_put_uint(job->data, NUMBER_BYTES, step.check ? 0 : step.value);
     job->sdo = (cm1e_sdo_t){.position = job->sdo.position, .index = step.index, .subindex = step.subindex,
                             .write = !step.check, .data = job->data, .timeout_ns = SDO_TIMEOUT_NS,
-                            .size = step.check ? sizeof job->data : step.bytes, .state = CM1E_SDO_BUSY};
+                            .size = step.excludes ? sizeof job->data : step.check ? NUMBER_BYTES : step.bytes,
+                            .state = CM1E_SDO_BUSY};
     if (step.sdo)
         take_stated(job, step.sdo);
     return &job->sdo;

@@ -1,7 +1,8 @@
 /**
  * @file slave_setup.h
  * What the configuration writes into a slave without an axis at its start: SDOs and PDOs. What it wrote of PDOs is read
- * back, because a slave may take another value without a word. A list of SDO transfers, one after the other; who runs
+ * back, because a slave may take another value without a word. Before that the slave is asked which PDOs exclude each
+ * other: an assignment that names two of these is refused, and nothing of it is written. A list of SDO transfers, one after the other; who runs
  * it owns the CoE client. No clock inside.
  */
 #ifndef CM1E_BUS_SLAVE_SETUP_H
@@ -20,7 +21,9 @@ typedef struct cm1e_setup_job {
     unsigned step;
     uint64_t expected, shown;          /**< of the last transfer that read */
     cm1e_sdo_t sdo;
-    uint8_t data[8];
+    bool asks_excludes;                /**< the last transfer read which PDOs `pdo` excludes */
+    uint16_t pdo, excluded;            /**< excluded: one that the configuration assigns beside `pdo`; 0: none */
+    uint8_t data[128];
     cm1e_error_t error;                /**< result, valid when idle; foreign code in sdo.abort_code */
 } cm1e_setup_job_t;
 

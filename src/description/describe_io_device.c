@@ -92,6 +92,12 @@ static void add_dc_modes(cm1e_arena_t *arena, cm1e_description_t *device)
         *(cm1e_dc_mode_t *)CM1E_APPEND(arena, &device->dc_modes) = modes[i];
 }
 
+static void exclude(cm1e_arena_t *arena, cm1e_described_pdo_t *pdo, unsigned index)
+{
+    cm1e_exclude_t *excluded = CM1E_APPEND(arena, &pdo->excludes);
+    excluded->index = (uint16_t)index;
+}
+
 static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_sim_slave_config_t *sim)
 {
     const cm1e_device_options_t options = {0};
@@ -106,8 +112,10 @@ static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, con
         add_entry(arena, pdo, index, OVERRANGE, 1, "Overrange");
         add_entry(arena, pdo, 0, 0, 14, NULL);
         add_entry(arena, pdo, index, VALUE, 16, "Value");
+        exclude(arena, pdo, INPUT_PDO + 2 * n + 1); /* the same channel */
         pdo = add_pdo(arena, device, INPUT_PDO + 2 * n + 1, "AI Compact Channel", n, CM1E_NO_SYNC_MANAGER);
         add_entry(arena, pdo, index, VALUE, 16, "Value");
+        exclude(arena, pdo, INPUT_PDO + 2 * n);
     }
     cm1e_describe_communication(arena, device, &options);
     add_dc_modes(arena, device);

@@ -84,6 +84,24 @@ static bool is_rewritten(const cm1e_slave_config_t *slave, unsigned pdo)
     return false;
 }
 
+/** The file may say which PDOs exclude each other; it is not asked of those that are not assigned. */
+static cm1e_error_t check_excludes(const cm1e_slave_config_t *stated, const cm1e_description_t *device,
+                                   cm1e_diag_t *diag)
+{
+    for (size_t i = 0; i < device->pdos.count; i++) {
+        const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        for (size_t n = 0; n < pdo->excludes.count && is_assigned(stated, pdo); n++)
+            for (size_t k = 0; k < device->pdos.count; k++)
+                if (device->pdos.at[k].index == pdo->excludes.at[n].index && k != i &&
+                    is_assigned(stated, &device->pdos.at[k]))
+                    return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, 0, "line %u: the PDO 0x%04X excludes 0x%04X, and "
+                                         "both are assigned; expected one of them in %s", (unsigned)pdo->place,
+                                         pdo->index, pdo->excludes.at[n].index,
+                                         pdo->transmit ? "inputs_pdos" : "outputs_pdos");
+    }
+    return CM1E_OK;
+}
+
 static cm1e_error_t assign(cm1e_slave_config_t *slave, const cm1e_slave_config_t *stated,
                            const cm1e_description_t *device, cm1e_diag_t *diag)
 {
@@ -295,6 +313,9 @@ static cm1e_error_t take_device(cm1e_slave_config_t *slave, const cm1e_descripti
     slave->vendor = device->vendor_id;
     if (device->product_given)
         slave->product = device->product_code;
+    error = check_excludes(&stated, device, diag);
+    if (error != CM1E_OK)
+        return error;
     name_all(slave, &stated, device);
     if (device->mailbox.coe && device->mailbox.pdo_assign && !commands_assign(device))
         error = assign(slave, &stated, device, diag);

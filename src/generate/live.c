@@ -11,6 +11,7 @@
 
 enum { OBJECTS_MAX = 0x10000, ENTRIES_MAX = 254 };
 enum { RXPDO_FIRST = 0x1600, RXPDO_LAST = 0x17FF, TXPDO_FIRST = 0x1A00, TXPDO_LAST = 0x1BFF };
+enum { TO_PARAMETER = 0x200, EXCLUDES = 6, EXCLUDED_BYTES = 128 }; /* 0x1800:06 is that of the PDO 0x1A00 (ETG.1000.6) */
 
 typedef struct live {
     cm1e_bus_t *bus;
@@ -169,6 +170,22 @@ static void name_entry(live_t *live, cm1e_described_pdo_entry_t *entry)
     entry->type = known && known->bits == entry->bits ? known->type : "";
 }
 
+/** The PDOs that must not be assigned beside it, where the device has an object for that: two octets each. */
+static cm1e_error_t read_excludes(live_t *live, cm1e_described_pdo_t *pdo)
+{
+    uint8_t data[EXCLUDED_BYTES];
+    size_t size = sizeof data;
+    if (!cm1e_description_entry(live->device, (uint16_t)(pdo->index - TO_PARAMETER), EXCLUDES))
+        return CM1E_OK;
+    const cm1e_error_t error = cm1e_sdo_read(live->bus, live->position, (uint16_t)(pdo->index - TO_PARAMETER), EXCLUDES,
+                                             data, &size, live->diag);
+    for (size_t at = 0; at + 2 <= size && error == CM1E_OK; at += 2) {
+        cm1e_exclude_t *exclude = CM1E_APPEND(live->arena, &pdo->excludes);
+        exclude->index = cm1e_get_u16(data + at);
+    }
+    return goes_on(error) ? CM1E_OK : error;
+}
+
 /** A mapping object as the device has it; one that cannot be read is as the SII says. */
 static cm1e_error_t read_mapping(live_t *live, uint16_t index, cm1e_pdo_list_t *pdos)
 {
@@ -189,7 +206,7 @@ static cm1e_error_t read_mapping(live_t *live, uint16_t index, cm1e_pdo_list_t *
     pdo->name = of_sii ? of_sii->name : object ? object->name : "";
     pdo->sync_manager = CM1E_NO_SYNC_MANAGER;
     pdo->entries.at = NULL;
-    pdo->entries.count = 0;
+    pdo->entries.count = pdo->excludes.count = 0;
     for (unsigned n = 1; n <= (count & 0xFF) && n <= ENTRIES_MAX && goes_on(error); n++) {
         if (!read_number(live, index, (uint8_t)n, 4, &mapped, &error))
             continue;
@@ -199,7 +216,7 @@ static cm1e_error_t read_mapping(live_t *live, uint16_t index, cm1e_pdo_list_t *
         entry->bits = (uint8_t)mapped;
         name_entry(live, entry);
     }
-    return goes_on(error) ? CM1E_OK : error;
+    return goes_on(error) ? read_excludes(live, pdo) : error;
 }
 
 static bool is_mapping(uint16_t index)

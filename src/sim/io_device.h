@@ -11,7 +11,7 @@
 #include "sim/segment.h"
 #include "sim/slave.h"
 
-enum { IO_CHANNELS = 8, IO_OBJECTS = 64, IO_ENTRIES = 400, IO_SLOTS = 128, IO_MAPPED = 8 };
+enum { IO_CHANNELS = 8, IO_OBJECTS = 128, IO_ENTRIES = 512, IO_SLOTS = 128, IO_MAPPED = 8 };
 
 /** An entry of the process image. */
 typedef struct cm1e_sim_io_slot {

@@ -10,6 +10,7 @@
 
 enum { RO = CM1E_ACCESS_READ, RW = RO | CM1E_ACCESS_WRITE, RW_PREOP = RW | CM1E_ACCESS_WRITE_PREOP_ONLY };
 enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, SETTINGS = 0x8000, OUTPUT_SETTINGS = 0x8080 };
+enum { FIRST_TXPDO = 0x1A00, TO_PARAMETER = 0x200, EXCLUDES = 6 };
 enum { UNDERRANGE = 0x01, OVERRANGE = 0x02, VALUE = 0x11, OFFSET = 0x12, LIMIT = 32760 };
 
 /* ---- making ------------------------------------------------------------------------------------------------------ */
@@ -81,6 +82,19 @@ static void add_pdos(cm1e_sim_io_objects_t *o, const cm1e_description_t *device,
             add_pdo(o, &device->pdos.at[i]);
 }
 
+/* Which PDOs may not be assigned beside it (ETG.1000.6 section 5.6.7.4): a string of octets, two for each. */
+static void add_excludes(cm1e_sim_io_objects_t *o, const cm1e_description_t *device)
+{
+    for (size_t i = 0; i < device->pdos.count; i++) {
+        const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        if (pdo->excludes.count == 0)
+            continue;
+        add_object(o, pdo->index - TO_PARAMETER, CM1E_OBJECT_RECORD, EXCLUDES, "PDO parameter");
+        add_count(o, RO, EXCLUDES);
+        add_entry(o, EXCLUDES, RO, CM1E_TYPE_UINT, "Exclude PDOs", pdo->excludes.at[0].index);
+    }
+}
+
 static void add_assignment(cm1e_sim_io_objects_t *o, const cm1e_description_t *device, bool transmit)
 {
     unsigned count = 0;
@@ -144,6 +158,7 @@ bool cm1e_sim_io_objects_create(cm1e_sim_io_device_t *device, const cm1e_slave_c
     const cm1e_description_t *described = &file.devices.at[0];
     add_identity(o, described);
     add_pdos(o, described, false);
+    add_excludes(o, described);
     add_pdos(o, described, true);
     add_sync_managers(o);
     add_assignment(o, described, false);
@@ -286,11 +301,25 @@ static uint32_t check_mapping(cm1e_sim_io_device_t *device, uint16_t index, uint
     return subindex == 0 && value > IO_MAPPED ? (uint32_t)SDO_ABORT_TOO_HIGH : 0;
 }
 
+static bool excludes_another(cm1e_sim_io_device_t *device, uint16_t index, int64_t count)
+{
+    for (unsigned i = 1; i <= count; i++) {
+        const unsigned pdo = (unsigned)*value_of(device, index, i);
+        const int64_t *excluded = value_of(device, pdo - TO_PARAMETER, EXCLUDES);
+        for (unsigned n = 1; excluded && n <= count; n++)
+            if (*value_of(device, index, n) == *excluded)
+                return true;
+    }
+    return false;
+}
+
 static uint32_t check_assignment(cm1e_sim_io_device_t *device, uint16_t index, uint8_t subindex, int64_t value)
 {
-    const int first = index == OBJ_1C12_RXPDO_ASSIGN ? 0x1600 : 0x1A00;
+    const int first = index == OBJ_1C12_RXPDO_ASSIGN ? 0x1600 : FIRST_TXPDO;
+    if (subindex == 0 && value > IO_CHANNELS)
+        return SDO_ABORT_TOO_HIGH;
     if (subindex == 0)
-        return value > IO_CHANNELS ? (uint32_t)SDO_ABORT_TOO_HIGH : 0;
+        return excludes_another(device, index, value) ? (uint32_t)SDO_ABORT_INCOMPATIBLE : 0;
     if (*value_of(device, index, 0) != 0)
         return SDO_ABORT_SUBINDEX_0_NOT_ZERO;
     const bool is_pdo = value >= first && value < first + 0x200 && value_of(device, (unsigned)value, 0);

@@ -49,6 +49,9 @@ static void remove_folder(void)
 #define STANDARD TXPDO("", 1A00, "Standard 1", ENTRY(6000, 1, 1, "Underrange", "BOOL")                                \
                        ENTRY(6000, 2, 1, "Overrange of the first of all channels", "BOOL") GAP(14)                     \
                        ENTRY(6000, 11, 16, "Value", "INT"))
+#define EITHER "<TxPdo Sm='3'><Index>#x1A00</Index><Name>Standard</Name><Exclude>#x1A01</Exclude>"                      \
+               ENTRY(6000, 11, 16, "Value", "INT") "</TxPdo>"                                                           \
+               TXPDO("", 1A01, "Compact", ENTRY(6000, 11, 16, "Value", "INT"))
 #define COE(COMMANDS) "<Mailbox><CoE SdoInfo='1' PdoAssign='1'>" COMMANDS "</CoE></Mailbox>"
 #define MODE(NAME, ACTIVATE, TIMES) "<OpMode><Name>" NAME "</Name><AssignActivate>#x" #ACTIVATE "</AssignActivate>"  \
                                     TIMES "</OpMode>"
@@ -69,6 +72,7 @@ static const char good[] = FILE_OF(DEVICE(A0002, 1, "AI-old", COE(""), COMPACT, 
 static const char whole[] = FILE_OF(DEVICE(A0004, 1, "Whole", COE(WHOLE(8000, 1, "0900")
                                            WHOLE(1A01, 0, "0300010100600700000010110060")
                                            COMMAND("PS", 8010, 18, "0400")), COMPACT, "")
+                                    DEVICE(A0008, 1, "Either", COE(""), EITHER, "")
                                     DEVICE(A0005, 1, "Wrong", COE(WHOLE(8000, 2, "0102")), COMPACT, "")
                                     DEVICE(A0006, 1, "Empty", COE(WHOLE(8000, 0, "")), COMPACT, ""));
 
@@ -167,6 +171,8 @@ START_TEST(test_a_bad_file_is_told_in_words)
         {good, "product: 0x000A0002, esi_mode: FreeRun,", ":3:", "has no OpMode 'FreeRun'; it has SM, DC"},
         {good, "product: 0x000A0002, esi_mode: DC, dc: {sync0_us: 500},", ":3:", "and dc states some too"},
         {whole, "product: 0x000A0005,", ":3:34: ", "object 0x8000 has complete access from sub-index 2 on"},
+        {whole, "product: 0x000A0008, inputs_pdos: [0x1A00, 0x1A01],", ":3:", "the PDO 0x1A00 excludes 0x1A01, and both "
+         "are assigned; expected one of them in inputs_pdos"},
         {whole, "product: 0x000A0006,", ":3:34: ", "object 0x8000:00 has 0 bytes"},
         {"", "", ":3:34: ", "bus_esi.xml: "},
         {"<EtherCATInfo>", "", ":3:34: ", "bus_esi.xml: "},

@@ -266,6 +266,33 @@ START_TEST(what_is_written_at_the_start_is_written_again_after_the_slave_was_awa
 }
 END_TEST
 
+/** The state and value of a channel, and its value alone, exclude each other. We see it in the slave's own objects before
+ *  anything is written; a slave that is told so all the same refuses it. */
+START_TEST(pdos_that_exclude_each_other_are_refused)
+{
+    static const uint8_t counts[] = {0, 2};
+    static const uint16_t pdos[] = {0x1A00, 0x1A01};
+    machine();
+    config.slaves[ANALOG_IN - 1].inputs_pdo_count = 2;
+    config.slaves[ANALOG_IN - 1].inputs_pdos[0] = 0x1A00;
+    config.slaves[ANALOG_IN - 1].inputs_pdos[1] = 0x1A03; /* of another channel */
+    cm1e_bus_t *bus = start_machine();
+    cm1e_bus_close(bus);
+    config.slaves[ANALOG_IN - 1].inputs_pdos[1] = 0x1A01;
+    expect_refused(CM1E_ERROR_PDO_MAPPING, "The PDOs 0x1A00 and 0x1A01 of slave 4 (\"analog in\"");
+    ck_assert_msg(strstr(diag.text, "exclude each other (object 0x1800:06)") && strstr(diag.text, "inputs_pdos"), "%s",
+                  diag.text);
+    bus = open_bus();
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_sdo_write(bus, ANALOG_IN, 0x1C13, 0, &counts[0], 1, &diag), CM1E_OK);
+    for (unsigned i = 0; i < 2; i++)
+        ck_assert_int_eq(cm1e_sdo_write(bus, ANALOG_IN, 0x1C13, (uint8_t)(i + 1), &pdos[i], 2, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_sdo_write(bus, ANALOG_IN, 0x1C13, 0, &counts[1], 1, &diag), CM1E_ERROR_SDO_ABORT);
+    ck_assert_uint_eq(diag.foreign_code, 0x06040043);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(what_a_slave_refuses_is_told)
 {
     rearrange();
@@ -424,6 +451,7 @@ int main(void)
     tcase_add_test(tests, identity_and_address_are_checked);
     tcase_add_test(tests, slave_is_found_by_alias_and_by_explicit_id);
     tcase_add_test(tests, what_is_written_at_the_start_is_written_again_after_the_slave_was_away);
+    tcase_add_test(tests, pdos_that_exclude_each_other_are_refused);
     tcase_add_test(tests, what_a_slave_refuses_is_told);
     tcase_add_test(tests, outputs_are_safe_before_the_program_and_after_it);
     tcase_add_test(tests, outputs_are_safe_after_the_bus_was_lost);

@@ -44,6 +44,23 @@ static const transfer_t before_safe_op[] = {
 };
 enum { TRANSFERS = sizeof before_safe_op / sizeof before_safe_op[0] };
 
+static uint16_t excluded; /* by the PDO 0x1A00, among others; 0: the slave has no such objects */
+
+/* Whether the transfer asks which PDOs one excludes; it is answered then. Others than those that are assigned exclude
+ * nothing. */
+static bool answers_excludes(cm1e_sdo_t *sdo)
+{
+    if (sdo->write || sdo->subindex != 6 || sdo->index < 0x1800 || sdo->index >= 0x1A00)
+        return false;
+    TEST_ASSERT_TRUE(sdo->index == 0x1803 || sdo->index == 0x1800);
+    cm1e_put_u16(sdo->data, 0x1A07);
+    cm1e_put_u16((uint8_t *)sdo->data + 2, excluded);
+    sdo->size = sdo->index == 0x1800 ? 4 : 2;
+    sdo->error = excluded ? CM1E_OK : CM1E_ERROR_SDO_ABORT;
+    sdo->state = excluded ? CM1E_SDO_DONE : CM1E_SDO_ERROR;
+    return true;
+}
+
 typedef enum harm { NOTHING = 0, REFUSED, OTHER_VALUE } harm_t;
 
 /* Answers every transfer as a good slave does, but for one. Returns how many there were. */
@@ -52,6 +69,10 @@ static int run(bool before_op, const transfer_t *expected, int harmed, harm_t ha
     int count = 0;
     cm1e_setup_begin(&job, 3, &config, by_sync0, before_op);
     for (cm1e_sdo_t *sdo; (sdo = cm1e_setup_next(&job)) != NULL; count++) {
+        if (answers_excludes(sdo)) {
+            count--;
+            continue;
+        }
         const transfer_t *one = &expected[count];
         const bool hit = harm != NOTHING && count == harmed;
         TEST_ASSERT_EQUAL(3, sdo->position);
@@ -104,6 +125,19 @@ static void test_every_other_value_is_noticed(void)
     }
 }
 
+static void test_an_assignment_of_two_that_exclude_each_other_is_not_written(void)
+{
+    excluded = 0x1A05;
+    TEST_ASSERT_EQUAL(TRANSFERS, run(false, before_safe_op, 0, NOTHING));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+    excluded = 0x1A03;
+    TEST_ASSERT_EQUAL(2, run(false, before_safe_op, 0, NOTHING)); /* the start-up SDOs, and no PDO */
+    TEST_ASSERT_EQUAL(CM1E_ERROR_PDO_MAPPING, job.error);
+    TEST_ASSERT_EQUAL_HEX16(0x1A00, job.pdo);
+    TEST_ASSERT_EQUAL_HEX16(0x1A03, job.excluded);
+    excluded = 0;
+}
+
 static void test_nothing_to_write_is_no_job(void)
 {
     TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false, false));
@@ -150,6 +184,7 @@ int main(void)
     RUN_TEST(test_all_is_written_in_order_and_pdos_are_read_back);
     RUN_TEST(test_every_refusal_ends_the_job_there);
     RUN_TEST(test_every_other_value_is_noticed);
+    RUN_TEST(test_an_assignment_of_two_that_exclude_each_other_is_not_written);
     RUN_TEST(test_nothing_to_write_is_no_job);
     RUN_TEST(test_synchronisation_by_sync0_is_written_where_the_slave_lets_it);
     return UNITY_END();
