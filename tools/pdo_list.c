@@ -10,7 +10,7 @@
 #include "description/sii_image.h"
 #include "sii_device.h"
 
-enum { ASSIGNED_MAX = 64, ENTRIES_MAX = 254 };
+enum { FIRST_TXPDO = 0x1A00, ASSIGNED_MAX = 64, ENTRIES_MAX = 254 };
 
 static listed_entry_t *append(pdo_list_t *list)
 {
@@ -121,13 +121,13 @@ static bool list_pdo(cm1e_bus_t *bus, uint16_t position, bool output, unsigned p
 
 static bool list_assigned(cm1e_bus_t *bus, uint16_t position, pdo_list_t *list)
 {
-    for (unsigned direction = 0; direction < 2; direction++) {
-        const unsigned index = OBJ_1C12_RXPDO_ASSIGN + direction;
+    for (unsigned manager = 0; manager < 2; manager++) { /* the first one may carry the inputs */
+        const unsigned index = OBJ_1C12_RXPDO_ASSIGN + manager;
         uint32_t count = 0, pdo = 0;
         unsigned bit = 0;
         list->by_coe |= read_value(bus, position, index, 0, &count);
         for (unsigned i = 1; i <= count && i <= ASSIGNED_MAX && read_value(bus, position, index, i, &pdo); i++)
-            if (!list_pdo(bus, position, direction == 0, pdo & 0xFFFF, &bit, list))
+            if (!list_pdo(bus, position, (pdo & 0xFFFF) < FIRST_TXPDO, pdo & 0xFFFF, &bit, list))
                 return false;
     }
     return true;

@@ -296,6 +296,8 @@ typedef enum cm1e_sim_slave_kind {
     CM1E_SIM_SLAVE_COUPLER,          /**< no process data, no mailbox */
     CM1E_SIM_SLAVE_DIGITAL,          /**< a bit per channel, no mailbox */
     CM1E_SIM_SLAVE_ANALOG,           /**< 16 bits per channel, with CoE: settings, PDOs that can be written */
+    CM1E_SIM_SLAVE_MODULAR,          /**< with CoE; it has the simulated modules that `modules` names */
+    CM1E_SIM_SLAVE_ENCODER,          /**< with CoE; an input is a counter of 32 bits that turns by `counts_per_s` */
 } cm1e_sim_slave_kind_t;
 
 typedef struct cm1e_sim_slave_config {
@@ -303,12 +305,15 @@ typedef struct cm1e_sim_slave_config {
     uint8_t inputs, outputs;         /**< channels, 0 ... 8; at least one of a digital or analog device */
     char wired_to[CM1E_NAME_LENGTH]; /**< the slave to whose outputs the inputs are wired, channel by channel; "": to
                                           its own outputs, if it has any */
+    bool swapped;                    /**< of a device with CoE: true: inputs on sync manager 2, outputs on 3 */
+    double counts_per_s;             /**< of an encoder; 0: it stands */
 } cm1e_sim_slave_config_t;
 
 #define CM1E_SLAVE_SDOS 32        /**< maximum number of start-up SDOs of a slave */
 #define CM1E_SLAVE_SDO_DATA 2048  /**< maximum number of bytes of all start-up SDOs of more than 8 bytes */
 #define CM1E_SLAVE_PDOS 16        /**< maximum number of PDOs that are assigned in one direction */
 #define CM1E_SLAVE_PDO_ENTRIES 64 /**< maximum number of entries of all PDOs that are written anew */
+#define CM1E_SLAVE_MODULES 16     /**< maximum number of modules that are stated of a slave */
 #define CM1E_SLAVE_SIGNALS 64     /**< maximum number of named signals */
 
 /** A slave without an axis: terminal, encoder, device of another maker. Slaves that are not listed run too, with the
@@ -340,6 +345,11 @@ typedef struct cm1e_slave_config {
                                           again only where an ENI is made. "": none */
     uint16_t sdo_data_count;         /**< bytes of `sdo_data` that are used */
     uint8_t sdo_data[CM1E_SLAVE_SDO_DATA]; /**< of start-up SDOs with `bytes` 0 */
+    uint16_t described_count;        /**< entries behind the first `entry_count` that are not written, but that an ESI
+                                          states of the assigned PDOs: places of signals of a slave that is absent */
+    uint16_t module_count;           /**< of a modular device (ETG.5001); 0: its modules are not checked */
+    uint32_t modules[CM1E_SLAVE_MODULES]; /**< idents, slot by slot: compared with what it has detected (0xF050), and
+                                          written as its configuration (0xF030), where it lets it be written */
 } cm1e_slave_config_t;
 
 /** The whole bus. The configuration owns its axes and slaves: make it with cm1e_bus_config_init() or

@@ -17,6 +17,15 @@ cm1e_error_t cm1e_bus_diagnose_setup(const cm1e_bus_t *bus, const cm1e_bus_slave
                              "0x%04X:%02X), and the configuration assigns both: leave one of them out of %s.",
                              job->pdo, job->excluded, cm1e_bus_label(bus, slave, label), job->sdo.index,
                              job->sdo.subindex, job->pdo < 0x1A00 ? "outputs_pdos" : "inputs_pdos");
+    if (job->differs && job->sdo.index == DETECTED_MODULES && job->sdo.subindex == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "%s has %" PRIu64 " modules (0xF050:00), and the "
+                             "configuration names %" PRIu64 ".", cm1e_bus_label_first(bus, slave, label), job->shown,
+                             job->expected);
+    if (job->differs && job->sdo.index == DETECTED_MODULES)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "%s has the module 0x%08" PRIX64 " in slot %u "
+                             "(0xF050:%02X), and the configuration names 0x%08" PRIX64 " there.",
+                             cm1e_bus_label_first(bus, slave, label), job->shown, job->sdo.subindex, job->sdo.subindex,
+                             job->expected);
     if (!job->differs)
         return cm1e_bus_diagnose_sdo(bus, slave, &job->sdo, "Start-up as the configuration states it", diag);
     return cm1e_diag_set(diag, job->error, 0, "%s did not keep what the configuration writes: object 0x%04X:%02X is "
@@ -33,7 +42,8 @@ cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t
         const cm1e_slave_config_t *config = cm1e_bus_setup_of(slave);
         const bool by_sync0 = cm1e_bus_runs_by_sync0(slave);
         if (cm1e_bus_was_there(slave) && cm1e_setup_is_needed(config, by_sync0, before_op))
-            cm1e_setup_begin(&slave->setup, slave->info.position, config, by_sync0, before_op);
+            cm1e_setup_begin(&slave->setup, slave->info.position, config, by_sync0, before_op,
+                             slave->facts.swapped);
     }
     const bool ended = cm1e_bus_pump_until_idle(bus, deadline_ns);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
@@ -77,7 +87,8 @@ cm1e_error_t cm1e_bus_read_pdos(cm1e_bus_t *bus, cm1e_diag_t *diag)
     cm1e_error_t error = CM1E_OK;
     for (uint32_t i = 0; i < bus->slave_count; i++)
         if (is_asked(&bus->slaves[i]))
-            cm1e_mapping_begin_any(&bus->slaves[i].mapping, bus->slaves[i].info.position);
+            cm1e_mapping_begin_any(&bus->slaves[i].mapping, bus->slaves[i].info.position,
+                                   bus->slaves[i].facts.swapped);
     if (!cm1e_bus_pump_until_idle(bus, deadline_ns)) {
         cm1e_acyclic_cancel(bus);
         return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "A slave takes too long to report its PDO mapping.");

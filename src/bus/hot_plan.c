@@ -160,7 +160,7 @@ static bool plan_stated(const cm1e_slave_config_t *config, int direction, cm1e_m
     const uint16_t *pdos = direction ? config->inputs_pdos : config->outputs_pdos;
     for (unsigned i = 0; i < count; i++) {
         const unsigned before = mapped->entry_count;
-        for (unsigned n = 0; n < config->entry_count; n++)
+        for (unsigned n = 0; n < (unsigned)config->entry_count + config->described_count; n++)
             if (config->entries[n].pdo == pdos[i])
                 add_entry(mapped, config->entries[n].index, config->entries[n].subindex, config->entries[n].bits);
         if (mapped->entry_count == before) {
@@ -233,7 +233,7 @@ static void find_bits(const cm1e_bus_slave_t *slave, int direction, uint16_t bit
     if (!cm1e_bus_has_motors(slave) && !slave->by_pdos)
         return;
     memset(bits, 0, CM1E_SII_SYNC_MANAGERS * sizeof *bits);
-    bits[PROCESS_OUTPUTS + direction] = slave->mapped[direction].bits;
+    bits[PROCESS_OUTPUTS + (direction ^ (int)slave->facts.swapped)] = slave->mapped[direction].bits;
 }
 
 static void put_sync_manager(uint8_t *to, const cm1e_sii_sync_manager_t *from, uint16_t length)

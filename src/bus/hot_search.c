@@ -232,6 +232,7 @@ static void take_facts(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
     slave->info.alias = slave->facts.alias = bus->search.alias;
     slave->facts.coe = coe;
     slave->facts.foe = foe;
+    slave->facts.swapped = cm1e_sii_is_swapped(found->sync_managers);
     slave->coe.mailbox = (cm1e_mailbox_t){
         .station = slave->facts.station, .out_start = found->mailbox_out_start,
         .out_length = coe || foe ? found->mailbox_out_length : 0, .in_start = found->mailbox_in_start,

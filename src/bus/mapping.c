@@ -13,9 +13,9 @@ void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_p
                                 .assigned = *choice, .sdo = {.position = position}};
 }
 
-void cm1e_mapping_begin_any(cm1e_mapping_job_t *job, uint16_t position)
+void cm1e_mapping_begin_any(cm1e_mapping_job_t *job, uint16_t position, bool swapped)
 {
-    *job = (cm1e_mapping_job_t){.step = MAPPING_READ_COUNT, .any = true, .sdo = {.position = position}};
+    *job = (cm1e_mapping_job_t){.step = MAPPING_READ_COUNT, .any = true, .swapped = swapped, .sdo = {.position = position}};
 }
 
 static void end(cm1e_mapping_job_t *job, cm1e_error_t error, const char *reason)
@@ -41,7 +41,8 @@ static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
         return NULL; /* the last transfer stays readable */
     const uint16_t position = job->sdo.position, pdo = job->assigned.pdos[job->direction][job->place];
     const bool write = job->step <= MAPPING_COUNT;
-    job->sdo = (cm1e_sdo_t){.position = position, .index = assign_index[job->direction], .write = write,
+    job->sdo = (cm1e_sdo_t){.position = position, .index = assign_index[job->direction ^ (int)job->swapped],
+                            .write = write,
                             .data = job->data, .size = write ? 1 : sizeof job->data, .timeout_ns = SDO_TIMEOUT_NS,
                             .state = CM1E_SDO_BUSY};
     switch (job->step) {

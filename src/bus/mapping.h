@@ -46,6 +46,7 @@ typedef struct cm1e_mapping_job {
     uint8_t entry, entries;  /**< where the reading of its entries is, from 1 */
     bool started;            /**< `sdo` is in work or done */
     bool any;                /**< cm1e_mapping_begin_any() */
+    bool swapped;            /**< inputs are on sync manager 2: 0x1C12 assigns them */
     uint8_t unknown;         /**< directions whose assignment cannot be read: it has none, or no object for it */
     cm1e_sdo_t sdo;
     cm1e_sdo_t refused;      /**< the first write that was refused, where `is_refused`; the result if it matters */
@@ -57,8 +58,9 @@ typedef struct cm1e_mapping_job {
 } cm1e_mapping_job_t;
 
 void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_pdo_choice_t *choice);
-/** Reads the assignment that a slave has, which may be empty in a direction, or missing. */
-void cm1e_mapping_begin_any(cm1e_mapping_job_t *job, uint16_t position);
+/** Reads the assignment that a slave has, which may be empty in a direction, or missing. `swapped`: inputs are on sync
+ *  manager 2, outputs on 3. */
+void cm1e_mapping_begin_any(cm1e_mapping_job_t *job, uint16_t position, bool swapped);
 static inline bool cm1e_mapping_idle(const cm1e_mapping_job_t *job) { return job->step == MAPPING_IDLE; }
 /** The transfer to begin now; NULL: the job has ended, or is idle. The transfer that was returned before must have
  *  ended. */

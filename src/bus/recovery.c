@@ -539,7 +539,8 @@ static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
     cm1e_setup_job_t *job = &slave->setup;
     if (!slave->recovery.entered) {
         slave->recovery.entered = true;
-        cm1e_setup_begin(job, slave->info.position, cm1e_bus_setup_of(slave), cm1e_bus_runs_by_sync0(slave), before_op);
+        cm1e_setup_begin(job, slave->info.position, cm1e_bus_setup_of(slave), cm1e_bus_runs_by_sync0(slave), before_op,
+                         slave->facts.swapped);
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_setup_next(job);
@@ -592,7 +593,7 @@ static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
         if (motors)
             cm1e_mapping_begin(job, slave->info.position, &choice);
         else
-            cm1e_mapping_begin_any(job, slave->info.position);
+            cm1e_mapping_begin_any(job, slave->info.position, slave->facts.swapped);
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_mapping_next(job);

@@ -92,7 +92,8 @@ static void take_sync_managers(cm1e_sii_t *sii, const cm1e_description_t *device
     for (size_t i = 0; i < device->sync_managers.count && i < CM1E_SII_SYNC_MANAGERS; i++) {
         const cm1e_described_sync_manager_t *manager = &device->sync_managers.at[i];
         sii->sync_managers[i] = (cm1e_sii_sync_manager_t){
-            .start = manager->start, .length = manager->length, .control = manager->control, .enable = manager->enable};
+            .start = manager->start, .length = manager->length, .control = manager->control, .enable = manager->enable,
+            .use = (uint8_t)manager->use};
         sii->sync_manager_count = (uint8_t)(i + 1);
     }
 }

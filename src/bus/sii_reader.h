@@ -33,7 +33,15 @@ typedef struct cm1e_sii_signals {
 typedef struct cm1e_sii_sync_manager {
     uint16_t start, length;
     uint8_t control, enable;
+    uint8_t use;                       /**< ETG.2010: 1 mailbox out, 2 in, 3 outputs, 4 inputs; 0: not stated */
 } cm1e_sii_sync_manager_t;
+
+/** Whether sync manager 2 carries the inputs and 3 the outputs, so that 0x1C12 assigns TxPDOs. */
+static inline bool cm1e_sii_is_swapped(const cm1e_sii_sync_manager_t managers[CM1E_SII_SYNC_MANAGERS])
+{
+    enum { FIRST = 2, SECOND = 3, USE_OUTPUTS = 3, USE_INPUTS = 4 };
+    return managers[FIRST].use == USE_INPUTS && managers[SECOND].use != USE_INPUTS;
+}
 
 /** An operation mode of category 60; further ones are not kept. */
 typedef struct cm1e_sii_dc_mode {

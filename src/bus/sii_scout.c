@@ -141,6 +141,7 @@ static void take_manager(cm1e_scout_t *scout, const uint8_t *pair)
     }
     manager->control = pair[0];
     manager->enable = pair[2];
+    manager->use = pair[3];
     found->sync_manager_count++;
     scout->phase = MANAGER_PLACE;
     if (--scout->items == 0)

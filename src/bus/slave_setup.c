@@ -4,6 +4,7 @@
 #include "device/device.h"
 
 enum { SDO_TIMEOUT_NS = 1000000000, COUNT_BYTES = 1, PDO_BYTES = 2, ENTRY_BYTES = 4 };
+enum { CONFIGURED_MODULES = 0xF030 };
 enum { TO_PARAMETER = 0x200, EXCLUDES = 6, NUMBER_BYTES = 8 }; /* 0x1800:06 is that of the PDO 0x1A00 (ETG.1000.6) */
 enum { SYNC_TYPE = 1, SYNC_BYTES = 2, BY_SYNC0 = 2 }; /* ETG.1020: sub-index, and its value for DC with SYNC0 */
 
@@ -23,7 +24,7 @@ typedef struct walk {
     unsigned left;
     step_t *step;
     bool check; /**< the steps are those that read */
-    bool optional, excludes;
+    bool optional, excludes, swapped;
 } walk_t;
 
 /** false: go on; true: this is the step. */
@@ -70,9 +71,39 @@ static bool walk_mapping(walk_t *walk, const cm1e_slave_config_t *config)
     return false;
 }
 
+/** The object that assigns the PDOs of a direction: that of its sync manager. */
+static unsigned assignment_of(const walk_t *walk, int direction)
+{
+    return OBJ_1C12_RXPDO_ASSIGN + (unsigned)(direction ^ (int)walk->swapped);
+}
+
 static unsigned assigned_count(const cm1e_slave_config_t *config, int direction)
 {
     return direction ? config->inputs_pdo_count : config->outputs_pdo_count;
+}
+
+/** Of a modular device: what it has detected is compared, and what it is to have is written where it lets it be. */
+static bool walk_modules(walk_t *walk, const cm1e_slave_config_t *config)
+{
+    const unsigned count = config->module_count;
+    if (count == 0)
+        return false;
+    walk->check = true;
+    for (unsigned n = 0; n <= count; n++)
+        if (visit(walk, DETECTED_MODULES, n, n ? ENTRY_BYTES : COUNT_BYTES, n ? config->modules[n - 1] : count))
+            return true;
+    for (unsigned n = 0; n <= count + 1; n++) { /* emptied, filled, counted */
+        const uint32_t value = n == 0 ? 0 : n <= count ? config->modules[n - 1] : count;
+        const bool is_count = n == 0 || n > count;
+        for (int check = 0; check < 2; check++) {
+            walk->check = check != 0;
+            walk->optional = !walk->check;
+            if (visit(walk, CONFIGURED_MODULES, is_count ? 0 : n, is_count ? COUNT_BYTES : ENTRY_BYTES, value))
+                return true;
+        }
+    }
+    walk->check = walk->optional = false;
+    return false;
 }
 
 /** A PDO alone excludes none. */
@@ -94,7 +125,7 @@ static bool walk_excludes(walk_t *walk, const cm1e_slave_config_t *config)
 static bool walk_clearing(walk_t *walk, const cm1e_slave_config_t *config)
 {
     for (int direction = 0; direction < 2; direction++)
-        if (assigned_count(config, direction) && visit(walk, OBJ_1C12_RXPDO_ASSIGN + direction, 0, COUNT_BYTES, 0))
+        if (assigned_count(config, direction) && visit(walk, assignment_of(walk, direction), 0, COUNT_BYTES, 0))
             return true;
     return false;
 }
@@ -102,7 +133,7 @@ static bool walk_clearing(walk_t *walk, const cm1e_slave_config_t *config)
 static bool walk_assignment(walk_t *walk, const cm1e_slave_config_t *config)
 {
     for (int direction = 0; direction < 2; direction++) {
-        const unsigned index = OBJ_1C12_RXPDO_ASSIGN + direction, count = assigned_count(config, direction);
+        const unsigned index = assignment_of(walk, direction), count = assigned_count(config, direction);
         const uint16_t *pdos = direction ? config->inputs_pdos : config->outputs_pdos;
         for (unsigned i = 0; i < count; i++)
             if (visit(walk, index, i + 1, PDO_BYTES, pdos[i]))
@@ -137,16 +168,18 @@ static bool walk_synchronisation(walk_t *walk, const cm1e_slave_config_t *config
     return false;
 }
 
-static bool find_step(const cm1e_slave_config_t *config, bool by_sync0, bool before_op, unsigned number, step_t *step)
+static bool find_step(const cm1e_setup_job_t *job, unsigned number, step_t *step)
 {
-    walk_t walk = {.left = number, .step = step};
+    const cm1e_slave_config_t *config = job->config;
+    const bool by_sync0 = job->by_sync0, before_op = job->before_op;
+    walk_t walk = {.left = number, .step = step, .swapped = job->swapped};
     if (walk_sdos(&walk, config, before_op))
         return true;
     if (before_op)
         return false;
     if (by_sync0 && walk_synchronisation(&walk, config))
         return true;
-    if (walk_excludes(&walk, config) || walk_clearing(&walk, config) || walk_mapping(&walk, config) || walk_assignment(&walk, config))
+    if (walk_modules(&walk, config) || walk_excludes(&walk, config) || walk_clearing(&walk, config) || walk_mapping(&walk, config) || walk_assignment(&walk, config))
         return true;
     walk.check = true;
     return walk_mapping(&walk, config) || walk_assignment(&walk, config);
@@ -155,13 +188,15 @@ static bool find_step(const cm1e_slave_config_t *config, bool by_sync0, bool bef
 bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, bool by_sync0, bool before_op)
 {
     step_t step;
-    return config && find_step(config, by_sync0, before_op, 0, &step);
+    const cm1e_setup_job_t job = {.config = config, .by_sync0 = by_sync0, .before_op = before_op};
+    return config && find_step(&job, 0, &step);
 }
 
 void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config, bool by_sync0,
-                      bool before_op)
+                      bool before_op, bool swapped)
 {
-    *job = (cm1e_setup_job_t){.config = config, .by_sync0 = by_sync0, .before_op = before_op, .sdo = {.position = position}};
+    *job = (cm1e_setup_job_t){.config = config, .by_sync0 = by_sync0, .before_op = before_op, .swapped = swapped,
+                              .sdo = {.position = position}};
 }
 
 static bool is_assigned(const cm1e_slave_config_t *config, unsigned pdo)
@@ -230,7 +265,7 @@ cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job)
     step_t step;
     if (!job->config)
         return NULL;
-    if ((job->started && !took(job)) || !find_step(job->config, job->by_sync0, job->before_op, job->step, &step)) {
+    if ((job->started && !took(job)) || !find_step(job, job->step, &step)) {
         job->config = NULL;
         return NULL;
     }

@@ -10,10 +10,14 @@
 
 #include "cm1e/bus.h"
 
+/** ETG.5001: the list of the modules that a modular device has found in its slots. */
+enum { DETECTED_MODULES = 0xF050 };
+
 typedef struct cm1e_setup_job {
     const cm1e_slave_config_t *config; /**< NULL: idle */
     bool by_sync0;                     /**< 0x1C32 and 0x1C33 get 2, if the slave lets them be written */
     bool optional;                     /**< the last transfer may be refused */
+    bool swapped;                      /**< 0x1C12 assigns inputs */
     bool before_op;                    /**< true: the start-up SDOs before Operational; false: those before
                                             Safe-Operational, and PDOs */
     bool started;                      /**< `sdo` is in work or done */
@@ -31,8 +35,9 @@ typedef struct cm1e_setup_job {
  *  synchronisation (ETG.1020: 0x1C32:01 and 0x1C33:01) are set to 2 and read back, unless the slave lacks or refuses
  *  them, or the configuration writes them itself. */
 bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, bool by_sync0, bool before_op);
+/** `swapped`: inputs are on sync manager 2, outputs on 3, so 0x1C12 assigns the inputs. */
 void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config, bool by_sync0,
-                      bool before_op);
+                      bool before_op, bool swapped);
 static inline bool cm1e_setup_idle(const cm1e_setup_job_t *job) { return job->config == NULL; }
 static inline void cm1e_setup_cancel(cm1e_setup_job_t *job) { job->config = NULL; }
 /** The transfer to begin now; NULL: the job has ended, or is idle. The transfer that was returned before must have

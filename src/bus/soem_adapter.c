@@ -121,17 +121,19 @@ bool cm1e_soem_set_process_data_by_pdos(cm1e_soem_t *soem, uint16_t position, ui
 {
     ec_slavet *slave = &soem->slaves[position];
     const uint16_t bits[2] = {output_bits, input_bits};
+    const bool swapped = cm1e_sii_is_swapped(soem->siis[position].sync_managers);
     for (int direction = 0; direction < 2; direction++) {
-        ec_smt *manager = &slave->SM[2 + direction];
+        const int sm = swapped ? 3 - direction : 2 + direction;
+        ec_smt *manager = &slave->SM[sm];
         if (bits[direction] && manager->StartAddr == 0)
             return false;
         manager->SMlength = htoes(bytes_of(bits[direction]));
-        slave->SMtype[2 + direction] = direction ? 4 : 3;
+        slave->SMtype[sm] = direction ? 4 : 3;
     }
     slave->Obits = output_bits;
     slave->Ibits = input_bits;
     slave->configindex = 1;
-    return are_apart(slave, output_bits, input_bits);
+    return swapped ? are_apart(slave, input_bits, output_bits) : are_apart(slave, output_bits, input_bits);
 }
 
 size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem)

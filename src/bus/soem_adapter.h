@@ -24,6 +24,7 @@ typedef struct cm1e_slave_facts {
     uint32_t vendor_id, product_code, revision, serial_number;
     uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length;
     bool coe, foe, complete_access;
+    bool swapped;            /**< inputs on sync manager 2, outputs on 3: 0x1C12 assigns TxPDOs */
     char name[48];
 } cm1e_slave_facts_t;
 

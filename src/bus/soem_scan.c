@@ -169,8 +169,8 @@ static void fill_slave(cm1e_soem_t *soem, uint16_t position)
     slave->mbx_l = sii->mailbox_out_length;
     if (!slave->mbx_l)
         return;
-    const cm1e_sii_sync_manager_t out = {sii->mailbox_out_start, sii->mailbox_out_length, 0x26, 1};
-    const cm1e_sii_sync_manager_t in = {sii->mailbox_in_start, sii->mailbox_in_length, 0x22, 1};
+    const cm1e_sii_sync_manager_t out = {sii->mailbox_out_start, sii->mailbox_out_length, 0x26, 1, 1};
+    const cm1e_sii_sync_manager_t in = {sii->mailbox_in_start, sii->mailbox_in_length, 0x22, 1, 2};
     set_sync_manager(slave, 0, &out);
     set_sync_manager(slave, 1, &in);
     slave->mbx_wo = sii->mailbox_out_start;
@@ -247,6 +247,7 @@ void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_fact
         .coe = sii->mailbox_out_length > 0 && sii->mailbox_in_length > 0 && sii->coe,
         .foe = sii->mailbox_out_length > 0 && sii->mailbox_in_length > 0 && sii->foe,
         .complete_access = sii->complete_access,
+        .swapped = cm1e_sii_is_swapped(sii->sync_managers),
     };
     memcpy(facts->name, sii->name, sizeof facts->name);
 }

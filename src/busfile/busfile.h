@@ -82,7 +82,9 @@ typedef struct cm1e_busfile_slave {
     uint16_t position, alias, explicit_id;
     char vendor[12], product[12], revision[12];
     char esi[256], esi_mode[64]; /**< "": not stated */
-    uint32_t sdo_count, mapping_count, outputs_pdo_count, inputs_pdo_count, output_count, input_count;
+    uint32_t sdo_count, mapping_count, outputs_pdo_count, inputs_pdo_count, output_count, input_count,
+        module_count;
+    cm1e_busfile_text_t modules[CM1E_SLAVE_MODULES];
     cm1e_busfile_sdo_t sdos[CM1E_SLAVE_SDOS];
     cm1e_busfile_mapping_t mappings[CM1E_SLAVE_PDOS];
     cm1e_busfile_text_t outputs_pdos[CM1E_SLAVE_PDOS], inputs_pdos[CM1E_SLAVE_PDOS];

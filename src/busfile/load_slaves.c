@@ -296,6 +296,19 @@ static bool take_esi(const place_t *place, cm1e_slave_config_t *slave, const cm1
 
 /* ---- all together ------------------------------------------------------------------------------------------------ */
 
+static bool convert_modules(const place_t *place, const cm1e_busfile_slave_t *from, cm1e_slave_config_t *slave)
+{
+    char key[24];
+    for (uint32_t i = 0; i < from->module_count; i++) {
+        const char *end;
+        snprintf(key, sizeof key, "modules[%u]", i);
+        if (!take_hex(from->modules[i], 8, &slave->modules[i], &end) || *end != '\0')
+            return wrong(place, key, "'%s' is no ident of a module; expected it as in 0x00000205", from->modules[i]);
+    }
+    slave->module_count = (uint16_t)from->module_count;
+    return true;
+}
+
 static bool convert_slave(const place_t *place, cm1e_slave_config_t *slave, const cm1e_busfile_slave_t *from)
 {
     char name[CM1E_NAME_LENGTH];
@@ -316,7 +329,7 @@ static bool convert_slave(const place_t *place, cm1e_slave_config_t *slave, cons
     for (uint32_t i = 0; i < from->mapping_count; i++)
         if (!convert_mapping(place, i, &from->mappings[i], slave))
             return false;
-    return convert_pdos(place, "outputs_pdos", from->outputs_pdos, from->outputs_pdo_count, slave->outputs_pdos,
+    return convert_modules(place, from, slave) && convert_pdos(place, "outputs_pdos", from->outputs_pdos, from->outputs_pdo_count, slave->outputs_pdos,
                         &slave->outputs_pdo_count) &&
            convert_pdos(place, "inputs_pdos", from->inputs_pdos, from->inputs_pdo_count, slave->inputs_pdos,
                         &slave->inputs_pdo_count) &&

@@ -37,6 +37,7 @@ static const cyaml_strval_t motions[] = {
 static const cyaml_strval_t axis_types[] = {
     {"motor", CM1E_AXIS_MOTOR},
     {"virtual", CM1E_AXIS_VIRTUAL},
+    {"modular", CM1E_SIM_SLAVE_MODULAR},
     {"encoder", CM1E_AXIS_ENCODER},
 };
 static const cyaml_strval_t coupling_stops[] = {
@@ -277,6 +278,7 @@ static const cyaml_strval_t sim_devices[] = {
     {"coupler", CM1E_SIM_SLAVE_COUPLER},
     {"digital", CM1E_SIM_SLAVE_DIGITAL},
     {"analog", CM1E_SIM_SLAVE_ANALOG},
+    {"encoder", CM1E_SIM_SLAVE_ENCODER},
 };
 static const cyaml_schema_field_t sim_slave_fields[] = {
     CYAML_FIELD_ENUM("device", CYAML_FLAG_STRICT, cm1e_busfile_slave_t, slave.sim.kind, sim_devices,
@@ -284,6 +286,8 @@ static const cyaml_schema_field_t sim_slave_fields[] = {
     SLAVE_UINT("inputs", slave.sim.inputs),
     SLAVE_UINT("outputs", slave.sim.outputs),
     SLAVE_STRING("wired_to", slave.sim.wired_to),
+    SLAVE_BOOL("swapped", slave.sim.swapped),
+    CYAML_FIELD_FLOAT("counts_per_s", OPTIONAL, cm1e_busfile_slave_t, slave.sim.counts_per_s),
     SLAVE_BOOL("absent", slave.sim_absent),
     CYAML_FIELD_END,
 };
@@ -314,6 +318,7 @@ static const cyaml_schema_field_t slave_fields[] = {
     LIST_OF("mapping", cm1e_busfile_slave_t, mappings, mapping_count, &mapping_value),
     LIST_OF("outputs_pdos", cm1e_busfile_slave_t, outputs_pdos, outputs_pdo_count, &text_value),
     LIST_OF("inputs_pdos", cm1e_busfile_slave_t, inputs_pdos, inputs_pdo_count, &text_value),
+    LIST_OF("modules", cm1e_busfile_slave_t, modules, module_count, &text_value),
     LIST_OF("outputs", cm1e_busfile_slave_t, outputs, output_count, &output_signal_value),
     LIST_OF("inputs", cm1e_busfile_slave_t, inputs, input_count, &input_signal_value),
     SLAVE_GROUP("dc", dc_slave_fields),

@@ -8,10 +8,12 @@
 
 #include "config/io_types.h"
 #include "config/ranges.h"
+#include "device/sim_modules.h"
 #include "device/place.h"
 
 enum { WATCHDOG_MS_MAX = 6000, FIRST_OBJECT = 0x1000, PDOS_OF_A_KIND = 0x200, OUTPUT_PDO = 0x1600, INPUT_PDO = 0x1A00 };
 enum { PROCESS_DATA_BITS = 8 * 1486, CHANNELS_MAX = 8 };
+#define COUNTS_PER_S_MAX 1e9
 
 typedef struct slave_check {
     const cm1e_bus_config_t *config;
@@ -282,8 +284,10 @@ static bool check_wire(const slave_check_t *check)
 static bool check_sim(const slave_check_t *check)
 {
     const cm1e_sim_slave_config_t *sim = &check->slave->sim;
-    const bool has_channels = sim->kind == CM1E_SIM_SLAVE_DIGITAL || sim->kind == CM1E_SIM_SLAVE_ANALOG;
-    if ((unsigned)sim->kind > CM1E_SIM_SLAVE_ANALOG)
+    const unsigned modules = check->slave->module_count;
+    const bool has_coe = sim->kind == CM1E_SIM_SLAVE_ANALOG || sim->kind == CM1E_SIM_SLAVE_ENCODER;
+    const bool has_channels = sim->kind == CM1E_SIM_SLAVE_DIGITAL || has_coe;
+    if ((unsigned)sim->kind > CM1E_SIM_SLAVE_ENCODER)
         return slave_wrong(check, "sim.device", "is %d; expected one of the enumeration", (int)sim->kind);
     if (sim->inputs > CHANNELS_MAX || sim->outputs > CHANNELS_MAX)
         return slave_wrong(check, sim->inputs > CHANNELS_MAX ? "sim.inputs" : "sim.outputs",
@@ -293,8 +297,27 @@ static bool check_sim(const slave_check_t *check)
         return slave_wrong(check, "sim", "has neither inputs nor outputs; expected their number, 1 ... %d",
                            CHANNELS_MAX);
     if (!has_channels && (sim->inputs || sim->outputs || sim->wired_to[0]))
-        return slave_wrong(check, "sim", "has inputs or outputs, which its device has not; expected the device digital "
-                           "or analog");
+        return slave_wrong(check, "sim", "has inputs or outputs, which its device has not; expected the device digital, "
+                           "analog or encoder");
+    if (sim->kind == CM1E_SIM_SLAVE_ENCODER && (sim->outputs || sim->wired_to[0]))
+        return slave_wrong(check, sim->outputs ? "sim.outputs" : "sim.wired_to", "is given, and an encoder has inputs "
+                           "only, which count by counts_per_s; expected none");
+    if (modules > CM1E_SLAVE_MODULES)
+        return slave_wrong(check, "modules", "has %u entries; expected at most %d", modules, CM1E_SLAVE_MODULES);
+    if (sim->kind == CM1E_SIM_SLAVE_MODULAR && (modules == 0 || modules > CHANNELS_MAX))
+        return slave_wrong(check, "modules", "has %u entries; expected 1 ... %d of a simulated modular device", modules,
+                           CHANNELS_MAX);
+    for (unsigned i = 0; i < modules && sim->kind == CM1E_SIM_SLAVE_MODULAR; i++)
+        if (!cm1e_sim_module(check->slave->modules[i]))
+            return slave_wrong(check, "modules", "has 0x%08X, which is not simulated; expected 0x%08X, 0x%08X, 0x%08X, "
+                               "0x%08X, 0x%08X or 0x%08X", (unsigned)check->slave->modules[i], 0x105u, 0x108u, 0x205u,
+                               0x208u, 0x302u, 0x402u);
+    if (sim->swapped && !has_coe)
+        return slave_wrong(check, "sim.swapped", "is true; expected it of the device analog or encoder only");
+    if (!(fabs(sim->counts_per_s) <= COUNTS_PER_S_MAX) ||
+        (sim->counts_per_s != 0 && sim->kind != CM1E_SIM_SLAVE_ENCODER))
+        return slave_wrong(check, "sim.counts_per_s", "is %g; expected up to %g to both sides, of the device encoder only",
+                           sim->counts_per_s, COUNTS_PER_S_MAX);
     return check_wire(check);
 }
 

@@ -129,6 +129,8 @@ static const cm1e_code_t al_texts[] = {
      "the device has restarted by itself: look at its supply, then start the bus again"},
     {0x0061, "device identification value updated",
      "the rotary switches or the alias have changed: switch the device off and on"},
+    {0x0070, "detected and configured modules differ",
+     "compare 0xF050 with 0xF030, and `modules` of the bus file with what is plugged in"},
     {0x00F0, "application controller available", "nothing: the device says that its controller runs"},
 };
 

@@ -1,11 +1,14 @@
 /* Devices with inputs and outputs as the bus file names them for the simulator: their SII. */
+#include <string.h>
+
+#include "device/sim_modules.h"
 #include "core/bytes.h"
 #include "description/describe.h"
 #include "description/sii_image.h"
 
 /* In SII word 0: a digital I/O process data interface, and whether the controller emulates the device (0x0141 bit 0). */
 enum { PDI_DIGITAL_IO = 0x0004, DEVICE_EMULATION = 0x0100 };
-enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, UNDERRANGE = 0x01, OVERRANGE = 0x02, VALUE = 0x11 };
+enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, UNDERRANGE = 0x01, OPEN_CIRCUIT = 0x01, OVERRANGE = 0x02, VALUE = 0x11 };
 enum { OUTPUT_PDO = 0x1600, INPUT_PDO = 0x1A00 };
 
 static void add_entry(cm1e_arena_t *arena, cm1e_described_pdo_t *pdo, unsigned index, unsigned subindex, uint32_t bits,
@@ -16,7 +19,7 @@ static void add_entry(cm1e_arena_t *arena, cm1e_described_pdo_t *pdo, unsigned i
     entry->subindex = (uint8_t)subindex;
     entry->bits = bits;
     entry->name = name;
-    entry->type = index == 0 ? "" : bits == 1 ? "BOOL" : "INT";
+    entry->type = index == 0 ? "" : bits == 1 ? "BOOL" : bits == 32 ? "UDINT" : "INT";
 }
 
 static cm1e_described_pdo_t *add_pdo(cm1e_arena_t *arena, cm1e_description_t *device, unsigned index, const char *kind,
@@ -98,9 +101,55 @@ static void exclude(cm1e_arena_t *arena, cm1e_described_pdo_t *pdo, unsigned ind
     excluded->index = (uint16_t)index;
 }
 
+/* A PDO for each counter: a bit of state, and padding up to the counter, as encoder terminals have it. */
+static void describe_counters(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_sim_slave_config_t *sim)
+{
+    for (unsigned n = 0; n < sim->inputs; n++) {
+        cm1e_described_pdo_t *pdo =
+            add_pdo(arena, device, INPUT_PDO + n, "ENC Status Channel", n, CM1E_SM_NUMBER_INPUTS);
+        add_entry(arena, pdo, INPUTS + n * STEP, OPEN_CIRCUIT, 1, "Open circuit");
+        add_entry(arena, pdo, 0, 0, 15, NULL);
+        add_entry(arena, pdo, INPUTS + n * STEP, VALUE, 32, "Counter value");
+    }
+}
+
+/* A PDO for each slot, whose objects and PDOs are moved by its number (ETG.5001: SlotIndexIncrement 16, SlotPdoIncrement
+ * 1). */
+static void describe_modules(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave)
+{
+    for (unsigned output = 0; output < 2; output++)
+        for (unsigned n = 0; n < slave->module_count; n++) {
+            const cm1e_sim_module_t *module = cm1e_sim_module(slave->modules[n]);
+            if (!module || module->output != (output == 0))
+                continue;
+            cm1e_described_pdo_t *pdo = add_pdo(arena, device, (module->output ? OUTPUT_PDO : INPUT_PDO) + n, "Slot", n,
+                                                module->output ? CM1E_SM_NUMBER_OUTPUTS : CM1E_SM_NUMBER_INPUTS);
+            for (unsigned c = 0; c < module->channels; c++)
+                add_entry(arena, pdo, (module->output ? OUTPUTS : INPUTS) + n * STEP, c + 1, module->bits,
+                          cm1e_arena_format(arena, "Channel %u", c + 1));
+            if (module->padding)
+                add_entry(arena, pdo, 0, 0, module->padding, NULL);
+        }
+}
+
+/* Outputs before inputs, or inputs on the first sync manager of process data and outputs on the second one. */
+static void describe_managers(cm1e_arena_t *arena, cm1e_description_t *device, bool swapped)
+{
+    cm1e_sync_manager_t managers[4];
+    memcpy(managers, cm1e_device_sync_managers, sizeof managers);
+    if (swapped) {
+        managers[CM1E_SM_NUMBER_OUTPUTS] = cm1e_device_sync_managers[CM1E_SM_NUMBER_INPUTS];
+        managers[CM1E_SM_NUMBER_INPUTS] = cm1e_device_sync_managers[CM1E_SM_NUMBER_OUTPUTS];
+    }
+    for (size_t i = 0; swapped && i < device->pdos.count; i++)
+        if (device->pdos.at[i].sync_manager != CM1E_NO_SYNC_MANAGER)
+            device->pdos.at[i].sync_manager = device->pdos.at[i].transmit ? CM1E_SM_NUMBER_OUTPUTS
+                                                                           : CM1E_SM_NUMBER_INPUTS;
+    cm1e_describe_sync_managers(arena, device, managers, &device->pdos);
+}
+
 static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_sim_slave_config_t *sim)
 {
-    const cm1e_device_options_t options = {0};
     for (unsigned n = 0; n < sim->outputs; n++)
         add_entry(arena, add_pdo(arena, device, OUTPUT_PDO + n, "AO Output Channel", n, CM1E_SM_NUMBER_OUTPUTS),
                   OUTPUTS + n * STEP, VALUE, 16, "Value");
@@ -117,10 +166,23 @@ static void describe_analog(cm1e_arena_t *arena, cm1e_description_t *device, con
         add_entry(arena, pdo, index, VALUE, 16, "Value");
         exclude(arena, pdo, INPUT_PDO + 2 * n);
     }
+}
+
+/* With a mailbox. */
+static void describe_with_coe(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave)
+{
+    const cm1e_sim_slave_config_t *sim = &slave->sim;
+    const cm1e_device_options_t options = {0};
+    if (sim->kind == CM1E_SIM_SLAVE_ENCODER)
+        describe_counters(arena, device, sim);
+    else if (sim->kind == CM1E_SIM_SLAVE_MODULAR)
+        describe_modules(arena, device, slave);
+    else
+        describe_analog(arena, device, sim);
     cm1e_describe_communication(arena, device, &options);
     add_dc_modes(arena, device);
     cm1e_describe_eeprom(arena, device, &options, false);
-    cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &device->pdos);
+    describe_managers(arena, device, sim->swapped);
 }
 
 /* ---- identity ---------------------------------------------------------------------------------------------------- */
@@ -147,13 +209,13 @@ void cm1e_describe_io_identity(cm1e_description_file_t *file, const cm1e_slave_c
 /* Masters take devices of one product and revision for equal, so each has its own: 0xD0408 has 4 outputs, 8 inputs. */
 static uint32_t product_code(const cm1e_sim_slave_config_t *sim)
 {
-    static const uint32_t kinds[] = {0, 0xC0000, 0xD0000, 0xA0000};
-    return kinds[sim->kind] | (uint32_t)sim->outputs << 8 | sim->inputs;
+    static const uint32_t kinds[] = {0, 0xC0000, 0xD0000, 0xA0000, 0xB0000, 0xE0000};
+    return kinds[sim->kind] | (uint32_t)sim->swapped << 16 | (uint32_t)sim->outputs << 8 | sim->inputs;
 }
 
 void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_config_t *slave)
 {
-    static const char *const kinds[] = {"", "Coupler", "Digital", "Analog"};
+    static const char *const kinds[] = {"", "Coupler", "Digital", "Analog", "Modular", "Encoder"};
     const cm1e_sim_slave_config_t *sim = &slave->sim;
     cm1e_arena_t *arena = &file->arena;
     cm1e_description_t *device = CM1E_APPEND(arena, &file->devices);
@@ -167,8 +229,8 @@ void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_con
     device->type = device->name;
     device->group = "Simulated I/O";
     device->physics = "YY";
-    if (sim->kind == CM1E_SIM_SLAVE_ANALOG) {
-        describe_analog(arena, device, sim);
+    if (sim->kind >= CM1E_SIM_SLAVE_ANALOG) {
+        describe_with_coe(arena, device, slave);
     } else {
         describe_digital(arena, device, sim);
         describe_eeprom(arena, device, slave);

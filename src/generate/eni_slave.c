@@ -8,7 +8,7 @@
 #include "generate/esi.h"
 #include "generate/esi_take.h"
 
-enum { FIRST_TXPDO = 0x1A00, FIRST_RXPDO = 0x1600, END_OF_PDOS = 0x1C00 };
+enum { FIRST_TXPDO = 0x1A00, FIRST_RXPDO = 0x1600, END_OF_PDOS = 0x1C00, FIRST_ASSIGNMENT = 0x1C10 };
 enum { COUNT_BYTES = 1, PDO_BYTES = 2, ENTRY_BYTES = 4 };
 
 static cm1e_error_t wrong(const cm1e_slave_config_t *slave, cm1e_diag_t *diag, const char *what)
@@ -227,11 +227,19 @@ static void command_mapping(writer_t *to, const cm1e_slave_config_t *slave)
     }
 }
 
-static void command_assignment(writer_t *to, const cm1e_slave_config_t *slave, bool clear)
+/** That of the sync manager of the direction. */
+static uint16_t assignment_of(const cm1e_description_t *device, bool transmit)
+{
+    const int manager = sync_manager_of(device, transmit);
+    return (uint16_t)(manager < 0 ? OBJ_1C12_RXPDO_ASSIGN + transmit : FIRST_ASSIGNMENT + manager);
+}
+
+static void command_assignment(writer_t *to, const cm1e_description_t *device, const cm1e_slave_config_t *slave,
+                               bool clear)
 {
     unsigned count;
     for (int transmit = 0; transmit < 2; transmit++) {
-        const unsigned index = OBJ_1C12_RXPDO_ASSIGN + (unsigned)transmit;
+        const unsigned index = assignment_of(device, transmit);
         const uint16_t *pdos = assigned(slave, transmit, &count);
         if (count && clear)
             command(to, index, 0, 0, COUNT_BYTES, false);
@@ -243,11 +251,12 @@ static void command_assignment(writer_t *to, const cm1e_slave_config_t *slave, b
 }
 
 /** Whether the bus file writes the object itself. Of an ESI it has all commands already. */
-static bool is_replaced(const cm1e_slave_config_t *slave, const cm1e_init_command_t *own)
+static bool is_replaced(const cm1e_description_t *device, const cm1e_slave_config_t *slave,
+                        const cm1e_init_command_t *own)
 {
     const bool of_pdos = own->index >= FIRST_RXPDO && own->index < END_OF_PDOS && slave->entry_count > 0;
-    const bool outputs = own->index == OBJ_1C12_RXPDO_ASSIGN && slave->outputs_pdo_count;
-    const bool inputs = own->index == OBJ_1C13_TXPDO_ASSIGN && slave->inputs_pdo_count;
+    const bool outputs = own->index == assignment_of(device, false) && slave->outputs_pdo_count;
+    const bool inputs = own->index == assignment_of(device, true) && slave->inputs_pdo_count;
     if (slave->esi[0] || of_pdos || outputs || inputs)
         return true;
     for (unsigned i = 0; i < slave->sdo_count; i++)
@@ -261,12 +270,12 @@ static void write_commands(cm1e_arena_t *arena, cm1e_description_t *device, cons
 {
     writer_t to = {.arena = arena};
     for (size_t i = 0; i < device->init_commands.count; i++)
-        if (!is_replaced(slave, &device->init_commands.at[i]))
+        if (!is_replaced(device, slave, &device->init_commands.at[i]))
             *(cm1e_init_command_t *)CM1E_APPEND(arena, &to.list) = device->init_commands.at[i];
     command_sdos(&to, slave, false);
-    command_assignment(&to, slave, true);
+    command_assignment(&to, device, slave, true);
     command_mapping(&to, slave);
-    command_assignment(&to, slave, false);
+    command_assignment(&to, device, slave, false);
     command_sdos(&to, slave, true);
     device->init_commands = to.list;
 }

@@ -199,6 +199,25 @@ static void name_entry(cm1e_slave_config_t *slave, const cm1e_slave_config_t *st
     slave->signals[slave->signal_count++] = signal;
 }
 
+/** Behind the entries that are written: those of the assigned PDOs, with their gaps, so that the place of a signal is
+ *  known while its slave is absent. Where there is no room for all, none is kept. */
+static void describe_entries(cm1e_slave_config_t *slave, const cm1e_slave_config_t *stated,
+                             const cm1e_description_t *device)
+{
+    unsigned count = slave->entry_count;
+    for (size_t i = 0; i < device->pdos.count; i++) {
+        const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        for (size_t e = 0; e < pdo->entries.count && is_assigned(stated, pdo) && !is_rewritten(stated, pdo->index); e++) {
+            const cm1e_described_pdo_entry_t *entry = &pdo->entries.at[e];
+            if (count == CM1E_SLAVE_PDO_ENTRIES || entry->bits == 0 || entry->bits > UINT8_MAX)
+                return;
+            slave->entries[count++] = (cm1e_pdo_entry_config_t){pdo->index, entry->index, entry->subindex,
+                                                                (uint8_t)entry->bits};
+        }
+    }
+    slave->described_count = (uint16_t)(count - slave->entry_count);
+}
+
 static void name_all(cm1e_slave_config_t *slave, const cm1e_slave_config_t *stated, const cm1e_description_t *device)
 {
     unsigned bits[2] = {0, 0};
@@ -216,7 +235,8 @@ static void name_all(cm1e_slave_config_t *slave, const cm1e_slave_config_t *stat
 /* ---- start-up commands ------------------------------------------------------------------------------------------- */
 
 /** Whether the bus file writes this object itself, so that its value counts. */
-static bool is_overruled(const cm1e_slave_config_t *stated, const cm1e_init_command_t *command)
+static bool is_overruled(const cm1e_slave_config_t *stated, const cm1e_description_t *device,
+                         const cm1e_init_command_t *command)
 {
     for (unsigned i = 0; i < stated->sdo_count; i++)
         if (stated->sdos[i].index == command->index &&
@@ -224,7 +244,10 @@ static bool is_overruled(const cm1e_slave_config_t *stated, const cm1e_init_comm
             return true;
     if (command->index >= FIRST_RXPDO && command->index < END_OF_PDOS)
         return is_rewritten(stated, command->index);
-    const bool outputs = command->index == 0x1C12, inputs = command->index == 0x1C13;
+    const size_t manager = command->index - (size_t)ASSIGNMENTS;
+    const bool known = command->index >= ASSIGNMENTS && manager < device->sync_managers.count;
+    const bool outputs = known ? device->sync_managers.at[manager].use == CM1E_SM_OUTPUTS : command->index == 0x1C12;
+    const bool inputs = known ? device->sync_managers.at[manager].use == CM1E_SM_INPUTS : command->index == 0x1C13;
     return (outputs && stated->outputs_pdo_count) || (inputs && stated->inputs_pdo_count);
 }
 
@@ -266,7 +289,7 @@ static cm1e_error_t take_commands(cm1e_slave_config_t *slave, const cm1e_slave_c
     const unsigned of_a_start = CM1E_TRANSITION_IP | CM1E_TRANSITION_PS | CM1E_TRANSITION_SO;
     cm1e_error_t error = CM1E_OK;
     for (size_t i = 0; i < device->init_commands.count && error == CM1E_OK; i++)
-        if (device->init_commands.at[i].transitions & of_a_start && !is_overruled(stated, &device->init_commands.at[i]))
+        if (device->init_commands.at[i].transitions & of_a_start && !is_overruled(stated, device, &device->init_commands.at[i]))
             error = take_command(slave, &device->init_commands.at[i], diag);
     return error;
 }
@@ -317,6 +340,8 @@ static cm1e_error_t take_device(cm1e_slave_config_t *slave, const cm1e_descripti
     if (error != CM1E_OK)
         return error;
     name_all(slave, &stated, device);
+    if (device->mailbox.coe)
+        describe_entries(slave, &stated, device);
     if (device->mailbox.coe && device->mailbox.pdo_assign && !commands_assign(device))
         error = assign(slave, &stated, device, diag);
     if (error == CM1E_OK && device->mailbox.coe)
@@ -339,6 +364,8 @@ static cm1e_error_t read_device(cm1e_description_file_t *file, cm1e_description_
         uint32_t idents[CM1E_PLACES_MAX];
         const size_t places = cm1e_description_places(found);
         cm1e_description_default_modules(found, idents, places);
+        for (size_t n = 0; n < places && slave->module_count > 0; n++)
+            idents[n] = n < slave->module_count ? slave->modules[n] : 0;
         cm1e_description_expand(&file->arena, device, file, found, idents, places);
     }
     if (file->arena.failed)

@@ -160,7 +160,7 @@ cm1e_error_t cm1e_console_input(call_t *call)
         return REFUSE(call, "slave %u has no simulated inputs", call->position);
     if (!parse_whole(argument(call, 0), 10, 1, (long)inputs, &channel))
         return REFUSE(call, "\"%s\": expected an input, 1 to %u", argument(call, 0), inputs);
-    const bool analog = device->config.kind == CM1E_SIM_SLAVE_ANALOG;
+    const bool analog = device->config.kind >= CM1E_SIM_SLAVE_ANALOG;
     if (word < 0 && !(analog && parse_whole(text, 10, INT16_MIN, INT16_MAX, &value)))
         return REFUSE(call, "\"%s\": expected %s or wire", text, analog ? "-32768 to 32767" : "on, off");
     device->is_held[channel - 1] = word != 2;

@@ -80,24 +80,29 @@ static void release(void *app)
 {
     cm1e_sim_io_device_t *device = app;
     memset(device->outputs, 0, sizeof device->outputs);
+    if (device->module_count && device->objects)
+        cm1e_sim_io_objects_release(device);
 }
 
 static uint16_t state_change(void *app, uint8_t from, uint8_t to)
 {
-    (void)from;
     if (to != CM1E_AL_OP)
         release(app);
+    if (from == CM1E_AL_PRE_OP && to == CM1E_AL_SAFE_OP && !cm1e_sim_io_objects_modules_agree(app))
+        return AL_CODE_OTHER_MODULES;
     return AL_CODE_NONE;
 }
 
 static void power_on(void *app, int64_t now_ns)
 {
-    (void)now_ns;
     cm1e_sim_io_device_t *device = app;
     release(device);
+    device->power_on_ns = device->now_ns = now_ns;
     if (device->objects)
         cm1e_sim_io_objects_power_on(device);
 }
+
+static void advance(void *app, int64_t now_ns) { ((cm1e_sim_io_device_t *)app)->now_ns = now_ns; }
 
 static uint16_t explicit_device_id(void *app) { return ((cm1e_sim_io_device_t *)app)->id; }
 
@@ -115,7 +120,7 @@ static void destroy(void *app)
 
 static const cm1e_sim_app_ops_t ops = {LIFE};
 static const cm1e_sim_app_ops_t ops_with_coe = {
-    LIFE, .sdo_read = cm1e_sim_io_objects_read, .sdo_write = cm1e_sim_io_objects_write,
+    LIFE, .advance = advance, .sdo_read = cm1e_sim_io_objects_read, .sdo_write = cm1e_sim_io_objects_write,
     .object = cm1e_sim_io_objects_at, .entry = cm1e_sim_io_objects_entry, .runs_by_sync0 = true,
 };
 
@@ -134,8 +139,11 @@ static cm1e_sim_io_device_t *create_app(const cm1e_slave_config_t *slave)
     device->id = slave->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? slave->address : 0;
     if (device->config.outputs > 0 && !device->config.wired_to[0])
         device->source = device;
+    for (unsigned n = 0; n < slave->module_count && n < IO_CHANNELS && slave->sim.kind == CM1E_SIM_SLAVE_MODULAR; n++)
+        if (cm1e_sim_module(slave->modules[n]))
+            device->modules[device->module_count++] = cm1e_sim_module(slave->modules[n]);
     map_channels(device);
-    if (device->config.kind == CM1E_SIM_SLAVE_ANALOG && !cm1e_sim_io_objects_create(device, slave)) {
+    if (device->config.kind >= CM1E_SIM_SLAVE_ANALOG && !cm1e_sim_io_objects_create(device, slave)) {
         free(device);
         return NULL;
     }

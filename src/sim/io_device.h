@@ -1,13 +1,14 @@
 /**
  * @file io_device.h
  * A simulated device with up to 8 inputs and outputs, as the bus file describes it: a coupler, digital channels of one
- * bit without mailbox, or analog channels of 16 bits with CoE. Private to the simulator. Files:
+ * bit without mailbox, analog channels of 16 bits or counters of 32 bits with CoE. Private to the simulator. Files:
  *   io_device.c            life, process data, wires
- *   io_device_objects.c    the dictionary of an analog device: settings, PDOs that can be chosen and written
+ *   io_device_objects.c    the dictionary of a device with CoE: settings, PDOs that can be chosen and written
  */
 #ifndef CM1E_SIM_IO_DEVICE_H
 #define CM1E_SIM_IO_DEVICE_H
 
+#include "device/sim_modules.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 
@@ -43,6 +44,9 @@ typedef struct cm1e_sim_io_device {
     cm1e_sim_io_image_t images[2];           /**< outputs, inputs */
     cm1e_sim_io_objects_t *objects;          /**< NULL: no CoE */
     int64_t digital[2][IO_CHANNELS];         /**< values of the process data without CoE */
+    uint8_t module_count;                    /**< of a modular device */
+    const cm1e_sim_module_t *modules[IO_CHANNELS];
+    int64_t now_ns, power_on_ns;             /**< of an encoder, which counts since its power-on */
 } cm1e_sim_io_device_t;
 
 /** The device that a slave of the configuration names, with its identity and address. NULL: no memory. */
@@ -63,6 +67,10 @@ uint32_t cm1e_sim_io_objects_read(void *app, uint16_t index, uint8_t subindex, u
                                   size_t *size);
 uint32_t cm1e_sim_io_objects_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,
                                    size_t size);
+/** Outputs of a modular device off. */
+void cm1e_sim_io_objects_release(cm1e_sim_io_device_t *device);
+/** Whether the modules that are configured (0xF030) are those that it has, or none are configured. */
+bool cm1e_sim_io_objects_modules_agree(const cm1e_sim_io_device_t *device);
 const cm1e_object_t *cm1e_sim_io_objects_at(void *app, size_t n);
 const cm1e_entry_t *cm1e_sim_io_objects_entry(void *app, uint16_t index, uint8_t subindex);
 

@@ -1,5 +1,6 @@
-/* The dictionary of an analog device, in the shape of ETG.5001: a channel has its inputs at 0x6000, outputs at 0x7000
+/* The dictionary of an analog device or of an encoder, in the shape of ETG.5001: a channel has its inputs at 0x6000, outputs at 0x7000
  * and settings at 0x8000, 0x10 apart. Of each input there are two PDOs, one with state and value, one with the value. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,7 @@
 
 enum { RO = CM1E_ACCESS_READ, RW = RO | CM1E_ACCESS_WRITE, RW_PREOP = RW | CM1E_ACCESS_WRITE_PREOP_ONLY };
 enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, SETTINGS = 0x8000, OUTPUT_SETTINGS = 0x8080 };
+enum { MODULAR_PROFILE = 0xF000, CONFIGURED = 0xF030, DETECTED = 0xF050 };
 enum { FIRST_TXPDO = 0x1A00, TO_PARAMETER = 0x200, EXCLUDES = 6 };
 enum { UNDERRANGE = 0x01, OVERRANGE = 0x02, VALUE = 0x11, OFFSET = 0x12, LIMIT = 32760 };
 
@@ -54,32 +56,33 @@ static void add_identity(cm1e_sim_io_objects_t *o, const cm1e_description_t *dev
 }
 
 /* Mailbox out and in, outputs, inputs (ETG.1000.6 section 5.6.7.4). */
-static void add_sync_managers(cm1e_sim_io_objects_t *o)
+static void add_sync_managers(cm1e_sim_io_objects_t *o, bool swapped)
 {
+    static const uint8_t uses[] = {1, 2, 3, 4}, of_swapped[] = {1, 2, 4, 3};
     add_object(o, OBJ_1C00_SM_TYPES, CM1E_OBJECT_ARRAY, 4, "Sync manager type");
     add_count(o, RO, 4);
     for (unsigned i = 1; i <= 4; i++)
-        add_entry(o, i, RO, CM1E_TYPE_USINT, "Sync manager type", i);
+        add_entry(o, i, RO, CM1E_TYPE_USINT, "Sync manager type", swapped ? of_swapped[i - 1] : uses[i - 1]);
 }
 
 /* As the description has the PDO; further entries are empty. */
-static void add_pdo(cm1e_sim_io_objects_t *o, const cm1e_described_pdo_t *pdo)
+static void add_pdo(cm1e_sim_io_objects_t *o, const cm1e_described_pdo_t *pdo, unsigned access)
 {
     add_object(o, pdo->index, CM1E_OBJECT_RECORD, IO_MAPPED, pdo->name);
-    add_count(o, RW_PREOP, (int64_t)pdo->entries.count);
+    add_count(o, access, (int64_t)pdo->entries.count);
     for (unsigned i = 0; i < IO_MAPPED; i++) {
         const cm1e_described_pdo_entry_t *entry = i < pdo->entries.count ? &pdo->entries.at[i] : NULL;
         const uint32_t value =
             entry ? (uint32_t)entry->index << 16 | (uint32_t)entry->subindex << 8 | entry->bits : 0;
-        add_entry(o, i + 1, RW_PREOP, CM1E_TYPE_UDINT, "Mapped object", value);
+        add_entry(o, i + 1, access, CM1E_TYPE_UDINT, "Mapped object", value);
     }
 }
 
-static void add_pdos(cm1e_sim_io_objects_t *o, const cm1e_description_t *device, bool transmit)
+static void add_pdos(cm1e_sim_io_objects_t *o, const cm1e_description_t *device, bool transmit, unsigned access)
 {
     for (size_t i = 0; i < device->pdos.count; i++)
         if (device->pdos.at[i].transmit == transmit)
-            add_pdo(o, &device->pdos.at[i]);
+            add_pdo(o, &device->pdos.at[i], access);
 }
 
 /* Which PDOs may not be assigned beside it (ETG.1000.6 section 5.6.7.4): a string of octets, two for each. */
@@ -95,18 +98,21 @@ static void add_excludes(cm1e_sim_io_objects_t *o, const cm1e_description_t *dev
     }
 }
 
-static void add_assignment(cm1e_sim_io_objects_t *o, const cm1e_description_t *device, bool transmit)
+/* 0x1C12 is that of sync manager 2, whatever it carries. */
+static void add_assignment(cm1e_sim_io_objects_t *o, const cm1e_description_t *device, bool swapped, bool second,
+                           unsigned access)
 {
+    const bool transmit = second != swapped;
     unsigned count = 0;
     uint16_t assigned[IO_CHANNELS] = {0};
     for (size_t i = 0; i < device->pdos.count && count < IO_CHANNELS; i++)
         if (device->pdos.at[i].transmit == transmit && device->pdos.at[i].sync_manager != CM1E_NO_SYNC_MANAGER)
             assigned[count++] = device->pdos.at[i].index;
-    add_object(o, transmit ? OBJ_1C13_TXPDO_ASSIGN : OBJ_1C12_RXPDO_ASSIGN, CM1E_OBJECT_ARRAY, IO_CHANNELS,
+    add_object(o, second ? OBJ_1C13_TXPDO_ASSIGN : OBJ_1C12_RXPDO_ASSIGN, CM1E_OBJECT_ARRAY, IO_CHANNELS,
                transmit ? "TxPDO assign" : "RxPDO assign");
-    add_count(o, RW_PREOP, count);
+    add_count(o, access, count);
     for (unsigned i = 0; i < IO_CHANNELS; i++)
-        add_entry(o, i + 1, RW_PREOP, CM1E_TYPE_UINT, "Assigned PDO", assigned[i]);
+        add_entry(o, i + 1, access, CM1E_TYPE_UINT, "Assigned PDO", assigned[i]);
 }
 
 /* How it is synchronised (ETG.1020): 1 by process data, 2 by SYNC0. */
@@ -119,8 +125,22 @@ static void add_synchronisation(cm1e_sim_io_objects_t *o)
     }
 }
 
+static void add_counters(cm1e_sim_io_objects_t *o, const cm1e_sim_slave_config_t *config)
+{
+    for (unsigned n = 0; n < config->inputs; n++) {
+        add_object(o, INPUTS + n * STEP, CM1E_OBJECT_RECORD, VALUE, "Encoder");
+        add_count(o, RO, VALUE);
+        add_entry(o, UNDERRANGE, RO, CM1E_TYPE_BOOL, "Open circuit", 0);
+        add_entry(o, VALUE, RO, CM1E_TYPE_UDINT, "Counter value", 0);
+    }
+}
+
 static void add_channels(cm1e_sim_io_objects_t *o, const cm1e_sim_slave_config_t *config)
 {
+    if (config->kind == CM1E_SIM_SLAVE_ENCODER) {
+        add_counters(o, config);
+        return;
+    }
     for (unsigned n = 0; n < config->inputs; n++) {
         add_object(o, INPUTS + n * STEP, CM1E_OBJECT_RECORD, VALUE, "Analog input");
         add_count(o, RO, VALUE);
@@ -145,6 +165,42 @@ static void add_channels(cm1e_sim_io_objects_t *o, const cm1e_sim_slave_config_t
     }
 }
 
+static void add_slots(cm1e_sim_io_objects_t *o, const cm1e_sim_io_device_t *device, bool output)
+{
+    for (unsigned n = 0; n < device->module_count; n++) {
+        const cm1e_sim_module_t *module = device->modules[n];
+        if (module->output != output)
+            continue;
+        add_object(o, (output ? OUTPUTS : INPUTS) + n * STEP, CM1E_OBJECT_RECORD, module->channels, module->name);
+        add_count(o, RO, module->channels);
+        for (unsigned c = 1; c <= module->channels; c++)
+            add_entry(o, c, output ? RW : RO, module->bits == 1 ? CM1E_TYPE_BOOL : CM1E_TYPE_INT, "Channel", 0);
+    }
+}
+
+static void add_idents(cm1e_sim_io_objects_t *o, const cm1e_sim_io_device_t *device, unsigned index, unsigned access,
+                       const char *name)
+{
+    const bool detected = access == RO;
+    add_object(o, index, CM1E_OBJECT_ARRAY, device->module_count, name);
+    add_count(o, access, detected ? device->module_count : 0);
+    for (unsigned n = 0; n < device->module_count; n++)
+        add_entry(o, n + 1, access, CM1E_TYPE_UDINT, "Module ident", detected ? device->modules[n]->ident : 0);
+}
+
+/* ETG.5001: what each slot has, and the lists of modules that are configured and detected. */
+static void add_modules(cm1e_sim_io_objects_t *o, const cm1e_sim_io_device_t *device)
+{
+    add_slots(o, device, false);
+    add_slots(o, device, true);
+    add_object(o, MODULAR_PROFILE, CM1E_OBJECT_RECORD, 2, "Modular device profile");
+    add_count(o, RO, 2);
+    add_entry(o, 1, RO, CM1E_TYPE_UINT, "Index distance", STEP);
+    add_entry(o, 2, RO, CM1E_TYPE_UINT, "Maximum number of modules", IO_CHANNELS);
+    add_idents(o, device, CONFIGURED, RW_PREOP, "Configured module ident list");
+    add_idents(o, device, DETECTED, RO, "Detected module ident list");
+}
+
 bool cm1e_sim_io_objects_create(cm1e_sim_io_device_t *device, const cm1e_slave_config_t *slave)
 {
     cm1e_sim_io_objects_t *o = calloc(1, sizeof *o);
@@ -157,14 +213,18 @@ bool cm1e_sim_io_objects_create(cm1e_sim_io_device_t *device, const cm1e_slave_c
     }
     const cm1e_description_t *described = &file.devices.at[0];
     add_identity(o, described);
-    add_pdos(o, described, false);
+    const unsigned access = device->module_count ? RO : RW_PREOP; /* modules have the process data that they have */
+    add_pdos(o, described, false, access);
     add_excludes(o, described);
-    add_pdos(o, described, true);
-    add_sync_managers(o);
-    add_assignment(o, described, false);
-    add_assignment(o, described, true);
+    add_pdos(o, described, true, access);
+    add_sync_managers(o, device->config.swapped);
+    add_assignment(o, described, device->config.swapped, false, access);
+    add_assignment(o, described, device->config.swapped, true, access);
     add_synchronisation(o);
-    add_channels(o, &device->config);
+    if (device->module_count)
+        add_modules(o, device);
+    else
+        add_channels(o, &device->config);
     for (size_t i = 0; i < o->object_count; i++)
         if (o->objects[i].index >= 0x1600 && o->objects[i].index < 0x1C00)
             o->objects[i].name = "PDO mapping"; /* the names of the description end with it */
@@ -233,11 +293,17 @@ static void resolve_pdo(cm1e_sim_io_device_t *device, unsigned pdo, cm1e_sim_io_
     }
 }
 
+/* The object that assigns the PDOs of a direction: that of its sync manager. */
+static uint16_t assignment_of(const cm1e_sim_io_device_t *device, bool inputs)
+{
+    return inputs != device->config.swapped ? OBJ_1C13_TXPDO_ASSIGN : OBJ_1C12_RXPDO_ASSIGN;
+}
+
 /* The objects of the assigned PDOs, so that the cycle need not search. */
 static void resolve(cm1e_sim_io_device_t *device)
 {
     for (unsigned direction = 0; direction < 2; direction++) {
-        const unsigned index = OBJ_1C12_RXPDO_ASSIGN + direction;
+        const unsigned index = assignment_of(device, direction);
         device->images[direction] = (cm1e_sim_io_image_t){0};
         for (unsigned i = 1; i <= *value_of(device, index, 0); i++)
             resolve_pdo(device, (unsigned)*value_of(device, index, i), &device->images[direction]);
@@ -251,8 +317,59 @@ void cm1e_sim_io_objects_power_on(cm1e_sim_io_device_t *device)
     resolve(device);
 }
 
+static void count(cm1e_sim_io_device_t *device)
+{
+    const double seconds = (double)(device->now_ns - device->power_on_ns) * 1e-9;
+    const int64_t counts = (int64_t)floor(device->config.counts_per_s * seconds);
+    for (unsigned n = 0; n < device->config.inputs; n++)
+        *value_of(device, INPUTS + n * STEP, VALUE) = (uint32_t)(device->is_held[n] ? device->held[n] : counts);
+}
+
+/* Inputs of a module are wired to the next module with such outputs before it. */
+static void wire_modules(cm1e_sim_io_device_t *device)
+{
+    for (unsigned n = 0; n < device->module_count; n++) {
+        const cm1e_sim_module_t *module = device->modules[n];
+        for (unsigned from = n; from-- > 0 && !module->output;) {
+            const cm1e_sim_module_t *source = device->modules[from];
+            if (!source->output || source->bits != module->bits)
+                continue;
+            for (unsigned c = 1; c <= module->channels && c <= source->channels; c++)
+                *value_of(device, INPUTS + n * STEP, c) = *value_of(device, OUTPUTS + from * STEP, c);
+            break;
+        }
+    }
+}
+
+void cm1e_sim_io_objects_release(cm1e_sim_io_device_t *device)
+{
+    for (unsigned n = 0; n < device->module_count; n++)
+        for (unsigned c = 1; device->modules[n]->output && c <= device->modules[n]->channels; c++)
+            *value_of(device, OUTPUTS + n * STEP, c) = 0;
+}
+
+bool cm1e_sim_io_objects_modules_agree(const cm1e_sim_io_device_t *device)
+{
+    cm1e_sim_io_device_t *own = (cm1e_sim_io_device_t *)(uintptr_t)device;
+    const int64_t *count = device->objects ? value_of(own, CONFIGURED, 0) : NULL;
+    if (!count || *count == 0)
+        return true;
+    for (unsigned n = 1; n <= device->module_count; n++)
+        if (*value_of(own, CONFIGURED, n) != *value_of(own, DETECTED, n))
+            return false;
+    return *count == device->module_count;
+}
+
 void cm1e_sim_io_objects_give(cm1e_sim_io_device_t *device)
 {
+    if (device->module_count) {
+        wire_modules(device);
+        return;
+    }
+    if (device->config.kind == CM1E_SIM_SLAVE_ENCODER) {
+        count(device);
+        return;
+    }
     for (unsigned n = 0; n < device->config.inputs; n++) {
         const unsigned index = INPUTS + n * STEP;
         const int64_t value = cm1e_sim_io_terminal(device, n) + *value_of(device, SETTINGS + n * STEP, OFFSET);
@@ -264,7 +381,7 @@ void cm1e_sim_io_objects_give(cm1e_sim_io_device_t *device)
 
 void cm1e_sim_io_objects_take(cm1e_sim_io_device_t *device)
 {
-    for (unsigned n = 0; n < device->config.outputs; n++)
+    for (unsigned n = 0; n < device->config.outputs && !device->module_count; n++)
         device->outputs[n] = (int16_t)(uint16_t)*value_of(device, OUTPUTS + n * STEP, VALUE) +
                              *value_of(device, OUTPUT_SETTINGS + n * STEP, OFFSET);
 }
@@ -273,7 +390,7 @@ void cm1e_sim_io_objects_take(cm1e_sim_io_device_t *device)
 
 static bool is_assigned(cm1e_sim_io_device_t *device, uint16_t pdo)
 {
-    const unsigned index = pdo < 0x1A00 ? OBJ_1C12_RXPDO_ASSIGN : OBJ_1C13_TXPDO_ASSIGN;
+    const unsigned index = assignment_of(device, pdo >= FIRST_TXPDO);
     for (unsigned i = 1; i <= *value_of(device, index, 0); i++)
         if (*value_of(device, index, i) == pdo)
             return true;
@@ -315,7 +432,7 @@ static bool excludes_another(cm1e_sim_io_device_t *device, uint16_t index, int64
 
 static uint32_t check_assignment(cm1e_sim_io_device_t *device, uint16_t index, uint8_t subindex, int64_t value)
 {
-    const int first = index == OBJ_1C12_RXPDO_ASSIGN ? 0x1600 : FIRST_TXPDO;
+    const int first = index == assignment_of(device, false) ? 0x1600 : FIRST_TXPDO;
     if (subindex == 0 && value > IO_CHANNELS)
         return SDO_ABORT_TOO_HIGH;
     if (subindex == 0)

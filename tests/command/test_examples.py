@@ -370,6 +370,25 @@ def check_machine_io():
     expect(done.returncode == 1 and 'has no signal "curtain"' in done.stderr and '"fence"' in done.stderr, f"{name}: {done}")
 
 
+def check_encoder_master():
+    """The feeder has the velocity of the belt, 3072 counts/s of 20.48 counts/mm, and keeps its distance to a few counts."""
+    name = "17_encoder_master"
+    printed, trace, words = run(name)
+    told = re.search(r"The belt runs at ([\d.]+) mm/s, the feeder at ([\d.]+) mm/s. Their distance changed by ([\d.]+) mm",
+                     printed)
+    expect(told, f"{name}: {printed}")
+    belt, feeder, change = (float(part) for part in told.groups())
+    expect(abs(belt - 150) < 1 and abs(feeder - 150) < 1 and change < 5 / 20.48, f"{name}: {printed}")
+    expect("with the belt" in words and "gear in" in words, f"{name}: {words}")
+    wrong = os.path.join(OUTPUT, "belt_without_counter.yaml")
+    path = os.path.join(os.path.dirname(__file__), "..", "..", "examples", "belt.yaml")
+    with open(path, encoding="utf-8") as file, open(wrong, "w", encoding="utf-8") as other:
+        other.write(file.read().replace("encoder_signal: counter.position", "encoder_signal: counter.place"))
+    done = subprocess.run([os.path.join(BIN, name), "--virtual-time", "-b", wrong], capture_output=True, text=True,
+                          timeout=60)
+    expect(done.returncode == 1 and 'no signal "place"' in done.stderr, f"{name}: {done}")
+
+
 def distance(row, begin, end, x, y):
     """Of a point from a row of the outline; the arc of this one is a quarter of a circle around (80, 40)."""
     if row[0] == "arc":
@@ -464,6 +483,7 @@ def check_traces():
     check_winder()
     check_xy_table()
     check_machine_io()
+    check_encoder_master()
     check_touch_probe()
     check_homing_steps()
     check_jog_panel()

@@ -67,7 +67,7 @@ typedef enum harm { NOTHING = 0, REFUSED, OTHER_VALUE } harm_t;
 static int run(bool before_op, const transfer_t *expected, int harmed, harm_t harm)
 {
     int count = 0;
-    cm1e_setup_begin(&job, 3, &config, by_sync0, before_op);
+    cm1e_setup_begin(&job, 3, &config, by_sync0, before_op, false);
     for (cm1e_sdo_t *sdo; (sdo = cm1e_setup_next(&job)) != NULL; count++) {
         if (answers_excludes(sdo)) {
             count--;
