@@ -58,10 +58,11 @@ static void call_blocks(void)
 
 static bool step_is_done(void)
 {
+    const int64_t lasted_ns = cm1e_scheduler_time_ns(example.scheduler) - step_began_ns;
     switch (step) {
-    case STEP_POWER: return power.Status;
+    case STEP_POWER: return power.Status && lasted_ns >= settle_ns; /* until the filter of the encoder has settled */
     case STEP_GEAR_IN: return gear_in.InGear;
-    case STEP_TOGETHER: return cm1e_scheduler_time_ns(example.scheduler) - step_began_ns >= together_ns;
+    case STEP_TOGETHER: return lasted_ns >= together_ns;
     case STEP_HALT: return halt.Done;
     default: return !power.Status;
     }

@@ -86,8 +86,8 @@ static void find_writes(io_program_t *p)
         if (p->refused)
             fail(&diag);
         else if ((p->refused = is_driven(p, &write->io, use)))
-            complain("%s belongs to an axis (%s): its blocks write it, MC_WriteDigitalOutput or MC_DigitalCamSwitch", name,
-                     use);
+            complain("%s belongs to an axis (%s): its blocks write it, MC_WriteDigitalOutput or MC_DigitalCamSwitch",
+                     name, use);
         else if ((p->refused = cm1e_io_set_real(&write->io, write->value) != CM1E_OK))
             complain("%s cannot be written with %s: it is an input, belongs to a motor (MC_WriteDigitalOutput), or "
                      "its type has no such value", name, write->equals + 1);

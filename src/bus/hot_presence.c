@@ -99,8 +99,8 @@ void cm1e_presence_sentence(const cm1e_bus_t *bus, uint32_t position, cm1e_prese
             snprintf(text, size, "%s does not answer: check its power and the cables up to it.", label);
         break;
     case CM1E_PRESENCE_WAITS:
-        snprintf(text, size, "%s answers and waits for being asked: %s`cm1e recover %u` or cm1e_bus_recover() brings it "
-                 "back to Operational.", label, cm1e_bus_is_used(slave) ? "MC_Reset of its axis, " : "",
+        snprintf(text, size, "%s answers and waits for being asked: %s`cm1e recover %u` or cm1e_bus_recover() brings "
+                 "it back to Operational.", label, cm1e_bus_is_used(slave) ? "MC_Reset of its axis, " : "",
                  (unsigned)position);
         break;
     case CM1E_PRESENCE_COMING:

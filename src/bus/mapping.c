@@ -15,7 +15,8 @@ void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_p
 
 void cm1e_mapping_begin_any(cm1e_mapping_job_t *job, uint16_t position, bool swapped)
 {
-    *job = (cm1e_mapping_job_t){.step = MAPPING_READ_COUNT, .any = true, .swapped = swapped, .sdo = {.position = position}};
+    *job = (cm1e_mapping_job_t){.step = MAPPING_READ_COUNT, .any = true, .swapped = swapped,
+                                .sdo = {.position = position}};
 }
 
 static void end(cm1e_mapping_job_t *job, cm1e_error_t error, const char *reason)

@@ -179,7 +179,8 @@ static bool find_step(const cm1e_setup_job_t *job, unsigned number, step_t *step
         return false;
     if (by_sync0 && walk_synchronisation(&walk, config))
         return true;
-    if (walk_modules(&walk, config) || walk_excludes(&walk, config) || walk_clearing(&walk, config) || walk_mapping(&walk, config) || walk_assignment(&walk, config))
+    if (walk_modules(&walk, config) || walk_excludes(&walk, config) || walk_clearing(&walk, config) ||
+        walk_mapping(&walk, config) || walk_assignment(&walk, config))
         return true;
     walk.check = true;
     return walk_mapping(&walk, config) || walk_assignment(&walk, config);
@@ -256,7 +257,8 @@ static void take_stated(cm1e_setup_job_t *job, const cm1e_sdo_config_t *stated)
     job->sdo.complete_access = stated->complete_access;
     if (stated->bytes > 0)
         return;
-    job->sdo.data = (void *)(uintptr_t)(job->config->sdo_data + stated->value); /* a transfer that writes reads it only */
+    /* A transfer that writes does not change it. */
+    job->sdo.data = (void *)(uintptr_t)(job->config->sdo_data + stated->value);
     job->sdo.size = stated->size;
 }
 

@@ -1,9 +1,9 @@
 /**
  * @file slave_setup.h
  * What the configuration writes into a slave without an axis at its start: SDOs and PDOs. What it wrote of PDOs is read
- * back, because a slave may take another value without a word. Before that the slave is asked which PDOs exclude each
- * other: an assignment that names two of these is refused, and nothing of it is written. A list of SDO transfers, one after the other; who runs
- * it owns the CoE client. No clock inside.
+ * back, because a slave may take another value without a word. Before that a modular device is asked for its modules, and
+ * the slave which PDOs exclude each other: an assignment that names two of these is refused, and nothing of it is
+ * written. A list of SDO transfers, one after the other; who runs it owns the CoE client. No clock inside.
  */
 #ifndef CM1E_BUS_SLAVE_SETUP_H
 #define CM1E_BUS_SLAVE_SETUP_H

@@ -329,7 +329,8 @@ static bool convert_slave(const place_t *place, cm1e_slave_config_t *slave, cons
     for (uint32_t i = 0; i < from->mapping_count; i++)
         if (!convert_mapping(place, i, &from->mappings[i], slave))
             return false;
-    return convert_modules(place, from, slave) && convert_pdos(place, "outputs_pdos", from->outputs_pdos, from->outputs_pdo_count, slave->outputs_pdos,
+    return convert_modules(place, from, slave) &&
+           convert_pdos(place, "outputs_pdos", from->outputs_pdos, from->outputs_pdo_count, slave->outputs_pdos,
                         &slave->outputs_pdo_count) &&
            convert_pdos(place, "inputs_pdos", from->inputs_pdos, from->inputs_pdo_count, slave->inputs_pdos,
                         &slave->inputs_pdo_count) &&

@@ -37,7 +37,6 @@ static const cyaml_strval_t motions[] = {
 static const cyaml_strval_t axis_types[] = {
     {"motor", CM1E_AXIS_MOTOR},
     {"virtual", CM1E_AXIS_VIRTUAL},
-    {"modular", CM1E_SIM_SLAVE_MODULAR},
     {"encoder", CM1E_AXIS_ENCODER},
 };
 static const cyaml_strval_t coupling_stops[] = {
@@ -278,6 +277,7 @@ static const cyaml_strval_t sim_devices[] = {
     {"coupler", CM1E_SIM_SLAVE_COUPLER},
     {"digital", CM1E_SIM_SLAVE_DIGITAL},
     {"analog", CM1E_SIM_SLAVE_ANALOG},
+    {"modular", CM1E_SIM_SLAVE_MODULAR},
     {"encoder", CM1E_SIM_SLAVE_ENCODER},
 };
 static const cyaml_schema_field_t sim_slave_fields[] = {

@@ -316,8 +316,8 @@ static bool check_sim(const slave_check_t *check)
         return slave_wrong(check, "sim.swapped", "is true; expected it of the device analog or encoder only");
     if (!(fabs(sim->counts_per_s) <= COUNTS_PER_S_MAX) ||
         (sim->counts_per_s != 0 && sim->kind != CM1E_SIM_SLAVE_ENCODER))
-        return slave_wrong(check, "sim.counts_per_s", "is %g; expected up to %g to both sides, of the device encoder only",
-                           sim->counts_per_s, COUNTS_PER_S_MAX);
+        return slave_wrong(check, "sim.counts_per_s", "is %g; expected up to %g to both sides, of the device encoder "
+                           "only", sim->counts_per_s, COUNTS_PER_S_MAX);
     return check_wire(check);
 }
 

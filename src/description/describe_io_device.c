@@ -8,7 +8,8 @@
 
 /* In SII word 0: a digital I/O process data interface, and whether the controller emulates the device (0x0141 bit 0). */
 enum { PDI_DIGITAL_IO = 0x0004, DEVICE_EMULATION = 0x0100 };
-enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, UNDERRANGE = 0x01, OPEN_CIRCUIT = 0x01, OVERRANGE = 0x02, VALUE = 0x11 };
+enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000 };
+enum { UNDERRANGE = 0x01, OVERRANGE = 0x02, OPEN_CIRCUIT = 0x01, VALUE = 0x11 };
 enum { OUTPUT_PDO = 0x1600, INPUT_PDO = 0x1A00 };
 
 static void add_entry(cm1e_arena_t *arena, cm1e_described_pdo_t *pdo, unsigned index, unsigned subindex, uint32_t bits,

@@ -207,7 +207,8 @@ static void describe_entries(cm1e_slave_config_t *slave, const cm1e_slave_config
     unsigned count = slave->entry_count;
     for (size_t i = 0; i < device->pdos.count; i++) {
         const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
-        for (size_t e = 0; e < pdo->entries.count && is_assigned(stated, pdo) && !is_rewritten(stated, pdo->index); e++) {
+        const bool described = is_assigned(stated, pdo) && !is_rewritten(stated, pdo->index);
+        for (size_t e = 0; described && e < pdo->entries.count; e++) {
             const cm1e_described_pdo_entry_t *entry = &pdo->entries.at[e];
             if (count == CM1E_SLAVE_PDO_ENTRIES || entry->bits == 0 || entry->bits > UINT8_MAX)
                 return;
@@ -289,7 +290,8 @@ static cm1e_error_t take_commands(cm1e_slave_config_t *slave, const cm1e_slave_c
     const unsigned of_a_start = CM1E_TRANSITION_IP | CM1E_TRANSITION_PS | CM1E_TRANSITION_SO;
     cm1e_error_t error = CM1E_OK;
     for (size_t i = 0; i < device->init_commands.count && error == CM1E_OK; i++)
-        if (device->init_commands.at[i].transitions & of_a_start && !is_overruled(stated, device, &device->init_commands.at[i]))
+        if (device->init_commands.at[i].transitions & of_a_start &&
+            !is_overruled(stated, device, &device->init_commands.at[i]))
             error = take_command(slave, &device->init_commands.at[i], diag);
     return error;
 }

@@ -209,6 +209,33 @@ START_TEST(test_a_slave_is_configured_by_it)
 }
 END_TEST
 
+/* Where its signals will be is known from the file while the slave is absent; when it comes, its PDOs are compared. */
+START_TEST(test_an_absent_slave_has_its_signals_from_the_file)
+{
+    static const char text[] = "bus: {virtual_time: true}\nslaves:\n"
+                               "  - {name: valves, position: 1, sim: {device: digital, outputs: 2}}\n"
+                               "  - {name: ai, alias: 9, optional: true, esi: bus_esi.xml, product: 0x000A0002,\n"
+                               "     sim: {device: analog, inputs: 2, absent: true}}\n";
+    cm1e_io_t io;
+    write_text(bus_path, text);
+    write_text(esi_path, good);
+    cm1e_bus_config_free(&config);
+    ck_assert_msg(cm1e_bus_config_load(&config, bus_path, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_t *bus = start_bus();
+    ck_assert_msg(cm1e_io_find(bus, "ai.Compact 2 Value", &io, &diag) == CM1E_OK, "%s", diag.text);
+    cycles(bus, 5);
+    ck_assert_int_eq(cm1e_io_quality(&io), CM1E_IO_OFFLINE);
+    simulate(bus, "attach 2");
+    simulate(bus, "input 2 2 1000");
+    for (int n = 0; n < 4000 && cm1e_io_quality(&io) != CM1E_IO_GOOD; n++)
+        ck_assert_int_eq(cycle(bus), CM1E_OK);
+    cycles(bus, 5);
+    ck_assert_int_eq(cm1e_io_quality(&io), CM1E_IO_GOOD);
+    ck_assert_int_eq(cm1e_io_integer(&io), 991); /* with the offset that a start-up command writes */
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- ENI --------------------------------------------------------------------------------------------------------- */
 
 static void eni_of_file(cm1e_file_t *file)
@@ -337,6 +364,7 @@ int main(void)
     tcase_add_test(tests, test_a_slave_without_a_mailbox_is_named_by_its_bits);
     tcase_add_test(tests, test_a_bad_file_is_told_in_words);
     tcase_add_test(tests, test_a_slave_is_configured_by_it);
+    tcase_add_test(tests, test_an_absent_slave_has_its_signals_from_the_file);
     tcase_add_test(tests, test_start_up_commands_with_complete_access);
     tcase_add_test(tests, test_an_eni_of_the_bus_file_is_that_of_a_scan);
     tcase_add_test(tests, test_an_eni_takes_the_esi);

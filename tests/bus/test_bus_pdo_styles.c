@@ -35,7 +35,8 @@ static cm1e_io_t find(cm1e_bus_t *bus, const char *name)
 /** Outputs are wired to the inputs of the same device: what is set comes back, each at its place. */
 static void expect_both_channels(cm1e_bus_t *bus)
 {
-    const char *const outputs[] = {"both.output 1", "both.output 2"}, *const objects[] = {"both.0x6000:11", "both.0x6010:11"};
+    const char *const outputs[] = {"both.output 1", "both.output 2"};
+    const char *const objects[] = {"both.0x6000:11", "both.0x6010:11"};
     for (int n = 0; n < 2; n++) {
         const cm1e_io_t io = find(bus, outputs[n]);
         ck_assert_int_eq(cm1e_io_set_integer(&io, 1000 * n - 300), CM1E_OK);

@@ -266,8 +266,8 @@ START_TEST(what_is_written_at_the_start_is_written_again_after_the_slave_was_awa
 }
 END_TEST
 
-/** The state and value of a channel, and its value alone, exclude each other. We see it in the slave's own objects before
- *  anything is written; a slave that is told so all the same refuses it. */
+/** The state and value of a channel, and its value alone, exclude each other. We see it in the slave's own objects
+ *  before anything is written; a slave that is told so all the same refuses it. */
 START_TEST(pdos_that_exclude_each_other_are_refused)
 {
     static const uint8_t counts[] = {0, 2};

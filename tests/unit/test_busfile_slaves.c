@@ -101,6 +101,22 @@ static void test_sdos_have_the_bits_of_their_values(void)
     }
 }
 
+static void test_modules_and_simulated_devices(void)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load("slaves:\n  - {position: 1, modules: [0x205, 0x00000105], "
+                                            "sim: {device: modular}}\n"
+                                            "  - {position: 2, sim: {device: encoder, inputs: 2, counts_per_s: -2.5}}\n"
+                                            "  - {position: 3, sim: {device: analog, inputs: 2, swapped: true}}\n"),
+                              diag.text);
+    TEST_ASSERT_EQUAL(2, config.slaves[0].module_count);
+    TEST_ASSERT_EQUAL_HEX32(0x205, config.slaves[0].modules[0]);
+    TEST_ASSERT_EQUAL_HEX32(0x105, config.slaves[0].modules[1]);
+    TEST_ASSERT_EQUAL(CM1E_SIM_SLAVE_MODULAR, config.slaves[0].sim.kind);
+    TEST_ASSERT_EQUAL(CM1E_SIM_SLAVE_ENCODER, config.slaves[1].sim.kind);
+    TEST_ASSERT_TRUE(config.slaves[1].sim.counts_per_s < -2.4 && config.slaves[1].sim.counts_per_s > -2.6);
+    TEST_ASSERT_TRUE(config.slaves[2].sim.swapped);
+}
+
 static void test_mapping_and_signals_are_in_their_order(void)
 {
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(everything), diag.text);
@@ -135,7 +151,7 @@ static void expect_wrong(const char *keys, const char *place, const char *part)
     char text[800], where[600];
     snprintf(text, sizeof text, "axes: [{name: feed, position: 9}]\nslaves:\n  - {position: 3, %s}\n", keys);
     TEST_ASSERT_NOT_EQUAL_MESSAGE(CM1E_OK, load(text), keys);
-    snprintf(where, sizeof where, "%s:%s: ", temporary, place);
+    snprintf(where, sizeof where, strchr(place, ':')[1] ? "%s:%s: " : "%s:%s", temporary, place);
     TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(where, diag.text, strlen(where), diag.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, part), diag.text);
 }
@@ -200,6 +216,13 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
         {"outputs: [{name: a, bit: 1, safe: 2}]", "3:29", "has the safe value 2, which is no BOOL of 1 bits"},
         {"outputs: [{name: a, bit: 1, safe: maybe}]", "3:53", "expected a number, true, false or hold"},
         {"sim: {inputs: 3}", "3:24", "'device' is missing"},
+        {"modules: [517]", "3:29", "'517' is no ident of a module; expected it as in 0x00000205"},
+        {"sim: {device: modular}", "3:", "has 0 entries; expected 1 ... 8 of a simulated modular device"},
+        {"modules: [0x205, 0x999], sim: {device: modular}", "3:", "has 0x00000999, which is not simulated"},
+        {"sim: {device: encoder, outputs: 1}", "3:", "an encoder has inputs only"},
+        {"sim: {device: encoder, inputs: 1, counts_per_s: 2e9}", "3:", "up to 1e+09"},
+        {"sim: {device: analog, inputs: 1, counts_per_s: 5}", "3:", "of the device encoder only"},
+        {"sim: {device: digital, inputs: 1, swapped: true}", "3:", "of the device analog or encoder only"},
         {"sim: {device: digital}", "3:24", "neither inputs nor outputs"},
         {"sim: {device: coupler, inputs: 1}", "3:24", "which its device has not"},
         {"sim: {device: digital, inputs: 9}", "3:50", "1 ... 8"},
@@ -282,6 +305,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_every_key_becomes_what_it_says);
     RUN_TEST(test_sdos_have_the_bits_of_their_values);
+    RUN_TEST(test_modules_and_simulated_devices);
     RUN_TEST(test_mapping_and_signals_are_in_their_order);
     RUN_TEST(test_wrong_keys_are_told_with_place_and_cure);
     RUN_TEST(test_optional_slaves_groups_and_who_brings_them_back);

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Slaves that come and go over a veth pair, while a motor turns at 1 ms and at 250 us: a group that comes by itself, a
 motor that waits until `cm1e recover` asks for it, a stranger. The other slaves lose no cycle: every frame comes back
-with the working counter of those that are there. `cm1e status` and `cm1e recover` tell what is absent, waits, is refused.
+with the working counter of those that are there. `cm1e status` and `cm1e recover` tell what is absent, waits or
+is refused.
 
 test_wire_hot_connect.py CM1E
 """
