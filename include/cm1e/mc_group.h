@@ -18,7 +18,8 @@
 extern "C" {
 #endif
 
-/** Part 4 v2.0, 9.1. Makes an axis a member of a group, which then belongs to the bus of that axis. @rt cycle */
+/** Part 4 v2.0, 9.1. Makes an axis a member of a group. Axes on several buses need one scheduler that runs them
+ *  all. @rt cycle */
 typedef struct MC_AddAxisToGroup_t {
     AXES_GROUP_REF_t *AxesGroup;
     AXIS_REF_t *Axis;

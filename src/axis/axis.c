@@ -190,6 +190,16 @@ static bool moves_on(const cm1e_axis_t *axis)
     return set_points_move(axis) && axis->state != CM1E_AXIS_DISABLED && axis_acts(axis);
 }
 
+/* The bus is silent, so the set-point stays. Axes on another bus may go on. */
+static void stay(cm1e_axis_t *axis)
+{
+    const cm1e_axis_leader_t *leader = &axis->leader;
+    if (axis_follows(axis))
+        axis->coupling_hooks->held(axis);
+    else if (axis_led(axis) && leader->held)
+        leader->held(leader->context, leader->index);
+}
+
 /* What is beside the motion, after it. */
 CM1E_RARE static void step_extras(cm1e_axis_t *axis)
 {
@@ -218,8 +228,8 @@ void cm1e_axis_advance_any(cm1e_axis_t *axis)
     }
     if (!axis->silence.frozen || !set_points_move(axis))
         cm1e_axis_motion_step(axis);
-    else if (axis_follows(axis))
-        axis->coupling_hooks->held(axis);
+    else
+        stay(axis);
     if (axis->extras)
         step_extras(axis);
     if (!undisturbed || !set_points_move(axis))

@@ -240,6 +240,12 @@ typedef struct cm1e_axis_leader {
     /** s; the time that the slowest axis of the leader needs to brake, for the common ramp when the bus is lost. NULL:
      *  each axis has its own ramp. */
     double (*stop_time)(void *context);
+    /** The bus of the axis is silent: its set-point stays in this cycle. Called in place of next(). NULL: nothing. */
+    void (*held)(void *context, uint32_t index);
+    /** Called after a silence, before the next set-point: whether other axes of the leader were not silent. Then the
+     *  axis goes on by itself: the next set-point begins at its last one, with the velocity that the motor has left.
+     *  NULL: they were. */
+    bool (*alone)(void *context, uint32_t index);
     void *context;
     uint32_t index;                 /**< number of the axis for the leader */
 } cm1e_axis_leader_t;
@@ -270,6 +276,10 @@ double cm1e_axis_part_left(const cm1e_axis_t *axis);
 /** After a silence: whether the motion has to begin anew. In CSP the motor has stopped too often in a short time; in
  *  CSV it has gone on too far. @rt cycle */
 bool cm1e_axis_begins_anew(const cm1e_axis_t *axis);
+/** Whether the bus of the axis is silent, so that its set-point stays in this cycle. @rt cycle */
+bool cm1e_axis_held(const cm1e_axis_t *axis);
+/** Cycles of the silence that ended with this cycle; 0: none did. @rt cycle */
+uint32_t cm1e_axis_was_silent(const cm1e_axis_t *axis);
 /** s; the time between two set-points. @rt cycle */
 double cm1e_axis_cycle(const cm1e_axis_t *axis);
 /** Whether MC_Power permits a direction. @rt cycle */

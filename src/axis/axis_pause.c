@@ -230,6 +230,10 @@ bool cm1e_axis_begins_anew(const cm1e_axis_t *axis)
     return shaken || cm1e_axis_ran_on(axis) != 0.0;
 }
 
+bool cm1e_axis_held(const cm1e_axis_t *axis) { return axis->silence.frozen; }
+
+uint32_t cm1e_axis_was_silent(const cm1e_axis_t *axis) { return axis->silence.silent_before; }
+
 /* The path of a group begins anew for all of its axes, or goes on for all. */
 static bool begins_anew(const cm1e_axis_t *axis)
 {
@@ -277,8 +281,23 @@ static void go_on_slower(cm1e_axis_t *axis)
         lost_speed(axis, before - axis->setpoint.velocity);
 }
 
+/* The leader went on with axes of other buses: this one comes back to them by itself. */
+static bool goes_on_alone(cm1e_axis_t *axis)
+{
+    const cm1e_axis_leader_t *leader = &axis->leader;
+    if (!axis_led(axis) || !leader->alone || !leader->alone(leader->context, leader->index))
+        return false;
+    cm1e_axis_shift_set_point(axis, cm1e_axis_ran_on(axis));
+    const double left = velocity_left(axis);
+    lost_speed(axis, axis->setpoint.velocity - left);
+    cm1e_axis_put_velocity(axis, left);
+    return true;
+}
+
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
+    if (goes_on_alone(axis))
+        return;
     const bool follows_on = axis_follows(axis) && axis->coupling_hooks->begins_anew(axis);
     const double ran_on = cm1e_axis_ran_on(axis);
     if (is_composite(axis) && !follows_on && !begins_anew(axis)) {

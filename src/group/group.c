@@ -122,6 +122,17 @@ static cm1e_error_t refuse_member(cm1e_group_t *group, cm1e_error_t error, uint3
     return cm1e_group_refuse(group, (group_refusal_t){.error = error, .ident = ident, .why = why});
 }
 
+/* Whether one thread advances the axis and the members in the same cycle. */
+static bool shares_cycle(const cm1e_group_t *group, const cm1e_axis_t *axis)
+{
+    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
+        const cm1e_axis_t *member = cm1e_group_axis(group, ident);
+        if (member && !cm1e_axis_shares_cycle(member, axis))
+            return false;
+    }
+    return true;
+}
+
 cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t ident)
 {
     const cm1e_error_t refused = refused_by_state(group, TRIGGER_CONFIGURE);
@@ -137,9 +148,9 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
     if (group->member[ident - 1].Handle != 0)
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, ident, "This place is taken: use MC_RemoveAxisFromGroup "
                                                                     "first.");
-    if (cm1e_group_count(group) > 0 && cm1e_axis_bus(axis) != group->bus)
-        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another bus than the other axes "
-                                                                "of the group.");
+    if (!shares_cycle(group, axis))
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis is on another bus than the other axes of the "
+                             "group, and no scheduler runs both: see cm1e_scheduler_add_bus().");
     if (cm1e_axis_configuration(axis)->motion == CM1E_MOTION_DRIVE)
         return refuse_member(group, CM1E_ERROR_UNSUPPORTED, 0, "The drive computes the profiles of this axis: it needs "
                              "`motion: host` in the bus file.");
@@ -151,7 +162,6 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
                                                                         "already.");
     if (!cm1e_axis_join(axis, group))
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another group.");
-    group->bus = cm1e_axis_bus(axis);
     group->member[ident - 1] = reference;
     return CM1E_OK;
 }

@@ -19,9 +19,9 @@ cm1e_group_t *cm1e_group_from_reference(const AXES_GROUP_REF_t *reference);
 /* ---- members: in GroupDisabled, and while none of them is moved any more ----------------------------------------- */
 
 /** Adds an axis. `ident` is 1 ... CM1E_GROUP_AXES; 0 selects the first free place. CM1E_ERROR_GROUP_MEMBER: the place
- *  is taken, or the axis is in a group already or belongs to another bus. CM1E_ERROR_FB_AXIS_REF: no axis.
- *  CM1E_ERROR_UNSUPPORTED: the drive computes the profiles of the axis. CM1E_ERROR_AXIS_VIRTUAL: the axis is an
- *  encoder. @rt cycle */
+ *  is taken, or the axis is in a group already, or on a bus that no scheduler runs with those of the others.
+ *  CM1E_ERROR_FB_AXIS_REF: no axis. CM1E_ERROR_UNSUPPORTED: the drive computes the profiles of the axis.
+ *  CM1E_ERROR_AXIS_VIRTUAL: the axis is an encoder. @rt cycle */
 cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t axis, uint32_t ident);
 /** @rt cycle */
 cm1e_error_t cm1e_group_remove(cm1e_group_t *group, uint32_t ident);

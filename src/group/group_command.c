@@ -313,7 +313,7 @@ cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity)
     if (velocity == group->override)
         return CM1E_OK;
     group->override = velocity;
-    if (group->led)
+    if (group->led && group->apart.off == 0) /* else the path waits for its axes */
         cm1e_path_override(&group->path, velocity);
     return CM1E_OK;
 }

@@ -5,7 +5,8 @@
 
 bool cm1e_group_at_rest(const cm1e_group_t *group)
 {
-    return !group->led || group->sample.phase == CM1E_PATH_IDLE || group->sample.phase == CM1E_PATH_STOPPED;
+    const cm1e_path_phase_t phase = group->sample.phase;
+    return !group->led || ((phase == CM1E_PATH_IDLE || phase == CM1E_PATH_STOPPED) && group->apart.moving == 0);
 }
 
 void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk)
@@ -54,15 +55,15 @@ static void after_step(cm1e_group_t *group)
         cm1e_path_go_on(&group->path);
     }
     for (int i = 0; i < sample->done; i++)
-        cm1e_group_finish(group, sample->done_tags[i]);
+        cm1e_group_pass(group, sample->done_tags[i]);
+    cm1e_group_finish_passed(group);
     if (at_rest && come_to_rest(group))
         group->ending = true;
 }
 
-static cm1e_lead_t next(void *context, uint32_t index, double *position, double *velocity, double *acceleration)
+/* The first axis of a cycle makes the step for all. */
+static void take_turn(cm1e_group_t *group, unsigned bit)
 {
-    cm1e_group_t *group = context;
-    const unsigned bit = 1u << index;
     if (group->asked == 0 || (group->asked & bit) != 0) {
         group->asked = 0;
         if (!group->ending) {
@@ -71,13 +72,37 @@ static cm1e_lead_t next(void *context, uint32_t index, double *position, double 
         }
     }
     group->asked |= bit;
-    *position = group->sample.position[index];
-    *velocity = group->sample.velocity[index];
-    *acceleration = group->sample.acceleration[index];
+}
+
+static cm1e_lead_t next(void *context, uint32_t index, double *position, double *velocity, double *acceleration)
+{
+    cm1e_group_t *group = context;
+    const unsigned bit = 1u << index;
+    cm1e_motion_state_t point;
+    take_turn(group, bit);
+    if ((group->apart.off & bit) != 0)
+        cm1e_group_stray_step(group, index, &point);
+    else
+        point = (cm1e_motion_state_t){group->sample.position[index], group->sample.velocity[index],
+                                      group->sample.acceleration[index]};
+    *position = point.position;
+    *velocity = point.velocity;
+    *acceleration = point.acceleration;
     if (!group->ending)
         return CM1E_LEAD_ON;
     group->led &= ~bit;
+    cm1e_group_forget_stray(group, index);
     return CM1E_LEAD_LAST;
+}
+
+/* The bus of an axis is silent. The others go on, unless all of them are. */
+static void held(void *context, uint32_t index)
+{
+    cm1e_group_t *group = context;
+    if (!group->apart.several || cm1e_group_all_held(group))
+        return;
+    cm1e_group_stray(group, index);
+    take_turn(group, 1u << index);
 }
 
 /* Called when an axis has lost the lead. At rest in GroupStopping that is no error, because the axis leaves no path.
@@ -87,6 +112,7 @@ static void lost(void *context, uint32_t index, cm1e_error_t error)
     cm1e_group_t *group = context;
     const bool holding = group->state == CM1E_GROUP_STOPPING && cm1e_group_at_rest(group);
     group->led &= ~(1u << index);
+    cm1e_group_forget_stray(group, index);
     if (error != CM1E_OK || !holding)
         cm1e_group_fail(group, CM1E_ERROR_GROUP_AXIS, group->ident[index]);
     else if (!group->led)
@@ -104,6 +130,8 @@ static void paused(void *context, uint32_t index)
         cm1e_path_pause(&group->path);
     }
     group->paused |= bit;
+    if ((group->apart.off & bit) != 0)
+        cm1e_group_stray(group, index);
 }
 
 /* The smallest part of its velocity with which a motor of the group can go on. */
@@ -205,12 +233,13 @@ cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group)
 cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
 {
     group->led = group->asked = group->paused = group->slowed = 0;
+    cm1e_group_together(group);
     group->ending = group->halting = false;
     for (int i = 0; i < group->axes; i++) {
         cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
         const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused, .slow = slow,
-                                           .begins_anew = begins_anew, .stop_time = stop_time, .context = group,
-                                           .index = (uint32_t)i};
+                                           .begins_anew = begins_anew, .stop_time = stop_time, .held = held,
+                                           .alone = cm1e_group_alone, .context = group, .index = (uint32_t)i};
         if (axis && cm1e_axis_lead(axis, &leader) == CM1E_OK) {
             group->led |= 1u << i;
         } else if (!some) {

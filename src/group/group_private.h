@@ -9,6 +9,7 @@
 
 #include "group/group_api.h"
 #include "motion/path.h"
+#include "motion/profile.h"
 
 enum { GROUP_HANDLES = 32, GROUP_RECORDS = 64 };
 
@@ -53,12 +54,36 @@ typedef struct group_refusal {
     const char *why;      /**< a sentence; NULL: the text of the error is enough */
 } group_refusal_t;
 
+/** Where an axis is that has left the path, because its bus was silent while those of other axes were not. */
+typedef enum stray_step {
+    STRAY_SILENT = 0,      /**< its set-point stays, or its ramp is about to begin */
+    STRAY_RAMP,            /**< it comes to rest */
+    STRAY_REST,            /**< it waits until the path is at rest */
+    STRAY_BACK,            /**< it goes to its place on the path */
+} stray_step_t;
+
+typedef struct stray {
+    stray_step_t step;
+    int64_t cycles;
+    double from, speed;    /**< u, where the profile begins; u/s, when the axis left the path */
+    cm1e_profile_t profile;
+    cm1e_motion_state_t now;
+} stray_t;
+
+/** Axes of a group on several buses: group_apart.c. */
+typedef struct apart {
+    bool several;          /**< the axes of the path are on several buses */
+    unsigned off, moving;  /**< bits of axes that are not on the path, and of those whose set-points are not at rest */
+    cm1e_command_id_t passed[CM1E_GROUP_COMMANDS]; /**< done but for the axes that are not on the path */
+    int passed_count;
+    stray_t strays[CM1E_GROUP_AXES];
+} apart_t;
+
 struct cm1e_group {
     uint16_t handle;
     cm1e_group_config_t config;
     cm1e_group_state_t state;
     AXIS_REF_t member[CM1E_GROUP_AXES]; /**< at the place IdentInGroup - 1; handle 0: no axis */
-    const cm1e_bus_t *bus;              /**< of the members */
     bool ungroup;                       /**< the axes are released when nothing moves any more */
 
     /* the motion: axes of the path are members in their order, without the gaps */
@@ -72,6 +97,7 @@ struct cm1e_group {
     double override;
     cm1e_path_sample_t sample;
     cm1e_path_t path, before;           /**< copy of the path, for commands that are refused later */
+    apart_t apart;
 
     /* commands */
     cm1e_command_id_t last_id, stop;    /**< stop: the MC_GroupStop that holds the group in GroupStopping */
@@ -121,6 +147,23 @@ void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_er
 /** Updates the group from the states of its axes while it is at rest. */
 void cm1e_group_refresh(cm1e_group_t *group);
 
+/* group_apart.c */
+/** Called when the group begins to lead its axes. */
+void cm1e_group_together(cm1e_group_t *group);
+/** Whether all axes that it leads are silent: then time stands still for all of them. */
+bool cm1e_group_all_held(const cm1e_group_t *group);
+/** The axis leaves the path where it is, and the path comes to rest. */
+void cm1e_group_stray(cm1e_group_t *group, uint32_t index);
+/** cm1e_axis_leader_t.alone */
+bool cm1e_group_alone(void *context, uint32_t index);
+/** The set-point of an axis that has left the path. */
+void cm1e_group_stray_step(cm1e_group_t *group, uint32_t index, cm1e_motion_state_t *point);
+/** The axis is no longer led. */
+void cm1e_group_forget_stray(cm1e_group_t *group, uint32_t index);
+/** The path has passed the end of a command. It is done when all axes are on the path. */
+void cm1e_group_pass(cm1e_group_t *group, cm1e_command_id_t id);
+/** Ends the commands that were passed, if all axes are on the path. */
+void cm1e_group_finish_passed(cm1e_group_t *group);
 /* group_motion.c */
 /** Whether the set-points are at rest. */
 bool cm1e_group_at_rest(const cm1e_group_t *group);

@@ -1,10 +1,11 @@
 /**
- * A slave whose master is on another bus, while frames of one of the two buses, or of both, are lost: on the way out
- * or on the way back, 1 ... 9 in a row, at every cycle of a motion, by a gear and by a cam. Up to `lost_cycles_limit`
- * the slave rides it out, as a slave on the bus of its master does, and is in step again at the end. The judge is the
+ * A slave whose master is on another bus, and a group with axes on two buses, while frames of one of the two buses,
+ * or of both, are lost: on the way out or on the way back, 1 ... 9 in a row, at every cycle of a motion, by a gear, by
+ * a cam, and along a path. Up to `lost_cycles_limit` the slave rides it out, as a slave on the bus of its master does,
+ * and is in step again at the end; the group comes to rest, meets on its path, and goes on. The judge is the
  * configuration and physics alone: set-points of an axis whose drive is heard keep velocity, acceleration and jerk of
- * the axis, and no simulated shaft is faster than undisturbed. * The everyday test takes a sample of the
- * combinations, and of the moments at which losses begin. All: CM1E_TEST_STRIDE=1 bin/test_buses_silence.
+ * the axis, and no simulated shaft is faster than undisturbed. The everyday test takes a sample of the combinations, and of the moments
+ * at which losses begin. All: CM1E_TEST_STRIDE=1 bin/test_buses_silence.
  */
 #include <math.h>
 #include <stdarg.h>
@@ -22,9 +23,9 @@ enum { BEGIN = 60, FIRST_LOSS = 58, LAST_LOSS = 640, END = 2600, STRIDE = 179, S
 static const double overshoot[] = {1.0016, 1.0034}, braked = 1.005, added = 0.0005;
 static const double most_velocity = 20, most_acceleration = 200, most_jerk = 4000, unit = 50000, cycle_s = 1e-3;
 
-typedef enum motion { BY_GEAR = 0, BY_FAST_GEAR, BY_GEAR_IN_POS, BY_CAM, BY_STEEP_CAM, MOTIONS } motion_t;
+typedef enum motion { BY_GEAR = 0, BY_FAST_GEAR, BY_GEAR_IN_POS, BY_CAM, BY_STEEP_CAM, BY_GROUP, MOTIONS } motion_t;
 static const char *const motions[MOTIONS] = {"MC_GearIn", "MC_GearIn of a fast slave", "MC_GearInPos", "MC_CamIn",
-                                             "MC_CamIn of a steep cam"};
+                                             "MC_CamIn of a steep cam", "a group"};
 
 /** Which bus loses frames, and on which way. */
 typedef struct pattern {
@@ -62,6 +63,13 @@ static MC_GearInPos_t gear_in_pos;
 static MC_CamTableSelect_t select_cam;
 static MC_CamIn_t cam;
 static MC_CAM_POINT cam_points[] = {{0, 0, 0, 0}, {2, 1, 0.9, 0}, {6, 5, 0.9, 0}, {8, 6, 0, 0}};
+enum { LINES = 2 };
+static const double corner[LINES][BUSES] = {{5, 6}, {8, 3}};
+static AXES_GROUP_REF_t group;
+static MC_AddAxisToGroup_t add[BUSES];
+static MC_GroupEnable_t enable;
+static MC_GroupReadStatus_t group_status;
+static MC_MoveLinearAbsolute_t lines[LINES];
 static const MC_CAM_REF cam_table = {.Points = cam_points, .NumberOfPoints = 4};
 
 /** The set-points of an axis, as differences: u, u a cycle ... */
@@ -82,6 +90,7 @@ static struct {
 } run;
 
 static double undisturbed_end;
+static double path[END + 1][BUSES]; /**< of the undisturbed group, by cycle; the first axis only goes forward on it */
 
 /* no_room: of `failed`, so many would have had to go beyond a limit of the axis to follow. */
 static int followed, failed, no_room, in_gear;
@@ -190,12 +199,69 @@ static void judge_shaft(int i)
         wrong("axis %d: its shaft has %.4f of the maximum velocity", i, part);
 }
 
+/** The second axis of the group where the first one is at `x`, on the undisturbed path. */
+static double on_path(double x)
+{
+    int i = 1;
+    while (i < END && path[i][A] < x)
+        i++;
+    const double step = path[i][A] - path[i - 1][A];
+    return step > 0 ? path[i - 1][B] + (x - path[i - 1][A]) / step * (path[i][B] - path[i - 1][B]) : path[i][B];
+}
+
+/** Behind losses the axes meet on the path before they go on. */
+static void judge_path(void)
+{
+    enum { MET = 400 };
+    const double chord = 1e-3;
+    const cm1e_axis_info_t first = see(A), second = see(B);
+    if (!run.pattern && run.cycle <= END) {
+        path[run.cycle][A] = first.set_position;
+        path[run.cycle][B] = second.set_position;
+        return;
+    }
+    const bool met = run.seen[A].heard > MET && run.seen[B].heard > MET && !run.seen[A].ended && !run.seen[B].ended;
+    if (met && fabs(second.set_position - on_path(first.set_position)) > chord)
+        wrong("at %.6f, %.6f it is not on its path", first.set_position, second.set_position);
+}
+
+/** Both buses silent at once for longer than is ridden out: as on one bus, an axis by velocity leaves its path. */
+static bool leaves_path(void)
+{
+    return run.variant->mapping == CM1E_MAPPING_CSV && loses(A) && loses(B) && run.length > 2;
+}
+
+/** It has done its commands, or has stopped because a bus was lost: then all axes are at rest. */
+static void judge_group(void)
+{
+    const int limit = (int)run.variant->limit;
+    const bool stopped = leaves_path() && group_status.GroupErrorStop;
+    const bool lost = run.longest[A] >= limit || run.longest[B] >= limit || stopped;
+    for (int i = 0; i < BUSES; i++) {
+        const cm1e_axis_info_t info = see(i);
+        const bool own = run.longest[i] >= limit || (stopped && info.error == CM1E_ERROR_AXIS_COUPLING_LIMIT);
+        if ((info.state == CM1E_AXIS_ERROR_STOP) != own || info.set_velocity != 0.0)
+            wrong("axis %d is in state %d with %g u/s, error %d", i, info.state, info.set_velocity, info.error);
+        if (!lost && (fabs(info.set_position - corner[LINES - 1][i]) > 1e-9 ||
+                      fabs(info.actual_position - info.set_position) > 100 / unit))
+            wrong("axis %d ends at %.9f, its motor at %.9f", i, info.set_position, info.actual_position);
+    }
+    if (lost ? !group_status.GroupErrorStop : !(group_status.GroupStandby && lines[LINES - 1].Done))
+        wrong("the group is in state %d", group_status.GroupErrorStop);
+    failed += lost;
+    followed += !lost;
+}
+
 static void judge_end(void)
 {
     const cm1e_axis_info_t master = see(A), slave = see(B);
     const int limit = (int)run.variant->limit;
     judge_shaft(A);
     judge_shaft(B);
+    if (run.motion == BY_GROUP) {
+        judge_group();
+        return;
+    }
     if ((run.longest[A] >= limit) != (master.state == CM1E_AXIS_ERROR_STOP))
         wrong("the master is in state %d after %d cycles without an answer", master.state, run.longest[A]);
     if (slave.state == CM1E_AXIS_ERROR_STOP) {
@@ -225,6 +291,24 @@ static bool by_cam(void) { return run.motion == BY_CAM || run.motion == BY_STEEP
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
 
+/** Along two lines with a rounded corner. */
+static void move_group(bool powered)
+{
+    for (int i = 0; i < BUSES; i++) {
+        add[i].Execute = TRUE;
+        MC_AddAxisToGroup(&add[i]);
+    }
+    enable.Execute = add[A].Done && add[B].Done;
+    MC_GroupEnable(&enable);
+    group_status.Enable = TRUE;
+    MC_GroupReadStatus(&group_status);
+    for (int i = 0; i < LINES; i++) {
+        lines[i].Execute = powered && enable.Done && run.cycle >= BEGIN;
+        MC_MoveLinearAbsolute(&lines[i]);
+    }
+    judge_path();
+}
+
 static void program(void *context)
 {
     (void)context;
@@ -234,10 +318,13 @@ static void program(void *context)
         MC_Power(&powers[i]);
         count_lost(i);
     }
-    gear.Execute = gear_in_pos.Execute = cam.Execute = powers[A].Status && powers[B].Status;
+    const bool powered = powers[A].Status && powers[B].Status;
+    gear.Execute = gear_in_pos.Execute = cam.Execute = powered;
     select_cam.Execute = TRUE;
     move.Execute = run.cycle >= BEGIN;
-    if (run.motion == BY_GEAR || run.motion == BY_FAST_GEAR)
+    if (run.motion == BY_GROUP)
+        move_group(powered);
+    else if (run.motion == BY_GEAR || run.motion == BY_FAST_GEAR)
         MC_GearIn(&gear);
     else if (run.motion == BY_GEAR_IN_POS)
         MC_GearInPos(&gear_in_pos);
@@ -246,7 +333,8 @@ static void program(void *context)
     cam.CamTableID = select_cam.CamTableID;
     if (by_cam())
         MC_CamIn(&cam);
-    MC_MoveAbsolute(&move);
+    if (run.motion != BY_GROUP)
+        MC_MoveAbsolute(&move);
     for (int i = 0; i < BUSES; i++)
         judge_set_point(i);
     if (run.motion == BY_GEAR || run.motion == BY_FAST_GEAR)
@@ -271,6 +359,20 @@ static void make_blocks(void)
                                    .Velocity = most_velocity};
     select_cam = (MC_CamTableSelect_t){.Master = first, .Slave = second, .CamTable = &cam_table};
     cam = (MC_CamIn_t){.Master = first, .Slave = second};
+}
+
+static void make_group(void)
+{
+    must(cm1e_group_create(&group, NULL, &diag));
+    for (int i = 0; i < BUSES; i++)
+        add[i] = (MC_AddAxisToGroup_t){.AxesGroup = &group, .Axis = &axes[i], .IdentInGroup = (UINT)(i + 1)};
+    enable = (MC_GroupEnable_t){.AxesGroup = &group};
+    group_status = (MC_GroupReadStatus_t){.AxesGroup = &group};
+    for (int i = 0; i < LINES; i++)
+        lines[i] = (MC_MoveLinearAbsolute_t){
+            .AxesGroup = &group, .Position = {corner[i][A], corner[i][B]}, .Velocity = 15, .Acceleration = 120,
+            .Deceleration = 120, .Jerk = 2000, .BufferMode = i ? mcBlendingLow : mcAborting,
+            .TransitionMode = i ? mcTMCornerDistance : mcTMNone, .TransitionParameter = 1};
 }
 
 static void open_bus(int i)
@@ -306,11 +408,13 @@ static void run_once(void)
     for (int i = 0; i < BUSES; i++)
         axes[i] = cm1e_scheduler_axis(scheduler, (uint32_t)i);
     make_blocks();
+    make_group();
     must(cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = program}, &diag));
     cm1e_nic_set_tap(cm1e_bus_nic(buses[A]), tap_a, NULL);
     cm1e_nic_set_tap(cm1e_bus_nic(buses[B]), tap_b, NULL);
     must(cm1e_scheduler_run(scheduler, END * MS_IN_NS, &diag));
     ck_assert_int_ge(run.cycle, END);
+    must(cm1e_group_destroy(group));
     cm1e_scheduler_destroy(scheduler);
     for (int i = 0; i < BUSES; i++)
         cm1e_bus_close(buses[i]);

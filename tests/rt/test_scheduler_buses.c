@@ -1,6 +1,6 @@
 /**
- * Several buses in one scheduler: started one after the other, run in one cycle, a gear from one to the other, and one
- * that is lost. On virtual time, which they share. Single lost frames are in test_buses_silence.c.
+ * Several buses in one scheduler: started one after the other, run in one cycle, a gear from one to the other, a
+ * group with axes on both, and one that is lost. On virtual time, which they share. Single lost frames are in test_buses_silence.c.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -248,6 +248,122 @@ START_TEST(test_four_buses_and_no_more)
 }
 END_TEST
 
+/* ---- a group with an axis on each bus ---------------------------------------------------------------------------- */
+
+static struct {
+    AXES_GROUP_REF_t reference;
+    MC_AddAxisToGroup_t add[BUSES];
+    MC_GroupEnable_t enable;
+    MC_MoveLinearAbsolute_t line;
+    MC_GroupStop_t stop;
+    int stop_at, rest_at;          /* cycles; 0: never */
+    cm1e_group_info_t info;
+    cm1e_axis_info_t seen[BUSES];  /* in the last cycle of the program */
+    double at_rest[BUSES], latest; /* u; the position in cycle rest_at, and how far an axis went after it */
+} grouped;
+
+static void watch_rest(void)
+{
+    for (int i = 0; i < BUSES && run.cycle >= grouped.rest_at; i++) {
+        const double at = see(i).set_position;
+        if (run.cycle == grouped.rest_at)
+            grouped.at_rest[i] = at;
+        grouped.latest = fmax(grouped.latest, fabs(at - grouped.at_rest[i]));
+    }
+}
+
+static void grouped_program(void *context)
+{
+    (void)context;
+    char line[40], answer[200];
+    run.cycle++;
+    for (int i = 0; i < BUSES; i++) {
+        powers[i].Enable = TRUE;
+        MC_Power(&powers[i]);
+        grouped.add[i].Execute = TRUE;
+        MC_AddAxisToGroup(&grouped.add[i]);
+    }
+    grouped.enable.Execute = grouped.add[A].Done && grouped.add[B].Done;
+    MC_GroupEnable(&grouped.enable);
+    grouped.line.Execute = grouped.enable.Done && powers[A].Status && powers[B].Status;
+    MC_MoveLinearAbsolute(&grouped.line);
+    grouped.stop.Execute = run.cycle == grouped.stop_at;
+    MC_GroupStop(&grouped.stop);
+    snprintf(line, sizeof line, "lose %d", run.lost);
+    if (run.cycle == run.lose_at)
+        must(cm1e_bus_simulate(buses[run.lost_bus], line, answer, sizeof answer));
+    look();
+    watch_rest();
+    for (int i = 0; i < BUSES; i++)
+        grouped.seen[i] = see(i);
+    must(cm1e_group_read(grouped.reference, &grouped.info));
+}
+
+static void run_group(int lost, int stop_at, int rest_at)
+{
+    prepare();
+    memset(&grouped, 0, sizeof grouped);
+    must(cm1e_group_create(&grouped.reference, NULL, &diag));
+    for (int i = 0; i < BUSES; i++)
+        grouped.add[i] = (MC_AddAxisToGroup_t){.AxesGroup = &grouped.reference, .Axis = &axes[i],
+                                               .IdentInGroup = (MC_IDENT_IN_GROUP)(i + 1)};
+    grouped.enable.AxesGroup = grouped.stop.AxesGroup = &grouped.reference;
+    grouped.line = (MC_MoveLinearAbsolute_t){.AxesGroup = &grouped.reference, .Position = {10, 5}, .Velocity = 8,
+                                             .Acceleration = 50, .Deceleration = 50};
+    grouped.stop_at = stop_at;
+    grouped.rest_at = rest_at;
+    run.lost = lost;
+    run.lose_at = lost ? 500 : 0;
+    cm1e_scheduler_destroy(scheduler); /* that of prepare() has the other program */
+    must(cm1e_scheduler_create(&scheduler, buses[A], NULL, &diag));
+    must(cm1e_scheduler_add_bus(scheduler, buses[B], &diag));
+    for (int i = 0; i < BUSES; i++)
+        axes[i] = cm1e_scheduler_axis(scheduler, (uint32_t)i);
+    must(cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = grouped_program}, &diag));
+    must(cm1e_scheduler_run(scheduler, 4000 * MS, &diag));
+    expect_no_leap();
+}
+
+static void close_group(void)
+{
+    must(cm1e_group_destroy(grouped.reference));
+    close_all();
+}
+
+START_TEST(test_a_group_across_buses_makes_up_what_one_of_them_loses)
+{
+    const int lost[] = {0, 1, 2};
+    run_group(lost[_i], 0, 4000);
+    ck_assert_msg(grouped.line.Done && grouped.info.state == CM1E_GROUP_STANDBY, "%s; %s", text_of(A), text_of(B));
+    ck_assert_double_eq_tol(grouped.seen[A].set_position, 10.0, 1e-9);
+    ck_assert_double_eq_tol(grouped.seen[B].set_position, 5.0, 1e-9);
+    close_group();
+}
+END_TEST
+
+START_TEST(test_behind_a_stop_no_axis_goes_back_to_the_path)
+{
+    run_group(2, 505, 800);
+    ck_assert(grouped.line.CommandAborted && grouped.info.state == CM1E_GROUP_STANDBY);
+    ck_assert_double_lt(grouped.seen[A].set_position, 9.0);
+    ck_assert_double_gt(fabs(grouped.seen[A].set_position - 2 * grouped.seen[B].set_position), 1e-3); /* one of them is off the path */
+    ck_assert_double_lt(grouped.latest, 1e-12);
+    close_group();
+}
+END_TEST
+
+START_TEST(test_a_lost_bus_stops_the_whole_group)
+{
+    run_group(100000, 0, 1000);
+    ck_assert(grouped.info.state == CM1E_GROUP_ERROR_STOP && grouped.info.error == CM1E_ERROR_GROUP_AXIS);
+    ck_assert_msg(grouped.seen[A].state == CM1E_AXIS_STANDSTILL && grouped.seen[A].powered, "%s", text_of(A));
+    ck_assert_msg(grouped.seen[B].state == CM1E_AXIS_ERROR_STOP, "%s", text_of(B));
+    ck_assert_double_lt(grouped.seen[A].set_position, 9.0);
+    ck_assert_double_lt(grouped.latest, 1e-12);
+    close_group();
+}
+END_TEST
+
 int main(void)
 {
     TCase *all = tcase_create("several buses");
@@ -257,6 +373,9 @@ int main(void)
     tcase_add_test(all, test_a_lost_bus_concerns_its_own_axes);
     tcase_add_test(all, test_what_cannot_run_together_is_refused);
     tcase_add_test(all, test_four_buses_and_no_more);
+    tcase_add_loop_test(all, test_a_group_across_buses_makes_up_what_one_of_them_loses, 0, 3);
+    tcase_add_test(all, test_behind_a_stop_no_axis_goes_back_to_the_path);
+    tcase_add_test(all, test_a_lost_bus_stops_the_whole_group);
     Suite *suite = suite_create("scheduler with several buses");
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);
