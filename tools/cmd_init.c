@@ -1,4 +1,4 @@
-/** cm1e init: writes a bus file from the network as it is. */
+/** cm1e init: writes a bus file from the network as it is, or from several. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,15 +18,19 @@
 enum { KEY_FORCE = 0x700 };
 
 typedef struct init_options {
-    const char *interface_name, *output; /**< "-": standard output */
+    const char *interfaces[CM1E_MAX_BUSES];
+    unsigned networks;  /**< number of interfaces */
+    const char *output; /**< "-": standard output */
     bool force;
 } init_options_t;
 
 typedef struct init {
     cm1e_bus_t *bus;
     FILE *file;
-    unsigned axes, slaves; /**< written so far */
+    unsigned axes, slaves; /**< written so far, in all networks */
     unsigned gaps;  /**< axes that could not be completed: they are comments */
+    bool motors;    /**< one of the networks has motors */
+    bool listed;    /**< the key for slaves without an axis has been written, of this network */
 } init_t;
 
 static bool read_number(const init_t *init, uint16_t position, uint16_t index, uint8_t subindex, uint32_t *value)
@@ -210,9 +214,11 @@ static void print_axes(init_t *init, const cm1e_slave_info_t *slave)
 /** It would run without an entry too, but then nobody notices that another device is there. */
 static void print_without_axis(init_t *init, const cm1e_slave_info_t *slave)
 {
-    if (init->slaves++ == 0)
+    init->slaves++;
+    if (!init->listed)
         fprintf(init->file, "\n# Slaves without an axis. The program finds their signals by name, as in \"io2.in1\".\n"
                 "slaves:\n");
+    init->listed = true;
     print_slave(init, slave);
     fprintf(init->file, "  - name: io%u\n", slave->position);
     print_address(init, slave);
@@ -227,15 +233,15 @@ static bool has_motors(const init_t *init)
     return false;
 }
 
-static void print_file(init_t *init, const char *interface_name)
+static void print_network(init_t *init, const char *interface_name)
 {
     fprintf(init->file,
-            "# The network on %s, written by `cm1e init`. docs/BUS-FILE.md explains every key.\n"
-            "# A comment has a fact, or a key with an example.\n"
             "bus:\n"
             "  interface: %s\n"
             "  # cycle_time_us: 1000   # 200, 250, 500 or 1000; with a bridge 1000\n",
-            interface_name, interface_name);
+            interface_name);
+    init->listed = false;
+    init->motors |= has_motors(init);
     if (has_motors(init))
         fprintf(init->file, "\naxes:\n");
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(init->bus); position++)
@@ -246,15 +252,52 @@ static void print_file(init_t *init, const char *interface_name)
             print_without_axis(init, cm1e_bus_slave(init->bus, position));
 }
 
-/** The file as text; the caller frees it. NULL after a complaint. */
-static char *make_file(init_t *init, const char *interface_name, size_t *size)
+/** What the file has of a network, as text; the caller frees it. NULL after a complaint. */
+static char *make_network(init_t *init, const char *interface_name)
 {
     char *text = NULL;
-    init->file = open_memstream(&text, size);
+    size_t size;
+    init->file = open_memstream(&text, &size);
     if (init->file)
-        print_file(init, interface_name);
+        print_network(init, interface_name);
     const bool good = init->file && !ferror(init->file);
     if (init->file && fclose(init->file) == 0 && good)
+        return text;
+    complain("out of memory");
+    free(text);
+    return NULL;
+}
+
+/** The lines of a network, as an entry of `buses`. */
+static void print_entry(FILE *file, unsigned number, const char *text)
+{
+    fprintf(file, "%s  - name: bus%u\n", number > 1 ? "\n" : "", number);
+    for (const char *end; *text; text = end) {
+        end = strchr(text, '\n') + 1;
+        fprintf(file, "%s%.*s", *text == '\n' ? "" : "    ", (int)(end - text), text);
+    }
+}
+
+static void print_file(FILE *file, const init_options_t *options, char *const networks[])
+{
+    fprintf(file, options->networks > 1 ? "# The networks on " : "# The network on ");
+    for (unsigned i = 0; i < options->networks; i++)
+        fprintf(file, "%s%s", i ? ", " : "", options->interfaces[i]);
+    fprintf(file, ", written by `cm1e init`. docs/BUS-FILE.md explains every key.\n"
+            "# A comment has a fact, or a key with an example.\n%s", options->networks > 1 ? "buses:\n" : networks[0]);
+    for (unsigned i = 0; i < options->networks && options->networks > 1; i++)
+        print_entry(file, i + 1, networks[i]);
+}
+
+/** The file as text; the caller frees it. NULL after a complaint. */
+static char *make_file(const init_options_t *options, char *const networks[], size_t *size)
+{
+    char *text = NULL;
+    FILE *file = open_memstream(&text, size);
+    if (file)
+        print_file(file, options, networks);
+    const bool good = file && !ferror(file);
+    if (file && fclose(file) == 0 && good)
         return text;
     complain("out of memory");
     free(text);
@@ -269,23 +312,36 @@ static void print_counts(const init_t *init, const char *path)
     printf("\n");
 }
 
-static int write_file(init_t *init, const init_options_t *options)
+static int write_file(const init_t *init, const init_options_t *options, char *const networks[])
 {
     size_t size;
-    char *text = make_file(init, options->interface_name, &size);
+    char *text = make_file(options, networks, &size);
     if (!text)
         return EXIT_FAILED;
     const bool written = write_output(options->output, text, size);
     free(text);
     if (!written)
         return EXIT_FAILED;
-    if (init->axes == 0 && has_motors(init))
+    if (init->axes == 0 && init->motors)
         complain("none of the motors can be an axis before the keys in the comments are filled in");
     else if (strcmp(options->output, "-") != 0)
         print_counts(init, options->output);
     if (init->gaps > 0)
         complain("%u %s not complete, and a comment in the file", init->gaps, init->gaps == 1 ? "axis is" : "axes are");
-    return init->axes > 0 || !has_motors(init) ? EXIT_OK : EXIT_FAILED;
+    return init->axes > 0 || !init->motors ? EXIT_OK : EXIT_FAILED;
+}
+
+static void add_interface(init_options_t *options, const char *name, struct argp_state *state)
+{
+    if (!name[0] || strcmp(name, "sim:") == 0)
+        argp_error(state, "-i needs a name; it is empty");
+    const bool simulated = strcmp(name, "sim") == 0 || strncmp(name, "sim:", 4) == 0; /* each is a segment of its own */
+    for (unsigned i = 0; i < options->networks && !simulated; i++)
+        if (strcmp(options->interfaces[i], name) == 0)
+            argp_error(state, "-i %s is there twice", name);
+    if (options->networks == CM1E_MAX_BUSES)
+        argp_error(state, "a program has at most %d networks", CM1E_MAX_BUSES);
+    options->interfaces[options->networks++] = name;
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -293,9 +349,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     init_options_t *options = state->input;
     switch (key) {
     case 'i':
-        if (!arg[0] || strcmp(arg, "sim:") == 0)
-            argp_error(state, "-i needs a name; it is empty");
-        options->interface_name = arg;
+        add_interface(options, arg, state);
         return 0;
     case 'o':
         if (!arg[0])
@@ -304,7 +358,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_FORCE: options->force = true; return 0;
     case ARGP_KEY_END:
-        if (!options->interface_name)
+        if (options->networks == 0)
             argp_error(state, "the network interface is missing: -i INTERFACE");
         return 0;
     default: return ARGP_ERR_UNKNOWN;
@@ -312,7 +366,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option table[] = {
-    {"interface", 'i', "INTERFACE", 0, "Network interface, or sim, or sim:BUS-FILE", 0},
+    {"interface", 'i', "INTERFACE", 0, "Network interface, or sim, or sim:BUS-FILE; several times for a program with "
+     "several networks", 0},
     {"output", 'o', "FILE", 0, "Write to this file; without it to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "Write over a file that exists", 0},
     {0}};
@@ -324,6 +379,25 @@ const struct argp argp_init = {
     "CML mode and then put back to csp.",
     NULL, NULL, NULL};
 
+/** Writes what the file has of a network to `*text`. */
+static int look_at(init_t *init, const char *interface_name, char **text)
+{
+    static cm1e_bus_config_t config;
+    const common_options_t common = {.interface_name = interface_name};
+    cm1e_diag_t diag = {0};
+    int status = EXIT_OK;
+    init->bus = NULL;
+    if (!load_configuration(&common, &config))
+        return EXIT_WRONG_USE;
+    if (cm1e_bus_open(&init->bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(init->bus, &diag) != CM1E_OK)
+        status = fail(&diag);
+    else if (!(*text = make_network(init, interface_name)))
+        status = EXIT_FAILED;
+    status = close_bus(init->bus, &common, status);
+    cm1e_bus_config_free(&config);
+    return status;
+}
+
 int command_init(int argc, char **argv)
 {
     init_options_t options = {.output = "-"};
@@ -333,14 +407,14 @@ int command_init(int argc, char **argv)
         complain("%s exists; --force writes over it", options.output);
         return EXIT_WRONG_USE;
     }
-    static cm1e_bus_config_t config;
-    const common_options_t common = {.interface_name = options.interface_name};
-    if (!load_configuration(&common, &config))
-        return EXIT_WRONG_USE;
-    cm1e_diag_t diag = {0};
+    char *networks[CM1E_MAX_BUSES] = {NULL};
     init_t init = {0};
-    const int status = cm1e_bus_open(&init.bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(init.bus, &diag) != CM1E_OK
-                           ? fail(&diag)
-                           : write_file(&init, &options);
-    return close_bus(init.bus, &common, status);
+    int status = EXIT_OK;
+    for (unsigned i = 0; i < options.networks && status == EXIT_OK; i++)
+        status = look_at(&init, options.interfaces[i], &networks[i]);
+    if (status == EXIT_OK)
+        status = write_file(&init, &options, networks);
+    for (unsigned i = 0; i < options.networks; i++)
+        free(networks[i]);
+    return status;
 }

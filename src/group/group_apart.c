@@ -1,7 +1,7 @@
 /*
  * A group whose axes are on several buses. While all of its buses are silent at once, time stands still for all axes,
- * as on one bus. While only some of them are, the axes that are heard cannot stand still: their drives would hear it. So
- * the path comes to rest, within the limits of its axes. An axis whose bus was silent has left the path: it holds its
+ * as on one bus. While only some of them are, the axes that are heard cannot stand still: their drives would hear it.
+ * So the path comes to rest, within the limits of its axes. An axis whose bus was silent has left the path: it holds its
  * set-point, then comes to rest by itself, and goes back to its place on the path when that is at rest. Then the path
  * goes on. Each axis keeps its limits all the time. Behind a stop, a halt or an error no axis goes back: it is released
  * where it came to rest.

@@ -175,6 +175,27 @@ def check_overwriting(folder):
     expect(shown.returncode == 0 and shown.stdout == text, f"on standard output: {shown}")
 
 
+def check_several(folder):
+    """Several networks: one file, whose axes are numbered over all of them; each of its networks runs."""
+    bridge = write(os.path.join(folder, "bridge-network.yaml"), BRIDGE)
+    slaves = write(os.path.join(folder, "slaves-network.yaml"), ONLY_SLAVES)
+    path = os.path.join(folder, "several.yaml")
+    done = run("init", "-i", "sim", "-i", "sim:" + bridge, "-i", "sim:" + slaves, "-o", path)
+    expect(done.returncode == 0 and "6 axes, 2 slaves without an axis" in done.stdout, f"several: {done}")
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    expect(text.startswith(f"# The networks on sim, sim:{bridge}, sim:{slaves}, written by") and text.count("\nbuses:\n") == 1
+           and re.findall(r"^  - name: (\w+)$", text, re.MULTILINE) == ["bus1", "bus2", "bus3"], text)
+    drive(path, ["axis1", "axis2", "axis3"])
+    shown = run("io", "-b", path, "--network", "bus3")
+    expect(shown.returncode == 0 and "io2.in1" in shown.stdout, f"several: {shown}")
+    scanned = run("scan", "-b", path)
+    expect(scanned.returncode == 0 and scanned.stdout.count("bus bus") == 3, f"several: {scanned}")
+    for words in (["-i", "lo", "-i", "lo"], ["-i", "sim"] * 5):
+        refused = run("init", *words)
+        expect(refused.returncode in (2, 64) and ("twice" in refused.stderr or "at most 4" in refused.stderr), refused)
+
+
 def check_refusals(folder):
     for words in (["init"], ["init", "-i", ""], ["init", "-i", "sim", "-o", ""], ["init", "-i", "sim", "more"]):
         done = run(*words)
@@ -188,4 +209,4 @@ def in_a_folder(check):
 
 real_time.together(*(lambda check=check: in_a_folder(check) for check in (
     check_motors, check_bridge, check_servo, check_slaves, check_without_motor, check_pdos, check_overwriting,
-    check_refusals)))
+    check_several, check_refusals)))

@@ -4,8 +4,8 @@
  * a cam, and along a path. Up to `lost_cycles_limit` the slave rides it out, as a slave on the bus of its master does,
  * and is in step again at the end; the group comes to rest, meets on its path, and goes on. The judge is the
  * configuration and physics alone: set-points of an axis whose drive is heard keep velocity, acceleration and jerk of
- * the axis, and no simulated shaft is faster than undisturbed. The everyday test takes a sample of the combinations, and of the moments
- * at which losses begin. All: CM1E_TEST_STRIDE=1 bin/test_buses_silence.
+ * the axis, and no simulated shaft is faster than undisturbed. The everyday test takes a sample of the
+ * combinations, and of the moments at which losses begin. All: CM1E_TEST_STRIDE=1 bin/test_buses_silence.
  */
 #include <math.h>
 #include <stdarg.h>

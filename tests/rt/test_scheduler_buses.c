@@ -1,6 +1,7 @@
 /**
  * Several buses in one scheduler: started one after the other, run in one cycle, a gear from one to the other, a
- * group with axes on both, and one that is lost. On virtual time, which they share. Single lost frames are in test_buses_silence.c.
+ * group with axes on both, and one that is lost. On virtual time, which they share. Single lost frames are in
+ * test_buses_silence.c.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -346,7 +347,8 @@ START_TEST(test_behind_a_stop_no_axis_goes_back_to_the_path)
     run_group(2, 505, 800);
     ck_assert(grouped.line.CommandAborted && grouped.info.state == CM1E_GROUP_STANDBY);
     ck_assert_double_lt(grouped.seen[A].set_position, 9.0);
-    ck_assert_double_gt(fabs(grouped.seen[A].set_position - 2 * grouped.seen[B].set_position), 1e-3); /* one of them is off the path */
+    const double off_path = grouped.seen[A].set_position - 2 * grouped.seen[B].set_position;
+    ck_assert_double_gt(fabs(off_path), 1e-3);
     ck_assert_double_lt(grouped.latest, 1e-12);
     close_group();
 }
