@@ -19,6 +19,11 @@ typedef struct run_options {
     bool virtual_time, cold;
 } run_options_t;
 
+static bool simulated(const char *interface_name)
+{
+    return strcmp(interface_name, "sim") == 0 || strncmp(interface_name, "sim:", 4) == 0;
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     run_options_t *options = state->input;
@@ -45,8 +50,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END:
         if (!options->program)
             argp_error(state, "which program? `cm1e st build machine.st` makes machine.so");
-        if (!options->common.bus_file)
-            argp_error(state, "-b BUS-FILE is needed: it says which axes there are");
+        if (!options->common.bus_file && !(options->common.interface_name && simulated(options->common.interface_name)))
+            argp_error(state, "-b BUS-FILE is needed: it says which axes there are. \"-i sim\" alone simulates a machine "
+                       "with the axes of the program");
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -67,7 +73,8 @@ static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_run = {
     table, parse, "PROGRAM.so",
     "Runs a program that `cm1e st build` has translated, on the network of the bus file. A variable of type AXIS_REF is "
-    "the axis of its name. Meanwhile `cm1e monitor`, `cm1e trace` and `cm1e log` show axes and variables. An error of the "
+    "the axis of its name. \"-i sim\" without a bus file simulates a machine with the axes of the program, whose units are "
+    "revolutions. Meanwhile `cm1e monitor`, `cm1e trace` and `cm1e log` show axes and variables. An error of the "
     "program while it runs, as an index outside an array, ends the run: the axes ramp down, and are disabled.",
     children, NULL, NULL};
 
@@ -82,7 +89,19 @@ static cm1e_error_t write_files(const cm1e_scheduler_t *scheduler, const run_opt
     return error;
 }
 
-static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const run_options_t *options)
+/** A good end in words: how long, and what ended it. */
+static void tell_end(const cm1e_scheduler_t *scheduler, const run_options_t *options, const cm1e_bus_config_t *config)
+{
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(scheduler, &statistics);
+    const double ran = (double)cm1e_scheduler_time_ns(scheduler) * 1e-9;
+    printf("%s%s ran for %.3f s, %llu cycles, %llu overruns; %s. The axes are disabled.\n", options->program,
+           simulated_mark(config), ran, (unsigned long long)statistics.cycles, (unsigned long long)statistics.overruns,
+           options->seconds > 0 && ran >= options->seconds ? "its time was over" : "a signal ended it");
+}
+
+static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const run_options_t *options,
+                         const cm1e_bus_config_t *config)
 {
     char text[400];
     cm1e_diag_t diag = {0};
@@ -98,7 +117,10 @@ static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const
     const bool written = write_files(scheduler, options, &diag) == CM1E_OK;
     if (!written)
         fail(&diag);
-    return failed || text[0] || !written ? EXIT_FAILED : EXIT_OK;
+    if (failed || text[0] || !written)
+        return EXIT_FAILED;
+    tell_end(scheduler, options, config);
+    return EXIT_OK;
 }
 
 static int run_program(st_loaded_t *loaded, cm1e_bus_t *bus, const run_options_t *options)
@@ -113,7 +135,8 @@ static int run_program(st_loaded_t *loaded, cm1e_bus_t *bus, const run_options_t
     if (error == CM1E_OK && loaded->unregistered > 0)
         complain("%u of %u variables can be seen by others; name fewer, or look at those of programs and global ones",
                  loaded->program->variables.count - loaded->unregistered, loaded->program->variables.count);
-    const int status = error == CM1E_OK ? run_scheduler(loaded, scheduler, options) : fail(&diag);
+    const int status = error == CM1E_OK ? run_scheduler(loaded, scheduler, options, cm1e_bus_configuration(bus))
+                                        : fail(&diag);
     cm1e_scheduler_destroy(scheduler);
     return status;
 }
@@ -132,12 +155,26 @@ static int begin_program(st_loaded_t *loaded, const run_options_t *options)
     return EXIT_FAILED;
 }
 
+/** The network of the bus file; without one a simulated machine that has the axes of the program. */
+static bool load_machine(const st_loaded_t *loaded, const run_options_t *options, cm1e_bus_config_t *config)
+{
+    if (!load_configuration(&options->common, config))
+        return false;
+    if (options->common.bus_file)
+        return true;
+    cm1e_diag_t diag = {0};
+    const bool made = st_simulated_machine(loaded, config, &diag) == CM1E_OK;
+    if (!made)
+        fail(&diag);
+    return made;
+}
+
 static int run_on_network(st_loaded_t *loaded, const run_options_t *options)
 {
     static cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
-    if (!load_configuration(&options->common, &config))
+    if (!load_machine(loaded, options, &config))
         return EXIT_WRONG_USE;
     if (options->virtual_time && !is_simulated(&config)) {
         complain("--virtual-time is for the simulated network; a real one takes its time");

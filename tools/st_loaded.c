@@ -80,6 +80,32 @@ static void run_task(void *context)
         cm1e_scheduler_stop(task->loaded->scheduler);
 }
 
+/* ---- a simulated machine ----------------------------------------------------------------------------------------- */
+
+static bool has_axis(const cm1e_bus_config_t *config, const char *name)
+{
+    for (uint32_t i = 0; i < config->axis_count; i++)
+        if (strcasecmp(config->axes[i].name, name) == 0)
+            return true;
+    return false;
+}
+
+cm1e_error_t st_simulated_machine(const st_loaded_t *loaded, cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    const st_list_t *axes = &loaded->program->axes;
+    for (uint32_t i = 0; i < axes->count || config->axis_count == 0; i++) {
+        const char *name = i < axes->count ? axes->first[i].name : "X";
+        if (has_axis(config, name))
+            continue;
+        cm1e_axis_config_t *axis = cm1e_bus_config_add_axis(config, name);
+        if (!axis)
+            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the program has more than %d axes", CM1E_MAX_AXES);
+        axis->address = (uint16_t)config->axis_count;
+        axis->sim.no_stops = true;
+    }
+    return CM1E_OK;
+}
+
 /* ---- axes and groups --------------------------------------------------------------------------------------------- */
 
 static AXIS_REF_t axis_named(const cm1e_scheduler_t *scheduler, const char *name, cm1e_near_t *near)

@@ -27,6 +27,9 @@ typedef struct st_loaded {
 /** Loads the program. CM1E_ERROR_IO: it cannot be loaded; CM1E_ERROR_UNSUPPORTED: it was made for another version of the
  *  library. @rt init */
 cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag);
+/** Adds an axis of each name that the program has to a configuration without axes: a machine to try the program on. At
+ *  least one, because an empty segment has nothing to run. @rt init */
+cm1e_error_t st_simulated_machine(const st_loaded_t *loaded, cm1e_bus_config_t *config, cm1e_diag_t *diag);
 /** Binds axes and located variables, and adds the tasks. @rt init */
 cm1e_error_t st_attach(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Before anything is started: gives the variables their initial values, and the RETAIN variables those of the file.

@@ -170,12 +170,27 @@ def check_retain():
     retained(8)
 
 
+def check_without_bus_file():
+    program = build("alone", MOVE.format(";"))
+    result = cm1e("run", program, "-i", "sim", "--virtual-time", "-s", "1", "--csv", "alone.csv")
+    ran = f"{program} (simulated) ran for 1."
+    if result.returncode != 0 or not result.stdout.startswith(ran) or "its time was over" not in result.stdout:
+        faults.append(f"without a bus file: {result.returncode} {result.stdout}{result.stderr}")
+    if max(float(row["X set velocity [u/s]"]) for row in trace("alone.csv")) < 19:
+        faults.append("without a bus file the axis does not turn")
+    for words in ((), ("-i", "eth9")):
+        result = cm1e("run", program, *words)
+        if result.returncode == 0 or "-b BUS-FILE is needed" not in result.stderr:
+            faults.append(f"run {words}: {result.returncode} {result.stderr}")
+
+
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     with open("bus.yaml", "w", encoding="ascii") as file:
         file.write(BUS)
     check_faults()
     check_names()
+    check_without_bus_file()
     check_located()
     check_retain()
     check_twincat()
