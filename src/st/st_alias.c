@@ -6,10 +6,12 @@
 static const struct { const char *block, *name, *ours, *hint; } aliases[] = {
     {"MC_Power", "Enable_Positive", "EnablePositive", NULL},
     {"MC_Power", "Enable_Negative", "EnableNegative", NULL},
-    {"MC_Power", "Override", NULL, "TwinCAT's Override is the input VelFactor of MC_SetOverride here, 0 ... 1"},
-    {"AXIS_REF", "NcToPlc", NULL, "read the axis by MC_ReadStatus, MC_ReadActualPosition and the like"},
+    {"MC_Power", "Active", "Status", NULL},
+    {"MC_Power", "Busy", "Valid", NULL},
+    {"MC_Home", "HomingMode", NULL, "the bus file says how the axis is homed"},
+    {"AXIS_REF", "NcToPlc", NULL, "some of its members are known, as NcToPlc.ActPos; it is not as a whole"},
     {"AXIS_REF", "PlcToNc", NULL, "command the axis by function blocks"},
-    {"AXIS_REF", "Status", NULL, "read the axis by MC_ReadStatus"},
+    {"AXIS_REF", "Status", NULL, "some of its members are known, as Status.Error; it is not as a whole"},
 };
 
 const char *cm1e_st_alias(const char *block, const char *name, const char **hint)

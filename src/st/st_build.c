@@ -126,10 +126,19 @@ static bool keep_beside(st_t *st, map_t *map, place_t place, const char *name, v
     return true;
 }
 
+/** A block of our library in Structured Text: a program may have its own one of this name. */
+static bool of_library(const st_t *st, const map_t *map, const char *name)
+{
+    void *value = cm1e_st_map_get(map, name);
+    const place_t place = map == st->units ? ((unit_t *)value)->place : ((type_t *)value)->place;
+    return st->sources[place.file].library && !st->sources[st->source].library;
+}
+
 /** Enters a name; an earlier one of the same kind is an error. */
 static bool enter(st_t *st, map_t *map, const char *what, place_t place, const char *name, void *value)
 {
-    if (cm1e_st_map_get(map, name) && !keep_beside(st, map, place, name, value)) {
+    const bool ours = map != st->globals && cm1e_st_map_get(map, name) && of_library(st, map, name);
+    if (!ours && cm1e_st_map_get(map, name) && !keep_beside(st, map, place, name, value)) {
         cm1e_st_report(st, place, "there is a %s \"%s\" already", what, name);
         return false;
     }
@@ -193,7 +202,11 @@ void cm1e_st_add_globals(st_t *st, vars_t vars)
     for (var_t *var = vars.first, *next; var; var = next) {
         next = var->next;
         var->next = NULL;
-        if (enter(st, st->globals, "global variable", var->place, var->name, var)) {
+        var->list = st->sources[var->place.file].list;
+        const char *name = var->list ? cm1e_st_format(st->arena, "%s.%s", var->list, var->name) : var->name;
+        if (var->list && !st->sources[var->place.file].qualified)
+            enter(st, st->globals, "global variable", var->place, var->name, var);
+        if (enter(st, st->globals, "global variable", var->place, name, var)) {
             var->next = st->tree.globals;
             st->tree.globals = var;
         }

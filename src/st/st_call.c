@@ -106,6 +106,19 @@ static void match_positions(st_t *st, const unit_t *unit, expr_t *call)
         }
 }
 
+/** Override of MC_Power, which TwinCAT has: the velocity of the axis in percent. */
+static bool is_override(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
+{
+    if (!unit->external || strcasecmp(unit->name, "MC_Power") != 0 || strcasecmp(arg->name, "Override") != 0 || arg->output)
+        return false;
+    if (arg->value) {
+        cm1e_st_expression(st, arg->value);
+        call->override = cm1e_st_coerce(st, arg->value, st->elementary[T_LREAL], "Override");
+        arg->value = NULL;
+    }
+    return true;
+}
+
 static void match_names(st_t *st, const unit_t *unit, expr_t *call)
 {
     for (arg_t *arg = call->args; arg; arg = arg->next) {
@@ -113,6 +126,8 @@ static void match_names(st_t *st, const unit_t *unit, expr_t *call)
             cm1e_st_report(st, arg->place, "arguments are either all by position or all by name");
             return;
         }
+        if (is_override(st, unit, call, arg) || (!arg->value && unit->external && !cm1e_st_map_get(unit->names, arg->name)))
+            continue; /* an input of another library that is left out */
         arg->parameter = named_parameter(st, unit, arg);
         for (const arg_t *other = call->args; other != arg; other = other->next)
             if (other->parameter && other->parameter == arg->parameter)
@@ -169,7 +184,7 @@ static void check_in_out(st_t *st, arg_t *arg)
 static void check_arg(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
 {
     var_t *var = arg->parameter;
-    if (!arg->value && var->section == V_INPUT)
+    if (!arg->value && var->section == V_INPUT && unit->kind == U_FUNCTION)
         cm1e_st_report(st, arg->place, "a value for \"%s\" is missing behind :=", var->name);
     if (!arg->value)
         return;

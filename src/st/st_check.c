@@ -151,6 +151,14 @@ static void check_configuration(st_t *st)
     }
     for (instance_t *instance = st->tree.instances; instance; instance = instance->next)
         check_instance(st, instance);
+    for (const unit_t *unit = st->tree.units; unit; unit = unit->next) {
+        int count = 0;
+        for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
+            count += instance->unit == unit;
+        if (unit->reached.line > 0 && count != 1)
+            cm1e_st_report(st, unit->reached, "a variable of the program \"%s\" can be used here if that has one instance; "
+                           "it has %d", unit->name, count);
+    }
     if (st->tree.configuration && !st->tree.instances)
         cm1e_st_report(st, st->tree.configuration_place, "this configuration runs no program: PROGRAM name WITH task : "
                        "Type;");

@@ -39,7 +39,8 @@ static void name_units(st_t *st)
         }
     }
     for (var_t *var = st->tree.globals; var; var = var->next)
-        var->c_name = cm1e_st_format(st->arena, "G_%s", var->name);
+        var->c_name = var->list ? cm1e_st_format(st->arena, "G_%s__%s", var->list, var->name)
+                                : cm1e_st_format(st->arena, "G_%s", var->name);
 }
 
 /* ---- maps of names ----------------------------------------------------------------------------------------------- */

@@ -9,6 +9,7 @@ typedef struct embedded {
     const char *name;
     const char *begin, *end;
     const char *symbol; /**< prefix of the symbols of its blocks */
+    int library;        /**< 1: its blocks are in Structured Text, and no symbols */
 } embedded_t;
 
 /** The last one has no begin. */

@@ -16,6 +16,7 @@ PART(homing, "fb/interface/homing.st")
 PART(cm_bridge, "fb/interface/cm_bridge.st")
 PART(standard, "fb/interface/standard.st")
 PART(tc2_mc2, "src/st/tc2_mc2.st")
+PART(tc2_blocks, "src/st/tc2_blocks.st")
 PART(program, "src/st/st_program.h")
 PART(runtime, "src/st/st_runtime.h")
     .section .note.GNU-stack, "", %progbits

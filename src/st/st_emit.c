@@ -14,7 +14,8 @@ static void emit_embedded(st_t *st, const char *name, const char *begin, const c
 static void emit_functions(st_t *st, bool bodies)
 {
     for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
-        if (unit->external)
+        const bool unused = st->sources[unit->place.file].library && !(unit->type && unit->type->emitted);
+        if (unit->external || unused)
             continue;
         if (bodies)
             cm1e_st_emit_unit(st, unit);
@@ -26,7 +27,7 @@ static void emit_functions(st_t *st, bool bodies)
 static void emit_types(st_t *st)
 {
     for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
-        if (unit->external)
+        if (unit->external || st->sources[unit->place.file].library)
             continue;
         if (unit->type)
             cm1e_st_emit_type(st, unit->type);

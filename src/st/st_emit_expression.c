@@ -37,10 +37,22 @@ void cm1e_st_emit_constant(st_t *st, const type_t *type, const constant_t *value
 
 /* ---- variables --------------------------------------------------------------------------------------------------- */
 
+static const char *instance_of(const st_t *st, const unit_t *unit)
+{
+    const instance_t *instance = st->tree.instances;
+    while (instance->unit != unit)
+        instance = instance->next;
+    return instance->name;
+}
+
 static void emit_variable(st_t *st, const var_t *var)
 {
     if (var->section == V_EXTERNAL)
         var = var->global;
+    if (var->unit && var->unit->kind == U_PROGRAM && st->unit != var->unit && st->unit) {
+        cm1e_st_put(st, "I_%s.%s", instance_of(st, var->unit), var->c_name);
+        return;
+    }
     const bool pointer = var->section == V_IN_OUT;
     if (!var->unit)
         cm1e_st_put(st, "%s", var->c_name);
@@ -190,6 +202,11 @@ void cm1e_st_emit_expression(st_t *st, const expr_t *expr)
         cm1e_st_put(st, "(*(%s *)st_reach(", cm1e_st_c_type(st, expr->type));
         cm1e_st_emit_expression(st, expr->a);
         cm1e_st_put(st, ", ST_HERE))");
+        break;
+    case E_VIEW:
+        cm1e_st_put(st, "(%s)cm1e_tc2_axis_value(", expr->type->name);
+        cm1e_st_emit_expression(st, expr->a);
+        cm1e_st_put(st, ".Handle_, %d)", expr->view);
         break;
     case E_CALL: cm1e_st_emit_call(st, expr); break;
     case E_UNARY: emit_unary(st, expr); break;

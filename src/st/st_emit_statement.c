@@ -68,12 +68,17 @@ static void emit_block_call(st_t *st, const expr_t *call)
     cm1e_st_emit_expression(st, call->a);
     cm1e_st_put(st, ";\n");
     for (const arg_t *arg = call->args; arg; arg = arg->next)
-        if (arg->value && arg->parameter->section != V_OUTPUT)
+        if (arg->value && arg->parameter && arg->parameter->section != V_OUTPUT)
             emit_input(st, arg);
+    if (call->override) {
+        cm1e_st_line(st, "cm1e_tc2_override(fb->Axis_->Handle_, ");
+        cm1e_st_emit_expression(st, call->override);
+        cm1e_st_put(st, ");\n");
+    }
     cm1e_st_line(st, "%s(fb);\n", call->unit->c_name);
     st->callee = call->a;
     for (const arg_t *arg = call->args; arg; arg = arg->next)
-        if (arg->value && arg->parameter->section == V_OUTPUT)
+        if (arg->value && arg->parameter && arg->parameter->section == V_OUTPUT)
             cm1e_st_emit_assignment(st, arg->value, arg->source);
     st->callee = NULL;
     st->indent--;

@@ -119,7 +119,8 @@ static uint64_t emit_table(st_t *st, table_t table)
     cm1e_st_put(st, "static const st_variable_t st_%s[] = {\n", tables[table]);
     for (const var_t *var = st->tree.globals; var; var = var->next)
         if (!st->sources[var->place.file].external)
-            list_variable(&l, var->name, var->c_name, var);
+            list_variable(&l, var->list ? cm1e_st_format(st->arena, "%s.%s", var->list, var->name) : var->name, var->c_name,
+                          var);
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         for (const var_t *var = instance->unit->vars; var; var = var->next)
             if (var->section == V_LOCAL || var->section == V_INPUT || var->section == V_OUTPUT)

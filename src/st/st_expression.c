@@ -84,6 +84,13 @@ static void enumerator_of(st_t *st, expr_t *expr, const char *type_name)
         use_enumerator(expr, var);
         return;
     }
+    var = cm1e_st_map_get(st->globals, expr->name); /* MC_Direction.MC_Shortest_Way: a constant of that type (Tc2_MC2) */
+    if (var && (var->qualifiers & Q_CONSTANT) && cm1e_st_resolve(st, var->type) == type) {
+        expr->kind = E_NAME;
+        expr->a = NULL;
+        name(st, expr);
+        return;
+    }
     cm1e_near_t near = {.word = expr->name};
     for (const var_t *other = type->members; other; other = other->next)
         cm1e_near_look(&near, other->name);
@@ -119,8 +126,45 @@ static void unknown_member(st_t *st, expr_t *expr, const type_t *type)
     set_wrong(st, expr);
 }
 
+var_t *cm1e_st_in_list(const st_t *st, const expr_t *expr)
+{
+    if (expr->kind != E_MEMBER || expr->bit || expr->a->kind != E_NAME)
+        return NULL;
+    return cm1e_st_map_get(st->globals, cm1e_st_format(st->arena, "%s.%s", expr->a->name, expr->name));
+}
+
+/** MAIN.x: a variable of a program, in another one. The program has one instance then. */
+static bool of_program(st_t *st, expr_t *expr)
+{
+    unit_t *unit = !expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name)
+        ? cm1e_st_map_get(st->units, expr->a->name) : NULL;
+    var_t *var = unit && unit->kind == U_PROGRAM ? cm1e_st_map_get(unit->names, expr->name) : NULL;
+    if (!var || var->section == V_TEMP || var->section == V_EXTERNAL || var->section == V_IN_OUT)
+        return false;
+    unit->reached = expr->place;
+    var->type = cm1e_st_resolve(st, var->type);
+    expr->kind = E_NAME;
+    expr->a = NULL;
+    expr->var = var;
+    expr->type = var->type;
+    expr->value = *cm1e_st_constant_of(st, var);
+    return true;
+}
+
 static void member(st_t *st, expr_t *expr)
 {
+    if (of_program(st, expr))
+        return;
+    var_t *listed = cm1e_st_in_list(st, expr);
+    if (listed && !cm1e_st_find_var(st, expr->a->name)) {
+        expr->kind = E_NAME;
+        expr->name = cm1e_st_format(st->arena, "%s.%s", expr->a->name, expr->name);
+        expr->a = NULL;
+        name(st, expr);
+        return;
+    }
+    if (cm1e_st_view(st, expr))
+        return;
     if (!expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name) &&
         !cm1e_st_map_get(st->enumerators, expr->a->name) && cm1e_st_map_get(st->types, expr->a->name)) {
         enumerator_of(st, expr, expr->a->name);

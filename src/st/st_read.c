@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #include "st/st_embedded.h"
+#include "st/st_twincat.h"
 
 typedef void *yyscan_t;
 int cm1e_st_yylex_init_extra(parsing_t *parsing, yyscan_t *scanner);
@@ -37,7 +38,8 @@ st_t *cm1e_st_new(void)
         return NULL;
     for (const embedded_t *part = cm1e_st_interface_parts; part->begin; part++) {
         cm1e_st_add_text(st, part->name, part->begin, (size_t)(part->end - part->begin));
-        st->sources[st->source_count - 1].external = true;
+        st->sources[st->source_count - 1].external = !part->library;
+        st->sources[st->source_count - 1].library = part->library;
         st->sources[st->source_count - 1].symbol = part->symbol;
     }
     return st;
@@ -69,6 +71,8 @@ void cm1e_st_add_text(st_t *st, const char *name, const char *text, size_t size)
     source_t *source = &st->sources[st->source_count++];
     *source = (source_t){.name = cm1e_st_copy(st->arena, name, strlen(name)), .size = size,
                          .text = cm1e_st_copy(st->arena, text, size)};
+    if (cm1e_st_is_twincat(text, size))
+        cm1e_st_twincat(st, source);
 }
 
 cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag)

@@ -46,7 +46,9 @@ static const char *line_of(const st_t *st, const st_error_t *error, size_t *leng
     for (unsigned i = 0; i < st->source_count; i++) {
         if (st->sources[i].name != error->file)
             continue;
-        const char *at = st->sources[i].text, *end = at + st->sources[i].size;
+        const source_t *source = &st->sources[i];
+        const char *at = source->shown ? source->shown : source->text;
+        const char *end = at + (source->shown ? source->shown_size : source->size);
         for (uint32_t line = 1; line < error->line && at; line++) {
             at = memchr(at, '\n', (size_t)(end - at));
             at = at ? at + 1 : NULL;

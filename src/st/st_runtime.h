@@ -175,6 +175,10 @@ ST_UNUSED static inline DATE st_date_of(DT time) { return time - st_time_of_day(
 /** Time of the scan. */
 int64_t cm1e_scan_time(void);
 
+/** Members of an AXIS_REF that TwinCAT has, and the input Override of its MC_Power. */
+LREAL cm1e_tc2_axis_value(UINT handle, UINT number);
+void cm1e_tc2_override(UINT handle, LREAL percent);
+
 /* ---- texts: at most 254 bytes and a final 0 ----------------------------------------------------------------------- */
 
 typedef struct STRING_254 {

@@ -16,6 +16,11 @@ typedef struct source {
     size_t size;
     bool external;      /**< of our interface */
     const char *symbol; /**< prefix of its symbols */
+    bool library;       /**< in Structured Text, but ours: what is not used is not emitted */
+    const char *list;   /**< name of the list of global variables that it is (TwinCAT); NULL: none */
+    bool qualified;     /**< its variables need that name in front of theirs */
+    const char *shown;  /**< text as it is in the file, where `text` is made of it; else NULL */
+    size_t shown_size;
 } source_t;
 
 /** How far a type or the value of a constant is. */
@@ -131,6 +136,13 @@ void cm1e_st_statements(st_t *st, stmt_t *list);
 
 /** st_alias.c: our name of an input or member that TwinCAT calls `name`; NULL: there is none, `hint` may say what to do. */
 const char *cm1e_st_alias(const char *block, const char *name, const char **hint);
+
+/** st_view.c: axis.NcToPlc.ActPos and the like: false: it is none. */
+bool cm1e_st_view(st_t *st, expr_t *expr);
+/** LIST.name of a global variable: which it is; NULL: none. */
+var_t *cm1e_st_in_list(const st_t *st, const expr_t *expr);
+/** A call that only updates an AXIS_REF in TwinCAT: here it is always up to date. */
+bool cm1e_st_only_updates(st_t *st, const expr_t *call);
 
 /* st_address.c */
 void cm1e_st_check_address(st_t *st, const var_t *var);

@@ -31,6 +31,10 @@ static void assign(st_t *st, stmt_t *stmt)
 
 static void call(st_t *st, stmt_t *stmt)
 {
+    if (cm1e_st_only_updates(st, stmt->value)) {
+        stmt->kind = S_EMPTY;
+        return;
+    }
     cm1e_st_call(st, stmt->value, true);
     expr_t *value = stmt->value;
     if (value->type->kind == T_WRONG || value->unit)

@@ -86,7 +86,7 @@ struct type {
 
 typedef enum expr_kind {
     E_LITERAL, E_NAME, E_MEMBER, E_INDEX, E_DEREF, E_CALL, E_UNARY, E_BINARY, E_QUALIFIED, E_ADDRESS, E_CONVERT,
-    E_STRUCT_INIT, E_ARRAY_INIT, E_REPEAT,
+    E_VIEW, E_STRUCT_INIT, E_ARRAY_INIT, E_REPEAT,
 } expr_kind_t;
 
 typedef enum operation {
@@ -133,6 +133,8 @@ struct expr {
     arg_t *typed_args;   /**< E_CALL of a standard function: its arguments from here on have the type of the result */
     bool untyped;        /**< E_CALL of a standard function with literals without a type only: it can take another */
     bool bit;            /**< E_MEMBER: bit access of `integer` */
+    int view;            /**< E_VIEW: the row of core/tc2_axis.h; its axis is `a` */
+    expr_t *override;    /**< E_CALL of MC_Power: its Override, which TwinCAT has */
 };
 
 /* ---- statements -------------------------------------------------------------------------------------------------- */
@@ -174,6 +176,7 @@ enum { Q_CONSTANT = 1, Q_RETAIN = 2, Q_NON_RETAIN = 4, Q_R_EDGE = 8, Q_F_EDGE = 
 struct var {
     const char *name;
     const char *c_name;
+    const char *list;    /**< of a global one: name of its list (TwinCAT); NULL: none */
     section_t section;
     int qualifiers;
     type_t *type;
@@ -201,6 +204,7 @@ struct unit {
     type_t *type;        /**< of a block or a program */
     stmt_t *body;
     bool external;
+    place_t reached;     /**< of a program: where another one uses its variables; line 0: nowhere */
     bool impure;         /**< a function that can change more than its result */
     uint64_t stack;      /**< bytes of its locals and of what it calls */
     int mark;            /**< while the calls are followed: 0 new, 1 on the way, 2 done */

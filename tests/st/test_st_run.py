@@ -116,12 +116,16 @@ END_PROGRAM
 
 
 def check_twincat():
-    program = build("twincat", TWINCAT)
+    program = build("twincat", TWINCAT.replace("Enable := TRUE,", "Enable := X.NcToPlc.ActPos < 100.0, Override := 50.0,"))
     run(program, "-s", "2", "--csv", "twincat.csv")
     rows = trace("twincat.csv")
     if rows[-1]["MAIN.bDone"] != "1" or float(rows[-1]["X set position [u]"]) != 30:
         faults.append(f"the TwinCAT program ends at {rows[-1]['X set position [u]']}")
-    for text, says in (("Enable := TRUE, Override := 100.0", "VelFactor"), ("Enable := X.NcToPlc.ActPos > 3.0", "MC_ReadStatus")):
+    fastest = max(float(row["X set velocity [u/s]"]) for row in rows)
+    if not 24.9 < fastest <= 25.001:
+        faults.append(f"with an Override of 50 % the axis reaches {fastest} u/s")
+    for text, says in (("Enable := X.NcToPlc.ActPoss > 3.0", 'did you mean "ActPos"'),
+                       ("Enable := X.Status.ControlLoopClosed", "MC_ReadStatus")):
         with open("refused.st", "w", encoding="ascii") as file:
             file.write(TWINCAT.replace("Enable := TRUE, Enable_Positive", text + ", Enable_Positive"))
         result = cm1e("st", "check", "refused.st")
