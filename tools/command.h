@@ -49,6 +49,7 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2, AXIS_LINE_BYTES = 1280 
     X(new, "make a project that builds and runs", "")                                                               \
     X(st, "check and build programs in Structured Text", "check build")                                              \
     X(run, "run a program in Structured Text", "")                                                                  \
+    X(var, "show, write and force variables of a running program", "list get set force release")                    \
     X(init, "write a bus file from the network as it is", "")                                                       \
     X(prove, "compare a device with what the guide says of it", "")                                                 \
     X(doctor, "look at machine, interface and network, and say what to do", "")                                     \

@@ -10,6 +10,7 @@
 #include "cm1e/group.h"
 #include "cm1e/trace.h"
 #include "core/near.h"
+#include "scheduler/forcing.h"
 #include "st/st.h"
 
 cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
@@ -73,7 +74,9 @@ static void run_task(void *context)
 {
     const struct st_running_task *task = context;
     st_located_read(&task->loaded->located);
+    cm1e_scheduler_apply_forced(task->loaded->scheduler);
     task->run();
+    cm1e_scheduler_apply_forced(task->loaded->scheduler);
     st_located_write(&task->loaded->located);
     st_retain_cycle(&task->loaded->retain, cm1e_scheduler_time_ns(task->loaded->scheduler));
     if (task->loaded->program->fault->happened)
@@ -187,6 +190,7 @@ static cm1e_error_t register_variables(st_loaded_t *loaded, cm1e_diag_t *diag)
                 loaded->scheduler, variable->name, variable->kind == ST_KIND_TIME ? "ns" : "", type, variable->data, diag);
             if (error != CM1E_OK)
                 return error;
+            cm1e_scheduler_permit_forcing(loaded->scheduler, variable->name);
             registered++;
         }
     return CM1E_OK;

@@ -46,6 +46,8 @@ typedef enum cm1e_log_kind {
     CM1E_LOG_STRANGER,        /**< a device that is none of the configured slaves was refused; code: its product code,
                                    detail: its place on the wire and 16777216 times the number of the bus, value: its
                                    vendor, bound: 65536 times its explicit device ID, and its alias */
+    CM1E_LOG_VARIABLE,        /**< a variable of the program was released (code 0), forced (1) or written (2) from
+                                   outside; detail: the number of its signal in the trace, value: that value */
     CM1E_LOG_KIND_COUNT,
 } cm1e_log_kind_t;
 

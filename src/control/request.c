@@ -327,6 +327,42 @@ static json_t *recover(control_request_t *request, control_run_t *run, const jso
     return refused ? refused : cm1e_recover_slave(request, run, message);
 }
 
+/* ---- variables --------------------------------------------------------------------------------------------------- */
+
+static json_t *variables(control_request_t *request, control_run_t *run, const json_t *message)
+{
+    (void)run, (void)message;
+    if (!cm1e_variables_begin(&request->variable))
+        return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
+    request->state = REQUEST_VARIABLE;
+    request->wanted = false;
+    return NULL;
+}
+
+static json_t *variable(control_request_t *request, control_run_t *run, const json_t *message)
+{
+    char text[240];
+    cm1e_error_t error = CM1E_OK;
+    json_t *refused = check_consent(request, run, "Writing or forcing a variable");
+    request->variable.forced.client = request->client;
+    const char *bad = refused ? NULL
+                              : cm1e_variable_take(&request->variable, &run->view, message, &error, text, sizeof text);
+    if (refused || bad)
+        return refused ? refused : cm1e_request_refuse(request->id, error, 0, bad);
+    request->state = REQUEST_VARIABLE;
+    request->wanted = false;
+    return NULL;
+}
+
+static json_t *end_variable(const control_request_t *request, const control_run_t *run)
+{
+    if (request->variable.values)
+        return accept(request, "variables", cm1e_variables_show(&request->variable, &run->view));
+    const char *refusal = cm1e_variable_refusal(&request->variable);
+    return refusal ? cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, refusal)
+                   : accept(request, "variable", json_null());
+}
+
 static const struct {
     const char *name;
     json_t *(*begin)(control_request_t *request, control_run_t *run, const json_t *message);
@@ -336,13 +372,13 @@ static const struct {
     {"sii_read", sii_read}, {"registers", registers}, {"enable", enable}, {"disable", disable}, {"jog", jog},
     {"home", home},     {"stop", stop},         {"reset", reset},         {"keep", keep},
     {"record", cm1e_record_begin}, {"samples", cm1e_record_samples}, {"io", io}, {"output", output},
-    {"file_data", file_data}, {"file_begin", file_begin}, {"file", file_look},
-    {"recover", recover},
+    {"file_data", file_data}, {"file_begin", file_begin}, {"file", file_look}, {"recover", recover},
+    {"variables", variables}, {"variable", variable},
 };
 
 static json_t *unknown(const control_request_t *request)
 {
-    char text[256] = "\"request\" is expected to be one of";
+    char text[300] = "\"request\" is expected to be one of";
     for (size_t i = 0, used = strlen(text); i < sizeof requests / sizeof *requests; i++, used = strlen(text))
         snprintf(text + used, sizeof text - used, "%s %s", i ? "," : "", requests[i].name);
     return wrong(request, text);
@@ -404,6 +440,7 @@ static view_order_t *order_of(control_request_t *request)
            : request->state == REQUEST_MAINTAIN ? &request->maintain.order
            : request->state == REQUEST_IO       ? &request->io->values.order
            : request->state == REQUEST_OUTPUT   ? &request->output.order
+           : request->state == REQUEST_VARIABLE ? &request->variable.order
                                                 : NULL;
 }
 
@@ -454,6 +491,8 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
         reply = continue_io(request, run);
     else if (request->state == REQUEST_OUTPUT && continue_order(request, run))
         reply = end_output(request);
+    else if (request->state == REQUEST_VARIABLE && continue_order(request, run))
+        reply = end_variable(request, run);
     if (request->state == REQUEST_SDO && !reply && cm1e_sdo_state(&request->sdo) != CM1E_SDO_BUSY)
         reply = end_transfer(request);
     if (!reply && (stopping || now_ns - request->begun_ns > PATIENCE_NS) && give_up(request, run))
@@ -467,7 +506,7 @@ bool cm1e_request_must_end(const control_request_t *request)
 {
     const bool may_be_taken = request->state == REQUEST_WRITE || request->state == REQUEST_MAINTAIN ||
                               request->state == REQUEST_ERRAND || request->state == REQUEST_IO ||
-                              request->state == REQUEST_OUTPUT;
+                              request->state == REQUEST_OUTPUT || request->state == REQUEST_VARIABLE;
     return request->state == REQUEST_SDO || (request->wanted && may_be_taken);
 }
 
@@ -475,6 +514,7 @@ void cm1e_request_clear(control_request_t *request)
 {
     json_decref(request->id);
     cm1e_io_list_free(request->io);
+    cm1e_variables_free(&request->variable);
     free(request->data);
     memset(request, 0, sizeof *request);
 }

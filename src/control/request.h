@@ -12,6 +12,7 @@
 #include "control/arguments.h"
 #include "control/io_request.h"
 #include "control/maintain.h"
+#include "control/variable_request.h"
 
 typedef struct control_file control_file_t;
 
@@ -32,6 +33,7 @@ typedef enum request_state {
     REQUEST_MAINTAIN, /**< the same */
     REQUEST_IO,       /**< until the cycle has read some signals */
     REQUEST_OUTPUT,   /**< until it has set one */
+    REQUEST_VARIABLE, /**< until it has read the variables of the program, or changed one */
     REQUEST_SDO,
     REQUEST_ERRAND,
 } request_state_t;
@@ -54,6 +56,7 @@ typedef struct control_request {
     maintain_order_t maintain;
     io_list_t *io;             /**< IO */
     output_order_t output;
+    variable_order_t variable;
 } control_request_t;
 
 /** Begins a request. Returns its reply, or NULL if it goes on: cm1e_request_continue(). */

@@ -68,6 +68,7 @@ static void leave(server_t *server, client_t *client)
     hang_up(client);
     cm1e_maintain_leave(&server->run.view, client->place);
     cm1e_guest_outputs_leave(&server->run.view.outputs, client->place);
+    atomic_fetch_or_explicit(&server->run.view.gone, UINT32_C(1) << client->place, memory_order_release);
     const bool recorded = !cm1e_recorder_end(&server->run.view, client->place, atomic_load(&server->stop));
     const bool transfers = !cm1e_file_leave(&server->run, client->place);
     if (cm1e_request_must_end(&client->request) || recorded || transfers)

@@ -92,6 +92,17 @@ void cm1e_view_decide_write(view_t *view, view_order_t *order)
                                     : cm1e_sdo_submit(view->bus, write->sdo);
 }
 
+/** Variables that a client has forced are the program's again when it is gone. */
+static void look_after_forced(view_t *view)
+{
+    const uint32_t gone = atomic_load_explicit(&view->gone, memory_order_relaxed)
+                              ? atomic_exchange_explicit(&view->gone, 0, memory_order_acquire) : 0;
+    for (uint32_t client = 0; gone && client < CM1E_CONTROL_CLIENTS; client++)
+        if (gone & UINT32_C(1) << client)
+            cm1e_scheduler_release_all(view->scheduler, view, client);
+    cm1e_scheduler_forcing_cycle(view->scheduler);
+}
+
 void cm1e_view_cycle(view_t *view)
 {
     if (atomic_load_explicit(&view->state, memory_order_acquire) == VIEW_WANTED)
@@ -100,6 +111,7 @@ void cm1e_view_cycle(view_t *view)
     if (view->outputs.count > 0 || atomic_load_explicit(&view->outputs.gone, memory_order_relaxed))
         cm1e_guest_outputs_cycle(&view->outputs, cm1e_scheduler_time_ns(view->scheduler),
                                  cm1e_scheduler_is_ending(view->scheduler));
+    look_after_forced(view);
     if (atomic_load_explicit(&view->recording, memory_order_relaxed))
         cm1e_recorder_cycle(view);
     if (!atomic_load_explicit(&view->order, memory_order_relaxed))

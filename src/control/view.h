@@ -2,7 +2,7 @@
  * @file view.h
  * What passes between the cycle and the thread of the control socket. The cycle allocates, locks and waits for nothing:
  * it fills in a snapshot where one is wanted, and decides on an order where there is one. While nobody asks, it costs
- * seven loads.
+ * ten loads.
  */
 #ifndef CM1E_CONTROL_VIEW_H
 #define CM1E_CONTROL_VIEW_H
@@ -13,6 +13,7 @@
 #include "bus/foe_job.h"
 #include "cm1e/topology.h"
 #include "control/guest_outputs.h"
+#include "scheduler/forcing.h"
 #include "scheduler/scheduler_window.h"
 
 typedef enum view_state { VIEW_IDLE = 0, VIEW_WANTED, VIEW_FILLED } view_state_t;
@@ -83,6 +84,7 @@ typedef struct view {
 
     maintained_t maintained;
     guest_outputs_t outputs;
+    _Atomic uint32_t gone;     /**< a bit for each client that is gone, and has left variables that it forced */
     struct recorder *recorders[CM1E_CONTROL_CLIENTS]; /**< recorder.h; NULL: none */
     _Atomic uint32_t recording; /**< a bit for each of them that the cycle has */
     _Atomic(view_order_t *) order;

@@ -39,6 +39,12 @@ void cm1e_log_run(log_t *log, bool begins, int64_t run_ns)
     write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_RUN, .axis = -1, .code = begins}, run_ns);
 }
 
+void cm1e_log_variable(log_t *log, int what, uint32_t column, double value, int64_t run_ns)
+{
+    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_VARIABLE, .axis = -1, .code = what, .detail = column,
+                                        .value = value}, run_ns);
+}
+
 static void look_at_axis(log_t *log, const cm1e_axis_t *axis, uint32_t index, int64_t run_ns)
 {
     cm1e_axis_news_t *seen = &log->seen[index], now;

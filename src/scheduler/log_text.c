@@ -6,6 +6,7 @@
 #include "bus/port_watch.h"
 #include "bus/presence_text.h"
 #include "scheduler/scheduler_window.h"
+#include "scheduler/trace_recorder.h"
 
 static const char *const kind_names[] = {
     [CM1E_LOG_RUN] = "run",
@@ -23,6 +24,7 @@ static const char *const kind_names[] = {
     [CM1E_LOG_RING] = "ring",
     [CM1E_LOG_SLAVE] = "slave",
     [CM1E_LOG_STRANGER] = "stranger",
+    [CM1E_LOG_VARIABLE] = "variable",
 };
 _Static_assert(sizeof kind_names / sizeof *kind_names == CM1E_LOG_KIND_COUNT, "a kind of the log has no name");
 
@@ -93,6 +95,16 @@ static void stranger_text(const cm1e_log_event_t *event, char *text, size_t size
     cm1e_stranger_text(&stranger, text, size);
 }
 
+static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
+{
+    const trace_t *trace = cm1e_scheduler_trace(scheduler);
+    const char *name = event->detail < trace->column_count ? trace->columns[event->detail].name : "a variable";
+    if (event->code == 0)
+        snprintf(text, size, "%s is no longer forced to %.10g", name, event->value);
+    else
+        snprintf(text, size, "%s was %s %.10g from outside", name, event->code == 1 ? "forced to" : "set to", event->value);
+}
+
 void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
 {
     uint32_t count;
@@ -114,6 +126,8 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
                                (cm1e_presence_t)event->code, text, size);
     else if (event->kind == CM1E_LOG_STRANGER)
         stranger_text(event, text, size);
+    else if (event->kind == CM1E_LOG_VARIABLE)
+        variable_text(scheduler, event, text, size);
     else if (event->kind == CM1E_LOG_PORT)
         cm1e_port_sentence(cm1e_scheduler_bus_at(scheduler, event->detail >> 20 & 0x0F), (uint16_t)event->detail,
                            event->detail >> 16 & 0x0F, (cm1e_port_fault_t)(event->detail >> 24), (uint32_t)event->code,

@@ -14,6 +14,7 @@
 #include "core/sized.h"
 #include "scheduler/clock_team.h"
 #include "scheduler/event_log.h"
+#include "scheduler/forcing.h"
 #include "scheduler/realtime.h"
 #include "scheduler/scheduler_window.h"
 #include "scheduler/signals.h"
@@ -42,6 +43,7 @@ struct cm1e_scheduler {
     uint32_t axis_count;
     task_list_t tasks;
     trace_t trace;
+    forcing_t forcing;
     log_t log;
     void *windows[CM1E_MAX_BUSES][CM1E_WINDOWS]; /**< of this run, by bus and kind; NULL: it has none */
     statistics_t statistics;
@@ -455,6 +457,11 @@ cm1e_error_t cm1e_scheduler_write_npy(const cm1e_scheduler_t *scheduler, const c
 }
 
 const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return &scheduler->trace; }
+
+forcing_parts_t cm1e_scheduler_forcing_parts(cm1e_scheduler_t *s)
+{
+    return (forcing_parts_t){&s->forcing, &s->trace, &s->log, cm1e_scheduler_time_ns(s), s->shutting_down};
+}
 
 /* ---- before and after ------------------------------------------------------------------------------------------ */
 

@@ -47,8 +47,9 @@ static void add_timing_columns(trace_t *trace)
     *new_column(trace) = (trace_column_t){"execution time", "us", .type = CM1E_TRACE_LREAL,
                                           .value = &timing->execution_time_us};
     *new_column(trace) = (trace_column_t){"lost frames", "", TRACE_KIND_COUNT, CM1E_TRACE_ULINT, &timing->lost_frames,
-                                          false};
-    *new_column(trace) = (trace_column_t){"overruns", "", TRACE_KIND_COUNT, CM1E_TRACE_ULINT, &timing->overruns, false};
+                                          false, NULL};
+    *new_column(trace) = (trace_column_t){"overruns", "", TRACE_KIND_COUNT, CM1E_TRACE_ULINT, &timing->overruns, false,
+                                          NULL};
 }
 
 static void add_error_columns(trace_t *trace)
@@ -253,7 +254,7 @@ static void record_axis(trace_t *trace, double *sample, const cm1e_axis_t *axis,
 }
 
 /** A variable of the program has the byte order of this machine, and lies anywhere. */
-static double value_of_program(const trace_column_t *column)
+double cm1e_trace_value(const trace_column_t *column)
 {
     union {
         int8_t sint; int16_t i; int32_t dint; int64_t lint;
@@ -303,7 +304,7 @@ void cm1e_trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_n
     for (uint32_t i = trace->axes * TRACE_AXIS_COLUMNS; i < trace->column_count; i++) {
         const trace_column_t *column = &trace->columns[i];
         if (column->value)
-            sample[i] = column->little_endian ? value_in_image(column) : value_of_program(column);
+            sample[i] = column->little_endian ? value_in_image(column) : cm1e_trace_value(column);
     }
     watch(trace, sample, time_ns);
 }

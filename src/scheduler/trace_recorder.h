@@ -33,6 +33,7 @@ typedef struct trace_column {
     cm1e_trace_type_t type;
     const void *value;  /**< where it is read; NULL: a column of an axis */
     bool little_endian; /**< it lies in the process image */
+    void *writable;     /**< the same as `value`, where others may write it (forcing.h); else NULL */
 } trace_column_t;
 
 /** A moment that the program marked. */
@@ -75,6 +76,9 @@ typedef struct trace {
     trace_mark_t marks[TRACE_MARKS]; /**< ring of marks */
     uint32_t first_mark, mark_count;
 } trace_t;
+
+/** The value of a variable of the program. @rt cycle */
+CM1E_GUEST_API double cm1e_trace_value(const trace_column_t *column);
 
 /** A trace of `count` axes with these names, which are not copied. `capacity` 0: it has columns, for others who record
  *  them, and records nothing itself. @rt init */

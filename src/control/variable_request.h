@@ -1,0 +1,35 @@
+/**
+ * @file variable_request.h
+ * The requests about variables of the program: `variables` lists them with their values, `variable` writes one or forces
+ * it (scheduler/forcing.h).
+ */
+#ifndef CM1E_CONTROL_VARIABLE_REQUEST_H
+#define CM1E_CONTROL_VARIABLE_REQUEST_H
+
+#include <jansson.h>
+
+#include "control/view.h"
+#include "scheduler/forcing.h"
+
+/** What the cycle does for either request. */
+typedef struct variable_order {
+    view_order_t order;
+    forced_t forced;            /**< client and column; what is forced or written */
+    bool force, release;
+    int64_t keep_ns;
+    forcing_result_t result;    /**< valid when decided */
+    struct variable_values *values; /**< of the list; NULL: there is none. Owned */
+} variable_order_t;
+
+/** Begins a list; false: no memory. */
+bool cm1e_variables_begin(variable_order_t *order);
+/** The list, when the cycle has read it. */
+json_t *cm1e_variables_show(const variable_order_t *order, const view_t *view);
+/** Takes the members of a message; NULL: the order is complete. Else `text`, which says what is wrong, with `error`. */
+const char *cm1e_variable_take(variable_order_t *order, const view_t *view, const json_t *message, cm1e_error_t *error,
+                               char *text, size_t size);
+/** Why it was refused by the cycle; NULL: it was not. */
+const char *cm1e_variable_refusal(const variable_order_t *order);
+void cm1e_variables_free(variable_order_t *order);
+
+#endif

@@ -1,0 +1,125 @@
+#include "scheduler/forcing.h"
+
+#include <string.h>
+
+#include "scheduler/event_log.h"
+
+enum { RELEASED = 0, FORCED, WRITTEN };
+
+static size_t size_of(cm1e_trace_type_t type)
+{
+    static const uint8_t sizes[] = {1, 1, 2, 4, 8, 1, 2, 4, 8, 4, 8};
+    return sizes[type];
+}
+
+static void write_value(const forcing_parts_t *p, uint32_t column, const forced_value_t *value)
+{
+    const trace_column_t *c = &p->trace->columns[column];
+    memcpy(c->writable, value->bytes, size_of(c->type));
+}
+
+void cm1e_scheduler_permit_forcing(cm1e_scheduler_t *scheduler, const char *name)
+{
+    trace_t *trace = cm1e_scheduler_forcing_parts(scheduler).trace;
+    for (uint32_t i = 0; i < trace->column_count; i++)
+        if (strcmp(trace->columns[i].name, name) == 0)
+            trace->columns[i].writable = (void *)(uintptr_t)trace->columns[i].value;
+}
+
+void cm1e_scheduler_apply_forced(cm1e_scheduler_t *scheduler)
+{
+    const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
+    for (int i = 0; p.forcing->count > 0 && i < CM1E_FORCED; i++)
+        if (p.forcing->rows[i].held)
+            write_value(&p, p.forcing->rows[i].column, &p.forcing->rows[i].value);
+}
+
+static forced_t *find(forcing_t *forcing, uint32_t column)
+{
+    for (int i = 0; forcing->count > 0 && i < CM1E_FORCED; i++)
+        if (forcing->rows[i].held && forcing->rows[i].column == column)
+            return &forcing->rows[i];
+    return NULL;
+}
+
+static forced_t *find_free(forcing_t *forcing)
+{
+    for (int i = 0; i < CM1E_FORCED; i++)
+        if (!forcing->rows[i].held)
+            return &forcing->rows[i];
+    return NULL;
+}
+
+forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_t *forced)
+{
+    const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
+    forced_t *row = find(p.forcing, forced->column);
+    const bool renewed = row && memcmp(row->value.bytes, forced->value.bytes, sizeof row->value.bytes) == 0;
+    if (p.ending)
+        return FORCING_ENDING;
+    if (row && (row->owner != forced->owner || row->client != forced->client))
+        return FORCING_HELD;
+    p.forcing->count += !row;
+    row = row ? row : find_free(p.forcing);
+    if (!row) {
+        p.forcing->count--;
+        return FORCING_FULL;
+    }
+    *row = *forced;
+    row->held = true;
+    write_value(&p, row->column, &row->value);
+    if (!renewed)
+        cm1e_log_variable(p.log, FORCED, row->column, row->value.shown, p.run_ns);
+    return FORCING_DONE;
+}
+
+static void release(const forcing_parts_t *p, forced_t *row)
+{
+    row->held = false;
+    p->forcing->count--;
+    cm1e_log_variable(p->log, RELEASED, row->column, row->value.shown, p->run_ns);
+}
+
+void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, uint32_t column)
+{
+    const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
+    forced_t *row = find(p.forcing, column);
+    if (row)
+        release(&p, row);
+}
+
+void cm1e_scheduler_release_all(cm1e_scheduler_t *scheduler, const void *owner, uint32_t client)
+{
+    const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
+    for (int i = 0; p.forcing->count > 0 && i < CM1E_FORCED; i++) {
+        forced_t *row = &p.forcing->rows[i];
+        if (row->held && row->owner == owner && row->client == client)
+            release(&p, row);
+    }
+}
+
+forcing_result_t cm1e_scheduler_write(cm1e_scheduler_t *scheduler, uint32_t column, const forced_value_t *value)
+{
+    const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
+    if (p.ending || find(p.forcing, column))
+        return p.ending ? FORCING_ENDING : FORCING_HELD;
+    write_value(&p, column, value);
+    cm1e_log_variable(p.log, WRITTEN, column, value->shown, p.run_ns);
+    return FORCING_DONE;
+}
+
+bool cm1e_scheduler_is_forced(const cm1e_scheduler_t *scheduler, uint32_t column)
+{
+    const forcing_parts_t p = cm1e_scheduler_forcing_parts((cm1e_scheduler_t *)(uintptr_t)scheduler);
+    return find(p.forcing, column) != NULL;
+}
+
+void cm1e_scheduler_forcing_cycle(cm1e_scheduler_t *scheduler)
+{
+    const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
+    for (int i = 0; p.forcing->count > 0 && i < CM1E_FORCED; i++) {
+        forced_t *row = &p.forcing->rows[i];
+        if (row->held && (p.ending || p.run_ns >= row->until_ns))
+            release(&p, row);
+    }
+}

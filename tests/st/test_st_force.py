@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""`cm1e var` at a running program: values from outside, once and forced; consent; and that what is forced ends with the
+one who forces, however that ends.
+
+test_st_force.py BIN-DIRECTORY SOURCE-DIRECTORY
+"""
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+CM1E, SOURCE = os.path.join(os.path.abspath(sys.argv[1]), "cm1e"), os.path.abspath(sys.argv[2])
+PROGRAM = """PROGRAM Main
+VAR
+    n : INT;
+    big : LINT;
+    r : REAL;
+    goal : LREAL := 3;
+    lamp AT %QX2.0.2 : BOOL;
+    seen AT %IX3.0.2 : BOOL;
+    copy, cause : BOOL;
+END_VAR
+n := n + 1;
+copy := seen;
+lamp := cause;
+END_PROGRAM
+"""
+faults = []
+
+
+def expect(condition, what, told=""):
+    if not condition:
+        faults.append(f"{what}: {told}")
+
+
+class Run:
+    def __init__(self, bus):
+        self.process = subprocess.Popen([CM1E, "run", "force.so", "-b", bus, "-s", "30"], stdout=subprocess.PIPE,
+                                        stderr=subprocess.STDOUT, text=True)
+        end = time.monotonic() + 20
+        while not any(name.startswith(f"cm1e-{self.process.pid}-") for name in os.listdir("run")):
+            if time.monotonic() > end or self.process.poll() is not None:
+                sys.exit(f"no control socket: {self.process.communicate(timeout=30)[0]}")
+            time.sleep(0.02)
+
+    def words(self, *words):
+        return [CM1E, "var", words[0], "--attach", str(self.process.pid), *words[1:]]
+
+    def var(self, *words, status=0, says=""):
+        result = subprocess.run(self.words(*words), capture_output=True, text=True, timeout=30)
+        expect(result.returncode == status and says in result.stderr, " ".join(words), (result.returncode, result.stderr))
+        return result.stdout
+
+    def rows(self):
+        return {row["name"]: row for row in json.loads(self.var("list", "--json"))}
+
+    def value(self, name):
+        return self.rows()[f"Main.{name}"]["value"]
+
+    def force(self, *words):
+        """A window that forces; it does when this returns."""
+        process = subprocess.Popen(self.words("force", "--allow-write", *words), stderr=subprocess.PIPE, text=True)
+        expect("forced" in process.stderr.readline(), "the window says that it forces")
+        return process
+
+    def counts_again(self, what):
+        end = time.monotonic() + 10
+        while self.rows()["Main.n"]["forced"] and time.monotonic() < end:
+            time.sleep(0.05)
+        first = self.value("n")
+        time.sleep(0.1)
+        expect(not self.rows()["Main.n"]["forced"] and self.value("n") != first, f"{what}: the program has n again", first)
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        text = self.process.communicate(timeout=30)[0]
+        expect(self.process.returncode == 0, "the run ends well", text)
+
+
+def check_values(run):
+    expect(set(run.rows()) >= {"Main.n", "Main.goal", "Main.seen"}, "list", run.rows().keys())
+    expect("3" in run.var("get", "main.goal"), "get")
+    run.var("get", "Main.goat", status=1, says='did you mean "Main.goal"')
+    run.var("set", "--allow-write", "Main.goal=-1.5", "Main.big=-9007199254740993")
+    expect(run.value("goal") == -1.5 and run.value("big") == -9007199254740992, "set", run.rows())
+    run.var("set", "Main.goal=1", status=2, says="--allow-write")
+    run.var("set", "--allow-write", "Main.nothing=1", status=1, says="no variable")
+    for wrong in ("Main.n=32768", "Main.n=1.5", "Main.copy=2", "Main.r=1e39"):
+        run.var("set", "--allow-write", wrong, status=1, says="is expected to be a value of")
+    run.var("set", "--allow-write", "Main.n=x", status=2, says="no value")
+
+
+def check_forced(run):
+    window = run.force("Main.n=77", "Main.seen=TRUE")
+    for _ in range(5):
+        expect(run.value("n") == 77 and run.value("copy") == 1, "forced values hold", run.rows())
+        time.sleep(0.05)
+    expect("FORCED" in run.var("get", "Main.n"), "forced variables are marked")
+    run.var("set", "--allow-write", "Main.n=3", status=1, says="is forced")
+    run.var("force", "--allow-write", "Main.n=3", status=1, says="is forced")
+    window.send_signal(signal.SIGINT)
+    expect(window.wait(10) == 0, "the window ends well")
+    run.counts_again("Ctrl-C")
+    expect(run.value("copy") == 0, "the input is that of the terminal again", run.rows())
+    for number, what in ((signal.SIGKILL, "killed"), (signal.SIGSTOP, "suspended")):
+        window = run.force("Main.n=78")
+        window.send_signal(number)
+        run.counts_again(what)
+        window.kill()
+        window.wait(10)
+    window = run.force("Main.n=79")
+    run.var("release", "Main.n")
+    window.send_signal(signal.SIGINT)
+    window.wait(10)
+    run.counts_again("released")
+    log = subprocess.run([CM1E, "log", "--attach", str(run.process.pid)], capture_output=True, text=True, timeout=30).stdout
+    for text in ("Main.n was forced to 77", "Main.n is no longer forced to 77", "Main.goal was set to -1.5"):
+        expect(text in log, f"the log says \"{text}\"", log)
+
+
+def check_consent(run):
+    expect(run.value("goal") == 3, "who may look sees values")
+    run.var("set", "--allow-write", "Main.goal=1", status=1, says="control: maintain")
+    run.var("force", "--allow-write", "Main.goal=1", status=1, says="control: maintain")
+    run.var("release", "Main.goal", status=1, says="control: maintain")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    os.environ["CM1E_RUNTIME_DIR"] = os.path.join(folder, "run")
+    os.mkdir("run", 0o700)
+    with open(os.path.join(SOURCE, "examples", "machine.yaml"), encoding="utf-8") as file:
+        observe = file.read()
+    for name, text in (("force.st", PROGRAM), ("observe.yaml", observe),
+                       ("maintain.yaml", observe.replace("  interface: sim", "  interface: sim\n  control: maintain", 1))):
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text)
+    built = subprocess.run([CM1E, "st", "build", "force.st"], capture_output=True, text=True, timeout=60)
+    if built.returncode:
+        sys.exit(built.stderr)
+    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_values, check_forced))):
+        program = Run(bus)
+        for check in checks:
+            check(program)
+        program.end()
+if faults:
+    sys.exit("\n".join(faults) + f"\n{len(faults)} faults")

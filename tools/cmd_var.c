@@ -1,0 +1,241 @@
+/** cm1e var: variables of a program that another process runs: their values, and values from outside, once or forced. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "attach.h"
+#include "core/clock.h"
+#include "core/near.h"
+#include "command.h"
+
+enum { KEY_ALLOW = 0xC00, KEY_FOR, NAMES = 64, KEEP_MS = 1000, PAUSE_US = 200000 };
+
+typedef struct var_options {
+    common_options_t common;
+    const char *word;
+    const char *names[NAMES]; /**< NAME, or NAME=VALUE */
+    int count;
+    double seconds;
+    bool allow;
+} var_options_t;
+
+static bool writes(const var_options_t *options)
+{
+    return strcmp(options->word, "set") == 0 || strcmp(options->word, "force") == 0;
+}
+
+static void check(const var_options_t *options, struct argp_state *state)
+{
+    if (!options->word || choose_word("the first word", options->word, "list|get|set|force|release") < 0)
+        argp_error(state, "what is to be done? list, get, set, force or release");
+    if (options->count == 0 && strcmp(options->word, "list") != 0)
+        argp_error(state, "which variable? `cm1e var list` shows them");
+    for (int i = 0; i < options->count && writes(options); i++)
+        if (!strchr(options->names[i], '=') || strchr(options->names[i], '=') == options->names[i])
+            argp_error(state, "\"%s\": expected NAME=VALUE, as Main.start=TRUE", options->names[i]);
+    if (writes(options) && !options->allow)
+        argp_error(state, "a variable from outside may let the program move a motor: --allow-write");
+    if (options->seconds > 0 && strcmp(options->word, "force") != 0)
+        argp_error(state, "--for is for force");
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    var_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case KEY_ALLOW: options->allow = true; return 0;
+    case KEY_FOR: return parse_seconds(arg, 1000000, &options->seconds) ? 0 : EINVAL;
+    case ARGP_KEY_ARG:
+        if (!options->word)
+            options->word = arg;
+        else if (options->count < NAMES)
+            options->names[options->count++] = arg;
+        else
+            argp_error(state, "at most %d variables", NAMES);
+        return 0;
+    case ARGP_KEY_END: check(options, state); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option table[] = {
+    {"allow-write", KEY_ALLOW, NULL, 0, "Give variables values: the program may move a motor by them", 0},
+    {"for", KEY_FOR, "SECONDS", 0, "force: how long (default: until Ctrl-C)", 0},
+    {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
+const struct argp argp_var = {
+    table, parse, "list [PART-OF-A-NAME...]\nget NAME...\nset NAME=VALUE...\nforce NAME=VALUE...\nrelease NAME...",
+    "Variables of a running program in Structured Text (`cm1e run`). set writes once; force keeps the values, whatever the "
+    "program writes, until this command ends. Forced variables are marked, and the event log has who was forced when. "
+    "Both need control: maintain in the bus file of the program. release ends what anybody forces.", children, NULL, NULL};
+
+/* ---- values ------------------------------------------------------------------------------------------------------ */
+
+static const char *text_of(const json_t *object, const char *name)
+{
+    const char *text = json_string_value(json_object_get(object, name));
+    return text ? text : "";
+}
+
+static void print_value(const json_t *row)
+{
+    const double value = json_number_value(json_object_get(row, "value"));
+    if (strcmp(text_of(row, "type"), "BOOL") == 0)
+        printf("%s", value != 0 ? "TRUE" : "FALSE");
+    else
+        printf("%.15g%s%s", value, *text_of(row, "unit") ? " " : "", text_of(row, "unit"));
+}
+
+static void print_row(const json_t *row)
+{
+    printf("%-40s %-6s ", text_of(row, "name"), text_of(row, "type"));
+    print_value(row);
+    puts(json_is_true(json_object_get(row, "forced")) ? "  FORCED" : "");
+}
+
+/** The name is wanted: one of those stated, or, of a list, with one of them in it. */
+static bool is_wanted(const var_options_t *options, const char *name)
+{
+    const bool list = strcmp(options->word, "list") == 0;
+    bool wanted = list && options->count == 0;
+    for (int i = 0; i < options->count; i++)
+        wanted = wanted || (list ? strcasestr(name, options->names[i]) != NULL : strcasecmp(name, options->names[i]) == 0);
+    return wanted;
+}
+
+static bool refuse_unknown(const var_options_t *options, const json_t *all)
+{
+    bool good = true;
+    for (int i = 0; i < options->count && strcmp(options->word, "get") == 0; i++) {
+        char text[CM1E_NEAR_TEXT_BYTES];
+        cm1e_near_t near = {.word = options->names[i]};
+        bool found = false;
+        for (size_t k = 0; k < json_array_size(all); k++) {
+            const char *name = text_of(json_array_get(all, k), "name");
+            found = found || strcasecmp(name, options->names[i]) == 0;
+            cm1e_near_look(&near, name);
+        }
+        if (!found)
+            complain("the program has no variable \"%s\"%s", options->names[i], cm1e_near_text(&near, text, sizeof text));
+        good = good && found;
+    }
+    return good;
+}
+
+static int show(const var_options_t *options, cm1e_control_t *control)
+{
+    cm1e_diag_t diag = {0};
+    json_t *all = ask_program(control, json_pack("{s:s}", "request", "variables"), "variables", &diag);
+    if (!all)
+        return fail(&diag);
+    json_t *chosen = json_array();
+    for (size_t i = 0; i < json_array_size(all); i++)
+        if (is_wanted(options, text_of(json_array_get(all, i), "name")))
+            json_array_append(chosen, json_array_get(all, i));
+    const bool good = refuse_unknown(options, all);
+    for (size_t i = 0; i < json_array_size(chosen) && !options->common.json; i++)
+        print_row(json_array_get(chosen, i));
+    if (json_array_size(all) == 0 && !options->common.json)
+        complain("the program has named no variables; those of a program in Structured Text have names");
+    if (options->common.json)
+        print_json(json_incref(chosen));
+    json_decref(chosen);
+    json_decref(all);
+    return good ? EXIT_OK : EXIT_FAILED;
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+/** A truth value or a number as text; NULL with a complaint: it is none of these. */
+static json_t *value_of(const char *text)
+{
+    char *end;
+    if (strcasecmp(text, "TRUE") == 0 || strcasecmp(text, "FALSE") == 0)
+        return json_boolean(strcasecmp(text, "TRUE") == 0);
+    errno = 0;
+    const long long whole = strtoll(text, &end, 0);
+    if (*text && !*end && errno == 0)
+        return json_integer(whole);
+    const double real = strtod(text, &end);
+    if (*text && !*end)
+        return json_real(real);
+    complain("\"%s\" is no value: expected TRUE, FALSE or a number", text);
+    return NULL;
+}
+
+/** NAME, NAME=VALUE, or a release: false, with a complaint or `diag`. */
+static bool change(const var_options_t *options, cm1e_control_t *control, int i, cm1e_diag_t *diag)
+{
+    const char *equals = strchr(options->names[i], '=');
+    const bool release = strcmp(options->word, "release") == 0;
+    json_t *value = release ? json_null() : value_of(equals + 1);
+    if (!value)
+        return false;
+    json_t *name = json_stringn(options->names[i], release ? strlen(options->names[i]) : (size_t)(equals - options->names[i]));
+    json_t *done = ask_program(control, json_pack("{s:s, s:o, s:o, s:b, s:i}", "request", "variable", "name", name, "value",
+                                                  value, "force", strcmp(options->word, "force") == 0, "keep_ms", KEEP_MS),
+                               "variable", diag);
+    json_decref(done);
+    return done != NULL;
+}
+
+static bool change_all(const var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
+{
+    bool good = true;
+    for (int i = 0; i < options->count && good; i++)
+        good = change(options, control, i, diag);
+    return good;
+}
+
+/** Renews what is forced until the end; the program ends it if this process is suspended or killed. */
+static int force(const var_options_t *options, cm1e_control_t *control)
+{
+    cm1e_diag_t diag = {0};
+    const int64_t begin_ns = cm1e_clock_now(cm1e_clock_monotonic());
+    bool good = change_all(options, control, &diag), ended = !good;
+    if (good) {
+        fprintf(stderr, "%d variable%s forced; %s\n", options->count, options->count == 1 ? " is" : "s are",
+                options->seconds > 0 ? "the program has them again afterwards" : "Ctrl-C gives them back to the program");
+        fflush(stderr);
+    }
+    while (good && !ended && !attached_signalled()) {
+        usleep(PAUSE_US);
+        good = change_all(options, control, &diag);
+        ended = options->seconds > 0 &&
+                (double)(cm1e_clock_now(cm1e_clock_monotonic()) - begin_ns) * 1e-9 >= options->seconds;
+    }
+    return good ? EXIT_OK : diag.text[0] ? fail(&diag) : EXIT_FAILED;
+}
+
+static int act(const var_options_t *options, cm1e_control_t *control)
+{
+    cm1e_diag_t diag = {0};
+    if (strcmp(options->word, "list") == 0 || strcmp(options->word, "get") == 0)
+        return show(options, control);
+    attached_catch_signals();
+    if (strcmp(options->word, "force") == 0)
+        return force(options, control);
+    if (change_all(options, control, &diag))
+        return EXIT_OK;
+    return diag.text[0] ? fail(&diag) : EXIT_WRONG_USE;
+}
+
+int command_var(int argc, char **argv)
+{
+    static cm1e_bus_config_t config;
+    var_options_t options = {0};
+    cm1e_diag_t diag = {0};
+    cm1e_control_t *control;
+    if (parse_options(&argp_var, argc, argv, &options) || !load_network(&options.common, &config))
+        return EXIT_WRONG_USE;
+    const cm1e_error_t error = connect_network(&options.common, &config, &control, &diag);
+    cm1e_bus_config_free(&config);
+    if (error != CM1E_OK)
+        return fail(&diag);
+    const int status = act(&options, control);
+    cm1e_control_close(control); /* with it, what is forced is the program's again */
+    return status;
+}
