@@ -11,7 +11,7 @@ import re
 import sys
 
 SOURCE = sys.argv[1]
-FOLDERS = ("include", "src", "fb", "tools", "examples", "bench", "tests")
+FOLDERS = ("include", "src", "fb", "tools", "examples", "bench", "tests", "bindings")
 TYPE = "cm1e_error_t"
 TOKEN = re.compile(r"[A-Za-z_]\w*|0[xX]\w+|\d[\w.]*|->|&&|\|\||[=!<>]=|\S")
 NAME = re.compile(r"[A-Za-z_]\w*\Z")

@@ -14,7 +14,7 @@ import re
 import sys
 
 SOURCE = sys.argv[1]
-PATH = re.compile(r"(?<![\w/.:-])((?:scripts|examples|bench|docs|src|fb|include|tests|tools|cmake)/[\w./*-]*)(<?)")
+PATH = re.compile(r"(?<![\w/.:-])((?:bindings|scripts|examples|bench|docs|src|fb|include|tests|tools|cmake)/[\w./*-]*)(<?)")
 TABLES_WITH_PROOF = ("docs/FEATURES.md", "docs/SAFETY.md")
 faults = []
 
@@ -147,7 +147,9 @@ def test_names():
 
 def case_names():
     text = "".join(read(path) for path in expand("tests/*/test_*.c"))
-    return set(re.findall(r"^START_TEST\((\w+)\)|^static void (test_\w+)\(void\)", text, re.MULTILINE))
+    python = "".join(read(path) for path in expand("bindings/python/tests/test_*.py"))
+    return set(re.findall(r"^START_TEST\((\w+)\)|^static void (test_\w+)\(void\)", text, re.MULTILINE)) | \
+        set(re.findall(r"^(?:async )?def (test_\w+)()\(", python, re.MULTILINE))
 
 
 def check_proofs():

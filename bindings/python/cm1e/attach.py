@@ -1,0 +1,251 @@
+"""Looks at a program that runs, from outside, through its control socket (docs/CONTROL.md). The program may be of any
+language, and in real time."""
+from __future__ import annotations
+
+import contextlib
+import glob
+import json
+import os
+import re
+import socket
+import struct
+import time
+from types import TracebackType
+from typing import Any, Iterator, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+
+from . import errors
+from ._cm1e import lib
+from .trace import Trace
+
+Target = Union[int, str, "os.PathLike[str]", None]
+
+
+def _folders() -> list[str]:
+    """Where programs put their sockets; root looks into those of users too."""
+    folders = [os.environ.get("CM1E_RUNTIME_DIR"), "/run/cm1e",
+               os.path.join(os.environ["XDG_RUNTIME_DIR"], "cm1e") if "XDG_RUNTIME_DIR" in os.environ else None,
+               f"/tmp/cm1e-{os.getuid()}"]
+    if os.getuid() == 0:
+        folders += glob.glob("/tmp/cm1e-*") + glob.glob("/run/user/*/cm1e")
+    return list(dict.fromkeys(folder for folder in folders if folder))
+
+
+class Program(NamedTuple):
+    """A running program with a control socket."""
+    pid: int
+    path: str
+
+
+def programs() -> list[Program]:
+    """The running programs that can be attached to."""
+    found = []
+    for folder in _folders():
+        for path in sorted(glob.glob(os.path.join(folder, "cm1e-*-*.sock"))):
+            match = re.search(r"cm1e-(\d+)-\d+\.sock$", path)
+            if match and os.path.exists(f"/proc/{match.group(1)}"):
+                found.append(Program(int(match.group(1)), path))
+    return found
+
+
+def _path_of(target: Target) -> str:
+    if target is not None and not isinstance(target, int):
+        return os.fspath(target)
+    listed = [program for program in programs() if target in (None, program.pid)]
+    if not listed:
+        which = f"Process {target}" if target is not None else "No program"
+        raise errors.NotFoundError(f"{which} has {'no' if target is not None else 'a'} control socket.",
+                                   lib.CM1E_ERROR_NOT_FOUND)
+    if len(listed) > 1:
+        raise errors.StateError("Several programs run: " + ", ".join(program.path for program in listed) +
+                                ". Name one of these paths.", lib.CM1E_ERROR_STATE)
+    return listed[0].path
+
+
+class Attached:
+    """A connection to a running program: the path of its socket, the number of its process, or None: the only one that
+    there is. What it may do, `control` in the bus file of the program says. What it moves ends with the connection."""
+
+    def __init__(self, target: Target = None, timeout: float = 5.0) -> None:
+        self._path = _path_of(target)
+        self._socket: Optional[socket.socket] = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._socket.settimeout(timeout)
+        try:
+            self._socket.connect(self._path)
+        except OSError as error:
+            self.close()
+            raise errors.NotFoundError(f"{self._path}: {error.strerror or error}.", lib.CM1E_ERROR_NOT_FOUND) from None
+        self.hello: dict[str, Any] = self.ask("hello", protocol=1)
+
+    def close(self) -> None:
+        """Ends the connection, and what it moves."""
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+
+    def __enter__(self) -> Attached:
+        return self
+
+    def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
+                 traceback: Optional[TracebackType]) -> None:
+        self.close()
+
+    # ---- the protocol ------------------------------------------------------------------------------------------------
+
+    def _read(self, size: int) -> bytes:
+        assert self._socket is not None
+        data = b""
+        while len(data) < size:
+            part = self._socket.recv(min(size - len(data), 1 << 20))
+            if not part:
+                self.close()
+                raise errors.StateError("The program has ended.", lib.CM1E_ERROR_STATE)
+            data += part
+        return data
+
+    def ask(self, request: str, **arguments: object) -> Any:
+        """Any request of docs/CONTROL.md; returns the member of the reply that has its name. Arguments that are None are
+        not sent."""
+        message = {"request": request, **{name: value for name, value in arguments.items() if value is not None}}
+        return self._exchange(message).get(_MEMBER.get(request, request))
+
+    def _exchange(self, message: dict[str, object]) -> Any:
+        if self._socket is None:
+            errors.closed("The connection")
+        data = json.dumps(message).encode()
+        try:
+            self._socket.sendall(struct.pack(">I", len(data)) + data)
+            reply = json.loads(self._read(struct.unpack(">I", self._read(4))[0]))
+        except TimeoutError:
+            self.close()  # its reply, if it comes, would be taken for that of the next request
+            raise errors.WaitTimeout("The program does not answer.", lib.CM1E_ERROR_TIMEOUT) from None
+        except OSError:
+            self.close()
+            raise errors.StateError("The program has ended.", lib.CM1E_ERROR_STATE) from None
+        if not reply["ok"]:
+            diag = reply["error"]
+            raise errors._class_of(diag["code"])(diag["text"], diag["code"], diag["foreign_code"])
+        return reply
+
+    # ---- looking -----------------------------------------------------------------------------------------------------
+
+    @property
+    def axes(self) -> list[dict[str, Any]]:
+        """The axes with the members of docs/CONTROL.md: name, state, position ..."""
+        return list(self.ask("axes"))
+
+    def axis(self, name: str) -> dict[str, Any]:
+        """One of them."""
+        axes = self.axes
+        for axis in axes:
+            if axis["name"] == name:
+                return axis
+        raise errors.NotFoundError(f"The program has no axis {name!r}; it has "
+                                   f"{', '.join(axis['name'] for axis in axes)}.", lib.CM1E_ERROR_NOT_FOUND)
+
+    @property
+    def slaves(self) -> list[dict[str, Any]]:
+        return list(self.ask("slaves"))
+
+    @property
+    def statistics(self) -> dict[str, Any]:
+        return dict(self.ask("statistics"))
+
+    @property
+    def io(self) -> list[dict[str, Any]]:
+        """The signals of all slaves with their values."""
+        return list(self.ask("io"))
+
+    def log(self, after: int = 0) -> list[dict[str, Any]]:
+        """The records of the event log behind number `after`."""
+        events: list[dict[str, Any]] = []
+        while True:
+            part = self.ask("log", after=after)
+            events += part["events"]
+            if not part["events"]:
+                return events
+            after = part["last"]
+
+    def sdo_read(self, slave: int, index: int, subindex: int = 0, size: int = 512) -> bytes:
+        """The bytes of an object, as on the wire."""
+        return bytes.fromhex(self.ask("sdo_read", slave=slave, index=index, subindex=subindex, size=size))
+
+    def sdo_write(self, slave: int, index: int, subindex: int, value: bytes) -> None:
+        """Writes an object; needs control: maintain."""
+        self.ask("sdo_write", slave=slave, index=index, subindex=subindex, data=value.hex())
+
+    def record(self, seconds: float, every: int = 1, objects: Sequence[tuple[str, int, int]] = ()) -> Trace:
+        """Records all signals for so long, every `every`-th cycle, with objects in the process data: (axis, index,
+        subindex). It uses a connection of its own, because a recording ends with its connection."""
+        with Attached(self._path) as other:
+            named = [{"axis": other.axis(axis)["number"], "index": index, "subindex": subindex}
+                     for axis, index, subindex in objects]
+            begun = other.ask("record", every=every, objects=named)
+            width = 8 * (1 + len(begun["columns"]))
+            end, parts = time.monotonic() + seconds, [b""]
+            while time.monotonic() < end:
+                time.sleep(min(0.1, max(0.0, end - time.monotonic())))
+                parts.append(bytes.fromhex(other.ask("samples")["data"]))
+        raw = b"".join(parts)
+        names = ["time"] + [column["name"] for column in begun["columns"]]
+        array = np.zeros(len(raw) // width, dtype=[(name, "<f8") for name in names])
+        table = np.frombuffer(raw, dtype=np.dtype([("t", "<i8"), ("v", "<f8", (len(names) - 1,))]))
+        array["time"] = table["t"] * 1e-9
+        for number, name in enumerate(names[1:]):
+            array[name] = table["v"][:, number]
+        return Trace(array)
+
+    # ---- moving, with control: maintain ------------------------------------------------------------------------------
+
+    @contextlib.contextmanager
+    def enabled(self, axis: str, timeout: float = 5.0) -> Iterator[None]:
+        """Power for an axis that the program does not command, for as long as the block lasts; it has to be
+        renewed at least every 2 s, by jog() or keep()."""
+        number = self.axis(axis)["number"]
+        self.ask("enable", axis=number)
+        try:
+            end = time.monotonic() + timeout
+            while not self.axis(axis)["powered"]:
+                if time.monotonic() > end:
+                    raise errors.WaitTimeout(f"{axis} is not enabled after {timeout} s.", lib.CM1E_ERROR_TIMEOUT)
+                time.sleep(0.01)
+            yield
+        finally:
+            if self._socket is not None:
+                with contextlib.suppress(errors.Error):
+                    self.ask("disable", axis=number)
+
+    def keep(self) -> None:
+        """Renews what this connection holds."""
+        self.ask("keep")
+
+    def jog(self, axis: str, velocity: float, seconds: float, acceleration: float = 0) -> None:
+        """Moves an axis at a velocity for so long, then ramps it down. If this process stands still meanwhile, the axis
+        is halted after a quarter of a second."""
+        number, end = self.axis(axis)["number"], time.monotonic() + seconds
+        try:
+            while time.monotonic() < end:
+                self.ask("jog", axis=number, velocity=velocity, acceleration=acceleration)
+                self.keep()
+                time.sleep(min(0.05, max(0.0, end - time.monotonic())))
+        finally:
+            if self._socket is not None:
+                self.ask("stop", axis=number)
+
+    def reset(self, axis: str) -> None:
+        """As MC_Reset."""
+        self.ask("reset", axis=self.axis(axis)["number"])
+
+    def output(self, name: str, value: Optional[float], keep: float = 1.0) -> None:
+        """Sets an output of a slave without a motor for so many seconds; None lets go of it."""
+        self._exchange({"request": "output", "name": name, "value": value, "keep_ms": round(keep * 1000)})
+
+
+_MEMBER = {"sdo_read": "data", "sdo_info": "data", "sii_read": "data", "registers": "data", "sdo_write": "data",
+           "file_data": "data"}
+
+
+def attach(target: Target = None) -> Attached:
+    """Attached(target)."""
+    return Attached(target)
