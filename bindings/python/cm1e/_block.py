@@ -3,9 +3,10 @@ from __future__ import annotations
 
 import difflib
 import math
+from collections import deque
 from datetime import timedelta
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, NamedTuple, Optional
 
 from . import errors
 from ._cm1e import ffi, lib
@@ -106,11 +107,14 @@ _SCALARS = {"float": _number, "int": _integer, "enum": _enumerator, "timedelta":
 
 
 def _sequence(member: Member, value: Any) -> list[Any]:
+    if isinstance(value, (str, bytes)):
+        raise _wrong(member, "a sequence", value)
     items = [value] if isinstance(value, Struct) else list(value)
-    if member.of is not None:
-        for item in items:
-            if not isinstance(item, member.of):
-                raise _wrong(member, member.of.__name__, item)
+    if member.of is None:
+        return [_number(member, item) for item in items]
+    for item in items:
+        if not isinstance(item, member.of):
+            raise _wrong(member, member.of.__name__, item)
     return items
 
 
@@ -118,6 +122,10 @@ class Struct:
     """A structure in memory of C."""
     _c_type: str
     _members: Mapping[str, Member]
+    _data: Any
+    _kept: dict[str, Any]
+    _memory: dict[str, Any]
+    _before: deque[Any]
 
     @staticmethod
     def _table(*members: Member) -> dict[str, Member]:
@@ -127,6 +135,7 @@ class Struct:
         object.__setattr__(self, "_data", ffi.new(self._c_type + " *"))
         object.__setattr__(self, "_kept", {})    # the objects that members name
         object.__setattr__(self, "_memory", {})  # and what C needs of them
+        object.__setattr__(self, "_before", deque(maxlen=8))  # which the cycle may just be reading
         for name, value in values.items():
             if value is not None:
                 setattr(self, name, value)
@@ -164,13 +173,21 @@ class Struct:
             raise AttributeError(f"{name} is an output of {type(self).__name__}", name=name, obj=self)
         data = ffi.new(self._c_type + " *")
         kept = self._put(member, data, value)
+        self._check_count(name, value)
         if kept is None:
             self._write(member, data)
             return
-        before = self._memory.get(name)  # may be in use until the cycle has the new value
+        self._before.append(self._memory.get(name))
         self._kept[name], self._memory[name] = kept, _memory_of(kept)
         self._write(member, data)
-        del before
+        if f"NumberOf{name}" in self._members:
+            setattr(self, f"NumberOf{name}", len(kept))
+
+    def _check_count(self, name: str, value: Any) -> None:
+        """C does not know how many elements are behind a pointer."""
+        counted = self._members.get(name.removeprefix("NumberOf")) if name.startswith("NumberOf") else None
+        if counted is not None and counted.kind == "reference" and value > len(self._kept.get(counted.name, ())):
+            raise ValueError(f"{name} is {value}; {counted.name} has {len(self._kept.get(counted.name, ()))}")
 
     def _put(self, member: Member, data: Any, value: Any) -> Any:
         """Writes a value into `data`; returns what must live as long as it is there."""
@@ -194,10 +211,6 @@ class Struct:
         return None
 
     def _point(self, member: Member, data: Any, value: Any) -> Any:
-        if member.of is None:
-            memory = ffi.new(f"{member.type}[]", [float(item) for item in value])
-            setattr(data, member.name, memory)
-            return _Pointed(value, memory)
         items = _sequence(member, value)
         memory = ffi.new(f"{member.type}[]", len(items))
         for index, item in enumerate(items):
@@ -230,6 +243,15 @@ def _memory_of(kept: Any) -> Any:
     if isinstance(kept, Reference):
         return kept._handle
     return kept.memory if isinstance(kept, _Pointed) else (kept._data, kept._memory)
+
+
+def references(struct: Struct) -> Iterator[Reference]:
+    """The axes and groups that a block names, also in its structures."""
+    for kept in struct._kept.values():
+        if isinstance(kept, Reference):
+            yield kept
+        elif isinstance(kept, Struct):
+            yield from references(kept)
 
 
 def _value(member: Member, data: Any) -> Any:
@@ -270,6 +292,9 @@ class Block(Struct):
     def __init__(self, values: Mapping[str, Any]) -> None:
         self._bus = None
         super().__init__(values)
+        for member in self._members.values():
+            if member.section == "in_out" and member.kind == "struct" and member.name not in self._kept:
+                setattr(self, member.name, member.of())
         outputs = [member.name for member in self._members.values()
                    if member.section == "output" and member.kind == "bool"]
         self._ends = outputs[:1] + [name for name in ("CommandAborted", "Error") if name in outputs[1:]]
@@ -303,8 +328,8 @@ class Block(Struct):
         for name, value in values.items():
             if value is not None:
                 setattr(self, name, value)
-        axis = next((kept for kept in self._kept.values() if isinstance(kept, Reference)), None)
-        bus = bus_of_callback() or (axis.bus if axis else None)
+        reference = next(references(self), None)
+        bus = bus_of_callback() or (reference.bus if reference else None)
         if self._bus is not None:
             raise errors.StateError(f"{self._type} is attached: the cycle calls it already.", lib.CM1E_ERROR_STATE)
         if bus is None:
@@ -315,7 +340,7 @@ class Block(Struct):
     def _error(self) -> Optional[errors.Error]:
         """What its outputs Error and CommandAborted say."""
         where = f"{self._type}"
-        reference = next((kept for kept in self._kept.values() if isinstance(kept, Reference)), None)
+        reference = next(references(self), None)
         if reference is not None:
             where += f" of {reference.name}"
         if "Error" in self._members and self.Error:

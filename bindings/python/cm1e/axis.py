@@ -88,6 +88,8 @@ class Command:
             self._break_off(errors.CommandAborted("The command was stopped.", lib.CM1E_ERROR_CANCELLED))
 
     def _finish(self) -> None:
+        if self._ended:
+            return
         self._ended = True
         self._failed = self.block._error()
         self._bus._release(self.block)

@@ -13,7 +13,7 @@ from typing import Any, Callable, Literal, Optional, Sequence, Union
 
 from . import blocks as fb
 from . import errors
-from ._block import AXES_GROUP_REF, AXIS_REF, Block, Reference
+from ._block import AXES_GROUP_REF, AXIS_REF, Block, Reference, references
 from ._cm1e import ffi, lib
 from .axis import Axis, AxisInfo, Command, Group, info_of
 from .codes import AxisState
@@ -82,6 +82,7 @@ class Bus:
         self._kept: list[Any] = []
         self._callbacks: list[Callback] = []
         self._stops: list[Block] = []
+        self._unwaited: list[Command] = []
         self._started = self._closed = False
         self._session = self._open(config)
         self._finalizer = weakref.finalize(self, _end, self._session, self._process, self._kept)
@@ -236,10 +237,8 @@ class Bus:
                 raise TypeError(f"expected a function block, not {block!r}")
             if block._bus is not None:
                 raise errors.StateError(f"{block._type} is attached already.", lib.CM1E_ERROR_STATE)
-            for kept in block._kept.values():
-                if isinstance(kept, Reference) and kept.bus is not self:
-                    raise errors.AxisError(f"{kept.name} is on another bus.", lib.CM1E_ERROR_FB_AXIS_REF)
             self._check_started()
+            self._check_own(block)
             self._kept.append(block._c)
             self._kept.append((block._data, block._offsets, block._memory))
             self._do(lib.cm1e_py_block_add, block._c)
@@ -262,18 +261,30 @@ class Bus:
             raise TypeError(f"{block._type} has no input Execute")
         if wait:
             self._check_may_wait()
+        for earlier in [command for command in self._unwaited if command.done]:
+            self._unwaited.remove(earlier)
+            earlier._finish()
         block.Execute = True
         self.attach(block)
         command = Command(self, block, reference)
-        return command.wait(timeout) if wait else command
+        if wait:
+            return command.wait(timeout)
+        self._unwaited.append(command)
+        return command
 
     def _check_started(self) -> None:
         self._live()
         if not self.running:
             raise errors.StateError("The bus does not run: start it first, or it has ended.", lib.CM1E_ERROR_STATE)
 
+    def _check_own(self, block: Block) -> None:
+        for reference in references(block):
+            if reference.bus is not self:
+                raise errors.AxisError(f"{reference.name} is on another bus.", lib.CM1E_ERROR_FB_AXIS_REF)
+
     def _call(self, block: Block) -> None:
         """One call in the present cycle."""
+        self._check_own(block)
         if not self.virtual_time:
             raise errors.StateError("In real time the cycle calls the blocks that are attached to the bus.",
                                     lib.CM1E_ERROR_STATE)
