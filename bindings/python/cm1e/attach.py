@@ -24,7 +24,9 @@ Target = Union[int, str, "os.PathLike[str]", None]
 
 def _folders() -> list[str]:
     """Where programs put their sockets; root looks into those of users too."""
-    folders = [os.environ.get("CM1E_RUNTIME_DIR"), "/run/cm1e",
+    if "CM1E_RUNTIME_DIR" in os.environ:
+        return [os.environ["CM1E_RUNTIME_DIR"]]
+    folders = ["/run/cm1e",
                os.path.join(os.environ["XDG_RUNTIME_DIR"], "cm1e") if "XDG_RUNTIME_DIR" in os.environ else None,
                f"/tmp/cm1e-{os.getuid()}"]
     if os.getuid() == 0:

@@ -1,0 +1,90 @@
+"""Bus files, files for other masters, and the checker."""
+import pytest
+
+import cm1e
+from cm1e import files
+
+BUS = """bus: {interface: sim, cycle_time_us: 1000}
+axes:
+  - {name: X, position: 1, motor: CM1-E-17S30D, unit: {counts_per_unit: 5000}}
+"""
+
+
+def test_bus_file_is_checked(tmp_path):
+    good, bad = tmp_path / "good.yaml", tmp_path / "bad.yaml"
+    good.write_text(BUS)
+    bad.write_text(BUS.replace("17S30D", "17S31D"))
+    cm1e.check_bus_file(good)
+    with pytest.raises(cm1e.ConfigError, match=r"bad.yaml:3:\d+.*17S31D"):
+        cm1e.check_bus_file(bad)
+    with pytest.raises(cm1e.Error, match="none.yaml"):
+        cm1e.check_bus_file(tmp_path / "none.yaml")
+
+
+def test_bus_of_a_text():
+    with cm1e.Bus(text=BUS, virtual_time=True) as bus:
+        bus["X"].enable()
+
+
+@pytest.mark.parametrize("options, said", [
+    ({"axes": 200}, "configuration"), ({"axes": [{"name": "X" * 40}]}, "too long"),
+    ({"axes": [{"homing": {"methd": 1}}]}, "there is no methd"), ({"control": "all"}, "observe"),
+    ({"realtime": "no"}, "try"), ({"cycle_time": 0.003}, "cycle"), ({"axes": 1, "trace": -1}, "trace"),
+    ({"interface": "x" * 80}, "too long"), ({"interface": "none0"}, "none0")])
+def test_mistakes_in_options(options, said):
+    with pytest.raises(cm1e.Error, match=said):
+        cm1e.Bus(**options).start()
+
+
+@pytest.mark.parametrize("options", [{"axes": "X"}, {"axes": [1]}, {"source": 1.5}, {"source": "a", "axes": 1},
+                                     {"axes": [{"gear_numerator": "1"}]}, {"axes": [{"max_velocity": "fast"}]},
+                                     {"cycle_time": "1"}, {"axes": 1, "trace_objects": [(1, 2, 3)]}])
+def test_wrong_types_of_options(options):
+    with pytest.raises((TypeError, cm1e.Error, AttributeError)):
+        cm1e.Bus(**options)
+
+
+@pytest.mark.parametrize("kind, devices", [("esi", []), ("esi", [{"model": "cm1-e", "mapping": "csp"}]), ("ec-extend", []),
+                                           ("sii", [{"alias": 7, "serial_number": 5}])])
+def test_generated_files_have_no_errors(kind, devices):
+    file = files.generate(kind, devices)
+    assert files.format_of(file.data).lower().replace("_", "-") == kind
+    assert not [finding for finding in files.check_file(file.data) if finding.is_error]
+    assert files.convert(file.data, kind).data == file.data
+
+
+def test_eni_of_a_bus_file(tmp_path):
+    path = tmp_path / "machine.yaml"
+    path.write_text(BUS)
+    file = files.generate_eni(path)
+    assert b"EtherCATConfig" in file.data and files.format_of(file.data) == "ENI"
+
+
+def test_esi_and_sii_become_each_other():
+    sii = files.generate("sii")
+    assert files.format_of(files.convert(sii.data, "esi").data) == "ESI"
+    assert files.format_of(files.convert(files.generate("esi").data, "sii").data) == "SII"
+    with pytest.raises(cm1e.Error):
+        files.convert(files.generate("esi").data, "sii", device=99)
+
+
+def test_checker_finds_what_is_wrong(tmp_path):
+    good = files.generate("esi").data
+    path = tmp_path / "wrong.xml"
+    path.write_bytes(good.replace(b"<Index>#x6040</Index>", b"<Index>#x6f40</Index>", 1))
+    findings = cm1e.check_file(path)
+    assert any(finding.is_error and finding.line > 1 and finding.rule for finding in findings)
+    with pytest.raises(cm1e.FileError):
+        cm1e.check_file(b"nothing that is known")
+    with pytest.raises(cm1e.FileError, match="line|end|read"):
+        cm1e.check_file(good[:len(good) // 2])
+
+
+def test_options_of_files():
+    assert b"AXIS" in files.generate_trio_program().data.upper()
+    with pytest.raises(cm1e.ConfigError, match="esi, ec-extend"):
+        files.generate("edi")
+    with pytest.raises(cm1e.ConfigError, match="eb01"):
+        files.generate("esi", [{"model": "eb03"}])
+    with pytest.raises(cm1e.ConfigError, match="vendor"):
+        files.generate("esi", [{"model": "eb01"}])
