@@ -175,7 +175,12 @@ class Bus:
 
     def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
                  traceback: Optional[TracebackType]) -> None:
-        self.close()
+        try:
+            self.close()
+        except errors.Error as at_close:
+            if error is None:
+                raise
+            error.add_note(f"The bus was closed with an error: {at_close}")
 
     @property
     def running(self) -> bool:
@@ -344,7 +349,9 @@ class Bus:
     @property
     def time(self) -> float:
         """s since the first cycle."""
-        return float(lib.cm1e_py_time_ns(self._live())) * 1e-9
+        time_ns = ffi.new("int64_t *")
+        self._do(lib.cm1e_py_time, time_ns)
+        return float(time_ns[0]) * 1e-9
 
     def on_cycle(self, callback: Callback) -> Callback:
         """Calls a function in every cycle, where programs are called: only on virtual time, because Python does not keep

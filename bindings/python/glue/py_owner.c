@@ -123,7 +123,7 @@ cm1e_error_t py_owner_begin(cm1e_py_session_t *s, cm1e_diag_t *diag)
     pthread_sigmask(SIG_SETMASK, &all, &before);
     const int failed = pthread_create(&s->owner, NULL, own, s);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
-    s->joined = failed != 0;
+    s->quit = s->joined = failed != 0;
     return failed ? cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "The thread of the bus cannot be made.") : CM1E_OK;
 }
 
@@ -159,7 +159,7 @@ void py_owner_end_run(cm1e_py_session_t *s)
     if (s->scheduler)
         cm1e_scheduler_stop(s->scheduler);
     pthread_cond_broadcast(&s->changed);
-    while (atomic_load(&s->running))
+    while (atomic_load(&s->running) || (!s->waits && !s->quit)) /* behind a run it takes jobs again */
         pthread_cond_wait(&s->changed, &s->mutex);
     pthread_mutex_unlock(&s->mutex);
 }

@@ -40,8 +40,8 @@ void cm1e_py_free(cm1e_py_session_t *session);
 
 /** Whether the cycle runs. */
 bool cm1e_py_runs(cm1e_py_session_t *session);
-/** Time of the run in ns, of its last cycle. */
-int64_t cm1e_py_time_ns(cm1e_py_session_t *session);
+/** Time of the present cycle since the first one, in ns. */
+cm1e_error_t cm1e_py_time(cm1e_py_session_t *session, int64_t *time_ns);
 
 /* ---- blocks ------------------------------------------------------------------------------------------------------ */
 

@@ -178,12 +178,17 @@ cm1e_error_t cm1e_py_probe(cm1e_py_session_t *session, uint32_t position, cm1e_s
 
 /* ---- what any thread may look at --------------------------------------------------------------------------------- */
 
-int64_t cm1e_py_time_ns(cm1e_py_session_t *s)
+static cm1e_error_t read_time(cm1e_py_session_t *s, void *time_ns)
 {
-    pthread_mutex_lock(&s->mutex);
-    const int64_t time_ns = s->scheduler ? cm1e_scheduler_time_ns(s->scheduler) : 0;
-    pthread_mutex_unlock(&s->mutex);
-    return time_ns;
+    if (!s->bus)
+        return CM1E_ERROR_STATE;
+    *(int64_t *)time_ns = s->scheduler ? cm1e_scheduler_time_ns(s->scheduler) : 0;
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_py_time(cm1e_py_session_t *session, int64_t *time_ns)
+{
+    return py_owner_do(session, read_time, time_ns);
 }
 
 cm1e_error_t cm1e_py_statistics(cm1e_py_session_t *s, cm1e_scheduler_statistics_t *statistics)

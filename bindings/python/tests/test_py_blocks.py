@@ -166,20 +166,22 @@ def test_callback_cannot_wait(bus):
 
 
 def test_callback_starts_and_stops_a_command(bus):
-    x = bus["X"]
+    """A callback does not wait: the axis ramps down in the cycles behind it, and then takes commands again."""
+    x, commands = bus["X"], []
     x.enable()
-    commands = []
+    begun = bus.time
 
     @bus.on_cycle
     def program(_):
         if not commands:
-            commands.append(x.move_velocity(5, wait=False))
-        if bus.time > 0.5 and not commands[0].done:
+            commands.append(x.move_absolute(40, 10, wait=False))
+        elif bus.time > begun + 0.3:
             commands[0].stop()
-        elif bus.time > 0.5 and len(commands) == 1:
-            commands[0].stop()
-    bus.advance(1)
-    assert x.state == cm1e.AxisState.CONTINUOUS_MOTION or abs(x.velocity) < 0.1
+    bus.advance(0.5)
+    assert commands[0].done and x.state == cm1e.AxisState.STANDSTILL and 1 < x.position < 5
+    with pytest.raises(cm1e.CommandAborted, match="was stopped"):
+        commands[0].wait()
+    bus.execute(blocks.MC_MoveAbsolute(Axis=x, Velocity=50))
 
 
 def test_real_time_takes_no_callback():

@@ -276,6 +276,22 @@ def test_end_of_the_interpreter_disables_the_motor(python, tmp_path, end):
     assert disabled_at_end(pcap.read_bytes())
 
 
+def test_process_that_vanishes_does_not(python, tmp_path):
+    """So the test above can fail. What stops the motor then is the watchdog of its drive."""
+    pcap = tmp_path / "frames.pcap"
+    python(f"import cm1e, os\nbus = cm1e.Bus(axes=1, virtual_time=True, pcap={str(pcap)!r}).start()\n"
+           "bus.axes[0].enable()\nbus.axes[0].move_velocity(1)\nbus.advance(5)\nos._exit(0)")
+    assert len(pcap.read_bytes()) > 10000 and not disabled_at_end(pcap.read_bytes())
+
+
+def test_error_at_close_does_not_hide_the_first_one(monkeypatch):
+    with pytest.raises(ZeroDivisionError) as error:
+        with cm1e.Bus(axes=1, virtual_time=True) as bus:
+            monkeypatch.setattr(cm1e.bus.errors, "check", lambda *_: cm1e.bus.errors.fail(-6))
+            1 / 0
+    assert "closed with an error" in error.value.__notes__[0]
+
+
 def disabled_at_end(pcap):
     """The logical process data of the last frames: controlword 0x0F in the run, and none with it at the end."""
     at, words = 24, []

@@ -71,6 +71,31 @@ def test_cycle_goes_on_while_python_computes(bus):
     assert numpy.abs(numpy.diff(bus.trace["X set velocity"])).max() < 25
 
 
+def test_threads_use_a_bus_while_it_is_closed():
+    """As on virtual time: whatever a thread does then ends with a value or with StateError."""
+    bus, faults = cm1e.Bus(axes=X).start(), []
+    axis, block = bus["X"], cm1e.blocks.MC_ReadStatus(Axis=bus["X"], Enable=True)
+    bus.attach(block)
+
+    def use(function):
+        try:
+            while True:
+                function()
+        except cm1e.StateError:
+            pass
+        except BaseException as error:
+            faults.append(error)
+    threads = [threading.Thread(target=use, args=(function,)) for function in
+               (lambda: axis.position, lambda: block.Disabled, lambda: bus.log()[-1:], lambda: bus.statistics)]
+    for thread in threads:
+        thread.start()
+    time.sleep(0.1)
+    bus.close()
+    for thread in threads:
+        thread.join(20)
+    assert not faults and not any(thread.is_alive() for thread in threads)
+
+
 def test_ctrl_c_stops_the_axis(bus):
     x = bus["X"]
     timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
