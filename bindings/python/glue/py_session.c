@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <time.h>
 
 #include "cm1e/plot.h"
@@ -81,12 +82,21 @@ static cm1e_error_t trace_objects(cm1e_py_session_t *s, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+/** The scheduler locks the memory of the process when the watchdogs of the slaves run already. That of an interpreter is
+ *  large: what is locked before does not delay the first cycle. A refusal is told by the scheduler. */
+static void lock_memory(const cm1e_py_session_t *s, const cm1e_scheduler_config_t *config)
+{
+    if (!s->virtual_time && config->realtime_priority >= 0)
+        mlockall(MCL_CURRENT);
+}
+
 static cm1e_error_t begin_run(cm1e_py_session_t *s, void *argument)
 {
     const call_t *call = argument;
     if (s->ran)
         return cm1e_diag_set(call->diag, CM1E_ERROR_STATE, 0, "This bus has been started before: open it again.");
     s->ran = true;
+    lock_memory(s, call->in);
     cm1e_error_t error = cm1e_bus_start(s->bus, call->diag);
     if (error == CM1E_OK)
         error = cm1e_scheduler_create(&s->scheduler, s->bus, call->in, call->diag);
