@@ -162,12 +162,15 @@ class Axis(AXIS_REF):
             self._power = fb.MC_Power(Axis=self, EnablePositive=True, EnableNegative=True)
             self.bus.attach(self._power)
         self._power.Enable = True
-        self.bus._wait_for(self._power, timeout)
-        if self._power.Error:
+        try:
+            self.bus._wait_for(self._power, timeout)
             failed = self._power._error()
-            self._power.Enable = False
-            assert failed is not None
-            raise failed
+            if failed is not None:
+                raise failed
+        except BaseException:
+            if self.bus.running:
+                self._power.Enable = False  # or the motor would have torque later, when nobody waits for it
+            raise
 
     def disable(self, timeout: Optional[float] = 10.0) -> None:
         """Ramps the motor down, switches the power stage off, and waits for it."""

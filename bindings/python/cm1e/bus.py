@@ -182,6 +182,10 @@ class Bus:
                 raise
             error.add_note(f"The bus was closed with an error: {at_close}")
 
+    def __repr__(self) -> str:
+        state = "closed" if self._closed else "running" if self.running else "stopped" if self._started else "open"
+        return f"<Bus of {', '.join(self._axis_names) or 'no axes'}, {state}>"
+
     @property
     def running(self) -> bool:
         """Whether the cycle runs."""

@@ -14,6 +14,8 @@ from typing import Any, Iterator
 
 import pytest
 
+import cm1e
+
 _OWN = ("axes", "groups", "cycle_time", "trace", "trace_every", "trace_objects", "text")
 
 
@@ -57,9 +59,8 @@ def _found(request: pytest.FixtureRequest, name: str) -> str:
 
 
 @pytest.fixture
-def cm1e_bus(request: pytest.FixtureRequest) -> Iterator[Any]:
+def cm1e_bus(request: pytest.FixtureRequest) -> Iterator[cm1e.Bus]:
     """A simulated bus on virtual time, started: bus["X"].enable(), bus.advance(0.5), bus.simulate("power 1 off") ..."""
-    import cm1e
     options, error_stop = _options(request)
     bus = cm1e.Bus(options.pop("source", None), interface="sim", virtual_time=True, control="none", **options)
     with bus:

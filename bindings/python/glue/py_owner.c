@@ -123,7 +123,8 @@ cm1e_error_t py_owner_begin(cm1e_py_session_t *s, cm1e_diag_t *diag)
     pthread_sigmask(SIG_SETMASK, &all, &before);
     const int failed = pthread_create(&s->owner, NULL, own, s);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
-    s->quit = s->joined = failed != 0;
+    if (failed)
+        s->quit = s->joined = true;
     return failed ? cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "The thread of the bus cannot be made.") : CM1E_OK;
 }
 

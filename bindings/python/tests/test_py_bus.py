@@ -89,6 +89,17 @@ def test_timeout_stops_the_axis(bus):
     assert bus["X"].state == cm1e.AxisState.STANDSTILL and bus["X"].position < 6
 
 
+def test_enabling_that_nobody_waits_for_any_more_is_taken_back():
+    with cm1e.Bus(axes=1, virtual_time=True) as bus:
+        with pytest.raises(TimeoutError):
+            bus.axes[0].enable(timeout=0.002)
+        bus.advance(1)
+        assert not bus.axes[0].info.powered and not bus.simulated_motor(1).torque_on
+        bus.axes[0].enable()
+        bus.axes[0].disable()
+        assert not bus.simulated_motor(1).torque_on
+
+
 def test_aborted_command_raises(bus):
     first = bus["X"].move_absolute(30, 10, wait=False)
     bus.advance(0.2)
