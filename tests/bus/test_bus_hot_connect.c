@@ -11,11 +11,12 @@
 enum { FIRST = 1, TOOL = 2, MEMBER = 3, ABSENT = 4 /* position of the first that is planned: behind the others */ };
 enum { ID = 7, ALIAS = 4711, COMES = 4000 };
 
-typedef enum kind { MOTOR, DIGITAL, OUTPUTS_ONLY, GROUP, ANALOG, DRIVE, BRIDGE, KINDS } kind_t;
+typedef enum kind { MOTOR, DIGITAL, OUTPUTS_ONLY, GROUP, ANALOG, DRIVE, BRIDGE, MODULAR, KINDS } kind_t;
 
 static unsigned slaves_of(kind_t kind) { return kind == GROUP ? 2 : 1; }
 static bool has_axis(kind_t kind) { return kind == MOTOR || kind == DRIVE || kind == BRIDGE; }
 
+static const uint32_t modules[] = {0x205, 0x105, 0x302};
 static cm1e_bus_config_t wire;
 
 static cm1e_slave_config_t *add_slave(cm1e_bus_config_t *to, const char *name, cm1e_sim_slave_kind_t kind,
@@ -43,11 +44,16 @@ static void add_tool_slaves(cm1e_bus_config_t *to, kind_t kind, bool on_the_wire
     cm1e_slave_config_t *slave =
         kind == DIGITAL        ? add_slave(to, "tool", CM1E_SIM_SLAVE_DIGITAL, 4, 4)
         : kind == OUTPUTS_ONLY ? add_slave(to, "tool", CM1E_SIM_SLAVE_DIGITAL, 0, 4)
+        : kind == MODULAR      ? add_slave(to, "tool", CM1E_SIM_SLAVE_MODULAR, 0, 0)
         : kind == ANALOG       ? add_slave(to, "tool", CM1E_SIM_SLAVE_ANALOG, 2, 2)
                                : add_slave(to, "tool", CM1E_SIM_SLAVE_COUPLER, 0, 0);
     slave->address_kind = kind == ANALOG ? CM1E_ADDRESS_EXPLICIT_ID : CM1E_ADDRESS_ALIAS;
     slave->address = kind == ANALOG ? ID : ALIAS;
     slave->optional = true;
+    if (kind == MODULAR) {
+        memcpy(slave->modules, modules, sizeof modules);
+        slave->module_count = sizeof modules / sizeof modules[0];
+    }
     if (kind == DIGITAL || kind == OUTPUTS_ONLY)
         name_first_bit(slave, "clamp", true);
     if (kind != GROUP)
