@@ -7,7 +7,7 @@
 #ifndef CM1E_TESTS_ORDINARY_WITNESS_H
 #define CM1E_TESTS_ORDINARY_WITNESS_H
 
-#include "axis/axis.h"
+#include "axis/axis_api.h"
 
 /** How many cycles of a profile were advanced, and how many of them in the short way. */
 extern unsigned long long cycles_advanced, cycles_ordinary;
