@@ -2,7 +2,10 @@
 
 #include <string.h>
 
+#include "bus/bus_image.h"
 #include "command.h"
+#include "core/bytes.h"
+#include "device/sim_modules.h"
 #include "pdo_list.h"
 
 enum { CHANNELS = 8, STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, VALUE = 0x11 };
@@ -16,6 +19,33 @@ static void print_identity(FILE *file, const cm1e_slave_info_t *slave)
     if (slave->revision)
         fprintf(file, "    # revision: 0x%08X   # without the leading # another revision is an error\n",
                 (unsigned)slave->revision);
+}
+
+/** The modules that a modular device has found in its slots (ETG.5001). */
+typedef struct module_list {
+    unsigned count; /**< 0: it is none, or it has more than a bus file can name */
+    uint32_t idents[CM1E_SLAVE_MODULES];
+} module_list_t;
+
+static uint32_t read_number(cm1e_bus_t *bus, uint16_t position, unsigned index, unsigned subindex)
+{
+    uint8_t data[4] = {0};
+    size_t size = sizeof data;
+    return cm1e_sdo_read(bus, position, (uint16_t)index, (uint8_t)subindex, data, &size, NULL) == CM1E_OK
+               ? cm1e_get_u32(data) : 0;
+}
+
+static void print_modules(FILE *file, cm1e_bus_t *bus, uint16_t position, module_list_t *list)
+{
+    enum { DETECTED = 0xF050 };
+    const unsigned count = cm1e_bus_slave_has_coe(bus, position) ? read_number(bus, position, DETECTED, 0) & 0xFF : 0;
+    list->count = count <= CM1E_SLAVE_MODULES ? count : 0;
+    for (unsigned n = 0; n < list->count; n++) {
+        list->idents[n] = read_number(bus, position, DETECTED, n + 1);
+        fprintf(file, "%s0x%08X", n ? ", " : "    modules: [", (unsigned)list->idents[n]);
+    }
+    if (list->count)
+        fprintf(file, "]   # slot by slot\n");
 }
 
 /** A mailbox tells the objects; without one only the place counts. Entries beyond the maximum are comments. */
@@ -80,14 +110,24 @@ static bool is_module(const pdo_list_t *list)
            list->entries[0].output != list->entries[1].output;
 }
 
-static void print_sim(FILE *file, const pdo_list_t *list)
+static bool are_simulated(const module_list_t *modules)
+{
+    for (unsigned n = 0; n < modules->count; n++)
+        if (!cm1e_sim_module(modules->idents[n]))
+            return false;
+    return modules->count > 0 && modules->count <= CHANNELS;
+}
+
+static void print_sim(FILE *file, const pdo_list_t *list, const module_list_t *modules)
 {
     unsigned digital[2] = {0, 0}, analog[2] = {0, 0}; /* inputs, outputs */
     const bool is_bits = is_digital(list, digital), is_words = is_analog(list, analog);
     const unsigned *counts = is_bits ? digital : analog;
     if (list->unknown)
         return;
-    if (list->count == 0) {
+    if (are_simulated(modules)) {
+        fprintf(file, "    sim: {device: modular}\n");
+    } else if (list->count == 0) {
         fprintf(file, "    sim: {device: coupler}\n");
     } else if (is_bits || is_words) {
         fprintf(file, "    sim: {device: %s", is_bits ? "digital" : "analog");
@@ -105,7 +145,9 @@ void init_print_slave(FILE *file, cm1e_bus_t *bus, const cm1e_slave_info_t *slav
 {
     pdo_list_t list;
     unsigned named = 0;
+    module_list_t modules;
     print_identity(file, slave);
+    print_modules(file, bus, slave->position, &modules);
     if (!pdo_list_read(bus, slave->position, &list)) {
         complain("out of memory");
         return;
@@ -114,6 +156,6 @@ void init_print_slave(FILE *file, cm1e_bus_t *bus, const cm1e_slave_info_t *slav
         fprintf(file, "    # Its process data could not be read.\n");
     print_signals(file, &list, true, &named);
     print_signals(file, &list, false, &named);
-    print_sim(file, &list);
+    print_sim(file, &list, &modules);
     pdo_list_free(&list);
 }

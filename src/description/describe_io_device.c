@@ -211,7 +211,7 @@ void cm1e_describe_io_identity(cm1e_description_file_t *file, const cm1e_slave_c
 static uint32_t product_code(const cm1e_sim_slave_config_t *sim)
 {
     static const uint32_t kinds[] = {0, 0xC0000, 0xD0000, 0xA0000, 0xB0000, 0xE0000};
-    return kinds[sim->kind] | (uint32_t)sim->swapped << 16 | (uint32_t)sim->outputs << 8 | sim->inputs;
+    return kinds[sim->kind] | (uint32_t)sim->swapped << 20 | (uint32_t)sim->outputs << 8 | sim->inputs;
 }
 
 void cm1e_describe_io_device(cm1e_description_file_t *file, const cm1e_slave_config_t *slave)

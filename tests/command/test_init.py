@@ -137,6 +137,20 @@ def check_slaves(folder):
     drive(own, ["axis1"])
 
 
+def check_modules(folder):
+    """A modular device with the modules in its slots; the file runs on a segment of its own."""
+    network = write(os.path.join(folder, "modular.yaml"), "slaves:\n  - {name: io, position: 1, modules: [0x205, 0x302], "
+                    "sim: {device: modular}}\n")
+    path = os.path.join(folder, "modules.yaml")
+    done = run("init", "-i", "sim:" + network, "-o", path)
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    expect(done.returncode == 0 and "    modules: [0x00000205, 0x00000302]   # slot by slot\n" in text
+           and "    sim: {device: modular}\n" in text, f"{done}\n{text}")
+    own = write(os.path.join(folder, "own-modules.yaml"), re.sub(r"interface: .*", "interface: sim", text))
+    expect(signals(own) == signals(path) and len(signals(own)) == 7, f"{signals(own)}, {signals(path)}")
+
+
 def check_without_motor(folder):
     """A network of terminals alone: no axes in the file, and no need of any."""
     done, path, text = init(folder, "terminals", ONLY_SLAVES)
@@ -209,4 +223,4 @@ def in_a_folder(check):
 
 real_time.together(*(lambda check=check: in_a_folder(check) for check in (
     check_motors, check_bridge, check_servo, check_slaves, check_without_motor, check_pdos, check_overwriting,
-    check_several, check_refusals)))
+    check_several, check_modules, check_refusals)))
