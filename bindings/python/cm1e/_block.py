@@ -297,7 +297,8 @@ class Block(Struct):
                 setattr(self, member.name, member.of())
         outputs = [member.name for member in self._members.values()
                    if member.section == "output" and member.kind == "bool"]
-        self._ends = outputs[:1] + [name for name in ("CommandAborted", "Error") if name in outputs[1:]]
+        done = [name for name in ("Done", "InSync") if name in outputs] or outputs
+        self._ends = done[:1] + [name for name in ("CommandAborted", "Error") if name in outputs and name != done[0]]
         offsets = [ffi.offsetof(self._c_type, name) for name in self._ends]
         self._offsets = ffi.new("uint32_t[]", offsets)
         self._c = ffi.new("cm1e_py_block_t *", {
