@@ -252,6 +252,15 @@ def test_threads_use_a_bus_while_it_is_closed():
     assert not faults and not any(thread.is_alive() for thread in threads)
 
 
+def test_what_a_command_waits_for():
+    """The last of its steps, not the first: MC_GearInPos shows StartSync before InSync."""
+    ends = {kind: kind()._ends for kind in (blocks.MC_GearInPos, blocks.MC_MoveVelocity, blocks.MC_Home, blocks.MC_Power)}
+    assert ends[blocks.MC_GearInPos] == ["InSync", "CommandAborted", "Error"]
+    assert ends[blocks.MC_MoveVelocity] == ["InVelocity", "CommandAborted", "Error"]
+    assert ends[blocks.MC_Home] == ["Done", "CommandAborted", "Error"]
+    assert ends[blocks.MC_Power] == ["Status", "Error"]
+
+
 def test_names_of_the_standard():
     assert issubclass(blocks.MC_BUFFER_MODE, IntEnum)
     assert blocks.MC_DIRECTION.mcShortestWay == 2
