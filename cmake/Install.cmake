@@ -7,12 +7,18 @@ include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/cm1e)
 foreach(kind static shared)
   set(component_${kind} COMPONENT ${kind})
-  if(NOT kind STREQUAL CM1E_KIND)
+  if(CM1E_PACKAGES) # what programs load is a package of its own
+    set(component_${kind} COMPONENT development)
+    set(loaded_${kind} COMPONENT library NAMELINK_COMPONENT development)
+  elseif(NOT kind STREQUAL CM1E_KIND)
     list(APPEND component_${kind} EXCLUDE_FROM_ALL)
+  endif()
+  if(NOT loaded_${kind})
+    set(loaded_${kind} ${component_${kind}})
   endif()
   install(TARGETS ${CM1E_PACKAGE_${kind}} EXPORT cm1e-${kind}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} ${component_${kind}}
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ${component_${kind}})
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ${loaded_${kind}})
   install(EXPORT cm1e-${kind} NAMESPACE cm1e:: DESTINATION ${package} ${component_${kind}})
 endforeach()
 
@@ -21,6 +27,9 @@ file(RELATIVE_PATH pc_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INST
 function(cm1e_pc_file kind name libs)
   list(JOIN ARGN " " requires)
   configure_file(cmake/cm1e.pc.in ${CMAKE_BINARY_DIR}/pkgconfig/${kind}/${name}.pc @ONLY)
+  if(CM1E_PACKAGES AND NOT kind STREQUAL shared)
+    return() # both have one name
+  endif()
   install(FILES ${CMAKE_BINARY_DIR}/pkgconfig/${kind}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
           ${component_${kind}})
 endfunction()
@@ -59,14 +68,14 @@ endforeach()
 cm1e_pc_file(static cm1e "-lcm1e -pthread -lm" ${all_need})
 cm1e_pc_file(shared cm1e -lcm1e)
 
-install(DIRECTORY include/cm1e DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY include/cm1e DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${in_development})
 configure_package_config_file(cmake/cm1e-config.cmake.in ${CMAKE_BINARY_DIR}/cm1e-config.cmake
                               INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/cm1e-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/cm1e-config.cmake ${CMAKE_BINARY_DIR}/cm1e-config-version.cmake
-        DESTINATION ${package})
+        DESTINATION ${package} ${in_development})
 
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN licenses EXCLUDE)
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES LICENSE docs/THIRD-PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES docs/licenses/SOEM.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/licenses)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} ${in_documents} PATTERN licenses EXCLUDE)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} ${in_documents})
+install(FILES LICENSE docs/THIRD-PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} ${in_documents})
+install(FILES docs/licenses/SOEM.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/licenses ${in_documents})

@@ -1,6 +1,9 @@
 /** cm1e: the command line program. Each subcommand is a file cmd_<name>.c. */
+#include <linux/capability.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include "choose_bus.h"
 #include "cm1e/version.h"
@@ -44,8 +47,25 @@ static int finish(int status)
     return status == EXIT_OK ? EXIT_FAILED : status;
 }
 
+/* A package installs the command once more, with the privileges that network interfaces need, for the members of a
+ * group. Who may, and has no such privilege yet, runs that one. */
+#ifdef CM1E_PRIVILEGED_COMMAND
+static void become_privileged(char **argv)
+{
+    struct __user_cap_header_struct header = {.version = _LINUX_CAPABILITY_VERSION_3};
+    struct __user_cap_data_struct sets[_LINUX_CAPABILITY_U32S_3] = {0};
+    char self[sizeof CM1E_PRIVILEGED_COMMAND + 1] = "";
+    const bool asked = syscall(SYS_capget, &header, sets) == 0 && readlink("/proc/self/exe", self, sizeof self - 1) > 0;
+    if (asked && !(sets[0].effective & 1U << CAP_NET_RAW) && strcmp(self, CM1E_PRIVILEGED_COMMAND) != 0)
+        execv(CM1E_PRIVILEGED_COMMAND, argv); /* it returns where the user may not, or none is installed */
+}
+#else
+static void become_privileged(char **argv) { (void)argv; }
+#endif
+
 int main(int argc, char **argv)
 {
+    become_privileged(argv);
     if (argc < 2) {
         print_usage(stderr);
         return EXIT_WRONG_USE;

@@ -1,0 +1,10 @@
+# Before cpack packs its folder: what Debian wants compressed, and stripped of what only a debugger reads.
+set(tree ${CPACK_TEMPORARY_INSTALL_DIRECTORY})
+file(GLOB_RECURSE texts ${tree}/cm1e*.1 ${tree}/changelog.Debian)
+file(GLOB_RECURSE objects ${tree}/lib*.a ${tree}/tools/usr/libexec/*)
+foreach(text ${texts})
+  execute_process(COMMAND gzip -9n ${text} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+foreach(object ${objects})
+  execute_process(COMMAND strip --strip-debug --strip-unneeded ${object} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
