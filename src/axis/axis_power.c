@@ -222,7 +222,7 @@ cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 
 cm1e_command_state_t cm1e_axis_reset_state(const cm1e_axis_t *axis, cm1e_error_t *error)
 {
-    if (error != CM1E_OK)
+    if (error)
         *error = axis->power.reset_error;
     return axis->power.reset_state;
 }

@@ -235,7 +235,7 @@ cm1e_error_t cm1e_group_reset(cm1e_group_t *group)
 cm1e_command_state_t cm1e_group_reset_state(cm1e_group_t *group, cm1e_error_t *error)
 {
     cm1e_group_refresh(group);
-    if (error != CM1E_OK)
+    if (error)
         *error = group->reset_error;
     return group->reset_state;
 }

@@ -315,6 +315,39 @@ START_TEST(sdo_to_a_lost_slave_ends_and_works_again_after_recovery)
 }
 END_TEST
 
+/** The supervision sees it before the working counter does: the slave goes on to send its inputs. */
+START_TEST(the_only_slave_of_a_bus_is_supervised)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 10);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 1).al_state, CM1E_AL_OP);
+    cm1e_sim_slave_fall_back(cm1e_sim_segment_slave(segment_of(bus), 1), CM1E_AL_SAFE_OP, 0x001B);
+    cycles(bus, 10);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 1).al_state, CM1E_AL_SAFE_OP | CM1E_AL_ERROR);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 1).al_status_code, 0x001B);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The others still give their inputs. So it is silent from the tolerated number of cycles on, long before the
+ *  supervision has asked it three times. */
+START_TEST(a_slave_without_inputs_is_silent_after_the_tolerated_cycles)
+{
+    sim_config(3);
+    config.lost_cycles_limit = (uint32_t)_i;
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 10);
+    strike(bus, "unplug 3");
+    for (int n = 1; n <= _i + 1; n++) {
+        ck_assert_msg(cycle(bus) != CM1E_OK, "cycle %d", n);
+        ck_assert_msg(cm1e_bus_slave_watch(bus, 3).silent == (n >= _i), "cycle %d of %d", n, _i);
+        ck_assert(!cm1e_bus_slave_watch(bus, 2).silent && cm1e_bus_slave_watch(bus, 2).fresh);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** A slave that after an error goes to no higher state before it has been in Init, as its AL status code tells. */
 typedef struct stubborn {
     uint16_t station;
@@ -395,6 +428,8 @@ int main(void)
     TCase *tests = tcase_create("recovery");
     tcase_add_loop_test(tests, power_cycled_slave_comes_back, 1, 4);
     tcase_add_test(tests, three_unanswered_questions_in_a_row_make_a_slave_lost);
+    tcase_add_test(tests, the_only_slave_of_a_bus_is_supervised);
+    tcase_add_loop_test(tests, a_slave_without_inputs_is_silent_after_the_tolerated_cycles, 1, 6);
     tcase_add_test(tests, without_request_nothing_is_recovered);
     tcase_add_test(tests, unplugged_slaves_trip_their_watchdog_and_come_back_with_the_cable);
     tcase_add_loop_test(tests, recovery_survives_lost_frames, 3, 13);

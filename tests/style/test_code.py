@@ -127,6 +127,11 @@ def truth_values(tokens, variables, members, results):
         place = end if names[-1] is not None else place + 1
 
 
+def pointers(body):
+    """Names of pointers to an error."""
+    return set(re.findall(TYPE + r" \*(?:const )?(\w+)[,);]", body))
+
+
 def check_error_tests(texts):
     members, everywhere = structs(texts), {}
     for path, text in texts.items():
@@ -137,11 +142,25 @@ def check_error_tests(texts):
         results = {**everywhere, **functions(text)}
         for begin, body in bodies(text):
             variables, tokens = declarations(body), list(TOKEN.finditer(body))
+            for name in pointers(body):
+                variables[name] = TYPE + " *"
             for first, last, negated in truth_values(tokens, variables, members, results):
                 words = re.sub(r"\s+", " ", body[first:last])
                 line = text.count("\n", 0, begin + first) + 1
                 found.append(f"{path}:{line}: \"{words}\" is an error, not a truth value: write \"{words.lstrip('!')} "
                              f"{'==' if negated else '!='} CM1E_OK\"")
+    return found
+
+
+def check_pointers(texts):
+    """A pointer to an error is there or not; it is no error itself."""
+    found = []
+    for path, text in texts.items():
+        for begin, body in bodies(text):
+            for name in pointers(body):
+                for match in re.finditer(r"(?<![\w.*>])" + name + r" [!=]= CM1E_\w+", body):
+                    line = text.count("\n", 0, begin + match.start()) + 1
+                    found.append(f"{path}:{line}: \"{name}\" is a pointer, not an error: write \"if ({name})\"")
     return found
 
 
@@ -167,6 +186,9 @@ def check_itself():
         found = check_error_tests({"sample.h": SAMPLE % statement})
         if len(found) != (statement in WRONG):
             faults.append(f"tests/style/test_code.py judges \"{statement}\" wrongly: {found}")
+    pointer = "void sample(cm1e_error_t *error)\n{\n    if (%s)\n        *error = CM1E_OK;\n}\n"
+    if len(check_pointers({"a.c": pointer % "error != CM1E_OK"})) != 1 or check_pointers({"a.c": pointer % "error"}):
+        faults.append("tests/style/test_code.py judges pointers to errors wrongly")
 
 
 # ---- true and TRUE --------------------------------------------------------------------------------------------------
@@ -233,6 +255,7 @@ for path in files():
 check_names()
 check_length()
 check_itself()
-faults += check_error_tests({path: code(read(path)) for path in files()})
+sources = {path: code(read(path)) for path in files()}
+faults += check_error_tests(sources) + check_pointers(sources)
 print("\n".join(faults) if faults else "code: fine")
 sys.exit(1 if faults else 0)

@@ -49,6 +49,23 @@ static void test_a_motor_that_does_not_follow_has_20_ms_to_brake(void)
     TEST_ASSERT_LESS_OR_EQUAL_INT(23, torque_ms); /* the word to the drive and its answer */
 }
 
+/** The ramp begins with the velocity of the motor. It is never faster than the set-point nor in the other direction. */
+static void test_an_axis_brakes_from_the_velocity_of_its_motor(void)
+{
+    static const double of_set_point[] = {-0.5, 0.0, 0.5, 1.0, 1.5}, expected[] = {0.0, 0.0, 0.5, 1.0, 1.0};
+    static const double velocities[] = {-10.0, -0.1, 0.1, 10.0};
+    for (int n = 0; n < 4; n++)
+        for (int i = 0; i < 5; i++) {
+            bench_start();
+            bench_enable();
+            bench_move_velocity(velocities[n]);
+            bench_cycles(400);
+            axis->drive.feedback.velocity = of_set_point[i] * velocities[n] * 50000.0;
+            cm1e_axis_brake_from_actual(axis);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, expected[i] * velocities[n], axis->setpoint.velocity);
+        }
+}
+
 /** MC_Power.Enable FALSE, a motor that does not follow the ramp, and TRUE again in any cycle: the lag is told. */
 static void test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again(void)
 {
@@ -76,7 +93,7 @@ static void test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_ag
 
 /* ---- the bus goes ------------------------------------------------------------------------------------------------ */
 
-/** In the cycle the axis is in ErrorStop, and a while later without torque; with the bus back nothing moves by itself. */
+/** The axis is in ErrorStop in that cycle, and later without torque. With the bus back nothing moves by itself. */
 static void lose_the_bus(cm1e_error_t error, bool back_early, cm1e_command_id_t id)
 {
     received = error;
@@ -193,6 +210,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_motor_that_does_not_follow_ends_in_error_stop);
     RUN_TEST(test_a_motor_that_does_not_follow_has_20_ms_to_brake);
+    RUN_TEST(test_an_axis_brakes_from_the_velocity_of_its_motor);
     RUN_TEST(test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again);
     RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);

@@ -52,6 +52,22 @@ static void test_enable_after_the_shaft_was_turned_while_disabled(void)
     TEST_ASSERT_LESS_OR_EQUAL_INT64(251, bus.torque_step); /* of the move alone: 5 u/s */
 }
 
+/* MC_Power asks this in every cycle, and does nothing more where it is true. */
+static void test_power_stands_only_as_long_as_nothing_changes(void)
+{
+    const AXIS_REF_t reference = cm1e_axis_reference(axis);
+    const int other = 0;
+    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &owner, true, true));
+    bench_enable();
+    TEST_ASSERT_TRUE(cm1e_axis_power_stands(reference, &owner, true, true));
+    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &owner, true, false));
+    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &owner, false, true));
+    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &other, true, true));
+    TEST_ASSERT_FALSE(cm1e_axis_power_stands((AXIS_REF_t){0}, &owner, true, true));
+    (void)cm1e_axis_shut_down(axis);
+    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &owner, true, true));
+}
+
 static void test_enable_waits_without_motor_power_and_ends_in_words(void)
 {
     bus.power = false;
@@ -325,6 +341,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_enable_never_moves_also_with_a_turning_shaft);
     RUN_TEST(test_enable_after_the_shaft_was_turned_while_disabled);
+    RUN_TEST(test_power_stands_only_as_long_as_nothing_changes);
     RUN_TEST(test_enable_waits_without_motor_power_and_ends_in_words);
     RUN_TEST(test_moves_end_exactly_and_in_time);
     RUN_TEST(test_relative_moves_do_not_drift);

@@ -387,6 +387,8 @@ static void test_reset_that_fails_says_so_and_may_be_repeated(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_RESET_TIMEOUT, bench_info().error);
     bus.fault_stays = false;
     cm1e_axis_reset(axis);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, cm1e_axis_reset_state(axis, &error));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, error); /* that of the reset before is no longer shown */
     bench_cycles(100);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, cm1e_axis_reset_state(axis, &error));
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
@@ -573,6 +575,7 @@ static void test_shut_down_of_a_dead_bus_ends(void)
         bench_outputs();
     }
     TEST_ASSERT_TRUE(done);
+    TEST_ASSERT_GREATER_OR_EQUAL_INT(100, n); /* a frame may still come: only then it counts as gone */
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_LOST, bench_info().error);
 }
 
