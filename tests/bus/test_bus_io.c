@@ -2,6 +2,7 @@
  * is away. The simulated terminals have each input wired to the output of its number. */
 #include "bus_support.h"
 #include "cm1e/io.h"
+#include "sim/esc_chip.h"
 
 enum { MODULE = 1, MOTOR = 2, SECOND = 3, SLAVES = 4, SETTLE = 4, UNPOWERED = 400 /* cycles, at least */ };
 
@@ -167,6 +168,40 @@ START_TEST(slave_that_is_away_says_so_and_comes_back_with_its_outputs)
 }
 END_TEST
 
+/** The outputs of its neighbours in the process image stay, to either side. */
+START_TEST(outputs_of_the_neighbours_of_a_lost_terminal_stay)
+{
+    sim_config(0);
+    const char *const names[] = {"first", "second", "third"};
+    for (int i = 0; i < 3; i++) {
+        cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, names[i]);
+        slave->address = (uint16_t)(i + 1);
+        slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_DIGITAL, .outputs = 8};
+    }
+    cm1e_bus_t *bus = start_bus();
+    cm1e_io_t outputs[3][8];
+    for (int i = 0; i < 3; i++)
+        for (int n = 0; n < 8; n++) {
+            char name[40];
+            snprintf(name, sizeof name, "%s.output %d", names[i], n + 1);
+            outputs[i][n] = find(bus, name);
+            ck_assert_int_eq(cm1e_io_set_bool(&outputs[i][n], true), CM1E_OK);
+        }
+    cycles(bus, SETTLE);
+    static const uint8_t safe_op[] = {CM1E_AL_SAFE_OP, 0};
+    ck_assert(cm1e_sim_esc_write(cm1e_sim_segment_slave(segment_of(bus), 2), ESC_AL_CONTROL, safe_op, sizeof safe_op));
+    bool were_safe = false;
+    for (unsigned n = 0; n < 100; n++) {
+        cycle(bus);
+        for (int bit = 0; bit < 8; bit++)
+            ck_assert(cm1e_io_bool(&outputs[0][bit]) && cm1e_io_bool(&outputs[2][bit]));
+        were_safe = were_safe || (!cm1e_io_bool(&outputs[1][0]) && !cm1e_io_bool(&outputs[1][7]));
+    }
+    ck_assert(were_safe);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(lost_frame_makes_inputs_stale_for_a_cycle)
 {
     cm1e_bus_t *bus = start_with(CM1E_SIM_IO_MODULE);
@@ -217,6 +252,7 @@ int main(void)
     tcase_add_test(tests, signals_of_a_motor_are_read_and_never_written);
     tcase_add_test(tests, wrong_names_are_told_what_there_is);
     tcase_add_test(tests, slave_that_is_away_says_so_and_comes_back_with_its_outputs);
+    tcase_add_test(tests, outputs_of_the_neighbours_of_a_lost_terminal_stay);
     tcase_add_test(tests, lost_frame_makes_inputs_stale_for_a_cycle);
     tcase_add_test(tests, handle_ends_with_the_start_of_the_bus_that_it_was_found_in);
     suite_add_tcase(suite, tests);

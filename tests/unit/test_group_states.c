@@ -319,6 +319,41 @@ static void test_stop_in_standby_holds_the_axes(void)
     axes_must_be(1, CM1E_AXIS_DISABLED);
 }
 
+/* They are not at 0, and no path of the group has led there. */
+static void move_apart(void)
+{
+    for (int n = 0; n < 3; n++)
+        axes_wait(n, axes_move_to(n, 1.5 - n, 5.0), 3000);
+}
+
+static void test_a_relative_line_counts_from_where_the_axes_are(void)
+{
+    move_apart();
+    group_done(group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_RELATIVE, .position = {1, 2, -3},
+                                                     .velocity = 2.0}));
+    static const double ends[] = {2.5, 2.5, -3.5};
+    for (int n = 0; n < 3; n++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, ends[n], axes_info(n).set_position);
+}
+
+static void test_stop_in_standby_holds_the_axes_where_they_are(void)
+{
+    move_apart();
+    const cm1e_command_id_t stop = group_stop();
+    for (int i = 0; i < 50; i++) {
+        axes_cycles(1);
+        for (int n = 0; n < 3; n++)
+            TEST_ASSERT_EQUAL_DOUBLE(1.5 - n, axes_info(n).set_position);
+    }
+    group_must_be(CM1E_GROUP_STOPPING);
+    cm1e_group_hold_stop(group, stop, false);
+    axes_cycles(2);
+    for (int n = 0; n < 3; n++) {
+        axes_must_be(n, CM1E_AXIS_STANDSTILL);
+        TEST_ASSERT_EQUAL_DOUBLE(1.5 - n, axes_info(n).set_position);
+    }
+}
+
 static void test_stop_without_power_holds_the_group(void)
 {
     for (int n = 0; n < 3; n++)
@@ -555,6 +590,8 @@ int main(void)
     RUN_TEST(test_stop_holds_until_execute_falls);
     RUN_TEST(test_stop_released_early_may_be_repeated_until_it_stands);
     RUN_TEST(test_stop_in_standby_holds_the_axes);
+    RUN_TEST(test_stop_in_standby_holds_the_axes_where_they_are);
+    RUN_TEST(test_a_relative_line_counts_from_where_the_axes_are);
     RUN_TEST(test_stop_without_power_holds_the_group);
     RUN_TEST(test_stop_that_loses_all_axes_at_once_is_done);
     RUN_TEST(test_halt_may_be_aborted_and_be_waited_for);
