@@ -474,6 +474,35 @@ static void test_after_silence_the_path_begins_anew_at_once_for_all(void)
         }
 }
 
+/* A motor at its maximum velocity cannot catch up while it goes on as fast. So the whole path is slower, and stays
+ * straight, whichever axis it is and whichever goes first. */
+static void test_after_a_short_silence_the_path_is_as_slow_as_its_slowest_motor(void)
+{
+    for (int fast = 0; fast < 2; fast++)
+        for (int first = 0; first < 2; first++) {
+            group_end();
+            group_begin(2);
+            axes_bench.order[0] = first;
+            axes_bench.order[1] = 1 - first;
+            const double x = fast == 0 ? 40.0 : 10.0, y = 50.0 - x, most = 49.99;
+            const cm1e_command_id_t id = group_line(x, y, most / 40.0 * hypot(x, y), mcAborting);
+            while (axes_info(fast).set_velocity < most - 1e-6)
+                axes_cycles(1);
+            axes_bench.received = CM1E_ERROR_BUS_LOST;
+            axes_cycles(2);
+            axes_bench.received = CM1E_OK;
+            axes_cycles(1);
+            TEST_ASSERT_TRUE(axes_info(fast).set_velocity < 0.9 * most);
+            TEST_ASSERT_TRUE(axes_info(fast).set_velocity > 0.1 * most);
+            for (int n = 0; n < 300; n++) {
+                TEST_ASSERT_TRUE(group_off_line(0, 0, x, y) < 1e-7);
+                axes_cycles(1);
+            }
+            group_done(id);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, x, group_at(0));
+        }
+}
+
 /* The order in which the scheduler lets the axes go is of no matter. */
 static void test_in_every_order_of_the_axes(void)
 {
@@ -579,6 +608,7 @@ int main(void)
     RUN_TEST(test_what_it_shows);
     RUN_TEST(test_after_a_pause_it_goes_on_along_the_path_from_rest);
     RUN_TEST(test_after_silence_the_path_begins_anew_at_once_for_all);
+    RUN_TEST(test_after_a_short_silence_the_path_is_as_slow_as_its_slowest_motor);
     RUN_TEST(test_in_every_order_of_the_axes);
     RUN_TEST(test_random_paths_keep_every_limit);
     return UNITY_END();
