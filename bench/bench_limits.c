@@ -115,8 +115,9 @@ static void measure_starts(const blocks_subject_t *subject, unsigned axes)
     run_to_the_end(subject, axes);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    const char *only = argc > 1 ? argv[1] : NULL; /* the name of a row: it alone */
     static const struct {
         const char *name;
         const blocks_subject_t *subject;
@@ -136,7 +137,9 @@ int main(void)
     if (!blocks_cm1e.make(BLOCKS_MAX_AXES))
         fail("the axes are not powered");
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-        measure(rows[i].name, rows[i].subject, rows[i].work, rows[i].axes);
-    measure_starts(&blocks_cm1e, BLOCKS_SET);
+        if (!only || !strcmp(only, rows[i].name))
+            measure(rows[i].name, rows[i].subject, rows[i].work, rows[i].axes);
+    if (!only)
+        measure_starts(&blocks_cm1e, BLOCKS_SET);
     return 0;
 }

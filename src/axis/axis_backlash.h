@@ -5,7 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_BACKLASH_H
 #define CM1E_AXIS_AXIS_BACKLASH_H
 
-#include "axis/axis_parts.h"
+#include "axis/axis_extras.h"
 
 void cm1e_axis_backlash_init(cm1e_axis_t *axis); /* @rt init; after the limits */
 /** Position of the motor relative to its load, in counts; 0 without backlash. */
@@ -23,7 +23,7 @@ static inline void cm1e_axis_backlash_stop(cm1e_axis_t *axis) { axis->backlash.o
 static inline position_t cm1e_axis_load(const cm1e_axis_t *axis, int64_t motor_counts)
 {
     const position_t motor = {motor_counts, 0.0};
-    return axis->backlash.gap > 0.0 ? cm1e_position_plus(motor, -cm1e_axis_backlash_offset(axis)) : motor;
+    return axis_has_extra(axis, EXTRA_BACKLASH) ? cm1e_position_plus(motor, -cm1e_axis_backlash_offset(axis)) : motor;
 }
 /** The actual position of the axis: that of the load. */
 static inline position_t axis_actual(const cm1e_axis_t *axis)
@@ -33,7 +33,7 @@ static inline position_t axis_actual(const cm1e_axis_t *axis)
 /** The target position of the motor for the set-point, in whole counts. */
 static inline int64_t cm1e_axis_motor_target(const cm1e_axis_t *axis)
 {
-    const position_t target = axis->backlash.gap > 0.0
+    const position_t target = axis_has_extra(axis, EXTRA_BACKLASH)
                               ? cm1e_position_plus(axis->setpoint.position, cm1e_axis_backlash_offset(axis))
                                                        : axis->setpoint.position;
     return target.counts + (target.fraction >= 0.5);

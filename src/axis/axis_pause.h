@@ -5,6 +5,8 @@
 #ifndef CM1E_AXIS_AXIS_PAUSE_H
 #define CM1E_AXIS_AXIS_PAUSE_H
 
+#include <string.h>
+
 #include "axis/axis_parts.h"
 
 /** Called at the begin of a cycle: whether an answer has come. Without an answer it is not known which target the drive
@@ -12,6 +14,12 @@
 void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost);
 /** Whether the actual position is not known although the set-point goes on. */
 static inline bool cm1e_axis_note_blind(cm1e_axis_t *axis, bool blind) { return axis->silence.blind = blind; }
+/** Whether all frames have come back for a while. Then another answer changes nothing: cm1e_axis_note_answer(). */
+static inline bool cm1e_axis_hears_well(const cm1e_axis_t *axis)
+{
+    static const silence_t none = {0};
+    return memcmp(&axis->silence, &none, sizeof none) == 0;
+}
 /** Called before the set-point of the first cycle in which a frame has come back. */
 void cm1e_axis_after_silence(cm1e_axis_t *axis);
 /** Whether the motor has no new target for so long that it stops (CSP). */

@@ -282,7 +282,7 @@ void cm1e_axis_track(cm1e_axis_t *axis)
     if (axis->position.known) {
         const int32_t moved = (int32_t)((uint32_t)raw - (uint32_t)axis->position.raw);
         axis->position.actual_counts += moved;
-        if (axis->backlash.gap > 0.0)
+        if (axis_has_extra(axis, EXTRA_BACKLASH))
             cm1e_axis_backlash_track(axis, moved);
     } else {
         axis->position.actual_counts = raw;

@@ -42,8 +42,12 @@ static inline bool axis_acts(const cm1e_axis_t *axis)
 
 /** The first half of cm1e_axis_outputs(): state diagram and set-point, before they are written to the drive. */
 void cm1e_axis_advance(cm1e_axis_t *axis);
-/** cm1e_axis_advance() for any cycle. Tests compare it with the short way of an ordinary cycle. */
+/** cm1e_axis_inputs() and cm1e_axis_advance() for any cycle. Tests compare them with the short ways of an ordinary
+ *  cycle. */
+void cm1e_axis_inputs_any(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns);
 void cm1e_axis_advance_any(cm1e_axis_t *axis);
+/** cm1e_axis_inputs() for an ordinary cycle; false, and nothing has changed: it is not one. */
+bool cm1e_axis_inputs_ordinary(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns);
 /** cm1e_axis_advance() for an ordinary cycle of a move; false, and nothing has changed: it is not one
  *  (axis_ordinary.c). */
 bool cm1e_axis_ordinary_step(cm1e_axis_t *axis);

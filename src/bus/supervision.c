@@ -161,6 +161,15 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
     return watch;
 }
 
+bool cm1e_bus_slave_goes_on(const cm1e_bus_t *bus, uint16_t position, const cm1e_slave_watch_t *seen)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    return slave && bus->last_error == CM1E_OK && slave->hot.counted && slave->hot.bound == seen->bound &&
+           slave->silent_cycles < bus->config.lost_cycles_limit && slave->watch.al_state == seen->al_state &&
+           slave->watch.al_status_code == seen->al_status_code && !slave->watch.lost && !seen->lost && !seen->silent &&
+           !seen->out && seen->fresh && slave->watch.absent == seen->absent;
+}
+
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position)
 {
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);

@@ -104,6 +104,7 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
     drive->now_ns = now_ns;
+    drive->ordinary.calm = false;
     if (drive->wiring)
         cm1e_drive_wiring_read(drive);
     if (cm1e_drive_is_virtual(drive)) {
@@ -143,16 +144,11 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
                  (drive->fault.error == CM1E_OK || drive_fault_allows_ramp(drive->fault.error));
 }
 
-static bool in_range(const cm1e_drive_t *drive, int32_t position)
-{
-    return position >= drive->range.position_least && position <= drive->range.position_most;
-}
-
 /* Reports an error to a caller that requests torque where there will be none. */
 static void refuse_torque(cm1e_drive_t *drive)
 {
     const bool asked = drive->command.enable && !drive->torque.asked && drive->actual.seen && drive->feedback.online;
-    if (asked && !in_range(drive, drive->feedback.position)) /* as a target it would be clamped, which is a jump */
+    if (asked && !cm1e_drive_in_range(drive, drive->feedback.position)) /* as a target it would be clamped, which is a jump */
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE);
     if (!asked || drive->mode.takes_torque || drive->waits.blocked_ns == 0) /* 0: not set yet */
         drive->waits.blocked_ns = drive->now_ns;
@@ -248,8 +244,6 @@ static int32_t slewed(int32_t from, int32_t to, int32_t step)
     return step == 0 || llabs(way) <= step ? to : from + (way > 0 ? step : -step);
 }
 
-static int64_t way_between(int32_t from, int32_t to) { return (int32_t)((uint32_t)to - (uint32_t)from); }
-
 /* CSP. Without an answer to the last frame the drive may hold its target or an earlier one, so the last target is
  * repeated. The next frame that arrives then carries the step of one cycle, however many frames were lost before it.
  * Otherwise the target stays within one step of the last target, or of the actual position. */
@@ -261,9 +255,9 @@ static int32_t next_position(const cm1e_drive_t *drive)
         return wanted;
     if (!drive->answered)
         return last;
-    if (drive->feedback.fresh && llabs(way_between(drive->feedback.position, wanted)) <= step)
+    if (drive->feedback.fresh && llabs(cm1e_drive_way_between(drive->feedback.position, wanted)) <= step)
         return wanted;
-    return (int32_t)((uint32_t)last + (uint32_t)slewed(0, (int32_t)way_between(last, wanted), step));
+    return (int32_t)((uint32_t)last + (uint32_t)slewed(0, (int32_t)cm1e_drive_way_between(last, wanted), step));
 }
 
 /* CSV. After lost frames the velocity changes in limited steps: a position loop that was without inputs, or the frames
@@ -313,10 +307,11 @@ void cm1e_drive_write(cm1e_drive_t *drive)
     const bool held_before = drive->target.holds;
     drive->target.holds |= follow && drive->mode.holds;
     int32_t position = safe_position(drive);
-    if (follow && drive->mode.holds && in_range(drive, command->target_position))
+    if (follow && drive->mode.holds && cm1e_drive_in_range(drive, command->target_position))
         position = held_before || !drive->answered ? next_position(drive) : command->target_position;
     else if (follow && drive->mode.holds)
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE); /* the last target holds until the torque goes */
     const uint16_t word = controlword(drive, pass) | (drive->mode.marked ? signals(drive) : 0);
     cm1e_drive_encode(drive, word, position, follow ? next_velocity(drive) : 0);
+    cm1e_drive_note_calm(drive, word);
 }

@@ -34,6 +34,10 @@ void cm1e_drive_free(cm1e_drive_t *drive);
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);
 /** Encodes the outputs from `command` under the rules above. @rt cycle */
 void cm1e_drive_write(cm1e_drive_t *drive);
+/** The short ways of these two in an ordinary cycle, after a good frame (drive_ordinary.c); false, and nothing has
+ *  changed: it is none. After an ordinary read the drive is enabled and has no fault. @rt cycle */
+bool cm1e_drive_read_ordinary(cm1e_drive_t *drive, int64_t now_ns);
+bool cm1e_drive_write_ordinary(cm1e_drive_t *drive);
 /** Latches a fault that the caller saw (the bus is lost ...); an earlier one stays. @rt cycle */
 void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error);
 /** Whether the actual position has moved for some cycles by another distance than the actual velocity says: one of them

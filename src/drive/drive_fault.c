@@ -4,6 +4,7 @@
 void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
 {
     cm1e_drive_fault_t *fault = &drive->fault;
+    drive->ordinary.calm = false;
     if (fault->error == CM1E_OK)
         *fault = (cm1e_drive_fault_t){
             .error = error,

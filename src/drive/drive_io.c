@@ -89,6 +89,30 @@ static void profile_objects(cm1e_drive_t *drive)
     drive->image.profile_acceleration = (uint32_t)kilo * (config->acceleration_in_kpulses ? 1u : 1000u);
 }
 
+/* Offset of an object from another one. false: it is not mapped with this size near that one. */
+static bool near(cm1e_image_slot_t slot, cm1e_image_slot_t base, unsigned bytes, uint8_t *offset)
+{
+    *offset = (uint8_t)(slot.offset - base.offset);
+    return slot.bytes == bytes && slot.offset >= base.offset && slot.offset - base.offset <= UINT8_MAX;
+}
+
+static void find_wire(cm1e_drive_t *drive)
+{
+    const cm1e_drive_image_t *i = &drive->image;
+    cm1e_drive_wire_t w = {.in = i->in_statusword.offset, .out = i->out_controlword.offset};
+    const cm1e_image_slot_t in = i->in_statusword, out = i->out_controlword;
+    const bool inputs = near(i->in_error, in, 2, &w.in_error) && near(i->in_position, in, 4, &w.in_position) &&
+                        near(i->in_velocity, in, 4, &w.in_velocity) && near(i->in_torque, in, 2, &w.in_torque) &&
+                        near(i->in_digital, in, 2, &w.in_digital) && near(i->in_dc, in, 2, &w.in_dc) &&
+                        near(i->in_temperature, in, 2, &w.in_temperature) && near(i->in_mode, in, 1, &w.in_mode);
+    const bool outputs = near(i->out_digital, out, 2, &w.out_digital) && near(i->out_mode, out, 1, &w.out_mode) &&
+                         near(i->out_position, out, 4, &w.out_position) &&
+                         near(i->out_velocity, out, 4, &w.out_velocity);
+    const bool more = i->out_probe.bytes || i->out_profile_velocity.bytes || i->out_profile_acceleration.bytes;
+    w.known = inputs && outputs && !more && in.bytes == 2 && out.bytes == 2;
+    drive->wire = w;
+}
+
 cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
     if ((unsigned)drive->config->mapping > CM1E_MAPPING_PROFILE || !mapping_name(drive))
@@ -111,6 +135,7 @@ cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              out ? 0x6061 : 0x6060, out ? 0x6060 : 0x6061);
     }
     profile_objects(drive);
+    find_wire(drive);
     drive->actual = (cm1e_drive_actual_t){0};
     drive->feedback.digital_known = drive->image.in_digital.bytes > 0;
     return CM1E_OK;
@@ -126,11 +151,6 @@ bool cm1e_drive_carry(cm1e_drive_t *drive, uint16_t index, uint32_t raw)
     else
         return false;
     return true;
-}
-
-static int32_t clamp_i32(int64_t value)
-{
-    return (int32_t)(value > INT32_MAX ? INT32_MAX : value < INT32_MIN ? INT32_MIN : value);
 }
 
 /* This runs for every axis in every cycle. Objects with one possible size are read without a test of the size. Only
@@ -187,7 +207,7 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
 {
     const bool quarter = drive->range.velocity_quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP);
     if (drive->image.in_velocity.bytes && !quarter)
-        return clamp_i32((int64_t)get_i32(in, drive->image.in_velocity) * drive->range.velocity_unit);
+        return cm1e_drive_clamp((int64_t)get_i32(in, drive->image.in_velocity) * drive->range.velocity_unit);
     const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
     if (!drive->actual.seen || elapsed_ns <= 0)
         return 0;
@@ -197,7 +217,7 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
      * reset. */
     if (velocity > drive->range.velocity_believed || velocity < -drive->range.velocity_believed)
         return drive->feedback.velocity;
-    return clamp_i32(velocity);
+    return cm1e_drive_clamp(velocity);
 }
 
 /* The words of an unknown mode: no state, no torque, controlword 0000h. */
@@ -256,6 +276,16 @@ static const int64_t position_age_ns = 2 * MS_IN_NS;
 /* Number of good positions in a row that are required before torque, after a bad one. */
 enum { POSITIONS_TO_TRUST = 3 };
 
+int64_t cm1e_drive_farthest(const cm1e_drive_t *drive, int64_t elapsed_ns)
+{
+    return drive->range.velocity_possible * (elapsed_ns + position_age_ns) / 1000000000;
+}
+
+int64_t cm1e_drive_tolerance(const cm1e_drive_t *drive, int64_t elapsed_ns)
+{
+    return drive->range.velocity_possible * elapsed_ns / 1000000000 / 100;
+}
+
 /* A position too far away is no motion: it is damaged, or has another origin. Under torque only homing may set an
  * origin. */
 static bool can_be_there(const cm1e_drive_t *drive, int32_t position)
@@ -263,9 +293,7 @@ static bool can_be_there(const cm1e_drive_t *drive, int32_t position)
     if (!drive->actual.seen || drive->now_ns <= drive->actual.read_ns)
         return true;
     const int64_t way = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
-    const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
-    const int64_t most = drive->range.velocity_possible * (elapsed_ns + position_age_ns) / 1000000000;
-    return llabs(way) <= most;
+    return llabs(way) <= cm1e_drive_farthest(drive, drive->now_ns - drive->actual.read_ns);
 }
 
 /* Whether position and velocity contradict each other. Those of a turning motor agree, but for a jitter of about half a
@@ -274,9 +302,8 @@ static bool contradicts(const cm1e_drive_t *drive, int32_t position)
 {
     const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
     const int64_t way = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
-    const int64_t told = (int64_t)drive->feedback.velocity * elapsed_ns / 1000000000;
-    const int64_t tolerance = drive->range.velocity_possible * elapsed_ns / 1000000000 / 100;
-    return drive->actual.seen && drive->image.in_velocity.bytes > 0 && llabs(way - told) > llabs(told) / 2 + tolerance;
+    return drive->actual.seen && drive->image.in_velocity.bytes > 0 &&
+           cm1e_drive_ways_differ(way, drive->feedback.velocity, elapsed_ns, cm1e_drive_tolerance(drive, elapsed_ns));
 }
 
 /* false: the position is rejected. It becomes neither a target, nor a lag, nor a captured position. */
@@ -325,7 +352,7 @@ void cm1e_drive_decode(cm1e_drive_t *drive)
 }
 
 /* Clamps the target to the peak speed of the motor (UG 6.3). In counts/ms the bound is the whole number below. */
-static int32_t velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s)
+int32_t cm1e_drive_velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s)
 {
     const int32_t half = counts_per_s < 0 ? -drive->range.velocity_unit / 2 : drive->range.velocity_unit / 2;
     const int64_t value = drive->range.velocity_unit == 1 ? counts_per_s
@@ -339,7 +366,7 @@ void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t positi
     uint8_t *out = cm1e_bus_outputs(drive->bus);
     cm1e_put_u16(out + drive->image.out_controlword.offset, controlword);
     put_u32(out, drive->image.out_position, (uint32_t)position);
-    put_u32(out, drive->image.out_velocity, (uint32_t)velocity_on_wire(drive, velocity));
+    put_u32(out, drive->image.out_velocity, (uint32_t)cm1e_drive_velocity_on_wire(drive, velocity));
     if (drive->image.out_mode.bytes)
         out[drive->image.out_mode.offset] = (uint8_t)drive->mode.commanded;
     if (drive->image.out_digital.bytes)

@@ -88,6 +88,25 @@ typedef struct cm1e_drive_image {
     cm1e_image_slot_t in_latched[4]; /**< touch probe of the drive: edges of probe 1, of probe 2 */
 } cm1e_drive_image_t;
 
+/** Offsets of the objects that a cycle needs, where the mapping has all of them, each with its usual size, and no others
+ *  that a cycle writes. Written by drive_io.c. */
+typedef struct cm1e_drive_wire {
+    bool known;                     /**< the mapping is such a one */
+    uint32_t in, out;               /**< of the statusword and the controlword, in the image */
+    uint8_t in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc, in_mode; /**< from `in` */
+    uint8_t out_digital, out_position, out_velocity, out_mode;                                         /**< from `out` */
+} cm1e_drive_wire_t;
+
+/** An ordinary cycle: the torque acts, and set positions are followed (drive_ordinary.c). Written by drive.c,
+ *  drive_fault.c and drive_ordinary.c. */
+typedef struct cm1e_drive_ordinary {
+    bool calm;                      /**< the last cycle was one, and nothing has happened since */
+    uint16_t controlword;           /**< of these cycles */
+    int64_t elapsed_ns;             /**< for which the next two are computed */
+    int64_t farthest, tolerance;    /**< counts: way that the motor can have gone in that time, tolerance of the way that
+                                         its velocity makes in it */
+} cm1e_drive_ordinary_t;
+
 /** What this motor can do, in counts: known when the drive is made. Written by drive.c, drive_bridge.c, drive_cia402.c,
  *  drive_cm1e.c and drive_virtual.c. */
 typedef struct cm1e_drive_range {
@@ -199,6 +218,8 @@ typedef struct cm1e_drive {
     cm1e_error_t unbound;           /**< why the slave that came cannot be this drive; CM1E_OK: it can */
     bool answered;                  /**< the last frame came back, with every slave's part in it */
     cm1e_drive_torque_t torque;
+    cm1e_drive_wire_t wire;
+    cm1e_drive_ordinary_t ordinary;
     cm1e_drive_mode_t mode;
     cm1e_drive_actual_t actual;
     cm1e_drive_range_t range;

@@ -5,6 +5,8 @@
 #ifndef CM1E_DRIVE_DRIVE_PRIVATE_H
 #define CM1E_DRIVE_DRIVE_PRIVATE_H
 
+#include <stdlib.h>
+
 #include "core/clock.h"
 #include "device/unit.h"
 #include "drive/drive_bridge.h"
@@ -40,6 +42,37 @@ void cm1e_drive_decode(cm1e_drive_t *drive);
 /** Commands a mode on the wire. The drive keeps what every cycle needs of the tables. */
 void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_device_mode_t *row);
 void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity);
+/** A target velocity in counts/s as 0x60FF has it. */
+int32_t cm1e_drive_velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s);
+/** Ages of positions and velocities: how far the motor can have gone in a time, and how far position and velocity may
+ *  differ then; counts. */
+int64_t cm1e_drive_farthest(const cm1e_drive_t *drive, int64_t elapsed_ns);
+int64_t cm1e_drive_tolerance(const cm1e_drive_t *drive, int64_t elapsed_ns);
+/** Whether position and velocity contradict each other, if the motor has gone `way` counts in a time. */
+static inline bool cm1e_drive_ways_differ(int64_t way, int32_t velocity, int64_t elapsed_ns, int64_t tolerance)
+{
+    const int64_t told = (int64_t)velocity * elapsed_ns / 1000000000;
+    return llabs(way - told) > llabs(told) / 2 + tolerance;
+}
+/** Whether a position may be a target. */
+static inline bool cm1e_drive_in_range(const cm1e_drive_t *drive, int32_t position)
+{
+    return position >= drive->range.position_least && position <= drive->range.position_most;
+}
+/** From a position to another one, over the wrap-around of the counts. */
+static inline int64_t cm1e_drive_way_between(int32_t from, int32_t to)
+{
+    return (int32_t)((uint32_t)to - (uint32_t)from);
+}
+static inline int32_t cm1e_drive_clamp(int64_t value)
+{
+    return (int32_t)(value > INT32_MAX ? INT32_MAX : value < INT32_MIN ? INT32_MIN : value);
+}
+
+/* drive_ordinary.c */
+/** Whether the cycle that was written just now with this controlword is followed by ordinary ones, unless something
+ *  happens. */
+void cm1e_drive_note_calm(cm1e_drive_t *drive, uint16_t controlword);
 
 /* drive_mode.c */
 cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag);

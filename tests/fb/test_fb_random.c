@@ -91,7 +91,7 @@ void cycle_begin(void)
     turn_encoders();
     fake_bus_cycle(&bench.bus, judged_axes[0].cycle_ns);
     for (int n = 0; n < axis_count; n++)
-        cm1e_axis_inputs(judged_axes[n].axis, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
+        ordinary_inputs(judged_axes[n].axis, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
     for (int n = 0; n < axis_count; n++) {
         judged_at = n;
         judge_cycle();

@@ -52,9 +52,9 @@ void cycle_begin(void)
     const int64_t planned_ns = bench.start_ns + judged.number * judged.cycle_ns;
     cm1e_clock_sleep_until(cm1e_bus_clock(bench.bus), planned_ns);
     const cm1e_error_t received = cm1e_bus_receive(bench.bus);
-    cm1e_axis_inputs(judged.axis, received, cm1e_bus_health(bench.bus), planned_ns);
+    ordinary_inputs(judged.axis, received, cm1e_bus_health(bench.bus), planned_ns);
     for (int i = 0; i < bench.other_count; i++)
-        cm1e_axis_inputs(bench.others[i].axis, received, cm1e_bus_health(bench.bus), planned_ns);
+        ordinary_inputs(bench.others[i].axis, received, cm1e_bus_health(bench.bus), planned_ns);
     judge_cycle();
     MC_Power(&powers[0]);
     judged.state = judged.axis->state;

@@ -161,8 +161,8 @@ void axes_inputs(void)
 {
     fake_bus_cycle(&axes_bench.bus, axes_bench.cycle_ns);
     for (int n = 0; n < axes_bench.count; n++)
-        cm1e_axis_inputs(axes_bench.axes[n], axes_bench.received, axes_bench.health,
-                         axes_bench.bus.clock.virtual_now_ns);
+        ordinary_inputs(axes_bench.axes[n], axes_bench.received, axes_bench.health,
+                        axes_bench.bus.clock.virtual_now_ns);
     for (int n = 0; n < axes_bench.count; n++)
         (void)cm1e_axis_power(axes_bench.axes[n], &axes_bench.owners[n], axes_bench.on[n], axes_bench.positive[n],
                               axes_bench.negative[n]);

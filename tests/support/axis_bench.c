@@ -39,7 +39,7 @@ static void bench_watch(void)
 void bench_inputs(void)
 {
     fake_bus_cycle(&bus, cycle_ns);
-    cm1e_axis_inputs(axis, received, health, bus.clock.virtual_now_ns);
+    ordinary_inputs(axis, received, health, bus.clock.virtual_now_ns);
 }
 
 void bench_outputs(void)

@@ -86,7 +86,7 @@ void inputs(void)
     next_ns = now_ns + config.cycle_time_ns;
     const cm1e_error_t received = cm1e_bus_receive(bus);
     for (uint32_t i = 0; i < config.axis_count; i++)
-        cm1e_axis_inputs(axes[i], received, cm1e_bus_health(bus), now_ns);
+        ordinary_inputs(axes[i], received, cm1e_bus_health(bus), now_ns);
 }
 
 void outputs(void)

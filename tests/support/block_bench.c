@@ -42,7 +42,7 @@ static void turn_shaft(void)
 /* Inputs of the master, like those of the axis. */
 static void master_begins(void)
 {
-    cm1e_axis_inputs(bench.master, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
+    ordinary_inputs(bench.master, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
     judged_at = 1;
     judge_cycle();
     MC_Power(&bench.master_power);
@@ -55,7 +55,7 @@ void cycle_begin(void)
     judged_at = 0;
     turn_shaft();
     fake_bus_cycle(&bench.bus, judged.cycle_ns);
-    cm1e_axis_inputs(judged.axis, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
+    ordinary_inputs(judged.axis, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
     judge_cycle();
     MC_Power(&bench.power);
     if (bench.master)

@@ -257,6 +257,13 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
 {
     return fake_slave(bus, position)->watch;
 }
+bool cm1e_bus_slave_goes_on(const cm1e_bus_t *bus, uint16_t position, const cm1e_slave_watch_t *seen)
+{
+    const cm1e_slave_watch_t now = fake_slave(bus, position)->watch;
+    return now.al_state == seen->al_state && now.al_status_code == seen->al_status_code && now.lost == seen->lost &&
+           now.silent == seen->silent && now.out == seen->out && now.bound == seen->bound &&
+           now.absent == seen->absent && now.fresh == seen->fresh;
+}
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position)
 {
     fake_slave(bus, position)->recoveries++;

@@ -179,7 +179,7 @@ static void test_a_master_that_is_destroyed_is_lost(void)
     cm1e_axis_destroy(axes_bench.axes[MASTER]);
     axes_bench.axes[MASTER] = NULL;
     axes_bench.cycle = 0;
-    cm1e_axis_inputs(axes_axis(SLAVE), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
+    ordinary_inputs(axes_axis(SLAVE), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
     ordinary_outputs(axes_axis(SLAVE));
     failed(SLAVE, CM1E_ERROR_AXIS_MASTER_LOST, "does not exist any more");
 }

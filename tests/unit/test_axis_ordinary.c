@@ -102,7 +102,7 @@ static void anything(void)
 static void test_random_motions(void)
 {
     const int runs = seed_count(RUNS);
-    cycles_advanced = cycles_ordinary = 0;
+    cycles_advanced = cycles_ordinary = inputs_seen = inputs_ordinary = 0;
     for (int run = 0; run < runs; run++) {
         begin(seed_of(run));
         const unsigned rareness = one_in(3) ? 5 : 100;
@@ -114,8 +114,9 @@ static void test_random_motions(void)
             bench_outputs();
         }
     }
-    printf("%llu of %llu cycles were ordinary\n", cycles_ordinary, cycles_advanced);
-    TEST_ASSERT_TRUE(seeds_given() || cycles_ordinary > cycles_advanced / 3);
+    printf("%llu of %llu cycles were ordinary, %llu of %llu inputs\n", cycles_ordinary, cycles_advanced,
+           inputs_ordinary, inputs_seen);
+    TEST_ASSERT_TRUE(seeds_given() || (cycles_ordinary > cycles_advanced / 3 && inputs_ordinary > inputs_seen / 3));
 }
 
 /* ---- where the short way must end ----------------------------------------------------------------------------- */

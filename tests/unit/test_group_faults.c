@@ -294,7 +294,7 @@ static void test_the_end_of_a_run_shuts_all_axes_down(void)
         fake_bus_cycle(&axes_bench.bus, axes_bench.cycle_ns);
         down = true;
         for (int n = 0; n < 3; n++)
-            cm1e_axis_inputs(axes_axis(n), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
+            ordinary_inputs(axes_axis(n), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
         for (int n = 0; n < 3; n++)
             down = cm1e_axis_shut_down(axes_axis(n)) && down;
         axes_outputs();
@@ -315,7 +315,7 @@ static void test_an_axis_that_is_destroyed_on_the_way(void)
     TEST_ASSERT_EQUAL_UINT(1u << 0 | 1u << 2, group->led);
     for (int i = 0; i < 2000 && group->led; i++)
         for (int n = 0; n < 3; n += 2) {
-            cm1e_axis_inputs(axes_axis(n), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
+            ordinary_inputs(axes_axis(n), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
             ordinary_outputs(axes_axis(n));
         }
     TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(0)->setpoint.velocity);
