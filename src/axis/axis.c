@@ -237,6 +237,14 @@ CM1E_RARE static void step_extras(cm1e_axis_t *axis)
         cm1e_axis_objects_step(axis);
 }
 
+static void after_motion(cm1e_axis_t *axis, bool undisturbed)
+{
+    if (axis->extras)
+        step_extras(axis);
+    if (!undisturbed || !set_points_move(axis))
+        cm1e_axis_enable_step(axis);
+}
+
 void cm1e_axis_advance_any(cm1e_axis_t *axis)
 {
     axis->advanced = true;
@@ -256,18 +264,19 @@ void cm1e_axis_advance_any(cm1e_axis_t *axis)
         cm1e_axis_motion_step(axis);
     else
         stay(axis);
-    if (axis->extras)
-        step_extras(axis);
-    if (!undisturbed || !set_points_move(axis))
-        cm1e_axis_enable_step(axis);
+    after_motion(axis, undisturbed);
 }
 
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
+    bool over = false;
+    axis->advanced = true; /* first, as a master may be asked for its set-point on the way */
     if (cm1e_axis_ordinary_step(axis))
-        axis->advanced = true;
-    else
+        return;
+    if (!cm1e_axis_led_step(axis, &over))
         cm1e_axis_advance_any(axis);
+    else if (over)
+        after_motion(axis, true);
 }
 
 void cm1e_axis_outputs(cm1e_axis_t *axis)

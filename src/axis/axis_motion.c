@@ -336,6 +336,27 @@ static bool on_hard_ramp(const cm1e_axis_t *axis)
     return last->jerk == 0.0 && last->start.acceleration != 0.0;
 }
 
+/* What follows from the set-point of the cycle. */
+static inline void after_set_point(cm1e_axis_t *axis)
+{
+    axis->setpoint.brakes_hard = on_hard_ramp(axis);
+    /* Note 6: MC_Stop done and its Execute FALSE. */
+    if (axis->state == CM1E_AXIS_STOPPING && axis_holds(axis) && !axis->commands.stop_held &&
+        !axis->homing_step.after_stop)
+        cm1e_axis_go(axis, ON_STOP_RELEASED);
+    if (axis_holds(axis) && !axis->commands.active && axis->commands.waiting.count > 0) { /* after a homing */
+        const from_t from = from_set(axis);
+        (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
+    }
+}
+
+void cm1e_axis_motion_turned(cm1e_axis_t *axis, bool made)
+{
+    if (!made && axis_on_profile(axis))
+        cm1e_axis_profile_step(axis);
+    after_set_point(axis);
+}
+
 void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
     if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->homing_step.after_stop))
@@ -346,15 +367,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
         cm1e_axis_profile_step(axis);
     else if (!axis->setpoint.source->step(axis) && axis_on_profile(axis))
         cm1e_axis_profile_step(axis);
-    axis->setpoint.brakes_hard = on_hard_ramp(axis);
-    /* Note 6: MC_Stop done and its Execute FALSE. */
-    if (axis->state == CM1E_AXIS_STOPPING && axis_holds(axis) && !axis->commands.stop_held &&
-        !axis->homing_step.after_stop)
-        cm1e_axis_go(axis, ON_STOP_RELEASED);
-    if (axis_holds(axis) && !axis->commands.active && axis->commands.waiting.count > 0) { /* after a homing */
-        const from_t from = from_set(axis);
-        (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
-    }
+    after_set_point(axis);
 }
 
 /* The correction of the position loop. While inputs are missing the last correction stays, and an offline ramp of

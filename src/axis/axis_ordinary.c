@@ -2,13 +2,15 @@
  * The short way of an ordinary cycle. Most axes in most cycles are in the middle of a stretch of the profile of their
  * command: nothing begins, ends or changes. Then a cycle is a sample of the stretch and nothing else, and a few tests
  * show it. All decisions of the long way (cm1e_axis_advance_any()) that depend on the profile alone are made ahead, for
- * some cycles at once: look_ahead(). Whatever could change one of them calls cm1e_axis_look_anew(). Both ways give the
- * same bits (test axis_ordinary).
+ * some cycles at once: look_ahead(). Whatever could change one of them calls cm1e_axis_look_anew(). An axis that follows
+ * a master or a leader is asked for nothing else either; its own source makes and checks the set-point as ever. Both
+ * ways give the same bits (tests axis_ordinary, axis_ordinary_led).
  */
 #include <math.h>
 
 #include "axis/axis_commands.h"
 #include "axis/axis_extras.h"
+#include "axis/axis_in_position.h"
 #include "axis/axis_setpoint.h"
 #include "core/rare.h"
 
@@ -60,12 +62,33 @@ CM1E_RARE static bool look_ahead(cm1e_axis_t *axis, double time_s)
     return true;
 }
 
+/* Whether the axis is in a motion of a command, a master or a leader, and has nothing to do beside it. */
+static inline bool only_moves(const cm1e_axis_t *axis)
+{
+    return axis->state >= CM1E_AXIS_DISCRETE_MOTION && axis->state <= CM1E_AXIS_SYNCHRONIZED_MOTION && !axis->extras &&
+           axis_acts(axis) && axis->silence.silent_before == 0 && !axis->silence.frozen;
+}
+
+bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over)
+{
+    const source_t *source = axis->setpoint.source;
+    if (axis->state != CM1E_AXIS_SYNCHRONIZED_MOTION || source->find_stretch || !source->moves || !only_moves(axis))
+        return false;
+    if (source->follows)
+        axis->coupling_hooks->advance_masters(axis);
+    cm1e_axis_in_position_leave(axis);
+    const bool made = source->step(axis);
+    axis->setpoint.brakes_hard = false;
+    *over = axis->setpoint.source != source || axis->extras;
+    if (*over)
+        cm1e_axis_motion_turned(axis, made);
+    return true;
+}
+
 bool cm1e_axis_ordinary_step(cm1e_axis_t *axis)
 {
     setpoint_t *s = &axis->setpoint;
-    const bool moves = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION;
-    if (s->source != &cm1e_source_profile || !moves || axis->extras || !axis_acts(axis) ||
-        axis->silence.silent_before > 0 || axis->silence.frozen)
+    if (s->source != &cm1e_source_profile || axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION || !only_moves(axis))
         return false;
     const double time_s = s->profile_next_s;
     if (!(time_s < s->ordinary_until_s) && !look_ahead(axis, time_s))

@@ -51,6 +51,9 @@ bool cm1e_axis_inputs_ordinary(cm1e_axis_t *axis, cm1e_error_t received, cm1e_er
 /** cm1e_axis_advance() for an ordinary cycle of a move; false, and nothing has changed: it is not one
  *  (axis_ordinary.c). */
 bool cm1e_axis_ordinary_step(cm1e_axis_t *axis);
+/** cm1e_axis_advance() for an axis in SynchronizedMotion that has nothing to do but to follow its master or leader.
+ *  false, and nothing has changed: it has. `*over`: another source has taken over, and the cycle is not complete. */
+bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over);
 /** Something has changed on which it depends whether the next cycles are ordinary. */
 static inline void cm1e_axis_look_anew(cm1e_axis_t *axis) { axis->setpoint.ordinary_until_s = -INFINITY; }
 /* What sources write that are no profile of axis_motion.c, and those who change something beside the motion. */
@@ -167,6 +170,9 @@ void cm1e_axis_hold_here(cm1e_axis_t *axis);
 /** Puts the set-point to rest at the end of its profile. */
 void cm1e_axis_stand(cm1e_axis_t *axis);
 void cm1e_axis_motion_step(cm1e_axis_t *axis);
+/** The rest of cm1e_axis_motion_step() after the step of a source that another one has replaced in it. `made`: the step
+ *  made the set-point of the cycle. */
+void cm1e_axis_motion_turned(cm1e_axis_t *axis, bool made);
 void cm1e_axis_write_set_point(cm1e_axis_t *axis);
 
 #endif
