@@ -1,7 +1,9 @@
 /**
  * What a cycle of the library costs in instructions, which do not depend on the load of the machine: the work of
- * bench_blocks, with the axes of one set. bench/limits runs it under callgrind and compares the counts with those that
- * are recorded. Each row runs in a function measured_...(), of which callgrind writes a count of its own.
+ * bench_blocks, with the axes of one set. scripts/limits runs it under callgrind and compares the counts with those of
+ * bench/limits. All that is counted runs in measured_run(), of which callgrind writes a count for each call.
+ *
+ *     bench_limits [ROW]      a line for each call: the row, the number of axis-cycles in it, bytes taken from the heap
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +11,7 @@
 
 #include "blocks_cm1e.h"
 
-enum { CYCLES = 100, WARM = 60, STARTS = 50 };
+enum { CYCLES = 100, WARM = 60 };
 
 #define MEASURED __attribute__((noinline, noclone, used)) void
 MEASURED measured_run(const blocks_subject_t *subject, unsigned axes, unsigned cycles);
@@ -110,9 +112,27 @@ static void measure_starts(const blocks_subject_t *subject, unsigned axes)
     told("start-from-rest", axes, before);
     subject->run(axes, WARM);
     give(subject, axes, &home);
+    const size_t before_next = heap;
     measured_run(subject, axes, 1);
-    told("start-on-the-way", axes, before);
+    told("start-on-the-way", axes, before_next);
     run_to_the_end(subject, axes);
+}
+
+/* System calls that were made since the last count belong to the next one: to this one, which is left out. */
+static void begin_counting(void)
+{
+    measured_run(&blocks_cm1e, BLOCKS_SET, 0);
+    told("begin", 1, heap);
+}
+
+/* Whole cycles of both buses with all axes at rest under torque, simulated motors included: a count for each cycle. */
+static void measure_cycle(void)
+{
+    blocks_cm1e_cycle.run(BLOCKS_MAX_AXES, WARM);
+    begin_counting();
+    const size_t before = heap;
+    measured_run(&blocks_cm1e_cycle, BLOCKS_MAX_AXES, CYCLES);
+    told("cycle", CYCLES, before);
 }
 
 int main(int argc, char **argv)
@@ -136,6 +156,9 @@ int main(int argc, char **argv)
     };
     if (!blocks_cm1e.make(BLOCKS_MAX_AXES))
         fail("the axes are not powered");
+    begin_counting();
+    if (!only)
+        measure_cycle();
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         if (!only || !strcmp(only, rows[i].name))
             measure(rows[i].name, rows[i].subject, rows[i].work, rows[i].axes);

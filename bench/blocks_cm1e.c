@@ -125,6 +125,21 @@ static void run_whole(unsigned count, unsigned cycles)
     }
 }
 
+/* Whole cycles, frames included. */
+static void run_cycle(unsigned count, unsigned cycles)
+{
+    while (cycles-- > 0) {
+        for (unsigned i = 0; i < BUSES; i++) {
+            cm1e_clock_sleep_until(cm1e_bus_clock(buses[i]), cycle_now_ns + CYCLE_NS);
+            if (cm1e_bus_receive(buses[i]) != CM1E_OK)
+                fail("a frame was lost");
+        }
+        run_whole(count, 1);
+        for (unsigned i = 0; i < BUSES; i++)
+            cm1e_bus_send(buses[i]);
+    }
+}
+
 /* ---- axes -------------------------------------------------------------------------------------------------------- */
 
 static void make_groups(void)
@@ -161,16 +176,7 @@ static bool make(unsigned count)
     }
     make_groups();
     cycle_now_ns = cm1e_clock_now(cm1e_bus_clock(buses[0]));
-    for (int cycle = 0; cycle < 200; cycle++) { /* the way to Operation enabled needs the frames */
-        for (unsigned i = 0; i < BUSES; i++) {
-            cm1e_clock_sleep_until(cm1e_bus_clock(buses[i]), cycle_now_ns + CYCLE_NS);
-            if (cm1e_bus_receive(buses[i]) != CM1E_OK)
-                return false;
-        }
-        run_whole(count, 1);
-        for (unsigned i = 0; i < BUSES; i++)
-            cm1e_bus_send(buses[i]);
-    }
+    run_cycle(count, 200); /* the way to Operation enabled needs the frames */
     bool powered = true;
     for (unsigned i = 0; i < count; i++)
         powered &= powers[i].Status;
@@ -404,4 +410,6 @@ static const blocks_bytes_t *bytes(void)
 #define OURS make, begin, end, give, start
 const blocks_subject_t blocks_cm1e = {"cm1e (a)", OURS, run_blocks, done, failed, position, blocks_heap_bytes, bytes};
 const blocks_subject_t blocks_cm1e_whole = {"cm1e (a+b)", OURS,   run_whole,         done,
+                                            failed,       position, blocks_heap_bytes, bytes};
+const blocks_subject_t blocks_cm1e_cycle = {"cm1e, all",  OURS,     run_cycle,         done,
                                             failed,       position, blocks_heap_bytes, bytes};
