@@ -4,7 +4,7 @@
  * show it. All decisions of the long way (cm1e_axis_advance_any()) that depend on the profile alone are made ahead, for
  * some cycles at once: look_ahead(). Whatever could change one of them calls cm1e_axis_look_anew(). An axis that follows
  * a master or a leader is asked for nothing else either; its own source makes and checks the set-point as ever. Both
- * ways give the same bits (tests axis_ordinary, axis_ordinary_led).
+ * ways give the same bits (tests test_axis_ordinary, test_axis_ordinary_led).
  */
 #include <math.h>
 

@@ -3,7 +3,7 @@
  * the cycle before but for its measured values. Then nothing is to be decided: the values are taken from the wire and
  * the next target is put there. Whatever else has happened or is commanded takes the long ways (cm1e_drive_read(),
  * cm1e_drive_write()), which decide by the same numbers; after them cm1e_drive_note_calm() looks again. Both ways give
- * the same bits (test axis_ordinary).
+ * the same bits (test_axis_ordinary).
  */
 #include "core/bytes.h"
 #include "core/rare.h"

@@ -33,8 +33,8 @@ typedef struct cm1e_drive_command {
                                          result in operating abnormal" (BR 6 note 2) */
 } cm1e_drive_command_t;
 
-/** What the drive shows, fresh after cm1e_drive_read(). Written by drive.c, drive_digital.c, drive_io.c and
- *  drive_virtual.c. */
+/** What the drive shows, fresh after cm1e_drive_read(). Written by drive.c, drive_digital.c, drive_io.c,
+ *  drive_ordinary.c and drive_virtual.c. */
 typedef struct cm1e_drive_feedback {
     bool online;                    /**< the inputs of this cycle are valid, and the bus is well */
     bool fresh;                     /**< the inputs are of this cycle, though something on the bus may be wrong; and
@@ -118,7 +118,7 @@ typedef struct cm1e_drive_range {
     bool velocity_quarter;          /**< 0x606C is wrong in HM and PP */
 } cm1e_drive_range_t;
 
-/** Whether the actual position can be believed. Written by drive_io.c and drive_virtual.c. */
+/** Whether the actual position can be believed. Written by drive_io.c, drive_ordinary.c and drive_virtual.c. */
 typedef struct cm1e_drive_actual {
     int64_t read_ns;                /**< time of the last good one */
     bool seen;                      /**< inputs were valid at least once */
@@ -127,7 +127,7 @@ typedef struct cm1e_drive_actual {
     uint8_t distrusted;             /**< good positions still to come before torque is requested */
 } cm1e_drive_actual_t;
 
-/** The set-point on the wire. Written by drive.h, drive.c, drive_io.c and drive_virtual.c. */
+/** The set-point on the wire. Written by drive.h, drive.c, drive_io.c, drive_ordinary.c and drive_virtual.c. */
 typedef struct cm1e_drive_target {
     int32_t position;               /**< last one written */
     int32_t velocity;               /**< last one written, counts/s */
