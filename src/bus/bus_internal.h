@@ -256,10 +256,12 @@ static inline const cm1e_slave_config_t *cm1e_bus_setup_of(const cm1e_bus_slave_
     static const cm1e_slave_config_t nothing;
     return slave->config ? slave->config : &nothing;
 }
-/** Its objects of synchronisation are set: it runs by SYNC0 alone. What SYNC1 means is its maker's. */
-static inline bool cm1e_bus_runs_by_sync0(const cm1e_bus_slave_t *slave)
+/** The pulses by which its objects of synchronisation are set. */
+static inline cm1e_setup_pulses_t cm1e_bus_setup_pulses(const cm1e_bus_slave_t *slave)
 {
-    return slave->facts.coe && slave->pulses.sync0_us != 0 && slave->pulses.sync1_us == 0;
+    if (!slave->facts.coe || slave->pulses.sync0_us == 0)
+        return CM1E_SETUP_NO_PULSES;
+    return slave->pulses.sync1_us != 0 ? CM1E_SETUP_SYNC1 : CM1E_SETUP_SYNC0;
 }
 /** Process data watchdog of a slave, in units of 100 us. */
 static inline uint16_t cm1e_bus_watchdog(const cm1e_bus_slave_t *slave)

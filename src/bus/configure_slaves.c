@@ -40,9 +40,9 @@ cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         slave->setup = (cm1e_setup_job_t){0};
         const cm1e_slave_config_t *config = cm1e_bus_setup_of(slave);
-        const bool by_sync0 = cm1e_bus_runs_by_sync0(slave);
-        if (cm1e_bus_was_there(slave) && cm1e_setup_is_needed(config, by_sync0, before_op))
-            cm1e_setup_begin(&slave->setup, slave->info.position, config, by_sync0, before_op,
+        const cm1e_setup_pulses_t pulses = cm1e_bus_setup_pulses(slave);
+        if (cm1e_bus_was_there(slave) && cm1e_setup_is_needed(config, pulses, before_op))
+            cm1e_setup_begin(&slave->setup, slave->info.position, config, pulses, before_op,
                              slave->facts.swapped);
     }
     const bool ended = cm1e_bus_pump_until_idle(bus, deadline_ns);

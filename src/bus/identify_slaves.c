@@ -101,7 +101,8 @@ static cm1e_error_t check_mailbox(const cm1e_bus_t *bus, const cm1e_slave_config
                                   const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
     char label[CM1E_LABEL_LENGTH];
-    if (slave->facts.coe || (!cm1e_setup_is_needed(config, false, false) && !cm1e_setup_is_needed(config, false, true)))
+    if (slave->facts.coe || (!cm1e_setup_is_needed(config, CM1E_SETUP_NO_PULSES, false) &&
+                              !cm1e_setup_is_needed(config, CM1E_SETUP_NO_PULSES, true)))
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "%s has no mailbox for CoE, so SDOs and PDOs cannot be "
                          "written: leave sdo, mapping, outputs_pdos and inputs_pdos out.",

@@ -50,7 +50,7 @@ static cm1e_recovery_step_t step_behind(const cm1e_bus_slave_t *slave, cm1e_reco
 {
     const cm1e_recovery_step_t next = (cm1e_recovery_step_t)(step + 1);
     const bool setup = next == RECOVERY_SETUP || next == RECOVERY_SETUP_OP;
-    const bool needed = setup && cm1e_setup_is_needed(cm1e_bus_setup_of(slave), cm1e_bus_runs_by_sync0(slave),
+    const bool needed = setup && cm1e_setup_is_needed(cm1e_bus_setup_of(slave), cm1e_bus_setup_pulses(slave),
                                                       next == RECOVERY_SETUP_OP);
     return setup && !needed ? step_behind(slave, next) : next;
 }
@@ -539,7 +539,7 @@ static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
     cm1e_setup_job_t *job = &slave->setup;
     if (!slave->recovery.entered) {
         slave->recovery.entered = true;
-        cm1e_setup_begin(job, slave->info.position, cm1e_bus_setup_of(slave), cm1e_bus_runs_by_sync0(slave), before_op,
+        cm1e_setup_begin(job, slave->info.position, cm1e_bus_setup_of(slave), cm1e_bus_setup_pulses(slave), before_op,
                          slave->facts.swapped);
     }
     if (cm1e_coe_idle(&slave->coe)) {

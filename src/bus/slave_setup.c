@@ -6,7 +6,9 @@
 enum { SDO_TIMEOUT_NS = 1000000000, COUNT_BYTES = 1, PDO_BYTES = 2, ENTRY_BYTES = 4 };
 enum { CONFIGURED_MODULES = 0xF030 };
 enum { TO_PARAMETER = 0x200, EXCLUDES = 6, NUMBER_BYTES = 8 }; /* 0x1800:06 is that of the PDO 0x1A00 (ETG.1000.6) */
-enum { SYNC_TYPE = 1, SYNC_BYTES = 2, BY_SYNC0 = 2 }; /* ETG.1020: sub-index, and its value for DC with SYNC0 */
+/* ETG.1020: sub-indices, values for DC with SYNC0 and with SYNC1, and the bits of those in what is supported. */
+enum { SYNC_TYPE = 1, SYNC_SUPPORTED = 4, SYNC_BYTES = 2, BY_SYNC0 = 2, BY_SYNC1 = 3, CAN_SYNC0 = 0x04,
+       CAN_SYNC1 = 0x08 };
 
 /** One transfer of the list. */
 typedef struct step {
@@ -14,6 +16,7 @@ typedef struct step {
     uint8_t subindex, bytes;
     bool check; /**< reads what was written; false: writes */
     bool optional; /**< a write that may be refused; then what follows, its check, is left out */
+    bool asks;     /**< reads what the slave supports; it may be refused */
     bool excludes; /**< reads which PDOs the one in `value` excludes; a slave need not have that object */
     uint64_t value;
     const cm1e_sdo_config_t *sdo; /**< as the configuration states it; NULL: it is of a PDO */
@@ -24,7 +27,7 @@ typedef struct walk {
     unsigned left;
     step_t *step;
     bool check; /**< the steps are those that read */
-    bool optional, excludes, swapped;
+    bool optional, asks, excludes, swapped;
 } walk_t;
 
 /** false: go on; true: this is the step. */
@@ -33,8 +36,8 @@ static bool visit(walk_t *walk, unsigned index, unsigned subindex, unsigned byte
     if (walk->left-- > 0)
         return false;
     *walk->step = (step_t){.index = (uint16_t)index, .subindex = (uint8_t)subindex, .bytes = (uint8_t)bytes,
-                           .check = walk->check, .optional = walk->optional, .excludes = walk->excludes,
-                           .value = value};
+                           .check = walk->check, .optional = walk->optional, .asks = walk->asks,
+                           .excludes = walk->excludes, .value = value};
     return true;
 }
 
@@ -152,32 +155,52 @@ static bool is_stated(const cm1e_slave_config_t *config, unsigned index)
     return false;
 }
 
-static bool walk_synchronisation(walk_t *walk, const cm1e_slave_config_t *config)
+/** Reads what the slave supports, in the step before this is needed. */
+static bool walk_asking(walk_t *walk, unsigned index)
 {
-    for (unsigned index = OBJ_1C32_SM_OUTPUT_PARAMETER; index <= OBJ_1C32_SM_OUTPUT_PARAMETER + 1; index++) {
+    walk->check = walk->optional = walk->asks = true;
+    const bool found = visit(walk, index, SYNC_SUPPORTED, SYNC_BYTES, 0);
+    walk->check = walk->optional = walk->asks = false;
+    return found;
+}
+
+static unsigned type_for(cm1e_setup_pulses_t pulses, unsigned supported)
+{
+    if (pulses == CM1E_SETUP_SYNC0)
+        return BY_SYNC0;
+    return supported & CAN_SYNC1 ? BY_SYNC1 : supported & CAN_SYNC0 ? BY_SYNC0 : 0;
+}
+
+static bool walk_synchronisation(walk_t *walk, const cm1e_slave_config_t *config, cm1e_setup_pulses_t pulses,
+                                 const uint16_t supported[2])
+{
+    for (unsigned i = 0; i < 2; i++) {
+        const unsigned index = OBJ_1C32_SM_OUTPUT_PARAMETER + i, type = type_for(pulses, supported[i]);
         if (is_stated(config, index))
             continue;
-        for (int check = 0; check < 2; check++) {
+        if (pulses == CM1E_SETUP_SYNC1 && walk_asking(walk, index))
+            return true;
+        for (int check = 0; check < 2 && type; check++) {
             walk->check = check != 0;
             walk->optional = !walk->check;
-            if (visit(walk, index, SYNC_TYPE, SYNC_BYTES, BY_SYNC0))
+            if (visit(walk, index, SYNC_TYPE, SYNC_BYTES, type))
                 return true;
         }
+        walk->check = walk->optional = false;
     }
-    walk->check = walk->optional = false;
     return false;
 }
 
 static bool find_step(const cm1e_setup_job_t *job, unsigned number, step_t *step)
 {
     const cm1e_slave_config_t *config = job->config;
-    const bool by_sync0 = job->by_sync0, before_op = job->before_op;
+    const bool before_op = job->before_op;
     walk_t walk = {.left = number, .step = step, .swapped = job->swapped};
     if (walk_sdos(&walk, config, before_op))
         return true;
     if (before_op)
         return false;
-    if (by_sync0 && walk_synchronisation(&walk, config))
+    if (job->pulses && walk_synchronisation(&walk, config, job->pulses, job->supported))
         return true;
     if (walk_modules(&walk, config) || walk_excludes(&walk, config) || walk_clearing(&walk, config) ||
         walk_mapping(&walk, config) || walk_assignment(&walk, config))
@@ -186,17 +209,17 @@ static bool find_step(const cm1e_setup_job_t *job, unsigned number, step_t *step
     return walk_mapping(&walk, config) || walk_assignment(&walk, config);
 }
 
-bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, bool by_sync0, bool before_op)
+bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, cm1e_setup_pulses_t pulses, bool before_op)
 {
     step_t step;
-    const cm1e_setup_job_t job = {.config = config, .by_sync0 = by_sync0, .before_op = before_op};
+    const cm1e_setup_job_t job = {.config = config, .pulses = pulses, .before_op = before_op};
     return config && find_step(&job, 0, &step);
 }
 
-void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config, bool by_sync0,
-                      bool before_op, bool swapped)
+void cm1e_setup_begin(cm1e_setup_job_t *job, uint16_t position, const cm1e_slave_config_t *config,
+                      cm1e_setup_pulses_t pulses, bool before_op, bool swapped)
 {
-    *job = (cm1e_setup_job_t){.config = config, .by_sync0 = by_sync0, .before_op = before_op, .swapped = swapped,
+    *job = (cm1e_setup_job_t){.config = config, .pulses = pulses, .before_op = before_op, .swapped = swapped,
                               .sdo = {.position = position}};
 }
 
@@ -236,7 +259,7 @@ static bool took(cm1e_setup_job_t *job)
         return took_excludes(job);
     if (cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR) {
         if (job->optional && job->sdo.error == CM1E_ERROR_SDO_ABORT) {
-            job->step++; /* without its check */
+            job->step += !job->asked; /* without its check */
             return true;
         }
         job->error = job->sdo.error;
@@ -245,6 +268,10 @@ static bool took(cm1e_setup_job_t *job)
     if (job->sdo.write)
         return true;
     job->shown = cm1e_get_uint(job->data, (unsigned)(job->sdo.size < NUMBER_BYTES ? job->sdo.size : NUMBER_BYTES));
+    if (job->asked) {
+        job->supported[job->sdo.index - OBJ_1C32_SM_OUTPUT_PARAMETER] = (uint16_t)job->shown;
+        return true;
+    }
     job->differs = job->shown != job->expected;
     if (job->differs)
         job->error = CM1E_ERROR_PDO_MAPPING;
@@ -274,6 +301,7 @@ cm1e_sdo_t *cm1e_setup_next(cm1e_setup_job_t *job)
     job->step++;
     job->started = true;
     job->optional = step.optional;
+    job->asked = step.asks;
     job->expected = step.value;
     job->asks_excludes = step.excludes;
     job->pdo = step.excludes ? (uint16_t)step.value : 0;

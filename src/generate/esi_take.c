@@ -318,10 +318,10 @@ static cm1e_error_t take_mode(cm1e_slave_config_t *slave, const cm1e_description
         const cm1e_dc_mode_t *mode = &device->dc_modes.at[i];
         if (used + 50 < sizeof list)
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%.40s", used ? ", " : "", mode->name);
-        if (strcasecmp(mode->name, name) != 0)
-            continue;
         const cm1e_dc_facts_t facts = {mode->assign_activate, mode->sync0_cycle_ns, mode->sync0_factor,
                                        mode->sync0_shift_ns, mode->sync1_factor, mode->sync1_shift_ns};
+        if (strcasecmp(mode->name, name) != 0 && !(strcmp(name, "first") == 0 && cm1e_config_mode_has_sync0(&facts)))
+            continue;
         slave->dc = cm1e_config_pulses_of_mode(&facts, slave->dc.shift_us, cycle_time_ns ? cycle_time_ns : 1000000);
         return CM1E_OK;
     }

@@ -116,13 +116,14 @@ static void add_assignment(cm1e_sim_io_objects_t *o, const cm1e_description_t *d
         add_entry(o, i + 1, access, CM1E_TYPE_UINT, "Assigned PDO", assigned[i]);
 }
 
-/* How it is synchronised (ETG.1020): 1 by process data, 2 by SYNC0. */
+/* How it is synchronised (ETG.1020): 1 by process data, 2 by SYNC0, 3 by SYNC1; all of these are supported. */
 static void add_synchronisation(cm1e_sim_io_objects_t *o)
 {
     for (unsigned index = OBJ_1C32_SM_OUTPUT_PARAMETER; index <= OBJ_1C32_SM_OUTPUT_PARAMETER + 1; index++) {
-        add_object(o, index, CM1E_OBJECT_RECORD, 1, "Synchronisation");
-        add_count(o, RO, 1);
+        add_object(o, index, CM1E_OBJECT_RECORD, 4, "Synchronisation");
+        add_count(o, RO, 4);
         add_entry(o, 1, RW_PREOP, CM1E_TYPE_UINT, "Synchronisation type", 1);
+        add_entry(o, 4, RO, CM1E_TYPE_UINT, "Synchronisation types supported", 0x000E);
     }
 }
 

@@ -225,7 +225,7 @@ START_TEST(a_mode_of_the_eeprom_gives_the_pulses)
     } rows[] = {
         {"DC-Synchron", 1000000, 0, 1000000, 0, 510000, 0x0300, 2},
         {"first", 250000, -20, 250000, 0, -10000, 0x0300, 2},
-        {"DC-Oversampling", 1000000, 100, 250000, 750000, 100000, 0x0730, 1},
+        {"DC-Oversampling", 1000000, 100, 250000, 750000, 100000, 0x0730, 3},
         {"SM-Synchron", 1000000, 0, 0, 0, 0, 0, 1},
     };
     cm1e_slave_config_t *slave = add_encoder(rows[_i].cycle_ns);

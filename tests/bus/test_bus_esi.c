@@ -148,6 +148,16 @@ START_TEST(test_the_bus_file_overrules)
 }
 END_TEST
 
+/* Of SM and DC only the second one has SYNC0. */
+START_TEST(test_the_first_mode_with_sync0_is_the_default_of_its_maker)
+{
+    ck_assert_msg(load(good, "product: 0x000A0002, esi_mode: first,") == CM1E_OK, "%s", diag.text);
+    ck_assert_double_eq(config.slaves[0].dc.sync0_us, 500.0);
+    ck_assert_msg(load(good, "product: 0x000A0002,") == CM1E_OK, "%s", diag.text);
+    ck_assert_double_eq(config.slaves[0].dc.sync0_us, 0.0);
+}
+END_TEST
+
 /* Without CoE the process data lies as the file says, so a name is one of bits; "Input 4" would be a place. */
 START_TEST(test_a_slave_without_a_mailbox_is_named_by_its_bits)
 {
@@ -361,6 +371,7 @@ int main(void)
     tcase_add_unchecked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, test_what_is_taken);
     tcase_add_test(tests, test_the_bus_file_overrules);
+    tcase_add_test(tests, test_the_first_mode_with_sync0_is_the_default_of_its_maker);
     tcase_add_test(tests, test_a_slave_without_a_mailbox_is_named_by_its_bits);
     tcase_add_test(tests, test_a_bad_file_is_told_in_words);
     tcase_add_test(tests, test_a_slave_is_configured_by_it);
