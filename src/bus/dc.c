@@ -76,12 +76,13 @@ static cm1e_error_t find_clocks(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, cm1e_dia
 
 /* ---- delays and offsets ------------------------------------------------------------------------------------------ */
 
-/** One frame is stamped by all; returns the time by the clock of this machine. */
-static int64_t stamp(cm1e_bus_t *bus)
+/** One frame is stamped by all. Returns the time by the clock of this machine, and how long the frame was away. */
+static int64_t stamp(cm1e_bus_t *bus, int64_t *away_ns)
 {
     uint8_t zero[4] = {0};
     const int64_t before_ns = cm1e_clock_now(bus->clock);
     cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_DC_TIMES, zero, sizeof zero);
+    *away_ns = cm1e_clock_now(bus->clock) - before_ns;
     return before_ns;
 }
 
@@ -100,25 +101,30 @@ static cm1e_error_t read_stamps(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, uint64_t
     return CM1E_OK;
 }
 
-/** Time stamps have a resolution of 10 ns, and some jitter: a mean of several frames. The offsets come from the last
- *  one. The system time is that of the clock of this machine, or of the clocks of another bus that leads. */
+/** Time stamps have a resolution of 10 ns, and some jitter: a mean of several frames. The offsets come from the frame
+ *  that was back first: the moment at which it left is known best, and control loops remove an error slowly. The system
+ *  time is that of the clock of this machine, or of the clocks of another bus that leads. */
 static cm1e_error_t measure(cm1e_bus_t *bus, cm1e_dc_node_t *nodes, uint64_t *local, int64_t *system_ns,
                             cm1e_diag_t *diag)
 {
-    uint64_t sums[CM1E_MAX_SLAVES] = {0};
+    uint64_t sums[CM1E_MAX_SLAVES] = {0}, stamped[CM1E_MAX_SLAVES] = {0};
+    int64_t away_ns, least_ns = INT64_MAX;
     for (int round = 0; round < DELAY_ROUNDS; round++) {
-        *system_ns = stamp(bus);
-        const cm1e_error_t error = read_stamps(bus, nodes, local, diag);
+        const int64_t sent_ns = stamp(bus, &away_ns);
+        const cm1e_error_t error = read_stamps(bus, nodes, stamped, diag);
         if (error != CM1E_OK)
             return error;
+        if (away_ns < least_ns) {
+            least_ns = away_ns;
+            *system_ns = bus->dc.leader ? cm1e_dc_time(&bus->dc.leader->dc, sent_ns) : sent_ns;
+            memcpy(local, stamped, sizeof stamped);
+        }
         cm1e_dc_delays(nodes, bus->scanned);
         for (uint32_t i = 0; i < bus->slave_count; i++)
             sums[i] += nodes[i].delay_ns;
     }
     for (uint32_t i = 0; i < bus->slave_count; i++)
         bus->dc.slaves[i].clock.delay_ns = (uint32_t)(sums[i] / DELAY_ROUNDS);
-    if (bus->dc.leader)
-        *system_ns = cm1e_dc_time(&bus->dc.leader->dc, *system_ns);
     return CM1E_OK;
 }
 

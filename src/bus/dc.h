@@ -93,6 +93,8 @@ void cm1e_dc_note_status(struct cm1e_bus_slave *slave, uint16_t al_status_code);
 /** Fills the datagram of the supervision with a look at a clock; false: it is not the turn of the clocks. @rt cycle */
 bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *datagram);
 void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *datagram);
+/** ns; what a clock may deviate. */
+uint32_t cm1e_dc_tolerance(const cm1e_dc_t *dc, const cm1e_slave_clock_t *clock);
 
 /** The system time of the reference clock at the time `now_ns` of this machine. If the reference is silent, the rate
  *  that the cycle has learnt gives it. @rt cycle */

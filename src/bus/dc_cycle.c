@@ -181,7 +181,7 @@ bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *d)
 }
 
 /** A reference that another bus leads gets its time from this machine, whose frames are less even than a slave's. */
-static uint32_t tolerance_of(const cm1e_dc_t *dc, const cm1e_slave_clock_t *clock)
+uint32_t cm1e_dc_tolerance(const cm1e_dc_t *dc, const cm1e_slave_clock_t *clock)
 {
     const uint32_t phase_ns = (uint32_t)(dc->pace.cycle_ns / CM1E_PACE_SETTLED);
     return clock->is_reference && phase_ns > CM1E_CLOCK_TOLERANCE_NS ? phase_ns : CM1E_CLOCK_TOLERANCE_NS;
@@ -196,7 +196,7 @@ void cm1e_dc_looked(cm1e_bus_t *bus, const cm1e_datagram_t *d)
     slave->seen = true;
     slave->clock.deviation_ns = value & SIGN ? -(int32_t)size : (int32_t)size;
     slave->clock.maximum_ns = size > slave->clock.maximum_ns ? size : slave->clock.maximum_ns;
-    if (size <= tolerance_of(&bus->dc, &slave->clock)) {
+    if (size <= cm1e_dc_tolerance(&bus->dc, &slave->clock)) {
         slave->beyond = 0;
         slave->clock.lost = false;
     } else if (slave->beyond < BEYOND_LIMIT && ++slave->beyond == BEYOND_LIMIT && bus->phase == BUS_OPERATING) {

@@ -60,10 +60,10 @@ cm1e_error_t cm1e_dc_wait(cm1e_bus_t *bus, cm1e_diag_t *diag)
         if (apart)
             return cm1e_diag_set(diag, CM1E_ERROR_BUS_CLOCKS, 0,
                                  "The clock of %s does not follow the reference clock: it deviates by %d ns, allowed "
-                                 "are %d ns. Its controller may be damaged, or frames are lost.",
+                                 "are %u ns. Its controller may be damaged, or frames are lost.",
                                  cm1e_bus_label(bus, apart, label),
                                  (int)dc->slaves[apart->info.position - 1].clock.deviation_ns,
-                                 CM1E_CLOCK_TOLERANCE_NS);
+                                 (unsigned)cm1e_dc_tolerance(dc, &dc->slaves[apart->info.position - 1].clock));
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CLOCKS, 0,
                              "The cycle of this machine does not follow the reference clock: frames arrive %.0f us off "
                              "on average. Look at its wake-up latency (cm1e doctor).", dc->pace.mean_ns * 1e-3);

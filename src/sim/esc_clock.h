@@ -41,7 +41,8 @@ typedef struct esc_clock {
     double crystal_ns;      /**< what the crystal is ahead of simulated time since power-on */
     double loop_ns;         /**< what the control loop has added to that */
     double mean_ns;         /**< mean difference, 0x092C */
-    double deviation;       /**< mean deviation of the clock period */
+    double interval_ns, gained_ns; /**< mean time between two received times, and what the crystal gains in it */
+    double deviation;       /**< of the clock period: the ratio of these */
     bool measuring;         /**< the two below are known */
     int64_t last_crystal_ns; /**< when the last system time was received, without what the loop has added */
     uint32_t last_received_ns;

@@ -128,7 +128,7 @@ static void show_difference(cm1e_sim_slave_t *slave)
 void cm1e_sim_esc_dc_restart(cm1e_sim_slave_t *slave)
 {
     esc_clock_t *clock = &slave->clock;
-    clock->mean_ns = clock->deviation = 0;
+    clock->mean_ns = clock->deviation = clock->gained_ns = clock->interval_ns = 0;
     clock->measuring = false;
     cm1e_put_u16(slave->memory + ESC_DC_SPEED_DIFF, 0);
     show_difference(slave);
@@ -139,15 +139,20 @@ static double part(const cm1e_sim_slave_t *slave, uint16_t address)
     return 1.0 / (1u << (slave->memory[address] & DEPTH_MASK));
 }
 
-/* The crystal, without what the loop adds, against the reference clock. Positive in 0x0932: the crystal is fast. */
+/* The crystal, without what the loop adds, against the reference clock. Positive in 0x0932: the crystal is fast. It is
+ * the mean of what was gained over the mean of the intervals. A mean of the ratios would be too high where the received
+ * times are uneven, as those of a program are that tells its own time: 1 / interval grows more than it falls. */
 static void take_period(cm1e_sim_slave_t *slave, uint32_t received)
 {
     esc_clock_t *clock = &slave->clock;
     const int64_t crystal_ns = slave->frame_ns + clock->jitter_ns + llround(clock->crystal_ns);
     const uint32_t interval = received - clock->last_received_ns;
     if (clock->measuring && interval > 0 && interval < INTERVAL_MAX_NS) {
-        const double deviation = ((double)(crystal_ns - clock->last_crystal_ns) - interval) / interval;
-        clock->deviation += (deviation - clock->deviation) * part(slave, ESC_DC_SPEED_DEPTH);
+        const double gained_ns = (double)(crystal_ns - clock->last_crystal_ns) - interval;
+        clock->interval_ns = clock->interval_ns > 0 ? clock->interval_ns : interval;
+        clock->interval_ns += (interval - clock->interval_ns) * part(slave, ESC_DC_SPEED_DEPTH);
+        clock->gained_ns += (gained_ns - clock->gained_ns) * part(slave, ESC_DC_SPEED_DEPTH);
+        clock->deviation = clock->gained_ns / clock->interval_ns;
         const double diff = speed_diff_of(speed_start(slave), clock->deviation);
         cm1e_put_u16(slave->memory + ESC_DC_SPEED_DIFF, (uint16_t)(int16_t)diff);
     }

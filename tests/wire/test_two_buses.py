@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """One program on two networks, over two veth pairs, with a gear from one to the other: at 1 ms and at 250 us, in real
-time, and while single frames of either network are lost.
+time, while single frames of either network are lost, and with distributed clocks on both.
 
 test_two_buses.py CM1E 16_TWO_NETWORKS
 """
 import contextlib
 import fcntl
+import json
 import os
 import pty
 import re
@@ -31,15 +32,18 @@ TOLD = re.compile(r"(\d+) cycles on two networks, (\d+) of them in step; there t
                   r"(\d+) frames lost, (\d+) overruns")
 
 
-def bus_file(folder, cycle_time_us):
-    path = os.path.join(folder, f"two_{cycle_time_us}.yaml")
+def bus_file(folder, cycle_time_us, clocks=False):
+    path = os.path.join(folder, f"two_{cycle_time_us}{'_clocks' if clocks else ''}.yaml")
     bus = f"cycle_time_us: {cycle_time_us}, lost_cycles_limit: {wire.PAUSE_US // cycle_time_us}"
+    bus += ", distributed_clocks: true" if clocks else ""
+    pulses = f", dc: {{sync0_us: {cycle_time_us}, shift_us: 400}}" if clocks else ""
     with open(path, "w", encoding="utf-8") as file:
         file.write("buses:\n"
                    f"  - {{name: left, bus: {{interface: {wire.MASTER_INTERFACE}, {bus}}}, "
                    "axes: [{name: feeder, sim: {no_stops: true}}]}\n"
                    f"  - {{name: right, bus: {{interface: {SECOND[0]}, {bus}}}, "
-                   "axes: [{name: cutter, sim: {no_stops: true}}]}\n")
+                   "axes: [{name: cutter, sim: {no_stops: true}}, {name: spindle, device: cia402, "
+                   f"drive: {{counts_per_revolution: 131072, max_speed_rpm: 3000}}{pulses}}}]}}\n")
     return path
 
 
@@ -123,6 +127,52 @@ def check_attached(segment, cm1e, example, path):
     judge(subprocess.CompletedProcess([example, path], running.returncode, out, err), 1000, "1000 us, watched")
 
 
+def clocks_of(segment, cm1e, path):
+    """What `cm1e status` tells of the clocks: of the reference of each network, and of the drive with SYNC0. None: the
+    program has ended."""
+    told = segment.run([cm1e, "status", "-b", path, "--json"])
+    if told.returncode != 0:
+        return None
+    decoder, slaves, text = json.JSONDecoder(), [], told.stdout.strip()
+    while text:
+        network, end = decoder.raw_decode(text)
+        slaves += network
+        text = text[end:].strip()
+    return [slave.get("clock") for slave in slaves]
+
+
+def are_together(clocks, cycle_time_us):
+    """The second reference is led by the first one, and the drive follows its own: to a tenth of the cycle. It is no better
+    than the moments at which frames leave this machine."""
+    together_ns = cycle_time_us * 100
+    left, right, drive = clocks
+    wire.check(left["is_reference"] and right["is_reference"] and not drive["is_reference"], clocks)
+    wire.check(drive["sync0_ns"] == cycle_time_us * 1000, clocks)
+    return max(abs(right["deviation_ns"]), abs(drive["deviation_ns"])) <= together_ns
+
+
+def check_clocks(segment, second, cm1e, example):
+    """Crystals that are 100 ppm apart: alone they would be 300 us apart after the 3 s of the program."""
+    segment.console("clock 1 drift 60")
+    for line in ("clock 1 drift -40\n", "clock 2 drift 30\n"):
+        second.stdin.write(line)
+    second.stdin.flush()
+    path = bus_file(segment.folder, 1000, clocks=True)
+    running = subprocess.Popen(segment.command([example, path]), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    wire.wait_for(lambda: running.poll() is not None or segment.run(
+        [cm1e, "status", "--attach", str(running.pid), "--network", "right"]).returncode == 0, 30, "the program does not run")
+    seen = []
+    while running.poll() is None:
+        seen.append(clocks_of(segment, cm1e, path))
+    out, err = running.communicate(timeout=60)
+    seen = [clocks for clocks in seen if clocks and all(clocks)]
+    judge(subprocess.CompletedProcess([example, path], running.returncode, out, err), 1000, "1000 us, clocks")
+    together = [clocks for clocks in seen if are_together(clocks, 1000)]
+    wire.check(together, f"the clocks are never together: {seen}")
+    print(f"clocks together in {len(together)} of {len(seen)} looks: reference of the second network within "
+          f"{max(abs(clocks[1]['deviation_ns']) for clocks in together)} ns")
+
+
 def check_both(segment, second, cm1e, example):
     for cycle_time_us in (1000, 250):
         path = bus_file(segment.folder, cycle_time_us)
@@ -130,9 +180,10 @@ def check_both(segment, second, cm1e, example):
         if cycle_time_us == 1000:
             judge(lose_frames(segment, second, [example, path]), cycle_time_us, f"{cycle_time_us} us, frames lost")
     check_attached(segment, cm1e, example, bus_file(segment.folder, 1000))
+    check_clocks(segment, second, cm1e, example)
     shown = segment.run([cm1e, "scan", "-b", path])
     wire.check(shown.returncode == 0 and f"bus left on {wire.MASTER_INTERFACE}:" in shown.stdout
-               and f"bus right on {SECOND[0]}:" in shown.stdout and shown.stdout.count("CM1-E") == 2, shown)
+               and f"bus right on {SECOND[0]}:" in shown.stdout and shown.stdout.count("CM1-E") >= 2, shown)
     moved = segment.run([cm1e, "move", "-b", path, "cutter", "--by", "0.2"])
     wire.check(moved.returncode == 0 and "cutter: move done" in moved.stdout, moved)
 
