@@ -5,9 +5,12 @@
  * answer and the whole transfer are bounded. A slave that is busy is asked again. A transfer that is given up is told
  * to the slave, so that the next one begins anew.
  *
- * While the bus operates, these functions make its cycles: the packets go beside the process data, one datagram of the
- * mailbox in a cycle, in turn with the SDO transfers of that slave. A program whose scheduler runs transfers files
- * before its start, or has them transferred through its control socket (`cm1e foe`).
+ * While the bus operates, the packets go beside the process data, one datagram of the mailbox in a cycle, in turn with
+ * the SDO transfers of that slave. Until a scheduler runs, these functions make the cycles. While one runs, any other
+ * thread may call them, but no task: they wait until the cycles of the scheduler have transferred the file, and `progress`
+ * is called by the thread that waits. One file is on its way at a time for a bus. The end of the run ends it
+ * (CM1E_ERROR_CANCELLED); the bus must not be closed before the call has returned. Bootstrap takes a slave out of the
+ * process data of all, so it is refused then.
  */
 #ifndef CM1E_FOE_H
 #define CM1E_FOE_H

@@ -169,6 +169,7 @@ struct cm1e_bus {
     int expected_working_counter;
 
     bool exchanging;                         /**< process data goes with every pump or cycle */
+    uint32_t driven;                         /**< atomic; a scheduler makes the cycles: no other thread may */
     bool in_flight;                          /**< a process data frame is on its way */
     int64_t next_cycle_ns;                   /**< blocking phases only */
     int64_t sent_ns;                         /**< of the last process data frame */

@@ -5,17 +5,22 @@
 #include "bus/bootstrap.h"
 #include "bus/bus_internal.h"
 #include "bus/foe_client.h"
+#include "bus/kept.h"
 #include "core/in_task.h"
 #include "core/sized.h"
 
 #define ANSWER_NS INT64_C(5000000000)
+#define LOOK_NS INT64_C(1000000) /* of a thread that waits beside the cycle */
 
 static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, bool bootstrap, const char *function, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse(function, "", diag);
-    const bool operates = bus && bus->phase == BUS_OPERATING;
-    if (!bus || bus->phase < BUS_SCANNED || (bus->exchanging && !operates) || (bus->phase > BUS_SCANNED && bootstrap))
+    const int phase = bus ? __atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST) : 0;
+    if (bus && cm1e_bus_is_driven(bus) && !bootstrap)
+        return CM1E_OK; /* cm1e_foe_submit() looks at the rest */
+    const bool operates = phase == BUS_OPERATING;
+    if (!bus || phase < BUS_SCANNED || (phase > BUS_SCANNED && bootstrap) || (bus->exchanging && !operates))
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s needs a scanned bus%s.", function,
                              bootstrap ? " that does not operate, for Bootstrap" : "");
     const cm1e_error_t attached = bootstrap ? cm1e_bus_refuse_attached(bus, function, diag) : CM1E_OK;
@@ -92,14 +97,32 @@ static cm1e_error_t remotely(cm1e_foe_t *foe, const transfer_t *transfer)
     return error;
 }
 
-/** Transfers the file beside the process data of the running cycle. The transfer is on the stack, so it must end before
- *  this function returns; the bus ensures that. */
-static cm1e_error_t in_operation(cm1e_foe_t *foe, const transfer_t *transfer)
+/** Another thread makes the cycles. This one only looks, by the clock of the machine, and tells the progress. */
+static void wait_beside(cm1e_foe_t *foe, const cm1e_foe_options_t *told)
 {
+    cm1e_clock_t *clock = cm1e_clock_monotonic();
+    size_t before = 0;
+    while (!cm1e_foe_done(foe)) {
+        cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + LOOK_NS);
+        const size_t done = __atomic_load_n(&foe->done, __ATOMIC_RELAXED);
+        if (told->progress && done != before && !told->progress(told->context, done, foe->writing ? foe->size : 0))
+            cm1e_foe_cancel(foe);
+        before = done;
+    }
+}
+
+/** Beside the process data. The transfer is on the stack, so it must end before this function returns; the bus ensures
+ *  that. Where a scheduler runs, it makes the cycles meanwhile, else this thread does. */
+static cm1e_error_t in_operation(cm1e_foe_t *foe, const transfer_t *transfer, bool driven)
+{
+    const cm1e_foe_options_t told = foe->options;
     describe(foe, transfer);
+    foe->options.progress = driven ? NULL : told.progress; /* the cycle calls nothing of the user */
     cm1e_error_t error = cm1e_foe_submit(foe->bus, foe, foe->diag);
     if (error != CM1E_OK)
         return error;
+    if (driven)
+        wait_beside(foe, &told);
     while (!cm1e_foe_done(foe))
         cm1e_bus_pump(foe->bus);
     if (!foe->writing)
@@ -117,6 +140,7 @@ static cm1e_error_t execute(cm1e_bus_t *bus, uint16_t position, const transfer_t
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%s needs a name and a buffer.", function);
     cm1e_copy_sized(&foe.options, sizeof foe.options, options ? options : &defaults,
                     options ? options_size : sizeof defaults);
+    const bool driven = bus && cm1e_bus_is_driven(bus);
     cm1e_error_t error = check(bus, position, foe.options.bootstrap, function, diag);
     if (error != CM1E_OK)
         return error;
@@ -124,10 +148,12 @@ static cm1e_error_t execute(cm1e_bus_t *bus, uint16_t position, const transfer_t
         foe.options.answer_ns = ANSWER_NS;
     if (foe.options.bootstrap)
         return in_bootstrap(&foe, transfer);
+    if (driven)
+        return in_operation(&foe, transfer, true);
     if (bus->remote)
         return remotely(&foe, transfer);
     if (bus->phase == BUS_OPERATING)
-        return in_operation(&foe, transfer);
+        return in_operation(&foe, transfer, false);
     error = use_mailbox(&foe);
     return error == CM1E_OK ? run(&foe, transfer) : error;
 }

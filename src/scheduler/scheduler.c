@@ -345,10 +345,18 @@ static cm1e_error_t take_real_time(cm1e_scheduler_t *s, realtime_t *realtime, cm
     return CM1E_OK;
 }
 
+/** From now on (`on`) other threads that wait for a bus leave its cycles to this one. */
+static void drive_buses(cm1e_scheduler_t *s, bool on)
+{
+    for (uint32_t i = 0; i < s->member_count; i++)
+        cm1e_bus_drive(s->members[i].bus, on);
+}
+
 static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *diag)
 {
     realtime_t realtime = {0};
     cm1e_clock_team_begin(&s->clocks);
+    drive_buses(s, true);
     open_windows(s);
     cm1e_error_t error = take_real_time(s, &realtime, diag);
     if (error == CM1E_OK) {
@@ -361,6 +369,7 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     }
     for (uint32_t i = 0; i < s->member_count; i++)
         cm1e_bus_stop(s->members[i].bus);
+    drive_buses(s, false);
     cm1e_realtime_end(&realtime);
     close_windows(s);
     return error;
