@@ -7,10 +7,10 @@
  *
  * While the bus operates, the packets go beside the process data, one datagram of the mailbox in a cycle, in turn with
  * the SDO transfers of that slave. Until a scheduler runs, these functions make the cycles. While one runs, any other
- * thread may call them, but no task: they wait until the cycles of the scheduler have transferred the file, and `progress`
- * is called by the thread that waits. One file is on its way at a time for a bus. The end of the run ends it
- * (CM1E_ERROR_CANCELLED); the bus must not be closed before the call has returned. Bootstrap takes a slave out of the
- * process data of all, so it is refused then.
+ * thread may call them, but no task: they wait until the cycles of the scheduler have transferred the file, and
+ * `progress` is called by the thread that waits. One file is on its way at a time for a bus. The end of the run ends
+ * it (CM1E_ERROR_CANCELLED); the bus must not be closed before the call has returned. Bootstrap takes a slave out of
+ * the process data of all, so it is refused then.
  */
 #ifndef CM1E_FOE_H
 #define CM1E_FOE_H

@@ -85,9 +85,9 @@ static inline cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, c
 /** Adds another bus in Operational, with its axes behind those of the buses before, before the scheduler runs. All
  *  buses are exchanged in the same cycle: the frames of all are sent before the first answer is waited for. Their
  *  axes are in the same program, and a lost bus concerns its own axes only. A slave axis whose master is on another
- *  bus rides out what either bus loses up to its `lost_cycles_limit`, and so does a group with axes on several. Each bus has
- *  a control socket of its own (docs/CONTROL.md). A bus that was started waits for its scheduler without harm while
- *  its thread starts another one. The bus must outlive the scheduler. CM1E_ERROR_INVALID_ARGUMENT: another cycle
+ *  bus rides out what either bus loses up to its `lost_cycles_limit`, and so does a group with axes on several. Each
+ *  bus has a control socket of its own (docs/CONTROL.md). A bus that was started waits for its scheduler without harm
+ *  while its thread starts another one. The bus must outlive the scheduler. CM1E_ERROR_INVALID_ARGUMENT: another cycle
  *  time, another clock (`virtual_time`), distributed clocks that follow no clock of the buses before because the bus
  *  was not started in the same thread while one of them was in operation, more than CM1E_MAX_BUSES buses or
  *  CM1E_MAX_AXES axes, or a name that another axis has. CM1E_ERROR_STATE: the bus is not in operation, or the

@@ -144,6 +144,7 @@ typedef struct cm1e_errands {
     cm1e_errand_t *errand;                   /**< atomic; NULL: none */
     bool sent;                               /**< CoE has the next turn of that slave */
     cm1e_foe_t *file;                        /**< atomic; NULL: none */
+    uint32_t driven;                         /**< atomic; a scheduler makes the cycles: who waits for a file does not */
 } cm1e_errands_t;
 
 struct cm1e_bus {
@@ -169,7 +170,6 @@ struct cm1e_bus {
     int expected_working_counter;
 
     bool exchanging;                         /**< process data goes with every pump or cycle */
-    uint32_t driven;                         /**< atomic; a scheduler makes the cycles: no other thread may */
     bool in_flight;                          /**< a process data frame is on its way */
     int64_t next_cycle_ns;                   /**< blocking phases only */
     int64_t sent_ns;                         /**< of the last process data frame */

@@ -110,6 +110,6 @@ void cm1e_bus_kept_lead_alone(const cm1e_bus_t *bus)
 
 void cm1e_bus_keep_none(bool none) { none_here = none; }
 
-void cm1e_bus_drive(cm1e_bus_t *bus, bool on) { __atomic_store_n(&bus->driven, on, __ATOMIC_SEQ_CST); }
+void cm1e_bus_drive(cm1e_bus_t *bus, bool on) { __atomic_store_n(&bus->errands.driven, on, __ATOMIC_SEQ_CST); }
 
-bool cm1e_bus_is_driven(const cm1e_bus_t *bus) { return __atomic_load_n(&bus->driven, __ATOMIC_SEQ_CST); }
+bool cm1e_bus_is_driven(const cm1e_bus_t *bus) { return __atomic_load_n(&bus->errands.driven, __ATOMIC_SEQ_CST); }

@@ -18,8 +18,8 @@ void cm1e_bus_unkeep(cm1e_bus_t *bus);
 const cm1e_bus_t *cm1e_bus_kept_leader(const cm1e_bus_t *bus);
 /** `bus` stops: the clocks of kept buses that followed its clocks lead themselves. @rt init */
 void cm1e_bus_kept_lead_alone(const cm1e_bus_t *bus);
-/** A scheduler makes the cycles of the bus from now on (true), or does so no more, because it has stopped the bus. Threads
- *  that wait for a file leave the cycles to it. @rt init */
+/** A scheduler makes the cycles of the bus from now on (true), or does so no more, because it has stopped the bus.
+ *  Threads that wait for a file leave the cycles to it. @rt init */
 void cm1e_bus_drive(cm1e_bus_t *bus, bool on);
 /** Whether a scheduler makes the cycles. @rt any */
 bool cm1e_bus_is_driven(const cm1e_bus_t *bus);
