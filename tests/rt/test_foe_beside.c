@@ -9,7 +9,6 @@
 #include "cm1e/sim.h"
 #include "machine.h"
 
-#define MS INT64_C(1000000)
 enum { THREADS = 3, FILE_BYTES = 3000, POSITION = 1 };
 
 static cm1e_bus_t *bus;
@@ -168,7 +167,7 @@ START_TEST(test_the_end_of_the_run_ends_a_file)
     pthread_t writer;
     begin();
     ck_assert_int_eq(pthread_create(&writer, NULL, write_long, &error), 0);
-    cm1e_clock_sleep_until(cm1e_clock_monotonic(), cm1e_clock_now(cm1e_clock_monotonic()) + 50 * MS);
+    cm1e_clock_sleep_until(cm1e_clock_monotonic(), cm1e_clock_now(cm1e_clock_monotonic()) + 50 * MS_IN_NS);
     cm1e_scheduler_stop(scheduler);
     pthread_join(writer, NULL);
     ck_assert_int_eq(error, CM1E_ERROR_CANCELLED);
