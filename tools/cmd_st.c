@@ -89,7 +89,7 @@ static void print_errors(const st_t *st, bool json)
 static int compile(const char *c_file, const char *output)
 {
     /* GCC 12 makes -x of 0.0 - x, which has another sign for 0, unless the rounding may change. */
-    static const char *const flags[] = {"-std=c11", "-O2", "-g", "-fwrapv", "-ffp-contract=off", "-frounding-math",
+    static const char *const flags[] = {"-std=c11", "-O2", "-g", "-fwrapv", "-fno-strict-aliasing", "-ffp-contract=off", "-frounding-math",
                                         "-fPIC", "-shared"};
     const char *compiler = getenv("CC");
     const char *arguments[ARGUMENTS];

@@ -168,11 +168,18 @@ void cm1e_st_add_type(parsing_t *parsing, place_t place, const char *name, type_
 void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const char *name, type_t *result,
                       vars_t vars, stmts_t body)
 {
-    static const char *const kinds[] = {"function", "function block", "program"};
+    static const char *const kinds[] = {"function", "function block", "program", "method", "interface"};
     st_t *st = parsing->st;
     unit_t *unit = cm1e_st_take(st->arena, sizeof *unit);
     *unit = (unit_t){.kind = kind, .name = name, .place = place, .vars = vars.first, .body = body.first,
                      .result_type = result, .external = is_external(st, place)};
+    if (kind != U_FUNCTION) {
+        unit->object = parsing->object;
+        unit->object.methods = parsing->methods;
+        for (unit_t *method = parsing->methods; method; method = method->object.next_method)
+            method->object.owner = unit;
+        parsing->methods = NULL;
+    }
     if (kind == U_FUNCTION && result) {
         var_t *var = cm1e_st_var_name(parsing, place, name);
         var->section = V_RESULT;
@@ -182,7 +189,8 @@ void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const
         unit->vars = vars.first;
     }
     if (kind != U_FUNCTION) {
-        unit->type = cm1e_st_type_node(st, T_BLOCK, place, name);
+        unit->type = cm1e_st_type_node(st, kind == U_INTERFACE ? T_INTERFACE : T_BLOCK, place, name);
+        unit->type->size = unit->type->alignment = kind == U_INTERFACE ? sizeof(void *) : 0;
         unit->type->unit = unit;
         unit->type->members = unit->vars;
         unit->type->external = unit->external;
@@ -195,6 +203,49 @@ void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const
     }
     unit->next = st->tree.units;
     st->tree.units = unit;
+}
+
+/** A unit of its own, known by its block only; later ones of the same name are found by cm1e_st_link_objects(). */
+static unit_t *add_part(parsing_t *parsing, place_t place, const char *name, type_t *result, vars_t vars, stmts_t body)
+{
+    st_t *st = parsing->st;
+    unit_t *unit = cm1e_st_take(st->arena, sizeof *unit);
+    *unit = (unit_t){.kind = U_METHOD, .name = name, .place = place, .body = body.first, .result_type = result};
+    unit->object.next_method = parsing->methods;
+    parsing->methods = unit;
+    if (result) {
+        const char *plain = strncmp(name, "get ", 4) == 0 ? name + 4 : name;
+        unit->result = cm1e_st_var_name(parsing, place, plain);
+        unit->result->section = V_RESULT;
+        unit->result->type = result;
+        ST_APPEND(vars, unit->result);
+    }
+    unit->vars = vars.first;
+    unit->next = st->tree.units;
+    st->tree.units = unit;
+    return unit;
+}
+
+void cm1e_st_add_method(parsing_t *parsing, place_t place, const char *name, bool abstract, type_t *result, vars_t vars,
+                        stmts_t body)
+{
+    add_part(parsing, place, name, result, vars, body)->object.abstract = abstract;
+}
+
+void cm1e_st_add_getter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body)
+{
+    add_part(parsing, place, cm1e_st_format(parsing->st->arena, "get %s", parsing->property), parsing->property_type, vars,
+             body);
+}
+
+void cm1e_st_add_setter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body)
+{
+    var_t *value = cm1e_st_var_name(parsing, place, parsing->property);
+    value->section = V_INPUT;
+    value->type = parsing->property_type;
+    value->next = vars.first;
+    vars.first = value;
+    add_part(parsing, place, cm1e_st_format(parsing->st->arena, "set %s", parsing->property), NULL, vars, body);
 }
 
 void cm1e_st_add_globals(st_t *st, vars_t vars)

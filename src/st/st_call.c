@@ -25,7 +25,7 @@ static void unknown_function(st_t *st, expr_t *call, const char *name)
 }
 
 /** Notes that the present unit calls another one. */
-static void note_call(st_t *st, unit_t *callee)
+void cm1e_st_note_call(st_t *st, unit_t *callee)
 {
     unit_t *unit = st->unit;
     if (!unit || callee->external)
@@ -63,10 +63,6 @@ static var_t *named_parameter(st_t *st, const unit_t *unit, const arg_t *arg)
                                                    : "\"%s\" is an output of %s: use =>", var->name, unit->name);
         return NULL;
     }
-    if (strcasecmp(arg->name, "EN") == 0 || strcasecmp(arg->name, "ENO") == 0) {
-        cm1e_st_report(st, arg->place, "EN and ENO are not supported; put the call into IF ... END_IF");
-        return NULL;
-    }
     if (hint) {
         cm1e_st_report(st, arg->place, "%s has no input \"%s\": %s", unit->name, arg->name, hint);
         return NULL;
@@ -99,7 +95,7 @@ static void match_positions(st_t *st, const unit_t *unit, expr_t *call)
         var = var->next;
         count++;
     }
-    for (; var && unit->kind == U_FUNCTION; var = var->next)
+    for (; var && cm1e_st_is_function(unit); var = var->next)
         if (var->section == V_INPUT || var->section == V_IN_OUT) {
             cm1e_st_report(st, call->place, "%s needs a value for \"%s\" too", unit->name, var->name);
             return;
@@ -119,6 +115,25 @@ static bool is_override(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
     return true;
 }
 
+/** EN := condition and ENO => variable, which every function, method and block has. */
+static bool is_enable(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
+{
+    const bool in = strcasecmp(arg->name, "EN") == 0 && !arg->output, out = strcasecmp(arg->name, "ENO") == 0 && arg->output;
+    if (!(in || out) || cm1e_st_map_get(unit->names, arg->name))
+        return false;
+    if (!arg->value)
+        return true;
+    cm1e_st_expression(st, arg->value);
+    arg->value = in ? cm1e_st_coerce(st, arg->value, st->elementary[T_BOOL], "EN") : arg->value;
+    if (out && cm1e_st_assignable(st, arg->value) && arg->value->type->kind != T_BOOL)
+        cm1e_st_report(st, arg->place, "ENO is given to a BOOL");
+    *(in ? &call->enable : &call->enabled) = arg->value;
+    if (!call->may_be_skipped)
+        cm1e_st_report(st, arg->place, "a call with EN or ENO is a statement of its own, or all that is behind :=");
+    arg->value = NULL;
+    return true;
+}
+
 static void match_names(st_t *st, const unit_t *unit, expr_t *call)
 {
     for (arg_t *arg = call->args; arg; arg = arg->next) {
@@ -126,7 +141,7 @@ static void match_names(st_t *st, const unit_t *unit, expr_t *call)
             cm1e_st_report(st, arg->place, "arguments are either all by position or all by name");
             return;
         }
-        if (is_override(st, unit, call, arg) || (!arg->value && unit->external && !cm1e_st_map_get(unit->names, arg->name)))
+        if (is_enable(st, unit, call, arg) || is_override(st, unit, call, arg) || (!arg->value && unit->external && !cm1e_st_map_get(unit->names, arg->name)))
             continue; /* an input of another library that is left out */
         arg->parameter = named_parameter(st, unit, arg);
         for (const arg_t *other = call->args; other != arg; other = other->next)
@@ -145,7 +160,7 @@ static void check_output(st_t *st, const unit_t *unit, const expr_t *callee, arg
         return;
     var_t *var = arg->parameter;
     var->type = cm1e_st_resolve(st, var->type);
-    if (unit->kind == U_FUNCTION) {
+    if (cm1e_st_is_function(unit)) {
         if (arg->value->type != var->type || arg->value->bit || arg->inverted)
             cm1e_st_report(st, arg->place, "the output \"%s\" needs a variable of type %s", var->name,
                            cm1e_st_type_name(var->type));
@@ -184,7 +199,7 @@ static void check_in_out(st_t *st, arg_t *arg)
 static void check_arg(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
 {
     var_t *var = arg->parameter;
-    if (!arg->value && var->section == V_INPUT && unit->kind == U_FUNCTION)
+    if (!arg->value && var->section == V_INPUT && cm1e_st_is_function(unit))
         cm1e_st_report(st, arg->place, "a value for \"%s\" is missing behind :=", var->name);
     if (!arg->value)
         return;
@@ -201,7 +216,7 @@ static void check_arg(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
 
 static void check_args(st_t *st, const unit_t *unit, expr_t *call)
 {
-    if (call->args ? !call->args->name : unit->kind == U_FUNCTION)
+    if (call->args ? !call->args->name : cm1e_st_is_function(unit))
         match_positions(st, unit, call);
     else
         match_names(st, unit, call);
@@ -212,7 +227,7 @@ static void check_args(st_t *st, const unit_t *unit, expr_t *call)
             cm1e_st_expression(st, arg->value);
         if (arg->value && arg->value->type)
             call->impure |= arg->value->impure;
-        for (const arg_t *other = call->args; unit->kind == U_FUNCTION && other != arg; other = other->next)
+        for (const arg_t *other = call->args; cm1e_st_is_function(unit) && other != arg; other = other->next)
             if (other->value && arg->value && !cm1e_st_alone(st, other->value, arg->value))
                 return;
     }
@@ -235,7 +250,7 @@ static void call_block(st_t *st, expr_t *call, bool statement)
     if (!statement)
         cm1e_st_report(st, call->place, "a function block has no result: call it in a statement of its own, and then read "
                        "its outputs");
-    note_call(st, unit);
+    cm1e_st_note_call(st, unit);
     cm1e_st_note_change(st, call->a);
     check_args(st, unit, call);
 }
@@ -247,12 +262,20 @@ static void call_function(st_t *st, expr_t *call, unit_t *unit)
     for (var_t *var = unit->vars; var; var = var->next)
         call->impure |= var->section == V_OUTPUT || var->section == V_IN_OUT ||
                         (var->section == V_INPUT && cm1e_st_resolve(st, var->type)->kind == T_REF);
-    note_call(st, unit);
+    cm1e_st_note_call(st, unit);
+    check_args(st, unit, call);
+}
+
+void cm1e_st_check_arguments(st_t *st, unit_t *unit, expr_t *call)
+{
+    cm1e_st_note_call(st, unit);
     check_args(st, unit, call);
 }
 
 void cm1e_st_call(st_t *st, expr_t *call, bool statement)
 {
+    if (cm1e_st_call_method(st, call, statement))
+        return;
     if (call->a->kind == E_NAME) {
         unit_t *unit = cm1e_st_map_get(st->units, call->a->name);
         const bool is_variable = cm1e_st_find_var(st, call->a->name) && !(unit && unit->kind == U_FUNCTION);

@@ -87,6 +87,13 @@ static bool retype(st_t *st, expr_t *call, type_t *type)
     return true;
 }
 
+/** Something that has an address. */
+static bool is_place(const expr_t *expr)
+{
+    return expr->kind == E_NAME || expr->kind == E_MEMBER || expr->kind == E_INDEX || expr->kind == E_DEREF ||
+           expr->kind == E_THIS;
+}
+
 expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
 {
     const type_kind_t from = expr->type->kind, to = type->kind;
@@ -100,8 +107,11 @@ expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
         return cm1e_st_convert_node(st, expr, type);
     if (from == T_ENUM && cm1e_st_is_integer(to) && to != T_ANY_INT && cm1e_st_widens(expr->type->element->kind, to))
         return cm1e_st_convert_node(st, expr, type);
-    if ((from == T_STRING && to == T_STRING) || (from == T_NULL && to == T_REF))
+    if ((from == T_STRING && to == T_STRING) || (from == T_NULL && (to == T_REF || to == T_INTERFACE)))
         return expr;
+    const bool object = (from == T_BLOCK || from == T_INTERFACE) && to == T_INTERFACE;
+    if (object && cm1e_st_is_a(st, expr->type->unit, type->unit) && (from == T_INTERFACE || is_place(expr)))
+        return cm1e_st_convert_node(st, expr, type);
     return refuse(st, expr, type, what);
 }
 
@@ -137,7 +147,7 @@ bool cm1e_st_assignable(st_t *st, const expr_t *expr)
     }
     if (at->type->kind == T_WRONG)
         return false;
-    if (at->kind == E_DEREF)
+    if (at->kind == E_DEREF || at->kind == E_THIS)
         return true;
     if (at->kind != E_NAME || !at->var || at->var->owner) {
         cm1e_st_report(st, expr->place, "only a variable can get a value here");

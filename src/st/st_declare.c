@@ -24,15 +24,19 @@ static void name_types(st_t *st)
 
 static void name_units(st_t *st)
 {
-    static const char *const prefixes[] = {[U_FUNCTION] = "FUN", [U_BLOCK] = "FB", [U_PROGRAM] = "PRG"};
+    static const char *const prefixes[] = {[U_FUNCTION] = "FUN", [U_BLOCK] = "FB", [U_PROGRAM] = "PRG",
+                                           [U_METHOD] = "MET", [U_INTERFACE] = "ITF"};
     for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
         const char *symbol = st->sources[unit->place.file].symbol;
         unit->c_name = unit->external ? cm1e_st_format(st->arena, "%s%s", symbol, unit->name)
+            : unit->kind == U_METHOD ? cm1e_st_method_name(st, "MET", unit->object.owner, unit->name)
             : unit->kind == U_FUNCTION ? cm1e_st_format(st->arena, "FUN_%s", unit->name)
             : cm1e_st_format(st->arena, "run_%s", unit->name);
         unit->c_type = cm1e_st_format(st->arena, "%s_%s", prefixes[unit->kind], unit->name);
+        if (unit->kind == U_METHOD)
+            unit->c_type = cm1e_st_format(st->arena, "%s_%s", prefixes[unit->object.owner->kind], unit->object.owner->name);
         if (unit->type)
-            unit->type->c_name = unit->c_type;
+            unit->type->c_name = unit->kind == U_INTERFACE ? "st_interface_t" : unit->c_type;
         for (var_t *var = unit->vars; var; var = var->next) {
             var->c_name = cm1e_st_format(st->arena, "%s_", var->name);
             var->unit = unit;
@@ -88,7 +92,7 @@ static void check_section(st_t *st, var_t *var)
     const unit_t *unit = var->unit;
     if ((var->qualifiers & Q_RETAIN) && var->section != V_LOCAL && var->section != V_GLOBAL)
         cm1e_st_report(st, var->place, "RETAIN is for VAR and VAR_GLOBAL only");
-    if ((var->qualifiers & Q_RETAIN) && unit && unit->kind == U_FUNCTION)
+    if ((var->qualifiers & Q_RETAIN) && unit && cm1e_st_is_function(unit))
         cm1e_st_report(st, var->place, "a function keeps nothing: RETAIN is for programs, blocks and global variables");
     if ((var->qualifiers & Q_CONSTANT) && (var->section == V_OUTPUT || var->section == V_TEMP))
         cm1e_st_report(st, var->place, "an output or a temporary variable cannot be CONSTANT");
@@ -138,7 +142,9 @@ static void declare_var(st_t *st, var_t *var)
     if (var->type->kind == T_BLOCK && var->type->unit->kind == U_PROGRAM)
         cm1e_st_report(st, var->place, "\"%s\" is a program: only a CONFIGURATION makes instances of programs",
                        var->type->name);
-    if (var->unit && var->unit->kind == U_FUNCTION && var->type->kind == T_BLOCK && var->section != V_IN_OUT)
+    if (var->type->kind == T_BLOCK && var->type->unit->object.abstract && var->section != V_IN_OUT)
+        cm1e_st_report(st, var->place, "\"%s\" is ABSTRACT: only blocks that extend it have instances", var->type->name);
+    if (var->unit && cm1e_st_is_function(var->unit) && var->type->kind == T_BLOCK && var->section != V_IN_OUT)
         cm1e_st_report(st, var->place, "a function keeps nothing, so an instance of %s in it would begin anew in every "
                        "call: put it in a function block or a program, or take it as VAR_IN_OUT", var->type->name);
     if (var->section == V_TEMP && var->type->kind == T_BLOCK)
@@ -154,6 +160,7 @@ static void check_initials(st_t *st, var_t *vars)
 
 void cm1e_st_declare(st_t *st)
 {
+    cm1e_st_link_objects(st);
     name_types(st);
     name_units(st);
     map_names(st);
@@ -173,6 +180,7 @@ void cm1e_st_declare(st_t *st)
             st->unit->result_type = cm1e_st_resolve(st, st->unit->result_type);
         check_initials(st, st->unit->vars);
     }
+    cm1e_st_check_objects(st);
 }
 
 var_t *cm1e_st_member(const type_t *type, const char *name)
@@ -188,6 +196,8 @@ var_t *cm1e_st_member(const type_t *type, const char *name)
 var_t *cm1e_st_find_var(st_t *st, const char *name)
 {
     var_t *var = st->unit ? cm1e_st_map_get(st->unit->names, name) : NULL;
+    if (!var && st->unit && st->unit->object.owner)
+        var = cm1e_st_map_get(st->unit->object.owner->names, name);
     if (!var)
         var = cm1e_st_map_get(st->globals, name);
     if (var && var->section != V_EXTERNAL && var->type->state != ST_READY)

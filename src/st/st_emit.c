@@ -15,7 +15,9 @@ static void emit_functions(st_t *st, bool bodies)
 {
     for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
         const bool unused = st->sources[unit->place.file].library && !(unit->type && unit->type->emitted);
-        if (unit->external || unused)
+        const bool declared_only = unit->kind == U_INTERFACE ||
+            (unit->kind == U_METHOD && (unit->object.abstract || unit->object.owner->kind == U_INTERFACE));
+        if (unit->external || unused || declared_only)
             continue;
         if (bodies)
             cm1e_st_emit_unit(st, unit);
@@ -61,6 +63,8 @@ void cm1e_st_emit(st_t *st, FILE *file, const char *name)
     cm1e_st_put(st, "\n/* ---- variables ---- */\n\n");
     emit_variables(st);
     emit_functions(st, false);
+    cm1e_st_emit_dispatchers(st, false);
+    cm1e_st_emit_dispatchers(st, true);
     emit_functions(st, true);
     st->unit = NULL;
     cm1e_st_put(st, "#line 1 \"%s.c\"\n", name);

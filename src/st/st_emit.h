@@ -35,6 +35,11 @@ void cm1e_st_emit_constant(st_t *st, const type_t *type, const constant_t *value
 void cm1e_st_emit_text(st_t *st, const expr_t *expr);
 /* st_emit_call.c */
 void cm1e_st_emit_call(st_t *st, const expr_t *call);
+/* st_emit_object.c */
+/** The name of the function that a call of a method calls, and the instance that it gets. */
+void cm1e_st_emit_method(st_t *st, const expr_t *call);
+/** Functions that choose between methods of one name by the class of the instance. */
+void cm1e_st_emit_dispatchers(st_t *st, bool bodies);
 void cm1e_st_emit_conversion(st_t *st, const expr_t *expr);
 /* st_emit_statement.c */
 void cm1e_st_emit_statements(st_t *st, const stmt_t *list);

@@ -39,7 +39,12 @@ static void emit_missing(st_t *st, const var_t *var)
 static void emit_function_call(st_t *st, const expr_t *call)
 {
     const char *comma = "";
-    cm1e_st_put(st, "%s(", call->unit->c_name);
+    if (call->unit->kind == U_METHOD) {
+        cm1e_st_emit_method(st, call);
+        comma = ", ";
+    } else {
+        cm1e_st_put(st, "%s(", call->unit->c_name);
+    }
     for (const var_t *var = call->unit->vars; var; var = var->next) {
         const arg_t *arg = arg_of(call, var);
         if (var->section != V_INPUT && var->section != V_OUTPUT && var->section != V_IN_OUT)
@@ -263,7 +268,9 @@ void cm1e_st_emit_conversion(st_t *st, const expr_t *expr)
 {
     const type_kind_t from = expr->a->type->kind, to = expr->type->kind;
     const char *name = expr->type->name;
-    if (from == to && from != T_ENUM)
+    if (from == T_BLOCK)
+        around(st, "(st_interface_t)&", expr->a, "");
+    else if (from == to && from != T_ENUM)
         cm1e_st_emit_expression(st, expr->a);
     else if (from == T_STRING)
         from_text(st, expr);

@@ -49,14 +49,15 @@ static void emit_variable(st_t *st, const var_t *var)
 {
     if (var->section == V_EXTERNAL)
         var = var->global;
-    if (var->unit && var->unit->kind == U_PROGRAM && st->unit != var->unit && st->unit) {
+    if (var->unit && var->unit->kind == U_PROGRAM && st->unit && st->unit != var->unit &&
+        st->unit->object.owner != var->unit) {
         cm1e_st_put(st, "I_%s.%s", instance_of(st, var->unit), var->c_name);
         return;
     }
     const bool pointer = var->section == V_IN_OUT;
     if (!var->unit)
         cm1e_st_put(st, "%s", var->c_name);
-    else if (var->unit->kind == U_FUNCTION)
+    else if (cm1e_st_is_function(var->unit))
         cm1e_st_put(st, pointer ? "(*%s)" : "%s", var->c_name);
     else if (var->section == V_TEMP)
         cm1e_st_put(st, "%s", var->c_name);
@@ -203,6 +204,7 @@ void cm1e_st_emit_expression(st_t *st, const expr_t *expr)
         cm1e_st_emit_expression(st, expr->a);
         cm1e_st_put(st, ", ST_HERE))");
         break;
+    case E_THIS: cm1e_st_put(st, "(*self)"); break;
     case E_VIEW:
         cm1e_st_put(st, "(%s)cm1e_tc2_axis_value(", expr->type->name);
         cm1e_st_emit_expression(st, expr->a);

@@ -87,6 +87,10 @@ static void emit_block_call(st_t *st, const expr_t *call)
 
 static void emit_call(st_t *st, const stmt_t *stmt)
 {
+    if (stmt->value->super && stmt->value->unit->kind == U_BLOCK) {
+        cm1e_st_line(st, "%s((%s *)self);\n", stmt->value->unit->c_name, stmt->value->unit->c_type);
+        return;
+    }
     if (stmt->value->unit->kind == U_BLOCK) {
         emit_block_call(st, stmt->value);
         return;
@@ -203,13 +207,62 @@ static void emit_repeat(st_t *st, const stmt_t *stmt)
     cm1e_st_put(st, "));\n");
 }
 
+/** The call whose EN decides on a statement; NULL: none. */
+static const expr_t *skipped_by(const stmt_t *stmt)
+{
+    const expr_t *call = stmt->kind == S_ASSIGN || stmt->kind == S_CALL ? stmt->value : NULL;
+    while (call && call->kind == E_CONVERT)
+        call = call->a;
+    return call && call->kind == E_CALL && (call->enable || call->enabled) ? call : NULL;
+}
+
+/** if (EN) { statement }, and ENO is what EN was. */
+static void emit_skipped(st_t *st, const stmt_t *stmt, const expr_t *call, void (*emit)(st_t *st, const stmt_t *stmt))
+{
+    const unsigned n = ++st->temporaries;
+    cm1e_st_line(st, "{\n");
+    st->indent++;
+    cm1e_st_line(st, "const BOOL enable%u = ", n);
+    if (call->enable)
+        cm1e_st_emit_expression(st, call->enable);
+    else
+        cm1e_st_put(st, "TRUE");
+    cm1e_st_put(st, ";\n");
+    cm1e_st_line(st, "if (enable%u) {\n", n);
+    st->indent++;
+    emit(st, stmt);
+    st->indent--;
+    cm1e_st_line(st, "}\n");
+    if (call->enabled) {
+        cm1e_st_begin_line(st);
+        cm1e_st_emit_expression(st, call->enabled);
+        cm1e_st_put(st, " = enable%u;\n", n);
+    }
+    st->indent--;
+    cm1e_st_line(st, "}\n");
+}
+
+static void emit_simple(st_t *st, const stmt_t *stmt)
+{
+    if (stmt->kind == S_ASSIGN)
+        cm1e_st_emit_assignment(st, stmt->target, stmt->value);
+    else
+        emit_call(st, stmt);
+}
+
 static void emit_statement(st_t *st, const stmt_t *stmt)
 {
+    const expr_t *skipped = skipped_by(stmt);
     if (stmt->kind != S_IF)
         cm1e_st_place(st, stmt->place);
     switch (stmt->kind) {
-    case S_ASSIGN: cm1e_st_emit_assignment(st, stmt->target, stmt->value); break;
-    case S_CALL: emit_call(st, stmt); break;
+    case S_ASSIGN:
+    case S_CALL:
+        if (skipped)
+            emit_skipped(st, stmt, skipped, emit_simple);
+        else
+            emit_simple(st, stmt);
+        break;
     case S_IF: emit_branches(st, stmt, 0); break;
     case S_CASE: emit_case(st, stmt); break;
     case S_FOR: emit_for(st, stmt); break;

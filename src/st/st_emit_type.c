@@ -13,6 +13,8 @@ bool cm1e_st_needs_initial(const type_t *type)
         return type->members && type->members->value.integer != 0;
     if (type->kind != T_STRUCT && type->kind != T_BLOCK)
         return false;
+    if (type->kind == T_BLOCK && type->unit->object.has_class)
+        return true;
     for (const var_t *var = type->members; var; var = var->next)
         if (is_stored(var) && var->section != V_IN_OUT && (var->initial || cm1e_st_needs_initial(var->type)))
             return true;
@@ -23,6 +25,10 @@ static void emit_members(st_t *st, type_t *type)
 {
     cm1e_st_put(st, "typedef struct %s {\n", type->c_name);
     bool empty = true;
+    if (type->kind == T_BLOCK && type->unit->object.has_class) {
+        cm1e_st_put(st, "    uint32_t class_;\n");
+        empty = false;
+    }
     for (const var_t *var = type->members; var; var = var->next) {
         if (!is_stored(var))
             continue;
@@ -41,11 +47,13 @@ static void emit_init_function(st_t *st, type_t *type)
 {
     if (!cm1e_st_needs_initial(type))
         return;
-    cm1e_st_put(st, "ST_UNUSED static void init_%s(%s *at)\n{\n", type->c_name, type->c_name);
+    cm1e_st_put(st, "ST_UNUSED static void init_%s(%s *self)\n{\n", type->c_name, type->c_name);
     st->indent++;
+    if (type->kind == T_BLOCK && type->unit->object.has_class)
+        cm1e_st_line(st, "self->class_ = %d;\n", type->unit->object.class_id);
     for (const var_t *var = type->members; var; var = var->next)
         if (is_stored(var) && var->section != V_IN_OUT)
-            cm1e_st_emit_initial(st, cm1e_st_format(st->arena, "at->%s", var->c_name), var->type, var->initial);
+            cm1e_st_emit_initial(st, cm1e_st_format(st->arena, "self->%s", var->c_name), var->type, var->initial);
     st->indent--;
     cm1e_st_put(st, "}\n");
 }
@@ -74,7 +82,7 @@ static void emit_enum(st_t *st, type_t *type)
 
 void cm1e_st_emit_type(st_t *st, type_t *type)
 {
-    if (type->emitted || type->kind <= T_NULL || type->kind == T_WRONG)
+    if (type->emitted || type->kind <= T_NULL || type->kind == T_WRONG || type->kind == T_INTERFACE)
         return;
     type->emitted = true;
     if (type->kind == T_REF) {

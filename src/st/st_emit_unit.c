@@ -1,9 +1,8 @@
 /* Functions, function blocks and programs in C. A block is a struct and a function that gets it as `self`. */
 #include "st/st_emit.h"
 
-static void emit_parameters(st_t *st, const unit_t *unit)
+static void emit_parameters(st_t *st, const unit_t *unit, const char *comma)
 {
-    const char *comma = "";
     for (const var_t *var = unit->vars; var; var = var->next) {
         const char *type = cm1e_st_c_type(st, var->type);
         if (var->section == V_INPUT && var->type->kind == T_STRING)
@@ -24,10 +23,12 @@ static void emit_parameters(st_t *st, const unit_t *unit)
 
 static void emit_head(st_t *st, const unit_t *unit)
 {
-    if (unit->kind == U_FUNCTION) {
+    if (cm1e_st_is_function(unit)) {
         cm1e_st_put(st, "ST_UNUSED static %s %s(",
                     unit->result_type ? cm1e_st_c_type(st, unit->result_type) : "void", unit->c_name);
-        emit_parameters(st, unit);
+        if (unit->kind == U_METHOD)
+            cm1e_st_put(st, "ST_UNUSED %s *self", unit->c_type);
+        emit_parameters(st, unit, unit->kind == U_METHOD ? ", " : "");
         cm1e_st_put(st, ")");
     } else {
         cm1e_st_put(st, "ST_UNUSED static void %s(ST_UNUSED %s *self)", unit->c_name, unit->c_type);
@@ -44,8 +45,8 @@ void cm1e_st_emit_prototype(st_t *st, const unit_t *unit)
 static void emit_locals(st_t *st, const unit_t *unit)
 {
     for (const var_t *var = unit->vars; var; var = var->next) {
-        const bool text_input = unit->kind == U_FUNCTION && var->section == V_INPUT && var->type->kind == T_STRING;
-        const bool local = unit->kind == U_FUNCTION ? var->section == V_LOCAL || var->section == V_OUTPUT ||
+        const bool text_input = cm1e_st_is_function(unit) && var->section == V_INPUT && var->type->kind == T_STRING;
+        const bool local = cm1e_st_is_function(unit) ? var->section == V_LOCAL || var->section == V_OUTPUT ||
                                                       var->section == V_RESULT || var->section == V_TEMP
                                                     : var->section == V_TEMP;
         if (!local && !text_input)
@@ -65,7 +66,7 @@ static void emit_end(st_t *st, const unit_t *unit)
 {
     if (st->leaves)
         cm1e_st_put(st, "leave:;\n");
-    if (unit->kind != U_FUNCTION)
+    if (!cm1e_st_is_function(unit))
         return;
     for (const var_t *var = unit->vars; var; var = var->next)
         if (var->section == V_OUTPUT)

@@ -47,7 +47,9 @@ static void use_enumerator(expr_t *expr, var_t *var)
 
 static void name(st_t *st, expr_t *expr)
 {
-    var_t *var = cm1e_st_find_var(st, expr->name);
+    var_t *var = expr->var ? expr->var : cm1e_st_find_var(st, expr->name);
+    if (!var && cm1e_st_read_property(st, expr))
+        return;
     if (var) {
         expr->var = var;
         expr->type = var->type;
@@ -163,7 +165,7 @@ static void member(st_t *st, expr_t *expr)
         name(st, expr);
         return;
     }
-    if (cm1e_st_view(st, expr))
+    if (cm1e_st_view(st, expr) || cm1e_st_read_property(st, expr))
         return;
     if (!expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name) &&
         !cm1e_st_map_get(st->enumerators, expr->a->name) && cm1e_st_map_get(st->types, expr->a->name)) {
@@ -199,7 +201,8 @@ static void member(st_t *st, expr_t *expr)
         return;
     }
     expr->type = expr->var->type = cm1e_st_resolve(st, expr->var->type);
-    if (type->kind == T_BLOCK && expr->var->section != V_INPUT && expr->var->section != V_OUTPUT) {
+    if (type->kind == T_BLOCK && expr->a->kind != E_THIS && expr->var->section != V_INPUT &&
+        expr->var->section != V_OUTPUT) {
         cm1e_st_report(st, expr->place, "\"%s\" is within %s: from outside its inputs and outputs can be reached",
                        expr->var->name, type->name);
         set_wrong(st, expr);
@@ -249,6 +252,13 @@ static void element(st_t *st, expr_t *expr)
 
 static void dereference(st_t *st, expr_t *expr)
 {
+    unit_t *this = cm1e_st_this(st);
+    if (this && expr->a->kind == E_NAME && strcasecmp(expr->a->name, "THIS") == 0 && !cm1e_st_find_var(st, "THIS")) {
+        expr->kind = E_THIS;
+        expr->a = NULL;
+        expr->type = cm1e_st_resolve(st, this->type);
+        return;
+    }
     cm1e_st_expression(st, expr->a);
     expr->impure = expr->a->impure;
     if (expr->a->type->kind == T_REF) {
@@ -312,13 +322,24 @@ static bool is_comparable(const expr_t *expr, type_kind_t kind)
         return b->kind == T_STRING;
     if (a->kind == T_ENUM || b->kind == T_ENUM)
         return a == b;
+    if (a->kind == T_INTERFACE || b->kind == T_INTERFACE)
+        return equality && (a == b || a->kind == T_NULL || b->kind == T_NULL);
     if (a->kind == T_REF || b->kind == T_REF)
         return equality && (a == b || a->kind == T_NULL || b->kind == T_NULL);
     return kind != T_NONE && kind <= T_ANY_REAL && (equality || kind != T_BOOL);
 }
 
+/** 0 beside an interface is NULL (TwinCAT). */
+static void zero_as_null(st_t *st, expr_t *zero, const expr_t *beside)
+{
+    if (beside->type->kind == T_INTERFACE && zero->type->kind == T_ANY_INT && zero->value.known && zero->value.integer == 0)
+        zero->type = st->elementary[T_NULL];
+}
+
 static void comparison(st_t *st, expr_t *expr)
 {
+    zero_as_null(st, expr->a, expr->b);
+    zero_as_null(st, expr->b, expr->a);
     type_kind_t kind = cm1e_st_type_for_both(expr->a, expr->b);
     if (!is_comparable(expr, kind)) {
         wrong_operands(st, expr);

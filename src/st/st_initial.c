@@ -68,7 +68,8 @@ expr_t *cm1e_st_initialiser(st_t *st, expr_t *initial, type_t *type, const char 
     }
     cm1e_st_expression(st, initial);
     expr_t *value = cm1e_st_coerce(st, initial, type, what);
-    if (!value->value.known && value->type->kind != T_WRONG && !value->bit && type->kind != T_REF)
+    if (!value->value.known && value->type->kind != T_WRONG && !value->bit && type->kind != T_REF &&
+        type->kind != T_INTERFACE)
         cm1e_st_report(st, value->place, "the initial value of \"%s\" is not known before the program runs: only "
                        "literals, constants and what is computed of them are", what);
     return value;

@@ -1,4 +1,4 @@
-/* The grammar of Structured Text (IEC 61131-3, 3rd edition, annex A; without the elements of object orientation). */
+/* The grammar of Structured Text (IEC 61131-3, 3rd edition, annex A). */
 %define api.pure full
 %define api.prefix {cm1e_st_yy}
 %define api.location.type {place_t}
@@ -46,6 +46,10 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %token VAR "VAR" VAR_INPUT "VAR_INPUT" VAR_OUTPUT "VAR_OUTPUT" VAR_IN_OUT "VAR_IN_OUT" VAR_TEMP "VAR_TEMP"
 %token VAR_GLOBAL "VAR_GLOBAL" VAR_EXTERNAL "VAR_EXTERNAL" END_VAR "END_VAR"
 %token CONSTANT "CONSTANT" RETAIN "RETAIN" NON_RETAIN "NON_RETAIN" AT "AT"
+%token METHOD "METHOD" END_METHOD "END_METHOD" ACTION "ACTION" END_ACTION "END_ACTION" PROPERTY "PROPERTY"
+%token END_PROPERTY "END_PROPERTY" GET "GET" END_GET "END_GET" SET "SET" END_SET "END_SET" INTERFACE "INTERFACE"
+%token END_INTERFACE "END_INTERFACE" EXTENDS "EXTENDS" IMPLEMENTS "IMPLEMENTS"
+%token <text> MODIFIER "ABSTRACT"
 %token CONFIGURATION "CONFIGURATION" END_CONFIGURATION "END_CONFIGURATION" RESOURCE "RESOURCE" ON "ON"
 %token END_RESOURCE "END_RESOURCE" TASK "TASK" WITH "WITH"
 %token ASSIGN ":=" REF_ASSIGN "REF=" SENDS "=>" LE "<=" GE ">=" NE "<>" POWER "**" RANGE ".."
@@ -62,17 +66,18 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %type <expr> expr variable value constant_initial initial address label signed
 %type <arg> argument member_init element_init setting
 %type <args> arguments argument_list expr_list labels member_inits element_inits settings setting_list
-%type <stmts> stmts case_items
+%type <stmts> stmts stmts_of_block case_items body
 %type <stmt> stmt
 %type <branches> elsifs
 %type <type> type simple_type result base
-%type <vars> names declarations declaration sections section enumerators members member
+%type <vars> names declarations declaration sections section enumerators members member parts
 %type <var> enumerator
-%type <number> qualifiers qualifier
+%type <number> qualifiers qualifier modifiers
+%type <args> interface_names
 %type <text> with
 %%
 sources: %empty | sources source_item | sources ';';
-source_item: type_section | function | function_block | program | globals | configuration;
+source_item: type_section | function | function_block | program | globals | configuration | interface;
 
 /* ---- types ---- */
 type_section: TYPE type_declarations END_TYPE;
@@ -160,10 +165,37 @@ begin_globals: %empty { parsing->section = V_GLOBAL; };
 result: %empty { $$ = NULL; } | ':' type { $$ = $2; };
 function: FUNCTION NAME result sections stmts END_FUNCTION
     { cm1e_st_add_unit(parsing, U_FUNCTION, @2, $2, $3, $4, $5); };
-function_block: FUNCTION_BLOCK NAME sections stmts END_FUNCTION_BLOCK
-    { cm1e_st_add_unit(parsing, U_BLOCK, @2, $2, NULL, $3, $4); };
-program: PROGRAM NAME sections stmts END_PROGRAM
-    { cm1e_st_add_unit(parsing, U_PROGRAM, @2, $2, NULL, $3, $4); };
+function_block: FUNCTION_BLOCK begin_block modifiers NAME heritage parts body END_FUNCTION_BLOCK
+    { parsing->object.abstract = $3; cm1e_st_add_unit(parsing, U_BLOCK, @4, $4, NULL, $6, $7); };
+program: PROGRAM begin_block NAME parts body END_PROGRAM
+    { cm1e_st_add_unit(parsing, U_PROGRAM, @3, $3, NULL, $4, $5); };
+
+/* ---- objects ---- */
+begin_block: %empty { parsing->object = (object_t){0}; parsing->methods = NULL; };
+modifiers: %empty { $$ = 0; } | modifiers MODIFIER { $$ = $1 | (($2[0] | 0x20) == 'a'); };
+heritage: %empty | heritage EXTENDS interface_names {
+        parsing->object.base_name = $3.first->name;
+        if ($3.first->next)
+            cm1e_st_report(ST, $3.first->next->place, "a function block extends one other; it implements several interfaces"); }
+    | heritage IMPLEMENTS interface_names { parsing->object.interfaces = $3.first; };
+interface_names: NAME { arg_t *arg = cm1e_st_arg(ST, @1, $1, NULL); $$ = (args_t){arg, arg}; }
+    | interface_names ',' NAME { arg_t *arg = cm1e_st_arg(ST, @3, $3, NULL); $$ = $1; ST_APPEND($$, arg); };
+/* Methods stand in front of the statements (IEC 61131-3), or behind them (TwinCAT). */
+parts: %empty { $$ = (vars_t){0}; } | parts section { $$ = $1; ST_JOIN($$, $2); } | parts part { $$ = $1; };
+body: %empty { $$ = (stmts_t){0}; } | stmts_of_block late_parts { $$ = $1; };
+stmts_of_block: stmt { $$ = (stmts_t){0}; if ($1) ST_APPEND($$, $1); }
+    | stmts_of_block stmt { $$ = $1; if ($2) ST_APPEND($$, $2); };
+late_parts: %empty | late_parts part;
+part: METHOD modifiers NAME result sections stmts END_METHOD { cm1e_st_add_method(parsing, @3, $3, $2, $4, $5, $6); }
+    | ACTION NAME ':' stmts END_ACTION { cm1e_st_add_method(parsing, @2, $2, false, NULL, (vars_t){0}, $4); }
+    | PROPERTY modifiers NAME ':' type { parsing->property = $3; parsing->property_type = $5; } accessors END_PROPERTY;
+accessors: %empty | accessors accessor;
+accessor: GET sections stmts END_GET { cm1e_st_add_getter(parsing, @1, $2, $3); }
+    | SET sections stmts END_SET { cm1e_st_add_setter(parsing, @1, $2, $3); };
+interface: INTERFACE begin_block NAME interface_heritage interface_parts END_INTERFACE
+    { cm1e_st_add_unit(parsing, U_INTERFACE, @3, $3, NULL, (vars_t){0}, (stmts_t){0}); };
+interface_heritage: %empty | EXTENDS interface_names { parsing->object.interfaces = $2.first; };
+interface_parts: %empty | interface_parts part;
 
 /* ---- configuration ---- */
 configuration: CONFIGURATION NAME { ST->tree.configuration = $2; ST->tree.configuration_place = @2; }

@@ -17,6 +17,12 @@ typedef struct parsing {
     char last[48], before[48]; /**< the last word, and the one before it */
     int qualifiers;        /**< of the section of variables that is read */
     section_t section;
+    bool heading;          /**< between the word that begins a block, a method ... and its first ";" or variable */
+    bool in_property;      /**< where GET and SET begin, and are no names */
+    unit_t *methods;       /**< of the block that is read */
+    object_t object;       /**< of its heading */
+    const char *property;
+    type_t *property_type;
 } parsing_t;
 
 /* Lists, which grow at their ends. */
@@ -69,6 +75,14 @@ var_t *cm1e_st_var_name(parsing_t *parsing, place_t place, const char *name);
 void cm1e_st_add_type(parsing_t *parsing, place_t place, const char *name, type_t *type, expr_t *initial);
 void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const char *name, type_t *result,
                       vars_t vars, stmts_t body);
+/** A method of the block that is read. */
+void cm1e_st_add_method(parsing_t *parsing, place_t place, const char *name, bool abstract, type_t *result, vars_t vars,
+                        stmts_t body);
+void cm1e_st_add_getter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body);
+void cm1e_st_add_setter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body);
+/** of the lexer: whether a word like METHOD can begin a part here, and what a word does to the heading. */
+bool cm1e_st_begins_part(const parsing_t *parsing);
+bool cm1e_st_is_modifier(const parsing_t *parsing);
 void cm1e_st_add_globals(st_t *st, vars_t vars);
 void cm1e_st_add_task(st_t *st, place_t place, const char *name, args_t settings);
 void cm1e_st_add_instance(st_t *st, place_t place, const char *name, const char *task, const char *program,

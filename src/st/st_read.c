@@ -119,10 +119,23 @@ void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, place_t *
 
 /* They are names wherever a name makes sense: programs have variables that are called step or reference. */
 static const char *const missing[] = {
-    "METHOD", "END_METHOD", "INTERFACE", "PROPERTY", "EXTENDS", "IMPLEMENTS", "CLASS", "NAMESPACE", "USING", "ACTION",
-    "VAR_ACCESS", "VAR_CONFIG", "VAR_STAT", "VAR_INST", "UNION", "GOTO", "JMP", "STEP", "INITIAL_STEP", "TRANSITION",
-    "ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL", "SUPER", "THIS",
+    "CLASS", "NAMESPACE", "USING", "VAR_ACCESS", "VAR_CONFIG", "VAR_STAT", "VAR_INST", "UNION", "GOTO", "JMP", "STEP", "INITIAL_STEP", "TRANSITION",
 };
+
+bool cm1e_st_begins_part(const parsing_t *parsing)
+{
+    return parsing->heading || strcmp(parsing->before, ";") == 0 || strncasecmp(parsing->before, "END_", 4) == 0;
+}
+
+bool cm1e_st_is_modifier(const parsing_t *parsing)
+{
+    static const char *const words[] = {"METHOD", "PROPERTY", "FUNCTION_BLOCK", "ABSTRACT", "FINAL", "PUBLIC", "PRIVATE",
+                                        "PROTECTED", "INTERNAL", "OVERRIDE"};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (parsing->heading && strcasecmp(parsing->before, words[i]) == 0)
+            return true;
+    return false;
+}
 
 bool cm1e_st_unsupported(parsing_t *parsing, place_t place)
 {

@@ -78,6 +78,9 @@ ST_UNUSED static inline void *st_reach(void *to, const char *file, int line)
     return to;
 }
 
+/** A variable of an interface: the address of an instance. */
+typedef void *st_interface_t;
+
 /* ---- arithmetic -------------------------------------------------------------------------------------------------- */
 
 /* A division of integers by zero is a fault; x MOD 0 is 0 (IEC 61131-3). The quotient that is one too large for its type

@@ -181,7 +181,7 @@ static bool reference(st_t *st, expr_t *call)
     while ((root->kind == E_MEMBER || root->kind == E_INDEX) && root->a)
         root = root->a;
     const var_t *var = root->kind == E_NAME ? root->var : NULL;
-    if (of->bit || (var && (var->section == V_TEMP || (var->unit && var->unit->kind == U_FUNCTION)))) {
+    if (of->bit || (var && (var->section == V_TEMP || (var->unit && cm1e_st_is_function(var->unit))))) {
         cm1e_st_report(st, of->place, of->bit ? "there is no reference to a single bit"
                                               : "this variable ends with the call: a reference to it would outlive it");
         return false;

@@ -144,6 +144,31 @@ var_t *cm1e_st_in_list(const st_t *st, const expr_t *expr);
 /** A call that only updates an AXIS_REF in TwinCAT: here it is always up to date. */
 bool cm1e_st_only_updates(st_t *st, const expr_t *call);
 
+/* st_object.c */
+/** Bases and interfaces by their names; a block has the variables of its base before its own ones. */
+void cm1e_st_link_objects(st_t *st);
+/** That methods are overridden with the same parameters, and interfaces are implemented. */
+void cm1e_st_check_objects(st_t *st);
+/** Name of a method in C. */
+const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owner, const char *name);
+/** A method by its name, also that of a base; NULL: there is none. */
+unit_t *cm1e_st_find_method(const unit_t *unit, const char *name);
+/** Whether `unit` is `other`, extends it, or implements it. */
+bool cm1e_st_is_a(const st_t *st, const unit_t *unit, const unit_t *other);
+/** The method that a call means: true, the call has been checked. */
+bool cm1e_st_call_method(st_t *st, expr_t *call, bool statement);
+/** A property that is read: the call of its GET; false: the name is none. */
+bool cm1e_st_read_property(st_t *st, expr_t *expr);
+/** A property that is written: the statement becomes the call of its SET. */
+bool cm1e_st_write_property(st_t *st, stmt_t *stmt);
+/** st_pure.c: whether a method of this name changes more than its own variables. */
+bool cm1e_st_changes(st_t *st, const char *name);
+/** The block of the statements that are checked; NULL: there is none. */
+unit_t *cm1e_st_this(const st_t *st);
+/** Notes that the present unit calls another one. */
+void cm1e_st_note_call(st_t *st, unit_t *callee);
+void cm1e_st_check_arguments(st_t *st, unit_t *unit, expr_t *call);
+
 /* st_address.c */
 void cm1e_st_check_address(st_t *st, const var_t *var);
 bool cm1e_st_can_be_kept(const type_t *type);

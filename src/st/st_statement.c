@@ -10,6 +10,9 @@ static void condition(st_t *st, expr_t *expr, const char *what)
 
 static void assign(st_t *st, stmt_t *stmt)
 {
+    stmt->value->may_be_skipped = true;
+    if (!stmt->reference && cm1e_st_write_property(st, stmt))
+        return;
     cm1e_st_expression(st, stmt->target);
     cm1e_st_expression(st, stmt->value);
     const expr_t *target = stmt->target;
@@ -31,6 +34,7 @@ static void assign(st_t *st, stmt_t *stmt)
 
 static void call(st_t *st, stmt_t *stmt)
 {
+    stmt->value->may_be_skipped = true;
     if (cm1e_st_only_updates(st, stmt->value)) {
         stmt->kind = S_EMPTY;
         return;

@@ -41,6 +41,7 @@ typedef enum type_kind {
     T_BLOCK,    /**< a function block or a program: a struct with a body */
     T_ARRAY,
     T_REF,
+    T_INTERFACE, /**< refers to an instance of any block that implements it */
     T_WRONG,    /**< of an expression with an error that has been reported */
 } type_kind_t;
 
@@ -86,7 +87,7 @@ struct type {
 
 typedef enum expr_kind {
     E_LITERAL, E_NAME, E_MEMBER, E_INDEX, E_DEREF, E_CALL, E_UNARY, E_BINARY, E_QUALIFIED, E_ADDRESS, E_CONVERT,
-    E_VIEW, E_STRUCT_INIT, E_ARRAY_INIT, E_REPEAT,
+    E_VIEW, E_THIS, E_STRUCT_INIT, E_ARRAY_INIT, E_REPEAT,
 } expr_kind_t;
 
 typedef enum operation {
@@ -134,6 +135,10 @@ struct expr {
     bool untyped;        /**< E_CALL of a standard function with literals without a type only: it can take another */
     bool bit;            /**< E_MEMBER: bit access of `integer` */
     int view;            /**< E_VIEW: the row of core/tc2_axis.h; its axis is `a` */
+    expr_t *enable, *enabled; /**< E_CALL: EN, and what ENO is given to */
+    unit_t *seen_as;     /**< E_CALL of a method: the block or interface that `a` is; `a` NULL: the one itself */
+    bool may_be_skipped; /**< E_CALL: a statement of its own, or all that is assigned: it may have EN */
+    bool super;          /**< E_CALL: of the base, whatever overrides it */
     expr_t *override;    /**< E_CALL of MC_Power: its Override, which TwinCAT has */
 };
 
@@ -192,7 +197,23 @@ struct var {
     var_t *next;
 };
 
-typedef enum unit_kind { U_FUNCTION, U_BLOCK, U_PROGRAM } unit_kind_t;
+typedef enum unit_kind { U_FUNCTION, U_BLOCK, U_PROGRAM, U_METHOD, U_INTERFACE } unit_kind_t;
+
+/** What object orientation adds to a unit. */
+typedef struct object {
+    unit_t *owner;       /**< of a method: its block, program or interface */
+    unit_t *methods;     /**< of a block: its own, by `next_method`; those of a property are "get name" and "set name" */
+    unit_t *next_method;
+    struct map *names;   /**< of these methods */
+    const char *base_name;
+    unit_t *base;        /**< EXTENDS */
+    arg_t *interfaces;   /**< IMPLEMENTS, of an interface EXTENDS: names */
+    bool abstract;
+    bool has_class;      /**< its instances say which class they are */
+    int class_id;
+    int linked;          /**< 0 new, 1 on the way, 2 done */
+    int purity;          /**< of a method: st_pure.c */
+} object_t;
 
 struct unit {
     unit_kind_t kind;
@@ -211,8 +232,15 @@ struct unit {
     unit_t **calls;
     size_t call_count, call_capacity;
     struct map *names;
+    object_t object;
     unit_t *next;
 };
+
+/** Its variables begin anew in every call. */
+static inline bool cm1e_st_is_function(const unit_t *unit)
+{
+    return unit->kind == U_FUNCTION || unit->kind == U_METHOD;
+}
 
 typedef struct task {
     const char *name;

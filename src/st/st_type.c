@@ -101,7 +101,8 @@ static type_t *unknown(st_t *st, type_t *type)
 /** Sizes and alignments of the members, in the order of declaration, as C lays them out. */
 static void resolve_members(st_t *st, type_t *type)
 {
-    uint64_t size = 0, alignment = 1;
+    const bool has_class = type->kind == T_BLOCK && type->unit->object.has_class;
+    uint64_t size = has_class ? sizeof(uint32_t) : 0, alignment = has_class ? sizeof(uint32_t) : 1;
     for (var_t *var = type->members; var; var = var->next) {
         if (var->section == V_TEMP || var->section == V_EXTERNAL)
             continue;

@@ -19,6 +19,7 @@ BIN = os.path.abspath(sys.argv[1])
 SKIPPED = 77
 NESPOLO = "MatheusNespolo/TwinCAT/a2c987b975225412d596c68623db0495b6ba20fa/"
 LCLS = "pcdshub/lcls-twincat-motion/3cec6ffe2ceeb9a2852dab8a508c346c0da3addf/lcls-twincat-motion/Library/POUs/"
+OOP = "0w8States/PLC-OOP-Basics/fe25592e399383e6eb6cf4eeeb430787b3161091/Tutorials/AbstractDrive/AbstractDrive/PLC1/"
 NIALL = "niallasmith/TwinCAT-ADS-MC/843e3cad02ee1b5af565b244d2d5bf739292e233/XAE/TwinCAT-ADS-MC/PLC-Project/"
 
 # What an operator does at the panel of the machine.
@@ -34,6 +35,15 @@ MAIN.bHaltEixo1 := n > 5000;
 MAIN.lrPosicaoMod := 180;
 MAIN.bMoverEixo1Mod := n > 6000;
 MAIN.bPararEixo1 := n > 6100;
+END_PROGRAM
+"""
+# Its MAIN asks a drive by an interface, and changes the drive while it runs.
+DRIVES = """PROGRAM Panel
+VAR n : DINT; END_VAR
+n := n + 1;
+MAIN.bCANDrive := n = 100;
+MAIN.bNcDrive := n = 200;
+MAIN.fbDriveNc.SetLimits(lrMax := 10, lrMin := -10);
 END_PROGRAM
 """
 SCOPE = """PROGRAM Panel
@@ -69,6 +79,11 @@ def scope(rows):
     assert rows[1000]["Axis1 state"] == "Standstill" and rows[1000]["MAIN.bHabilita"] == "1", "power"
 
 
+def drives(rows):
+    assert rows[300]["MAIN.fbDriveNc.lrMax"] == "10" and rows[300]["MAIN.fbDriveNc.lrMin"] == "-10", "SetLimits"
+    assert rows[300]["MAIN.fbDriveCan.lrMax"] == "0", "the other drive"
+
+
 def steps(rows):
     assert rows[-1]["MAIN.test.nStepsCounted"] == "4", "steps"
     assert abs(float(rows[-1]["X set position [u]"]) - 2) < 1e-6, "position"
@@ -83,6 +98,17 @@ PROGRAMS = {
     "scope": (((NESPOLO + "Inacabados/Motion-Control/ScopeTest/ScopeTest/ScopeTestPLC/POUs/MAIN.TcPOU", "2f46896209bdcdc7def9bc47bea262129c8fa869d539353eceb564faa1fcbbe6"),
                (NESPOLO + "Inacabados/Motion-Control/ScopeTest/ScopeTest/ScopeTestPLC/GVLs/Axes.TcGVL", "a1e3d2ee8aafe7b78e2cfd14e75fbf8d1d3cfaba50d52b76cd521ec9bc894eaf")),
               SCOPE, 2, scope),
+    "drives": (((OOP + "FBs/Base/FB_DriveBase.TcPOU",
+                 "0a3347472ad433a2bbe4b4f9f52a639d677a3029b2c878fa751e60ceaa163c8b"),
+                (OOP + "FBs/Extended/FB_DriveCAN.TcPOU",
+                 "7a4a9153de380bcf4346e00b2ed6158fcee107881bdf9d788c88d84d99d8c9f1"),
+                (OOP + "FBs/Extended/FB_DriveNc.TcPOU",
+                 "e7f247ad231a105d58f3505ffb66acd92df14ab39bcac4bbf3b0f1519c57cf33"),
+                (OOP + "ITFs/I_DriveBase.TcIO",
+                 "f2fd29a87a55ab39205d9ecb9d8d9b6a5f97f30ecb590768df222e76b9069dd8"),
+                (OOP + "POUs/MAIN.TcPOU",
+                 "fd761b1deca574b60b4930607a25218397732550494935938c8f3bd72b04dc65")),
+               DRIVES, 1, drives),
     "steps": (((LCLS + "MotorTesting/FB_MicroStepCountTest.TcPOU", "736d38925a3d2c244fabd6e0c1e99c0d8fede621248de12748defa70e8c42336"),), STEPS, 4, steps),
 }
 # Name: files, and the line that cannot run.

@@ -26,6 +26,11 @@ def modulo(a, b):
     return 0 if b == 0 else a - b * (abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1))
 
 
+def choose(selector, a, b):
+    """Both sides have been evaluated, as in Structured Text."""
+    return b if selector else a
+
+
 class TooLong(Exception):
     pass
 
@@ -101,7 +106,7 @@ class Maker:
             return f"ABS({a[0]} + 0)", f"wrap(abs({a[1]}))"
         if kind == "SEL":
             c = self.truth(depth - 1)
-            return f"SEL({c[0]}, {a[0]} + 0, {b[0]} + 0)", f"({b[1]} if {c[1]} else {a[1]})"
+            return f"SEL({c[0]}, {a[0]} + 0, {b[0]} + 0)", f"choose({c[1]}, {a[1]}, {b[1]})"
         if kind == "a[]" and self.arrays:
             place = self.place(depth - 1)
             return f"a[{place[0]}]", f"v['a'][{place[1]}]"
@@ -128,7 +133,7 @@ class Maker:
             return f"(NOT {a[0]})", f"(not {a[1]})"
         if kind in ("AND", "OR", "XOR"):
             a, b = self.truth(depth - 1), self.truth(depth - 1)
-            return f"({a[0]} {kind} {b[0]})", f"({a[1]} {'!=' if kind == 'XOR' else kind.lower()} {b[1]})"
+            return f"({a[0]} {kind} {b[0]})", f"({a[1]} {dict(AND='&', OR='|', XOR='^')[kind]} {b[1]})"
         a, b = self.number(depth - 1), self.number(depth - 1)
         return f"({a[0]} + 0 {kind} {b[0]} + 0)", f"({a[1]} {dict(zip(('=', '<>'), ('==', '!='))).get(kind, kind)} {b[1]})"
 
@@ -309,7 +314,7 @@ def fresh():
 
 def expected(python):
     """Name of each program: its variables after each call; programs that take too long are left out."""
-    world = {"wrap": wrap, "divide": divide, "modulo": modulo, "counts": counts}
+    world = {"wrap": wrap, "divide": divide, "modulo": modulo, "counts": counts, "choose": choose}
     exec("\n".join(python), world)  # what we have made ourselves
     result = {}
     for name in [name for name in world if name[0] == "P" and name[1:].isdigit()]:

@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""Methods, properties, interfaces, EXTENDS, THIS^ and SUPER^: which method is called, and what it sees; EN and ENO; and what
+is refused.
+
+test_st_objects.py BIN-DIRECTORY
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+from st_host import Host
+
+BIN = sys.argv[1]
+PROGRAM = """
+INTERFACE I_Shape
+METHOD Area : LREAL
+END_METHOD
+METHOD Scale : BOOL
+VAR_INPUT factor : LREAL; END_VAR
+END_METHOD
+PROPERTY Name : STRING[20]
+GET END_GET
+END_PROPERTY
+END_INTERFACE
+
+FUNCTION_BLOCK ABSTRACT FB_Base IMPLEMENTS I_Shape
+VAR calls, bodies : INT; END_VAR
+VAR_OUTPUT total : LREAL; END_VAR
+METHOD ABSTRACT Area : LREAL
+END_METHOD
+METHOD PUBLIC Scale : BOOL
+VAR_INPUT factor : LREAL; END_VAR
+calls := calls + 1;
+Scale := factor > 0;
+END_METHOD
+METHOD Note
+total := total + Area();
+END_METHOD
+PROPERTY Name : STRING[20]
+GET
+Name := 'base';
+END_GET
+END_PROPERTY
+bodies := bodies + 1;
+END_FUNCTION_BLOCK
+
+FUNCTION_BLOCK FB_Square EXTENDS FB_Base
+VAR_INPUT side : LREAL := 2; END_VAR
+METHOD Area : LREAL
+Area := side * side;
+END_METHOD
+METHOD Scale : BOOL
+VAR_INPUT factor : LREAL; END_VAR
+Scale := SUPER^.Scale(factor);
+IF Scale THEN THIS^.side := side * factor; END_IF
+END_METHOD
+PROPERTY Side2 : LREAL
+GET
+Side2 := side * 2;
+END_GET
+SET
+side := Side2 / 2;
+END_SET
+END_PROPERTY
+SUPER^();
+END_FUNCTION_BLOCK
+
+FUNCTION_BLOCK FB_Circle EXTENDS FB_Base
+VAR r : LREAL := 1; END_VAR
+METHOD Area : LREAL
+Area := 3 * r * r;
+END_METHOD
+PROPERTY Name : STRING[20]
+GET
+Name := 'circle';
+END_GET
+END_PROPERTY
+END_FUNCTION_BLOCK
+
+FUNCTION LEFTOVER : INT VAR_INPUT a : INT; END_VAR
+LEFTOVER := a MOD 4;
+END_FUNCTION
+
+PROGRAM Main
+VAR sq : FB_Square; ci : FB_Circle; shape, none : I_Shape; a1, a2, a3 : LREAL; n1, n2 : STRING[20]; is0, isnt0, ok : BOOL; s2, method, get : LREAL;
+left, kept : INT; eno, eno2, timer : BOOL; t : TON; END_VAR
+ACTION Init: a3 := 5; END_ACTION
+is0 := none = 0;
+shape := sq;
+isnt0 := shape <> 0;
+a1 := shape.Area();
+n1 := shape.Name;
+ok := shape.Scale(factor := 1.5);
+sq();
+sq.Note();
+shape := ci;
+a2 := shape.Area();
+n2 := shape.Name;
+ci.Note();
+sq.Side2 := 20;
+s2 := sq.Side2;
+Init();
+method := 1; get := method + 1;
+left := LEFTOVER(EN := TRUE, a := 7, ENO => eno);
+kept := 7;
+kept := LEFTOVER(EN := FALSE, a := 8, ENO => eno2);
+t(EN := FALSE, IN := TRUE, PT := T#0s, Q => timer);
+END_PROGRAM
+"""
+EXPECTED = {"a1": 4, "n1": b"base", "ok": True, "a2": 3, "n2": b"circle", "is0": True, "isnt0": True, "a3": 5, "s2": 20,
+            "sq.total": 9, "sq.calls": 1, "sq.bodies": 1, "sq.side": 10, "ci.total": 3, "ci.calls": 0, "method": 1, "get": 2,
+            "left": 3, "eno": True, "eno2": False, "kept": 7, "timer": False}
+BASE = "INTERFACE I METHOD M : INT END_METHOD END_INTERFACE FUNCTION_BLOCK B METHOD M : INT M := 1; END_METHOD " \
+       "END_FUNCTION_BLOCK "
+# (source behind BASE, what is said)
+REFUSED = [
+    ("FUNCTION_BLOCK D EXTENDS G END_FUNCTION_BLOCK", 'no function block "G"'),
+    ("FUNCTION_BLOCK D IMPLEMENTS J END_FUNCTION_BLOCK", 'no interface "J"'),
+    ("FUNCTION_BLOCK D IMPLEMENTS I END_FUNCTION_BLOCK", 'no method "M"'),
+    ("FUNCTION_BLOCK D EXTENDS D END_FUNCTION_BLOCK", "extends itself"),
+    ("FUNCTION_BLOCK D EXTENDS B METHOD M : DINT END_METHOD END_FUNCTION_BLOCK", "another result"),
+    ("FUNCTION_BLOCK D EXTENDS B METHOD M : INT VAR_INPUT x : INT; END_VAR END_METHOD END_FUNCTION_BLOCK", "other parameters"),
+    ("FUNCTION_BLOCK ABSTRACT D END_FUNCTION_BLOCK PROGRAM P VAR d : D; END_VAR END_PROGRAM", "ABSTRACT"),
+    ("FUNCTION_BLOCK ABSTRACT D METHOD ABSTRACT N END_METHOD END_FUNCTION_BLOCK FUNCTION_BLOCK E EXTENDS D "
+     "END_FUNCTION_BLOCK", 'own method "N"'),
+    ("FUNCTION_BLOCK D METHOD M END_METHOD METHOD M END_METHOD END_FUNCTION_BLOCK", "already"),
+    ("PROGRAM P VAR b : B; i : I; END_VAR i := b; END_PROGRAM", '"i" is I, and this is B'),
+    ("PROGRAM P VAR b : B; n : INT; END_VAR n := b.N(); END_PROGRAM", 'B has no "N"'),
+    ("PROGRAM P VAR b : B; n : INT; END_VAR n := b.M(1); END_PROGRAM", "0 arguments"),
+    ("FUNCTION_BLOCK D METHOD M M(); END_METHOD END_FUNCTION_BLOCK", "calls itself"),
+    ("FUNCTION_BLOCK D EXTENDS B METHOD M : INT M := THIS^.N(); END_METHOD METHOD N : INT N := M(); END_METHOD "
+     "END_FUNCTION_BLOCK", "calls itself"),
+    ("FUNCTION_BLOCK D PROPERTY X : INT GET X := 1; END_GET END_PROPERTY END_FUNCTION_BLOCK PROGRAM P VAR d : D; END_VAR "
+     "d.X := 1; END_PROGRAM", "only a variable"),
+    ("FUNCTION F : INT VAR_INPUT x : INT; END_VAR F := x; END_FUNCTION PROGRAM P VAR n : INT; END_VAR "
+     "n := 1 + F(EN := TRUE, x := 1); END_PROGRAM", "EN"),
+]
+faults = []
+
+
+def check_values(folder):
+    host = Host(BIN, folder, PROGRAM, "objects")
+    if not host.run():
+        sys.exit(f"the program was stopped: {host.fault()}")
+    for name, value in EXPECTED.items():
+        if host.value(f"Main.{name}") != value:
+            faults.append(f"{name} is {host.value(f'Main.{name}')!r}; expected {value!r}")
+
+
+def check_nothing(folder):
+    host = Host(BIN, folder, BASE + "PROGRAM P VAR i : I; n : INT; END_VAR n := i.M(); END_PROGRAM", "nothing")
+    if host.run() or "refers to nothing" not in host.fault()[1]:
+        faults.append(f"a call by an interface without an instance: {host.fault()}")
+
+
+def check_refused(folder):
+    path = os.path.join(folder, "refused.st")
+    for source, says in REFUSED:
+        with open(path, "w", encoding="ascii") as file:
+            file.write(BASE + source)
+        result = subprocess.run([os.path.join(BIN, "cm1e"), "st", "check", "--json", path], capture_output=True, text=True,
+                                timeout=60)
+        texts = [error["text"] for error in json.loads(result.stdout or "[]")]
+        if result.returncode != 1 or not any(says in text for text in texts):
+            faults.append(f"{source}: \"{says}\" expected, found {texts} {result.stderr}")
+
+
+with tempfile.TemporaryDirectory() as directory:
+    check_values(directory)
+    check_nothing(directory)
+    check_refused(directory)
+if faults:
+    sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
