@@ -274,7 +274,7 @@ void cm1e_st_check_arguments(st_t *st, unit_t *unit, expr_t *call)
 
 void cm1e_st_call(st_t *st, expr_t *call, bool statement)
 {
-    if (cm1e_st_call_method(st, call, statement))
+    if (st->checker->call_method(st, call, statement))
         return;
     if (call->a->kind == E_NAME) {
         unit_t *unit = cm1e_st_map_get(st->units, call->a->name);

@@ -166,7 +166,8 @@ static void check_configuration(st_t *st)
 
 bool cm1e_st_check(st_t *st)
 {
-    static const checker_t checker = {cm1e_st_check_expression, cm1e_st_check_integer};
+    static const checker_t checker = {cm1e_st_check_expression, cm1e_st_check_integer, cm1e_st_call_method,
+                                      cm1e_st_standard_call};
     st->checker = &checker;
     cm1e_st_parse(st);
     if (st->error_count > 0)

@@ -87,6 +87,23 @@ static bool retype(st_t *st, expr_t *call, type_t *type)
     return true;
 }
 
+/** A REFERENCE TO gets the reference that is behind the name, or the address of a variable. */
+static expr_t *refer(st_t *st, expr_t *expr, type_t *type, const char *what)
+{
+    if (expr->type->kind == T_NULL || (expr->type->kind == T_REF && expr->type->element == type->element))
+        return expr;
+    if (expr->type != cm1e_st_resolve(st, type->element))
+        return refuse(st, expr, type, what);
+    if (expr->kind == E_DEREF)
+        return expr->a;
+    args_t args = {0};
+    arg_t *arg = cm1e_st_arg(st, expr->place, NULL, expr);
+    ST_APPEND(args, arg);
+    expr_t *call = cm1e_st_with_args(st, E_CALL, expr->place, cm1e_st_named(st, E_NAME, expr->place, NULL, "REF"), args);
+    st->checker->standard_call(st, call, "REF");
+    return call;
+}
+
 /** Something that has an address. */
 static bool is_place(const expr_t *expr)
 {
@@ -107,6 +124,8 @@ expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
         return cm1e_st_convert_node(st, expr, type);
     if (from == T_ENUM && cm1e_st_is_integer(to) && to != T_ANY_INT && cm1e_st_widens(expr->type->element->kind, to))
         return cm1e_st_convert_node(st, expr, type);
+    if (to == T_REF && type->automatic)
+        return refer(st, expr, type, what);
     if ((from == T_STRING && to == T_STRING) || (from == T_NULL && (to == T_REF || to == T_INTERFACE)))
         return expr;
     const bool object = (from == T_BLOCK || from == T_INTERFACE) && to == T_INTERFACE;

@@ -207,6 +207,13 @@ var_t *cm1e_st_find_var(st_t *st, const char *name)
     return var;
 }
 
+var_t *cm1e_st_in_list(const st_t *st, const expr_t *expr)
+{
+    if (expr->kind != E_MEMBER || expr->bit || expr->a->kind != E_NAME)
+        return NULL;
+    return cm1e_st_map_get(st->globals, cm1e_st_format(st->arena, "%s.%s", expr->a->name, expr->name));
+}
+
 const constant_t *cm1e_st_constant_of(st_t *st, var_t *var)
 {
     if (var->section == V_EXTERNAL && var->global)

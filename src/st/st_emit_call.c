@@ -172,6 +172,10 @@ static void emit_standard(st_t *st, const expr_t *call)
         cm1e_st_put(st, "), INT32_MIN, INT32_MAX)");
     } else if (strcmp(name, "TIME") == 0) {
         cm1e_st_put(st, "cm1e_scan_time()");
+    } else if (strcmp(name, "__ISVALIDREF") == 0) {
+        cm1e_st_put(st, "(BOOL)(NULL != ");
+        emit_args(st, call->args);
+        cm1e_st_put(st, ")");
     } else if (strcmp(name, "REF") == 0 || strcmp(name, "ADR") == 0) {
         emit_address(st, call->args->value);
     } else {

@@ -128,13 +128,6 @@ static void unknown_member(st_t *st, expr_t *expr, const type_t *type)
     set_wrong(st, expr);
 }
 
-var_t *cm1e_st_in_list(const st_t *st, const expr_t *expr)
-{
-    if (expr->kind != E_MEMBER || expr->bit || expr->a->kind != E_NAME)
-        return NULL;
-    return cm1e_st_map_get(st->globals, cm1e_st_format(st->arena, "%s.%s", expr->a->name, expr->name));
-}
-
 /** MAIN.x: a variable of a program, in another one. The program has one instance then. */
 static bool of_program(st_t *st, expr_t *expr)
 {
@@ -248,6 +241,16 @@ static void element(st_t *st, expr_t *expr)
                            (long long)arg->value->value.integer, (long long)type->dimensions[i].first,
                            (long long)type->dimensions[i].last);
     expr->type = type->element;
+}
+
+void cm1e_st_follow_reference(st_t *st, expr_t *expr)
+{
+    if (expr->type->kind != T_REF || !expr->type->automatic)
+        return;
+    expr_t *reference = cm1e_st_take(st->arena, sizeof *reference);
+    *reference = *expr;
+    *expr = (expr_t){.kind = E_DEREF, .place = expr->place, .depth = expr->depth, .a = reference, .name = expr->name,
+                     .impure = expr->impure, .type = cm1e_st_resolve(st, reference->type->element)};
 }
 
 static void dereference(st_t *st, expr_t *expr)
@@ -460,10 +463,19 @@ void cm1e_st_check_expression(st_t *st, expr_t *expr)
     if (expr->type)
         return;
     switch (expr->kind) {
-    case E_NAME: name(st, expr); break;
+    case E_NAME:
+        name(st, expr);
+        cm1e_st_follow_reference(st, expr);
+        break;
     case E_QUALIFIED: enumerator_of(st, expr, expr->prefix); break;
-    case E_MEMBER: member(st, expr); break;
-    case E_INDEX: element(st, expr); break;
+    case E_MEMBER:
+        member(st, expr);
+        cm1e_st_follow_reference(st, expr);
+        break;
+    case E_INDEX:
+        element(st, expr);
+        cm1e_st_follow_reference(st, expr);
+        break;
     case E_DEREF: dereference(st, expr); break;
     case E_CALL: cm1e_st_call(st, expr, false); break;
     case E_UNARY: unary(st, expr); break;

@@ -1,17 +1,8 @@
-/* Methods, properties, interfaces and what extends what. A method is a function that gets its instance; which one is meant
- * is known by the class of the instance where blocks override each other. */
-#include <stdlib.h>
-#include <string.h>
+/* Calls of methods, and properties. A method is a function that gets its instance; which one is meant is known by the class
+ * of the instance where blocks override each other. */
 #include <strings.h>
 
 #include "st/st_parsing.h"
-
-const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owner, const char *name)
-{
-    const bool get = strncmp(name, "get ", 4) == 0, set = strncmp(name, "set ", 4) == 0;
-    return cm1e_st_format(st->arena, "%s_%s_%s%s", prefix, owner->name, get ? "_get_" : set ? "_set_" : "",
-                          get || set ? name + 4 : name);
-}
 
 unit_t *cm1e_st_this(const st_t *st)
 {
@@ -20,199 +11,6 @@ unit_t *cm1e_st_this(const st_t *st)
     if (st->unit->object.owner)
         return st->unit->object.owner;
     return st->unit->kind == U_BLOCK || st->unit->kind == U_PROGRAM ? st->unit : NULL;
-}
-
-/* ---- links ------------------------------------------------------------------------------------------------------- */
-
-static unit_t *named_unit(st_t *st, const unit_t *unit, const char *name, unit_kind_t kind, const char *what)
-{
-    unit_t *found = cm1e_st_map_get(st->units, name);
-    if (found && found->kind == kind && !found->external)
-        return found;
-    cm1e_st_report(st, unit->place, "there is no %s \"%s\" that \"%s\" could %s", what, name, unit->name,
-                   kind == U_INTERFACE && unit->kind == U_BLOCK ? "implement" : "extend");
-    return NULL;
-}
-
-/** The variables of the base stand first, so that an instance begins as one of the base. */
-static void inherit_vars(st_t *st, unit_t *unit)
-{
-    vars_t vars = {0};
-    for (const var_t *var = unit->object.base->vars; var; var = var->next) {
-        if (var->section == V_TEMP || var->section == V_EXTERNAL)
-            continue;
-        var_t *copy = cm1e_st_take(st->arena, sizeof *copy);
-        *copy = *var;
-        copy->next = NULL;
-        ST_APPEND(vars, copy);
-    }
-    if (!vars.last)
-        return;
-    vars.last->next = unit->vars;
-    unit->vars = vars.first;
-    unit->type->members = unit->vars;
-}
-
-static void map_methods(st_t *st, unit_t *unit)
-{
-    unit->object.names = cm1e_st_map_new(st->arena);
-    for (unit_t *method = unit->object.methods; method; method = method->object.next_method) {
-        if (cm1e_st_map_get(unit->object.names, method->name))
-            cm1e_st_report(st, method->place, "\"%s\" has \"%s\" already", unit->name, method->name);
-        cm1e_st_map_put(unit->object.names, method->name, method);
-    }
-}
-
-static void link_unit(st_t *st, unit_t *unit)
-{
-    object_t *object = &unit->object;
-    if (object->linked == 2 || unit->external)
-        return;
-    if (object->linked == 1) {
-        cm1e_st_report(st, unit->place, "\"%s\" extends itself", unit->name);
-        object->base = NULL;
-        return;
-    }
-    object->linked = 1;
-    map_methods(st, unit);
-    for (arg_t *arg = object->interfaces; arg; arg = arg->next) {
-        unit_t *interface = named_unit(st, unit, arg->name, U_INTERFACE, "interface");
-        if (interface)
-            link_unit(st, interface);
-    }
-    object->base = object->base_name ? named_unit(st, unit, object->base_name, U_BLOCK, "function block") : NULL;
-    if (object->base) {
-        link_unit(st, object->base);
-        if (object->base)
-            inherit_vars(st, unit);
-    }
-    object->linked = 2;
-}
-
-void cm1e_st_link_objects(st_t *st)
-{
-    int classes = 0;
-    for (unit_t *unit = st->tree.units; unit; unit = unit->next)
-        if (unit->kind == U_BLOCK || unit->kind == U_PROGRAM || unit->kind == U_INTERFACE)
-            link_unit(st, unit);
-    for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
-        if (unit->kind != U_BLOCK || !(unit->object.base || unit->object.interfaces))
-            continue;
-        for (unit_t *at = unit; at && !at->object.has_class; at = at->object.base) {
-            at->object.has_class = true;
-            at->object.class_id = ++classes;
-        }
-    }
-}
-
-unit_t *cm1e_st_find_method(const unit_t *unit, const char *name)
-{
-    unit_t *found = NULL;
-    for (const unit_t *at = unit; at && at->object.names && !found; at = at->object.base)
-        found = cm1e_st_map_get(at->object.names, name);
-    return found;
-}
-
-bool cm1e_st_is_a(const st_t *st, const unit_t *unit, const unit_t *other)
-{
-    for (const unit_t *at = unit; at; at = at->object.base) {
-        if (at == other)
-            return true;
-        for (const arg_t *arg = at->object.interfaces; arg; arg = arg->next) {
-            const unit_t *interface = cm1e_st_map_get(st->units, arg->name);
-            if (interface && interface != at && cm1e_st_is_a(st, interface, other))
-                return true;
-        }
-    }
-    return false;
-}
-
-/** A method of an interface or of those that it extends. */
-static unit_t *interface_method(const st_t *st, const unit_t *interface, const char *name)
-{
-    unit_t *found = cm1e_st_find_method(interface, name);
-    for (const arg_t *arg = interface->object.interfaces; arg && !found; arg = arg->next) {
-        const unit_t *base = cm1e_st_map_get(st->units, arg->name);
-        found = base && base->kind == U_INTERFACE ? interface_method(st, base, name) : NULL;
-    }
-    return found;
-}
-
-/* ---- conformance ------------------------------------------------------------------------------------------------- */
-
-static bool is_parameter(const var_t *var)
-{
-    return var && (var->section == V_INPUT || var->section == V_OUTPUT || var->section == V_IN_OUT);
-}
-
-static const var_t *next_parameter(const var_t *var)
-{
-    while (var && !is_parameter(var))
-        var = var->next;
-    return var;
-}
-
-static bool same_signature(st_t *st, const unit_t *a, const unit_t *b)
-{
-    const type_t *of_a = a->result_type ? cm1e_st_resolve(st, a->result_type) : NULL;
-    const type_t *of_b = b->result_type ? cm1e_st_resolve(st, b->result_type) : NULL;
-    const var_t *x = next_parameter(a->vars), *y = next_parameter(b->vars);
-    for (; x && y; x = next_parameter(x->next), y = next_parameter(y->next))
-        if (x->section != y->section || x->type != y->type)
-            return false;
-    return !x && !y && of_a == of_b;
-}
-
-static void check_override(st_t *st, const unit_t *method, const unit_t *of)
-{
-    if (of && !same_signature(st, method, of))
-        cm1e_st_report(st, method->place, "\"%s\" has another result or other parameters than that of \"%s\"", method->name,
-                       of->object.owner->name);
-}
-
-static void check_interface(st_t *st, const unit_t *unit, const unit_t *interface)
-{
-    for (const unit_t *method = interface->object.methods; method; method = method->object.next_method) {
-        const unit_t *ours = cm1e_st_find_method(unit, method->name);
-        if (!ours && !unit->object.abstract)
-            cm1e_st_report(st, unit->place, "\"%s\" has no method \"%s\", which the interface \"%s\" wants", unit->name,
-                           method->name, interface->name);
-        else if (ours)
-            check_override(st, ours, method);
-    }
-    for (const arg_t *arg = interface->object.interfaces; arg; arg = arg->next) {
-        const unit_t *base = cm1e_st_map_get(st->units, arg->name);
-        if (base && base->kind == U_INTERFACE && base != interface)
-            check_interface(st, unit, base);
-    }
-}
-
-/** The first method of its bases that a block without ABSTRACT leaves open. */
-static void check_abstract(st_t *st, const unit_t *unit)
-{
-    for (const unit_t *at = unit; at; at = at->object.base)
-        for (const unit_t *method = at->object.methods; method; method = method->object.next_method)
-            if (cm1e_st_find_method(unit, method->name)->object.abstract)
-                cm1e_st_report(st, unit->place, "\"%s\" needs its own method \"%s\", which is ABSTRACT in \"%s\"",
-                               unit->name, method->name, at->name);
-}
-
-void cm1e_st_check_objects(st_t *st)
-{
-    for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
-        if (unit->kind != U_BLOCK || unit->external)
-            continue;
-        for (const unit_t *method = unit->object.methods; method; method = method->object.next_method)
-            check_override(st, method, unit->object.base ? cm1e_st_find_method(unit->object.base, method->name) : NULL);
-        for (const unit_t *at = unit; at; at = at->object.base)
-            for (const arg_t *arg = at->object.interfaces; arg; arg = arg->next) {
-                const unit_t *interface = cm1e_st_map_get(st->units, arg->name);
-                if (interface && interface->kind == U_INTERFACE)
-                    check_interface(st, unit, interface);
-            }
-        if (!unit->object.abstract)
-            check_abstract(st, unit);
-    }
 }
 
 /* ---- calls ------------------------------------------------------------------------------------------------------- */
@@ -269,7 +67,7 @@ static unit_t *method_of(st_t *st, expr_t *object, const char *name, unit_t **se
     if (type->kind != T_BLOCK && type->kind != T_INTERFACE)
         return NULL;
     *seen_as = type->unit;
-    return type->kind == T_INTERFACE ? interface_method(st, type->unit, name) : cm1e_st_find_method(type->unit, name);
+    return type->kind == T_INTERFACE ? cm1e_st_interface_method(st, type->unit, name) : cm1e_st_find_method(type->unit, name);
 }
 
 static bool call_base(st_t *st, expr_t *call, const char *name)

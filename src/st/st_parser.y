@@ -123,9 +123,7 @@ simple_type: NAME { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); }
     | STRING '(' expr ')' { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); $$->length_expr = $3; }
     | REF_TO type { $$ = cm1e_st_type_node(ST, T_REF, @1, NULL); $$->element = $2; }
     | POINTER_TO type { $$ = cm1e_st_type_node(ST, T_REF, @1, NULL); $$->element = $2; }
-    | REFERENCE_TO type {
-        cm1e_st_report(ST, @1, "REFERENCE TO is not supported; use REF_TO, and ^ to reach what it refers to");
-        $$ = $2; };
+    | REFERENCE_TO type { $$ = cm1e_st_type_node(ST, T_REF, @1, NULL); $$->element = $2; $$->automatic = true; };
 
 /* ---- variables ---- */
 initial: %empty { $$ = NULL; } | ASSIGN constant_initial { $$ = $2; };

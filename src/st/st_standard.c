@@ -22,6 +22,7 @@ typedef enum rule {
     R_MOVE,
     R_NOW,
     R_REF,
+    R_VALID,
     R_SIZE,
     R_STRING,    /* the letters of `types` say which: S string, I integer; the first one is the result */
 } rule_t;
@@ -50,7 +51,8 @@ static const standard_t standards[] = {
     {"EQ", R_COMPARE, 2, 2, OP_EQ, "", ""}, {"NE", R_COMPARE, 2, 2, OP_NE, "", ""},
     {"LE", R_COMPARE, 2, 2, OP_LE, "", ""}, {"LT", R_COMPARE, 2, 2, OP_LT, "", ""},
     {"TRUNC", R_TRUNC, 1, 1, 0, "", "IN"}, {"MOVE", R_MOVE, 1, 1, 0, "", "IN"}, {"TIME", R_NOW, 0, 0, 0, "", ""},
-    {"REF", R_REF, 1, 1, 0, "", ""}, {"ADR", R_REF, 1, 1, 0, "", ""}, {"SIZEOF", R_SIZE, 1, 1, 0, "", ""},
+    {"REF", R_REF, 1, 1, 0, "", ""}, {"ADR", R_REF, 1, 1, 0, "", ""},
+    {"__ISVALIDREF", R_VALID, 1, 1, 0, "", ""}, {"SIZEOF", R_SIZE, 1, 1, 0, "", ""},
     {"LEN", R_STRING, 1, 1, 0, "IS", "IN"}, {"LEFT", R_STRING, 2, 2, 0, "SSI", "IN L"},
     {"RIGHT", R_STRING, 2, 2, 0, "SSI", "IN L"}, {"MID", R_STRING, 3, 3, 0, "SSII", "IN L P"},
     {"CONCAT", R_STRING, 2, MANY, 0, "SSS", ""}, {"INSERT", R_STRING, 3, 3, 0, "SSSI", "IN1 IN2 P"},
@@ -212,6 +214,12 @@ static bool give_type(st_t *st, expr_t *call)
     case R_MOVE: *call = *cm1e_st_settle(st, first); return true;
     case R_NOW: call->type = st->elementary[T_TIME]; return true;
     case R_REF: return reference(st, call);
+    case R_VALID:
+        if (first->kind != E_DEREF)
+            return refuse(st, call, first, "a REFERENCE TO");
+        call->args->value = first->a;
+        call->type = st->elementary[T_BOOL];
+        return true;
     case R_SIZE:
         call->type = st->elementary[T_UDINT];
         call->value = (constant_t){.known = true, .integer = (int64_t)cm1e_st_settle(st, first)->type->size};

@@ -30,6 +30,8 @@ enum { ST_NEW, ST_BUSY, ST_READY };
 typedef struct checker {
     void (*expression)(st_t *st, expr_t *expr);
     bool (*integer_constant)(st_t *st, expr_t *expr, int64_t *value, const char *what);
+    bool (*call_method)(st_t *st, expr_t *call, bool statement);
+    bool (*standard_call)(st_t *st, expr_t *call, const char *name);
 } checker_t;
 
 struct st {
@@ -73,6 +75,8 @@ type_t *cm1e_st_resolve(st_t *st, type_t *type);
 type_t *cm1e_st_elementary(const st_t *st, const char *name);
 type_t *cm1e_st_string_type(st_t *st, int64_t length);
 type_t *cm1e_st_ref_type(st_t *st, type_t *to);
+/** `automatic`: REFERENCE TO. */
+type_t *cm1e_st_any_ref_type(st_t *st, type_t *to, bool automatic);
 int cm1e_st_bits(type_kind_t kind);
 bool cm1e_st_is_signed(type_kind_t kind);
 bool cm1e_st_is_unsigned(type_kind_t kind);
@@ -144,7 +148,7 @@ var_t *cm1e_st_in_list(const st_t *st, const expr_t *expr);
 /** A call that only updates an AXIS_REF in TwinCAT: here it is always up to date. */
 bool cm1e_st_only_updates(st_t *st, const expr_t *call);
 
-/* st_object.c */
+/* st_link.c */
 /** Bases and interfaces by their names; a block has the variables of its base before its own ones. */
 void cm1e_st_link_objects(st_t *st);
 /** That methods are overridden with the same parameters, and interfaces are implemented. */
@@ -155,12 +159,18 @@ const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owne
 unit_t *cm1e_st_find_method(const unit_t *unit, const char *name);
 /** Whether `unit` is `other`, extends it, or implements it. */
 bool cm1e_st_is_a(const st_t *st, const unit_t *unit, const unit_t *other);
+/** A method of an interface or of those that it extends; NULL: there is none. */
+unit_t *cm1e_st_interface_method(const st_t *st, const unit_t *interface, const char *name);
+
+/* st_object.c */
 /** The method that a call means: true, the call has been checked. */
 bool cm1e_st_call_method(st_t *st, expr_t *call, bool statement);
 /** A property that is read: the call of its GET; false: the name is none. */
 bool cm1e_st_read_property(st_t *st, expr_t *expr);
 /** A property that is written: the statement becomes the call of its SET. */
 bool cm1e_st_write_property(st_t *st, stmt_t *stmt);
+/** A name or member of a type REFERENCE TO becomes what it refers to. */
+void cm1e_st_follow_reference(st_t *st, expr_t *expr);
 /** st_pure.c: whether a method of this name changes more than its own variables. */
 bool cm1e_st_changes(st_t *st, const char *name);
 /** The block of the statements that are checked; NULL: there is none. */

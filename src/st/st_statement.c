@@ -8,6 +8,19 @@ static void condition(st_t *st, expr_t *expr, const char *what)
         cm1e_st_report(st, expr->place, "%s is a BOOL; this is %s", what, cm1e_st_type_name(expr->type));
 }
 
+/** target REF= variable: the reference itself is assigned. */
+static bool refer(st_t *st, stmt_t *stmt)
+{
+    expr_t *target = stmt->target;
+    const bool automatic = target->kind == E_DEREF && target->a->type && target->a->type->kind == T_REF &&
+                           target->a->type->automatic;
+    if (!automatic && target->type->kind != T_WRONG)
+        cm1e_st_report(st, stmt->place, "REF= is for a REFERENCE TO; this is %s", cm1e_st_type_name(target->type));
+    if (automatic)
+        stmt->target = target->a;
+    return automatic;
+}
+
 static void assign(st_t *st, stmt_t *stmt)
 {
     stmt->value->may_be_skipped = true;
@@ -15,12 +28,12 @@ static void assign(st_t *st, stmt_t *stmt)
         return;
     cm1e_st_expression(st, stmt->target);
     cm1e_st_expression(st, stmt->value);
+    if (stmt->reference && !refer(st, stmt))
+        return;
     const expr_t *target = stmt->target;
     if (target->type->kind == T_WRONG || !cm1e_st_assignable(st, target))
         return;
     cm1e_st_note_change(st, target);
-    if (stmt->reference)
-        cm1e_st_report(st, stmt->place, "REF= is not supported; write := REF(...)");
     if (target->type->kind == T_BLOCK)
         cm1e_st_report(st, stmt->place, "an instance of a function block cannot be assigned");
     stmt->value = cm1e_st_coerce(st, stmt->value, target->type,

@@ -77,6 +77,7 @@ struct type {
     unit_t *unit;            /**< of a block */
     expr_t *initial;         /**< TYPE t : INT := 5 */
     bool external;           /**< from our interface: C of the library */
+    bool automatic;          /**< REFERENCE TO: a name of this type is what it refers to */
     int state;               /**< 0 new, 1 being resolved, 2 resolved */
     bool emitted;
     uint64_t size, alignment;

@@ -175,7 +175,7 @@ static type_t *resolve_reference(st_t *st, type_t *type)
     type_t *named = type->element->kind == T_NONE && type->element->name
         ? cm1e_st_map_get(st->types, type->element->name) : NULL;
     const bool is_open = named && (named->kind == T_STRUCT || named->kind == T_BLOCK);
-    return cm1e_st_ref_type(st, is_open ? named : cm1e_st_resolve(st, type->element));
+    return cm1e_st_any_ref_type(st, is_open ? named : cm1e_st_resolve(st, type->element), type->automatic);
 }
 
 static type_t *resolve_new(st_t *st, type_t *type)

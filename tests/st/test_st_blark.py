@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every source in Structured Text of the tree, and the examples of docs/STRUCTURED-TEXT.md, are read by blark too, a
 parser that we did not write. It knows TwinCAT's dialect, in which a configuration is no text, REF_TO is POINTER TO, and
-METHOD is reserved: these differences are taken out first.
+METHOD is reserved and stands beside its block: these differences are taken out first.
 
 test_st_blark.py SOURCE-DIRECTORY VENV-PYTHON
 """
@@ -30,7 +30,15 @@ def sources():
     return result
 
 
+def without_parts(match):
+    """TwinCAT has methods, properties and actions beside their block, not within it."""
+    parts = re.compile(r"\b(METHOD|PROPERTY|ACTION)\b.*?\bEND_\1\b", re.DOTALL)
+    text = match.group(0)
+    return parts.sub("", text) + "\n" + "\n".join(part.group(0) for part in parts.finditer(text))
+
+
 def adapted(text):
+    text = re.sub(r"\b(INTERFACE|FUNCTION_BLOCK|PROGRAM)\b.*?\bEND_\1\b", without_parts, text, flags=re.DOTALL)
     text = re.sub(r"\bCONFIGURATION\b.*?\bEND_CONFIGURATION\b", "", text, flags=re.DOTALL)
     return re.sub(r"\b(method|reference)\b", r"\1_", text.replace("REF_TO", "POINTER TO"))
 

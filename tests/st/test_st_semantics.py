@@ -24,6 +24,7 @@ FUNCTION Greet : STRING VAR_INPUT who : STRING(10); END_VAR Greet := CONCAT('hi 
 FUNCTION Sum : DINT VAR_INPUT v : Row; END_VAR VAR i : INT; END_VAR
   FOR i := -1 TO 1 DO Sum := Sum + v[i]; END_FOR END_FUNCTION
 FUNCTION Move1 : Point VAR_INPUT p : Point; END_VAR Move1 := p; Move1.x := Move1.x + 1; END_FUNCTION
+FUNCTION Bump VAR_INPUT what : REFERENCE TO INT; more : INT; END_VAR what := what + more; END_FUNCTION
 FUNCTION_BLOCK Counter VAR_INPUT step : INT := 2; END_VAR VAR_OUTPUT total : INT := 100; END_VAR
   total := total + step; END_FUNCTION_BLOCK
 FUNCTION_BLOCK Outer VAR_IN_OUT shared : INT; END_VAR VAR inner : Counter := (step := 5); END_VAR
@@ -33,11 +34,15 @@ VAR_GLOBAL g : INT := 3; END_VAR
 VAR_GLOBAL CONSTANT KK : INT := 4; KK2 : INT := KK * 2 + 1; END_VAR
 """
 VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Small; p : Point; x : Box; r : Row; " \
-       "w : WORD; q : REF_TO INT; q2 : REF_TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
+       "w : WORD; q : REF_TO INT; q2 : REF_TO Point; z : REFERENCE TO INT; zp : REFERENCE TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;"
 # (statements, {variable: value after one call})
 CASES = [
     ("IF TRUE THEN i := 1; ELSE i := 2; END_IF", {"i": 1}),
+    ("z REF= i; z := 5; j := z + 1; b := __ISVALIDREF(z);", {"i": 5, "j": 6, "b": True}),
+    ("b := NOT __ISVALIDREF(z); zp REF= p; zp.y := 3; n := zp.x; zp.x := 4; Bump(what := i, more := p.x);",
+     {"b": True, "n": 7, "i": 4}),
+    ("z REF= i; Bump(what := z, more := 3); z REF= j; z := 9;", {"i": 3, "j": 9}),
     ("b := 1.0 / (LREAL#0.0 - i) > 0.0;", {"b": True}),  # GCC 12 alone makes -0.0 of it
     ("IF i = 1 THEN j := 1; ELSIF i = 0 THEN j := 2; ELSIF TRUE THEN j := 3; ELSE j := 4; END_IF;", {"j": 2}),
     ("i := 4; CASE i OF 1, 2: j := 1; 3..5, 9: j := 2; n := 7; ELSE j := 3; END_CASE", {"j": 2, "n": 7}),
