@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-BIN, EXAMPLES = sys.argv[1], sys.argv[2]
+BIN, EXAMPLES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 OF_THE_MACHINE = ("wake-up", "execution")
 # Example, bus file, options of the C twin; samples (0: to the end of the C twin), signals that there are at least, and
 # the last step that is to be reached.
