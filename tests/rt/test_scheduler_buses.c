@@ -321,7 +321,7 @@ static void run_group(int lost, int stop_at, int rest_at)
     for (int i = 0; i < BUSES; i++)
         axes[i] = cm1e_scheduler_axis(scheduler, (uint32_t)i);
     must(cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = grouped_program}, &diag));
-    must(cm1e_scheduler_run(scheduler, 4000 * INT64_C(1000000), &diag));
+    must(cm1e_scheduler_run(scheduler, 4000 * MS_IN_NS, &diag));
     expect_no_leap();
 }
 
