@@ -118,7 +118,8 @@ static bool is_override(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
 /** EN := condition and ENO => variable, which every function, method and block has. */
 static bool is_enable(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
 {
-    const bool in = strcasecmp(arg->name, "EN") == 0 && !arg->output, out = strcasecmp(arg->name, "ENO") == 0 && arg->output;
+    const bool in = strcasecmp(arg->name, "EN") == 0 && !arg->output;
+    const bool out = strcasecmp(arg->name, "ENO") == 0 && arg->output;
     if (!(in || out) || cm1e_st_map_get(unit->names, arg->name))
         return false;
     if (!arg->value)
@@ -141,8 +142,9 @@ static void match_names(st_t *st, const unit_t *unit, expr_t *call)
             cm1e_st_report(st, arg->place, "arguments are either all by position or all by name");
             return;
         }
-        if (is_enable(st, unit, call, arg) || is_override(st, unit, call, arg) || (!arg->value && unit->external && !cm1e_st_map_get(unit->names, arg->name)))
-            continue; /* an input of another library that is left out */
+        const bool left_out = !arg->value && unit->external && !cm1e_st_map_get(unit->names, arg->name);
+        if (left_out || is_enable(st, unit, call, arg) || is_override(st, unit, call, arg))
+            continue; /* left out: an input of another library's block */
         arg->parameter = named_parameter(st, unit, arg);
         for (const arg_t *other = call->args; other != arg; other = other->next)
             if (other->parameter && other->parameter == arg->parameter)
