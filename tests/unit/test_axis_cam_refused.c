@@ -207,18 +207,19 @@ static void test_a_kink_of_a_cam_inside_a_cycle_is_seen(void)
 }
 
 /* The acceleration is beyond its limit at the beginning of a cycle and falls with the whole jerk in the second half of
- * it. The change of the velocity keeps the limit, the second difference of the positions does not. */
-static guard_limit_t falls_from(double beyond)
+ * it. The change of the velocity keeps the limit, the second difference of the positions does not. `sign`: the
+ * direction of the motion. */
+static guard_limit_t falls_from(double beyond, int sign)
 {
     cm1e_axis_t *axis = axes_axis(SLAVE);
     const cm1e_motion_limits_t most = axis->limits.maximum;
     const double t = axis->cycle_s, v0 = 1, a0 = most.acceleration + beyond * most.jerk * t;
-    const double step = v0 * t + a0 * t * t / 2 - most.jerk * t * t * t / 48;
-    axis->setpoint.velocity = v0;
-    axis->setpoint.acceleration = a0;
-    const from_t next = {.position = cm1e_position_plus(axis->setpoint.position, step * axis->position.scale),
-                         .velocity = v0 + a0 * t - most.jerk * t * t / 8, .acceleration = a0 - most.jerk * t / 2};
-    TEST_ASSERT_TRUE(next.velocity - v0 < most.acceleration * t);
+    const double step = v0 * t + a0 * t * t / 2 - most.jerk * t * t * t / 48, gain = a0 * t - most.jerk * t * t / 8;
+    axis->setpoint.velocity = sign * v0;
+    axis->setpoint.acceleration = sign * a0;
+    const from_t next = {.position = cm1e_position_plus(axis->setpoint.position, sign * step * axis->position.scale),
+                         .velocity = sign * (v0 + gain), .acceleration = sign * (a0 - most.jerk * t / 2)};
+    TEST_ASSERT_TRUE(gain < most.acceleration * t);
     TEST_ASSERT_FALSE(beyond > 0.042 && cm1e_axis_well_within(axis, &next, true));
     return cm1e_axis_look_closely(axis, &next, true).limit;
 }
@@ -227,9 +228,11 @@ static void test_the_second_difference_of_the_positions_is_judged(void)
 {
     axes_begin(2);
     cm1e_axis_guard_renew(axes_axis(SLAVE));
-    TEST_ASSERT_EQUAL_INT(GUARD_KEPT, falls_from(0.9 / 24));
-    TEST_ASSERT_EQUAL_INT(GUARD_ACCELERATION, falls_from(1.1 / 24));
-    TEST_ASSERT_EQUAL_INT(GUARD_ACCELERATION, falls_from(2.9 / 24)); /* from 3 on, the velocity shows it too */
+    for (int sign = -1; sign <= 1; sign += 2) {
+        TEST_ASSERT_EQUAL_INT(GUARD_KEPT, falls_from(0.9 / 24, sign));
+        TEST_ASSERT_EQUAL_INT(GUARD_ACCELERATION, falls_from(1.1 / 24, sign));
+        TEST_ASSERT_EQUAL_INT(GUARD_ACCELERATION, falls_from(2.9 / 24, sign)); /* from 3 on by the velocity too */
+    }
 }
 
 int main(void)
