@@ -19,7 +19,7 @@ typedef struct seen {
     position_t position;
     double velocity, acceleration;
     cm1e_axis_state_t state;
-    bool reached;
+    bool reached, brakes_hard, in_position;
 } seen_t;
 
 static seen_t seen[2][CYCLES][AXES];
@@ -105,6 +105,8 @@ static void run(unsigned seed, int side)
             now->acceleration = s->acceleration;
             now->state = axes_state(n);
             now->reached = s->reached;
+            now->brakes_hard = s->brakes_hard;
+            now->in_position = axes_axis(n)->in_position.inside;
             led_cycles += axes_state(n) == CM1E_AXIS_SYNCHRONIZED_MOTION;
         }
     }
