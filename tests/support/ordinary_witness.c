@@ -39,11 +39,8 @@ static void judge_extras(const cm1e_axis_t *axis)
  * struct was copied as a whole. */
 static void set_aside(cm1e_axis_t *axis)
 {
-    const probe_sample_t sample = axis->signals.probe_sample;
-    memset(&axis->signals.probe_sample, 0, sizeof sample);
-    axis->signals.probe_sample.time_ns = sample.time_ns;
-    axis->signals.probe_sample.position = sample.position;
-    axis->signals.probe_sample.inputs = sample.inputs;
+    enum { USED = offsetof(probe_sample_t, inputs) + sizeof axis->signals.probe_sample.inputs };
+    memset((char *)&axis->signals.probe_sample + USED, 0, sizeof(probe_sample_t) - USED);
     axis->setpoint.ordinary_until_s = 0.0;
     axis->drive.ordinary = (cm1e_drive_ordinary_t){0};
 }
