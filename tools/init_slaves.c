@@ -5,7 +5,7 @@
 #include "bus/bus_image.h"
 #include "command.h"
 #include "core/bytes.h"
-#include "device/sim_modules.h"
+#include "device/module_kinds.h"
 #include "pdo_list.h"
 
 enum { CHANNELS = 8, STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000, VALUE = 0x11 };
@@ -113,7 +113,7 @@ static bool is_module(const pdo_list_t *list)
 static bool are_simulated(const module_list_t *modules)
 {
     for (unsigned n = 0; n < modules->count; n++)
-        if (!cm1e_sim_module(modules->idents[n]))
+        if (!cm1e_module_kind(modules->idents[n]))
             return false;
     return modules->count > 0 && modules->count <= CHANNELS;
 }

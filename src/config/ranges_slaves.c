@@ -8,7 +8,7 @@
 
 #include "config/io_types.h"
 #include "config/ranges.h"
-#include "device/sim_modules.h"
+#include "device/module_kinds.h"
 #include "device/place.h"
 
 enum { WATCHDOG_MS_MAX = 6000, FIRST_OBJECT = 0x1000, PDOS_OF_A_KIND = 0x200, OUTPUT_PDO = 0x1600, INPUT_PDO = 0x1A00 };
@@ -308,7 +308,7 @@ static bool check_sim(const slave_check_t *check)
         return slave_wrong(check, "modules", "has %u entries; expected 1 ... %d of a simulated modular device", modules,
                            CHANNELS_MAX);
     for (unsigned i = 0; i < modules && sim->kind == CM1E_SIM_SLAVE_MODULAR; i++)
-        if (!cm1e_sim_module(check->slave->modules[i]))
+        if (!cm1e_module_kind(check->slave->modules[i]))
             return slave_wrong(check, "modules", "has 0x%08X, which is not simulated; expected 0x%08X, 0x%08X, 0x%08X, "
                                "0x%08X, 0x%08X or 0x%08X", (unsigned)check->slave->modules[i], 0x105u, 0x108u, 0x205u,
                                0x208u, 0x302u, 0x402u);

@@ -1,7 +1,7 @@
 /* Devices with inputs and outputs as the bus file names them for the simulator: their SII. */
 #include <string.h>
 
-#include "device/sim_modules.h"
+#include "device/module_kinds.h"
 #include "core/bytes.h"
 #include "description/describe.h"
 #include "description/sii_image.h"
@@ -120,7 +120,7 @@ static void describe_modules(cm1e_arena_t *arena, cm1e_description_t *device, co
 {
     for (unsigned output = 0; output < 2; output++)
         for (unsigned n = 0; n < slave->module_count; n++) {
-            const cm1e_sim_module_t *module = cm1e_sim_module(slave->modules[n]);
+            const cm1e_module_kind_t *module = cm1e_module_kind(slave->modules[n]);
             if (!module || module->output != (output == 0))
                 continue;
             cm1e_described_pdo_t *pdo = add_pdo(arena, device, (module->output ? OUTPUT_PDO : INPUT_PDO) + n, "Slot", n,

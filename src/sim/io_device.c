@@ -140,8 +140,8 @@ static cm1e_sim_io_device_t *create_app(const cm1e_slave_config_t *slave)
     if (device->config.outputs > 0 && !device->config.wired_to[0])
         device->source = device;
     for (unsigned n = 0; n < slave->module_count && n < IO_CHANNELS && slave->sim.kind == CM1E_SIM_SLAVE_MODULAR; n++)
-        if (cm1e_sim_module(slave->modules[n]))
-            device->modules[device->module_count++] = cm1e_sim_module(slave->modules[n]);
+        if (cm1e_module_kind(slave->modules[n]))
+            device->modules[device->module_count++] = cm1e_module_kind(slave->modules[n]);
     map_channels(device);
     if (device->config.kind >= CM1E_SIM_SLAVE_ANALOG && !cm1e_sim_io_objects_create(device, slave)) {
         free(device);

@@ -8,7 +8,7 @@
 #ifndef CM1E_SIM_IO_DEVICE_H
 #define CM1E_SIM_IO_DEVICE_H
 
-#include "device/sim_modules.h"
+#include "device/module_kinds.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 
@@ -45,7 +45,7 @@ typedef struct cm1e_sim_io_device {
     cm1e_sim_io_objects_t *objects;          /**< NULL: no CoE */
     int64_t digital[2][IO_CHANNELS];         /**< values of the process data without CoE */
     uint8_t module_count;                    /**< of a modular device */
-    const cm1e_sim_module_t *modules[IO_CHANNELS];
+    const cm1e_module_kind_t *modules[IO_CHANNELS];
     int64_t now_ns, power_on_ns;             /**< of an encoder, which counts since its power-on */
 } cm1e_sim_io_device_t;
 

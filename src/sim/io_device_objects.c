@@ -170,7 +170,7 @@ static void add_channels(cm1e_sim_io_objects_t *o, const cm1e_sim_slave_config_t
 static void add_slots(cm1e_sim_io_objects_t *o, const cm1e_sim_io_device_t *device, bool output)
 {
     for (unsigned n = 0; n < device->module_count; n++) {
-        const cm1e_sim_module_t *module = device->modules[n];
+        const cm1e_module_kind_t *module = device->modules[n];
         if (module->output != output)
             continue;
         add_object(o, (output ? OUTPUTS : INPUTS) + n * STEP, CM1E_OBJECT_RECORD, module->channels, module->name);
@@ -331,9 +331,9 @@ static void count(cm1e_sim_io_device_t *device)
 static void wire_modules(cm1e_sim_io_device_t *device)
 {
     for (unsigned n = 0; n < device->module_count; n++) {
-        const cm1e_sim_module_t *module = device->modules[n];
+        const cm1e_module_kind_t *module = device->modules[n];
         for (unsigned from = n; from-- > 0 && !module->output;) {
-            const cm1e_sim_module_t *source = device->modules[from];
+            const cm1e_module_kind_t *source = device->modules[from];
             if (!source->output || source->bits != module->bits)
                 continue;
             for (unsigned c = 1; c <= module->channels && c <= source->channels; c++)

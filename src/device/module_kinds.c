@@ -1,8 +1,8 @@
-#include "device/sim_modules.h"
+#include "device/module_kinds.h"
 
 #include <stddef.h>
 
-static const cm1e_sim_module_t modules[] = {
+static const cm1e_module_kind_t modules[] = {
     {.ident = 0x105, .name = "5 digital inputs", .channels = 5, .bits = 1, .padding = 3},
     {.ident = 0x108, .name = "8 digital inputs", .channels = 8, .bits = 1},
     {.ident = 0x205, .name = "5 digital outputs", .output = true, .channels = 5, .bits = 1, .padding = 3},
@@ -11,7 +11,7 @@ static const cm1e_sim_module_t modules[] = {
     {.ident = 0x402, .name = "2 analog outputs", .output = true, .channels = 2, .bits = 16},
 };
 
-const cm1e_sim_module_t *cm1e_sim_module(uint32_t ident)
+const cm1e_module_kind_t *cm1e_module_kind(uint32_t ident)
 {
     for (size_t i = 0; i < sizeof modules / sizeof modules[0]; i++)
         if (modules[i].ident == ident)
