@@ -74,7 +74,8 @@ def monitor_shows(segment, cm1e, path):
     """What `cm1e monitor` writes on a terminal within a second of its first axes."""
     ours, its = pty.openpty()
     fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
-    environment = {**os.environ, "TERM": "xterm", "LC_ALL": "C.UTF-8"}
+    environment = {**os.environ, "TERM": "xterm", "LC_ALL": "C.UTF-8",
+                   "ASAN_OPTIONS": "detect_leaks=0"}  # ncurses keeps what it knows of a terminal
     monitor = subprocess.Popen(segment.command([cm1e, "monitor", "-b", path, "--network", "right"]), stdin=its, stdout=its,
                                stderr=its, env=environment)
     os.close(its)
