@@ -9,7 +9,7 @@
 
 #include "scheduler/statistics.h"
 
-enum { MOMENTS = 2000, PAUSE = 100 };
+enum { MOMENTS = 500, PAUSE = 100 };
 
 static distribution_t distribution;
 static atomic_bool seen_enough;
