@@ -2,6 +2,7 @@
 #include <linux/capability.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/auxv.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -54,9 +55,9 @@ static void become_privileged(char **argv)
 {
     struct __user_cap_header_struct header = {.version = _LINUX_CAPABILITY_VERSION_3};
     struct __user_cap_data_struct sets[_LINUX_CAPABILITY_U32S_3] = {0};
-    char self[sizeof CM1E_PRIVILEGED_COMMAND + 1] = "";
-    const bool asked = syscall(SYS_capget, &header, sets) == 0 && readlink("/proc/self/exe", self, sizeof self - 1) > 0;
-    if (asked && !(sets[0].effective & 1U << CAP_NET_RAW) && strcmp(self, CM1E_PRIVILEGED_COMMAND) != 0)
+    const char *self = (const char *)getauxval(AT_EXECFN);
+    const bool asked = self && strcmp(self, CM1E_PRIVILEGED_COMMAND) != 0 && syscall(SYS_capget, &header, sets) == 0;
+    if (asked && !(sets[0].effective & 1U << CAP_NET_RAW))
         execv(CM1E_PRIVILEGED_COMMAND, argv); /* it returns where the user may not, or none is installed */
 }
 #else
