@@ -65,6 +65,8 @@ def run_master():
     master = pysoem.Master()
     master.open(wire.MASTER_INTERFACE)
     wire.check(master.config_init() == PLAIN, f"{len(master.slaves)} slaves")
+    # It asks for Pre-Operational and does not wait; before that state a slave has no mailbox.
+    wire.check(master.state_check(pysoem.PREOP_STATE, 2_000_000) == pysoem.PREOP_STATE, "Pre-Op not reached")
     swapped, modular, counter, plain = master.slaves
     plain.sdo_write(0x1C13, 0, bytes(1))
     plain.sdo_write(0x1C13, 1, struct.pack("<H", 0x1A00))
