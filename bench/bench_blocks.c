@@ -54,40 +54,6 @@ static double now_ns(void)
     return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
 }
 
-/* ---- the heap, seen at link time (CMakeLists.txt) ---------------------------------------------------------------- */
-
-static size_t heap;
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-void *__real_aligned_alloc(size_t alignment, size_t size);
-void *__wrap_aligned_alloc(size_t alignment, size_t size);
-
-void *__wrap_malloc(size_t size)
-{
-    heap += size;
-    return __real_malloc(size);
-}
-void *__wrap_calloc(size_t count, size_t size)
-{
-    heap += count * size;
-    return __real_calloc(count, size);
-}
-void *__wrap_realloc(void *memory, size_t size)
-{
-    heap += size;
-    return __real_realloc(memory, size);
-}
-void *__wrap_aligned_alloc(size_t alignment, size_t size)
-{
-    heap += size;
-    return __real_aligned_alloc(alignment, size);
-}
-size_t blocks_heap_bytes(void) { return heap; }
-
 /* ---- statistics -------------------------------------------------------------------------------------------------- */
 
 static int compare(const void *a, const void *b)

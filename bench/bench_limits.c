@@ -23,38 +23,6 @@ MEASURED measured_run(const blocks_subject_t *subject, unsigned axes, unsigned c
     __asm__ volatile("" ::: "memory");
 }
 
-static size_t heap;
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void *__real_aligned_alloc(size_t alignment, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-void *__wrap_aligned_alloc(size_t alignment, size_t size);
-
-void *__wrap_malloc(size_t size)
-{
-    heap += size;
-    return __real_malloc(size);
-}
-void *__wrap_calloc(size_t count, size_t size)
-{
-    heap += count * size;
-    return __real_calloc(count, size);
-}
-void *__wrap_realloc(void *memory, size_t size)
-{
-    heap += size;
-    return __real_realloc(memory, size);
-}
-void *__wrap_aligned_alloc(size_t alignment, size_t size)
-{
-    heap += size;
-    return __real_aligned_alloc(alignment, size);
-}
-size_t blocks_heap_bytes(void) { return heap; }
-
 static void fail(const char *why)
 {
     fprintf(stderr, "bench_limits: %s\n", why);
@@ -84,7 +52,7 @@ static void give(const blocks_subject_t *subject, unsigned axes, const blocks_mo
 /* A row: what was counted, in how many axes and cycles. The script divides. */
 static void told(const char *name, unsigned parts, size_t heap_before)
 {
-    printf("%s %u %zu\n", name, parts, heap - heap_before);
+    printf("%s %u %zu\n", name, parts, blocks_heap_bytes() - heap_before);
 }
 
 static void measure(const char *name, const blocks_subject_t *subject, blocks_work_t work, unsigned axes)
@@ -93,7 +61,7 @@ static void measure(const char *name, const blocks_subject_t *subject, blocks_wo
         fail("the work cannot begin");
     give(subject, axes, &there);
     subject->run(axes, WARM);
-    const size_t before = heap;
+    const size_t before = blocks_heap_bytes();
     measured_run(subject, axes, CYCLES);
     told(name, axes * CYCLES, before);
     run_to_the_end(subject, axes);
@@ -107,12 +75,12 @@ static void measure(const char *name, const blocks_subject_t *subject, blocks_wo
 static void measure_starts(const blocks_subject_t *subject, unsigned axes)
 {
     give(subject, axes, &there);
-    const size_t before = heap;
+    const size_t before = blocks_heap_bytes();
     measured_run(subject, axes, 1);
     told("start-from-rest", axes, before);
     subject->run(axes, WARM);
     give(subject, axes, &home);
-    const size_t before_next = heap;
+    const size_t before_next = blocks_heap_bytes();
     measured_run(subject, axes, 1);
     told("start-on-the-way", axes, before_next);
     run_to_the_end(subject, axes);
@@ -122,7 +90,7 @@ static void measure_starts(const blocks_subject_t *subject, unsigned axes)
 static void begin_counting(void)
 {
     measured_run(&blocks_cm1e, BLOCKS_SET, 0);
-    told("begin", 1, heap);
+    told("begin", 1, blocks_heap_bytes());
 }
 
 /* Whole cycles of both buses with all axes at rest under torque, simulated motors included: a count for each cycle. */
@@ -130,7 +98,7 @@ static void measure_cycle(void)
 {
     blocks_cm1e_cycle.run(BLOCKS_MAX_AXES, WARM);
     begin_counting();
-    const size_t before = heap;
+    const size_t before = blocks_heap_bytes();
     measured_run(&blocks_cm1e_cycle, BLOCKS_MAX_AXES, CYCLES);
     told("cycle", CYCLES, before);
 }

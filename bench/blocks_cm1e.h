@@ -7,7 +7,7 @@
 /** Function blocks, state machine and trajectory; and with the drive below; and with the buses, frames included. */
 extern const blocks_subject_t blocks_cm1e, blocks_cm1e_whole, blocks_cm1e_cycle;
 
-/** Bytes taken from the heap since the start of the process: the bench's, which counts them. */
+/** Bytes taken from the heap since the start of the process: count_heap.c counts them. */
 size_t blocks_heap_bytes(void);
 
 #endif

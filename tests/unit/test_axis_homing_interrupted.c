@@ -102,6 +102,16 @@ static void test_power_back_within_the_ramp_relieves_the_motor(void)
     }
 }
 
+/* The motor stands and loses its torque, and the axis has no position of its home. */
+static void expect_no_torque(cm1e_axis_state_t state, int32_t from)
+{
+    for (int i = 0; i < 500 && bus.state == OPERATION_ENABLED; i++)
+        bench_cycles(1);
+    TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+    settle(0, state, from);
+    TEST_ASSERT_FALSE(bench_info().homed);
+}
+
 /* What a stop had to relieve is forgotten without torque: a later MC_Stop is one as any other. */
 static void test_power_off_while_a_stop_relieves_leaves_nothing_behind(void)
 {
@@ -142,11 +152,7 @@ static void test_power_off_at_every_cycle(void)
         bench_power(false);
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISABLED, bench_info().state);
         expect(sequence_id, CM1E_COMMAND_ABORTED, CM1E_OK);
-        for (int i = 0; i < 500 && bus.state == OPERATION_ENABLED; i++)
-            bench_cycles(1);
-        TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
-        settle(0, CM1E_AXIS_DISABLED, from);
-        TEST_ASSERT_FALSE(bench_info().homed);
+        expect_no_torque(CM1E_AXIS_DISABLED, from);
     }
 }
 
@@ -180,11 +186,7 @@ static void test_bus_lost_at_every_cycle(void)
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
         if (was_active)
             expect(sequence_id, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_ERROR_STOP);
-        for (int i = 0; i < 500 && bus.state == OPERATION_ENABLED; i++)
-            bench_cycles(1);
-        TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
-        settle(0, CM1E_AXIS_ERROR_STOP, from);
-        TEST_ASSERT_FALSE(bench_info().homed);
+        expect_no_torque(CM1E_AXIS_ERROR_STOP, from);
     }
 }
 
