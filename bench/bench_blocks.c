@@ -32,11 +32,11 @@ typedef struct work {
 } work_t;
 
 static const work_t works[BLOCKS_WORKS] = {
-    [BLOCKS_MOVE] = {"all axes in a move of MC_MoveAbsolute", {1, 8, 64, BLOCKS_MAX_AXES}},
-    [BLOCKS_GEAR] = {"every eighth axis so, the others in gear with it (MC_GearIn)", {2, 8, 64, BLOCKS_MAX_AXES}},
-    [BLOCKS_CAM_LINEAR] = {"the others by a cam (MC_CamIn): straight lines", {2, 8, 64, BLOCKS_MAX_AXES}},
-    [BLOCKS_CAM_CUBIC] = {"by a cam: cubic spline", {2, 8, 64, BLOCKS_MAX_AXES}},
-    [BLOCKS_CAM_POLYNOMIAL] = {"by a cam: polynomials of degree 5", {2, 8, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_MOVE] = {"all axes in a move of MC_MoveAbsolute", {1, 16, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_GEAR] = {"every eighth axis so, the others in gear with it (MC_GearIn)", {2, 16, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_CAM_LINEAR] = {"the others by a cam (MC_CamIn): straight lines", {2, 16, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_CAM_CUBIC] = {"by a cam: cubic spline", {2, 16, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_CAM_POLYNOMIAL] = {"by a cam: polynomials of degree 5", {2, 16, 64, BLOCKS_MAX_AXES}},
     [BLOCKS_GROUP] = {"groups of three axes on a path of lines and arcs",
                       {BLOCKS_MEMBERS, 8 * BLOCKS_MEMBERS, BLOCKS_GROUPS * BLOCKS_MEMBERS}},
 };

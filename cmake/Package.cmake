@@ -1,5 +1,5 @@
 # Debian packages, which `cpack -G DEB` writes in the build folder: the library, what is needed to compile with it, the
-# command, and the documents with the examples. A build folder with CM1E_PACKAGES serves for this only; preset: package.
+# command, the Python package, and the documents with the examples and the reference. A build folder with CM1E_PACKAGES serves for this only; preset: package.
 set(debian ${PROJECT_SOURCE_DIR}/cmake/debian)
 set(staged ${CMAKE_BINARY_DIR}/debian)
 set(CM1E_PACKAGE_CONTACT "The cm1e authors <maintainers@cm1e.invalid>" CACHE STRING
@@ -8,8 +8,11 @@ set(CM1E_PACKAGE_CONTACT "The cm1e authors <maintainers@cm1e.invalid>" CACHE STR
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME cm1e)
 set(CPACK_PACKAGE_CONTACT ${CM1E_PACKAGE_CONTACT})
+# CPack puts any summary but this one, its own, above that of each package.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${CMAKE_PROJECT_NAME} built using CMake")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_CM1E_STRIP ${CMAKE_STRIP}) # for compress.cmake
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_ALL library development tools documents)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
@@ -64,7 +67,7 @@ cm1e_debian_package(development libcm1e-dev libdevel "EtherCAT servo motors CM1-
   "Headers, static libraries, files for CMake and pkg-config of cm1e, a library\nthat drives Myostat CM1-E servo motors over EtherCAT by PLCopen blocks.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library} ${same}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS
-    "libcyaml-dev, libyaml-dev, libxml2-dev, libjansson-dev, pkg-config")
+    "libcyaml-dev, libyaml-dev, libxml2-dev, libjansson-dev, pkgconf")
 cm1e_debian_package(tools cm1e electronics "EtherCAT servo motors CM1-E - commands"
   "The command cm1e: finds, moves, watches and tests Myostat CM1-E servo motors,\nsimulates a network of them, and writes files for other EtherCAT masters.\nMembers of the group cm1e use network interfaces without being root.")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS "libcap2-bin, passwd")
@@ -74,6 +77,17 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_CONTROL_EXTRA ${debian}/postinst ${debian}/postrm
 cm1e_debian_package(documents libcm1e-doc doc "EtherCAT servo motors CM1-E - documents and examples"
   "The documents, the pages of all function blocks, and the example programs of\ncm1e, a library that drives Myostat CM1-E servo motors over EtherCAT.")
 set(CPACK_DEBIAN_DOCUMENTS_PACKAGE_ARCHITECTURE all)
+if(TARGET cm1e_python)
+  string(REPLACE " " ";" python_version "${CM1E_PYTHON_VERSION}")
+  list(GET python_version 1 minor)
+  math(EXPR next "${minor} + 1")
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  cm1e_debian_package(python python3-cm1e python "EtherCAT servo motors CM1-E - package for Python"
+    "The package cm1e for Python: axes that move and wait, all function blocks of\nPLCopen, a simulator on virtual time, traces as NumPy arrays, and a plug-in for\npytest. The cycle stays in the library, in C.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${library} ${same}, python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-cffi-backend, python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "libcm1e-doc, python3-pytest")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${debian}/python/postinst ${debian}/python/prerm)
+endif()
 
 # SOEM's licence asks that its source comes with the binary: what is compiled is unmodified.
 install(DIRECTORY ${soem_dir}/soem ${soem_dir}/osal DESTINATION ${CMAKE_INSTALL_DOCDIR}/soem COMPONENT documents)

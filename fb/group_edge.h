@@ -25,11 +25,13 @@ fb_outputs_t cm1e_fb_group_motion(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t 
 /** A block of the Enable type: the group to read, or NULL if the block is disabled or in error. */
 cm1e_group_t *cm1e_fb_group_enable(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL enable);
 
-/** Whether nothing has happened to the block, so that its outputs do not change. */
+/** Whether nothing has happened to the block, so that its outputs do not change: its command is active, or waits, as it
+ *  did. */
 static inline bool fb_group_stands(const cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute)
 {
-    return fb->active && fb->state == FB_BUSY && !execute == !fb->trigger_before && reference &&
-           reference->Handle == fb->axis_handle && cm1e_group_runs(*reference, fb->command);
+    return fb->state == FB_BUSY && !execute == !fb->trigger_before && reference &&
+           reference->Handle == fb->axis_handle &&
+           (fb->active ? cm1e_group_runs(*reference, fb->command) : cm1e_group_waits(*reference, fb->command));
 }
 
 /* Outputs of blocks that move a group. */

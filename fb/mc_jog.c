@@ -106,6 +106,18 @@ static void stop(MC_Jog_t *fb, cm1e_axis_t *axis)
         cm1e_fb_fail(&fb->Private.common, error);
 }
 
+/* The axis stands at the limit, and the button is still pressed. Somebody else may move the axis away or take its torque
+ * now, and it may fail: that ends the jog, although its own motion has ended before. */
+static void wait_at_limit(MC_Jog_t *fb, cm1e_axis_t *axis)
+{
+    cm1e_axis_info_t info;
+    cm1e_axis_get(axis, &info);
+    if (info.state == CM1E_AXIS_ERROR_STOP)
+        cm1e_fb_polled(&fb->Private.common, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_ERROR_STOP);
+    else if (info.state != CM1E_AXIS_STANDSTILL)
+        cm1e_fb_polled(&fb->Private.common, CM1E_COMMAND_ABORTED, CM1E_OK);
+}
+
 static void poll(MC_Jog_t *fb, cm1e_axis_t *axis)
 {
     cm1e_jog_private_t *p = &fb->Private;
@@ -114,8 +126,8 @@ static void poll(MC_Jog_t *fb, cm1e_axis_t *axis)
     const bool both = fb->JogForward && fb->JogBackwards, released = p->held && !button;
     const bool at_limit = status.state == CM1E_COMMAND_DONE && p->held && !p->stopping;
     if (at_limit && button && !both)
-        return; /* the axis stands at the limit, and the button is still pressed */
-    if (status.state == CM1E_COMMAND_ACTIVE && !p->stopping && (both || released))
+        wait_at_limit(fb, axis);
+    else if (status.state == CM1E_COMMAND_ACTIVE && !p->stopping && (both || released))
         stop(fb, axis);
     else
         cm1e_fb_polled(&p->common, status.state, status.error);

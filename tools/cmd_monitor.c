@@ -45,6 +45,19 @@ static bool renew(monitor_t *m, json_t **place, const char *request, cm1e_diag_t
     return true;
 }
 
+static bool renew_variables(monitor_t *m, cm1e_diag_t *diag)
+{
+    json_t *forced = monitor_ask(m, json_pack("{s:s, s:b}", "request", "variables", "forced", 1), "variables", diag);
+    json_t *page = forced && m->shows_variables
+        ? monitor_ask(m, json_pack("{s:s, s:I}", "request", "variables", "from", (json_int_t)m->first_variable), "variables",
+                      diag) : NULL;
+    json_decref(m->forced);
+    json_decref(m->variables);
+    m->forced = forced;
+    m->variables = page;
+    return forced && (page || !m->shows_variables);
+}
+
 static bool look(monitor_t *m, cm1e_diag_t *diag)
 {
     const int64_t now = cm1e_clock_now(cm1e_clock_monotonic());
@@ -61,7 +74,7 @@ static bool look(monitor_t *m, cm1e_diag_t *diag)
         if (!renew(m, &m->statistics, "statistics", diag))
             return false;
     }
-    return (m->hello || renew(m, &m->hello, "hello", diag)) && renew(m, &m->axes, "axes", diag);
+    return (m->hello || renew(m, &m->hello, "hello", diag)) && renew(m, &m->axes, "axes", diag) && renew_variables(m, diag);
 }
 
 static void forget(monitor_t *m)
@@ -71,7 +84,9 @@ static void forget(monitor_t *m)
     json_decref(m->hello);
     json_decref(m->axes);
     json_decref(m->statistics);
-    m->hello = m->axes = m->statistics = NULL;
+    json_decref(m->forced);
+    json_decref(m->variables);
+    m->hello = m->axes = m->statistics = m->forced = m->variables = NULL;
 }
 
 /* ---- keys -------------------------------------------------------------------------------------------------------- */
@@ -99,8 +114,15 @@ static void jog(monitor_t *m, double sign)
     act(m, "jog", json_pack("{s:f, s:f}", "velocity", sign * m->velocity, "acceleration", m->acceleration));
 }
 
+/** Another axis; of a page of variables the lines above or below. */
 static void choose(monitor_t *m, int step)
 {
+    if (m->shows_variables) {
+        const bool more = json_array_size(m->variables) > 1;
+        m->first_variable += step < 0 ? (m->first_variable > 0 ? (size_t)step : 0) : more;
+        m->looked_ns = 0;
+        return;
+    }
     const size_t count = json_array_size(m->axes);
     if (count > 0)
         m->selected = (m->selected + count + (size_t)step) % count;
@@ -125,6 +147,7 @@ static void take_key(monitor_t *m, int key)
     case 'h': m->asks_home = true; break;
     case ' ': case 's': act(m, "stop", json_object()); break;
     case 'r': act(m, "reset", json_object()); break;
+    case 'v': m->shows_variables = !m->shows_variables; m->looked_ns = 0; break;
     case 'q': case SCREEN_GONE: m->quit = true; break;
     default: break;
     }
@@ -162,7 +185,8 @@ static bool tick(monitor_t *m, cm1e_diag_t *diag)
 
 static void print_once(const monitor_t *m)
 {
-    print_json(json_pack("{s:O, s:O, s:O}", "program", m->hello, "axes", m->axes, "statistics", m->statistics));
+    print_json(json_pack("{s:O, s:O, s:O, s:O}", "program", m->hello, "axes", m->axes, "statistics", m->statistics,
+                         "forced", m->forced));
 }
 
 static int watch_other(const monitor_options_t *options)
@@ -282,10 +306,11 @@ static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attac
 const struct argp argp_monitor = {
     table, parse, NULL,
     "Shows all axes on the terminal: state, position, velocity, lag and torque with bars within their limits, errors "
-    "in words, jitter, lost frames and overruns. It asks the program that runs the network, or runs the network "
+    "in words, jitter, lost frames and overruns, and which variables somebody forces. It asks the program that runs the network, or runs the network "
     "itself.\v"
     "Keys: up and down choose an axis; e enables it, or ends that; left and right, held, jog it; [ and ] halve and "
-    "double the velocity; h homes it, after a question; space stops it; r resets its error; q ends. In another program "
+    "double the velocity; h homes it, after a question; space stops it; r resets its error; v shows the variables of a program in "
+    "Structured Text, or the axes again; q ends. In another program "
     "keys act with `control: maintain` in its bus file only, and on axes that it does not command. A motor moves while "
     "a key repeats, and stops 0.25 s after the last repetition; without the terminal or the connection it stops and "
     "loses its torque. Bars are empty where there is no limit.",

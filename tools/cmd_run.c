@@ -6,14 +6,17 @@
 #include "attach.h"
 #include "cm1e/plot.h"
 #include "command.h"
+#include "service_notify.h"
 #include "st_loaded.h"
 
-enum { KEY_VIRTUAL_TIME = 0x800, KEY_CSV, KEY_SVG, KEY_HTML, KEY_LOOPS, KEY_RETAIN, KEY_COLD, FILES = 3, SAMPLES = 120000 };
+enum { KEY_VIRTUAL_TIME = 0x800, KEY_CSV, KEY_SVG, KEY_HTML, KEY_LOOPS, KEY_RETAIN, KEY_COLD, KEY_VARIABLE, FILES = 3, SAMPLES = 120000, PATHS = 64 };
 
 typedef struct run_options {
     common_options_t common;
     const char *program, *retain;
     const char *files[FILES];
+    const char *paths[PATHS];
+    int path_count;
     double seconds;
     long long loops;
     bool virtual_time, cold;
@@ -34,6 +37,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (!arg[0])
             argp_error(state, "--retain needs a name; it is empty");
         options->retain = arg;
+        return 0;
+    case KEY_VARIABLE:
+        if (options->path_count == PATHS)
+            argp_error(state, "at most %d --variable", PATHS);
+        options->paths[options->path_count++] = arg;
         return 0;
     case KEY_COLD: options->cold = true; return 0;
     case KEY_VIRTUAL_TIME: options->virtual_time = true; return 0;
@@ -64,6 +72,8 @@ static const struct argp_option table[] = {
     {"loop-limit", KEY_LOOPS, "N", 0, "A task that passes through loops more often in one call is stopped (1000000)", 0},
     {"retain", KEY_RETAIN, "FILE", 0, "File of the RETAIN variables (default: the program with .retain)", 0},
     {"cold-start", KEY_COLD, NULL, 0, "Begin with initial values, and replace the file of the RETAIN variables", 0},
+    {"variable", KEY_VARIABLE, "NAME", 0, "A trace records this variable, or all of this instance or structure; again "
+     "for more (default: the first 128)", 0},
     {"csv", KEY_CSV, "FILE", 0, "Write what the axes and variables did as CSV", 0},
     {"svg", KEY_SVG, "FILE", 0, "Write it as a plot", 0},
     {"html", KEY_HTML, "FILE", 0, "Write it as a page for a browser", 0},
@@ -106,7 +116,9 @@ static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const
     char text[400];
     cm1e_diag_t diag = {0};
     cm1e_scheduler_stop_on_signals(scheduler);
+    service_notify("READY=1\nSTATUS=in operation");
     const cm1e_error_t ran = cm1e_scheduler_run(scheduler, (int64_t)(options->seconds * 1e9), &diag);
+    service_notify("STOPPING=1");
     const bool failed = ran != CM1E_OK;
     if (failed)
         fail(&diag);
@@ -125,6 +137,8 @@ static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const
 
 static int run_program(st_loaded_t *loaded, cm1e_bus_t *bus, const run_options_t *options)
 {
+    loaded->paths = options->paths;
+    loaded->path_count = options->path_count;
     cm1e_diag_t diag = {0};
     cm1e_scheduler_t *scheduler = NULL;
     const bool traced = options->files[0] || options->files[1] || options->files[2];
@@ -132,9 +146,12 @@ static int run_program(st_loaded_t *loaded, cm1e_bus_t *bus, const run_options_t
     cm1e_error_t error = cm1e_scheduler_create(&scheduler, bus, &config, &diag);
     if (error == CM1E_OK)
         error = st_attach(loaded, scheduler, bus, &diag);
-    if (error == CM1E_OK && loaded->unregistered > 0)
-        complain("%u of %u variables can be seen by others; name fewer, or look at those of programs and global ones",
-                 loaded->program->variables.count - loaded->unregistered, loaded->program->variables.count);
+    if (error == CM1E_OK && loaded->untraced > 0 && traced)
+        complain("the files have the first %d variables of the program; --variable NAME chooses others",
+                 CM1E_TRACE_VARIABLES / 2);
+    if (error == CM1E_OK && loaded->program->unlisted > 0)
+        complain("others see %u variables of the program; %llu more are not listed: `cm1e st build --variables N` lists "
+                 "more", loaded->program->variables.count, (unsigned long long)loaded->program->unlisted);
     const int status = error == CM1E_OK ? run_scheduler(loaded, scheduler, options, cm1e_bus_configuration(bus))
                                         : fail(&diag);
     cm1e_scheduler_destroy(scheduler);

@@ -11,16 +11,15 @@
 #include "files.h"
 #include "st/st.h"
 
-enum { SOURCES = 200, ARGUMENTS = 32, KEY_C = 0x700 };
+enum { SOURCES = 200, ARGUMENTS = 32, KEY_C = 0x700, KEY_JSON, KEY_VARIABLES };
 
 typedef struct st_options {
     const char *word, *output, *c_file;
     const char *sources[SOURCES];
     int source_count;
+    long long variables;
     bool json;
 } st_options_t;
-
-enum { KEY_JSON = 0x701 };
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -33,6 +32,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         *(key == 'o' ? &options->output : &options->c_file) = arg;
         return 0;
     case KEY_JSON: options->json = true; return 0;
+    case KEY_VARIABLES:
+        return parse_number(arg, "the number of variables", 0, 10000000, &options->variables) ? 0 : EINVAL;
     case ARGP_KEY_ARG:
         if (!options->word)
             options->word = arg;
@@ -54,6 +55,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static const struct argp_option table[] = {
     {"output", 'o', "FILE", 0, "build: the translated program (default: the first source, with .so)", 0},
     {"c", KEY_C, "FILE", 0, "build: keep the C that the program became", 0},
+    {"variables", KEY_VARIABLES, "N", 0, "build: most variables that others see while the program runs (10000)", 0},
     {"json", KEY_JSON, NULL, 0, "check: write JSON", 0},
     {0},
 };
@@ -163,7 +165,7 @@ static int build(st_t *st, const st_options_t *options)
 
 int command_st(int argc, char **argv)
 {
-    st_options_t options = {0};
+    st_options_t options = {.variables = 10000};
     cm1e_diag_t diag = {0};
     if (parse_options(&argp_st, argc, argv, &options))
         return EXIT_WRONG_USE;
@@ -173,6 +175,7 @@ int command_st(int argc, char **argv)
         return EXIT_FAILED;
     }
     int status = EXIT_OK;
+    cm1e_st_list_most(st, (uint64_t)options.variables);
     for (int i = 0; i < options.source_count && status == EXIT_OK; i++)
         if (cm1e_st_add_file(st, options.sources[i], &diag) != CM1E_OK)
             status = fail(&diag);

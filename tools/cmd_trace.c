@@ -13,7 +13,7 @@
 #include "recording.h"
 #include "trace_server.h"
 
-enum { KEY_FOR = 0x600, KEY_EVERY, KEY_OBJECT, KEY_TRIGGER, KEY_BEFORE, KEY_LIST, KEY_CSV, KEY_SVG, KEY_HTML, KEY_NPY,
+enum { KEY_FOR = 0x600, KEY_EVERY, KEY_OBJECT, KEY_VARIABLE, KEY_TRIGGER, KEY_BEFORE, KEY_LIST, KEY_CSV, KEY_SVG, KEY_HTML, KEY_NPY,
        KEY_LIVE, LONGEST_S = 86400, EVERY_MOST = 10000, PAUSE_US = 20000,
        LIVE_SAMPLES = 40000 };
 
@@ -24,13 +24,15 @@ static const struct {
                    {"--svg", cm1e_plot_write_svg},
                    {"--html", cm1e_plot_write_html},
                    {"--npy", cm1e_trace_write_npy}};
-enum { TRACE_FILES = sizeof trace_files / sizeof trace_files[0], OBJECTS = 64 };
+enum { TRACE_FILES = sizeof trace_files / sizeof trace_files[0], OBJECTS = 64, PATHS = 64 };
 
 typedef struct trace_options {
     common_options_t common;
     const char *files[TRACE_FILES]; /* NULL: not wanted */
     const char *objects[OBJECTS];   /* AXIS:INDEX[:SUBINDEX] */
     int object_count;
+    const char *paths[PATHS];       /* of variables; none: those that the program chose */
+    int path_count;
     double seconds, before_s;
     uint32_t every;
     bool list, live;
@@ -110,6 +112,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "at most %d objects", OBJECTS);
         options->objects[options->object_count++] = arg;
         return 0;
+    case KEY_VARIABLE:
+        if (options->path_count == PATHS)
+            argp_error(state, "at most %d --variable", PATHS);
+        options->paths[options->path_count++] = arg;
+        return 0;
     case KEY_TRIGGER: return parse_trigger(options, arg);
     case KEY_LIVE:
         if (arg && !parse_number(arg, "the port of the live page", 1, UINT16_MAX, &number))
@@ -129,6 +136,8 @@ static const struct argp_option table[] = {
     {"for", KEY_FOR, "SECONDS", 0, "Time to record, or to keep around a trigger; default: until Ctrl-C", 0},
     {"every", KEY_EVERY, "N", 0, "Record every N-th cycle; default 1", 0},
     {"object", KEY_OBJECT, "AXIS:INDEX[:SUB]", 0, "Also an object in the process data, like 1:0x603F", 0},
+    {"variable", KEY_VARIABLE, "NAME", 0, "Of the variables of a program in Structured Text this one, or all of this "
+     "instance or structure; again for more (default: those that the program records)", 0},
     {"trigger", KEY_TRIGGER, "KIND[:SIGNAL[:LEVEL]]", 0,
      "End --for SECONDS after it: error-stop, rising:SIGNAL:LEVEL, falling:SIGNAL:LEVEL, change:SIGNAL", 0},
     {"before", KEY_BEFORE, "SECONDS", 0, "Of that time, so much before the trigger", 0},
@@ -181,6 +190,15 @@ static json_t *objects_as_json(const trace_options_t *options, const json_t *axe
     return all;
 }
 
+/** NULL: the program chooses. */
+static json_t *paths_as_json(const trace_options_t *options)
+{
+    json_t *paths = options->path_count > 0 ? json_array() : NULL;
+    for (int i = 0; i < options->path_count; i++)
+        json_array_append_new(paths, json_string(options->paths[i]));
+    return paths;
+}
+
 /** Nothing is written: only what a live page has not been shown yet needs to be kept. */
 static bool is_only_live(const trace_options_t *options)
 {
@@ -222,7 +240,8 @@ static int begin(recording_t *recording, trace_server_t **server, const trace_op
     recording->seconds = options->seconds;
     recording->before_s = options->before_s;
     recording->kept = is_only_live(options) ? LIVE_SAMPLES : 0;
-    if (!recording_begin(recording, control, options->every, objects, &options->trigger, &diag))
+    if (!recording_begin(recording, control, options->every, objects, paths_as_json(options), &options->trigger,
+                         &diag))
         return fail(&diag);
     return begin_live(server, recording, options);
 }

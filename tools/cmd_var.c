@@ -80,8 +80,29 @@ static const char *text_of(const json_t *object, const char *name)
     return text ? text : "";
 }
 
+/** A text as in a program: 'it$'s$N'. What is no character of a terminal is written as its number. */
+static void print_text(const char *text, char quote)
+{
+    printf("%c", quote);
+    for (; *text; text++)
+        if (*text == quote || *text == '$')
+            printf("$%c", *text);
+        else if (*text == '\n' || *text == '\r' || *text == '\t')
+            printf("$%c", *text == '\n' ? 'N' : *text == '\r' ? 'R' : 'T');
+        else if ((unsigned char)*text < ' ' || *text == 0x7F)
+            printf("$%02X", (unsigned)*text);
+        else
+            printf("%c", *text);
+    printf("%c", quote);
+}
+
 static void print_value(const json_t *row)
 {
+    const char *text = json_string_value(json_object_get(row, "value"));
+    if (text) {
+        print_text(text, strcmp(text_of(row, "type"), "WSTRING") == 0 ? '"' : '\'');
+        return;
+    }
     const double value = json_number_value(json_object_get(row, "value"));
     if (strcmp(text_of(row, "type"), "BOOL") == 0)
         printf("%s", value != 0 ? "TRUE" : "FALSE");
@@ -91,7 +112,7 @@ static void print_value(const json_t *row)
 
 static void print_row(const json_t *row)
 {
-    printf("%-40s %-6s ", text_of(row, "name"), text_of(row, "type"));
+    printf("%-40s %-10s ", text_of(row, "name"), text_of(row, "declared"));
     print_value(row);
     puts(json_is_true(json_object_get(row, "forced")) ? "  FORCED" : "");
 }
@@ -125,10 +146,28 @@ static bool refuse_unknown(const var_options_t *options, const json_t *all)
     return good;
 }
 
+/** All variables, some in each reply, until one has none; NULL: `diag` says why. */
+static json_t *all_variables(cm1e_control_t *control, cm1e_diag_t *diag)
+{
+    json_t *all = json_array();
+    for (size_t came = 1; came > 0;) {
+        json_t *part = ask_program(control, json_pack("{s:s, s:I}", "request", "variables", "from",
+                                                      (json_int_t)json_array_size(all)), "variables", diag);
+        if (!part) {
+            json_decref(all);
+            return NULL;
+        }
+        came = json_array_size(part);
+        json_array_extend(all, part);
+        json_decref(part);
+    }
+    return all;
+}
+
 static int show(const var_options_t *options, cm1e_control_t *control)
 {
     cm1e_diag_t diag = {0};
-    json_t *all = ask_program(control, json_pack("{s:s}", "request", "variables"), "variables", &diag);
+    json_t *all = all_variables(control, &diag);
     if (!all)
         return fail(&diag);
     json_t *chosen = json_array();
@@ -149,10 +188,21 @@ static int show(const var_options_t *options, cm1e_control_t *control)
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/** A truth value or a number as text; NULL with a complaint: it is none of these. */
+/** 'text' or "text": what is between the quotes; NULL: there are none, or it is no UTF-8. */
+static json_t *text_within(const char *text)
+{
+    const size_t length = strlen(text);
+    const bool quoted = length >= 2 && (text[0] == '\'' || text[0] == '"') && text[length - 1] == text[0];
+    return quoted ? json_stringn(text + 1, length - 2) : NULL;
+}
+
+/** A truth value, a number, or a text in quotes; NULL with a complaint: it is none of these. */
 static json_t *value_of(const char *text)
 {
     char *end;
+    json_t *quoted = text_within(text);
+    if (quoted)
+        return quoted;
     if (strcasecmp(text, "TRUE") == 0 || strcasecmp(text, "FALSE") == 0)
         return json_boolean(strcasecmp(text, "TRUE") == 0);
     errno = 0;
@@ -162,7 +212,7 @@ static json_t *value_of(const char *text)
     const double real = strtod(text, &end);
     if (*text && !*end)
         return json_real(real);
-    complain("\"%s\" is no value: expected TRUE, FALSE or a number", text);
+    complain("\"%s\" is no value: expected TRUE, FALSE, a number, or a text in quotes: \"'text'\"", text);
     return NULL;
 }
 

@@ -15,6 +15,9 @@
 typedef struct monitor {
     cm1e_control_t *control;
     json_t *hello, *axes, *statistics; /**< the last replies; NULL: none yet */
+    json_t *forced, *variables;        /**< variables that somebody forces; those of the page */
+    bool shows_variables;              /**< instead of the axes */
+    size_t first_variable;             /**< of the page */
     size_t selected;                   /**< axis, 0 = first */
     double velocity, acceleration;     /**< of a jog; u/s, u/s2 */
     bool alone;                        /**< the program that runs the network is this one */
@@ -39,6 +42,10 @@ void screen_end(void);
 /** It is large enough to show what keys do. */
 bool screen_is_usable(void);
 void screen_draw(const monitor_t *monitor);
+/** Lines from `line` to `end` with variables and their values. */
+void screen_draw_variables(const monitor_t *monitor, int line, int end);
+/** One line with the variables that somebody forces; nothing, if there are none. */
+void screen_draw_forced(const monitor_t *monitor, int line);
 
 enum { SCREEN_NO_KEY = -1, SCREEN_GONE = -2, SCREEN_LEFT = 0x1000, SCREEN_RIGHT, SCREEN_UP, SCREEN_DOWN };
 /** The next key: a byte, or one of these. GONE: the terminal was closed. */

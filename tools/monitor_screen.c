@@ -286,15 +286,31 @@ static void draw_foot(const monitor_t *m, int line)
               m->asks_home ? "Home this axis? It moves. y: yes, any other key: no" : m->message);
     attroff(A_BOLD);
     attron(A_REVERSE);
-    mvaddnstr(LINES - 1, 0, "up/down axis  e enable  <- -> hold to jog  [ ] speed  h home  space stop  r reset  q quit",
+    mvaddnstr(LINES - 1, 0, "up/down axis  e enable  <- -> hold to jog  [ ] speed  h home  space stop  r reset  v variables  q quit",
               COLS - 1);
     attroff(A_REVERSE);
 }
 
-void screen_draw(const monitor_t *m)
+static void draw_axes(const monitor_t *m, int line, int end)
 {
     const size_t count = json_array_size(m->axes);
-    const int room = LINES - HEAD - FOOT;
+    const int room = end - line;
+    const int lines = (int)count * 2 <= room ? 2 : 1;
+    const size_t shown = room > 0 ? (size_t)(room / lines) : 1;
+    const size_t first = m->selected >= shown ? m->selected - shown + 1 : 0;
+    draw_head_of_axes(line - 1);
+    for (size_t i = 0; i < shown && first + i < count; i++) {
+        const json_t *axis = json_array_get(m->axes, first + i);
+        draw_axis(line + (int)i * lines, axis, first + i == m->selected);
+        if (lines == 2)
+            draw_bars(line + (int)i * lines + 1, axis);
+    }
+}
+
+void screen_draw(const monitor_t *m)
+{
+    /* The line of what is forced takes the place of an axis: nobody may overlook it. */
+    const int head = HEAD + (json_array_size(m->forced) > 0), foot = LINES - FOOT > head ? LINES - FOOT : head + 1;
     erase();
     if (!screen_is_usable()) {
         mvprintw(0, 0, "%dx%d at least", SCREEN_COLUMNS, SCREEN_LINES);
@@ -302,16 +318,11 @@ void screen_draw(const monitor_t *m)
         return;
     }
     draw_program(m);
-    const int lines = (int)count * 2 <= room ? 2 : 1;
-    const size_t shown = room > 0 ? (size_t)(room / lines) : 1;
-    const size_t first = m->selected >= shown ? m->selected - shown + 1 : 0;
-    draw_head_of_axes(HEAD - 1);
-    for (size_t i = 0; i < shown && first + i < count; i++) {
-        const json_t *axis = json_array_get(m->axes, first + i);
-        draw_axis(HEAD + (int)i * lines, axis, first + i == m->selected);
-        if (lines == 2)
-            draw_bars(HEAD + (int)i * lines + 1, axis);
-    }
-    draw_foot(m, LINES - FOOT > HEAD ? LINES - FOOT : HEAD + 1);
+    screen_draw_forced(m, HEAD - 1);
+    if (m->shows_variables)
+        screen_draw_variables(m, head - 1, foot);
+    else
+        draw_axes(m, head, LINES - FOOT);
+    draw_foot(m, foot);
     refresh();
 }

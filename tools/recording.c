@@ -73,11 +73,11 @@ static cm1e_error_t prepare(recording_t *recording, const cm1e_trace_trigger_t *
     return error == CM1E_OK ? cm1e_trace_begin(&recording->trace, diag) : error;
 }
 
-bool recording_begin(recording_t *recording, cm1e_control_t *control, uint32_t every, json_t *objects,
+bool recording_begin(recording_t *recording, cm1e_control_t *control, uint32_t every, json_t *objects, json_t *paths,
                      const cm1e_trace_trigger_t *trigger, cm1e_diag_t *diag)
 {
-    recording->told = ask_program(control, json_pack("{s:s, s:i, s:o}", "request", "record", "every", (int)every,
-                                                     "objects", objects), "record", diag);
+    recording->told = ask_program(control, json_pack("{s:s, s:i, s:o, s:o*}", "request", "record", "every", (int)every,
+                                                     "objects", objects, "variables", paths), "record", diag);
     recording->first_ns = -1;
     return recording->told && prepare(recording, trigger, diag) == CM1E_OK;
 }

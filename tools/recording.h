@@ -22,9 +22,9 @@ typedef struct recording {
     bool full;               /**< the trigger has ended it, or the time is over */
 } recording_t;
 
-/** Begins; `trigger->samples_before` follows from `before_s`. Takes the reference to `objects`. false: `diag` says
- *  why. */
-bool recording_begin(recording_t *recording, cm1e_control_t *control, uint32_t every, json_t *objects,
+/** Begins; `trigger->samples_before` follows from `before_s`. `paths` names the variables; NULL: those that
+ *  the program chose. Takes the references to `objects` and `paths`. false: `diag` says why. */
+bool recording_begin(recording_t *recording, cm1e_control_t *control, uint32_t every, json_t *objects, json_t *paths,
                      const cm1e_trace_trigger_t *trigger, cm1e_diag_t *diag);
 /** Takes what has come since. false: the program has ended, or does not answer: `diag` says why. */
 bool recording_take(recording_t *recording, cm1e_control_t *control, cm1e_diag_t *diag);

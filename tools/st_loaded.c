@@ -1,6 +1,7 @@
 #include "st_loaded.h"
 
 #include <dlfcn.h>
+#include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,9 +14,29 @@
 #include "scheduler/forcing.h"
 #include "st/st.h"
 
+/** The table at the end of the file is not all there. dlopen() does not look, and the process would die of SIGBUS. */
+static bool is_cut_off(const char *path)
+{
+    ElfW(Ehdr) head;
+    FILE *file = fopen(path, "rb");
+    bool result = false;
+    if (file && fread(&head, sizeof head, 1, file) == 1 && memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 &&
+        fseek(file, 0, SEEK_END) == 0) {
+        const long size = ftell(file);
+        const uint64_t needed = (uint64_t)head.e_shoff + (uint64_t)head.e_shnum * head.e_shentsize;
+        result = size >= 0 && needed > (uint64_t)size;
+    }
+    if (file)
+        fclose(file);
+    return result;
+}
+
 cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
 {
     *loaded = (st_loaded_t){0};
+    if (is_cut_off(path))
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s is cut off: its end is missing. Copy it again, or make it again "
+                             "by `cm1e st build`.", path);
     char *full = realpath(path, NULL); /* a name without a slash would be looked for in the folders of libraries */
     loaded->library = dlopen(full ? full : path, RTLD_NOW | RTLD_LOCAL);
     free(full);
@@ -33,13 +54,19 @@ cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
 
 cm1e_error_t st_begin(st_loaded_t *loaded, const char *retain_path, bool cold, cm1e_diag_t *diag)
 {
+    char text[400];
     loaded->program->begin();
+    st_fault_text(loaded, text, sizeof text);
+    if (text[0])
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "the program was stopped while it got its initial values, before "
+                             "anything was started: %s", text);
     return st_retain_begin(&loaded->retain, loaded->program, retain_path, cold, diag);
 }
 
 void st_unload(st_loaded_t *loaded)
 {
     st_located_free(&loaded->located);
+    free(loaded->variables);
     if (loaded->library)
         dlclose(loaded->library);
     *loaded = (st_loaded_t){0};
@@ -154,7 +181,7 @@ static cm1e_error_t make_groups(const st_loaded_t *loaded, cm1e_diag_t *diag)
 
 /* ---- variables --------------------------------------------------------------------------------------------------- */
 
-static bool trace_type(st_kind_t kind, cm1e_trace_type_t *type)
+static variable_t variable_of(const st_variable_t *from)
 {
     static const cm1e_trace_type_t types[] = {
         [ST_KIND_BOOL] = CM1E_TRACE_BOOL, [ST_KIND_SINT] = CM1E_TRACE_SINT, [ST_KIND_INT] = CM1E_TRACE_INT,
@@ -162,38 +189,87 @@ static bool trace_type(st_kind_t kind, cm1e_trace_type_t *type)
         [ST_KIND_UINT] = CM1E_TRACE_UINT, [ST_KIND_UDINT] = CM1E_TRACE_UDINT, [ST_KIND_ULINT] = CM1E_TRACE_ULINT,
         [ST_KIND_REAL] = CM1E_TRACE_REAL, [ST_KIND_LREAL] = CM1E_TRACE_LREAL, [ST_KIND_TIME] = CM1E_TRACE_LINT,
     };
-    if (kind > ST_KIND_TIME)
-        return false;
-    *type = types[kind];
-    return true;
+    return (variable_t){
+        .name = from->name, .unit = from->kind == ST_KIND_TIME ? "ns" : "", .declared = from->detail,
+        .form = from->kind == ST_KIND_STRING ? VARIABLE_STRING : from->kind == ST_KIND_WSTRING ? VARIABLE_WSTRING
+                                                                                               : VARIABLE_NUMBER,
+        .type = from->kind <= ST_KIND_TIME ? types[from->kind] : CM1E_TRACE_LREAL, .data = from->data,
+        .bytes = from->size, .bit = (uint8_t)from->bit, .ranged = from->ranged, .first = from->first, .last = from->last};
 }
 
-/** What a trace, a monitor and others who attach see: variables of the program before those within its blocks. */
-static cm1e_error_t register_variables(st_loaded_t *loaded, cm1e_diag_t *diag)
+static cm1e_error_t make_variables(st_loaded_t *loaded, cm1e_diag_t *diag)
 {
-    const st_list_t *variables = &loaded->program->variables;
-    uint32_t registered = 0;
-    for (int depth = 0; depth < 8; depth++)
-        for (uint32_t i = 0; i < variables->count; i++) {
-            const st_variable_t *variable = &variables->first[i];
-            cm1e_trace_type_t type;
-            int points = 0;
-            for (const char *at = variable->name; *at; at++)
-                points += *at == '.' || *at == '[';
-            if (points != depth || !trace_type(variable->kind, &type))
+    const st_list_t *from = &loaded->program->variables;
+    loaded->variables = calloc(from->count + 1, sizeof *loaded->variables);
+    if (!loaded->variables)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "%s", cm1e_strerror(CM1E_ERROR_NO_MEMORY));
+    for (uint32_t i = 0; i < from->count; i++)
+        loaded->variables[i] = variable_of(&from->first[i]);
+    cm1e_scheduler_set_variables(loaded->scheduler, loaded->variables, from->count);
+    return CM1E_OK;
+}
+
+/** How deep it is in its program: 1 for `Main.n`. */
+static int depth_of(const char *name)
+{
+    int points = 0;
+    for (; *name; name++)
+        points += *name == '.' || *name == '[';
+    return points;
+}
+
+/** Without a choice the trace has the first variables, those of the program before those within its blocks. */
+static cm1e_error_t trace_first(st_loaded_t *loaded, cm1e_diag_t *diag)
+{
+    enum { DEPTHS = 8, MOST = CM1E_TRACE_VARIABLES / 2 }; /* the other half is for objects of drives */
+    uint32_t traced = 0;
+    cm1e_error_t error = CM1E_OK;
+    for (int depth = 0; depth < DEPTHS; depth++)
+        for (uint32_t i = 0; i < loaded->program->variables.count && error == CM1E_OK; i++) {
+            const variable_t *variable = &loaded->variables[i];
+            if (variable->form != VARIABLE_NUMBER || depth_of(variable->name) != depth ||
+                strlen(variable->name) >= CM1E_TRACE_NAME_BYTES)
                 continue;
-            if (registered == CM1E_TRACE_VARIABLES / 2) { /* the other half is for objects of drives */
-                loaded->unregistered++;
+            if (traced == MOST) {
+                loaded->untraced++;
                 continue;
             }
-            const cm1e_error_t error = cm1e_scheduler_trace_variable(
-                loaded->scheduler, variable->name, variable->kind == ST_KIND_TIME ? "ns" : "", type, variable->data, diag);
-            if (error != CM1E_OK)
-                return error;
-            cm1e_scheduler_permit_forcing(loaded->scheduler, variable->name);
-            registered++;
+            error = cm1e_scheduler_trace_number(loaded->scheduler, variable, diag);
+            traced++;
         }
-    return CM1E_OK;
+    return error;
+}
+
+static cm1e_error_t trace_within(const st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = path};
+    cm1e_error_t error = CM1E_OK;
+    bool found = false;
+    for (uint32_t i = 0; i < loaded->program->variables.count && error == CM1E_OK; i++) {
+        const variable_t *variable = &loaded->variables[i];
+        cm1e_near_look(&near, variable->name);
+        if (!cm1e_variable_is_within(variable->name, path))
+            continue;
+        found = true;
+        if (variable->form == VARIABLE_NUMBER || strcasecmp(variable->name, path) == 0)
+            error = cm1e_scheduler_trace_number(loaded->scheduler, variable, diag);
+    }
+    if (found)
+        return error;
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "The program has no variable \"%s\" that a trace could record%s", path,
+                         cm1e_near_text(&near, text, sizeof text));
+}
+
+/** What others who attach see, and what a trace records. */
+static cm1e_error_t register_variables(st_loaded_t *loaded, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = make_variables(loaded, diag);
+    if (error == CM1E_OK && loaded->path_count == 0)
+        error = trace_first(loaded, diag);
+    for (int i = 0; i < loaded->path_count && error == CM1E_OK; i++)
+        error = trace_within(loaded, loaded->paths[i], diag);
+    return error;
 }
 
 static cm1e_error_t add_tasks(st_loaded_t *loaded, cm1e_diag_t *diag)

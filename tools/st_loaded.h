@@ -7,6 +7,7 @@
 #define CM1E_TOOLS_ST_LOADED_H
 
 #include "cm1e/scheduler.h"
+#include "scheduler/variables.h"
 #include "st/st_program.h"
 #include "st_located.h"
 #include "st_retain.h"
@@ -21,7 +22,10 @@ typedef struct st_loaded {
     } tasks[CM1E_MAX_TASKS];
     st_located_t located;
     st_retain_t retain;
-    uint32_t unregistered; /**< variables beyond what a trace can have */
+    variable_t *variables;    /**< those of the program, for others; owned */
+    const char *const *paths; /**< variables that the trace records, or instances of which it records all; 0: the first */
+    int path_count;
+    uint32_t untraced;        /**< variables beyond what a trace can have */
 } st_loaded_t;
 
 /** Loads the program. CM1E_ERROR_IO: it cannot be loaded; CM1E_ERROR_UNSUPPORTED: it was made for another version of the

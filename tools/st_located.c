@@ -17,6 +17,21 @@ static cm1e_io_type_t io_type(const st_variable_t *variable)
     return types[variable->kind]; /* the translator lets no other through */
 }
 
+/** At least one of the bits has a meaning, or nobody knows what the slave has there. */
+static bool is_mapped(const cm1e_bus_t *bus, unsigned slave, bool output, unsigned first, unsigned bits)
+{
+    cm1e_io_info_t info;
+    bool any = false;
+    for (uint32_t n = 0; cm1e_io_at(bus, n, &info); n++) {
+        if (info.position != slave || info.output != output)
+            continue;
+        any = true;
+        if (first < info.bit_offset + info.bits && info.bit_offset < first + bits)
+            return true;
+    }
+    return !any;
+}
+
 static cm1e_error_t find(const st_variable_t *variable, cm1e_bus_t *bus, cm1e_io_t *io, cm1e_diag_t *diag)
 {
     const char *at = variable->detail + 2;
@@ -27,8 +42,11 @@ static cm1e_error_t find(const st_variable_t *variable, cm1e_bus_t *bus, cm1e_io
     const uint16_t bits = variable->kind == ST_KIND_BOOL ? 1 : (uint16_t)(variable->size * 8);
     const cm1e_error_t error = cm1e_io_find_bits(bus, (uint16_t)slave, is_output(variable), byte * 8 + bit, bits,
                                                  io_type(variable), io, &why);
-    if (error == CM1E_OK)
+    if (error == CM1E_OK && is_mapped(bus, slave, is_output(variable), byte * 8 + bit, bits))
         return CM1E_OK;
+    if (error == CM1E_OK)
+        return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "%s AT %s: slave %u has only padding there, which means nothing; "
+                             "`cm1e io` lists its signals", variable->name, variable->detail, slave);
     return cm1e_diag_set(diag, error, 0, "%s AT %s: %s", variable->name, variable->detail,
                          why.text[0] ? why.text : cm1e_strerror(error));
 }

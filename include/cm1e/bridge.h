@@ -20,6 +20,7 @@
 extern "C" {
 #endif
 
+/** Motors behind one bridge, at most. */
 #define CM1E_BRIDGE_AXES 4
 
 /** The motor at a connector; the numbers are those of F511:1 ... F514:1 (BR 7.3). */
@@ -49,6 +50,7 @@ typedef struct cm1e_bridge_channel {
     cm1e_bridge_value_t detected_module;   /**< F050:1 ... 4: 0x00219800 */
 } cm1e_bridge_channel_t;
 
+/** What a bridge shows of itself and of its motors, as cm1e_bridge_read() found it. */
 typedef struct cm1e_bridge_info {
     uint16_t position;                     /**< position of the slave, 1 = first */
     bool model_known;                      /**< true: the motors are those of a known model */

@@ -19,6 +19,7 @@
 extern "C" {
 #endif
 
+/** One network, from cm1e_bus_open() to cm1e_bus_close(). */
 typedef struct cm1e_bus cm1e_bus_t;
 
 /** EtherCAT states as the AL status register codes them (ETG.1000.6). */
@@ -130,6 +131,7 @@ CM1E_API const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus);
 
 /* ---- SDO -------------------------------------------------------------------------------------------------------- */
 
+/** How far an SDO transfer is. */
 typedef enum cm1e_sdo_state { CM1E_SDO_IDLE = 0, CM1E_SDO_BUSY, CM1E_SDO_DONE, CM1E_SDO_ERROR } cm1e_sdo_state_t;
 
 /** One SDO transfer. The caller owns it and its data buffer, and must keep both until the state is DONE or ERROR. */

@@ -37,6 +37,7 @@ CM1E_API cm1e_cml_kind_t cm1e_cml_kind(const char *text);
  *  @rt cycle */
 CM1E_API const char *cm1e_cml_check(const char *text, unsigned id);
 
+/** What a line from a motor is. */
 typedef enum cm1e_cml_what {
     CM1E_CML_NOTHING = 0, /**< "Null": no answer has come yet */
     CM1E_CML_K,           /**< "K53.1=100" */
@@ -46,6 +47,7 @@ typedef enum cm1e_cml_what {
     CM1E_CML_TEXT,        /**< any other line */
 } cm1e_cml_what_t;
 
+/** A line from a motor, taken apart. */
 typedef struct cm1e_cml_answer {
     cm1e_cml_what_t what;
     char name[16];   /**< "K", "Ux", "Origin", "Px" ...; "" for NOTHING and TEXT */

@@ -300,6 +300,7 @@ typedef enum cm1e_sim_slave_kind {
     CM1E_SIM_SLAVE_ENCODER,          /**< with CoE; an input is a counter of 32 bits that turns by `counts_per_s` */
 } cm1e_sim_slave_kind_t;
 
+/** What a simulated slave without an axis is. */
 typedef struct cm1e_sim_slave_config {
     cm1e_sim_slave_kind_t kind;
     uint8_t inputs, outputs;         /**< channels, 0 ... 8; at least one of a digital or analog device */

@@ -25,6 +25,7 @@ CM1E_API void cm1e_control_register(void);
  *  now on. For a program that is its own control panel. @rt init */
 CM1E_API void cm1e_control_serve_own(bool serve);
 
+/** A connection to a running program. */
 typedef struct cm1e_control cm1e_control_t;
 
 /** Connects to a running program. `target` is the path of its socket or the number of its process; NULL: the program

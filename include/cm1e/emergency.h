@@ -18,6 +18,7 @@ extern "C" {
 /** So many of each slave are kept. */
 enum { CM1E_EMERGENCIES = 16, CM1E_EMERGENCY_TEXT_BYTES = 400 };
 
+/** An emergency as a slave has sent it. */
 typedef struct cm1e_emergency {
     uint64_t number;        /**< counts from 1 for each slave since the scan, without gaps */
     int64_t time_ns;        /**< since 1970 (UTC); on virtual time since its beginning */

@@ -115,6 +115,9 @@ extern "C" {
     X(ERROR_AXIS_CAM_START, -130, "the slave is not on the cam: use mcRampIn or a MasterStartDistance")             \
     X(ERROR_AXIS_IN_GROUP, -131, "the axis is moved by its axes group")                                             \
     X(ERROR_AXIS_VIRTUAL, -132, "the axis has no motor: it is virtual, or an encoder")                              \
+    X(ERROR_AXIS_SET_POINT_JUMP, -133, "the first position from outside is not where the axis stands")              \
+    X(ERROR_AXIS_SET_POINT_LIMIT, -134, "a position from outside asks for more than the axis limits allow")         \
+    X(ERROR_AXIS_SET_POINT_MISSING, -135, "positions from outside stopped while the axis followed them")            \
     X(ERROR_GROUP_REF, -140, "AXES_GROUP_REF names no axes group")                                                  \
     X(ERROR_GROUP_STATE, -141, "not allowed in the present state of the axes group")                                \
     X(ERROR_GROUP_DISABLED, -142, "the axes group is disabled: MC_GroupEnable first")                               \
@@ -130,6 +133,7 @@ extern "C" {
     X(ERROR_FB_SECOND_POWER, -92, "another MC_Power controls this axis")                                            \
     X(ERROR_FB_CAM_SWITCH, -96, "a switch or a track of MC_DigitalCamSwitch is out of its range")
 
+/** What a function returns: success is 0, errors are negative. */
 typedef enum cm1e_error {
 #define CM1E_ERROR_ENUM(name, value, text) CM1E_##name = (value),
     CM1E_ERRORS(CM1E_ERROR_ENUM)

@@ -21,6 +21,7 @@
 extern "C" {
 #endif
 
+/** The formats of files that can be told apart and checked. */
 typedef enum cm1e_file_format {
     CM1E_FILE_UNKNOWN = 0,
     CM1E_FILE_ESI,       /**< EtherCAT slave information, XML */
@@ -130,6 +131,7 @@ typedef struct cm1e_finding {
     uint32_t line;      /**< line of the file, 1 = first; byte address of an SII; 0: no single place */
     const char *text;   /**< sentence: what is wrong there, and what would be right */
 } cm1e_finding_t;
+/** All findings of a check. Free them with cm1e_findings_free(). */
 typedef struct cm1e_findings cm1e_findings_t;
 
 /** Finding `n`, 0 = first, in the order of lines. The pointer is valid as long as `findings`. @rt any */

@@ -7,6 +7,7 @@
 
 #include <stdint.h>
 
+/** A type of IEC 61131-3 by its name there. */
 typedef uint8_t BOOL;
 typedef int8_t SINT;
 typedef int16_t INT;
@@ -20,10 +21,10 @@ typedef int64_t TIME;
 typedef char STRING80[81]; /**< STRING(80): up to 80 bytes and a 0 */
 
 #ifndef TRUE
-#define TRUE 1
+#define TRUE 1 /**< of a BOOL */
 #endif
 #ifndef FALSE
-#define FALSE 0
+#define FALSE 0 /**< of a BOOL */
 #endif
 
 #endif

@@ -317,6 +317,22 @@ typedef struct MC_Jog_t {
 } MC_Jog_t;
 CM1E_API void MC_Jog(MC_Jog_t *fb);
 
+/** CODESYS: SMC_FollowPosition; TwinCAT: MC_ExtSetPointGenFeed. Follows positions that another planner has
+ *  computed: that of a numerical control, of a robot, of a simulation. Execute begins at the position where the
+ *  axis stands; from then on Position is read in every call. @rt cycle */
+typedef struct CM_FollowPosition_t {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    LREAL Position; /**< u; of this cycle; read in every call */
+    /* outputs */
+    BOOL Busy;
+    BOOL Active;    /**< the positions move the axis */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} CM_FollowPosition_t;
+CM1E_API void CM_FollowPosition(CM_FollowPosition_t *fb);
+
 #ifdef __cplusplus
 }
 #endif

@@ -21,12 +21,14 @@
 extern "C" {
 #endif
 
+/** The cycle of one or more networks, with its tasks and axes. */
 typedef struct cm1e_scheduler cm1e_scheduler_t;
 
 /** A program. It is called in the cycle: it must return soon, and must neither allocate nor wait. Functions that wait
  *  for slaves or files (cm1e_sdo_read() ...) are refused in it with CM1E_ERROR_STATE. */
 typedef void (*cm1e_program_t)(void *context);
 
+/** A task: which program runs in the cycle, and how often. */
 typedef struct cm1e_task_config {
     const char *name;       /**< copied; "" selects "task<n>" */
     int64_t interval_ns;    /**< a multiple of the bus cycle; 0 selects every cycle */
@@ -55,6 +57,7 @@ typedef struct cm1e_distribution {
     uint64_t histogram[CM1E_HISTOGRAM_BUCKETS];
 } cm1e_distribution_t;
 
+/** What the cycles of a run have taken. */
 typedef struct cm1e_scheduler_statistics_t {
     cm1e_distribution_t cycle_time, wake_up_latency, execution_time;
     uint64_t cycles, overruns;   /**< overruns: cycles whose work ended after the start of the next one */

@@ -28,8 +28,10 @@ typedef enum cm1e_info_list {
     CM1E_OBJECTS_SETTINGS = 5,
 } cm1e_info_list_t;
 
+/** Bytes of a name, the 0 at its end included. */
 #define CM1E_INFO_NAME 64
 
+/** An object as the slave describes it. */
 typedef struct cm1e_object_info {
     uint16_t index;
     uint16_t data_type;       /**< CoE data type (ETG.1020); for records 0 or a type of their own */
@@ -51,6 +53,7 @@ typedef struct cm1e_info_value {
     uint8_t bytes[8];
 } cm1e_info_value_t;
 
+/** A sub-index of an object as the slave describes it. */
 typedef struct cm1e_entry_info {
     uint16_t index;
     uint8_t subindex;

@@ -28,6 +28,7 @@
 extern "C" {
 #endif
 
+/** Simulated slaves on one wire. */
 typedef struct cm1e_sim_segment cm1e_sim_segment_t;
 
 /* ---- behind a bus ------------------------------------------------------------------------------------------------ */
@@ -78,6 +79,7 @@ typedef struct cm1e_sim_profile_entry {
     char text[64];            /**< value of a string; "": that of the tables */
 } cm1e_sim_profile_entry_t;
 
+/** The kinds of codes that a profile can replace. */
 typedef enum cm1e_sim_code_kind {
     CM1E_SIM_CODE_ABORT = 0,  /**< SDO abort code */
     CM1E_SIM_CODE_AL_STATUS,
@@ -124,6 +126,7 @@ CM1E_API bool cm1e_sim_segment_news(cm1e_sim_segment_t *segment, char *text, siz
 
 /* ---- on a network interface (`cm1e sim -i`) ---------------------------------------------------------------------- */
 
+/** A segment that answers on a network interface. */
 typedef struct cm1e_sim_server cm1e_sim_server_t;
 
 /** File descriptors of a server's console: where it reads lines, and writes answers and what happens unasked; -1:
@@ -199,6 +202,7 @@ enum cm1e_sim_broken_rule {
     CM1E_SIM_HOMING_TOO_SOON = 0x800, /**< homing within 100 ms of its last setting (BR appendix 4.1) */
 };
 
+/** What a simulated motor does, seen from outside of the protocol. */
 typedef struct cm1e_sim_probe_t {
     double position_counts;   /**< of the shaft, exact, since the start (homing does not change it); behind a bridge
                                    pulses by the motor's K37 */

@@ -76,6 +76,7 @@ typedef enum cm1e_trace_trigger_kind {
     CM1E_TRACE_ON_CHANGE,       /**< `signal` changes */
 } cm1e_trace_trigger_kind_t;
 
+/** A trigger: what ends the recording, and how much is kept of the time before. */
 typedef struct cm1e_trace_trigger {
     cm1e_trace_trigger_kind_t kind;
     const char *signal;         /**< name of a signal; not used by CM1E_TRACE_ON_ERROR_STOP */

@@ -15,6 +15,7 @@
 extern "C" {
 #endif
 
+/** The version of these headers. */
 #define CM1E_VERSION_MAJOR 0
 #define CM1E_VERSION_MINOR 1
 #define CM1E_VERSION_PATCH 0

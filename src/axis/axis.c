@@ -84,11 +84,11 @@ AXIS_REF_t cm1e_axis_reference(const cm1e_axis_t *axis) { return (AXIS_REF_t){.H
 
 const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis) { return axis->drive.bus; }
 
-void cm1e_axis_share_cycle(cm1e_axis_t *axis, const void *cycle) { axis->cycle = cycle; }
+void cm1e_axis_share_cycle(cm1e_axis_t *axis, const void *cycle) { axis->belongs.cycle = cycle; }
 
 bool cm1e_axis_shares_cycle(const cm1e_axis_t *axis, const cm1e_axis_t *other)
 {
-    return axis->drive.bus == other->drive.bus || (axis->cycle && axis->cycle == other->cycle);
+    return axis->drive.bus == other->drive.bus || (axis->belongs.cycle && axis->belongs.cycle == other->belongs.cycle);
 }
 
 const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis) { return axis->config; }
@@ -248,6 +248,7 @@ static void after_motion(cm1e_axis_t *axis, bool undisturbed)
 void cm1e_axis_advance_any(cm1e_axis_t *axis)
 {
     axis->advanced = true;
+    cm1e_axis_look_anew(axis); /* those that follow it know nothing of this cycle ahead */
     if (axis->silence.silent_before > 0)
         cm1e_axis_after_silence(axis);
     if (axis_follows(axis) || axis_awaits(axis))

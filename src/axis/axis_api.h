@@ -39,6 +39,8 @@ typedef enum cm1e_command_kind {
     CM1E_COMMAND_PHASING_ABSOLUTE,  /**< `position` is the phase shift, u of the master. Never the active command,
                                          with a record of its own */
     CM1E_COMMAND_PHASING_RELATIVE,
+    CM1E_COMMAND_FOLLOW_POSITION,   /**< follows positions from outside: `position` is the first one, as
+                                         cm1e_axis_feed() counts it */
     CM1E_COMMAND_KIND_COUNT,
 } cm1e_command_kind_t;
 
@@ -189,6 +191,11 @@ cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double a
  *  error nothing has changed. @rt cycle */
 cm1e_error_t cm1e_axis_set_position(cm1e_axis_t *axis, double position, bool relative);
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id);
+/** Gives the position of this cycle to an axis that follows positions from outside by this command: u, on a modulo axis
+ *  without its turns. Call it once in every cycle, also in that of the start: without a position the axis stops with
+ *  CM1E_ERROR_AXIS_SET_POINT_MISSING, and at one that it could not follow with CM1E_ERROR_AXIS_SET_POINT_LIMIT. After
+ *  the end of the command nothing happens. @rt cycle */
+void cm1e_axis_feed(AXIS_REF_t reference, cm1e_command_id_t id, double position);
 /** Whether this is still the active command of an axis that exists. This cheap test suffices for a block while nothing
  *  changes. @rt cycle */
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id);
@@ -246,6 +253,11 @@ typedef struct cm1e_axis_leader {
      *  axis goes on by itself: the next set-point begins at its last one, with the velocity that the motor has left.
      *  NULL: they were. */
     bool (*alone)(void *context, uint32_t index);
+    /** A number that stays as long as what `bounds` has told of the axis holds: its largest velocity, acceleration and
+     *  jerk from the last set-point on, and for how long at most. The number is that of the set-point which next() gave
+     *  last. false: nothing is known ahead. NULL, both: nothing ever is. */
+    const uint32_t *course;
+    bool (*bounds)(void *context, uint32_t index, cm1e_motion_bounds_t *most, double *left_s);
     void *context;
     uint32_t index;                 /**< number of the axis for the leader */
 } cm1e_axis_leader_t;

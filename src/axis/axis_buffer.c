@@ -54,6 +54,8 @@ static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 {
     const command_kind_t *kind;
     const move_t *first = before(axis, index, &kind);
+    if (kind->plan == PLAN_OUTSIDE)
+        return CM1E_ERROR_AXIS_BUFFER_MODE; /* it does not end by itself */
     if (is_homing(move->kind) && (kind->is_endless || kind->plan == PLAN_COUPLING))
         return CM1E_ERROR_AXIS_STATE; /* homing begins at rest */
     return check(axis, move, kind->target != TARGET_NONE ? &first->target : NULL);

@@ -5,7 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_COMMANDS_H
 #define CM1E_AXIS_AXIS_COMMANDS_H
 
-#include "axis/axis_parts.h"
+#include "axis/axis_course.h"
 
 /** Whether a step of a homing is the active command. */
 static inline bool axis_stepping(const cm1e_axis_t *axis)
@@ -50,6 +50,7 @@ static inline move_t *waiting_move(cm1e_axis_t *axis, int index)
 static inline void cm1e_axis_append_waiting(cm1e_axis_t *axis, const move_t *move)
 {
     *waiting_move(axis, axis->commands.waiting.count++) = *move;
+    cm1e_axis_look_anew(axis);
 }
 /** The method of a kind of plan, from the axis or a room above it. Without `start` the axis cannot do it. */
 static inline const command_method_t *cm1e_axis_method(const cm1e_axis_t *axis, command_plan_t plan)

@@ -148,7 +148,7 @@ static bool off(cm1e_axis_t *axis)
         return false;
     axis->drive.command.halt = false;
     axis->drive.command.mode = axis->mode;
-    cm1e_axis_become_free(axis);
+    cm1e_axis_let_go(axis);
     return true;
 }
 

@@ -37,3 +37,9 @@ void cm1e_axis_become_free(cm1e_axis_t *axis)
     axis->power.free_ns = axis->now_ns;
     cm1e_axis_set_to_actual(axis);
 }
+
+void cm1e_axis_let_go(cm1e_axis_t *axis)
+{
+    cm1e_axis_become_free(axis);
+    axis->power.letting_go = true;
+}

@@ -192,10 +192,36 @@ CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *nex
     return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few;
 }
 
+bool cm1e_axis_well_ahead(const cm1e_axis_t *axis, const cm1e_motion_bounds_t *most, double lowest, double highest)
+{
+    const guarding_t *g = &axis->guarding;
+    const double t = axis->cycle_s, v = most->velocity, a = most->acceleration, j = most->jerk;
+    const double line = cm1e_axis_line(axis, axis->setpoint.position), way = v * v * axis->limits.emergency_way;
+    const bool steps = isinf(j); /* of the velocity, within a cycle */
+    const double beside = steps ? a * t * t / 2.0 : j * t * t * t / 12.0; /* u; of a step, the mean velocity */
+    if (!steps && !(j * t <= g->jerk && v + a * a * g->ease <= g->velocity &&
+                    a * t + 2.0 * beside / t <= fmin(g->up, g->down)))
+        return false;
+    return axis->power.enable_positive && axis->power.enable_negative && v <= g->velocity && a <= g->acceleration &&
+           a * t <= fmin(g->up, g->down) && beside <= g->step * fabs(g->per_count) &&
+           (!axis->limits.software_limits ||
+            (line + highest + way <= axis->limits.upper && line + lowest - way >= axis->limits.lower)) &&
+           cm1e_position_reaches(axis->setpoint.position, highest * axis->position.scale) &&
+           cm1e_position_reaches(axis->setpoint.position, lowest * axis->position.scale);
+}
+
+void cm1e_axis_guard_decide(cm1e_axis_t *axis, bool kept, uint32_t leaders_course)
+{
+    axis->guarding.kept_ahead = kept;
+    axis->guarding.own_course = axis->setpoint.course;
+    axis->guarding.leaders_course = leaders_course;
+}
+
 void cm1e_axis_guard_renew(cm1e_axis_t *axis)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
     const double t = axis->cycle_s, either = fmax(most->acceleration, most->deceleration);
+    cm1e_axis_look_anew(axis);
     axis->guarding = (guarding_t){
         .velocity = most->velocity,
         .up = most->acceleration * t,
@@ -216,7 +242,8 @@ void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)
     guard.by_actual = axis_follows(axis) && axis->coupling_hooks->by_actual(axis);
     if (axis->state != CM1E_AXIS_ERROR_STOP)
         axis->broken = guard;
-    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLING_LIMIT, guard.asked, guard.allowed);
+    cm1e_axis_fail(axis, guard.from_outside ? CM1E_ERROR_AXIS_SET_POINT_LIMIT : CM1E_ERROR_AXIS_COUPLING_LIMIT,
+                   guard.asked, guard.allowed);
 }
 
 /* What was commanded, with the numbers commanded and allowed. */
@@ -236,12 +263,21 @@ static const char *const said[GUARD_COUNT] = {
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     char asked[160];
+    const bool outside = axis->broken.from_outside;
+    if (outside && axis->broken.limit == GUARD_PAUSE) {
+        snprintf(text, size,
+                 "Axis \"%s\": it followed positions from outside at %.6g u/s, and the bus paused or was silent for so "
+                 "long that the motor could not go on with them. The axis was braked. Look at overruns of the cycle and "
+                 "lost frames; then reset the axis with MC_Reset.", axis->config->name, axis->broken.asked);
+        return;
+    }
     snprintf(asked, sizeof asked, said[axis->broken.limit], axis->broken.asked, axis->broken.allowed);
     snprintf(text, size,
-             "Axis \"%s\": its coupling or its axes group commanded %s. That set-point was not given to the motor, and "
-             "the axis was braked. Reduce the dynamics of the master or of the group, or raise the limits of this "
+             "Axis \"%s\": %s commanded %s. That set-point was not given to the motor, and "
+             "the axis was braked. Reduce the dynamics of %s, or raise the limits of this "
              "axis%s; then reset the axis with MC_Reset.",
-             axis->config->name, asked,
+             axis->config->name, outside ? "a set-point from outside" : "its coupling or its axes group", asked,
+             outside ? "its planner" : "the master or of the group",
              axis->broken.by_actual ? ", or filter the actual value of its master more (encoder_filter_s of the master)"
                                     : "");
 }

@@ -5,7 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_GUARD_H
 #define CM1E_AXIS_AXIS_GUARD_H
 
-#include "axis/axis_parts.h"
+#include "axis/axis_course.h"
 
 guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk);
 /** Whether the next set-point can be reached with acceleration and jerk within their limits at every moment of the
@@ -13,7 +13,7 @@ guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool
 bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next);
 /** Computes the numbers anew. Called when the axis begins to follow or to be led, and when its limits are written. */
 void cm1e_axis_guard_renew(cm1e_axis_t *axis);
-/** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, whose text has the value asked for and the value allowed. */
+/** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT or CM1E_ERROR_AXIS_SET_POINT_LIMIT, whose text has the value asked for and the value allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
 /** Whether a set-point is within the limits without any tolerance. Nearly every set-point is, and this test is cheap. A
@@ -39,6 +39,18 @@ static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *
                         g->per_count;
     const double way = speed * speed * axis->limits.emergency_way;
     return line + way <= axis->limits.upper && line - way >= axis->limits.lower;
+}
+/** Whether all set-points of a motion are well within the limits: a motion of which the largest velocity, acceleration
+ *  and jerk are known, and which stays between these two places (u from the set-point). An infinite jerk: the limit of
+ *  jerk does not count. */
+bool cm1e_axis_well_ahead(const cm1e_axis_t *axis, const cm1e_motion_bounds_t *most, double lowest, double highest);
+/** Remembers what cm1e_axis_well_ahead() said of the present courses of the axis and of its leader. */
+void cm1e_axis_guard_decide(cm1e_axis_t *axis, bool kept, uint32_t leaders_course);
+/** Whether that was said of these courses. */
+static inline bool cm1e_axis_guard_decided(const cm1e_axis_t *axis, uint32_t leaders_course)
+{
+    const guarding_t *g = &axis->guarding;
+    return g->own_course == axis->setpoint.course && g->leaders_course == leaders_course;
 }
 /** Whether the next set-point may follow the present one. `kept_jerk`: the limit of jerk counts too. */
 static inline guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)

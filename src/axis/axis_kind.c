@@ -37,6 +37,7 @@ const command_kind_t cm1e_axis_kinds[] = {
     ROW(CAM_OUT, "MC_CamOut", DECOUPLE, KEEP_VELOCITY, NONE,                          0, 1, 0, 0, 0, 1, 0),
     ROW(PHASING_ABSOLUTE, "MC_PhasingAbsolute", SHIFT_PHASE, PHASING, NONE,           1, 0, 1, 0, 1, 0, 0),
     ROW(PHASING_RELATIVE, "MC_PhasingRelative", SHIFT_PHASE, PHASING, NONE,           1, 0, 1, 0, 1, 0, 0),
+    ROW(FOLLOW_POSITION, "CM_FollowPosition", FOLLOW, OUTSIDE, NONE,                  0, 0, 0, 0, 0, 0, 0),
 };
 
 _Static_assert(sizeof cm1e_axis_kinds / sizeof cm1e_axis_kinds[0] == CM1E_COMMAND_KIND_COUNT,

@@ -23,6 +23,7 @@ typedef enum command_plan {
     PLAN_HOMING_STEP,
     PLAN_ON_TOP,       /**< superimposed; never the active command */
     PLAN_COUPLING,
+    PLAN_OUTSIDE,      /**< a program gives a position in every cycle */
     PLAN_PHASING,      /**< changes the phase shift of a slave; never the active command */
     PLAN_COUNT,
 } command_plan_t;

@@ -8,6 +8,7 @@
 #include "axis/axis_guard.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "core/rare.h"
 
 static bool at_rest(const cm1e_axis_t *axis)
 {
@@ -44,16 +45,16 @@ void cm1e_axis_release(cm1e_axis_t *axis)
 
 bool cm1e_axis_join(cm1e_axis_t *axis, const void *group)
 {
-    if (axis->group && axis->group != group)
+    if (axis->belongs.group && axis->belongs.group != group)
         return false;
-    axis->group = group;
+    axis->belongs.group = group;
     return true;
 }
 
 void cm1e_axis_leave(cm1e_axis_t *axis, const void *group)
 {
-    if (axis->group == group)
-        axis->group = NULL;
+    if (axis->belongs.group == group)
+        axis->belongs.group = NULL;
 }
 
 bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
@@ -61,26 +62,54 @@ bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
     return axis_led(axis) && axis->leader.context == context;
 }
 
+/* ---- the cycle --------------------------------------------------------------------------------------------------- */
+
+/* Whether all set-points are well within the limits, as long as the course of the leader stays. */
+CM1E_RARE static void look_ahead(cm1e_axis_t *axis)
+{
+    const cm1e_axis_leader_t *leader = &axis->leader;
+    cm1e_motion_bounds_t most;
+    double left_s;
+    const bool kept = leader->bounds(leader->context, leader->index, &most, &left_s) &&
+                      cm1e_axis_well_ahead(axis, &most, -most.velocity * left_s, most.velocity * left_s);
+    cm1e_axis_guard_decide(axis, kept, *leader->course);
+}
+
+CM1E_RARE static bool refuse(cm1e_axis_t *axis, guard_t guard)
+{
+    cm1e_axis_guard_fail(axis, guard);
+    return false;
+}
+
+/* Without a set-point the axis stops by itself, unless the leader has just let it go. */
+CM1E_RARE static bool be_left(cm1e_axis_t *axis)
+{
+    if (axis_led(axis))
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLED, 0.0, 0.0);
+    return false;
+}
+
+/* The leader may let the axis go while it gives the set-point. */
 static bool step(cm1e_axis_t *axis)
 {
-    const cm1e_axis_leader_t leader = axis->leader;
-    double line = 0.0;
-    from_t next = {.shared = false};
+    const uint32_t *course = axis->leader.course;
+    double line = 0.0, velocity, acceleration;
     const cm1e_lead_t lead =
-        leader.next(leader.context, leader.index, &line, &next.velocity, &next.acceleration);
-    if (lead == CM1E_LEAD_NONE) {
-        if (axis_led(axis)) /* else the leader has just let it go */
-            cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLED, 0.0, 0.0);
-        return false;
-    }
-    guard_t guard = {.limit = GUARD_FINITE};
-    if (cm1e_axis_position_from_line(axis, line, &next.position))
-        guard = cm1e_axis_guard(axis, &next, true);
-    if (guard.limit) {
-        cm1e_axis_guard_fail(axis, guard);
-        return false;
+        axis->leader.next(axis->leader.context, axis->leader.index, &line, &velocity, &acceleration);
+    if (lead == CM1E_LEAD_NONE)
+        return be_left(axis);
+    from_t next = {.velocity = velocity, .acceleration = acceleration};
+    if (!cm1e_axis_position_from_line(axis, line, &next.position))
+        return refuse(axis, (guard_t){.limit = GUARD_FINITE});
+    const bool decided = course && cm1e_axis_guard_decided(axis, *course);
+    if (!decided || !axis->guarding.kept_ahead) {
+        const guard_t guard = cm1e_axis_guard(axis, &next, true);
+        if (guard.limit)
+            return refuse(axis, guard);
     }
     cm1e_axis_put_set_point(axis, &next);
+    if (!decided && axis->leader.bounds)
+        look_ahead(axis);
     if (lead == CM1E_LEAD_LAST)
         cm1e_axis_release(axis);
     return true;

@@ -1,6 +1,7 @@
 /* What is done with a command, by how it is planned: a row for each command_plan_t that is not
  * one of a room above the axis. */
 #include "axis/axis_commands.h"
+#include "axis/axis_outside.h"
 #include "axis/axis_superimpose.h"
 #include "axis/axis_table.h"
 
@@ -13,5 +14,6 @@ const command_method_t cm1e_axis_methods[PLAN_COUNT] = {
     [PLAN_VELOCITY] = BY_PROFILE,
     [PLAN_STOP] = BY_PROFILE,
     [PLAN_TABLE] = {cm1e_axis_table_start, cm1e_axis_table_buffer, NULL, cm1e_axis_table_begin, NULL},
+    [PLAN_OUTSIDE] = {cm1e_axis_outside_start, NULL, NULL, NULL, NULL},
     [PLAN_ON_TOP] = {cm1e_axis_superimpose, NULL, NULL, NULL, cm1e_axis_superimpose_update},
 };

@@ -292,7 +292,8 @@ bool cm1e_axis_timed_step(cm1e_axis_t *axis)
     if (s->source == source) {
         cm1e_motion_state_t now = {0.0, s->velocity, s->acceleration};
         cm1e_slow_time_apply(&s->slow, &now);
-        cm1e_axis_put_motion(axis, now.velocity, now.acceleration);
+        s->velocity = now.velocity;
+        s->acceleration = now.acceleration;
     }
     return true;
 }

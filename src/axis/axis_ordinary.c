@@ -9,6 +9,7 @@
 #include <math.h>
 
 #include "axis/axis_commands.h"
+#include "axis/axis_course.h"
 #include "axis/axis_extras.h"
 #include "axis/axis_in_position.h"
 #include "axis/axis_setpoint.h"
@@ -17,25 +18,17 @@
 /* So many cycles are looked at together. */
 static const double cycles_ahead = 256.0;
 
-/* The highest speed between two times of the stretch; infinite: the axis turns in between. */
-static double highest_speed(const cm1e_profile_stretch_t *stretch, cm1e_motion_state_t a, cm1e_motion_state_t b)
-{
-    double v = a.velocity;
-    if (a.acceleration * b.acceleration < 0.0) { /* the velocity has an extremum in between */
-        const double t = -stretch->origin.acceleration / stretch->jerk;
-        v = cm1e_profile_stretch_state(stretch, stretch->origin_s + t).velocity;
-    }
-    const bool turns = a.velocity * b.velocity < 0.0 || a.velocity * v < 0.0 || b.velocity * v < 0.0;
-    return turns ? INFINITY : fmax(fabs(v), fmax(fabs(a.velocity), fabs(b.velocity)));
-}
-
 /* Whether no position between two times of the stretch needs more than a sample: the axis could be stopped before its
  * software limits even from the farthest one at the highest speed, and all of them can be counted from the begin of the
  * profile. The tolerance of the limits is left to rounding. */
-static bool needs_no_check(const cm1e_axis_t *axis, cm1e_motion_state_t a, cm1e_motion_state_t b)
+static bool needs_no_check(const cm1e_axis_t *axis, double from_s, double until_s)
 {
+    const cm1e_profile_stretch_t *stretch = &axis->setpoint.stretch;
+    const cm1e_motion_state_t a = cm1e_profile_stretch_state(stretch, from_s);
+    const cm1e_motion_state_t b = cm1e_profile_stretch_state(stretch, until_s);
     const double highest = fmax(a.position, b.position), lowest = fmin(a.position, b.position);
-    const double speed = highest_speed(&axis->setpoint.stretch, a, b), base = axis->setpoint.base_line;
+    const double speed = cm1e_profile_stretch_bounds(stretch, from_s, until_s).velocity;
+    const double base = axis->setpoint.base_line;
     const double way = speed * speed * axis->limits.emergency_way;
     const double farthest = fmax(fabs(highest), fabs(lowest)) * fabs(axis->position.scale);
     return isfinite(way) && farthest < profile_farthest_from_base &&
@@ -54,12 +47,26 @@ CM1E_RARE static bool look_ahead(cm1e_axis_t *axis, double time_s)
         until_s = fmin(until_s, s->profile.duration_s - profile_same_moment * axis->cycle_s);
     if (!(time_s >= s->stretch.from_s && time_s < until_s))
         return false;
-    const cm1e_motion_state_t a = cm1e_profile_stretch_state(&s->stretch, time_s);
-    const cm1e_motion_state_t b = cm1e_profile_stretch_state(&s->stretch, until_s);
-    if (!needs_no_check(axis, a, b))
+    if (!needs_no_check(axis, time_s, until_s))
         return false;
     s->ordinary_until_s = until_s;
+    s->course++;
     return true;
+}
+
+bool cm1e_axis_course(const cm1e_axis_t *axis, course_t *course)
+{
+    const setpoint_t *s = &axis->setpoint;
+    const double now_s = s->profile_next_s - axis->cycle_s;
+    if (s->source != &cm1e_source_profile || !(s->profile_next_s < s->ordinary_until_s) || now_s < s->stretch.from_s)
+        return false;
+    const cm1e_motion_state_t end = cm1e_profile_stretch_state(&s->stretch, s->ordinary_until_s);
+    *course = (course_t){
+        .most = cm1e_profile_stretch_bounds(&s->stretch, now_s, s->ordinary_until_s),
+        .time_s = s->ordinary_until_s - now_s,
+        .end = cm1e_position_plus(s->base, end.position * axis->position.scale),
+    };
+    return isfinite(course->most.velocity);
 }
 
 /* Whether the axis is in a motion of a command, a master or a leader, and has nothing to do beside it. */
@@ -69,11 +76,27 @@ static inline bool only_moves(const cm1e_axis_t *axis)
            axis_acts(axis) && axis->silence.silent_before == 0 && !axis->silence.frozen;
 }
 
+/* Whether the axis has nothing to do but to follow its master or leader. */
+static inline bool only_follows(const cm1e_axis_t *axis)
+{
+    const source_t *source = axis->setpoint.source;
+    return axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && !source->find_stretch && source->moves && only_moves(axis);
+}
+
+bool cm1e_axis_led_ordinary_step(cm1e_axis_t *axis)
+{
+    const source_t *source = axis->setpoint.source;
+    return source->ordinary && only_follows(axis) && source->ordinary(axis);
+}
+
 bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over)
 {
     const source_t *source = axis->setpoint.source;
-    if (axis->state != CM1E_AXIS_SYNCHRONIZED_MOTION || source->find_stretch || !source->moves || !only_moves(axis))
+    if (!only_follows(axis))
         return false;
+    *over = false;
+    if (source->ordinary && source->ordinary(axis))
+        return true;
     if (source->follows)
         axis->coupling_hooks->advance_masters(axis);
     cm1e_axis_in_position_leave(axis);
@@ -96,7 +119,8 @@ bool cm1e_axis_ordinary_step(cm1e_axis_t *axis)
     cm1e_axis_count_cycle(axis);
     const cm1e_motion_state_t next = cm1e_profile_stretch_state(&s->stretch, time_s);
     s->position = cm1e_position_plus(s->base, next.position * axis->position.scale);
-    cm1e_axis_put_motion(axis, next.velocity, next.acceleration);
+    s->velocity = next.velocity;
+    s->acceleration = next.acceleration;
     if (next.velocity != 0.0)
         s->positive_before = next.velocity > 0.0;
     return true;

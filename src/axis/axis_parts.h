@@ -13,10 +13,22 @@
 #include "drive/drive.h"
 #include "motion/slow_time.h"
 
+/* ---- set-points from outside: axis_outside.h --------------------------------------------------------------------- */
+
+enum { OUTSIDE_WAITING = 8 };
+
+/** Positions that a program has given. Written by axis_outside.c. */
+typedef struct outside {
+    double lines[OUTSIDE_WAITING]; /**< u, as cm1e_axis_line() counts: those not used yet */
+    double velocity;               /**< u/s; of the last one that was used */
+    uint8_t first, count;
+    bool overrun;                  /**< more came during a silence than can wait */
+} outside_t;
+
 /* ---- set-point: axis_setpoint.h ---------------------------------------------------------------------------------- */
 
 /** The set-point: its source, its state of motion, and the profile that it follows. Written by axis_setpoint.h,
- *  axis_motion.c and axis_ordinary.c. */
+ *  axis_course.h, axis_motion.c and axis_ordinary.c. */
 typedef struct setpoint {
     const source_t *source;         /**< cm1e_axis_set_source() */
     bool reached, positive_before;
@@ -26,6 +38,7 @@ typedef struct setpoint {
     bool brakes_hard;               /**< the set-point is on a ramp without a limit of jerk */
     uint32_t ends;                  /**< ends of a cam that it passed; see cm1e_command_status_t */
     uint32_t jumps;                 /**< how often it jumped to the actual position; no slave may follow a jump */
+    uint32_t course;                /**< a number for what was decided ahead: axis_course.h */
     position_t position;            /**< set position */
     double velocity, acceleration;  /**< set velocity and acceleration; u/s, u/s2 */
     double profile_next_s;          /**< time of the profile in the next cycle */
@@ -70,6 +83,8 @@ typedef struct guarding {
     double half_cycle, step; /**< counts in half a cycle at 1 u/s; tolerance in counts around the mean velocity */
     double per_count;        /**< u, signed */
     double per_step;         /**< u/s for a count beside the mean velocity, in the second difference; 0 in a group */
+    bool kept_ahead;         /**< of a led axis: all set-points on these courses are well within the limits */
+    uint32_t own_course, leaders_course;
 } guarding_t;
 
 /** The limits of the axis: dynamics, software limits, directions. Written by axis_limits.c and axis_parameter.c. */
@@ -110,6 +125,7 @@ typedef struct guard {
     guard_limit_t limit;
     double asked, allowed; /**< in the units of the limit */
     bool by_actual;        /**< it follows the actual value of a master */
+    bool from_outside;     /**< it came from outside (axis_outside.c) */
 } guard_t;
 
 /* ---- power and errors: axis_power.h ------------------------------------------------------------------------------ */
@@ -121,6 +137,7 @@ typedef struct power {
     bool enable, enable_positive, enable_negative;
     bool energized;                 /**< the axis has taken over the enabled drive */
     bool shutting_down;
+    bool letting_go;                /**< the torque goes first, also if power is wanted again by now */
     bool reset_sent;
     cm1e_command_state_t reset_state;
     cm1e_error_t reset_error;
@@ -312,6 +329,12 @@ typedef enum extra {
     EXTRA_OBJECTS = 16, /**< vendor parameters are asked for */
 } extra_t;
 
+/** What the axis is a part of. Written by axis.c and axis_lead.c. */
+typedef struct belongs {
+    const void *group; /**< the group of the axis; NULL: none */
+    const void *cycle; /**< what runs its cycle: cm1e_axis_share_cycle(); NULL: its bus alone */
+} belongs_t;
+
 /* ---- the axis ---------------------------------------------------------------------------------------------------- */
 
 /** The axis. All functions of this room run in the cycle unless marked otherwise. The order of the members keeps those
@@ -351,8 +374,8 @@ struct cm1e_axis {
     guard_t broken;                 /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
     not_set_t not_set;
     override_t override, override_refused; /**< the second: the last refused one, for the text */
-    const void *group;              /**< the group of the axis; NULL: none */
-    const void *cycle;              /**< what runs its cycle: cm1e_axis_share_cycle(); NULL: its bus alone */
+    belongs_t belongs;
+    outside_t outside;
     tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
     driving_t driving;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */

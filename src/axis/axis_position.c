@@ -51,10 +51,6 @@ static double to_units(const cm1e_axis_t *axis, double counts)
 {
     return counts * axis->position.unit.units / axis->position.unit.counts;
 }
-static double to_counts(const cm1e_axis_t *axis, double units)
-{
-    return units * axis->position.unit.counts / axis->position.unit.units;
-}
 
 /* ---- modulo ------------------------------------------------------------------------------------------------------ */
 
@@ -156,16 +152,6 @@ double cm1e_axis_line(const cm1e_axis_t *axis, position_t position)
     return origin + to_units(axis, (double)way.counts + way.fraction);
 }
 
-bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double line, position_t *position)
-{
-    const double from_origin = axis->position.modulo_range > 0.0 ? line : line - axis->position.origin_units;
-    const double counts = to_counts(axis, from_origin);
-    if (!(fabs(counts) < (double)CM1E_FARTHEST_COUNTS))
-        return false;
-    *position = cm1e_position_plus(axis->position.origin, axis->position.scale > 0.0 ? counts : -counts);
-    return cm1e_position_in_range(*position);
-}
-
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position)
 {
     if (axis->position.modulo_range > 0.0) {
@@ -173,7 +159,7 @@ bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, positi
         if (!in_modulo_range(axis, units))
             return false;
         *position = in_turn(axis, turn_of(axis, from_origin(axis, axis->setpoint.position), &phase),
-                            to_counts(axis, units));
+                            cm1e_axis_to_counts(axis, units));
         return cm1e_position_in_range(*position);
     }
     return cm1e_axis_position_from_line(axis, units, position);
@@ -203,7 +189,7 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
         return cm1e_axis_position_from_units(axis, position, target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!in_modulo_range(axis, position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    const double turn = turn_counts(axis), phase = to_counts(axis, position);
+    const double turn = turn_counts(axis), phase = cm1e_axis_to_counts(axis, position);
     double now;
     const int64_t number = turn_of(axis, from_origin(axis, from), &now);
     const double way = phase - now;
@@ -245,7 +231,7 @@ bool cm1e_axis_new_position(const cm1e_axis_t *axis, double now, double position
         return in_modulo_range(axis, *value);
     }
     *value = relative ? now + position : position;
-    return fabs(to_counts(axis, *value)) < (double)CM1E_FARTHEST_COUNTS;
+    return fabs(cm1e_axis_to_counts(axis, *value)) < (double)CM1E_FARTHEST_COUNTS;
 }
 
 bool cm1e_axis_position_init(cm1e_axis_t *axis)
@@ -263,7 +249,7 @@ void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
 {
     if (axis->position.modulo_range > 0.0) {
         axis->position.origin = at;
-        axis->position.origin = in_turn(axis, 0, -to_counts(axis, units));
+        axis->position.origin = in_turn(axis, 0, -cm1e_axis_to_counts(axis, units));
     } else {
         axis->position.origin = at;
         axis->position.origin_units = units;

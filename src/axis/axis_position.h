@@ -28,8 +28,21 @@ double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual);
 /** A position in u without the turns of a modulo axis, as limits are compared with it. */
 double cm1e_axis_line(const cm1e_axis_t *axis, position_t position);
+/** Counts of a distance in u, without the direction of the motor. */
+static inline double cm1e_axis_to_counts(const cm1e_axis_t *axis, double units)
+{
+    return units * axis->position.unit.counts / axis->position.unit.units;
+}
 /** The inverse of cm1e_axis_line(); false: not finite, or outside the range of the counts. */
-bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double line, position_t *position);
+static inline bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double line, position_t *position)
+{
+    const double from_origin = axis->position.modulo_range > 0.0 ? line : line - axis->position.origin_units;
+    const double counts = cm1e_axis_to_counts(axis, from_origin);
+    if (!(fabs(counts) < (double)CM1E_FARTHEST_COUNTS))
+        return false;
+    *position = cm1e_position_plus(axis->position.origin, axis->position.scale > 0.0 ? counts : -counts);
+    return cm1e_position_in_range(*position);
+}
 /** The inverse of cm1e_axis_units(); false: not finite, or outside the range of the counts. */
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
 /** The target of a command to `position` (u) that begins at `from` with `velocity` (u/s). On a linear axis it is that

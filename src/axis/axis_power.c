@@ -43,9 +43,10 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
     const bool followed = axis_follows(axis);
     const bool coupling_broke = followed && (error == CM1E_ERROR_AXIS_COUPLING_LIMIT ||
                                              error == CM1E_ERROR_AXIS_MASTER_LOST || error == CM1E_ERROR_AXIS_COUPLED);
+    const bool planner_broke = error == CM1E_ERROR_AXIS_SET_POINT_LIMIT || error == CM1E_ERROR_AXIS_SET_POINT_MISSING;
     /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ERROR,
-                           homing_broke || coupling_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
+                           homing_broke || coupling_broke || planner_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
     cm1e_axis_set_refusal(axis, CM1E_OK); /* outdated after the reset */
     cm1e_axis_forget_not_set(axis);
     axis->fault.error = error;
@@ -120,6 +121,8 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
     const bool negative_fell = axis->power.enable_negative && !enable_negative;
     axis->power.shutting_down = false;
     axis->power.enable = enable;
+    if (axis->power.enable_positive != enable_positive || axis->power.enable_negative != enable_negative)
+        cm1e_axis_look_anew(axis);
     axis->power.enable_positive = enable_positive;
     axis->power.enable_negative = enable_negative;
     if (!enable)
@@ -187,7 +190,7 @@ static void take_over(cm1e_axis_t *axis)
 void cm1e_axis_power_step(cm1e_axis_t *axis)
 {
     const bool acting = axis_acts(axis);
-    const bool wanted = cm1e_axis_wants_enable(axis);
+    const bool wanted = cm1e_axis_wants_enable(axis) && !axis->power.letting_go;
     const bool still = axis_free(axis) || axis_holds(axis);
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
@@ -200,7 +203,8 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
 
 void cm1e_axis_enable_step(cm1e_axis_t *axis)
 {
-    axis->drive.command.enable = !axis_free(axis) || cm1e_axis_wants_enable(axis);
+    axis->power.letting_go &= axis->drive.feedback.enabled;
+    axis->drive.command.enable = !axis_free(axis) || (cm1e_axis_wants_enable(axis) && !axis->power.letting_go);
     if (!axis->drive.command.enable && axis_free(axis))
         axis->power.energized = false;
 }

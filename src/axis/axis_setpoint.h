@@ -6,6 +6,7 @@
 #ifndef CM1E_AXIS_AXIS_SETPOINT_H
 #define CM1E_AXIS_AXIS_SETPOINT_H
 
+#include "axis/axis_course.h"
 #include "axis/axis_position.h"
 
 /* Sets the source of the set-point. */
@@ -14,6 +15,7 @@ static inline void cm1e_axis_set_source(cm1e_axis_t *axis, const source_t *sourc
     if (axis->setpoint.source != source && axis->setpoint.source->leave)
         axis->setpoint.source->leave(axis);
     axis->setpoint.source = source;
+    cm1e_axis_look_anew(axis);
 }
 static inline void cm1e_axis_setpoint_init(cm1e_axis_t *axis) /* @rt init */
 {
@@ -54,8 +56,9 @@ bool cm1e_axis_ordinary_step(cm1e_axis_t *axis);
 /** cm1e_axis_advance() for an axis in SynchronizedMotion that has nothing to do but to follow its master or leader.
  *  false, and nothing has changed: it has. `*over`: another source has taken over, and the cycle is not complete. */
 bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over);
-/** Something has changed on which it depends whether the next cycles are ordinary. */
-static inline void cm1e_axis_look_anew(cm1e_axis_t *axis) { axis->setpoint.ordinary_until_s = -INFINITY; }
+/** The part of it for a cycle about which everything was decided ahead (source_t.ordinary); false, and nothing but the
+ *  masters has changed: it was not. */
+bool cm1e_axis_led_ordinary_step(cm1e_axis_t *axis);
 /* What sources write that are no profile of axis_motion.c, and those who change something beside the motion. */
 /** Writes the set-point of this cycle. */
 static inline void cm1e_axis_put_set_point(cm1e_axis_t *axis, const from_t *point)
@@ -69,11 +72,12 @@ static inline void cm1e_axis_put_set_point(cm1e_axis_t *axis, const from_t *poin
 static inline void cm1e_axis_put_position(cm1e_axis_t *axis, position_t position)
 {
     axis->setpoint.position = position;
+    cm1e_axis_look_anew(axis);
 }
 /** Moves the set-point to a position without a motion. */
 static inline void cm1e_axis_jump(cm1e_axis_t *axis, position_t position)
 {
-    axis->setpoint.position = position;
+    cm1e_axis_put_position(axis, position);
     axis->setpoint.jumps++;
 }
 /** Sets the velocity (u/s) and the acceleration (u/s2). */
@@ -81,12 +85,12 @@ static inline void cm1e_axis_put_motion(cm1e_axis_t *axis, double velocity, doub
 {
     axis->setpoint.velocity = velocity;
     axis->setpoint.acceleration = acceleration;
+    cm1e_axis_look_anew(axis);
 }
 /** Sets the velocity (u/s), without acceleration. */
 static inline void cm1e_axis_put_velocity(cm1e_axis_t *axis, double velocity)
 {
-    axis->setpoint.velocity = velocity;
-    axis->setpoint.acceleration = 0.0;
+    cm1e_axis_put_motion(axis, velocity, 0.0);
 }
 static inline void cm1e_axis_shift_set_point(cm1e_axis_t *axis, double counts)
 {
@@ -128,8 +132,9 @@ static inline void cm1e_axis_put_duration(cm1e_axis_t *axis, double duration_s, 
 }
 static inline void cm1e_axis_set_reached(cm1e_axis_t *axis, bool reached)
 {
+    if (axis->setpoint.reached != reached)
+        cm1e_axis_look_anew(axis);
     axis->setpoint.reached = reached;
-    cm1e_axis_look_anew(axis);
 }
 /** Sets whether a follower is still approaching. */
 static inline void cm1e_axis_set_synchronizing(cm1e_axis_t *axis, bool on) { axis->setpoint.synchronizing = on; }

@@ -16,6 +16,9 @@ typedef struct source {
     /** Makes the set-point of the cycle. false: the source has ended and made none; the profile that took over makes
      *  it. */
     bool (*step)(cm1e_axis_t *axis);
+    /** step() of an axis that is led, in a cycle about which everything was decided ahead; it has the same result. false,
+     *  and nothing has changed: it was not. NULL: nothing is decided ahead here. */
+    bool (*ordinary)(cm1e_axis_t *axis);
     /** Brings the motion to rest by this ramp. A motion by the drive ends in the drive's own way, with `goal`. */
     void (*stop)(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
     /** Begins the motion anew at the present set-point. NULL: as a profile does (axis_pause.c), or nothing moves. */
@@ -47,6 +50,7 @@ extern const source_t cm1e_source_hold;    /**< the set-point is at rest; axis_m
 extern const source_t cm1e_source_profile; /**< a profile of a command, or a ramp; axis_motion.c */
 extern const source_t cm1e_source_table;   /**< axis_table.c */
 extern const source_t cm1e_source_drive;   /**< the drive's own profile; axis_drive_profile.c */
+extern const source_t cm1e_source_outside; /**< positions of a program in every cycle; axis_outside.c */
 extern const source_t cm1e_source_leader;  /**< a leader from a room above; axis_lead.c */
 
 #endif

@@ -38,6 +38,7 @@ static const int16_t diagram[STATE_TRIGGER_COUNT][CM1E_AXIS_STATE_COUNT] = {
     [ON_COUPLE]            = {NO_POWER, SYNCHRON,   HOMES,      SYNCHRON,   SYNCHRON,   SYNCHRON,   STOPS,      ERROR},
     [ON_DECOUPLE]          = {NO_POWER, NO_MASTER,  HOMES,      NO_MASTER,  NO_MASTER,  CONTINUOUS, STOPS,      ERROR},
     [ON_SHIFT_PHASE]       = {NO_POWER, NO_MASTER,  HOMES,      NO_MASTER,  NO_MASTER,  STAYS,      STOPS,      ERROR},
+    [ON_FOLLOW]            = {NO_POWER, SYNCHRON,   HOMES,      MOVES,      MOVES,      MOVES,      STOPS,      ERROR},
     [ON_SUPERIMPOSE]       = {NO_POWER, DISCRETE,   HOMES,      STAYS,      STAYS,      STAYS,      STOPS,      ERROR},
     [ON_HALT_SUPERIMPOSED] = {NO_POWER, STAYS,      HOMES,      STAYS,      STAYS,      STAYS,      STOPS,      ERROR},
     [ON_HOME]              = {NO_POWER, HOMING,     HOMES,      MOVES,      MOVES,      MOVES,      STOPS,      ERROR},

@@ -16,6 +16,7 @@ typedef enum state_trigger {
     ON_COUPLE,
     ON_DECOUPLE,
     ON_SHIFT_PHASE,
+    ON_FOLLOW,
     ON_SUPERIMPOSE,
     ON_HALT_SUPERIMPOSED,
     ON_HOME,

@@ -7,6 +7,7 @@
 #include "axis/axis_device.h"
 #include "axis/axis_guard.h"
 #include "axis/axis_in_position.h"
+#include "axis/axis_outside.h"
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
@@ -190,6 +191,7 @@ static const struct {
     {CM1E_ERROR_AXIS_VELOCITY_RANGE, refused_velocity_text},
     {CM1E_ERROR_AXIS_DYNAMICS_RANGE, refused_dynamics_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, refused_position_text},
+    {CM1E_ERROR_AXIS_SET_POINT_JUMP, cm1e_axis_outside_refused_text},
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
 };
 
@@ -232,6 +234,8 @@ static const struct {
     {CM1E_ERROR_AXIS_NOT_IN_POSITION, cm1e_axis_in_position_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, range_text},
     {CM1E_ERROR_AXIS_COUPLING_LIMIT, cm1e_axis_guard_text},
+    {CM1E_ERROR_AXIS_SET_POINT_LIMIT, cm1e_axis_guard_text},
+    {CM1E_ERROR_AXIS_SET_POINT_MISSING, cm1e_axis_outside_missing_text},
 };
 
 void cm1e_axis_text(const cm1e_axis_t *axis, char *text, size_t size)

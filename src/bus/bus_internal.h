@@ -60,6 +60,11 @@ typedef enum cm1e_datagram_owner {
 typedef struct cm1e_signal_list cm1e_signal_list_t;
 
 struct cm1e_bus_slave {
+    /* what every cycle looks at: cm1e_bus_slave_goes_on() */
+    uint32_t silent_cycles;                  /**< in a row, in which it did not take part */
+    cm1e_slave_watch_t watch;
+    cm1e_hot_t hot;
+    /* the others */
     cm1e_slave_info_t info;
     const cm1e_slave_config_t *config;       /**< of a slave without an axis that the configuration names; else NULL */
     cm1e_setup_job_t setup;
@@ -84,14 +89,11 @@ struct cm1e_bus_slave {
 
     cm1e_mapped_direction_t mapped[2];       /**< 0 outputs, 1 inputs; as configured */
     cm1e_slave_placement_t placement;
-    cm1e_slave_watch_t watch;
     cm1e_dc_config_t pulses;                 /**< as configured, or as its mode has them; all zero: none */
     uint8_t dc_control;                      /**< of register 0x0980, by its mode */
     cm1e_dc_t *dc;                           /**< the clocks of the bus; NULL: they are not used */
     cm1e_port_watch_t ports;
-    cm1e_hot_t hot;
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
-    uint32_t silent_cycles;                  /**< in a row, in which it did not take part */
 };
 
 /** Looking into mailboxes in turn, without having asked. */

@@ -7,7 +7,7 @@
 
 /* Registers, commands and status (ETG.1000.4 section 6.4). */
 enum {
-    REG_EEPROM_CONTROL = 0x0502, REG_EEPROM_DATA = 0x0508,
+    REG_EEPROM_CONTROL = 0x0502, REG_EEPROM_DATA = 0x0508, GROUP_AT = REG_EEPROM_DATA - REG_EEPROM_CONTROL,
     EEPROM_NOP = 0x0000, EEPROM_READ = 0x0100, EEPROM_WRITE = 0x0201 /* with write enable, in the same frame */,
     EEPROM_READS_8 = 0x0040, EEPROM_ERRORS = 0x7800, EEPROM_NACK = 0x2000, EEPROM_NOT_ENABLED = 0x4000,
     EEPROM_BUSY = 0x8000,
@@ -17,7 +17,8 @@ enum {
 #define READ_TIMEOUT_NS INT64_C(20000000)
 /** A memory chip takes 10 ms at most; a processor that emulates one may have to erase a page of its flash. */
 #define WRITE_TIMEOUT_NS INT64_C(500000000)
-#define EEPROM_PAUSE_NS INT64_C(200000)
+/** A memory chip takes some 100 to 300 us to read a group. */
+#define EEPROM_PAUSE_NS INT64_C(50000)
 #define NACK_PAUSE_NS INT64_C(1000000)
 
 static void pause_for(int64_t time_ns)
@@ -43,16 +44,20 @@ static bool write_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data
     return !eeprom->lost;
 }
 
-/** Waits until the interface is idle. false: the slave is lost, or the interface stays busy. */
+/** Waits until the interface is idle; one datagram reads the status and the words of the last command. false: the slave
+ *  is lost, or the interface stays busy. */
 static bool wait_idle(cm1e_eeprom_t *eeprom, int64_t timeout_ns, uint16_t *status)
 {
     cm1e_clock_t *clock = cm1e_clock_current();
     const int64_t deadline_ns = cm1e_clock_now(clock) + timeout_ns;
-    uint8_t bytes[2];
+    uint8_t bytes[GROUP_AT + sizeof eeprom->group];
+    eeprom->ready = false;
     for (;;) {
         if (!read_register(eeprom, REG_EEPROM_CONTROL, bytes, sizeof bytes))
             return false;
         *status = cm1e_get_u16(bytes);
+        memcpy(eeprom->group, bytes + GROUP_AT, sizeof eeprom->group);
+        eeprom->ready = !(*status & (EEPROM_BUSY | EEPROM_ERRORS));
         if (!(*status & EEPROM_BUSY))
             return true;
         if (cm1e_clock_now(clock) >= deadline_ns)
@@ -67,6 +72,8 @@ static bool make_ready(cm1e_eeprom_t *eeprom, int64_t timeout_ns)
     uint16_t status;
     uint8_t nop[2] = {EEPROM_NOP, 0};
     eeprom->group_bytes = 0;
+    if (eeprom->ready)
+        return true;
     if (!wait_idle(eeprom, timeout_ns, &status))
         return false;
     if (status & EEPROM_ERRORS)
@@ -77,6 +84,7 @@ static bool make_ready(cm1e_eeprom_t *eeprom, int64_t timeout_ns)
 static bool request(cm1e_eeprom_t *eeprom, uint16_t command, uint32_t word)
 {
     uint8_t bytes[6];
+    eeprom->ready = false;
     cm1e_put_u16(bytes, command);
     cm1e_put_u32(bytes + 2, word);
     return write_register(eeprom, REG_EEPROM_CONTROL, bytes, sizeof bytes);
@@ -96,11 +104,8 @@ static bool read_group(cm1e_eeprom_t *eeprom, uint32_t word)
             pause_for(NACK_PAUSE_NS); /* the memory itself was busy */
             continue;
         }
-        const unsigned bytes = status & EEPROM_READS_8 ? 8 : 4;
-        if (!read_register(eeprom, REG_EEPROM_DATA, eeprom->group, (uint16_t)bytes))
-            return false;
         eeprom->group_word = word;
-        eeprom->group_bytes = bytes;
+        eeprom->group_bytes = status & EEPROM_READS_8 ? 8 : 4;
         return true;
     }
     return false;

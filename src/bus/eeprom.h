@@ -13,6 +13,7 @@ typedef struct cm1e_eeprom {
     uint16_t station;
     bool lost;              /**< the slave controller does not answer */
     bool was_offered;       /**< the slave's processor had the interface before */
+    bool ready;             /**< the interface is idle, without errors */
     uint32_t group_word;    /**< address of the words in `group` */
     unsigned group_bytes;   /**< 0: nothing */
     uint8_t group[8];

@@ -27,6 +27,7 @@ typedef struct cm1e_hot {
     uint8_t member;          /**< its place in its group; 1: it has an address of its own */
     uint8_t before;          /**< optional slaves before it on the wire at the scan */
     uint16_t place;          /**< on the wire, as seen last; 0: nowhere */
+    uint32_t bound;          /**< number of times that its process data were placed in operation */
     cm1e_recover_t policy;   /**< never DEFAULT */
     const char *group;       /**< "": none */
     const cm1e_axis_config_t *axis; /**< its first one; NULL: none */
@@ -35,7 +36,6 @@ typedef struct cm1e_hot {
     uint32_t allowed;        /**< atomic: somebody has asked for it */
     uint32_t presence;       /**< atomic: cm1e_presence_t */
     uint64_t out_since;      /**< cycle in which it was taken out of the working counter */
-    uint32_t bound;          /**< number of times that its process data were placed in operation */
     uint16_t room[2];        /**< bytes that are kept free for it: outputs, inputs */
     cm1e_scouted_t scouted;
 } cm1e_hot_t;

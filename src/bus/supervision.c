@@ -59,6 +59,7 @@ static void ask_ports(cm1e_bus_t *bus, int64_t now_ns)
 static bool ask_what_comes_first(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_datagram_t *d = &bus->supervised.datagram;
+    bus->search.sent = false; /* the question before may have been given up */
     if (cm1e_ring_watch_ask(bus, d, now_ns) || cm1e_dc_next_look(bus, d))
         return true;
     bus->search.sent = bus->phase == BUS_OPERATING && bus->search.doubt == 0 && cm1e_search_next(bus, d, now_ns);
@@ -116,7 +117,6 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
     }
     bus->supervised.sent = false;
     if (bus->search.sent) {
-        bus->search.sent = false;
         cm1e_search_result(bus, d, now_ns);
         return;
     }

@@ -186,6 +186,17 @@ static bool is_network(const json_t *hello, const char *word)
     return (interface && strcmp(interface, word) == 0) || (name && strcmp(name, word) == 0);
 }
 
+/** A socket that was found by its name is that of the process in its name: any user can give a socket such a name. */
+static cm1e_error_t check_server(const cm1e_control_t *control, int pid, cm1e_diag_t *diag)
+{
+    struct ucred peer = {0};
+    socklen_t size = sizeof peer;
+    if (getsockopt(control->fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.pid == (pid_t)pid)
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "%s has the name of process %d, and process %d of user %u serves "
+                         "it: name the path if that is meant.", control->path, pid, (int)peer.pid, (unsigned)peer.uid);
+}
+
 /** Of several networks of one program, the one with this interface or name; NULL or "": the first. */
 static cm1e_error_t connect_to_process(cm1e_control_t **control, int pid, const char *interface_name, cm1e_diag_t *diag)
 {
@@ -196,6 +207,8 @@ static cm1e_error_t connect_to_process(cm1e_control_t **control, int pid, const 
     for (int n = 0; cm1e_runtime_find(pid, &n, path);) {
         json_t *reply = NULL;
         error = connect_to(control, path, diag);
+        if (error == CM1E_OK)
+            error = check_server(*control, pid, diag);
         if (error != CM1E_OK || !interface_name || !interface_name[0])
             return error;
         error = cm1e_control_call(*control, json_pack("{s:s}", "request", "hello"), &reply, diag);

@@ -2,8 +2,11 @@
 #include "control/record_request.h"
 
 #include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 
 #include "axis/axis_api.h"
+#include "scheduler/variables.h"
 
 enum { EVERY_MOST = 10000 };
 
@@ -21,12 +24,43 @@ static json_t *accept(const control_request_t *request, const char *name, json_t
 }
 
 /** The variables and objects that the program records itself. */
-static cm1e_error_t add_variables(recorder_t *recorder, const cm1e_scheduler_t *scheduler, cm1e_diag_t *diag)
+static cm1e_error_t add_own(recorder_t *recorder, const cm1e_scheduler_t *scheduler, cm1e_diag_t *diag)
 {
     const trace_t *own = cm1e_scheduler_trace(scheduler);
     cm1e_error_t error = CM1E_OK;
     for (uint32_t i = own->column_count - own->variables; i < own->column_count && error == CM1E_OK; i++)
         error = cm1e_trace_add(&recorder->trace, &own->columns[i], diag);
+    return error;
+}
+
+/** A variable by its whole path; all numbers within it, of an instance or a structure. */
+static cm1e_error_t add_within(recorder_t *recorder, const variables_t *variables, const char *path, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = CM1E_OK;
+    bool found = false;
+    for (uint32_t i = 0; i < variables->count && error == CM1E_OK; i++) {
+        const variable_t *variable = &variables->rows[i];
+        if (!cm1e_variable_is_within(variable->name, path))
+            continue;
+        found = true;
+        if (variable->form == VARIABLE_NUMBER || strcasecmp(variable->name, path) == 0)
+            error = cm1e_variable_trace(variable, &recorder->trace, diag);
+    }
+    if (found)
+        return error;
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "The program has no variable \"%.100s\": `variables` lists them.",
+                         path);
+}
+
+/** Those that the request names, or else those that the program records. */
+static cm1e_error_t add_variables(recorder_t *recorder, const cm1e_scheduler_t *scheduler, const json_t *paths,
+                                  cm1e_diag_t *diag)
+{
+    cm1e_error_t error = paths ? CM1E_OK : add_own(recorder, scheduler, diag);
+    for (size_t i = 0; i < json_array_size(paths) && error == CM1E_OK; i++) {
+        const char *path = json_string_value(json_array_get(paths, i));
+        error = add_within(recorder, cm1e_scheduler_variables(scheduler), path ? path : "", diag);
+    }
     return error;
 }
 
@@ -64,7 +98,7 @@ static cm1e_error_t make(recorder_t *recorder, const view_t *view, const json_t 
         names[i] = cm1e_axis_configuration(view->axes[i])->name;
     cm1e_error_t error = cm1e_trace_init(&recorder->trace, names, view->axis_count, 1, 1, diag);
     if (error == CM1E_OK)
-        error = add_variables(recorder, view->scheduler, diag);
+        error = add_variables(recorder, view->scheduler, json_object_get(message, "variables"), diag);
     if (error == CM1E_OK)
         error = add_objects(recorder, view, json_object_get(message, "objects"), diag);
     if (error == CM1E_OK)
@@ -75,7 +109,8 @@ static cm1e_error_t make(recorder_t *recorder, const view_t *view, const json_t 
 
 json_t *cm1e_record_begin(control_request_t *request, control_run_t *run, const json_t *message)
 {
-    const json_t *every = json_object_get(message, "every"), *objects = json_object_get(message, "objects");
+    const json_t *every = json_object_get(message, "every"), *objects = json_object_get(message, "objects"),
+                 *variables = json_object_get(message, "variables");
     cm1e_diag_t diag = {0};
     if (run->view.recorders[request->client])
         return refuse(request, CM1E_ERROR_BUSY, "This connection records already: send \"record_end\" before.");
@@ -84,6 +119,9 @@ json_t *cm1e_record_begin(control_request_t *request, control_run_t *run, const 
                       "left out.");
     if (objects && !json_is_array(objects))
         return refuse(request, CM1E_ERROR_INVALID_ARGUMENT, "\"objects\" is expected to be a list, or to be left out.");
+    if (variables && !json_is_array(variables))
+        return refuse(request, CM1E_ERROR_INVALID_ARGUMENT, "\"variables\" is expected to be a list of names, or to be "
+                      "left out.");
     recorder_t *recorder = calloc(1, sizeof *recorder);
     if (!recorder)
         return refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a recording.");

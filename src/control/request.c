@@ -331,8 +331,11 @@ static json_t *recover(control_request_t *request, control_run_t *run, const jso
 
 static json_t *variables(control_request_t *request, control_run_t *run, const json_t *message)
 {
-    (void)run, (void)message;
-    if (!cm1e_variables_begin(&request->variable))
+    json_int_t from;
+    if (!cm1e_take_number(message, "from", 0, UINT32_MAX, 0, &from))
+        return wrong(request, "\"from\" is expected to be the number of a variable, 0 = first, or to be left out.");
+    if (!cm1e_variables_begin(&request->variable, &run->view, (uint32_t)from,
+                              json_is_true(json_object_get(message, "forced"))))
         return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
     request->state = REQUEST_VARIABLE;
     request->wanted = false;
@@ -356,8 +359,13 @@ static json_t *variable(control_request_t *request, control_run_t *run, const js
 
 static json_t *end_variable(const control_request_t *request, const control_run_t *run)
 {
-    if (request->variable.values)
-        return accept(request, "variables", cm1e_variables_show(&request->variable, &run->view));
+    if (request->variable.values) {
+        json_t *reply = accept(request, "variables", cm1e_variables_show(&request->variable, &run->view));
+        const uint32_t next = cm1e_variables_next(&request->variable, &run->view);
+        if (next > 0)
+            json_object_set_new(reply, "next", json_integer(next));
+        return reply;
+    }
     const char *refusal = cm1e_variable_refusal(&request->variable);
     return refusal ? cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, refusal)
                    : accept(request, "variable", json_null());

@@ -7,13 +7,20 @@
 #include <string.h>
 
 #include "control/show.h"
+#include "control/variable_text.h"
 
 enum { KEEP_LEAST_MS = 100, KEEP_MOST_MS = 5000, KEEP_MS = 1000 };
 #define NS_PER_MS INT64_C(1000000)
 
+_Static_assert((int)VARIABLES_OF_REPLY >= (int)CM1E_FORCED, "all forced variables are in one reply");
+
+/** What the cycle reads: the first `count` rows are wanted, of which only the forced ones may be. */
 typedef struct variable_values {
-    double values[CM1E_TRACE_VARIABLES];
-    bool forced[CM1E_TRACE_VARIABLES];
+    uint32_t from, count;
+    bool only_forced;
+    uint32_t rows[VARIABLES_OF_REPLY];
+    bool forced[VARIABLES_OF_REPLY];
+    variable_value_t values[VARIABLES_OF_REPLY];
 } variable_values_t;
 
 /** The type, its name, and the range of its whole numbers; 0: it is none. */
@@ -25,46 +32,61 @@ static const struct { const char *name; int bits; bool is_signed; } types[] = {
     [CM1E_TRACE_REAL] = {"REAL", 0, true}, [CM1E_TRACE_LREAL] = {"LREAL", 0, true},
 };
 
-static bool is_variable(const trace_column_t *column) { return column->writable != NULL; }
-
 /* ---- the list ---------------------------------------------------------------------------------------------------- */
 
 /** @rt cycle */
 static void read_values(view_t *view, view_order_t *order)
 {
-    variable_order_t *of = (variable_order_t *)order;
-    const trace_t *trace = cm1e_scheduler_trace(view->scheduler);
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < trace->column_count && count < CM1E_TRACE_VARIABLES; i++) {
-        if (!is_variable(&trace->columns[i]))
-            continue;
-        of->values->values[count] = cm1e_trace_value(&trace->columns[i]);
-        of->values->forced[count++] = cm1e_scheduler_is_forced(view->scheduler, i);
+    variable_values_t *of = ((variable_order_t *)order)->values;
+    const variables_t *variables = cm1e_scheduler_variables(view->scheduler);
+    if (of->only_forced)
+        of->count = cm1e_scheduler_list_forced(view->scheduler, of->rows);
+    for (uint32_t i = 0; i < of->count; i++) {
+        cm1e_variable_read(&variables->rows[of->rows[i]], &of->values[i]);
+        of->forced[i] = of->only_forced || cm1e_scheduler_is_forced(view->scheduler, of->rows[i]);
     }
 }
 
-bool cm1e_variables_begin(variable_order_t *order)
+bool cm1e_variables_begin(variable_order_t *order, const view_t *view, uint32_t from, bool forced)
 {
-    *order = (variable_order_t){.order.decide = read_values, .values = calloc(1, sizeof(variable_values_t))};
-    return order->values != NULL;
+    const uint32_t count = cm1e_scheduler_variables(view->scheduler)->count;
+    *order = (variable_order_t){.order.decide = read_values, .values = malloc(sizeof(variable_values_t))};
+    if (!order->values)
+        return false;
+    memset(order->values, 0xFF, sizeof *order->values); /* so that the cycle does not wait for its pages */
+    order->values->count = 0;
+    order->values->from = from;
+    order->values->only_forced = forced;
+    for (uint32_t i = from; i < count && order->values->count < VARIABLES_OF_REPLY && !forced; i++)
+        order->values->rows[order->values->count++] = i;
+    return true;
+}
+
+static json_t *show_one(const variable_values_t *values, const variable_t *variable, uint32_t i)
+{
+    static const char *const texts[] = {[VARIABLE_STRING] = "STRING", [VARIABLE_WSTRING] = "WSTRING"};
+    const bool number = variable->form == VARIABLE_NUMBER;
+    return json_pack("{s:o, s:o, s:s, s:o, s:o, s:b}", "name", cm1e_show_text(variable->name), "unit",
+                     cm1e_show_text(variable->unit), "type", number ? types[variable->type].name : texts[variable->form],
+                     "declared", cm1e_show_text(variable->declared), "value",
+                     number ? cm1e_show_real(values->values[i].shown)
+                            : cm1e_variable_text_show(variable, values->values[i].bytes),
+                     "forced", values->forced[i]);
 }
 
 json_t *cm1e_variables_show(const variable_order_t *order, const view_t *view)
 {
-    const trace_t *trace = cm1e_scheduler_trace(view->scheduler);
+    const variables_t *variables = cm1e_scheduler_variables(view->scheduler);
     json_t *list = json_array();
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < trace->column_count && count < CM1E_TRACE_VARIABLES; i++) {
-        const trace_column_t *column = &trace->columns[i];
-        if (!is_variable(column))
-            continue;
-        json_array_append_new(list, json_pack("{s:o, s:o, s:s, s:o, s:b}", "name", cm1e_show_text(column->name), "unit",
-                                              cm1e_show_text(column->unit), "type", types[column->type].name, "value",
-                                              cm1e_show_real(order->values->values[count]), "forced",
-                                              order->values->forced[count]));
-        count++;
-    }
+    for (uint32_t i = 0; i < order->values->count; i++)
+        json_array_append_new(list, show_one(order->values, &variables->rows[order->values->rows[i]], i));
     return list;
+}
+
+uint32_t cm1e_variables_next(const variable_order_t *order, const view_t *view)
+{
+    const uint32_t next = order->values->from + order->values->count;
+    return order->values->only_forced || next >= cm1e_scheduler_variables(view->scheduler)->count ? 0 : next;
 }
 
 void cm1e_variables_free(variable_order_t *order)
@@ -83,21 +105,21 @@ static void change(view_t *view, view_order_t *order)
     of->forced.owner = view;
     of->forced.until_ns = cm1e_scheduler_time_ns(view->scheduler) + of->keep_ns;
     if (of->release)
-        cm1e_scheduler_release(view->scheduler, of->forced.column);
+        cm1e_scheduler_release(view->scheduler, of->forced.variable);
     else if (of->force)
         of->result = cm1e_scheduler_force(view->scheduler, &of->forced);
     else
-        of->result = cm1e_scheduler_write(view->scheduler, of->forced.column, &of->forced.value);
+        of->result = cm1e_scheduler_write(view->scheduler, of->forced.variable, &of->forced.value);
 }
 
 /** The bytes of a number in its type; false: it is no value of it. */
-static bool encode(const json_t *value, cm1e_trace_type_t type, forced_value_t *out)
+static bool encode(const json_t *value, cm1e_trace_type_t type, variable_value_t *out)
 {
     const double real = json_is_boolean(value) ? json_is_true(value) : json_number_value(value);
     const int64_t whole = json_is_integer(value) ? json_integer_value(value) : json_is_boolean(value) ? json_is_true(value) : 0;
     const int bits = types[type].bits;
     const float narrow = (float)real;
-    *out = (forced_value_t){.shown = real};
+    *out = (variable_value_t){.shown = real};
     if (type == CM1E_TRACE_REAL) {
         memcpy(out->bytes, &narrow, sizeof narrow);
         return fabs(real) <= (double)FLT_MAX;
@@ -115,12 +137,15 @@ static bool encode(const json_t *value, cm1e_trace_type_t type, forced_value_t *
     return whole < limit && whole >= (types[type].is_signed ? -limit : 0);
 }
 
-static uint32_t find_column(const trace_t *trace, const char *name)
+/** false: it is no value of the variable. */
+static bool take_value(const json_t *value, const variable_t *variable, variable_value_t *out)
 {
-    uint32_t i = 0;
-    while (i < trace->column_count && (!is_variable(&trace->columns[i]) || strcmp(trace->columns[i].name, name) != 0))
-        i++;
-    return i;
+    if (variable->form != VARIABLE_NUMBER)
+        return json_is_string(value) && cm1e_variable_text_take(variable, value, out->bytes);
+    if (!(json_is_number(value) || json_is_boolean(value)) || !encode(value, variable->type, out))
+        return false;
+    const json_int_t whole = json_integer_value(value);
+    return !variable->ranged || (json_is_integer(value) && whole >= variable->first && whole <= variable->last);
 }
 
 static const char *wrong(cm1e_error_t *error, cm1e_error_t value, const char *text)
@@ -132,7 +157,7 @@ static const char *wrong(cm1e_error_t *error, cm1e_error_t value, const char *te
 const char *cm1e_variable_take(variable_order_t *order, const view_t *view, const json_t *message, cm1e_error_t *error,
                                char *text, size_t size)
 {
-    const trace_t *trace = cm1e_scheduler_trace(view->scheduler);
+    const variables_t *variables = cm1e_scheduler_variables(view->scheduler);
     const char *name = json_string_value(json_object_get(message, "name"));
     const json_t *value = json_object_get(message, "value"), *keep = json_object_get(message, "keep_ms");
     const json_int_t keep_ms = keep ? json_integer_value(keep) : KEEP_MS;
@@ -140,19 +165,19 @@ const char *cm1e_variable_take(variable_order_t *order, const view_t *view, cons
     *order = (variable_order_t){.order.decide = change, .force = json_is_true(json_object_get(message, "force")),
                                 .release = json_is_null(value), .keep_ns = keep_ms * NS_PER_MS,
                                 .forced.client = client};
-    order->forced.column = name ? find_column(trace, name) : trace->column_count;
-    if (order->forced.column == trace->column_count) {
+    order->forced.variable = name ? cm1e_variables_find(variables, name) : variables->count;
+    if (order->forced.variable == variables->count) {
         snprintf(text, size, "The program has no variable \"%.100s\" that others may write: `variables` lists them.",
                  name ? name : "");
         return wrong(error, CM1E_ERROR_NOT_FOUND, text);
     }
     if ((keep && !json_is_integer(keep)) || keep_ms < KEEP_LEAST_MS || keep_ms > KEEP_MOST_MS)
         return wrong(error, CM1E_ERROR_INVALID_ARGUMENT, "\"keep_ms\" is expected to be 100 ... 5000, or to be left out.");
-    const cm1e_trace_type_t type = trace->columns[order->forced.column].type;
-    const bool number = json_is_number(value) || json_is_boolean(value);
-    if (order->release || (number && encode(value, type, &order->forced.value)))
+    const variable_t *variable = &variables->rows[order->forced.variable];
+    if (order->release || take_value(value, variable, &order->forced.value))
         return NULL;
-    snprintf(text, size, "\"value\" is expected to be a value of %s, or null to release the variable.", types[type].name);
+    snprintf(text, size, "\"value\" is expected to be a value of %.80s, or null to release the variable.",
+             variable->declared);
     return wrong(error, CM1E_ERROR_INVALID_ARGUMENT, text);
 }
 

@@ -11,20 +11,25 @@
 #include "control/view.h"
 #include "scheduler/forcing.h"
 
+enum { VARIABLES_OF_REPLY = 256 };
+
 /** What the cycle does for either request. */
 typedef struct variable_order {
     view_order_t order;
-    forced_t forced;            /**< client and column; what is forced or written */
+    forced_t forced;            /**< client and variable; what is forced or written */
     bool force, release;
     int64_t keep_ns;
     forcing_result_t result;    /**< valid when decided */
     struct variable_values *values; /**< of the list; NULL: there is none. Owned */
 } variable_order_t;
 
-/** Begins a list; false: no memory. */
-bool cm1e_variables_begin(variable_order_t *order);
+/** Begins a list: of at most VARIABLES_OF_REPLY variables from number `from` on, or of those that are forced. false: no
+ *  memory. */
+bool cm1e_variables_begin(variable_order_t *order, const view_t *view, uint32_t from, bool forced);
 /** The list, when the cycle has read it. */
 json_t *cm1e_variables_show(const variable_order_t *order, const view_t *view);
+/** Number of the first variable behind the list; 0: there is none. */
+uint32_t cm1e_variables_next(const variable_order_t *order, const view_t *view);
 /** Takes the members of a message; NULL: the order is complete. Else `text`, which says what is wrong, with `error`. */
 const char *cm1e_variable_take(variable_order_t *order, const view_t *view, const json_t *message, cm1e_error_t *error,
                                char *text, size_t size);

@@ -90,8 +90,8 @@ void cm1e_cam_in_enter(follow_t *follow, double counts)
     cam->sampled = true;
 }
 
-static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const cm1e_cam_sample_t *sample,
-                         from_t *point)
+static inline void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const cm1e_cam_sample_t *sample,
+                                from_t *point)
 {
     const cam_place_t *cam = &follow->cam;
     const master_view_t *seen = &follow->links[0].seen;
@@ -124,7 +124,78 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
            fabs(follow->cam.slave_scaling / follow->cam.master_scaling);
 }
 
-static const coupling_function_t cam_kind = {evaluate, steepest};
+/* Whether slope and curvature are the same at both ends of a period. */
+static bool is_seamless(const cm1e_cam_t *table)
+{
+    const cm1e_cam_knot_t *first = &table->knots[0], *last = &table->knots[table->count - 1];
+    return table->periodic && first->slope == last->slope && first->curvature == last->curvature;
+}
+
+/* Whether the master comes over no end of the cam on its course. */
+static bool stays_inside(const follow_t *follow, const course_t *master)
+{
+    const cm1e_cam_t *table = &follow->cam.slot->cam;
+    const double end = cm1e_position_minus(master->end, follow->links[0].origin);
+    const double a = (place_now(follow) - table->start) / table->length;
+    const double b = (place_in_cam(&follow->cam, &follow->links[0], end) - table->start) / table->length;
+    const double turn = floor(fmin(a, b)), rounding = 1e-9 * (1.0 + fabs(turn));
+    return fmin(a, b) > turn + rounding && fmax(a, b) < turn + 1.0 - rounding && (table->periodic || turn == 0.0);
+}
+
+/* The largest slope, curvature and third derivative of the cam as it is placed. */
+static cm1e_curve_point_t steepest_point(const cam_place_t *cam)
+{
+    const cm1e_curve_extremes_t *e = &cam->slot->cam.extremes;
+    const double finer = fabs(cam->finer), steep = fabs(cam->slave_scaling) * finer;
+    return (cm1e_curve_point_t){.slope = steep * fmax(fabs(e->least_slope), fabs(e->most_slope)),
+                                .curvature = steep * finer * e->curvature, .third = steep * finer * finer * e->third};
+}
+
+/* Those of the cam anywhere, because a cam is passed within a few courses. The ends of a cam may be corners. Straight
+ * lines have corners: of those, the master passes at most one in a cycle. */
+static bool bounds(const cm1e_axis_t *axis, const follow_t *follow, const course_t *master, cm1e_motion_bounds_t *most)
+{
+    const cam_place_t *cam = &follow->cam;
+    const cm1e_cam_t *table = &cam->slot->cam;
+    const bool lines = table->curve == mcCamLinear;
+    const cm1e_curve_point_t here = steepest_point(cam);
+    const cm1e_motion_bounds_t *m = &master->most;
+    if (!((lines && table->periodic) || is_seamless(table)) && !stays_inside(follow, master))
+        return false;
+    if (lines && m->velocity * fabs(cam->finer) * axis->cycle_s >= table->shortest)
+        return false;
+    const cm1e_motion_state_t motion = cm1e_curve_motion(&here, m->velocity, m->acceleration);
+    const double corner = fabs(cam->slave_scaling * cam->finer) * table->corner * m->velocity / axis->cycle_s;
+    *most = (cm1e_motion_bounds_t){motion.velocity, motion.acceleration + (lines ? corner : 0.0),
+                              lines ? INFINITY : cm1e_curve_jerk(&here, m->velocity, m->acceleration, m->jerk)};
+    return true;
+}
+
+static bool ordinary_anywhere(cm1e_axis_t *axis, follow_t *follow)
+{
+    from_t f;
+    evaluate(axis, follow, &f);
+    cm1e_coupling_put(axis, &f);
+    return true;
+}
+
+/* Where the master stays between two points of the cam, it comes over no end. */
+static bool ordinary(cm1e_axis_t *axis, follow_t *follow)
+{
+    cam_place_t *cam = &follow->cam;
+    cm1e_cam_sample_t sample;
+    if (!cam->sampled || cam->left != 0.0 || cam->before.phase == 0.0 ||
+        !cm1e_cam_sample_again(&cam->slot->cam, &cam->place, place_now(follow), &sample) ||
+        sample.turn != cam->before.turn)
+        return ordinary_anywhere(axis, follow);
+    cam->before.phase = sample.phase;
+    from_t f;
+    sample_point(axis, follow, &sample, &f);
+    cm1e_coupling_put(axis, &f);
+    return true;
+}
+
+static const coupling_function_t cam_kind = {evaluate, steepest, ordinary, bounds};
 
 /* At the ends of a single-shot cam it uses the slope inside the cam, because the master is about to be there. */
 void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,

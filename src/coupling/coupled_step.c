@@ -344,6 +344,8 @@ static bool step(cm1e_axis_t *axis)
         cm1e_coupling_keep_ratio(axis);
         stand_with_masters(axis, &f);
     }
+    if (next == &f) /* else the step to the next set-point is more than that of the coupling function */
+        cm1e_coupling_look_ahead(axis);
     return true;
 }
 
@@ -367,6 +369,7 @@ static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 
 const source_t cm1e_source_coupling = {
     .step = step,
+    .ordinary = cm1e_coupling_ordinary_step,
     .stop = cm1e_axis_stop_by_ramp,
     .begin_anew = begin_anew,
     .leave = leave,
@@ -401,6 +404,7 @@ static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
             c->now->anchor = cm1e_position_plus(c->now->anchor, counts);
         counts = 0.0;
     }
+    cm1e_axis_look_anew(axis);
     c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
     c->catch_up = (catch_up_t){.asked = *asked, .made_up = made_up, .momentary = across && c->now->to_position,
@@ -484,6 +488,7 @@ void cm1e_coupling_shift(cm1e_axis_t *axis, double way)
     follow_t *now = axis->coupling->now;
     const double counts = way * axis->position.scale;
     position_t *const places[] = {&now->anchor, &now->cam.slave_zero, &now->approach.begin, &now->approach.end};
+    cm1e_axis_look_anew(axis);
     for (int i = 0; i < 4; i++)
         *places[i] = cm1e_position_plus(*places[i], counts);
 }

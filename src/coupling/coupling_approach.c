@@ -82,7 +82,7 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
     return fmax(follow->approach.steepest, follow->approach.then->steepest(axis, follow, link));
 }
 
-static const coupling_function_t approach_kind = {evaluate, steepest};
+static const coupling_function_t approach_kind = {.evaluate = evaluate, .steepest = steepest};
 
 /* ---- its beginning ----------------------------------------------------------------------------------------------- */
 

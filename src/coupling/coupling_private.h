@@ -25,6 +25,8 @@
 #ifndef CM1E_COUPLING_COUPLING_PRIVATE_H
 #define CM1E_COUPLING_COUPLING_PRIVATE_H
 
+#include "axis/axis_course.h"
+#include "axis/axis_setpoint.h"
 #include "core/cache_line.h"
 #include "coupling/coupling_cam.h"
 #include "motion/observer.h"
@@ -89,6 +91,12 @@ typedef struct coupling_function {
     void (*evaluate)(cm1e_axis_t *axis, follow_t *follow, from_t *point);
     /** The maximum of |u of the slave per u of the master of this link|. */
     double (*steepest)(const cm1e_axis_t *axis, const follow_t *follow, int link);
+    /** evaluate() in an ordinary cycle: it ends with cm1e_coupling_put(), and returns true. It is a function of its own, so
+     *  that the set-point stays in registers. */
+    bool (*ordinary)(cm1e_axis_t *axis, follow_t *follow);
+    /** The bounds of the slave's motion while its only master is on this course; no bound of jerk: infinite. false: they
+     *  are not known ahead. */
+    bool (*bounds)(const cm1e_axis_t *axis, const follow_t *follow, const course_t *master, cm1e_motion_bounds_t *most);
 } coupling_function_t;
 
 /** The catch-up: difference to the coupling function, in the frame that moves with it; u. */
@@ -147,8 +155,6 @@ typedef struct observed {
  *  beginning of `catch_up` and the present `follow_t` have the rest of it. */
 typedef struct coupling {
     follow_t *now;                 /**< the present coupling, or the last one; NULL: there was none */
-    follow_t *awaited;             /**< coupling of the first waiting command, if it begins at a place of its master
-                                        (StartSync) and the active command goes on until then (cm1e_axis_t.awaits) */
     cm1e_motion_state_t phase;     /**< u of the master: phase shift of links[0], while it is followed */
     double f_velocity, f_acceleration; /**< u/s, u/s2; of the coupling function, in the last cycle */
     bool end_of_profile;           /**< the cam passed an end of its profile in this cycle */
@@ -157,6 +163,10 @@ typedef struct coupling {
     bool due;                      /**< the awaited command begins in this cycle */
     bool at_end;                   /**< the coupling in preparation waited for that end of the profile */
     bool left_behind;              /**< a master on another bus went on while the slave was silent */
+    bool ordinary;                 /**< all cycles are decided ahead on these courses of the slave and of its master */
+    uint32_t course, masters_course;
+    follow_t *awaited;             /**< coupling of the first waiting command, if it begins at a place of its master
+                                        (StartSync) and the active command goes on until then (cm1e_axis_t.awaits) */
     phasing_t phasing;             /**< the motion that changes the phase */
     catch_up_t catch_up;
     follow_t follows[FOLLOWS];     /**< places in turn, because links are in lists and must not move */
@@ -235,6 +245,19 @@ void cm1e_coupling_look_across(cm1e_axis_t *axis);
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way);
 /** Makes the set-point of the cycle in which a coupling began, without advancing its masters. */
 void cm1e_coupling_first_set_point(cm1e_axis_t *axis);
+
+/* coupling_ordinary.c */
+/** Writes the set-point of an ordinary cycle: that of the coupling function. */
+static inline void cm1e_coupling_put(cm1e_axis_t *follower, const from_t *f)
+{
+    follower->coupling->f_velocity = f->velocity;
+    follower->coupling->f_acceleration = f->acceleration;
+    cm1e_axis_put_set_point(follower, f);
+}
+/** source_t.ordinary of followers. */
+bool cm1e_coupling_ordinary_step(cm1e_axis_t *axis);
+/** Called after a step that was not ordinary: decides whether the next ones are, if that can be told anew. */
+void cm1e_coupling_look_ahead(cm1e_axis_t *axis);
 
 /* coupling_command.c */
 cm1e_error_t cm1e_coupling_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);

@@ -93,6 +93,13 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
     return (guard_t){.limit = GUARD_KEPT};
 }
 
+/* A slave that still gets in step has no ratio to keep: both brake with their own ramps. If the master braked no harder
+ * than the ratio allows, it could go on for minutes after its slave has stopped. */
+static bool gets_in_step(const coupling_t *c)
+{
+    return !c->now->in_step || (c->catch_up.on && !c->catch_up.made_up);
+}
+
 void cm1e_coupling_keep_ratio(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
@@ -102,7 +109,8 @@ void cm1e_coupling_keep_ratio(cm1e_axis_t *axis)
     const guard_t guard = braking > 0.0 ? limit_ahead(axis, braking) : (guard_t){.limit = GUARD_KEPT};
     if (!guard.limit)
         return;
-    c->stopping = true;
-    fail_with(c->now->links[0].master, axis, braking / c->now->function->steepest(axis, c->now, 0));
+    c->stopping = !gets_in_step(c);
+    fail_with(c->now->links[0].master, axis,
+              c->stopping ? braking / c->now->function->steepest(axis, c->now, 0) : INFINITY);
     cm1e_axis_guard_fail(axis, guard);
 }

@@ -7,17 +7,22 @@
 #include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
-static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
+static inline from_t sum_of(const follow_t *follow, int masters)
 {
-    (void)axis;
     double counts = 0.0, velocity = 0.0, acceleration = 0.0;
-    for (int i = 0; i < follow->count; i++) {
+    for (int i = 0; i < masters; i++) {
         const link_t *link = &follow->links[i];
         counts += link->seen.counts * link->counts_ratio;
         velocity += link->seen.velocity * link->ratio;
         acceleration += link->seen.acceleration * link->ratio;
     }
-    *point = (from_t){cm1e_position_towards(follow->anchor, counts), velocity, acceleration, false};
+    return (from_t){cm1e_position_towards(follow->anchor, counts), velocity, acceleration, false};
+}
+
+static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
+{
+    (void)axis;
+    *point = sum_of(follow, follow->count);
 }
 
 static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link)
@@ -26,7 +31,23 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
     return fabs(follow->links[link].ratio);
 }
 
-static const coupling_function_t gear = {evaluate, steepest};
+static bool bounds(const cm1e_axis_t *axis, const follow_t *follow, const course_t *master, cm1e_motion_bounds_t *most)
+{
+    (void)axis;
+    const double ratio = fabs(follow->links[0].ratio);
+    *most = (cm1e_motion_bounds_t){ratio * master->most.velocity, ratio * master->most.acceleration,
+                              ratio * master->most.jerk};
+    return true;
+}
+
+static bool ordinary(cm1e_axis_t *axis, follow_t *follow)
+{
+    const from_t f = sum_of(follow, 1);
+    cm1e_coupling_put(axis, &f);
+    return true;
+}
+
+static const coupling_function_t gear = {evaluate, steepest, ordinary, bounds};
 
 /* The ratio in counts. It is computed from whole numbers as far as doubles hold them, so it is rounded only once. */
 static double counts_ratio(const cm1e_axis_t *slave, const cm1e_axis_t *master, double numerator, double denominator)

@@ -190,6 +190,7 @@ void cm1e_coupling_unlink(cm1e_axis_t *axis)
         axis->coupling->slaves = link->next;
         link->master = NULL;
         link->listed = false;
+        cm1e_axis_look_anew(link->slave);
     }
 }
 
@@ -225,6 +226,8 @@ void cm1e_coupling_await_nothing(cm1e_axis_t *axis)
 static master_trouble_t trouble_of_set_value(const cm1e_axis_t *master)
 {
     const bool stopped = master->state == CM1E_AXIS_ERROR_STOP;
+    if (set_points_move(master) && !stopped)
+        return MASTER_GOOD;
     if (drive_homes(master))
         return stopped ? MASTER_ERROR_STOP : MASTER_HOMING;
     if (axis_free(master))

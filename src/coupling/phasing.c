@@ -106,6 +106,7 @@ static void begin(cm1e_axis_t *axis, cm1e_command_id_t id, double origin, const 
     phasing->profile = *profile;
     phasing->cycles = 0;
     phasing->moving = true;
+    cm1e_axis_look_anew(axis);
 }
 
 static void record(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
@@ -217,6 +218,7 @@ void cm1e_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_
     forget_waiting(axis, state, error);
     if (!axis_follows(axis))
         return;
+    cm1e_axis_look_anew(axis);
     const cm1e_motion_limits_t most = most_of(axis);
     cm1e_motion_limits_t limits = {most.velocity, most.acceleration / 2.0, most.deceleration / 2.0, most.jerk / 2.0};
     phasing->cycles = 0;
@@ -228,6 +230,7 @@ void cm1e_phasing_stand(cm1e_axis_t *axis)
     coupling_t *c = axis->coupling;
     record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     forget_waiting(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    cm1e_axis_look_anew(axis);
     c->phasing.moving = false;
     c->phase.velocity = c->phase.acceleration = 0.0;
 }

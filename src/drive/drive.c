@@ -303,7 +303,7 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         drive->target.set_point_bit = false;
         drive->target.set_point = drive->feedback.position;
     }
-    const bool follow = pass && !drive->fault.slave_deaf;
+    const bool follow = pass && !drive->fault.slave_absent;
     const bool held_before = drive->target.holds;
     drive->target.holds |= follow && drive->mode.holds;
     int32_t position = safe_position(drive);

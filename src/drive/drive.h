@@ -58,10 +58,11 @@ static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
 {
     return !drive->watch.lost && (drive->watch.al_state == CM1E_AL_NONE || drive->watch.al_state == CM1E_AL_OP);
 }
-/** Whether the slave answers and is out of Operational: a reset brings it back. @rt cycle */
+/** Whether a reset has to bring the slave back: it is out of Operational, or does not answer, as a slave that was
+ *  switched off and on does until then. An optional slave that is absent does not wait. @rt cycle */
 static inline bool cm1e_drive_waits(const cm1e_drive_t *drive)
 {
-    return drive->position != 0 && !drive->watch.lost && !cm1e_drive_operational(drive);
+    return drive->position != 0 && !drive->watch.absent && !cm1e_drive_operational(drive);
 }
 /** Whether there is no device: the axis is virtual, or an encoder. @rt any */
 static inline bool cm1e_drive_is_virtual(const cm1e_drive_t *drive) { return drive->position == 0; }

@@ -17,9 +17,9 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
     if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
         fault->device_code = drive->feedback.error_code;
     fault->slave_lost |= drive->watch.lost;
-    fault->slave_deaf |= drive->watch.lost || drive->watch.silent;
+    fault->slave_absent |= drive->watch.lost || drive->watch.silent;
     /* While the working counter stays wrong, nothing shows that the slave hears again. */
-    fault->slave_deaf |= fault->error == CM1E_ERROR_BUS_WORKING_COUNTER && error == CM1E_ERROR_BUS_LOST;
+    fault->slave_absent |= fault->error == CM1E_ERROR_BUS_WORKING_COUNTER && error == CM1E_ERROR_BUS_LOST;
     if (!cm1e_drive_operational(drive)) {
         fault->al_state = drive->watch.al_state;
         fault->al_status_code = drive->watch.al_status_code;

@@ -66,7 +66,7 @@ typedef struct cm1e_drive_fault {
     int8_t mode_commanded, mode_shown;
     uint16_t al_state, al_status_code;
     bool slave_lost;                /**< the slave did not answer at its address, then or later */
-    bool slave_deaf;                /**< the slave took no part in the cycle, then or later */
+    bool slave_absent;                /**< the slave took no part in the cycle, then or later */
     uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error */
     bool motor_status_known;        /**< `motor_status` is valid */
 } cm1e_drive_fault_t;

@@ -73,6 +73,8 @@ cm1e_error_t cm1e_group_start(cm1e_group_t *group, const cm1e_group_command_t *c
 cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id);
 /** Whether this is the active command of an existing group. @rt cycle */
 bool cm1e_group_runs(AXES_GROUP_REF_t reference, cm1e_command_id_t id);
+/** Whether this is a waiting command of an existing group. @rt cycle */
+bool cm1e_group_waits(AXES_GROUP_REF_t reference, cm1e_command_id_t id);
 /** Tells whether MC_GroupStop.Execute is TRUE. While it is, the group stays in GroupStopping. @rt cycle */
 void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold);
 /** Sets the factor on the velocities of commands, 0 ... 1, which holds until it is changed. CM1E_ERROR_AXIS_OVERRIDE:

@@ -113,11 +113,8 @@ static cm1e_error_t check_directions(cm1e_group_t *group, const cm1e_group_comma
 
 static cm1e_error_t refuse_path(cm1e_group_t *group, cm1e_error_t error, const cm1e_path_problem_t *problem)
 {
-    group_refusal_t refusal = {.error = CM1E_ERROR_GROUP_PATH, .path = problem->refusal, .value = problem->position};
-    if (error == CM1E_ERROR_FULL)
-        refusal.error = CM1E_ERROR_FULL;
-    else if (problem->refusal == CM1E_PATH_NO_TRANSITION)
-        refusal.error = CM1E_ERROR_GROUP_TRANSITION;
+    group_refusal_t refusal = {.error = error == CM1E_ERROR_FULL ? CM1E_ERROR_FULL : CM1E_ERROR_GROUP_PATH,
+                               .path = problem->refusal, .value = problem->position};
     if (problem->refusal == CM1E_PATH_OUT_OF_BOUNDS) {
         refusal.ident = group->ident[problem->axis];
         refusal.lower = group->path.config.axis[problem->axis].lowest;

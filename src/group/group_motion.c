@@ -48,6 +48,8 @@ static bool come_to_rest(cm1e_group_t *group)
 static void after_step(cm1e_group_t *group)
 {
     const cm1e_path_sample_t *sample = &group->sample;
+    if (sample->phase == CM1E_PATH_MOVING && sample->done == 0 && group->apart.passed_count == 0)
+        return;
     const bool at_rest = cm1e_group_at_rest(group);
     if (group->halting && at_rest) { /* before the commands that waited for it, which may be done in the same step */
         group->halting = false;
@@ -190,6 +192,13 @@ static double stop_time(void *context)
     return longest_s;
 }
 
+/* Axes on several buses may leave the path. */
+static bool bounds(void *context, uint32_t index, cm1e_motion_bounds_t *most, double *left_s)
+{
+    const cm1e_group_t *group = context;
+    return !group->apart.several && !group->ending && cm1e_path_bounds(&group->path, (int)index, most, left_s);
+}
+
 /* ---- to take the axes, and to let them go ------------------------------------------------------------------------ */
 
 void cm1e_group_let_go(cm1e_group_t *group)
@@ -239,7 +248,8 @@ cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
         cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
         const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused, .slow = slow,
                                            .begins_anew = begins_anew, .stop_time = stop_time, .held = held,
-                                           .alone = cm1e_group_alone, .context = group, .index = (uint32_t)i};
+                                           .alone = cm1e_group_alone, .course = &group->path.course,
+                                           .bounds = bounds, .context = group, .index = (uint32_t)i};
         if (axis && cm1e_axis_lead(axis, &leader) == CM1E_OK) {
             group->led |= 1u << i;
         } else if (!some) {

@@ -36,13 +36,35 @@ void cm1e_group_enqueue(cm1e_group_t *group, cm1e_command_id_t id)
     queue->ids[(queue->first + queue->count++) % CM1E_GROUP_COMMANDS] = id;
 }
 
+/* Numbers of commands rise. Where none is missing between the active one and this one, the place of this one is
+ * known. */
+static bool is_waiting(const cm1e_group_t *group, cm1e_command_id_t id)
+{
+    const group_queue_t *queue = &group->queue;
+    const int32_t behind = (int32_t)(id - first_of(group));
+    if (behind <= 0 || queue->count == 0)
+        return false;
+    const int place = queue->first + (behind < queue->count ? behind : 0);
+    if (queue->ids[place < CM1E_GROUP_COMMANDS ? place : place - CM1E_GROUP_COMMANDS] == id)
+        return true;
+    for (int i = 1; i < queue->count; i++)
+        if (queue->ids[(queue->first + i) % CM1E_GROUP_COMMANDS] == id)
+            return true;
+    return false;
+}
+
+bool cm1e_group_waits(AXES_GROUP_REF_t reference, cm1e_command_id_t id)
+{
+    const cm1e_group_t *group = cm1e_group_from_reference(&reference);
+    return group && id != 0 && is_waiting(group, id);
+}
+
 cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id)
 {
     if (id != 0 && first_of(group) == id)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
-    for (int i = 1; i < group->queue.count; i++)
-        if (group->queue.ids[(group->queue.first + i) % CM1E_GROUP_COMMANDS] == id)
-            return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
+    if (is_waiting(group, id))
+        return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
     const group_record_t *record = &group->records[id % GROUP_RECORDS];
     if (id == 0 || record->id != id)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_UNKNOWN};

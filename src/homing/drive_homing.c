@@ -385,7 +385,7 @@ static bool off(cm1e_axis_t *axis)
     axis->drive.command.homing_start = false;
     axis->drive.command.halt = false;
     axis->drive.command.mode = axis->mode;
-    cm1e_axis_become_free(axis);
+    cm1e_axis_let_go(axis);
     return true;
 }
 

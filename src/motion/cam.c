@@ -130,6 +130,17 @@ static bool adds(const cm1e_curve_extremes_t *all, const cm1e_curve_extremes_t *
            part->curvature > all->curvature * (1 + next_to_nothing);
 }
 
+static void find_corners(cm1e_cam_t *cam)
+{
+    const cm1e_cam_knot_t *knots = cam->knots;
+    cam->corner = cam->periodic ? fabs(knots[0].slope - knots[cam->count - 1].slope) : 0;
+    cam->shortest = span(knots, 0);
+    for (int i = 1; i + 1 < cam->count; i++) {
+        cam->corner = fmax(cam->corner, fabs(knots[i].slope - knots[i - 1].slope));
+        cam->shortest = fmin(cam->shortest, span(knots, i));
+    }
+}
+
 static cm1e_cam_fault_t find_extremes(cm1e_cam_t *cam, int *at)
 {
     cm1e_curve_extremes_t all = {INFINITY, -INFINITY, INFINITY, -INFINITY, 0, 0};
@@ -188,6 +199,7 @@ cm1e_cam_fault_t cm1e_cam_compile(cm1e_cam_t *cam, cm1e_cam_knot_t *knots, int c
         .length = knots[count - 1].master - knots[0].master,
         .advance = knots[count - 1].slave - knots[0].slave,
     };
+    find_corners(cam);
     return find_extremes(cam, at);
 }
 

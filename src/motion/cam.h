@@ -25,6 +25,8 @@ typedef struct cm1e_cam {
     double advance;                 /**< distance of the slave from the first to the last point */
     cm1e_curve_extremes_t extremes; /**< extremes, between the points too; `third` is an upper bound. With
                                          mcCamLinear without the steps of slope at the points */
+    double corner, shortest;        /**< mcCamLinear: largest step of the slope at a point, also from the end of a period
+                                         to the next one; shortest distance of the master between two points */
 } cm1e_cam_t;
 
 typedef enum cm1e_cam_fault {
@@ -62,5 +64,17 @@ typedef struct cm1e_cam_sample {
 /** Samples the cam at any position of the master. A single-shot cam keeps its first or last position outside of its
  *  points. */
 void cm1e_cam_sample(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double master, cm1e_cam_sample_t *sample);
+/** cm1e_cam_sample() where the master is in the same interval of the same period as before, and not at its beginning.
+ *  false: it is elsewhere, and nothing has changed. */
+static inline bool cm1e_cam_sample_again(const cm1e_cam_t *cam, const cm1e_cam_place_t *place, double master,
+                                         cm1e_cam_sample_t *sample)
+{
+    const double way = master - cam->start, phase = cam->periodic ? (way - place->turn_way) - place->turn_rest : way;
+    if (!(phase > 0 && phase < cam->length && phase >= place->curve.from &&
+          phase - place->curve.from < place->curve.length))
+        return false;
+    *sample = (cm1e_cam_sample_t){cm1e_curve_at(&place->curve, phase), cam->periodic ? place->turn : 0, phase};
+    return true;
+}
 
 #endif

@@ -22,6 +22,7 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
             return CM1E_ERROR_INVALID_ARGUMENT;
     }
     path->config = *config;
+    path->course++;
     path->override = 1;
     path->first_segment = path->segment_count = path->first_element = path->element_count = 0;
     path->cut = path->stop_wanted = path->stopping = false;
@@ -277,6 +278,7 @@ void cm1e_path_pause(cm1e_path_t *path)
 static void pop(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     const cm1e_path_element_t *element = cm1e_path_element(path, 0);
+    path->course++;
     if (element->last_of_tag) {
         if (!element->dropped)
             sample->done_tags[sample->done++] = element->tag;
@@ -303,6 +305,7 @@ static void pop_passed(cm1e_path_t *path, cm1e_path_sample_t *sample)
 static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     const double over_s = path->time_s - path->profile.duration_s;
+    path->course++;
     path->along = (cm1e_motion_state_t){path->profile.end.position, path->profile.end.velocity, 0};
     if (path->stopping) {
         const double slack = 1e-12 * path->along.position; /* tolerance of an end */
@@ -330,6 +333,34 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
         cm1e_path_keep_going(path);
     path->time_s = over_s;
     return true;
+}
+
+/** The largest derivatives of an axis by the length of a line or an arc. An arc is round about as far as its radius. */
+static void largest_derivatives(const cm1e_path_piece_t *piece, int axis, double *tangent, double *curvature,
+                                double *third)
+{
+    const bool round = piece->kind == CM1E_PATH_ARC && axis < piece->measured;
+    *tangent = round ? fmax(hypot(piece->u[0][axis], piece->v[0][axis]), hypot(piece->u[1][axis], piece->v[1][axis]))
+                     : fabs(piece->direction[axis]);
+    *curvature = round ? *tangent / piece->radius : 0;
+    *third = round ? *curvature / piece->radius : 0;
+}
+
+bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *most, double *left_s)
+{
+    const double until_s = fmin(path->stretch.until_s, path->profile.duration_s);
+    const cm1e_path_piece_t *piece = path->element[path->first_element].piece;
+    if (path->element_count == 0 || path->slow.missing != 0 || !(path->time_s < until_s) ||
+        piece->kind == CM1E_PATH_CURVE)
+        return false;
+    const cm1e_motion_bounds_t along = cm1e_profile_stretch_bounds(&path->stretch, path->time_s, until_s);
+    const double v = along.velocity, a = along.acceleration;
+    double tangent, curvature, third;
+    largest_derivatives(piece, axis, &tangent, &curvature, &third);
+    *most = (cm1e_motion_bounds_t){tangent * v, curvature * v * v + tangent * a,
+                                   third * v * v * v + 3 * curvature * v * a + tangent * along.jerk};
+    *left_s = until_s - path->time_s;
+    return isfinite(v);
 }
 
 static void fill(cm1e_path_t *path, cm1e_path_sample_t *sample)
@@ -383,9 +414,17 @@ void cm1e_path_slow(cm1e_path_t *path, double factor, cm1e_path_sample_t *sample
     fill(path, sample);
 }
 
+static void find_stretch(cm1e_path_t *path)
+{
+    path->course++;
+    cm1e_profile_stretch_at(&path->profile, path->time_s, &path->stretch);
+}
+
 void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     sample->done = 0;
+    if (path->slow.missing != 0 || path->element_count == 0)
+        path->course++;
     if (path->element_count > 0 && must_stop(path) && !path->stopping)
         (void)cm1e_path_plan_stop(path);
     path->time_s += cm1e_slow_time_step(&path->slow, path->config.cycle_s);
@@ -394,7 +433,7 @@ void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
         moves = go_to_next(path, sample);
     if (moves) {
         if (path->time_s >= path->stretch.until_s)
-            cm1e_profile_stretch_at(&path->profile, path->time_s, &path->stretch);
+            find_stretch(path);
         path->along = cm1e_profile_stretch_state(&path->stretch, path->time_s);
         pop_passed(path, sample);
     }

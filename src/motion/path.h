@@ -197,6 +197,7 @@ typedef struct cm1e_path {
     double begin;                   /**< place on the profile where the first element begins */
     cm1e_motion_state_t along;      /**< on the profile */
     cm1e_slow_time_t slow;          /**< the time of the profile runs slower */
+    uint32_t course;                /**< a number: cm1e_path_course() */
 } cm1e_path_t;
 
 /* ---- functions --------------------------------------------------------------------------------------------------- */
@@ -256,6 +257,12 @@ void cm1e_path_pause(cm1e_path_t *path);
  *  keeps the limits of the axes; those of its command it may exceed a little until then. Changes the velocities and
  *  accelerations of the last step's `sample`. */
 void cm1e_path_slow(cm1e_path_t *path, double factor, cm1e_path_sample_t *sample);
+
+/** The bounds of the motion of an axis from the last step on, and how long it lasts at most. They hold as long as the
+ *  number cm1e_path_course() stays, which every step changes that does not go on within the same stretch of the profile
+ *  and the same element. false: they are not known. */
+bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *most, double *left_s);
+static inline uint32_t cm1e_path_course(const cm1e_path_t *path) { return path->course; }
 
 /** Computes the positions of the axes after one more cycle. */
 void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample);

@@ -89,6 +89,12 @@ static inline cm1e_motion_state_t cm1e_profile_stretch_state(const cm1e_profile_
         .acceleration = a + t * j,
     };
 }
+/** The largest absolute values in a motion: u/s, u/s2, u/s3. */
+typedef struct cm1e_motion_bounds {
+    double velocity, acceleration, jerk;
+} cm1e_motion_bounds_t;
+/** Those between two times of the stretch. The velocity is infinite if the motion turns round in between. */
+cm1e_motion_bounds_t cm1e_profile_stretch_bounds(const cm1e_profile_stretch_t *stretch, double from_s, double until_s);
 /** State at time_s (0 = start; before: start, after the end: constant end velocity). */
 void cm1e_profile_sample(const cm1e_profile_t *profile, double time_s, cm1e_motion_state_t *state);
 /** Minimum and maximum position of the motion, end included; used for software limits. */

@@ -21,6 +21,23 @@ static cm1e_profile_stretch_t stretch_of(const cm1e_profile_t *profile, int inde
     return stretch;
 }
 
+cm1e_motion_bounds_t cm1e_profile_stretch_bounds(const cm1e_profile_stretch_t *stretch, double from_s, double until_s)
+{
+    const cm1e_motion_state_t a = cm1e_profile_stretch_state(stretch, from_s);
+    const cm1e_motion_state_t b = cm1e_profile_stretch_state(stretch, until_s);
+    double v = a.velocity;
+    if (a.acceleration * b.acceleration < 0) { /* the velocity has an extremum in between */
+        const double t = -stretch->origin.acceleration / stretch->jerk;
+        v = cm1e_profile_stretch_state(stretch, stretch->origin_s + t).velocity;
+    }
+    const bool turns = a.velocity * b.velocity < 0 || a.velocity * v < 0 || b.velocity * v < 0;
+    return (cm1e_motion_bounds_t){
+        .velocity = turns ? INFINITY : fmax(fabs(v), fmax(fabs(a.velocity), fabs(b.velocity))),
+        .acceleration = fmax(fabs(a.acceleration), fabs(b.acceleration)),
+        .jerk = fabs(stretch->jerk),
+    };
+}
+
 void cm1e_profile_stretch_at(const cm1e_profile_t *profile, double time_s, cm1e_profile_stretch_t *stretch)
 {
     if (!(time_s < profile->duration_s)) {

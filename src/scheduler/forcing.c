@@ -6,24 +6,19 @@
 
 enum { RELEASED = 0, FORCED, WRITTEN };
 
-static size_t size_of(cm1e_trace_type_t type)
+static void write_value(const forcing_parts_t *p, uint32_t variable, const variable_value_t *value)
 {
-    static const uint8_t sizes[] = {1, 1, 2, 4, 8, 1, 2, 4, 8, 4, 8};
-    return sizes[type];
+    cm1e_variable_write(&p->forcing->variables.rows[variable], value);
 }
 
-static void write_value(const forcing_parts_t *p, uint32_t column, const forced_value_t *value)
+void cm1e_scheduler_set_variables(cm1e_scheduler_t *scheduler, const variable_t *rows, uint32_t count)
 {
-    const trace_column_t *c = &p->trace->columns[column];
-    memcpy(c->writable, value->bytes, size_of(c->type));
+    cm1e_scheduler_forcing_parts(scheduler).forcing->variables = (variables_t){rows, count};
 }
 
-void cm1e_scheduler_permit_forcing(cm1e_scheduler_t *scheduler, const char *name)
+const variables_t *cm1e_scheduler_variables(const cm1e_scheduler_t *scheduler)
 {
-    trace_t *trace = cm1e_scheduler_forcing_parts(scheduler).trace;
-    for (uint32_t i = 0; i < trace->column_count; i++)
-        if (strcmp(trace->columns[i].name, name) == 0)
-            trace->columns[i].writable = (void *)(uintptr_t)trace->columns[i].value;
+    return &cm1e_scheduler_forcing_parts((cm1e_scheduler_t *)(uintptr_t)scheduler).forcing->variables;
 }
 
 void cm1e_scheduler_apply_forced(cm1e_scheduler_t *scheduler)
@@ -31,13 +26,13 @@ void cm1e_scheduler_apply_forced(cm1e_scheduler_t *scheduler)
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
     for (int i = 0; p.forcing->count > 0 && i < CM1E_FORCED; i++)
         if (p.forcing->rows[i].held)
-            write_value(&p, p.forcing->rows[i].column, &p.forcing->rows[i].value);
+            write_value(&p, p.forcing->rows[i].variable, &p.forcing->rows[i].value);
 }
 
-static forced_t *find(forcing_t *forcing, uint32_t column)
+static forced_t *find(forcing_t *forcing, uint32_t variable)
 {
     for (int i = 0; forcing->count > 0 && i < CM1E_FORCED; i++)
-        if (forcing->rows[i].held && forcing->rows[i].column == column)
+        if (forcing->rows[i].held && forcing->rows[i].variable == variable)
             return &forcing->rows[i];
     return NULL;
 }
@@ -53,7 +48,7 @@ static forced_t *find_free(forcing_t *forcing)
 forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_t *forced)
 {
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
-    forced_t *row = find(p.forcing, forced->column);
+    forced_t *row = find(p.forcing, forced->variable);
     const bool renewed = row && memcmp(row->value.bytes, forced->value.bytes, sizeof row->value.bytes) == 0;
     if (p.ending)
         return FORCING_ENDING;
@@ -67,9 +62,9 @@ forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_
     }
     *row = *forced;
     row->held = true;
-    write_value(&p, row->column, &row->value);
+    write_value(&p, row->variable, &row->value);
     if (!renewed)
-        cm1e_log_variable(p.log, FORCED, row->column, row->value.shown, p.run_ns);
+        cm1e_log_variable(p.log, FORCED, row->variable, row->value.shown, p.run_ns);
     return FORCING_DONE;
 }
 
@@ -77,13 +72,13 @@ static void release(const forcing_parts_t *p, forced_t *row)
 {
     row->held = false;
     p->forcing->count--;
-    cm1e_log_variable(p->log, RELEASED, row->column, row->value.shown, p->run_ns);
+    cm1e_log_variable(p->log, RELEASED, row->variable, row->value.shown, p->run_ns);
 }
 
-void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, uint32_t column)
+void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, uint32_t variable)
 {
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
-    forced_t *row = find(p.forcing, column);
+    forced_t *row = find(p.forcing, variable);
     if (row)
         release(&p, row);
 }
@@ -98,20 +93,30 @@ void cm1e_scheduler_release_all(cm1e_scheduler_t *scheduler, const void *owner, 
     }
 }
 
-forcing_result_t cm1e_scheduler_write(cm1e_scheduler_t *scheduler, uint32_t column, const forced_value_t *value)
+forcing_result_t cm1e_scheduler_write(cm1e_scheduler_t *scheduler, uint32_t variable, const variable_value_t *value)
 {
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
-    if (p.ending || find(p.forcing, column))
+    if (p.ending || find(p.forcing, variable))
         return p.ending ? FORCING_ENDING : FORCING_HELD;
-    write_value(&p, column, value);
-    cm1e_log_variable(p.log, WRITTEN, column, value->shown, p.run_ns);
+    write_value(&p, variable, value);
+    cm1e_log_variable(p.log, WRITTEN, variable, value->shown, p.run_ns);
     return FORCING_DONE;
 }
 
-bool cm1e_scheduler_is_forced(const cm1e_scheduler_t *scheduler, uint32_t column)
+bool cm1e_scheduler_is_forced(const cm1e_scheduler_t *scheduler, uint32_t variable)
 {
     const forcing_parts_t p = cm1e_scheduler_forcing_parts((cm1e_scheduler_t *)(uintptr_t)scheduler);
-    return find(p.forcing, column) != NULL;
+    return find(p.forcing, variable) != NULL;
+}
+
+uint32_t cm1e_scheduler_list_forced(const cm1e_scheduler_t *scheduler, uint32_t rows[CM1E_FORCED])
+{
+    const forcing_t *forcing = cm1e_scheduler_forcing_parts((cm1e_scheduler_t *)(uintptr_t)scheduler).forcing;
+    uint32_t count = 0;
+    for (int i = 0; i < CM1E_FORCED; i++)
+        if (forcing->rows[i].held)
+            rows[count++] = forcing->rows[i].variable;
+    return count;
 }
 
 void cm1e_scheduler_forcing_cycle(cm1e_scheduler_t *scheduler)

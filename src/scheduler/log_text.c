@@ -6,7 +6,7 @@
 #include "bus/port_watch.h"
 #include "bus/presence_text.h"
 #include "scheduler/scheduler_window.h"
-#include "scheduler/trace_recorder.h"
+#include "scheduler/variables.h"
 
 static const char *const kind_names[] = {
     [CM1E_LOG_RUN] = "run",
@@ -97,12 +97,16 @@ static void stranger_text(const cm1e_log_event_t *event, char *text, size_t size
 
 static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
 {
-    const trace_t *trace = cm1e_scheduler_trace(scheduler);
-    const char *name = event->detail < trace->column_count ? trace->columns[event->detail].name : "a variable";
+    const variables_t *variables = cm1e_scheduler_variables(scheduler);
+    const variable_t *variable = event->detail < variables->count ? &variables->rows[event->detail] : NULL;
+    const char *name = variable ? variable->name : "a variable";
+    char value[40] = "a text";
+    if (!variable || variable->form == VARIABLE_NUMBER)
+        snprintf(value, sizeof value, "%.10g", event->value);
     if (event->code == 0)
-        snprintf(text, size, "%s is no longer forced to %.10g", name, event->value);
+        snprintf(text, size, "%s is no longer forced to %s", name, value);
     else
-        snprintf(text, size, "%s was %s %.10g from outside", name, event->code == 1 ? "forced to" : "set to", event->value);
+        snprintf(text, size, "%s was %s %s from outside", name, event->code == 1 ? "forced to" : "set to", value);
 }
 
 void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)

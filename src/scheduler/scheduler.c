@@ -469,7 +469,7 @@ const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return 
 
 forcing_parts_t cm1e_scheduler_forcing_parts(cm1e_scheduler_t *s)
 {
-    return (forcing_parts_t){&s->forcing, &s->trace, &s->log, cm1e_scheduler_time_ns(s), s->shutting_down};
+    return (forcing_parts_t){&s->forcing, &s->log, cm1e_scheduler_time_ns(s), s->shutting_down};
 }
 
 /* ---- before and after ------------------------------------------------------------------------------------------ */

@@ -47,9 +47,9 @@ static void add_timing_columns(trace_t *trace)
     *new_column(trace) = (trace_column_t){"execution time", "us", .type = CM1E_TRACE_LREAL,
                                           .value = &timing->execution_time_us};
     *new_column(trace) = (trace_column_t){"lost frames", "", TRACE_KIND_COUNT, CM1E_TRACE_ULINT, &timing->lost_frames,
-                                          false, NULL};
+                                          false, 0};
     *new_column(trace) = (trace_column_t){"overruns", "", TRACE_KIND_COUNT, CM1E_TRACE_ULINT, &timing->overruns, false,
-                                          NULL};
+                                          0};
 }
 
 static void add_error_columns(trace_t *trace)
@@ -263,7 +263,7 @@ double cm1e_trace_value(const trace_column_t *column)
     } v;
 #define READ(member) (memcpy(&v.member, column->value, sizeof v.member), (double)v.member)
     switch (column->type) {
-    case CM1E_TRACE_BOOL: return READ(usint) != 0;
+    case CM1E_TRACE_BOOL: return column->bit ? (unsigned)READ(usint) >> (column->bit - 1) & 1 : READ(usint) != 0;
     case CM1E_TRACE_SINT: return READ(sint);
     case CM1E_TRACE_INT: return READ(i);
     case CM1E_TRACE_DINT: return READ(dint);

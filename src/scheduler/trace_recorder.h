@@ -33,7 +33,7 @@ typedef struct trace_column {
     cm1e_trace_type_t type;
     const void *value;  /**< where it is read; NULL: a column of an axis */
     bool little_endian; /**< it lies in the process image */
-    void *writable;     /**< the same as `value`, where others may write it (forcing.h); else NULL */
+    uint8_t bit;        /**< it is one bit of a byte: 1 = bit 0; else 0 */
 } trace_column_t;
 
 /** A moment that the program marked. */

@@ -19,6 +19,8 @@ st_t *cm1e_st_new(void);
 /** A translation that knows no blocks and begins faster: for tests. */
 st_t *cm1e_st_new_bare(void);
 void cm1e_st_free(st_t *st);
+/** How many variables others see by their names while the program runs (10000). */
+void cm1e_st_list_most(st_t *st, uint64_t count);
 /** Adds a source file. Errors within it are reported; an error of this function is one of reading the file. */
 cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag);
 /** Adds a source that is in memory. */

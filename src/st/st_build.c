@@ -17,6 +17,17 @@ expr_t *cm1e_st_qualified(st_t *st, place_t place, const char *text)
     return expr;
 }
 
+expr_t *cm1e_st_qualified_in(st_t *st, place_t place, const expr_t *space, const char *text)
+{
+    const char *prefix = cm1e_st_dotted(st, space);
+    expr_t *expr = cm1e_st_qualified(st, place, text);
+    if (prefix && expr->kind == E_QUALIFIED)
+        expr->prefix = cm1e_st_format(st->arena, "%s.%s", prefix, expr->prefix);
+    else
+        cm1e_st_report(st, place, "in front of the type stands the name of a namespace");
+    return expr;
+}
+
 void cm1e_st_deepen(st_t *st, stmt_t *stmt)
 {
     for (const branch_t *branch = stmt->branches; branch; branch = branch->next)
@@ -107,9 +118,8 @@ void cm1e_st_edge(parsing_t *parsing, place_t place, const char *word, vars_t va
         cm1e_st_report(parsing->st, place, "\"%s\" cannot stand here; expected \";\" or \":=\"", word);
         return;
     }
-    cm1e_st_report(parsing->st, place, "%s is not supported; declare an instance of %s and call it", rising ?
-                   "R_EDGE" : "F_EDGE", rising ? "R_TRIG" : "F_TRIG");
-    (void)vars;
+    for (var_t *var = vars.first; var; var = var->next)
+        var->qualifiers |= rising ? Q_R_EDGE : Q_F_EDGE;
 }
 
 static bool is_external(const st_t *st, place_t place) { return st->sources[place.file].external; }
@@ -154,6 +164,8 @@ void cm1e_st_add_type(parsing_t *parsing, place_t place, const char *name, type_
         alias->same = type;
         type = alias;
     }
+    name = cm1e_st_full_name(st, name);
+    type->name = name;
     type->initial = initial;
     type->place = place;
     type->external = is_external(st, place);
@@ -171,8 +183,12 @@ void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const
     static const char *const kinds[] = {"function", "function block", "program", "method", "interface"};
     st_t *st = parsing->st;
     unit_t *unit = cm1e_st_take(st->arena, sizeof *unit);
+    const char *const own = name;
+    name = cm1e_st_full_name(st, name);
     *unit = (unit_t){.kind = kind, .name = name, .place = place, .vars = vars.first, .body = body.first,
-                     .result_type = result, .external = is_external(st, place)};
+                     .result_type = result, .external = is_external(st, place), .scope = st->scope};
+    if (kind == U_PROGRAM && name != own)
+        cm1e_st_report(st, place, "a program is in no namespace: its configuration is not either");
     if (kind != U_FUNCTION) {
         unit->object = parsing->object;
         unit->object.methods = parsing->methods;
@@ -181,7 +197,7 @@ void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const
         parsing->methods = NULL;
     }
     if (kind == U_FUNCTION && result) {
-        var_t *var = cm1e_st_var_name(parsing, place, name);
+        var_t *var = cm1e_st_var_name(parsing, place, own);
         var->section = V_RESULT;
         var->type = result;
         unit->result = var;
@@ -210,7 +226,8 @@ static unit_t *add_part(parsing_t *parsing, place_t place, const char *name, typ
 {
     st_t *st = parsing->st;
     unit_t *unit = cm1e_st_take(st->arena, sizeof *unit);
-    *unit = (unit_t){.kind = U_METHOD, .name = name, .place = place, .body = body.first, .result_type = result};
+    *unit = (unit_t){.kind = U_METHOD, .name = name, .place = place, .body = body.first, .result_type = result,
+                     .scope = st->scope};
     unit->object.next_method = parsing->methods;
     parsing->methods = unit;
     if (result) {

@@ -126,8 +126,8 @@ static bool is_enable(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
         return true;
     cm1e_st_expression(st, arg->value);
     arg->value = in ? cm1e_st_coerce(st, arg->value, st->elementary[T_BOOL], "EN") : arg->value;
-    if (out && cm1e_st_assignable(st, arg->value) && arg->value->type->kind != T_BOOL)
-        cm1e_st_report(st, arg->place, "ENO is given to a BOOL");
+    if (out && cm1e_st_assignable(st, arg->value) && (arg->value->type->kind != T_BOOL || arg->value->bit))
+        cm1e_st_report(st, arg->place, "ENO is given to a BOOL that is no bit of something else");
     *(in ? &call->enable : &call->enabled) = arg->value;
     if (!call->may_be_skipped)
         cm1e_st_report(st, arg->place, "a call with EN or ENO is a statement of its own, or all that is behind :=");
@@ -247,6 +247,8 @@ static void call_block(st_t *st, expr_t *call, bool statement)
 {
     unit_t *unit = call->a->type->unit;
     call->type = st->elementary[T_NONE];
+    if (unit->object.is_class)
+        cm1e_st_report(st, call->place, "\"%s\" is a CLASS, which has no statements of its own: call a method of it", unit->name);
     call->unit = unit;
     call->impure = true;
     if (!statement)
@@ -274,12 +276,27 @@ void cm1e_st_check_arguments(st_t *st, unit_t *unit, expr_t *call)
     check_args(st, unit, call);
 }
 
+/** Machines.Axes.Limit(x) */
+static bool call_in_namespace(st_t *st, expr_t *call)
+{
+    const char *name = call->a->kind == E_MEMBER ? cm1e_st_dotted(st, call->a) : NULL;
+    const expr_t *root = call->a;
+    while (root->kind == E_MEMBER && root->a)
+        root = root->a;
+    unit_t *unit = name && !cm1e_st_find_var(st, root->name)
+        ? cm1e_st_lookup(st, st->units, root->scope, root->place, name) : NULL;
+    if (!unit || unit->kind != U_FUNCTION)
+        return false;
+    call_function(st, call, unit);
+    return true;
+}
+
 void cm1e_st_call(st_t *st, expr_t *call, bool statement)
 {
     if (st->checker->call_method(st, call, statement))
         return;
     if (call->a->kind == E_NAME) {
-        unit_t *unit = cm1e_st_map_get(st->units, call->a->name);
+        unit_t *unit = cm1e_st_lookup(st, st->units, call->a->scope, call->a->place, call->a->name);
         const bool is_variable = cm1e_st_find_var(st, call->a->name) && !(unit && unit->kind == U_FUNCTION);
         if (!is_variable && unit && unit->kind == U_FUNCTION) {
             call_function(st, call, unit);
@@ -297,6 +314,13 @@ void cm1e_st_call(st_t *st, expr_t *call, bool statement)
             call->type = st->elementary[T_WRONG];
             return;
         }
+    }
+    if (call_in_namespace(st, call))
+        return;
+    const char *dotted = call->a->kind == E_MEMBER ? cm1e_st_dotted(st, call->a->a) : NULL;
+    if (dotted && cm1e_st_map_get(st->spaces, dotted) && !cm1e_st_find_var(st, dotted)) {
+        unknown_function(st, call, cm1e_st_dotted(st, call->a));
+        return;
     }
     cm1e_st_expression(st, call->a);
     if (call->a->type->kind == T_BLOCK) {

@@ -55,19 +55,31 @@ static void check_units(st_t *st)
 
 /* ---- tasks ------------------------------------------------------------------------------------------------------- */
 
+/** SINGLE := variable: a BOOL that is read in every cycle. An index could stop the program there. */
+static void single(st_t *st, task_t *task, arg_t *arg)
+{
+    const expr_t *at = arg->value;
+    task->single = arg->value;
+    while (at->kind == E_MEMBER && at->a)
+        at = at->a;
+    if (arg->value->type->kind != T_WRONG && (arg->value->type->kind != T_BOOL || at->kind != E_NAME))
+        cm1e_st_report(st, arg->place, "SINGLE is a global variable of type BOOL, or an output or variable of a program: its "
+                       "rising edge runs the task");
+}
+
 static void setting(st_t *st, task_t *task, arg_t *arg)
 {
     cm1e_st_expression(st, arg->value);
-    const bool interval = strcasecmp(arg->name, "INTERVAL") == 0, priority = strcasecmp(arg->name, "PRIORITY") == 0;
     int64_t value = 0;
-    if (!interval && !priority) {
-        cm1e_st_report(st, arg->place, "a task has INTERVAL and PRIORITY here, not %s%s", arg->name,
-                       strcasecmp(arg->name, "SINGLE") == 0 ? ": tasks by event are not supported" : "");
-    } else if (interval) {
+    if (strcasecmp(arg->name, "SINGLE") == 0) {
+        single(st, task, arg);
+    } else if (strcasecmp(arg->name, "INTERVAL") == 0) {
         const expr_t *expr = cm1e_st_coerce(st, arg->value, st->elementary[T_TIME], "INTERVAL");
         task->interval_ns = expr->value.integer;
         if (expr->type->kind != T_WRONG && (!expr->value.known || expr->value.integer <= 0))
             cm1e_st_report(st, arg->place, "INTERVAL is a time above 0, for instance T#10ms");
+    } else if (strcasecmp(arg->name, "PRIORITY") != 0) {
+        cm1e_st_report(st, arg->place, "a task has INTERVAL, SINGLE and PRIORITY, not %s", arg->name);
     } else if (cm1e_st_integer_constant(st, arg->value, &value, "PRIORITY")) {
         task->priority = value;
         if (value < 0 || value > 65535)

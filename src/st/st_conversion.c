@@ -4,8 +4,6 @@
 #include "st/st_parsing.h"
 #include "st/st_standard.h"
 
-const char *cm1e_st_type_name(const type_t *type) { return type->name ? type->name : "this type"; }
-
 expr_t *cm1e_st_convert_node(st_t *st, expr_t *expr, type_t *type)
 {
     expr_t *node = cm1e_st_node(st, E_CONVERT, expr->place, expr, NULL);
@@ -22,7 +20,10 @@ expr_t *cm1e_st_convert_node(st_t *st, expr_t *expr, type_t *type)
     return node;
 }
 
-static const char *plain_name(const type_t *type) { return type->kind == T_STRING ? "STRING" : type->name; }
+static const char *plain_name(const type_t *type) 
+{
+    return type->kind != T_STRING ? type->name : type->wide ? "WSTRING" : "STRING";
+}
 
 static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *what)
 {
@@ -32,10 +33,10 @@ static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *wh
                        (long long)expr->value.integer, type->name, what);
     else if (from == T_NONE)
         cm1e_st_report(st, expr->place, "this has no value, and \"%s\" is %s", what, cm1e_st_type_name(type));
-    else if (from <= T_DT && (to <= T_DT || to == T_STRING))
+    else if ((from <= T_DT || from == T_STRING) && (to <= T_DT || to == T_STRING) && (from != to || from == T_STRING))
         cm1e_st_report(st, expr->place, "\"%s\" is %s, and this is %s: without a conversion a value could be lost or "
-                       "change its meaning; %s_TO_%s(...) converts it", what, cm1e_st_type_name(type), expr->type->name,
-                       expr->type->name, plain_name(type));
+                       "change its meaning; %s_TO_%s(...) converts it", what, cm1e_st_type_name(type),
+                       cm1e_st_type_name(expr->type), plain_name(expr->type), plain_name(type));
     else if (to == T_ENUM && from != T_ENUM)
         cm1e_st_report(st, expr->place, "\"%s\" is %s, and takes its enumerators, for instance %s", what,
                        cm1e_st_type_name(type), type->members ? type->members->name : "none");
@@ -111,7 +112,7 @@ static bool is_place(const expr_t *expr)
            expr->kind == E_THIS;
 }
 
-expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
+static expr_t *coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
 {
     const type_kind_t from = expr->type->kind, to = type->kind;
     if (expr->untyped && to <= T_LREAL && retype(st, expr, type))
@@ -126,12 +127,34 @@ expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
         return cm1e_st_convert_node(st, expr, type);
     if (to == T_REF && type->automatic)
         return refer(st, expr, type, what);
-    if ((from == T_STRING && to == T_STRING) || (from == T_NULL && (to == T_REF || to == T_INTERFACE)))
+    if ((from == T_STRING && to == T_STRING && expr->type->wide == type->wide) || (from == T_NULL && (to == T_REF || to == T_INTERFACE)))
         return expr;
     const bool object = (from == T_BLOCK || from == T_INTERFACE) && to == T_INTERFACE;
     if (object && cm1e_st_is_a(st, expr->type->unit, type->unit) && (from == T_INTERFACE || is_place(expr)))
         return cm1e_st_convert_node(st, expr, type);
     return refuse(st, expr, type, what);
+}
+
+/** What is no value of a subrange is an error where it is known, and else a fault when the program runs. */
+static expr_t *confine(st_t *st, expr_t *expr, type_t *type, const char *what)
+{
+    if (expr->type->kind == T_WRONG)
+        return expr;
+    if (!expr->value.known)
+        return cm1e_st_convert_node(st, expr, type);
+    if (expr->value.huge || expr->value.integer < type->first || expr->value.integer > type->last)
+        cm1e_st_report(st, expr->place, "%lld is not a value of %s, which \"%s\" is", (long long)expr->value.integer,
+                       type->shown, what);
+    return give_type(st, expr, type);
+}
+
+expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
+{
+    if (!type->ranged)
+        return coerce(st, expr, type, what);
+    if (expr->type == type && (is_place(expr) || (expr->kind == E_CALL && expr->unit)))
+        return expr;
+    return confine(st, coerce(st, expr, st->elementary[type->kind], what), type, what);
 }
 
 expr_t *cm1e_st_settle(st_t *st, expr_t *expr)
@@ -166,6 +189,11 @@ bool cm1e_st_assignable(st_t *st, const expr_t *expr)
     }
     if (at->type->kind == T_WRONG)
         return false;
+    if (expr->kind == E_MEMBER && expr->bit && expr->a->type->ranged) {
+        cm1e_st_report(st, expr->place, "a single bit of %s is not written: the value could leave its range",
+                       expr->a->type->shown);
+        return false;
+    }
     if (at->kind == E_DEREF || at->kind == E_THIS)
         return true;
     if (at->kind != E_NAME || !at->var || at->var->owner) {
@@ -174,6 +202,11 @@ bool cm1e_st_assignable(st_t *st, const expr_t *expr)
     }
     if (is_constant(at->var)) {
         cm1e_st_report(st, expr->place, "\"%s\" is CONSTANT", at->var->name);
+        return false;
+    }
+    if ((at->var->qualifiers & Q_EDGE) && at->var->unit && cm1e_st_this(st) == at->var->unit) {
+        cm1e_st_report(st, expr->place, "\"%s\" is TRUE for one call after an edge of the input, and is not written",
+                       at->var->name);
         return false;
     }
     if (at->var->controls)

@@ -12,11 +12,11 @@ static void name_types(st_t *st)
     static const char *const prefixes[] = {[T_STRUCT] = "T", [T_ENUM] = "E"};
     for (type_t *type = st->tree.types; type; type = type->next) {
         if (type->kind == T_STRUCT || type->kind == T_ENUM)
-            type->c_name = cm1e_st_format(st->arena, "%s_%s", prefixes[type->kind], type->name);
+            type->c_name = cm1e_st_format(st->arena, "%s_%s", prefixes[type->kind], cm1e_st_c_name(st, type->name));
         for (var_t *var = type->kind == T_STRUCT ? type->members : NULL; var; var = var->next)
             var->c_name = cm1e_st_format(st->arena, "%s_", var->name);
         for (var_t *var = type->kind == T_ENUM ? type->members : NULL; var; var = var->next) {
-            var->c_name = cm1e_st_format(st->arena, "E_%s__%s", type->name, var->name);
+            var->c_name = cm1e_st_format(st->arena, "%s__%s", type->c_name, var->name);
             var->owner = type;
         }
     }
@@ -27,14 +27,15 @@ static void name_units(st_t *st)
     static const char *const prefixes[] = {[U_FUNCTION] = "FUN", [U_BLOCK] = "FB", [U_PROGRAM] = "PRG",
                                            [U_METHOD] = "MET", [U_INTERFACE] = "ITF"};
     for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
-        const char *symbol = st->sources[unit->place.file].symbol;
+        const char *symbol = st->sources[unit->place.file].symbol, *name = cm1e_st_c_name(st, unit->name);
         unit->c_name = unit->external ? cm1e_st_format(st->arena, "%s%s", symbol, unit->name)
             : unit->kind == U_METHOD ? cm1e_st_method_name(st, "MET", unit->object.owner, unit->name)
-            : unit->kind == U_FUNCTION ? cm1e_st_format(st->arena, "FUN_%s", unit->name)
-            : cm1e_st_format(st->arena, "run_%s", unit->name);
-        unit->c_type = cm1e_st_format(st->arena, "%s_%s", prefixes[unit->kind], unit->name);
+            : unit->kind == U_FUNCTION ? cm1e_st_format(st->arena, "FUN_%s", name)
+            : cm1e_st_format(st->arena, "run_%s", name);
+        unit->c_type = cm1e_st_format(st->arena, "%s_%s", prefixes[unit->kind], name);
         if (unit->kind == U_METHOD)
-            unit->c_type = cm1e_st_format(st->arena, "%s_%s", prefixes[unit->object.owner->kind], unit->object.owner->name);
+            unit->c_type = cm1e_st_format(st->arena, "%s_%s", prefixes[unit->object.owner->kind],
+                                          cm1e_st_c_name(st, unit->object.owner->name));
         if (unit->type)
             unit->type->c_name = unit->kind == U_INTERFACE ? "st_interface_t" : unit->c_type;
         for (var_t *var = unit->vars; var; var = var->next) {
@@ -59,13 +60,15 @@ static void map_vars(st_t *st, map_t *map, var_t *vars, const char *where)
     }
 }
 
-/** An enumerator can be written without its type where only one type has it. */
+/** An enumerator can be written without its type where only one type of its namespace has it. */
 static void map_enumerators(st_t *st, type_t *type)
 {
     static var_t several;
-    for (var_t *var = type->members; var; var = var->next)
-        cm1e_st_map_put(st->enumerators, var->name,
-                        cm1e_st_map_get(st->enumerators, var->name) ? &several : var);
+    const char *space = type->scope ? type->scope->space : "";
+    for (var_t *var = type->members; var; var = var->next) {
+        const char *name = *space ? cm1e_st_format(st->arena, "%s.%s", space, var->name) : var->name;
+        cm1e_st_map_put(st->enumerators, name, cm1e_st_map_get(st->enumerators, name) ? &several : var);
+    }
 }
 
 static void map_names(st_t *st)
@@ -98,6 +101,10 @@ static void check_section(st_t *st, var_t *var)
         cm1e_st_report(st, var->place, "an output or a temporary variable cannot be CONSTANT");
     if ((var->qualifiers & Q_CONSTANT) && var->section != V_EXTERNAL && var->section != V_IN_OUT && !var->initial)
         cm1e_st_report(st, var->place, "the constant \"%s\" needs a value: := ...", var->name);
+    if (unit && unit->object.is_class && var->section != V_LOCAL && var->section != V_EXTERNAL)
+        cm1e_st_report(st, var->place, "a CLASS has variables (VAR), and no inputs and outputs: its methods have");
+    if ((var->qualifiers & Q_EDGE) && (var->section != V_INPUT || var->type->kind != T_BOOL || !unit || cm1e_st_is_function(unit)))
+        cm1e_st_report(st, var->place, "R_EDGE and F_EDGE are for inputs of type BOOL of function blocks and programs");
     if (var->section == V_IN_OUT && var->initial)
         cm1e_st_report(st, var->place, "a VAR_IN_OUT has no initial value: the call gives the variable");
     if (var->address && var->section != V_LOCAL && var->section != V_GLOBAL)
@@ -137,6 +144,7 @@ static void declare_var(st_t *st, var_t *var)
         check_external(st, var);
         return;
     }
+    cm1e_st_inherit_initial(st, var);
     var->type = cm1e_st_resolve(st, var->type);
     check_section(st, var);
     if (var->type->kind == T_BLOCK && var->type->unit->kind == U_PROGRAM)
@@ -151,7 +159,6 @@ static void declare_var(st_t *st, var_t *var)
         cm1e_st_report(st, var->place, "an instance of a function block keeps its state: VAR_TEMP cannot");
 }
 
-/** An initial value of a type that has one, where the variable has none. */
 static void check_initials(st_t *st, var_t *vars)
 {
     for (var_t *var = vars; var; var = var->next)
@@ -160,6 +167,7 @@ static void check_initials(st_t *st, var_t *vars)
 
 void cm1e_st_declare(st_t *st)
 {
+    cm1e_st_check_used(st);
     cm1e_st_link_objects(st);
     name_types(st);
     name_units(st);
@@ -175,6 +183,8 @@ void cm1e_st_declare(st_t *st)
     for (type_t *type = st->tree.types; type; type = type->next)
         if (type->kind == T_STRUCT)
             check_initials(st, type->members);
+        else if (type->kind == T_ENUM && type->initial)
+            type->initial = cm1e_st_initialiser(st, type->initial, type, type->name);
     for (st->unit = st->tree.units; st->unit; st->unit = st->unit->next) {
         if (st->unit->result_type)
             st->unit->result_type = cm1e_st_resolve(st, st->unit->result_type);
@@ -232,6 +242,10 @@ const constant_t *cm1e_st_constant_of(st_t *st, var_t *var)
 void cm1e_st_check_initial(st_t *st, var_t *var)
 {
     unit_t *const unit = st->unit;
+    if (var->section != V_EXTERNAL && var->type->state == ST_READY && !var->init_checked) {
+        var->init_checked = true;
+        cm1e_st_check_init_args(st, var);
+    }
     if (!var->initial || var->state == ST_READY || var->section == V_EXTERNAL || st->resolving == ST_DEPTH)
         return;
     var->state = ST_BUSY;

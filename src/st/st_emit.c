@@ -43,8 +43,10 @@ static void emit_types(st_t *st)
 
 static void emit_variables(st_t *st)
 {
+    if (st->memory > 0)
+        cm1e_st_line(st, "static _Alignas(8) BYTE st_memory[%llu];\n", (unsigned long long)st->memory);
     for (const var_t *var = st->tree.globals; var; var = var->next)
-        if (!st->sources[var->place.file].external)
+        if (!st->sources[var->place.file].external && !var->in_memory)
             cm1e_st_line(st, "static %s %s ST_UNUSED;\n", cm1e_st_c_type(st, var->type), var->c_name);
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         cm1e_st_line(st, "static %s I_%s;\n", instance->unit->c_type, instance->name);

@@ -17,16 +17,33 @@ void cm1e_st_begin_line(st_t *st);
 void cm1e_st_place(st_t *st, place_t place);
 void cm1e_st_put_quoted(st_t *st, const char *text);
 
+/* st_emit_shape.c */
+/** It is a member of the struct of its block, or a variable of its own. */
+bool cm1e_st_is_stored(const var_t *var);
+bool cm1e_st_needs_initial(const type_t *type);
+/** The initial value of an enumeration or a subrange without another one: the first. */
+int64_t cm1e_st_default_of(const type_t *type);
+/** The unit has inputs with R_EDGE or F_EDGE: edges_<type>() is called before it. */
+bool cm1e_st_has_edges(const unit_t *unit);
+/** The characters of a text in C, and the function that assigns one. */
+const char *cm1e_st_text_unit(const type_t *type);
+const char *cm1e_st_text_assign(const type_t *type);
+void cm1e_st_emit_head(st_t *st, const unit_t *unit);
+void cm1e_st_emit_prototype(st_t *st, const unit_t *unit);
+
 /* st_emit_type.c */
 /** The name of a type in C; its declaration must have been emitted. */
 const char *cm1e_st_c_type(st_t *st, const type_t *type);
 /** Emits the declaration of a type, and before it those that it needs. */
 void cm1e_st_emit_type(st_t *st, type_t *type);
+/** A number of 64 bits in C. */
+const char *cm1e_st_int64(st_t *st, int64_t value);
 /** The type of runtime functions that takes these values: enumerations and times are integers there. */
 const char *cm1e_st_plain_type(const type_t *type);
 /** Gives something of this type, which is zeroed, its initial value: that of the variable or else that of its type. */
 void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr_t *initial);
-bool cm1e_st_needs_initial(const type_t *type);
+/** The same for a variable, with its FB_Init. */
+void cm1e_st_emit_var_initial(st_t *st, const char *target, const var_t *var);
 
 /* st_emit_expression.c */
 void cm1e_st_emit_expression(st_t *st, const expr_t *expr);
@@ -46,7 +63,6 @@ void cm1e_st_emit_statements(st_t *st, const stmt_t *list);
 /** target := value; with what texts and single bits need. */
 void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value);
 /* st_emit_unit.c */
-void cm1e_st_emit_prototype(st_t *st, const unit_t *unit);
 void cm1e_st_emit_unit(st_t *st, unit_t *unit);
 /* st_emit_tables.c */
 void cm1e_st_emit_tables(st_t *st, const char *name);

@@ -25,13 +25,13 @@ static void emit_missing(st_t *st, const var_t *var)
         if (var->initial)
             cm1e_st_emit_text(st, var->initial);
         else
-            cm1e_st_put(st, "\"\"");
+            cm1e_st_put(st, "%s", var->type->wide ? "(const uint16_t[1]){0}" : "\"\"");
     } else if (var->initial && var->initial->value.known)
         cm1e_st_emit_expression(st, var->initial);
     else if (var->type->kind == T_STRUCT || var->type->kind == T_ARRAY)
         cm1e_st_put(st, "(%s){0}", var->type->c_name);
-    else if (var->type->kind == T_ENUM && var->type->members)
-        cm1e_st_put(st, "%lld", (long long)var->type->members->value.integer);
+    else if (cm1e_st_needs_initial(var->type))
+        cm1e_st_put(st, "%s", cm1e_st_int64(st, cm1e_st_default_of(var->type)));
     else
         cm1e_st_put(st, "0");
 }
@@ -84,9 +84,7 @@ static void emit_chain(st_t *st, const char *function, const arg_t *args)
     for (const arg_t *arg = args; arg; arg = arg->next) {
         if (arg != args)
             cm1e_st_put(st, ", ");
-        if (arg->value->type->kind == T_STRING && arg == args && count > 1)
-            cm1e_st_emit_text(st, arg->value);
-        else if (arg->value->type->kind == T_STRING)
+        if (arg->value->type->kind == T_STRING)
             cm1e_st_emit_text(st, arg->value);
         else
             cm1e_st_emit_expression(st, arg->value);
@@ -149,7 +147,7 @@ static void emit_standard(st_t *st, const expr_t *call)
         }
     for (int i = 0; plain[i]; i++)
         if (strcmp(name, plain[i]) == 0) {
-            cm1e_st_put(st, "st_");
+            cm1e_st_put(st, call->args->value->type->wide ? "st_w" : "st_");
             emit_lower(st, name);
             cm1e_st_put(st, "(");
             emit_args(st, call->args);
@@ -159,11 +157,11 @@ static void emit_standard(st_t *st, const expr_t *call)
     if (strcmp(name, "MIN") == 0 || strcmp(name, "MAX") == 0)
         emit_chain(st, cm1e_st_format(st->arena, "st_%s_%s", strcmp(name, "MIN") == 0 ? "min" : "max", type), call->args);
     else if (strcmp(name, "CONCAT") == 0)
-        emit_chain(st, "st_concat", call->args);
+        emit_chain(st, call->type->wide ? "st_wconcat" : "st_concat", call->args);
     else if (strcmp(name, "MUX") == 0)
         emit_mux(st, call);
     else if (strcmp(name, "LEN") == 0) {
-        cm1e_st_put(st, "(INT)strlen(");
+        cm1e_st_put(st, call->args->value->type->wide ? "(INT)st_wlength(" : "(INT)strlen(");
         emit_args(st, call->args);
         cm1e_st_put(st, ")");
     } else if (strcmp(name, "TRUNC") == 0) {
@@ -220,19 +218,24 @@ static const char *ends_of(type_kind_t kind)
     }
 }
 
+/** A WSTRING becomes a STRING first. */
 static void from_text(st_t *st, const expr_t *expr)
 {
     const type_kind_t to = expr->type->kind;
+    const bool wide = expr->a->type->wide;
+    const char *narrow = wide ? "st_narrow(" : "", *end = wide ? ").text" : "";
     if (to == T_BOOL)
-        around(st, "(BOOL)(strcmp(", expr->a, ", \"TRUE\") == 0)");
+        around(st, cm1e_st_format(st->arena, "(BOOL)(strcmp(%s", narrow), expr->a,
+               cm1e_st_format(st->arena, "%s, \"TRUE\") == 0)", end));
     else if (cm1e_st_is_floating(to))
-        around(st, cm1e_st_format(st->arena, "(%s)st_real_of(", expr->type->name), expr->a, ")");
+        around(st, cm1e_st_format(st->arena, "(%s)st_real_of(%s", expr->type->name, narrow), expr->a,
+               cm1e_st_format(st->arena, "%s)", end));
     else
-        around(st, cm1e_st_format(st->arena, "(%s)st_integer_of(", expr->type->name), expr->a,
-               cm1e_st_format(st->arena, ", %s)", ends_of(to)));
+        around(st, cm1e_st_format(st->arena, "(%s)st_integer_of(%s", expr->type->name, narrow), expr->a,
+               cm1e_st_format(st->arena, "%s, %s)", end, ends_of(to)));
 }
 
-static void to_text(st_t *st, const expr_t *expr)
+static void to_string(st_t *st, const expr_t *expr)
 {
     const type_kind_t from = expr->a->type->kind == T_ENUM ? expr->a->type->element->kind : expr->a->type->kind;
     if (from == T_BOOL)
@@ -245,6 +248,15 @@ static void to_text(st_t *st, const expr_t *expr)
         around(st, "st_text_of_integer(", expr->a, ")");
     else
         around(st, "st_text_of_unsigned(", expr->a, ")");
+}
+
+static void to_text(st_t *st, const expr_t *expr)
+{
+    if (expr->type->wide)
+        cm1e_st_put(st, "st_widen(");
+    to_string(st, expr);
+    if (expr->type->wide)
+        cm1e_st_put(st, ".text)");
 }
 
 /** TIME counts milliseconds where it becomes a number. */
@@ -274,6 +286,12 @@ void cm1e_st_emit_conversion(st_t *st, const expr_t *expr)
     const char *name = expr->type->name;
     if (from == T_BLOCK)
         around(st, "(st_interface_t)&", expr->a, "");
+    else if (expr->type->ranged)
+        around(st, cm1e_st_format(st->arena, "(%s)st_within((int64_t)", name), expr->a,
+               cm1e_st_format(st->arena, ", %s, %s, ST_HERE)", cm1e_st_int64(st, expr->type->first),
+                              cm1e_st_int64(st, expr->type->last)));
+    else if (from == T_STRING && to == T_STRING && expr->type->wide != expr->a->type->wide)
+        around(st, expr->type->wide ? "st_widen(" : "st_narrow(", expr->a, ")");
     else if (from == to && from != T_ENUM)
         cm1e_st_emit_expression(st, expr->a);
     else if (from == T_STRING)

@@ -49,8 +49,12 @@ static void emit_variable(st_t *st, const var_t *var)
 {
     if (var->section == V_EXTERNAL)
         var = var->global;
-    if (var->unit && var->unit->kind == U_PROGRAM && st->unit && st->unit != var->unit &&
-        st->unit->object.owner != var->unit) {
+    if (var->in_memory) {
+        cm1e_st_put(st, "%s", var->c_name);
+        return;
+    }
+    if (var->unit && var->unit->kind == U_PROGRAM &&
+        !(st->unit && (st->unit == var->unit || st->unit->object.owner == var->unit))) {
         cm1e_st_put(st, "I_%s.%s", instance_of(st, var->unit), var->c_name);
         return;
     }
@@ -62,7 +66,7 @@ static void emit_variable(st_t *st, const var_t *var)
     else if (var->section == V_TEMP)
         cm1e_st_put(st, "%s", var->c_name);
     else
-        cm1e_st_put(st, pointer ? "(*self->%s)" : "self->%s", var->c_name);
+        cm1e_st_put(st, pointer ? "(*self->%s)" : "self->%s%s", var->c_name, var->qualifiers & Q_EDGE ? "edge" : "");
 }
 
 static void emit_index(st_t *st, const expr_t *expr)
@@ -117,7 +121,7 @@ static void emit_pair(st_t *st, const char *before, const expr_t *a, const char 
 static void emit_comparison(st_t *st, const expr_t *expr)
 {
     if (expr->a->type->kind == T_STRING) {
-        cm1e_st_put(st, "(strcmp(");
+        cm1e_st_put(st, expr->a->type->wide ? "(st_wcompare(" : "(strcmp(");
         cm1e_st_emit_text(st, expr->a);
         cm1e_st_put(st, ", ");
         cm1e_st_emit_text(st, expr->b);
@@ -172,11 +176,32 @@ static void emit_unary(st_t *st, const expr_t *expr)
     cm1e_st_put(st, ")");
 }
 
+/** A constant in UTF-8 as characters of 16 bits. */
+static void emit_wide(st_t *st, const char *text)
+{
+    cm1e_st_put(st, "(const uint16_t[]){");
+    while (*text) {
+        const unsigned char first = (unsigned char)*text;
+        const int more = first < 0xC0 ? 0 : first < 0xE0 ? 1 : first < 0xF0 ? 2 : 3;
+        unsigned c = more ? first & (0x3Fu >> more) : first;
+        text++;
+        for (int i = 0; i < more && ((unsigned char)*text & 0xC0) == 0x80; i++, text++)
+            c = c << 6 | ((unsigned char)*text & 0x3Fu);
+        if (c > 0xFFFF)
+            cm1e_st_put(st, "0x%X, 0x%X, ", 0xD7C0 + (c >> 10), 0xDC00 | (c & 0x3FF));
+        else
+            cm1e_st_put(st, "0x%X, ", c);
+    }
+    cm1e_st_put(st, "0}");
+}
+
 void cm1e_st_emit_text(st_t *st, const expr_t *expr)
 {
-    if (expr->value.known && expr->value.text) {
+    if (expr->value.known && expr->value.text && expr->type->wide) {
+        emit_wide(st, expr->value.text);
+    } else if (expr->value.known && expr->value.text) {
         cm1e_st_put_quoted(st, expr->value.text);
-    } else if (expr->kind == E_CONVERT && expr->a->type->kind == T_STRING) {
+    } else if (expr->kind == E_CONVERT && expr->a->type->kind == T_STRING && expr->a->type->wide == expr->type->wide) {
         cm1e_st_emit_text(st, expr->a);
     } else {
         cm1e_st_emit_expression(st, expr);

@@ -8,6 +8,8 @@
 static bool is_overridden(const st_t *st, const unit_t *unit, const char *name)
 {
     const unit_t *ours = cm1e_st_find_method(unit, name);
+    if (strcasecmp(name, "FB_Init") == 0) /* each block has its own one, with inputs of its own */
+        return false;
     for (const unit_t *other = st->tree.units; other; other = other->next)
         if (other->kind == U_BLOCK && other->object.has_class && cm1e_st_is_a(st, other, unit) &&
             cm1e_st_find_method(other, name) != ours)
@@ -43,7 +45,7 @@ static void emit_arguments(st_t *st, const unit_t *method, bool declare)
             continue;
         cm1e_st_put(st, ", ");
         if (declare)
-            cm1e_st_put(st, "%s %s", text ? "const char" : cm1e_st_c_type(st, var->type),
+            cm1e_st_put(st, "%s %s", text ? cm1e_st_text_unit(var->type) : cm1e_st_c_type(st, var->type),
                         text || var->section != V_INPUT ? "*" : "");
         cm1e_st_put(st, "%s%s", var->c_name, text ? "in" : var->section == V_OUTPUT ? "out" : "");
     }

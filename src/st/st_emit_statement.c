@@ -27,9 +27,9 @@ void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value
         return;
     }
     if (target->type->kind == T_STRING) {
-        cm1e_st_line(st, "st_assign(");
+        cm1e_st_line(st, "%s(", cm1e_st_text_assign(target->type));
         cm1e_st_emit_text(st, target);
-        cm1e_st_put(st, ", %lld, ", (long long)target->type->length + 1);
+        cm1e_st_put(st, ", %llu, ", (unsigned long long)target->type->size);
         cm1e_st_emit_text(st, value);
         cm1e_st_put(st, ");\n");
         return;
@@ -46,11 +46,13 @@ void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value
 static void emit_input(st_t *st, const arg_t *arg)
 {
     const var_t *var = arg->parameter;
+    cm1e_st_place(st, arg->place);
     if (var->section == V_IN_OUT) {
         cm1e_st_line(st, "fb->%s = &", var->c_name);
         cm1e_st_emit_expression(st, arg->value);
     } else if (var->type->kind == T_STRING) {
-        cm1e_st_line(st, "st_assign(fb->%s.text, %lld, ", var->c_name, (long long)var->type->length + 1);
+        cm1e_st_line(st, "%s(fb->%s.text, %llu, ", cm1e_st_text_assign(var->type), var->c_name,
+                     (unsigned long long)var->type->size);
         cm1e_st_emit_text(st, arg->value);
         cm1e_st_put(st, ")");
     } else {
@@ -75,11 +77,15 @@ static void emit_block_call(st_t *st, const expr_t *call)
         cm1e_st_emit_expression(st, call->override);
         cm1e_st_put(st, ");\n");
     }
+    if (cm1e_st_has_edges(call->unit))
+        cm1e_st_line(st, "edges_%s(fb);\n", call->unit->c_type);
     cm1e_st_line(st, "%s(fb);\n", call->unit->c_name);
     st->callee = call->a;
     for (const arg_t *arg = call->args; arg; arg = arg->next)
-        if (arg->value && arg->parameter && arg->parameter->section == V_OUTPUT)
+        if (arg->value && arg->parameter && arg->parameter->section == V_OUTPUT) {
+            cm1e_st_place(st, arg->place);
             cm1e_st_emit_assignment(st, arg->value, arg->source);
+        }
     st->callee = NULL;
     st->indent--;
     cm1e_st_line(st, "}\n");
@@ -169,6 +175,21 @@ static void emit_passes(st_t *st, const stmt_t *stmt)
     st->indent--;
 }
 
+/** The counter gets its value, also the first one that is too far; a subrange only those that are within it. */
+static void emit_count(st_t *st, const expr_t *target, unsigned n)
+{
+    const type_t *type = target->type;
+    if (!type->ranged) {
+        cm1e_st_emit_expression(st, target);
+        cm1e_st_put(st, " = (%s)for%u.now, st_goes(&for%u)", type->name, n, n);
+        return;
+    }
+    cm1e_st_put(st, "st_goes(&for%u) && (", n);
+    cm1e_st_emit_expression(st, target);
+    cm1e_st_put(st, " = (%s)st_within(for%u.now, %s, %s, ST_HERE), 1)", type->name, n, cm1e_st_int64(st, type->first),
+                cm1e_st_int64(st, type->last));
+}
+
 static void emit_for(st_t *st, const stmt_t *stmt)
 {
     const unsigned n = ++st->temporaries;
@@ -182,8 +203,8 @@ static void emit_for(st_t *st, const stmt_t *stmt)
     else
         cm1e_st_put(st, "1");
     cm1e_st_put(st, ", ST_HERE); ");
-    cm1e_st_emit_expression(st, stmt->target);
-    cm1e_st_put(st, " = (%s)for%u.now, st_goes(&for%u); st_next(&for%u)) {\n", stmt->target->type->name, n, n, n);
+    emit_count(st, stmt->target, n);
+    cm1e_st_put(st, "; st_next(&for%u)) {\n", n);
     emit_passes(st, stmt);
     cm1e_st_line(st, "}\n");
 }

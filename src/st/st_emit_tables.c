@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { VARIABLES = 4096, ELEMENTS = 64, NAME_BYTES = 79 };
+enum { LARGE = 256 }; /* elements of an array that is listed behind all others */
 
 typedef enum table { TABLE_VARIABLES, TABLE_AXES, TABLE_GROUPS, TABLE_LOCATED, TABLE_RETAINED, TABLES } table_t;
 
@@ -14,6 +14,8 @@ typedef struct listing {
     st_t *st;
     table_t table;
     unsigned count;
+    bool large, within_large; /* elements of large arrays are listed now; this is one */
+    uint64_t unlisted;
     uint64_t layout; /* hash of names, types and sizes */
 } listing_t;
 
@@ -35,8 +37,11 @@ static const char *kind_of(const type_t *type)
     case T_ULINT: return "ULINT";
     case T_REAL: return "REAL";
     case T_LREAL: return "LREAL";
-    case T_TIME: return "TIME";
-    case T_STRING: return "STRING";
+    case T_TIME:
+    case T_DATE:
+    case T_TOD:
+    case T_DT: return "TIME";
+    case T_STRING: return type->wide ? "WSTRING" : "STRING";
     default: return "OTHER";
     }
 }
@@ -54,28 +59,78 @@ static void row(listing_t *l, const char *name, const char *c_name, const type_t
     cm1e_st_put_quoted(l->st, name);
     cm1e_st_put(l->st, ", &%s, sizeof %s, ST_KIND_%s, ", c_name, c_name, kind_of(type));
     cm1e_st_put_quoted(l->st, detail);
+    if (type->ranged)
+        cm1e_st_put(l->st, ", 0, 1, %s, %s", cm1e_st_int64(l->st, type->first), cm1e_st_int64(l->st, type->last));
     cm1e_st_put(l->st, "},\n");
-    note_layout(l, cm1e_st_format(l->st->arena, "%s:%s:%llu;", name, type->name, (unsigned long long)type->size));
+    note_layout(l, cm1e_st_format(l->st->arena, "%s:%s:%llu;", name, cm1e_st_type_name(type), (unsigned long long)type->size));
 }
 
-/** All elementary parts of a variable, by name. */
+/** A BOOL AT %MX is a bit of a byte. */
+static void bit_row(listing_t *l, const char *name, const var_t *var)
+{
+    l->count++;
+    cm1e_st_put(l->st, "    {");
+    cm1e_st_put_quoted(l->st, name);
+    cm1e_st_put(l->st, ", &%s, 1, ST_KIND_BOOL, \"BOOL\", %d},\n", var->c_name, var->memory_bit);
+}
+
+static bool is_handle(const type_t *type)
+{
+    return type->kind == T_STRUCT && type->external && type->members && !type->members->next &&
+           strcmp(type->members->name, "Handle") == 0; /* of an axis or a group: a number that says nothing */
+}
+
+static void list_values(listing_t *l, const char *name, const char *c_name, const type_t *type);
+
+/** The indices of an element in ST: "2,-1". */
+static const char *indices_of(const listing_t *l, const type_t *type, uint64_t element)
+{
+    const char *text = "";
+    for (int i = type->dimension_count - 1; i >= 0; i--) {
+        const dimension_t *d = &type->dimensions[i];
+        const uint64_t length = (uint64_t)(d->last - d->first + 1);
+        text = cm1e_st_format(l->st->arena, "%lld%s%s", (long long)(d->first + (int64_t)(element % length)), *text ? "," : "",
+                              text);
+        element /= length;
+    }
+    return text;
+}
+
+static void list_elements(listing_t *l, const char *name, const char *c_name, const type_t *type)
+{
+    const uint64_t count = type->element->size ? type->size / type->element->size : 0;
+    const bool outer = l->within_large;
+    l->within_large = outer || count > LARGE;
+    for (uint64_t i = 0; i < count && (l->large || !l->within_large); i++) {
+        if (l->count >= l->st->listed_most && l->within_large) {
+            l->unlisted += count - i; /* without looking into each */
+            break;
+        }
+        list_values(l, cm1e_st_format(l->st->arena, "%s[%s]", name, indices_of(l, type, i)),
+                    cm1e_st_format(l->st->arena, "%s.at[%llu]", c_name, (unsigned long long)i), type->element);
+    }
+    l->within_large = outer;
+}
+
+/** All parts of a variable that have a value, by name: in a second pass those in large arrays. */
 static void list_values(listing_t *l, const char *name, const char *c_name, const type_t *type)
 {
     arena_t *arena = l->st->arena;
-    const bool handle = type->kind == T_STRUCT && type->external && type->members && !type->members->next &&
-        strcmp(type->members->name, "Handle") == 0; /* of an axis or a group: a number that says nothing */
-    if (l->count >= VARIABLES || strlen(name) > NAME_BYTES || handle)
+    const bool block = type->kind == T_BLOCK;
+    if (is_handle(type))
         return;
-    if (type->kind <= T_LREAL || type->kind == T_TIME || type->kind == T_ENUM || type->kind == T_STRING) {
-        row(l, name, c_name, type, type->name);
-    } else if (type->kind == T_ARRAY && type->dimension_count == 1) {
-        const dimension_t *d = &type->dimensions[0];
-        for (int64_t i = d->first; i <= d->last && i < d->first + ELEMENTS; i++)
-            list_values(l, cm1e_st_format(arena, "%s[%lld]", name, (long long)i),
-                        cm1e_st_format(arena, "%s.at[%lld]", c_name, (long long)(i - d->first)), type->element);
-    } else if (type->kind == T_STRUCT || type->kind == T_BLOCK) {
+    if (type->kind <= T_DT || type->kind == T_ENUM || type->kind == T_STRING) {
+        if (l->large != l->within_large)
+            return;
+        if (l->count < l->st->listed_most)
+            row(l, name, c_name, type, cm1e_st_type_name(type));
+        else
+            l->unlisted++;
+    } else if (type->kind == T_ARRAY) {
+        list_elements(l, name, c_name, type);
+    } else if (type->kind == T_STRUCT || block) {
         for (const var_t *var = type->members; var; var = var->next) {
-            const bool inner = type->external && type->kind == T_BLOCK && var->section == V_LOCAL;
+            const bool inner = type->external && block && var->section == V_LOCAL;
             if (inner || var->section == V_TEMP || var->section == V_EXTERNAL || var->section == V_IN_OUT)
                 continue;
             list_values(l, cm1e_st_format(arena, "%s.%s", name, var->name),
@@ -88,10 +143,15 @@ static void list_values(listing_t *l, const char *name, const char *c_name, cons
 static void list_variable(listing_t *l, const char *name, const char *c_name, const var_t *var)
 {
     const type_t *type = var->type;
+    c_name = var->in_memory ? var->c_name : c_name;
     const bool named = type->kind == T_STRUCT && type->external;
     switch (l->table) {
     case TABLE_VARIABLES:
-        if (!(var->qualifiers & Q_CONSTANT))
+        if (var->memory_bit && l->large)
+            break;
+        if (var->memory_bit)
+            bit_row(l, name, var);
+        else if (!(var->qualifiers & Q_CONSTANT))
             list_values(l, name, c_name, type);
         break;
     case TABLE_AXES:
@@ -103,32 +163,41 @@ static void list_variable(listing_t *l, const char *name, const char *c_name, co
             row(l, var->name, c_name, type, name);
         break;
     case TABLE_LOCATED:
-        if (var->address)
+        if (var->address && !var->in_memory)
             row(l, name, c_name, type, var->address->name);
         break;
     default:
         if (var->qualifiers & Q_RETAIN)
-            row(l, name, c_name, type, type->name);
+            row(l, name, c_name, type, cm1e_st_type_name(type));
         break;
     }
 }
 
-static uint64_t emit_table(st_t *st, table_t table)
+static void list_all(listing_t *l)
 {
-    listing_t l = {.st = st, .table = table, .layout = UINT64_C(14695981039346656037)};
-    cm1e_st_put(st, "static const st_variable_t st_%s[] = {\n", tables[table]);
+    st_t *st = l->st;
     for (const var_t *var = st->tree.globals; var; var = var->next)
         if (!st->sources[var->place.file].external)
-            list_variable(&l, var->list ? cm1e_st_format(st->arena, "%s.%s", var->list, var->name) : var->name, var->c_name,
+            list_variable(l, var->list ? cm1e_st_format(st->arena, "%s.%s", var->list, var->name) : var->name, var->c_name,
                           var);
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         for (const var_t *var = instance->unit->vars; var; var = var->next)
             if (var->section == V_LOCAL || var->section == V_INPUT || var->section == V_OUTPUT)
-                list_variable(&l, cm1e_st_format(st->arena, "%s.%s", instance->name, var->name),
+                list_variable(l, cm1e_st_format(st->arena, "%s.%s", instance->name, var->name),
                               cm1e_st_format(st->arena, "I_%s.%s", instance->name, var->c_name), var);
-    cm1e_st_put(st, "    {0, 0, 0, ST_KIND_OTHER, 0}\n};\n");
+}
+
+static listing_t emit_table(st_t *st, table_t table)
+{
+    listing_t l = {.st = st, .table = table, .layout = UINT64_C(14695981039346656037)};
+    cm1e_st_put(st, "static const st_variable_t st_%s[] = {\n", tables[table]);
+    list_all(&l);
+    l.large = table == TABLE_VARIABLES;
+    if (l.large)
+        list_all(&l);
+    cm1e_st_put(st, "    {.kind = ST_KIND_OTHER}\n};\n");
     cm1e_st_put(st, "enum { ST_COUNT_%s = %u };\n", tables[table], l.count);
-    return l.layout;
+    return l;
 }
 
 /* ---- tasks ------------------------------------------------------------------------------------------------------- */
@@ -142,13 +211,16 @@ static void emit_program(st_t *st, const instance_t *instance)
         cm1e_st_emit_expression(st, arg->value);
         cm1e_st_put(st, ";\n");
     }
+    if (cm1e_st_has_edges(instance->unit))
+        cm1e_st_line(st, "edges_%s(&I_%s);\n", instance->unit->c_type, instance->name);
     cm1e_st_line(st, "%s(&I_%s);\n", instance->unit->c_name, instance->name);
     for (const arg_t *arg = instance->args; arg; arg = arg->next) {
         if (!arg->output)
             continue;
-        cm1e_st_begin_line(st);
-        cm1e_st_emit_expression(st, arg->value);
-        cm1e_st_put(st, " = I_%s.%s;\n", instance->name, arg->parameter->c_name);
+        const char *c_name = cm1e_st_format(st->arena, "I_%s.%s", instance->name, arg->parameter->c_name);
+        var_t of_instance = {.section = V_GLOBAL, .c_name = c_name, .type = arg->parameter->type};
+        const expr_t output = {.kind = E_NAME, .type = of_instance.type, .var = &of_instance};
+        cm1e_st_emit_assignment(st, arg->value, &output);
     }
 }
 
@@ -166,18 +238,44 @@ static void emit_task(st_t *st, const char *name, const task_t *task, const inst
     cm1e_st_put(st, "}\n");
 }
 
+/** A task with SINGLE runs at its rising edge; with an INTERVAL too, periodically in between (IEC 61131-3). */
+static void emit_event(st_t *st, const task_t *task)
+{
+    cm1e_st_put(st, "static void task_%s_at_edge(void)\n{\n    static BOOL before;\n    const BOOL now = ", task->name);
+    cm1e_st_emit_expression(st, task->single);
+    cm1e_st_put(st, ", edge = now && !before;\n    before = now;\n    if (edge)\n        task_%s();\n}\n", task->name);
+    if (task->interval_ns == 0)
+        return;
+    cm1e_st_put(st, "static void task_%s_between(void)\n{\n    if (!", task->name);
+    cm1e_st_emit_expression(st, task->single);
+    cm1e_st_put(st, ")\n        task_%s();\n}\n", task->name);
+}
+
+static void emit_task_row(st_t *st, unsigned *count, const char *name, const task_t *task, const char *ending, int64_t interval_ns)
+{
+    cm1e_st_put(st, "    {\"%s\", INT64_C(%" PRId64 "), %" PRId64 ", task_%s%s},\n", name, interval_ns, task->priority,
+                task->name, ending);
+    ++*count;
+}
+
 static void emit_tasks(st_t *st)
 {
     unsigned count = 0;
-    for (const task_t *task = st->tree.tasks; task; task = task->next)
+    for (const task_t *task = st->tree.tasks; task; task = task->next) {
         emit_task(st, task->name, task, NULL);
+        if (task->single)
+            emit_event(st, task);
+    }
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         if (!instance->task)
             emit_task(st, cm1e_st_format(st->arena, "of_%s", instance->name), NULL, instance);
     cm1e_st_put(st, "static const st_task_t st_tasks[] = {\n");
-    for (const task_t *task = st->tree.tasks; task; task = task->next, count++)
-        cm1e_st_put(st, "    {\"%s\", INT64_C(%" PRId64 "), %" PRId64 ", task_%s},\n", task->name, task->interval_ns,
-                    task->priority, task->name);
+    for (const task_t *task = st->tree.tasks; task; task = task->next) {
+        if (task->single)
+            emit_task_row(st, &count, cm1e_st_format(st->arena, "%s (SINGLE)", task->name), task, "_at_edge", 0);
+        if (task->interval_ns > 0 || !task->single)
+            emit_task_row(st, &count, task->name, task, task->single ? "_between" : "", task->interval_ns);
+    }
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         if (!instance->task) {
             cm1e_st_put(st, "    {\"%s\", 0, 65535, task_of_%s},\n", instance->name, instance->name);
@@ -186,13 +284,28 @@ static void emit_tasks(st_t *st)
     cm1e_st_put(st, "    {0, 0, 0, 0}\n};\nenum { ST_COUNT_tasks = %u };\n", count);
 }
 
+static void emit_memory_initial(st_t *st, const var_t *var)
+{
+    if (var->memory_bit == 0)
+        cm1e_st_emit_var_initial(st, var->c_name, var);
+    else if (var->initial && var->initial->value.integer)
+        cm1e_st_line(st, "%s |= 1u << %d;\n", var->c_name, var->memory_bit - 1);
+}
+
 static void emit_begin(st_t *st)
 {
     cm1e_st_put(st, "static void begin(void)\n{\n");
     st->indent = 1;
+    cm1e_st_line(st, "if (setjmp(st_leave) != 0)\n        return;\n    st_loops_left = st_loop_limit;\n"); /* FB_Init may fail */
     for (const var_t *var = st->tree.globals; var; var = var->next)
-        if (!st->sources[var->place.file].external)
-            cm1e_st_emit_initial(st, var->c_name, var->type, var->initial);
+        if (var->in_memory)
+            emit_memory_initial(st, var);
+        else if (!st->sources[var->place.file].external)
+            cm1e_st_emit_var_initial(st, var->c_name, var);
+    for (const unit_t *unit = st->tree.units; unit; unit = unit->next)
+        for (const var_t *var = unit->vars; var; var = var->next)
+            if (var->in_memory)
+                emit_memory_initial(st, var);
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         if (cm1e_st_needs_initial(instance->unit->type))
             cm1e_st_line(st, "init_%s(&I_%s);\n", instance->unit->c_type, instance->name);
@@ -202,10 +315,13 @@ static void emit_begin(st_t *st)
 
 void cm1e_st_emit_tables(st_t *st, const char *name)
 {
-    uint64_t layout = 0;
+    uint64_t layout = 0, unlisted = 0;
     emit_begin(st);
-    for (table_t table = 0; table < TABLES; table++)
-        layout = emit_table(st, table); /* that of the last one, the retained variables, counts */
+    for (table_t table = 0; table < TABLES; table++) {
+        const listing_t l = emit_table(st, table);
+        layout = l.layout; /* that of the last one, the retained variables, counts */
+        unlisted += l.unlisted;
+    }
     emit_tasks(st);
     cm1e_st_put(st, "ST_EXPORT extern const st_program_t cm1e_st_program;\n"
                 "const st_program_t cm1e_st_program = {\n    ST_PROGRAM_VERSION, UINT64_C(0x%" PRIx64 "), "
@@ -214,5 +330,5 @@ void cm1e_st_emit_tables(st_t *st, const char *name)
     cm1e_st_put(st, ",\n    begin, st_tasks, ST_COUNT_tasks,\n");
     for (table_t table = 0; table < TABLES; table++)
         cm1e_st_put(st, "    {st_%s, ST_COUNT_%s},\n", tables[table], tables[table]);
-    cm1e_st_put(st, "    &st_fault, &st_loop_limit,\n};\n");
+    cm1e_st_put(st, "    %" PRIu64 "u, &st_fault, &st_loop_limit,\n};\n", unlisted);
 }

@@ -3,24 +3,6 @@
 
 #include <string.h>
 
-static bool is_stored(const var_t *var) { return var->section != V_TEMP && var->section != V_EXTERNAL; }
-
-bool cm1e_st_needs_initial(const type_t *type)
-{
-    if (type->kind == T_ARRAY)
-        return cm1e_st_needs_initial(type->element);
-    if (type->kind == T_ENUM) /* without a 0 among its values the first one is the initial value */
-        return type->members && type->members->value.integer != 0;
-    if (type->kind != T_STRUCT && type->kind != T_BLOCK)
-        return false;
-    if (type->kind == T_BLOCK && type->unit->object.has_class)
-        return true;
-    for (const var_t *var = type->members; var; var = var->next)
-        if (is_stored(var) && var->section != V_IN_OUT && (var->initial || cm1e_st_needs_initial(var->type)))
-            return true;
-    return false;
-}
-
 static void emit_members(st_t *st, type_t *type)
 {
     cm1e_st_put(st, "typedef struct %s {\n", type->c_name);
@@ -30,12 +12,14 @@ static void emit_members(st_t *st, type_t *type)
         empty = false;
     }
     for (const var_t *var = type->members; var; var = var->next) {
-        if (!is_stored(var))
+        if (!cm1e_st_is_stored(var))
             continue;
         const char *c_type = cm1e_st_c_type(st, var->type);
         const bool pointer = var->section == V_IN_OUT;
         const char *space = c_type[strlen(c_type) - 1] == '*' ? "" : " ";
         cm1e_st_put(st, "    %s%s%s%s;\n", c_type, pointer ? " " : space, pointer ? "*" : "", var->c_name);
+        if (var->qualifiers & Q_EDGE)
+            cm1e_st_put(st, "    BOOL %sedge, %sbefore;\n", var->c_name, var->c_name);
         empty = false;
     }
     if (empty)
@@ -43,17 +27,80 @@ static void emit_members(st_t *st, type_t *type)
     cm1e_st_put(st, "} %s;\n", type->c_name);
 }
 
+/** Before a call: the edges of its inputs. Not a part of the block: SUPER^() is no call of its own. */
+static void emit_edges(st_t *st, const type_t *type)
+{
+    cm1e_st_put(st, "ST_UNUSED static void edges_%s(%s *self)\n{\n", type->c_name, type->c_name);
+    for (const var_t *var = type->members; var; var = var->next) {
+        if (!(var->qualifiers & Q_EDGE))
+            continue;
+        const bool rising = var->qualifiers & Q_R_EDGE;
+        cm1e_st_put(st, "    self->%sedge = %sself->%s && %sself->%sbefore;\n", var->c_name, rising ? "" : "!", var->c_name,
+                    rising ? "!" : "", var->c_name);
+        cm1e_st_put(st, "    self->%sbefore = self->%s;\n", var->c_name, var->c_name);
+    }
+    cm1e_st_put(st, "}\n");
+}
+
+/** Calls of FB_Init, the one of the base first. `instance` has what the declaration gives; NULL: nothing. */
+static void emit_init_calls(st_t *st, const unit_t *unit, const char *target, const var_t *instance)
+{
+    if (unit->object.base)
+        emit_init_calls(st, unit->object.base, target, instance);
+    const unit_t *method = cm1e_st_init_method(unit);
+    if (!method)
+        return;
+    cm1e_st_line(st, "(void)%s((%s *)%s", method->c_name, method->c_type, target);
+    for (const var_t *var = method->vars; var; var = var->next) {
+        const expr_t *value = var->section == V_INPUT ? cm1e_st_init_arg(instance, var) : NULL;
+        if (var->section != V_INPUT && var->section != V_OUTPUT && var->section != V_IN_OUT)
+            continue;
+        cm1e_st_put(st, ", ");
+        if (value && var->type->kind == T_STRING)
+            cm1e_st_emit_text(st, value);
+        else if (value)
+            cm1e_st_emit_expression(st, value);
+        else
+            cm1e_st_put(st, "FALSE");
+    }
+    cm1e_st_put(st, ");\n");
+}
+
+/** FB_Init is called where an instance gets its initial values, which stands before all methods. */
+static void emit_init_prototypes(st_t *st, const unit_t *unit)
+{
+    for (; unit; unit = unit->object.base) {
+        const unit_t *method = cm1e_st_init_method(unit);
+        for (var_t *var = method ? method->vars : NULL; var; var = var->next)
+            cm1e_st_emit_type(st, var->type);
+        if (method)
+            cm1e_st_emit_prototype(st, method);
+    }
+}
+
+void cm1e_st_emit_var_initial(st_t *st, const char *target, const var_t *var)
+{
+    cm1e_st_emit_initial(st, target, var->type, var->initial);
+    if (var->type->kind == T_BLOCK && cm1e_st_init_takes(var->type->unit))
+        emit_init_calls(st, var->type->unit, cm1e_st_format(st->arena, "&%s", target), var);
+}
+
 static void emit_init_function(st_t *st, type_t *type)
 {
     if (!cm1e_st_needs_initial(type))
         return;
+    const bool block = type->kind == T_BLOCK;
+    if (block)
+        emit_init_prototypes(st, type->unit);
     cm1e_st_put(st, "ST_UNUSED static void init_%s(%s *self)\n{\n", type->c_name, type->c_name);
     st->indent++;
     if (type->kind == T_BLOCK && type->unit->object.has_class)
         cm1e_st_line(st, "self->class_ = %d;\n", type->unit->object.class_id);
     for (const var_t *var = type->members; var; var = var->next)
-        if (is_stored(var) && var->section != V_IN_OUT)
-            cm1e_st_emit_initial(st, cm1e_st_format(st->arena, "self->%s", var->c_name), var->type, var->initial);
+        if (cm1e_st_is_stored(var) && var->section != V_IN_OUT)
+            cm1e_st_emit_var_initial(st, cm1e_st_format(st->arena, "self->%s", var->c_name), var);
+    if (block && cm1e_st_has_init(type->unit) && !cm1e_st_init_takes(type->unit))
+        emit_init_calls(st, type->unit, "self", NULL);
     st->indent--;
     cm1e_st_put(st, "}\n");
 }
@@ -82,6 +129,9 @@ static void emit_enum(st_t *st, type_t *type)
 
 void cm1e_st_emit_type(st_t *st, type_t *type)
 {
+    if (type->ranged && !type->emitted)
+        cm1e_st_put(st, "typedef %s %s;\n", type->name, type->c_name);
+    type->emitted = type->emitted || type->ranged;
     if (type->emitted || type->kind <= T_NULL || type->kind == T_WRONG || type->kind == T_INTERFACE)
         return;
     type->emitted = true;
@@ -96,15 +146,19 @@ void cm1e_st_emit_type(st_t *st, type_t *type)
                     (unsigned long long)(type->element->size ? type->size / type->element->size : 1), type->c_name);
     } else if (type->kind == T_STRING) {
         if (type->length != ST_STRING_BYTES) /* that one is a part of the run-time */
-            cm1e_st_put(st, "typedef struct %s {\n    char text[%lld];\n} %s;\n", type->c_name,
-                        (long long)type->length + 1, type->c_name);
+            cm1e_st_put(st, "typedef struct %s {\n    %s text[%lld];\n} %s;\n", type->c_name,
+                        type->wide ? "uint16_t" : "char", (long long)type->length + 1, type->c_name);
     } else if (type->kind == T_ENUM) {
         emit_enum(st, type);
     } else {
+        if (type->kind == T_BLOCK && type->unit->object.base)
+            cm1e_st_emit_type(st, type->unit->object.base->type);
         for (var_t *var = type->members; var; var = var->next)
             cm1e_st_emit_type(st, var->type);
         emit_members(st, type);
         emit_init_function(st, type);
+        if (type->kind == T_BLOCK && cm1e_st_has_edges(type->unit))
+            emit_edges(st, type);
         if (type->kind == T_BLOCK && type->external)
             cm1e_st_put(st, "void %s(%s *fb);\n", type->unit->c_name, type->c_name);
     }
@@ -116,8 +170,8 @@ static void emit_default(st_t *st, const char *target, const type_t *type)
 {
     if (!cm1e_st_needs_initial(type))
         return;
-    if (type->kind == T_ENUM) {
-        cm1e_st_line(st, "%s = %lld;\n", target, (long long)type->members->value.integer);
+    if (type->kind == T_ENUM || type->ranged) {
+        cm1e_st_line(st, "%s = %s;\n", target, cm1e_st_int64(st, cm1e_st_default_of(type)));
     } else if (type->kind == T_ARRAY) {
         const unsigned n = ++st->temporaries;
         cm1e_st_line(st, "for (size_t i%u = 0; i%u < %lluu; i%u++) {\n", n, n,
@@ -165,7 +219,7 @@ void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr
             cm1e_st_emit_initial(st, cm1e_st_format(st->arena, "%s.%s", target, arg->parameter->c_name),
                                  arg->parameter->type, arg->value);
     } else if (type->kind == T_STRING) {
-        cm1e_st_line(st, "st_assign(%s.text, sizeof %s.text, ", target, target);
+        cm1e_st_line(st, "%s(%s.text, sizeof %s.text, ", cm1e_st_text_assign(type), target, target);
         cm1e_st_emit_text(st, initial);
         cm1e_st_put(st, ");\n");
     } else {

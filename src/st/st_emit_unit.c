@@ -1,46 +1,6 @@
 /* Functions, function blocks and programs in C. A block is a struct and a function that gets it as `self`. */
 #include "st/st_emit.h"
 
-static void emit_parameters(st_t *st, const unit_t *unit, const char *comma)
-{
-    for (const var_t *var = unit->vars; var; var = var->next) {
-        const char *type = cm1e_st_c_type(st, var->type);
-        if (var->section == V_INPUT && var->type->kind == T_STRING)
-            cm1e_st_put(st, "%sconst char *%sin", comma, var->c_name);
-        else if (var->section == V_INPUT)
-            cm1e_st_put(st, "%s%s %s", comma, type, var->c_name);
-        else if (var->section == V_OUTPUT)
-            cm1e_st_put(st, "%s%s *%sout", comma, type, var->c_name);
-        else if (var->section == V_IN_OUT)
-            cm1e_st_put(st, "%s%s *%s", comma, type, var->c_name);
-        else
-            continue;
-        comma = ", ";
-    }
-    if (!*comma)
-        cm1e_st_put(st, "void");
-}
-
-static void emit_head(st_t *st, const unit_t *unit)
-{
-    if (cm1e_st_is_function(unit)) {
-        cm1e_st_put(st, "ST_UNUSED static %s %s(",
-                    unit->result_type ? cm1e_st_c_type(st, unit->result_type) : "void", unit->c_name);
-        if (unit->kind == U_METHOD)
-            cm1e_st_put(st, "ST_UNUSED %s *self", unit->c_type);
-        emit_parameters(st, unit, unit->kind == U_METHOD ? ", " : "");
-        cm1e_st_put(st, ")");
-    } else {
-        cm1e_st_put(st, "ST_UNUSED static void %s(ST_UNUSED %s *self)", unit->c_name, unit->c_type);
-    }
-}
-
-void cm1e_st_emit_prototype(st_t *st, const unit_t *unit)
-{
-    emit_head(st, unit);
-    cm1e_st_put(st, ";\n");
-}
-
 /** Locals, outputs and the result begin anew in every call. */
 static void emit_locals(st_t *st, const unit_t *unit)
 {
@@ -56,7 +16,8 @@ static void emit_locals(st_t *st, const unit_t *unit)
         cm1e_st_line(st, "ST_UNUSED %s%s%s = %s;\n", cm1e_st_c_type(st, var->type), pointer ? "" : " ", var->c_name,
                      aggregate ? "{0}" : pointer ? "NULL" : "0");
         if (text_input)
-            cm1e_st_line(st, "st_assign(%s.text, sizeof %s.text, %sin);\n", var->c_name, var->c_name, var->c_name);
+            cm1e_st_line(st, "%s(%s.text, sizeof %s.text, %sin);\n", cm1e_st_text_assign(var->type), var->c_name, var->c_name,
+                         var->c_name);
         else
             cm1e_st_emit_initial(st, var->c_name, var->type, var->initial);
     }
@@ -81,7 +42,7 @@ void cm1e_st_emit_unit(st_t *st, unit_t *unit)
     st->leaves = false;
     cm1e_st_put(st, "\n");
     cm1e_st_place(st, unit->place);
-    emit_head(st, unit);
+    cm1e_st_emit_head(st, unit);
     cm1e_st_put(st, "\n{\n");
     st->indent = 1;
     emit_locals(st, unit);

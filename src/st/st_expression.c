@@ -50,14 +50,20 @@ static void name(st_t *st, expr_t *expr)
     var_t *var = expr->var ? expr->var : cm1e_st_find_var(st, expr->name);
     if (!var && cm1e_st_read_property(st, expr))
         return;
+    if (!var && cm1e_st_this(st) && strcasecmp(expr->name, "THIS") == 0) { /* of the standard; TwinCAT has THIS^ */
+        expr->kind = E_THIS;
+        expr->type = cm1e_st_resolve(st, cm1e_st_this(st)->type);
+        return;
+    }
     if (var) {
         expr->var = var;
         expr->type = var->type;
         expr->value = *cm1e_st_constant_of(st, var);
         expr->type = var->type;
+        cm1e_st_take_from_memory(st, expr);
         return;
     }
-    var = cm1e_st_map_get(st->enumerators, expr->name);
+    var = cm1e_st_lookup(st, st->enumerators, expr->scope, expr->place, expr->name);
     if (var && var->owner) {
         cm1e_st_resolve(st, var->owner);
         use_enumerator(expr, var);
@@ -74,7 +80,7 @@ static void name(st_t *st, expr_t *expr)
 static void enumerator_of(st_t *st, expr_t *expr, const char *type_name)
 {
     char text[CM1E_NEAR_TEXT_BYTES];
-    type_t *type = cm1e_st_map_get(st->types, type_name);
+    type_t *type = cm1e_st_lookup(st, st->types, expr->scope, expr->place, type_name);
     type = type ? cm1e_st_resolve(st, type) : NULL;
     if (!type || type->kind != T_ENUM) {
         cm1e_st_report(st, expr->place, "there is no enumeration \"%s\"", type_name);
@@ -128,11 +134,21 @@ static void unknown_member(st_t *st, expr_t *expr, const type_t *type)
     set_wrong(st, expr);
 }
 
+/** The program of this name, or of the instance of this name. */
+static unit_t *program_named(const st_t *st, const char *name)
+{
+    unit_t *unit = cm1e_st_map_get(st->units, name);
+    for (const instance_t *instance = st->tree.instances; instance && !unit; instance = instance->next)
+        if (strcasecmp(instance->name, name) == 0)
+            unit = cm1e_st_map_get(st->units, instance->program_name);
+    return unit;
+}
+
 /** MAIN.x: a variable of a program, in another one. The program has one instance then. */
 static bool of_program(st_t *st, expr_t *expr)
 {
     unit_t *unit = !expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name)
-        ? cm1e_st_map_get(st->units, expr->a->name) : NULL;
+        ? program_named(st, expr->a->name) : NULL;
     var_t *var = unit && unit->kind == U_PROGRAM ? cm1e_st_map_get(unit->names, expr->name) : NULL;
     if (!var || var->section == V_TEMP || var->section == V_EXTERNAL || var->section == V_IN_OUT)
         return false;
@@ -143,6 +159,7 @@ static bool of_program(st_t *st, expr_t *expr)
     expr->var = var;
     expr->type = var->type;
     expr->value = *cm1e_st_constant_of(st, var);
+    cm1e_st_take_from_memory(st, expr);
     return true;
 }
 
@@ -161,7 +178,8 @@ static void member(st_t *st, expr_t *expr)
     if (cm1e_st_view(st, expr) || cm1e_st_read_property(st, expr))
         return;
     if (!expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name) &&
-        !cm1e_st_map_get(st->enumerators, expr->a->name) && cm1e_st_map_get(st->types, expr->a->name)) {
+        !cm1e_st_map_get(st->enumerators, expr->a->name) &&
+        cm1e_st_lookup(st, st->types, expr->scope, expr->place, expr->a->name)) {
         enumerator_of(st, expr, expr->a->name);
         return;
     }
@@ -194,9 +212,14 @@ static void member(st_t *st, expr_t *expr)
         return;
     }
     expr->type = expr->var->type = cm1e_st_resolve(st, expr->var->type);
+    if (expr->var->in_memory) { /* THIS^.x of a program */
+        expr->kind = E_NAME;
+        cm1e_st_take_from_memory(st, expr);
+        return;
+    }
     if (type->kind == T_BLOCK && expr->a->kind != E_THIS && expr->var->section != V_INPUT &&
-        expr->var->section != V_OUTPUT) {
-        cm1e_st_report(st, expr->place, "\"%s\" is within %s: from outside its inputs and outputs can be reached",
+        expr->var->section != V_OUTPUT && !(expr->var->qualifiers & Q_PUBLIC)) {
+        cm1e_st_report(st, expr->place, "\"%s\" is within %s: from outside its inputs, outputs and VAR PUBLIC can be reached",
                        expr->var->name, type->name);
         set_wrong(st, expr);
     }
@@ -322,7 +345,7 @@ static bool is_comparable(const expr_t *expr, type_kind_t kind)
     const type_t *a = expr->a->type, *b = expr->b->type;
     const bool equality = expr->op == OP_EQ || expr->op == OP_NE;
     if (a->kind == T_STRING)
-        return b->kind == T_STRING;
+        return b->kind == T_STRING && a->wide == b->wide;
     if (a->kind == T_ENUM || b->kind == T_ENUM)
         return a == b;
     if (a->kind == T_INTERFACE || b->kind == T_INTERFACE)

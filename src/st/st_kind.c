@@ -43,6 +43,11 @@ type_t *cm1e_st_elementary(const st_t *st, const char *name)
     return NULL;
 }
 
+const char *cm1e_st_type_name(const type_t *type) 
+{
+    return type->shown ? type->shown : type->name ? type->name : "this type";
+}
+
 int cm1e_st_bits(type_kind_t kind) { return elementary[kind].bits; }
 static int class_of(type_kind_t kind) { return kind <= T_WRONG ? elementary[kind].class : 0; }
 bool cm1e_st_is_signed(type_kind_t kind) { return class_of(kind) == SIGNED && kind != T_ANY_INT; }

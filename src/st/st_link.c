@@ -7,7 +7,7 @@
 const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owner, const char *name)
 {
     const bool get = strncmp(name, "get ", 4) == 0, set = strncmp(name, "set ", 4) == 0;
-    return cm1e_st_format(st->arena, "%s_%s_%s%s", prefix, owner->name, get ? "_get_" : set ? "_set_" : "",
+    return cm1e_st_format(st->arena, "%s_%s_%s%s", prefix, cm1e_st_c_name(st, owner->name), get ? "_get_" : set ? "_set_" : "",
                           get || set ? name + 4 : name);
 }
 
@@ -15,7 +15,7 @@ const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owne
 
 static unit_t *named_unit(st_t *st, const unit_t *unit, const char *name, unit_kind_t kind, const char *what)
 {
-    unit_t *found = cm1e_st_map_get(st->units, name);
+    unit_t *found = cm1e_st_lookup(st, st->units, unit->scope, unit->place, name);
     if (found && found->kind == kind && !found->external)
         return found;
     cm1e_st_report(st, unit->place, "there is no %s \"%s\" that \"%s\" could %s", what, name, unit->name,
@@ -66,8 +66,10 @@ static void link_unit(st_t *st, unit_t *unit)
     map_methods(st, unit);
     for (arg_t *arg = object->interfaces; arg; arg = arg->next) {
         unit_t *interface = named_unit(st, unit, arg->name, U_INTERFACE, "interface");
-        if (interface)
+        if (interface) {
+            arg->name = interface->name; /* with its namespace: others find it by that */
             link_unit(st, interface);
+        }
     }
     object->base = object->base_name ? named_unit(st, unit, object->base_name, U_BLOCK, "function block") : NULL;
     if (object->base) {
@@ -100,6 +102,15 @@ unit_t *cm1e_st_find_method(const unit_t *unit, const char *name)
     for (const unit_t *at = unit; at && at->object.names && !found; at = at->object.base)
         found = cm1e_st_map_get(at->object.names, name);
     return found;
+}
+
+unit_t *cm1e_st_this(const st_t *st)
+{
+    if (!st->unit)
+        return NULL;
+    if (st->unit->object.owner)
+        return st->unit->object.owner;
+    return st->unit->kind == U_BLOCK || st->unit->kind == U_PROGRAM ? st->unit : NULL;
 }
 
 bool cm1e_st_is_a(const st_t *st, const unit_t *unit, const unit_t *other)
@@ -153,7 +164,7 @@ static bool same_signature(st_t *st, const unit_t *a, const unit_t *b)
 
 static void check_override(st_t *st, const unit_t *method, const unit_t *of)
 {
-    if (of && !same_signature(st, method, of))
+    if (of && strcasecmp(method->name, "FB_Init") != 0 && !same_signature(st, method, of))
         cm1e_st_report(st, method->place, "\"%s\" has another result or other parameters than that of \"%s\"", method->name,
                        of->object.owner->name);
 }

@@ -234,18 +234,27 @@ expr_t *cm1e_st_literal(st_t *st, place_t place, const char *text)
     return typed_number(st, place, prefix, mark + 1);
 }
 
-/** The byte of an escape behind a $; `length`: how many characters it has. -1: there is no such escape. */
-static int escape(const char *text, size_t *length)
+/** The character of an escape behind a $, which may have `digits` hexadecimal ones; `length`: how many characters it has.
+ *  -1: there is no such escape. */
+static long escape(const char *text, size_t digits, size_t *length)
 {
     static const char from[] = "$'NnLlRrTtPp\"", to[] = "$'\n\n\n\n\r\r\t\t\f\f\"";
     const char *at = *text ? strchr(from, *text) : NULL;
+    char number[5] = "", *end;
     *length = 1;
     if (at)
         return to[at - from];
-    char digits[3] = {text[0], text[0] ? text[1] : '\0', '\0'}, *end;
-    const long byte = strtol(digits, &end, 16);
-    *length = 2;
-    return end == digits + 2 && byte > 0 && digits[0] != '-' && digits[0] != '+' && digits[0] != ' ' ? (int)byte : -1;
+    snprintf(number, digits + 1, "%s", text);
+    const long code = strtol(number, &end, 16);
+    *length = digits;
+    return end == number + digits && code > 0 && number[0] != '-' && number[0] != '+' && number[0] != ' ' ? code : -1;
+}
+
+static expr_t *text_of(st_t *st, const char *bytes, size_t used, int64_t length, bool wide, place_t place)
+{
+    expr_t *expr = made(st, place, T_WRONG, (constant_t){.text = cm1e_st_copy(st->arena, bytes, used)});
+    expr->type = cm1e_st_text_type(st, length, wide);
+    return expr;
 }
 
 expr_t *cm1e_st_string_literal(st_t *st, place_t place, const char *text)
@@ -253,10 +262,10 @@ expr_t *cm1e_st_string_literal(st_t *st, place_t place, const char *text)
     char bytes[ST_STRING_BYTES + 1];
     size_t used = 0;
     while (*text) {
-        int byte = (unsigned char)*text++;
+        long byte = (unsigned char)*text++;
         if (byte == '$') {
             size_t skip;
-            byte = escape(text, &skip);
+            byte = escape(text, 2, &skip);
             if (byte < 0) {
                 cm1e_st_report(st, place, "\"$%.2s\" means nothing in a text; right are $$, $', $N, $L, $R, $T, $P and "
                                "$41 (a byte other than 0)", text);
@@ -270,7 +279,46 @@ expr_t *cm1e_st_string_literal(st_t *st, place_t place, const char *text)
         }
         bytes[used++] = (char)byte;
     }
-    expr_t *expr = made(st, place, T_WRONG, (constant_t){.text = cm1e_st_copy(st->arena, bytes, used)});
-    expr->type = cm1e_st_string_type(st, (int64_t)used);
-    return expr;
+    return text_of(st, bytes, used, (int64_t)used, false, place);
+}
+
+/** A character of 16 bits in UTF-8, also half of a pair, which has 3 bytes then. */
+static size_t put_utf8(char *to, unsigned long unit)
+{
+    const size_t count = unit < 0x80 ? 1 : unit < 0x800 ? 2 : 3;
+    to[0] = (char)(count == 1 ? unit : count == 2 ? 0xC0 | unit >> 6 : 0xE0 | unit >> 12);
+    for (size_t i = 1; i < count; i++)
+        to[i] = (char)(0x80 | (unit >> 6 * (count - 1 - i) & 0x3F));
+    return count;
+}
+
+/** Source texts are in UTF-8. A character beyond 16 bits counts as two. */
+expr_t *cm1e_st_wide_literal(st_t *st, place_t place, const char *text)
+{
+    char bytes[4 * ST_STRING_BYTES + 8];
+    size_t used = 0;
+    int64_t length = 0;
+    while (*text) {
+        const unsigned char byte = (unsigned char)*text++;
+        if (byte == '$') {
+            size_t skip;
+            const long unit = escape(text, 4, &skip);
+            if (unit < 0) {
+                cm1e_st_report(st, place, "\"$%.4s\" means nothing in a WSTRING; right are $$, $\", $N, $L, $R, $T, $P and "
+                               "$0041 (a character other than 0)", text);
+                return wrong(st, place);
+            }
+            used += put_utf8(bytes + used, (unsigned long)unit);
+            text += skip;
+            length++;
+        } else {
+            bytes[used++] = (char)byte;
+            length += (byte & 0xC0) != 0x80 ? 1 + (byte >= 0xF0) : 0;
+        }
+        if (length > ST_STRING_BYTES) {
+            cm1e_st_report(st, place, "a text has at most %d characters", ST_STRING_BYTES);
+            return wrong(st, place);
+        }
+    }
+    return text_of(st, bytes, used, length, true, place);
 }

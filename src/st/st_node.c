@@ -24,6 +24,7 @@ expr_t *cm1e_st_named(st_t *st, expr_kind_t kind, place_t place, expr_t *a, cons
 {
     expr_t *expr = cm1e_st_node(st, kind, place, a, NULL);
     expr->name = name;
+    expr->scope = st->scope;
     return expr;
 }
 
@@ -51,6 +52,6 @@ arg_t *cm1e_st_arg(st_t *st, place_t place, const char *name, expr_t *value)
 type_t *cm1e_st_type_node(st_t *st, type_kind_t kind, place_t place, const char *name)
 {
     type_t *type = cm1e_st_take(st->arena, sizeof *type);
-    *type = (type_t){.kind = kind, .place = place, .name = name};
+    *type = (type_t){.kind = kind, .place = place, .name = name, .scope = st->scope};
     return type;
 }

@@ -4,23 +4,15 @@
 
 #include "st/st_parsing.h"
 
-unit_t *cm1e_st_this(const st_t *st)
-{
-    if (!st->unit)
-        return NULL;
-    if (st->unit->object.owner)
-        return st->unit->object.owner;
-    return st->unit->kind == U_BLOCK || st->unit->kind == U_PROGRAM ? st->unit : NULL;
-}
-
 /* ---- calls ------------------------------------------------------------------------------------------------------- */
 
 /** SUPER^ in the statements of a block that extends another one. */
 static bool is_super(st_t *st, const expr_t *expr)
 {
     const unit_t *this = cm1e_st_this(st);
-    return this && this->object.base && expr->kind == E_DEREF && expr->a->kind == E_NAME &&
-           strcasecmp(expr->a->name, "SUPER") == 0 && !cm1e_st_find_var(st, "SUPER");
+    const expr_t *name = expr->kind == E_DEREF ? expr->a : expr; /* SUPER of the standard, SUPER^ of TwinCAT */
+    return this && this->object.base && name->kind == E_NAME && strcasecmp(name->name, "SUPER") == 0 &&
+           !cm1e_st_find_var(st, "SUPER");
 }
 
 static void finish(st_t *st, expr_t *call, unit_t *method, expr_t *object, unit_t *seen_as)

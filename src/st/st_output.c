@@ -51,6 +51,11 @@ const char *cm1e_st_c_type(st_t *st, const type_t *type)
     return type->c_name;
 }
 
+const char *cm1e_st_int64(st_t *st, int64_t value)
+{
+    return value == INT64_MIN ? "INT64_MIN" : cm1e_st_format(st->arena, "INT64_C(%lld)", (long long)value);
+}
+
 const char *cm1e_st_plain_type(const type_t *type)
 {
     switch (type->kind) {

@@ -33,13 +33,14 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
     vars_t vars;
     int number;
 }
-%token <text> NAME "a name" LITERAL "a number" CHARACTERS "a text" QUALIFIED "a value of a type" ADDRESS "an address"
+%token <text> NAME "a name" LITERAL "a number" CHARACTERS "a text" WIDE_CHARACTERS "a WSTRING" QUALIFIED "a value of a type" ADDRESS "an address"
 %token <text> TRUTH "TRUE"
 %token IF "IF" THEN "THEN" ELSIF "ELSIF" ELSE "ELSE" END_IF "END_IF" CASE "CASE" OF "OF" END_CASE "END_CASE"
 %token FOR "FOR" TO "TO" BY "BY" DO "DO" END_FOR "END_FOR" WHILE "WHILE" END_WHILE "END_WHILE"
 %token REPEAT "REPEAT" UNTIL "UNTIL" END_REPEAT "END_REPEAT" EXIT "EXIT" CONTINUE "CONTINUE" RETURN "RETURN"
 %token OR "OR" OR_ELSE "OR_ELSE" XOR "XOR" AND "AND" AND_THEN "AND_THEN" NOT "NOT" MOD "MOD" NULL_REF "NULL"
 %token TYPE "TYPE" END_TYPE "END_TYPE" STRUCT "STRUCT" END_STRUCT "END_STRUCT" ARRAY "ARRAY" STRING "STRING"
+%token WSTRING "WSTRING"
 %token REF_TO "REF_TO" POINTER_TO "POINTER TO" REFERENCE_TO "REFERENCE TO"
 %token FUNCTION "FUNCTION" END_FUNCTION "END_FUNCTION" FUNCTION_BLOCK "FUNCTION_BLOCK"
 %token END_FUNCTION_BLOCK "END_FUNCTION_BLOCK" PROGRAM "PROGRAM" END_PROGRAM "END_PROGRAM"
@@ -49,6 +50,8 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %token METHOD "METHOD" END_METHOD "END_METHOD" ACTION "ACTION" END_ACTION "END_ACTION" PROPERTY "PROPERTY"
 %token END_PROPERTY "END_PROPERTY" GET "GET" END_GET "END_GET" SET "SET" END_SET "END_SET" INTERFACE "INTERFACE"
 %token END_INTERFACE "END_INTERFACE" EXTENDS "EXTENDS" IMPLEMENTS "IMPLEMENTS"
+%token CLASS "CLASS" END_CLASS "END_CLASS"
+%token NAMESPACE "NAMESPACE" END_NAMESPACE "END_NAMESPACE" USING "USING"
 %token <text> MODIFIER "ABSTRACT"
 %token CONFIGURATION "CONFIGURATION" END_CONFIGURATION "END_CONFIGURATION" RESOURCE "RESOURCE" ON "ON"
 %token END_RESOURCE "END_RESOURCE" TASK "TASK" WITH "WITH"
@@ -72,12 +75,16 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %type <type> type simple_type result base
 %type <vars> names declarations declaration sections section enumerators members member parts
 %type <var> enumerator
-%type <number> qualifiers qualifier modifiers
+%type <number> text_type qualifiers qualifier modifiers
 %type <args> interface_names
-%type <text> with
+%type <text> with dotted
 %%
 sources: %empty | sources source_item | sources ';';
-source_item: type_section | function | function_block | program | globals | configuration | interface;
+source_item: type_section | function | function_block | class | program | globals | configuration | interface | using
+    | NAMESPACE dotted { cm1e_st_begin_namespace(ST, @2, $2); } sources END_NAMESPACE { cm1e_st_end_namespace(ST); };
+using: USING used ';';
+used: dotted { cm1e_st_use_namespace(ST, @1, $1); } | used ',' dotted { cm1e_st_use_namespace(ST, @3, $3); };
+dotted: NAME { $$ = $1; } | dotted '.' NAME { $$ = cm1e_st_format(ST->arena, "%s.%s", $1, $3); };
 
 /* ---- types ---- */
 type_section: TYPE type_declarations END_TYPE;
@@ -116,14 +123,15 @@ dimension_first: expr RANGE expr {
         type->dimensions[type->dimension_count++] = (dimension_t){.low = $1, .high = $3};
         type->next = parsing->st->made;
         parsing->st->made = type; };
-simple_type: NAME { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); }
-    | NAME '(' expr RANGE expr ')' { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); $$->low = $3; $$->high = $5; }
-    | STRING { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); }
-    | STRING '[' expr ']' { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); $$->length_expr = $3; }
-    | STRING '(' expr ')' { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); $$->length_expr = $3; }
+simple_type: dotted { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); }
+    | dotted '(' expr RANGE expr ')' { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); $$->low = $3; $$->high = $5; }
+    | text_type { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); $$->wide = $1; }
+    | text_type '[' expr ']' { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); $$->wide = $1; $$->length_expr = $3; }
+    | text_type '(' expr ')' { $$ = cm1e_st_type_node(ST, T_STRING, @1, NULL); $$->wide = $1; $$->length_expr = $3; }
     | REF_TO type { $$ = cm1e_st_type_node(ST, T_REF, @1, NULL); $$->element = $2; }
     | POINTER_TO type { $$ = cm1e_st_type_node(ST, T_REF, @1, NULL); $$->element = $2; }
     | REFERENCE_TO type { $$ = cm1e_st_type_node(ST, T_REF, @1, NULL); $$->element = $2; $$->automatic = true; };
+text_type: STRING { $$ = 0; } | WSTRING { $$ = 1; };
 
 /* ---- variables ---- */
 initial: %empty { $$ = NULL; } | ASSIGN constant_initial { $$ = $2; };
@@ -144,7 +152,7 @@ begin_section: VAR { parsing->section = V_LOCAL; } | VAR_INPUT { parsing->sectio
     | VAR_TEMP { parsing->section = V_TEMP; } | VAR_EXTERNAL { parsing->section = V_EXTERNAL; };
 qualifiers_of_section: qualifiers { parsing->qualifiers = $1; };
 qualifiers: %empty { $$ = 0; } | qualifiers qualifier { $$ = $1 | $2; };
-qualifier: CONSTANT { $$ = Q_CONSTANT; } | RETAIN { $$ = Q_RETAIN; } | NON_RETAIN { $$ = Q_NON_RETAIN; };
+qualifier: MODIFIER { $$ = ($1[1] | 0x20) == 'u' ? Q_PUBLIC : 0; } | CONSTANT { $$ = Q_CONSTANT; } | RETAIN { $$ = Q_RETAIN; } | NON_RETAIN { $$ = Q_NON_RETAIN; };
 declarations: %empty { $$ = (vars_t){0}; } | declarations declaration { $$ = $1; ST_JOIN($$, $2); };
 declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1, $2, $4, $5); }
     | names address ':' '(' enumerators ')' initial ';' {
@@ -152,6 +160,10 @@ declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1,
         $$ = (vars_t){0}; }
     | names address ':' type NAME ';' { $$ = cm1e_st_vars(parsing, $1, $2, $4, NULL);
         cm1e_st_edge(parsing, @5, $5, $1); }
+    | names address ':' dotted '(' member_inits ')' initial ';' {
+        $$ = cm1e_st_vars(parsing, $1, $2, cm1e_st_type_node(ST, T_NONE, @4, $4), $8);
+        for (var_t *var = $1.first; var; var = var->next)
+            var->init_args = $6.first; }
     | error ';' { $$ = (vars_t){0}; };
 names: NAME { var_t *var = cm1e_st_var_name(parsing, @1, $1); $$ = (vars_t){var, var}; }
     | names ',' NAME { var_t *var = cm1e_st_var_name(parsing, @3, $3); $$ = $1; ST_APPEND($$, var); };
@@ -165,6 +177,9 @@ function: FUNCTION NAME result sections stmts END_FUNCTION
     { cm1e_st_add_unit(parsing, U_FUNCTION, @2, $2, $3, $4, $5); };
 function_block: FUNCTION_BLOCK begin_block modifiers NAME heritage parts body END_FUNCTION_BLOCK
     { parsing->object.abstract = $3; cm1e_st_add_unit(parsing, U_BLOCK, @4, $4, NULL, $6, $7); };
+class: CLASS begin_block modifiers NAME heritage parts END_CLASS
+    { parsing->object.abstract = $3; parsing->object.is_class = true;
+      cm1e_st_add_unit(parsing, U_BLOCK, @4, $4, NULL, $6, (stmts_t){0}); };
 program: PROGRAM begin_block NAME parts body END_PROGRAM
     { cm1e_st_add_unit(parsing, U_PROGRAM, @3, $3, NULL, $4, $5); };
 
@@ -176,8 +191,8 @@ heritage: %empty | heritage EXTENDS interface_names {
         if ($3.first->next)
             cm1e_st_report(ST, $3.first->next->place, "a function block extends one other; it implements several interfaces"); }
     | heritage IMPLEMENTS interface_names { parsing->object.interfaces = $3.first; };
-interface_names: NAME { arg_t *arg = cm1e_st_arg(ST, @1, $1, NULL); $$ = (args_t){arg, arg}; }
-    | interface_names ',' NAME { arg_t *arg = cm1e_st_arg(ST, @3, $3, NULL); $$ = $1; ST_APPEND($$, arg); };
+interface_names: dotted { arg_t *arg = cm1e_st_arg(ST, @1, $1, NULL); $$ = (args_t){arg, arg}; }
+    | interface_names ',' dotted { arg_t *arg = cm1e_st_arg(ST, @3, $3, NULL); $$ = $1; ST_APPEND($$, arg); };
 /* Methods stand in front of the statements (IEC 61131-3), or behind them (TwinCAT). */
 parts: %empty { $$ = (vars_t){0}; } | parts section { $$ = $1; ST_JOIN($$, $2); } | parts part { $$ = $1; };
 body: %empty { $$ = (stmts_t){0}; } | stmts_of_block late_parts { $$ = $1; };
@@ -279,7 +294,9 @@ value: LITERAL { $$ = cm1e_st_literal(ST, @1, $1); }
     | TRUTH { $$ = cm1e_st_literal(ST, @1, $1); }
     | NULL_REF { $$ = cm1e_st_literal(ST, @1, "NULL"); }
     | CHARACTERS { $$ = cm1e_st_string_literal(ST, @1, $1); }
-    | QUALIFIED { $$ = cm1e_st_qualified(ST, @1, $1); };
+    | WIDE_CHARACTERS { $$ = cm1e_st_wide_literal(ST, @1, $1); }
+    | QUALIFIED { $$ = cm1e_st_qualified(ST, @1, $1); }
+    | variable '.' QUALIFIED { $$ = cm1e_st_qualified_in(ST, @3, $1, $3); };
 expr: variable { $$ = $1; }
     | value { $$ = $1; }
     | variable '(' arguments ')' { $$ = cm1e_st_with_args(ST, E_CALL, @1, $1, $3); }

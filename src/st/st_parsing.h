@@ -54,6 +54,15 @@ void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, place_t *
 bool cm1e_st_unsupported(parsing_t *parsing, place_t place);
 void cm1e_st_bad_character(parsing_t *parsing, place_t place, char character);
 
+/* of the parser: st_scope.c */
+void cm1e_st_begin_namespace(st_t *st, place_t place, const char *name);
+void cm1e_st_end_namespace(st_t *st);
+void cm1e_st_use_namespace(st_t *st, place_t place, const char *name);
+/** The name with that of its namespace. */
+const char *cm1e_st_full_name(st_t *st, const char *name);
+/** namespace.TYPE#NAME */
+expr_t *cm1e_st_qualified_in(st_t *st, place_t place, const expr_t *space, const char *text);
+
 /* of the parser: st_build.c */
 expr_t *cm1e_st_node(st_t *st, expr_kind_t kind, place_t place, expr_t *a, expr_t *b);
 expr_t *cm1e_st_operation(st_t *st, operation_t op, place_t place, expr_t *a, expr_t *b);

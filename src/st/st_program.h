@@ -8,11 +8,11 @@
 
 #include <stdint.h>
 
-enum { ST_PROGRAM_VERSION = 1 };
+enum { ST_PROGRAM_VERSION = 2 };
 
 typedef enum st_kind {
     ST_KIND_BOOL, ST_KIND_SINT, ST_KIND_INT, ST_KIND_DINT, ST_KIND_LINT, ST_KIND_USINT, ST_KIND_UINT, ST_KIND_UDINT,
-    ST_KIND_ULINT, ST_KIND_REAL, ST_KIND_LREAL, ST_KIND_TIME, ST_KIND_STRING, ST_KIND_OTHER,
+    ST_KIND_ULINT, ST_KIND_REAL, ST_KIND_LREAL, ST_KIND_TIME, ST_KIND_STRING, ST_KIND_WSTRING, ST_KIND_OTHER,
 } st_kind_t;
 
 /** A variable by its name. Of an axis or a group: the reference that gets its handle before the program runs. */
@@ -22,6 +22,9 @@ typedef struct st_variable {
     uint32_t size;
     st_kind_t kind;
     const char *detail; /**< type, or address */
+    int bit;            /**< it is one bit of a byte: 1 = bit 0; else 0 */
+    int ranged;         /**< its values are first ... last */
+    int64_t first, last;
 } st_variable_t;
 
 typedef struct st_task {
@@ -54,6 +57,7 @@ typedef struct st_program {
     const st_task_t *tasks;
     uint32_t task_count;
     st_list_t variables, axes, groups, located, retained;
+    uint64_t unlisted;        /**< variables for which the table was too small */
     st_fault_t *fault;
     int64_t *loop_limit;      /**< passes through loops in one call of a task */
 } st_program_t;

@@ -10,6 +10,8 @@
 #include "st/st_embedded.h"
 #include "st/st_twincat.h"
 
+enum { LISTED_MOST = 10000 };
+
 typedef void *yyscan_t;
 int cm1e_st_yylex_init_extra(parsing_t *parsing, yyscan_t *scanner);
 int cm1e_st_yylex_destroy(yyscan_t scanner);
@@ -27,9 +29,14 @@ st_t *cm1e_st_new_bare(void)
     st->units = cm1e_st_map_new(st->arena);
     st->globals = cm1e_st_map_new(st->arena);
     st->enumerators = cm1e_st_map_new(st->arena);
+    st->spaces = cm1e_st_map_new(st->arena);
+    st->used = cm1e_st_map_new(st->arena);
     cm1e_st_begin_types(st);
+    st->listed_most = LISTED_MOST;
     return st;
 }
+
+void cm1e_st_list_most(st_t *st, uint64_t count) { st->listed_most = count; }
 
 st_t *cm1e_st_new(void)
 {
@@ -119,7 +126,7 @@ void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, place_t *
 
 /* They are names wherever a name makes sense: programs have variables that are called step or reference. */
 static const char *const missing[] = {
-    "CLASS", "NAMESPACE", "USING", "VAR_ACCESS", "VAR_CONFIG", "VAR_STAT", "VAR_INST", "UNION", "GOTO", "JMP", "STEP", "INITIAL_STEP", "TRANSITION",
+    "VAR_ACCESS", "VAR_CONFIG", "VAR_STAT", "VAR_INST", "UNION", "GOTO", "JMP", "STEP", "INITIAL_STEP", "TRANSITION",
 };
 
 bool cm1e_st_begins_part(const parsing_t *parsing)
@@ -129,10 +136,14 @@ bool cm1e_st_begins_part(const parsing_t *parsing)
 
 bool cm1e_st_is_modifier(const parsing_t *parsing)
 {
-    static const char *const words[] = {"METHOD", "PROPERTY", "FUNCTION_BLOCK", "ABSTRACT", "FINAL", "PUBLIC", "PRIVATE",
+    static const char *const sections[] = {"VAR", "VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_TEMP"};
+    static const char *const words[] = {"METHOD", "PROPERTY", "FUNCTION_BLOCK", "CLASS", "ABSTRACT", "FINAL", "PUBLIC", "PRIVATE",
                                         "PROTECTED", "INTERNAL", "OVERRIDE"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (parsing->heading && strcasecmp(parsing->before, words[i]) == 0)
+            return true;
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
+        if (strcasecmp(parsing->before, sections[i]) == 0)
             return true;
     return false;
 }
@@ -161,6 +172,8 @@ static void parse_source(st_t *st)
 {
     parsing_t parsing = {.st = st, .line = 1, .column = 1};
     const source_t *source = &st->sources[st->source];
+    st->scope = cm1e_st_take(st->arena, sizeof *st->scope);
+    *st->scope = (scope_t){.space = ""};
     if (cm1e_st_yylex_init_extra(&parsing, &parsing.scanner) != 0)
         return;
     if (cm1e_st_yy_scan_bytes(source->text, (int)source->size, parsing.scanner))
@@ -172,4 +185,5 @@ void cm1e_st_parse(st_t *st)
 {
     for (st->source = 0; st->source < st->source_count; st->source++)
         parse_source(st);
+    st->scope = NULL;
 }

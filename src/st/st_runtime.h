@@ -19,6 +19,9 @@
 
 #if defined __GNUC__
 #pragma GCC diagnostic ignored "-Woverflow" /* integers wrap, constants too */
+#if __GNUC__ >= 11 && !defined __clang__
+#pragma GCC diagnostic ignored "-Wstringop-overread" /* it does not see that the length of a text is looked at */
+#endif
 #define ST_UNUSED __attribute__((unused))
 #define ST_EXPORT __attribute__((visibility("default")))
 #define ST_NO_RETURN __attribute__((noreturn, cold))
@@ -70,6 +73,14 @@ ST_UNUSED static inline size_t st_at(int64_t index, int64_t first, int64_t last,
     return (size_t)(index - first);
 }
 #define ST_AT(index, first, last) st_at((int64_t)(index), first, last, ST_HERE)
+
+/** A value for a variable of a subrange. */
+ST_UNUSED static inline int64_t st_within(int64_t value, int64_t first, int64_t last, const char *file, int line)
+{
+    if (value < first || value > last)
+        st_fail(file, line, "the value %lld is outside the range %lld..%lld", value, first, last);
+    return value;
+}
 
 ST_UNUSED static inline void *st_reach(void *to, const char *file, int line)
 {
@@ -188,62 +199,132 @@ typedef struct STRING_254 {
     char text[255];
 } STRING_254;
 
-ST_UNUSED static inline void st_assign(char *to, size_t size, const char *from)
+/** A WSTRING: at most 254 characters of 16 bits (UTF-16 in the order of the machine). */
+typedef struct WSTRING_254 {
+    uint16_t text[255];
+} WSTRING_254;
+
+ST_UNUSED static inline size_t st_length(const char *text) { return strlen(text); }
+ST_UNUSED static inline size_t st_wlength(const uint16_t *text)
 {
-    size_t length = strlen(from);
-    if (length >= size)
-        length = size - 1;
-    memmove(to, from, length);
-    to[length] = '\0';
+    size_t length = 0;
+    while (text[length])
+        length++;
+    return length;
 }
 
-/** `count` characters from position `at` (1 = first); what is outside the text is left out. */
-ST_UNUSED static inline STRING_254 st_mid(const char *text, int64_t count, int64_t at)
+/* The functions of both kinds of texts. ASSIGN cuts off what does not fit into `size` bytes. MID: `count` characters from
+ * position `at` (1 = first); what is outside the text is left out. REPLACE: without `count` characters from position `at`,
+ * with `put` in their place. */
+#define ST_TEXTS(w, UNIT, TEXT)                                                                                       \
+    ST_UNUSED static inline void st_##w##assign(UNIT *to, size_t size, const UNIT *from)                              \
+    {                                                                                                                 \
+        const size_t room = size / sizeof(UNIT) - 1, whole = st_##w##length(from), length = whole < room ? whole : room; \
+        memmove(to, from, length * sizeof(UNIT));                                                                     \
+        to[length] = 0;                                                                                               \
+    }                                                                                                                 \
+    ST_UNUSED static inline TEXT st_##w##mid(const UNIT *text, int64_t count, int64_t at)                             \
+    {                                                                                                                 \
+        TEXT result = {{0}};                                                                                          \
+        const int64_t length = (int64_t)st_##w##length(text);                                                         \
+        if (at < 1 || at > length || count <= 0)                                                                      \
+            return result;                                                                                            \
+        if (count > length - at + 1)                                                                                  \
+            count = length - at + 1;                                                                                  \
+        memcpy(result.text, text + at - 1, (size_t)count * sizeof(UNIT));                                             \
+        return result;                                                                                                \
+    }                                                                                                                 \
+    ST_UNUSED static inline TEXT st_##w##left(const UNIT *text, int64_t count) { return st_##w##mid(text, count, 1); } \
+    ST_UNUSED static inline TEXT st_##w##right(const UNIT *text, int64_t count)                                       \
+    {                                                                                                                 \
+        const int64_t length = (int64_t)st_##w##length(text);                                                         \
+        return st_##w##mid(text, count, count >= length ? 1 : count < 0 ? length + 1 : length - count + 1);           \
+    }                                                                                                                 \
+    ST_UNUSED static inline TEXT st_##w##concat(const UNIT *a, const UNIT *b)                                         \
+    {                                                                                                                 \
+        TEXT result = {{0}};                                                                                          \
+        st_##w##assign(result.text, sizeof result.text, a);                                                           \
+        const size_t used = st_##w##length(result.text);                                                              \
+        st_##w##assign(result.text + used, sizeof result.text - used * sizeof(UNIT), b);                              \
+        return result;                                                                                                \
+    }                                                                                                                 \
+    ST_UNUSED static inline TEXT st_##w##replace(const UNIT *text, const UNIT *put, int64_t count, int64_t at)        \
+    {                                                                                                                 \
+        const int64_t length = (int64_t)st_##w##length(text);                                                         \
+        if (count < 0 || at < 1 || at > length + 1)                                                                   \
+            return st_##w##mid(text, length, 1);                                                                      \
+        const TEXT before = st_##w##left(text, at - 1), joined = st_##w##concat(before.text, put);                    \
+        return count >= length - at + 1 ? joined : st_##w##concat(joined.text, text + at - 1 + count);                \
+    }                                                                                                                 \
+    ST_UNUSED static inline TEXT st_##w##insert(const UNIT *text, const UNIT *put, int64_t behind)                    \
+    {                                                                                                                 \
+        return behind < 0 ? st_##w##replace(text, put, -1, 1) : st_##w##replace(text, put, 0, behind + 1);            \
+    }                                                                                                                 \
+    ST_UNUSED static inline TEXT st_##w##delete(const UNIT *text, int64_t count, int64_t at)                          \
+    {                                                                                                                 \
+        return st_##w##replace(text, (const UNIT[1]){0}, count, at);                                                  \
+    }                                                                                                                 \
+    ST_UNUSED static inline INT st_##w##find(const UNIT *text, const UNIT *part)                                      \
+    {                                                                                                                 \
+        const size_t length = st_##w##length(text), wanted = st_##w##length(part);                                    \
+        for (size_t i = 0; wanted > 0 && i + wanted <= length; i++)                                                   \
+            if (memcmp(text + i, part, wanted * sizeof(UNIT)) == 0)                                                   \
+                return (INT)(i + 1);                                                                                  \
+        return 0;                                                                                                     \
+    }
+ST_TEXTS(, char, STRING_254)
+ST_TEXTS(w, uint16_t, WSTRING_254)
+
+ST_UNUSED static inline int st_wcompare(const uint16_t *a, const uint16_t *b)
 {
-    STRING_254 result = {{0}};
-    const int64_t length = (int64_t)strlen(text);
-    if (at < 1 || at > length || count <= 0)
-        return result;
-    if (count > length - at + 1)
-        count = length - at + 1;
-    memcpy(result.text, text + at - 1, (size_t)count);
+    while (*a && *a == *b)
+        a++, b++;
+    return *a - *b;
+}
+
+/** STRING to WSTRING: a STRING is UTF-8. A byte that belongs to no character becomes the character of its number. */
+ST_UNUSED static inline WSTRING_254 st_widen(const char *text)
+{
+    WSTRING_254 result = {{0}};
+    size_t used = 0;
+    for (const uint8_t *at = (const uint8_t *)text; *at && used < 254;) {
+        const int more = *at < 0xC2 ? 0 : *at < 0xE0 ? 1 : *at < 0xF0 ? 2 : *at < 0xF5 ? 3 : 0;
+        uint32_t c = more ? *at & (0x3Fu >> more) : *at;
+        int good = 0;
+        while (good < more && (at[good + 1] & 0xC0) == 0x80)
+            c = c << 6 | (at[++good] & 0x3Fu);
+        c = good < more ? *at : c;
+        at += good < more ? 1 : more + 1;
+        if (c < 0x10000) {
+            result.text[used++] = (uint16_t)c;
+        } else if (used < 253) {
+            result.text[used++] = (uint16_t)(0xD7C0 + (c >> 10));
+            result.text[used++] = (uint16_t)(0xDC00 | (c & 0x3FF));
+        } else {
+            break;
+        }
+    }
     return result;
 }
-ST_UNUSED static inline STRING_254 st_left(const char *text, int64_t count) { return st_mid(text, count, 1); }
-ST_UNUSED static inline STRING_254 st_right(const char *text, int64_t count)
-{
-    const int64_t length = (int64_t)strlen(text);
-    return st_mid(text, count, count >= length ? 1 : count < 0 ? length + 1 : length - count + 1);
-}
-ST_UNUSED static inline STRING_254 st_concat(const char *a, const char *b)
+
+/** WSTRING to STRING, in UTF-8: what does not fit is left out. */
+ST_UNUSED static inline STRING_254 st_narrow(const uint16_t *text)
 {
     STRING_254 result = {{0}};
-    st_assign(result.text, sizeof result.text, a);
-    const size_t used = strlen(result.text);
-    st_assign(result.text + used, sizeof result.text - used, b);
+    size_t used = 0;
+    for (; *text; text++) {
+        uint32_t c = *text;
+        if ((c & 0xFC00) == 0xD800 && (text[1] & 0xFC00) == 0xDC00)
+            c = 0x10000 + ((c & 0x3FF) << 10) + (*++text & 0x3FFu);
+        const size_t count = c < 0x80 ? 1 : c < 0x800 ? 2 : c < 0x10000 ? 3 : 4;
+        if (used + count > 254)
+            break;
+        for (size_t i = count; i > 1; c >>= 6)
+            result.text[used + --i] = (char)(0x80 | (c & 0x3F));
+        result.text[used] = (char)(count == 1 ? c : (0xF00u >> count & 0xFF) | c);
+        used += count;
+    }
     return result;
-}
-/** Without `count` characters from position `at`, with `put` in their place. */
-ST_UNUSED static inline STRING_254 st_replace(const char *text, const char *put, int64_t count, int64_t at)
-{
-    const int64_t length = (int64_t)strlen(text);
-    if (count < 0 || at < 1 || at > length + 1)
-        return st_mid(text, length, 1);
-    const STRING_254 before = st_left(text, at - 1), joined = st_concat(before.text, put);
-    return count >= length - at + 1 ? joined : st_concat(joined.text, text + at - 1 + count);
-}
-ST_UNUSED static inline STRING_254 st_insert(const char *text, const char *put, int64_t behind)
-{
-    return behind < 0 ? st_replace(text, put, -1, 1) : st_replace(text, put, 0, behind + 1);
-}
-ST_UNUSED static inline STRING_254 st_delete(const char *text, int64_t count, int64_t at)
-{
-    return st_replace(text, "", count, at);
-}
-ST_UNUSED static inline INT st_find(const char *text, const char *part)
-{
-    const char *found = *part ? strstr(text, part) : NULL;
-    return found ? (INT)(found - text + 1) : 0;
 }
 
 ST_UNUSED static inline STRING_254 st_text_of_integer(int64_t value)

@@ -101,9 +101,9 @@ static bool one_type(st_t *st, expr_t *call, arg_t *first, bool (*good)(type_kin
     }
     call->untyped = sum->type->kind == T_ANY_INT || sum->type->kind == T_ANY_REAL;
     sum = cm1e_st_settle(st, sum);
-    call->type = sum->type;
+    call->type = sum->type->ranged ? st->elementary[sum->type->kind] : sum->type;
     for (arg_t *arg = first; arg && !call->untyped; arg = arg->next)
-        arg->value = cm1e_st_coerce(st, arg->value, sum->type, "the argument");
+        arg->value = cm1e_st_coerce(st, arg->value, call->type, "the argument");
     call->typed_args = first;
     return true;
 }
@@ -161,16 +161,17 @@ static bool strings(st_t *st, expr_t *call)
 {
     const char *types = call->standard->types;
     const char *at = types + 1;
+    const bool wide = call->args->value->type->wide;
     for (arg_t *arg = call->args; arg; arg = arg->next) {
         arg->value = cm1e_st_settle(st, arg->value);
         const type_kind_t kind = arg->value->type->kind;
-        if (*at == 'S' && kind != T_STRING)
-            return refuse(st, call, arg->value, "a STRING");
+        if (*at == 'S' && (kind != T_STRING || arg->value->type->wide != wide))
+            return refuse(st, call, arg->value, wide ? "a WSTRING" : "a STRING");
         if (*at == 'I' && (!cm1e_st_is_integer(kind) || kind == T_ULINT))
             return refuse(st, call, arg->value, "an integer");
         at += at[1] != '\0';
     }
-    call->type = types[0] == 'S' ? cm1e_st_string_type(st, ST_STRING_BYTES) : st->elementary[T_INT];
+    call->type = types[0] == 'S' ? cm1e_st_text_type(st, ST_STRING_BYTES, wide) : st->elementary[T_INT];
     return true;
 }
 

@@ -41,6 +41,8 @@ struct st {
     unsigned source_count;
     unsigned source;      /**< that is parsed */
     tree_t tree;
+    scope_t *scope;       /**< of what is parsed */
+    map_t *spaces, *used; /**< namespaces that there are, and those that USING names */
     map_t *types, *units, *globals, *enumerators;
     type_t *elementary[T_WRONG + 1];
     type_t *made;         /**< arrays, strings and references, each once */
@@ -55,6 +57,8 @@ struct st {
     int indent;
     unsigned temporaries;
     uint64_t elements;    /**< of initial values */
+    uint64_t memory;      /**< bytes AT %M */
+    uint64_t listed_most; /**< variables that others see by their names */
 };
 
 /** Reports an error; at most one for each line, ST_ERRORS in all. */
@@ -66,6 +70,7 @@ void cm1e_st_parse(st_t *st);
 /* st_literal.c: the constant of a literal's text. Report what is wrong with it. */
 expr_t *cm1e_st_literal(st_t *st, place_t place, const char *text);
 expr_t *cm1e_st_string_literal(st_t *st, place_t place, const char *text);
+expr_t *cm1e_st_wide_literal(st_t *st, place_t place, const char *text);
 
 /* st_type.c */
 void cm1e_st_begin_types(st_t *st);
@@ -73,7 +78,10 @@ void cm1e_st_begin_types(st_t *st);
 type_t *cm1e_st_resolve(st_t *st, type_t *type);
 /** The type of an elementary name; NULL: it is none. */
 type_t *cm1e_st_elementary(const st_t *st, const char *name);
-type_t *cm1e_st_string_type(st_t *st, int64_t length);
+/** STRING or WSTRING. */
+type_t *cm1e_st_text_type(st_t *st, int64_t length, bool wide);
+/** Integers of a base that are first ... last. */
+type_t *cm1e_st_range_type(st_t *st, const type_t *base, int64_t first, int64_t last);
 type_t *cm1e_st_ref_type(st_t *st, type_t *to);
 /** `automatic`: REFERENCE TO. */
 type_t *cm1e_st_any_ref_type(st_t *st, type_t *to, bool automatic);
@@ -92,6 +100,17 @@ bool cm1e_st_widens(type_kind_t from, type_kind_t to);
 type_kind_t cm1e_st_common(type_kind_t a, type_kind_t b);
 int64_t cm1e_st_wrap(type_kind_t kind, int64_t value);
 
+/* st_scope.c */
+/** What a name means where it is written: in its namespace and those around it, in one that is used there, or outside of
+ *  all; NULL: nothing. Reports a name that several used namespaces have. */
+void *cm1e_st_lookup(st_t *st, const map_t *map, const scope_t *scope, place_t place, const char *name);
+/** That the namespaces which USING names exist. */
+void cm1e_st_check_used(st_t *st);
+/** a.b.c as it is written; NULL: the expression is no such name. */
+const char *cm1e_st_dotted(st_t *st, const expr_t *expr);
+/** A name for C. */
+const char *cm1e_st_c_name(st_t *st, const char *name);
+
 /* st_declare.c */
 /** Enters all declarations and resolves their types. */
 void cm1e_st_declare(st_t *st);
@@ -101,6 +120,8 @@ var_t *cm1e_st_member(const type_t *type, const char *name);
 var_t *cm1e_st_find_var(st_t *st, const char *name);
 /** The value of a constant variable, computed now if it was not yet. */
 const constant_t *cm1e_st_constant_of(st_t *st, var_t *var);
+/** A variable without an initial value takes that of its type. */
+void cm1e_st_inherit_initial(st_t *st, var_t *var);
 /** Checks the initial value of a variable. */
 void cm1e_st_check_initial(st_t *st, var_t *var);
 
@@ -179,8 +200,22 @@ unit_t *cm1e_st_this(const st_t *st);
 void cm1e_st_note_call(st_t *st, unit_t *callee);
 void cm1e_st_check_arguments(st_t *st, unit_t *unit, expr_t *call);
 
+/* st_init.c */
+/** FB_Init of a block itself; NULL: it has none. */
+unit_t *cm1e_st_init_method(const unit_t *unit);
+/** Of it or a base. */
+bool cm1e_st_has_init(const unit_t *unit);
+/** It takes more than the inputs that every FB_Init has. */
+bool cm1e_st_init_takes(const unit_t *unit);
+/** The inputs of FB_Init in the declaration of an instance. */
+void cm1e_st_check_init_args(st_t *st, var_t *var);
+/** The value of an input; NULL: the declaration gives none. */
+const expr_t *cm1e_st_init_arg(const var_t *instance, const var_t *parameter);
+
 /* st_address.c */
-void cm1e_st_check_address(st_t *st, const var_t *var);
+void cm1e_st_check_address(st_t *st, var_t *var);
+/** A name AT %MX becomes a bit of its byte. */
+void cm1e_st_take_from_memory(st_t *st, expr_t *expr);
 bool cm1e_st_can_be_kept(const type_t *type);
 
 /* st_initial.c */

@@ -150,7 +150,7 @@ static void count(st_t *st, stmt_t *stmt)
         if (!*parts[i])
             continue;
         cm1e_st_expression(st, *parts[i]);
-        *parts[i] = cm1e_st_coerce(st, *parts[i], type, stmt->target->name ? stmt->target->name : "the counter");
+        *parts[i] = cm1e_st_coerce(st, *parts[i], type->ranged ? st->elementary[type->kind] : type, stmt->target->name ? stmt->target->name : "the counter");
     }
     if (stmt->by && stmt->by->value.known && stmt->by->value.integer == 0)
         cm1e_st_report(st, stmt->by->place, "a FOR in steps of 0 would not end");

@@ -45,6 +45,17 @@ typedef enum type_kind {
     T_WRONG,    /**< of an expression with an error that has been reported */
 } type_kind_t;
 
+/** Where a name is written: its namespace, those that USING names there, and what is around. */
+typedef struct scope {
+    const char *space;       /**< "": none */
+    struct used {
+        const char *space;
+        place_t place;
+        struct used *next;
+    } *used;
+    struct scope *outer;
+} scope_t;
+
 typedef struct expr expr_t;
 typedef struct var var_t;
 typedef struct stmt stmt_t;
@@ -62,16 +73,19 @@ typedef struct dimension {
 struct type {
     type_kind_t kind;
     const char *name;        /**< as declared; of an array or a string made from its parts */
+    const char *shown;       /**< of a subrange, whose name is that of its base: "INT (0..100)"; else NULL */
     const char *c_name;      /**< in the emitted C */
     place_t place;
+    const scope_t *scope;    /**< where it is written */
     type_t *same;            /**< an alias, or a name that is used: the type meant */
     type_t *element;         /**< of an array, of a reference; of an ENUM its base */
     dimension_t dimensions[ST_DIMENSIONS];
     int dimension_count;
     expr_t *length_expr;     /**< of STRING */
     int64_t length;
-    expr_t *low, *high;      /**< of a subrange */
-    bool ranged;
+    bool wide;               /**< WSTRING: a T_STRING whose characters have 16 bits */
+    expr_t *low, *high;      /**< of a subrange as it is written */
+    bool ranged;             /**< a subrange: `kind` is that of its base, its values are first ... last */
     int64_t first, last;
     var_t *members;          /**< of a STRUCT; enumerators of an ENUM; variables of a block */
     unit_t *unit;            /**< of a block */
@@ -102,7 +116,7 @@ typedef struct constant {
     bool huge;          /**< integer is a number above the largest LINT, in 64 bits without a sign */
     int64_t integer;    /**< also BOOL, bits, times, enumerators */
     double real;
-    const char *text;   /**< of a STRING; its bytes may be any but 0 */
+    const char *text;   /**< of a STRING; its bytes may be any but 0. Of a WSTRING in UTF-8 */
 } constant_t;
 
 typedef struct arg {
@@ -122,6 +136,7 @@ struct expr {
     place_t place;
     int depth;
     const char *name;    /**< E_NAME, E_MEMBER, E_QUALIFIED: what is behind the #, E_ADDRESS */
+    const scope_t *scope; /**< of a name: where it is written */
     const char *prefix;  /**< E_QUALIFIED: the type in front of the #; E_LITERAL: its explicit type */
     expr_t *a, *b;       /**< operands; what is called, indexed, or has the member */
     arg_t *args;         /**< of a call, an index, an initialiser */
@@ -177,7 +192,7 @@ typedef enum section {
     V_LOCAL, V_INPUT, V_OUTPUT, V_IN_OUT, V_GLOBAL, V_EXTERNAL, V_TEMP, V_RESULT, V_MEMBER, V_ENUMERATOR,
 } section_t;
 
-enum { Q_CONSTANT = 1, Q_RETAIN = 2, Q_NON_RETAIN = 4, Q_R_EDGE = 8, Q_F_EDGE = 16 };
+enum { Q_CONSTANT = 1, Q_RETAIN = 2, Q_NON_RETAIN = 4, Q_R_EDGE = 8, Q_F_EDGE = 16, Q_PUBLIC = 32, Q_EDGE = Q_R_EDGE | Q_F_EDGE };
 
 struct var {
     const char *name;
@@ -188,12 +203,17 @@ struct var {
     type_t *type;
     expr_t *initial;
     expr_t *address;     /**< AT %... */
+    bool in_memory;      /**< AT %M...: `c_name` is its place in the memory of the program */
+    int memory_bit;      /**< of a BOOL AT %MX: 1 = bit 0; else 0 */
+    var_t *memory_byte;  /**< the byte that has this bit */
+    arg_t *init_args;    /**< fb : FB_X(a := 1): for its FB_Init */
     place_t place;
     constant_t value;    /**< of a constant */
     int state;           /**< of its value: 0 new, 1 being computed, 2 known */
     unit_t *unit;        /**< whose variable it is; NULL: global, member */
     type_t *owner;       /**< of an enumerator: its type */
     var_t *global;       /**< of VAR_EXTERNAL */
+    bool init_checked;   /**< what FB_Init needs has been looked at */
     bool controls;       /**< a FOR counts with it at the moment */
     var_t *next;
 };
@@ -210,6 +230,7 @@ typedef struct object {
     unit_t *base;        /**< EXTENDS */
     arg_t *interfaces;   /**< IMPLEMENTS, of an interface EXTENDS: names */
     bool abstract;
+    bool is_class;       /**< CLASS: without inputs, outputs and statements */
     bool has_class;      /**< its instances say which class they are */
     int class_id;
     int linked;          /**< 0 new, 1 on the way, 2 done */
@@ -220,6 +241,7 @@ struct unit {
     unit_kind_t kind;
     const char *name, *c_name, *c_type;
     place_t place;
+    const scope_t *scope;
     var_t *vars;         /**< in order of declaration; of a function the result last */
     var_t *result;
     type_t *result_type;
@@ -249,6 +271,7 @@ typedef struct task {
     arg_t *settings;
     int64_t interval_ns;
     int64_t priority;
+    expr_t *single;      /**< SINGLE: the variable whose rising edge runs it; NULL: none */
     struct task *next;
 } task_t;
 

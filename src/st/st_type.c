@@ -25,7 +25,7 @@ static void name_array(st_t *st, type_t *type)
                                (long long)(d->first < 0 ? -d->first : d->first), d->last < 0 ? "m" : "",
                                (long long)(d->last < 0 ? -d->last : d->last));
     }
-    type->name = cm1e_st_format(st->arena, "ARRAY [%s] OF %s", bounds, type->element->name);
+    type->name = cm1e_st_format(st->arena, "ARRAY [%s] OF %s", bounds, cm1e_st_type_name(type->element));
     const char *element = type->element->kind == T_REF ? "REF" : type->element->c_name;
     unsigned same = 0;
     for (const type_t *other = st->made; other; other = other->next)
@@ -70,11 +70,11 @@ static type_t *resolve_array(st_t *st, type_t *type)
 static type_t *resolve_string(st_t *st, type_t *type)
 {
     int64_t length = 80;
-    if (type->length_expr && !cm1e_st_integer_constant(st, type->length_expr, &length, "the length of a STRING"))
+    if (type->length_expr && !cm1e_st_integer_constant(st, type->length_expr, &length, "the length of a text"))
         return st->elementary[T_WRONG];
     if (length >= 1 && length <= ST_STRING_BYTES)
-        return cm1e_st_string_type(st, length);
-    cm1e_st_report(st, type->place, "a STRING has 1 to %d characters, not %lld", ST_STRING_BYTES, (long long)length);
+        return cm1e_st_text_type(st, length, type->wide);
+    cm1e_st_report(st, type->place, "a text has 1 to %d characters, not %lld", ST_STRING_BYTES, (long long)length);
     return st->elementary[T_WRONG];
 }
 
@@ -98,6 +98,22 @@ static type_t *unknown(st_t *st, type_t *type)
     return st->elementary[T_WRONG];
 }
 
+/** TYPE t : INT := 5: a variable without an initial value has that of its type, or of the type that this one is. */
+void cm1e_st_inherit_initial(st_t *st, var_t *var)
+{
+    const type_t *type = var->type;
+    const bool has_none = var->section == V_IN_OUT || var->section == V_EXTERNAL || var->section == V_ENUMERATOR;
+    for (int depth = 0; type && !var->initial && !has_none && depth < ST_DEPTH; depth++) {
+        if (type->kind != T_NONE)
+            return;
+        /* By its name also where it is resolved, as for the second one of "a, b : t": that leads past its initial value. */
+        const type_t *named = type->name ? cm1e_st_lookup(st, st->types, type->scope, type->place, type->name) : NULL;
+        type = named && named != type ? named : type->same;
+        if (type && type->initial && type->kind != T_ENUM)
+            var->initial = type->initial;
+    }
+}
+
 /** Sizes and alignments of the members, in the order of declaration, as C lays them out. */
 static void resolve_members(st_t *st, type_t *type)
 {
@@ -106,11 +122,12 @@ static void resolve_members(st_t *st, type_t *type)
     for (var_t *var = type->members; var; var = var->next) {
         if (var->section == V_TEMP || var->section == V_EXTERNAL)
             continue;
+        cm1e_st_inherit_initial(st, var);
         var->type = cm1e_st_resolve(st, var->type);
         const bool pointer = var->section == V_IN_OUT;
         const uint64_t align = pointer ? sizeof(void *) : var->type->alignment ? var->type->alignment : 1;
         const uint64_t bytes = pointer ? sizeof(void *) : var->type->size;
-        size = (size + align - 1) / align * align + bytes;
+        size = (size + align - 1) / align * align + bytes + (var->qualifiers & Q_EDGE ? 2 : 0); /* st_emit_type.c */
         alignment = align > alignment ? align : alignment;
         if (size > MAX_BYTES) {
             cm1e_st_report(st, var->place, "\"%s\" becomes larger than %d MB", type->name, (int)(MAX_BYTES >> 20));
@@ -140,27 +157,27 @@ static void resolve_enum(st_t *st, type_t *type)
     type->alignment = type->element->alignment;
 }
 
-/** TYPE t : INT (0..100): the type with a range. */
+/** INT (0..100) */
 static type_t *resolve_range(st_t *st, type_t *type, type_t *base)
 {
-    if (!cm1e_st_integer_constant(st, type->low, &type->first, "the lower limit of a range") ||
-        !cm1e_st_integer_constant(st, type->high, &type->last, "the upper limit of a range"))
+    int64_t first, last;
+    if (!cm1e_st_integer_constant(st, type->low, &first, "the lower limit of a range") ||
+        !cm1e_st_integer_constant(st, type->high, &last, "the upper limit of a range") || base->kind == T_WRONG)
         return st->elementary[T_WRONG];
-    const constant_t low = {.integer = type->first}, high = {.integer = type->last};
-    if (!cm1e_st_is_integer(base->kind) || type->first > type->last || !cm1e_st_fits(base->kind, &low) ||
-        !cm1e_st_fits(base->kind, &high))
-        cm1e_st_report(st, type->place, "%lld..%lld is no range of %s", (long long)type->first, (long long)type->last,
-                       base->name);
-    cm1e_st_report(st, type->place, "a type with a range is not supported; use %s, and LIMIT where a value comes from "
-                   "outside", base->name);
-    return base;
+    const constant_t low = {.integer = first}, high = {.integer = last};
+    if (cm1e_st_is_integer(base->kind) && !base->ranged && first <= last && cm1e_st_fits(base->kind, &low) &&
+        cm1e_st_fits(base->kind, &high))
+        return cm1e_st_range_type(st, base, first, last);
+    cm1e_st_report(st, type->place, "%lld..%lld is no range of %s: a range has two values of a type of integers, the lower one "
+                   "first", (long long)first, (long long)last, cm1e_st_type_name(base));
+    return st->elementary[T_WRONG];
 }
 
 static type_t *resolve_name(st_t *st, type_t *type)
 {
     type_t *base = type->same ? type->same : cm1e_st_elementary(st, type->name);
     if (!base)
-        base = cm1e_st_map_get(st->types, type->name);
+        base = cm1e_st_lookup(st, st->types, type->scope, type->place, type->name);
     if (base && base->name && strcmp(base->name, type->name ? type->name : base->name) != 0) {
         type_t *exact = cm1e_st_map_get(st->types, cm1e_st_format(st->arena, "%s'", type->name));
         base = exact ? exact : base;
@@ -173,7 +190,7 @@ static type_t *resolve_name(st_t *st, type_t *type)
 static type_t *resolve_reference(st_t *st, type_t *type)
 {
     type_t *named = type->element->kind == T_NONE && type->element->name
-        ? cm1e_st_map_get(st->types, type->element->name) : NULL;
+        ? cm1e_st_lookup(st, st->types, type->element->scope, type->element->place, type->element->name) : NULL;
     const bool is_open = named && (named->kind == T_STRUCT || named->kind == T_BLOCK);
     return cm1e_st_any_ref_type(st, is_open ? named : cm1e_st_resolve(st, type->element), type->automatic);
 }

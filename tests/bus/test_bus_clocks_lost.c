@@ -1,7 +1,9 @@
 /* Distributed clocks: loss of synchronism, pulses and process data that stay away, slaves that come back, another
  * reference. */
 #include "clock_bench.h"
+#include "cm1e/hot_connect.h"
 #include "sim/esc_chip.h"
+#include "sim/segment.h"
 
 START_TEST(a_clock_that_leaves_the_reference_is_counted_once)
 {
@@ -16,6 +18,30 @@ START_TEST(a_clock_that_leaves_the_reference_is_counted_once)
     run(bus, 2000);
     ck_assert(!clock_of(bus, LAST).lost);
     ck_assert_uint_eq(clocks_of(bus).sync_losses, 1);
+    ck_assert_uint_eq(clock_of(bus, LAST).losses, 1);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The looks at the clocks and the search take turns with the supervision. */
+START_TEST(clocks_are_looked_at_while_an_optional_slave_is_searched_for)
+{
+    describe(1000);
+    cm1e_slave_config_t *tool = cm1e_bus_config_add_slave(&config, "tool");
+    *tool = (cm1e_slave_config_t){.name = "tool", .address_kind = CM1E_ADDRESS_ALIAS, .address = 4711, .vendor = 0x4D8,
+                                  .product = 1, .optional = true,
+                                  .sim = {.kind = CM1E_SIM_SLAVE_DIGITAL, .inputs = 4, .outputs = 4}};
+    cm1e_bus_t *bus = open_drifting(0, 0, 5);
+    cm1e_sim_segment_detach(segment_of(bus), LAST + 1, false);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    plan_ns = 0;
+    run(bus, 1000);
+    simulate(bus, "clock 3 free");
+    run(bus, 1000);
+    ck_assert_uint_eq(clock_of(bus, LAST).losses, 1);
+    cm1e_sim_segment_attach(segment_of(bus), LAST + 1);
+    run(bus, 4000);
+    ck_assert_int_eq(cm1e_bus_presence(bus, LAST + 1), CM1E_PRESENCE_THERE);
     ck_assert_uint_eq(clock_of(bus, LAST).losses, 1);
     cm1e_bus_close(bus);
 }
@@ -224,6 +250,7 @@ int main(void)
     Suite *suite = suite_create("lost clocks");
     TCase *lost = tcase_create("lost");
     tcase_add_test(lost, a_clock_that_leaves_the_reference_is_counted_once);
+    tcase_add_test(lost, clocks_are_looked_at_while_an_optional_slave_is_searched_for);
     tcase_add_test(lost, a_drive_without_pulses_leaves_operational_and_comes_back);
     tcase_add_test(lost, a_clock_is_set_at_every_recovery);
     tcase_add_test(lost, a_drive_without_process_data_at_its_pulses_leaves_operational);

@@ -1,5 +1,6 @@
 /* The cyclic exchange: only the right answer of this very cycle is taken, and every fault is counted and bounded. */
 #include "bus_support.h"
+#include "bus/datagram.h"
 
 enum { LRW = 12, HEADER = 26 }; /**< Ethernet 14, EtherCAT 2, datagram 10 */
 
@@ -307,6 +308,31 @@ START_TEST(silence_of_the_application_is_bounded)
 }
 END_TEST
 
+/** Counts the questions for an AL status, and lets no answer come back. */
+static cm1e_tap_verdict_t swallow(void *context, cm1e_tap_frame_t *frame)
+{
+    unsigned *asked = context;
+    if (frame->length <= HEADER || cm1e_get_u16(frame->bytes + 20) != REG_AL_STATUS)
+        return CM1E_TAP_PASS;
+    *asked += frame->direction == CM1E_TAP_SENT;
+    return frame->direction == CM1E_TAP_SENT ? CM1E_TAP_PASS : CM1E_TAP_DROP;
+}
+
+/** A question that is not answered is given up after 2 ms; until then there is no other one. */
+START_TEST(supervision_has_one_question_on_its_way)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 50);
+    unsigned asked = 0;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), swallow, &asked);
+    for (int n = 0; n < 60; n++)
+        cycle(bus);
+    ck_assert_msg(asked >= 19 && asked <= 31, "%u questions in 60 cycles of 1 ms", asked);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_cycle");
@@ -317,6 +343,7 @@ int main(void)
     tcase_add_test(tests, good_cycle_waits_for_nothing);
     tcase_add_loop_test(tests, health_falls_after_the_limit_and_returns_with_the_first_good_cycle, 0, 6);
     tcase_add_loop_test(tests, random_frame_faults_never_bring_inputs_of_another_cycle, 0, 12);
+    tcase_add_test(tests, supervision_has_one_question_on_its_way);
     tcase_add_test(tests, silence_of_the_application_is_bounded);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

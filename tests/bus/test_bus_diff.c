@@ -475,7 +475,7 @@ static int one_of;
 /** What a slave answers is changed at random: mailbox messages behind their header, words of the SII. */
 static cm1e_tap_verdict_t lie(void *context, cm1e_tap_frame_t *frame)
 {
-    enum { DATA = 26, SERVICE = DATA + 6, EEPROM_DATA = 0x0508 };
+    enum { DATA = 26, SERVICE = DATA + 6, EEPROM_STATUS = 0x0502, EEPROM_GROUP = 6, GROUP_BYTES = 8 };
     (void)context;
     if (frame->direction != CM1E_TAP_RECEIVED || frame->bytes[16] != 4 /* FPRD */ || rand() % one_of != 0)
         return CM1E_TAP_PASS;
@@ -483,8 +483,8 @@ static cm1e_tap_verdict_t lie(void *context, cm1e_tap_frame_t *frame)
     if (length == 128 && SERVICE + 24 <= frame->length)
         for (int n = rand() % 4; n >= 0; n--)
             frame->bytes[SERVICE + rand() % 24] = (uint8_t)rand();
-    else if (cm1e_get_u16(frame->bytes + 20) == EEPROM_DATA)
-        frame->bytes[DATA + (unsigned)rand() % length] = (uint8_t)rand();
+    else if (cm1e_get_u16(frame->bytes + 20) == EEPROM_STATUS && length > EEPROM_GROUP)
+        frame->bytes[DATA + EEPROM_GROUP + rand() % GROUP_BYTES] = (uint8_t)rand();
     return CM1E_TAP_PASS;
 }
 

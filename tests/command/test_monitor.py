@@ -274,6 +274,39 @@ def check_alone():
         terminal.shows("status 0")
 
 
+PROGRAM = """PROGRAM Main
+VAR n : INT; text : STRING := 'hello'; many : ARRAY[1..40] OF BOOL; END_VAR
+n := n + 1;
+END_PROGRAM
+"""
+
+
+def check_variables():
+    """The variables of a program in Structured Text: a page of them, and what is forced on either page."""
+    bench.write("screen.st", PROGRAM)
+    for words in (("st", "build", path_of("screen.st")), ("run", path_of("screen.so"), "-b", bus_file("maintain"), "-s", "60")):
+        program = subprocess.Popen([CM1E, *words], cwd=FOLDER, env=ENVIRONMENT, stdout=subprocess.DEVNULL)
+        expect(words[0] == "run" or program.wait(60) == 0, "the program is built", words)
+    wait_for(lambda: any(f"-{program.pid}-" in name for name in os.listdir(RUNTIME)), "no socket", 20)
+    with Terminal("monitor", "--attach", str(program.pid)) as terminal:
+        terminal.shows("X Disabled")
+        terminal.press("v")
+        terminal.shows("Main.text 'hello'")
+        terminal.press("Down")
+        terminal.shows("variable value Main.text")
+        force = subprocess.Popen([CM1E, "var", "force", "--attach", str(program.pid), "--allow-write", "Main.n=-7"],
+                                 env=ENVIRONMENT, stderr=subprocess.DEVNULL)
+        terminal.press("Up")
+        terminal.shows("Main.n -7 FORCED")
+        terminal.press("v")
+        terminal.shows("FORCED (1): Main.n = -7 axis state")
+        force.terminate()
+        force.wait(10)
+        wait_for(lambda: "FORCED" not in terminal.screen(), "the line of what is forced stays", 5)
+    program.terminate()
+    program.wait(20)
+
+
 def check_json():
     alone = subprocess.run([CM1E, "monitor", "-b", bus_file("observe"), "--json"], capture_output=True, text=True,
                            timeout=60, env=ENVIRONMENT)
@@ -292,5 +325,5 @@ if __name__ == "__main__":
         sys.exit(77)
     for consent in ("none", "observe", "maintain"):
         bench.write(f"{consent}.yaml", BUS.format(control=consent))
-    bench.run(check_jog, check_sizes, check_attached, check_error, check_no_terminal, check_terminal_lost, check_json,
+    bench.run(check_jog, check_sizes, check_attached, check_error, check_no_terminal, check_terminal_lost, check_json, check_variables,
               check_program_ends, check_observe, alone=(check_alone,))  # which looks at all sockets

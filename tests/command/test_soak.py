@@ -17,6 +17,43 @@ done
 """
 
 
+# Prints what so many scenarios print; that of seed 7 fails, and is made smaller.
+SCENARIO = """#!/bin/sh
+while [ $# -gt 0 ]; do case $1 in --seed) first=$2; shift;; --count) count=$2; shift;; --shrink) small=1;; esac; shift; done
+[ -z "$small" ] || { echo "made smaller: shrunk-$first.scenario"; exit 1; }
+result=0
+for seed in $(seq $first $((first + ${count:-1} - 1))); do
+  echo "fault lose $((seed % 3 - 1))"
+  if [ $seed = 7 ]; then echo "run 1 0.5 0.2 0 10"; echo "seed 7: FAIL: still at cycle 3: the reason"; result=1
+  else echo "run 0 0.01 -0.02 2 100"; fi
+done
+exit $result
+"""
+
+
+def check_scenarios(folder):
+    program = folder / "bin/scenario"
+    program.parent.mkdir(exist_ok=True)
+    program.write_text(SCENARIO)
+    program.chmod(0o755)
+
+    def soak(*words):
+        command = [Path(sys.argv[1]) / "scripts/soak", "--build", folder, "--no-build", *words]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100,
+                              check=False)
+        return done.returncode, done.stdout
+
+    code, said = soak("--scenarios", "250", "--seed", "1")
+    assert code == 1 and "bin/scenario --seed 7" in said and "the reason" in said, said
+    assert "shrunk-7.scenario" in said and said.count("FAIL") == 1, said
+    assert "250 scenarios from seed 1 on: 1 failed. 24910 cycles. 498 axes" in said, said
+    assert "| lose | 250 | 167 | 0 | 1 |" in said, said
+    code, said = soak("--scenarios", "250", "--seed", "8")
+    assert code == 0 and "250 scenarios from seed 8 on: 0 failed" in said and "FAIL" not in said, said
+    code, said = soak("--hours", "0.0003")
+    assert code == 0 and " 0 failed" in said, said
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         test = Path(folder) / "bin/test_x_random"
@@ -43,6 +80,7 @@ def main():
         assert code == 0 and " from seed " in said, said
         code, said = soak()
         assert code == 2 and "--minutes" in said, said
+        check_scenarios(Path(folder))
     print("ok")
 
 

@@ -86,6 +86,13 @@ cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double a
     return CM1E_OK;
 }
 
+void cm1e_axis_feed(AXIS_REF_t reference, cm1e_command_id_t id, double position)
+{
+    (void)reference;
+    (void)id;
+    (void)position;
+}
+
 cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
     axis->updates++;

@@ -173,6 +173,32 @@ START_TEST(halt_at_any_cycle_ends_in_standstill)
 }
 END_TEST
 
+/* The drive halts because power was taken away, and meanwhile power is wanted again. With torque the drive would go on
+ * with its motion when the halt bit goes, or jump to the target of that motion in the mode of the axis. */
+START_TEST(power_that_is_wanted_again_while_the_drive_halts_moves_nothing)
+{
+    for (int pause = 1; pause < 400; pause += pause < 10 ? 1 : 23) {
+        begin(0);
+        const cm1e_command_id_t id = _i ? turn(20) : drive_to(info().actual_position + 150, 20, 100);
+        cycles(150);
+        power(false);
+        cycles(pause);
+        power(true);
+        double way = 0;
+        for (int i = 0; i < 1500; i++) {
+            const double before = probe().position_counts;
+            cycles(1);
+            if (info().state == CM1E_AXIS_STANDSTILL)
+                way += fabs(probe().position_counts - before);
+        }
+        ck_assert_msg(info().state == CM1E_AXIS_STANDSTILL, "pause %d: %s", pause, text());
+        ck_assert(status(id).state == CM1E_COMMAND_ABORTED);
+        ck_assert_msg(way < 10, "pause %d: the motor has moved by %.0f counts in Standstill", pause, way);
+        close_segment();
+    }
+}
+END_TEST
+
 /* Power taken away, motor power lost, and a frame-less time: the motor stands and has no torque; and after a reset and
  * a new MC_Power nothing of the old motion is left. */
 START_TEST(ends_by_force_leave_a_motor_that_stands)
@@ -278,6 +304,7 @@ int main(void)
     tcase_add_test(tests, velocities_turn_in_profile_velocity_mode_until_they_are_ended);
     tcase_add_test(tests, what_the_drive_does_not_do_is_refused);
     tcase_add_test(tests, halt_at_any_cycle_ends_in_standstill);
+    tcase_add_loop_test(tests, power_that_is_wanted_again_while_the_drive_halts_moves_nothing, 0, 2);
     tcase_add_test(tests, ends_by_force_leave_a_motor_that_stands);
     tcase_add_test(tests, drive_that_hears_nothing_is_left_to_its_watchdog);
     tcase_add_test(tests, software_limits_hold);

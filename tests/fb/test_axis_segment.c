@@ -336,6 +336,31 @@ START_TEST(test_slave_unplugged_and_back_is_brought_to_operational_by_reset)
 }
 END_TEST
 
+/* Nobody used the axis when its slave lost its power, so there is no error to be reset. Yet the slave keeps the working
+ * counter of the whole bus wrong until it is brought back, and it answers to its address only then. */
+START_TEST(test_reset_brings_back_the_slave_of_an_axis_that_was_disabled)
+{
+    const int when[] = {20, 100, 900}; /* ms after the slave has its power again */
+    describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
+    open_segment();
+    cycles(50);
+    simulate("power-cycle 1 200");
+    cycles(200 + when[_i]);
+    ck_assert_int_eq(info().state, CM1E_AXIS_DISABLED);
+    ck_assert(!info().online);
+    cm1e_axis_reset(axis);
+    ck_assert_int_eq(cm1e_axis_reset_state(axis, NULL), CM1E_COMMAND_ACTIVE);
+    for (int i = 0; i < 12000 && cm1e_axis_reset_state(axis, NULL) == CM1E_COMMAND_ACTIVE; i++)
+        cycles(1);
+    ck_assert_int_eq(cm1e_axis_reset_state(axis, NULL), CM1E_COMMAND_DONE);
+    ck_assert(info().online);
+    ck_assert(!probe().torque_on);
+    enable();
+    move_to(0.2, 2.0);
+    close_segment();
+}
+END_TEST
+
 /* ---- random commands --------------------------------------------------------------------------------------------- */
 
 static uint64_t seed;
@@ -416,6 +441,7 @@ int main(void)
     tcase_add_test(cases, test_overloaded_axis_says_that_it_does_not_follow);
     tcase_add_test(cases, test_motor_power_lost_and_back);
     tcase_add_test(cases, test_slave_unplugged_and_back_is_brought_to_operational_by_reset);
+    tcase_add_loop_test(cases, test_reset_brings_back_the_slave_of_an_axis_that_was_disabled, 0, 3);
     tcase_add_loop_test(cases, test_random_commands_move_the_motor_as_the_set_point_says, 0, 12);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);

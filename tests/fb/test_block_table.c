@@ -133,6 +133,8 @@ static void fill(const block_t *block)
         in->SlaveSyncPosition = bench.info.set_position + 1;
         in->Velocity = 30;
     }
+    if (strcmp(block->name, "CM_FollowPosition") == 0 && bench.axis)
+        ((CM_FollowPosition_t *)memory)->Position = bench.info.set_position;
     if (strcmp(block->name, "MC_CamIn") == 0 && bench.axis) {
         MC_CamIn_t *in = (MC_CamIn_t *)memory;
         (void)cm1e_axis_cam_select(bench.axis, &cam, true, false, true, &in->CamTableID);

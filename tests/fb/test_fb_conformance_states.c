@@ -60,6 +60,8 @@ START_TEST(test_every_block_in_every_state_follows_the_diagram)
             else
                 into((cm1e_axis_state_t)state, &mover);
             make(&subject, type->name);
+            if (is(type, "CM_FollowPosition"))
+                put(&subject, "Position", bench.info.set_position);
             trigger(&subject, true);
             cycle_begin();
             for (int i = 0; i < called_count; i++)

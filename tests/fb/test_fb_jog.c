@@ -220,6 +220,30 @@ START_TEST(test_the_software_limit_ends_a_jog_without_an_error)
 }
 END_TEST
 
+/* 0: the axis fails; 1: another command moves it away; 2: its power is taken. */
+START_TEST(test_a_jog_that_waits_at_its_limit_ends_with_the_axis)
+{
+    begin(-1.5, 2.0);
+    jog.Mode = MC_JOGMODE_CONTINOUS;
+    press(TRUE, FALSE);
+    scans(3000);
+    ck_assert(jog.Busy && !jog.Active);
+    expect_standing();
+    if (_i == 0)
+        simulate("error 1 2310");
+    else if (_i == 1)
+        command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .velocity = 3.0});
+    else
+        power(false);
+    scans(300);
+    ck_assert(!jog.Busy);
+    ck_assert_int_eq(jog.Error, _i == 0);
+    ck_assert_int_eq(jog.CommandAborted, _i != 0);
+    ck_assert(_i != 0 || jog.ErrorID == cm1e_error_id(CM1E_ERROR_AXIS_ERROR_STOP));
+    close_segment();
+}
+END_TEST
+
 START_TEST(test_a_limit_on_one_side_leaves_the_other_open)
 {
     begin(-INFINITY, 1.0);
@@ -596,6 +620,7 @@ int main(void)
     tcase_add_test(tcase, test_both_buttons_stop_and_one_of_them_alone_does_not_start_again);
     tcase_add_test(tcase, test_changing_over_between_two_calls_reverses);
     tcase_add_test(tcase, test_the_software_limit_ends_a_jog_without_an_error);
+    tcase_add_loop_test(tcase, test_a_jog_that_waits_at_its_limit_ends_with_the_axis, 0, 3);
     tcase_add_test(tcase, test_a_limit_on_one_side_leaves_the_other_open);
     tcase_add_test(tcase, test_inching_is_one_step_whatever_becomes_of_the_button);
     tcase_add_test(tcase, test_inching_modulo_goes_to_multiples_of_the_step);

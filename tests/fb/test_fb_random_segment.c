@@ -33,6 +33,7 @@ static struct bench {
     cm1e_axis_info_t info;
     int64_t start_ns, disturbed_until;
     bool faulty;                    /**< a fault has not been healed yet */
+    bool insisted;                  /**< CM_SetMode with Insist */
     uint32_t position;              /**< of the slave of the judged axis */
     unsigned channel;               /**< 0: the slave is the axis */
     bool other_maker;               /**< a servo drive by CiA 402 */
@@ -213,6 +214,9 @@ static bool handed_in_before(const cm1e_axis_config_t *axis, long long sound)
     return *since <= sound + SEEN_CYCLES;
 }
 
+/** The motor may not follow targets: somebody brought it from CMD or CPIO to csp, with Insist (BR 6 note 2). */
+static bool is_abnormal(const cm1e_sim_bridge_axis_t *m) { return bench.insisted && m && m->abnormal; }
+
 /** Those of the bridge's guide. An SDO that is on its way when a motor fails cannot be held back; nor do targets come that
  *  were in lost frames, or in a pause. A motor that friction holds beside its target may creep the last counts just when
  *  hm is asked for: then the switch is asked for again. */
@@ -229,7 +233,9 @@ static void judge_rules(const cm1e_sim_probe_t *shaft, const cm1e_axis_config_t 
     const double now = m ? fabs(m->mechanics.velocity) : 0, fastest = fmax(now, *speed);
     const bool runs = fastest * 2e-9 * (double)judged.cycle_ns > STEP_AT_START;
     *speed = now;
+    bench.insisted |= judged.axis->drive.command.mode_insist;
     const unsigned allowed = CM1E_SIM_OUTPUT_IN_VAIN | CM1E_SIM_MODE_IN_MOTION |
+                             (is_abnormal(m) ? CM1E_SIM_MODE_NO_WAY : 0u) |
                              (just_failed ? CM1E_SIM_MODE_IN_ERROR : 0u) |
                              (runs ? CM1E_SIM_STEP_AT_START : 0u) | (gap ? CM1E_SIM_STEP_IN_CYCLE : 0u);
     MUST((shaft->broken_rules & ~allowed) == 0, "ID%u: rules of the bridge's guide are broken: 0x%03X", axis->channel,
@@ -243,7 +249,10 @@ void judge_motor(void)
     const bool moved_by_us = set_point_is_ours() && cm1e_axis_powered(judged.axis) && bench.info.mode == CM1E_MODE_CSP;
     const int64_t soon = judged.number + SETTLING;
     const cm1e_sim_probe_t shaft = probe();
-    judge_rules(&shaft, cm1e_axis_configuration(judged.axis));
+    const cm1e_axis_config_t *axis = cm1e_axis_configuration(judged.axis);
+    judge_rules(&shaft, axis);
+    if (is_abnormal(motor_at(axis->address, axis->channel)))
+        return;
     if (fabs(shaft.velocity_counts_per_s) > 1.3 * judged.axis->limits.maximum.velocity *
         fabs(judged.axis->position.scale))
         bench.disturbed_until = judged.number + 1000; /* somebody has turned it; it is braked */

@@ -22,7 +22,9 @@ from test_wire_only import guests
 INSTALLED = ("bin/cm1e", "include/cm1e/plcopen.h", "share/doc/cm1e/LICENSE", "share/doc/cm1e/THIRD-PARTY.md",
              "share/doc/cm1e/licenses/SOEM.txt", "share/man/man1/cm1e.1", "share/man/man1/cm1e-move.1",
              "share/bash-completion/completions/cm1e", "share/zsh/site-functions/_cm1e",
-             "share/doc/cm1e/FIRST-HOUR.md", "share/doc/cm1e/blocks/MC_Home.md", "share/doc/cm1e/examples/01_scan.c")
+             "share/doc/cm1e/FIRST-HOUR.md", "share/doc/cm1e/blocks/MC_Home.md", "share/doc/cm1e/examples/01_scan.c",
+             "share/cm1e/st/st_program.h", "share/cm1e/st/rusty/cm1e_rusty.c", "share/cm1e/st/matiec/cm1e_matiec.st",
+             "share/cm1e/st/strucpp/cm1e_strucpp.hpp", "share/cm1e/st/plcopen/cm1e_codesys.xml")
 APART = ("busfile", "control", "generate", "plot", "sim")
 PROGRAMS = ("consumer", "own_names", "before_libpcap", "after_libpcap")
 

@@ -15,7 +15,7 @@ import tempfile
 
 SKIPPED = 77
 RELEASE = "bookworm"
-PARTS = ("cm1e", "libcm1e-dev", "libcm1e-doc", "libcm1e0.1")
+PARTS = ("cm1e", "libcm1e-dev", "libcm1e-doc", "libcm1e0.1", "python3-cm1e")
 PROGRAM = """\
 #include <cm1e/scheduler.h>
 #include <cm1e/version.h>
@@ -25,6 +25,13 @@ int main(void) { puts(cm1e_version()); return 0; }
 # What apt and dpkg write about themselves, and caches that programs of Debian write.
 OF_APT = re.compile(r"^/(var/(lib/(apt|dpkg|systemd)|cache|log)|etc/(passwd|group|gshadow|shadow|subuid|subgid|ld\.so\.cache)"
                     r"|tmp|proc|sys|dev|run|root)")
+PYTHON = """\
+import importlib.metadata, cm1e
+with cm1e.Bus(axes=[{"name": "X", "counts_per_unit": 5000}], virtual_time=True) as bus:
+    bus["X"].enable()
+    bus["X"].move_absolute(position=20, velocity=50)
+    print(f"X is at {bus['X'].position:.1f}, cm1e {importlib.metadata.version('cm1e')} is {cm1e.__version__}")
+"""
 DEMO = ["cm1e", "move", "-i", "sim", "1", "--by", "1", "--velocity", "5"]
 
 
@@ -50,6 +57,13 @@ def packages_of(build):
     names = tuple(os.path.basename(path).partition("_")[0] for path in found)
     expect(names == tuple(sorted(PARTS)), f"the packages {PARTS}", names)
     return found
+
+
+def check_summaries(packages):
+    """By which people find a package: each has its own."""
+    first = [run("dpkg-deb", "-f", path, "Description").splitlines()[0] for path in packages]
+    expect(len(set(first)) == len(packages) and all("EtherCAT servo motors CM1-E" in line for line in first),
+           "a summary of its own for each package", first)
 
 
 def check_by_lintian(packages):
@@ -127,6 +141,9 @@ def use(chroot):
     for user in ("member", "stranger"):
         told = chroot.good("setpriv", f"--reuid={user}", f"--regid={user}", "--init-groups", *DEMO)
         expect("move done" in told, f"the demo as {user}", told)
+    told = chroot.good("python3", "-c", PYTHON)
+    version = chroot.good("cm1e", "--version").strip()
+    expect(told == f"X is at 20.0, {version} is {version.removeprefix('cm1e ')}\n", "the demo in Python", told)
     as_user = lambda user: chroot.run("setpriv", f"--reuid={user}", f"--regid={user}", "--init-groups", "cm1e", "scan",
                                       "-i", "lo")
     told = as_user("stranger")
@@ -134,7 +151,8 @@ def use(chroot):
     told = as_user("member")
     expect("is not Ethernet" in told.stderr, "a member opens a socket", told)
     for path in ("/usr/share/man/man1/cm1e-move.1.gz", "/usr/share/doc/cm1e/FIRST-HOUR.md", "/usr/include/cm1e/plcopen.h",
-                 "/lib/systemd/system/cm1e@.service", "/usr/share/doc/cm1e/soem/soem/ethercatmain.c"):
+                 "/lib/systemd/system/cm1e@.service", "/usr/lib/python3/dist-packages/cm1e/py.typed",
+                 "/usr/share/doc/cm1e/reference/index.html", "/usr/share/doc/cm1e/soem/soem/ethercatmain.c"):
         chroot.good("test", "-e", path)
     chroot.good("userdel", "member")
     chroot.good("userdel", "stranger")
@@ -163,6 +181,7 @@ def install_and_remove(packages, folder):
 
 def main(build):
     packages = packages_of(build)
+    check_summaries(packages)
     check_by_lintian(packages)
     with tempfile.TemporaryDirectory() as folder:
         compile_with(packages, folder)

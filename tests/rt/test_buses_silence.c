@@ -17,7 +17,7 @@
 #include "nic/nic.h"
 
 enum { LRW = 12, COMMAND = 16 };
-enum { BEGIN = 60, FIRST_LOSS = 58, LAST_LOSS = 640, END = 2600, STRIDE = 179, SAMPLED_STRIDE = 577 };
+enum { BEGIN = 60, FIRST_LOSS = 58, LAST_LOSS = 640, END = 2600, STRIDE = 257, SAMPLED_STRIDE = 577 };
 
 /* Of the maximum velocity: what the servo overshoots by itself, in CSP and in CSV, and what losses may add. */
 static const double overshoot[] = {1.0016, 1.0034}, braked = 1.005, added = 0.0005;

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Every source in Structured Text of the tree, and the examples of docs/STRUCTURED-TEXT.md, are read by blark too, a
 parser that we did not write. It knows TwinCAT's dialect, in which a configuration is no text, REF_TO is POINTER TO, and
-METHOD is reserved and stands beside its block: these differences are taken out first.
+METHOD is reserved and stands beside its block: these differences are taken out first. NAMESPACE, USING and CLASS of the
+3rd edition are unknown to it (and to TwinCAT): it reads what is within a namespace, and a CLASS as a FUNCTION_BLOCK.
 
 test_st_blark.py SOURCE-DIRECTORY VENV-PYTHON
 """
@@ -38,6 +39,10 @@ def without_parts(match):
 
 
 def adapted(text):
+    for name in re.findall(r"\bNAMESPACE\s+([\w.]+)", text):
+        text = text.replace(name + ".", "")
+    text = re.sub(r"\bNAMESPACE\s+[\w.]+|\bEND_NAMESPACE\b|\bUSING\s[^;]*;", "", text)
+    text = re.sub(r"\b(END_)?CLASS\b", r"\1FUNCTION_BLOCK", text)
     text = re.sub(r"\b(INTERFACE|FUNCTION_BLOCK|PROGRAM)\b.*?\bEND_\1\b", without_parts, text, flags=re.DOTALL)
     text = re.sub(r"\bCONFIGURATION\b.*?\bEND_CONFIGURATION\b", "", text, flags=re.DOTALL)
     return re.sub(r"\b(method|reference)\b", r"\1_", text.replace("REF_TO", "POINTER TO"))

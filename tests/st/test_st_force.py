@@ -13,7 +13,8 @@ import tempfile
 import time
 
 CM1E, SOURCE = os.path.join(os.path.abspath(sys.argv[1]), "cm1e"), os.path.abspath(sys.argv[2])
-PROGRAM = """PROGRAM Main
+PROGRAM = """TYPE Point : STRUCT here : INT; END_STRUCT END_TYPE
+PROGRAM Main
 VAR
     n : INT;
     big : LINT;
@@ -22,10 +23,14 @@ VAR
     lamp AT %QX2.0.2 : BOOL;
     seen AT %IX3.0.2 : BOOL;
     copy, cause : BOOL;
+    text : STRING[6] := 'it$'s';
+    wide : WSTRING[4] := "\u00e4";
+    table : ARRAY[1..2, -100..99] OF Point;
 END_VAR
 n := n + 1;
 copy := seen;
 lamp := cause;
+table[2, 99].here := n;
 END_PROGRAM
 """
 faults = []
@@ -93,12 +98,46 @@ def check_values(run):
     run.var("set", "--allow-write", "Main.n=x", status=2, says="no value")
 
 
+def check_all(run):
+    """Every variable is seen, more than one reply has; texts are read and written."""
+    rows = run.rows()
+    expect(len(rows) == 10 + 400, "all variables", len(rows))
+    expect(rows["Main.table[1,-100].here"]["value"] == 0, "an element", rows["Main.table[1,-100].here"])
+    expect(run.value("table[2,99].here") != 0, "the last element")
+    expect(rows["Main.text"]["declared"] == "STRING[6]" and rows["Main.text"]["value"] == "it's", "a text", rows["Main.text"])
+    expect("'it$'s'" in run.var("get", "Main.text"), "a text in quotes")
+    run.var("set", "--allow-write", "Main.text='grün'")
+    expect(run.value("text") == "grün", "a text is written", run.rows()["Main.text"])
+    expect(rows["Main.wide"]["value"] == "\u00e4" and rows["Main.wide"]["type"] == "WSTRING", "a wide text", rows["Main.wide"])
+    run.var("set", "--allow-write", "Main.wide='\U0001f600\u20ac'")
+    expect(run.value("wide") == "\U0001f600\u20ac", "a wide text is written", run.rows()["Main.wide"])
+    for wrong in ("Main.text='longer!'", "Main.wide='12345'", "Main.wide='123\U0001f600'", "Main.text=5", "Main.n='5'"):
+        run.var("set", "--allow-write", wrong, status=1, says="is expected to be a value of")
+
+
+def check_trace(run):
+    def columns(status, says, *words):
+        result = subprocess.run([CM1E, "trace", "--list", "--json", "--attach", str(run.process.pid), *words],
+                                capture_output=True, text=True, timeout=30)
+        expect(result.returncode == status and says in result.stderr, words, (result.returncode, result.stderr))
+        return [row["name"] for row in json.loads(result.stdout)] if status == 0 else []
+    expect(len([name for name in columns(0, "") if name.startswith("Main.")]) == 128, "the first variables are recorded")
+    chosen = columns(0, "", "--variable", "main.n", "--variable", "Main.table[2,-100]")
+    expect(chosen[-2:] == ["Main.n", "Main.table[2,-100].here"], "chosen variables are recorded", chosen)
+    columns(1, "no variable", "--variable", "Main.tabl")
+    columns(1, "is a text", "--variable", "Main.text")
+    columns(1, "256 variables", "--variable", "Main.table")
+
+
 def check_forced(run):
     window = run.force("Main.n=77", "Main.seen=TRUE")
     for _ in range(5):
         expect(run.value("n") == 77 and run.value("copy") == 1, "forced values hold", run.rows())
         time.sleep(0.05)
     expect("FORCED" in run.var("get", "Main.n"), "forced variables are marked")
+    seen = json.loads(subprocess.run([CM1E, "monitor", "--json", "--attach", str(run.process.pid)], capture_output=True,
+                                     text=True, timeout=30).stdout)["forced"]
+    expect([row["name"] for row in seen] == ["Main.n", "Main.seen"], "the monitor has what is forced", seen)
     run.var("set", "--allow-write", "Main.n=3", status=1, says="is forced")
     run.var("force", "--allow-write", "Main.n=3", status=1, says="is forced")
     window.send_signal(signal.SIGINT)
@@ -106,7 +145,7 @@ def check_forced(run):
     run.counts_again("Ctrl-C")
     expect(run.value("copy") == 0, "the input is that of the terminal again", run.rows())
     for number, what in ((signal.SIGKILL, "killed"), (signal.SIGSTOP, "suspended")):
-        window = run.force("Main.n=78")
+        window = run.force("Main.n=78", "Main.text='held'")
         window.send_signal(number)
         run.counts_again(what)
         window.kill()
@@ -117,7 +156,8 @@ def check_forced(run):
     window.wait(10)
     run.counts_again("released")
     log = subprocess.run([CM1E, "log", "--attach", str(run.process.pid)], capture_output=True, text=True, timeout=30).stdout
-    for text in ("Main.n was forced to 77", "Main.n is no longer forced to 77", "Main.goal was set to -1.5"):
+    for text in ("Main.n was forced to 77", "Main.n is no longer forced to 77", "Main.goal was set to -1.5",
+                 "Main.text was forced to a text"):
         expect(text in log, f"the log says \"{text}\"", log)
 
 
@@ -141,7 +181,7 @@ with tempfile.TemporaryDirectory() as folder:
     built = subprocess.run([CM1E, "st", "build", "force.st"], capture_output=True, text=True, timeout=60)
     if built.returncode:
         sys.exit(built.stderr)
-    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_values, check_forced))):
+    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_all, check_values, check_trace, check_forced))):
         program = Run(bus)
         for check in checks:
             check(program)

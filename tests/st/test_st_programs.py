@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Random programs: statements, loops, arrays, functions and function blocks. Each is made once, as Structured Text and as
+"""Random programs: statements, loops, arrays, functions in a namespace, function blocks with R_EDGE and F_EDGE, classes,
+subranges, variables AT %M. Each is made once, as Structured Text and as
 Python; after each of some calls of its task all its variables are what Python computes.
 
 test_st_programs.py BIN-DIRECTORY [COUNT [SEED]]
@@ -12,6 +13,7 @@ import tempfile
 from st_host import Host
 
 PER_SOURCE, CALLS, STEPS_MAX, NUMBERS, TRUTHS, PLACES, DEPTH = 20, 4, 20000, 5, 3, 8, 3
+COUNTERS, RANGED_COUNTER = "i0, i2, i3 : DINT; i1 : DINT (-40..40) := 0;", "i1"
 
 
 def wrap(value):
@@ -74,6 +76,11 @@ class Maker:
     def __init__(self, rng, functions):
         self.random, self.functions = rng, functions
         self.numbers, self.truths, self.arrays, self.loops, self.inside = [], [], [], 0, 0
+        self.ranged, self.edges = {}, []  # variables of subranges with their limits; inputs that nobody writes
+
+    def plain(self):
+        """A number without a subrange."""
+        return self.random.choice([name for name in self.numbers if name not in self.ranged])
 
     # ---- expressions: (ST, Python) ----
 
@@ -112,7 +119,8 @@ class Maker:
             return f"a[{place[0]}]", f"v['a'][{place[1]}]"
         if kind == "call" and self.functions:
             name = r.choice(self.functions)
-            return f"{name}({a[0]}, {b[0]})", f"{name}(budget, {a[1]}, {b[1]})"
+            space = r.choice(("", "Lib.Math.")) if name == "F1" else ""
+            return f"{space}{name}({a[0]}, {b[0]})", f"{name}(budget, {a[1]}, {b[1]})"
         return a
 
     def place(self, depth):
@@ -122,10 +130,11 @@ class Maker:
     def truth(self, depth):
         r = self.random
         if depth <= 0 or r.random() < 0.2:
-            if not self.truths or r.random() < 0.2:
+            known = self.truths + self.edges
+            if not known or r.random() < 0.2:
                 value = r.random() < 0.5
                 return str(value).upper(), str(value)
-            name = r.choice(self.truths)
+            name = r.choice(known)
             return name, f"v['{name}']"
         kind = r.choice(("=", "<>", "<", ">", "<=", ">=", "AND", "OR", "XOR", "NOT"))
         if kind == "NOT":
@@ -147,7 +156,7 @@ class Maker:
         w.depth -= 1
 
     def statement(self, w, depth):
-        kinds = ["number", "number", "truth", "array", "call"]
+        kinds = ["number", "number", "truth", "array", "call", "method"]
         if depth > 0:
             kinds += ["if", "if", "case", "for", "while", "repeat"]
         if self.loops and depth < DEPTH:
@@ -156,6 +165,10 @@ class Maker:
 
     def put_number(self, w, _):
         name, e = self.random.choice(self.numbers), self.number(3)
+        if name in self.ranged:
+            low, high = self.ranged[name]
+            w.put(f"{name} := LIMIT(DINT#{low}, {e[0]} + 0, {high});", f"v['{name}'] = min(max({e[1]}, {low}), {high})")
+            return
         w.put(f"{name} := {e[0]};", f"v['{name}'] = wrap({e[1]})")
 
     def put_truth(self, w, depth):
@@ -176,8 +189,18 @@ class Maker:
         if not self.arrays:
             self.put_number(w, depth)
             return
-        fb, a, target = self.random.choice(("fb0", "fb1")), self.number(2), self.random.choice(self.numbers)
-        w.put(f"{fb}(x := {a[0]}, sum => {target});", f"v['{target}'] = Block(budget, v['{fb}'], {a[1]})")
+        fb, a, target = self.random.choice(("fb0", "fb1")), self.number(2), self.plain()
+        up, down = self.truth(1), self.truth(1)
+        w.put(f"{fb}(x := {a[0]}, up := {up[0]}, down := {down[0]}, sum => {target});",
+              f"v['{target}'] = Block(budget, v['{fb}'], {a[1]}, {up[1]}, {down[1]})")
+
+    def put_method(self, w, depth):
+        if not self.arrays:
+            self.put_number(w, depth)
+            return
+        a, target = self.number(2), self.plain()
+        method = self.random.choice(("Add", "Turn"))
+        w.put(f"{target} := object.{method}({a[0]});", f"v['{target}'] = {method}(v['object'], {a[1]})")
 
     def put_if(self, w, depth):
         c = self.truth(2)
@@ -235,11 +258,12 @@ class Maker:
         self.block(w, depth - 1)
         self.loops -= 1
         w.put("END_FOR", "else:")
-        w.python.append("    " * (w.depth + 1) + f"v['{counter}'] = counts({first}, {last}, {step})[1]")
+        left = "pass" if counter == RANGED_COUNTER else f"v['{counter}'] = counts({first}, {last}, {step})[1]"
+        w.python.append("    " * (w.depth + 1) + left)
         self.inside -= 1
 
     def put_while(self, w, depth):
-        c, name = self.truth(2), self.random.choice(self.numbers)
+        c, name = self.truth(2), self.plain()
         limit = self.random.randrange(1, 100)
         w.put(f"WHILE ({c[0]} AND ({name} < {limit})) DO", f"while ({c[1]} and (v['{name}'] < {limit})):")
         w.depth += 1
@@ -251,7 +275,7 @@ class Maker:
         w.put("END_WHILE", "pass")
 
     def put_repeat(self, w, depth):
-        name, limit = self.random.choice(self.numbers), self.random.randrange(1, 9)
+        name, limit = self.plain(), self.random.randrange(1, 9)
         loops, self.loops = self.loops, 0 # EXIT and CONTINUE of a REPEAT have no twin in Python
         w.put("REPEAT", "while True:")
         self.block(w, depth - 1)
@@ -276,8 +300,10 @@ def make_function(rng, name, functions):
             c, e = maker.truth(2), maker.number(2)
             w.put(f"IF {c[0]} THEN {name} := {e[0]}; RETURN; END_IF", f"if {c[1]}: return wrap({e[1]})")
     e = maker.number(2)
-    st = [f"FUNCTION {name} : DINT VAR_INPUT x, y : DINT; END_VAR VAR z, i0, i1, i2, i3 : DINT; END_VAR", *w.st,
+    st = [f"FUNCTION {name} : DINT VAR_INPUT x, y : DINT; END_VAR VAR z : DINT; {COUNTERS} END_VAR", *w.st,
           f"  {name} := {e[0]};", "END_FUNCTION"]
+    if name == "F1":
+        st = ["NAMESPACE Lib.Math", *st, "END_NAMESPACE", "USING Lib.Math;"]
     python = [f"def {name}(budget, x, y):", "    budget.step()",
               "    v = dict(x=wrap(x), y=wrap(y), z=0, i0=0, i1=0, i2=0, i3=0)", *w.python, f"    return wrap({e[1]})"]
     return st, python
@@ -285,36 +311,60 @@ def make_function(rng, name, functions):
 
 def make_block(rng, functions):
     maker, w = Maker(rng, functions), Writer()
-    maker.numbers = ["x", "n", "sum"]
+    maker.numbers, maker.edges = ["x", "n", "sum"], ["up", "down"]
     for _ in range(3):
         maker.statement(w, 1)
-    st = ["FUNCTION_BLOCK Block VAR_INPUT x : DINT; END_VAR VAR_OUTPUT sum : DINT; END_VAR VAR n, i0, i1, i2, i3 : DINT; END_VAR",
-          *w.st, "END_FUNCTION_BLOCK"]
-    python = ["def Block(budget, v, x):", "    budget.step()", "    v['x'] = wrap(x)", *w.python, "    return v['sum']"]
+    st = ["FUNCTION_BLOCK Block VAR_INPUT x : DINT; up : BOOL R_EDGE; down : BOOL F_EDGE; END_VAR VAR_OUTPUT sum : DINT; "
+          f"END_VAR VAR n : DINT; {COUNTERS} END_VAR", *w.st, "END_FUNCTION_BLOCK"]
+    python = ["def Block(budget, v, x, up, down):", "    budget.step()", "    v['x'] = wrap(x)",
+              "    v['up'], v['down'] = up and not v['was up'], v['was down'] and not down",
+              "    v['was up'], v['was down'] = up, down", *w.python, "    return v['sum']"]
     return st, python
+
+
+CLASS = """CLASS Base VAR PUBLIC total : DINT; END_VAR VAR step : DINT (1..9) := 3; END_VAR
+METHOD PUBLIC Add : DINT VAR_INPUT more : DINT; END_VAR total := total + more * step; Add := total; END_METHOD
+METHOD PUBLIC Turn : DINT VAR_INPUT more : DINT; END_VAR Turn := more; END_METHOD END_CLASS
+CLASS Thing EXTENDS Base METHOD PUBLIC OVERRIDE Turn : DINT VAR_INPUT more : DINT; END_VAR
+step := LIMIT(DINT#1, ABS(more MOD 12), 9); Turn := SUPER.Add(more); Turn := -THIS.total; END_METHOD END_CLASS"""
+
+
+def add(v, more):
+    v["total"] = wrap(v["total"] + wrap(more * v["step"]))
+    return v["total"]
+
+
+def turn(v, more):
+    v["step"] = min(max(1, abs(modulo(more, 12))), 9)
+    return wrap(-add(v, more))
 
 
 def make_program(rng, number, functions):
     maker, w = Maker(rng, functions), Writer()
     maker.numbers, maker.arrays = [f"d{k}" for k in range(NUMBERS)], ["a"]
     maker.truths = [f"b{k}" for k in range(TRUTHS)]
+    maker.ranged = {"q": (-9, 40)}
+    maker.numbers.append("q")
     for _ in range(rng.randrange(3, 9)):
         maker.statement(w, DEPTH)
-    st = [f"PROGRAM P{number}", f"VAR {', '.join(maker.numbers)}, i0, i1, i2, i3 : DINT; {', '.join(maker.truths)} : BOOL;",
-          f"a : ARRAY [0..{PLACES - 1}] OF DINT; fb0, fb1 : Block; END_VAR", *w.st, "END_PROGRAM"]
+    st = [f"PROGRAM P{number}", f"VAR d0 AT %MD{4 * number} : DINT; {', '.join(maker.numbers[1:-1])} : DINT; {COUNTERS}",
+          f"q : DINT (-9..40) := 0; b0 AT %MX{number + 4 * PER_SOURCE}.{number % 8} : BOOL; {', '.join(maker.truths[1:])} : BOOL;",
+          f"a : ARRAY [0..{PLACES - 1}] OF DINT; fb0, fb1 : Block; object : Thing; END_VAR", *w.st, "END_PROGRAM"]
     return st, [f"def P{number}(budget, v):", *w.python]
 
 
 def fresh():
     block = dict.fromkeys(("x", "n", "sum", "i0", "i1", "i2", "i3"), 0)
-    v = dict.fromkeys([f"d{k}" for k in range(NUMBERS)] + ["i0", "i1", "i2", "i3"], 0)
-    v.update({f"b{k}": False for k in range(TRUTHS)}, a=[0] * PLACES, fb0=dict(block), fb1=dict(block))
+    block.update(dict.fromkeys(("up", "down", "was up", "was down"), False))
+    v = dict.fromkeys([f"d{k}" for k in range(NUMBERS)] + ["q", "i0", "i1", "i2", "i3"], 0)
+    v.update({f"b{k}": False for k in range(TRUTHS)}, a=[0] * PLACES, fb0=dict(block), fb1=dict(block),
+             object={"total": 0, "step": 3})
     return v
 
 
 def expected(python):
     """Name of each program: its variables after each call; programs that take too long are left out."""
-    world = {"wrap": wrap, "divide": divide, "modulo": modulo, "counts": counts, "choose": choose}
+    world = {"Add": add, "Turn": turn, "wrap": wrap, "divide": divide, "modulo": modulo, "counts": counts, "choose": choose}
     exec("\n".join(python), world)  # what we have made ourselves
     result = {}
     for name in [name for name in world if name[0] == "P" and name[1:].isdigit()]:
@@ -322,7 +372,7 @@ def expected(python):
         try:
             for _ in range(CALLS):
                 world[name](Budget(), v)
-                states.append({key: list(value) if key == "a" else dict(value) if key[:2] == "fb" else value
+                states.append({key: list(value) if key == "a" else dict(value) if isinstance(value, dict) else value
                                for key, value in v.items()})
             result[name] = states
         except TooLong:
@@ -332,7 +382,7 @@ def expected(python):
 
 def check(binaries, folder, seed, count):
     rng = random.Random(seed)
-    st, python, functions, programs = [], [], [], {}
+    st, python, functions, programs = [CLASS], [], [], {}
     for name in ("F0", "F1"):
         texts = make_function(rng, name, list(functions))
         functions.append(name)
@@ -352,7 +402,8 @@ def check(binaries, folder, seed, count):
         for name, states in known.items():
             for key, value in states[call].items():
                 pairs = {f"a[{k}]": x for k, x in enumerate(value)} if key == "a" else \
-                    {f"{key}.{k}": x for k, x in value.items()} if key[:2] == "fb" else {key: value}
+                    {f"{key}.{k}": x for k, x in value.items() if k not in ("up", "down")} if isinstance(value, dict) \
+                    else {key: value}
                 for variable, wanted in pairs.items():
                     if f"{name}.{variable}" in host.variables and host.value(f"{name}.{variable}") != int(wanted):
                         sys.exit(f"seed {seed}, {name}, call {call + 1}: {variable} is {host.value(f'{name}.{variable}')}; "

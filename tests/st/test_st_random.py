@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Random expressions of every elementary type: what the translated program computes is what a reference in Python
+"""Random expressions of every elementary type, also with variables of subranges and in memory (%M): what the translated program computes is what a reference in Python
 computes, which knows the types by the ranges of their values only.
 
 test_st_random.py BIN-DIRECTORY [COUNT [SEED]]
@@ -17,7 +17,8 @@ INTS = {f"{sign}{name}": (bits, sign == "") for name, bits in (("SINT", 8), ("IN
         for sign in ("", "U")}
 BITS = {"BYTE": 8, "WORD": 16, "DWORD": 32, "LWORD": 64}
 REALS = {"REAL": 24, "LREAL": 53}
-PER_PROGRAM = 400
+TEXTS = {"STRING": "abcAB01 $'", "WSTRING": "abcAB01 $\"\u00e4\u00df\u20ac"}
+PER_PROGRAM, PER_UNIT = 400, 20  # a large unit takes the compiler long
 
 
 def limits(name):
@@ -98,14 +99,15 @@ class Generator:
     def __init__(self, seed):
         self.random = random.Random(seed)
         self.inputs = {}
+        self.memory = 0  # bytes AT %M that are taken
 
     def constant(self, name):
         """A value of a type, preferably one that is special."""
         pick = self.random
         if name == "BOOL":
             return pick.random() < 0.5
-        if name == "STRING":
-            return "".join(pick.choice("abcAB01 $'") for _ in range(pick.randrange(0, 9)))
+        if name in TEXTS:
+            return "".join(pick.choice(TEXTS[name]) for _ in range(pick.randrange(0, 9)))
         if name == "TIME":
             return pick.choice([0, 1, -1, 10 ** 6, 1500 * 10 ** 6, pick.randrange(-10 ** 15, 10 ** 15)])
         if name in REALS:
@@ -120,6 +122,8 @@ class Generator:
             return "TRUE" if value else "FALSE"
         if name == "STRING":
             return "'" + value.replace("$", "$$").replace("'", "$'") + "'"
+        if name == "WSTRING":
+            return '"' + "".join(f"${ord(c):04X}" if c in '$"' or self.random.random() < 0.1 else c for c in value) + '"'
         if name == "TIME":
             return f"T#{'-' if value < 0 else ''}{abs(value)}ns"
         if name in REALS:
@@ -134,16 +138,35 @@ class Generator:
         if self.random.random() < 0.3:
             return Node(self.literal(name, value), name, value)
         variable = f"v{len(self.inputs)}"
-        self.inputs[variable] = (name, self.literal(name, value))
+        self.inputs[variable] = (name, self.literal(name, value), *self.declared(name, value))
         return Node(variable, name, value)
+
+    def declared(self, name, value):
+        """Where a variable is (" AT %MW4"), and its type, which may be a subrange around its value."""
+        if name in INTS and self.random.random() < 0.2:
+            return "", self.around(name, value)
+        widths = {**BITS, **{word: bits for word, (bits, _) in INTS.items()}, "REAL": 32, "LREAL": 64, "BOOL": 1}
+        if name not in widths or self.random.random() > 0.15:
+            return "", OF.get(name, name)
+        size = max(1, widths[name] // 8)
+        at = -(-self.memory // size) * size
+        self.memory = at + size
+        bit = f".{self.random.randrange(8)}" if name == "BOOL" else ""
+        return f" AT %M{ {1: 'X', 8: 'B', 16: 'W', 32: 'D', 64: 'L'}[widths[name]]}{at}{bit}", name
+
+    def around(self, name, value):
+        low, high = limits(name)
+        high = min(high, 2 ** 63 - 1)
+        return f"{name} ({max(low, value - self.random.choice((0, 1, 50)))}..{min(high, value + self.random.choice((0, 3)))})" \
+            if value <= high else name
 
     def of(self, name, depth):
         if depth <= 0 or self.random.random() < 0.1:
             return self.leaf(name)
         if name == "BOOL":
             return self.boolean(depth)
-        if name == "STRING":
-            return self.string(depth)
+        if name in TEXTS:
+            return self.string(name, depth)
         if name == "TIME":
             return self.time(depth)
         if name in BITS:
@@ -267,7 +290,8 @@ class Generator:
             n = self.random.randrange(BITS[variable.name])
             return Node(f"{variable.text}.{n}", "BOOL", bool(variable.value >> n & 1))
         if kind == "string":
-            a, b = self.of("STRING", depth - 1), self.of("STRING", depth - 1)
+            name = self.random.choice(list(TEXTS))
+            a, b = self.of(name, depth - 1), self.of(name, depth - 1)
         else:
             name = self.random.choice([*INTS, *REALS])
             a, b = self.pair(name, depth)
@@ -292,54 +316,66 @@ class Generator:
             value = a.value * b.value if op == "*" else divided(a.value, b.value)
         return Node(f"({a.text} {op} {b.text})", "TIME", wrap("LINT", value))
 
-    def string(self, depth):
-        a, b = self.of("STRING", depth - 1), self.of("STRING", depth - 1)
+    def string(self, name, depth):
+        a, b = self.of(name, depth - 1), self.of(name, depth - 1)
         n, p = self.random.randrange(0, 12), self.random.randrange(0, 12)
-        kind = self.random.choice(["CONCAT", "LEFT", "RIGHT", "MID", "INSERT", "DELETE", "REPLACE"])
+        kind = self.random.choice(["CONCAT", "LEFT", "RIGHT", "MID", "INSERT", "DELETE", "REPLACE", "convert"])
         s = a.value
         if len(s) + len(b.value) > 200:
-            return self.leaf("STRING")
+            return self.leaf(name)
+        if kind == "convert":
+            other = self.of("STRING" if name == "WSTRING" else "WSTRING", depth - 1)
+            return Node(f"{other.name}_TO_{name}({other.text})", name, other.value) if other.value.isascii() else a
         if kind == "CONCAT":
-            return Node(f"CONCAT({a.text}, {b.text})", "STRING", s + b.value)
+            return Node(f"CONCAT({a.text}, {b.text})", name, s + b.value)
         if kind in ("LEFT", "RIGHT"):
-            return Node(f"{kind}({a.text}, {n})", "STRING", s[:n] if kind == "LEFT" else s[len(s) - n:] if n < len(s) else s)
+            return Node(f"{kind}({a.text}, {n})", name, s[:n] if kind == "LEFT" else s[len(s) - n:] if n < len(s) else s)
         if kind == "MID":
-            return Node(f"MID({a.text}, {n}, {p})", "STRING", s[p - 1:p - 1 + n] if p > 0 else "")
+            return Node(f"MID({a.text}, {n}, {p})", name, s[p - 1:p - 1 + n] if p > 0 else "")
         if kind == "INSERT":
-            return Node(f"INSERT({a.text}, {b.text}, {p})", "STRING", s[:p] + b.value + s[p:] if p <= len(s) else s)
+            return Node(f"INSERT({a.text}, {b.text}, {p})", name, s[:p] + b.value + s[p:] if p <= len(s) else s)
         inside = 1 <= p <= len(s) + 1
         if kind == "DELETE":
-            return Node(f"DELETE({a.text}, {n}, {p})", "STRING", s[:p - 1] + s[p - 1 + n:] if inside else s)
-        return Node(f"REPLACE({a.text}, {b.text}, {n}, {p})", "STRING",
-                    s[:p - 1] + b.value + s[p - 1 + n:] if inside else s)
+            return Node(f"DELETE({a.text}, {n}, {p})", name, s[:p - 1] + s[p - 1 + n:] if inside else s)
+        return Node(f"REPLACE({a.text}, {b.text}, {n}, {p})", name, s[:p - 1] + b.value + s[p - 1 + n:] if inside else s)
+
+
+OF = {"STRING": "STRING(254)", "WSTRING": "WSTRING(254)"}
 
 
 def same(name, found, expected):
-    if name == "STRING":
-        return found == expected.encode("latin-1")
+    if name in TEXTS:
+        return found == (expected.encode() if name == "STRING" else expected)
     if name in REALS:
         return found == expected or (math.isnan(found) and math.isnan(expected))
     return found == int(expected)
 
 
+def unit(generator, number, count):
+    """A program of some expressions: its text, and what its results are to be."""
+    names = ["BOOL", *TEXTS, "TIME", *INTS, *BITS, *REALS]
+    generator.inputs = {}
+    nodes = [generator.of(generator.random.choice(names), generator.random.randrange(1, 5)) for _ in range(count)]
+    text = f"PROGRAM P{number}\nVAR_OUTPUT\n"
+    for i, node in enumerate(nodes):
+        ranged = node.name in INTS and generator.random.random() < 0.3
+        text += f"r{i} : {generator.around(node.name, node.value) if ranged else OF.get(node.name, node.name)};\n"
+    text += "END_VAR\nVAR\n" + "".join(f"{variable}{at} : {declared} := {value};\n" for variable, (_, value, at, declared)
+                                       in generator.inputs.items()) + "END_VAR\n"
+    return text + "".join(f"r{i} := {node.text};\n" for i, node in enumerate(nodes)) + "END_PROGRAM\n", nodes
+
+
 def check(binaries, folder, seed, count):
     generator = Generator(seed)
-    names = ["BOOL", "STRING", "TIME", *INTS, *BITS, *REALS]
-    nodes = [generator.of(generator.random.choice(names), generator.random.randrange(1, 5)) for _ in range(count)]
-    of = {"STRING": "STRING(254)"}
-    text = "PROGRAM Main\nVAR_OUTPUT\n"
-    text += "".join(f"r{i} : {of.get(node.name, node.name)};\n" for i, node in enumerate(nodes)) + "END_VAR\nVAR\n"
-    text += "".join(f"{variable} : {of.get(name, name)} := {value};\n"
-                    for variable, (name, value) in generator.inputs.items()) + "END_VAR\n"
-    text += "".join(f"r{i} := {node.text};\n" for i, node in enumerate(nodes)) + "END_PROGRAM\n"
-    host = Host(binaries, folder, text, f"random{seed}")
+    units = [unit(generator, number, min(PER_UNIT, count - number * PER_UNIT)) for number in range(-(-count // PER_UNIT))]
+    host = Host(binaries, folder, "".join(text for text, _ in units), f"random{seed}")
     if not host.run():
         sys.exit(f"seed {seed}: the program was stopped: {host.fault()}, {host.source}")
-    for i, node in enumerate(nodes):
-        found = host.value(f"Main.r{i}")
-        if not same(node.name, found, node.value):
-            inputs = {word: generator.inputs[word] for word in generator.inputs if word in node.text}
-            sys.exit(f"seed {seed}: {node.name}: {node.text}\nis {found!r}; expected {node.value!r}\n{inputs}")
+    for number, (text, nodes) in enumerate(units):
+        for i, node in enumerate(nodes):
+            found = host.value(f"P{number}.r{i}")
+            if not same(node.name, found, node.value):
+                sys.exit(f"seed {seed}: {node.name}: {node.text}\nis {found!r}; expected {node.value!r}, in {text}")
 
 
 def main():

@@ -72,6 +72,10 @@ def check_names():
     build("slow", "CONFIGURATION C RESOURCE R ON P TASK t(INTERVAL := T#1500us); PROGRAM a WITH t : Main; END_RESOURCE "
           "END_CONFIGURATION PROGRAM Main END_PROGRAM")
     run("slow.so", status=1, says="interval")
+    for left in (30, os.path.getsize("slow.so") // 2, os.path.getsize("slow.so") - 1):
+        with open("slow.so", "rb") as whole, open("cut.so", "wb") as cut:
+            cut.write(whole.read(left))
+        run("cut.so", status=1, says="cut off" if left > 100 else "cannot be loaded")
 
 
 LOCATED = """PROGRAM Main
@@ -92,6 +96,8 @@ def check_located():
         faults.append(f"the input does not follow the output: {lamp[20:50]} {seen[20:50]}")
     run(build("nowhere", "PROGRAM P VAR x AT %QX9.0.0 : BOOL; END_VAR END_PROGRAM"), bus=MACHINE, status=1,
         says="P.x AT %QX9.0.0")
+    run(build("padding", "PROGRAM P VAR x AT %IX3.0.5 : BOOL; END_VAR END_PROGRAM"), bus=MACHINE, status=1,
+        says="slave 3 has only padding")
     run(build("beyond", "PROGRAM P VAR x AT %QW2.7 : WORD; END_VAR END_PROGRAM"), bus=MACHINE, status=1,
         says="P.x AT %QW2.7")
 

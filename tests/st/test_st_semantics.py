@@ -21,6 +21,7 @@ FUNCTION Early : INT VAR_INPUT v : INT; END_VAR
 FUNCTION Split : BOOL VAR_INPUT v : INT; END_VAR VAR_OUTPUT tens, ones : INT; END_VAR VAR_IN_OUT calls : INT; END_VAR
   tens := v / 10; ones := v MOD 10; calls := calls + 1; Split := TRUE; END_FUNCTION
 FUNCTION Greet : STRING VAR_INPUT who : STRING(10); END_VAR Greet := CONCAT('hi ', who); END_FUNCTION
+FUNCTION WGreet : WSTRING VAR_INPUT who : WSTRING(4); END_VAR WGreet := CONCAT("hi ", who); END_FUNCTION
 FUNCTION Sum : DINT VAR_INPUT v : Row; END_VAR VAR i : INT; END_VAR
   FOR i := -1 TO 1 DO Sum := Sum + v[i]; END_FOR END_FUNCTION
 FUNCTION Move1 : Point VAR_INPUT p : Point; END_VAR Move1 := p; Move1.x := Move1.x + 1; END_FUNCTION
@@ -30,12 +31,41 @@ FUNCTION_BLOCK Counter VAR_INPUT step : INT := 2; END_VAR VAR_OUTPUT total : INT
 FUNCTION_BLOCK Outer VAR_IN_OUT shared : INT; END_VAR VAR inner : Counter := (step := 5); END_VAR
   VAR_OUTPUT seen : INT; END_VAR VAR_TEMP t : INT; END_VAR
   t := t + 1; inner(total => seen); shared := shared + t; END_FUNCTION_BLOCK
+TYPE Percent : INT (10..100); Five : INT := 5; Lamp : (Dark, Bright) := Bright;
+  Part : STRUCT share : Percent; five : Five; lamp : Lamp; END_STRUCT; END_TYPE
+FUNCTION Half : Percent VAR_INPUT v : Percent; END_VAR Half := v / 2 + 10; END_FUNCTION
+FUNCTION_BLOCK Edges VAR_INPUT up : BOOL R_EDGE; down : BOOL F_EDGE; END_VAR VAR_OUTPUT ups, downs : INT; left : Five; END_VAR
+  IF up THEN ups := ups + 1; END_IF IF down THEN downs := downs + 1; END_IF END_FUNCTION_BLOCK
+FUNCTION_BLOCK Edges2 EXTENDS Edges VAR_OUTPUT mine : INT; END_VAR IF up THEN mine := mine + 1; END_IF SUPER^();
+  END_FUNCTION_BLOCK
+FUNCTION_BLOCK Made VAR_OUTPUT id, seen : INT; END_VAR
+  METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR id := 7; seen := 1; END_METHOD
+  END_FUNCTION_BLOCK
+FUNCTION_BLOCK Made2 EXTENDS Made METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; number : INT;
+  who : STRING; END_VAR seen := seen * 10 + LEN(who); id := number; END_METHOD END_FUNCTION_BLOCK
+NAMESPACE Plant
+  USING Tools.Math;
+  CLASS ABSTRACT Shape VAR PUBLIC name : STRING := 'shape'; END_VAR VAR sides : INT := 2; END_VAR
+    METHOD PUBLIC ABSTRACT Area : INT END_METHOD METHOD PUBLIC Sides : INT Sides := THIS.sides; END_METHOD END_CLASS
+  CLASS Square EXTENDS Shape VAR edge : INT := 3; END_VAR
+    METHOD PUBLIC OVERRIDE Area : INT Area := Double(edge) * edge / 2; END_METHOD
+    METHOD PUBLIC Grow VAR_INPUT more : INT; END_VAR edge := edge + more; sides := 4 + SUPER.Sides(); END_METHOD END_CLASS
+  NAMESPACE Inner TYPE Hue : (Red, Green); END_TYPE FUNCTION One : INT One := 1; END_FUNCTION
+    FUNCTION Two : INT Two := One() + Inner.One(); END_FUNCTION END_NAMESPACE
+END_NAMESPACE
+NAMESPACE Tools.Math FUNCTION Double : INT VAR_INPUT v : INT; END_VAR Double := 2 * v; END_FUNCTION END_NAMESPACE
+FUNCTION Double : INT VAR_INPUT v : INT; END_VAR Double := 200 * v; END_FUNCTION
+VAR_GLOBAL flag AT %MX0.3 : BOOL := TRUE; bits AT %MB0 : BYTE; word2 AT %MW2 : WORD; low2 AT %MB2 : BYTE; real8 AT %MD8 : REAL;
+  raw8 AT %MD8 : DWORD; END_VAR
 VAR_GLOBAL g : INT := 3; END_VAR
 VAR_GLOBAL CONSTANT KK : INT := 4; KK2 : INT := KK * 2 + 1; END_VAR
 """
 VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Small; p : Point; x : Box; r : Row; " \
        "w : WORD; q : REF_TO INT; q2 : REF_TO Point; z : REFERENCE TO INT; zp : REFERENCE TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
-       "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;"
+       "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
+       "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
+       "e : Edges; e2 : Edges2; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
+       "hue : Plant.Inner.Hue; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # (statements, {variable: value after one call})
 CASES = [
     ("IF TRUE THEN i := 1; ELSE i := 2; END_IF", {"i": 1}),
@@ -108,6 +138,30 @@ CASES = [
     ("i := 2#1010 + 8#17 + 16#F + 1_000;", {"i": 1040}),
     ("x64 := 18446744073709551615; x64 := x64 / 2; big := -9223372036854775808;", {"x64": 2 ** 63 - 1, "big": -2 ** 63}),
     ("(* a (* nested *) comment *) i := 1; // line\n j := 2; /* other */ {pragma} n := 3;", {"i": 1, "j": 2, "n": 3}),
+    ("i := h + h2[2]; j := near; h := 50; n := Half(v := h);", {"i": 20, "j": 2, "h": 50, "n": 35}),
+    ("FOR loop := 1 TO 4 DO j := j + loop; END_FOR", {"loop": 4, "j": 10}),
+    ("near := -5; near := near + 10; h2[1] := MAX(h, 99);", {"near": 5, "h2[1]": 99}),
+    ("i := part.share; j := part.five; n := five * 10 + five2; b := part.lamp = Bright;", {"i": 10, "j": 5, "n": 55, "b": 1}),
+    ("FOR i := 0 TO 7 DO e(up := i MOD 4 >= 2, down := i MOD 4 >= 2); e2(up := i MOD 4 >= 2); END_FOR "
+     "i := e.ups * 10 + e.downs; j := e2.ups * 10 + e2.mine; e(); e(); b := e.up;", {"i": 21, "j": 22, "b": 1}),
+    ("e(up := TRUE); e(); e(); i := e.ups; e(up := FALSE, down := TRUE); e(down := FALSE); j := e.downs;", {"i": 1, "j": 1}),
+    ("h2[2] := MIN(MAX(h, 200), 100); h2[1] := -(-h);", {"h2[2]": 100, "h2[1]": 10}),
+    ("i := LEN(y2); y := y2; b := y2 = \"\u00e4$\"\u20ac\"; s := WSTRING_TO_STRING(y2);",
+     {"i": 3, "y": "\u00e4\"\u20ac", "b": 1, "s": "\u00e4\"\u20ac".encode()}),
+    ("y := \"abcdefghijklmnop\"; i := LEN(y); j := FIND(y, \"cd\"); y := REPLACE(MID(y, 4, 2), \"XY\", 2, 2);",
+     {"i": 10, "j": 3, "y": "bXYe"}),
+    ("y := WGreet(\"\u00fc\u00fc\u00fc\u00fc\u00fc\"); b := y < \"hj\"; y2 := INSERT(DELETE(y, 3, 1), \"-\", 1);",
+     {"y": "hi \u00fc\u00fc\u00fc\u00fc", "b": 1, "y2": "\u00fc-\u00fc\u00fc\u00fc"}),
+    ("y := STRING_TO_WSTRING('a$C3$A4$E4'); s := WSTRING_TO_STRING(\"$D83D$DE00\"); i := LEN(\"\U0001f600\");",
+     {"y": "a\u00e4\u00e4", "s": "\U0001f600".encode(), "i": 2}),
+    ("y := INT_TO_WSTRING(-42); i := WSTRING_TO_INT(\"123x\"); y2 := CONCAT(LEFT(y, 1), RIGHT(y, 1), \"\"); l := WSTRING_TO_LREAL(\"2.5\");",
+     {"y": "-42", "i": 123, "y2": "-2", "l": 2.5}),
+    ("n := e.left * 10 + e2.left; i := made.id * 10 + made.seen; j := made2.id * 100 + made2.seen;", {"n": 55, "i": 71, "j": 313}),
+    ("sq.Grow(more := 1); i := sq.Area(); j := sq.Sides(); sq.name := 'sq'; s := sq.name;", {"i": 16, "j": 6, "s": b"sq"}),
+    ("i := Tools.Math.Double(4); j := Double(4); n := Plant.Inner.Two(); hue := Plant.Inner.Hue#Green; "
+     "b := hue = Plant.Inner.Hue#Green;", {"i": 8, "j": 800, "n": 2, "hue": 1, "b": 1}),
+    ("b := flag; i := bits; flag := NOT flag; j := bits; word2 := 16#1234; n := low2; low2 := 16#FF; w := word2; real8 := 1.0;",
+     {"b": 1, "i": 8, "j": 0, "n": 0x34, "w": 0x12FF, "raw8": 0x3F800000}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
@@ -118,7 +172,9 @@ FAULTS = [
     ("REPEAT b := FALSE; UNTIL b END_REPEAT", "1000000 times"),
     ("FOR i := 1 TO 30000 DO FOR d := 1 TO 30000 DO j := 1; END_FOR END_FOR", "1000000 times"),
     ("FOR i := 1 TO 3 BY n DO j := 1; END_FOR", "steps of 0"), ("i := MUX(n + 3, 1, 2);", "3 is outside 0..1"),
-    ("t := t / f;", "divided by zero"),
+    ("t := t / f;", "divided by zero"), ("i := 101; h := i;", "the value 101 is outside the range 10..100"),
+    ("near := near * -3;", "-6 is outside the range -5..5"), ("n := Half(v := n);", "0 is outside the range 10..100"),
+    ("k(total => near);", "102 is outside the range -5..5"),
 ]
 faults = []
 
@@ -137,7 +193,7 @@ def check_cases(folder):
         if host.fault():
             sys.exit(f"{body}: {host.fault()}")
         for name, value in expected.items():
-            found = host.value(name if name == "g" else f"P{n}.{name}")
+            found = host.value(name if name in ("g", "raw8") else f"P{n}.{name}")
             if found != value:
                 faults.append(f"{body}: {name} is {found!r}; expected {value!r}")
 
@@ -153,7 +209,30 @@ def check_faults(folder):
             faults.append(f"{body}: a task ran after the fault")
 
 
+EVENTS = """
+PROGRAM Main VAR n : INT; up AT %MX0.0 : BOOL; END_VAR n := n + 1; up := n MOD 4 >= 2; END_PROGRAM
+PROGRAM Event VAR c : INT; END_VAR c := c + 1; END_PROGRAM
+CONFIGURATION C RESOURCE R ON PC TASK T1 (PRIORITY := 1); TASK T2 (SINGLE := m.up, PRIORITY := 2);
+TASK T3 (SINGLE := m.up, INTERVAL := T#10ms, PRIORITY := 3); PROGRAM m WITH T1 : Main; PROGRAM at WITH T2 : Event;
+PROGRAM both WITH T3 : Event; END_RESOURCE END_CONFIGURATION
+"""
+
+
+def check_events(folder):
+    """A task with SINGLE runs once for each rising edge; with an INTERVAL also in it while the variable is FALSE."""
+    host = Host(BIN, folder, EVENTS.replace("PROGRAM at", "PROGRAM once"), "events")
+    for _ in range(8):
+        host.run()
+    found = host.value("once.c"), host.value("both.c")
+    if found != (2, 6):
+        faults.append(f"tasks by event ran {found} times; expected 2 and 2 + 4")
+    intervals = [host.table.tasks[i].interval_ns for i in range(host.table.task_count)]
+    if intervals != [0, 0, 0, 10000000]:
+        faults.append(f"intervals of tasks: {intervals}")
+
+
 with tempfile.TemporaryDirectory() as folder:
+    check_events(folder)
     check_cases(folder)
     check_faults(folder)
 if faults:

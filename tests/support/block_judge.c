@@ -232,7 +232,7 @@ static unsigned members_of(const cm1e_group_t *group)
 {
     unsigned members = 0;
     for (int n = 0; n < JUDGED_MOST && group; n++)
-        if (judged_axes[n].axis && judged_axes[n].axis->group == group)
+        if (judged_axes[n].axis && judged_axes[n].axis->belongs.group == group)
             members |= 1u << n;
     return members;
 }
@@ -347,7 +347,7 @@ static double rounding_of(const cm1e_axis_t *axis, int depth)
  * path of a group goes in u from the zero of the coordinates to its ends, which may be at 4e9 u. */
 static double largest_number(const cm1e_axis_t *axis)
 {
-    const cm1e_group_t *const group = axis->group;
+    const cm1e_group_t *const group = axis->belongs.group;
     if (group && !axis->commands.active) /* led, maybe for this cycle alone */
         return fmax(fabs(group->path.end[axis->leader.index]), fabs(cm1e_axis_place(axis, false)));
     return fabs(cm1e_position_minus(axis->setpoint.target, axis->setpoint.position) / axis->position.scale);

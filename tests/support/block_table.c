@@ -301,6 +301,16 @@ AT(MC_Jog, CommandAborted, 59);
 AT(MC_Jog, Error, 60);
 AT(MC_Jog, ErrorID, 62);
 AT(MC_Jog, Private, 64);
+_Static_assert(sizeof(CM_FollowPosition_t) == 48, "CM_FollowPosition");
+AT(CM_FollowPosition, Axis, 0);
+AT(CM_FollowPosition, Execute, 8);
+AT(CM_FollowPosition, Position, 16);
+AT(CM_FollowPosition, Busy, 24);
+AT(CM_FollowPosition, Active, 25);
+AT(CM_FollowPosition, CommandAborted, 26);
+AT(CM_FollowPosition, Error, 27);
+AT(CM_FollowPosition, ErrorID, 28);
+AT(CM_FollowPosition, Private, 32);
 _Static_assert(sizeof(MC_CamTableSelect_t) == 56, "MC_CamTableSelect");
 AT(MC_CamTableSelect, Master, 0);
 AT(MC_CamTableSelect, Slave, 8);
@@ -1305,6 +1315,16 @@ static const block_rule_t rules_couple[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
+static const block_rule_t rules_follow_position[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
 static const block_rule_t rules_phasing[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
     [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
@@ -1368,6 +1388,8 @@ static const block_member_t members_of_MC_Power[] = {
 };
 static void call_MC_Power(void *fb) { MC_Power(fb); }
 static const cm1e_error_t errors_of_MC_Power[] = {
+    CM1E_ERROR_AXIS_SET_POINT_MISSING,
+    CM1E_ERROR_AXIS_SET_POINT_LIMIT,
     CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_AXIS_COUPLED,
     CM1E_ERROR_AXIS_COUPLING_LIMIT,
@@ -1915,6 +1937,31 @@ static const cm1e_error_t errors_of_MC_Jog[] = {
     CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_CM_FollowPosition[] = {
+    MEMBER(CM_FollowPosition, Axis, IN_OUT, POINTER),
+    MEMBER(CM_FollowPosition, Execute, INPUT, BOOL),
+    MEMBER(CM_FollowPosition, Position, INPUT, LREAL),
+    MEMBER(CM_FollowPosition, Busy, OUTPUT, BOOL),
+    MEMBER(CM_FollowPosition, Active, OUTPUT, BOOL),
+    MEMBER(CM_FollowPosition, CommandAborted, OUTPUT, BOOL),
+    MEMBER(CM_FollowPosition, Error, OUTPUT, BOOL),
+    MEMBER(CM_FollowPosition, ErrorID, OUTPUT, WORD),
+};
+static void call_CM_FollowPosition(void *fb) { CM_FollowPosition(fb); }
+static const cm1e_error_t errors_of_CM_FollowPosition[] = {
+    CM1E_ERROR_AXIS_SET_POINT_MISSING,
+    CM1E_ERROR_AXIS_SET_POINT_LIMIT,
+    CM1E_ERROR_AXIS_SET_POINT_JUMP,
+    CM1E_ERROR_AXIS_IN_GROUP,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_CamTableSelect[] = {
@@ -3613,6 +3660,7 @@ const block_t block_table[] = {
     BLOCK(MC_VelocityProfile, rules_continuous),
     BLOCK(MC_AccelerationProfile, rules_continuous),
     BLOCK(MC_Jog, NULL),
+    BLOCK(CM_FollowPosition, rules_follow_position),
     BLOCK(MC_CamTableSelect, rules_any),
     BLOCK(MC_CamIn, rules_couple),
     BLOCK(MC_CamOut, rules_decouple),

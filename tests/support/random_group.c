@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "axis/axis_outside.h"
 #include "random_program.h"
 
 struct random_group groups[GROUPS_MOST];
@@ -151,7 +152,7 @@ bool leaves_groups_alone(const instance_t *fb)
     const struct random_group *g = random_group_of(fb);
     const char *name = name_of(fb);
     if (!g)
-        return !judged_axes[fb->of].axis->group || one_in(6);
+        return !judged_axes[fb->of].axis->belongs.group || one_in(6);
     const bool ends = strstr(name, "Disable") || strstr(name, "Ungroup") || strstr(name, "Stop");
     return !ends || one_in(6);
 }
@@ -233,7 +234,8 @@ void judge_led(void)
     MUST(leaders == (led ? 1 : 0), "led: %d, by %d groups", led, leaders);
     MUST(!led || synchronised, "led in %s", cm1e_axis_state_name(axis->state));
     MUST(!led || !axis->commands.active, "led, and a command of its own is active");
-    MUST(!synchronised || led || axis_follows(axis), "SynchronizedMotion with nothing to follow");
+    MUST(!synchronised || led || axis_follows(axis) || axis_from_outside(axis),
+         "SynchronizedMotion with nothing to follow");
 }
 
 static bool group_stands(const cm1e_group_t *group)

@@ -1,4 +1,6 @@
 /* Scenarios of mc_motion.h. */
+#include <math.h>
+
 #include "diagram.h"
 
 static void power(void)
@@ -280,6 +282,25 @@ static void jog(void)
     trace_end();
 }
 
+static void follow_position(void)
+{
+    static const double tau = 6.283185307179586;
+    CM_FollowPosition_t follow = {AXIS};
+    trace_begin("CM_FollowPosition",
+                "Positions of a program: one swing of 1.5 u in 1.2 s that begins and ends at rest; then the program no "
+                "longer calls the block.");
+    trace_block("CM_FollowPosition", "", &follow);
+    trace_curves(true, true);
+    UNTIL(1700) {
+        const double swing = bench.scan < 100 ? 0.0 : fmin((bench.scan - 100) / 1200.0, 1.0);
+        follow.Execute = during(50, 1400);
+        follow.Position = 0.75 - 0.75 * cos(tau * swing);
+        if (bench.scan < 1500)
+            CM_FollowPosition(&follow);
+    }
+    trace_end();
+}
+
 const scenario_t motion_scenarios[] = {
     {"MC_Power", power},
     {"MC_Home", home},
@@ -298,5 +319,6 @@ const scenario_t motion_scenarios[] = {
     {"MC_VelocityProfile", velocity_profile},
     {"MC_AccelerationProfile", acceleration_profile},
     {"MC_Jog", jog},
+    {"CM_FollowPosition", follow_position},
     {NULL, NULL},
 };

@@ -16,6 +16,12 @@ typedef struct {
     long steps;
     double fastest;                                     /**< along the path */
     double most_velocity, most_acceleration, most_jerk; /**< of any axis, in parts of its limit */
+    /* what was told of the course */
+    uint32_t course;
+    unsigned long decided;
+    bool known[CM1E_PATH_AXES];
+    cm1e_motion_bounds_t bounds[CM1E_PATH_AXES];
+    double begun_at[CM1E_PATH_AXES], left_s;
 } driven_t;
 
 static driven_t driven;
@@ -60,6 +66,24 @@ static inline void begin_path(const cm1e_path_config_t *config, const double *po
     memcpy(driven.before.position, position, (size_t)config->axes * sizeof *position);
 }
 
+/** While the number of the course stays, every step keeps the bounds that were told. */
+static inline void check_bounds(int i, double v, double a, double jerk)
+{
+    const cm1e_motion_bounds_t *most = &driven.bounds[i];
+    const double dt = driven.path.config.cycle_s, way = fabs(driven.now.position[i] - driven.begun_at[i]);
+    const double noise = 1e-9 * driven.path.config.axis[i].acceleration / dt;
+    if (driven.course == cm1e_path_course(&driven.path) && driven.known[i]) {
+        CHECK_PATH(fabs(v) <= most->velocity * (1 + 1e-9) + 1e-12);
+        CHECK_PATH(fabs(a) <= most->acceleration * (1 + 1e-9) + 1e-9);
+        CHECK_PATH(jerk <= most->jerk * (1 + 1e-6) + noise);
+        CHECK_PATH(way <= most->velocity * driven.left_s * (1 + 1e-9) + 1e-9 * (1 + fabs(driven.now.position[i])));
+        driven.decided++;
+    } else {
+        driven.known[i] = cm1e_path_bounds(&driven.path, i, &driven.bounds[i], &driven.left_s);
+        driven.begun_at[i] = driven.now.position[i];
+    }
+}
+
 /** One cycle; limits of the axes and the order of the tags are checked. */
 static inline void step_path(void)
 {
@@ -83,7 +107,9 @@ static inline void step_path(void)
         CHECK_PATH(fabs(v) <= axis->velocity * (1 + 1e-6));
         CHECK_PATH(fabs(a) <= axis->acceleration * (1 + 1e-6));
         CHECK_PATH(jerk <= axis->jerk * (1 + 1e-6) + 1e-9 * axis->acceleration / dt);
+        check_bounds(i, v, a, jerk);
     }
+    driven.course = cm1e_path_course(&driven.path);
     driven.fastest = fmax(driven.fastest, driven.now.path_velocity);
     CHECK_PATH(driven.now.path_velocity >= -1e-9);
 }

@@ -264,6 +264,29 @@ static void test_the_ratio_is_kept_where_the_master_becomes_too_fast(void)
     failed(MASTER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
 }
 
+/* A slave that still accelerates into its gear has no ratio to keep. The slave has a gentle deceleration, and the gear a
+ * large ratio: what is right for the ratio would let the master go on for a minute. */
+static void test_a_slave_that_is_not_in_gear_yet_does_not_keep_its_master_turning(void)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    axes_config(SLAVE)->max_deceleration = 5.0;
+    axes_make();
+    axes_enable_all();
+    axes_move_velocity(MASTER, 20.0);
+    axes_cycles(1000);
+    TEST_ASSERT_EQUAL_DOUBLE(20.0, axes_info(MASTER).set_velocity);
+    axes_gear_in(SLAVE, MASTER, 30, 1);
+    for (int n = 0; n < 20000 && axes_state(MASTER) != CM1E_AXIS_ERROR_STOP; n++)
+        axes_cycles(1);
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "a velocity of");
+    failed(MASTER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
+    int braking = 0;
+    for (; braking < 20000 && axes_info(MASTER).set_velocity != 0.0; braking++)
+        axes_cycles(1);
+    TEST_ASSERT_LESS_THAN_INT(2000, braking);
+}
+
 /* A master that brakes by its own error is followed to its standstill. */
 static void test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails(void)
 {
@@ -315,6 +338,7 @@ int main(void)
     RUN_TEST(test_coupled_axes_stop_with_a_slave_whose_drive_fails);
     RUN_TEST(test_the_ratio_is_kept_to_the_standstill_before_a_software_limit);
     RUN_TEST(test_the_ratio_is_kept_where_the_master_becomes_too_fast);
+    RUN_TEST(test_a_slave_that_is_not_in_gear_yet_does_not_keep_its_master_turning);
     RUN_TEST(test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails);
     RUN_TEST(test_a_ramp_that_is_too_steep_is_not_followed);
     return UNITY_END();

@@ -61,6 +61,7 @@ static const char *const expected[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_CAM_OUT] = "ET",
     [CM1E_COMMAND_PHASING_ABSOLUTE] = "BVO",
     [CM1E_COMMAND_PHASING_RELATIVE] = "BVO",
+    [CM1E_COMMAND_FOLLOW_POSITION] = "",
 };
 
 static void test_what_every_kind_is(void)

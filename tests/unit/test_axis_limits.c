@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "../support/axis_bench.h"
+#include "axis/axis_parameters.h"
 
 void setUp(void) { bench_start(); }
 void tearDown(void) { bench_end(); }
@@ -25,6 +26,24 @@ static void test_targets_outside_the_limits_are_refused_inside_accepted(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE,
                           bench_try_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = 3.01,
                                                              .velocity = 1.0}));
+}
+
+/* In doubles 0.1 + 0.1 + 0.1 is more than 0.3. */
+static void test_a_limit_is_reached_in_steps_that_are_rounded(void)
+{
+    static const double steps[] = {0.1, 0.7, 1.1, 1e-3, 1.0 / 3.0};
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            bench_end();
+            bench_start();
+            bench_enable_within(-7.0 * steps[i], 7.0 * steps[i]);
+            for (int n = 0; n < 7; n++) {
+                const cm1e_axis_command_t step = {.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = sign * steps[i],
+                                                  .velocity = 20.0};
+                TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_try_command(&step));
+                bench_cycles(700);
+            }
+        }
 }
 
 static void test_a_retarget_that_would_overshoot_a_limit_is_refused(void)
@@ -260,10 +279,88 @@ static void test_a_direction_that_a_motion_does_not_need_may_be_disabled(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(back));
 }
 
+/* A limit in the direction `sign` at `refused` would be overrun by the motion that runs; one at `taken` would not. */
+static void expect_limit_between(int sign, double refused, double taken)
+{
+    const unsigned limit = sign > 0 ? CM1E_PARAMETER_SW_LIMIT_POS : CM1E_PARAMETER_SW_LIMIT_NEG;
+    const unsigned enable = sign > 0 ? CM1E_PARAMETER_ENABLE_LIMIT_POS : CM1E_PARAMETER_ENABLE_LIMIT_NEG;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, limit, refused));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_write_parameter(axis, enable, 1.0));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, limit, taken));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, enable, 1.0));
+}
+
+/* It is at 20 u/s after 2.5 u, and needs 2 u to brake from there. */
+static void test_a_limit_that_the_end_of_an_acceleration_would_overrun_is_refused(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        bench_end();
+        bench_start();
+        bench_enable();
+        const double begin = bench_info().set_position;
+        bench_move_velocity(20.0 * sign);
+        bench_cycles(20);
+        expect_limit_between(sign, begin + 4.4 * sign, begin + 4.6 * sign);
+    }
+}
+
+/* On its way back the axis goes on by 4 u first, softly. A limit in between is one that it would overrun. */
+static void test_a_limit_that_a_reversal_would_overrun_is_refused(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        bench_end();
+        bench_start();
+        bench_enable();
+        bench_move_velocity(20.0 * sign);
+        bench_cycles(600);
+        const double turned = bench_info().set_position;
+        bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 0.0,
+                                                   .velocity = 20.0, .deceleration = 50.0});
+        bench_cycles(5);
+        expect_limit_between(sign, turned + 3.8 * sign, turned + 5.0 * sign);
+    }
+}
+
+/* ---- the maximum of the application ------------------------------------------------------------------------------ */
+
+/* Accelerates to the lowered maximum, and is given a tenth of the jerk after `moment` cycles. The acceleration then
+ * needs all the room that is left below that maximum. */
+static double fastest_with_a_smaller_jerk_from(int moment)
+{
+    bench_start();
+    bench_enable();
+    const double most = 20.0;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_MAX_VELOCITY_APPL, most));
+    bench_move_velocity(most);
+    bench_cycles(moment);
+    const cm1e_axis_command_t softly = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = most,
+                                        .jerk = axis->limits.maximum.jerk / 10.0};
+    bench_start_command(&softly);
+    double fastest = 0.0;
+    for (int n = 0; n < 800; n++) {
+        bench_cycles(1);
+        fastest = fmax(fastest, bench_info().set_velocity);
+    }
+    bench_end();
+    return fastest / most;
+}
+
+static void test_a_smaller_jerk_keeps_the_maximum_of_the_application(void)
+{
+    for (int moment = 1; moment < 250; moment += 3) {
+        const double fastest = fastest_with_a_smaller_jerk_from(moment);
+        char text[60];
+        snprintf(text, sizeof text, "moment %d: %.12f times", moment, fastest);
+        TEST_ASSERT_TRUE_MESSAGE(fastest > 0.999 && fastest < 1.0 + 1e-6, text);
+    }
+    bench_start();
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_targets_outside_the_limits_are_refused_inside_accepted);
+    RUN_TEST(test_a_limit_is_reached_in_steps_that_are_rounded);
     RUN_TEST(test_a_retarget_that_would_overshoot_a_limit_is_refused);
     RUN_TEST(test_velocity_into_a_limit_is_braked_before_it);
     RUN_TEST(test_a_stop_without_limit_of_jerk_never_swings_back);
@@ -275,5 +372,8 @@ int main(void)
     RUN_TEST(test_direction_disabled_while_running_stops_the_motion);
     RUN_TEST(test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped);
     RUN_TEST(test_a_direction_that_a_motion_does_not_need_may_be_disabled);
+    RUN_TEST(test_a_limit_that_the_end_of_an_acceleration_would_overrun_is_refused);
+    RUN_TEST(test_a_limit_that_a_reversal_would_overrun_is_refused);
+    RUN_TEST(test_a_smaller_jerk_keeps_the_maximum_of_the_application);
     return UNITY_END();
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "../support/axis_bench.h"
+#include "device/unit.h"
 
 void setUp(void) { bench_start(); }
 void tearDown(void) { bench_end(); }
@@ -312,6 +313,41 @@ static void test_csv_mapping_moves_to_positions_with_a_loop_of_ours(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
 }
 
+static double shaft;
+
+static void cycle_with_shaft(void)
+{
+    shaft += bus.target_velocity_raw * 1e-3;
+    bus.position = (int32_t)lround(shaft);
+    bench_cycles(1);
+}
+
+/* After lost frames the target changes by what the largest acceleration changes it in a cycle, until it is the commanded
+ * one again: a jump is as wrong as a target that stays behind. */
+static void test_csv_target_comes_back_with_the_largest_acceleration_after_lost_frames(void)
+{
+    fake_bus_init(&bus, CM1E_MAPPING_CSV, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.mode = bus.sdo_mode = CM1E_MODE_CSV;
+    bench_create();
+    bench_enable();
+    shaft = bus.position;
+    bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 20.0,
+                                               .acceleration = 50.0});
+    for (int i = 0; i < 200; i++)
+        cycle_with_shaft();
+    received = CM1E_ERROR_BUS_LOST;
+    for (int i = 0; i < 2; i++)
+        cycle_with_shaft();
+    received = CM1E_OK;
+    const double most = axis->limits.system.acceleration * 1e-3 * axis->position.scale;
+    for (int i = 0; i < 60; i++) {
+        const int32_t before = bus.target_velocity_raw;
+        cycle_with_shaft();
+        TEST_ASSERT_LESS_OR_EQUAL_INT32((int32_t)ceil(most), abs(bus.target_velocity_raw - before));
+    }
+    TEST_ASSERT_INT_WITHIN(most, lround(bench_info().set_velocity * axis->position.scale), bus.target_velocity_raw);
+}
+
 /* ---- configuration ----------------------------------------------------------------------------------------------- */
 
 static void test_configurations_that_contradict_themselves_are_refused(void)
@@ -334,6 +370,26 @@ static void test_configurations_that_contradict_themselves_are_refused(void)
     bus.config.axes[0].software_limit_negative = 1.0;
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_CONFIG, cm1e_axis_create(&made, &bus, 0, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "software limit"));
+    bus.config.axes[0].software_limit_positive = 2.0;
+    bus.config.axes[0].modulo_range = 0.5;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_CONFIG, cm1e_axis_create(&made, &bus, 0, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "modulo axis"));
+}
+
+/* The compensation may need the motor's whole speed, and then nothing is left for a motion. */
+static void test_a_compensation_of_backlash_at_the_motors_peak_speed_is_refused(void)
+{
+    cm1e_axis_t *made;
+    cm1e_diag_t diag;
+    fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    cm1e_axis_config_t *c = &bus.config.axes[0];
+    c->backlash = 0.01;
+    c->backlash_velocity = cm1e_unit_peak_velocity(c) / cm1e_unit_scale(c);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_CONFIG, cm1e_axis_create(&made, &bus, 0, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "backlash velocity"));
+    c->backlash_velocity *= 0.99;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_create(&made, &bus, 0, &diag));
+    cm1e_axis_destroy(made);
 }
 
 int main(void)
@@ -354,6 +410,8 @@ int main(void)
     RUN_TEST(test_stops_take_the_maximum_where_more_is_asked);
     RUN_TEST(test_velocity_signs_and_directions);
     RUN_TEST(test_csv_mapping_moves_to_positions_with_a_loop_of_ours);
+    RUN_TEST(test_csv_target_comes_back_with_the_largest_acceleration_after_lost_frames);
     RUN_TEST(test_configurations_that_contradict_themselves_are_refused);
+    RUN_TEST(test_a_compensation_of_backlash_at_the_motors_peak_speed_is_refused);
     return UNITY_END();
 }

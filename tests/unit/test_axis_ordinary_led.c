@@ -1,14 +1,16 @@
 /*
- * An axis that follows masters has a short way through a cycle too. The same random program runs twice with the same
+ * An axis that follows masters has short ways through a cycle too. The same random program runs twice with the same
  * axes: once as it is, once with every axis in the long way. All set-points must have the same bits, in every cycle.
  * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_SEEDS=<count> as many from there on.
  */
 #include "unity.h"
 
 #include "axis/axis_parameters.h"
+#include "coupling/coupling_private.h"
 
 #include "../support/axes_bench.h"
 #include "../support/chance.h"
+#include "../support/ordinary_witness.h"
 
 enum { AXES = 4, RUNS = 120, CYCLES = 2500 };
 
@@ -35,6 +37,15 @@ static void begin(unsigned seed, bool long_way)
     for (int n = 0; n < AXES; n++) {
         axes_config(n)->max_jerk = one_in(3) ? 0.0 : uniform(2000.0, 20000.0);
         axes_config(n)->invert = one_in(3);
+        if (n > 0 && one_in(2)) { /* limits near what they follow */
+            axes_config(n)->max_velocity = uniform(1.0, 10.0);
+            axes_config(n)->max_acceleration = uniform(10.0, 50.0);
+            axes_config(n)->max_deceleration = uniform(10.0, 50.0);
+        }
+        if (n > 0 && one_in(3)) {
+            axes_config(n)->software_limit_negative = uniform(-10.0, -2.0);
+            axes_config(n)->software_limit_positive = uniform(2.0, 10.0);
+        }
     }
     axes_make();
     for (int n = 0; n < AXES; n++)
@@ -42,6 +53,35 @@ static void begin(unsigned seed, bool long_way)
     axes_enable_all();
     for (int n = 0; n < AXES; n++) /* programs without order break limits of slaves */
         axes_bench.witness[n].strictness = AXES_UNWATCHED;
+}
+
+/* A cam of any curve over 1 ... 8 u of the master, mostly up and down. */
+static MC_CAM_ID select_cam(int n)
+{
+    MC_CAM_POINT points[9] = {{.Master = 0.0}};
+    const int count = 3 + pick(7);
+    for (int i = 1; i < count; i++)
+        points[i] = (MC_CAM_POINT){.Master = points[i - 1].Master + uniform(0.3, 1.0), .Slave = uniform(-0.5, 0.5)};
+    if (!one_in(3))
+        points[count - 1].Slave = 0.0;
+    if (one_in(4)) /* a corner at the ends */
+        points[0].Velocity = uniform(-0.2, 0.2);
+    const MC_CAM_REF table = {.Points = points, .NumberOfPoints = count,
+                              .Curve = one_in(4) ? mcCamLinear : one_in(2) ? mcCamCubicSpline : mcCamPolynomial5};
+    MC_CAM_ID id;
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_cam_select(axes_axis(n), &table, !one_in(4), one_in(2), one_in(2), &id));
+    return id;
+}
+
+static void follow_by_cam(int n)
+{
+    const cm1e_axis_coupling_t coupling = {
+        .master = {{.axis = axes_reference(pick(n)), .source = mcSetValue, .numerator = 1, .denominator = 1}},
+        .cam = select_cam(n), .start_mode = mcRampIn, .slave_offset = one_in(2) ? uniform(-0.5, 0.5) : 0.0,
+        .master_scaling = one_in(2) ? uniform(0.5, 2.0) : 0.0, .slave_scaling = one_in(2) ? uniform(-2.0, 2.0) : 0.0};
+    cm1e_command_id_t id;
+    (void)cm1e_axis_start(axes_axis(n), &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling,
+                          .buffer_mode = one_in(4) ? mcBuffered : mcAborting}, &id);
 }
 
 static void follow(int n)
@@ -68,7 +108,16 @@ static void move(int n)
     cm1e_command_id_t id;
     (void)cm1e_axis_start(axes_axis(n), &(cm1e_axis_command_t){
         .kind = kinds[pick(n ? 7 : 3)], .position = uniform(-10.0, 10.0), .velocity = uniform(0.5, 10.0),
-        .acceleration = uniform(5.0, 50.0), .coupling = &coupling}, &id);
+        .acceleration = uniform(5.0, 50.0), .coupling = &coupling,
+        .buffer_mode = n && one_in(3) ? mcBuffered : mcAborting}, &id);
+}
+
+/* A limit that the application may change. */
+static void set_limit(int n)
+{
+    static const int numbers[] = {CM1E_PARAMETER_SW_LIMIT_POS, CM1E_PARAMETER_MAX_VELOCITY_APPL,
+                                  CM1E_PARAMETER_MAX_ACCELERATION_APPL};
+    (void)cm1e_axis_write_parameter(axes_axis(n), numbers[pick(3)], uniform(1.0, 50.0));
 }
 
 static void anything(void)
@@ -76,13 +125,13 @@ static void anything(void)
     const int n = pick(AXES);
     axes_bench.received = one_in(30) ? CM1E_ERROR_BUS_LOST : CM1E_OK;
     if (one_in(40))
-        (void)cm1e_axis_write_parameter(axes_axis(n), 2, uniform(1.0, 50.0)); /* SWLimitPos */
+        set_limit(n);
     if (one_in(40))
         axes_power(n, !axes_bench.on[n]);
     else if (one_in(10))
         (void)cm1e_axis_reset(axes_axis(n));
     else if (n > 0 && one_in(2))
-        follow(n);
+        one_in(3) ? follow_by_cam(n) : follow(n);
     else
         move(n);
 }
@@ -124,13 +173,87 @@ static void test_slaves_side_by_side(void)
                           "seed %u: axis %d in cycle %d is at %.17g u/s instead of %.17g", seed_of(i), n, k,
                           seen[0][k][n].velocity, seen[1][k][n].velocity);
     }
-    printf("%llu cycles of slaves\n", led_cycles);
+    printf("%llu cycles of slaves; %llu of %llu that follow are ordinary\n", led_cycles, cycles_followed_ordinary,
+           cycles_followed);
+    TEST_ASSERT_TRUE(seeds_given() || cycles_followed_ordinary > cycles_followed / 20);
     TEST_ASSERT_TRUE(seeds_given() || led_cycles > (unsigned long long)runs * CYCLES / 4);
+}
+
+/* ---- what changes in the middle of a course ---------------------------------------------------------------------- */
+
+static bool decided_ahead(int n)
+{
+    const coupling_t *c = axes_axis(n)->coupling;
+    return c->ordinary && c->course == axes_axis(n)->setpoint.course &&
+           c->masters_course == c->now->links[0].master->setpoint.course;
+}
+
+static const cm1e_axis_coupling_t *one_to_one(void)
+{
+    static cm1e_axis_coupling_t coupling;
+    coupling = (cm1e_axis_coupling_t){.master = {{.axis = axes_reference(0), .numerator = 1, .denominator = 1}}};
+    return &coupling;
+}
+
+/* Axis 1 follows axis 0, which turns at 5 u/s for ever, and all its next cycles are decided. */
+static void begin_course(void)
+{
+    axes_describe(2);
+    axes_make();
+    axes_enable_all();
+    axes_command(0, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 5.0, .acceleration = 50.0,
+                                           .direction = mcPositiveDirection});
+    axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = one_to_one()});
+    axes_cycles(600);
+    TEST_ASSERT_TRUE(axes_axis(1)->setpoint.reached && decided_ahead(1));
+}
+
+static void test_lower_limit_in_the_middle(void)
+{
+    begin_course();
+    axes_bench.witness[1].strictness = AXES_UNWATCHED;
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_write_parameter(axes_axis(1), CM1E_PARAMETER_MAX_VELOCITY_APPL, 4.0));
+    axes_cycles(1);
+    TEST_ASSERT_EQUAL(CM1E_AXIS_ERROR_STOP, axes_state(1));
+}
+
+static void test_master_stops_in_the_middle(void)
+{
+    begin_course();
+    axes_command(0, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT, .deceleration = 50.0});
+    axes_cycles(400);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(1)->setpoint.velocity);
+    TEST_ASSERT_EQUAL(CM1E_AXIS_SYNCHRONIZED_MOTION, axes_state(1));
+}
+
+/* A command that waits for the end of the cam begins there. */
+static void test_command_waits_in_the_middle(void)
+{
+    MC_CAM_POINT points[] = {{.Master = 0.0}, {.Master = 0.5, .Slave = 0.01}, {.Master = 1.0}};
+    const MC_CAM_REF table = {.Points = points, .NumberOfPoints = 3, .Curve = mcCamCubicSpline};
+    axes_describe(2);
+    axes_make();
+    cm1e_axis_coupling_t coupling = *one_to_one();
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_cam_select(axes_axis(1), &table, true, false, false, &coupling.cam));
+    axes_enable_all();
+    axes_command(0, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 5.0, .acceleration = 50.0,
+                                           .direction = mcPositiveDirection});
+    axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling});
+    axes_cycles(900);
+    TEST_ASSERT_TRUE(axes_axis(1)->setpoint.reached && decided_ahead(1));
+    axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = one_to_one(),
+                                           .buffer_mode = mcBuffered});
+    axes_cycles(201); /* a turn of the cam, and less than a course */
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_GEAR_IN, axes_axis(1)->commands.kind);
 }
 
 int main(void)
 {
+    followers_compared_every = 1;
     UNITY_BEGIN();
+    RUN_TEST(test_lower_limit_in_the_middle);
+    RUN_TEST(test_master_stops_in_the_middle);
+    RUN_TEST(test_command_waits_in_the_middle);
     RUN_TEST(test_slaves_side_by_side);
     return UNITY_END();
 }

@@ -1,4 +1,5 @@
 /* MC_SetOverride (3.18): factors on the dynamics of what moves the axis. */
+#include "../support/effort.h"
 #include "../support/axis_bench.h"
 #include "../support/axis_witness.h"
 
@@ -158,7 +159,7 @@ static void test_factors_out_of_range_change_nothing(void)
 /* Less deceleration in the middle of braking does not lead beyond the target (note 9 warns of it). */
 static void test_less_deceleration_never_passes_the_target(void)
 {
-    for (int wait = 0; wait < 1000; wait += 13) {
+    for (int wait = 0; wait < 1000; wait += 13 * slowness()) {
         setUp();
         const cm1e_command_id_t id = bench_move_to(5.0, 15.0);
         watch_cycles(wait);
@@ -173,7 +174,7 @@ static void test_less_deceleration_never_passes_the_target(void)
  * it back for a long way, and, planned anew on that, beyond the target. */
 static void test_less_jerk_while_braking_leads_neither_back_nor_beyond(void)
 {
-    for (int change = 900; change < 1200; change += 3) {
+    for (int change = 900; change < 1200; change += 3 * slowness()) {
         fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
         bench_create();
         bench_enable();
@@ -212,7 +213,7 @@ static void test_stop_is_not_slowed(void)
 /* Any change at any time, over chains with and without blending: limits hold, and each end is reached exactly. */
 static void test_random_changes_over_random_chains(void)
 {
-    for (unsigned run = 0; run < 150; run++) {
+    for (unsigned run = 0; run < 150u / (unsigned)slowness(); run++) {
         setUp();
         seed = 0x9E3779B97F4A7C15u * (run + 1);
         char name[32];

@@ -10,6 +10,7 @@ void tearDown(void) { bench_end(); }
 static const source_t *const sources[] = {
     &cm1e_source_free,  &cm1e_source_hold,     &cm1e_source_profile, &cm1e_source_table,
     &cm1e_source_drive, &cm1e_source_homing,   &cm1e_source_leader,  &cm1e_source_coupling,
+    &cm1e_source_outside,
 };
 enum { SOURCES = sizeof sources / sizeof sources[0] };
 

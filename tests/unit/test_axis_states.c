@@ -43,7 +43,8 @@ static cm1e_axis_command_t command_of(cm1e_command_kind_t kind)
     coupling = (cm1e_axis_coupling_t){.master = {any, any}, .start_mode = mcRampIn, .master_sync_position = 5.0,
                                        .master_start_distance = kind == CM1E_COMMAND_GEAR_IN_POS ? 1.0 : 0.0};
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_cam_select(axis, &cam, false, false, false, &coupling.cam));
-    return (cm1e_axis_command_t){.kind = kind, .position = 2.0, .velocity = 1.0, .homing = &hard_stop,
+    const double position = kind == CM1E_COMMAND_FOLLOW_POSITION ? cm1e_axis_place(axis, false) : 2.0;
+    return (cm1e_axis_command_t){.kind = kind, .position = position, .velocity = 1.0, .homing = &hard_stop,
                                  .step = &block, .table = &table, .coupling = &coupling};
 }
 
@@ -94,15 +95,15 @@ static void into(cm1e_axis_state_t state)
  * ContinuousMotion, F: SynchronizedMotion, S: Stopping, H: Homing; lower case: refused. */
 static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
     /* abs rel add vel cabs crel pprofile vprofile aprofile halt stop home step superimposed haltsuperimposed, gearin
-     * gearinpos camin combine gearout camout phasing phasing; K: as it was */
-    [CM1E_AXIS_DISABLED] = "ppppppppppppppppppppppp",
-    [CM1E_AXIS_STANDSTILL] = "MMMVVVMVVMSHHMKFKFFcccc",
-    [CM1E_AXIS_HOMING] = "hhhhhhhhhhShhhhhhhhhhhh", /* that of the drive; between steps: test_axis_homing_steps */
-    [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMVVMSxxKKFKFFcccc",
-    [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMVVMSxxKKFKFFcccc",
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKKFKFFVcKK",
-    [CM1E_AXIS_STOPPING] = "sssssssssssssssssssssss",
-    [CM1E_AXIS_ERROR_STOP] = "eeeeeeeeeeeeeeeeeeeeeee",
+     * gearinpos camin combine gearout camout phasing phasing follow; K: as it was */
+    [CM1E_AXIS_DISABLED] = "pppppppppppppppppppppppp",
+    [CM1E_AXIS_STANDSTILL] = "MMMVVVMVVMSHHMKFKFFccccF",
+    [CM1E_AXIS_HOMING] = "hhhhhhhhhhShhhhhhhhhhhhh", /* that of the drive; between steps: test_axis_homing_steps */
+    [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMVVMSxxKKFKFFccccx",
+    [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMVVMSxxKKFKFFccccx",
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKKFKFFVcKKx",
+    [CM1E_AXIS_STOPPING] = "ssssssssssssssssssssssss",
+    [CM1E_AXIS_ERROR_STOP] = "eeeeeeeeeeeeeeeeeeeeeeee",
 };
 
 /* The diagram by its triggers, by hand from figure 2 and its notes: D: Disabled, T: Standstill, the others as above; a
@@ -114,6 +115,7 @@ static const char *const arrows[STATE_TRIGGER_COUNT] = {
     [ON_COUPLE] = "pFhFFFse",
     [ON_DECOUPLE] = "pchccVse",
     [ON_SHIFT_PHASE] = "pchcc.se",
+    [ON_FOLLOW] = "pFhxxxse",
     [ON_SUPERIMPOSE] = "pMh...se",
     [ON_HALT_SUPERIMPOSED] = "p.h...se",
     [ON_HOME] = "pHhxxxse",

@@ -182,6 +182,20 @@ static void test_on_a_base_that_turns(void)
     }
 }
 
+/* What is on top needs its share of the acceleration at once: that of the base falls as fast as the other one rises,
+ * though it was asked to rise and fall softly. */
+static void test_on_a_base_with_a_small_jerk(void)
+{
+    for (int wait = 20; wait < 600; wait += 20) {
+        begin_with(100.0, 100.0, 0.0);
+        bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 100.0,
+                                                   .velocity = 20.0, .jerk = 250.0});
+        watch_cycles(wait);
+        const cm1e_command_id_t id = superimpose(5.0, 9.0);
+        wait_for(id, CM1E_COMMAND_DONE);
+    }
+}
+
 /* A halt that needs its whole deceleration before a software limit keeps it: what goes on top begins when it stands. */
 static void test_on_a_halt_before_a_limit(void)
 {
@@ -356,6 +370,24 @@ static void test_a_limit_has_to_leave_room_for_both(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, 25.0, bench_info().set_position);
 }
 
+/* The same where the base is the later one: a move that waits, and begins while the other one goes on. */
+static void test_a_base_has_to_leave_room_for_what_is_on_top(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        begin_with(100.0, 100.0, 25.0);
+        bench_move_to(10.0 * sign, 10.0);
+        watch_cycles(100);
+        superimpose(10.0 * sign, 1.0);
+        const cm1e_axis_command_t bad = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 15.1 * sign, .velocity = 5.0,
+                                         .buffer_mode = mcBuffered};
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_try_command(&bad));
+        const cm1e_command_id_t id = post(CM1E_COMMAND_MOVE_ABSOLUTE, 14.9 * sign, 5.0, mcBuffered);
+        watch_cycles(12000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 24.9 * sign, bench_info().set_position);
+    }
+}
+
 static void test_continuous_update_and_override(void)
 {
     bench_move_velocity(5.0);
@@ -481,6 +513,7 @@ int main(void)
     RUN_TEST(test_on_a_velocity);
     RUN_TEST(test_a_faster_base_that_begins_later_is_reduced_until_the_end);
     RUN_TEST(test_on_a_base_that_turns);
+    RUN_TEST(test_on_a_base_with_a_small_jerk);
     RUN_TEST(test_on_a_halt_before_a_limit);
     RUN_TEST(test_another_one_replaces_the_first_only);
     RUN_TEST(test_halt_superimposed_ends_it_and_leaves_the_base);
@@ -490,6 +523,7 @@ int main(void)
     RUN_TEST(test_a_disabled_direction_ends_what_goes_there);
     RUN_TEST(test_refusals);
     RUN_TEST(test_a_limit_has_to_leave_room_for_both);
+    RUN_TEST(test_a_base_has_to_leave_room_for_what_is_on_top);
     RUN_TEST(test_continuous_update_and_override);
     RUN_TEST(test_an_override_that_leaves_nothing_refuses_it_in_standstill);
     RUN_TEST(test_dynamics_of_next_to_nothing_are_refused_and_change_nothing);

@@ -196,12 +196,12 @@ static void test_a_latched_fault_collects_what_comes_later(void)
     bus.state = READY_TO_SWITCH_ON;
     cycle();
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_ENABLE_LOST, drive.fault.error);
-    TEST_ASSERT_FALSE(drive.fault.slave_deaf);
+    TEST_ASSERT_FALSE(drive.fault.slave_absent);
     cycles(3);
     bus.watch.silent = true;
     cycle();
     TEST_ASSERT_TRUE(drive.feedback.online);
-    TEST_ASSERT_TRUE(drive.fault.slave_deaf);
+    TEST_ASSERT_TRUE(drive.fault.slave_absent);
 }
 
 static void test_enable_without_motor_power_waits_then_says_so(void)
@@ -353,11 +353,11 @@ static void test_a_slave_that_took_no_part_in_the_cycle_is_kept_in_mind(void)
         bus_ok = false;
         cycle();
         cm1e_drive_fail(&drive, CM1E_ERROR_BUS_WORKING_COUNTER);
-        TEST_ASSERT_TRUE(drive.fault.slave_deaf);
+        TEST_ASSERT_TRUE(drive.fault.slave_absent);
         TEST_ASSERT_EQUAL(lost, drive.fault.slave_lost);
         bus.watch.lost = bus.watch.silent = false; /* and stays so */
         cycle();
-        TEST_ASSERT_TRUE(drive.fault.slave_deaf);
+        TEST_ASSERT_TRUE(drive.fault.slave_absent);
     }
 }
 
@@ -377,9 +377,9 @@ static void test_a_bus_lost_after_a_wrong_working_counter_leaves_no_sign_of_the_
         setUp();
         enable();
         cm1e_drive_fail(&drive, rows[i].first);
-        TEST_ASSERT_FALSE(drive.fault.slave_deaf);
+        TEST_ASSERT_FALSE(drive.fault.slave_absent);
         cm1e_drive_fail(&drive, rows[i].then);
-        TEST_ASSERT_EQUAL(rows[i].deaf, drive.fault.slave_deaf);
+        TEST_ASSERT_EQUAL(rows[i].deaf, drive.fault.slave_absent);
     }
 }
 

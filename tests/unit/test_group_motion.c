@@ -5,6 +5,7 @@
 #include "unity.h"
 
 #include "../support/group_bench.h"
+#include "../support/ordinary_witness.h"
 #include "axis/axis_parameters.h"
 
 /* u; a count is 2e-5. */
@@ -231,6 +232,27 @@ static void test_exactly_along_both_it_stops_where_the_direction_breaks_only(voi
     next.buffer_mode = mcBlendingLow;
     over_the_corner(&next, &slowest, &nearest);
     TEST_ASSERT_TRUE(slowest > 0.5);
+}
+
+/* Figure 12 of Part 1, on a path that goes straight on: the velocity with which the end of the first line is passed. */
+static void test_the_buffer_mode_chooses_the_velocity_between_two_lines(void)
+{
+    static const MC_BUFFER_MODE modes[] = {mcBlendingLow, mcBlendingPrevious, mcBlendingNext, mcBlendingHigh};
+    static const double velocities[][2] = {{4.0, 2.0}, {2.0, 4.0}};
+    static const double expected[][4] = {{2.0, 4.0, 2.0, 4.0}, {2.0, 2.0, 4.0, 4.0}};
+    for (int i = 0; i < 8; i++) {
+        const double *v = velocities[i / 4];
+        group_end();
+        group_begin(3);
+        group_line(2.0, 0.0, v[0], mcAborting);
+        group_line(4.0, 0.0, v[1], modes[i % 4]);
+        double before = 0.0;
+        while (group_at(0) < 2.0) {
+            before = group_at(0);
+            axes_cycles(1);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(0.05, expected[i / 4][i % 4], (group_at(0) - before) * 1e3);
+    }
 }
 
 static void test_aborting_it_leaves_the_path_at_rest_only(void)
@@ -585,6 +607,13 @@ static void test_random_paths_keep_every_limit(void)
     TEST_ASSERT_TRUE(asked || refused > 0);
 }
 
+/* Of the tests above: else the witness saw nothing of it. */
+static void test_many_set_points_were_decided_ahead(void)
+{
+    printf("%llu of %llu cycles of axes of a group were decided ahead\n", cycles_led_ordinary, cycles_led);
+    TEST_ASSERT_TRUE(cycles_led_ordinary > cycles_led / 10);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -598,6 +627,7 @@ int main(void)
     RUN_TEST(test_buffered_lines_come_to_rest_between);
     RUN_TEST(test_transitions_do_not_stop_and_keep_their_tolerance);
     RUN_TEST(test_exactly_along_both_it_stops_where_the_direction_breaks_only);
+    RUN_TEST(test_the_buffer_mode_chooses_the_velocity_between_two_lines);
     RUN_TEST(test_aborting_it_leaves_the_path_at_rest_only);
     RUN_TEST(test_what_is_refused_in_motion_changes_nothing);
     RUN_TEST(test_modes_and_numbers_that_are_none);
@@ -611,5 +641,6 @@ int main(void)
     RUN_TEST(test_after_a_short_silence_the_path_is_as_slow_as_its_slowest_motor);
     RUN_TEST(test_in_every_order_of_the_axes);
     RUN_TEST(test_random_paths_keep_every_limit);
+    RUN_TEST(test_many_set_points_were_decided_ahead);
     return UNITY_END();
 }

@@ -18,6 +18,7 @@ static void test_a_line_takes_the_time_of_one_axis(void)
     begin_path(&config, ORIGIN);
     line((double[]){30, 40, 0}, 100, CM1E_PATH_STOP, 0);
     const double time = run_path();
+    TEST_ASSERT_TRUE(driven.decided > 0.8 * 3 * driven.steps);
     cm1e_profile_t profile;
     cm1e_profile_to_position(&profile, &(cm1e_motion_state_t){0, 0, 0}, 50,
                              &(cm1e_motion_limits_t){100, 1000, 1000, 20000});

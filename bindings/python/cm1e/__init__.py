@@ -6,7 +6,7 @@ from . import blocks
 from .axis import Axis, AxisInfo, Command, Group
 from .bus import Bus
 from .codes import AxisState, ErrorCode, GroupState
-from .attach import Attached, Program, attach, programs
+from .attach import Attached, Program, Recording, attach, programs
 from .config import check_bus_file
 from .errors import (AxisError, BusError, CommandAborted, ConfigError, DriveError, Error, FileError,
                      NotFoundError, StateError, WaitTimeout)
@@ -22,5 +22,5 @@ __version__ = _text(_lib.cm1e_version())
 
 __all__ = ["Attached", "Axis", "AxisError", "AxisInfo", "AxisState", "Bus", "BusError", "Command", "CommandAborted", "ConfigError",
            "DriveError", "Error", "ErrorCode", "Event", "FileError", "Finding", "GeneratedFile", "Group", "GroupState", "NotFoundError", "Program",
-           "SimulatedMotor", "Signal", "SignalInfo", "Signals", "Slave", "StateError", "Statistics", "Trace",
+           "Recording", "SimulatedMotor", "Signal", "SignalInfo", "Signals", "Slave", "StateError", "Statistics", "Trace",
            "WaitTimeout", "attach", "blocks", "check_bus_file", "check_file", "programs"]

@@ -8,6 +8,7 @@ import json
 import os
 import re
 import socket
+import stat
 import struct
 import time
 from types import TracebackType
@@ -22,16 +23,33 @@ from .trace import Trace
 Target = Union[int, str, "os.PathLike[str]", None]
 
 
-def _folders() -> list[str]:
-    """Where programs put their sockets; root looks into those of users too."""
+def _folders() -> dict[str, int]:
+    """Where programs put their sockets, and who has to own these folders; root looks into those of users too."""
     if "CM1E_RUNTIME_DIR" in os.environ:
-        return [os.environ["CM1E_RUNTIME_DIR"]]
-    folders = ["/run/cm1e",
-               os.path.join(os.environ["XDG_RUNTIME_DIR"], "cm1e") if "XDG_RUNTIME_DIR" in os.environ else None,
-               f"/tmp/cm1e-{os.getuid()}"]
+        return {os.environ["CM1E_RUNTIME_DIR"]: os.geteuid()}
+    folders = {"/run/cm1e": 0, f"/tmp/cm1e-{os.getuid()}": os.getuid()}
+    if "XDG_RUNTIME_DIR" in os.environ:
+        folders[os.path.join(os.environ["XDG_RUNTIME_DIR"], "cm1e")] = os.getuid()
     if os.getuid() == 0:
-        folders += glob.glob("/tmp/cm1e-*") + glob.glob("/run/user/*/cm1e")
-    return list(dict.fromkeys(folder for folder in folders if folder))
+        for folder in glob.glob("/tmp/cm1e-*") + glob.glob("/run/user/*/cm1e"):
+            user = re.fullmatch(r"/tmp/cm1e-(\d+)|/run/user/(\d+)/cm1e", folder)
+            if user:
+                folders[folder] = int(user.group(1) or user.group(2))
+    return folders
+
+
+def _stranger(folder: str, owner: int) -> Optional[str]:
+    """What is wrong with a folder: whoever can write there could act for a program. None: nothing, or it is absent."""
+    try:
+        found = os.lstat(folder)
+    except OSError:
+        return None
+    if not stat.S_ISDIR(found.st_mode):
+        return f"{folder} is not a directory."
+    if found.st_uid != owner or found.st_mode & 0o022:
+        return (f"The directory {folder} belongs to user {found.st_uid} with rights {found.st_mode & 0o777:03o}; expected "
+                f"user {owner}, and that no other one may write it, because whoever writes there could act for a program.")
+    return None
 
 
 class Program(NamedTuple):
@@ -40,21 +58,36 @@ class Program(NamedTuple):
     path: str
 
 
+def _sockets(folder: str) -> Iterator[Program]:
+    for path in sorted(glob.glob(os.path.join(glob.escape(folder), "cm1e-*-*.sock"))):
+        match = re.search(r"cm1e-(\d+)-\d+\.sock$", path)
+        if match and os.path.exists(f"/proc/{match.group(1)}"):
+            yield Program(int(match.group(1)), path)
+
+
 def programs() -> list[Program]:
-    """The running programs that can be attached to."""
-    found = []
-    for folder in _folders():
-        for path in sorted(glob.glob(os.path.join(folder, "cm1e-*-*.sock"))):
-            match = re.search(r"cm1e-(\d+)-\d+\.sock$", path)
-            if match and os.path.exists(f"/proc/{match.group(1)}"):
-                found.append(Program(int(match.group(1)), path))
-    return found
+    """The running programs that can be attached to. Sockets in a folder that others can write are left out."""
+    return [program for folder, owner in _folders().items() if _stranger(folder, owner) is None
+            for program in _sockets(folder)]
 
 
-def _path_of(target: Target) -> str:
+def _refused(target: Optional[int]) -> Optional[str]:
+    """Why a socket that has the name of such a program is none."""
+    for folder, owner in _folders().items():
+        why = _stranger(folder, owner)
+        if why and any(target in (None, program.pid) for program in _sockets(folder)):
+            return why
+    return None
+
+
+def _path_of(target: Target) -> tuple[str, Optional[int]]:
+    """The path of the socket, and the process that has to serve it; None: the caller has named the socket."""
     if target is not None and not isinstance(target, int):
-        return os.fspath(target)
+        return os.fspath(target), None
     listed = [program for program in programs() if target in (None, program.pid)]
+    why = _refused(target) if not listed else None
+    if why:
+        raise errors.Error(why, lib.CM1E_ERROR_PERMISSION)
     if not listed:
         which = f"Process {target}" if target is not None else "No program"
         raise errors.NotFoundError(f"{which} has {'no' if target is not None else 'a'} control socket.",
@@ -62,7 +95,7 @@ def _path_of(target: Target) -> str:
     if len(listed) > 1:
         raise errors.StateError("Several programs run: " + ", ".join(program.path for program in listed) +
                                 ". Name one of these paths.", lib.CM1E_ERROR_STATE)
-    return listed[0].path
+    return listed[0].path, listed[0].pid
 
 
 class Attached:
@@ -70,7 +103,7 @@ class Attached:
     there is. What it may do, `control` in the bus file of the program says. What it moves ends with the connection."""
 
     def __init__(self, target: Target = None, timeout: float = 5.0) -> None:
-        self._path = _path_of(target)
+        self._path, pid = _path_of(target)
         self._socket: Optional[socket.socket] = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._socket.settimeout(timeout)
         try:
@@ -78,7 +111,19 @@ class Attached:
         except OSError as error:
             self.close()
             raise errors.NotFoundError(f"{self._path}: {error.strerror or error}.", lib.CM1E_ERROR_NOT_FOUND) from None
+        self._check_server(pid)
         self.hello: dict[str, Any] = self.ask("hello", protocol=1)
+
+    def _check_server(self, expected: Optional[int]) -> None:
+        """That a socket which was found by the number of a process is that of this process."""
+        assert self._socket is not None
+        size = struct.calcsize("iII")
+        pid, user, _ = struct.unpack("iII", self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, size))
+        if expected in (None, pid):
+            return
+        self.close()
+        raise errors.Error(f"{self._path} has the name of process {expected}, and process {pid} of user {user} serves "
+                                  "it: name the path if that is meant.", lib.CM1E_ERROR_PERMISSION)
 
     def close(self) -> None:
         """Ends the connection, and what it moves."""
@@ -180,23 +225,28 @@ class Attached:
     def record(self, seconds: float, every: int = 1, objects: Sequence[tuple[str, int, int]] = ()) -> Trace:
         """Records all signals for so long, every `every`-th cycle, with objects in the process data: (axis, index,
         subindex). It uses a connection of its own, because a recording ends with its connection."""
-        with Attached(self._path) as other:
-            named = [{"axis": other.axis(axis)["number"], "index": index, "subindex": subindex}
-                     for axis, index, subindex in objects]
-            begun = other.ask("record", every=every, objects=named)
-            width = 8 * (1 + len(begun["columns"]))
-            end, parts = time.monotonic() + seconds, [b""]
+        with self.recording(every, objects) as recording:
+            end, parts = time.monotonic() + seconds, [recording.take()]
             while time.monotonic() < end:
                 time.sleep(min(0.1, max(0.0, end - time.monotonic())))
-                parts.append(bytes.fromhex(other.ask("samples")["data"]))
-        raw = b"".join(parts)
-        names = ["time"] + [column["name"] for column in begun["columns"]]
-        array = np.zeros(len(raw) // width, dtype=[(name, "<f8") for name in names])
-        table = np.frombuffer(raw, dtype=np.dtype([("t", "<i8"), ("v", "<f8", (len(names) - 1,))]))
-        array["time"] = table["t"] * 1e-9
-        for number, name in enumerate(names[1:]):
-            array[name] = table["v"][:, number]
-        return Trace(array)
+                parts.append(recording.take())
+        return Trace(np.concatenate([part.array for part in parts]))
+
+    def recording(self, every: int = 1, objects: Sequence[tuple[str, int, int]] = (),
+                  variables: Optional[Sequence[str]] = None) -> Recording:
+        """The same, while it goes on: a context manager whose take() returns the samples since the last call."""
+        return Recording(self._path, every, objects, variables)
+
+    def variables(self, part: str = "") -> dict[str, Any]:
+        """The variables of a program in Structured Text with `part` in their names, and their values."""
+        found: dict[str, Any] = {}
+        after: Optional[int] = 0
+        while after is not None:
+            reply = self._exchange({"request": "variables", "from": after})
+            found.update((row["name"], bool(row["value"]) if row["type"] == "BOOL" else row["value"])
+                         for row in reply["variables"] if part.lower() in row["name"].lower())
+            after = reply.get("next")
+        return found
 
     # ---- moving, with control: maintain ------------------------------------------------------------------------------
 
@@ -242,6 +292,46 @@ class Attached:
     def output(self, name: str, value: Optional[float], keep: float = 1.0) -> None:
         """Sets an output of a slave without a motor for so many seconds; None lets go of it."""
         self._exchange({"request": "output", "name": name, "value": value, "keep_ms": round(keep * 1000)})
+
+
+class Recording:
+    """Samples of a program while it runs in real time, through a connection of their own. They wait up to 4 s to be taken;
+    `lost` counts those that waited longer."""
+
+    def __init__(self, path: str, every: int = 1, objects: Sequence[tuple[str, int, int]] = (),
+                 variables: Optional[Sequence[str]] = None) -> None:
+        self.lost = 0
+        self._connection = Attached(path)
+        try:
+            named = [{"axis": self._connection.axis(axis)["number"], "index": index, "subindex": subindex}
+                     for axis, index, subindex in objects]
+            begun = self._connection.ask("record", every=every, objects=named, variables=variables)
+        except BaseException:
+            self._connection.close()
+            raise
+        self._names = [column["name"] for column in begun["columns"]]
+
+    def take(self) -> Trace:
+        """The samples since the last call."""
+        came = self._connection.ask("samples")
+        self.lost = int(came["lost"])
+        table = np.frombuffer(bytes.fromhex(came["data"]), dtype=np.dtype([("t", "<i8"), ("v", "<f8", (len(self._names),))]))
+        array = np.zeros(len(table), dtype=[(name, "<f8") for name in ("time", *self._names)])
+        array["time"] = table["t"] * 1e-9
+        for number, name in enumerate(self._names):
+            array[name] = table["v"][:, number]
+        return Trace(array)
+
+    def close(self) -> None:
+        """Ends the recording."""
+        self._connection.close()
+
+    def __enter__(self) -> Recording:
+        return self
+
+    def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
+                 traceback: Optional[TracebackType]) -> None:
+        self.close()
 
 
 _MEMBER = {"sdo_read": "data", "sdo_info": "data", "sii_read": "data", "registers": "data", "sdo_write": "data",

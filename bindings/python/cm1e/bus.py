@@ -15,12 +15,13 @@ from . import blocks as fb
 from . import errors
 from ._block import AXES_GROUP_REF, AXIS_REF, Block, Reference, references
 from ._cm1e import ffi, lib
+from .attach import Recording
 from .axis import Axis, AxisInfo, Command, Group, info_of
 from .codes import AxisState
 from .config import Axes, Config, PathLike
+from .devices import Devices, Network
 from .events import Event, event_of
-from .signals import Signals
-from .slaves import Slave, SimulatedMotor, Statistics, motor_of, slave_of, statistics_of
+from .slaves import Statistics, statistics_of
 from .trace import Trace
 
 Callback = Callable[["Bus"], object]
@@ -53,14 +54,15 @@ def _catch_signals() -> None:
                 signal.signal(number, _end_by_signal)
 
 
-class Bus:
+class Bus(Devices):
     """A network of motors. As a context manager it starts, and at the end of the block, whatever ends it, stops the axes
     in order and disables them. So does the end of the interpreter, and the loss of the last reference.
 
     `source` is a bus file. Without it, `axes` is a number of simulated axes, or a list of their settings by the names of
     cm1e_axis_config_t. `interface`, `virtual_time`, `cycle_time` (s), `control` and `pcap` are used instead of what the
     file says. `groups`: names of axes groups. `trace`: s that are recorded, every `trace_every`-th cycle, with the
-    objects `trace_objects` of the process data: (axis, index, subindex). `realtime`: "try" runs the cycle with real-time
+    objects `trace_objects` of the process data: (axis, index, subindex). `networks`: bus files of further networks, which
+    the same cycle exchanges; their axes are behind those of the first one, and `networks` of the bus has their devices. `realtime`: "try" runs the cycle with real-time
     priority where that is permitted, "require" fails where it is not, "off" does not try."""
 
     def __init__(self, source: Optional[PathLike] = None, *, axes: Optional[Axes] = None,
@@ -68,7 +70,8 @@ class Bus:
                  cycle_time: Optional[float] = None, control: Optional[str] = None, pcap: Optional[PathLike] = None,
                  groups: Sequence[str] = (), trace: float = 10.0, trace_every: int = 1,
                  trace_objects: Sequence[tuple[str, int, int]] = (),
-                 realtime: Literal["try", "require", "off"] = "try", text: Optional[str] = None) -> None:
+                 realtime: Literal["try", "require", "off"] = "try", text: Optional[str] = None,
+                 networks: Sequence[PathLike] = ()) -> None:
         if sum(given is not None for given in (source, axes, text)) > 1:
             raise TypeError("a bus is described by a file, a text or a list of axes: give one of them")
         config = Config.of_file(source) if source is not None else Config.of_text(text) if text is not None else \
@@ -77,7 +80,9 @@ class Bus:
         self.virtual_time: bool = bool(config.data.virtual_time)
         self.cycle_time: float = (config.data.cycle_time_ns or 1_000_000) * 1e-9
         self._settings = self._scheduler_settings(trace, trace_every, realtime)
-        self._axis_names = config.axis_names()
+        others = [Config.of_file(file) for file in networks]
+        self._others = tuple(Network(self, n + 1, one) for n, one in enumerate(others))
+        self._axis_names = [name for one in (config, *others) for name in one.axis_names()]
         self._process = os.getpid()
         self._kept: list[Any] = []
         self._callbacks: list[Callback] = []
@@ -88,6 +93,9 @@ class Bus:
         self._finalizer = weakref.finalize(self, _end, self._session, self._process, self._kept)
         self._axes: list[Axis] = []
         try:
+            for other in others:
+                other.set(virtual_time=self.virtual_time, cycle_time=cycle_time)
+                self._ask(lib.cm1e_py_add, other.data)
             self._groups = {name: self._make_group(name) for name in groups}
             for axis, index, subindex in trace_objects:
                 self._ask(lib.cm1e_py_trace_object, axis.encode(), index, subindex)
@@ -124,19 +132,7 @@ class Bus:
                                     lib.CM1E_ERROR_STATE)
         return self._session
 
-    def _do(self, function: Any, *arguments: Any) -> None:
-        errors.check(function(self._live(), *arguments))
-
-    def _ask(self, function: Any, *arguments: Any) -> None:
-        diag = errors.diag()
-        errors.check(function(self._live(), *arguments, diag), diag)
-
     # ---- start and end -----------------------------------------------------------------------------------------------
-
-    def scan(self) -> list[Slave]:
-        """Finds the slaves, before the start; none of them is configured."""
-        self._ask(lib.cm1e_py_scan)
-        return self.slaves
 
     def start(self) -> Bus:
         """Brings the slaves to Operational and starts the cycle. On virtual time it stands until time is let pass."""
@@ -190,6 +186,11 @@ class Bus:
     def running(self) -> bool:
         """Whether the cycle runs."""
         return not self._closed and bool(lib.cm1e_py_runs(self._live()))
+
+    @property
+    def networks(self) -> tuple[Devices, ...]:
+        """The devices of each network: this bus itself, then those of Bus(networks=[...])."""
+        return (self, *self._others)
 
     # ---- axes and groups ---------------------------------------------------------------------------------------------
 
@@ -464,52 +465,7 @@ class Bus:
         self._check_started()
         self._wait_until(condition, timeout, "The condition does not hold")
 
-    # ---- the network -------------------------------------------------------------------------------------------------
-
-    @property
-    def io(self) -> Signals:
-        """The process data of all slaves, by name."""
-        self._live()
-        return Signals(self)
-
-    @property
-    def slaves(self) -> list[Slave]:
-        """What the scan found."""
-        result: list[Slave] = []
-        data = ffi.new("cm1e_slave_info_t *")
-        while True:
-            error = lib.cm1e_py_slave(self._live(), len(result) + 1, data)
-            if error == lib.CM1E_ERROR_NOT_FOUND:
-                return result
-            errors.check(error)
-            result.append(slave_of(data))
-
-    def sdo_read(self, slave: int, index: int, subindex: int = 0, size: int = 512) -> bytes:
-        """The bytes of an object, as on the wire; `size` is the most that it can have."""
-        data = ffi.new("uint8_t[]", size)
-        sdo = ffi.new("cm1e_sdo_t *", {"position": slave, "index": index, "subindex": subindex, "data": data, "size": size})
-        self._ask(lib.cm1e_py_sdo, sdo)
-        return bytes(ffi.buffer(data, sdo.size))
-
-    def sdo_write(self, slave: int, index: int, subindex: int, value: bytes) -> None:
-        """Writes an object; `value` is little endian, of the size of the object."""
-        data = ffi.new("uint8_t[]", value)
-        sdo = ffi.new("cm1e_sdo_t *", {"position": slave, "index": index, "subindex": subindex, "data": data,
-                                       "size": len(value), "write": True})
-        self._ask(lib.cm1e_py_sdo, sdo)
-
-    def simulate(self, line: str) -> str:
-        """A command of the console of the simulated segment ("help" lists them), and its answer."""
-        answer = ffi.new("char[16384]")
-        error = lib.cm1e_py_simulate(self._live(), line.encode(), answer, 16384)
-        errors.check(error, None, errors.text(answer))
-        return errors.text(answer)
-
-    def simulated_motor(self, slave: int) -> SimulatedMotor:
-        """The true values behind a simulated motor."""
-        probe = ffi.new("cm1e_sim_probe_t *")
-        self._do(lib.cm1e_py_probe, slave, probe)
-        return motor_of(probe)
+    # ---- what is recorded --------------------------------------------------------------------------------------------
 
     @property
     def statistics(self) -> Statistics:
@@ -529,6 +485,18 @@ class Bus:
             errors.check(error)
             result.append(event_of(data, errors.text(buffer), self._axis_names))
             after = data.number
+
+    def recording(self, every: int = 1, objects: Sequence[tuple[str, int, int]] = ()) -> Recording:
+        """Records while the bus runs in real time: a context manager whose take() returns the samples since the last
+        call. On virtual time `trace` is there at any moment."""
+        self._check_started()
+        if self.virtual_time:
+            raise errors.StateError("On virtual time the trace can be had at any moment.", lib.CM1E_ERROR_STATE)
+        path = self.statistics.control_socket
+        if not path:
+            raise errors.StateError("This run has no control socket (control: none), through which it could be recorded.",
+                                    lib.CM1E_ERROR_STATE)
+        return Recording(path, every, objects)
 
     @property
     def trace(self) -> Trace:

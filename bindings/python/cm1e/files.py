@@ -110,12 +110,17 @@ def format_of(source: PathLike | bytes) -> str:
     return errors.text(lib.cm1e_file_format_name(lib.cm1e_file_recognise(data, len(data))))
 
 
+def _findings(found: Any) -> list[Finding]:
+    """Copies them, and frees what C has."""
+    try:
+        listed = (lib.cm1e_findings_at(found, n) for n in range(lib.cm1e_findings_count(found)))
+        return [Finding(errors.text(one.rule), one.is_error, one.line, errors.text(one.text)) for one in listed]
+    finally:
+        lib.cm1e_findings_free(found)
+
+
 def check_file(source: PathLike | bytes) -> list[Finding]:
     """Checks a file by every rule of docs/CHECK-RULES.md; an empty list: nothing is wrong. FileError: it cannot be read."""
     data, found, diag = _bytes(source), ffi.new("cm1e_findings_t **"), errors.diag()
     errors.check(lib.cm1e_check_file(found, data, len(data), diag), diag)
-    try:
-        listed = (lib.cm1e_findings_at(found[0], n) for n in range(lib.cm1e_findings_count(found[0])))
-        return [Finding(errors.text(one.rule), one.is_error, one.line, errors.text(one.text)) for one in listed]
-    finally:
-        lib.cm1e_findings_free(found[0])
+    return _findings(found[0])

@@ -8,7 +8,7 @@ from . import errors
 from ._cm1e import ffi, lib
 
 if TYPE_CHECKING:
-    from .bus import Bus
+    from .devices import Devices
 
 Value = Union[bool, int, float]
 _REAL = (lib.CM1E_IO_REAL, lib.CM1E_IO_LREAL)
@@ -30,7 +30,7 @@ class SignalInfo:
 class Signal:
     """A signal of a slave. An output that was looked up belongs to this program."""
 
-    def __init__(self, bus: Bus, name: str, data: Any) -> None:
+    def __init__(self, bus: Devices, name: str, data: Any) -> None:
         self._bus = bus
         self._data = data
         self.name = name
@@ -53,9 +53,9 @@ class Signal:
     @value.setter
     def value(self, value: Value) -> None:
         if self._data.type in _REAL:
-            error = lib.cm1e_py_io_write_real(self._bus._live(), self._data, self._number(value, "__float__"))
+            error = self._bus._code(lib.cm1e_py_io_write_real, self._data, self._number(value, "__float__"))
         else:
-            error = lib.cm1e_py_io_write_integer(self._bus._live(), self._data, self._number(value, "__index__"))
+            error = self._bus._code(lib.cm1e_py_io_write_integer, self._data, self._number(value, "__index__"))
         if error == lib.CM1E_ERROR_INVALID_ARGUMENT:
             errors.fail(error, None, f"{self.name} cannot be {value!r}: it is "
                         f"{'an output' if self.output else 'an input'} of type {self.type}.")
@@ -78,14 +78,14 @@ class Signal:
 class Signals(Mapping[str, Signal]):
     """The signals of a bus by name: "SLAVE.SIGNAL", as docs/BUS-FILE.md describes it; also "2.input 1"."""
 
-    def __init__(self, bus: Bus) -> None:
+    def __init__(self, bus: Devices) -> None:
         self._bus = bus
 
     def __getitem__(self, name: str) -> Signal:
         if not isinstance(name, str):
             raise TypeError(f"a signal is named by a str, such as \"2.input 1\", not {name!r}")
         data, diag = ffi.new("cm1e_io_t *"), errors.diag()
-        errors.check(lib.cm1e_py_io_find(self._bus._live(), name.encode(), data, diag), diag)
+        errors.check(self._bus._code(lib.cm1e_py_io_find, name.encode(), data, diag), diag)
         return Signal(self._bus, name, data)
 
     def list(self) -> List[SignalInfo]:
@@ -93,7 +93,7 @@ class Signals(Mapping[str, Signal]):
         result: List[SignalInfo] = []
         data = ffi.new("cm1e_io_info_t *")
         while True:
-            error = lib.cm1e_py_io_at(self._bus._live(), len(result), data)
+            error = self._bus._code(lib.cm1e_py_io_at, len(result), data)
             if error == lib.CM1E_ERROR_NOT_FOUND:
                 return result
             errors.check(error)

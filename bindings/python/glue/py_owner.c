@@ -19,7 +19,9 @@ static bool do_one(cm1e_py_session_t *s)
     py_job_t *job = atomic_exchange_explicit(&s->job, NULL, memory_order_acquire);
     if (!job)
         return false;
+    s->bus = job->network < s->bus_count ? s->buses[job->network] : s->bus;
     job->result = job->act(s, job->argument);
+    s->bus = s->buses[0];
     atomic_store_explicit(&job->done, true, memory_order_release);
     return true;
 }
@@ -111,6 +113,11 @@ static void *own(void *context)
     }
 }
 
+static _Thread_local uint32_t selected;
+
+void cm1e_py_select(uint32_t network) { selected = network; }
+uint32_t py_owner_selected(void) { return selected; }
+
 /* ---- the callers ------------------------------------------------------------------------------------------------- */
 
 cm1e_error_t py_owner_begin(cm1e_py_session_t *s, cm1e_diag_t *diag)
@@ -130,7 +137,7 @@ cm1e_error_t py_owner_begin(cm1e_py_session_t *s, cm1e_diag_t *diag)
 
 cm1e_error_t py_owner_do(cm1e_py_session_t *s, cm1e_error_t (*act)(cm1e_py_session_t *, void *), void *argument)
 {
-    py_job_t job = {.act = act, .argument = argument};
+    py_job_t job = {.act = act, .argument = argument, .network = selected};
     cm1e_error_t result = CM1E_ERROR_STATE;
     pthread_mutex_lock(&s->callers);
     pthread_mutex_lock(&s->mutex);

@@ -36,7 +36,17 @@ static cm1e_error_t ask(cm1e_py_session_t *s, cm1e_error_t (*act)(cm1e_py_sessio
 static cm1e_error_t open_bus(cm1e_py_session_t *s, void *argument)
 {
     const call_t *call = argument;
-    return cm1e_bus_open(&s->bus, call->in, call->diag);
+    if (s->bus_count == CM1E_MAX_BUSES || s->ran)
+        return cm1e_diag_set(call->diag, CM1E_ERROR_STATE, 0, "A program has at most %d networks, opened before its run.",
+                             CM1E_MAX_BUSES);
+    const cm1e_error_t error = cm1e_bus_open(&s->buses[s->bus_count], call->in, call->diag);
+    s->bus_count += error == CM1E_OK;
+    return error;
+}
+
+cm1e_error_t cm1e_py_add(cm1e_py_session_t *session, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    return ask(session, open_bus, &(call_t){.in = config, .diag = diag});
 }
 
 cm1e_error_t cm1e_py_open(cm1e_py_session_t **session, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
@@ -97,9 +107,13 @@ static cm1e_error_t begin_run(cm1e_py_session_t *s, void *argument)
         return cm1e_diag_set(call->diag, CM1E_ERROR_STATE, 0, "This bus has been started before: open it again.");
     s->ran = true;
     lock_memory(s, call->in);
-    cm1e_error_t error = cm1e_bus_start(s->bus, call->diag);
+    cm1e_error_t error = CM1E_OK;
+    for (uint32_t i = 0; i < s->bus_count && error == CM1E_OK; i++)
+        error = cm1e_bus_start(s->buses[i], call->diag);
     if (error == CM1E_OK)
-        error = cm1e_scheduler_create(&s->scheduler, s->bus, call->in, call->diag);
+        error = cm1e_scheduler_create(&s->scheduler, s->buses[0], call->in, call->diag);
+    for (uint32_t i = 1; i < s->bus_count && error == CM1E_OK; i++)
+        error = cm1e_scheduler_add_bus(s->scheduler, s->buses[i], call->diag);
     if (error == CM1E_OK)
         error = trace_objects(s, call->diag);
     if (error == CM1E_OK) {
@@ -135,16 +149,25 @@ static cm1e_error_t close_bus(cm1e_py_session_t *s, void *argument)
     for (uint32_t i = 0; i < s->group_count; i++)
         cm1e_group_destroy(s->groups[i]);
     cm1e_scheduler_destroy(s->scheduler);
-    const cm1e_error_t error = cm1e_bus_close(s->bus);
+    cm1e_error_t error = CM1E_OK;
+    for (uint32_t i = 0; i < s->bus_count; i++) {
+        const cm1e_error_t closed = cm1e_bus_close(s->buses[i]);
+        error = error == CM1E_OK ? closed : error;
+        s->buses[i] = NULL;
+    }
     s->scheduler = NULL;
     s->bus = NULL;
-    s->group_count = s->block_count = 0;
+    s->group_count = s->block_count = s->bus_count = 0;
     return error;
 }
 
 cm1e_error_t cm1e_py_close(cm1e_py_session_t *s, cm1e_diag_t *diag)
 {
     cm1e_error_t error = cm1e_py_end(s, diag);
+    pthread_mutex_lock(&s->mutex);
+    while (s->guests > 0) /* the end of the run has cancelled what they wait for */
+        pthread_cond_wait(&s->changed, &s->mutex);
+    pthread_mutex_unlock(&s->mutex);
     const cm1e_error_t at_close = py_owner_do(s, close_bus, NULL);
     py_owner_join(s);
     if (error == CM1E_OK && at_close == CM1E_ERROR_IO)

@@ -15,6 +15,7 @@
 
 #include "cm1e/axis.h"
 #include "cm1e/bus.h"
+#include "cm1e/generate.h"
 #include "cm1e/group.h"
 #include "cm1e/io.h"
 #include "cm1e/log.h"
@@ -25,6 +26,10 @@ typedef struct cm1e_py_session cm1e_py_session_t;
 
 /** Opens a bus. `config` is copied. Free the session with cm1e_py_free(). */
 cm1e_error_t cm1e_py_open(cm1e_py_session_t **session, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
+/** Opens another network, whose axes are behind those of the first one, before a scan and the run. */
+cm1e_error_t cm1e_py_add(cm1e_py_session_t *session, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
+/** The network that calls of this thread concern from now on: 0 = first. */
+void cm1e_py_select(uint32_t network);
 /** Finds the slaves and brings them to Pre-Operational, without starting a run. */
 cm1e_error_t cm1e_py_scan(cm1e_py_session_t *session, cm1e_diag_t *diag);
 /** Brings the slaves to Operational and runs the cycle. On virtual time the first cycle waits for its grant. Returns
@@ -109,6 +114,21 @@ cm1e_error_t cm1e_py_io_write_real(cm1e_py_session_t *session, const cm1e_io_t *
 cm1e_error_t cm1e_py_slave(cm1e_py_session_t *session, uint32_t position, cm1e_slave_info_t *info);
 /** Executes an SDO transfer; on virtual time cycles pass meanwhile. `size` as of cm1e_sdo_read(). */
 cm1e_error_t cm1e_py_sdo(cm1e_py_session_t *session, cm1e_sdo_t *sdo, cm1e_diag_t *diag);
+/** A file in a slave (FoE). `size`: of what is written, or the room for what is read, then what came. */
+typedef struct cm1e_py_file {
+    uint16_t position;
+    const char *name;
+    void *data;
+    size_t size;
+    bool write, bootstrap;
+    uint32_t password;
+    int64_t answer_ns;    /**< longest time for one answer; 0: the library's */
+} cm1e_py_file_t;
+/** Transfers it, before, during and behind a run; on virtual time cycles pass meanwhile. Bootstrap only before a run. */
+cm1e_error_t cm1e_py_file(cm1e_py_session_t *session, cm1e_py_file_t *file, cm1e_diag_t *diag);
+/** As cm1e_diff_file(): after a scan, before the run. */
+cm1e_error_t cm1e_py_compare(cm1e_py_session_t *session, cm1e_findings_t **findings, const void *bytes, size_t size,
+                             uint16_t position, cm1e_diag_t *diag);
 /** As cm1e_bus_simulate(). */
 cm1e_error_t cm1e_py_simulate(cm1e_py_session_t *session, const char *line, char *answer, size_t size);
 cm1e_error_t cm1e_py_probe(cm1e_py_session_t *session, uint32_t position, cm1e_sim_probe_t *probe);

@@ -71,6 +71,21 @@ def test_cycle_goes_on_while_python_computes(bus):
     assert numpy.abs(numpy.diff(bus.trace["X set velocity"])).max() < 25
 
 
+def test_recording_while_the_bus_runs(bus):
+    """In real time, from the same program: all samples, in order, and the motion goes on."""
+    with bus.recording(objects=[("X", 0x6041, 0)]) as recording:
+        command = bus["X"].move_relative(1, 5, wait=False)
+        parts = []
+        while not command.done:
+            time.sleep(0.05)
+            parts.append(recording.take())
+        parts.append(recording.take())
+    times = numpy.concatenate([part.time for part in parts])
+    assert len(parts) > 2 and recording.lost == 0 and numpy.all(numpy.diff(times) > 0) and len(times) > 150
+    positions = numpy.concatenate([part["X set position"] for part in parts])
+    assert positions[-1] - positions[0] == pytest.approx(1, abs=0.01) and any("0x6041" in name for name in parts[0].names)
+
+
 def test_threads_use_a_bus_while_it_is_closed():
     """As on virtual time: whatever a thread does then ends with a value or with StateError."""
     bus, faults = cm1e.Bus(axes=X).start(), []

@@ -1,0 +1,90 @@
+/* FB_Init of TwinCAT: a method that is called when an instance gets its initial values, first that of the base. What it
+ * takes beyond the two inputs that all have is given in the declaration: fb : FB_X(number := 3). */
+#include <strings.h>
+
+#include "st/st_parsing.h"
+
+static bool is_standard(const var_t *var)
+{
+    return var->section == V_INPUT && (strcasecmp(var->name, "bInitRetains") == 0 || strcasecmp(var->name, "bInCopyCode") == 0);
+}
+
+static bool is_parameter(const var_t *var)
+{
+    return var->section == V_INPUT || var->section == V_OUTPUT || var->section == V_IN_OUT;
+}
+
+unit_t *cm1e_st_init_method(const unit_t *unit)
+{
+    return unit->object.names ? cm1e_st_map_get(unit->object.names, "FB_Init") : NULL;
+}
+
+bool cm1e_st_has_init(const unit_t *unit)
+{
+    for (; unit; unit = unit->object.base)
+        if (cm1e_st_init_method(unit))
+            return true;
+    return false;
+}
+
+bool cm1e_st_init_takes(const unit_t *unit)
+{
+    for (; unit; unit = unit->object.base) {
+        const unit_t *method = cm1e_st_init_method(unit);
+        for (const var_t *var = method ? method->vars : NULL; var; var = var->next)
+            if (is_parameter(var) && !is_standard(var))
+                return true;
+    }
+    return false;
+}
+
+static const var_t *parameter_named(const unit_t *unit, const char *name)
+{
+    for (; unit; unit = unit->object.base) {
+        const unit_t *method = cm1e_st_init_method(unit);
+        for (const var_t *var = method ? method->vars : NULL; var; var = var->next)
+            if (var->section == V_INPUT && !is_standard(var) && strcasecmp(var->name, name) == 0)
+                return var;
+    }
+    return NULL;
+}
+
+static const arg_t *given(const var_t *instance, const char *name)
+{
+    for (const arg_t *arg = instance->init_args; arg; arg = arg->next)
+        if (strcasecmp(arg->name, name) == 0)
+            return arg;
+    return NULL;
+}
+
+void cm1e_st_check_init_args(st_t *st, var_t *var)
+{
+    const unit_t *unit = var->type->kind == T_BLOCK ? var->type->unit : NULL;
+    for (arg_t *arg = var->init_args; arg; arg = arg->next) {
+        const var_t *parameter = unit ? parameter_named(unit, arg->name) : NULL;
+        if (parameter)
+            arg->value = cm1e_st_initialiser(st, arg->value, cm1e_st_resolve(st, parameter->type), arg->name);
+        else
+            cm1e_st_report(st, arg->place, "%s has no FB_Init with an input \"%s\"; initial values of inputs stand behind :=",
+                           cm1e_st_type_name(var->type), arg->name);
+    }
+    for (const unit_t *at = unit; at && var->section != V_IN_OUT; at = at->object.base) {
+        const unit_t *method = cm1e_st_init_method(at);
+        for (const var_t *parameter = method ? method->vars : NULL; parameter; parameter = parameter->next)
+            if (is_parameter(parameter) && !is_standard(parameter) && !given(var, parameter->name))
+                cm1e_st_report(st, var->place, "FB_Init of %s needs \"%s\": %s : %s(%s := ...)", at->name, parameter->name,
+                               var->name, unit->name, parameter->name);
+    }
+    const type_t *element = var->type;
+    while (element->kind == T_ARRAY)
+        element = element->element;
+    if (element != var->type && element->kind == T_BLOCK && cm1e_st_init_takes(element->unit))
+        cm1e_st_report(st, var->place, "FB_Init of %s needs inputs, which the instances of an array cannot be given here",
+                       element->name);
+}
+
+const expr_t *cm1e_st_init_arg(const var_t *instance, const var_t *parameter)
+{
+    const arg_t *arg = instance && !is_standard(parameter) ? given(instance, parameter->name) : NULL;
+    return arg ? arg->value : NULL;
+}

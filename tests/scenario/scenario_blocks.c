@@ -1,0 +1,54 @@
+/* Members of blocks by their names, from the table of all blocks. */
+#include <string.h>
+
+#include "scenario_private.h"
+
+const block_t *block_type(const char *name)
+{
+    for (size_t i = 0; i < block_count; i++)
+        if (strcmp(block_table[i].name, name) == 0)
+            return &block_table[i];
+    return NULL;
+}
+
+const block_member_t *block_member(const block_t *type, const char *name)
+{
+    for (size_t i = 0; i < type->member_count; i++)
+        if (strcmp(type->members[i].name, name) == 0)
+            return &type->members[i];
+    return NULL;
+}
+
+bool block_flag(const instance_t *block, const char *name)
+{
+    const block_member_t *member = block_member(block->type, name);
+    return member && block->memory[member->offset] != 0;
+}
+
+void block_point(instance_t *block, const char *name, const void *what)
+{
+    const block_member_t *member = block_member(block->type, name);
+    if (member)
+        memcpy(block->memory + member->offset, &what, sizeof what);
+}
+
+void block_put(instance_t *block, const char *name, double value)
+{
+    const block_member_t *member = block_member(block->type, name);
+    if (!member || member->section != BLOCK_INPUT)
+        return;
+    void *place = block->memory + member->offset;
+    const int64_t whole = (int64_t)value;
+    switch (member->type) {
+    case BLOCK_LREAL: memcpy(place, &value, sizeof value); break;
+    case BLOCK_BOOL:
+    case BLOCK_INT:
+    case BLOCK_UINT:
+    case BLOCK_DINT:
+    case BLOCK_UDINT:
+    case BLOCK_WORD:
+    case BLOCK_DWORD:
+    case BLOCK_ENUM: memcpy(place, &whole, member->size); break; /* little endian */
+    default: break;
+    }
+}

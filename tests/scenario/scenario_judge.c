@@ -1,0 +1,466 @@
+/*
+ * What must hold in every cycle of a scenario. The judge knows the configuration, what the program commands, and the
+ * truth about the shafts; it reads the library only as a program does.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "scenario_private.h"
+
+/* What the simulated servo does by itself; `scenario --measure` prints it for scenarios without faults. */
+#define SERVO_OVERSHOOT 0.002     /* of the maximum velocity, */
+#define SERVO_FILTER_S 1e-3       /* so much time of the maximum acceleration: it smooths the velocity, */
+#define SERVO_SPEED_COUNTS 300.0  /* and counts/s: targets are whole counts */
+#define COARSE_COUNTS 1000.0      /* counts/s: target velocities before firmware 1.3.3 */
+#define SERVO_GAIN 1.15           /* of the maximum acceleration, within GAIN_MS */
+#define SERVO_BANDWIDTH 500.0     /* rad/s, of its position loop */
+#define STALL_OVERSHOOT 0.05      /* docs/SAFETY.md: 5 % above the earlier speed after a pause of the host */
+#define HOMING_OVERSHOOT 0.5      /* of the own motion of a drive whose load lets it lag, at its limit of torque */
+#define RING_OVERSHOOT 0.12       /* where a cable of a ring breaks or is mended, targets come up to a cycle late */
+#define JOLT_OVERSHOOT 0.02       /* where frames are sent late, because those of another network were waited for */
+#define HOMING_SPEED 100000.0     /* counts/s, by the drive (scenario_machine.c) */
+#define HOMING_ACCELERATION 2000000.0 /* counts/s2 */
+#define KEPT_COUNTS 2.0
+#define CAUGHT_SPEED 1000.0       /* counts/s */
+#define STOP_COUNTS 240000.0      /* near a hard stop */
+#define STILL_COUNTS 4.0
+#define COARSE_STILL_COUNTS 110.0 /* in CSV it hunts round its target, where friction is large (in_position.window) */
+#define ROTOR_INERTIA_PER_TORQUE 3e-5 /* kg m2 for a Nm of peak torque */
+#define RADIANS 6.283185307179586     /* of a revolution */
+enum { GAIN_MS = 20, STILL_MS = 60, STALL_MS = 300, CATCH_MS = 500, QUIET_MS = 200 };
+
+static int cycles_of(const run_t *run, double ms) { return (int)(ms * 1000 / run->scenario->cycle_us); }
+
+/* ---- what the machine shows -------------------------------------------------------------------------------------- */
+
+static void hash(run_t *run, const void *data, size_t size)
+{
+    for (size_t i = 0; i < size; i++)
+        run->outcome->hash = (run->outcome->hash ^ ((const unsigned char *)data)[i]) * UINT64_C(0x100000001B3);
+}
+
+static void look_at_axis(run_t *run, machine_axis_t *axis)
+{
+    cm1e_axis_read(axis->reference, &axis->info);
+    if (is_motor(axis))
+        cm1e_sim_probe_channel(run->segments[axis->network], axis->position, axis->channel, &axis->probe);
+    hash(run, &axis->info.state, sizeof axis->info.state);
+    hash(run, &axis->info.set_position, sizeof axis->info.set_position);
+    hash(run, &axis->info.set_velocity, sizeof axis->info.set_velocity);
+    hash(run, &axis->probe.position_counts, sizeof axis->probe.position_counts);
+    if (scenario_trace)
+        fprintf(scenario_trace, "%d,%s,%d,%s,%.6g,%.6g,%.9g,%.9g,%.9g,%d,%04X,%d,%04X\n", run->cycle, axis->name,
+                run->phase,
+                cm1e_axis_state_name(axis->info.state), axis->info.set_position * axis->spec->counts_per_unit,
+                axis->info.set_velocity * axis->spec->counts_per_unit,
+                axis->info.actual_position * axis->spec->counts_per_unit, axis->probe.position_counts,
+                axis->probe.velocity_counts_per_s, axis->probe.torque_on, axis->probe.controlword,
+                run->bad[axis->network], cm1e_error_id(axis->info.error));
+}
+
+void judge_look(run_t *run)
+{
+    for (int i = 0; i < run->networks; i++) {
+        const cm1e_bus_counters_t *counters = cm1e_bus_counters(run->buses[i]);
+        const uint64_t bad = counters->lost_frames + counters->working_counter_errors + counters->late_frames;
+        run->bad[i] = bad > run->bad_before[i] ? run->bad[i] + 1 : 0;
+        run->bad_before[i] = bad;
+    }
+    for (int n = 0; n < run->scenario->axis_count; n++)
+        look_at_axis(run, &run->axes[n]);
+}
+
+/* ---- the motor --------------------------------------------------------------------------------------------------- */
+
+/** Nm; counts of a revolution. */
+static double peak_torque(const axis_spec_t *spec) { return spec->kind == AXIS_CIA402 ? 1.2 : 0.117; }
+static double revolution(const axis_spec_t *spec) { return spec->kind == AXIS_CIA402 ? 131072 : 50000; }
+
+static bool by_velocity(const axis_spec_t *spec) { return spec->kind == AXIS_CM1E && spec->mapping == MAPPING_CSV; }
+
+/** Counts/s2 for a Nm. */
+static double gain_of(const axis_spec_t *spec)
+{
+    const double load = spec->load_inertia > 0 ? spec->load_inertia : 2e-6;
+    return revolution(spec) / RADIANS / (peak_torque(spec) * ROTOR_INERTIA_PER_TORQUE + load);
+}
+
+/** The way that a motor needs to stop from this speed by its torque. */
+static double way_to_stop(const axis_spec_t *spec, double speed)
+{
+    return speed * speed / (2 * peak_torque(spec) * gain_of(spec));
+}
+
+/** Counts at which friction holds the shaft off its target, until the integral of the servo breaks it free. */
+static double slack_of(const axis_spec_t *spec)
+{
+    const double stiffness = SERVO_BANDWIDTH * SERVO_BANDWIDTH / gain_of(spec);
+    return (spec->friction > 0 ? spec->friction : 0.005) / stiffness;
+}
+
+/* ---- the shaft --------------------------------------------------------------------------------------------------- */
+
+/** A load moves it, or it coasts since then. */
+static bool is_pushed(const run_t *run, machine_axis_t *axis)
+{
+    witness_t *seen = &axis->seen;
+    const bool pushed = run->cycle < seen->pushed_until + cycles_of(run, QUIET_MS);
+    if (pushed && fabs(axis->probe.velocity_counts_per_s) > 1 && !axis->probe.torque_on)
+        seen->pushed_until = run->cycle;
+    return pushed;
+}
+
+/** A motor that pressed against its stop gets its own position for a target: the servo throws it back from the stop. */
+static bool recoils(const run_t *run, const machine_axis_t *axis)
+{
+    return axis->spec->stops != 0 && axis->info.error == CM1E_ERROR_AXIS_LAG &&
+           run->cycle - axis->seen.error_at < cycles_of(run, QUIET_MS);
+}
+
+/** By how much of its maximum velocity a shaft may be faster, beyond what the servo does by itself. */
+static double allowed_share(const run_t *run, const machine_axis_t *axis)
+{
+    const int lately = cycles_of(run, QUIET_MS);
+    if (axis->seen.rung < lately)
+        return RING_OVERSHOOT;
+    if (axis->seen.homes)
+        return HOMING_OVERSHOOT;
+    if (axis->seen.stalled < cycles_of(run, STALL_MS))
+        return STALL_OVERSHOOT;
+    return run->networks > 1 && axis->seen.jolted < lately ? JOLT_OVERSHOOT : SERVO_OVERSHOOT;
+}
+
+static void judge_speed(run_t *run, machine_axis_t *axis)
+{
+    const axis_spec_t *spec = axis->spec;
+    const double speed = fabs(axis->probe.velocity_counts_per_s);
+    const double share = allowed_share(run, axis);
+    if (is_pushed(run, axis) || recoils(run, axis))
+        return;
+    const double servo = SERVO_FILTER_S * fmax(spec->acceleration, spec->deceleration) + SERVO_SPEED_COUNTS +
+                         (by_velocity(spec) ? COARSE_COUNTS : 0);
+    const double most = axis->seen.homes ? fmax(spec->velocity, HOMING_SPEED) : spec->velocity;
+    const double over = speed / most - 1;
+    run->outcome->over_speed = fmax(run->outcome->over_speed, over);
+    const double above = (speed - most * (1 + share) - servo) / spec->velocity;
+    run->outcome->over_tolerance = fmax(run->outcome->over_tolerance, above);
+    if (above > 0)
+        scenario_fail(run, "speed", "%s (%s): the shaft turns at %.0f counts/s, %.3f %% over the maximum of %.0f",
+                      axis->name, cm1e_axis_state_name(axis->info.state), speed, 100 * over, spec->velocity);
+}
+
+/** The set-point itself knows no tolerance but that of its numbers. */
+static void judge_set_point(run_t *run, const machine_axis_t *axis)
+{
+    const double speed = fabs(axis->info.set_velocity) * axis->spec->counts_per_unit;
+    if (speed > axis->spec->velocity * (1 + 1e-6) + 1e-3 && axis->info.state != CM1E_AXIS_HOMING)
+        scenario_fail(run, "set-point", "%s (%s): the set velocity is %.3f counts/s, the maximum %.3f", axis->name,
+                      cm1e_axis_state_name(axis->info.state), speed, axis->spec->velocity);
+}
+
+/** A turning shaft was enabled not long ago: the servo catches it, as hard as it can. */
+static bool is_caught(const run_t *run, const machine_axis_t *axis)
+{
+    return axis->seen.caught < cycles_of(run, CATCH_MS);
+}
+
+/** Pressed against a stop, it gains what it has stored when it may leave. */
+static bool at_stop(const machine_axis_t *axis)
+{
+    return axis->spec->stops != 0 && fabs(axis->probe.position_counts) > STOP_COUNTS;
+}
+
+/** How much faster it has become within some cycles. */
+static void judge_gain(run_t *run, machine_axis_t *axis)
+{
+    witness_t *seen = &axis->seen;
+    const int window = cycles_of(run, GAIN_MS);
+    const double speed = fabs(axis->probe.velocity_counts_per_s);
+    memmove(seen->speeds + 1, seen->speeds, sizeof seen->speeds - sizeof seen->speeds[0]);
+    seen->speeds[0] = speed;
+    const double homing = seen->homes ? HOMING_ACCELERATION : 0;
+    const double most = fmax(fmax(axis->spec->acceleration, axis->spec->deceleration), homing) * window *
+                        run->scenario->cycle_us * 1e-6;
+    double before = 0; /* a short silence stops a motor and lets it go on: it gets no faster than it was */
+    for (int i = window; i < SPEEDS; i++)
+        before = fmax(before, seen->speeds[i]);
+    const double gain = speed - before, noise = 1500 + 0.4 * SERVO_BANDWIDTH * slack_of(axis->spec);
+    if (gain / most - 1 > run->outcome->over_gain && most > 5 * noise)
+        run->outcome->over_gain = gain / most - 1;
+    if (is_pushed(run, axis) || !axis->probe.torque_on || recoils(run, axis) || is_caught(run, axis) || at_stop(axis))
+        return;
+    /* A motor that was held for a moment gets back to the speed that its set-point has by now, or a heavy load has run
+     * on and comes back. Its maximum velocity holds all the same. */
+    const int lately = cycles_of(run, QUIET_MS);
+    if (seen->quiet < lately || seen->stalled < lately || seen->rung < lately || seen->jolted < lately)
+        return;
+    if (gain > most * SERVO_GAIN + noise)
+        scenario_fail(run, "gain", "%s (%s): the shaft gains %.0f counts/s in %d cycles, its limits allow %.0f",
+                      axis->name, cm1e_axis_state_name(axis->info.state), gain, window, most);
+}
+
+bool at_rest(const machine_axis_t *axis)
+{
+    const cm1e_axis_state_t state = axis->info.state;
+    return (state == CM1E_AXIS_DISABLED || state == CM1E_AXIS_STANDSTILL || state == CM1E_AXIS_ERROR_STOP) &&
+           axis->info.set_velocity == 0;
+}
+
+/** Nobody has commanded it: it does not move. */
+static void judge_still(run_t *run, machine_axis_t *axis)
+{
+    witness_t *seen = &axis->seen;
+    const bool switched = seen->torque_on != axis->probe.torque_on;
+    seen->caught++;
+    if (switched && axis->probe.torque_on && fabs(axis->probe.velocity_counts_per_s) > CAUGHT_SPEED)
+        seen->caught = 0;
+    seen->torque_on = axis->probe.torque_on;
+    /* In CSV a drive that hears nothing goes on with what the position loop has asked for last (docs/SAFETY.md). */
+    const bool goes_on = by_velocity(axis->spec) && run->bad[axis->network] > 0;
+    if (!at_rest(axis) || switched || goes_on || is_pushed(run, axis)) {
+        seen->rest_cycles = 0;
+        return;
+    }
+    if (seen->rest_cycles < cycles_of(run, STILL_MS)) {
+        seen->rest_cycles = fabs(axis->probe.velocity_counts_per_s) < 1 ? seen->rest_cycles + 1 : 0;
+        seen->rest_at = axis->probe.position_counts;
+    }
+    double most = STILL_COUNTS + (by_velocity(axis->spec) ? COARSE_STILL_COUNTS : 0);
+    if (axis->probe.torque_on)
+        most += 2.5 * slack_of(axis->spec);
+    /* The last target may have been lost on its way out: the next frame that arrives has it too (docs/SAFETY.md). */
+    if (axis->probe.torque_on && seen->quiet < cycles_of(run, QUIET_MS))
+        most += axis->spec->velocity * run->scenario->cycle_us * 1e-6;
+    if (fabs(axis->probe.position_counts - seen->rest_at) > most)
+        scenario_fail(run, "still", "%s (%s): the shaft has moved by %.1f counts, and nobody commanded it", axis->name,
+                      cm1e_axis_state_name(axis->info.state), axis->probe.position_counts - seen->rest_at);
+}
+
+static void judge_place(run_t *run, machine_axis_t *axis)
+{
+    const axis_spec_t *spec = axis->spec;
+    const double place = axis->probe.position_counts * (spec->invert != 0 ? -1 : 1);
+    const bool inside = place >= spec->limit_negative && place <= spec->limit_positive;
+    axis->seen.coasted = !inside && (axis->seen.coasted || !axis->probe.torque_on);
+    if ((spec->limit_negative == 0 && spec->limit_positive == 0) || !axis->seen.kept || axis->seen.shifted ||
+        axis->seen.coasted || is_caught(run, axis) || !axis->probe.torque_on ||
+        axis->info.state == CM1E_AXIS_ERROR_STOP)
+        return;
+    const double cycle_s = run->scenario->cycle_us * 1e-6;
+    double margin = 30 + spec->velocity * cycle_s;
+    if (axis->seen.quiet < cycles_of(run, QUIET_MS)) /* it went on while nobody could tell it anything */
+        margin += way_to_stop(spec, spec->velocity) + spec->velocity * cycle_s * (run->scenario->lost_limit + 3);
+    const double beyond = fmax(place - spec->limit_positive, spec->limit_negative - place);
+    const double outwards = place > spec->limit_positive ? 1 : -1;
+    const double velocity = axis->probe.velocity_counts_per_s * (spec->invert != 0 ? -1 : 1) * outwards;
+    if (beyond > margin && velocity > spec->velocity * 0.01)
+        scenario_fail(run, "place", "%s (%s): the shaft is %.0f counts beyond its software limit and goes on",
+                      axis->name, cm1e_axis_state_name(axis->info.state), beyond);
+}
+
+/* ---- torque and states ------------------------------------------------------------------------------------------- */
+
+#define BIT(state) (1u << CM1E_AXIS_##state)
+
+/** Figure 2 of PLCopen Part 1, without its causes. Two changes may happen between two cycles. */
+static void judge_state(run_t *run, machine_axis_t *axis)
+{
+    static const unsigned to[CM1E_AXIS_STATE_COUNT] = {
+        [CM1E_AXIS_DISABLED] = BIT(STANDSTILL) | BIT(ERROR_STOP),
+        [CM1E_AXIS_STANDSTILL] = 0xFF,
+        [CM1E_AXIS_HOMING] = 0xFF,
+        [CM1E_AXIS_DISCRETE_MOTION] = 0xFF,
+        [CM1E_AXIS_CONTINUOUS_MOTION] = 0xFF,
+        [CM1E_AXIS_SYNCHRONIZED_MOTION] = 0xFF,
+        [CM1E_AXIS_STOPPING] = 0xFF,
+        [CM1E_AXIS_ERROR_STOP] = BIT(DISABLED) | BIT(STANDSTILL),
+    };
+    const cm1e_axis_state_t before = axis->seen.state, now = axis->info.state;
+    axis->seen.state = now;
+    if (before == now)
+        return;
+    if (!(to[before] >> now & 1))
+        scenario_fail(run, "state", "%s: from %s to %s", axis->name, cm1e_axis_state_name(before),
+                      cm1e_axis_state_name(now));
+    if (now != CM1E_AXIS_ERROR_STOP)
+        return;
+    axis->seen.error_at = run->cycle;
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    cm1e_axis_error_text(axis->reference, text, sizeof text);
+    if (axis->info.error == CM1E_OK || !strstr(text, axis->name))
+        scenario_fail(run, "text", "%s: ErrorStop with error 0x%04X, and a text that does not name the axis: %.200s",
+                      axis->name, cm1e_error_id(axis->info.error), text);
+}
+
+/** Without MC_Power.Enable, or in ErrorStop, the torque ends: after a ramp, and it does not come back. */
+static void judge_torque(run_t *run, machine_axis_t *axis)
+{
+    const axis_spec_t *spec = axis->spec;
+    witness_t *seen = &axis->seen;
+    const bool off = !axis->power.Enable || axis->info.state == CM1E_AXIS_ERROR_STOP;
+    const bool deaf = run->bad[axis->network] > 0 || !axis->info.online;
+    seen->off_cycles = !off ? 0 : axis->probe.torque_on && !deaf ? seen->off_cycles + 1 : seen->off_cycles;
+    const double ramp_s = spec->velocity / spec->deceleration + spec->acceleration / spec->jerk +
+                          spec->deceleration / spec->jerk;
+    if (spec->kind == AXIS_CM1E && axis->info.state != CM1E_AXIS_HOMING && axis->probe.torque_on &&
+        seen->off_cycles > cycles_of(run, 1000 * (ramp_s + 11)))
+        scenario_fail(run, "torque", "%s (%s): under torque %d cycles after it was to be switched off", axis->name,
+                      cm1e_axis_state_name(axis->info.state), seen->off_cycles);
+}
+
+static void judge_power(run_t *run, machine_axis_t *axis)
+{
+    const MC_Power_t *power = &axis->power;
+    if ((power->Valid && power->Error) || power->Error != (power->ErrorID != 0) || (power->Status && power->Error))
+        scenario_fail(run, "block", "%s: MC_Power: Status %d, Valid %d, Error %d, ErrorID 0x%04X", axis->name,
+                      power->Status, power->Valid, power->Error, power->ErrorID);
+    if (power->Enable && axis->info.state == CM1E_AXIS_ERROR_STOP && !axis->info.powered && !power->Error)
+        scenario_fail(run, "block", "%s is in ErrorStop, and MC_Power does not show it", axis->name);
+}
+
+/* ---- blocks ------------------------------------------------------------------------------------------------------ */
+
+static void judge_outputs(run_t *run, instance_t *block)
+{
+    const bool done = block_flag(block, "Done"), busy = block_flag(block, "Busy");
+    const bool aborted = block_flag(block, "CommandAborted"), error = block_flag(block, "Error");
+    const int shown = done + busy + aborted + error;
+    const bool ended = block->was_busy && !busy;
+    const char *wrong = NULL;
+    if (shown > 1 || (block->triggered && shown != 1))
+        wrong = "not exactly one of them";
+    else if (!block->triggered && !ended && shown != busy)
+        wrong = "a result without Execute";
+    else if (ended && shown != 1)
+        wrong = "an end without a result";
+    else if (block_flag(block, "Active") && !busy && !done)
+        wrong = "Active without Busy";
+    if (wrong)
+        scenario_fail(run, "block", "%s: %s: Execute %d, Done %d, Busy %d, CommandAborted %d, Error %d, Active %d",
+                      block->type->name, wrong, block->triggered, done, busy, aborted, error,
+                      block_flag(block, "Active"));
+    block->was_busy = busy;
+}
+
+void judge_block(run_t *run, instance_t *block)
+{
+    const machine_axis_t *axis = &run->axes[(int)block->step->axis];
+    const block_member_t *member = block_member(block->type, "ErrorID");
+    WORD id;
+    memcpy(&id, block->memory + member->offset, sizeof id);
+    if (block_flag(block, "Error") != (id != 0) || (id != 0 && cm1e_error_from_id(id) == CM1E_ERROR_NOT_FOUND))
+        scenario_fail(run, "block", "%s: Error %d, ErrorID 0x%04X", block->type->name, block_flag(block, "Error"), id);
+    if (block_member(block->type, "Execute"))
+        judge_outputs(run, block);
+    if (axis->info.state == CM1E_AXIS_ERROR_STOP && block_member(block->type, "Active") &&
+        !block_member(block->type, "AxesGroup") && block_flag(block, "Busy"))
+        scenario_fail(run, "block", "%s is Busy although %s is in ErrorStop", block->type->name, axis->name);
+}
+
+/* ---- the log ----------------------------------------------------------------------------------------------------- */
+
+static void judge_event(run_t *run, const cm1e_log_event_t *event)
+{
+    if (event->number != run->logged + 1 || event->run_ns < run->logged_ns)
+        scenario_fail(run, "log", "record %llu at %lld ns follows %llu at %lld ns", (unsigned long long)event->number,
+                      (long long)event->run_ns, (unsigned long long)run->logged, (long long)run->logged_ns);
+    if (scenario_trace) {
+        char text[512];
+        cm1e_log_text(run->scheduler, event, text, sizeof text);
+        fprintf(scenario_trace, "# %.6f s %s\n", (double)event->run_ns * 1e-9, text);
+    }
+    run->logged = event->number;
+    run->logged_ns = event->run_ns;
+    if (event->axis < 0 || event->axis >= run->scenario->axis_count)
+        return;
+    machine_axis_t *axis = NULL;
+    for (int n = 0, place = 0; n < SCENARIO_NETWORKS; n++) /* the axes of the first network come first */
+        for (int i = 0; i < run->scenario->axis_count; i++)
+            if (run->axes[i].network == n && place++ == event->axis)
+                axis = &run->axes[i];
+    witness_t *seen = &axis->seen;
+    if (event->kind != CM1E_LOG_STATE)
+        return;
+    if ((cm1e_axis_state_t)event->detail != seen->logged)
+        scenario_fail(run, "log", "%s: the log tells of a way out of %s, but it was in %s", axis->name,
+                      cm1e_axis_state_name((cm1e_axis_state_t)event->detail), cm1e_axis_state_name(seen->logged));
+    seen->logged = (cm1e_axis_state_t)event->code;
+}
+
+static void judge_log(run_t *run)
+{
+    cm1e_log_event_t events[64];
+    uint64_t lost = 0;
+    size_t count;
+    while (!run->outcome->failed && (count = cm1e_log_read(run->scheduler, run->logged, events, 64, &lost)) > 0) {
+        if (lost > 0)
+            run->logged = events[0].number - 1;
+        for (size_t i = 0; i < count; i++)
+            judge_event(run, &events[i]);
+    }
+}
+
+/* ---- each cycle -------------------------------------------------------------------------------------------------- */
+
+void judge_begin(run_t *run)
+{
+    run->outcome->hash = UINT64_C(0xCBF29CE484222325);
+    for (int n = 0; n < run->scenario->axis_count; n++) {
+        witness_t *seen = &run->axes[n].seen;
+        *seen = (witness_t){.kept = true, .stalled = 1000000, .rung = 1000000, .caught = 1000000,
+                            .quiet = 1000000, .jolted = 1000000, .pushed_until = -1000000};
+        for (int i = 0; i < run->scenario->step_count; i++) {
+            const char *name = scenario_blocks[(int)run->scenario->steps[i].block];
+            if ((int)run->scenario->steps[i].axis == n &&
+                (strcmp(name, "MC_SetPosition") == 0 || strcmp(name, "MC_Home") == 0))
+                seen->shifted = true;
+            seen->homes = seen->homes || ((int)run->scenario->steps[i].axis == n && strcmp(name, "MC_Home") == 0);
+        }
+    }
+}
+
+void judge_cycle(run_t *run)
+{
+    for (int n = 0; n < run->scenario->axis_count; n++) {
+        machine_axis_t *axis = &run->axes[n];
+        judge_state(run, axis);
+        judge_power(run, axis);
+        axis->seen.stalled++;
+        axis->seen.rung++;
+        axis->seen.jolted = run->bad[0] > 0 || run->bad[SCENARIO_NETWORKS - 1] > 0 ? 0 : axis->seen.jolted + 1;
+        axis->seen.quiet = run->bad[axis->network] > 0 ? 0 : axis->seen.quiet + 1;
+        if (!is_motor(axis))
+            continue;
+        judge_set_point(run, axis);
+        judge_still(run, axis);
+        judge_speed(run, axis);
+        judge_gain(run, axis);
+        judge_place(run, axis);
+        judge_torque(run, axis);
+    }
+    fault_judge(run);
+    if (run->cycle % 64 == 0)
+        judge_log(run);
+}
+
+/** The last move of all axes. */
+static void judge_test(run_t *run, machine_axis_t *axis)
+{
+    const double by = (axis->probe.position_counts - axis->test_from) * (axis->spec->invert != 0 ? -1 : 1);
+    const double most = STILL_COUNTS + slack_of(axis->spec) + (by_velocity(axis->spec) ? COARSE_STILL_COUNTS : 0);
+    if (is_motor(axis) && fabs(by - axis->test_by) > most)
+        scenario_fail(run, "end", "%s: the last move was %.0f counts, the shaft has gone %.1f", axis->name,
+                      axis->test_by, by);
+    /* Where nothing made the device forget its position, the coordinates are those of the start. */
+    const double place = axis->probe.position_counts * (axis->spec->invert != 0 ? -1 : 1);
+    const double shown = axis->info.actual_position * axis->spec->counts_per_unit;
+    if (is_motor(axis) && axis->seen.kept && !axis->seen.shifted && fabs(place - shown) > KEPT_COUNTS)
+        scenario_fail(run, "position", "%s is at %.1f counts, and shows %.1f", axis->name, place, shown);
+}
+
+void judge_end(run_t *run)
+{
+    judge_log(run);
+    for (int n = 0; n < run->scenario->axis_count; n++)
+        judge_test(run, &run->axes[n]);
+}

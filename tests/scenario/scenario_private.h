@@ -1,0 +1,158 @@
+/**
+ * @file scenario_private.h
+ * A running scenario: the machine, its program and its judge.
+ */
+#ifndef CM1E_TESTS_SCENARIO_PRIVATE_H
+#define CM1E_TESTS_SCENARIO_PRIVATE_H
+
+#include "cm1e/log.h"
+#include "cm1e/plcopen.h"
+#include "cm1e/scheduler.h"
+#include "cm1e/sim.h"
+#include "scenario.h"
+#include "block_table.h"
+
+enum { BLOCK_ROOM = 1200, SPEEDS = 64 };
+
+/** A block of the program, by the table of all blocks. */
+typedef struct instance {
+    const block_t *type;
+    const step_t *step;
+    bool triggered, was_busy;
+    _Alignas(16) unsigned char memory[BLOCK_ROOM];
+} instance_t;
+
+/** What an axis looked like in the cycle before, and what the judge knows of it. */
+typedef struct witness {
+    cm1e_axis_state_t state;
+    double speeds[SPEEDS];                    /**< of the last cycles */
+    double rest_at;                       /**< counts; where it came to rest */
+    int rest_cycles;                      /**< since it is to be at rest, and is */
+    bool torque_on;                       /**< in the cycle before */
+    int quiet;                            /**< cycles since something disturbed it */
+    int jolted;                           /**< cycles since any network had a bad cycle */
+    int caught;                           /**< cycles since it was enabled while its shaft turned, or was lied about */
+    int rung;                             /**< cycles since a cable of its ring broke or was mended */
+    int stalled;                          /**< cycles since the host stood still */
+    double pushed_until;                  /**< cycle until which a load may move it */
+    bool kept;                            /**< the device has not lost its position since the start */
+    bool coasted;                         /**< beyond a software limit, since it had no torque */
+    bool shifted;                         /**< its coordinates are not those of the start any more */
+    bool homes;                           /**< the program has MC_Home, which has a speed of its own */
+    int error_at;                         /**< cycle in which it came into ErrorStop */
+    cm1e_axis_state_t logged;             /**< last state that the log told */
+    int off_cycles;                       /**< without MC_Power.Enable, or in ErrorStop, and still under torque */
+} witness_t;
+
+typedef struct machine_axis {
+    const axis_spec_t *spec;
+    int number, network;
+    uint32_t position;                    /**< of its slave; 0: virtual */
+    unsigned channel;
+    char name[16];
+    AXIS_REF_t reference;
+    cm1e_axis_info_t info;
+    cm1e_sim_probe_t probe;
+    MC_Power_t power;
+    MC_Reset_t reset;
+    MC_SetOverride_t override;            /**< after the program: back to 1 */
+    MC_MoveRelative_t test;
+    double test_from, test_by;            /**< counts; shaft before the last move, and what that is */
+    int resets;                           /**< after the program */
+    MC_CamTableSelect_t select;
+    MC_CAM_REF cam;
+    MC_CAM_POINT cam_points[3];
+    MC_AddAxisToGroup_t add;
+    witness_t seen;
+} machine_axis_t;
+
+typedef enum phase {
+    PHASE_PROGRAM = 0, PHASE_MEND, PHASE_RESET, PHASE_POWER, PHASE_TEST, PHASE_OFF, PHASE_END
+} phase_t;
+
+typedef struct run {
+    const scenario_t *scenario;
+    outcome_t *outcome;
+    cm1e_bus_t *buses[SCENARIO_NETWORKS];
+    cm1e_sim_segment_t *segments[SCENARIO_NETWORKS];
+    int networks;
+    cm1e_scheduler_t *scheduler;
+    AXES_GROUP_REF_t group;
+    bool grouped;                         /**< the program has blocks of a group: of the first two axes */
+    MC_GroupEnable_t group_enable;
+    MC_UngroupAllAxes_t ungroup;
+    MC_GroupReset_t group_reset;
+    machine_axis_t axes[SCENARIO_AXES];
+    instance_t blocks[SCENARIO_STEPS];
+    int cycle, phase_begin;
+    phase_t phase;
+    int bad[SCENARIO_NETWORKS];           /**< cycles without a good frame, in a row */
+    uint64_t bad_before[SCENARIO_NETWORKS];
+    uint64_t logged;
+    int64_t logged_ns;
+    uint64_t allocations;
+} run_t;
+
+/** The first rule that is broken counts; it ends the run. */
+__attribute__((format(printf, 3, 4))) void scenario_fail(run_t *run, const char *rule, const char *format, ...);
+
+/* ---- scenario_machine.c ------------------------------------------------------------------------------------------ */
+
+/** Opens and starts the networks and the scheduler; false: the outcome says why not. */
+bool scenario_open(run_t *run, cm1e_program_t program);
+void scenario_close(run_t *run);
+bool is_motor(const machine_axis_t *axis);
+
+/* ---- scenario_program.c ------------------------------------------------------------------------------------------ */
+
+void program_prepare(run_t *run);
+/** One call of each block, by the steps of this cycle. */
+void program_cycle(run_t *run);
+/** After the program: everything is brought back, and moves once more. */
+void program_recover(run_t *run);
+
+/* ---- scenario_fault.c -------------------------------------------------------------------------------------------- */
+
+/** Faults that begin or end in this cycle. */
+void fault_cycle(run_t *run);
+/** All that is still wrong with the machine is mended. */
+void fault_mend(run_t *run);
+/** What had to be detected, was, and in time. */
+void fault_judge(run_t *run);
+
+/* ---- scenario_wire.c --------------------------------------------------------------------------------------------- */
+
+typedef enum wire_fault { WIRE_OUT = 1, WIRE_BACK = 2, WIRE_COUNTER = 4 } wire_fault_t;
+
+/** What the console of the simulator does not offer; the only source with headers of the library's rooms. */
+void wire_attach(run_t *run);
+void wire_set(int network, wire_fault_t faults, bool on);
+/** The actual position of this axis is the one of its network that may be untrue. */
+void wire_watch(run_t *run, const machine_axis_t *axis);
+bool wire_watches(const machine_axis_t *axis);
+void wire_lie(const machine_axis_t *axis, bool on, bool freeze, double offset);
+void wire_forget(void);
+void wire_stall(run_t *run, double cycles);
+void wire_fall_back(run_t *run, int network, uint32_t position);
+
+/* ---- scenario_judge.c -------------------------------------------------------------------------------------------- */
+
+void judge_begin(run_t *run);
+/** Before the program: what the machine shows now. */
+void judge_look(run_t *run);
+/** After the program. */
+void judge_cycle(run_t *run);
+/** After a call of a block. */
+void judge_block(run_t *run, instance_t *block);
+void judge_end(run_t *run);
+bool at_rest(const machine_axis_t *axis);
+
+/* ---- scenario_blocks.c ------------------------------------------------------------------------------------------- */
+
+const block_t *block_type(const char *name);
+const block_member_t *block_member(const block_t *type, const char *name);
+bool block_flag(const instance_t *block, const char *name);
+void block_put(instance_t *block, const char *name, double value);
+void block_point(instance_t *block, const char *name, const void *what);
+
+#endif

@@ -1,0 +1,273 @@
+/* A machine, a program and faults from a seed. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "chance.h"
+#include "scenario.h"
+
+enum { FIRST_STEP = 260, CYCLES_LEAST = 900, CYCLES_MOST = 2600 };
+
+/* ---- the machine ------------------------------------------------------------------------------------------------- */
+
+static void make_limits(axis_spec_t *axis)
+{
+    if (!one_in(2))
+        return;
+    axis->limit_negative = -floor(uniform(20000, 150000));
+    axis->limit_positive = floor(uniform(20000, 150000));
+}
+
+static const int kinds[] = {AXIS_CM1E, AXIS_CIA402, AXIS_VIRTUAL, AXIS_EB01, AXIS_EB02, AXIS_EB12};
+
+enum { CM1_MOST = 400000 };
+
+static bool is_bridged(const axis_spec_t *axis) { return axis->kind >= AXIS_EB01 && axis->kind <= AXIS_EB12; }
+
+static void make_axis(axis_spec_t *axis)
+{
+    *axis = (axis_spec_t){
+        .kind = one_in(2) ? AXIS_CM1E : kinds[pick(sizeof kinds / sizeof kinds[0])],
+        .firmware = pick(6),
+        .mapping = one_in(2) ? 0 : pick(3),
+        .counts_per_unit = one_in(3) ? 50000 : one_in(2) ? 1000 : floor(uniform(50, 5000)),
+        .invert = one_in(3),
+        .velocity = floor(uniform(50000, 1200000)),
+        .acceleration = floor(uniform(300000, 6000000)),
+        .deceleration = floor(uniform(300000, 6000000)),
+        .jerk = floor(uniform(1e7, 3e8)),
+        .load_inertia = one_in(3) ? uniform(1e-6, 6e-5) : 0,
+        .friction = one_in(3) ? uniform(0.001, 0.02) : 0,
+        .coupling_stop = pick(3),
+    };
+    axis->stops = axis->kind == AXIS_CM1E && one_in(5);
+    axis->motion = axis->kind == AXIS_CM1E && axis->mapping == 0 && one_in(8);
+    make_limits(axis);
+    if (is_bridged(axis))
+        axis->velocity = fmin(axis->velocity, CM1_MOST);
+    if (axis->kind != AXIS_CM1E)
+        axis->firmware = axis->mapping = 0;
+}
+
+/** Further motors of a bridge stand behind its first one. */
+static int make_bridge(axis_spec_t *axes, int room)
+{
+    int count = 1;
+    axes[0].channel = 1;
+    while (count < room && count < 4 && !one_in(3)) {
+        make_axis(&axes[count]);
+        axes[count].kind = axes[0].kind;
+        axes[count].firmware = axes[count].mapping = 0;
+        axes[count].velocity = fmin(axes[count].velocity, CM1_MOST);
+        axes[count].channel = count + 1;
+        axes[count].network = axes[0].network;
+        count++;
+    }
+    return count;
+}
+
+static void make_machine(scenario_t *scenario)
+{
+    const bool two_networks = scenario->axis_count > 1 && one_in(4);
+    for (int n = 0; n < scenario->axis_count;) {
+        axis_spec_t *axis = &scenario->axes[n];
+        make_axis(axis);
+        axis->network = two_networks && one_in(2);
+        n += is_bridged(axis) ? make_bridge(axis, scenario->axis_count - n) : 1;
+    }
+    scenario->io = one_in(3) ? 1 + pick(2) : 0;
+    scenario->ring = one_in(8);
+    scenario->clocks = scenario->ring == 0 && one_in(3);
+    for (int n = 0; n < scenario->axis_count; n++)
+        if (scenario->axes[n].kind != AXIS_VIRTUAL)
+            return;
+    scenario->io = 1; /* a network without slaves does not start */
+}
+
+/* ---- the program ------------------------------------------------------------------------------------------------- */
+
+typedef struct choice {
+    const char *block;
+    int weight;
+} choice_t;
+static const choice_t choices[] = {
+    {"MC_MoveAbsolute", 20}, {"MC_MoveRelative", 20}, {"MC_MoveAdditive", 8}, {"MC_MoveVelocity", 14}, {"MC_Halt", 6},
+    {"MC_Stop", 6}, {"MC_Power", 3}, {"MC_Reset", 12}, {"MC_MoveSuperimposed", 6}, {"MC_HaltSuperimposed", 1},
+    {"MC_MoveContinuousAbsolute", 3}, {"MC_MoveContinuousRelative", 3}, {"MC_SetOverride", 4}, {"MC_Jog", 4},
+    {"MC_SetPosition", 1}, {"MC_Home", 2}, {"MC_WriteDigitalOutput", 2}, {"MC_TouchProbe", 2}};
+static const choice_t followers[] = {
+    {"MC_GearIn", 10}, {"MC_GearOut", 2}, {"MC_CamIn", 6}, {"MC_CamOut", 2}, {"MC_PhasingRelative", 4},
+    {"MC_GearInPos", 3}, {"MC_CombineAxes", 3}};
+static const choice_t paths[] = {
+    {"MC_MoveLinearAbsolute", 8}, {"MC_MoveLinearRelative", 8}, {"MC_MoveCircularRelative", 4}, {"MC_GroupStop", 2},
+    {"MC_GroupHalt", 2}, {"MC_GroupReset", 3}};
+
+static double some(double most) { return one_in(2) ? 0 : floor(uniform(most * 0.1, most)); }
+
+static int random_block(const choice_t *list, size_t count)
+{
+    int total = 0;
+    for (size_t i = 0; i < count; i++)
+        total += list[i].weight;
+    int at = pick(total);
+    for (size_t i = 0; i < count; i++)
+        if ((at -= list[i].weight) < 0)
+            return scenario_block(list[i].block);
+    return 0;
+}
+
+/** A command of a path of the first two axes; the way of the second one is in its own counts. */
+static void make_path(const scenario_t *scenario, step_t *step)
+{
+    const axis_spec_t *axis = &scenario->axes[0];
+    step->axis = 0;
+    step->block = random_block(paths, sizeof paths / sizeof paths[0]);
+    step->mode = 0; /* a point on the arc */
+    step->x = floor(uniform(-15000, 15000));
+    step->y = floor(uniform(-15000, 15000));
+    step->aux_x = floor(uniform(-15000, 15000));
+    step->aux_y = floor(uniform(-15000, 15000));
+    step->velocity = one_in(3) ? 0 : floor(uniform(axis->velocity * 0.05, axis->velocity));
+    step->acceleration = step->deceleration = step->jerk = 0;
+    step->buffer = one_in(2) ? 1 : 0;
+}
+
+static void make_step(const scenario_t *scenario, step_t *step, bool grouped)
+{
+    const int n = pick(scenario->axis_count);
+    const axis_spec_t *axis = &scenario->axes[n];
+    const double reach = axis->limit_positive != 0 ? fmin(axis->limit_positive, -axis->limit_negative) : 150000;
+    *step = (step_t){
+        .at = FIRST_STEP + pick((int)scenario->cycles - FIRST_STEP),
+        .axis = n,
+        .master = pick(scenario->axis_count),
+        .block = random_block(choices, sizeof choices / sizeof choices[0]),
+        .hold = one_in(3) ? 1 + pick(5) : 20 + pick(600),
+        .position = floor(uniform(-reach, reach)),
+        .distance = floor(uniform(-reach, reach) * (one_in(3) ? 0.02 : 0.7)),
+        .velocity = one_in(3) ? axis->velocity : floor(uniform(axis->velocity * 0.05, axis->velocity)),
+        .acceleration = some(axis->acceleration),
+        .deceleration = some(axis->deceleration),
+        .jerk = some(axis->jerk),
+        .buffer = one_in(2) ? 0 : pick(6),
+        .direction = 0,
+        .end_velocity = floor(uniform(-axis->velocity, axis->velocity) * 0.5),
+        .numerator = one_in(2) ? 1 : 1 + pick(3),
+        .denominator = 1 + pick(4),
+        .factor = one_in(4) ? 0 : uniform(0.1, 1),
+        .value = one_in(2),
+        .mode = 0,
+    };
+    if (one_in(3) && step->block == scenario_block("MC_MoveVelocity"))
+        step->velocity = -step->velocity;
+    if (grouped && one_in(2)) {
+        make_path(scenario, step);
+    } else if (scenario->axis_count > 1 && one_in(5)) {
+        step->block = random_block(followers, sizeof followers / sizeof followers[0]);
+        step->master = (n + 1 + pick(scenario->axis_count - 1)) % scenario->axis_count;
+        step->x = step->position;
+        step->y = floor(uniform(-reach, reach));
+        step->hold = 200 + pick(900);
+        step->mode = step->block == scenario_block("MC_CamIn") ? 1 + pick(2) : 0;
+    } else if (step->block == scenario_block("MC_Jog")) {
+        step->mode = pick(4);
+        step->direction = one_in(2);
+        step->position = 100 + pick(3000);
+    } else if (step->block == scenario_block("MC_Home") && axis->stops == 0) {
+        step->block = scenario_block("MC_Halt");
+    }
+}
+
+/* ---- the faults -------------------------------------------------------------------------------------------------- */
+
+static const int all_faults[] = {
+    FAULT_LOSE, FAULT_LOSE_OUT, FAULT_LOSE_BACK, FAULT_CORRUPT, FAULT_DELAY, FAULT_COUNTER, FAULT_STALL, FAULT_UNPLUG,
+    FAULT_POWER_CYCLE, FAULT_FALL_BACK, FAULT_MOTOR_POWER, FAULT_ERROR, FAULT_OVER_TORQUE, FAULT_TEMPERATURE,
+    FAULT_LOAD, FAULT_RING, FAULT_BRIDGE_ERROR, FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_JUMP,
+    FAULT_FREEZE, FAULT_CLOCK};
+
+/** Whether the console takes it for this axis. */
+static bool fits(const scenario_t *scenario, const axis_spec_t *axis, int kind)
+{
+    switch (kind) {
+    case FAULT_ERROR:
+    case FAULT_OVER_TORQUE:
+    case FAULT_TEMPERATURE: return axis->kind == AXIS_CM1E;
+    case FAULT_MOTOR_POWER:
+    case FAULT_LOAD:
+    case FAULT_SWITCH: return axis->kind == AXIS_CM1E || axis->kind == AXIS_CIA402;
+    case FAULT_BRIDGE_ERROR:
+    case FAULT_BRIDGE_CABLE: return is_bridged(axis);
+    case FAULT_JUMP:
+    case FAULT_FREEZE: return axis->kind == AXIS_CM1E && scenario->io == 0;
+    case FAULT_CLOCK: return scenario->clocks != 0 && axis->kind != AXIS_VIRTUAL;
+    case FAULT_RING: return scenario->ring != 0 && axis->kind != AXIS_VIRTUAL;
+    case FAULT_UNPLUG: return scenario->ring == 0 && axis->kind != AXIS_VIRTUAL;
+    case FAULT_POWER_CYCLE:
+    case FAULT_FALL_BACK:
+    case FAULT_EEPROM: return axis->kind != AXIS_VIRTUAL;
+    default: return true;
+    }
+}
+
+static const int codes[] = {0x2310, 0x4310, 0x7310, 0x7320, 0x7500, 0xFF04};
+
+static void make_fault(const scenario_t *scenario, fault_t *fault)
+{
+    int n = pick(scenario->axis_count);
+    int kind = all_faults[pick(sizeof all_faults / sizeof all_faults[0])];
+    if (!fits(scenario, &scenario->axes[n], kind))
+        kind = one_in(2) ? FAULT_LOSE : FAULT_LOSE_BACK;
+    *fault = (fault_t){
+        .at = FIRST_STEP + pick((int)scenario->cycles - FIRST_STEP),
+        .kind = kind,
+        .axis = n,
+        .network = scenario->axes[n].network,
+        .length = one_in(2) ? 1 + pick((int)scenario->lost_limit) : one_in(2) ? 1 + pick(30) : 1 + pick(300),
+    };
+    if (kind == FAULT_ERROR)
+        fault->value = codes[pick(sizeof codes / sizeof codes[0])];
+    if (kind == FAULT_DELAY)
+        fault->value = one_in(2) ? 100 + pick(200) : 1000 + pick(4000);
+    if (kind == FAULT_JUMP)
+        fault->value = one_in(2) ? 1000000 : -100000000;
+    if (kind == FAULT_CLOCK)
+        fault->value = floor(uniform(-3000, 3000));
+    if (kind == FAULT_LOAD)
+        fault->value = uniform(-0.03, 0.03);
+    if (kind == FAULT_DELAY || kind == FAULT_STALL)
+        fault->length = 1 + pick(kind == FAULT_DELAY ? 5 : one_in(4) ? 90 : 8);
+}
+
+static int compare_times(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+void scenario_make(scenario_t *scenario, uint64_t seed)
+{
+    static const double limits[] = {3, 3, 3, 2, 5, 10};
+    chance_seed(seed);
+    for (int i = 0; i < 16; i++)
+        chance();
+    *scenario = (scenario_t){.seed = seed, .cycle_us = 1000, .lost_limit = limits[pick(6)],
+                             .axis_count = 1 + pick(one_in(3) ? SCENARIO_AXES : 3)};
+    scenario->cycles = CYCLES_LEAST + pick(CYCLES_MOST - CYCLES_LEAST);
+    make_machine(scenario);
+    bool by_1_ms = false; /* bridges, and the firmwares 1.2.0 and 1.3.0 */
+    for (int n = 0; n < scenario->axis_count; n++)
+        by_1_ms = by_1_ms || is_bridged(&scenario->axes[n]) || scenario->axes[n].firmware == 1 ||
+                  scenario->axes[n].firmware == 2;
+    if (!by_1_ms && one_in(2))
+        scenario->cycle_us = 500;
+    const bool grouped = scenario->axis_count > 1 && one_in(6);
+    scenario->step_count = 3 + pick(SCENARIO_STEPS - 20) / 2 + scenario->axis_count;
+    for (int i = 0; i < scenario->step_count; i++)
+        make_step(scenario, &scenario->steps[i], grouped);
+    scenario->fault_count = one_in(8) ? 0 : 1 + pick(one_in(2) ? 2 : 6);
+    for (int i = 0; i < scenario->fault_count; i++)
+        make_fault(scenario, &scenario->faults[i]);
+    qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
+    qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);
+}

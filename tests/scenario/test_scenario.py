@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""The program scenario: a seed repeats exactly, a scenario as text is the same one, a failing one is made smaller, and
+a file that is wrong is refused in words.
+
+    test_scenario.py <program>
+"""
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PROGRAM = sys.argv[1]
+SEEDS = (1, 2, 7, 11)
+# The judge takes a limit that the machine was not made for as a failure: a way to see that it can fail at all.
+SPOILED = ("run cycles=900 cycle_us=1000 lost_limit=3\n"
+           "axis kind=cm1e counts_per_unit=1000 velocity=400000 acceleration=3e6 deceleration=3e6 jerk=1e8\n"
+           "axis kind=cm1e counts_per_unit=1000 velocity=400000 acceleration=3e6 deceleration=3e6 jerk=1e8\n"
+           "step at=300 axis=1 block=MC_MoveVelocity velocity=300000\n"
+           "step at=310 axis=0 block=MC_MoveRelative distance=1000 velocity=1000\n"
+           "fault at=500 kind=error axis=1 length=1 value=255\n")  # no error of the motor: the console refuses it
+
+
+def run(*words):
+    done = subprocess.run([PROGRAM, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          check=False, timeout=200)
+    return done.returncode, done.stdout
+
+
+def hash_of(said):
+    return re.search(r"hash ([0-9a-f]{16})", said)[1]
+
+
+def check_repetition(folder):
+    hashes = []
+    for seed in SEEDS:
+        first, again = run("--seed", seed), run("--seed", seed)
+        assert first == again and first[0] == 0, (first, again)
+        text = folder / "one.scenario"
+        text.write_text(run("--seed", seed, "--write")[1])
+        code, said = run("--play", text)
+        assert code == 0 and hash_of(said) == hash_of(first[1]), said
+        hashes.append(hash_of(said))
+    assert len(set(hashes)) == len(SEEDS), hashes
+
+
+def check_failure(folder):
+    spoiled = folder / "spoiled.scenario"
+    spoiled.write_text(SPOILED)
+    code, said = run("--shrink", "--folder", folder, "--play", spoiled)
+    assert code == 1 and "FAIL: console" in said, said
+    smaller = (folder / "shrunk-0.scenario").read_text()
+    assert smaller.count("\nstep") == 0 and smaller.count("\naxis") == 1 and smaller.count("\nfault") == 1, smaller
+    code, said = run("--play", folder / "shrunk-0.scenario")
+    assert code == 1 and "FAIL: console" in said, said
+
+
+def check_refusals(folder):
+    for text, words in (("axis kind=nonsense\n", "line 1"), ("run cycles=100 cycle_us=1000\n", "needs an axis"),
+                        ("nonsense\n", "expected run"), ("run cycles=abc\n", "not one of this name")):
+        wrong = folder / "wrong.scenario"
+        wrong.write_text(text)
+        code, said = run("--play", wrong)
+        assert code == 1 and words in said, said
+    assert run("--nonsense")[0] == 2
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        check_repetition(Path(name))
+        check_failure(Path(name))
+        check_refusals(Path(name))
+    print("ok")
+
+
+if __name__ == "__main__":
+    main()
