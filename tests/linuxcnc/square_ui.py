@@ -21,8 +21,9 @@ PROGRAM = os.environ["CM1E_PROGRAM"]
 component = hal.component("square-ui")  # only a component may look at pins
 component.ready()
 command, status, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
-seen = {"errors": [], "path": [], "following": [], "pins": {}, "positions": [], "signals": [], "pauses": 0}
-TRIES = 8
+seen = {"errors": [], "path": [], "following": [], "pins": {}, "positions": [], "signals": [], "pauses": 0, "ended": True}
+PATIENCE_S = 20  # a square takes two seconds, if no pause of the machine stops the axes
+FIRST_LINE = 4   # of the program that moves
 
 
 def poll():
@@ -47,12 +48,18 @@ def pin(name):
     return hal.get_value(name)
 
 
-def watch():
-    """One sample of the machine: set and actual positions of the joints, as LinuxCNC knows them."""
+def watch(line):
+    """One sample of the machine: set and actual positions of the joints, as LinuxCNC knows them, and the line."""
     poll()
+    if not enabled():
+        return
     joints = status.joint[:3]
-    seen["path"].append([round(j["output"], 5) for j in joints] + [round(j["input"], 5) for j in joints])
+    seen["path"].append([round(j["output"], 5) for j in joints] + [round(j["input"], 5) for j in joints] + [line])
     seen["following"].append([round(abs(j["ferror_current"]), 5) for j in joints])
+
+
+def enabled():
+    return all(pin(f"cm1e.{a}.enabled") for a in "xyz")
 
 
 def machine_on():
@@ -63,7 +70,7 @@ def machine_on():
     until(lambda: status.task_state == linuxcnc.STATE_ESTOP_RESET, 5, "the emergency stop is released")
     command.state(linuxcnc.STATE_ON)
     on = until(lambda: status.task_state == linuxcnc.STATE_ON, 5, "the machine is on")
-    return on and until(lambda: all(pin(f"cm1e.{a}.enabled") for a in "xyz"), 5, "all axes follow")
+    return on and until(enabled, 5, "all axes follow")
 
 
 def home():
@@ -75,40 +82,66 @@ def home():
     return until(lambda: all(status.homed[:3]), 5, "all joints are homed")
 
 
-def run_program():
-    """Runs it as far as is wanted. False: the machine was switched off meanwhile."""
-    seen["path"], seen["following"] = [], []
+def run_program(line):
+    """Runs it from a line on, 0: from its beginning, as far as is wanted. Returns whether it came so far, and the line at
+    which it is; the machine may have been switched off meanwhile."""
     command.mode(linuxcnc.MODE_AUTO)
     command.wait_complete()
     command.program_open(PROGRAM)
     command.wait_complete()
-    command.auto(linuxcnc.AUTO_RUN, 0)
-    until(lambda: status.interp_state != linuxcnc.INTERP_IDLE, 5, "the program has begun")
+    command.auto(linuxcnc.AUTO_RUN, line)
+    until(lambda: status.interp_state != linuxcnc.INTERP_IDLE or not enabled(), 5, "the program has begun")
     end = time.monotonic() + 20
-    while time.monotonic() < end and status.task_state == linuxcnc.STATE_ON:
-        watch()
-        if WHAT != "square" and max(row[0] for row in seen["path"]) > 5:
-            return True
+    while time.monotonic() < end and enabled():
+        line = max(line, status.motion_line)
+        watch(line)
+        if WHAT != "square" and seen["path"] and seen["path"][-1][0] > 5:
+            return True, line
         if status.interp_state == linuxcnc.INTERP_IDLE and status.inpos:
             time.sleep(0.2)
-            watch()
+            watch(line)
             break
         time.sleep(0.01)
-    return status.task_state == linuxcnc.STATE_ON
+    return enabled(), line
+
+
+def corner_before(line):
+    """The words of G0 for where a line of the program begins."""
+    with open(PROGRAM, encoding="ascii") as file:
+        words = re.findall("([XYZ])([-0-9.]+)", " ".join(file.read().splitlines()[:line - 1]))
+    return " ".join(axis + value for axis, value in {"Z": "0", **dict(words)}.items())
+
+
+def go_back(line):
+    """Goes to where the line begins, and forgets what was seen since then. False: a pause stopped the axes again."""
+    kept = [i for i, row in enumerate(seen["path"]) if row[6] < line]
+    seen["path"], seen["following"] = ([seen[what][i] for i in kept] for what in ("path", "following"))
+    if not machine_on():
+        return False
+    command.mode(linuxcnc.MODE_MDI)
+    command.wait_complete()
+    command.mdi("G0 " + corner_before(line))
+    time.sleep(0.1)
+    until(lambda: (status.interp_state == linuxcnc.INTERP_IDLE and status.inpos) or not enabled(), 5, "the corner")
+    time.sleep(0.2)
+    return enabled()
 
 
 def run_until_done():
     """A machine without a real-time kernel pauses for milliseconds now and then, which stops the axes: this is
-    acknowledged by machine-on, and the program begins again, where the axes are."""
-    for _ in range(TRIES):
-        if run_program():
+    acknowledged by machine-on, and the program is run again from the line in which it happened. The motors are behind
+    the control by less than a line."""
+    line, end = 0, time.monotonic() + PATIENCE_S
+    while time.monotonic() < end:
+        done, line = run_program(line)
+        if done:
             return
-        time.sleep(0.5)
-        poll()
-        seen["errors"].clear()
+        line = max(line - 1, FIRST_LINE) if WHAT == "square" else FIRST_LINE
         seen["pauses"] += 1
-        if not machine_on():
-            return
+        while not go_back(line) and time.monotonic() < end:
+            time.sleep(0.5)
+        seen["errors"].clear()
+    seen["ended"] = False
 
 
 def fault(action):

@@ -7,6 +7,9 @@
  * thread on each processor, above all programs of the test, sleeps for a millisecond at a time and notes by how much it
  * woke too late. A test that failed after a wake-up at least PAUSE_NS late runs again, RUNS times in all, and each time
  * says so. A test that failed while the machine ran on has failed.
+ *
+ * A test that found out that such pauses hide what it looks for exits with 78. It runs twice. If the machine stood still
+ * both times, it is a skip.
  */
 #include <errno.h>
 #include <pthread.h>
@@ -22,7 +25,8 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { RUNS = 5, PRIORITY = 90, STACK_BYTES = 64 * 1024, SKIPPED = 77, NOT_STARTED = 127 };
+enum { RUNS = 5, RUNS_NOT_JUDGED = 2, PRIORITY = 90, STACK_BYTES = 64 * 1024 };
+enum { SKIPPED = 77, NOT_JUDGED = 78, NOT_STARTED = 127 };
 static const int64_t TICK_NS = 1000000, PAUSE_NS = 2000000, NS_PER_S = 1000000000;
 
 static _Atomic int64_t longest_ns;
@@ -118,6 +122,8 @@ int main(int count, char *words[])
         const int64_t longest = atomic_load(&longest_ns);
         if (result == 0 || result == SKIPPED || result == NOT_STARTED || longest < PAUSE_NS || n == RUNS)
             return result;
+        if (result == NOT_JUDGED && n >= RUNS_NOT_JUDGED)
+            return SKIPPED;
         printf("RUNS AGAIN: %s, because it failed while this machine stood still for %.1f ms\n",
                words[count > 2 ? 2 : 1], (double)longest * 1e-6);
     }

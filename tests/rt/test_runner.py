@@ -24,12 +24,13 @@ def runs(script):
 def main():
     for script, status, times in (("exit 0", 0, 1), ("exit 77", 77, 1), (STAND_STILL + "exit 0", 0, 1),
                                   (STAND_STILL + "exit 77", 77, 1), (STAND_STILL + "exit 4", 4, 5),
-                                  (STAND_STILL + "kill -9 $$", 137, 5),
+                                  (STAND_STILL + "kill -9 $$", 137, 5), (STAND_STILL + "exit 78", 77, 2),
                                   (STAND_STILL + 'test $(wc -l <"$COUNT") = 2', 0, 2)):
         found = runs(script)
         assert found[:2] == (status, times) and found[2].count("RUNS AGAIN: ") == times - 1, f"{script}: {found}"
     # A failure without a pause is one. Short, so that one of a few tries meets no pause of this machine's own.
-    assert any(runs("exit 3")[:2] == (3, 1) for _ in range(20)), "a failure without a pause runs again"
+    for status in (3, 78):
+        assert any(runs(f"exit {status}")[:2] == (status, 1) for _ in range(20)), f"{status} without a pause runs again"
     assert subprocess.run([sys.argv[1], "/no/such/program"], capture_output=True).returncode == 127
 
 

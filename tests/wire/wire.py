@@ -16,6 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import real_time  # noqa: E402
 
 SKIPPED = 77
+NOT_JUDGED = 78  # tests/rt/real_time_runner.c
 MASTER_INTERFACE, SLAVE_INTERFACE = "ecm0", "ecs0"
 MASTER_SECOND, SLAVE_SECOND = "ecm1", "ecs1"  # of a ring
 NOTICES = "notices.txt"
