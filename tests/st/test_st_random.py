@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Random expressions of every elementary type, also with variables of subranges and in memory (%M): what the translated program computes is what a reference in Python
-computes, which knows the types by the ranges of their values only.
+"""Random expressions of every elementary type, also with variables of subranges and in memory (%M): what the translated
+program computes is what a reference in Python computes, which knows the types by the ranges of their values only.
 
 test_st_random.py BIN-DIRECTORY [COUNT [SEED]]
 """
