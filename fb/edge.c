@@ -1,3 +1,4 @@
+#include "core/in_task.h"
 #include "edge.h"
 
 static void set_state(cm1e_fb_private_t *fb, fb_state_t state, cm1e_error_t error)
@@ -28,6 +29,7 @@ static bool rising_edge(cm1e_fb_private_t *fb, BOOL trigger)
 
 static void *latch(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle)
 {
+    cm1e_in_task_gate();
     fb->axis_handle = handle ? *handle : 0;
     void *object = kind->find(fb->axis_handle);
     if (!object)
@@ -38,6 +40,7 @@ static void *latch(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *h
 /** The axis of a busy block; NULL and an error if it was changed or no longer exists. */
 static void *check(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle)
 {
+    cm1e_in_task_gate();
     if (!handle || *handle != fb->axis_handle) {
         cm1e_fb_fail(fb, CM1E_ERROR_FB_AXIS_CHANGED);
         return NULL;

@@ -1,4 +1,5 @@
 #include "axis/axis_guest.h"
+#include "core/in_task.h"
 #include "core/rare.h"
 #include "edge.h"
 
@@ -57,6 +58,7 @@ static bool stands(const MC_Power_t *fb)
 
 CM1E_RARE static void work(MC_Power_t *fb)
 {
+    cm1e_in_task_gate();
     cm1e_fb_private_t *private = &fb->Private;
     cm1e_error_t passing = CM1E_OK;
     if (fb->Enable && !private->trigger_before)

@@ -35,6 +35,8 @@ typedef struct cm1e_task_config {
     uint32_t priority;      /**< IEC 61131-3: 0 = highest; tasks of equal priority run in the order of their addition */
     cm1e_program_t program;
     void *context;
+    int32_t watchdog_cycles; /**< bus cycles that one call may compute or wait; 0 selects 50 ms; -1: no limit. A longer
+                                  call is ended: see cm1e_scheduler_run() */
 } cm1e_task_config_t;
 
 /** Configuration of a scheduler. A zero in any field selects the default. */
@@ -122,6 +124,11 @@ CM1E_API AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *schedule
  *  cm1e_scheduler_destroy(), cm1e_bus_close() or cm1e_bus_stop(), which was refused and ended the run.
  *  CM1E_ERROR_PERMISSION: real time is required and not permitted; no cycle was run.
  *  CM1E_ERROR_TIMEOUT: an axis was not disabled within the stop timeout.
+ *  CM1E_ERROR_PROGRAM: a task did not return within its `watchdog_cycles` (an endless loop, or it waits). The call is
+ *  ended where it is, as by longjmp(), and the task is not called again. All axes are in ErrorStop with this error and
+ *  brake, while the cycle goes on. Other tasks are called on; without any the run ends in order. This is judged in real
+ *  time only, not on virtual time. A signal ends the call, SIGRTMAX - 3, which the program must not use meanwhile. What
+ *  the call held (locks, memory) stays as it is: end the process after the run.
  *  After cycles were run, and after CM1E_ERROR_PERMISSION, the bus is stopped. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Ends the run in order. Any thread, program or signal handler may call it. @rt any */

@@ -303,6 +303,10 @@ void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, dou
 CM1E_GUEST_API void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info);
 CM1E_GUEST_API const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis);
 
+/** The program of the axis is gone: `task` did not return within `limit_ns`. The axis is in ErrorStop and brakes, also if
+ *  it has no torque, because blocks of that program may have begun what needs none. MC_Power.Enable is taken back: it
+ *  acts again when a living program calls it. `task` must outlive the axis. @rt cycle */
+void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns);
 /** Ends the axis in order: it ramps down, then the drive is disabled. true when the drive is disabled, or gone. Call it
  *  in every cycle instead of the programs. @rt cycle */
 bool cm1e_axis_shut_down(cm1e_axis_t *axis);

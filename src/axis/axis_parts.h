@@ -150,12 +150,20 @@ typedef struct fault {
     cm1e_error_t error;
     uint16_t device_error;
     double value, bound;            /**< numbers for the text */
+    const char *task;               /**< that did not return, of the scheduler */
 } fault_t;
 
 /* ---- silence: axis_pause.h --------------------------------------------------------------------------------------- */
 
 /** Cycles that a motor needs to recover from a cycle without a new target. */
 enum { CM1E_SHAKEN_BY_SILENCE = 8 };
+
+/** What was before this cycle and has been dealt with in it. */
+typedef enum resumed {
+    RESUMED_FROM_NOTHING = 0,
+    RESUMED_FROM_SILENCE,
+    RESUMED_FROM_PAUSE,             /**< the inputs are from before it: the next frame tells what the motor did meanwhile */
+} resumed_t;
 
 /** Cycles in which no answer came from the bus. Written by axis_pause.h and axis_pause.c. */
 typedef struct silence {
@@ -164,7 +172,7 @@ typedef struct silence {
     uint16_t silent, silent_before; /**< cycles in a row without an answer: until now; before this answer */
     bool blind;                     /**< the actual position was not fresh, and the set-point goes on */
     bool frozen;                    /**< no answer to the last frame: set-points stay in this cycle */
-    bool resumed;                   /**< a pause or silence before this cycle has been dealt with */
+    uint8_t resumed;                /**< resumed_t */
     bool began_anew;                /**< the motion began anew after it, with another velocity */
 } silence_t;
 

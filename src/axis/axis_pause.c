@@ -103,7 +103,7 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
     const bool goes_on = axis->mode == CM1E_MODE_CSV;
     if (axis->silence.resumed) /* a follower has caused it already */
         return;
-    axis->silence.resumed = true;
+    axis->silence.resumed = RESUMED_FROM_PAUSE;
     if (axis_follows(axis))
         axis->coupling_hooks->resume_masters(axis, pause_ns);
     if (!goes_on)
@@ -130,7 +130,8 @@ static void note_silence(cm1e_axis_t *axis, int64_t cycles)
 
 void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost)
 {
-    axis->silence.resumed = axis->silence.began_anew = false;
+    axis->silence.resumed = RESUMED_FROM_NOTHING;
+    axis->silence.began_anew = false;
     axis->silence.silent_before = answered ? axis->silence.silent : 0;
     /* A velocity may be reduced all the same: a ramp of ErrorStop goes on. */
     const bool brakes_on = axis->mode == CM1E_MODE_CSV && axis->state == CM1E_AXIS_ERROR_STOP;
@@ -316,7 +317,7 @@ void cm1e_axis_after_silence(cm1e_axis_t *axis)
 {
     if (axis->silence.resumed || axis->silence.silent_before == 0)
         return;
-    axis->silence.resumed = true;
+    axis->silence.resumed = RESUMED_FROM_SILENCE;
     if (axis_follows(axis))
         axis->coupling_hooks->resume_masters(axis, 0);
     if (set_points_move(axis))

@@ -13,7 +13,9 @@
 #include "axis/axis_commands.h"
 #include "axis/axis_device.h"
 #include "axis/axis_guest.h"
+#include "axis/axis_events.h"
 #include "axis/axis_handle.h"
+#include "axis/axis_lead.h"
 #include "axis/axis_limits.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
@@ -58,6 +60,20 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
         wind_down(axis, ramp);
     if (followed)
         axis->coupling_hooks->failed(axis);
+}
+
+void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns)
+{
+    if (axis->config->type == CM1E_AXIS_ENCODER)
+        return;
+    axis->power.enable = false;
+    axis->fault.task = task;
+    if (axis_led(axis))
+        cm1e_axis_lead_fail(axis, CM1E_ERROR_PROGRAM); /* all in step: they stay on the path */
+    else
+        cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
+    if (axis->fault.error == CM1E_ERROR_PROGRAM)
+        axis->fault.value = (double)limit_ns / (double)MS_IN_NS;
 }
 
 /* Begins to brake at the actual state, no faster and no farther than the set-point would have gone. The ramp lasts a

@@ -55,6 +55,14 @@ static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
     add_counts_limit(axis, text, size);
 }
 
+static void program_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size,
+             "Axis \"%s\": task \"%s\" did not return within %g ms, so it was ended, and all axes were stopped. Look for "
+             "an endless loop, or for a call that waits, in its program; then start it again.",
+             axis->config->name, axis->fault.task, axis->fault.value);
+}
+
 static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     snprintf(text, size, "Axis \"%s\": %s. Remove the cause, then reset the axis with MC_Reset.", axis->config->name,
@@ -231,6 +239,7 @@ static const struct {
     void (*text)(const cm1e_axis_t *axis, char *text, size_t size);
 } texts[] = {
     {CM1E_ERROR_AXIS_LAG, lag_text},
+    {CM1E_ERROR_PROGRAM, program_text},
     {CM1E_ERROR_AXIS_NOT_IN_POSITION, cm1e_axis_in_position_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, range_text},
     {CM1E_ERROR_AXIS_COUPLING_LIMIT, cm1e_axis_guard_text},

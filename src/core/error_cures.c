@@ -18,6 +18,7 @@ static const struct {
     {CM1E_ERROR_STATE, "call the functions in the order of their header"},
     {CM1E_ERROR_CANCELLED, "start the bus again, then repeat it"},
     {CM1E_ERROR_FILE, "cm1e check FILE says what is wrong in it, and where"},
+    {CM1E_ERROR_PROGRAM, "look for an endless loop, or for a call that waits, in the program; then start it again"},
     {CM1E_ERROR_BUS_NO_SLAVES,
      "check the cable, the power of the first slave, and that it is the right interface; cm1e scan shows what answers"},
     {CM1E_ERROR_BUS_IDENTITY,

@@ -6,7 +6,10 @@
 #ifndef CM1E_CORE_IN_TASK_H
 #define CM1E_CORE_IN_TASK_H
 
+#include <setjmp.h>
+#include <stdatomic.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "cm1e/error.h"
 #include "core/guest_api.h"
@@ -16,6 +19,29 @@ void cm1e_in_task_begin(void);
 void cm1e_in_task_end(void);
 /** Whether the calling thread is between the two calls. @rt cycle */
 CM1E_GUEST_API bool cm1e_in_task(void);
+
+/** How a task is left that takes too long (src/scheduler/task_watch.h). */
+typedef struct in_task_leave {
+    sigjmp_buf place;               /**< where it was called */
+    _Atomic uint64_t call;          /**< its present call; each has a number of its own */
+    _Atomic uint64_t over;          /**< the call that is to be left; 0: none */
+} in_task_leave_t;
+
+/** Number of watches, in all threads, that have a call to leave. */
+extern _Atomic unsigned cm1e_in_task_over;
+
+/** The tasks of this thread can be left in this way, from now on; NULL: no longer. @rt init */
+void cm1e_in_task_watched(in_task_leave_t *leave);
+/** Leaves the task in which this thread is, if it is to be left: then it does not return. Otherwise it does nothing.
+ *  Async-signal-safe. @rt cycle */
+void cm1e_in_task_leave(void);
+/** The first line of what a task calls to change an axis or a group: a task that is to be left changes nothing more, and
+ *  is never left in the middle of a change. @rt cycle */
+static inline void cm1e_in_task_gate(void)
+{
+    if (atomic_load_explicit(&cm1e_in_task_over, memory_order_relaxed))
+        cm1e_in_task_leave();
+}
 
 /** CM1E_ERROR_STATE of a function that waits. The text names the function ("cm1e_bus_scan()") and what a task uses
  *  `instead`: a sentence, or "". */

@@ -45,6 +45,12 @@ void cm1e_log_variable(log_t *log, int what, uint32_t column, double value, int6
                                         .value = value}, run_ns);
 }
 
+void cm1e_log_task(log_t *log, uint32_t task, int64_t limit_ns, int64_t run_ns)
+{
+    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_TASK, .axis = -1, .code = (int32_t)task,
+                                        .value = (double)limit_ns * 1e-6}, run_ns);
+}
+
 static void look_at_axis(log_t *log, const cm1e_axis_t *axis, uint32_t index, int64_t run_ns)
 {
     cm1e_axis_news_t *seen = &log->seen[index], now;

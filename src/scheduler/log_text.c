@@ -25,6 +25,7 @@ static const char *const kind_names[] = {
     [CM1E_LOG_SLAVE] = "slave",
     [CM1E_LOG_STRANGER] = "stranger",
     [CM1E_LOG_VARIABLE] = "variable",
+    [CM1E_LOG_TASK] = "task",
 };
 _Static_assert(sizeof kind_names / sizeof *kind_names == CM1E_LOG_KIND_COUNT, "a kind of the log has no name");
 
@@ -132,6 +133,9 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
         stranger_text(event, text, size);
     else if (event->kind == CM1E_LOG_VARIABLE)
         variable_text(scheduler, event, text, size);
+    else if (event->kind == CM1E_LOG_TASK)
+        snprintf(text, size, "task \"%s\" did not return within %g ms and was ended; all axes were stopped",
+                 cm1e_scheduler_task_name(scheduler, (uint32_t)event->code), event->value);
     else if (event->kind == CM1E_LOG_PORT)
         cm1e_port_sentence(cm1e_scheduler_bus_at(scheduler, event->detail >> 20 & 0x0F), (uint16_t)event->detail,
                            event->detail >> 16 & 0x0F, (cm1e_port_fault_t)(event->detail >> 24), (uint32_t)event->code,

@@ -1,63 +1,13 @@
-#include "cm1e/scheduler.h"
-
-#include <stdatomic.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "assembly/assembly.h"
-#include "axis/axis_api.h"
-#include "bus/bus_image.h"
 #include "bus/kept.h"
 #include "cm1e/scan_time.h"
 #include "core/in_task.h"
 #include "core/output.h"
 #include "core/sized.h"
-#include "scheduler/clock_team.h"
-#include "scheduler/event_log.h"
-#include "scheduler/forcing.h"
 #include "scheduler/realtime.h"
-#include "scheduler/scheduler_window.h"
+#include "scheduler/scheduler_private.h"
 #include "scheduler/signals.h"
-#include "scheduler/statistics.h"
-#include "scheduler/tasks.h"
-#include "scheduler/trace_recorder.h"
-
-#define DEFAULT_STOP_TIMEOUT_NS INT64_C(10000000000)
-
-/** A bus of the scheduler, and its axes. */
-typedef struct member {
-    cm1e_bus_t *bus;
-    uint32_t operation;     /**< start number of the bus for which the axes were made */
-    uint32_t first, end;    /**< its axes: axes[first] ... axes[end - 1] */
-    cm1e_error_t received;  /**< in this cycle */
-} member_t;
-
-struct cm1e_scheduler {
-    member_t members[CM1E_MAX_BUSES];
-    uint32_t member_count;  /**< at least 1; members[0] is the bus that the scheduler was made for */
-    clock_team_t clocks;    /**< of these buses, in their order */
-    cm1e_clock_t *clock;
-    cm1e_scheduler_config_t config;
-    int64_t cycle_time_ns;
-    cm1e_axis_t *axes[CM1E_MAX_AXES];
-    uint32_t axis_count;
-    task_list_t tasks;
-    trace_t trace;
-    forcing_t forcing;
-    log_t log;
-    void *windows[CM1E_MAX_BUSES][CM1E_WINDOWS]; /**< of this run, by bus and kind; NULL: it has none */
-    statistics_t statistics;
-    cm1e_bus_counters_t counters; /**< of all buses together, after this cycle */
-    atomic_bool stop;      /**< a stop was requested */
-    bool run;              /**< cm1e_scheduler_run() was called */
-    bool shutting_down;    /**< programs no longer run */
-    const char *refused;   /**< function that a task called and that would have freed what the cycle uses; NULL: none */
-    bool shut_down;        /**< every drive is disabled or offline */
-    int64_t start_ns;      /**< of cycle 0 */
-    int64_t number;        /**< number of this cycle; skipped cycles count */
-    int64_t begin_ns;      /**< actual start of this cycle */
-    int64_t sent_ns;       /**< time of the outputs of the last cycle */
-};
 
 /* ---- windows --------------------------------------------------------------------------------------------------- */
 
@@ -115,6 +65,11 @@ cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler) { return sched
 cm1e_bus_t *cm1e_scheduler_bus_at(const cm1e_scheduler_t *scheduler, uint32_t index)
 {
     return index < scheduler->member_count ? scheduler->members[index].bus : NULL;
+}
+
+const char *cm1e_scheduler_task_name(const cm1e_scheduler_t *scheduler, uint32_t index)
+{
+    return index < scheduler->tasks.count ? scheduler->tasks.tasks[index].name : "";
 }
 
 bool cm1e_scheduler_is_ending(const cm1e_scheduler_t *scheduler) { return scheduler->shutting_down; }
@@ -190,12 +145,26 @@ static void set_outputs(cm1e_scheduler_t *s)
         cm1e_axis_outputs(s->axes[i]);
 }
 
+/** A task did not return in time. What it began goes on in no axis, since nobody would end it. */
+static void stop_without(cm1e_scheduler_t *s, const task_t *task)
+{
+    if (!s->ended)
+        s->ended = task;
+    cm1e_log_task(&s->log, (uint32_t)(task - s->tasks.tasks), task->limit_ns, cm1e_scheduler_time_ns(s));
+    for (uint32_t i = 0; i < s->axis_count; i++)
+        cm1e_axis_lose_program(s->axes[i], task->name, task->limit_ns);
+    if (s->tasks.ended == s->tasks.count)
+        cm1e_scheduler_stop(s);
+}
+
 /** A task called a function that would free what it runs on: the run ends in order instead. */
 static void run_tasks(cm1e_scheduler_t *s)
 {
     cm1e_in_task_begin();
-    cm1e_tasks_run(&s->tasks, s->number);
+    const task_t *over = cm1e_tasks_run(&s->tasks, s->number);
     cm1e_in_task_end();
+    if (over)
+        stop_without(s, over);
     const char *function = cm1e_in_task_noted();
     if (!function)
         return;
@@ -327,6 +296,11 @@ static cm1e_error_t shut_down(cm1e_scheduler_t *s, cm1e_diag_t *diag)
                              "%s was called in a task, where it is refused, because it frees or stops what the cycle "
                              "uses. The run was ended in order instead; use cm1e_scheduler_stop() in a task.",
                              s->refused);
+    if (s->shut_down && s->ended)
+        return cm1e_diag_set(diag, CM1E_ERROR_PROGRAM, 0,
+                             "Task \"%s\" did not return within %g ms, so it was ended, and all axes were stopped. Look "
+                             "for an endless loop, or for a call that waits, in its program; then start it again.",
+                             s->ended->name, (double)s->ended->limit_ns * 1e-6);
     if (s->shut_down)
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0,
@@ -339,10 +313,18 @@ static cm1e_error_t take_real_time(cm1e_scheduler_t *s, realtime_t *realtime, cm
     char advice[sizeof s->statistics.advice] = "";
     const bool is_virtual = s->clock != cm1e_clock_monotonic();
     const bool in_force = !is_virtual && cm1e_realtime_begin(realtime, &s->config, advice, sizeof advice);
+    if (realtime->fifo)
+        cm1e_task_watch_raise(&s->watch, s->config.realtime_priority);
     cm1e_statistics_publish_realtime(&s->statistics, in_force, advice);
     if (s->config.realtime_required && advice[0])
         return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "%s", advice);
     return CM1E_OK;
+}
+
+/** On virtual time nothing shows how long a task takes, and no motor waits for it. */
+static cm1e_error_t watch_tasks(cm1e_scheduler_t *s, cm1e_diag_t *diag)
+{
+    return cm1e_scheduler_is_virtual(s) ? CM1E_OK : cm1e_task_watch_begin(&s->watch, &s->tasks, diag);
 }
 
 /** From now on (`on`) other threads that wait for a bus leave its cycles to this one. */
@@ -358,7 +340,9 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     cm1e_clock_team_begin(&s->clocks);
     drive_buses(s, true);
     open_windows(s);
-    cm1e_error_t error = take_real_time(s, &realtime, diag);
+    cm1e_error_t error = watch_tasks(s, diag);
+    if (error == CM1E_OK)
+        error = take_real_time(s, &realtime, diag);
     if (error == CM1E_OK) {
         s->start_ns = s->sent_ns = cm1e_bus_next_start(clock_team_leader(&s->clocks), cm1e_clock_now(s->clock));
         cm1e_log_run(&s->log, true, 0);
@@ -370,22 +354,10 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     for (uint32_t i = 0; i < s->member_count; i++)
         cm1e_bus_stop(s->members[i].bus);
     drive_buses(s, false);
+    cm1e_task_watch_end(&s->watch);
     cm1e_realtime_end(&realtime);
     close_windows(s);
     return error;
-}
-
-/** Without this check the cycles of a stopped bus would pass without a frame and without an error. The cycles of a
- *  restarted bus would write to the old place of the process data. */
-static cm1e_error_t check_operation(const member_t *member, cm1e_diag_t *diag)
-{
-    const uint32_t present = cm1e_bus_operation(member->bus);
-    if (present == 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is not in operation: call cm1e_bus_start() first.");
-    if (present != member->operation)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
-                             "The bus was started again since this scheduler was made: make a new one.");
-    return CM1E_OK;
 }
 
 cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag)
@@ -399,7 +371,7 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "A scheduler runs once; start the bus again and make a new one.");
     for (uint32_t i = 0; i < scheduler->member_count; i++) {
-        const cm1e_error_t other_operation = check_operation(&scheduler->members[i], diag);
+        const cm1e_error_t other_operation = cm1e_scheduler_check_operation(&scheduler->members[i], diag);
         if (other_operation != CM1E_OK)
             return other_operation;
     }
@@ -470,231 +442,4 @@ const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return 
 forcing_parts_t cm1e_scheduler_forcing_parts(cm1e_scheduler_t *s)
 {
     return (forcing_parts_t){&s->forcing, &s->log, cm1e_scheduler_time_ns(s), s->shutting_down};
-}
-
-/* ---- before and after ------------------------------------------------------------------------------------------ */
-
-static cm1e_error_t take_config(cm1e_scheduler_t *s, const cm1e_scheduler_config_t *config, size_t size,
-                                cm1e_diag_t *diag)
-{
-    if (config)
-        cm1e_copy_sized(&s->config, sizeof s->config, config, size);
-    if (s->config.realtime_priority == 0)
-        s->config.realtime_priority = REALTIME_DEFAULT_PRIORITY;
-    if (s->config.stop_timeout_ns == 0)
-        s->config.stop_timeout_ns = DEFAULT_STOP_TIMEOUT_NS;
-    if (s->config.realtime_priority < -1 || s->config.realtime_priority > 98)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
-                             "The real-time priority is %d; expected 1 ... 98, 0 (the default) or -1 (none).",
-                             s->config.realtime_priority);
-    if (s->config.cpu < 0 || s->config.stop_timeout_ns < 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The CPU or the stop timeout is negative; expected "
-                             "0 or above.");
-    return CM1E_OK;
-}
-
-static cm1e_error_t make_axes(cm1e_scheduler_t *s, member_t *member, cm1e_diag_t *diag)
-{
-    const uint32_t count = cm1e_bus_configuration(member->bus)->axis_count;
-    member->first = member->end = s->axis_count;
-    for (uint32_t i = 0; i < count && s->axis_count < CM1E_MAX_AXES; i++) {
-        const cm1e_error_t error = cm1e_axis_create(&s->axes[s->axis_count], member->bus, i, diag);
-        if (error != CM1E_OK)
-            return error;
-        cm1e_axis_share_cycle(s->axes[s->axis_count], s);
-        member->end = ++s->axis_count;
-    }
-    return CM1E_OK;
-}
-
-/** Makes the bus a member, with its axes. */
-static cm1e_error_t join(cm1e_scheduler_t *s, cm1e_bus_t *bus, cm1e_diag_t *diag)
-{
-    member_t *member = &s->members[s->member_count];
-    *member = (member_t){.bus = bus, .operation = cm1e_bus_operation(bus)};
-    const cm1e_error_t error = check_operation(member, diag);
-    if (error != CM1E_OK)
-        return error;
-    s->member_count++;
-    cm1e_clock_team_add(&s->clocks, bus);
-    return make_axes(s, member, diag);
-}
-
-static cm1e_error_t make_trace(cm1e_scheduler_t *s, cm1e_diag_t *diag)
-{
-    const char *names[CM1E_MAX_AXES];
-    for (uint32_t i = 0; i < s->axis_count; i++)
-        names[i] = cm1e_axis_name(cm1e_axis_reference(s->axes[i]));
-    return cm1e_trace_init(&s->trace, names, s->axis_count, s->config.trace_capacity, s->config.trace_every, diag);
-}
-
-cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus,
-                                         const cm1e_scheduler_config_t *config, size_t size, cm1e_diag_t *diag)
-{
-    *scheduler = NULL;
-    if (cm1e_in_task())
-        return cm1e_in_task_refuse("cm1e_scheduler_create()", "", diag);
-    if (!bus)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler needs a bus.");
-    cm1e_scheduler_t *s = calloc(1, sizeof *s);
-    if (!s)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the scheduler.");
-    s->clock = cm1e_bus_clock(bus);
-    s->cycle_time_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
-    cm1e_error_t error = take_config(s, config, size, diag);
-    if (error == CM1E_OK)
-        error = join(s, bus, diag);
-    if (error == CM1E_OK)
-        error = make_trace(s, diag);
-    if (error == CM1E_OK)
-        error = cm1e_log_init(&s->log, s->clock, diag);
-    if (error != CM1E_OK) {
-        cm1e_scheduler_destroy(s);
-        return error;
-    }
-    *scheduler = s;
-    return CM1E_OK;
-}
-
-/** Why a bus cannot be run beside the others; "": it can. */
-static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
-{
-    for (uint32_t i = 0; i < s->member_count; i++)
-        if (s->members[i].bus == bus)
-            return "it is in this scheduler already";
-    if (s->member_count == CM1E_MAX_BUSES)
-        return "a scheduler has at most four buses";
-    if (cm1e_bus_clock(bus) != s->clock)
-        return "it runs on another time: either all buses of a scheduler have virtual_time and were opened in one thread, "
-               "or none has it";
-    if (cm1e_bus_configuration(bus)->cycle_time_ns != s->cycle_time_ns)
-        return "its cycle_time_us differs from that of the first bus";
-    if (!cm1e_bus_follow_one_clock(clock_team_leader(&s->clocks), bus))
-        return "its distributed clocks and those of another bus do not follow each other: start the buses in one thread, "
-               "each while those before it are in operation";
-    if (s->axis_count + cm1e_bus_configuration(bus)->axis_count > CM1E_MAX_AXES)
-        return "a scheduler has at most 128 axes";
-    return "";
-}
-
-/** NULL: every axis of the bus has a name of its own. */
-static const char *name_taken(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
-{
-    const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
-    for (uint32_t i = 0; i < config->axis_count; i++)
-        if (cm1e_scheduler_axis_by_name(s, config->axes[i].name).Handle != 0)
-            return config->axes[i].name;
-    return NULL;
-}
-
-cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus, cm1e_diag_t *diag)
-{
-    if (cm1e_in_task())
-        return cm1e_in_task_refuse("cm1e_scheduler_add_bus()", "", diag);
-    if (!scheduler || !bus)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler or a bus is missing.");
-    if (scheduler->run)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Buses are added before the scheduler runs.");
-    const char *refused = other_bus_refused(scheduler, bus), *taken = name_taken(scheduler, bus);
-    if (refused[0])
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The bus on \"%s\" cannot be added to the scheduler: "
-                             "%s.", cm1e_bus_configuration(bus)->interface_name, refused);
-    if (taken)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Two buses have an axis with the name \"%s\": give "
-                             "each axis of a program a name of its own.", taken);
-    const member_t before = {.first = scheduler->axis_count, .end = scheduler->member_count};
-    cm1e_error_t error = join(scheduler, bus, diag);
-    if (error == CM1E_OK) {
-        cm1e_trace_free(&scheduler->trace);
-        error = make_trace(scheduler, diag);
-    }
-    if (error == CM1E_OK)
-        return error;
-    while (scheduler->axis_count > before.first) {
-        cm1e_axis_destroy(scheduler->axes[--scheduler->axis_count]);
-        scheduler->axes[scheduler->axis_count] = NULL;
-    }
-    scheduler->member_count = before.end;
-    cm1e_clock_team_cut(&scheduler->clocks, before.end);
-    return error;
-}
-
-void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler)
-{
-    if (!scheduler || cm1e_in_task_note("cm1e_scheduler_destroy()"))
-        return;
-    cm1e_signals_detach(scheduler);
-    cm1e_trace_free(&scheduler->trace);
-    cm1e_log_free(&scheduler->log);
-    for (uint32_t i = 0; i < scheduler->axis_count; i++)
-        cm1e_axis_destroy(scheduler->axes[i]);
-    free(scheduler);
-}
-
-cm1e_error_t cm1e_scheduler_add_task_sized(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task, size_t size,
-                                           cm1e_diag_t *diag)
-{
-    cm1e_task_config_t own;
-    cm1e_copy_sized(&own, sizeof own, task, size);
-    if (scheduler->run)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Tasks are added before the scheduler runs.");
-    return cm1e_tasks_add(&scheduler->tasks, &own, scheduler->cycle_time_ns, diag);
-}
-
-/* ---- what the trace records beside the axes ---------------------------------------------------------------------- */
-
-cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const char *name, const char *unit,
-                                           cm1e_trace_type_t type, const void *variable, cm1e_diag_t *diag)
-{
-    trace_column_t column = {.type = type, .value = variable};
-    column.kind = type == CM1E_TRACE_BOOL ? TRACE_KIND_FLAG : TRACE_KIND_NUMBER;
-    if ((name && strlen(name) >= sizeof column.name) || (unit && strlen(unit) >= sizeof column.unit))
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
-                             "The name of a signal has at most %zu bytes, and its unit %zu.", sizeof column.name - 1,
-                             sizeof column.unit - 1);
-    snprintf(column.name, sizeof column.name, "%s", name ? name : "");
-    snprintf(column.unit, sizeof column.unit, "%s", unit ? unit : "");
-    return cm1e_trace_add(&scheduler->trace, &column, diag);
-}
-
-static cm1e_error_t trace_object_of(cm1e_scheduler_t *s, uint32_t axis, uint16_t index, uint8_t subindex,
-                                    cm1e_diag_t *diag)
-{
-    const member_t *member = s->members;
-    while (axis >= member->end)
-        member++;
-    return cm1e_trace_add_object(&s->trace, member->bus, cm1e_bus_axis_position(member->bus, axis - member->first),
-                                 cm1e_axis_name(cm1e_axis_reference(s->axes[axis])), index, subindex, diag);
-}
-
-cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t axis, uint16_t index, uint8_t subindex,
-                                         cm1e_diag_t *diag)
-{
-    for (uint32_t i = 0; i < scheduler->axis_count; i++)
-        if (axis.Handle != 0 && cm1e_axis_reference(scheduler->axes[i]).Handle == axis.Handle)
-            return trace_object_of(scheduler, i, index, subindex, diag);
-    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The axis does not belong to this scheduler.");
-}
-
-cm1e_error_t cm1e_scheduler_trace_trigger(cm1e_scheduler_t *scheduler, const cm1e_trace_trigger_t *trigger,
-                                          cm1e_diag_t *diag)
-{
-    if (!trigger)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A trigger is missing.");
-    return cm1e_trace_set_trigger(&scheduler->trace, trigger, diag);
-}
-
-AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index)
-{
-    return index < scheduler->axis_count ? cm1e_axis_reference(scheduler->axes[index]) : (AXIS_REF_t){0};
-}
-
-AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const char *name)
-{
-    for (uint32_t i = 0; i < scheduler->axis_count; i++) {
-        const AXIS_REF_t reference = cm1e_axis_reference(scheduler->axes[i]);
-        if (strcmp(cm1e_axis_name(reference), name) == 0)
-            return reference;
-    }
-    return (AXIS_REF_t){0};
 }

@@ -117,7 +117,7 @@ static void open_machine(machine_t *machine, cm1e_recover_t policy, bool absent,
     ck_assert_msg(cm1e_scheduler_create(&machine->scheduler, machine->bus, NULL, &diag) == CM1E_OK, "%s", diag.text);
     for (uint32_t i = 0; i < AXES; i++)
         machine->axis[i] = cm1e_scheduler_axis(machine->scheduler, i);
-    const cm1e_task_config_t task = {"program", 1000000, 0, program, machine};
+    const cm1e_task_config_t task = {.name = "program", .interval_ns = 1000000, .program = program, .context = machine};
     ck_assert_int_eq(cm1e_scheduler_add_task(machine->scheduler, &task, &diag), CM1E_OK);
 }
 

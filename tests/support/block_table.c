@@ -1412,6 +1412,7 @@ static const cm1e_error_t errors_of_MC_Power[] = {
     CM1E_ERROR_BUS_WORKING_COUNTER,
     CM1E_ERROR_BUS_LOST,
     CM1E_ERROR_BUS_STATE,
+    CM1E_ERROR_PROGRAM,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_Home[] = {

@@ -9,6 +9,8 @@ void machine_open(machine_t *machine)
         config.axes[i] = (cm1e_axis_config_t){.address = 1, .channel = (uint8_t)(i + 1), .motor = "CM1", .k37 = 10,
                                               .k37_stated = true};
     }
+    for (uint32_t i = 0; i < machine->axis_count && !machine->bridged; i++)
+        config.axes[i].mapping = machine->mapping;
     for (uint32_t i = 0; i < machine->axis_count; i++)
         if (machine->types[i] != CM1E_AXIS_MOTOR)
             config.axes[i] = (cm1e_axis_config_t){.type = machine->types[i], .counts_per_unit = 1000};
@@ -29,7 +31,8 @@ void machine_add(machine_t *machine, const char *name, int64_t interval_ns, uint
                  cm1e_program_t program, void *context)
 {
     cm1e_diag_t diag = {0};
-    const cm1e_task_config_t task = {name, interval_ns, priority, program, context};
+    const cm1e_task_config_t task = {.name = name, .interval_ns = interval_ns, .priority = priority, .program = program,
+                                     .context = context};
     ck_assert_msg(cm1e_scheduler_add_task(machine->scheduler, &task, &diag) == CM1E_OK, "%s", diag.text);
 }
 

@@ -191,7 +191,8 @@ void look_cycle(prove_t *prove, const point_t *point)
 static bool run_program(motion_t *m, uint32_t number, cm1e_diag_t *diag)
 {
     const cm1e_scheduler_config_t settings = {0};
-    const cm1e_task_config_t task = {.name = "prove", .program = motion_program, .context = m};
+    /* One point pauses in its task, so that the motor misses its frames. */
+    const cm1e_task_config_t task = {.name = "prove", .program = motion_program, .context = m, .watchdog_cycles = -1};
     if (cm1e_scheduler_create(&m->scheduler, m->bus, &settings, diag) != CM1E_OK)
         return false;
     m->axis = cm1e_scheduler_axis(m->scheduler, number);
