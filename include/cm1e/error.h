@@ -36,7 +36,7 @@ extern "C" {
     X(ERROR_STATE, -11, "not allowed in this state")                                                                \
     X(ERROR_CANCELLED, -12, "cancelled")                                                                            \
     X(ERROR_FILE, -13, "a file is damaged or not of this format")                                                   \
-    X(ERROR_PROGRAM, -14, "the program did not return in time")                                                     \
+    X(ERROR_PROGRAM, -14, "the program did not return in time, or stood still")                                     \
     X(ERROR_BUS_NO_SLAVES, -20, "no EtherCAT slave answers")                                                        \
     X(ERROR_BUS_IDENTITY, -21, "a slave is missing, extra, doubled or of another kind than configured")             \
     X(ERROR_BUS_STATE, -22, "a slave refused or left an EtherCAT state")                                            \

@@ -307,6 +307,9 @@ CM1E_GUEST_API const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis
  *  it has no torque, because blocks of that program may have begun what needs none. MC_Power.Enable is taken back: it
  *  acts again when a living program calls it. `task` must outlive the axis. @rt cycle */
 void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns);
+/** For so long no frame was sent that a drive with a watchdog has taken its torque off by itself. So does one without:
+ *  ErrorStop, if the axis has torque or is about to get it. Called after cm1e_axis_after_pause(). @rt cycle */
+void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns);
 /** Ends the axis in order: it ramps down, then the drive is disabled. true when the drive is disabled, or gone. Call it
  *  in every cycle instead of the programs. @rt cycle */
 bool cm1e_axis_shut_down(cm1e_axis_t *axis);

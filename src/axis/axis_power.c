@@ -62,18 +62,34 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
         axis->coupling_hooks->failed(axis);
 }
 
-void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns)
+static void fail_without_program(cm1e_axis_t *axis, int64_t time_ns)
 {
-    if (axis->config->type == CM1E_AXIS_ENCODER)
-        return;
-    axis->power.enable = false;
-    axis->fault.task = task;
     if (axis_led(axis))
         cm1e_axis_lead_fail(axis, CM1E_ERROR_PROGRAM); /* all in step: they stay on the path */
     else
         cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
     if (axis->fault.error == CM1E_ERROR_PROGRAM)
-        axis->fault.value = (double)limit_ns / (double)MS_IN_NS;
+        axis->fault.value = (double)time_ns / (double)MS_IN_NS;
+}
+
+void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns)
+{
+    if (axis->config->type == CM1E_AXIS_ENCODER)
+        return;
+    axis->power.enable = false;
+    if (axis->state == CM1E_AXIS_ERROR_STOP)
+        return;
+    axis->fault.task = task;
+    fail_without_program(axis, limit_ns);
+}
+
+void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns)
+{
+    const bool torque = axis->state != CM1E_AXIS_DISABLED || axis->power.enable || axis->drive.command.enable;
+    if (!torque || axis->state == CM1E_AXIS_ERROR_STOP || axis->config->type == CM1E_AXIS_ENCODER)
+        return;
+    axis->fault.task = NULL;
+    fail_without_program(axis, pause_ns);
 }
 
 /* Begins to brake at the actual state, no faster and no farther than the set-point would have gone. The ramp lasts a

@@ -57,6 +57,13 @@ static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
 
 static void program_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    if (!axis->fault.task) {
+        snprintf(text, size,
+                 "Axis \"%s\": no frame was sent for %.0f ms: the process was stopped or suspended, a task took so long, "
+                 "or the machine gave it no processor. Its motor was without set-points. Find out why; then reset the "
+                 "axis with MC_Reset.", axis->config->name, axis->fault.value);
+        return;
+    }
     snprintf(text, size,
              "Axis \"%s\": task \"%s\" did not return within %g ms, so it was ended, and all axes were stopped. Look for "
              "an endless loop, or for a call that waits, in its program; then start it again.",

@@ -123,13 +123,18 @@ static void shut_down_axes(cm1e_scheduler_t *s)
 /** Number of the cycle to whose time a moment belongs. */
 static int64_t cycle_of(const cm1e_scheduler_t *s, int64_t time_ns) { return (time_ns - s->start_ns) / s->cycle_time_ns; }
 
-/** After a few missed cycles the motor has hardly slowed down; after more it is at rest (CSP). */
+/** After a few missed cycles the motor has hardly slowed down; after more it is at rest (CSP). After the time of the
+ *  watchdogs no motion begins again by itself, whether a drive has one or not: somebody may have resumed a program that
+ *  was suspended for hours. */
 static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
 {
+    static const int64_t watchdog_ns = INT64_C(100000000);
     if (missed > CM1E_AXIS_RIDDEN_OUT_CYCLES)
         cm1e_axis_after_pause(axis, silence_ns);
     else
         cm1e_axis_hold_cycle(axis, missed);
+    if (silence_ns >= watchdog_ns)
+        cm1e_axis_stood_still(axis, silence_ns);
 }
 
 static void set_outputs(cm1e_scheduler_t *s)
