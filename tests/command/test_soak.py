@@ -80,6 +80,8 @@ def main():
         assert code == 0 and " from seed " in said, said
         code, said = soak()
         assert code == 2 and "--minutes" in said, said
+        code, said = soak("--wire")
+        assert code == 2 and "--wire needs --hours" in said, said
         check_scenarios(Path(folder))
     print("ok")
 
