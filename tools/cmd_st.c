@@ -133,6 +133,14 @@ static void name_beside(const char *source, const char *ending, char *name, size
     snprintf(name, size, "%.*s%s", (int)length, source, ending);
 }
 
+static int refuse_to_build(const st_options_t *options)
+{
+    complain("%s%s without a PROGRAM: nothing would run. Write PROGRAM name ... END_PROGRAM; types, functions and "
+             "function blocks alone are checked with \"cm1e st check\"", options->sources[0],
+             options->source_count == 1 ? " is" : " and the other sources are");
+    return EXIT_FAILED;
+}
+
 /** The C goes into a file of its own beside the program: the debugger needs it no longer, thanks to #line. */
 static int build(st_t *st, const st_options_t *options)
 {
@@ -182,7 +190,7 @@ int command_st(int argc, char **argv)
     if (status == EXIT_OK && !cm1e_st_check(st))
         status = EXIT_FAILED;
     if (status == EXIT_OK && strcmp(options.word, "build") == 0)
-        status = build(st, &options);
+        status = cm1e_st_runs(st) ? build(st, &options) : refuse_to_build(&options);
     else if (diag.text[0] == '\0')
         print_errors(st, options.json);
     cm1e_st_free(st);

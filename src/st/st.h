@@ -27,6 +27,8 @@ cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag);
 void cm1e_st_add_text(st_t *st, const char *name, const char *text, size_t size);
 /** Checks all sources together. True: there are no errors. */
 bool cm1e_st_check(st_t *st);
+/** After a cm1e_st_check() without errors: whether a PROGRAM runs. */
+bool cm1e_st_runs(const st_t *st);
 /** Writes the program as one C file, after cm1e_st_check(). */
 void cm1e_st_emit(st_t *st, FILE *file, const char *name);
 /** Number of errors that are kept; further ones are counted by cm1e_st_suppressed(). */

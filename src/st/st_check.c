@@ -189,3 +189,5 @@ bool cm1e_st_check(st_t *st)
     check_configuration(st);
     return st->error_count == 0;
 }
+
+bool cm1e_st_runs(const st_t *st) { return st->tree.instances != NULL; }

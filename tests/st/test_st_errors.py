@@ -235,6 +235,9 @@ HUGE = [
     "PROGRAM P VAR a : ARRAY[1..1000000] OF INT := [1000000(1)]; b : ARRAY[1..10] OF INT := [10(10(1))]; END_VAR END_PROGRAM",
 ]
 
+# Good sources of which nobody calls anything: no program is built of them.
+NOTHING_RUNS = ["", "(* later *)\n", "FUNCTION_BLOCK Later\nVAR_INPUT i : INT; END_VAR\nEND_FUNCTION_BLOCK\n"]
+
 
 def run(*words):
     return subprocess.run([os.path.join(BIN, "cm1e"), "st", *words], capture_output=True, timeout=120)
@@ -286,10 +289,19 @@ with tempfile.TemporaryDirectory() as folder:
         errors, result = answer(folder, source)
         if any(not error["text"] for error in errors) or (result.returncode == 1) != bool(errors):
             faults.append(f"{source[:60]}: exit status {result.returncode}, {errors[:2]}")
+    for source in NOTHING_RUNS:
+        if answer(folder, source)[0]:
+            faults.append(f"{source!r}: it has an error, and nothing is wrong in it")
+        path = os.path.join(folder, "nothing.st")
+        with open(path, "w", encoding="latin-1") as file:
+            file.write(source)
+        result = run("build", path)
+        if result.returncode != 1 or b"nothing would run" not in result.stderr or os.path.exists(path[:-2] + "so"):
+            faults.append(f"{source!r} is built: exit status {result.returncode}, {result.stderr.decode()}")
     seed = random.randrange(10 ** 9)
     generator = random.Random(seed)
     for _ in range(500 if os.environ.get("CM1E_TEST_EFFORT") == "full" else 100):
         answer(folder, damaged(good, generator))
 if faults:
     sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
-print(f"{len(STATEMENTS) + len(SOURCES) + len(HUGE)} cases, seed {seed}")
+print(f"{len(STATEMENTS) + len(SOURCES) + len(HUGE) + len(NOTHING_RUNS)} cases, seed {seed}")
