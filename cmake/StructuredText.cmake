@@ -13,7 +13,8 @@ file(GLOB interface CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fb/interface/*.st
 set_property(SOURCE ${parts} PROPERTY COMPILE_OPTIONS -Wa,-I,${PROJECT_SOURCE_DIR})
 set_property(SOURCE ${parts} PROPERTY OBJECT_DEPENDS ${interface};${PROJECT_SOURCE_DIR}/src/st/st_program.h
              ${PROJECT_SOURCE_DIR}/src/st/st_runtime.h)
-# What flex writes compares an int with a size.
-set_property(SOURCE ${made}/st_lexer.c PROPERTY COMPILE_OPTIONS -Wno-sign-compare)
+# What flex writes compares an int with a size, and both put numbers into smaller types.
+set_property(SOURCE ${made}/st_lexer.c PROPERTY COMPILE_OPTIONS -Wno-sign-compare -Wno-conversion -Wno-sign-conversion)
+set_property(SOURCE ${made}/st_parser.c PROPERTY COMPILE_OPTIONS -Wno-conversion -Wno-sign-conversion)
 target_sources(cm1e_st PRIVATE ${made}/st_parser.c ${made}/st_lexer.c ${parts})
 target_include_directories(cm1e_st PRIVATE ${made})

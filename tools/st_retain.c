@@ -81,7 +81,8 @@ static cm1e_error_t read_file(st_retain_t *retain, cm1e_diag_t *diag)
     if (!file && errno == ENOENT)
         return CM1E_OK; /* the first run */
     if (!file)
-        return cm1e_diag_set(diag, CM1E_ERROR_IO, errno, "%s cannot be read: %s", retain->path, strerror(errno));
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, (uint32_t)errno, "%s cannot be read: %s", retain->path,
+                             strerror(errno));
     const bool headed = fgets(head, sizeof head, file) &&
         sscanf(head, "cm1e retain %" SCNx64 " %zu %" SCNx64, &layout, &size, &sum) == 3;
     const bool fits = headed && layout == retain->program->layout && size == retain->size;

@@ -22,7 +22,7 @@ static double swell(double x) { return x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 
 
 void tune_table(MC_TP_REF *table, double frequency, double amplitude)
 {
-    const int points = TUNE_POINTS_PER_PERIOD * TUNE_PERIODS;
+    const WORD points = TUNE_POINTS_PER_PERIOD * TUNE_PERIODS;
     table->NumberOfPairs = points;
     table->IsAbsolute = FALSE;
     for (int k = 1; k <= points; k++) {

@@ -23,7 +23,7 @@ void cm1e_axis_watch_standstill(const cm1e_axis_t *axis, standstill_t *standstil
 bool cm1e_axis_is_at_standstill(const cm1e_axis_t *axis, standstill_t *standstill)
 {
     const int32_t moved = (int32_t)((uint32_t)axis->position.raw - (uint32_t)standstill->position);
-    if (!axis->drive.feedback.online || llabs(moved) > cm1e_axis_tolerance_counts(axis, standstill_counts))
+    if (!axis->drive.feedback.online || (double)llabs(moved) > cm1e_axis_tolerance_counts(axis, standstill_counts))
         cm1e_axis_watch_standstill(axis, standstill);
     return axis->now_ns - standstill->since_ns >= standstill_ns;
 }

@@ -138,7 +138,8 @@ void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost)
     axis->silence.frozen = !answered && !lost && !brakes_on;
     if (answered) {
         axis->silence.silent = 0;
-        axis->silence.shaken -= axis->silence.shaken > 0;
+        if (axis->silence.shaken > 0)
+            axis->silence.shaken--;
     } else {
         note_silence(axis, 1);
     }

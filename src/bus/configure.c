@@ -256,7 +256,8 @@ static cm1e_image_slot_t find_slot(const cm1e_bus_t *bus, uint16_t position, int
     if (!entry)
         return (cm1e_image_slot_t){0};
     const uint32_t base = direction ? slave->placement.input_offset : slave->placement.output_offset;
-    return (cm1e_image_slot_t){.offset = base + entry->bit_offset / 8u, .bytes = (uint8_t)(entry->bits / 8)};
+    return (cm1e_image_slot_t){.offset = (base + entry->bit_offset / 8u) & 0xFFFFFF,
+                               .bytes = (uint8_t)(entry->bits / 8)};
 }
 
 cm1e_image_slot_t cm1e_bus_find_output(const cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex)

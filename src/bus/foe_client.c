@@ -112,7 +112,7 @@ void cm1e_foe_begin(cm1e_foe_t *foe, int64_t now_ns)
     foe->again = 0;
     foe->last = foe->partly = false;
     __atomic_store_n(&foe->done, 0, __ATOMIC_RELAXED);
-    foe->fault = (cm1e_foe_fault_t){FOE_GOOD};
+    foe->fault = (cm1e_foe_fault_t){.kind = FOE_GOOD};
     foe->busy_until_ns = now_ns + foe->options.answer_ns;
     const size_t name = strlen(foe->name);
     if (name == 0 || name > cm1e_foe_room(foe->mailbox))

@@ -161,8 +161,10 @@ static json_t *request_of(const cm1e_sdo_t *sdo)
     }
     const uint8_t *bytes = sdo->data;
     char *text = sdo->size < 32768 ? malloc(2 * sdo->size + 1) : NULL;
-    for (size_t i = 0; text && i <= sdo->size; i++)
-        snprintf(text + 2 * i, 3, i < sdo->size ? "%02x" : "", bytes[i < sdo->size ? i : 0]);
+    if (text)
+        text[0] = 0;
+    for (size_t i = 0; text && i < sdo->size; i++)
+        snprintf(text + 2 * i, 3, "%02x", bytes[i]);
     json_object_set_new(request, "data", json_string(text ? text : ""));
     free(text);
     return request;

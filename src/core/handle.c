@@ -11,7 +11,7 @@ bool cm1e_handle_take(cm1e_handle_place_t *places, unsigned count, void *object,
     for (unsigned i = 0; i < count; i++) {
         if (atomic_load(&places[i].object))
             continue;
-        *handle = (uint16_t)(next_use(&places[i]) << 8 | i);
+        *handle = (uint16_t)((unsigned)next_use(&places[i]) << 8 | i);
         void *none = NULL;
         if (atomic_compare_exchange_strong(&places[i].object, &none, object))
             return true;

@@ -201,7 +201,7 @@ static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdi
     const bool interrupted = disturbed && before.to_place && !c->now->to_position;
     const attempt_t first = before.held_back || interrupted ? WITH_ALL_JERK : AS_PLANNED;
     attempt_t kept = ATTEMPTS;
-    for (int attempt = first; attempt < ATTEMPTS; attempt++) {
+    for (int attempt = (int)first; attempt < ATTEMPTS; attempt++) {
         sum = attempt_to(axis, f, &before, (attempt_t)attempt, verdict);
         /* Where the coupling function itself leads beyond a limit, a catch-up could hold the axis at it for ever. */
         if (verdict->smooth || verdict->guard.limit == GUARD_DIRECTION ||

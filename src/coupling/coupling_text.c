@@ -9,8 +9,8 @@ static const char *const troubles[] = {
     [MASTER_DESTROYED] = "does not exist any more: its scheduler has been destroyed",
     [MASTER_ERROR_STOP] = "is in ErrorStop: look up its own error, and reset it with MC_Reset",
     [MASTER_STOPPING] = "is in ErrorStop: look up its own error, and reset it with MC_Reset",
-    [MASTER_FREE] = "has no torque, and so no set value: enable it with MC_Power before, or follow its actual value "
-                    "(mcActualValue)",
+    [MASTER_FREE] = ("has no torque, and so no set value: enable it with MC_Power before, or follow its actual value "
+                     "(mcActualValue)"),
     [MASTER_HOMING] = "is homed by its drive, which changes its positions: wait for the end of the homing",
     [MASTER_UNSEEN] = "shows no position: its inputs are missing",
     [MASTER_JUMPED] = "jumped: its position was set to where its motor is, which no slave can follow",

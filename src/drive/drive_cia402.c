@@ -100,7 +100,7 @@ static void take_edges(cm1e_drive_t *drive, unsigned n, unsigned status)
     cm1e_drive_probe_t *probe = &drive->probes.probe[n];
     const uint8_t *in = cm1e_bus_inputs(drive->bus);
     for (unsigned falling = 0; falling < 2; falling++) {
-        const unsigned stored = CM1E_PROBE_POSITIVE_STORED << falling;
+        const unsigned stored = (unsigned)CM1E_PROBE_POSITIVE_STORED << falling;
         if (!(probe->wanted & edge(falling)) || !(status & stored))
             continue;
         probe->positions[falling] = (int32_t)cm1e_get_u32(in + drive->image.in_latched[2 * n + falling].offset);

@@ -14,7 +14,7 @@ static const int64_t search_ns = 90000 * MS_IN_NS;
 static const int64_t silence_ns = 100 * MS_IN_NS; /* so long without inputs: the bus is away */
 static const int64_t release_ns = 2000 * MS_IN_NS;
 
-static uint8_t high_byte(const cm1e_drive_t *drive) { return drive->feedback.statusword >> 8; }
+static uint8_t high_byte(const cm1e_drive_t *drive) { return (uint8_t)(drive->feedback.statusword >> 8); }
 
 static bool in_cmd(const cm1e_drive_t *drive)
 {

@@ -315,17 +315,18 @@ static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t positi
     const bool own_targets = mode == CM1E_MODE_CSP || mode == CM1E_MODE_CSV || mode == CM1E_MODE_PP ||
                              mode == CM1E_MODE_PV;
     if (!possible && drive->torque.was_enabled && own_targets) {
-        actual->rejected += actual->rejected < UINT8_MAX;
+        if (actual->rejected < UINT8_MAX)
+            actual->rejected++;
         f->fresh = false;
         return false;
     }
     actual->rejected = 0;
-    actual->distrusted = possible ? actual->distrusted - (actual->distrusted > 0) : POSITIONS_TO_TRUST;
+    actual->distrusted = (uint8_t)(possible ? actual->distrusted - (actual->distrusted > 0) : POSITIONS_TO_TRUST);
     f->velocity = velocity_of(drive, in, position, mode);
-    if (contradicts(drive, position))
-        actual->contradictions += actual->contradictions < UINT8_MAX;
-    else
-        actual->contradictions -= actual->contradictions > 0;
+    if (!contradicts(drive, position))
+        actual->contradictions = (uint8_t)(actual->contradictions - (actual->contradictions > 0));
+    else if (actual->contradictions < UINT8_MAX)
+        actual->contradictions++;
     f->position = position;
     actual->read_ns = drive->now_ns;
     actual->seen = true;

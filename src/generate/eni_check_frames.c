@@ -250,7 +250,7 @@ static void check_image(cm1e_findings_t *findings, const cm1e_eni_t *document, b
 static uint64_t count_of(uint8_t code, bool reads, bool writes)
 {
     if (code == CM1E_ENI_LRW)
-        return (reads ? LRW_INPUTS : 0) + (writes ? LRW_OUTPUTS : 0);
+        return (reads ? LRW_INPUTS : 0u) + (writes ? LRW_OUTPUTS : 0u);
     return code == CM1E_ENI_LRD ? reads : writes;
 }
 

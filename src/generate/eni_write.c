@@ -141,7 +141,7 @@ static void put_range(writer_t *w, const char *name, const cm1e_eni_range_t *ran
 
 static void put_sync_manager(writer_t *w, const cm1e_eni_sync_manager_t *manager)
 {
-    const char *use = cm1e_word_text(cm1e_words_of_sync_managers, manager->manager.use);
+    const char *use = cm1e_word_text(cm1e_words_of_sync_managers, (int)manager->manager.use);
     char name[8];
     snprintf(name, sizeof name, "Sm%u", manager->number);
     cm1e_xml_open(w, name);

@@ -94,13 +94,13 @@ static void put_pdos(cm1e_xml_writer_t *xml, const cm1e_pdo_list_t *pdos)
 
 static void put_fmmu(cm1e_xml_writer_t *xml, const cm1e_described_fmmu_t *fmmu)
 {
-    const char *use = cm1e_word_text(cm1e_words_of_fmmus, fmmu->use);
+    const char *use = cm1e_word_text(cm1e_words_of_fmmus, (int)fmmu->use);
     put_text(xml, "Fmmu", use ? use : "");
 }
 
 static void put_sync_manager(cm1e_xml_writer_t *xml, const cm1e_described_sync_manager_t *manager)
 {
-    const char *use = cm1e_word_text(cm1e_words_of_sync_managers, manager->use);
+    const char *use = cm1e_word_text(cm1e_words_of_sync_managers, (int)manager->use);
     cm1e_xml_open(xml, "Sm");
     if (manager->minimum_length > 0)
         cm1e_xml_put_attribute(xml, "MinSize", "%u", manager->minimum_length);

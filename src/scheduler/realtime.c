@@ -64,7 +64,7 @@ static bool bind_to_cpu(realtime_t *realtime, int cpu)
     if (cpu > CPU_SETSIZE || pthread_getaffinity_np(pthread_self(), sizeof realtime->cpus, &realtime->cpus) != 0)
         return false;
     CPU_ZERO(&wanted);
-    CPU_SET(cpu - 1, &wanted);
+    CPU_SET((size_t)(cpu - 1), &wanted);
     realtime->bound = pthread_setaffinity_np(pthread_self(), sizeof wanted, &wanted) == 0;
     return realtime->bound;
 }

@@ -263,7 +263,7 @@ double cm1e_trace_value(const trace_column_t *column)
     } v;
 #define READ(member) (memcpy(&v.member, column->value, sizeof v.member), (double)v.member)
     switch (column->type) {
-    case CM1E_TRACE_BOOL: return column->bit ? (unsigned)READ(usint) >> (column->bit - 1) & 1 : READ(usint) != 0;
+    case CM1E_TRACE_BOOL: return ((unsigned)READ(usint) & (column->bit ? 1u << (column->bit - 1) : UINT8_MAX)) != 0;
     case CM1E_TRACE_SINT: return READ(sint);
     case CM1E_TRACE_INT: return READ(i);
     case CM1E_TRACE_DINT: return READ(dint);

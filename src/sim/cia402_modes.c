@@ -299,7 +299,8 @@ static void probe(cm1e_sim_cia402_t *drive, unsigned n, bool was, bool is)
         if (!(before & CM1E_PROBE_ENABLE)) /* the rising edge of the enable bit arms it anew */
             status = CM1E_PROBE_ENABLED;
         for (unsigned falling = 0; falling < 2; falling++) {
-            const unsigned wanted = CM1E_PROBE_POSITIVE << falling, stored = CM1E_PROBE_POSITIVE_STORED << falling;
+            const unsigned wanted = (unsigned)CM1E_PROBE_POSITIVE << falling;
+            const unsigned stored = (unsigned)CM1E_PROBE_POSITIVE_STORED << falling;
             if (!(function & wanted)) /* timing diagram of the touch probe: sampling off resets "stored" */
                 status &= ~stored;
             const bool again = function & CM1E_PROBE_CONTINUOUS || !(status & stored);

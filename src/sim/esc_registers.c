@@ -29,7 +29,7 @@ static bool range_writable(uint16_t address)
 /* Start, length and control of a sync manager can be written only while it is off (0x0806 bit 0). */
 static bool sm_writable(const cm1e_sim_slave_t *slave, uint16_t address)
 {
-    const unsigned field = (address - ESC_SM) % SM_BYTES;
+    const unsigned field = (unsigned)(address - ESC_SM) % SM_BYTES;
     const uint8_t activate = slave->memory[address - field + SM_ACTIVATE];
     return field == SM_ACTIVATE || (field < SM_STATUS && !(activate & 0x01));
 }

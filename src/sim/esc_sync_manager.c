@@ -29,7 +29,7 @@ void cm1e_sim_esc_sm_next_buffer(cm1e_sim_slave_t *slave, const esc_sync_manager
     uint8_t *status = registers(slave, sm) + AT_STATUS;
     const unsigned buffer = *status >> STATUS_BUFFER_SHIFT & NO_BUFFER;
     const unsigned next = buffer == NO_BUFFER ? 0 : (buffer + 1) % BUFFERS;
-    *status = (uint8_t)((*status & ~STATUS_BUFFER) | next << STATUS_BUFFER_SHIFT);
+    *status = (uint8_t)((*status & ~(unsigned)STATUS_BUFFER) | next << STATUS_BUFFER_SHIFT);
 }
 
 void cm1e_sim_esc_sm_accessed(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm, bool written)

@@ -86,13 +86,13 @@ cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag)
 {
     FILE *file = fopen(path, "rb");
     if (!file)
-        return cm1e_diag_set(diag, CM1E_ERROR_IO, errno, "%s cannot be read: %s", path, strerror(errno));
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, (uint32_t)errno, "%s cannot be read: %s", path, strerror(errno));
     char *text = malloc(ST_SOURCE_BYTES + 1);
     const size_t size = text ? fread(text, 1, ST_SOURCE_BYTES + 1, file) : 0;
     const bool failed = !text || ferror(file);
     cm1e_error_t error = CM1E_OK;
     if (failed)
-        error = cm1e_diag_set(diag, CM1E_ERROR_IO, errno, "%s cannot be read: %s", path, strerror(errno));
+        error = cm1e_diag_set(diag, CM1E_ERROR_IO, (uint32_t)errno, "%s cannot be read: %s", path, strerror(errno));
     else if (size > ST_SOURCE_BYTES)
         error = cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s is larger than %d MB; divide it", path,
                               ST_SOURCE_BYTES >> 20);

@@ -133,7 +133,7 @@ static uint64_t effective_capabilities(const doctor_t *doctor)
     return mask;
 }
 
-static bool limit_reached(int resource, rlim_t wanted)
+static bool limit_reached(__rlimit_resource_t resource, rlim_t wanted)
 {
     struct rlimit limit;
     return getrlimit(resource, &limit) == 0 && (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= wanted);
