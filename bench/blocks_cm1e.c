@@ -7,7 +7,10 @@
 
 #include "assembly/assembly.h"
 #include "axis/axis_setpoint.h"
+#include "bridge/cool_muscle.h"
 #include "cm1e/plcopen.h"
+#include "coupling/coupling_private.h"
+#include "homing/homing.h"
 
 enum { BUSES = 2, BUS_AXES = BLOCKS_MAX_AXES / BUSES };
 #define CYCLE_NS INT64_C(1000000)
@@ -26,6 +29,7 @@ static MC_MoveCircularAbsolute_t arcs[BLOCKS_GROUPS];
 static int64_t cycle_now_ns;
 static blocks_work_t work;
 static size_t axis_heap, group_heap;
+static size_t plain_heap, unasked_heap; /* of an axis that follows nothing; of that, for what it may follow */
 
 static void fail(const char *why)
 {
@@ -155,11 +159,38 @@ static void make_groups(void)
     }
 }
 
+/* Made without the room of couplings, it has all that an axis has for other purposes. */
+static void weigh_an_axis_that_follows_nothing(void)
+{
+    cm1e_diag_t diag = {0};
+    cm1e_bus_config_t config;
+    cm1e_bus_t *bus = NULL;
+    cm1e_axis_t *axis = NULL, *without = NULL;
+    cm1e_bus_config_init(&config, "sim", 1);
+    config.virtual_time = true;
+    config.axes[0].follows = CM1E_FOLLOWS_NOTHING;
+    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
+        fail(diag.text);
+    cm1e_bus_config_free(&config);
+    const size_t before = blocks_heap_bytes();
+    if (cm1e_axis_create(&axis, bus, 0, &diag) != CM1E_OK)
+        fail(diag.text);
+    plain_heap = blocks_heap_bytes() - before;
+    if (cm1e_axis_make(&without, bus, 0, &diag) != CM1E_OK || cm1e_homing_add(without, &diag) != CM1E_OK ||
+        cm1e_cool_muscle_add(without, &diag) != CM1E_OK)
+        fail(diag.text);
+    unasked_heap = 2 * plain_heap + before - blocks_heap_bytes() - sizeof(followed_t);
+    cm1e_axis_destroy(without);
+    cm1e_axis_destroy(axis);
+    cm1e_bus_close(bus);
+}
+
 static bool make(unsigned count)
 {
     cm1e_diag_t diag = {0};
     if (axes[0])
         return true; /* our two subjects work on the same axes */
+    weigh_an_axis_that_follows_nothing();
     for (unsigned i = 0; i < BUSES; i++)
         buses[i] = start_bus();
     for (unsigned i = 0; i < count; i++) {
@@ -393,6 +424,9 @@ static bool failed(unsigned i)
 static const blocks_bytes_t *bytes(void)
 {
     static blocks_bytes_t list[] = {{"an axis, with its couplings and cams", 0},
+                                    {"an axis that follows nothing", 0},
+                                    {"of that for what it may follow", 0},
+                                    {"of that for its followers", sizeof(followed_t)},
                                     {"of that the axis itself", sizeof(struct cm1e_axis)},
                                     {"MC_Power", sizeof(MC_Power_t)},
                                     {"MC_MoveAbsolute", sizeof(MC_MoveAbsolute_t)},
@@ -403,7 +437,9 @@ static const blocks_bytes_t *bytes(void)
                                     {"MC_MoveCircularAbsolute", sizeof(MC_MoveCircularAbsolute_t)},
                                     {NULL, 0}};
     list[0].bytes = axis_heap;
-    list[6].bytes = group_heap;
+    list[1].bytes = plain_heap;
+    list[2].bytes = unasked_heap;
+    list[9].bytes = group_heap;
     return list;
 }
 

@@ -153,6 +153,14 @@ typedef enum cm1e_coupling_stop {
     CM1E_COUPLING_STOP_KEEP_RATIO,   /**< the master is braked so that the axis can follow it down to standstill */
 } cm1e_coupling_stop_t;
 
+/** What an axis may follow. Memory for it is set aside when the axis is made. An encoder and an axis whose drive makes
+ *  the motions follow nothing in any case. */
+typedef enum cm1e_follows {
+    CM1E_FOLLOWS_ANY = 0,            /**< gears, combinations and cams: 24 kB with cams of 128 points */
+    CM1E_FOLLOWS_GEARS,              /**< MC_GearIn, MC_GearInPos, MC_CombineAxes, but no cams: 4 kB */
+    CM1E_FOLLOWS_NOTHING,            /**< nothing. Others may follow this axis */
+} cm1e_follows_t;
+
 /** Types of signals, with their names in IEC 61131-3. */
 typedef enum cm1e_io_type {
     CM1E_IO_BOOL = 0, /**< 1 bit */
@@ -255,6 +263,7 @@ typedef struct cm1e_axis_config {
     cm1e_recover_t recover;          /**< who brings its slave back; all axes of a bridge say the same */
     bool sim_absent;                 /**< simulated segment only: true: not plugged in at the start */
     cm1e_wiring_config_t wiring;     /**< signals of other slaves */
+    cm1e_follows_t follows;
 } cm1e_axis_config_t;
 
 /** A start-up SDO of a slave: written at every start, and when the slave has come back. */

@@ -96,6 +96,7 @@ extern "C" {
     X(ERROR_AXIS_TABLE, -100, "the table of a profile is empty, too long, not finite or its times do not rise")     \
     X(ERROR_AXIS_TABLE_LATE, -101, "frames were lost or not sent for too long for a table over time")               \
     X(ERROR_AXIS_NO_TABLES, -117, "the axis has no memory for tables: set table_profiles in its configuration")     \
+    X(ERROR_AXIS_NO_COUPLINGS, -118, "the axis has no memory to follow others: set follows in its configuration")   \
     X(ERROR_AXIS_STEP_INPUT, -110, "an input of the homing step is not valid")                                      \
     X(ERROR_AXIS_STEP_SWITCH, -111, "the switch of the homing step is not configured")                              \
     X(ERROR_AXIS_STEP_TIME, -112, "homing step: TimeLimit passed before the reference was found")                   \

@@ -7,6 +7,7 @@
 #include "axis/axis_backlash.h"
 #include "axis/axis_commands.h"
 #include "axis/axis_device.h"
+#include "axis/axis_driving.h"
 #include "axis/axis_events.h"
 #include "axis/axis_extras.h"
 #include "axis/axis_guard.h"
@@ -40,12 +41,15 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     if (error == CM1E_OK)
         error = cm1e_axis_table_init(axis, diag);
     if (error == CM1E_OK)
+        error = cm1e_axis_drive_profile_init(axis, diag);
+    if (error == CM1E_OK)
         error = cm1e_axis_probe_init(axis, diag);
     axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
     axis->mode = error == CM1E_OK && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
     if (error != CM1E_OK) {
         cm1e_drive_free(&axis->drive);
-        free(axis->tables);
+        free(axis->set_aside.tables);
+        free(axis->set_aside.driving);
         free(axis);
         return error;
     }
@@ -69,7 +73,8 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
     if (axis->handle)
         cm1e_handle_give_back(cm1e_axis_places, axis->handle);
     cm1e_drive_free(&axis->drive);
-    free(axis->tables);
+    free(axis->set_aside.tables);
+    free(axis->set_aside.driving);
     cm1e_axis_probe_free(axis);
     if (axis->motor_hooks)
         axis->motor_hooks->free(axis);

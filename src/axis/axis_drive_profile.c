@@ -101,7 +101,7 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     const double scale = fabs(axis->position.scale), acceleration = limits.acceleration * scale;
     const double braking = fmin(limits.deceleration * scale, d->velocity_mode ? INFINITY : acceleration);
-    if (axis->driving.submitted && cm1e_sdo_state(&axis->driving.sdo) == CM1E_SDO_BUSY)
+    if (axis->set_aside.driving->submitted && cm1e_sdo_state(&axis->set_aside.driving->sdo) == CM1E_SDO_BUSY)
         return CM1E_ERROR_BUSY; /* of a motion that was stopped */
     d->speed = limits.velocity * scale;
     d->braking = braking;
@@ -112,16 +112,25 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
     return CM1E_OK;
 }
 
+cm1e_error_t cm1e_axis_drive_profile_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    if (!drive_profiles(axis))
+        return CM1E_OK;
+    axis->set_aside.driving = calloc(1, sizeof *axis->set_aside.driving);
+    return axis->set_aside.driving ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the motions "
+                                                             "of the drive of axis \"%s\".", axis->config->name);
+}
+
 static void enter(cm1e_axis_t *axis, drive_step_t step)
 {
-    axis->driving.step = step;
-    axis->driving.step_ns = axis->now_ns;
-    cm1e_axis_watch_standstill(axis, &axis->driving.standstill);
+    axis->set_aside.driving->step = step;
+    axis->set_aside.driving->step_ns = axis->now_ns;
+    cm1e_axis_watch_standstill(axis, &axis->set_aside.driving->standstill);
 }
 
 void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d)
 {
-    axis->driving = *d;
+    *axis->set_aside.driving = *d;
     cm1e_axis_set_reached(axis, false);
     cm1e_axis_set_source(axis, &cm1e_source_drive);
     enter(axis, DRIVE_WRITE);
@@ -144,7 +153,7 @@ static void back(cm1e_axis_t *axis) { enter(axis, DRIVE_RETURN); }
 /* Without torque there is nothing to stop and no mode to wait for. */
 static bool off(cm1e_axis_t *axis)
 {
-    if (axis->driving.goal != HOME_GOAL_OFF)
+    if (axis->set_aside.driving->goal != HOME_GOAL_OFF)
         return false;
     axis->drive.command.halt = false;
     axis->drive.command.mode = axis->mode;
@@ -157,7 +166,7 @@ static bool off(cm1e_axis_t *axis)
 /* Nothing has moved: no reason for ErrorStop. */
 static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 {
-    const driving_t *d = &axis->driving;
+    const driving_t *d = axis->set_aside.driving;
     const int number = cm1e_axis_number_of_object(d->sdo.index, d->sdo.subindex);
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = number, .value = d->raw[d->next],
@@ -167,7 +176,7 @@ static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 
 static void submit(cm1e_axis_t *axis)
 {
-    driving_t *d = &axis->driving;
+    driving_t *d = axis->set_aside.driving;
     const uint16_t index = parameters[d->velocity_mode][d->next];
     cm1e_put_uint(d->data, sizeof d->data, d->raw[d->next]);
     d->sdo = (cm1e_sdo_t){.position = axis->drive.position, .index = index, .write = true, .data = d->data,
@@ -181,7 +190,7 @@ static void submit(cm1e_axis_t *axis)
 
 static void step_write(cm1e_axis_t *axis)
 {
-    driving_t *d = &axis->driving;
+    driving_t *d = axis->set_aside.driving;
     if (d->goal != HOME_GOAL_DONE) {
         leave(axis); /* a transfer under way ends by itself */
         return;
@@ -220,7 +229,7 @@ static void step_write(cm1e_axis_t *axis)
 
 static void step_switch(cm1e_axis_t *axis)
 {
-    const driving_t *d = &axis->driving;
+    const driving_t *d = axis->set_aside.driving;
     cm1e_axis_set_to_actual(axis);
     if (!cm1e_axis_acts_in(axis, mode_of(d))) /* the drive's mode timeout bounds this */
         return;
@@ -232,7 +241,7 @@ static void step_switch(cm1e_axis_t *axis)
 
 static bool there(const cm1e_axis_t *axis)
 {
-    return llabs((int64_t)axis->position.raw - axis->driving.target) <= there_counts;
+    return llabs((int64_t)axis->position.raw - axis->set_aside.driving->target) <= there_counts;
 }
 
 static void arrived(cm1e_axis_t *axis)
@@ -244,7 +253,7 @@ static void arrived(cm1e_axis_t *axis)
 /* UG 6.2.2, the handshake: bit 4 announces the set-point, bit 12 acknowledges it (cm1e_drive_write()). */
 static void step_go(cm1e_axis_t *axis)
 {
-    const driving_t *d = &axis->driving;
+    const driving_t *d = axis->set_aside.driving;
     cm1e_axis_set_to_actual(axis);
     if (axis->drive.feedback.bit12 && axis->drive.target.set_point == d->target)
         enter(axis, DRIVE_MOVE);
@@ -263,7 +272,7 @@ static bool can_halt(const cm1e_axis_t *axis)
         return true;
     const double v = axis->drive.feedback.velocity / axis->position.scale;
     const double now = cm1e_axis_units(axis, axis->setpoint.position);
-    const double way = v * fabs(v) * fabs(axis->position.scale) / (2.0 * axis->driving.braking);
+    const double way = v * fabs(v) * fabs(axis->position.scale) / (2.0 * axis->set_aside.driving->braking);
     const double end = now + v * halt_latency_s + way;
     return v > 0.0 ? end <= axis->limits.upper : v < 0.0 ? end >= axis->limits.lower : true;
 }
@@ -271,7 +280,7 @@ static bool can_halt(const cm1e_axis_t *axis)
 static void step_move(cm1e_axis_t *axis)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
-    const driving_t *d = &axis->driving;
+    const driving_t *d = axis->set_aside.driving;
     cm1e_axis_set_to_actual(axis);
     if (!f->online)
         return;
@@ -289,7 +298,7 @@ static void step_move(cm1e_axis_t *axis)
 
 static void step_halt(cm1e_axis_t *axis)
 {
-    driving_t *d = &axis->driving;
+    driving_t *d = axis->set_aside.driving;
     cm1e_axis_set_to_actual(axis);
     const bool at_rest = cm1e_axis_is_at_standstill(axis, &d->standstill);
     const bool expired = axis->now_ns - d->step_ns >= cm1e_axis_halt_bound_ns(axis, d->speed / d->braking, true);
@@ -318,19 +327,19 @@ static bool step(cm1e_axis_t *axis)
         [DRIVE_WRITE] = step_write, [DRIVE_SWITCH] = step_switch, [DRIVE_GO] = step_go,
         [DRIVE_MOVE] = step_move, [DRIVE_HALT] = step_halt, [DRIVE_RETURN] = step_return,
     };
-    if (cm1e_axis_has_lost_torque(axis, axis->driving.goal)) {
+    if (cm1e_axis_has_lost_torque(axis, axis->set_aside.driving->goal)) {
         (void)off(axis);
         return true;
     }
-    steps[axis->driving.step](axis);
+    steps[axis->set_aside.driving->step](axis);
     return true;
 }
 
 static void stop(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
 {
     (void)ramp; /* the drive has its own */
-    axis->driving.goal = goal;
-    switch (axis->driving.step) {
+    axis->set_aside.driving->goal = goal;
+    switch (axis->set_aside.driving->step) {
     case DRIVE_WRITE: /* still in the axis's own mode, holding */
     case DRIVE_SWITCH:
     case DRIVE_RETURN: /* standing; HOLD has to wait for the mode that is under way */
@@ -348,7 +357,7 @@ static void stop(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_
 
 static bool goes(cm1e_axis_t *axis, double sign)
 {
-    return axis->driving.goal == HOME_GOAL_DONE && axis->driving.way * sign > 0.0;
+    return axis->set_aside.driving->goal == HOME_GOAL_DONE && axis->set_aside.driving->way * sign > 0.0;
 }
 
 /* Only the end of its way is known. */
@@ -361,7 +370,7 @@ static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 /* What the motor is to do while it moves by itself; in the other steps the axis's own targets hold. */
 static void write(cm1e_axis_t *axis)
 {
-    const driving_t *d = &axis->driving;
+    const driving_t *d = axis->set_aside.driving;
     const bool under_way = d->step == DRIVE_GO || d->step == DRIVE_MOVE || d->step == DRIVE_HALT;
     if (under_way && !d->velocity_mode)
         axis->drive.command.target_position = d->target;

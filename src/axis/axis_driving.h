@@ -8,6 +8,8 @@
 #include "axis/axis_parts.h"
 
 /* axis_drive_profile.c */
+/** Sets memory aside, if the drive makes the motions. @rt init */
+cm1e_error_t cm1e_axis_drive_profile_init(cm1e_axis_t *axis, cm1e_diag_t *diag);
 /** Checks a command that begins at standstill; nothing has changed then. */
 cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move_t *move, driving_t *d);
 void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d);

@@ -285,7 +285,7 @@ typedef struct standstill {
     int32_t position; /**< counts of the drive */
 } standstill_t;
 
-/** A motion that the drive does by itself. Written by axis_drive_profile.c. */
+/** A motion that the drive does by itself. */
 typedef struct driving {
     drive_step_t step;
     home_goal_t goal;
@@ -343,6 +343,13 @@ typedef struct belongs {
     const void *cycle; /**< what runs its cycle: cm1e_axis_share_cycle(); NULL: its bus alone */
 } belongs_t;
 
+/** Memory that is set aside when the axis is made, where the configuration asks for it. Written by axis_table.c and
+ *  axis_drive_profile.c. */
+typedef struct set_aside {
+    tables_t *tables;   /**< NULL: none (cm1e_axis_config_t.table_profiles) */
+    driving_t *driving; /**< NULL: the host makes the motions (cm1e_axis_config_t.motion) */
+} set_aside_t;
+
 /* ---- the axis ---------------------------------------------------------------------------------------------------- */
 
 /** The axis. All functions of this room run in the cycle unless marked otherwise. The order of the members keeps those
@@ -365,7 +372,8 @@ struct cm1e_axis {
     const axis_events_t *events;    /**< how a motion reports its end and its failure */
     const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
     const coupling_hooks_t *coupling_hooks; /**< NULL: it can neither follow nor be followed */
-    struct coupling *coupling;      /**< data of these hooks */
+    struct coupling *coupling;      /**< data of these hooks; NULL: it follows nothing */
+    struct followed *followed;      /**< data of these hooks about its slaves */
     commands_t commands;
     objects_t objects;
     in_position_t in_position;
@@ -384,8 +392,7 @@ struct cm1e_axis {
     override_t override, override_refused; /**< the second: the last refused one, for the text */
     belongs_t belongs;
     outside_t outside;
-    tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
-    driving_t driving;
+    set_aside_t set_aside;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */
     struct homing *homing;          /**< data of these hooks */
     struct cool_muscle *muscle;     /**< data of motor_hooks */

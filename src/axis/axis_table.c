@@ -29,8 +29,8 @@ cm1e_error_t cm1e_axis_table_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     if (!axis->config->table_profiles)
         return CM1E_OK;
-    axis->tables = calloc(1, sizeof *axis->tables);
-    return axis->tables ? CM1E_OK
+    axis->set_aside.tables = calloc(1, sizeof *axis->set_aside.tables);
+    return axis->set_aside.tables ? CM1E_OK
                         : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the profiles of an axis.");
 }
 
@@ -99,12 +99,12 @@ static bool goes_after(cm1e_table_profile_t *table, double from_s, double sign)
 static bool goes(cm1e_axis_t *axis, double sign)
 {
     const double now_s = (double)axis->setpoint.profile_cycles * axis->cycle_s + axis->setpoint.profile_offset_s;
-    return cm1e_axis_profile_goes(axis, sign) || goes_after(&axis->tables->running, now_s, sign);
+    return cm1e_axis_profile_goes(axis, sign) || goes_after(&axis->set_aside.tables->running, now_s, sign);
 }
 
 CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
 {
-    cm1e_table_profile_stretch_at(&axis->tables->running, time_s, &axis->setpoint.stretch);
+    cm1e_table_profile_stretch_at(&axis->set_aside.tables->running, time_s, &axis->setpoint.stretch);
 }
 
 const source_t cm1e_source_table = {
@@ -121,7 +121,7 @@ const source_t cm1e_source_table = {
 static void run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
                       double offset_s)
 {
-    axis->tables->running = *table;
+    axis->set_aside.tables->running = *table;
     cm1e_axis_put_duration(axis, table->duration_s, table->end);
     cm1e_axis_begin_run(axis, &cm1e_source_table, from, target, offset_s);
 }
@@ -192,7 +192,7 @@ cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t 
     table_points_t points;
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;
-    cm1e_error_t error = axis->tables ? read_points(command->table, &points) : CM1E_ERROR_AXIS_NO_TABLES;
+    cm1e_error_t error = axis->set_aside.tables ? read_points(command->table, &points) : CM1E_ERROR_AXIS_NO_TABLES;
     if (error == CM1E_OK)
         error = prepare(axis, &from, command->kind, &points, &table, &needed);
     if (error != CM1E_OK)
@@ -206,11 +206,11 @@ cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t 
 
 cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    if (!axis->tables)
+    if (!axis->set_aside.tables)
         return CM1E_ERROR_AXIS_NO_TABLES;
     if (command->buffer_mode != mcBuffered)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
-    if (cm1e_axis_find_waiting(axis, axis->tables->waiting_id))
+    if (cm1e_axis_find_waiting(axis, axis->set_aside.tables->waiting_id))
         return CM1E_ERROR_FULL;
     table_points_t points;
     move_t move = {.kind = (uint8_t)command->kind, .buffer_mode = mcBuffered};
@@ -218,10 +218,10 @@ cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t
     if (error != CM1E_OK)
         return error;
     /* The number is set before it waits, because it may begin at once. */
-    axis->tables->waiting_id = axis->commands.last_id + 1 ? axis->commands.last_id + 1 : 1;
-    axis->tables->waiting = points;
+    axis->set_aside.tables->waiting_id = axis->commands.last_id + 1 ? axis->commands.last_id + 1 : 1;
+    axis->set_aside.tables->waiting = points;
     error = cm1e_axis_buffer(axis, &move);
-    axis->tables->waiting_id = *id = error != CM1E_OK ? 0 : move.id;
+    axis->set_aside.tables->waiting_id = *id = error != CM1E_OK ? 0 : move.id;
     return error;
 }
 
@@ -229,9 +229,9 @@ cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, move_t *move, const from_t
 {
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;
-    if (!axis->tables || axis->tables->waiting_id != move->id)
+    if (!axis->set_aside.tables || axis->set_aside.tables->waiting_id != move->id)
         return CM1E_ERROR_AXIS_STATE;
-    const table_points_t *points = &axis->tables->waiting;
+    const table_points_t *points = &axis->set_aside.tables->waiting;
     const cm1e_error_t error = prepare(axis, from, (cm1e_command_kind_t)move->kind, points, &table, &needed);
     if (error == CM1E_OK)
         take(axis, move, from, points, &table, offset_s);

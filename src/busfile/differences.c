@@ -194,7 +194,7 @@ static bool compare_scalar(const compare_t *compare, const yaml_node_t *node, co
 
 /* ---- groups and lists -------------------------------------------------------------------------------------------- */
 
-enum { MAX_FIELDS = 32 };
+enum { MAX_FIELDS = 40 };
 
 static bool compare_value(const compare_t *compare, const yaml_node_t *node, const cyaml_schema_value_t *schema,
                           const char *key);

@@ -44,6 +44,11 @@ static const cyaml_strval_t coupling_stops[] = {
     {"coupled_axes", CM1E_COUPLING_STOP_COUPLED},
     {"keep_ratio", CM1E_COUPLING_STOP_KEEP_RATIO},
 };
+static const cyaml_strval_t follows[] = {
+    {"any", CM1E_FOLLOWS_ANY},
+    {"gears", CM1E_FOLLOWS_GEARS},
+    {"nothing", CM1E_FOLLOWS_NOTHING},
+};
 static const cyaml_strval_t pdo_orders[] = {
     {"ug_4_4", CM1E_PDO_ORDER_UG_4_4},
     {"ug_7_2", CM1E_PDO_ORDER_UG_7_2},
@@ -200,6 +205,7 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_STRING("firmware", firmware),
     ENUM_OF("mapping", cm1e_busfile_axis_t, axis.mapping, mappings),
     AXIS_BOOL("table_profiles", table_profiles),
+    ENUM_OF("follows", cm1e_busfile_axis_t, axis.follows, follows),
     AXIS_UINT("cam_points", cam_points),
     ENUM_OF("coupling_stop", cm1e_busfile_axis_t, axis.coupling_stop, coupling_stops),
     AXIS_FLOAT("encoder_filter_s", encoder_filter_s),

@@ -204,6 +204,11 @@ static bool check_coupling(const check_t *check)
     if (points != 0 && (points < CM1E_CAM_POINTS_MINIMUM || points > CM1E_CAM_POINTS_MAXIMUM))
         return axis_wrong(check, "cam_points", "is %u; expected %d ... %d", points, CM1E_CAM_POINTS_MINIMUM,
                           CM1E_CAM_POINTS_MAXIMUM);
+    if ((unsigned)check->axis->follows > CM1E_FOLLOWS_NOTHING)
+        return axis_wrong(check, "follows", "is %d; expected one of the enumeration", (int)check->axis->follows);
+    if (points != 0 && check->axis->follows != CM1E_FOLLOWS_ANY)
+        return axis_wrong(check, "cam_points", "is given, and the axis follows no cams (follows: %s); expected one of "
+                          "them", check->axis->follows == CM1E_FOLLOWS_GEARS ? "gears" : "nothing");
     return (unsigned)check->axis->coupling_stop <= CM1E_COUPLING_STOP_KEEP_RATIO ||
            axis_wrong(check, "coupling_stop", "is %d; expected one of the enumeration",
                       (int)check->axis->coupling_stop);

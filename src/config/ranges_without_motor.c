@@ -65,6 +65,7 @@ bool cm1e_config_check_without_motor(const check_t *check)
         {"jog.fast", encoder && axis->jog_fast != 0},
         {"table_profiles", encoder && axis->table_profiles},
         {"cam_points", encoder && axis->cam_points != 0},
+        {"follows", encoder && axis->follows != CM1E_FOLLOWS_ANY},
         {"coupling_stop", encoder && axis->coupling_stop != CM1E_COUPLING_STOP_THIS},
     };
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)

@@ -90,7 +90,8 @@ cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, boo
                                   bool slave_absolute, MC_CAM_ID *id)
 {
     cam_slot_t *slot = NULL;
-    const cm1e_error_t error = select_cam(slave, cam, periodic, &slot);
+    const cm1e_error_t error = coupling_can(slave, CM1E_COMMAND_CAM_IN)
+                                   ? select_cam(slave, cam, periodic, &slot) : CM1E_ERROR_AXIS_NO_COUPLINGS;
     *id = 0;
     cm1e_axis_remember_not_set(slave, (not_set_t){.error = error, .what = NOT_SET_CAM});
     if (error != CM1E_OK)
@@ -101,9 +102,26 @@ cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, boo
     return CM1E_OK;
 }
 
+void cm1e_no_couplings_text(const cm1e_axis_t *axis, const char *what, char *text, size_t size)
+{
+    const cm1e_axis_config_t *config = axis->config;
+    if (config->type == CM1E_AXIS_ENCODER || config->motion == CM1E_MOTION_DRIVE)
+        snprintf(text, size, "Axis \"%s\": %s, because the axis cannot follow: %s.", config->name, what,
+                 config->type == CM1E_AXIS_ENCODER ? "it is an encoder" : "its drive makes the motions (motion: drive)");
+    else
+        snprintf(text, size, "Axis \"%s\": %s, because the configuration has `follows: %s` for this axis. Write "
+                 "`follows: %s` there.", config->name, what,
+                 config->follows == CM1E_FOLLOWS_GEARS ? "gears" : "nothing",
+                 config->follows == CM1E_FOLLOWS_GEARS ? "any" : "any, or gears if it follows no cam");
+}
+
 /* Explains what is wrong with the cam that was refused last, and what would be right. */
 void cm1e_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    if (axis->not_set.error == CM1E_ERROR_AXIS_NO_COUPLINGS) {
+        cm1e_no_couplings_text(axis, "the cam was not selected", text, size);
+        return;
+    }
     const cams_t *cams = axis->coupling->cams;
     const char *name = axis->config->name;
     const int point = cams->wrong + 1;

@@ -90,7 +90,7 @@ static bool beyond(cm1e_axis_t *axis, const char *what, const char *unit, double
 {
     if (asked <= fmax(allowed, fabs(now)) * (1.0 + relative_tolerance))
         return false;
-    axis->coupling->cams->approach_refused = (approach_refused_t){what, unit, asked, allowed};
+    axis->coupling->approach_refused = (approach_refused_t){what, unit, asked, allowed};
     return true;
 }
 
@@ -129,7 +129,7 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
     if (follow->cam.slot)
         cm1e_cam_in_point(axis, follow, sync, &meeting, &end);
     const double place = cm1e_position_minus(meeting, from->position) / axis->position.scale;
-    axis->coupling->cams->approach_refused = (approach_refused_t){0};
+    axis->coupling->approach_refused = (approach_refused_t){0};
     if (!cm1e_curve_point_of(&begin, &slave, link->seen.velocity, link->seen.acceleration))
         return CM1E_ERROR_AXIS_SYNC_WAY;
     end.position = cm1e_approach_end(approach->mode, 0.0, begin.slope, place, end.slope, -first, approach->turn);
@@ -192,7 +192,7 @@ cm1e_error_t cm1e_coupling_approach_begin(cm1e_axis_t *axis, follow_t *follow, c
         const double left = fabs(approach->start_distance) - since_start(follow, counts);
         if (left > same_place)
             return plan(axis, follow, from, &limits, counts + sign * left);
-        axis->coupling->cams->approach_refused = (approach_refused_t){0}; /* the master passed it in one cycle */
+        axis->coupling->approach_refused = (approach_refused_t){0}; /* the master passed it in one cycle */
         return CM1E_ERROR_AXIS_SYNC_WAY;
     }
     const double next = ahead(follow);
@@ -307,7 +307,7 @@ cm1e_error_t cm1e_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move,
 
 void cm1e_coupling_approach_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const approach_refused_t *r = &axis->coupling->cams->approach_refused;
+    const approach_refused_t *r = &axis->coupling->approach_refused;
     if (r->what)
         snprintf(text, size, "Axis \"%s\": the approach needs a %s of %.6g %s at the master's present velocity; up to "
                  "%.6g is allowed. Use a larger MasterStartDistance, or a slower master.",

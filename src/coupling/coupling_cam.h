@@ -67,7 +67,7 @@ typedef struct cam_refused {
     double position, wanted_position, velocity, wanted_velocity;
 } cam_refused_t;
 
-/** Made with the axis. */
+/** Made with the axis, if it may follow cams. */
 typedef struct cams {
     cam_slot_t slots[CAM_SLOTS];
     MC_CAM_ID last;
@@ -75,7 +75,6 @@ typedef struct cams {
     cm1e_cam_fault_t fault;        /**< fault of the last cam that was refused, for the text */
     int wrong;                     /**< point of that fault, from 0 */
     cam_refused_t refused;
-    approach_refused_t approach_refused;
     cm1e_cam_knot_t knots[];
 } cams_t;
 

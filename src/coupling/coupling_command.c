@@ -15,6 +15,14 @@ static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_COMBINE_AXES] = cm1e_gear_prepare,
 };
 
+/* What can be said of the command without its numbers. */
+static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
+{
+    if (!command->coupling)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    return coupling_can(axis, command->kind) ? CM1E_OK : CM1E_ERROR_AXIS_NO_COUPLINGS;
+}
+
 /* Refuses limits that are too small to compute with. What the masters do when the command begins does not matter. */
 static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
@@ -124,8 +132,9 @@ cm1e_error_t cm1e_coupling_start(cm1e_axis_t *axis, const cm1e_axis_command_t *c
     const from_t from = from_set(axis);
     move_t move = cm1e_axis_move_of(command);
     cm1e_motion_limits_t limits;
-    const cm1e_error_t error = command->coupling ? prepare(axis, &move, command->coupling, &from, &limits)
-                                                 : CM1E_ERROR_INVALID_ARGUMENT;
+    cm1e_error_t error = check(axis, command);
+    if (error == CM1E_OK)
+        error = prepare(axis, &move, command->coupling, &from, &limits);
     if (error != CM1E_OK)
         return error;
     follow_t *follow = cm1e_coupling_spare(axis);
@@ -146,13 +155,14 @@ cm1e_error_t cm1e_coupling_start(cm1e_axis_t *axis, const cm1e_axis_command_t *c
 cm1e_error_t cm1e_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     move_t move = cm1e_axis_move_of(command);
+    cm1e_error_t error = check(axis, command);
+    if (error != CM1E_OK)
+        return error;
     waiting_coupling_t *place = free_place(axis);
-    if (!command->coupling)
-        return CM1E_ERROR_INVALID_ARGUMENT;
     if (!place)
         return CM1E_ERROR_FULL;
     *place = (waiting_coupling_t){axis->commands.last_id + 1 ? axis->commands.last_id + 1 : 1, *command->coupling};
-    const cm1e_error_t error = cm1e_axis_buffer(axis, &move);
+    error = cm1e_axis_buffer(axis, &move);
     if (error != CM1E_OK)
         place->id = 0; /* the number will belong to another command */
     else

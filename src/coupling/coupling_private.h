@@ -151,7 +151,16 @@ typedef struct observed {
     uint32_t lost;                 /**< cycles in a row without a position */
 } observed_t;
 
-/** The couplings of an axis, made with it. The first cache line has what every cycle needs. The end of `phasing`, the
+/** What an axis needs to be followed. Every axis has it, also one that follows nothing. */
+typedef struct followed {
+    link_t *slaves;                /**< the slaves of this axis */
+    uint64_t mark;                 /**< the last search that visited this axis */
+    observed_t own;
+    char other_name[CM1E_NAME_LENGTH]; /**< name of a master that was lost, or of the axis because of which this one
+                                            stops */
+} followed_t;
+
+/** The couplings of an axis, made with it unless the configuration says that it follows nothing. The first cache line has what every cycle needs. The end of `phasing`, the
  *  beginning of `catch_up` and the present `follow_t` have the rest of it. */
 typedef struct coupling {
     follow_t *now;                 /**< the present coupling, or the last one; NULL: there was none */
@@ -170,20 +179,27 @@ typedef struct coupling {
     phasing_t phasing;             /**< the motion that changes the phase */
     catch_up_t catch_up;
     follow_t follows[FOLLOWS];     /**< places in turn, because links are in lists and must not move */
-    link_t *slaves;                /**< the slaves of this axis */
-    cams_t *cams;                  /**< the cams of this axis */
-    observed_t own;
+    cams_t *cams;                  /**< the cams of this axis; NULL: it follows no cams */
     cm1e_error_t due_error;        /**< the error with which the awaited command fails; CM1E_OK: it begins */
-    uint64_t mark;                 /**< the last search that visited this axis */
-    uint32_t searches;
+    uint32_t searches;             /**< for loops of followers, that began at this axis */
     cm1e_axis_coupling_t inputs;   /**< of the active command, for ContinuousUpdate */
     waiting_coupling_t waiting[COUPLINGS_WAITING];
     master_trouble_t trouble;      /**< the reason why a master was lost */
     cm1e_error_t master_error;     /**< error of that master */
-    char other_name[CM1E_NAME_LENGTH]; /**< name of that master, or of the axis because of which this one stops */
+    approach_refused_t approach_refused;
     int32_t numerator;             /**< numerator and denominator of a ratio that was refused */
     uint32_t denominator;
 } coupling_t;
+
+/** Whether memory was set aside for a command that makes the axis follow (cm1e_axis_config_t.follows). */
+static inline bool coupling_can(const cm1e_axis_t *slave, cm1e_command_kind_t kind)
+{
+    return slave->coupling && (kind != CM1E_COMMAND_CAM_IN || slave->coupling->cams);
+}
+
+/* cam_memory.c */
+/** Explains that the axis has no memory for a coupling. `what`: what was refused. */
+void cm1e_no_couplings_text(const cm1e_axis_t *axis, const char *what, char *text, size_t size);
 
 /* master.c */
 /** Whether the frames of all masters come. The slave is not in step with a master whose position is only assumed. */

@@ -25,7 +25,7 @@ static void fail_with(cm1e_axis_t *axis, const cm1e_axis_t *cause, double decele
 {
     if (axis->state == CM1E_AXIS_ERROR_STOP || axis_free(axis))
         return; /* without torque there is no motion to stop */
-    memcpy(axis->coupling->other_name, cause->config->name, sizeof axis->coupling->other_name);
+    memcpy(axis->followed->other_name, cause->config->name, sizeof axis->followed->other_name);
     cm1e_axis_fail_gently(axis, CM1E_ERROR_AXIS_COUPLED, deceleration);
 }
 
@@ -46,7 +46,7 @@ void cm1e_coupling_failed(cm1e_axis_t *axis)
         if (!master)
             continue;
         fail_with(master, axis, INFINITY);
-        for (const link_t *link = master->coupling->slaves; link; link = link->next)
+        for (const link_t *link = master->followed->slaves; link; link = link->next)
             if (in_force(link))
                 fail_with(link->slave, axis, INFINITY);
     }

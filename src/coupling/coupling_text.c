@@ -20,7 +20,7 @@ static void master_lost_text(const cm1e_axis_t *axis, bool refused, char *text, 
 {
     const coupling_t *c = axis->coupling;
     int used = snprintf(text, size, "Axis \"%s\" %s its master \"%s\", which %s", axis->config->name,
-                        refused ? "cannot follow" : "was braked, as it lost", c->other_name, troubles[c->trouble]);
+                        refused ? "cannot follow" : "was braked, as it lost", axis->followed->other_name, troubles[c->trouble]);
     if (c->master_error != CM1E_OK && used > 0 && (size_t)used < size)
         used += snprintf(text + used, size - (size_t)used, " (%s)", cm1e_strerror(c->master_error));
     if (used > 0 && (size_t)used < size)
@@ -67,6 +67,13 @@ static bool mode_text(const cm1e_axis_t *axis, char *text, size_t size)
     return mode != NULL;
 }
 
+static void refused_coupling_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    char what[64];
+    snprintf(what, sizeof what, "%s was refused", kind_row(axis->commands.refused.kind)->name);
+    cm1e_no_couplings_text(axis, what, text, size);
+}
+
 static bool refusal_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size)
 {
     switch (error) {
@@ -74,6 +81,9 @@ static bool refusal_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text
     case CM1E_ERROR_AXIS_DYNAMICS_RANGE:
     case CM1E_ERROR_AXIS_POSITION_RANGE:
         return cm1e_phasing_text(axis, text, size);
+    case CM1E_ERROR_AXIS_NO_COUPLINGS:
+        refused_coupling_text(axis, text, size);
+        return true;
     case CM1E_ERROR_AXIS_SYNC_WAY:
         cm1e_coupling_approach_text(axis, text, size);
         return true;
@@ -94,7 +104,7 @@ bool cm1e_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refuse
 {
     if (refused && refusal_text(axis, error, text, size))
         return true;
-    const char *name = axis->config->name, *other = axis->coupling->other_name;
+    const char *name = axis->config->name, *other = axis->followed->other_name;
     switch (error) {
     case CM1E_ERROR_AXIS_MASTER:
         snprintf(text, size, "Axis \"%s\": Master names no axis of its scheduler; expected the AXIS_REF of another "

@@ -10,27 +10,41 @@
 static void forget(cm1e_axis_t *axis)
 {
     cm1e_coupling_unlink(axis);
-    free(axis->coupling->cams);
+    if (axis->coupling)
+        free(axis->coupling->cams);
     free(axis->coupling);
+    free(axis->followed);
 }
+
+/* What the copy of an axis has beside it. */
+typedef struct own {
+    coupling_t coupling;
+    followed_t followed;
+    _Alignas(cams_t) unsigned char cams[sizeof(cams_t)];
+} own_t;
 
 /* Makes the pointers into the coupling and its cams point into their copies. Points of cams stay shared: no text needs
  * them. */
-static void copy_own(const cm1e_axis_t *axis, cm1e_axis_t *copy, void *place)
+static void copy_coupling(const coupling_t *own, own_t *place)
 {
-    coupling_t *c = place;
-    cams_t *cams = (cams_t *)(void *)((unsigned char *)place + sizeof *c);
-    const coupling_t *own = axis->coupling;
-    memcpy(c, own, sizeof *c);
-    memcpy(cams, own->cams, sizeof *cams);
+    coupling_t *c = &place->coupling;
+    *c = *own;
+    if (own->cams)
+        c->cams = memcpy(place->cams, own->cams, sizeof place->cams);
     for (int i = 0; i < FOLLOWS; i++)
         if (own->follows[i].cam.slot)
-            c->follows[i].cam.slot = cams->slots + (own->follows[i].cam.slot - own->cams->slots);
+            c->follows[i].cam.slot = c->cams->slots + (own->follows[i].cam.slot - own->cams->slots);
     c->now = own->now ? c->follows + (own->now - own->follows) : NULL;
-    c->cams = cams;
-    copy->coupling = c;
 }
-_Static_assert(sizeof(coupling_t) % 8 == 0 && sizeof(cams_t) % 8 == 0, "one lies behind the other in a copy");
+
+static void copy_own(const cm1e_axis_t *axis, cm1e_axis_t *copy, void *memory)
+{
+    own_t *place = memory;
+    copy->followed = memcpy(&place->followed, axis->followed, sizeof place->followed);
+    if (axis->coupling)
+        copy_coupling(axis->coupling, place);
+    copy->coupling = axis->coupling ? &place->coupling : NULL;
+}
 
 static bool stops_with_masters(const cm1e_axis_t *axis) { return axis->coupling->stopping; }
 
@@ -50,7 +64,7 @@ static bool is_of(const link_t *link, const follow_t *follow)
 /* Links stay in the list until their place is taken for another coupling, so not every link means a slave. */
 static bool is_followed(const cm1e_axis_t *axis)
 {
-    for (const link_t *link = axis->coupling->slaves; link; link = link->next) {
+    for (const link_t *link = axis->followed->slaves; link; link = link->next) {
         const coupling_t *slave = link->slave->coupling;
         if ((axis_follows(link->slave) && is_of(link, slave->now)) || is_of(link, slave->awaited))
             return true;
@@ -68,7 +82,7 @@ static const command_method_t methods[PLAN_COUNT] = {
 static const coupling_hooks_t hooks = {
     .methods = methods,
     .free = forget,
-    .own = {sizeof(coupling_t) + sizeof(cams_t), copy_own},
+    .own = {sizeof(own_t), copy_own},
     .observe = cm1e_coupling_observe,
     .observed_velocity = cm1e_coupling_observed_velocity,
     .advance_masters = cm1e_coupling_advance_masters,
@@ -93,14 +107,29 @@ static const coupling_hooks_t hooks = {
     .cam_text = cm1e_cam_table_text,
 };
 
+/* An encoder makes no motion, and a drive that moves by itself follows nothing. */
+static bool may_follow(const cm1e_axis_config_t *config)
+{
+    return config->follows != CM1E_FOLLOWS_NOTHING && config->type != CM1E_AXIS_ENCODER &&
+           config->motion != CM1E_MOTION_DRIVE;
+}
+
 cm1e_error_t cm1e_coupling_add(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
-    axis->coupling = cm1e_cache_lines(sizeof *axis->coupling);
-    if (!axis->coupling)
+    const cm1e_axis_config_t *config = axis->config;
+    const bool follows = may_follow(config);
+    axis->followed = calloc(1, sizeof *axis->followed);
+    axis->coupling = follows ? cm1e_cache_lines(sizeof *axis->coupling) : NULL;
+    if (!axis->followed || (follows && !axis->coupling)) {
+        free(axis->followed);
+        free(axis->coupling);
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the couplings of axis \"%s\".",
-                             axis->config->name);
-    axis->coupling->keeps_ratio = axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO;
+                             config->name);
+    }
     axis->coupling_hooks = &hooks;
-    axis->observed = axis->config->type == CM1E_AXIS_ENCODER;
-    return cm1e_cam_memory_init(axis, diag);
+    axis->observed = config->type == CM1E_AXIS_ENCODER;
+    if (!follows)
+        return CM1E_OK;
+    axis->coupling->keeps_ratio = config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO;
+    return config->follows == CM1E_FOLLOWS_ANY ? cm1e_cam_memory_init(axis, diag) : CM1E_OK;
 }

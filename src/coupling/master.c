@@ -121,7 +121,7 @@ bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis)
 
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis)
 {
-    for (link_t *link = axis->coupling->slaves; link; link = link->next)
+    for (link_t *link = axis->followed->slaves; link; link = link->next)
         cm1e_axis_after_silence(link->slave);
 }
 
@@ -140,12 +140,12 @@ static bool search_masters(const follow_t *follow, const cm1e_axis_t *goal, uint
 /* Whether `goal` is `from` or one of its direct or indirect masters. Each axis is visited once. */
 static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark)
 {
-    coupling_t *c = from->coupling;
+    const coupling_t *c = from->coupling;
     if (from == goal)
         return true;
-    if (c->mark == mark)
+    if (!c || from->followed->mark == mark)
         return false;
-    c->mark = mark;
+    from->followed->mark = mark;
     return search_masters(axis_follows(from) ? c->now : NULL, goal, mark) || search_masters(c->awaited, goal, mark);
 }
 
@@ -159,15 +159,15 @@ void cm1e_coupling_list_links(follow_t *follow)
 {
     for (int i = 0; i < follow->count; i++) {
         link_t *link = &follow->links[i];
-        link->next = link->master->coupling->slaves;
-        link->master->coupling->slaves = link;
+        link->next = link->master->followed->slaves;
+        link->master->followed->slaves = link;
         link->listed = true;
     }
 }
 
 static void unlist(link_t *link)
 {
-    link_t **place = link->listed && link->master ? &link->master->coupling->slaves : NULL;
+    link_t **place = link->listed && link->master ? &link->master->followed->slaves : NULL;
     while (place && *place != link)
         place = &(*place)->next;
     if (place)
@@ -183,11 +183,11 @@ void cm1e_coupling_unlist_links(follow_t *follow)
 
 void cm1e_coupling_unlink(cm1e_axis_t *axis)
 {
-    for (int i = 0; i < FOLLOWS; i++)
+    for (int i = 0; axis->coupling && i < FOLLOWS; i++)
         cm1e_coupling_unlist_links(&axis->coupling->follows[i]);
-    while (axis->coupling->slaves) {
-        link_t *link = axis->coupling->slaves;
-        axis->coupling->slaves = link->next;
+    while (axis->followed->slaves) {
+        link_t *link = axis->followed->slaves;
+        axis->followed->slaves = link->next;
         link->master = NULL;
         link->listed = false;
         cm1e_axis_look_anew(link->slave);
@@ -332,6 +332,11 @@ void cm1e_coupling_held(cm1e_axis_t *axis)
             cm1e_axis_set_reached(axis, false);
 }
 
+static void set_other_name(cm1e_axis_t *axis, const cm1e_axis_t *other)
+{
+    memcpy(axis->followed->other_name, other ? other->config->name : "", other ? CM1E_NAME_LENGTH : 1);
+}
+
 static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, master_trouble_t trouble)
 {
     coupling_t *c = slave->coupling;
@@ -339,7 +344,7 @@ static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, mas
         return trouble; /* the first cause is reported */
     c->trouble = trouble;
     c->master_error = link->master ? link->master->fault.error : CM1E_OK;
-    memcpy(c->other_name, link->master ? link->master->config->name : "", link->master ? sizeof c->other_name : 1);
+    set_other_name(slave, link->master);
     return trouble;
 }
 
@@ -376,7 +381,7 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
     cm1e_axis_t *master = cm1e_axis_from_reference(&asked->axis);
     if (!master || !cm1e_axis_shares_cycle(slave, master))
         return CM1E_ERROR_AXIS_MASTER;
-    memcpy(slave->coupling->other_name, master->config->name, sizeof slave->coupling->other_name);
+    set_other_name(slave, master);
     if (would_follow_itself(slave, master))
         return CM1E_ERROR_AXIS_COUPLING_CYCLE;
     if (asked->source != mcSetValue && asked->source != mcActualValue)

@@ -14,7 +14,7 @@ enum { DEFAULT_FILTER_CYCLES = 10 };
 
 static void look(cm1e_axis_t *axis)
 {
-    observed_t *own = &axis->coupling->own;
+    observed_t *own = &axis->followed->own;
     const cm1e_observed_t seen = cm1e_observer_now(&own->filter);
     own->before = own->now;
     own->now.position = cm1e_position_plus((position_t){seen.counts, 0.0}, seen.offset);
@@ -41,7 +41,7 @@ static double first_velocity(const cm1e_axis_t *axis)
 
 static void begin(cm1e_axis_t *axis)
 {
-    observed_t *own = &axis->coupling->own;
+    observed_t *own = &axis->followed->own;
     const double constant_s = axis->config->encoder_filter_s, cycle_s = axis->cycle_s;
     const double velocity = first_velocity(axis);
     cm1e_observer_init(&own->filter, cycle_s, constant_s > 0.0 ? constant_s : DEFAULT_FILTER_CYCLES * cycle_s, cycle_s,
@@ -58,7 +58,7 @@ static void begin(cm1e_axis_t *axis)
 
 void cm1e_coupling_observe(cm1e_axis_t *axis)
 {
-    observed_t *own = &axis->coupling->own;
+    observed_t *own = &axis->followed->own;
     const bool fresh = axis->drive.feedback.fresh;
     const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
     /* After a homing of the drive, or after a long silence, the position is not a motion from the last one. */
@@ -76,12 +76,12 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
 
 double cm1e_coupling_observed_velocity(const cm1e_axis_t *axis)
 {
-    return axis->coupling->own.begun ? axis->coupling->own.now.velocity : 0.0;
+    return axis->followed->own.begun ? axis->followed->own.now.velocity : 0.0;
 }
 
 master_trouble_t cm1e_coupling_see_actual(cm1e_axis_t *master, bool of_this_cycle, from_t *seen)
 {
-    const observed_t *own = &master->coupling->own;
+    const observed_t *own = &master->followed->own;
     if (master->state == CM1E_AXIS_ERROR_STOP)
         return MASTER_ERROR_STOP;
     if (drive_homes(master))

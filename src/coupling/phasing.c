@@ -211,9 +211,9 @@ void cm1e_phasing_step(cm1e_axis_t *axis)
 
 void cm1e_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
-    phasing_t *phasing = &axis->coupling->phasing;
-    if (!phasing->id)
+    if (!axis->coupling || !axis->coupling->phasing.id)
         return;
+    phasing_t *phasing = &axis->coupling->phasing;
     record(axis, state, error);
     forget_waiting(axis, state, error);
     if (!axis_follows(axis))
@@ -246,7 +246,7 @@ void cm1e_phasing_forget(cm1e_axis_t *axis)
 bool cm1e_phasing_status(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_status_t *status)
 {
     const coupling_t *c = axis->coupling;
-    if (id == 0 || !c->phasing.id)
+    if (!c || id == 0 || !c->phasing.id)
         return false;
     if (id == c->phasing.id) {
         *status = (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE,
@@ -264,7 +264,7 @@ bool cm1e_phasing_status(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_com
 double cm1e_phasing_covered(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     const coupling_t *c = axis->coupling;
-    return id == c->phasing.ended ? c->phasing.covered : 0.0;
+    return c && id == c->phasing.ended ? c->phasing.covered : 0.0;
 }
 
 bool cm1e_phasing_text(const cm1e_axis_t *axis, char *text, size_t size)

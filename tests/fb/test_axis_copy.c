@@ -36,7 +36,8 @@ static cm1e_error_t order(cm1e_command_kind_t kind, cm1e_axis_command_t command,
 static void check(const char *words)
 {
     static char text[CM1E_AXIS_ERROR_TEXT_BYTES], from_copy[CM1E_AXIS_ERROR_TEXT_BYTES];
-    static unsigned char coupling[sizeof(coupling_t)], cams[sizeof(cams_t)], homing[sizeof(homing_t)];
+    static unsigned char coupling[sizeof(coupling_t)], followed[sizeof(followed_t)], cams[sizeof(cams_t)],
+        homing[sizeof(homing_t)];
     cm1e_axis_t *const slave = axes[SLAVE];
     cams_t *const its_cams = slave->coupling->cams;
     void *copy = cm1e_cache_lines(cm1e_axis_copy_bytes(slave));
@@ -44,13 +45,16 @@ static void check(const char *words)
     ck_assert_msg(strstr(text, words), "\"%s\" lacks \"%s\"", text, words);
     cm1e_axis_copy(slave, copy);
     memcpy(coupling, slave->coupling, sizeof coupling);
+    memcpy(followed, slave->followed, sizeof followed);
     memcpy(cams, its_cams, sizeof cams);
     memcpy(homing, slave->homing, sizeof homing);
     memset(slave->coupling, 0x5A, sizeof coupling);
+    memset(slave->followed, 0x5A, sizeof followed);
     memset(its_cams, 0x5A, sizeof cams);
     memset(slave->homing, 0x5A, sizeof homing);
     cm1e_axis_text(copy, from_copy, sizeof from_copy);
     memcpy(slave->coupling, coupling, sizeof coupling);
+    memcpy(slave->followed, followed, sizeof followed);
     memcpy(its_cams, cams, sizeof cams);
     memcpy(slave->homing, homing, sizeof homing);
     free(copy);

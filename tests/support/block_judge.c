@@ -253,7 +253,7 @@ void call(instance_t *fb)
     const cm1e_axis_state_t state = judged.axis->state;
     /* MC_GearInPos waits for its StartSync, alone or behind another command. */
     const bool before_it = judged.axis->commands.active || judged.axis->commands.waiting.count > 0 ||
-                           judged.axis->coupling->awaited;
+                           (judged.axis->coupling && judged.axis->coupling->awaited);
     const bool may_wait = before_it && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
     MUST(state == judged.state, "the state changed from %s to %s between two calls", cm1e_axis_state_name(judged.state),
          cm1e_axis_state_name(state));

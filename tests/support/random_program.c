@@ -263,7 +263,7 @@ static void judge_sync(int n)
     judged_at = fb->of;
     sync_t *sync = &syncs[n];
     const cm1e_axis_t *slave = judged.axis, *master = judged_axes[sync->master].axis;
-    const bool moved_else = slave->superimposed.id != 0 || slave->coupling->phasing.moving;
+    const bool moved_else = slave->superimposed.id != 0 || (slave->coupling && slave->coupling->phasing.moving);
     const bool in_gear = fb->now.reached && slave->setpoint.reached && slave->commands.kind == CM1E_COMMAND_GEAR_IN;
     if (!sync->asked || !in_gear || slave->coupling->now->by_actual || moved_else ||
         slave->commands.active != sync->id) {

@@ -2,7 +2,8 @@
 #include "unity.h"
 
 #include "../support/axes_cam.h"
-#include "coupling/coupling_cam.h"
+#include "axis/axis_events.h"
+#include "coupling/coupling_private.h"
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }
@@ -89,6 +90,128 @@ static void test_a_cam_is_a_copy(void)
     cm1e_cam_sample_t sample;
     cm1e_cam_sample(&slot->cam, &place, 1, &sample);
     TEST_ASSERT_EQUAL_DOUBLE(1, sample.point.position);
+}
+
+/* ---- memory that was not set aside ------------------------------------------------------------------------------- */
+
+static void begin_with(cm1e_follows_t master, cm1e_follows_t slave)
+{
+    axes_describe(2);
+    axes_config(MASTER)->follows = master;
+    axes_config(SLAVE)->follows = slave;
+    axes_make();
+    axes_enable_all();
+}
+
+static cm1e_axis_coupling_t by_gear(void)
+{
+    return (cm1e_axis_coupling_t){.master[0] = {.axis = axes_reference(MASTER), .numerator = 1, .denominator = 2}};
+}
+
+static void refuses_all(cm1e_command_kind_t kind, MC_BUFFER_MODE mode, const char *words)
+{
+    const cm1e_axis_coupling_t coupling = kind == CM1E_COMMAND_CAM_IN ? by_cam(1, mcRampIn) : by_gear();
+    axes_refused(SLAVE, &(cm1e_axis_command_t){.kind = kind, .coupling = &coupling, .buffer_mode = mode},
+                 CM1E_ERROR_AXIS_NO_COUPLINGS);
+    axes_told(SLAVE, words);
+}
+
+/* It moves by itself as ever, and others follow it. */
+static void test_an_axis_that_follows_nothing_refuses_it_in_words(void)
+{
+    static const cm1e_command_kind_t kinds[] = {CM1E_COMMAND_GEAR_IN, CM1E_COMMAND_GEAR_IN_POS, CM1E_COMMAND_CAM_IN,
+                                                CM1E_COMMAND_COMBINE_AXES};
+    begin_with(CM1E_FOLLOWS_ANY, CM1E_FOLLOWS_NOTHING);
+    TEST_ASSERT_NULL(axes_axis(SLAVE)->coupling);
+    for (int i = 0; i < 4; i++)
+        refuses_all(kinds[i], mcAborting, "`follows: nothing`");
+    const cm1e_command_id_t id = axes_move_to(SLAVE, 2, 5);
+    for (int i = 0; i < 4; i++)
+        refuses_all(kinds[i], mcBuffered, "`follows: nothing`");
+    const MC_CAM_REF table = table_of(3);
+    MC_CAM_ID cam = 5;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_NO_COUPLINGS,
+                          cm1e_axis_cam_select(axes_axis(SLAVE), &table, true, true, true, &cam));
+    TEST_ASSERT_EQUAL_UINT32(0, cam);
+    axes_told(SLAVE, "the cam was not selected");
+    axes_refused(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_OUT}, CM1E_ERROR_AXIS_NOT_COUPLED);
+    axes_refused(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_PHASING_RELATIVE, .position = 1, .velocity = 1},
+                 CM1E_ERROR_AXIS_NOT_COUPLED);
+    axes_wait(SLAVE, id, 5000);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, axes_status(SLAVE, id).state);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2, set_of(SLAVE));
+}
+
+static void test_an_axis_that_follows_nothing_is_followed(void)
+{
+    for (int source = mcSetValue; source <= mcActualValue; source++) {
+        begin_with(CM1E_FOLLOWS_NOTHING, CM1E_FOLLOWS_GEARS);
+        axes_bench.witness[SLAVE].strictness = source == mcSetValue ? AXES_SMOOTH : AXES_STEEP;
+        cm1e_axis_coupling_t coupling = by_gear();
+        coupling.master[0].source = (MC_SOURCE)source;
+        (void)axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling});
+        axes_wait(MASTER, axes_move_to(MASTER, 4, 5), 5000);
+        axes_cycles(200);
+        TEST_ASSERT_DOUBLE_WITHIN(source == mcSetValue ? 1e-6 : 1e-2, 2, set_of(SLAVE));
+        cm1e_axis_fail(axes_axis(MASTER), CM1E_ERROR_AXIS_LAG, 0, 0);
+        axes_cycles(2);
+        axes_must_be(SLAVE, CM1E_AXIS_ERROR_STOP);
+        axes_told(SLAVE, "its master \"axis0\"");
+    }
+}
+
+/* An error of a slave stops its master too, in whose text stands why. */
+static void test_an_axis_that_follows_nothing_stops_with_its_slave(void)
+{
+    axes_describe(2);
+    axes_config(MASTER)->follows = CM1E_FOLLOWS_NOTHING;
+    axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_COUPLED;
+    axes_make();
+    axes_enable_all();
+    (void)axes_gear_in(SLAVE, MASTER, 1, 2);
+    axes_move_velocity(MASTER, 5);
+    axes_cycles(500);
+    cm1e_axis_fail(axes_axis(SLAVE), CM1E_ERROR_AXIS_LAG, 0, 0);
+    axes_cycles(1);
+    axes_must_be(MASTER, CM1E_AXIS_ERROR_STOP);
+    axes_told(MASTER, "was braked because axis \"axis1\"");
+}
+
+static void test_an_axis_that_follows_gears_has_no_cams(void)
+{
+    begin_with(CM1E_FOLLOWS_NOTHING, CM1E_FOLLOWS_GEARS);
+    refuses_all(CM1E_COMMAND_CAM_IN, mcAborting, "`follows: gears`");
+    const MC_CAM_REF table = table_of(3);
+    MC_CAM_ID cam = 5;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_NO_COUPLINGS,
+                          cm1e_axis_cam_select(axes_axis(SLAVE), &table, true, true, true, &cam));
+    axes_move_velocity(MASTER, 10);
+    axes_cycles(500);
+    cm1e_axis_coupling_t meet = by_gear();
+    meet.master_sync_position = set_of(MASTER) + 2;
+    meet.slave_sync_position = 300;
+    axes_refused(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN_POS, .velocity = 20, .coupling = &meet},
+                 CM1E_ERROR_AXIS_SYNC_WAY);
+    axes_told(SLAVE, "needs a velocity of");
+    axes_wait_reached(SLAVE, axes_gear_in(SLAVE, MASTER, 1, 2), 5000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5, axes_info(SLAVE).set_velocity);
+}
+
+/* An encoder and a drive that moves by itself follow nothing, whatever the configuration says. */
+static void test_an_axis_that_cannot_follow_has_no_memory_for_it(void)
+{
+    const MC_CAM_REF table = table_of(3);
+    MC_CAM_ID cam;
+    axes_describe(2);
+    axes_config(MASTER)->type = CM1E_AXIS_ENCODER;
+    axes_config(SLAVE)->motion = CM1E_MOTION_DRIVE;
+    axes_make();
+    for (int n = MASTER; n <= SLAVE; n++) {
+        TEST_ASSERT_NULL(axes_axis(n)->coupling);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_NO_COUPLINGS,
+                              cm1e_axis_cam_select(axes_axis(n), &table, true, true, true, &cam));
+        axes_told(n, n == MASTER ? "it is an encoder" : "its drive makes the motions");
+    }
 }
 
 /* ---- following --------------------------------------------------------------------------------------------------- */
@@ -240,6 +363,11 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_last_four_cams_stay);
     RUN_TEST(test_a_bad_cam_costs_no_good_one_and_is_told);
+    RUN_TEST(test_an_axis_that_follows_nothing_refuses_it_in_words);
+    RUN_TEST(test_an_axis_that_follows_nothing_is_followed);
+    RUN_TEST(test_an_axis_that_follows_nothing_stops_with_its_slave);
+    RUN_TEST(test_an_axis_that_follows_gears_has_no_cams);
+    RUN_TEST(test_an_axis_that_cannot_follow_has_no_memory_for_it);
     RUN_TEST(test_a_cam_is_a_copy);
     RUN_TEST(test_a_cam_that_leaves_the_software_limits_is_refused);
     RUN_TEST(test_a_cam_that_is_needed_is_not_overwritten);

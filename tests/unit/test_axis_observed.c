@@ -247,9 +247,9 @@ static void test_an_encoder_that_was_never_read_is_no_master(void)
 static void test_the_filter_has_ten_cycles_by_default(void)
 {
     begin_with(steady, 0.0);
-    const cm1e_observer_t by_default = axes_axis(MASTER)->coupling->own.filter;
+    const cm1e_observer_t by_default = axes_axis(MASTER)->followed->own.filter;
     begin_with(steady, 0.010);
-    TEST_ASSERT_EQUAL_DOUBLE(axes_axis(MASTER)->coupling->own.filter.velocity_gain, by_default.velocity_gain);
+    TEST_ASSERT_EQUAL_DOUBLE(axes_axis(MASTER)->followed->own.filter.velocity_gain, by_default.velocity_gain);
 }
 
 /* A shift against it is as against any master. */
@@ -314,10 +314,10 @@ static void test_an_estimate_does_not_go_on_through_a_long_silence(void)
     axes_cycles(500);
     encoder.silent = 10000;
     axes_cycles(100);
-    const observed_t before = axes_axis(MASTER)->coupling->own;
+    const observed_t before = axes_axis(MASTER)->followed->own;
     TEST_ASSERT_TRUE(before.filter.velocity != 0.0);
     axes_cycles(9000);
-    TEST_ASSERT_EQUAL_INT64(before.filter.counts, axes_axis(MASTER)->coupling->own.filter.counts);
+    TEST_ASSERT_EQUAL_INT64(before.filter.counts, axes_axis(MASTER)->followed->own.filter.counts);
 }
 
 /* ---- motors ------------------------------------------------------------------------------------------------------ */
@@ -389,7 +389,7 @@ static void test_the_estimate_of_a_motor_begins_with_its_set_point(void)
     axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling});
     for (int n = 0; n < 30; n++) {
         axes_cycles(1);
-        TEST_ASSERT_DOUBLE_WITHIN(0.05, axes_info(MASTER).set_velocity, axes_axis(MASTER)->coupling->own.now.velocity);
+        TEST_ASSERT_DOUBLE_WITHIN(0.05, axes_info(MASTER).set_velocity, axes_axis(MASTER)->followed->own.now.velocity);
     }
 }
 
@@ -411,7 +411,7 @@ static void test_the_estimate_of_a_motor_without_torque_begins_with_its_actual_v
     for (int n = 0; n < 30; n++) {
         axes_motor(MASTER)->position += 100;
         axes_cycles(1);
-        TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.0, axes_axis(MASTER)->coupling->own.now.velocity);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.0, axes_axis(MASTER)->followed->own.now.velocity);
     }
 }
 

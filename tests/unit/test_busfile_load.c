@@ -197,11 +197,13 @@ static void test_documented_axes_without_a_motor(void)
     TEST_ASSERT_EQUAL(0, line->address);
     ASSERT_DOUBLE(360, line->modulo_range);
     ASSERT_DOUBLE(1080, line->max_velocity);
+    TEST_ASSERT_EQUAL(CM1E_FOLLOWS_NOTHING, line->follows);
     TEST_ASSERT_EQUAL(CM1E_AXIS_ENCODER, wheel->type);
     ASSERT_DOUBLE(20.48, wheel->counts_per_unit);
     ASSERT_DOUBLE(0.004, wheel->encoder_filter_s);
     TEST_ASSERT_EQUAL(CM1E_AXIS_MOTOR, knife->type);
     TEST_ASSERT_EQUAL(1, knife->address); /* those before it are not on the bus */
+    TEST_ASSERT_EQUAL(CM1E_FOLLOWS_ANY, knife->follows);
     TEST_ASSERT_EQUAL(361, knife->cam_points);
     TEST_ASSERT_EQUAL(CM1E_COUPLING_STOP_KEEP_RATIO, knife->coupling_stop);
 }

@@ -224,6 +224,13 @@ static void test_followers_have_room_for_so_many_points_and_a_way_to_stop(void)
     config.axes[1].cam_points = 1;
     expect_wrong("cam_points is 1");
     config.axes[1].cam_points = 0;
+    config.axes[1].follows = (cm1e_follows_t)3;
+    expect_wrong("follows is 3");
+    config.axes[1].follows = CM1E_FOLLOWS_GEARS;
+    expect_good();
+    config.axes[1].cam_points = 9;
+    expect_wrong("cam_points is given, and the axis follows no cams (follows: gears)");
+    config.axes[1].cam_points = 0;
     config.axes[1].coupling_stop = (cm1e_coupling_stop_t)3;
     expect_wrong("coupling_stop is 3");
     config.axes[1].coupling_stop = CM1E_COUPLING_STOP_THIS;
