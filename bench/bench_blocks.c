@@ -241,25 +241,6 @@ static void report_work(const blocks_subject_t *const *subjects, unsigned subjec
 
 static uint64_t random_state;
 
-static double random_between(double low, double high) /* splitmix64 */
-{
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return low + (high - low) * ((double)((z ^ (z >> 31)) >> 11) * 0x1p-53);
-}
-
-static blocks_move_t random_move(double part)
-{
-    return (blocks_move_t){
-        .position = random_between(-200, 200),
-        .velocity = random_between(0.1, 1) * part * BLOCKS_VELOCITY,
-        .acceleration = random_between(0.1, 1) * part * BLOCKS_ACCELERATION,
-        .deceleration = random_between(0.1, 1) * part * BLOCKS_ACCELERATION,
-        .jerk = random_between(0.1, 1) * part * BLOCKS_JERK,
-    };
-}
-
 /* Each problem once, from rest or in the middle of the motion before. A slave starts while its master moves. */
 static void time_starts(const blocks_subject_t *subject, blocks_work_t work, bool on_the_way)
 {
@@ -272,11 +253,11 @@ static void time_starts(const blocks_subject_t *subject, blocks_work_t work, boo
         return;
     for (unsigned i = 0; i < STARTS; i++) {
         if (follows) {
-            const blocks_move_t way = random_move(1);
+            const blocks_move_t way = blocks_random_move(&random_state);
             subject->give(0, &way);
-            subject->run(2, (unsigned)random_between(1, 200));
+            subject->run(2, (unsigned)blocks_random(&random_state, 1, 200));
         }
-        const blocks_move_t move = random_move(1);
+        const blocks_move_t move = blocks_random_move(&random_state);
         if (work == BLOCKS_MOVE)
             subject->give(0, &move);
         else
@@ -284,7 +265,7 @@ static void time_starts(const blocks_subject_t *subject, blocks_work_t work, boo
         spent[i] = time_run(subject, count, 1);
         refused += subject->failed(follows);
         if (on_the_way) {
-            subject->run(count, (unsigned)random_between(1, 500));
+            subject->run(count, (unsigned)blocks_random(&random_state, 1, 500));
         } else if (follows) {
             go_home(subject, 2);
             subject->begin(work, 0);

@@ -3,7 +3,7 @@
  * bench_blocks, with the axes of one set. scripts/limits runs it under callgrind and compares the counts with those of
  * bench/limits. All that is counted runs in measured_run(), of which callgrind writes a count for each call.
  *
- *     bench_limits [ROW]      a line for each call: the row, the number of axis-cycles in it, bytes taken from the heap
+ *     bench_limits [ROW]      a line for each call (of the starts of one command there are several): the row, the number of axis-cycles in it, bytes taken from the heap
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 
 #include "blocks_cm1e.h"
 
-enum { CYCLES = 100, WARM = 60 };
+enum { CYCLES = 100, WARM = 60, STARTS = 31 };
 
 #define MEASURED __attribute__((noinline, noclone, used)) void
 MEASURED measured_run(const blocks_subject_t *subject, unsigned axes, unsigned cycles);
@@ -86,6 +86,44 @@ static void measure_starts(const blocks_subject_t *subject, unsigned axes)
     run_to_the_end(subject, axes);
 }
 
+/* Random commands as in bench_blocks: a count for each of the cycles in which one starts, its master included. */
+static void measure_commands(const char *name, const blocks_subject_t *subject, blocks_work_t work, bool on_the_way)
+{
+    const bool follows = blocks_follows(work, 1);
+    const unsigned count = follows ? 2 : BLOCKS_MEMBERS;
+    uint64_t random = 1;
+    if (!subject->begin(work, follows && !on_the_way ? 0 : count))
+        fail("the work cannot begin");
+    for (unsigned i = 0; i < STARTS; i++) {
+        if (follows) {
+            const blocks_move_t way = blocks_random_move(&random);
+            subject->give(0, &way);
+            subject->run(2, (unsigned)blocks_random(&random, 1, 200));
+        }
+        const blocks_move_t move = blocks_random_move(&random);
+        subject->start(follows, &move);
+        const size_t before = blocks_heap_bytes();
+        measured_run(subject, count, 1);
+        told(name, 1, before);
+        if (on_the_way) {
+            subject->run(count, (unsigned)blocks_random(&random, 1, 500));
+        } else if (follows) {
+            subject->end();
+            give(subject, 2, &home);
+            subject->run(2, 1);
+            run_to_the_end(subject, 2);
+            subject->begin(work, 0);
+        } else if (!subject->failed(0)) {
+            run_to_the_end(subject, count);
+        }
+    }
+    subject->end();
+    subject->run(count, CYCLES * 10); /* a group that moved comes to rest first */
+    give(subject, count, &home);
+    subject->run(count, 1);
+    run_to_the_end(subject, count);
+}
+
 /* System calls that were made since the last count belong to the next one: to this one, which is left out. */
 static void begin_counting(void)
 {
@@ -122,6 +160,15 @@ int main(int argc, char **argv)
         {"a-group", &blocks_cm1e, BLOCKS_GROUP, BLOCKS_MEMBERS},
         {"ab-group", &blocks_cm1e_whole, BLOCKS_GROUP, BLOCKS_MEMBERS},
     };
+    static const struct {
+        const char *name[2]; /* from rest, on the way */
+        blocks_work_t work;
+    } starts[] = {
+        {{"start-gear", "start-gear-way"}, BLOCKS_GEAR},
+        {{"start-linear", "start-linear-way"}, BLOCKS_CAM_LINEAR},
+        {{"start-cubic", "start-cubic-way"}, BLOCKS_CAM_CUBIC},
+        {{"start-line", "start-line-way"}, BLOCKS_GROUP},
+    };
     if (!blocks_cm1e.make(BLOCKS_MAX_AXES))
         fail("the axes are not powered");
     begin_counting();
@@ -132,5 +179,9 @@ int main(int argc, char **argv)
             measure(rows[i].name, rows[i].subject, rows[i].work, rows[i].axes);
     if (!only)
         measure_starts(&blocks_cm1e, BLOCKS_SET);
+    for (size_t i = 0; i < sizeof starts / sizeof starts[0]; i++)
+        for (int way = 0; way < 2; way++)
+            if (!only || !strcmp(only, starts[i].name[way]))
+                measure_commands(starts[i].name[way], &blocks_cm1e, starts[i].work, way);
     return 0;
 }

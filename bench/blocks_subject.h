@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct blocks_move {
     double position, velocity, acceleration, deceleration, jerk;
@@ -97,6 +98,26 @@ static inline blocks_piece_t blocks_path(bool far, unsigned piece)
     for (unsigned i = 0; i < BLOCKS_MEMBERS; i++)
         back.end[i] = pieces[BLOCKS_PIECES - piece - 1].end[i];
     return back;
+}
+
+static inline double blocks_random(uint64_t *state, double low, double high) /* splitmix64 */
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return low + (high - low) * ((double)((z ^ (z >> 31)) >> 11) * 0x1p-53);
+}
+
+/** A command for the starts. */
+static inline blocks_move_t blocks_random_move(uint64_t *state)
+{
+    return (blocks_move_t){
+        .position = blocks_random(state, -200, 200),
+        .velocity = blocks_random(state, 0.1, 1) * BLOCKS_VELOCITY,
+        .acceleration = blocks_random(state, 0.1, 1) * BLOCKS_ACCELERATION,
+        .deceleration = blocks_random(state, 0.1, 1) * BLOCKS_ACCELERATION,
+        .jerk = blocks_random(state, 0.1, 1) * BLOCKS_JERK,
+    };
 }
 
 typedef struct blocks_bytes {
