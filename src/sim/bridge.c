@@ -36,6 +36,13 @@ static void step(cm1e_sim_bridge_t *bridge, double step_s)
     cm1e_sim_bridge_deliver(bridge);
 }
 
+/* Up to where the next steps go: data that are on the serial lines end one of them, and are not late by the rest of it. */
+static int64_t steps_until(const cm1e_sim_bridge_t *bridge, int64_t now_ns)
+{
+    const int64_t due_ns = cm1e_sim_bridge_delivery_ns(bridge);
+    return due_ns > bridge->now_ns && due_ns < now_ns ? due_ns : now_ns;
+}
+
 static void advance(void *app, int64_t now_ns)
 {
     cm1e_sim_bridge_t *bridge = app;
@@ -45,7 +52,7 @@ static void advance(void *app, int64_t now_ns)
     bridge->ready_ns += missed_ns;
     if (missed_ns != 0)
         bridge->exchange_ns = bridge->now_ns;
-    for (double step_s; (step_s = cm1e_sim_time_step(&bridge->now_ns, now_ns)) > 0;)
+    for (double step_s; (step_s = cm1e_sim_time_step(&bridge->now_ns, steps_until(bridge, now_ns))) > 0;)
         step(bridge, step_s);
 }
 

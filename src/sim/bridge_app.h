@@ -167,6 +167,8 @@ uint32_t cm1e_sim_bridge_assign_read(const cm1e_sim_bridge_t *bridge, uint16_t i
 void cm1e_sim_bridge_assign_default(cm1e_sim_bridge_t *bridge);
 void cm1e_sim_bridge_sizes(void *app, uint16_t *output_bytes, uint16_t *input_bytes);
 void cm1e_sim_bridge_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns);
+/** When the next process data arrive over the serial lines; INT64_MAX: none are on their way. */
+int64_t cm1e_sim_bridge_delivery_ns(const cm1e_sim_bridge_t *bridge);
 /** Process data that has come over the serial lines by now. */
 void cm1e_sim_bridge_deliver(cm1e_sim_bridge_t *bridge);
 void cm1e_sim_bridge_inputs(void *app, uint8_t *data, uint16_t size);

@@ -93,6 +93,12 @@ void cm1e_sim_bridge_outputs(void *app, const uint8_t *data, uint16_t size, int6
     }
 }
 
+int64_t cm1e_sim_bridge_delivery_ns(const cm1e_sim_bridge_t *bridge)
+{
+    const cm1e_sim_serial_t *serial = &bridge->serial;
+    return serial->count > 0 ? serial->cycles[serial->first].due_ns : INT64_MAX;
+}
+
 void cm1e_sim_bridge_deliver(cm1e_sim_bridge_t *bridge)
 {
     cm1e_sim_serial_t *serial = &bridge->serial;

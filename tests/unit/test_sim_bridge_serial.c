@@ -237,6 +237,22 @@ static void test_no_cml_goes_to_an_unplugged_motor(void)
     TEST_ASSERT_EQUAL_MEMORY("Null\r\n", text, 6);
 }
 
+/* The data of a cycle are a millisecond on their way, to the nanosecond, whatever the steps of the simulation are. */
+static void test_frames_that_come_a_little_early_do_not_jolt_a_motor(void)
+{
+    enum { STEP = 400, EARLY_NS = BENCH_MS - 1000 };
+    bench_enable(&b, 1);
+    for (int n = 0; n < STEP / 2; n++) {
+        b.axes[1].target += n < STEP / 4 ? 4 * n : STEP;
+        bench_cycles(&b, 1);
+    }
+    for (int n = 0; n < 100; n++) {
+        b.axes[1].target += STEP;
+        bench_cycle_after(&b, EARLY_NS);
+        TEST_ASSERT_DOUBLE_WITHIN(0.005 * STEP * 1000, STEP * 1000, b.bridge->axes[1].mechanics.velocity);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -250,5 +266,6 @@ int main(void)
     RUN_TEST(test_inputs_are_held_and_follow_the_axis_again);
     RUN_TEST(test_a_load_pulls_at_the_shaft);
     RUN_TEST(test_a_probe_tells_what_a_motor_really_does);
+    RUN_TEST(test_frames_that_come_a_little_early_do_not_jolt_a_motor);
     return UNITY_END();
 }
