@@ -169,7 +169,7 @@ static bool start(task_watch_t *watch)
     sigset_t all, kept;
     if (pthread_attr_init(&attributes) != 0)
         return false;
-    pthread_attr_setstacksize(&attributes, PTHREAD_STACK_MIN + STACK);
+    pthread_attr_setstacksize(&attributes, (size_t)PTHREAD_STACK_MIN + STACK);
     sigfillset(&all); /* signals of the program are for its own threads */
     pthread_sigmask(SIG_SETMASK, &all, &kept);
     watch->runs = pthread_create(&watch->thread, &attributes, run, watch) == 0;
