@@ -81,7 +81,8 @@ CM1E_API cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, 
                                                   cm1e_diag_t *diag);
 /** Makes a scheduler for a bus in Operational (otherwise CM1E_ERROR_STATE), with one axis per configured axis. `config`
  *  may be NULL. The bus must outlive the scheduler; free it with cm1e_scheduler_destroy(). The watchdog of the slaves
- *  runs already: add the tasks and run soon. @rt init */
+ *  runs already, so add the tasks and run soon; slaves that it took out of Operational by then are brought back before
+ *  the first cycle. @rt init */
 static inline cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus,
                                                  const cm1e_scheduler_config_t *config, cm1e_diag_t *diag)
 {
@@ -123,13 +124,15 @@ CM1E_API AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *schedule
  *  CM1E_ERROR_STATE: the scheduler ran before; the bus was stopped or started again since it was made; or a task called
  *  cm1e_scheduler_destroy(), cm1e_bus_close() or cm1e_bus_stop(), which was refused and ended the run.
  *  CM1E_ERROR_PERMISSION: real time is required and not permitted; no cycle was run.
+ *  CM1E_ERROR_BUS_STATE and other errors of a start: a slave left Operational before the first cycle and does not come
+ *  back; no cycle was run.
  *  CM1E_ERROR_TIMEOUT: an axis was not disabled within the stop timeout.
  *  CM1E_ERROR_PROGRAM: a task did not return within its `watchdog_cycles` (an endless loop, or it waits). The call is
  *  ended where it is, as by longjmp(), and the task is not called again. All axes are in ErrorStop with this error and
  *  brake, while the cycle goes on. Other tasks are called on; without any the run ends in order. This is judged in real
  *  time only, not on virtual time. A signal ends the call, SIGRTMAX - 3, which the program must not use meanwhile. What
  *  the call held (locks, memory) stays as it is: end the process after the run.
- *  After cycles were run, and after CM1E_ERROR_PERMISSION, the bus is stopped. @rt init */
+ *  After cycles were run, and where an error came before the first one, the bus is stopped. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Ends the run in order. Any thread, program or signal handler may call it. @rt any */
 CM1E_API void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);

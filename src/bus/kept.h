@@ -21,6 +21,10 @@ void cm1e_bus_kept_lead_alone(const cm1e_bus_t *bus);
 /** A scheduler makes the cycles of the bus from now on (true), or does so no more, because it has stopped the bus.
  *  Threads that wait for a file leave the cycles to it. @rt init */
 void cm1e_bus_drive(cm1e_bus_t *bus, bool on);
+/** A bus in Operational that has waited for its first cycle. A busy machine may take longer for that than the watchdogs
+ *  of the slaves allow (100 ms): taking real time and locking memory needs tens of milliseconds of computing. No motor
+ *  has torque yet, so the slaves are brought back to Operational. Returns the error of one that does not come. @rt init */
+cm1e_error_t cm1e_bus_resume(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Whether a scheduler makes the cycles. @rt any */
 bool cm1e_bus_is_driven(const cm1e_bus_t *bus);
 /** The calling thread runs a cycle (true), so that no other bus may use its time. @rt init */

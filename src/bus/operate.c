@@ -7,6 +7,8 @@
  *  afterwards. */
 enum { EXCHANGES = 3 };
 #define EXCHANGE_NS INT64_C(2000000000)
+/** A bus that waited longer for its scheduler may have lost slaves to their watchdogs. */
+#define WAITED_NS INT64_C(20000000)
 /** ns; for each of the two steps down of cm1e_bus_stop(). */
 #define STOP_STEP_NS INT64_C(500000000)
 /** ns; within this time a slave takes an acknowledgement. */
@@ -62,6 +64,18 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
     cm1e_bus_set_phase(bus, BUS_OPERATING);
     cm1e_bus_keep(bus);
     return CM1E_OK;
+}
+
+cm1e_error_t cm1e_bus_resume(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    if (cm1e_bus_enter(bus) - bus->sent_ns < WAITED_NS)
+        return CM1E_OK;
+    cm1e_error_t error = exchange(bus, false, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_all_to_state(bus, CM1E_AL_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    if (error == CM1E_OK)
+        error = exchange(bus, true, diag);
+    return error;
 }
 
 cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag)

@@ -348,6 +348,8 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     cm1e_error_t error = watch_tasks(s, diag);
     if (error == CM1E_OK)
         error = take_real_time(s, &realtime, diag);
+    for (uint32_t i = 0; i < s->member_count && error == CM1E_OK; i++)
+        error = cm1e_bus_resume(s->members[i].bus, diag);
     if (error == CM1E_OK) {
         s->start_ns = s->sent_ns = cm1e_bus_next_start(clock_team_leader(&s->clocks), cm1e_clock_now(s->clock));
         cm1e_log_run(&s->log, true, 0);

@@ -480,6 +480,42 @@ START_TEST(test_scheduler_of_an_earlier_operation_is_refused)
 }
 END_TEST
 
+/** A busy machine let the program wait between the start of the bus and the first cycle: the watchdogs of the slaves ended
+ *  Operational. That is mended, because no motor has torque yet. */
+START_TEST(test_a_late_first_cycle_finds_the_slaves_in_operational)
+{
+    static const int64_t waits_ms[] = {10, 50, 99, 101, 150, 5000};
+    machine_t machine = {.axis_count = 3, .bridged = _i % 2};
+    machine_open(&machine);
+    mover_t mover = make_mover(&machine, 0);
+    machine_add(&machine, "", 0, 0, moving_program, &mover);
+    cm1e_clock_t *clock = cm1e_bus_clock(machine.bus);
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + waits_ms[_i / 2] * MS);
+    machine_run(&machine, 400 * MS);
+    ck_assert_msg(mover.power.Status, "after %d ms the axis gets no power: %s", (int)waits_ms[_i / 2],
+                  cm1e_strerror(mover.info.error));
+    machine_close(&machine);
+}
+END_TEST
+
+START_TEST(test_a_late_first_cycle_without_a_slave_is_an_error_in_words)
+{
+    machine_t machine = {.axis_count = 2};
+    machine_open(&machine);
+    mover_t mover = make_mover(&machine, 0);
+    machine_add(&machine, "", 0, 0, moving_program, &mover);
+    cm1e_clock_t *clock = cm1e_bus_clock(machine.bus);
+    char answer[128];
+    cm1e_diag_t diag = {0};
+    ck_assert_int_eq(cm1e_bus_simulate(machine.bus, "unplug 2", answer, sizeof answer), CM1E_OK);
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + 150 * MS);
+    ck_assert_int_ne(cm1e_scheduler_run(machine.scheduler, 400 * MS, &diag), CM1E_OK);
+    ck_assert_msg(strstr(diag.text, "Slave 2"), "%s", diag.text);
+    ck_assert_uint_eq(mover.calls, 0);
+    machine_close(&machine);
+}
+END_TEST
+
 START_TEST(test_longest_stop_timeout_is_no_short_one)
 {
     machine_t machine = {.axis_count = 1, .config = {.stop_timeout_ns = INT64_MAX}};
@@ -570,6 +606,8 @@ int main(void)
     tcase_add_test(all, test_an_older_program_has_shorter_structs);
     tcase_add_test(all, test_scheduler_of_an_earlier_operation_is_refused);
     tcase_add_test(all, test_longest_stop_timeout_is_no_short_one);
+    tcase_add_loop_test(all, test_a_late_first_cycle_finds_the_slaves_in_operational, 0, 12);
+    tcase_add_test(all, test_a_late_first_cycle_without_a_slave_is_an_error_in_words);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

@@ -58,6 +58,7 @@ static struct {
     seen_t seen;
     int64_t error_ns;
     bool late;
+    double speed_at_hang;         /**< u/s, of the shaft, at least the commanded one */
     BOOL resets;                  /**< the living task resets the axis afterwards */
     cm1e_error_t result;
     cm1e_diag_t diag;
@@ -108,6 +109,13 @@ static void hang(void)
     }
 }
 
+static cm1e_sim_probe_t shaft(void)
+{
+    cm1e_sim_probe_t probe;
+    cm1e_sim_probe(cm1e_bus_segment(t.machine.bus), 1, &probe);
+    return probe;
+}
+
 /** Turns the motor, and hangs 100 ms after it has reached its velocity. */
 static void hanging_program(void *context)
 {
@@ -119,17 +127,13 @@ static void hanging_program(void *context)
     t.turn.Execute = t.power.Status;
     MC_MoveVelocity(&t.turn);
     in_velocity = t.turn.InVelocity ? in_velocity + 1 : 0;
-    if (in_velocity == 90)
-        cm1e_sim_probe_reset(cm1e_bus_segment(t.machine.bus), 1); /* the overshoot at the end of the acceleration is past */
-    if (in_velocity >= 100)
-        hang();
-}
-
-static cm1e_sim_probe_t shaft(void)
-{
-    cm1e_sim_probe_t probe;
-    cm1e_sim_probe(cm1e_bus_segment(t.machine.bus), 1, &probe);
-    return probe;
+    if (in_velocity < 100)
+        return;
+    if (in_velocity == 100) { /* what a busy machine did to the motor before is not judged */
+        cm1e_sim_probe_reset(cm1e_bus_segment(t.machine.bus), 1);
+        t.speed_at_hang = fmax(velocity, fabs(shaft().velocity_counts_per_s) / COUNTS);
+    }
+    hang();
 }
 
 static void note_end(const cm1e_axis_info_t *info)
@@ -214,7 +218,7 @@ static void judge_motor(void)
 {
     ck_assert_msg(t.seen.speed_before > 0.95 * velocity, "%s: %g u/s before", names[t.hang], t.seen.speed_before);
     const double fastest = shaft().peak_velocity_counts_per_s / COUNTS;
-    ck_assert_msg(fastest <= 1.05 * velocity, "%s: %g u/s since then", names[t.hang], fastest);
+    ck_assert_msg(fastest <= 1.05 * t.speed_at_hang, "%s: %g u/s since then", names[t.hang], fastest);
     ck_assert_msg(t.seen.moved_ns < 80 * MS, "%s: still moving %g ms later", names[t.hang], (double)t.seen.moved_ns / MS);
     ck_assert_msg(t.seen.calls_after > 250, "%s: the other task was called %u times", names[t.hang], t.seen.calls_after);
     ck_assert_msg(fabs(t.seen.last - t.seen.position) < velocity * 0.05, "%s: %g u", names[t.hang],
@@ -292,7 +296,7 @@ START_TEST(test_without_a_limit_and_within_it_a_task_goes_on)
     ck_assert_msg(t.seen.error == CM1E_OK, "%s", t.seen.text);
     ck_assert_uint_ge(t.calls, t.seen.calls);
     const double fastest = shaft().peak_velocity_counts_per_s / COUNTS;
-    ck_assert_msg(fastest > 0.95 * velocity && fastest < 1.05 * velocity, "%s: %g u/s", names[t.hang], fastest);
+    ck_assert_msg(fastest > 0.95 * velocity && fastest < 1.05 * t.speed_at_hang, "%s: %g u/s", names[t.hang], fastest);
     machine_close(&t.machine);
 }
 END_TEST
