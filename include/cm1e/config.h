@@ -156,7 +156,7 @@ typedef enum cm1e_coupling_stop {
 /** What an axis may follow. Memory for it is set aside when the axis is made. An encoder and an axis whose drive makes
  *  the motions follow nothing in any case. */
 typedef enum cm1e_follows {
-    CM1E_FOLLOWS_ANY = 0,            /**< gears, combinations and cams: 24 kB with cams of 128 points */
+    CM1E_FOLLOWS_ANY = 0,            /**< gears, combinations and cams: 25 kB with cams of 128 points */
     CM1E_FOLLOWS_GEARS,              /**< MC_GearIn, MC_GearInPos, MC_CombineAxes, but no cams: 4 kB */
     CM1E_FOLLOWS_NOTHING,            /**< nothing. Others may follow this axis */
 } cm1e_follows_t;

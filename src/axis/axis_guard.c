@@ -18,6 +18,7 @@
 #include "axis/axis_limits.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "core/extreme.h"
 #include "core/rare.h"
 
 /* Tolerances for rounding: relative, and in counts. */
@@ -42,9 +43,9 @@ static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
     const cm1e_motion_limits_t *most = limits_of(axis);
     const double v0 = axis->setpoint.velocity, v1 = next->velocity, a = next->acceleration, t = axis->cycle_s;
     const bool turns = v0 * v1 < 0.0, grows = fabs(v1) >= fabs(v0);
-    const double bound = turns ? fmax(most->acceleration, most->deceleration)
+    const double bound = turns ? larger(most->acceleration, most->deceleration)
                          : grows ? most->acceleration : most->deceleration;
-    const double change = fabs(v1 - v0) / t, either = fmax(most->acceleration, most->deceleration);
+    const double change = fabs(v1 - v0) / t, either = larger(most->acceleration, most->deceleration);
     const double noise = slack_counts / fabs(axis->position.scale) / t;
     const guard_limit_t limit = !turns && !grows ? GUARD_DECELERATION : GUARD_ACCELERATION;
     if (change > bound * (1.0 + slack) + noise)
@@ -60,7 +61,7 @@ static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept
     const double t = axis->cycle_s;
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
     const double mean = (axis->setpoint.velocity + next->velocity) * 0.5 * t;
-    const double most = fmax(limits_of(axis)->acceleration, limits_of(axis)->deceleration) * t * t /
+    const double most = larger(limits_of(axis)->acceleration, limits_of(axis)->deceleration) * t * t /
                         (kept_jerk ? 4.0 : 1.0); /* without a limit of jerk it may change at any moment */
     /* The rounding of a double that holds the whole position. */
     const double far = 1e-15 * fabs(cm1e_axis_line(axis, next->position)) + slack_counts / fabs(axis->position.scale);
@@ -83,7 +84,7 @@ static double jerk_inside(const cm1e_axis_t *axis, const from_t *next)
 {
     const double t = axis->cycle_s, a0 = axis->setpoint.acceleration, gain = next->velocity - axis->setpoint.velocity;
     const double mean = (next->acceleration - a0) / t, noise = 1e-12 * fabs(next->velocity);
-    const double beside = fmax(fabs(gain - (a0 + next->acceleration) * t / 2.0) - noise, 0.0) / (t * t);
+    const double beside = larger(fabs(gain - (a0 + next->acceleration) * t / 2.0) - noise, 0.0) / (t * t);
     return 2.0 * beside + sqrt(4.0 * beside * beside + mean * mean);
 }
 
@@ -94,7 +95,7 @@ typedef struct bounds {
 
 static bounds_t bounds_between(const cm1e_motion_limits_t *most, double v0, double v)
 {
-    const double either = fmax(most->acceleration, most->deceleration);
+    const double either = larger(most->acceleration, most->deceleration);
     if (v0 > 0.0 && v > 0.0)
         return (bounds_t){most->acceleration, most->deceleration};
     if (v0 < 0.0 && v < 0.0)
@@ -111,7 +112,7 @@ static guard_t guard_second_difference(const cm1e_axis_t *axis, const from_t *ne
     const bounds_t bounds = bounds_between(limits_of(axis), v0, v);
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
     const double early = 2.0 * (step - v0 * t) / (t * t), late = 2.0 * (v * t - step) / (t * t);
-    const double most = fmax(early, late), least = fmin(early, late);
+    const double most = larger(early, late), least = smaller(early, late);
     const double noise = 2e-9 / fabs(axis->position.scale) / (t * t) + 2e-13 * fabs(v) / t;
     if (most > bounds.up * (1.0 + slack) + noise)
         return broken(v < 0.0 ? GUARD_DECELERATION : GUARD_ACCELERATION, most, bounds.up);
@@ -136,7 +137,7 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     if (guard.limit)
         return guard;
     const double jerk = fabs(a - axis->setpoint.acceleration) / axis->cycle_s;
-    const double jerk_noise = 1e-9 * fmax(most->acceleration, most->deceleration) / axis->cycle_s;
+    const double jerk_noise = 1e-9 * larger(most->acceleration, most->deceleration) / axis->cycle_s;
     if (kept_jerk && jerk > most->jerk * (1.0 + slack) + jerk_noise)
         return broken(GUARD_JERK, jerk, most->jerk);
     if (kept_jerk && !axis_led(axis)) {
@@ -170,7 +171,7 @@ static double largest_gain(double a, double b, double t, double jerk, double mos
  * velocity y. The jerk of that motion changes its sign twice. */
 static double farthest(double x, double y)
 {
-    const double against = fmax((1.0 - x) / 2.0, slack), middle = (0.5 - y) / (2.0 * against);
+    const double against = larger((1.0 - x) / 2.0, slack), middle = (0.5 - y) / (2.0 * against);
     return 1.0 / 6.0 - against * (middle * middle + against * against / 12.0);
 }
 
@@ -181,8 +182,8 @@ CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *nex
     const double v = next->velocity, a = next->acceleration;
     const bounds_t bounds = bounds_between(most, v0, v);
     const double noise = slack * jerk * t * t + 1e-12 * fabs(v), gain = v - v0;
-    if (gain > largest_gain(a0, a, t, jerk, fmax(bounds.up, fmax(a0, a))) + noise ||
-        -gain > largest_gain(-a0, -a, t, jerk, fmax(bounds.down, fmax(-a0, -a))) + noise)
+    if (gain > largest_gain(a0, a, t, jerk, larger(bounds.up, larger(a0, a))) + noise ||
+        -gain > largest_gain(-a0, -a, t, jerk, larger(bounds.down, larger(-a0, -a))) + noise)
         return false;
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
     const double x = (a - a0) / (jerk * t), y = (gain - a0 * t) / (jerk * t * t);
@@ -200,10 +201,10 @@ bool cm1e_axis_well_ahead(const cm1e_axis_t *axis, const cm1e_motion_bounds_t *m
     const bool steps = isinf(j); /* of the velocity, within a cycle */
     const double beside = steps ? a * t * t / 2.0 : j * t * t * t / 12.0; /* u; of a step, the mean velocity */
     if (!steps && !(j * t <= g->jerk && v + a * a * g->ease <= g->velocity &&
-                    a * t + 2.0 * beside / t <= fmin(g->up, g->down)))
+                    a * t + 2.0 * beside / t <= smaller(g->up, g->down)))
         return false;
     return axis->power.enable_positive && axis->power.enable_negative && v <= g->velocity && a <= g->acceleration &&
-           a * t <= fmin(g->up, g->down) && beside <= g->step * fabs(g->per_count) &&
+           a * t <= smaller(g->up, g->down) && beside <= g->step * fabs(g->per_count) &&
            (!axis->limits.software_limits ||
             (line + highest + way <= axis->limits.upper && line + lowest - way >= axis->limits.lower)) &&
            cm1e_position_reaches(axis->setpoint.position, highest * axis->position.scale) &&
@@ -220,7 +221,7 @@ void cm1e_axis_guard_decide(cm1e_axis_t *axis, bool kept, uint32_t leaders_cours
 void cm1e_axis_guard_renew(cm1e_axis_t *axis)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
-    const double t = axis->cycle_s, either = fmax(most->acceleration, most->deceleration);
+    const double t = axis->cycle_s, either = larger(most->acceleration, most->deceleration);
     cm1e_axis_look_anew(axis);
     axis->guarding = (guarding_t){
         .velocity = most->velocity,

@@ -5,6 +5,7 @@
 #include "axis/axis_backlash.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "core/extreme.h"
 
 /* Tolerance of positions: smaller than any useful difference, and larger than the rounding of sums of doubles. */
 static const double tolerance_counts = 0.01;
@@ -48,16 +49,16 @@ static void find_counts_limits(cm1e_axis_t *axis)
     const position_t zero = {axis->position.actual_counts - axis->position.raw, 0.0};
     const double a = cm1e_axis_line(axis, cm1e_position_plus(zero, -reach));
     const double b = cm1e_axis_line(axis, cm1e_position_plus(zero, reach));
-    axis->limits.counts_lower = axis->limits.counts_limit ? fmin(a, b) : -INFINITY;
-    axis->limits.counts_upper = axis->limits.counts_limit ? fmax(a, b) : INFINITY;
+    axis->limits.counts_lower = axis->limits.counts_limit ? smaller(a, b) : -INFINITY;
+    axis->limits.counts_upper = axis->limits.counts_limit ? larger(a, b) : INFINITY;
 }
 
 void cm1e_axis_apply_limits(cm1e_axis_t *axis)
 {
     find_counts_limits(axis);
-    axis->limits.upper = fmin(axis->limits.positive_enabled ? axis->limits.positive : INFINITY,
+    axis->limits.upper = smaller(axis->limits.positive_enabled ? axis->limits.positive : INFINITY,
                               axis->limits.counts_upper);
-    axis->limits.lower = fmax(axis->limits.negative_enabled ? axis->limits.negative : -INFINITY,
+    axis->limits.lower = larger(axis->limits.negative_enabled ? axis->limits.negative : -INFINITY,
                               axis->limits.counts_lower);
     axis->limits.software_limits = axis->limits.positive_enabled || axis->limits.negative_enabled ||
                                    axis->limits.counts_limit;
@@ -89,7 +90,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     if (!cm1e_axis_position_init(axis) || !(peak > 0.0))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": the backlash velocity, the unit or the turn of "
                              "%.17g u is too large or too small to compute with.", c->name, c->modulo_range);
-    axis->limits.maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
+    axis->limits.maximum.velocity = smaller(or_default(c->max_velocity, peak), peak);
     axis->limits.maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts * count / counts);
     axis->limits.maximum.deceleration = or_default(c->max_deceleration, axis->limits.maximum.acceleration);
     axis->limits.maximum.jerk = or_default(c->max_jerk, default_jerk_counts * count / counts);
@@ -105,12 +106,12 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
-static int32_t whole_counts(double counts) { return (int32_t)fmin(ceil(counts), INT32_MAX); }
+static int32_t whole_counts(double counts) { return (int32_t)smaller(ceil(counts), INT32_MAX); }
 
 void cm1e_axis_steps_init(cm1e_axis_t *axis)
 {
     const double scale = fabs(axis->position.scale);
-    const double acceleration = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration);
+    const double acceleration = larger(axis->limits.system.acceleration, axis->limits.system.deceleration);
     cm1e_drive_command_t *command = &axis->drive.command;
     command->position_step = whole_counts((axis->limits.system.velocity * scale + axis->backlash.velocity) *
                                           axis->cycle_s);
@@ -141,10 +142,10 @@ static void keep_below_maximum_velocity(const from_t *from, double most, double 
     double room = most - velocity;
     if (needed > room + relative_tolerance * system) /* the application has just lowered its maximum */
         room = system - velocity;
-    limits->jerk = fmax(limits->jerk, fmin(a * a / (2.0 * fmax(room, 0.0)), most_jerk));
+    limits->jerk = larger(limits->jerk, smaller(a * a / (2.0 * larger(room, 0.0)), most_jerk));
     /* The acceleration of a ramp without a limit of jerk needs more. */
     if (needed > room + relative_tolerance * system)
-        limits->jerk = a * a / (2.0 * fmax(room, relative_tolerance * system));
+        limits->jerk = a * a / (2.0 * larger(room, relative_tolerance * system));
 }
 
 void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
@@ -172,7 +173,7 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
     const double largest = most->velocity * (1.0 + relative_tolerance);
     if (!(speed > 0.0) || !(speed <= largest) || !(fabs(move->end_velocity) <= largest))
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
-    limits->velocity = fmin(speed, most->velocity);
+    limits->velocity = smaller(speed, most->velocity);
     return CM1E_OK;
 }
 
@@ -181,13 +182,13 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
 static void share_with_superimposed(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum, *share = &axis->superimposed.share;
-    const double rest = fmin(most->acceleration, most->deceleration) - share->acceleration;
-    limits->velocity = fmin(limits->velocity, most->velocity - share->velocity);
-    limits->acceleration = fmin(limits->acceleration, rest);
-    limits->deceleration = fmin(limits->deceleration, rest);
-    limits->jerk = fmin(limits->jerk, most->jerk - share->jerk);
+    const double rest = smaller(most->acceleration, most->deceleration) - share->acceleration;
+    limits->velocity = smaller(limits->velocity, most->velocity - share->velocity);
+    limits->acceleration = smaller(limits->acceleration, rest);
+    limits->deceleration = smaller(limits->deceleration, rest);
+    limits->jerk = smaller(limits->jerk, most->jerk - share->jerk);
     if (fabs(from->acceleration) > rest)
-        limits->jerk = fmax(limits->jerk, share->jerk);
+        limits->jerk = larger(limits->jerk, share->jerk);
 }
 
 cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
@@ -224,10 +225,10 @@ cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed
     const from_t from = {axis->setpoint.position, on_top->now.velocity, on_top->now.acceleration, false};
     const cm1e_motion_limits_t *share = &on_top->share;
     const cm1e_error_t error = cm1e_axis_limits_with(axis, &rest, &on_top->move, override, limits);
-    limits->velocity = fmin(limits->velocity, share->velocity);
-    limits->acceleration = fmin(limits->acceleration, share->acceleration);
-    limits->deceleration = fmin(limits->deceleration, share->deceleration);
-    limits->jerk = fmin(limits->jerk, share->jerk);
+    limits->velocity = smaller(limits->velocity, share->velocity);
+    limits->acceleration = smaller(limits->acceleration, share->acceleration);
+    limits->deceleration = smaller(limits->deceleration, share->deceleration);
+    limits->jerk = smaller(limits->jerk, share->jerk);
     keep_below_maximum_velocity(&from, share->velocity, share->velocity, share->jerk, limits);
     return error;
 }
@@ -247,14 +248,14 @@ bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, d
         lowest += axis->superimposed.lowest;
         highest += axis->superimposed.highest;
     }
-    return now + highest <= fmax(axis->limits.upper, now) + tolerance &&
-           now + lowest >= fmin(axis->limits.lower, now) - tolerance;
+    return now + highest <= larger(axis->limits.upper, now) + tolerance &&
+           now + lowest >= smaller(axis->limits.lower, now) - tolerance;
 }
 
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target)
 {
     const double way = cm1e_position_minus(target, from->position) / axis->position.scale;
-    return cm1e_axis_limits_contain_way(axis, from, fmin(way, 0.0), fmax(way, 0.0));
+    return cm1e_axis_limits_contain_way(axis, from, smaller(way, 0.0), larger(way, 0.0));
 }
 
 bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
@@ -282,8 +283,8 @@ bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper
     double lowest, highest;
     cm1e_profile_extent(&axis->setpoint.profile, &lowest, &highest);
     const superimposed_t *on_top = &axis->superimposed;
-    const double below = on_top->id ? fmin(on_top->lowest, 0.0) : 0.0;
-    const double above = on_top->id ? fmax(on_top->highest, 0.0) : 0.0;
+    const double below = on_top->id ? smaller(on_top->lowest, 0.0) : 0.0;
+    const double above = on_top->id ? larger(on_top->highest, 0.0) : 0.0;
     const double stops[] = {base + lowest + below, base + highest + above, now + v * fabs(v) * brake,
                             base + axis->setpoint.profile.end.position + end * fabs(end) * brake};
     for (int i = 0; i < 4; i++)

@@ -13,6 +13,7 @@
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
 #include "axis/axis_superimpose.h"
+#include "core/extreme.h"
 
 /* A waiting command that begins without a stop before it. */
 typedef struct leg {
@@ -28,10 +29,10 @@ typedef struct leg {
 static double junction_velocity(MC_BUFFER_MODE mode, double first, double second)
 {
     switch (mode) {
-    case mcBlendingLow: return fmin(first, second);
+    case mcBlendingLow: return smaller(first, second);
     case mcBlendingPrevious: return first;
     case mcBlendingNext: return second;
-    case mcBlendingHigh: return fmax(first, second);
+    case mcBlendingHigh: return larger(first, second);
     default: return 0.0;
     }
 }
@@ -41,8 +42,8 @@ static double nearer(const cm1e_axis_t *axis, const move_t *move, double distanc
 {
     if (!axis->superimposed.id || kind_row(move->kind)->target != TARGET_ABSOLUTE)
         return distance;
-    const double left = distance > 0.0 ? distance - fmax(axis->superimposed.highest, 0.0)
-                                       : distance - fmin(axis->superimposed.lowest, 0.0);
+    const double left = distance > 0.0 ? distance - larger(axis->superimposed.highest, 0.0)
+                                       : distance - smaller(axis->superimposed.lowest, 0.0);
     return left * distance > 0.0 ? left : 0.0;
 }
 
@@ -69,7 +70,7 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
         leg->limits.velocity = 0.0;
     } else if (kind_row(move->kind)->plan == PLAN_THROUGH_TARGET) {
         const double exit_velocity = cm1e_axis_exit_velocity(axis, &from, move);
-        leg->exit_velocity = fmax(0.0, leg->distance > 0.0 ? exit_velocity : -exit_velocity);
+        leg->exit_velocity = larger(0.0, leg->distance > 0.0 ? exit_velocity : -exit_velocity);
     }
     const double begin = cm1e_axis_line(axis, *end);
     leg->room = !axis->limits.software_limits ? INFINITY
@@ -87,14 +88,14 @@ static double entry_velocity(const leg_t *leg, double velocity_before, double si
 {
     double velocity = junction_velocity(leg->mode, velocity_before, leg->limits.velocity);
     if (isfinite(leg->room)) /* if it cannot begin there, the axis has to stop inside its limits */
-        velocity = cm1e_profile_entry_velocity(fmax(leg->room, 0.0), velocity, 0.0, leg->most);
+        velocity = cm1e_profile_entry_velocity(larger(leg->room, 0.0), velocity, 0.0, leg->most);
     if (leg->distance * sign <= 0.0)
         return 0.0;
     if (leg->open)
         return velocity;
     const double distance = fabs(leg->distance);
     const double entry = cm1e_profile_entry_velocity(distance, velocity, leg->exit_velocity, &leg->limits);
-    return as_if_to_stop ? fmax(entry, cm1e_profile_entry_velocity(distance, velocity, 0.0, &leg->limits)) : entry;
+    return as_if_to_stop ? larger(entry, cm1e_profile_entry_velocity(distance, velocity, 0.0, &leg->limits)) : entry;
 }
 
 /* The velocity with which a command of this velocity may enter the first leg, computed from the last leg backwards. */

@@ -10,6 +10,7 @@
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_superimpose.h"
+#include "core/extreme.h"
 #include "core/rare.h"
 
 /* 1/s. In CSV (a mapping without target position) the position loop is ours. */
@@ -257,7 +258,7 @@ static bool at_end(const cm1e_axis_t *axis, double time_s)
 CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
 {
     while (at_end(axis, time_s)) {
-        const double over_s = fmax(time_s - axis->setpoint.profile.duration_s, 0.0);
+        const double over_s = larger(time_s - axis->setpoint.profile.duration_s, 0.0);
         if (!profile_ended(axis, over_s / (1.0 - axis->setpoint.slow.missing))) {
             if (axis_follows(axis))
                 axis->coupling_hooks->first_set_point(axis);
@@ -392,7 +393,7 @@ static int32_t target_velocity(cm1e_axis_t *axis)
     const double most = axis->limits.system.velocity * fabs(axis->position.scale) + axis->backlash.velocity;
     const double velocity = axis->setpoint.velocity * axis->position.scale + cm1e_axis_backlash_velocity(axis) +
                             loop_velocity(axis);
-    return (int32_t)round(fmax(-most, fmin(velocity, most)));
+    return (int32_t)round(larger(-most, smaller(velocity, most)));
 }
 
 void cm1e_axis_write_set_point(cm1e_axis_t *axis)

@@ -13,6 +13,7 @@
 #include "axis/axis_extras.h"
 #include "axis/axis_in_position.h"
 #include "axis/axis_setpoint.h"
+#include "core/extreme.h"
 #include "core/rare.h"
 
 /* So many cycles are looked at together. */
@@ -26,11 +27,11 @@ static bool needs_no_check(const cm1e_axis_t *axis, double from_s, double until_
     const cm1e_profile_stretch_t *stretch = &axis->setpoint.stretch;
     const cm1e_motion_state_t a = cm1e_profile_stretch_state(stretch, from_s);
     const cm1e_motion_state_t b = cm1e_profile_stretch_state(stretch, until_s);
-    const double highest = fmax(a.position, b.position), lowest = fmin(a.position, b.position);
+    const double highest = larger(a.position, b.position), lowest = smaller(a.position, b.position);
     const double speed = cm1e_profile_stretch_bounds(stretch, from_s, until_s).velocity;
     const double base = axis->setpoint.base_line;
     const double way = speed * speed * axis->limits.emergency_way;
-    const double farthest = fmax(fabs(highest), fabs(lowest)) * fabs(axis->position.scale);
+    const double farthest = larger(fabs(highest), fabs(lowest)) * fabs(axis->position.scale);
     return isfinite(way) && farthest < profile_farthest_from_base &&
            cm1e_position_reaches(axis->setpoint.base, 2.0 * profile_farthest_from_base) &&
            cm1e_position_reaches(axis->setpoint.base, -2.0 * profile_farthest_from_base) &&
@@ -42,9 +43,9 @@ static bool needs_no_check(const cm1e_axis_t *axis, double from_s, double until_
 CM1E_RARE static bool look_ahead(cm1e_axis_t *axis, double time_s)
 {
     setpoint_t *s = &axis->setpoint;
-    double until_s = fmin(s->stretch.until_s, time_s + cycles_ahead * axis->cycle_s);
+    double until_s = smaller(s->stretch.until_s, time_s + cycles_ahead * axis->cycle_s);
     if (!s->reached && !s->paused && !s->stands) /* else the end of the profile is behind */
-        until_s = fmin(until_s, s->profile.duration_s - profile_same_moment * axis->cycle_s);
+        until_s = smaller(until_s, s->profile.duration_s - profile_same_moment * axis->cycle_s);
     if (!(time_s >= s->stretch.from_s && time_s < until_s))
         return false;
     if (!needs_no_check(axis, time_s, until_s))

@@ -373,7 +373,6 @@ struct cm1e_axis {
     const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
     const coupling_hooks_t *coupling_hooks; /**< NULL: it can neither follow nor be followed */
     struct coupling *coupling;      /**< data of these hooks; NULL: it follows nothing */
-    struct followed *followed;      /**< data of these hooks about its slaves */
     commands_t commands;
     objects_t objects;
     in_position_t in_position;
@@ -391,6 +390,7 @@ struct cm1e_axis {
     not_set_t not_set;
     override_t override, override_refused; /**< the second: the last refused one, for the text */
     belongs_t belongs;
+    struct followed *followed;      /**< data of coupling_hooks about its slaves */
     outside_t outside;
     set_aside_t set_aside;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */

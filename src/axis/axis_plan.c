@@ -5,6 +5,7 @@
 #include "axis/axis_commands.h"
 #include "axis/axis_limits.h"
 #include "axis/axis_position.h"
+#include "core/extreme.h"
 
 static cm1e_motion_state_t start_of(const from_t *from)
 {
@@ -184,8 +185,8 @@ static cm1e_error_t plan_through_target(const cm1e_axis_t *axis, const from_t *f
     const cm1e_motion_state_t start = start_of(from);
     const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
     const double left = axis->limits.maximum.velocity - (from->shared ? axis->superimposed.share.velocity : 0.0);
-    const double end = fmax(-left, fmin(move->exit_velocity, left)), cruise = limits.velocity;
-    limits.velocity = fmax(cruise, fabs(end));
+    const double end = larger(-left, smaller(move->exit_velocity, left)), cruise = limits.velocity;
+    limits.velocity = larger(cruise, fabs(end));
     if (cm1e_profile_to_velocity(profile, &start, end, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     const double needed = profile->end.position;
@@ -322,7 +323,7 @@ cm1e_error_t cm1e_axis_plan(cm1e_axis_t *axis, const from_t *from, move_t *move,
     if (error == CM1E_OK && before_others && cm1e_axis_profile_strays(axis, from, move, profile)) {
         axis->override = no_override;
         const double most = fabs(from->velocity);
-        move->exit_velocity = fmax(-most, fmin(exit_velocity(axis, from, move, true), most));
+        move->exit_velocity = larger(-most, smaller(exit_velocity(axis, from, move, true), most));
         axis->override = (override_t){factors.velocity, 1.0, 1.0};
         error = plan_with_exit(axis, from, move, passing, profile);
     }
@@ -350,8 +351,8 @@ static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const 
     if (cm1e_axis_plan_stop(axis, from, &axis->limits.maximum, &brake) != CM1E_OK)
         return false;
     cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
-    return (axis->power.enable_positive || highest <= fmax(brake_highest, 0.0) + axis->limits.tolerance) &&
-           (axis->power.enable_negative || lowest >= fmin(brake_lowest, 0.0) - axis->limits.tolerance);
+    return (axis->power.enable_positive || highest <= larger(brake_highest, 0.0) + axis->limits.tolerance) &&
+           (axis->power.enable_negative || lowest >= smaller(brake_lowest, 0.0) - axis->limits.tolerance);
 }
 
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)

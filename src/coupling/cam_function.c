@@ -6,6 +6,7 @@
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "core/extreme.h"
 #include "coupling/coupling_private.h"
 
 /* Tolerances: within them the slave has the position and the velocity of the cam. */
@@ -120,7 +121,7 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
 {
     (void)axis, (void)link;
     const cm1e_curve_extremes_t *e = &follow->cam.slot->cam.extremes;
-    return fmax(fabs(e->least_slope), fabs(e->most_slope)) *
+    return larger(fabs(e->least_slope), fabs(e->most_slope)) *
            fabs(follow->cam.slave_scaling / follow->cam.master_scaling);
 }
 
@@ -138,8 +139,8 @@ static bool stays_inside(const follow_t *follow, const course_t *master)
     const double end = cm1e_position_minus(master->end, follow->links[0].origin);
     const double a = (place_now(follow) - table->start) / table->length;
     const double b = (place_in_cam(&follow->cam, &follow->links[0], end) - table->start) / table->length;
-    const double turn = floor(fmin(a, b)), rounding = 1e-9 * (1.0 + fabs(turn));
-    return fmin(a, b) > turn + rounding && fmax(a, b) < turn + 1.0 - rounding && (table->periodic || turn == 0.0);
+    const double turn = floor(smaller(a, b)), rounding = 1e-9 * (1.0 + fabs(turn));
+    return smaller(a, b) > turn + rounding && larger(a, b) < turn + 1.0 - rounding && (table->periodic || turn == 0.0);
 }
 
 /* The largest slope, curvature and third derivative of the cam as it is placed. */
@@ -147,7 +148,7 @@ static cm1e_curve_point_t steepest_point(const cam_place_t *cam)
 {
     const cm1e_curve_extremes_t *e = &cam->slot->cam.extremes;
     const double finer = fabs(cam->finer), steep = fabs(cam->slave_scaling) * finer;
-    return (cm1e_curve_point_t){.slope = steep * fmax(fabs(e->least_slope), fabs(e->most_slope)),
+    return (cm1e_curve_point_t){.slope = steep * larger(fabs(e->least_slope), fabs(e->most_slope)),
                                 .curvature = steep * finer * e->curvature, .third = steep * finer * finer * e->third};
 }
 
@@ -208,7 +209,7 @@ void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double c
     cm1e_cam_place_t unused = {0};
     cm1e_cam_sample_t sample;
     if (!table->periodic && place >= table->start - within && place <= table->start + table->length + within)
-        place = fmax(table->start + within, fmin(place, table->start + table->length - within));
+        place = larger(table->start + within, smaller(place, table->start + table->length - within));
     cm1e_cam_sample(table, &unused, place, &sample);
     *position = cm1e_position_towards(cam->slave_zero, height(cam, &sample) * axis->position.scale);
     *point = (cm1e_curve_point_t){.slope = cam->slave_scaling * once * sample.point.slope,
@@ -233,7 +234,7 @@ static cm1e_motion_limits_t cam_demand(const follow_t *follow)
 static double part_of(double asked, double most, double needed)
 {
     const double minimum_part = 0.1, maximum_part = 0.5; /* a part: the master may become faster */
-    return fmin(asked, fmax(fmin(most - needed, maximum_part * most), minimum_part * most));
+    return smaller(asked, larger(smaller(most - needed, maximum_part * most), minimum_part * most));
 }
 
 cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
@@ -242,9 +243,9 @@ cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *fo
     const cm1e_motion_limits_t nothing = {0}, *most = &axis->limits.maximum;
     const cm1e_motion_limits_t needed = follow->cam.slot ? cam_demand(follow) : nothing;
     /* Both are bounded alike, because a deceleration of the catch-up may accelerate the axis. */
-    const double change = part_of(fmin(asked->acceleration, asked->deceleration),
-                                  fmin(most->acceleration, most->deceleration),
-                                  fmax(needed.acceleration, needed.deceleration));
+    const double change = part_of(smaller(asked->acceleration, asked->deceleration),
+                                  smaller(most->acceleration, most->deceleration),
+                                  larger(needed.acceleration, needed.deceleration));
     return (cm1e_motion_limits_t){
         .velocity = part_of(asked->velocity, most->velocity, needed.velocity),
         .acceleration = change,
@@ -340,7 +341,7 @@ static bool contained(const cm1e_axis_t *axis, const from_t *from, const cam_pla
     const double zero = cm1e_position_minus(cam->slave_zero, from->position) / axis->position.scale + cam->slave_offset;
     const double a = zero + cam->slave_scaling * table->extremes.lowest;
     const double b = zero + cam->slave_scaling * table->extremes.highest;
-    return cm1e_axis_limits_contain_way(axis, from, fmin(a, b), fmax(a, b));
+    return cm1e_axis_limits_contain_way(axis, from, smaller(a, b), larger(a, b));
 }
 
 static bool on_it(cm1e_axis_t *axis, const from_t *from, const from_t *wanted)
@@ -351,7 +352,7 @@ static bool on_it(cm1e_axis_t *axis, const from_t *from, const from_t *wanted)
     *refused = (cam_refused_t){cm1e_axis_units(axis, from->position), cm1e_axis_units(axis, wanted->position),
                                from->velocity, wanted->velocity};
     return fabs(way) <= cm1e_axis_tolerance_counts(axis, same_place_counts) &&
-           fabs(velocity) <= same_motion_cycles * axis->cycle_s * fmin(axis->limits.maximum.acceleration,
+           fabs(velocity) <= same_motion_cycles * axis->cycle_s * smaller(axis->limits.maximum.acceleration,
                                                                        axis->limits.maximum.deceleration);
 }
 
@@ -401,8 +402,10 @@ cm1e_error_t cm1e_cam_in_prepare(cm1e_axis_t *axis, const move_t *move, const cm
     error = find_slave_zero(axis, coupling, &start, cam, height(cam, &sample));
     if (error != CM1E_OK)
         return error;
-    find_master_zero(follow, cam, beyond);
-    cm1e_cam_sample(&slot->cam, &cam->place, place_now(follow), &sample);
+    if (beyond != 0.0) {
+        find_master_zero(follow, cam, beyond);
+        cm1e_cam_sample(&slot->cam, &cam->place, place_now(follow), &sample);
+    }
     sample_point(axis, follow, &sample, &wanted);
     if (!cm1e_position_in_range(wanted.position) || !contained(axis, from, cam))
         return CM1E_ERROR_AXIS_POSITION_RANGE;

@@ -5,6 +5,7 @@
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_superimpose.h"
+#include "core/extreme.h"
 #include "core/rare.h"
 #include "coupling/coupling_private.h"
 
@@ -20,7 +21,7 @@ static const double least_part = 0.01;
 
 static double at_most(double asked, double most, double used)
 {
-    return fmin(asked, fmax(most - used, least_part * most));
+    return smaller(asked, larger(least_part * most, most - used));
 }
 
 /* u/s. A slave that makes up distance in the direction in which the coupling function moves has only the velocity that
@@ -32,7 +33,7 @@ static double room_beside(const cm1e_axis_t *axis, const from_t *f)
     const double on_top = axis->superimposed.moving ? axis->superimposed.share.velocity : 0.0;
     const double at_rest = now->position + now->velocity * fabs(now->velocity) * axis->limits.emergency_way;
     const bool lags = at_rest * f->velocity < 0.0;
-    return lags ? fmax(most - fabs(f->velocity) - on_top, 0.0) : most;
+    return lags ? larger(0.0, most - fabs(f->velocity) - on_top) : most;
 }
 
 /* The velocity with which distance is made up. It is a part of what the coupling function leaves: the function may
@@ -40,7 +41,8 @@ static double room_beside(const cm1e_axis_t *axis, const from_t *f)
 static double velocity_to_place(const cm1e_axis_t *axis, const from_t *f)
 {
     const double part = 0.1, most = axis->limits.maximum.velocity, left = part * (most - fabs(f->velocity));
-    return fmin(axis->coupling->catch_up.asked.velocity, fmin(fmax(left, least_part * most), room_beside(axis, f)));
+    return smaller(axis->coupling->catch_up.asked.velocity,
+                        smaller(larger(least_part * most, left), room_beside(axis, f)));
 }
 
 /* The limits of the catch-up: those of the axis without what the coupling function uses. The velocity of the catch-up
@@ -57,7 +59,7 @@ static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t 
     const double used = helps ? 0.0 : fabs(f->acceleration);
     const double up = at_most(catch_up->asked.acceleration, most->acceleration, used);
     const double down = at_most(catch_up->asked.deceleration, most->deceleration, used);
-    const double change = now * f->velocity < 0.0 ? fmin(up, down) : fabs(f->velocity) > fabs(now) ? up : down;
+    const double change = now * f->velocity < 0.0 ? smaller(up, down) : fabs(f->velocity) > fabs(now) ? up : down;
     const double velocity = catch_up->to_place ? velocity_to_place(axis, f)
                                                : 2.0 * (most->velocity + fabs(catch_up->now.velocity));
     return (cm1e_motion_limits_t){velocity, change, change, jerk};
@@ -170,13 +172,11 @@ static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
     }
 }
 
-/* Tries to go on from the catch-up `before`. Returns the set-point, and in `*verdict` whether it keeps the limits. */
-static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, const catch_up_t *before, attempt_t attempt,
-                         verdict_t *verdict)
+/* Tries to go on from the present catch-up. Returns the set-point, and in `*verdict` whether it keeps the limits. */
+static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, attempt_t attempt, verdict_t *verdict)
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
     const bool disturbed = f->acceleration != 0.0 || axis->coupling->f_acceleration != 0.0;
-    *catch_up = *before;
     catch_up->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
     go_on(axis, f, attempt);
     const from_t sum = sum_of(axis, f);
@@ -202,7 +202,9 @@ static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdi
     const attempt_t first = before.held_back || interrupted ? WITH_ALL_JERK : AS_PLANNED;
     attempt_t kept = ATTEMPTS;
     for (int attempt = (int)first; attempt < ATTEMPTS; attempt++) {
-        sum = attempt_to(axis, f, &before, (attempt_t)attempt, verdict);
+        if (attempt > (int)first)
+            axis->coupling->catch_up = before;
+        sum = attempt_to(axis, f, (attempt_t)attempt, verdict);
         /* Where the coupling function itself leads beyond a limit, a catch-up could hold the axis at it for ever. */
         if (verdict->smooth || verdict->guard.limit == GUARD_DIRECTION ||
             verdict->guard.limit == GUARD_SOFTWARE_LIMIT)
@@ -210,7 +212,10 @@ static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdi
         if (!verdict->guard.limit && kept == ATTEMPTS)
             kept = (attempt_t)attempt;
     }
-    return kept == ATTEMPTS || kept == WITHOUT_JERK ? sum : attempt_to(axis, f, &before, kept, verdict);
+    if (kept == ATTEMPTS || kept == WITHOUT_JERK)
+        return sum;
+    axis->coupling->catch_up = before;
+    return attempt_to(axis, f, kept, verdict);
 }
 
 /* With a superimposed motion: if the sum breaks a limit, that motion goes on without jerk for a cycle. */
@@ -388,6 +393,11 @@ static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *left)
            fabs(left->acceleration) * scale * t * t < counts;
 }
 
+static bool is_something(const cm1e_motion_state_t *left)
+{
+    return left->position != 0.0 || left->velocity != 0.0 || left->acceleration != 0.0;
+}
+
 /* Begins the catch-up from the state `from`. If lost distance is not made up, the coupling function begins at the
  * position of the axis. A difference that is only rounding does not move the anchor, because it would add up. `across`:
  * a master on another bus may have changed its velocity at any place of a cam. Then the velocity comes first, with all
@@ -413,6 +423,10 @@ static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
                        .held_back = f.acceleration != 0.0};
     if (is_nothing(axis, &c->catch_up.now))
         c->catch_up.now = (cm1e_motion_state_t){0};
+    if (c->catch_up.held_back) { /* the first set-point plans it, as every one while the function accelerates */
+        c->catch_up.on = is_something(&c->catch_up.now);
+        return;
+    }
     c->catch_up.to_place = goes_to_place(axis, &f, f.acceleration == 0.0);
     const cm1e_motion_limits_t limits = limits_beside(axis, &f, asked->jerk);
     plan_catch_up(axis, &limits);

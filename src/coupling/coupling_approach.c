@@ -12,6 +12,7 @@
 #include "axis/axis_limits.h"
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
+#include "core/extreme.h"
 #include "coupling/coupling_private.h"
 
 /* Tolerances for rounding: counts of a master, and a part of a limit. */
@@ -79,7 +80,7 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
 
 static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link)
 {
-    return fmax(follow->approach.steepest, follow->approach.then->steepest(axis, follow, link));
+    return larger(follow->approach.steepest, follow->approach.then->steepest(axis, follow, link));
 }
 
 static const coupling_function_t approach_kind = {.evaluate = evaluate, .steepest = steepest};
@@ -88,7 +89,7 @@ static const coupling_function_t approach_kind = {.evaluate = evaluate, .steepes
 
 static bool beyond(cm1e_axis_t *axis, const char *what, const char *unit, double asked, double allowed, double now)
 {
-    if (asked <= fmax(allowed, fabs(now)) * (1.0 + relative_tolerance))
+    if (asked <= larger(allowed, fabs(now)) * (1.0 + relative_tolerance))
         return false;
     axis->coupling->approach_refused = (approach_refused_t){what, unit, asked, allowed};
     return true;
@@ -101,7 +102,7 @@ static bool keeps_limits(cm1e_axis_t *axis, const follow_t *follow, const from_t
     cm1e_motion_limits_t demand;
     cm1e_approach_demand(extremes, follow->links[0].seen.velocity, &demand);
     return !beyond(axis, "velocity", "u/s", demand.velocity, limits->velocity, from->velocity) &&
-           !beyond(axis, "acceleration", "u/s2", demand.acceleration, fmin(limits->acceleration, limits->deceleration),
+           !beyond(axis, "acceleration", "u/s2", demand.acceleration, smaller(limits->acceleration, limits->deceleration),
                    from->acceleration) &&
            !beyond(axis, "jerk", "u/s3", demand.jerk, limits->jerk, 0.0);
 }
@@ -146,7 +147,7 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
     approach->curve = curve;
     approach->first = first;
     begin_fade(approach, &begin, link->seen.velocity, limits->jerk);
-    approach->steepest = fmax(approach->steepest, fmax(fabs(extremes.least_slope), fabs(extremes.most_slope)));
+    approach->steepest = larger(approach->steepest, larger(fabs(extremes.least_slope), fabs(extremes.most_slope)));
     approach->sync = sync;
     approach->begin = from->position;
     approach->end = cm1e_position_plus(meeting, shift);

@@ -23,10 +23,16 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *co
     return coupling_can(axis, command->kind) ? CM1E_OK : CM1E_ERROR_AXIS_NO_COUPLINGS;
 }
 
+/* Whether plans are possible with any motion within such a number (motion/profile.h). */
+static bool is_of_usual_size(double number) { return number >= 1e-15 && number <= 1e15; }
+
 /* Refuses limits that are too small to compute with. What the masters do when the command begins does not matter. */
 static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
     const double most = axis->limits.maximum.velocity;
+    if (is_of_usual_size(2.0 * most) && is_of_usual_size(asked->acceleration) && is_of_usual_size(asked->deceleration) &&
+        is_of_usual_size(asked->jerk))
+        return CM1E_OK;
     const cm1e_motion_state_t fastest = {.velocity = most};
     const cm1e_motion_limits_t limits = {2.0 * most, asked->acceleration, asked->deceleration, asked->jerk};
     cm1e_profile_t profile;

@@ -5,6 +5,7 @@
 #include "axis/axis_extras.h"
 #include "axis/axis_pause.h"
 #include "axis/axis_setpoint.h"
+#include "core/extreme.h"
 #include "core/rare.h"
 #include "coupling/coupling_private.h"
 
@@ -301,7 +302,7 @@ static void know_ways(link_t *link, double cycle_s)
 {
     const cm1e_axis_t *master = link->master;
     const cm1e_motion_limits_t *system = &master->limits.system;
-    const double corner = fmax(system->acceleration, system->deceleration) * cycle_s * cycle_s / 2.0;
+    const double corner = larger(system->acceleration, system->deceleration) * cycle_s * cycle_s / 2.0;
     link->half_cycle = master->position.scale * cycle_s / 2.0;
     link->most_unexplained = link->source == mcActualValue ? INFINITY
                                                            : same_way_counts + corner * fabs(master->position.scale);

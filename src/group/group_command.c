@@ -191,13 +191,13 @@ static cm1e_error_t replace(cm1e_group_t *group, const cm1e_group_command_t *com
 {
     double rest[CM1E_PATH_AXES];
     const bool halting = group->halting;
-    group->before = group->path;
+    cm1e_path_copy(&group->before, &group->path);
     cm1e_group_brake(group, command->deceleration, command->jerk);
     cm1e_path_end(&group->path, rest);
     const cm1e_error_t error =
         append(group, command, is_circle(command->kind) ? rest : group->sample.position, false, id);
     if (error != CM1E_OK) {
-        group->path = group->before;
+        cm1e_path_copy(&group->path, &group->before);
         group->halting = halting;
         return error;
     }

@@ -1,6 +1,7 @@
 /* The motion of a group along its path. In every cycle the first axis that asks for its set-point makes the step for
  * all axes. The group leads its axes while it moves or while GroupStopping holds them. At the end the axes get a last
  * set-point and are then free. */
+#include "core/extreme.h"
 #include "group/group_private.h"
 
 bool cm1e_group_at_rest(const cm1e_group_t *group)
@@ -143,7 +144,7 @@ static double part_left(const cm1e_group_t *group)
     for (int i = 0; i < group->axes; i++) {
         const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
         if (axis && (group->led & 1u << i) != 0)
-            least = fmin(least, cm1e_axis_part_left(axis));
+            least = smaller(least, cm1e_axis_part_left(axis));
     }
     return least;
 }
@@ -187,7 +188,7 @@ static double stop_time(void *context)
         if (!axis)
             continue;
         cm1e_axis_bounds(axis, &limits, &lowest, &highest);
-        longest_s = fmax(longest_s, fabs(group->sample.velocity[i]) / limits.deceleration);
+        longest_s = larger(longest_s, fabs(group->sample.velocity[i]) / limits.deceleration);
     }
     return longest_s;
 }
@@ -222,7 +223,7 @@ cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group)
         if (!axis)
             continue;
         cm1e_axis_bounds(axis, &limits, &lowest, &highest);
-        config.axis[config.axes] = (cm1e_path_axis_t){limits.velocity, fmin(limits.acceleration, limits.deceleration),
+        config.axis[config.axes] = (cm1e_path_axis_t){limits.velocity, smaller(limits.acceleration, limits.deceleration),
                                                       limits.jerk, lowest, highest};
         config.cycle_s = cm1e_axis_cycle(axis);
         position[config.axes] = cm1e_axis_place(axis, false);

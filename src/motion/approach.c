@@ -1,5 +1,6 @@
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/approach.h"
 
 /* Fraction of a turn: tolerance of rounding for a slave that is in synchronism already. */
@@ -8,7 +9,7 @@ static const double same_place = 1e-9;
 void cm1e_approach_demand(const cm1e_curve_extremes_t *extremes, double master_velocity, cm1e_motion_limits_t *demand)
 {
     const double speed = fabs(master_velocity);
-    demand->velocity = fmax(fabs(extremes->least_slope), fabs(extremes->most_slope)) * speed;
+    demand->velocity = larger(fabs(extremes->least_slope), fabs(extremes->most_slope)) * speed;
     demand->acceleration = demand->deceleration = extremes->curvature * speed * speed;
     demand->jerk = extremes->third * speed * speed * speed;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/extreme.h"
 #include "core/rare.h"
 #include "motion/cam.h"
 
@@ -101,30 +102,30 @@ static void hull(const cm1e_cam_knot_t *a, cm1e_curve_extremes_t *hull)
     for (int k = 0; k < 4; k++) {
         low[k] = high[k] = point[0] * factor;
         for (int i = 0; i < 6 - k; i++) {
-            low[k] = fmin(low[k], point[i] * factor);
-            high[k] = fmax(high[k], point[i] * factor);
+            low[k] = smaller(low[k], point[i] * factor);
+            high[k] = larger(high[k], point[i] * factor);
             if (i < 5 - k)
                 point[i] = point[i + 1] - point[i];
         }
         factor *= (5 - k) / h;
     }
-    *hull = (cm1e_curve_extremes_t){low[0], high[0], low[1], high[1], fmax(-low[2], high[2]), fmax(-low[3], high[3])};
+    *hull = (cm1e_curve_extremes_t){low[0], high[0], low[1], high[1], larger(-low[2], high[2]), larger(-low[3], high[3])};
 }
 
 static void widen(cm1e_curve_extremes_t *all, const cm1e_curve_extremes_t *part)
 {
-    all->lowest = fmin(all->lowest, part->lowest);
-    all->highest = fmax(all->highest, part->highest);
-    all->least_slope = fmin(all->least_slope, part->least_slope);
-    all->most_slope = fmax(all->most_slope, part->most_slope);
-    all->curvature = fmax(all->curvature, part->curvature);
-    all->third = fmax(all->third, part->third);
+    all->lowest = smaller(all->lowest, part->lowest);
+    all->highest = larger(all->highest, part->highest);
+    all->least_slope = smaller(all->least_slope, part->least_slope);
+    all->most_slope = larger(all->most_slope, part->most_slope);
+    all->curvature = larger(all->curvature, part->curvature);
+    all->third = larger(all->third, part->third);
 }
 
 static bool adds(const cm1e_curve_extremes_t *all, const cm1e_curve_extremes_t *part)
 {
     const double position = next_to_nothing * (all->highest - all->lowest);
-    const double slope = next_to_nothing * fmax(fabs(all->least_slope), fabs(all->most_slope));
+    const double slope = next_to_nothing * larger(fabs(all->least_slope), fabs(all->most_slope));
     return part->lowest < all->lowest - position || part->highest > all->highest + position ||
            part->least_slope < all->least_slope - slope || part->most_slope > all->most_slope + slope ||
            part->curvature > all->curvature * (1 + next_to_nothing);
@@ -136,8 +137,8 @@ static void find_corners(cm1e_cam_t *cam)
     cam->corner = cam->periodic ? fabs(knots[0].slope - knots[cam->count - 1].slope) : 0;
     cam->shortest = span(knots, 0);
     for (int i = 1; i + 1 < cam->count; i++) {
-        cam->corner = fmax(cam->corner, fabs(knots[i].slope - knots[i - 1].slope));
-        cam->shortest = fmin(cam->shortest, span(knots, i));
+        cam->corner = larger(cam->corner, fabs(knots[i].slope - knots[i - 1].slope));
+        cam->shortest = smaller(cam->shortest, span(knots, i));
     }
 }
 
@@ -156,7 +157,7 @@ static cm1e_cam_fault_t find_extremes(cm1e_cam_t *cam, int *at)
         const double h = span(cam->knots, *at);
         if (!isnormal(h * h * h * h) || !isfinite(part.third / (h * h))) /* about the highest coefficient */
             return CM1E_CAM_STEEP;
-        all.third = fmax(all.third, part.third);
+        all.third = larger(all.third, part.third);
         if (!adds(&all, &part))
             continue;
         if (!interval(cam, *at, &curve))
@@ -245,7 +246,7 @@ CM1E_RARE static double find_turn(const cm1e_cam_t *cam, cm1e_cam_place_t *place
     if (phase < 0) /* the quotient was rounded to a whole number */
         phase = take_turn(cam, place, place->turn - 1, way);
     if (phase >= cam->length)
-        phase = fmax(take_turn(cam, place, place->turn + 1, way), 0);
+        phase = larger(take_turn(cam, place, place->turn + 1, way), 0);
     return phase;
 }
 

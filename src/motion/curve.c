@@ -2,6 +2,7 @@
  * size whatever the units are. */
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/curve.h"
 #include "motion/pieces.h"
 
@@ -18,7 +19,7 @@ bool cm1e_curve_between(cm1e_curve_t *curve, double from, const cm1e_curve_point
     const double slope = b->slope - a->slope - a->curvature * h;
     const double bend = (b->curvature - a->curvature) * h / 2;
     *curve = (cm1e_curve_t){
-        .from = fmin(from, to),
+        .from = smaller(from, to),
         .length = h,
         .coefficient = {a->position, a->slope, curvature, (10 * way - 4 * slope + bend) / (h * h),
                         (-15 * way + 7 * slope - 2 * bend) / (h * h * h),
@@ -80,8 +81,8 @@ static void range(const double *polynomial, int degree, const double *stops, int
     *highest = -INFINITY;
     for (int i = 0; i < count; i++) {
         const double here = value(polynomial, degree, stops[i]);
-        *lowest = fmin(*lowest, here);
-        *highest = fmax(*highest, here);
+        *lowest = smaller(*lowest, here);
+        *highest = larger(*highest, here);
     }
 }
 
@@ -109,8 +110,8 @@ void cm1e_curve_extremes(const cm1e_curve_t *curve, cm1e_curve_extremes_t *extre
         .highest = highest[0],
         .least_slope = lowest[1] / h,
         .most_slope = highest[1] / h,
-        .curvature = fmax(fabs(lowest[2]), fabs(highest[2])) / (h * h),
-        .third = fmax(fabs(lowest[3]), fabs(highest[3])) / (h * h * h),
+        .curvature = larger(fabs(lowest[2]), fabs(highest[2])) / (h * h),
+        .third = larger(fabs(lowest[3]), fabs(highest[3])) / (h * h * h),
     };
 }
 

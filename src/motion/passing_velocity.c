@@ -5,6 +5,7 @@
  * are those up to some velocity and those between two higher ones; either set may be empty. */
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/pieces.h"
 
 enum { SOLVER_STEPS_MAX = 200, NEWTON_STEPS = 12 };
@@ -76,12 +77,12 @@ static double last_rise(const passing_t *passing)
     /* From -a the velocity falls to `rest`; the distance equals that of the rise from there with a. */
     const double way = ramp * (rest + fabs(a) * ramp / 6), whole = passing->distance + (a < 0 ? -way : way);
     const double edge = most / jerk * most, long_way = rest - edge / 2;
-    const double velocity = sqrt(fmax(0, long_way * long_way + 2 * whole * most)) - edge / 2;
+    const double velocity = sqrt(larger(0, long_way * long_way + 2 * whole * most)) - edge / 2;
     if (velocity - rest >= edge)
         return velocity;
     /* u3 + 2 rest u = whole sqrt(jerk), where u is the root of the velocity gained */
     const double right = whole * sqrt(jerk);
-    double u = sqrt(fmin(edge, fmax(0, limits->velocity * 4 - rest)));
+    double u = sqrt(smaller(edge, larger(0, limits->velocity * 4 - rest)));
     for (int i = 0; i < NEWTON_STEPS; i++) {
         const double less = (u * (u * u + 2 * rest) - right) / (3 * u * u + 2 * rest);
         u -= less;
@@ -104,14 +105,14 @@ double cm1e_profile_passing_velocity(const cm1e_motion_state_t *start, double ta
     };
     if (fits(&passing, fabs(velocity)))
         return velocity;
-    const double eased = fmax(0, passing.velocity + (isinf(limits->jerk) ? 0 : fabs(a) * (a / limits->jerk) / 2));
+    const double eased = larger(0, passing.velocity + (isinf(limits->jerk) ? 0 : fabs(a) * (a / limits->jerk) / 2));
     const double rise = last_rise(&passing) * (1 - 1e-13);
     if (rise > eased && rise < fabs(velocity) && way(&passing, rise) <= passing.distance &&
         way(&passing, rise * (1 + 1e-12)) > passing.distance)
         return sign * rise;
     if (eased < fabs(velocity) && fits(&passing, eased))
         return sign * last_fitting(&passing, eased, fabs(velocity));
-    return fits(&passing, 0) ? sign * last_fitting(&passing, 0, fmin(eased, fabs(velocity))) : 0;
+    return fits(&passing, 0) ? sign * last_fitting(&passing, 0, smaller(eased, fabs(velocity))) : 0;
 }
 
 double cm1e_profile_entry_velocity(double distance, double velocity, double exit_velocity,

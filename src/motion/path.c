@@ -1,7 +1,10 @@
 #include "motion/path.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
+#include "core/extreme.h"
 #include "motion/path_private.h"
 
 static const double LARGEST = 1e15;
@@ -34,22 +37,39 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
     return CM1E_OK;
 }
 
+void cm1e_path_copy(cm1e_path_t *copy, const cm1e_path_t *path)
+{
+    const size_t rings = offsetof(cm1e_path_t, segment), rest = offsetof(cm1e_path_t, cut);
+    memcpy(copy, path, rings);
+    for (int i = 0; i < path->segment_count; i++) {
+        const int place = (path->first_segment + i) % CM1E_PATH_SEGMENTS;
+        copy->segment[place] = path->segment[place];
+    }
+    copy->first_element = path->first_element;
+    copy->element_count = path->element_count;
+    for (int i = 0; i < path->element_count; i++) {
+        const int place = (path->first_element + i) % CM1E_PATH_ELEMENTS;
+        copy->element[place] = path->element[place];
+    }
+    memcpy((char *)copy + rest, (const char *)path + rest, sizeof *path - rest);
+}
+
 /** Minimum velocity of a path. */
 static cm1e_motion_limits_t least_limits(const cm1e_path_t *path)
 {
     cm1e_motion_limits_t least = {INFINITY, INFINITY, INFINITY, INFINITY};
     for (int i = 0; i < path->config.axes; i++) {
         const cm1e_path_axis_t *axis = &path->config.axis[i];
-        least.velocity = fmin(least.velocity, LEAST * axis->velocity);
-        least.acceleration = fmin(least.acceleration, LEAST * axis->acceleration);
-        least.jerk = fmin(least.jerk, LEAST * (isinf(axis->jerk) ? axis->acceleration : axis->jerk));
+        least.velocity = smaller(least.velocity, LEAST * axis->velocity);
+        least.acceleration = smaller(least.acceleration, LEAST * axis->acceleration);
+        least.jerk = smaller(least.jerk, LEAST * (isinf(axis->jerk) ? axis->acceleration : axis->jerk));
     }
     least.deceleration = least.acceleration;
     return least;
 }
 
 /** 0: none but the axes'. */
-static double limit_of(double wanted, double least) { return wanted > 0 ? fmax(wanted, least) : INFINITY; }
+static double limit_of(double wanted, double least) { return wanted > 0 ? larger(wanted, least) : INFINITY; }
 
 /* ---- appending --------------------------------------------------------------------------------------------------- */
 
@@ -95,9 +115,9 @@ static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *comman
         const cm1e_path_axis_t *axis = &path->config.axis[i];
         double low, high;
         cm1e_path_extent(&segment->piece, &frame, i, &low, &high);
-        if (low < fmin(axis->lowest, path->end[i]))
+        if (low < smaller(axis->lowest, path->end[i]))
             return refuse(problem, CM1E_PATH_OUT_OF_BOUNDS, i, low);
-        if (high > fmax(axis->highest, path->end[i]))
+        if (high > larger(axis->highest, path->end[i]))
             return refuse(problem, CM1E_PATH_OUT_OF_BOUNDS, i, high);
     }
     const cm1e_motion_limits_t *wanted = &command->limits, least = least_limits(path);
@@ -188,7 +208,7 @@ double cm1e_path_left(const cm1e_path_t *path)
     double left = -cm1e_path_here(path);
     for (int i = 0; i < path->element_count; i++)
         left += path->element[(path->first_element + i) % CM1E_PATH_ELEMENTS].length;
-    return fmax(0, left);
+    return larger(0, left);
 }
 
 /* ---- stopping and going on --------------------------------------------------------------------------------------- */
@@ -211,7 +231,7 @@ void cm1e_path_override(cm1e_path_t *path, double factor)
 {
     if (!(factor >= 0) || factor == path->override)
         return;
-    path->override = factor > 0 ? fmin(fmax(factor, LEAST), LARGEST) : 0;
+    path->override = factor > 0 ? smaller(larger(factor, LEAST), LARGEST) : 0;
     if (path->element_count == 0 || is_at_rest(path))
         return;
     if (factor == 0 && !path->stopping) {
@@ -316,7 +336,7 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
             return false;
         path->stopping = false;
         if (path->element_count > 0)
-            path->along.position = fmax(0, cm1e_path_here(path));
+            path->along.position = larger(0, cm1e_path_here(path));
     } else {
         const int count = cm1e_path_run(path, 0, path->element_count).count;
         for (int i = 0; i < count; i++)
@@ -340,7 +360,7 @@ static void largest_derivatives(const cm1e_path_piece_t *piece, int axis, double
                                 double *third)
 {
     const bool round = piece->kind == CM1E_PATH_ARC && axis < piece->measured;
-    *tangent = round ? fmax(hypot(piece->u[0][axis], piece->v[0][axis]), hypot(piece->u[1][axis], piece->v[1][axis]))
+    *tangent = round ? larger(hypot(piece->u[0][axis], piece->v[0][axis]), hypot(piece->u[1][axis], piece->v[1][axis]))
                      : fabs(piece->direction[axis]);
     *curvature = round ? *tangent / piece->radius : 0;
     *third = round ? *curvature / piece->radius : 0;
@@ -348,7 +368,7 @@ static void largest_derivatives(const cm1e_path_piece_t *piece, int axis, double
 
 bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *most, double *left_s)
 {
-    const double until_s = fmin(path->stretch.until_s, path->profile.duration_s);
+    const double until_s = smaller(path->stretch.until_s, path->profile.duration_s);
     const cm1e_path_piece_t *piece = path->element[path->first_element].piece;
     if (path->element_count == 0 || path->slow.missing != 0 || !(path->time_s < until_s) ||
         piece->kind == CM1E_PATH_CURVE)
@@ -374,7 +394,7 @@ static void fill(cm1e_path_t *path, cm1e_path_sample_t *sample)
     const cm1e_path_element_t *element = cm1e_path_element(path, 0);
     cm1e_path_point_t point;
     cm1e_path_point_at(element->piece, axes,
-                       element->skipped + fmin(fmax(cm1e_path_here(path), 0), element->length), &point);
+                       element->skipped + smaller(larger(cm1e_path_here(path), 0), element->length), &point);
     for (int i = 0; i < axes; i++) {
         sample->position[i] = point.position[i];
         sample->velocity[i] = point.tangent[i] * v;
@@ -408,7 +428,7 @@ void cm1e_path_slow(cm1e_path_t *path, double factor, cm1e_path_sample_t *sample
     for (int i = 0; i < path->element_count; i++) {
         const cm1e_path_element_t *element = cm1e_path_element(path, i);
         cm1e_motion_limits_t limits = element->limits;
-        limits.velocity = fmin(limits.velocity, element->highest);
+        limits.velocity = smaller(limits.velocity, element->highest);
         cm1e_slow_time_keep(&path->slow, &limits);
     }
     fill(path, sample);

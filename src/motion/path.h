@@ -207,6 +207,10 @@ typedef struct cm1e_path {
  *  farther out. */
 cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config, const double *position);
 
+/** Makes `copy` a copy of the path, from which the path itself can be made again: of the segments and elements, those
+ *  that there are. */
+void cm1e_path_copy(cm1e_path_t *copy, const cm1e_path_t *path);
+
 /** Appends a straight line to `end` (all axes). Returns CM1E_ERROR_FULL, CM1E_ERROR_INVALID_ARGUMENT or
  *  CM1E_ERROR_AXIS_POSITION_RANGE with the reason in `problem` (may be NULL), and then nothing has changed. A line of
  *  no length is a segment too; it is done at once when it becomes active. During a stop, or while the path is stopped,

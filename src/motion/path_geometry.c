@@ -2,6 +2,7 @@
  * far away that a position computed from there would lose its precision. */
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/path_piece.h"
 
 static const double PI = 3.14159265358979323846;
@@ -106,7 +107,7 @@ bool cm1e_path_make_border_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
                                const double *border, const double *to)
 {
     const vector_t chord = between(frame, from, to), first = between(frame, from, border);
-    const double length = norm(chord), reach = fmax(length, norm(first));
+    const double length = norm(chord), reach = larger(length, norm(first));
     if (frame->space < 2 || !(length > STRAIGHT * reach))
         return false;
     const vector_t along = scaled(1 / length, chord);
@@ -172,7 +173,7 @@ static void line_or_arc_at(const cm1e_path_piece_t *piece, int axes, double leng
 {
     const int end = length > piece->length / 2;
     const double *origin = end ? piece->to : piece->from;
-    const double l = end ? fmin(length - piece->length, 0) : length;
+    const double l = end ? smaller(length - piece->length, 0) : length;
     for (int i = 0; i < axes; i++) {
         point->position[i] = origin[i] + piece->direction[i] * l;
         point->tangent[i] = piece->direction[i];
@@ -236,7 +237,7 @@ double cm1e_path_reach_per_deviation(double cosine)
     double first, second;
     hull_of(cosine, &first, &second);
     const double middle = (1 + 5 * (1 - first) + 10 * (1 - second)) / 32; /* of the way, weights of the hull's points */
-    return 1 / (middle * sqrt(fmax(2 - 2 * cosine, 1e-12)));
+    return 1 / (middle * sqrt(larger(2 - 2 * cosine, 1e-12)));
 }
 
 void cm1e_path_make_curve(cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, const cm1e_path_piece_t *before,
@@ -283,7 +284,7 @@ static double parameter_at(const cm1e_path_piece_t *curve, double length)
     double x = from + step * part;
     for (int i = 0; i < 4; i++) {
         const double less = (curve->at[knot] + length_between(curve, from, x) - length) / speed(curve, x);
-        x = fmin(fmax(x - less, 0), 1);
+        x = smaller(larger(x - less, 0), 1);
         if (fabs(less) < 1e-8)
             break;
     }
@@ -356,8 +357,8 @@ static double distance_from(const cm1e_path_piece_t *piece, const double *point)
         along += from * (arc ? v[i] : piece->direction[i]);
     }
     if (!arc)
-        return sqrt(fmax(0, square - along * along));
-    const double high = sqrt(fmax(0, square - out * out - along * along)), r = piece->radius;
+        return sqrt(larger(0, square - along * along));
+    const double high = sqrt(larger(0, square - out * out - along * along)), r = piece->radius;
     return hypot(high, (out * out + along * along + 2 * r * out) / (hypot(r + out, along) + r));
 }
 
@@ -377,12 +378,12 @@ double cm1e_path_deviation(const cm1e_path_piece_t *curve, const cm1e_path_frame
             if (i < frame->space)
                 in_space += off * off;
             else
-                aside = fmax(aside, off);
+                aside = larger(aside, off);
         }
-        nearest = fmin(nearest, fmax(sqrt(in_space), aside));
-        farthest = fmax(farthest, fmin(distance_from(before, point), distance_from(after, point)));
+        nearest = smaller(nearest, larger(sqrt(in_space), aside));
+        farthest = larger(farthest, smaller(distance_from(before, point), distance_from(after, point)));
     }
-    return fmax(nearest, farthest);
+    return larger(nearest, farthest);
 }
 
 /* ---- extent ------------------------------------------------------------------------------------------------------ */
@@ -397,8 +398,8 @@ static void curve_extent(const cm1e_path_piece_t *piece, int axis, double *lowes
             point += ways / choose[i] * piece->power[i][axis];
             ways = ways * (j - i) / (i + 1);
         }
-        *lowest = j ? fmin(*lowest, point) : point;
-        *highest = j ? fmax(*highest, point) : point;
+        *lowest = j ? smaller(*lowest, point) : point;
+        *highest = j ? larger(*highest, point) : point;
     }
 }
 
@@ -409,8 +410,8 @@ void cm1e_path_extent(const cm1e_path_piece_t *piece, const cm1e_path_frame_t *f
         curve_extent(piece, axis, lowest, highest);
         return;
     }
-    *lowest = fmin(piece->from[axis], piece->to[axis]);
-    *highest = fmax(piece->from[axis], piece->to[axis]);
+    *lowest = smaller(piece->from[axis], piece->to[axis]);
+    *highest = larger(piece->from[axis], piece->to[axis]);
     if (piece->kind == CM1E_PATH_LINE || axis >= frame->space)
         return;
     /* It turns where the tangent is 0. */
@@ -418,7 +419,7 @@ void cm1e_path_extent(const cm1e_path_piece_t *piece, const cm1e_path_frame_t *f
     for (angle = angle < 0 ? angle + PI : angle; angle * piece->radius < piece->length; angle += PI) {
         cm1e_path_point_t point;
         cm1e_path_point_at(piece, frame->axes, angle * piece->radius, &point);
-        *lowest = fmin(*lowest, point.position[axis]);
-        *highest = fmax(*highest, point.position[axis]);
+        *lowest = smaller(*lowest, point.position[axis]);
+        *highest = larger(*highest, point.position[axis]);
     }
 }

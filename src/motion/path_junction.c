@@ -2,6 +2,7 @@
  * together. */
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/path_private.h"
 
 enum { TRIES = 4 };
@@ -56,8 +57,8 @@ static double blended(cm1e_path_blend_t blend, double first, double second)
     switch (blend) {
     case CM1E_PATH_BLEND_PREVIOUS: return first;
     case CM1E_PATH_BLEND_NEXT: return second;
-    case CM1E_PATH_BLEND_HIGH: return fmax(first, second);
-    default: return fmin(first, second);
+    case CM1E_PATH_BLEND_HIGH: return larger(first, second);
+    default: return smaller(first, second);
     }
 }
 
@@ -73,11 +74,11 @@ static bool worth_joining(cm1e_path_t *path, int index)
     cm1e_path_element_t *element = cm1e_path_element(path, index);
     const cm1e_path_run_t run = cm1e_path_run(path, first, index);
     cm1e_motion_limits_t own = element->limits, low = run.limits;
-    own.velocity = fmin(own.velocity * (path->override > 0 ? path->override : 1), element->highest);
-    low.velocity = fmin(own.velocity, low.velocity);
-    low.acceleration = fmin(own.acceleration, low.acceleration);
-    low.deceleration = fmin(own.deceleration, low.deceleration);
-    low.jerk = fmin(own.jerk, low.jerk);
+    own.velocity = smaller(own.velocity * (path->override > 0 ? path->override : 1), element->highest);
+    low.velocity = smaller(own.velocity, low.velocity);
+    low.acceleration = smaller(own.acceleration, low.acceleration);
+    low.deceleration = smaller(own.deceleration, low.deceleration);
+    low.jerk = smaller(own.jerk, low.jerk);
     if (low.velocity > element->passed * (1 + 1e-9))
         return false;
     const double same = 1 - 1e-9;
@@ -87,15 +88,15 @@ static bool worth_joining(cm1e_path_t *path, int index)
                             low.jerk < run.limits.jerk * same;
     if (lowers_run && first == 0 && (path->along.velocity != 0 || path->along.acceleration != 0))
         return false; /* it is on the way already */
-    const double a = fmin(low.acceleration, low.deceleration);
-    const double ease = isinf(low.jerk) ? 0 : fmin(a / low.jerk, sqrt(low.velocity / low.jerk));
+    const double a = smaller(low.acceleration, low.deceleration);
+    const double ease = isinf(low.jerk) ? 0 : smaller(a / low.jerk, sqrt(low.velocity / low.jerk));
     const double slower = run.length * (1 / low.velocity - 1 / run.limits.velocity) +
                           element->length * (1 / low.velocity - 1 / own.velocity);
-    const double run_a = fmin(run.limits.acceleration, run.limits.deceleration);
-    const double own_a = fmin(own.acceleration, own.deceleration);
-    const double weaker = fmin(low.velocity / a, 2 * sqrt(2 * run.length / a)) * (1 - a / run_a) +
-                          fmin(low.velocity / a, 2 * sqrt(2 * element->length / a)) * (1 - a / own_a);
-    element->lost = cm1e_path_element(path, index - 1)->lost + fmax(0, slower + weaker);
+    const double run_a = smaller(run.limits.acceleration, run.limits.deceleration);
+    const double own_a = smaller(own.acceleration, own.deceleration);
+    const double weaker = smaller(low.velocity / a, 2 * sqrt(2 * run.length / a)) * (1 - a / run_a) +
+                          smaller(low.velocity / a, 2 * sqrt(2 * element->length / a)) * (1 - a / own_a);
+    element->lost = cm1e_path_element(path, index - 1)->lost + larger(0, slower + weaker);
     return element->lost <= SAVED * ease + 1e-9 * (run.length + element->length) / low.velocity;
 }
 
@@ -116,7 +117,7 @@ static double room_on_last(cm1e_path_t *path)
     double used = path->stopping ? path->profile.end.position - path->begin : cm1e_path_here(path);
     for (int i = 0; i < last; i++)
         used -= cm1e_path_element(path, i)->length;
-    return length - fmax(0, used);
+    return length - larger(0, used);
 }
 
 /* ---- exactly ----------------------------------------------------------------------------------------------------- */
@@ -137,12 +138,12 @@ static break_t look_at_break(const cm1e_path_t *path, const cm1e_path_piece_t *b
     for (int i = 0; i < config->axes; i++) {
         const double bend = fabs(b.tangent[i] - a.tangent[i]) / config->cycle_s;
         const double curve = fabs(b.curvature[i] - a.curvature[i]);
-        const double allowed = STEP_SHARE * fmin(config->axis[i].jerk * config->cycle_s, config->axis[i].acceleration);
+        const double allowed = STEP_SHARE * smaller(config->axis[i].jerk * config->cycle_s, config->axis[i].acceleration);
         found.corner = found.corner || bend * config->cycle_s > CORNER;
         found.even = found.even && bend * velocity + curve * velocity * velocity <= NO_STEP * allowed;
         const double root = sqrt(bend * bend + 4 * curve * allowed);
         if (bend + root > 0)
-            found.velocity = fmin(found.velocity, 2 * allowed / (bend + root));
+            found.velocity = smaller(found.velocity, 2 * allowed / (bend + root));
     }
     return found;
 }
@@ -169,7 +170,7 @@ static bool pass_slowly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pat
                                          &parts[i].of->command, parts[i].share);
         part->last_of_tag = i != 1;
         if (i < 2)
-            part->highest = fmin(part->highest, velocity);
+            part->highest = smaller(part->highest, velocity);
         set_entry(path, last + 1 + i, velocity, junction);
     }
     if (cm1e_path_plan(path, last))
@@ -192,7 +193,7 @@ static void pass_exactly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pa
                                     segment->command.limits.velocity);
     const int last = path->element_count - 1;
     cm1e_path_element_t *element = push(path, &segment->piece, 0, segment->piece.length, &segment->command, 1);
-    const double most = fmin(cm1e_path_element(path, last)->highest, element->highest);
+    const double most = smaller(cm1e_path_element(path, last)->highest, element->highest);
     const break_t found = look_at_break(path, &before->piece, &segment->piece, most);
     if (!found.corner && found.even) {
         set_entry(path, last + 1, most, junction);
@@ -203,7 +204,7 @@ static void pass_exactly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pa
             return;
     }
     pop_last(path, 1);
-    if (!found.corner && !found.even && pass_slowly(path, before, segment, fmin(most, found.velocity), junction))
+    if (!found.corner && !found.even && pass_slowly(path, before, segment, smaller(most, found.velocity), junction))
         return;
     stop_between(path, segment);
 }
@@ -212,7 +213,7 @@ static void pass_exactly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pa
 
 static double most_of(const cm1e_path_piece_t *piece)
 {
-    return piece->kind == CM1E_PATH_ARC ? fmin(piece->length / 2, MOST_OF_ARC * piece->radius) : piece->length / 2;
+    return piece->kind == CM1E_PATH_ARC ? smaller(piece->length / 2, MOST_OF_ARC * piece->radius) : piece->length / 2;
 }
 
 static bool within_bounds(const cm1e_path_t *path, const cm1e_path_piece_t *piece)
@@ -240,13 +241,13 @@ static double reach_of(const cm1e_path_t *path, const cm1e_path_segment_t *befor
         cosine += a.tangent[i] * b.tangent[i];
     if (before->piece.measured != segment->piece.measured || cosine < BACK)
         return 0;
-    double reach = fmin(room, fmin(most_of(&before->piece), most_of(&segment->piece)));
+    double reach = smaller(room, smaller(most_of(&before->piece), most_of(&segment->piece)));
     const bool by_distance = segment->command.junction == CM1E_PATH_CORNER_DISTANCE;
     if (by_distance)
-        reach = fmin(reach, segment->command.parameter);
+        reach = smaller(reach, segment->command.parameter);
     else
-        reach = fmin(reach, segment->command.parameter * cm1e_path_reach_per_deviation(cosine));
-    const double least = NO_REACH * fmin(before->piece.length, segment->piece.length);
+        reach = smaller(reach, segment->command.parameter * cm1e_path_reach_per_deviation(cosine));
+    const double least = NO_REACH * smaller(before->piece.length, segment->piece.length);
     for (int i = 0; i < 2 * TRIES && reach > least; i++) {
         cm1e_path_make_curve(&segment->transition, &frame, &before->piece, reach, &segment->piece, reach);
         const double deviation =
@@ -265,8 +266,8 @@ static double reach_of(const cm1e_path_t *path, const cm1e_path_segment_t *befor
 /** The least time from rest over a way. */
 static double least_time(const cm1e_path_element_t *element, double way)
 {
-    const double velocity = fmin(element->highest, element->limits.velocity);
-    return fmax(way / velocity, fmax(sqrt(2 * way / element->limits.acceleration),
+    const double velocity = smaller(element->highest, element->limits.velocity);
+    return larger(way / velocity, larger(sqrt(2 * way / element->limits.acceleration),
                                      isinf(element->limits.jerk) ? 0 : cbrt(6 * way / element->limits.jerk)));
 }
 
@@ -278,16 +279,16 @@ static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_
     const cm1e_path_element_t saved = *element;
     const double junction = blended(segment->command.blend, before->command.limits.velocity,
                                     segment->command.limits.velocity);
-    element->length = fmax(0, element->length - reach);
+    element->length = larger(0, element->length - reach);
     cm1e_path_command_t command = segment->command;
     command.limits.velocity = junction;
     cm1e_path_element_t *curve = push(path, &segment->transition, 0, segment->transition.length, &command, 1);
     curve->last_of_tag = false;
-    set_entry(path, last + 1, fmin(curve->highest, element->highest), junction);
-    const double slow = curve->length / fmin(curve->highest, junction);
+    set_entry(path, last + 1, smaller(curve->highest, element->highest), junction);
+    const double slow = curve->length / smaller(curve->highest, junction);
     const double rest = segment->piece.length - reach;
     cm1e_path_element_t *main = push(path, &segment->piece, reach, rest, &segment->command, 1);
-    set_entry(path, last + 2, fmin(curve->highest, main->highest), junction);
+    set_entry(path, last + 2, smaller(curve->highest, main->highest), junction);
     const bool worth = slow <= least_time(&saved, reach) + least_time(main, reach); /* or a stop is faster */
     for (int i = 0; worth && i < 3; i++) {
         if (cm1e_path_plan(path, last))

@@ -5,6 +5,7 @@
  * chosen. */
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/path_piece.h"
 
 enum { STEPS_LEAST = 24, STEPS_MOST = 96, BENDS_MAX = (STEPS_MOST + 1) * CM1E_PATH_AXES, SOLVER_STEPS = 40 };
@@ -35,9 +36,9 @@ static void add(bends_t *bends, const cm1e_path_axis_t *axis, double share, cons
 {
     const double jerk = axis->jerk * share;
     if (sizes->first > 0) {
-        bends->straight.velocity = fmin(bends->straight.velocity, axis->velocity / sizes->first);
-        bends->straight.acceleration = fmin(bends->straight.acceleration, axis->acceleration / sizes->first);
-        bends->straight.jerk = fmin(bends->straight.jerk, jerk / sizes->first);
+        bends->straight.velocity = smaller(bends->straight.velocity, axis->velocity / sizes->first);
+        bends->straight.acceleration = smaller(bends->straight.acceleration, axis->acceleration / sizes->first);
+        bends->straight.jerk = smaller(bends->straight.jerk, jerk / sizes->first);
     }
     if (sizes->second > 0 || sizes->third > 0) {
         bends->bend[bends->count] = *sizes;
@@ -51,9 +52,9 @@ static int steps_over(const cm1e_path_piece_t *curve)
 {
     double shortest = INFINITY;
     for (int i = 0; i < CM1E_PATH_KNOTS; i++)
-        shortest = fmin(shortest, curve->at[i + 1] - curve->at[i]);
+        shortest = smaller(shortest, curve->at[i + 1] - curve->at[i]);
     const double steps = STEPS_LEAST / 2 * curve->length / CM1E_PATH_KNOTS / shortest;
-    return (int)fmin(fmax(steps, STEPS_LEAST), STEPS_MOST);
+    return (int)smaller(larger(steps, STEPS_LEAST), STEPS_MOST);
 }
 
 static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path_config_t *config, double share)
@@ -83,10 +84,10 @@ static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path
     bends->straight.deceleration = bends->straight.acceleration;
     double curvature = 0, change = 0;
     for (int i = 0; i < bends->count; i++) {
-        curvature = fmax(curvature, bends->bend[i].second / bends->bend[i].acceleration);
-        change = fmax(change, bends->bend[i].third / bends->bend[i].jerk);
+        curvature = larger(curvature, bends->bend[i].second / bends->bend[i].acceleration);
+        change = larger(change, bends->bend[i].third / bends->bend[i].jerk);
     }
-    bends->velocity = fmin(bends->straight.velocity, fmin(1 / sqrt(curvature), 1 / cbrt(change)));
+    bends->velocity = smaller(bends->straight.velocity, smaller(1 / sqrt(curvature), 1 / cbrt(change)));
 }
 
 /** The velocity at which the jerk reaches its limit. For a circle it is found by bisection, otherwise as the root of a
@@ -103,7 +104,7 @@ static double velocity_for_jerk(const bends_t *bends, const bend_t *bend, double
             if (less <= ENOUGH * velocity)
                 break;
         }
-        return fmax(0, velocity * (1 - ENOUGH));
+        return larger(0, velocity * (1 - ENOUGH));
     }
     const double jerk = bend->jerk * (1 + ROUNDING);
     double low = 0, high = velocity;
@@ -127,7 +128,7 @@ static double velocity_with(const bends_t *bends, double velocity, double a, dou
         const double whole = bends->round ? hypot(along, across) : along + across;
         if (whole > bend->acceleration * (1 + ROUNDING)) {
             const double most = bend->acceleration * (1 + ROUNDING);
-            const double left = bends->round ? sqrt(fmax(0, (most - along) * (most + along))) : fmax(0, most - along);
+            const double left = bends->round ? sqrt(larger(0, (most - along) * (most + along))) : larger(0, most - along);
             velocity = sqrt(left / bend->second);
         }
         const double turned = 3 * bend->second * velocity * a;
@@ -139,25 +140,25 @@ static double velocity_with(const bends_t *bends, double velocity, double a, dou
     return velocity;
 }
 
-static double larger(const cm1e_motion_limits_t *limits) { return fmax(limits->acceleration, limits->deceleration); }
+static double strongest(const cm1e_motion_limits_t *limits) { return larger(limits->acceleration, limits->deceleration); }
 
 static cm1e_motion_limits_t lower(const cm1e_motion_limits_t *a, const cm1e_motion_limits_t *b, double share)
 {
-    return (cm1e_motion_limits_t){fmin(a->velocity, b->velocity), fmin(a->acceleration, share * b->acceleration),
-                                  fmin(a->deceleration, share * b->deceleration), fmin(a->jerk, share * b->jerk)};
+    return (cm1e_motion_limits_t){smaller(a->velocity, b->velocity), smaller(a->acceleration, share * b->acceleration),
+                                  smaller(a->deceleration, share * b->deceleration), smaller(a->jerk, share * b->jerk)};
 }
 
 static cm1e_motion_limits_t choose(const bends_t *bends, double length, const cm1e_motion_limits_t *wanted)
 {
     static const double shares[] = {1, 0.7, 0.5, 0.35, 0.2, 0.1, 0.03};
     cm1e_motion_limits_t best = lower(wanted, &bends->straight, 1);
-    const double velocity = fmin(best.velocity, bends->velocity);
+    const double velocity = smaller(best.velocity, bends->velocity);
     double soonest = INFINITY;
     for (size_t i = 0; bends->count > 0 && i < sizeof shares / sizeof *shares; i++) {
         cm1e_motion_limits_t limits = lower(wanted, &bends->straight, shares[i]);
-        limits.velocity = velocity_with(bends, velocity, larger(&limits), limits.jerk);
-        const double time = length / limits.velocity + limits.velocity / larger(&limits) / 2 +
-                            (isinf(limits.jerk) ? 0 : larger(&limits) / limits.jerk / 2);
+        limits.velocity = velocity_with(bends, velocity, strongest(&limits), limits.jerk);
+        const double time = length / limits.velocity + limits.velocity / strongest(&limits) / 2 +
+                            (isinf(limits.jerk) ? 0 : strongest(&limits) / limits.jerk / 2);
         if (time > soonest)
             break;
         if (time < soonest) {
@@ -178,8 +179,8 @@ void cm1e_path_allow(cm1e_path_allowance_t *allowance, const cm1e_path_piece_t *
     look(&bends, piece, config, jerk_share);
     allowance->most = choose(&bends, piece->length, &all);
     allowance->limits = choose(&bends, piece->length, wanted);
-    allowance->highest = fmax(allowance->limits.velocity, velocity_with(&bends, bends.velocity,
-                                                                        larger(&allowance->limits),
+    allowance->highest = larger(allowance->limits.velocity, velocity_with(&bends, bends.velocity,
+                                                                        strongest(&allowance->limits),
                                                                         allowance->limits.jerk));
     allowance->limits.velocity = wanted->velocity;
 }

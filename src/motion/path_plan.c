@@ -5,6 +5,7 @@
  * be followed to its end, and a new plan during the motion is used only if it keeps this condition. */
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/path_private.h"
 
 enum { SLOWEST_STEPS = 16, FIND_STEPS = 60, WIDER_MOST = 6 };
@@ -23,13 +24,13 @@ cm1e_path_run_t cm1e_path_run(cm1e_path_t *path, int first, int until)
             break;
         run.count++;
         run.length += element->length;
-        run.highest = fmin(run.highest, element->highest);
-        run.limits.velocity = fmin(run.limits.velocity, factor(path) * element->limits.velocity);
-        run.limits.acceleration = fmin(run.limits.acceleration, element->limits.acceleration);
-        run.limits.deceleration = fmin(run.limits.deceleration, element->limits.deceleration);
-        run.limits.jerk = fmin(run.limits.jerk, element->limits.jerk);
+        run.highest = smaller(run.highest, element->highest);
+        run.limits.velocity = smaller(run.limits.velocity, factor(path) * element->limits.velocity);
+        run.limits.acceleration = smaller(run.limits.acceleration, element->limits.acceleration);
+        run.limits.deceleration = smaller(run.limits.deceleration, element->limits.deceleration);
+        run.limits.jerk = smaller(run.limits.jerk, element->limits.jerk);
     }
-    run.limits.velocity = fmin(run.limits.velocity, run.highest);
+    run.limits.velocity = smaller(run.limits.velocity, run.highest);
     return run;
 }
 
@@ -48,9 +49,9 @@ static cm1e_path_run_t together(const cm1e_path_run_t *a, const cm1e_path_run_t 
 {
     return (cm1e_path_run_t){
         a->count + b->count, a->length + b->length,
-        {fmin(a->limits.velocity, b->limits.velocity), fmin(a->limits.acceleration, b->limits.acceleration),
-         fmin(a->limits.deceleration, b->limits.deceleration), fmin(a->limits.jerk, b->limits.jerk)},
-        fmin(a->highest, b->highest)};
+        {smaller(a->limits.velocity, b->limits.velocity), smaller(a->limits.acceleration, b->limits.acceleration),
+         smaller(a->limits.deceleration, b->limits.deceleration), smaller(a->limits.jerk, b->limits.jerk)},
+        smaller(a->highest, b->highest)};
 }
 
 /** How fast a run may be entered, of at most `most`, when it is left with `exit`; or that run and what the next one
@@ -58,13 +59,13 @@ static cm1e_path_run_t together(const cm1e_path_run_t *a, const cm1e_path_run_t 
 static double enter(const cm1e_path_run_t *run, double exit, const cm1e_path_run_t *next, double wide_exit,
                     double most, bool commanded, cm1e_path_run_t *braking)
 {
-    const double alone = fmin(most, cm1e_profile_entry_velocity(run->length, most, exit, &run->limits));
+    const double alone = smaller(most, cm1e_profile_entry_velocity(run->length, most, exit, &run->limits));
     *braking = *run;
     if (!next || alone >= most)
         return alone;
     const cm1e_path_run_t wide = together(run, next);
-    const double limit = fmin(most, commanded ? wide.limits.velocity : wide.highest);
-    const double entry = fmin(limit, cm1e_profile_entry_velocity(wide.length, limit, wide_exit, &wide.limits));
+    const double limit = smaller(most, commanded ? wide.limits.velocity : wide.highest);
+    const double entry = smaller(limit, cm1e_profile_entry_velocity(wide.length, limit, wide_exit, &wide.limits));
     if (!(entry > alone * (1 + AS_LONG)))
         return alone;
     *braking = wide;
@@ -85,17 +86,17 @@ static void look_at_run(cm1e_path_t *path, int start, int last)
     cm1e_path_element_t *element = cm1e_path_element(path, start);
     cm1e_path_element_t *next = last < path->element_count ? cm1e_path_element(path, last) : NULL;
     const cm1e_path_run_t run = cm1e_path_run(path, start, last);
-    const double ends = most_at_ends(path, start, &run), most = fmin(element->passed, run.highest);
-    const double wanted = fmin(fmin(most, ends), factor(path) * element->junction);
+    const double ends = most_at_ends(path, start, &run), most = smaller(element->passed, run.highest);
+    const double wanted = smaller(smaller(most, ends), factor(path) * element->junction);
     const bool stops = !next || next->passed == 0;
     const cm1e_path_run_t *soft = stops ? NULL : &next->braking, *hard = stops ? NULL : &next->hard_braking;
-    element->hard_entry = enter(&run, fmin(exit_at(path, last, false), run.highest), hard,
-                                hard ? fmin(exit_at(path, last + hard->count, false), run.highest) : 0, most, false,
+    element->hard_entry = enter(&run, smaller(exit_at(path, last, false), run.highest), hard,
+                                hard ? smaller(exit_at(path, last + hard->count, false), run.highest) : 0, most, false,
                                 &element->hard_braking);
-    element->entry = enter(&run, fmin(exit_at(path, last, true), ends), soft,
-                           soft ? fmin(exit_at(path, last + soft->count, true),
-                                       fmin(run.limits.velocity, soft->limits.velocity)) : 0,
-                           fmin(wanted, element->hard_entry), true, &element->braking);
+    element->entry = enter(&run, smaller(exit_at(path, last, true), ends), soft,
+                           soft ? smaller(exit_at(path, last + soft->count, true),
+                                       smaller(run.limits.velocity, soft->limits.velocity)) : 0,
+                           smaller(wanted, element->hard_entry), true, &element->braking);
 }
 
 /** For the runs behind the one it is on, which is `first` long. Elements before `changed` are as they were: as soon as
@@ -132,8 +133,8 @@ static void velocities(const cm1e_profile_t *profile, double *lowest, double *hi
         const double v = segment->start.velocity, a = segment->start.acceleration, j = segment->jerk;
         const bool turns = a * j < 0 && -a / j < end_s - segment->start_s;
         const double turn = turns ? v - a * a / j / 2 : v;
-        *lowest = fmin(*lowest, fmin(v, turn));
-        *highest = fmax(*highest, fmax(v, turn));
+        *lowest = smaller(*lowest, smaller(v, turn));
+        *highest = larger(*highest, larger(v, turn));
     }
 }
 
@@ -164,15 +165,15 @@ static bool plan_to(cm1e_profile_t *profile, const cm1e_motion_state_t *start, c
 static bool plan_run(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double soft,
                      double hard, bool faster)
 {
-    const double ease = eased(start, run->limits.jerk), commanded = fmax(run->limits.velocity, soft);
-    const double highest = fmax(fmax(commanded, start->velocity), faster ? fmin(ease, run->highest) : 0);
+    const double ease = eased(start, run->limits.jerk), commanded = larger(run->limits.velocity, soft);
+    const double highest = larger(larger(commanded, start->velocity), faster ? smaller(ease, run->highest) : 0);
     const double exit = cm1e_profile_passing_velocity(start, run->length, soft, &run->limits);
     if (plan_to(profile, start, run, exit, highest))
         return true;
     /* Too fast to come down to that. */
-    double high = fmin(hard, fmax(ease, soft)), low = soft;
+    double high = smaller(hard, larger(ease, soft)), low = soft;
     if (!plan_to(profile, start, run, high, highest)) {
-        high = fmin(hard, start->velocity);
+        high = smaller(hard, start->velocity);
         if (!plan_to(profile, start, run, high, highest))
             return false;
     }
@@ -195,8 +196,8 @@ static void exits(cm1e_path_t *path, int first, const cm1e_path_run_t *run, doub
     const int next = first + run->count;
     *soft = *hard = 0;
     if (next < path->element_count) {
-        *soft = fmin(cm1e_path_element(path, next)->entry, most_at_ends(path, first, run));
-        *hard = fmin(cm1e_path_element(path, next)->hard_entry, run->highest);
+        *soft = smaller(cm1e_path_element(path, next)->entry, most_at_ends(path, first, run));
+        *hard = smaller(cm1e_path_element(path, next)->hard_entry, run->highest);
     }
 }
 
@@ -214,7 +215,7 @@ static bool plan_wide(cm1e_path_t *path, const cm1e_motion_state_t *start, const
                       double velocity, cm1e_profile_t *profile)
 {
     const double a = start->acceleration;
-    if (fmax(start->velocity, eased(start, wide->limits.jerk)) > velocity || a > wide->limits.acceleration ||
+    if (larger(start->velocity, eased(start, wide->limits.jerk)) > velocity || a > wide->limits.acceleration ||
         -a > wide->limits.deceleration)
         return false;
     double soft, hard;
@@ -240,7 +241,7 @@ static bool widen(cm1e_path_t *path, const cm1e_motion_state_t *start, cm1e_path
 {
     for (int i = 0; i < WIDER_MOST && run->count < path->element_count; i++) {
         const cm1e_path_element_t *next = cm1e_path_element(path, run->count);
-        const bool at_pace = planned && profile->end.velocity >= fmin(run->limits.velocity, next->highest) * 0.999;
+        const bool at_pace = planned && profile->end.velocity >= smaller(run->limits.velocity, next->highest) * 0.999;
         if (next->passed == 0 || at_pace)
             break;
         cm1e_path_run_t wide = together(run, &next->braking);
@@ -296,7 +297,7 @@ void cm1e_path_keep_going(cm1e_path_t *path)
     double soft, hard;
     cm1e_profile_t profile;
     exits(path, 0, &run, &soft, &hard);
-    if (cm1e_profile_to_state(&profile, &start, run.length, fmin(hard, start.velocity), &run.limits) == CM1E_OK)
+    if (cm1e_profile_to_state(&profile, &start, run.length, smaller(hard, start.velocity), &run.limits) == CM1E_OK)
         follow(path, &profile, &start);
 }
 
@@ -330,14 +331,14 @@ static double velocity_at(const cm1e_profile_t *profile, double position)
 static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e_motion_state_t *start, int count,
                        double length, const cm1e_path_run_t *run)
 {
-    if (!keeps(stop, start, length, fmax(run->limits.velocity, start->velocity)))
+    if (!keeps(stop, start, length, larger(run->limits.velocity, start->velocity)))
         return false;
     double begin = run->length, slowest, fastest;
     velocities(stop, &slowest, &fastest);
     for (int i = run->count; i < count; i++) {
         const cm1e_path_element_t *element = cm1e_path_element(path, i);
         const double most = start->acceleration > 0 ? fastest : velocity_at(stop, begin); /* it may yet get faster */
-        if (most > fmin(element->highest, element->passed) * (1 + 1e-9))
+        if (most > smaller(element->highest, element->passed) * (1 + 1e-9))
             return false;
         begin += element->length;
     }
@@ -352,15 +353,15 @@ static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, cm1e_
     double length = 0;
     for (int i = 0; i < path->element_count; i++) {
         const cm1e_path_element_t *element = cm1e_path_element(path, i);
-        const bool quick = fmax(start->velocity, eased(start, jerk)) <= element->most.velocity &&
+        const bool quick = larger(start->velocity, eased(start, jerk)) <= element->most.velocity &&
                            fabs(start->acceleration) <= element->most.acceleration;
         const cm1e_motion_limits_t *most = quick ? &element->most : &element->limits;
         if (i >= run.count && element->passed == 0)
             return false;
-        limits.velocity = fmin(limits.velocity, element->highest);
-        limits.acceleration = fmin(limits.acceleration, most->acceleration);
-        limits.deceleration = fmin(limits.deceleration, most->deceleration);
-        limits.jerk = fmin(limits.jerk, most->jerk);
+        limits.velocity = smaller(limits.velocity, element->highest);
+        limits.acceleration = smaller(limits.acceleration, most->acceleration);
+        limits.deceleration = smaller(limits.deceleration, most->deceleration);
+        limits.jerk = smaller(limits.jerk, most->jerk);
         length += element->length;
         if (cm1e_profile_to_velocity(stop, start, 0, &limits) != CM1E_OK)
             return false;
@@ -377,8 +378,8 @@ bool cm1e_path_plan_stop(cm1e_path_t *path)
     const double deceleration = path->stop.deceleration, jerk = path->stop.jerk;
     cm1e_profile_t stop;
     if (!find_stop(path, deceleration, jerk, &stop, &start) &&
-        !find_stop(path, deceleration, fmax(jerk, run.limits.jerk), &stop, &start) &&
-        !find_stop(path, fmax(deceleration, run.limits.deceleration), fmax(jerk, run.limits.jerk), &stop, &start))
+        !find_stop(path, deceleration, larger(jerk, run.limits.jerk), &stop, &start) &&
+        !find_stop(path, larger(deceleration, run.limits.deceleration), larger(jerk, run.limits.jerk), &stop, &start))
         return false;
     follow(path, &stop, &start);
     path->stopping = true;
@@ -392,7 +393,7 @@ static void cut_at(cm1e_path_t *path, double position)
     while (last < path->element_count - 1 && begin + cm1e_path_element(path, last)->length < position)
         begin += cm1e_path_element(path, last++)->length;
     cm1e_path_element_t *element = cm1e_path_element(path, last);
-    element->length = fmin(element->length, position - begin);
+    element->length = smaller(element->length, position - begin);
     element->last_of_tag = element->dropped = true;
     path->element_count = last + 1;
     path->cut = true;

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "core/extreme.h"
 #include "motion/pieces.h"
 
 enum { SOLVER_STEPS_MAX = 120, HILL_STEPS = 30 };
@@ -71,7 +72,7 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
             .start = {start->position + sign * position, sign * velocity, sign * piece->acceleration},
         };
         const cm1e_motion_state_t next = cm1e_piece_state(piece, position, velocity, piece->duration_s);
-        travelled += fmax(fabs(velocity), fabs(next.velocity)) * piece->duration_s;
+        travelled += larger(fabs(velocity), fabs(next.velocity)) * piece->duration_s;
         position = next.position;
         velocity = next.velocity;
         time += piece->duration_s;
@@ -156,7 +157,7 @@ static double growth_start(const push_t *push)
     if (piece->jerk < 0 || (piece->jerk == 0 && a <= 0))
         return piece->duration_s;
     if (piece->jerk == 0)
-        return fmax(0, (w - v - a * (a * push->per_jerk) / 2) / a);
+        return larger(0, (w - v - a * (a * push->per_jerk) / 2) / a);
     const double at_rest = v - a * (a * push->per_jerk) / 2; /* the velocity at which the acceleration is zero */
     const double from = at_rest > w ? -push->limits->deceleration : sqrt((w - at_rest) * push->limits->jerk);
     return from > a ? (from - a) * push->per_jerk : 0;
@@ -175,7 +176,7 @@ static double solve(const push_t *push, double low, double from, double high, re
         const double grown = at.position - from, excess = at.position - push->target;
         double next = time - excess / at.slope;
         if (fabs(excess) <= 1e-8 * missing || fabs(next - time) <= DBL_EPSILON * time) /* quadratic: that was it */
-            return fmin(fmax(next, low), high);
+            return smaller(high, larger(low, next));
         if (excess > 0)
             high = time;
         else
@@ -196,7 +197,7 @@ static double steepest(const push_t *push, double velocity)
 {
     const double jerk = push->limits->jerk;
     if (push->simple)
-        return fmin(push->limits->deceleration, sqrt((velocity - push->target_velocity) * jerk));
+        return smaller(push->limits->deceleration, sqrt((velocity - push->target_velocity) * jerk));
     cm1e_pieces_t change;
     change.count = 0;
     cm1e_pieces_append_velocity_change(&change, velocity, 0, push->target_velocity, push->limits);
@@ -215,7 +216,7 @@ static double hill_slope(const push_t *push, double at_rest, double x)
 static double hill(const push_t *push)
 {
     const cm1e_piece_t *piece = &push->piece;
-    const double jerk = push->limits->jerk, most = fmin(-piece->acceleration, push->limits->deceleration);
+    const double jerk = push->limits->jerk, most = smaller(-piece->acceleration, push->limits->deceleration);
     const double at_rest = push->velocity - piece->acceleration * (piece->acceleration / jerk) / 2;
     if (!(push->target_velocity < 0 && piece->jerk > 0 && most > 0 && at_rest > push->target_velocity) ||
         at_rest + most * (most / jerk) / 2 <= 0 || hill_slope(push, at_rest, most) <= 0)
@@ -280,12 +281,20 @@ static void append_change(cm1e_pieces_t *pieces, const push_t *push, double time
         pieces->count = count;
         if (count > 0)
             pieces->piece[count - 1] = last;
-        time = time > 0 ? fmax(0, time - step * time) : -1;
+        time = time > 0 ? larger(0, time - step * time) : -1;
     }
     pieces->count = 0; /* a step that begins in a piece before: without any push */
     cm1e_pieces_append_velocity_change(pieces, push->start_velocity, push->start_acceleration, w, push->limits);
     left = push->target - cm1e_pieces_displacement(pieces, push->start_velocity);
     cm1e_pieces_append(pieces, 0, 0, left / w);
+}
+
+/** The change from the velocity limit to `w`, and its length. */
+static double change_at_limit(cm1e_pieces_t *change, double w, const cm1e_motion_limits_t *limits)
+{
+    change->count = 0;
+    cm1e_pieces_append_velocity_change(change, limits->velocity, 0, w, limits);
+    return cm1e_pieces_displacement(change, limits->velocity);
 }
 
 /** All mirrored so that the target lies beyond the end of the soonest change of velocity, `direct`. */
@@ -303,10 +312,19 @@ static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, doubl
         .velocity = velocity, .reached = direct,
         .simple = fabs(w) <= limits->velocity && (w >= 0 || limits->acceleration == limits->deceleration),
     };
+    cm1e_pieces_t change;
+    const double left = target - cm1e_pieces_displacement(&whole, velocity);
+    double braking = 0;
+    /* Where the reach never falls, the change begins within the push only if its end is too far. */
+    bool cruises = push.simple && w >= 0 && left >= 0;
+    if (cruises) {
+        braking = change_at_limit(&change, w, limits);
+        cruises = left - braking >= 0;
+    }
     for (int i = 0; i < whole.count; i++) {
         const cm1e_piece_t *piece = &push.piece;
         push.piece = whole.piece[i];
-        const double time = switching_time(&push, i == 0);
+        const double time = cruises ? -1 : switching_time(&push, i == 0);
         if (time >= 0) {
             append_change(pieces, &push, time);
             return;
@@ -316,10 +334,9 @@ static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, doubl
         push.position = state.position;
         push.velocity = state.velocity;
     }
-    cm1e_pieces_t change;
-    change.count = 0;
-    cm1e_pieces_append_velocity_change(&change, limits->velocity, 0, w, limits);
-    const double cruise = target - push.position - cm1e_pieces_displacement(&change, limits->velocity);
+    if (!cruises)
+        braking = change_at_limit(&change, w, limits);
+    const double cruise = target - push.position - braking;
     cm1e_pieces_append(pieces, 0, 0, cruise / limits->velocity);
     for (int i = 0; i < change.count; i++)
         cm1e_pieces_append(pieces, change.piece[i].jerk, change.piece[i].acceleration, change.piece[i].duration_s);
@@ -368,7 +385,7 @@ cm1e_error_t cm1e_profile_to_velocity(cm1e_profile_t *profile, const cm1e_motion
 {
     if (!cm1e_motion_is_valid(start, limits) || !cm1e_motion_is_number(velocity))
         return CM1E_ERROR_INVALID_ARGUMENT;
-    velocity = fmax(-limits->velocity, fmin(limits->velocity, velocity));
+    velocity = larger(-limits->velocity, smaller(limits->velocity, velocity));
     cm1e_pieces_t pieces;
     pieces.count = 0;
     cm1e_pieces_append_velocity_change(&pieces, start->velocity, start->acceleration, velocity, limits);

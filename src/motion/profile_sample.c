@@ -1,6 +1,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "core/extreme.h"
 #include "motion/profile.h"
 
 /** The last segment is computed backwards from the end state, so the profile reaches its end without a step, and a
@@ -32,8 +33,8 @@ cm1e_motion_bounds_t cm1e_profile_stretch_bounds(const cm1e_profile_stretch_t *s
     }
     const bool turns = a.velocity * b.velocity < 0 || a.velocity * v < 0 || b.velocity * v < 0;
     return (cm1e_motion_bounds_t){
-        .velocity = turns ? INFINITY : fmax(fabs(v), fmax(fabs(a.velocity), fabs(b.velocity))),
-        .acceleration = fmax(fabs(a.acceleration), fabs(b.acceleration)),
+        .velocity = turns ? INFINITY : larger(fabs(v), larger(fabs(a.velocity), fabs(b.velocity))),
+        .acceleration = larger(fabs(a.acceleration), fabs(b.acceleration)),
         .jerk = fabs(stretch->jerk),
     };
 }
@@ -54,40 +55,68 @@ void cm1e_profile_stretch_at(const cm1e_profile_t *profile, double time_s, cm1e_
 void cm1e_profile_sample(const cm1e_profile_t *profile, double time_s, cm1e_motion_state_t *state)
 {
     cm1e_profile_stretch_t stretch;
-    time_s = fmax(time_s, 0);
+    time_s = larger(0, time_s);
     cm1e_profile_stretch_at(profile, time_s, &stretch);
     *state = cm1e_profile_stretch_state(&stretch, time_s);
 }
 
 enum { PLACES = 3 };
 
+/** Whether the motion may turn round within a segment: the velocity has different signs at its ends, or it comes nearer
+ *  to zero at first, and goes away from it later. */
+static bool may_turn(const cm1e_profile_t *profile, int index)
+{
+    const cm1e_profile_segment_t *segment = &profile->segments[index];
+    const bool last = index == profile->segment_count - 1;
+    const double until_s = last ? profile->duration_s : segment[1].start_s;
+    const double v = segment->start.velocity, v_end = last ? profile->end.velocity : segment[1].start.velocity;
+    const double a = segment->start.acceleration, a_end = a + (until_s - segment->start_s) * segment->jerk;
+    return v * v_end < 0 || (a * a_end < 0 && v * a <= 0);
+}
+
+/** Where a segment begins. */
+static double begin_of(const cm1e_profile_t *profile, int index)
+{
+    if (index < profile->segment_count - 1)
+        return profile->segments[index].start.position;
+    const cm1e_profile_stretch_t stretch = stretch_of(profile, index);
+    return cm1e_profile_stretch_state(&stretch, stretch.from_s).position;
+}
+
 /** Where a segment begins, and where it turns: besides its start it can do so where its velocity is zero, v + a t + j
  *  t2 / 2 = 0. In order; a missing one equals the one before. */
 static void places(const cm1e_profile_t *profile, int index, double position[PLACES])
 {
+    position[0] = position[1] = position[2] = begin_of(profile, index);
+    if (!may_turn(profile, index))
+        return;
     const cm1e_profile_segment_t *segment = &profile->segments[index];
     const cm1e_profile_stretch_t stretch = stretch_of(profile, index);
     const double v = segment->start.velocity, a = segment->start.acceleration, j = segment->jerk;
-    const double root = sqrt(fmax(0, a * a - 2 * j * v)), sum = -(a + copysign(root, a));
-    const double one = 2 * v / sum, other = sum / j, times[PLACES] = {0, fmin(one, other), fmax(one, other)};
-    for (int i = 0; i < PLACES; i++) {
+    const double root = sqrt(larger(0, a * a - 2 * j * v)), sum = -(a + copysign(root, a));
+    const double one = 2 * v / sum, other = sum / j, times[PLACES] = {0, smaller(one, other), larger(one, other)};
+    for (int i = 1; i < PLACES; i++) {
         const bool inside = times[i] >= 0 && times[i] < stretch.until_s - stretch.from_s;
-        position[i] = inside || i == 0 ? cm1e_profile_stretch_state(&stretch, stretch.from_s + times[i]).position
-                                       : position[i - 1];
+        position[i] = inside ? cm1e_profile_stretch_state(&stretch, stretch.from_s + times[i]).position
+                             : position[i - 1];
     }
 }
 
 void cm1e_profile_extent(const cm1e_profile_t *profile, double *lowest, double *highest)
 {
-    *lowest = *highest = profile->end.position;
+    double least = profile->end.position, most = least;
     for (int i = 0; i < profile->segment_count; i++) {
-        double position[PLACES];
-        places(profile, i, position);
-        for (int k = 0; k < PLACES; k++) {
-            *lowest = fmin(*lowest, position[k]);
-            *highest = fmax(*highest, position[k]);
+        double position[PLACES] = {begin_of(profile, i)};
+        const bool turns = may_turn(profile, i);
+        if (turns)
+            places(profile, i, position);
+        for (int k = 0; k < (turns ? PLACES : 1); k++) {
+            least = smaller(least, position[k]);
+            most = larger(most, position[k]);
         }
     }
+    *lowest = least;
+    *highest = most;
 }
 
 double cm1e_profile_way_back(const cm1e_profile_t *profile, double sign)
@@ -97,7 +126,7 @@ double cm1e_profile_way_back(const cm1e_profile_t *profile, double sign)
         double position[PLACES];
         places(profile, i, position);
         for (int k = PLACES - 1; k >= 0; k--) {
-            back += fmax(0, copysign(1, sign) * (position[k] - after));
+            back += larger(0, copysign(1, sign) * (position[k] - after));
             after = position[k];
         }
     }

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "core/extreme.h"
+
 /* What is left of it then is a step of the velocity by this part. */
 static const double NOTHING = 1e-9;
 
@@ -14,9 +16,9 @@ void cm1e_slow_time_begin(cm1e_slow_time_t *slow, double factor)
 void cm1e_slow_time_keep(cm1e_slow_time_t *slow, const cm1e_motion_limits_t *limits)
 {
     const double m = slow->missing, v = limits->velocity, a = limits->acceleration, j = limits->jerk;
-    const double b = 3 * fmax(a, limits->deceleration), c = 3 * (1 - m) * j;
+    const double b = 3 * larger(a, limits->deceleration), c = 3 * (1 - m) * j;
     const double by_jerk = isinf(j) ? INFINITY : 2 * c / (b + sqrt(b * b + 4 * v * c));
-    slow->rate = fmin(slow->rate, fmin((2 - m) * a / v, by_jerk));
+    slow->rate = smaller(slow->rate, smaller((2 - m) * a / v, by_jerk));
 }
 
 double cm1e_slow_time_step(cm1e_slow_time_t *slow, double time_s)

@@ -7,6 +7,7 @@
  *     the two that make room for both velocity and acceleration at both ends.
  * The equations are tridiagonal and dominated by their diagonal: solved by elimination in one pass there and one back.
  */
+#include "core/extreme.h"
 #include "motion/table_profile.h"
 
 #include <math.h>
@@ -74,8 +75,8 @@ static bool take_points(table_t *table, cm1e_table_kind_t kind, const cm1e_motio
         const cm1e_table_point_t *point = &points[i];
         if (!cm1e_motion_is_number(point->value) || !cm1e_motion_is_number(point->time_s))
             return false;
-        low = fmin(low, point->value);
-        high = fmax(high, point->value);
+        low = smaller(low, point->value);
+        high = larger(high, point->value);
         if (i == 0 && point->time_s == 0)
             continue;
         if (!(point->time_s > table->time[table->intervals]))
@@ -204,10 +205,10 @@ static cm1e_motion_state_t next(const cm1e_table_knot_t *knot, const cm1e_motion
 static void widen(cm1e_table_extremes_t *extremes, const cm1e_motion_state_t *state, bool grows)
 {
     double *limit = grows ? &extremes->acceleration : &extremes->deceleration;
-    extremes->lowest = fmin(extremes->lowest, state->position);
-    extremes->highest = fmax(extremes->highest, state->position);
-    extremes->velocity = fmax(extremes->velocity, fabs(state->velocity));
-    *limit = fmax(*limit, fabs(state->acceleration));
+    extremes->lowest = smaller(extremes->lowest, state->position);
+    extremes->highest = larger(extremes->highest, state->position);
+    extremes->velocity = larger(extremes->velocity, fabs(state->velocity));
+    *limit = larger(*limit, fabs(state->acceleration));
 }
 
 /** A piece is divided into parts in which velocity and acceleration keep their signs; there all values are
@@ -222,9 +223,9 @@ static void widen_by_piece(cm1e_table_extremes_t *extremes, const cm1e_table_kno
             extremes->jerk = INFINITY;
         return;
     }
-    const double j = piece_jerk(knot), root = sqrt(fmax(0, a * a - 2 * j * v)), sum = -(a + copysign(root, a));
+    const double j = piece_jerk(knot), root = sqrt(larger(0, a * a - 2 * j * v)), sum = -(a + copysign(root, a));
     double times[] = {-a / j, 2 * v / sum, sum / j, length};
-    extremes->jerk = fmax(extremes->jerk, fabs(j));
+    extremes->jerk = larger(extremes->jerk, fabs(j));
     for (double from = 0; from < length;) {
         double to = length;
         for (int i = 0; i < 3; i++)
@@ -307,7 +308,7 @@ void cm1e_table_profile_stretch_at(cm1e_table_profile_t *profile, double time_s,
         return;
     }
     cm1e_motion_state_t unused;
-    cm1e_table_profile_sample(profile, fmax(time_s, 1e-300), &unused); /* also at 0 it finds its place */
+    cm1e_table_profile_sample(profile, larger(time_s, 1e-300), &unused); /* also at 0 it finds its place */
     const cm1e_table_knot_t *knot = &profile->knots[profile->at];
     *stretch = (cm1e_profile_stretch_t){knot[0].time_s, knot[1].time_s, knot[0].time_s, profile->here,
                                         piece_jerk(knot)};

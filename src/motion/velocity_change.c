@@ -1,13 +1,14 @@
 /*
  * The primitive of every profile: the fastest change from (v, a) to (w, 0).
  *
- * All functions except the last use it mirrored so that the velocity has to grow ("up"). The ceiling of the
+ * All functions except the last use it mirrored by `sign` so that the velocity has to grow ("up"). The ceiling of the
  * acceleration is then the deceleration limit below standstill, where |v| shrinks, and the acceleration limit above it.
  * Where the ceiling falls at standstill, the acceleration has to come down before: it must obey the lower limit when v
  * gets there.
  */
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/pieces.h"
 
 void cm1e_pieces_append(cm1e_pieces_t *pieces, double jerk, double acceleration, double duration_s)
@@ -28,85 +29,91 @@ double cm1e_pieces_displacement(const cm1e_pieces_t *pieces, double velocity)
     return state.position;
 }
 
+/** A piece that was planned mirrored by `sign`. */
+static void append(cm1e_pieces_t *pieces, double sign, double jerk, double acceleration, double duration_s)
+{
+    cm1e_pieces_append(pieces, sign * jerk, sign * acceleration, duration_s);
+}
+
 /** From acceleration a >= 0 to `a_end` >= 0 while the velocity grows by dv, at most `ceiling`. The caller knows that it
  *  can be done, i.e. that going from a straight to a_end needs no more than dv. */
-static void append_rise(cm1e_pieces_t *pieces, double dv, double a, double a_end, double ceiling, double jerk)
+static void append_rise(cm1e_pieces_t *pieces, double sign, double dv, double a, double a_end, double ceiling,
+                        double jerk)
 {
     if (a > ceiling) {
-        cm1e_pieces_append(pieces, -jerk, a, (a - ceiling) / jerk);
+        append(pieces, sign, -jerk, a, (a - ceiling) / jerk);
         dv -= (a + ceiling) * ((a - ceiling) / jerk) / 2;
         a = ceiling;
     }
     const double at_ceiling = dv - (ceiling * ceiling - (a * a + a_end * a_end) / 2) / jerk;
     double peak = ceiling;
     if (!(at_ceiling > 0)) {
-        peak = sqrt(fmax(0, jerk * dv) + (a * a + a_end * a_end) / 2);
-        peak = fmin(fmax(peak, fmax(a, a_end)), ceiling);
+        peak = sqrt(larger(0, jerk * dv) + (a * a + a_end * a_end) / 2);
+        peak = smaller(larger(peak, larger(a, a_end)), ceiling);
     }
-    cm1e_pieces_append(pieces, jerk, a, (peak - a) / jerk);
-    cm1e_pieces_append(pieces, 0, peak, at_ceiling / peak);
-    cm1e_pieces_append(pieces, -jerk, peak, (peak - a_end) / jerk);
+    append(pieces, sign, jerk, a, (peak - a) / jerk);
+    append(pieces, sign, 0, peak, at_ceiling / peak);
+    append(pieces, sign, -jerk, peak, (peak - a_end) / jerk);
 }
 
 /** The change from (v < 0, a >= 0) to (w > 0, 0). */
-static void append_rise_through_zero(cm1e_pieces_t *pieces, double v, double a, double w,
+static void append_rise_through_zero(cm1e_pieces_t *pieces, double sign, double v, double a, double w,
                                      const cm1e_motion_limits_t *limits)
 {
     const double above = limits->acceleration, below = limits->deceleration, jerk = limits->jerk;
     /* Maximum acceleration at v = 0: within both limits, and low enough to arrive at w. */
-    const double lower = fmin(above, below);
+    const double lower = smaller(above, below);
     const double allowed = 2 * jerk * w < lower * lower ? sqrt(2 * jerk * w) : lower;
     /* Squares of the acceleration at v = 0 when jerk is applied from now on, upwards and downwards. */
     const double pushed = a * a - 2 * jerk * v, eased = a * a + 2 * jerk * v;
 
     if (a > below && eased >= below * below) { /* from outside the limits, and still so at v = 0 */
         const double at_zero = sqrt(eased);
-        cm1e_pieces_append(pieces, -jerk, a, (a - at_zero) / jerk);
-        append_rise(pieces, w, at_zero, 0, above, jerk);
+        append(pieces, sign, -jerk, a, (a - at_zero) / jerk);
+        append_rise(pieces, sign, w, at_zero, 0, above, jerk);
     } else if (a <= below && pushed <= allowed * allowed) { /* no limit in the way below zero */
         const double at_zero = sqrt(pushed);
-        cm1e_pieces_append(pieces, jerk, a, (at_zero - a) / jerk);
-        append_rise(pieces, w, at_zero, 0, above, jerk);
+        append(pieces, sign, jerk, a, (at_zero - a) / jerk);
+        append_rise(pieces, sign, w, at_zero, 0, above, jerk);
     } else if (eased <= allowed * allowed) {
-        append_rise(pieces, -v, a, allowed, below, jerk);
-        append_rise(pieces, w, allowed, 0, above, jerk);
+        append_rise(pieces, sign, -v, a, allowed, below, jerk);
+        append_rise(pieces, sign, w, allowed, 0, above, jerk);
     } else { /* too fast to obey the lower limit at v = 0: down to it at once */
-        append_rise(pieces, w - v, a, 0, above, jerk);
+        append_rise(pieces, sign, w - v, a, 0, above, jerk);
     }
 }
 
-static void append_up(cm1e_pieces_t *pieces, double v, double a, double w, const cm1e_motion_limits_t *limits)
+static void append_up(cm1e_pieces_t *pieces, double sign, double v, double a, double w,
+                      const cm1e_motion_limits_t *limits)
 {
     const double above = limits->acceleration, below = limits->deceleration, jerk = limits->jerk;
     if (a < 0) {
-        cm1e_pieces_append(pieces, jerk, a, -a / jerk);
+        append(pieces, sign, jerk, a, -a / jerk);
         v -= a * (a / jerk) / 2;
         a = 0;
     }
     if (v < 0 && w > 0 && above != below)
-        append_rise_through_zero(pieces, v, a, w, limits);
+        append_rise_through_zero(pieces, sign, v, a, w, limits);
     else
-        append_rise(pieces, w - v, a, 0, v < 0 ? below : above, jerk);
+        append_rise(pieces, sign, w - v, a, 0, v < 0 ? below : above, jerk);
 }
 
-static void append_up_trapezoid(cm1e_pieces_t *pieces, double v, double w, const cm1e_motion_limits_t *limits)
+static void append_up_trapezoid(cm1e_pieces_t *pieces, double sign, double v, double w,
+                                const cm1e_motion_limits_t *limits)
 {
     if (v < 0)
-        cm1e_pieces_append(pieces, 0, limits->deceleration, (fmin(w, 0) - v) / limits->deceleration);
+        append(pieces, sign, 0, limits->deceleration, (smaller(w, 0) - v) / limits->deceleration);
     if (w > 0)
-        cm1e_pieces_append(pieces, 0, limits->acceleration, (w - fmax(v, 0)) / limits->acceleration);
+        append(pieces, sign, 0, limits->acceleration, (w - larger(v, 0)) / limits->acceleration);
 }
 
 void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
                                         const cm1e_motion_limits_t *limits)
 {
     const double v = velocity, a = acceleration, w = target, jerk = limits->jerk;
-    cm1e_pieces_t up;
-    up.count = 0;
-    double sign;
     if (isinf(jerk)) {
-        sign = w >= v ? 1 : -1;
-        append_up_trapezoid(&up, sign * v, sign * w, limits);
+        const double sign = w >= v ? 1 : -1;
+        append_up_trapezoid(pieces, sign, sign * v, sign * w, limits);
     } else {
         /* The velocity after the acceleration is brought to zero. Rounding must not cause a motion: even the last bits
          * of a velocity take time (the root of their size), and would move a fast axis noticeably. */
@@ -115,9 +122,7 @@ void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, 
             cm1e_pieces_append(pieces, a > 0 ? -jerk : jerk, a, fabs(a) / jerk);
             return;
         }
-        sign = missing > 0 ? 1 : -1;
-        append_up(&up, sign * v, sign * a, sign * w, limits);
+        const double sign = missing > 0 ? 1 : -1;
+        append_up(pieces, sign, sign * v, sign * a, sign * w, limits);
     }
-    for (int i = 0; i < up.count; i++)
-        cm1e_pieces_append(pieces, sign * up.piece[i].jerk, sign * up.piece[i].acceleration, up.piece[i].duration_s);
 }
