@@ -59,6 +59,37 @@ static void listen_in_turn(cm1e_bus_t *bus, int64_t now_ns)
     }
 }
 
+/** Puts the datagram of a slave into the last frame, if one has been begun, or into a new one. In operation each has a
+ *  frame of its own, so that a lost one concerns one slave. */
+static void put(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, bool begun, int64_t now_ns)
+{
+    cm1e_acyclic_t *acyclic = &bus->acyclic;
+    cm1e_acyclic_frame_t *frame = begun ? &acyclic->frames[acyclic->count - 1] : NULL;
+    if (!frame || bus->phase == BUS_OPERATING || !cm1e_soem_add(bus->soem, &frame->bundle, &slave->datagram)) {
+        if (frame)
+            cm1e_soem_post_bundle(bus->soem, &frame->bundle, now_ns);
+        frame = &acyclic->frames[acyclic->count++];
+        frame->bundle.count = 0;
+        cm1e_soem_add(bus->soem, &frame->bundle, &slave->datagram);
+    }
+    frame->slaves[frame->bundle.count - 1] = slave;
+}
+
+/** The next datagram of this slave; notes whether it is another one than the one before. */
+static bool goes_on(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
+{
+    const cm1e_datagram_t *d = &slave->datagram;
+    const uint16_t offset = d->offset, length = d->length;
+    const uint8_t command = d->command;
+    if (!next_datagram(bus, slave, now_ns)) {
+        slave->owner = OWNER_NONE;
+        return false;
+    }
+    if (d->command != command || d->offset != offset || d->length != length)
+        bus->acyclic.progress_ns = now_ns;
+    return true;
+}
+
 void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
 {
     cm1e_errand_serve(bus, now_ns);
@@ -66,22 +97,18 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
     cm1e_sdo_queue_serve(bus, now_ns);
     listen_in_turn(bus, now_ns);
     uint32_t place = bus->acyclic.next;
-    for (uint32_t n = 0; n < bus->slave_count && limit > 0; n++) {
-        if (bus->acyclic.count == CM1E_DATAGRAMS_IN_FLIGHT)
-            break;
+    const unsigned before = bus->acyclic.count;
+    for (uint32_t n = 0; n < bus->slave_count && limit > 0 && bus->acyclic.count < CM1E_FRAMES_IN_FLIGHT; n++) {
         place = place + 1 < bus->slave_count ? place + 1 : 0;
         cm1e_bus_slave_t *slave = &bus->slaves[place];
-        if (slave->owner != OWNER_NONE)
+        if (slave->owner != OWNER_NONE || !goes_on(bus, slave, now_ns))
             continue;
-        if (!next_datagram(bus, slave, now_ns)) {
-            slave->owner = OWNER_NONE;
-            continue;
-        }
-        cm1e_soem_post(bus->soem, &slave->datagram, now_ns);
-        bus->acyclic.sent[bus->acyclic.count++] = slave;
+        put(bus, slave, bus->acyclic.count > before, now_ns);
         bus->acyclic.next = place;
         limit--;
     }
+    if (bus->acyclic.count > before)
+        cm1e_soem_post_bundle(bus->soem, &bus->acyclic.frames[bus->acyclic.count - 1].bundle, now_ns);
 }
 
 static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
@@ -113,29 +140,37 @@ static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 
 void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns)
 {
+    cm1e_acyclic_t *acyclic = &bus->acyclic;
     unsigned kept = 0;
-    for (unsigned i = 0; i < bus->acyclic.count; i++) {
-        cm1e_bus_slave_t *slave = bus->acyclic.sent[i];
-        const bool back = cm1e_soem_take(bus->soem, &slave->datagram, wait_ns);
+    for (unsigned i = 0; i < acyclic->count; i++) {
+        cm1e_acyclic_frame_t *frame = &acyclic->frames[i];
+        const bool back = cm1e_soem_take_bundle(bus->soem, &frame->bundle, wait_ns);
         const int64_t now_ns = cm1e_clock_now(bus->clock);
-        if (!back && now_ns - slave->datagram.sent_ns < CM1E_FRAME_LOST_NS) {
-            bus->acyclic.sent[kept++] = slave;
+        if (!back && now_ns - frame->bundle.sent_ns < CM1E_FRAME_LOST_NS) {
+            if (kept++ != i)
+                acyclic->frames[kept - 1] = *frame;
             continue;
         }
         if (!back)
-            cm1e_soem_drop(bus->soem, &slave->datagram);
-        if (slave->datagram.working_counter == DATAGRAM_LOST)
-            bus->counters.mailbox_retries++;
-        deliver(bus, slave, now_ns);
+            cm1e_soem_drop_bundle(bus->soem, &frame->bundle);
+        for (unsigned n = 0; n < frame->bundle.count; n++) {
+            if (frame->slaves[n]->datagram.working_counter == DATAGRAM_LOST) {
+                bus->counters.mailbox_retries++;
+                acyclic->careful_until_ns = now_ns + CM1E_PUMP_CAREFUL_NS;
+            }
+            deliver(bus, frame->slaves[n], now_ns);
+        }
     }
-    bus->acyclic.count = kept;
+    acyclic->count = kept;
 }
 
 void cm1e_acyclic_cancel(cm1e_bus_t *bus)
 {
     for (unsigned i = 0; i < bus->acyclic.count; i++) {
-        cm1e_soem_drop(bus->soem, &bus->acyclic.sent[i]->datagram);
-        bus->acyclic.sent[i]->owner = OWNER_NONE;
+        const cm1e_acyclic_frame_t *frame = &bus->acyclic.frames[i];
+        cm1e_soem_drop_bundle(bus->soem, &frame->bundle);
+        for (unsigned n = 0; n < frame->bundle.count; n++)
+            frame->slaves[n]->owner = OWNER_NONE;
     }
     bus->acyclic.count = 0;
     if (bus->supervised.sent)

@@ -3,8 +3,8 @@
 #include "core/bytes.h"
 
 enum { AL_STATUS_BYTES = 6 }; /**< status, 2 reserved bytes, status code */
-/** AL status at which a slave with a processor accepts an acknowledgement. */
-enum { ACKNOWLEDGE_LOOKS = 10 };
+/** So many looks and so long a slave with a processor may take to accept an acknowledgement. */
+enum { ACKNOWLEDGE_LOOKS = 10, ACKNOWLEDGE_NS = 1000000 };
 
 static void end(cm1e_al_machine_t *machine, cm1e_error_t error)
 {
@@ -107,11 +107,11 @@ static void after_look(cm1e_al_machine_t *machine)
         machine->step = AL_REQUEST;
 }
 
-static void after_acknowledgement(cm1e_al_machine_t *machine)
+static void after_acknowledgement(cm1e_al_machine_t *machine, int64_t now_ns)
 {
     if (!(machine->state & AL_ERROR_FLAG)) {
         machine->step = AL_REQUEST;
-    } else if (++machine->looks >= ACKNOWLEDGE_LOOKS) {
+    } else if (++machine->looks >= ACKNOWLEDGE_LOOKS && now_ns - machine->acknowledged_ns >= ACKNOWLEDGE_NS) {
         machine->without_bit = !machine->without_bit;
         machine->step = AL_ACKNOWLEDGE;
     }
@@ -127,7 +127,6 @@ static void after_wait(cm1e_al_machine_t *machine)
 
 void cm1e_al_result(cm1e_al_machine_t *machine, const cm1e_datagram_t *d, int64_t now_ns)
 {
-    (void)now_ns;
     if (d->working_counter != 1)
         return; /* lost or not answered: the request is repeated until the deadline */
     switch (machine->step) {
@@ -139,11 +138,12 @@ void cm1e_al_result(cm1e_al_machine_t *machine, const cm1e_datagram_t *d, int64_
         break;
     case AL_ACKNOWLEDGE:
         machine->looks = 0;
+        machine->acknowledged_ns = now_ns;
         machine->step = AL_ACKNOWLEDGED;
         break;
     case AL_ACKNOWLEDGED:
         take_status(machine, d);
-        after_acknowledgement(machine);
+        after_acknowledgement(machine, now_ns);
         break;
     case AL_REQUEST:
         machine->step = AL_WAIT;

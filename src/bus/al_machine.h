@@ -29,6 +29,7 @@ typedef struct cm1e_al_machine {
     bool answered;          /**< the slave has answered at its address since the start */
     bool without_bit;       /**< the next acknowledgement has no acknowledge bit */
     unsigned looks;         /**< since the last acknowledgement */
+    int64_t acknowledged_ns;
     uint16_t state, code;   /**< AL status and status code, as last read */
     uint16_t explicit_id;   /**< result of cm1e_al_read_id(); 0: none or not supported */
     cm1e_error_t error;     /**< result, valid when idle */

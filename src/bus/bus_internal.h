@@ -39,8 +39,11 @@ enum {
 #define CM1E_PORTS_PACE_NS INT64_C(20000000)
 /** In operation one mailbox in this time is looked into for messages that nobody asked for. */
 #define CM1E_LISTEN_PACE_NS INT64_C(5000000)
-/** Pace of the blocking phases. */
+/** Pace of the blocking phases, once no slave has gone on for the first time below, or if a frame was lost within the
+ *  second one: what is repeated then must leave a slave time. Otherwise they wait for frames only. */
 #define CM1E_PUMP_PERIOD_NS INT64_C(100000)
+#define CM1E_PUMP_PATIENCE_NS INT64_C(1000000)
+#define CM1E_PUMP_CAREFUL_NS INT64_C(10000000)
 
 /** Process data watchdog of the slaves: 100 ms, the power-on value of a slave controller (ETG.1000.4 table 49), written
  *  so that nothing else can have been left there. The motor is disabled (firmware >= 1.3.0) when no process data came
@@ -134,11 +137,19 @@ typedef struct cm1e_safe_outputs {
     bool released;                           /**< the program has ended */
 } cm1e_safe_outputs_t;
 
+/** One frame of them, with the slave of each datagram. */
+typedef struct cm1e_acyclic_frame {
+    cm1e_bundle_t bundle;
+    cm1e_bus_slave_t *slaves[CM1E_BUNDLE_DATAGRAMS];
+} cm1e_acyclic_frame_t;
+
 /** Acyclic datagrams on their way (acyclic.c). */
 typedef struct cm1e_acyclic {
-    cm1e_bus_slave_t *sent[CM1E_DATAGRAMS_IN_FLIGHT];
+    cm1e_acyclic_frame_t frames[CM1E_FRAMES_IN_FLIGHT]; /**< the first `count` are on their way */
     unsigned count;
     uint32_t next;                           /**< round robin: the slave whose turn it is */
+    int64_t progress_ns;                     /**< when a slave was last sent another datagram than the one before */
+    int64_t careful_until_ns;                /**< after a lost frame */
 } cm1e_acyclic_t;
 
 /** What others want of slaves beside SDO transfers (errand.h, foe_job.h). */
@@ -282,7 +293,8 @@ const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *
 /** Makes the bus's clock the one SOEM uses in this thread, and tells the time. */
 int64_t cm1e_bus_enter(cm1e_bus_t *bus);
 
-/** Hands in transfers to idle CoE clients, sends datagrams of the slaves in need (at most `limit`). */
+/** Hands in transfers to idle CoE clients, sends datagrams of the slaves in need (at most `limit`), as many as
+ *  fit into each frame. */
 void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit);
 /** Takes in what is back; waits at most `wait_ns` for each. */
 void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns);
@@ -292,6 +304,10 @@ void cm1e_bus_keep_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave);
 void cm1e_acyclic_cancel(cm1e_bus_t *bus);
 /** One round of a blocking phase: a cycle when process data is exchanged, else datagrams at the pump's pace. */
 void cm1e_bus_pump(cm1e_bus_t *bus);
+/** How long the process data are about to be on the wire in a cycle. */
+int64_t cm1e_bus_wire_ns(const cm1e_bus_t *bus);
+/** Such a cycle without the wait for its end. */
+void cm1e_bus_pump_cycle(cm1e_bus_t *bus);
 /** Pumps until every slave's AL machine, jobs and CoE client are idle; false: not until `deadline_ns`. */
 bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns);
 

@@ -153,12 +153,18 @@ static cm1e_error_t list_signals(cm1e_bus_t *bus, cm1e_diag_t *diag)
     return error != CM1E_OK ? error : cm1e_bus_prepare_safe_outputs(bus, diag);
 }
 
+int64_t cm1e_bus_wire_ns(const cm1e_bus_t *bus)
+{
+    const size_t frames = cm1e_soem_process_frames(bus->soem);
+    const size_t bytes = bus->output_bytes + bus->input_bytes + frames * FRAME_OVERHEAD_BYTES;
+    return (int64_t)bytes * NS_PER_BYTE + (int64_t)bus->slave_count * NS_PER_SLAVE;
+}
+
 /** A bus whose frames come back after the next cycle has begun would start, and then lose most of them. */
 static cm1e_error_t check_wire_time(const cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     const size_t frames = cm1e_soem_process_frames(bus->soem);
-    const size_t bytes = bus->output_bytes + bus->input_bytes + frames * FRAME_OVERHEAD_BYTES;
-    const int64_t wire_ns = (int64_t)bytes * NS_PER_BYTE + (int64_t)bus->slave_count * NS_PER_SLAVE;
+    const int64_t wire_ns = cm1e_bus_wire_ns(bus);
     if (wire_ns + BESIDE_PROCESS_DATA_NS <= bus->config.cycle_time_ns)
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
@@ -168,30 +174,38 @@ static cm1e_error_t check_wire_time(const cm1e_bus_t *bus, cm1e_diag_t *diag)
                          (long long)(bus->config.cycle_time_ns / 1000));
 }
 
-/** One that did not take it might go on for ever when the frames stay away. A single disturbed frame is ridden out. */
-static bool write_word(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, uint16_t offset, uint16_t value)
+/** Writes a word into every slave, and clears `taken` of those that do not take it. */
+static void write_words(cm1e_bus_t *bus, uint16_t offset, const uint16_t *values, bool *taken)
 {
-    uint8_t data[2];
-    cm1e_put_u16(data, value);
-    for (int tries = 0; tries < 3; tries++) {
-        if (cm1e_soem_transfer(bus->soem, COMMAND_FPWR, slave->facts.station, offset, data, sizeof data) == 1)
-            return true;
+    enum { FRAME_TRIES = 3 }; /* a single disturbed frame is ridden out */
+    cm1e_datagram_t *batch = cm1e_soem_batch(bus->soem);
+    for (uint32_t i = 0; i < bus->scanned; i++) {
+        cm1e_datagram_set(&batch[i], COMMAND_FPWR, bus->slaves[i].facts.station, offset, 2);
+        cm1e_put_u16(batch[i].data, values[i]);
     }
-    return false;
+    cm1e_soem_transfer_all(bus->soem, batch, bus->scanned, FRAME_TRIES);
+    for (uint32_t i = 0; i < bus->scanned; i++)
+        taken[i] &= batch[i].working_counter == 1;
 }
 
+/** A motor that did not take it might go on for ever when the frames stay away. Another device may have none. */
 static cm1e_error_t set_watchdogs(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     char label[CM1E_LABEL_LENGTH];
+    uint16_t dividers[CM1E_MAX_SLAVES], times[CM1E_MAX_SLAVES];
+    bool taken[CM1E_MAX_SLAVES];
     for (uint32_t i = 0; i < bus->scanned; i++) {
-        const cm1e_bus_slave_t *slave = &bus->slaves[i];
-        const bool set = write_word(bus, slave, REG_WATCHDOG_DIVIDER, CM1E_WATCHDOG_DIVIDER) &&
-                         write_word(bus, slave, REG_WATCHDOG_PROCESS_DATA, cm1e_bus_watchdog(slave));
-        if (!set && cm1e_bus_has_motors(slave)) /* another device may have none */
+        dividers[i] = CM1E_WATCHDOG_DIVIDER;
+        times[i] = cm1e_bus_watchdog(&bus->slaves[i]);
+        taken[i] = true;
+    }
+    write_words(bus, REG_WATCHDOG_DIVIDER, dividers, taken);
+    write_words(bus, REG_WATCHDOG_PROCESS_DATA, times, taken);
+    for (uint32_t i = 0; i < bus->scanned; i++)
+        if (!taken[i] && cm1e_bus_has_motors(&bus->slaves[i]))
             return cm1e_diag_set(diag, CM1E_ERROR_BUS_WORKING_COUNTER, 0,
                                  "%s does not accept the time of its watchdog. Check its cables and its power.",
-                                 cm1e_bus_label_first(bus, slave, label));
-    }
+                                 cm1e_bus_label_first(bus, &bus->slaves[i], label));
     return CM1E_OK;
 }
 

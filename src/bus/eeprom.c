@@ -2,18 +2,11 @@
 
 #include <string.h>
 
+#include "bus/eeprom_interface.h"
 #include "core/bytes.h"
 #include "core/clock.h"
 
-/* Registers, commands and status (ETG.1000.4 section 6.4). */
-enum {
-    REG_EEPROM_CONTROL = 0x0502, REG_EEPROM_DATA = 0x0508, GROUP_AT = REG_EEPROM_DATA - REG_EEPROM_CONTROL,
-    EEPROM_NOP = 0x0000, EEPROM_READ = 0x0100, EEPROM_WRITE = 0x0201 /* with write enable, in the same frame */,
-    EEPROM_READS_8 = 0x0040, EEPROM_ERRORS = 0x7800, EEPROM_NACK = 0x2000, EEPROM_NOT_ENABLED = 0x4000,
-    EEPROM_BUSY = 0x8000,
-    CONFIG_MASTER = 0, CONFIG_OFFERED = 1, CONFIG_FORCE = 2,
-    EEPROM_TRIES = 3, REGISTER_TRIES = 3,
-};
+enum { EEPROM_TRIES = 3, REGISTER_TRIES = 3 };
 #define READ_TIMEOUT_NS INT64_C(20000000)
 /** A memory chip takes 10 ms at most; a processor that emulates one may have to erase a page of its flash. */
 #define WRITE_TIMEOUT_NS INT64_C(500000000)
@@ -50,13 +43,13 @@ static bool wait_idle(cm1e_eeprom_t *eeprom, int64_t timeout_ns, uint16_t *statu
 {
     cm1e_clock_t *clock = cm1e_clock_current();
     const int64_t deadline_ns = cm1e_clock_now(clock) + timeout_ns;
-    uint8_t bytes[GROUP_AT + sizeof eeprom->group];
+    uint8_t bytes[EEPROM_GROUP_AT + sizeof eeprom->group];
     eeprom->ready = false;
     for (;;) {
         if (!read_register(eeprom, REG_EEPROM_CONTROL, bytes, sizeof bytes))
             return false;
         *status = cm1e_get_u16(bytes);
-        memcpy(eeprom->group, bytes + GROUP_AT, sizeof eeprom->group);
+        memcpy(eeprom->group, bytes + EEPROM_GROUP_AT, sizeof eeprom->group);
         eeprom->ready = !(*status & (EEPROM_BUSY | EEPROM_ERRORS));
         if (!(*status & EEPROM_BUSY))
             return true;

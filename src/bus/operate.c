@@ -14,15 +14,27 @@ enum { EXCHANGES = 3 };
 /** ns; within this time a slave takes an acknowledgement. */
 #define ACKNOWLEDGE_NS INT64_C(20000000)
 
+static void exchange_once(cm1e_bus_t *bus, bool at_once)
+{
+    if (!at_once) {
+        cm1e_bus_pump(bus);
+        return;
+    }
+    cm1e_bus_pump_cycle(bus);
+    cm1e_clock_sleep_until(bus->clock, cm1e_clock_now(bus->clock) + cm1e_bus_wire_ns(bus));
+    bus->next_cycle_ns = cm1e_clock_now(bus->clock);
+}
+
 /** Exchanges until the process data comes back. Whether all slaves count is asked in Operational only: a slave may keep
  *  its outputs closed until then (ETG.1000.4: sync manager deactivated by the device), and they do not count. */
 static cm1e_error_t exchange(cm1e_bus_t *bus, bool operational, cm1e_diag_t *diag)
 {
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + EXCHANGE_NS;
+    const bool at_once = !operational && !bus->dc.used; /* nobody looks at the time between two frames yet */
     unsigned good = 0;
     while (good < EXCHANGES) {
         const uint64_t before = bus->counters.cycles;
-        cm1e_bus_pump(bus);
+        exchange_once(bus, at_once);
         const cm1e_error_t error = bus->last_error;
         if (bus->counters.cycles != before)
             good = error == CM1E_OK || (!operational && error == CM1E_ERROR_BUS_WORKING_COUNTER) ? good + 1 : 0;

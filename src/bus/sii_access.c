@@ -167,14 +167,15 @@ typedef struct view {
     size_t size;
 } view_t;
 
-static bool read_from_image(void *context, uint16_t word, uint8_t bytes[4])
+/** false: not a word of it is there. Behind an odd end there is nothing, as in an empty memory. */
+static bool read_from_image(void *context, uint16_t word, uint16_t count, uint8_t *bytes)
 {
     const view_t *view = context;
-    const size_t place = 2 * (size_t)word;
-    if (place + 2 > view->size)
+    const size_t place = 2 * (size_t)word, wanted = 2 * (size_t)count;
+    if (place + wanted > view->size + 2)
         return false;
-    memset(bytes, 0xFF, 4);
-    memcpy(bytes, view->image + place, view->size - place < 4 ? view->size - place : 4);
+    memset(bytes, 0xFF, wanted);
+    memcpy(bytes, view->image + place, view->size - place < wanted ? view->size - place : wanted);
     return true;
 }
 
@@ -193,7 +194,7 @@ static cm1e_error_t check_image(const uint8_t *image, size_t size, const cm1e_si
     cm1e_sii_t sii;
     view_t view = {image, size};
     const bool whole = cm1e_sii_read_header(&sii, read_from_image, &view) == SII_OK &&
-                       cm1e_sii_read_categories(&sii, read_from_image, &view) == SII_OK;
+                       cm1e_sii_read_categories(&sii, false, read_from_image, &view) == SII_OK;
     cm1e_sii_free(&sii);
     if (!whole)
         return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The SII image is incomplete: its categories do not end within "

@@ -5,12 +5,16 @@
 #include <string.h>
 
 #include "cm1e/io.h"
+#include "core/bytes.h"
 #include "core/text.h"
+#include "description/sii_format.h"
 #include "description/sii_image.h"
 
 /** An SII is at most 8 MiB by its size word, but no device known needs more than this; it bounds the time of a scan. */
 enum { WORDS_MAX = 0x2000, CATEGORIES_MAX = 64 };
-enum { WORD_CATEGORIES = CM1E_SII_HEADER_BYTES / 2, HEADER_WORDS = 2 };
+enum { WORD_CATEGORIES = CM1E_SII_HEADER_BYTES / 2, HEADER_WORDS = 2, CATEGORY_OF_NOBODY = 0 };
+/** Of General a brief reading takes what stands before this byte. */
+enum { GENERAL_BRIEF_BYTES = GENERAL_FLAGS + 1 };
 
 typedef struct source {
     cm1e_sii_reader reader;
@@ -21,10 +25,8 @@ typedef struct source {
 /** Words are read in pairs: the image has room for one more behind an odd end. */
 static bool fetch(const source_t *source, uint32_t word, uint32_t count)
 {
-    for (const uint32_t end = word + count; word < end; word += 2)
-        if (!source->reader(source->context, (uint16_t)word, source->image + 2 * word))
-            return false;
-    return true;
+    return count == 0 || source->reader(source->context, (uint16_t)word, (uint16_t)((count + 1) & ~1u),
+                                        source->image + 2 * word);
 }
 
 static cm1e_sii_result_t describe(cm1e_description_file_t *file, const uint8_t *image, size_t size)
@@ -64,8 +66,105 @@ cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, 
     return result;
 }
 
-/** Reads the categories up to the end mark; unused categories are skipped. `*size`: bytes up to the mark. */
-static cm1e_sii_result_t fetch_categories(const source_t *source, size_t room, size_t *size)
+/* ---- strings, as far as they are needed --------------------------------------------------------------------------- */
+
+/** A category that was not fetched yet, by byte address. */
+typedef struct part {
+    size_t start, bytes;
+} part_t;
+
+static bool fetch_bytes(const source_t *source, size_t start, size_t count)
+{
+    const size_t first = start / 2, behind = (start + count + 1) / 2;
+    return fetch(source, (uint32_t)first, (uint32_t)(behind - first));
+}
+
+/** Fetches the lengths of the strings before number `wanted`, and that string. `*length`: its bytes; 0: there is no such
+ *  string. */
+static bool fetch_string(const source_t *source, const part_t *strings, unsigned wanted, unsigned *length)
+{
+    const size_t end = strings->start + strings->bytes;
+    *length = 0;
+    if (wanted == 0 || strings->bytes == 0)
+        return true;
+    if (!fetch_bytes(source, strings->start, 1))
+        return false;
+    const unsigned count = source->image[strings->start];
+    size_t at = strings->start + 1;
+    for (unsigned number = 1; number <= count && number <= wanted && at < end; number++) {
+        if (!fetch_bytes(source, at, 1))
+            return false;
+        const size_t bytes = source->image[at], there = end - at - 1;
+        if (number == wanted) {
+            *length = (unsigned)(bytes < there ? bytes : there);
+            return fetch_bytes(source, at, 1 + *length);
+        }
+        at += 1 + bytes;
+    }
+    return true;
+}
+
+/** The name of the device; where it has none, its type (cm1e_sii_read_categories()). */
+static bool fetch_name(const source_t *source, const part_t *strings, const part_t *general)
+{
+    const uint8_t *bytes = source->image + general->start;
+    unsigned length;
+    if (general->bytes <= GENERAL_NAME)
+        return fetch_string(source, strings, 1, &length);
+    if (!fetch_string(source, strings, bytes[GENERAL_NAME], &length))
+        return false;
+    return length > 0 || fetch_string(source, strings, bytes[GENERAL_ORDER], &length);
+}
+
+static bool fetch_names_of_modes(const source_t *source, const part_t *strings, const part_t *modes)
+{
+    unsigned length;
+    for (size_t at = 0; at + DC_BYTES <= modes->bytes; at += DC_BYTES)
+        if (!fetch_string(source, strings, source->image[modes->start + at + DC_NAME], &length))
+            return false;
+    return true;
+}
+
+/* ---- categories ---------------------------------------------------------------------------------------------------- */
+
+/** What a brief reading comes back to. */
+typedef struct brief {
+    part_t strings, general, modes;
+} brief_t;
+
+static void keep(part_t *part, const cm1e_sii_category_t *category)
+{
+    if (part->start == 0)
+        *part = (part_t){category->start, category->bytes};
+}
+
+/** Bytes that a brief reading fetches of a category. One of which it fetches nothing becomes a category of nobody in
+ *  the image, apart from the strings. */
+static size_t brief_bytes(const source_t *source, brief_t *brief, const cm1e_sii_category_t *category)
+{
+    switch (category->type) {
+    case SII_CATEGORY_STRINGS:
+        keep(&brief->strings, category);
+        return 0;
+    case SII_CATEGORY_GENERAL:
+        keep(&brief->general, category);
+        return category->bytes < GENERAL_BRIEF_BYTES ? category->bytes : GENERAL_BRIEF_BYTES;
+    case SII_CATEGORY_FMMU:
+    case SII_CATEGORY_TXPDO:
+    case SII_CATEGORY_RXPDO:
+        cm1e_put_u16(source->image + category->start - SII_CATEGORY_HEADER_BYTES, CATEGORY_OF_NOBODY);
+        return 0;
+    case SII_CATEGORY_DC:
+        keep(&brief->modes, category);
+        return category->bytes;
+    default:
+        return category->bytes;
+    }
+}
+
+/** Reads the categories up to the end mark; unused categories are skipped. `*size`: bytes up to the mark. `brief` NULL:
+ *  all of them. */
+static cm1e_sii_result_t fetch_categories(const source_t *source, brief_t *brief, size_t room, size_t *size)
 {
     uint32_t word = WORD_CATEGORIES;
     for (int n = 0; n < CATEGORIES_MAX; n++) {
@@ -77,14 +176,28 @@ static cm1e_sii_result_t fetch_categories(const source_t *source, size_t room, s
         *size = category.start;
         if (category.type == CM1E_SII_CATEGORY_END)
             return SII_OK;
-        const uint32_t words = (uint32_t)(category.bytes / 2), start = word + HEADER_WORDS;
-        word = start + words;
+        word += HEADER_WORDS + (uint32_t)(category.bytes / 2);
         if (word > WORDS_MAX)
             return SII_DAMAGED;
-        if (cm1e_sii_category_is_read(category.type) && !fetch(source, start, words))
+        if (!cm1e_sii_category_is_read(category.type))
+            continue;
+        const size_t bytes = brief ? brief_bytes(source, brief, &category) : category.bytes;
+        if (!fetch_bytes(source, category.start, bytes))
             return SII_UNREADABLE;
     }
     return SII_DAMAGED;
+}
+
+static cm1e_sii_result_t fetch_briefly(const source_t *source, size_t room, size_t *size)
+{
+    brief_t brief = {0};
+    const cm1e_sii_result_t result = fetch_categories(source, &brief, room, size);
+    if (result != SII_OK)
+        return result;
+    return fetch_name(source, &brief.strings, &brief.general) &&
+                   fetch_names_of_modes(source, &brief.strings, &brief.modes)
+               ? SII_OK
+               : SII_UNREADABLE;
 }
 
 static void take_sync_managers(cm1e_sii_t *sii, const cm1e_description_t *device)
@@ -194,12 +307,13 @@ static bool take_signals(cm1e_sii_t *sii, const cm1e_description_t *device)
     return true;
 }
 
-cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context)
+cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, bool brief, cm1e_sii_reader reader, void *context)
 {
     uint8_t image[2 * (WORDS_MAX + HEADER_WORDS)] = {0};
     const source_t source = {reader, context, image};
     size_t size = 0;
-    cm1e_sii_result_t result = fetch_categories(&source, sizeof image, &size);
+    cm1e_sii_result_t result = brief ? fetch_briefly(&source, sizeof image, &size)
+                                     : fetch_categories(&source, NULL, sizeof image, &size);
     if (result != SII_OK)
         return result;
     cm1e_description_file_t file = {0};

@@ -63,15 +63,17 @@ typedef struct cm1e_sii {
     cm1e_sii_signals_t *signals;                       /**< NULL: none; freed by cm1e_sii_free() */
 } cm1e_sii_t;
 
-/** Reads two words (four bytes) from word address `word`; false: the SII cannot be read. */
-typedef bool (*cm1e_sii_reader)(void *context, uint16_t word, uint8_t bytes[4]);
+/** Reads `count` words, an even number, from word address `word`; false: the SII cannot be read. */
+typedef bool (*cm1e_sii_reader)(void *context, uint16_t word, uint16_t count, uint8_t *bytes);
 
 typedef enum cm1e_sii_result { SII_OK = 0, SII_UNREADABLE, SII_DAMAGED, SII_NO_MEMORY } cm1e_sii_result_t;
 
 /** The fixed part: identity and mailbox. */
 cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context);
-/** The categories: name, sync managers, process data with their meaning (`signals`, NULL before). */
-cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context);
+/** The categories: name, sync managers, process data with their meaning (`signals`, NULL before). `brief`: without the
+ *  process data, and of the strings only the name of the device and those of the modes of its clock; for a device that is
+ *  asked for its mapping anyway. */
+cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, bool brief, cm1e_sii_reader reader, void *context);
 /** Frees the signals; the rest stays. */
 void cm1e_sii_free(cm1e_sii_t *sii);
 

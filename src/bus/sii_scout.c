@@ -2,14 +2,11 @@
 
 #include <string.h>
 
+#include "bus/eeprom_interface.h"
 #include "core/bytes.h"
 #include "description/sii_image.h"
 
-/* Registers, commands and status (ETG.1000.4 section 6.4). */
-enum {
-    REG_EEPROM_CONTROL = 0x0502, EEPROM_READ = 0x0100, EEPROM_ERRORS = 0x7800, EEPROM_NACK = 0x2000,
-    EEPROM_BUSY = 0x8000, DATA_AT = 6, ANSWER_BYTES = 14,
-};
+enum { ANSWER_BYTES = EEPROM_GROUP_AT + 8 };
 enum { WORD_CATEGORIES = CM1E_SII_HEADER_BYTES / 2, READS_MAX = 1500, WORDS_MAX = 0x2000 };
 /* ETG.2010 table 6: categories. */
 enum { CATEGORY_SYNC_MANAGERS = 41, CATEGORY_TX_PDO = 50, CATEGORY_RX_PDO = 51, CATEGORY_END = 0xFFFF };
@@ -223,7 +220,7 @@ void cm1e_scout_result(cm1e_scout_t *scout, const cm1e_datagram_t *d)
         if (status & EEPROM_NACK)
             scout->step = SCOUT_CLEAR; /* the memory itself was busy */
         else
-            take_pair(scout, d->data + DATA_AT);
+            take_pair(scout, d->data + EEPROM_GROUP_AT);
         break;
     }
 }

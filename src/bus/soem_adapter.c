@@ -219,6 +219,8 @@ bool cm1e_soem_ring_reach(const cm1e_soem_t *soem, uint32_t reach[2])
 
 /* ---- single datagrams ------------------------------------------------------------------------------------------ */
 
+enum { DATAGRAM_HEADER_BYTES = 10, DATAGRAM_LENGTH = 0x07FF, FRAME_ROOM = EC_MAXECATFRAME - 4 /* its check sequence */ };
+
 void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
 {
     d->frame_index = ecx_getindex(&soem->port);
@@ -229,13 +231,25 @@ void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
     ecx_outframe_red(&soem->port, d->frame_index);
 }
 
-/** Whether the frame that came back under this index is the expected one: same command and length, and same address if
- *  no slave changes it. */
-static bool is_answer(const cm1e_datagram_t *d, const uint8_t *frame)
+/** Whether the datagram that came back is the expected one: same command and length, and same address if no slave
+ *  changes it. */
+static bool is_answer(const cm1e_datagram_t *d, const uint8_t *header)
 {
     const bool fixed_address = d->command == COMMAND_FPRD || d->command == COMMAND_FPWR;
-    return frame[2] == d->command && (cm1e_get_u16(frame + 8) & 0x07FF) == d->length &&
-           cm1e_get_u16(frame + 6) == d->offset && (!fixed_address || cm1e_get_u16(frame + 4) == d->address);
+    return header[0] == d->command && (cm1e_get_u16(header + 6) & DATAGRAM_LENGTH) == d->length &&
+           cm1e_get_u16(header + 4) == d->offset && (!fixed_address || cm1e_get_u16(header + 2) == d->address);
+}
+
+/** Takes the answer to a datagram whose data are at `at` of the frame that is back. */
+static void take_answer(const cm1e_soem_t *soem, uint8_t index, unsigned at, cm1e_datagram_t *d)
+{
+    const uint8_t *data = (const uint8_t *)&soem->port.rxbuf[index] + at;
+    if (!is_answer(d, data - DATAGRAM_HEADER_BYTES))
+        return;
+    d->working_counter = cm1e_get_u16(data + d->length);
+    if (d->command == COMMAND_FPRD || d->command == COMMAND_APRD || d->command == COMMAND_APRW ||
+        d->command == COMMAND_BRD)
+        memcpy(d->data, data, d->length);
 }
 
 bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t timeout_ns)
@@ -243,14 +257,7 @@ bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t timeout_ns)
     const int working_counter = ecx_waitinframe(&soem->port, d->frame_index, (int)(timeout_ns / US_IN_NS));
     if (working_counter < 0)
         return false;
-    const uint8_t *frame = (const uint8_t *)&soem->port.rxbuf[d->frame_index];
-    const bool ours = is_answer(d, frame);
-    if (ours) {
-        d->working_counter = cm1e_get_u16(frame + EC_HEADERSIZE + d->length);
-        if (d->command == COMMAND_FPRD || d->command == COMMAND_APRD || d->command == COMMAND_APRW ||
-            d->command == COMMAND_BRD)
-            memcpy(d->data, frame + EC_HEADERSIZE, d->length);
-    }
+    take_answer(soem, d->frame_index, EC_HEADERSIZE, d);
     ecx_setbufstat(&soem->port, d->frame_index, EC_BUF_EMPTY);
     return true;
 }
@@ -259,6 +266,100 @@ void cm1e_soem_drop(cm1e_soem_t *soem, cm1e_datagram_t *d)
 {
     ecx_setbufstat(&soem->port, d->frame_index, EC_BUF_EMPTY);
     d->working_counter = DATAGRAM_LOST;
+}
+
+/* ---- several datagrams in one frame ------------------------------------------------------------------------------ */
+
+static void begin_bundle(cm1e_soem_t *soem, cm1e_bundle_t *bundle, const cm1e_datagram_t *d)
+{
+    ecx_portt *port = &soem->port;
+    bundle->frame_index = ecx_getindex(port);
+    ecx_setupdatagram(port, &port->txbuf[bundle->frame_index], d->command, bundle->frame_index, d->address, d->offset,
+                      d->length, (void *)(uintptr_t)d->data);
+    bundle->at[0] = EC_HEADERSIZE;
+}
+
+/** SOEM says of the first datagram only that another one follows. */
+static void say_that_one_follows(cm1e_soem_t *soem, const cm1e_bundle_t *bundle)
+{
+    const unsigned data = ETH_HEADERSIZE + bundle->at[bundle->count - 1];
+    uint8_t *length = (uint8_t *)&soem->port.txbuf[bundle->frame_index] + data - DATAGRAM_HEADER_BYTES + 6;
+    cm1e_put_u16(length, cm1e_get_u16(length) | EC_DATAGRAMFOLLOWS);
+}
+
+bool cm1e_soem_add(cm1e_soem_t *soem, cm1e_bundle_t *bundle, cm1e_datagram_t *d)
+{
+    ecx_portt *port = &soem->port;
+    if (bundle->count == 0) {
+        begin_bundle(soem, bundle, d);
+    } else {
+        const uint8_t index = bundle->frame_index;
+        const int bytes = port->txbuflength[index] + DATAGRAM_HEADER_BYTES + d->length + EC_WKCSIZE;
+        if (bundle->count == CM1E_BUNDLE_DATAGRAMS || bytes > FRAME_ROOM)
+            return false;
+        say_that_one_follows(soem, bundle);
+        bundle->at[bundle->count] = ecx_adddatagram(port, &port->txbuf[index], d->command, index, FALSE, d->address,
+                                                    d->offset, d->length, d->data);
+    }
+    bundle->datagrams[bundle->count++] = d;
+    return true;
+}
+
+void cm1e_soem_post_bundle(cm1e_soem_t *soem, cm1e_bundle_t *bundle, int64_t now_ns)
+{
+    bundle->sent_ns = now_ns;
+    for (unsigned i = 0; i < bundle->count; i++) {
+        bundle->datagrams[i]->sent_ns = now_ns;
+        bundle->datagrams[i]->working_counter = DATAGRAM_LOST;
+    }
+    ecx_outframe_red(&soem->port, bundle->frame_index);
+}
+
+bool cm1e_soem_take_bundle(cm1e_soem_t *soem, const cm1e_bundle_t *bundle, int64_t timeout_ns)
+{
+    if (ecx_waitinframe(&soem->port, bundle->frame_index, (int)(timeout_ns / US_IN_NS)) < 0)
+        return false;
+    for (unsigned i = 0; i < bundle->count; i++)
+        take_answer(soem, bundle->frame_index, bundle->at[i], bundle->datagrams[i]);
+    ecx_setbufstat(&soem->port, bundle->frame_index, EC_BUF_EMPTY);
+    return true;
+}
+
+void cm1e_soem_drop_bundle(cm1e_soem_t *soem, const cm1e_bundle_t *bundle)
+{
+    ecx_setbufstat(&soem->port, bundle->frame_index, EC_BUF_EMPTY);
+}
+
+cm1e_datagram_t *cm1e_soem_batch(cm1e_soem_t *soem) { return soem->batch; }
+
+/** Sends the next frames of those that are not answered yet, from `from` on, and takes them. Returns where it ended. */
+static unsigned transfer_some(cm1e_soem_t *soem, cm1e_datagram_t *datagrams, unsigned from, unsigned count)
+{
+    cm1e_bundle_t frames[CM1E_FRAMES_IN_FLIGHT];
+    unsigned used = 0;
+    while (from < count && used < CM1E_FRAMES_IN_FLIGHT) {
+        cm1e_bundle_t *frame = &frames[used++];
+        frame->count = 0;
+        while (from < count && (datagrams[from].working_counter == 1 || cm1e_soem_add(soem, frame, &datagrams[from])))
+            from++;
+        if (frame->count == 0)
+            used--;
+        else
+            cm1e_soem_post_bundle(soem, frame, cm1e_clock_now(cm1e_clock_current()));
+    }
+    for (unsigned i = 0; i < used; i++)
+        if (!cm1e_soem_take_bundle(soem, &frames[i], EC_TIMEOUTRET * US_IN_NS))
+            cm1e_soem_drop_bundle(soem, &frames[i]);
+    return from;
+}
+
+void cm1e_soem_transfer_all(cm1e_soem_t *soem, cm1e_datagram_t *datagrams, unsigned count, unsigned tries)
+{
+    for (unsigned i = 0; i < count; i++)
+        datagrams[i].working_counter = DATAGRAM_LOST;
+    for (unsigned try = 0; try < tries; try++)
+        for (unsigned from = 0; from < count;)
+            from = transfer_some(soem, datagrams, from, count);
 }
 
 int cm1e_soem_transfer(cm1e_soem_t *soem, cm1e_command_t command, uint16_t address, uint16_t offset, void *data,

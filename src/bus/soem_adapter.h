@@ -14,9 +14,19 @@
 
 typedef struct cm1e_soem cm1e_soem_t;
 
-/** Maximum number of datagrams on their way at one time, in addition to the process data: SOEM has 16 frame buffers for
- *  all, one of supervision and one for the reference clock included. */
-enum { CM1E_DATAGRAMS_IN_FLIGHT = 7, CM1E_PROCESS_FRAMES_MAX = 7 };
+/** Maximum number of frames with acyclic datagrams on their way at one time, in addition to the process data: SOEM has
+ *  16 frame buffers for all, one of supervision and one for the reference clock included. */
+enum { CM1E_FRAMES_IN_FLIGHT = 7, CM1E_PROCESS_FRAMES_MAX = 7 };
+enum { CM1E_BUNDLE_DATAGRAMS = 64 };
+
+/** Datagrams in one frame. All zero: empty. */
+typedef struct cm1e_bundle {
+    uint8_t frame_index;                             /**< SOEM's, from the first datagram on */
+    unsigned count;
+    int64_t sent_ns;
+    cm1e_datagram_t *datagrams[CM1E_BUNDLE_DATAGRAMS];
+    uint16_t at[CM1E_BUNDLE_DATAGRAMS];              /**< of their data in the answer */
+} cm1e_bundle_t;
 
 /** Data of the SII and the registers of a slave; all of it is unchecked input. */
 typedef struct cm1e_slave_facts {
@@ -108,6 +118,17 @@ void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *datagram, int64_t now_ns
 bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *datagram, int64_t timeout_ns);
 /** Stops waiting for a datagram. */
 void cm1e_soem_drop(cm1e_soem_t *soem, cm1e_datagram_t *datagram);
+/** Puts a datagram into a frame; false: the frame is full. */
+bool cm1e_soem_add(cm1e_soem_t *soem, cm1e_bundle_t *bundle, cm1e_datagram_t *datagram);
+/** As cm1e_soem_post(), _take() and _drop(), for a frame with at least one datagram. */
+void cm1e_soem_post_bundle(cm1e_soem_t *soem, cm1e_bundle_t *bundle, int64_t now_ns);
+bool cm1e_soem_take_bundle(cm1e_soem_t *soem, const cm1e_bundle_t *bundle, int64_t timeout_ns);
+void cm1e_soem_drop_bundle(cm1e_soem_t *soem, const cm1e_bundle_t *bundle);
+/** A datagram for each slave, as many as fit into each frame: sends `count` and waits for all. One that its slave does
+ *  not answer is sent `tries` times in all. Before the cycle runs. */
+void cm1e_soem_transfer_all(cm1e_soem_t *soem, cm1e_datagram_t *datagrams, unsigned count, unsigned tries);
+/** Room for a datagram for each slave, for cm1e_soem_transfer_all(). */
+cm1e_datagram_t *cm1e_soem_batch(cm1e_soem_t *soem);
 /** Sends a datagram and waits for it, with repetitions. Returns its working counter or DATAGRAM_LOST. */
 int cm1e_soem_transfer(cm1e_soem_t *soem, cm1e_command_t command, uint16_t address, uint16_t offset, void *data,
                        uint16_t length);

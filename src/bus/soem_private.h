@@ -29,6 +29,7 @@ struct cm1e_soem {
     ec_eepromFMMUt sii_fmmu;
     cm1e_sii_t siis[CM1E_MAX_SLAVES + 1];
     uint8_t *image;
+    cm1e_datagram_t batch[CM1E_MAX_SLAVES];
 };
 
 /** Frees what was read of the slaves' SII. */

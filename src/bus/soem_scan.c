@@ -1,11 +1,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bus/eeprom.h"
+#include "bus/eeprom_interface.h"
+#include "bus/sii_fetch.h"
 #include "bus/soem_private.h"
 #include "core/bytes.h"
+#include "core/clock.h"
+#include "device/devices.h"
 
-enum { REGISTER_TRIES = 3 };
+enum { REGISTER_TRIES = 3, FRAME_TRIES = 3 };
 
 /** Reads a register of one slave; repeats it a few times if a frame was disturbed. */
 static bool read_of(cm1e_soem_t *soem, uint16_t station, uint16_t offset, uint8_t *data, uint16_t size)
@@ -14,11 +17,6 @@ static bool read_of(cm1e_soem_t *soem, uint16_t station, uint16_t offset, uint8_
     for (int try = 0; try < REGISTER_TRIES && answered != 1; try++)
         answered = ecx_FPRD(&soem->port, station, offset, size, data, EC_TIMEOUTRET3);
     return answered == 1;
-}
-
-static bool read_words(void *context, uint16_t word, uint8_t bytes[4])
-{
-    return cm1e_eeprom_read(context, word, bytes);
 }
 
 /* ---- slaves ---------------------------------------------------------------------------------------------------- */
@@ -71,6 +69,29 @@ static bool take_address(cm1e_soem_t *soem, uint16_t position)
         return true;
     }
     return false;
+}
+
+/** As take_address(), for all. Returns the first slave that does not take it; 0: all do. */
+static uint16_t take_addresses(cm1e_soem_t *soem, uint16_t count)
+{
+    cm1e_datagram_t *batch = soem->batch;
+    for (uint16_t i = 0; i < count; i++) {
+        cm1e_datagram_set(&batch[i], COMMAND_APWR, (uint16_t)-i, ECT_REG_STADR, 2);
+        cm1e_put_u16(batch[i].data, (uint16_t)(EC_NODEOFFSET + 1 + i));
+    }
+    cm1e_soem_transfer_all(soem, batch, count, 1);
+    for (uint16_t i = 0; i < count; i++)
+        cm1e_datagram_set(&batch[i], COMMAND_FPRD, (uint16_t)(EC_NODEOFFSET + 1 + i), ECT_REG_STADR, 4);
+    cm1e_soem_transfer_all(soem, batch, count, 1);
+    for (uint16_t i = 0; i < count; i++) {
+        ec_slavet *slave = &soem->slaves[i + 1];
+        slave->configadr = (uint16_t)(EC_NODEOFFSET + 1 + i);
+        slave->aliasadr = cm1e_get_u16(batch[i].data + 2);
+        const bool taken = batch[i].working_counter == 1 && cm1e_get_u16(batch[i].data) == slave->configadr;
+        if (!taken && !take_address(soem, (uint16_t)(i + 1)))
+            return (uint16_t)(i + 1);
+    }
+    return 0;
 }
 
 uint16_t cm1e_soem_address(cm1e_soem_t *soem, uint16_t position)
@@ -126,23 +147,107 @@ static void copy_categories(cm1e_sii_t *to, const cm1e_sii_t *from)
     to->serial_number = serial_number;
 }
 
-static int read_sii(cm1e_soem_t *soem, uint16_t position)
+/* ---- the SII of all slaves at once ------------------------------------------------------------------------------- */
+
+/** While no datagram can be sent: a memory that was busy gets time. */
+#define FETCH_PAUSE_NS INT64_C(50000)
+
+/** The reading of one slave. */
+typedef struct reading {
+    cm1e_sii_result_t result;
+    bool done;
+    cm1e_sii_fetch_t fetch;
+} reading_t;
+
+typedef cm1e_sii_result_t (*read_part_fn)(cm1e_sii_t *sii, reading_t *reading);
+
+static cm1e_sii_result_t read_header(cm1e_sii_t *sii, reading_t *reading)
 {
-    cm1e_eeprom_t eeprom = {.soem = soem, .station = soem->slaves[position].configadr};
-    cm1e_sii_t *sii = &soem->siis[position];
-    cm1e_sii_result_t result = cm1e_sii_read_header(sii, read_words, &eeprom);
-    const cm1e_sii_t *known = result == SII_OK ? same_kind_before(soem, position) : NULL;
-    if (known)
-        copy_categories(sii, known);
-    else if (result == SII_OK)
-        result = cm1e_sii_read_categories(sii, read_words, &eeprom);
-    if (result == SII_NO_MEMORY)
-        return SCAN_NO_MEMORY;
-    if (result == SII_DAMAGED)
+    return cm1e_sii_read_header(sii, cm1e_sii_fetched, &reading->fetch);
+}
+
+/** A motor is asked for its mapping whatever its SII says, so its process data there are not needed. */
+static cm1e_sii_result_t read_categories(cm1e_sii_t *sii, reading_t *reading)
+{
+    const cm1e_device_t *device = cm1e_device_of_identity(sii->vendor_id, sii->product_code);
+    return cm1e_sii_read_categories(sii, device && device->extra_is_error, cm1e_sii_fetched, &reading->fetch);
+}
+
+/** Goes on as far as the words are there. */
+static void go_on(reading_t *reading, cm1e_sii_t *sii, read_part_fn part)
+{
+    if (reading->done || !cm1e_sii_fetch_idle(&reading->fetch))
+        return;
+    reading->result = part(sii, reading);
+    reading->done = cm1e_sii_fetch_idle(&reading->fetch);
+}
+
+/** One datagram for each slave that needs one. false: all are done. */
+static bool fetch_some(cm1e_soem_t *soem, reading_t *readings, unsigned count)
+{
+    reading_t *sent[CM1E_MAX_SLAVES];
+    unsigned used = 0;
+    bool done = true;
+    cm1e_clock_t *clock = cm1e_clock_current();
+    for (unsigned i = 0; i < count; i++) {
+        done &= readings[i].done;
+        if (!readings[i].done && cm1e_sii_fetch_next(&readings[i].fetch, &soem->batch[used], cm1e_clock_now(clock)))
+            sent[used++] = &readings[i];
+    }
+    if (used == 0 && !done)
+        cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + FETCH_PAUSE_NS);
+    cm1e_soem_transfer_all(soem, soem->batch, used, 1);
+    for (unsigned i = 0; i < used; i++)
+        cm1e_sii_fetch_result(&sent[i]->fetch, &soem->batch[i], cm1e_clock_now(clock));
+    return !done;
+}
+
+static void read_part(cm1e_soem_t *soem, reading_t *readings, unsigned count, read_part_fn part)
+{
+    do
+        for (unsigned i = 0; i < count; i++)
+            go_on(&readings[i], &soem->siis[i + 1], part);
+    while (fetch_some(soem, readings, count));
+}
+
+static int scan_error(const reading_t *reading)
+{
+    switch (reading->result) {
+    case SII_OK:
+        return 0;
+    case SII_UNREADABLE:
+        return reading->fetch.lost ? SCAN_LOST : SCAN_SII_UNREADABLE;
+    case SII_DAMAGED:
         return SCAN_SII_DAMAGED;
-    if (result == SII_UNREADABLE)
-        return eeprom.lost ? SCAN_LOST : SCAN_SII_UNREADABLE;
-    return 0;
+    case SII_NO_MEMORY:
+        break;
+    }
+    return SCAN_NO_MEMORY;
+}
+
+/** Headers of all, then the categories of the first of each kind. 0, or the error of the first slave that has one. */
+static int read_siis(cm1e_soem_t *soem, uint16_t count, uint16_t *position)
+{
+    reading_t *readings = calloc(count, sizeof *readings);
+    int error = 0;
+    *position = 1;
+    if (!readings)
+        return SCAN_NO_MEMORY;
+    for (unsigned i = 0; i < count; i++)
+        readings[i].fetch.station = soem->slaves[i + 1].configadr;
+    read_part(soem, readings, count, read_header);
+    for (unsigned i = 0; i < count; i++)
+        readings[i].done = readings[i].result != SII_OK || same_kind_before(soem, (uint16_t)(i + 1));
+    read_part(soem, readings, count, read_categories);
+    for (unsigned i = 0; i < count && !error; i++) {
+        *position = (uint16_t)(i + 1);
+        error = scan_error(&readings[i]);
+        const cm1e_sii_t *known = error ? NULL : same_kind_before(soem, *position);
+        if (known)
+            copy_categories(&soem->siis[*position], known);
+    }
+    free(readings);
+    return error;
 }
 
 static void set_sync_manager(ec_slavet *slave, int sm, const cm1e_sii_sync_manager_t *from)
@@ -195,16 +300,14 @@ int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
     if (count > CM1E_MAX_SLAVES)
         return SCAN_TOO_MANY;
     set_defaults(soem);
-    for (*position = 1; *position <= count; (*position)++) {
-        if (!take_address(soem, *position))
-            return SCAN_LOST;
-    }
-    for (*position = 1; *position <= count; (*position)++) {
-        const int error = read_sii(soem, *position);
-        if (error)
-            return error;
-        fill_slave(soem, *position);
-    }
+    *position = take_addresses(soem, (uint16_t)count);
+    if (*position)
+        return SCAN_LOST;
+    const int error = read_siis(soem, (uint16_t)count, position);
+    if (error)
+        return error;
+    for (uint16_t i = 1; i <= count; i++)
+        fill_slave(soem, i);
     soem->slave_count = count;
     return count;
 }
@@ -221,12 +324,21 @@ void cm1e_soem_set_count(cm1e_soem_t *soem, uint16_t count)
 
 void cm1e_soem_set_up_mailboxes(cm1e_soem_t *soem)
 {
-    for (uint16 position = 1; position <= soem->slave_count; position++) {
-        ec_slavet *slave = &soem->slaves[position];
-        if (slave->mbx_l)
-            ecx_FPWR(&soem->port, slave->configadr, ECT_REG_SM0, 2 * sizeof(ec_smt), &slave->SM[0], EC_TIMEOUTRET3);
-        ecx_eeprom2pdi(&soem->context, position);
+    cm1e_datagram_t *batch = soem->batch;
+    unsigned used = 0;
+    for (int i = 1; i <= soem->slave_count; i++) {
+        if (!soem->slaves[i].mbx_l)
+            continue;
+        cm1e_datagram_set(&batch[used], COMMAND_FPWR, soem->slaves[i].configadr, ECT_REG_SM0, 2 * SYNC_MANAGER_BYTES);
+        memcpy(batch[used++].data, &soem->slaves[i].SM[0], 2 * SYNC_MANAGER_BYTES);
     }
+    cm1e_soem_transfer_all(soem, batch, used, FRAME_TRIES);
+    for (int i = 0; i < soem->slave_count; i++) {
+        soem->slaves[i + 1].eep_pdi = 1; /* SOEM need not do it */
+        cm1e_datagram_set(&batch[i], COMMAND_FPWR, soem->slaves[i + 1].configadr, ECT_REG_EEPCFG, 1);
+        batch[i].data[0] = CONFIG_OFFERED;
+    }
+    cm1e_soem_transfer_all(soem, batch, (unsigned)soem->slave_count, FRAME_TRIES);
 }
 
 void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts)

@@ -1,7 +1,7 @@
 /**
  * @file sii_format.h
  * Where what stands in the categories of an SII image (ETG.1000.6 tables 17 to 24); the fixed words before them are in
- * sii_image.h. Private to sii_read.c and sii_write.c.
+ * sii_image.h. For sii_read.c, sii_write.c, and the bus, which fetches only some of it (bus/sii_reader.c).
  */
 #ifndef CM1E_DESCRIPTION_SII_FORMAT_H
 #define CM1E_DESCRIPTION_SII_FORMAT_H
@@ -33,7 +33,7 @@ enum { FLAG_NO_LRW = 0x02, FLAG_DATA_LINK_LAYER = 0x04, FLAG_ID_IN_AL_STATUS = 0
 #define SII_PORT_LETTERS " Y KH"
 enum { SII_PORTS = 4 };
 
-enum { SYNC_MANAGER_BYTES = 8, PDO_BYTES = 8, PDO_ENTRY_BYTES = 8, DC_BYTES = 24, PDO_NOT_CARRIED = 0xFF };
+enum { SYNC_MANAGER_BYTES = 8, PDO_BYTES = 8, PDO_ENTRY_BYTES = 8, DC_BYTES = 24, DC_NAME = 18, PDO_NOT_CARRIED = 0xFF };
 /** Flags of a PDO. DEFAULT: a sync manager carries it. */
 enum {
     PDO_MANDATORY = 0x0001, PDO_DEFAULT = 0x0002, PDO_FIXED = 0x0010, PDO_VIRTUAL = 0x0020,

@@ -295,7 +295,7 @@ static void read_dc_modes(reader_t *r, const part_t *part)
         mode->sync1_factor = (int16_t)word_of(part, at + 12);
         mode->assign_activate = word_of(part, at + 14);
         mode->sync0_factor = (int16_t)word_of(part, at + 16);
-        mode->name = string_or_empty(r, byte_of(part, at + 18), mode->place);
+        mode->name = string_or_empty(r, byte_of(part, at + DC_NAME), mode->place);
         mode->text = string(r, byte_of(part, at + 19), mode->place);
         mode->sync0_given = mode->assign_activate & ACTIVATES_SYNC0 || mode->sync0_cycle_ns || mode->sync0_factor ||
                             mode->sync0_shift_ns;

@@ -1,6 +1,7 @@
 /* Slaves that booted from images of the generator instead of the tables: to a master they are the same, for every
  * firmware, order and mapping. */
 #include "bus/bus_internal.h"
+#include "bus/eeprom.h"
 #include "bus/soem_private.h"
 #include "bus_support.h"
 #include "description/describe.h"
@@ -56,10 +57,33 @@ typedef struct learned {
     uint16_t soem_indexes[2][8], bytes[2];
 } learned_t;
 
+static bool from_eeprom(void *context, uint16_t word, uint16_t count, uint8_t *bytes)
+{
+    for (unsigned i = 0; i < count; i += 2)
+        if (!cm1e_eeprom_read(context, word + i, bytes + 2 * i))
+            return false;
+    return true;
+}
+
+/** All of it: of a motor the scan reads less. */
+static void read_sii(cm1e_soem_t *soem, uint16_t position, cm1e_sii_t *sii)
+{
+    cm1e_eeprom_t eeprom = {.soem = soem, .station = soem->slaves[position].configadr};
+    ck_assert(cm1e_eeprom_take(&eeprom));
+    ck_assert_int_eq(cm1e_sii_read_header(sii, from_eeprom, &eeprom), SII_OK);
+    ck_assert_int_eq(cm1e_sii_read_categories(sii, false, from_eeprom, &eeprom), SII_OK);
+    cm1e_eeprom_give_back(&eeprom);
+    ck_assert_str_eq(sii->name, soem->siis[position].name);
+    ck_assert_mem_eq(sii->sync_managers, soem->siis[position].sync_managers, sizeof sii->sync_managers);
+    cm1e_sii_free(sii);
+}
+
 static void learn_by_sii(cm1e_bus_t *bus, uint16_t position, learned_t *learned)
 {
     cm1e_soem_t *soem = bus->soem;
+    cm1e_sii_t sii;
     cm1e_bus_enter(bus);
+    read_sii(soem, position, &sii);
     ecx_siistring(&soem->context, learned->string_1, position, 1);
     for (int transmit = 0; transmit < 2; transmit++) {
         static ec_eepromPDOt pdos;
@@ -69,7 +93,7 @@ static void learn_by_sii(cm1e_bus_t *bus, uint16_t position, learned_t *learned)
         learned->soem_bits[transmit] = pdos.SMbitsize[sync_manager];
         for (int i = 0; i < pdos.nPDO && i < 8; i++)
             learned->soem_indexes[transmit][i] = pdos.Index[i + 1];
-        learned->sii_bits[transmit] = soem->siis[position].bits[transmit][sync_manager];
+        learned->sii_bits[transmit] = sii.bits[transmit][sync_manager];
     }
 }
 
@@ -136,7 +160,9 @@ START_TEST(default_of_the_image_is_not_the_default_of_the_device)
     size_t size = sizeof assigned;
     ck_assert_int_eq(cm1e_sdo_read(bus, 1, 0x1C12, 1, assigned, &size, &diag), CM1E_OK);
     ck_assert_uint_eq(cm1e_get_u16(assigned), 0x1600);
-    ck_assert_uint_eq(bus->soem->siis[1].bits[0][2], 64);
+    cm1e_sii_t sii;
+    read_sii(bus->soem, 1, &sii);
+    ck_assert_uint_eq(sii.bits[0][2], 64);
     cm1e_bus_close(bus);
 }
 END_TEST

@@ -133,7 +133,8 @@ START_TEST(a_bridge_tells_its_model_and_its_lines)
         ck_assert_uint_eq(channel->configured_module.value, 0x219800);
         ck_assert_uint_eq(channel->detected_module.value, 0x219800);
         ck_assert_uint_gt(channel->sent.value, 40);
-        ck_assert_int_eq(channel->received.value == channel->sent.value, i != 1);
+        /* The line may have gone on between the two answers. */
+        ck_assert_int_eq(channel->received.value - channel->sent.value <= 1, i != 1);
         ck_assert_int_eq(channel->receive_errors.value > 40, i == 1);
     }
     ck_assert_uint_eq(info.channels[1].status.value, 0x0F);

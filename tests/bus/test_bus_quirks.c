@@ -94,14 +94,15 @@ START_TEST(fixed_pdos)
 }
 END_TEST
 
-/** An EEPROM that takes 15 ms more for each of its reads delays the scan, and nothing else. */
+/** An EEPROM that takes 15 ms more for each of its reads, of which there are some 16, delays the scan, and nothing
+ *  else. */
 START_TEST(a_slow_eeprom)
 {
     cm1e_bus_t *bus = BUS_WITH(2, "quirk 1 slow-eeprom 15000");
     const int64_t begun_ns = now_of(bus);
     ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
     const int64_t took_ns = now_of(bus) - begun_ns;
-    ck_assert_msg(took_ns > 500000000 && took_ns < INT64_C(30000000000), "%lld ns", (long long)took_ns);
+    ck_assert_msg(took_ns > 150000000 && took_ns < INT64_C(30000000000), "%lld ns", (long long)took_ns);
     ck_assert_str_eq(cm1e_bus_slave(bus, 1)->name, cm1e_bus_slave(bus, 2)->name);
     expect_start(bus);
     cm1e_bus_close(bus);

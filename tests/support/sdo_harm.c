@@ -1,5 +1,9 @@
 #include "sdo_harm.h"
 
+#include "nic/frame.h"
+
+enum { NOBODY = 0x0FFF };
+
 void spoil(const harm_t *harm, uint8_t *mailbox)
 {
     switch (harm->kind) {
@@ -31,31 +35,43 @@ void spoil(const harm_t *harm, uint8_t *mailbox)
 }
 
 /** LATE: nothing can be read of the mailbox until an answer is nearly too late. */
-static cm1e_tap_verdict_t hold_back(harm_t *harm, const cm1e_tap_frame_t *frame)
+static void hold_back(harm_t *harm, const cm1e_tap_frame_t *frame, const datagram_t *d)
 {
-    const uint16_t offset = cm1e_get_u16(frame->bytes + 20);
-    if (frame->bytes[16] == 5 && offset == QUESTION_AT)
+    const uint16_t offset = cm1e_get_u16(d->header + 4);
+    if (d->header[0] == 5 && offset == QUESTION_AT)
         harm->asked_ns = now_of(harm->bus);
-    const bool read = frame->bytes[16] == 4 && offset >= 0x0808;
-    return read && now_of(harm->bus) - harm->asked_ns < 900000000 ? CM1E_TAP_DROP : CM1E_TAP_PASS;
+    const bool read = d->header[0] == 4 && offset >= 0x0808;
+    if (read && now_of(harm->bus) - harm->asked_ns < 900000000 && frame->direction == CM1E_TAP_SENT)
+        cm1e_put_u16(d->header + 2, NOBODY);
 }
 
-cm1e_tap_verdict_t do_harm(void *context, cm1e_tap_frame_t *frame)
+static void harm_datagram(harm_t *harm, const cm1e_tap_frame_t *frame, const datagram_t *d)
 {
-    harm_t *harm = context;
-    uint8_t *mailbox = frame->bytes + 26;
-    const bool ours = frame->length > 60 && (!harm->station || cm1e_get_u16(frame->bytes + 18) == harm->station);
-    if (harm->kind == LATE && cm1e_get_u16(frame->bytes + 18) == harm->station)
-        return hold_back(harm, frame);
-    const bool answer = frame->direction == CM1E_TAP_RECEIVED && frame->bytes[16] == 4 &&
-                        cm1e_get_u16(frame->bytes + 20) == ANSWER_AT;
+    const uint16_t station = cm1e_get_u16(d->header + 2);
+    if (harm->kind == LATE) {
+        if (station == harm->station)
+            hold_back(harm, frame, d);
+        return;
+    }
+    const uint8_t *mailbox = d->data;
+    const bool ours = d->data_length > SDO_DATA && (!harm->station || station == harm->station);
+    const bool answer = frame->direction == CM1E_TAP_RECEIVED && d->header[0] == 4 &&
+                        cm1e_get_u16(d->header + 4) == ANSWER_AT;
     if (!ours || !answer || (mailbox[5] & 0x0F) != 3 || cm1e_get_u16(mailbox + 6) >> 12 != 3)
-        return CM1E_TAP_PASS;
+        return;
     const unsigned number = ++harm->seen;
     const bool meant = harm->index ? harm->index == cm1e_get_u16(mailbox + 9) && harm->subindex == mailbox[11]
                                    : number == harm->at;
     if (meant)
-        spoil(harm, mailbox);
+        spoil(harm, d->data);
+}
+
+cm1e_tap_verdict_t do_harm(void *context, cm1e_tap_frame_t *frame)
+{
+    datagram_t d = {.more = true};
+    size_t offset = FRAME_HEADER;
+    while (d.more && cm1e_frame_datagram(frame->bytes, frame->length, &offset, &d))
+        harm_datagram(context, frame, &d);
     return CM1E_TAP_PASS;
 }
 

@@ -6,19 +6,27 @@
 #include "bus/al_machine.h"
 #include "core/bytes.h"
 
-enum { STATION = 0x1003, DEADLINE_NS = 1000 };
+enum { STATION = 0x1003, DEADLINE_NS = 100000000 };
 
 static cm1e_al_machine_t machine;
 static cm1e_datagram_t datagram;
 
-void setUp(void) { machine = (cm1e_al_machine_t){.station = STATION}; }
+enum { ROUND_TRIP_NS = 100000 };
+static int64_t time_ns; /* of the last datagram */
+
+void setUp(void)
+{
+    machine = (cm1e_al_machine_t){.station = STATION};
+    time_ns = 0;
+}
 void tearDown(void) {}
 
 /* One datagram to the slave and its answer: AL status and code, for a read. */
 static void answered(unsigned offset, unsigned status, unsigned code)
 {
     memset(&datagram, 0, sizeof datagram);
-    TEST_ASSERT_TRUE(cm1e_al_next(&machine, &datagram, DEADLINE_NS - 1));
+    time_ns = time_ns + ROUND_TRIP_NS < DEADLINE_NS ? time_ns + ROUND_TRIP_NS : DEADLINE_NS - 1;
+    TEST_ASSERT_TRUE(cm1e_al_next(&machine, &datagram, time_ns));
     TEST_ASSERT_EQUAL_HEX16(STATION, datagram.address);
     TEST_ASSERT_EQUAL_HEX16(offset, datagram.offset);
     if (offset == REG_AL_STATUS) {
@@ -28,7 +36,7 @@ static void answered(unsigned offset, unsigned status, unsigned code)
         TEST_ASSERT_EQUAL_HEX16(status, cm1e_get_u16(datagram.data));
     }
     datagram.working_counter = 1;
-    cm1e_al_result(&machine, &datagram, DEADLINE_NS - 1);
+    cm1e_al_result(&machine, &datagram, time_ns);
 }
 
 /* A datagram that does not come back. */

@@ -13,14 +13,18 @@ static uint8_t image[BYTES];
 static size_t end;             /* bytes written */
 static unsigned reads, fail_at; /* fail_at 0: never */
 static cm1e_sii_t sii;
+static bool brief;
 
-static bool read_image(void *context, uint16_t word, uint8_t bytes[4])
+/* In pairs, as an EEPROM is read. */
+static bool read_image(void *context, uint16_t word, uint16_t count, uint8_t *bytes)
 {
     (void)context;
-    if (++reads == fail_at)
-        return false;
-    for (unsigned i = 0; i < 4; i++)
+    TEST_ASSERT_EQUAL_UINT(0, count % 2);
+    for (unsigned i = 0; i < 2u * count; i++) {
+        if (i % 4 == 0 && ++reads == fail_at)
+            return false;
         bytes[i] = 2u * word + i < BYTES ? image[2u * word + i] : 0xFF;
+    }
     return true;
 }
 
@@ -38,6 +42,7 @@ void setUp(void)
     memset(image, 0, 0x80);
     end = 0x80;
     reads = fail_at = 0;
+    brief = false;
     cm1e_put_u32(image + 0x10, 0x00004441);
     cm1e_put_u32(image + 0x14, 0x44412002);
     cm1e_put_u32(image + 0x18, 0x20020103);
@@ -52,7 +57,7 @@ static cm1e_sii_result_t parse(void)
 {
     cm1e_sii_free(&sii);
     const cm1e_sii_result_t result = cm1e_sii_read_header(&sii, read_image, NULL);
-    return result == SII_OK ? cm1e_sii_read_categories(&sii, read_image, NULL) : result;
+    return result == SII_OK ? cm1e_sii_read_categories(&sii, brief, read_image, NULL) : result;
 }
 
 static void put_good_categories(void)
@@ -171,6 +176,48 @@ static void test_categories_that_nobody_reads_are_not_fetched(void)
     TEST_ASSERT_EQUAL_UINT(before + 1, reads);
 }
 
+/* Of a device whose mapping is asked for anyway. */
+static void test_brief_reading_has_all_but_the_process_data(void)
+{
+    put_good_categories();
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    cm1e_sii_t whole = sii;
+    const unsigned reads_of_whole = reads;
+    sii.signals = NULL;
+    brief = true;
+    reads = 0;
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_STRING("name", sii.name);
+    TEST_ASSERT_NULL(sii.signals);
+    TEST_ASSERT_TRUE(reads + 10 < reads_of_whole);
+    cm1e_sii_free(&whole);
+    memset(whole.bits, 0, sizeof whole.bits);
+    TEST_ASSERT_EQUAL_MEMORY(&whole, &sii, sizeof sii);
+}
+
+static void test_brief_reading_knows_names_as_the_whole_one_does(void)
+{
+    static const char strings[] = "\003\005ORDER\000\003abc"; /* number 2 is empty */
+    for (uint8_t order = 0; order <= 4; order++)
+        for (uint8_t name = 0; name <= 4; name++) {
+            const uint8_t general[32] = {0, 0, order, name};
+            char as_whole[CM1E_SII_NAME];
+            setUp();
+            put_category(30, general, 16); /* before what it refers to */
+            put_category(10, strings, 6);
+            TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+            memcpy(as_whole, sii.name, sizeof as_whole);
+            brief = true;
+            TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+            TEST_ASSERT_EQUAL_STRING(as_whole, sii.name);
+        }
+    setUp();
+    put_category(10, strings, 6);
+    brief = true;
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_STRING("ORDER", sii.name);
+}
+
 static void test_string_longer_than_its_category_ends_with_it(void)
 {
     static const uint8_t strings[4] = {1, 200, 'a', 'b'};
@@ -239,6 +286,8 @@ int main(void)
     RUN_TEST(test_a_name_that_is_not_ascii_is_shown_as_it_is);
     RUN_TEST(test_a_slave_without_name_shows_its_order_number);
     RUN_TEST(test_categories_that_nobody_reads_are_not_fetched);
+    RUN_TEST(test_brief_reading_has_all_but_the_process_data);
+    RUN_TEST(test_brief_reading_knows_names_as_the_whole_one_does);
     RUN_TEST(test_string_longer_than_its_category_ends_with_it);
     RUN_TEST(test_lengths_that_lead_nowhere_are_damage);
     RUN_TEST(test_more_sync_managers_and_entries_than_fit_are_bounded);
