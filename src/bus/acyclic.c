@@ -173,9 +173,7 @@ void cm1e_acyclic_cancel(cm1e_bus_t *bus)
             frame->slaves[n]->owner = OWNER_NONE;
     }
     bus->acyclic.count = 0;
-    if (bus->supervised.sent)
-        cm1e_soem_drop(bus->soem, &bus->supervised.datagram);
-    bus->supervised.sent = false;
+    cm1e_supervision_forget(bus);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         cm1e_recovery_cancel(slave);

@@ -320,6 +320,8 @@ bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave);
 /** Supervision: one slave's AL status in every cycle. */
 void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns);
+/** Gives up the question that is on its way. */
+void cm1e_supervision_forget(cm1e_bus_t *bus);
 void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code);
 
 /** Brings all slaves to a state together; the first failure is diagnosed. */

@@ -51,6 +51,7 @@ cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t time
         cm1e_al_request(&bus->slaves[i].al, target, deadline_ns);
     /* The machines end by themselves; the margin is for datagrams that are still on their way. */
     cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
+    cm1e_supervision_forget(bus); /* it may have asked before the slave changed its state */
     cm1e_error_t first = CM1E_OK;
     for (uint32_t i = 0; i < bus->scanned; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];

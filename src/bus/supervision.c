@@ -104,6 +104,13 @@ static void lose(cm1e_bus_slave_t *slave)
     cm1e_hot_lose(slave);
 }
 
+void cm1e_supervision_forget(cm1e_bus_t *bus)
+{
+    if (bus->supervised.sent)
+        cm1e_soem_drop(bus->soem, &bus->supervised.datagram);
+    bus->supervised.sent = false;
+}
+
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_datagram_t *d = &bus->supervised.datagram;

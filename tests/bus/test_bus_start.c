@@ -28,6 +28,20 @@ START_TEST(scan_finds_every_slave_from_1_to_16)
 }
 END_TEST
 
+/** A look at a state that was asked for before the slave changed it must not be taken afterwards. */
+START_TEST(every_slave_is_seen_in_operational_at_once)
+{
+    sim_config((uint32_t)_i);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    for (uint16_t position = 1; position <= _i; position++) {
+        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, position).al_state, CM1E_AL_OP);
+        ck_assert_uint_eq(cm1e_bus_slave(bus, position)->al_state, CM1E_AL_OP);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 static void check_direction(cm1e_bus_t *bus, uint16_t position, const cm1e_axis_config_t *axis, bool transmit,
                             uint32_t base)
 {
@@ -327,6 +341,7 @@ int main(void)
     Suite *suite = suite_create("bus_start");
     TCase *tests = tcase_create("start");
     tcase_add_loop_test(tests, scan_finds_every_slave_from_1_to_16, 1, 17);
+    tcase_add_loop_test(tests, every_slave_is_seen_in_operational_at_once, 1, 9);
     tcase_add_loop_test(tests, start_resolves_every_object_in_every_order_firmware_and_mapping, 0,
                         2 * FIRMWARES * MAPPINGS);
     tcase_add_loop_test(tests, large_bus_runs_in_several_frames, 0, 4);

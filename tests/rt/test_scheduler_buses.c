@@ -135,7 +135,7 @@ START_TEST(test_the_first_bus_stays_operational_while_the_second_starts)
         must(cm1e_bus_simulate(buses[A], line, answer, sizeof answer));
         ck_assert_msg(strstr(answer, ", OP,"), "%s", answer);
     }
-    ck_assert_uint_gt(cm1e_bus_counters(buses[A])->cycles, 20);
+    ck_assert_uint_gt(cm1e_bus_counters(buses[A])->cycles, 10);
     ck_assert_uint_eq(cm1e_bus_counters(buses[A])->lost_frames, 0);
     for (int i = 0; i < BUSES; i++)
         cm1e_bus_close(buses[i]);
