@@ -294,7 +294,7 @@ bool cm1e_soem_add(cm1e_soem_t *soem, cm1e_bundle_t *bundle, cm1e_datagram_t *d)
         begin_bundle(soem, bundle, d);
     } else {
         const uint8_t index = bundle->frame_index;
-        const int bytes = port->txbuflength[index] + DATAGRAM_HEADER_BYTES + d->length + EC_WKCSIZE;
+        const size_t bytes = (size_t)port->txbuflength[index] + DATAGRAM_HEADER_BYTES + d->length + EC_WKCSIZE;
         if (bundle->count == CM1E_BUNDLE_DATAGRAMS || bytes > FRAME_ROOM)
             return false;
         say_that_one_follows(soem, bundle);
