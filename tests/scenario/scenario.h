@@ -64,6 +64,7 @@ typedef struct scenario {
     uint64_t seed;                       /**< where it comes from; 0: written by hand */
     double cycles;                       /**< of the program, before the machine is brought back */
     double cycle_us, lost_limit, ring, clocks, io;
+    double memory;                       /**< the allocation that fails in a set-up before the run; 0: none */
     int axis_count, step_count, fault_count;
     axis_spec_t axes[SCENARIO_AXES];
     step_t steps[SCENARIO_STEPS];

@@ -182,7 +182,8 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
     const double most = fmax(fmax(axis->spec->acceleration, axis->spec->deceleration), homing) * window *
                         run->scenario->cycle_us * 1e-6;
     double before = 0; /* a short silence stops a motor and lets it go on: it gets no faster than it was */
-    for (int i = window; i < SPEEDS; i++)
+    const int seen_speeds = window < SPEEDS_SEEN ? SPEEDS_SEEN : SPEEDS; /* cycles of 250 us need more of them */
+    for (int i = window; i < seen_speeds; i++)
         before = fmax(before, seen->speeds[i]);
     const double gain = speed - before, noise = 1500 + 0.4 * SERVO_BANDWIDTH * slack_of(axis->spec);
     if (gain / most - 1 > run->outcome->over_gain && most > 5 * noise)

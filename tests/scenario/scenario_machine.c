@@ -112,18 +112,21 @@ static uint32_t motors_of(const run_t *run, int network)
     return last;
 }
 
-/** Digital terminals behind the motors of the first network. */
-static void add_terminals(const run_t *run, cm1e_bus_config_t *config, int network)
+/** Digital terminals behind the motors of the first network. false: no memory. */
+static bool add_terminals(const run_t *run, cm1e_bus_config_t *config, int network)
 {
     const int terminals = network == 0 ? (int)run->scenario->io : motors_of(run, network) == 0;
     for (int i = 0; i < terminals; i++) {
         char name[16];
         snprintf(name, sizeof name, "io%d%d", network, i);
         cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(config, name);
+        if (!slave)
+            return false;
         slave->address = (uint16_t)(motors_of(run, network) + 1 + (uint32_t)i);
         slave->sim.kind = CM1E_SIM_SLAVE_DIGITAL;
         slave->sim.outputs = slave->sim.inputs = 4;
     }
+    return true;
 }
 
 static cm1e_error_t open_network(run_t *run, int network, cm1e_diag_t *diag)
@@ -131,9 +134,10 @@ static cm1e_error_t open_network(run_t *run, int network, cm1e_diag_t *diag)
     cm1e_bus_config_t config;
     const scenario_t *scenario = run->scenario;
     cm1e_error_t error = cm1e_bus_config_init(&config, "sim", 0);
-    if (error != CM1E_OK || !add_axes(run, &config, network))
+    if (error != CM1E_OK || !add_axes(run, &config, network) || !add_terminals(run, &config, network)) {
+        cm1e_bus_config_free(&config);
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "no memory for the configuration");
-    add_terminals(run, &config, network);
+    }
     config.virtual_time = true;
     config.cycle_time_ns = (int64_t)scenario->cycle_us * 1000;
     config.lost_cycles_limit = (uint32_t)scenario->lost_limit;

@@ -12,7 +12,7 @@
 #include "scenario.h"
 #include "block_table.h"
 
-enum { BLOCK_ROOM = 1200, SPEEDS = 64 };
+enum { BLOCK_ROOM = 1200, SPEEDS = 104, SPEEDS_SEEN = 64 };
 
 /** A block of the program, by the table of all blocks. */
 typedef struct instance {
@@ -95,6 +95,17 @@ typedef struct run {
 
 /** The first rule that is broken counts; it ends the run. */
 __attribute__((format(printf, 3, 4))) void scenario_fail(run_t *run, const char *rule, const char *format, ...);
+
+/* ---- scenario_heap.c --------------------------------------------------------------------------------------------- */
+
+/** Number of allocations of the process so far. */
+uint64_t heap_allocations(void);
+/** From now on what is allocated is tracked, and allocation number `failing` from here fails. */
+void heap_track(uint64_t failing);
+/** Whether it did. */
+bool heap_failed(void);
+/** Ends tracking: how many allocations were not freed. */
+int heap_left(void);
 
 /* ---- scenario_machine.c ------------------------------------------------------------------------------------------ */
 

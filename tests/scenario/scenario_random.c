@@ -6,7 +6,10 @@
 #include "chance.h"
 #include "scenario.h"
 
-enum { FIRST_STEP = 260, CYCLES_LEAST = 900, CYCLES_MOST = 2600 };
+enum { FIRST_STEP = 260, CYCLES_LEAST = 900, CYCLES_MOST = 2600, ALLOCATIONS = 600 };
+
+/** Seeds below have none of what make_more() adds, so that they stay as they were. */
+static const uint64_t more_from = UINT64_C(1000000000);
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */
 
@@ -245,6 +248,51 @@ static int compare_times(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
+/** Bridges, and the firmwares 1.2.0 and 1.3.0. */
+static bool by_1_ms(const scenario_t *scenario)
+{
+    bool found = false;
+    for (int n = 0; n < scenario->axis_count; n++)
+        found = found || is_bridged(&scenario->axes[n]) || scenario->axes[n].firmware == 1 ||
+                scenario->axes[n].firmware == 2;
+    return found;
+}
+
+/** The supply of a motor dips for some cycles. */
+static void make_dip(scenario_t *scenario)
+{
+    const int n = pick(scenario->axis_count);
+    if (scenario->fault_count == SCENARIO_FAULTS || !fits(scenario, &scenario->axes[n], FAULT_MOTOR_POWER))
+        return;
+    scenario->faults[scenario->fault_count++] = (fault_t){
+        .at = FIRST_STEP + pick((int)scenario->cycles - FIRST_STEP), .kind = FAULT_MOTOR_POWER, .axis = n,
+        .network = scenario->axes[n].network, .length = 1 + pick(20)};
+}
+
+/** A clock jumps so far that it is not synchronous any more. */
+static void lose_synchronism(scenario_t *scenario)
+{
+    const int n = pick(scenario->axis_count);
+    const double step = floor(uniform(20000, 400000));
+    if (scenario->fault_count == SCENARIO_FAULTS || !fits(scenario, &scenario->axes[n], FAULT_CLOCK))
+        return;
+    scenario->faults[scenario->fault_count++] = (fault_t){
+        .at = FIRST_STEP + pick((int)scenario->cycles - FIRST_STEP), .kind = FAULT_CLOCK, .axis = n,
+        .network = scenario->axes[n].network, .value = one_in(2) ? step : -step};
+}
+
+/** After all other draws, for seeds from `more_from` on. */
+static void make_more(scenario_t *scenario)
+{
+    scenario->memory = 1 + pick(ALLOCATIONS);
+    if (!by_1_ms(scenario) && one_in(2))
+        scenario->cycle_us = 250;
+    while (one_in(2))
+        make_dip(scenario);
+    if (one_in(2))
+        lose_synchronism(scenario);
+}
+
 void scenario_make(scenario_t *scenario, uint64_t seed)
 {
     static const double limits[] = {3, 3, 3, 2, 5, 10};
@@ -255,11 +303,7 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
                              .axis_count = 1 + pick(one_in(3) ? SCENARIO_AXES : 3)};
     scenario->cycles = CYCLES_LEAST + pick(CYCLES_MOST - CYCLES_LEAST);
     make_machine(scenario);
-    bool by_1_ms = false; /* bridges, and the firmwares 1.2.0 and 1.3.0 */
-    for (int n = 0; n < scenario->axis_count; n++)
-        by_1_ms = by_1_ms || is_bridged(&scenario->axes[n]) || scenario->axes[n].firmware == 1 ||
-                  scenario->axes[n].firmware == 2;
-    if (!by_1_ms && one_in(2))
+    if (!by_1_ms(scenario) && one_in(2))
         scenario->cycle_us = 500;
     const bool grouped = scenario->axis_count > 1 && one_in(6);
     scenario->step_count = 3 + pick(SCENARIO_STEPS - 20) / 2 + scenario->axis_count;
@@ -268,6 +312,8 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
     scenario->fault_count = one_in(8) ? 0 : 1 + pick(one_in(2) ? 2 : 6);
     for (int i = 0; i < scenario->fault_count; i++)
         make_fault(scenario, &scenario->faults[i]);
+    if (seed >= more_from)
+        make_more(scenario);
     qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
     qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);
 }

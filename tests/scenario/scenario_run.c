@@ -1,5 +1,6 @@
 /* A scenario from the opening of its networks to their end, on virtual time. */
 #include <dirent.h>
+#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -9,35 +10,9 @@
 
 #include "scenario_private.h"
 
+enum { BEYOND_NS = 20000 };
+
 FILE *scenario_trace;
-
-/* ---- the heap ---------------------------------------------------------------------------------------------------- */
-
-static uint64_t allocations;
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-
-void *__wrap_malloc(size_t size)
-{
-    allocations++;
-    return __real_malloc(size);
-}
-
-void *__wrap_calloc(size_t count, size_t size)
-{
-    allocations++;
-    return __real_calloc(count, size);
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    allocations++;
-    return __real_realloc(memory, size);
-}
 
 static int open_files(void)
 {
@@ -74,9 +49,9 @@ static void one_cycle(void *context)
     run_t *run = context;
     if (run->outcome->failed || run->phase == PHASE_END)
         return;
-    if (run->cycle > 0 && allocations != run->allocations)
+    if (run->cycle > 0 && heap_allocations() != run->allocations)
         scenario_fail(run, "memory", "%llu allocations between two cycles",
-                      (unsigned long long)(allocations - run->allocations));
+                      (unsigned long long)(heap_allocations() - run->allocations));
     judge_look(run);
     fault_cycle(run);
     program_cycle(run);
@@ -88,13 +63,27 @@ static void one_cycle(void *context)
         cm1e_scheduler_stop(run->scheduler);
     }
     run->cycle++;
-    run->allocations = allocations;
+    run->allocations = heap_allocations();
+}
+
+/** A clock that jumped beyond the tolerance, and nothing else happened: it was counted. The first one is the reference,
+ *  which all others follow. */
+static void judge_clocks(run_t *run)
+{
+    const fault_t *fault = &run->scenario->faults[0];
+    const bool follows = run->axes[(int)fault->axis].position > 1;
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(run->scheduler, &statistics);
+    if (run->scenario->fault_count == 1 && fault->kind == FAULT_CLOCK && fabs(fault->value) >= BEYOND_NS && follows &&
+        statistics.clocks.sync_losses == 0)
+        scenario_fail(run, "clock", "a clock that jumped by %.0f ns was not counted", fault->value);
 }
 
 static void judge_stopped(run_t *run, cm1e_error_t error, const cm1e_diag_t *diag)
 {
     if (error != CM1E_OK)
         scenario_fail(run, "stop", "the end of the run: %s", diag->text);
+    judge_clocks(run);
     for (int n = 0; n < run->scenario->axis_count; n++) {
         machine_axis_t *axis = &run->axes[n];
         if (!is_motor(axis))
@@ -103,6 +92,37 @@ static void judge_stopped(run_t *run, cm1e_error_t error, const cm1e_diag_t *dia
         if (axis->probe.torque_on)
             scenario_fail(run, "stop", "%s is under torque after the end of the run", axis->name);
     }
+}
+
+/** Number of allocations that a set-up leaves behind in which the allocation number `memory` fails. `said` is why it
+ *  failed, "" if it did not. */
+static int set_up_without_memory(const scenario_t *scenario, char *said, size_t size)
+{
+    static run_t run;
+    static outcome_t outcome;
+    memset(&run, 0, sizeof run);
+    outcome = (outcome_t){0};
+    run.scenario = scenario;
+    run.outcome = &outcome;
+    heap_track((uint64_t)scenario->memory);
+    scenario_open(&run, one_cycle);
+    snprintf(said, size, "%s", heap_failed() ? outcome.text : "it needs less");
+    scenario_close(&run);
+    return heap_left();
+}
+
+/** Without memory a set-up fails in words and leaves nothing behind. It is tried twice, because what a process allocates
+ *  once for all its time is no leak. */
+static void judge_memory(run_t *run)
+{
+    char said[400];
+    set_up_without_memory(run->scenario, said, sizeof said);
+    const int left = set_up_without_memory(run->scenario, said, sizeof said);
+    if (!said[0])
+        scenario_fail(run, "no-memory", "the set-up does not say that allocation %.0f failed", run->scenario->memory);
+    if (left > 0)
+        scenario_fail(run, "leak", "a set-up in which allocation %.0f fails leaves %d others: %.200s",
+                      run->scenario->memory, left, said);
 }
 
 void scenario_run(const scenario_t *scenario, outcome_t *outcome)
@@ -117,6 +137,10 @@ void scenario_run(const scenario_t *scenario, outcome_t *outcome)
     run.scenario = scenario;
     run.outcome = outcome;
     judge_begin(&run);
+    if (scenario->memory > 0)
+        judge_memory(&run);
+    if (outcome->failed)
+        return;
     if (scenario_open(&run, one_cycle)) {
         program_prepare(&run);
         const cm1e_error_t error = cm1e_scheduler_run(run.scheduler, 0, &diag);

@@ -37,7 +37,7 @@ const char *const scenario_blocks[] = {
 
 static const field_t run_fields[] = {
     NUMBER(scenario_t, cycles), NUMBER(scenario_t, cycle_us), NUMBER(scenario_t, lost_limit), NUMBER(scenario_t, ring),
-    NUMBER(scenario_t, clocks), NUMBER(scenario_t, io), END};
+    NUMBER(scenario_t, clocks), NUMBER(scenario_t, io), NUMBER(scenario_t, memory), END};
 static const field_t axis_fields[] = {
     WORD_OF(axis_spec_t, kind, kinds), NUMBER(axis_spec_t, network), NUMBER(axis_spec_t, channel),
     WORD_OF(axis_spec_t, firmware, firmwares), WORD_OF(axis_spec_t, mapping, mappings),

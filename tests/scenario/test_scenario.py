@@ -11,7 +11,8 @@ import tempfile
 from pathlib import Path
 
 PROGRAM = sys.argv[1]
-SEEDS = (1, 2, 7, 11)
+SEEDS = (1, 2, 7, 11, 1000000002)
+MORE, COUNT = 1000000000, 20  # seeds with what scenario_random.c has for seeds from there on
 # The judge takes a limit that the machine was not made for as a failure: a way to see that it can fail at all.
 SPOILED = ("run cycles=900 cycle_us=1000 lost_limit=3\n"
            "axis kind=cm1e counts_per_unit=1000 velocity=400000 acceleration=3e6 deceleration=3e6 jerk=1e8\n"
@@ -55,6 +56,14 @@ def check_failure(folder):
     assert code == 1 and "FAIL: console" in said, said
 
 
+def check_more():
+    code, said = run("--seed", MORE, "--count", COUNT)
+    assert code == 0 and f"{COUNT} scenarios from seed {MORE} on: 0 failed" in said, said
+    texts = [run("--seed", MORE + number, "--write")[1] for number in range(COUNT)]
+    assert all(" memory=" in text for text in texts) and any("cycle_us=250" in text for text in texts), texts
+    assert " memory=" not in run("--seed", MORE - 1, "--write")[1]
+
+
 def check_refusals(folder):
     for text, words in (("axis kind=nonsense\n", "line 1"), ("run cycles=100 cycle_us=1000\n", "needs an axis"),
                         ("nonsense\n", "expected run"), ("run cycles=abc\n", "not one of this name")):
@@ -70,6 +79,7 @@ def main():
         check_repetition(Path(name))
         check_failure(Path(name))
         check_refusals(Path(name))
+    check_more()
     print("ok")
 
 

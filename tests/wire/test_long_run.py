@@ -72,6 +72,8 @@ def look_on(segment, master, path, seconds):
     seen, said, begin = [], statistics(master, path), time.monotonic()
     for number in range(LOOKS):
         time.sleep(max(0.0, begin + (number + 1) * 0.8 * seconds / LOOKS - time.monotonic()))
+        if master.poll() is not None:
+            wire.check(False, f"the master has ended: {master.communicate()}")
         # Before the master is asked, because it sees the end of the connection only later.
         seen.append({"master": resources(master.pid), "simulator": resources(segment.simulator.pid)})
         said = statistics(master, path)
