@@ -50,6 +50,7 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
         cm1e_drive_free(&axis->drive);
         free(axis->set_aside.tables);
         free(axis->set_aside.driving);
+        cm1e_axis_probe_free(axis);
         free(axis);
         return error;
     }
@@ -224,7 +225,7 @@ static bool moves_on(const cm1e_axis_t *axis)
 /* The bus is silent, so the set-point stays. Axes on another bus may go on. */
 static void stay(cm1e_axis_t *axis)
 {
-    const cm1e_axis_leader_t *leader = &axis->leader;
+    const cm1e_axis_leader_t *leader = axis->leader;
     if (axis_follows(axis))
         axis->coupling_hooks->held(axis);
     else if (axis_led(axis) && leader->held)

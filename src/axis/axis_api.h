@@ -231,6 +231,13 @@ typedef struct cm1e_axis_leader {
     /** Position (u, as cm1e_axis_get() counts it, without the turns of a modulo axis), velocity, acceleration of this
      *  cycle. */
     cm1e_lead_t (*next)(void *context, uint32_t index, double *position, double *velocity, double *acceleration);
+    /** A number that stays as long as what `bounds` has told of the axis holds: its largest velocity, acceleration and
+     *  jerk from the last set-point on, and for how long at most. The number is that of the set-point which next() gave
+     *  last. false: nothing is known ahead. NULL, both: nothing ever is. */
+    const uint32_t *course;
+    bool (*bounds)(void *context, uint32_t index, cm1e_motion_bounds_t *most, double *left_s);
+    void *context;
+    uint32_t index;                 /**< number of the axis for the leader */
     /** The lead has ended, by MC_Stop, MC_Power or an error of the axis. `error` is that with which commands end;
      *  CM1E_OK: they are aborted. */
     void (*lost)(void *context, uint32_t index, cm1e_error_t error);
@@ -253,13 +260,6 @@ typedef struct cm1e_axis_leader {
      *  axis goes on by itself: the next set-point begins at its last one, with the velocity that the motor has left.
      *  NULL: they were. */
     bool (*alone)(void *context, uint32_t index);
-    /** A number that stays as long as what `bounds` has told of the axis holds: its largest velocity, acceleration and
-     *  jerk from the last set-point on, and for how long at most. The number is that of the set-point which next() gave
-     *  last. false: nothing is known ahead. NULL, both: nothing ever is. */
-    const uint32_t *course;
-    bool (*bounds)(void *context, uint32_t index, cm1e_motion_bounds_t *most, double *left_s);
-    void *context;
-    uint32_t index;                 /**< number of the axis for the leader */
 } cm1e_axis_leader_t;
 /** Gives an axis a leader. Until the lead ends, motion commands other than MC_Stop, and MC_SetPosition, are refused
  *  with CM1E_ERROR_AXIS_IN_GROUP. A lead begins only in Standstill: else CM1E_ERROR_AXIS_STATE. The leader must exist

@@ -42,23 +42,23 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
     return CM1E_OK;
 }
 
-/* The command before the waiting command `index`. */
-static const move_t *before(cm1e_axis_t *axis, int index, const command_kind_t **kind)
+/* Where the command before the waiting command `index` ends, and its kind. */
+static const position_t *before(cm1e_axis_t *axis, int index, const command_kind_t **kind)
 {
-    const move_t *move = index > 0 ? waiting_move(axis, index - 1) : &axis->commands.move;
-    *kind = kind_row(index > 0 ? move->kind : axis->commands.kind); /* an active homing has no move */
-    return move;
+    const waiting_t *waiting = index > 0 ? waiting_move(axis, index - 1) : NULL;
+    *kind = kind_row(waiting ? waiting->kind : axis->commands.kind); /* an active homing has no move */
+    return waiting ? &waiting->target : &axis->commands.move.target;
 }
 
 static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 {
     const command_kind_t *kind;
-    const move_t *first = before(axis, index, &kind);
+    const position_t *end = before(axis, index, &kind);
     if (kind->plan == PLAN_OUTSIDE)
         return CM1E_ERROR_AXIS_BUFFER_MODE; /* it does not end by itself */
     if (is_homing(move->kind) && (kind->is_endless || kind->plan == PLAN_COUPLING))
         return CM1E_ERROR_AXIS_STATE; /* homing begins at rest */
-    return check(axis, move, kind->target != TARGET_NONE ? &first->target : NULL);
+    return check(axis, move, kind->target != TARGET_NONE ? end : NULL);
 }
 
 /* Whether an endless command that has reached its aim lets the next command begin. */
@@ -96,7 +96,7 @@ cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move)
         const cm1e_error_t error = check_behind(axis, i, &checked);
         if (error != CM1E_OK)
             return error;
-        *waiting_move(axis, i) = checked;
+        *waiting_move(axis, i) = waiting_of_move(&checked);
         if (kind_row(axis->commands.kind)->plan == PLAN_TO_TARGET)
             (void)cm1e_axis_replan(axis);
     }
@@ -107,7 +107,7 @@ cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move)
 
 static move_t take_first(cm1e_axis_t *axis)
 {
-    const move_t move = *waiting_move(axis, 0);
+    const move_t move = move_of_waiting(waiting_move(axis, 0));
     axis->commands.waiting.first = (uint8_t)((axis->commands.waiting.first + 1) % CM1E_AXIS_BUFFER_DEPTH);
     axis->commands.waiting.count--;
     return move;
@@ -169,7 +169,7 @@ bool cm1e_axis_waiting_hold(cm1e_axis_t *axis, double lower, double upper)
     const int count = before_homing(axis);
     bool known = axis->commands.active && kind_row(axis->commands.kind)->target != TARGET_NONE;
     for (int i = 0; i < count; i++) {
-        const move_t *move = waiting_move(axis, i);
+        const waiting_t *move = waiting_move(axis, i);
         const command_target_t has = kind_row(move->kind)->target;
         const double target = cm1e_axis_line(axis, move->target);
         known = has == TARGET_ABSOLUTE || (known && has == TARGET_RELATIVE);

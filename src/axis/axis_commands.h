@@ -41,15 +41,32 @@ static inline void cm1e_axis_shift_move(cm1e_axis_t *axis, double counts)
 }
 /** Remembers why a command was refused, for the text; CM1E_OK: none was. */
 static inline void cm1e_axis_set_refusal(cm1e_axis_t *axis, cm1e_error_t error) { axis->commands.refusal = error; }
-/** The move of a waiting command; 0 is the first one. */
-static inline move_t *waiting_move(cm1e_axis_t *axis, int index)
+/** A waiting command as a move. */
+static inline move_t move_of_waiting(const waiting_t *w)
+{
+    return (move_t){.id = w->id, .kind = w->kind, .buffer_mode = w->buffer_mode, .direction = w->direction,
+                    .position = w->position, .velocity = w->velocity, .end_velocity = w->end_velocity,
+                    .acceleration = w->acceleration, .deceleration = w->deceleration, .jerk = w->jerk,
+                    .shift = w->shift, .target = w->target};
+}
+/** A move that has not begun, as it waits. */
+static inline waiting_t waiting_of_move(const move_t *move)
+{
+    return (waiting_t){.id = move->id, .kind = move->kind, .buffer_mode = move->buffer_mode,
+                       .direction = move->direction, .position = move->position, .velocity = move->velocity,
+                       .end_velocity = move->end_velocity, .acceleration = move->acceleration,
+                       .deceleration = move->deceleration, .jerk = move->jerk, .shift = move->shift,
+                       .target = move->target};
+}
+/** A waiting command; 0 is the first one. */
+static inline waiting_t *waiting_move(cm1e_axis_t *axis, int index)
 {
     return &axis->commands.waiting.moves[(axis->commands.waiting.first + index) % CM1E_AXIS_BUFFER_DEPTH];
 }
 /** Appends a waiting command. The caller has checked that there is room. */
 static inline void cm1e_axis_append_waiting(cm1e_axis_t *axis, const move_t *move)
 {
-    *waiting_move(axis, axis->commands.waiting.count++) = *move;
+    *waiting_move(axis, axis->commands.waiting.count++) = waiting_of_move(move);
     cm1e_axis_look_anew(axis);
 }
 /** The method of a kind of plan, from the axis or a room above it. Without `start` the axis cannot do it. */
@@ -85,7 +102,7 @@ cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t 
 
 /* axis_buffer.c, axis_look_ahead.c, axis_replan.c */
 /** The waiting command with a number; NULL: none. */
-move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id);
+waiting_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id);
 /** Buffers a move behind the others and gives it its number. */
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move);
 /** Gives new inputs to the waiting command with this number, if there is one. */

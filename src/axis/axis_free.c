@@ -8,9 +8,9 @@ void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error)
 {
     if (!axis_led(axis))
         return;
-    const cm1e_axis_leader_t leader = axis->leader;
-    axis->leader = (cm1e_axis_leader_t){0};
-    leader.lost(leader.context, leader.index, error);
+    const cm1e_axis_leader_t *leader = axis->leader;
+    axis->leader = NULL;
+    leader->lost(leader->context, leader->index, error);
 }
 
 static bool step_free(cm1e_axis_t *axis)

@@ -16,7 +16,7 @@ cm1e_guest_refusal_t cm1e_axis_guest_may(const cm1e_axis_t *axis, cm1e_command_i
         return CM1E_GUEST_COMMANDED;
     if (axis->commands.waiting.count > 0 || axis_awaits(axis) || axis->superimposed.id)
         return CM1E_GUEST_COMMANDED;
-    if (axis->belongs.group || axis->leader.next)
+    if (axis->belongs.group || axis->leader)
         return CM1E_GUEST_GROUPED;
     if (axis->coupling_hooks && axis->coupling_hooks->is_followed(axis))
         return CM1E_GUEST_FOLLOWED;

@@ -22,7 +22,7 @@ cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
     if (axis->state != CM1E_AXIS_STANDSTILL || !axis_holds(axis) || axis->commands.active ||
         axis->commands.waiting.count > 0 || axis->superimposed.id || !axis_acts(axis))
         return CM1E_ERROR_AXIS_STATE;
-    axis->leader = *leader;
+    axis->leader = leader;
     cm1e_axis_set_source(axis, &cm1e_source_leader);
     cm1e_axis_guard_renew(axis);
     cm1e_axis_go(axis, ON_LED);
@@ -33,7 +33,7 @@ void cm1e_axis_release(cm1e_axis_t *axis)
 {
     if (!axis_led(axis))
         return;
-    axis->leader = (cm1e_axis_leader_t){0};
+    axis->leader = NULL;
     if (at_rest(axis)) {
         cm1e_axis_set_source(axis, &cm1e_source_hold);
         cm1e_axis_go(axis, ON_LET_GO);
@@ -59,7 +59,7 @@ void cm1e_axis_leave(cm1e_axis_t *axis, const void *group)
 
 bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
 {
-    return axis_led(axis) && axis->leader.context == context;
+    return axis_led(axis) && axis->leader->context == context;
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
@@ -67,7 +67,7 @@ bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
 /* Whether all set-points are well within the limits, as long as the course of the leader stays. */
 CM1E_RARE static void look_ahead(cm1e_axis_t *axis)
 {
-    const cm1e_axis_leader_t *leader = &axis->leader;
+    const cm1e_axis_leader_t *leader = axis->leader;
     cm1e_motion_bounds_t most;
     double left_s;
     const bool kept = leader->bounds(leader->context, leader->index, &most, &left_s) &&
@@ -92,10 +92,10 @@ CM1E_RARE static bool be_left(cm1e_axis_t *axis)
 /* The leader may let the axis go while it gives the set-point. */
 static bool step(cm1e_axis_t *axis)
 {
-    const uint32_t *course = axis->leader.course;
+    const uint32_t *course = axis->leader->course;
     double line = 0.0, velocity, acceleration;
     const cm1e_lead_t lead =
-        axis->leader.next(axis->leader.context, axis->leader.index, &line, &velocity, &acceleration);
+        axis->leader->next(axis->leader->context, axis->leader->index, &line, &velocity, &acceleration);
     if (lead == CM1E_LEAD_NONE)
         return be_left(axis);
     from_t next = {.velocity = velocity, .acceleration = acceleration};
@@ -108,7 +108,7 @@ static bool step(cm1e_axis_t *axis)
             return refuse(axis, guard);
     }
     cm1e_axis_put_set_point(axis, &next);
-    if (!decided && axis->leader.bounds)
+    if (!decided && axis->leader->bounds)
         look_ahead(axis);
     if (lead == CM1E_LEAD_LAST)
         cm1e_axis_release(axis);
@@ -117,9 +117,9 @@ static bool step(cm1e_axis_t *axis)
 
 static void begin_anew(cm1e_axis_t *axis)
 {
-    const cm1e_axis_leader_t leader = axis->leader;
+    const cm1e_axis_leader_t *leader = axis->leader;
     if (axis->setpoint.velocity == 0.0)
-        leader.paused(leader.context, leader.index);
+        leader->paused(leader->context, leader->index);
     else
         cm1e_axis_guard_fail(axis, (guard_t){.limit = GUARD_PAUSE, .asked = axis->setpoint.velocity});
 }
@@ -127,10 +127,10 @@ static void begin_anew(cm1e_axis_t *axis)
 static void slow(cm1e_axis_t *axis, double part)
 {
     (void)part; /* the leader asks every axis for its part */
-    const cm1e_axis_leader_t leader = axis->leader;
+    const cm1e_axis_leader_t *leader = axis->leader;
     double velocity = axis->setpoint.velocity, acceleration = axis->setpoint.acceleration;
-    if (leader.slow)
-        leader.slow(leader.context, leader.index, &velocity, &acceleration);
+    if (leader->slow)
+        leader->slow(leader->context, leader->index, &velocity, &acceleration);
     cm1e_axis_put_motion(axis, velocity, acceleration);
 }
 
@@ -153,7 +153,7 @@ const source_t cm1e_source_leader = {
 
 void cm1e_axis_lead_fail(cm1e_axis_t *axis, cm1e_error_t error)
 {
-    const double time_s = axis->leader.stop_time ? axis->leader.stop_time(axis->leader.context) : 0.0;
+    const double time_s = axis->leader->stop_time ? axis->leader->stop_time(axis->leader->context) : 0.0;
     cm1e_axis_fail_gently(axis, error, time_s > 0.0 ? fabs(axis->setpoint.velocity) / time_s : INFINITY);
 }
 

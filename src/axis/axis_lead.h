@@ -7,7 +7,7 @@
 
 #include "axis/axis_parts.h"
 
-static inline bool axis_led(const cm1e_axis_t *axis) { return axis->leader.next != NULL; }
+static inline bool axis_led(const cm1e_axis_t *axis) { return axis->leader != NULL; }
 /** Ends the lead, and tells the leader. */
 void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error); /* axis_free.c */
 /** ErrorStop by a lost bus. In CSV all axes of a leader brake in the same time, so that they stay on their line. */

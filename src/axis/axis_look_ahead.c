@@ -49,14 +49,16 @@ static double nearer(const cm1e_axis_t *axis, const move_t *move, double distanc
 
 /* Makes a leg of a waiting command. `end` is where the command before it ends, `sign` is its direction; both become
  * those of this command. false: the command before it has to stop. */
-static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double sign, leg_t *leg)
+static bool make_leg(cm1e_axis_t *axis, waiting_t *waiting, position_t *end, double sign, leg_t *leg)
 {
+    move_t own = move_of_waiting(waiting), *move = &own;
     const from_t from = {*end, sign * DBL_MIN, 0.0, axis_shares(axis)}; /* only the direction is known so far */
     move->origin = *end;
     if (move->buffer_mode <= mcBuffered || !is_planned(move->kind) ||
         cm1e_axis_limits_of(axis, &from, move, &leg->limits) != CM1E_OK ||
         cm1e_axis_resolve(axis, &from, move) != CM1E_OK)
         return false;
+    waiting->target = move->target;
     leg->mode = (MC_BUFFER_MODE)move->buffer_mode;
     leg->open = false;
     leg->exit_velocity = 0.0;

@@ -33,10 +33,19 @@ typedef struct move {
     double exit_velocity;   /**< u/s, signed: velocity at its target, from which another command goes on */
 } move_t;
 
+/** A command that waits: a move without what is known only when it begins. */
+typedef struct waiting {
+    cm1e_command_id_t id;
+    uint8_t kind, buffer_mode, direction;
+    double position, velocity, end_velocity, acceleration, deceleration, jerk;
+    double shift;
+    position_t target;      /**< as far as it is known: that of a relative move counts from the end of the one before */
+} waiting_t;
+
 /** The waiting commands, in their order, as a ring. */
 typedef struct buffer {
     uint8_t first, count;
-    move_t moves[CM1E_AXIS_BUFFER_DEPTH];
+    waiting_t moves[CM1E_AXIS_BUFFER_DEPTH];
 } buffer_t;
 
 /** The points of a table profile, kept until the motion begins. */
@@ -66,14 +75,24 @@ typedef struct from {
     bool shared;                   /**< a superimposed motion goes on and needs its share of the limits */
 } from_t;
 
+/** The plan of a superimposed motion, in u from the begin of the command: from what it was made, and the stretch of the
+ *  profile in which the motion is. At the next stretch the profile is made again, which gives the same one. */
+typedef struct on_top_plan {
+    cm1e_motion_state_t start;
+    cm1e_motion_limits_t limits;
+    double target;                 /**< NAN: it comes to rest somewhere */
+    double duration_s, end;        /**< of the profile; end: its position */
+    cm1e_profile_stretch_t stretch;
+} on_top_plan_t;
+
 /** A superimposed motion (3.8). The commanded motion is called its base. Written by axis_superimpose.c. */
 typedef struct superimposed {
     bool moving;                   /**< false: it waits until the base has room for it */
     bool paused;                   /**< an override of velocity 0 */
     bool alone;                    /**< it began in Standstill: no base needs a share */
     cm1e_motion_limits_t share;    /**< its share of the maximum values; acceleration = deceleration */
-    cm1e_profile_t profile;        /**< in u from the begin of the command */
-    int64_t cycles;
+    on_top_plan_t plan;
+    int64_t cycles;                /**< since then */
     cm1e_motion_state_t now;       /**< its part of the present set-point */
     double lowest, highest;        /**< u; extremes of its way */
     cm1e_command_id_t ended;       /**< the last one that ended; below, what it covered (u) */

@@ -228,6 +228,12 @@ typedef struct probe_sample {
     uint16_t inputs;                /**< those of the motor, or bit 0: that of the one signal of another slave */
 } probe_sample_t;
 
+/** Touch probes on signals of the motor, beside the axis: most axes arm none. */
+typedef struct own_probes {
+    probe_t probes[PROBES];
+    probe_sample_t last;            /**< the last one, while probes are armed */
+} own_probes_t;
+
 /** Touch probes on signals of other slaves. */
 typedef struct wired_probes {
     probe_t probes[WIRED_PROBES];
@@ -236,8 +242,7 @@ typedef struct wired_probes {
 
 /** Digital signals and touch probes. Written by axis_probe.c, axis_digital.c and axis_keep.c. */
 typedef struct signals {
-    probe_t probes[PROBES];
-    probe_sample_t probe_sample;    /**< the last one, while probes are armed */
+    own_probes_t *own;              /**< made with the axis */
     wired_probes_t *wired;          /**< NULL: no inputs on other slaves */
     int64_t inputs_asked_ns, inputs_since_ns; /**< inputs by SDO: last request; since when without an answer */
     /* read in every cycle */
@@ -357,6 +362,11 @@ typedef struct set_aside {
  *  axis begins at a cache line. */
 struct cm1e_axis {
     cm1e_drive_t drive;
+    /* not in every cycle: it fills a cache line up */
+    not_set_t not_set;
+    belongs_t belongs;
+    struct followed *followed;      /**< data of coupling_hooks about its slaves */
+    /* in every cycle */
     signals_t signals;
     cm1e_axis_state_t state;        /**< cm1e_axis_go() */
     cm1e_mode_t mode;               /**< mode of the set-points: CSP, or CSV if the mapping has no target position */
@@ -379,18 +389,15 @@ struct cm1e_axis {
     guarding_t guarding;
     axis_position_t position;
     limits_t limits;
+    fault_t fault;
     superimposed_t superimposed;
     backlash_t backlash;
     setpoint_t setpoint;
     /* not in every cycle */
-    cm1e_axis_leader_t leader;      /**< next is NULL: none */
+    const cm1e_axis_leader_t *leader; /**< NULL: none */
     const cm1e_axis_config_t *config;
-    fault_t fault;
     guard_t broken;                 /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
-    not_set_t not_set;
     override_t override, override_refused; /**< the second: the last refused one, for the text */
-    belongs_t belongs;
-    struct followed *followed;      /**< data of coupling_hooks about its slaves */
     outside_t outside;
     set_aside_t set_aside;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */

@@ -239,7 +239,7 @@ uint32_t cm1e_axis_was_silent(const cm1e_axis_t *axis) { return axis->silence.si
 /* The path of a group begins anew for all of its axes, or goes on for all. */
 static bool begins_anew(const cm1e_axis_t *axis)
 {
-    const cm1e_axis_leader_t *leader = &axis->leader;
+    const cm1e_axis_leader_t *leader = axis->leader;
     return axis_led(axis) && leader->begins_anew ? leader->begins_anew(leader->context) : cm1e_axis_begins_anew(axis);
 }
 
@@ -286,7 +286,7 @@ static void go_on_slower(cm1e_axis_t *axis)
 /* The leader went on with axes of other buses: this one comes back to them by itself. */
 static bool goes_on_alone(cm1e_axis_t *axis)
 {
-    const cm1e_axis_leader_t *leader = &axis->leader;
+    const cm1e_axis_leader_t *leader = axis->leader;
     if (!axis_led(axis) || !leader->alone || !leader->alone(leader->context, leader->index))
         return false;
     cm1e_axis_shift_set_point(axis, cm1e_axis_ran_on(axis));

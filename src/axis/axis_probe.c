@@ -45,12 +45,12 @@ static bool is_latched(const cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
 
 static probe_t *probe_at(cm1e_axis_t *axis, unsigned place)
 {
-    return place < PROBES ? &axis->signals.probes[place] : &axis->signals.wired->probes[place - PROBES];
+    return place < PROBES ? &axis->signals.own->probes[place] : &axis->signals.wired->probes[place - PROBES];
 }
 
 static const probe_t *probe_seen(const cm1e_axis_t *axis, unsigned place)
 {
-    return place < PROBES ? &axis->signals.probes[place] : &axis->signals.wired->probes[place - PROBES];
+    return place < PROBES ? &axis->signals.own->probes[place] : &axis->signals.wired->probes[place - PROBES];
 }
 
 static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, probe_t **probe)
@@ -134,7 +134,7 @@ static cm1e_error_t arm(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool win
     if (!axis->drive.actual.seen || !axis->position.known)
         return CM1E_ERROR_AXIS_OFFLINE;
     if (axis->signals.probes_armed == 0)
-        axis->signals.probe_sample = sample(axis);
+        axis->signals.own->last = sample(axis);
     if (trigger.input >= CM1E_WIRED_FIRST && !other_edge_waits(axis, trigger))
         axis->signals.wired->last[trigger.input - CM1E_WIRED_FIRST] = wired_sample(axis, trigger.input);
     if (probe->state != CM1E_COMMAND_ACTIVE)
@@ -229,7 +229,7 @@ static void take_latched(cm1e_axis_t *axis, probe_t *probe, cm1e_axis_trigger_t 
 
 static void step_own(cm1e_axis_t *axis, int place, const probe_sample_t *before, const probe_sample_t *now)
 {
-    probe_t *probe = &axis->signals.probes[place];
+    probe_t *probe = &axis->signals.own->probes[place];
     const cm1e_axis_trigger_t trigger = trigger_at(place);
     const unsigned bit = bit_of(trigger);
     if (is_latched(axis, trigger))
@@ -254,10 +254,10 @@ static void step_wired(cm1e_axis_t *axis, int place)
 
 void cm1e_axis_probe_step(cm1e_axis_t *axis)
 {
-    const probe_sample_t before = axis->signals.probe_sample, now = sample(axis);
-    const probe_t *probes = axis->signals.probes;
+    const probe_sample_t before = axis->signals.own->last, now = sample(axis);
+    const probe_t *probes = axis->signals.own->probes;
     const wired_probes_t *wired = axis->signals.wired;
-    axis->signals.probe_sample = now;
+    axis->signals.own->last = now;
     for (int i = 0; i < PROBES; i++)
         if (probes[i].state == CM1E_COMMAND_ACTIVE)
             step_own(axis, i, &before, &now);
@@ -268,11 +268,17 @@ void cm1e_axis_probe_step(cm1e_axis_t *axis)
 
 cm1e_error_t cm1e_axis_probe_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
-    if (axis->config->wiring.input_count == 0)
+    const bool wired = axis->config->wiring.input_count > 0;
+    axis->signals.own = calloc(1, sizeof *axis->signals.own);
+    axis->signals.wired = wired ? calloc(1, sizeof *axis->signals.wired) : NULL;
+    if (axis->signals.own && (axis->signals.wired || !wired))
         return CM1E_OK;
-    axis->signals.wired = calloc(1, sizeof *axis->signals.wired);
-    return axis->signals.wired ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the touch probes "
-                                                         "of axis \"%s\".", axis->config->name);
+    return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the touch probes of axis \"%s\".",
+                         axis->config->name);
 }
 
-void cm1e_axis_probe_free(cm1e_axis_t *axis) { free(axis->signals.wired); }
+void cm1e_axis_probe_free(cm1e_axis_t *axis)
+{
+    free(axis->signals.own);
+    free(axis->signals.wired);
+}

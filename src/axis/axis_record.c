@@ -46,7 +46,7 @@ bool cm1e_axis_same_inputs(const move_t *a, const move_t *b)
            a->acceleration == b->acceleration && a->deceleration == b->deceleration && a->jerk == b->jerk;
 }
 
-move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
+waiting_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     for (int i = 0; i < axis->commands.waiting.count; i++)
         if (waiting_move(axis, i)->id == id)

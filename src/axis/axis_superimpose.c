@@ -10,6 +10,9 @@
  * faster than the rest, the command gets the whole motion, and the superimposed motion waits, with what it has covered,
  * until there is room for it again. On an axis in Standstill the superimposed motion has all limits.
  *
+ * Of the plan the axis keeps from what it was made, and makes it again when the motion comes to its next stretch: few axes
+ * have such a motion, and the profile would be an eighth of the memory of all of them.
+ *
  * During a superimposed motion the base counts its positions without it. At its end the base and its target are shifted
  * by what it has covered.
  */
@@ -29,32 +32,50 @@ static const double same_moment = 1e-6; /* cycles */
 
 /* ---- planning ---------------------------------------------------------------------------------------------------- */
 
-static bool plan_with(const cm1e_axis_t *axis, const override_t *override, superimposed_t *on_top, bool *strays)
+static cm1e_error_t make_profile(const on_top_plan_t *plan, cm1e_profile_t *profile)
 {
-    cm1e_motion_limits_t limits;
-    if (cm1e_axis_limits_on_top(axis, on_top, override, &limits) != CM1E_OK)
-        return false;
+    return isnan(plan->target) ? cm1e_profile_to_velocity(profile, &plan->start, 0.0, &plan->limits)
+                               : cm1e_profile_to_position(profile, &plan->start, plan->target, &plan->limits);
+}
+
+static bool plan_with(const cm1e_axis_t *axis, const override_t *override, superimposed_t *on_top,
+                      cm1e_profile_t *profile, bool *strays)
+{
     const double target = on_top->move.position;
     const bool stops = on_top->paused || on_top->move.kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
-    if (stops ? cm1e_profile_to_velocity(&on_top->profile, &on_top->now, 0.0, &limits)
-              : cm1e_profile_to_position(&on_top->profile, &on_top->now, target, &limits))
+    on_top_plan_t made = {.start = on_top->now, .target = stops ? NAN : target};
+    if (cm1e_axis_limits_on_top(axis, on_top, override, &made.limits) != CM1E_OK ||
+        make_profile(&made, profile) != CM1E_OK)
         return false;
+    made.duration_s = profile->duration_s;
+    made.end = profile->end.position;
+    on_top->plan = made;
     const bool has_target = on_top->move.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
-    *strays = cm1e_axis_strays(axis, &on_top->now, has_target ? &target : NULL, &on_top->profile);
+    *strays = cm1e_axis_strays(axis, &on_top->now, has_target ? &target : NULL, profile);
     return true;
+}
+
+/* The state at a time of the plan. */
+static void sample(on_top_plan_t *plan, double time_s, cm1e_motion_state_t *state)
+{
+    cm1e_profile_t profile;
+    if (!(time_s >= plan->stretch.from_s && time_s < plan->stretch.until_s) && make_profile(plan, &profile) == CM1E_OK)
+        cm1e_profile_stretch_at(&profile, time_s, &plan->stretch);
+    *state = cm1e_profile_stretch_state(&plan->stretch, time_s);
 }
 
 /* Plans the superimposed motion. An override reduces it no more than cm1e_axis_plan() allows. */
 static bool plan(const cm1e_axis_t *axis, superimposed_t *on_top)
 {
     const override_t full = {axis->override.velocity, 1.0, 1.0};
+    cm1e_profile_t profile;
     bool strays;
     on_top->paused = axis->override.velocity == 0.0 && on_top->move.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
     on_top->cycles = 0;
-    if (!plan_with(axis, &axis->override, on_top, &strays) ||
-        (strays && !plan_with(axis, &full, on_top, &strays)))
+    if (!plan_with(axis, &axis->override, on_top, &profile, &strays) ||
+        (strays && !plan_with(axis, &full, on_top, &profile, &strays)))
         return false;
-    cm1e_profile_extent(&on_top->profile, &on_top->lowest, &on_top->highest);
+    cm1e_profile_extent(&profile, &on_top->lowest, &on_top->highest);
     return true;
 }
 
@@ -66,7 +87,7 @@ static double base_velocity(cm1e_axis_t *axis)
     if (axis->commands.active)
         fastest = fmax(fastest, fmax(fabs(axis->commands.move.velocity), fabs(axis->commands.move.end_velocity)));
     for (int i = 0; i < axis->commands.waiting.count; i++) {
-        const move_t *move = waiting_move(axis, i);
+        const waiting_t *move = waiting_move(axis, i);
         fastest = fmax(fastest, fmax(fabs(move->velocity), fabs(move->end_velocity)));
     }
     return fastest;
@@ -206,7 +227,7 @@ static bool falls_short(cm1e_axis_t *axis)
 static void finish(cm1e_axis_t *axis)
 {
     superimposed_t *on_top = &axis->superimposed;
-    on_top->now.position = on_top->moving ? on_top->profile.end.position : on_top->now.position;
+    on_top->now.position = on_top->moving ? on_top->plan.end : on_top->now.position;
     record(axis, CM1E_COMMAND_DONE, CM1E_OK);
     give_to_base(axis);
     on_top->now = (cm1e_motion_state_t){0};
@@ -399,7 +420,7 @@ void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next)
 {
     superimposed_t *on_top = &axis->superimposed;
     if (on_top->moving)
-        cm1e_profile_sample(&on_top->profile, (double)++on_top->cycles * axis->cycle_s, &on_top->now);
+        sample(&on_top->plan, (double)++on_top->cycles * axis->cycle_s, &on_top->now);
     next->position += on_top->now.position;
     next->velocity += on_top->now.velocity;
     next->acceleration += on_top->now.acceleration;
@@ -421,6 +442,6 @@ void cm1e_axis_superimposed_after(cm1e_axis_t *axis)
         return;
     }
     const double time_s = (double)on_top->cycles * axis->cycle_s;
-    if (!on_top->paused && time_s >= on_top->profile.duration_s - same_moment * axis->cycle_s)
+    if (!on_top->paused && time_s >= on_top->plan.duration_s - same_moment * axis->cycle_s)
         finish(axis);
 }

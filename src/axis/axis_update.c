@@ -48,14 +48,13 @@ cm1e_error_t cm1e_axis_update_move(cm1e_axis_t *axis, cm1e_command_id_t id, cons
     const move_t inputs = cm1e_axis_move_of(command);
     if (id == axis->commands.active)
         return update_active(axis, &inputs);
-    const move_t *waiting = cm1e_axis_find_waiting(axis, id);
-    if (waiting && waiting->kind != inputs.kind)
+    const waiting_t *waiting = cm1e_axis_find_waiting(axis, id);
+    if (!waiting)
+        return CM1E_OK; /* the command has ended */
+    if (waiting->kind != inputs.kind)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (waiting && !cm1e_axis_same_inputs(waiting, &inputs)) {
-        const move_t move = merged(waiting, &inputs);
-        return cm1e_axis_update_waiting(axis, &move);
-    }
-    return CM1E_OK; /* no change, or the command has ended */
+    const move_t old = move_of_waiting(waiting), move = merged(&old, &inputs);
+    return cm1e_axis_same_inputs(&old, &inputs) ? CM1E_OK : cm1e_axis_update_waiting(axis, &move);
 }
 
 static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)

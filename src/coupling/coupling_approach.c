@@ -266,7 +266,8 @@ void cm1e_coupling_await_step(cm1e_axis_t *axis)
     if (!trouble && !due(next, before))
         return;
     const bool may_come = !trouble && next->approach.awaited == AWAIT_MOTION && next->links[0].seen.acceleration != 0.0;
-    if (may_come && cm1e_coupling_approach_begin(axis, next, waiting_move(axis, 0), &from) == CM1E_ERROR_AXIS_SYNC_WAY)
+    const move_t move = move_of_waiting(waiting_move(axis, 0));
+    if (may_come && cm1e_coupling_approach_begin(axis, next, &move, &from) == CM1E_ERROR_AXIS_SYNC_WAY)
         return; /* the velocity of the master still changes; it may be right in a later cycle */
     c->due = true;
     c->due_error = trouble ? CM1E_ERROR_AXIS_MASTER_LOST : CM1E_OK;

@@ -189,12 +189,12 @@ bool cm1e_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s)
     coupling_t *c = axis->coupling;
     if (axis->coupling->awaited)
         return !c->due;
-    const move_t *move = waiting_move(axis, 0);
-    const waiting_coupling_t *waiting = waiting_of(axis, move->id);
+    const move_t move = move_of_waiting(waiting_move(axis, 0));
+    const waiting_coupling_t *waiting = waiting_of(axis, move.id);
     const from_t here = at_present(axis, from, late_s);
     follow_t *follow = cm1e_coupling_spare(axis);
     cm1e_motion_limits_t limits;
-    if (!waiting || prepare(axis, move, &waiting->coupling, &here, &limits) != CM1E_OK || !follow->approach.awaited)
+    if (!waiting || prepare(axis, &move, &waiting->coupling, &here, &limits) != CM1E_OK || !follow->approach.awaited)
         return false;
     cm1e_coupling_await(axis, follow);
     return true;
@@ -239,7 +239,7 @@ cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (id == axis->commands.active)
         return update_active(axis, command);
-    move_t *waiting = cm1e_axis_find_waiting(axis, id);
+    waiting_t *waiting = cm1e_axis_find_waiting(axis, id);
     if (!waiting)
         return CM1E_OK; /* the command has ended */
     if (waiting->kind != (uint8_t)command->kind || command->kind == CM1E_COMMAND_GEAR_IN_POS)
@@ -249,7 +249,7 @@ cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const
     move_t move = cm1e_axis_move_of(command);
     move.id = id;
     move.buffer_mode = waiting->buffer_mode;
-    *waiting = move;
+    *waiting = waiting_of_move(&move);
     waiting_of(axis, id)->coupling = *command->coupling;
     return CM1E_OK;
 }

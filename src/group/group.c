@@ -12,7 +12,7 @@ cm1e_error_t cm1e_group_create(AXES_GROUP_REF_t *reference, const cm1e_group_con
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_group_create() needs a place for the handle "
                              "of the group.");
     *reference = (AXES_GROUP_REF_t){0};
-    cm1e_group_t *group = calloc(1, sizeof *group);
+    cm1e_group_t *group = cm1e_cache_lines(sizeof *group);
     if (!group)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for an axes group.");
     if (config)

@@ -247,11 +247,11 @@ cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
     group->ending = group->halting = false;
     for (int i = 0; i < group->axes; i++) {
         cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused, .slow = slow,
+        group->leads[i].leader = (cm1e_axis_leader_t){.next = next, .lost = lost, .paused = paused, .slow = slow,
                                            .begins_anew = begins_anew, .stop_time = stop_time, .held = held,
                                            .alone = cm1e_group_alone, .course = &group->path.course,
                                            .bounds = bounds, .context = group, .index = (uint32_t)i};
-        if (axis && cm1e_axis_lead(axis, &leader) == CM1E_OK) {
+        if (axis && cm1e_axis_lead(axis, &group->leads[i].leader) == CM1E_OK) {
             group->led |= 1u << i;
         } else if (!some) {
             cm1e_group_let_go(group);

@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+#include "core/cache_line.h"
 #include "group/group_api.h"
 #include "motion/path.h"
 #include "motion/profile.h"
@@ -79,6 +80,11 @@ typedef struct apart {
     stray_t strays[CM1E_GROUP_AXES];
 } apart_t;
 
+/** What an axis of the path has of the group: what it reads in every cycle is in one cache line. */
+typedef struct led_axis {
+    _Alignas(CM1E_CACHE_LINE) cm1e_axis_leader_t leader;
+} led_axis_t;
+
 struct cm1e_group {
     uint16_t handle;
     cm1e_group_config_t config;
@@ -111,6 +117,8 @@ struct cm1e_group {
     group_refusal_t refusal;
     cm1e_command_state_t reset_state;
     cm1e_error_t reset_error;
+
+    led_axis_t leads[CM1E_GROUP_AXES];
 };
 
 /* group_state.c */

@@ -46,8 +46,6 @@ static void judge_extras(const cm1e_axis_t *axis)
  * struct was copied as a whole. */
 static void set_aside(cm1e_axis_t *axis)
 {
-    enum { USED = offsetof(probe_sample_t, inputs) + sizeof axis->signals.probe_sample.inputs };
-    memset((char *)&axis->signals.probe_sample + USED, 0, sizeof(probe_sample_t) - USED);
     axis->setpoint.ordinary_until_s = 0.0;
     axis->setpoint.course = 0;
     axis->drive.ordinary = (cm1e_drive_ordinary_t){0};
@@ -64,9 +62,33 @@ static void compare(const cm1e_axis_t *axis)
         must(a[i] == b[i], "the short way and the long way differ", i);
 }
 
+/* Without bytes between members. */
+static own_probes_t probes_of(const own_probes_t *probes)
+{
+    enum { USED = offsetof(probe_sample_t, inputs) + sizeof probes->last.inputs };
+    own_probes_t p;
+    memcpy(&p, probes, sizeof p);
+    memset((char *)&p.last + USED, 0, sizeof(probe_sample_t) - USED);
+    return p;
+}
+
+/* The probes of the motor are beside the axis, so the long way gets them as they were before. */
+static void compare_inputs(cm1e_axis_t *axis, own_probes_t *probes, cm1e_error_t received, cm1e_error_t health,
+                           int64_t now_ns)
+{
+    copy.signals.own = probes;
+    cm1e_axis_inputs_any(&copy, received, health, now_ns);
+    const own_probes_t brief = probes_of(axis->signals.own), full = probes_of(probes);
+    must(memcmp(&brief, &full, sizeof full) == 0, "the probes of the short way and of the long way differ", 0);
+    copy.signals.own = axis->signals.own;
+    compare(axis);
+}
+
 void ordinary_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)
 {
+    static own_probes_t probes;
     memcpy(&copy, axis, sizeof copy);
+    memcpy(&probes, axis->signals.own, sizeof probes);
     inputs_seen++;
     if (!cm1e_axis_inputs_ordinary(axis, received, health, now_ns)) {
         cm1e_axis_inputs(axis, received, health, now_ns);
@@ -77,8 +99,7 @@ void ordinary_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t heal
      * an error concerns too. */
     if (axis->observed || axis->signals.wired || axis->fault.error != copy.fault.error)
         return;
-    cm1e_axis_inputs_any(&copy, received, health, now_ns);
-    compare(axis);
+    compare_inputs(axis, &probes, received, health, now_ns);
 }
 
 /* A copy without bytes between members, and without what only the short way uses. */
@@ -124,7 +145,7 @@ static void advance_follower(cm1e_axis_t *axis)
 
 static bool is_decided(const cm1e_axis_t *axis)
 {
-    return axis_led(axis) && axis->guarding.kept_ahead && cm1e_axis_guard_decided(axis, *axis->leader.course);
+    return axis_led(axis) && axis->guarding.kept_ahead && cm1e_axis_guard_decided(axis, *axis->leader->course);
 }
 
 /* A set-point that the guard was not asked for, because it was decided ahead, is one that it lets pass. */
