@@ -108,7 +108,7 @@ static bool step(cm1e_axis_t *axis)
             return refuse(axis, guard);
     }
     cm1e_axis_put_set_point(axis, &next);
-    if (!decided && axis->leader->bounds)
+    if (!decided && axis_led(axis) && axis->leader->bounds)
         look_ahead(axis);
     if (lead == CM1E_LEAD_LAST)
         cm1e_axis_release(axis);

@@ -349,7 +349,7 @@ static double largest_number(const cm1e_axis_t *axis)
 {
     const cm1e_group_t *const group = axis->belongs.group;
     if (group && !axis->commands.active) /* led, maybe for this cycle alone */
-        return fmax(fabs(group->path.end[axis->leader->index]), fabs(cm1e_axis_place(axis, false)));
+        return fmax(fabs(group->path.end[axis->leader ? axis->leader->index : 0]), fabs(cm1e_axis_place(axis, false)));
     return fabs(cm1e_position_minus(axis->setpoint.target, axis->setpoint.position) / axis->position.scale);
 }
 
