@@ -3,6 +3,7 @@
  *
  *     bench_start [DRIVES ...]           simulated time and frames, in this process: 1, 32 and 100 drives
  *     bench_start --phases [DRIVES ...]  of each phase
+ *     bench_start --cycle US DRIVES      with this cycle time, which is 1000 us otherwise
  *     bench_start --veth [DRIVES ...]    over a pair of network interfaces of a namespace of its own, simulated drives
  *                                        in another process, and SOEM with its own port: real time, best of some rounds
  *
@@ -34,6 +35,7 @@ static cm1e_clock_t *running;
 static uint64_t frames;
 static cost_t phase_began;
 static bool show_phases;
+static long cycle_us = 1000;
 
 static void fail(const char *why)
 {
@@ -71,6 +73,7 @@ static void describe(cm1e_bus_config_t *config, const char *interface, unsigned 
     if (cm1e_bus_config_init(config, interface, drives) != CM1E_OK)
         fail("so many drives cannot be configured");
     config->virtual_time = strcmp(interface, "sim") == 0;
+    config->cycle_time_ns = cycle_us * 1000;
 }
 
 /* ---- the library ------------------------------------------------------------------------------------------------- */
@@ -249,6 +252,8 @@ int main(int count_of_words, char **words)
     for (; first < count_of_words && words[first][0] == '-'; first++) {
         wire |= strcmp(words[first], "--veth") == 0;
         show_phases |= strcmp(words[first], "--phases") == 0;
+        if (strcmp(words[first], "--cycle") == 0 && first + 1 < count_of_words)
+            cycle_us = strtol(words[++first], NULL, 10);
     }
     if (wire && !veth_make()) {
         printf("not measured: no network namespace can be made here\n");
