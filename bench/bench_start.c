@@ -124,7 +124,8 @@ static cost_t start_soem_in_process(const char *interface, unsigned drives)
     cm1e_clock_make_current(cm1e_nic_clock(nic));
     begin(cm1e_nic_clock(nic));
     const double began = now_ms();
-    const start_soem_t start = {nic, interface, drives, {PDO_OUTPUTS, PDO_INPUTS}, end_of_phase};
+    const start_soem_t start = {.nic = nic, .interface = interface, .slaves = drives,
+                                .pdos = {PDO_OUTPUTS, PDO_INPUTS}, .phase = end_of_phase};
     const char *why = start_soem_of_the_library(&start);
     if (why)
         fail(why);
@@ -140,7 +141,8 @@ static cost_t start_soem_on_wire(const char *interface, unsigned drives)
 {
     begin(cm1e_clock_monotonic());
     const double began = now_ms();
-    const start_soem_t start = {NULL, interface, drives, {PDO_OUTPUTS, PDO_INPUTS}, end_of_phase};
+    const start_soem_t start = {.interface = interface, .slaves = drives, .pdos = {PDO_OUTPUTS, PDO_INPUTS},
+                                .phase = end_of_phase};
     const char *why = start_soem_of_its_own(&start);
     if (why)
         fail(why);

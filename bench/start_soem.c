@@ -66,6 +66,9 @@ static void end_of(const char *phase)
         started->phase(phase);
 }
 
+static int receive(void *soem) { return ecx_receive_processdata(soem, EC_TIMEOUTRET); }
+static void send(void *soem) { ecx_send_processdata(soem); }
+
 static const char *run(soem_master_t *master)
 {
     ecx_contextt *context = &master->context;
@@ -89,6 +92,8 @@ static const char *run(soem_master_t *master)
         ecx_receive_processdata(context, EC_TIMEOUTRET);
         if (ecx_statecheck(context, 0, EC_STATE_OPERATIONAL, CHECK_US) == EC_STATE_OPERATIONAL) {
             end_of("Operational");
+            if (started->operating)
+                started->operating(context, receive, send);
             return NULL;
         }
     }

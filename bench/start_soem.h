@@ -15,6 +15,8 @@ typedef struct start_soem {
     uint32_t slaves;             /**< that must be found */
     uint16_t pdos[2];            /**< that every slave gets assigned: outputs, inputs */
     void (*phase)(const char *); /**< called at the end of each phase; NULL: not called */
+    /** Called in Operational, with functions that receive and send the process data; NULL: not called. */
+    void (*operating)(void *soem, int (*receive)(void *soem), void (*send)(void *soem));
 } start_soem_t;
 
 /** Brings all slaves to Operational. Returns NULL, or what went wrong. Afterwards all are in Init again. */

@@ -90,6 +90,20 @@ static bool goes_on(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
     return true;
 }
 
+/** Nothing is to be done with this slave, apart from errands and files. In a cycle that is so of most slaves. */
+static bool is_at_rest(const cm1e_bus_slave_t *slave)
+{
+    return cm1e_coe_idle(&slave->coe) && cm1e_recovery_idle(&slave->recovery) && cm1e_al_idle(&slave->al) &&
+           cm1e_recognise_idle(&slave->recognition) && cm1e_setup_idle(&slave->setup) &&
+           cm1e_mapping_idle(&slave->mapping);
+}
+
+static bool has_errands(const cm1e_bus_t *bus)
+{
+    return __atomic_load_n(&bus->errands.errand, __ATOMIC_ACQUIRE) ||
+           __atomic_load_n(&bus->errands.file, __ATOMIC_ACQUIRE);
+}
+
 void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
 {
     cm1e_errand_serve(bus, now_ns);
@@ -98,10 +112,11 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
     listen_in_turn(bus, now_ns);
     uint32_t place = bus->acyclic.next;
     const unsigned before = bus->acyclic.count;
+    const bool errands = has_errands(bus);
     for (uint32_t n = 0; n < bus->slave_count && limit > 0 && bus->acyclic.count < CM1E_FRAMES_IN_FLIGHT; n++) {
         place = place + 1 < bus->slave_count ? place + 1 : 0;
         cm1e_bus_slave_t *slave = &bus->slaves[place];
-        if (slave->owner != OWNER_NONE || !goes_on(bus, slave, now_ns))
+        if (slave->owner != OWNER_NONE || (!errands && is_at_rest(slave)) || !goes_on(bus, slave, now_ns))
             continue;
         put(bus, slave, bus->acyclic.count > before, now_ns);
         bus->acyclic.next = place;

@@ -77,7 +77,7 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
 {
     if (!bus->in_flight)
         return CM1E_ERROR_STATE;
-    cm1e_bus_enter(bus);
+    cm1e_clock_make_current(bus->clock);
     bus->in_flight = false;
     const int working_counter = cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns);
     const cm1e_error_t error = judge(bus, working_counter);

@@ -1,0 +1,154 @@
+/**
+ * A cycle of the bus beside one of bare SOEM: receive, then send, of the same simulated drives behind the same port.
+ * Drives are disabled; simulated drives and port are in both figures. A figure is processor time, median of batches;
+ * under callgrind, measured_cycles() is counted, with a dump for each call (bench/README.md).
+ *
+ *     bench_bus [DRIVES ...]      1, 16 and 128 drives
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "bus/bus_internal.h"
+#include "bus/kept.h"
+#include "start_soem.h"
+
+enum { BATCHES = 10, BATCH_CYCLES = 300, WARM = 300, PDO_OUTPUTS = 0x1600, PDO_INPUTS = 0x1A00 };
+static const unsigned usual[] = {1, 16, 128};
+static const double targets[] = {1.25, 1.10, 1.05};
+
+/** One of the two masters in Operational. */
+typedef struct subject {
+    void *context;
+    int (*receive)(void *context);
+    void (*send)(void *context);
+    cm1e_clock_t *clock;
+    int64_t next_ns;
+    int good;
+} subject_t;
+
+#define MEASURED __attribute__((noinline, noclone, used)) void
+MEASURED measured_cycles(subject_t *subject, unsigned cycles);
+
+static void fail(const char *why)
+{
+    fprintf(stderr, "bench_bus: %s\n", why);
+    exit(1);
+}
+
+MEASURED measured_cycles(subject_t *subject, unsigned cycles)
+{
+    for (unsigned i = 0; i < cycles; i++) {
+        subject->next_ns += MS_IN_NS;
+        cm1e_clock_sleep_until(subject->clock, subject->next_ns);
+        if (subject->receive(subject->context) != subject->good)
+            fail("a cycle failed");
+        subject->send(subject->context);
+    }
+    __asm__ volatile("" ::: "memory");
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double now_us(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec * 1e6 + (double)t.tv_nsec * 1e-3;
+}
+
+static double measured_us;
+static cm1e_clock_t *soem_clock;
+
+static void measure_subject(subject_t *subject)
+{
+    double batches[BATCHES];
+    subject->next_ns = cm1e_clock_now(subject->clock);
+    measured_cycles(subject, WARM);
+    for (int batch = 0; batch < BATCHES; batch++) {
+        const double began = now_us();
+        measured_cycles(subject, BATCH_CYCLES);
+        batches[batch] = (now_us() - began) / BATCH_CYCLES;
+    }
+    qsort(batches, BATCHES, sizeof batches[0], compare);
+    measured_us = batches[BATCHES / 2];
+}
+
+static int receive_ours(void *bus) { return (int)cm1e_bus_receive(bus); }
+static void send_ours(void *bus) { cm1e_bus_send(bus); }
+
+static void describe(cm1e_bus_config_t *config, unsigned drives)
+{
+    if (cm1e_bus_config_init(config, "sim", drives) != CM1E_OK)
+        fail("so many drives cannot be configured");
+    config->virtual_time = true;
+}
+
+static double measure_ours(unsigned drives)
+{
+    cm1e_bus_config_t config;
+    cm1e_bus_t *bus;
+    cm1e_diag_t diag = {0};
+    describe(&config, drives);
+    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
+        fail(diag.text);
+    cm1e_bus_keep_none(true); /* as a scheduler does */
+    subject_t subject = {bus, receive_ours, send_ours, cm1e_bus_clock(bus), 0, CM1E_OK};
+    measure_subject(&subject);
+    cm1e_bus_keep_none(false);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&config);
+    return measured_us;
+}
+
+static unsigned soem_drives;
+
+static void operate_soem(void *soem, int (*receive)(void *), void (*send)(void *))
+{
+    subject_t subject = {soem, receive, send, soem_clock, 0, 3 * (int)soem_drives};
+    send(soem);
+    measure_subject(&subject);
+    receive(soem);
+}
+
+static double measure_soem(unsigned drives)
+{
+    cm1e_bus_config_t config;
+    cm1e_nic_t *nic;
+    cm1e_diag_t diag = {0};
+    describe(&config, drives);
+    if (cm1e_nic_open(&nic, &config, &diag) != CM1E_OK)
+        fail(diag.text);
+    soem_clock = cm1e_nic_clock(nic);
+    soem_drives = drives;
+    cm1e_clock_make_current(soem_clock);
+    const start_soem_t start = {.nic = nic, .interface = "sim", .slaves = drives, .pdos = {PDO_OUTPUTS, PDO_INPUTS},
+                                .operating = operate_soem};
+    const char *why = start_soem_of_the_library(&start);
+    if (why)
+        fail(why);
+    cm1e_clock_make_current(NULL);
+    cm1e_nic_close(nic);
+    cm1e_bus_config_free(&config);
+    return measured_us;
+}
+
+static void measure(unsigned drives, double target)
+{
+    const double ours = measure_ours(drives), soem = measure_soem(drives), ratio = ours / soem;
+    printf("%6u %10.3f %10.3f %8.3f %8.2f  %s\n", drives, ours, soem, ratio, target, ratio <= target ? "pass" : "miss");
+}
+
+int main(int words, char **word)
+{
+    printf("%6s %10s %10s %8s %8s\n", "drives", "cm1e, us", "SOEM, us", "ratio", "target");
+    for (size_t i = 0; words == 1 && i < sizeof usual / sizeof usual[0]; i++)
+        measure(usual[i], targets[i]);
+    for (int i = 1; i < words; i++)
+        measure((unsigned)strtoul(word[i], NULL, 10), targets[0]);
+    return 0;
+}
