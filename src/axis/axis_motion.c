@@ -373,13 +373,16 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
 }
 
 /* The correction of the position loop. While inputs are missing the last correction stays, and an offline ramp of
- * ErrorStop has none. Else an actual position that stays the same would drive the motor faster and faster. So would one
+ * ErrorStop has none. When the actual velocity contradicts the actual position, the last correction stays too at first,
+ * and then there is none. Else an actual position that stays the same would drive the motor faster and faster. So would one
  * from before a pause, in which the motor has gone on: the last correction stays in that cycle too. */
 static double loop_velocity(cm1e_axis_t *axis)
 {
     if (axis->silence.resumed == RESUMED_FROM_PAUSE)
         return axis->setpoint.loop_velocity;
-    if (axis->drive.feedback.fresh)
+    if (cm1e_drive_contradicts_itself(&axis->drive))
+        axis->setpoint.loop_velocity = 0.0;
+    else if (axis->drive.feedback.fresh && axis->drive.actual.contradictions == 0)
         axis->setpoint.loop_velocity = csv_position_gain * cm1e_position_minus(axis->setpoint.position,
                                                                                axis_actual(axis));
     else if (axis->state == CM1E_AXIS_ERROR_STOP)

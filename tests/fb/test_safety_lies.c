@@ -14,6 +14,9 @@ enum { LENGTHS = sizeof lengths / sizeof lengths[0], ENABLED = 260, LAST_PHASE =
 static const double unit = 50000, speed_u = 10, way_u = 4;
 static const double SERVO_OVERSHOOT = 0.03; /* of the speed, at the end of a ramp without limit of jerk */
 
+/* Counts; in CSV the motor is a cycle ahead of where the position loop of the axis sees it, and comes back at the end. */
+static const double BACK = 50, CSV_BACK = 300;
+
 static bench_t bench;
 static lie_t lie;
 static int length, begin, end_at;
@@ -58,10 +61,13 @@ static void judge(void)
     cm1e_axis_error_text(bench.axis[0], text, sizeof text);
     MUST(&bench, fastest <= speed_u * unit * (1 + SERVO_OVERSHOOT), "the shaft turns at %.0f counts/s, %.0f allowed",
          fastest, speed_u * unit * (1 + SERVO_OVERSHOOT));
-    MUST(&bench, lowest_after >= held_at - 50, "the shaft goes back by %.0f counts", held_at - lowest_after);
-    MUST(&bench, farthest <= way_u * unit + 1500, "the shaft comes to %.0f, %.0f commanded", farthest, way_u * unit);
+    const bool by_velocity = bench.config.axes[0].mapping == CM1E_MAPPING_CSV;
+    /* In CSV a slow motor that shows a frozen position is not recognised, and goes on by its lag (docs/SAFETY.md). */
+    const bool goes_on = by_velocity && lie == FROZEN;
+    MUST(&bench, goes_on || lowest_after >= held_at - (by_velocity ? CSV_BACK : BACK), "the shaft goes back by %.0f counts", held_at - lowest_after);
+    MUST(&bench, goes_on || farthest <= way_u * unit + 1500, "the shaft comes to %.0f, %.0f commanded", farthest, way_u * unit);
     if (info.state != CM1E_AXIS_ERROR_STOP) {
-        MUST(&bench, fabs(probe.position_counts - way_u * unit) < 75, "ends at %.0f", probe.position_counts);
+        MUST(&bench, goes_on || fabs(probe.position_counts - way_u * unit) < 75, "ends at %.0f", probe.position_counts);
         return;
     }
     const bool impossible = lie <= A_FAR_JUMP;
@@ -102,11 +108,14 @@ START_TEST(test_no_motor_is_moved_by_what_is_told_of_it)
     static const struct {
         cm1e_mapping_t mapping;
         const char *firmware;
-    } variants[] = {{CM1E_MAPPING_DYNAMIC, "1.3.5"}, {CM1E_MAPPING_DYNAMIC, "1.2.0"}, {CM1E_MAPPING_CSP, "1.3.0"}};
+    } variants[] = {{CM1E_MAPPING_DYNAMIC, "1.3.5"}, {CM1E_MAPPING_DYNAMIC, "1.2.0"}, {CM1E_MAPPING_CSP, "1.3.0"},
+                    {CM1E_MAPPING_CSV, "1.3.5"}};
+    enum { VARIANTS = sizeof variants / sizeof variants[0] };
     int moment = 0;
     const int stride = sweep_stride(23, 151);
     lie = (lie_t)_i;
-    for (int v = 0; v < 3; v++)
+    const int last = lie == A_SMALL_JUMP ? VARIANTS - 1 : VARIANTS; /* in CSV the position loop makes up 3,000 counts */
+    for (int v = 0; v < last; v++)
         for (int l = 0; l < LENGTHS; l++, moment++)
             for (begin = ENABLED - 60 + moment * 7 % stride; begin < ENABLED + LAST_PHASE; begin += stride) {
                 length = lengths[l];
