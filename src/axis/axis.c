@@ -16,6 +16,7 @@
 #include "axis/axis_lead.h"
 #include "axis/axis_limits.h"
 #include "axis/axis_pause.h"
+#include "axis/axis_pursuit.h"
 #include "axis/axis_position.h"
 #include "axis/axis_power.h"
 #include "axis/axis_setpoint.h"
@@ -267,10 +268,10 @@ void cm1e_axis_advance_any(cm1e_axis_t *axis)
             axis->motor_hooks->step(axis);
         cm1e_axis_power_step(axis);
     }
-    if (!axis->silence.frozen || !set_points_move(axis))
-        cm1e_axis_motion_step(axis);
-    else
+    if (axis->silence.frozen && set_points_move(axis))
         stay(axis);
+    else if (!axis_has_extra(axis, EXTRA_PURSUIT) || !cm1e_axis_pursue(axis))
+        cm1e_axis_motion_step(axis);
     after_motion(axis, undisturbed);
 }
 

@@ -53,6 +53,8 @@ typedef struct coupling_hooks {
      *  their master. */
     void (*resume_masters)(cm1e_axis_t *axis, int64_t pause_ns);
     void (*resume_slaves)(cm1e_axis_t *axis);
+    /** Called when the velocity of the axis has changed by a step, before its set-point: the slaves catch up. */
+    void (*begin_slaves_anew)(cm1e_axis_t *axis);
     /** Called before any axis makes its set-point, while the axis follows: masters on another bus may be silent. */
     void (*look_across)(cm1e_axis_t *axis);
     /** Called in place of the set-point, while the axis follows and its bus is silent. */

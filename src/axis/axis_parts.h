@@ -27,8 +27,18 @@ typedef struct outside {
 
 /* ---- set-point: axis_setpoint.h ---------------------------------------------------------------------------------- */
 
+/** A motor that has run ahead of its set-point: axis_pursuit.h. */
+typedef struct pursuit {
+    double velocity;                /**< u/s; of the set-point before the motor ran ahead */
+    double speed;                   /**< u/s; of the motor then: it lags by two cycles */
+    double unheard_s;               /**< without targets */
+    uint16_t cycles;                /**< in which the set-point has gone after it */
+    bool under_way;                 /**< it has run ahead */
+    bool waits;                     /**< for the second answer after a pause */
+} pursuit_t;
+
 /** The set-point: its source, its state of motion, and the profile that it follows. Written by axis_setpoint.h,
- *  axis_course.h, axis_motion.c and axis_ordinary.c. */
+ *  axis_course.h, axis_motion.c, axis_ordinary.c and axis_pursuit.c. */
 typedef struct setpoint {
     const source_t *source;         /**< cm1e_axis_set_source() */
     bool reached, positive_before;
@@ -51,6 +61,7 @@ typedef struct setpoint {
     cm1e_slow_time_t slow;          /**< of a table over time (axis_pause.c) */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */
+    pursuit_t pursuit;              /**< with EXTRA_PURSUIT */
 } setpoint_t;
 
 /* ---- position: axis_position.h ----------------------------------------------------------------------------------- */
@@ -340,6 +351,7 @@ typedef enum extra {
     EXTRA_ON_TOP = 4,   /**< a superimposed motion is a part of the set-point, or waits for room */
     EXTRA_BACKLASH = 8, /**< there is a gap between motor and load */
     EXTRA_OBJECTS = 16, /**< vendor parameters are asked for */
+    EXTRA_PURSUIT = 32, /**< the motor has run ahead of its set-point, or perhaps has */
 } extra_t;
 
 /** What the axis is a part of. Written by axis.c and axis_lead.c. */

@@ -26,6 +26,7 @@
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
 #include "axis/axis_power.h"
+#include "axis/axis_pursuit.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_superimpose.h"
 
@@ -86,8 +87,7 @@ static void lost_speed(cm1e_axis_t *axis, double velocity)
     cm1e_axis_keep_torque(axis, velocity);
 }
 
-/* Begins the motion anew at the present set-point with this velocity (u/s). */
-static void begin_anew(cm1e_axis_t *axis, double velocity)
+void cm1e_axis_begin_anew(cm1e_axis_t *axis, double velocity)
 {
     lost_speed(axis, axis->setpoint.velocity - velocity);
     cm1e_axis_put_velocity(axis, velocity);
@@ -110,9 +110,10 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
         cm1e_axis_backlash_stop(axis);
     if (!set_points_move(axis))
         return;
+    cm1e_axis_pursuit_prepare(axis, (double)pause_ns * 1e-9);
     if (goes_on)
         cm1e_axis_shift_set_point(axis, axis->setpoint.velocity * axis->position.scale * (double)pause_ns * 1e-9);
-    begin_anew(axis, goes_on ? axis->setpoint.velocity : 0.0);
+    cm1e_axis_begin_anew(axis, goes_on ? axis->setpoint.velocity : 0.0);
 }
 
 /* ---- silence ----------------------------------------------------------------------------------------------------- */
@@ -278,7 +279,7 @@ static void go_on_slower(cm1e_axis_t *axis)
     if (axis->setpoint.source->slow)
         axis->setpoint.source->slow(axis, part);
     else if (!(axis_follows(axis) ? only_superimposed_slower(axis, part) : both_slower(axis, part)))
-        begin_anew(axis, axis->setpoint.velocity * part);
+        cm1e_axis_begin_anew(axis, axis->setpoint.velocity * part);
     if (axis->setpoint.velocity != before)
         lost_speed(axis, before - axis->setpoint.velocity);
 }
@@ -298,7 +299,7 @@ static bool goes_on_alone(cm1e_axis_t *axis)
 
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
-    if (goes_on_alone(axis))
+    if (goes_on_alone(axis) || cm1e_axis_pursuit_begin(axis))
         return;
     const bool follows_on = axis_follows(axis) && axis->coupling_hooks->begins_anew(axis);
     const double ran_on = cm1e_axis_ran_on(axis);
@@ -310,7 +311,7 @@ static void go_on_or_begin_anew(cm1e_axis_t *axis)
     const bool led = axis_led(axis); /* the path also pauses for an axis at rest */
     const double left = led && axis->mode != CM1E_MODE_CSV ? 0.0 : velocity_left(axis);
     if (left != axis->setpoint.velocity || follows_on || led || ran_on != 0.0)
-        begin_anew(axis, left);
+        cm1e_axis_begin_anew(axis, left);
 }
 
 /* Slaves are handled after their masters, and before any axis advances, so that all see the same place. */

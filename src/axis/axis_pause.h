@@ -22,6 +22,8 @@ static inline bool cm1e_axis_hears_well(const cm1e_axis_t *axis)
 }
 /** Called before the set-point of the first cycle in which a frame has come back. */
 void cm1e_axis_after_silence(cm1e_axis_t *axis);
+/** Begins the motion anew at the present set-point with this velocity (u/s). */
+void cm1e_axis_begin_anew(cm1e_axis_t *axis, double velocity);
 /** Whether the motor has no new target for so long that it stops (CSP). */
 bool cm1e_axis_stops_unheard(const cm1e_axis_t *axis);
 /** Counts by which a motor has gone on in a silence that ended just now (CSV). */

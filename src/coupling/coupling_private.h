@@ -216,6 +216,8 @@ void cm1e_coupling_advance_masters(cm1e_axis_t *axis);
 void cm1e_coupling_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
 /** Lets the slaves that follow this axis begin anew after silence. */
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis);
+/** Lets the slaves catch up with this axis, whose velocity has changed by a step. */
+void cm1e_coupling_begin_slaves_anew(cm1e_axis_t *axis);
 /** The bus of the slave is silent. Remembers whether a master on another bus goes on meanwhile. */
 void cm1e_coupling_fall_behind(cm1e_axis_t *axis);
 /** Renews what the slave assumes of masters on other buses. true: an assumption has changed, or a master went on while

@@ -97,6 +97,7 @@ static const coupling_hooks_t hooks = {
     .is_followed = is_followed,
     .resume_masters = cm1e_coupling_resume_masters,
     .resume_slaves = cm1e_coupling_resume_slaves,
+    .begin_slaves_anew = cm1e_coupling_begin_slaves_anew,
     .begins_anew = cm1e_coupling_begins_anew,
     .look_across = cm1e_coupling_look_across,
     .held = cm1e_coupling_held,

@@ -126,6 +126,13 @@ void cm1e_coupling_resume_slaves(cm1e_axis_t *axis)
         cm1e_axis_after_silence(link->slave);
 }
 
+void cm1e_coupling_begin_slaves_anew(cm1e_axis_t *axis)
+{
+    for (link_t *link = axis->coupling->slaves; link; link = link->next)
+        if (axis_follows(link->slave) && !link->slave->setpoint.pursuit.under_way)
+            cm1e_axis_begin_anew(link->slave, link->slave->setpoint.velocity);
+}
+
 /* ---- who follows whom -------------------------------------------------------------------------------------------- */
 
 static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark);

@@ -15,7 +15,9 @@
 #define SERVO_GAIN 1.15           /* of the maximum acceleration, within GAIN_MS */
 #define SERVO_BANDWIDTH 500.0     /* rad/s, of its position loop */
 #define STALL_OVERSHOOT 0.05      /* docs/SAFETY.md: 5 % above the earlier speed after a pause of the host */
-#define HOMING_OVERSHOOT 0.5      /* of the own motion of a drive whose load lets it lag, at its limit of torque */
+/* Of the own motion of a drive whose load lets it lag: with torque for the acceleration A, below a of the profile, it
+ * reaches the speed v behind by v^2 / 2 (1 / A - 1 / a), and A makes at most v sqrt(1 - A / a) more of that. */
+#define HOMING_OVERSHOOT 1.0
 #define RING_OVERSHOOT 0.12       /* where a cable of a ring breaks or is mended, targets come up to a cycle late */
 #define JOLT_OVERSHOOT 0.02       /* where frames are sent late, because those of another network were waited for */
 #define HOMING_SPEED 100000.0     /* counts/s, by the drive (scenario_machine.c) */
@@ -27,7 +29,7 @@
 #define COARSE_STILL_COUNTS 110.0 /* in CSV it hunts round its target, where friction is large (in_position.window) */
 #define ROTOR_INERTIA_PER_TORQUE 3e-5 /* kg m2 for a Nm of peak torque */
 #define RADIANS 6.283185307179586     /* of a revolution */
-enum { GAIN_MS = 20, STILL_MS = 60, STALL_MS = 300, CATCH_MS = 500, QUIET_MS = 200 };
+enum { GAIN_MS = 20, STILL_MS = 60, STALL_MS = 300, CATCH_MS = 500, QUIET_MS = 200, HALT_MS = 300 };
 
 static int cycles_of(const run_t *run, double ms) { return (int)(ms * 1000 / run->scenario->cycle_us); }
 
@@ -123,36 +125,62 @@ static double allowed_share(const run_t *run, const machine_axis_t *axis)
     const int lately = cycles_of(run, QUIET_MS);
     if (axis->seen.rung < lately)
         return RING_OVERSHOOT;
-    if (axis->seen.homes)
-        return HOMING_OVERSHOOT;
     if (axis->seen.stalled < cycles_of(run, STALL_MS))
         return STALL_OVERSHOOT;
     return run->networks > 1 && axis->seen.jolted < lately ? JOLT_OVERSHOOT : SERVO_OVERSHOOT;
+}
+
+/** The drive homes, or did not long ago and may still halt: by itself, with its own speed and acceleration. */
+static bool is_homing(const run_t *run, const machine_axis_t *axis)
+{
+    return axis->seen.homing < cycles_of(run, HALT_MS);
+}
+
+/** Counts/s, without what the servo does by itself. */
+static double highest_speed(const run_t *run, const machine_axis_t *axis)
+{
+    const double by_axis = axis->spec->velocity * (1 + allowed_share(run, axis));
+    const double by_drive = HOMING_SPEED * (1 + HOMING_OVERSHOOT);
+    if (axis->info.state == CM1E_AXIS_HOMING)
+        return by_drive;
+    return is_homing(run, axis) ? fmax(by_axis, by_drive) : by_axis;
 }
 
 static void judge_speed(run_t *run, machine_axis_t *axis)
 {
     const axis_spec_t *spec = axis->spec;
     const double speed = fabs(axis->probe.velocity_counts_per_s);
-    const double share = allowed_share(run, axis);
     if (is_pushed(run, axis) || recoils(run, axis))
         return;
     const double servo = SERVO_FILTER_S * fmax(spec->acceleration, spec->deceleration) + SERVO_SPEED_COUNTS +
                          (by_velocity(spec) ? COARSE_COUNTS : 0);
-    const double most = axis->seen.homes ? fmax(spec->velocity, HOMING_SPEED) : spec->velocity;
-    const double over = speed / most - 1;
+    const double own = is_homing(run, axis) ? HOMING_SPEED : 0, over = speed / fmax(spec->velocity, own) - 1;
     run->outcome->over_speed = fmax(run->outcome->over_speed, over);
-    const double above = (speed - most * (1 + share) - servo) / spec->velocity;
+    const double above = (speed - highest_speed(run, axis) - servo) / spec->velocity;
     run->outcome->over_tolerance = fmax(run->outcome->over_tolerance, above);
     if (above > 0)
         scenario_fail(run, "speed", "%s (%s): the shaft turns at %.0f counts/s, %.3f %% over the maximum of %.0f",
                       axis->name, cm1e_axis_state_name(axis->info.state), speed, 100 * over, spec->velocity);
 }
 
-/** The set-point itself knows no tolerance but that of its numbers. */
-static void judge_set_point(run_t *run, const machine_axis_t *axis)
+/** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
+static bool was_disturbed(const run_t *run, const witness_t *seen)
 {
-    const double speed = fabs(axis->info.set_velocity) * axis->spec->counts_per_unit;
+    const int lately = cycles_of(run, QUIET_MS);
+    return seen->quiet < lately || seen->stalled < lately || seen->rung < lately || seen->jolted < lately;
+}
+
+/** The set-point itself knows no tolerance but that of its numbers. */
+static void judge_set_point(run_t *run, machine_axis_t *axis)
+{
+    const axis_spec_t *spec = axis->spec;
+    const double speed = fabs(axis->info.set_velocity) * spec->counts_per_unit, before = axis->seen.set_speed;
+    const double gain = fmax(spec->acceleration, spec->deceleration) * run->scenario->cycle_us * 1e-6;
+    axis->seen.set_speed = speed;
+    if (speed - before > gain * (1 + 1e-6) + 1e-3 && !was_disturbed(run, &axis->seen) &&
+        axis->info.state != CM1E_AXIS_HOMING)
+        scenario_fail(run, "set-point", "%s (%s): the set velocity gains %.3f counts/s in a cycle, its limits allow "
+                      "%.3f", axis->name, cm1e_axis_state_name(axis->info.state), speed - before, gain);
     if (speed > axis->spec->velocity * (1 + 1e-6) + 1e-3 && axis->info.state != CM1E_AXIS_HOMING)
         scenario_fail(run, "set-point", "%s (%s): the set velocity is %.3f counts/s, the maximum %.3f", axis->name,
                       cm1e_axis_state_name(axis->info.state), speed, axis->spec->velocity);
@@ -170,6 +198,15 @@ static bool at_stop(const machine_axis_t *axis)
     return axis->spec->stops != 0 && fabs(axis->probe.position_counts) > STOP_COUNTS;
 }
 
+/** Counts/s; while friction holds a shaft, its set-point gets faster: when it breaks free, it gains that too. */
+static double speed_held_back(const machine_axis_t *axis)
+{
+    const double longest = 2.5 * slack_of(axis->spec) + (by_velocity(axis->spec) ? COARSE_STILL_COUNTS : 0);
+    const double most = sqrt(2 * fmax(axis->spec->acceleration, axis->spec->deceleration) * longest);
+    const bool held = fabs(axis->probe.velocity_counts_per_s) < 1;
+    return held ? fmin(fabs(axis->info.set_velocity) * axis->spec->counts_per_unit, most) : 0;
+}
+
 /** How much faster it has become within some cycles. */
 static void judge_gain(run_t *run, machine_axis_t *axis)
 {
@@ -177,8 +214,8 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
     const int window = cycles_of(run, GAIN_MS);
     const double speed = fabs(axis->probe.velocity_counts_per_s);
     memmove(seen->speeds + 1, seen->speeds, sizeof seen->speeds - sizeof seen->speeds[0]);
-    seen->speeds[0] = speed;
-    const double homing = seen->homes ? HOMING_ACCELERATION : 0;
+    seen->speeds[0] = fmax(speed, speed_held_back(axis));
+    const double homing = is_homing(run, axis) ? HOMING_ACCELERATION : 0;
     const double most = fmax(fmax(axis->spec->acceleration, axis->spec->deceleration), homing) * window *
                         run->scenario->cycle_us * 1e-6;
     double before = 0; /* a short silence stops a motor and lets it go on: it gets no faster than it was */
@@ -192,8 +229,7 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
         return;
     /* A motor that was held for a moment gets back to the speed that its set-point has by now, or a heavy load has run
      * on and comes back. Its maximum velocity holds all the same. */
-    const int lately = cycles_of(run, QUIET_MS);
-    if (seen->quiet < lately || seen->stalled < lately || seen->rung < lately || seen->jolted < lately)
+    if (was_disturbed(run, seen))
         return;
     if (gain > most * SERVO_GAIN + noise)
         scenario_fail(run, "gain", "%s (%s): the shaft gains %.0f counts/s in %d cycles, its limits allow %.0f",
@@ -408,14 +444,13 @@ void judge_begin(run_t *run)
     run->outcome->hash = UINT64_C(0xCBF29CE484222325);
     for (int n = 0; n < run->scenario->axis_count; n++) {
         witness_t *seen = &run->axes[n].seen;
-        *seen = (witness_t){.kept = true, .stalled = 1000000, .rung = 1000000, .caught = 1000000,
+        *seen = (witness_t){.kept = true, .stalled = 1000000, .rung = 1000000, .caught = 1000000, .homing = 1000000,
                             .quiet = 1000000, .jolted = 1000000, .pushed_until = -1000000};
         for (int i = 0; i < run->scenario->step_count; i++) {
             const char *name = scenario_blocks[(int)run->scenario->steps[i].block];
             if ((int)run->scenario->steps[i].axis == n &&
                 (strcmp(name, "MC_SetPosition") == 0 || strcmp(name, "MC_Home") == 0))
                 seen->shifted = true;
-            seen->homes = seen->homes || ((int)run->scenario->steps[i].axis == n && strcmp(name, "MC_Home") == 0);
         }
     }
 }
@@ -428,6 +463,7 @@ void judge_cycle(run_t *run)
         judge_power(run, axis);
         axis->seen.stalled++;
         axis->seen.rung++;
+        axis->seen.homing = axis->info.state == CM1E_AXIS_HOMING ? 0 : axis->seen.homing + 1;
         axis->seen.jolted = run->bad[0] > 0 || run->bad[SCENARIO_NETWORKS - 1] > 0 ? 0 : axis->seen.jolted + 1;
         axis->seen.quiet = run->bad[axis->network] > 0 ? 0 : axis->seen.quiet + 1;
         if (!is_motor(axis))

@@ -26,6 +26,7 @@ typedef struct instance {
 typedef struct witness {
     cm1e_axis_state_t state;
     double speeds[SPEEDS];                    /**< of the last cycles */
+    double set_speed;                     /**< counts/s, of the set-point */
     double rest_at;                       /**< counts; where it came to rest */
     int rest_cycles;                      /**< since it is to be at rest, and is */
     bool torque_on;                       /**< in the cycle before */
@@ -38,7 +39,7 @@ typedef struct witness {
     bool kept;                            /**< the device has not lost its position since the start */
     bool coasted;                         /**< beyond a software limit, since it had no torque */
     bool shifted;                         /**< its coordinates are not those of the start any more */
-    bool homes;                           /**< the program has MC_Home, which has a speed of its own */
+    int homing;                           /**< cycles since its drive homed */
     int error_at;                         /**< cycle in which it came into ErrorStop */
     cm1e_axis_state_t logged;             /**< last state that the log told */
     int off_cycles;                       /**< without MC_Power.Enable, or in ErrorStop, and still under torque */

@@ -199,6 +199,18 @@ bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double ste
     return !moving && (step == 0 || fabs(off) <= fmax(w->max_step, 3 * shaft) + 1.0);
 }
 
+static double counts_between(int32_t to, int32_t from) { return (double)(int32_t)((uint32_t)to - (uint32_t)from); }
+
+/** A load has turned the shaft on while no targets came: it is ahead of its target by more than a servo ever puts it.
+ *  Then the target goes after it: with any step that does not lead beyond the shaft, or with smaller and smaller ones. */
+static bool goes_after(const witness_t *w, double step)
+{
+    const double shaft = counts_between(w->position, w->position_before), sign = copysign(1, w->direction);
+    const double lead = sign * (counts_between(w->position, w->target) + step + shaft); /* before this step */
+    return w->direction != 0 && step * sign >= 0 && lead > 0.25 * fmax(fabs(w->step), fabs(step)) + 2 &&
+           (lead >= fabs(step) || fabs(step) <= fabs(w->step) + w->max_gain + 2);
+}
+
 /** Set-points may neither be faster nor change faster than the axis's limits say; a target is rounded to counts. */
 static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double step)
 {
@@ -210,7 +222,7 @@ static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double st
     w->eased_cycles = step * w->direction < 0 ? 0 : within && change <= w->max_gain + 1.0 ? w->eased_cycles + 1 : 0;
     w->turning = step * w->direction < 0 || (w->turning && w->eased_cycles < 20);
     w->direction = step != 0 ? step : w->direction;
-    const bool smooth = fabs(step - w->step) <= most && (w->turning || within);
+    const bool smooth = (fabs(step - w->step) <= most && (w->turning || within)) || goes_after(w, step);
     w->set_points++;
     if (!(slow && smooth) && began_anew(bench, n, w, step)) {
         w->step = step == 0 ? 0 : (double)(int32_t)((uint32_t)w->target - (uint32_t)w->position);

@@ -1,0 +1,183 @@
+/*
+ * A motor that has run ahead of its set-point (CSP).
+ *
+ * A drive without new targets holds its last one. If the load is heavy, the motor needs longer to stop than frames were
+ * missing, and is beyond that target when the next one comes. If the motion began anew there, the servo would pull the
+ * load back, even backwards, and the motor would exceed its maximum velocity while it catches up afterwards. So the
+ * set-point first goes after the motor, never faster than before the silence or pause, and slower when it is near. The
+ * motion begins anew where both meet. Slaves of the axis see another velocity of their master then, and catch up.
+ *
+ * Only the axis itself may decide that. A slave stays with its master, an axis of a group on its path, and a motion made
+ * of several goes on after one or two cycles.
+ */
+#include <math.h>
+
+#include "axis/axis_backlash.h"
+#include "axis/axis_extras.h"
+#include "axis/axis_hooks.h"
+#include "axis/axis_lead.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_pause.h"
+#include "axis/axis_pursuit.h"
+#include "axis/axis_setpoint.h"
+
+/* The set-point goes as much faster than the motor as makes up the distance in this time. A servo with a bandwidth above
+ * 1 / approach_s brakes the motor until both meet, and does not overshoot. */
+static const double approach_s = 8e-3;
+/* Of the way in a cycle before: so near, the servo makes up the rest. */
+static const double near = 0.5;
+/* Of that way: one that is no farther ahead follows its set-point. */
+static const double farthest_ways = 1.25;
+/* A motor that is not met by then is moved by its load. */
+static const double longest_s = 0.25;
+
+static void end(cm1e_axis_t *axis)
+{
+    axis->setpoint.pursuit = (pursuit_t){0};
+    cm1e_axis_set_extra(axis, EXTRA_PURSUIT, false);
+}
+
+/* Without 0x606C the actual velocity is the mean since the last answer: only the second one shows how fast the motor
+ * is. */
+static bool shows_velocity(const cm1e_axis_t *axis) { return axis->drive.image.in_velocity.bytes > 0; }
+
+static bool may_pursue(const cm1e_axis_t *axis)
+{
+    return axis->mode == CM1E_MODE_CSP && !cm1e_drive_is_virtual(&axis->drive) && set_points_move(axis) &&
+           axis->state != CM1E_AXIS_ERROR_STOP && !axis_follows(axis) && !axis_led(axis);
+}
+
+/* u/s, in the direction of the motion before. */
+static double speed_of_motor(const cm1e_axis_t *axis)
+{
+    const double counts_per_s = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
+    return copysign(1.0, axis->setpoint.pursuit.velocity) * counts_per_s / axis->position.scale;
+}
+
+/* u; by how much the motor is farther than one that follows its set-point, which is a cycle behind it. */
+static double lead_of_motor(const cm1e_axis_t *axis)
+{
+    const double ahead = cm1e_position_minus(axis_actual(axis), axis->setpoint.position) / axis->position.scale;
+    return copysign(1.0, axis->setpoint.pursuit.velocity) * ahead + speed_of_motor(axis) * axis->cycle_s;
+}
+
+/* u; of the motion before. */
+static double way_of_cycle(const cm1e_axis_t *axis) { return fabs(axis->setpoint.pursuit.velocity) * axis->cycle_s; }
+
+static void prepare(cm1e_axis_t *axis, double unheard_s, bool waits)
+{
+    if (!may_pursue(axis) || axis->setpoint.velocity == 0.0)
+        return;
+    const double v = axis->setpoint.velocity, gain = axis->setpoint.acceleration * 2.0 * axis->cycle_s;
+    const double speed = fabs(v) - fmax(0.0, v > 0.0 ? gain : -gain);
+    axis->setpoint.pursuit = (pursuit_t){.velocity = v, .speed = speed, .unheard_s = unheard_s, .waits = waits};
+    cm1e_axis_set_extra(axis, EXTRA_PURSUIT, true);
+}
+
+void cm1e_axis_pursuit_prepare(cm1e_axis_t *axis, double unheard_s)
+{
+    prepare(axis, unheard_s, !shows_velocity(axis));
+}
+
+/* Whether a servo that brakes as hard as this one has braked would overshoot when it has pulled the motor back. */
+static bool is_too_far(const cm1e_axis_t *axis)
+{
+    const pursuit_t *pursuit = &axis->setpoint.pursuit;
+    const double braking = fmax(0.0, pursuit->speed - speed_of_motor(axis)) / pursuit->unheard_s;
+    return lead_of_motor(axis) > fmax(farthest_ways * way_of_cycle(axis), braking * approach_s * approach_s / 2.0);
+}
+
+static bool begin(cm1e_axis_t *axis)
+{
+    const bool ahead = speed_of_motor(axis) > 0.0 && is_too_far(axis);
+    axis->setpoint.pursuit.under_way = ahead;
+    if (!ahead)
+        end(axis);
+    return ahead;
+}
+
+/* About the cycles in which the motor has braked: those of this silence, and since earlier ones that still count. */
+static double cycles_of_braking(const cm1e_axis_t *axis)
+{
+    const int silent = axis->silence.silent_before, earlier = axis->silence.shaken - silent * CM1E_SHAKEN_BY_SILENCE;
+    return silent + fmax(0.0, earlier) / 3.0;
+}
+
+bool cm1e_axis_pursuit_begin(cm1e_axis_t *axis)
+{
+    const bool composite = axis->setpoint.source->is_composite || axis->superimposed.id;
+    if (!may_pursue(axis))
+        return false;
+    if (axis->setpoint.pursuit.under_way) /* it goes on, and ends by what the drive shows now */
+        return true;
+    if (composite && axis->silence.silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES) /* it would end */
+        return false;
+    prepare(axis, cycles_of_braking(axis) * axis->cycle_s, false);
+    return axis_has_extra(axis, EXTRA_PURSUIT) && shows_velocity(axis) && begin(axis);
+}
+
+/* u/s, in the direction of the motion before; never more than in the cycle before. */
+static double speed_of_pursuit(const cm1e_axis_t *axis)
+{
+    const double before = axis->setpoint.pursuit.cycles > 0 ? axis->setpoint.velocity : axis->setpoint.pursuit.velocity;
+    return fmax(0.0, fmin(speed_of_motor(axis) + lead_of_motor(axis) / approach_s, fabs(before)));
+}
+
+static bool is_over(const cm1e_axis_t *axis, double speed)
+{
+    const cm1e_motion_state_t now = {0.0, axis->setpoint.velocity, 0.0};
+    return speed == 0.0 || lead_of_motor(axis) <= near * way_of_cycle(axis) ||
+           axis->setpoint.pursuit.cycles * axis->cycle_s > longest_s ||
+           !cm1e_axis_limits_can_stop(axis, cm1e_axis_line(axis, axis->setpoint.position), now);
+}
+
+/* Called when the velocity has changed by a step, and before the set-point of the cycle is made. */
+static void tell_slaves(cm1e_axis_t *axis)
+{
+    if (axis->coupling_hooks)
+        axis->coupling_hooks->begin_slaves_anew(axis);
+}
+
+/* The set-point of this cycle. Where the pursuit is over, the next one is that of the motion that begins anew. */
+static void go_after(cm1e_axis_t *axis)
+{
+    const double speed = speed_of_pursuit(axis), velocity = copysign(speed, axis->setpoint.pursuit.velocity);
+    const bool over = is_over(axis, speed);
+    cm1e_axis_put_velocity(axis, velocity);
+    cm1e_axis_set_reached(axis, false);
+    tell_slaves(axis);
+    cm1e_axis_shift_set_point(axis, velocity * axis->cycle_s * axis->position.scale);
+    axis->setpoint.pursuit.cycles++;
+    if (!over)
+        return;
+    end(axis);
+    cm1e_axis_begin_anew(axis, velocity);
+}
+
+/* Another motion has begun at the set-point, or there is none any more. A profile that began before must not go on. */
+static void give_up(cm1e_axis_t *axis)
+{
+    const bool under_way = axis->setpoint.pursuit.under_way;
+    end(axis);
+    if (!under_way || !axis_on_profile(axis))
+        return;
+    cm1e_axis_begin_anew(axis, axis->setpoint.velocity);
+    tell_slaves(axis);
+}
+
+bool cm1e_axis_pursue(cm1e_axis_t *axis)
+{
+    if (!may_pursue(axis)) {
+        give_up(axis);
+        return false;
+    }
+    pursuit_t *pursuit = &axis->setpoint.pursuit;
+    if (!pursuit->under_way && (axis->silence.resumed || pursuit->waits)) { /* what the drive has shown is older */
+        pursuit->waits = pursuit->waits && axis->silence.resumed;
+        return false;
+    }
+    if (!pursuit->under_way && !begin(axis))
+        return false;
+    go_after(axis);
+    return true;
+}
