@@ -90,6 +90,7 @@ const struct argp argp_run = {
 
 static cm1e_error_t write_files(const cm1e_scheduler_t *scheduler, const run_options_t *options, cm1e_diag_t *diag)
 {
+    /* cppcheck-suppress uninitvar ; they are the three functions */
     cm1e_error_t (*const writers[FILES])(const cm1e_scheduler_t *, const char *, cm1e_diag_t *) = {
         cm1e_scheduler_write_csv, cm1e_scheduler_write_svg, cm1e_scheduler_write_html};
     cm1e_error_t error = CM1E_OK;

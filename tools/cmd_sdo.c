@@ -101,6 +101,7 @@ static int find_type(const char *name, const cm1e_entry_t *entry)
 static int64_t sign_extend(uint64_t value, unsigned bytes)
 {
     const unsigned shift = 64 - 8 * bytes;
+    /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): a number has 1 byte or more */
     return (int64_t)(value << shift) >> shift;
 }
 
@@ -141,6 +142,7 @@ static size_t encode_value(const char *word, int type, uint8_t *data)
             complain("the value must have 1 ... %d characters", MAX_SDO_BYTES);
             return 0;
         }
+        /* NOLINTNEXTLINE(bugprone-not-null-terminated-result): strings of CoE have no end 0 */
         memcpy(data, word, length);
         return length;
     }

@@ -635,8 +635,10 @@ int command_tune(int argc, char **argv)
         runs[i].axis_number = (uint32_t)axis;
         runs[i].config = settings;
         if (!plan(&runs[i]))
+            /* NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): the command ends here */
             return EXIT_WRONG_USE;
     }
     const int64_t cycle_ns = config.cycle_time_ns ? config.cycle_time_ns : 1000000;
+    /* NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): the command ends here */
     return make_records(runs, (double)cycle_ns * 1e-9) ? run_both(runs, &config) : EXIT_FAILED;
 }

@@ -72,6 +72,7 @@ CM1E_RARE static void look_ahead(cm1e_axis_t *axis)
     double left_s;
     const bool kept = leader->bounds(leader->context, leader->index, &most, &left_s) &&
                       cm1e_axis_well_ahead(axis, &most, -most.velocity * left_s, most.velocity * left_s);
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a leader has a course */
     cm1e_axis_guard_decide(axis, kept, *leader->course);
 }
 

@@ -49,6 +49,7 @@ cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double a
 {
     const override_t asked = {velocity, acceleration, jerk};
     const cm1e_error_t error = set_override(axis, &asked);
+    /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c): a refused NaN is the same NaN */
     if (error == CM1E_OK || memcmp(&asked, &axis->override_refused, sizeof asked) != 0)
         cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OVERRIDE});
     axis->override_refused = error != CM1E_OK ? asked : axis->override;

@@ -73,6 +73,7 @@ static cm1e_error_t in_bootstrap(cm1e_foe_t *foe, const transfer_t *transfer)
         else if (error != CM1E_ERROR_BUS_LOST)
             (void)cm1e_bootstrap_leave(&bootstrap);
     }
+    foe->mailbox = NULL;
     cm1e_bus_set_phase(foe->bus, BUS_OPEN); /* the states of the other slaves are no longer known */
     return error;
 }

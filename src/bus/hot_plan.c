@@ -55,7 +55,7 @@ static void describe_motors(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
             motors[channel - 1] = axis->motor;
     }
     const cm1e_device_t *device = slave->info.device;
-    if (device && device->with_motors)
+    if (device->with_motors)
         slave->info.device = device->with_motors(motors);
     slave->info.kind = slave->info.device->kind;
     slave->info.model = slave->info.device->model;
@@ -156,6 +156,7 @@ static void plan_motors(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 /** The entries of the PDOs that the configuration assigns, where it states them too; false: it does not. */
 static bool plan_stated(const cm1e_slave_config_t *config, int direction, cm1e_mapped_direction_t *mapped)
 {
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): the configuration has this slave */
     const unsigned count = direction ? config->inputs_pdo_count : config->outputs_pdo_count;
     const uint16_t *pdos = direction ? config->inputs_pdos : config->outputs_pdos;
     for (unsigned i = 0; i < count; i++) {
@@ -250,6 +251,7 @@ static cm1e_sii_sync_manager_t sync_manager_of(const cm1e_bus_slave_t *slave, in
 {
     cm1e_sii_sync_manager_t manager = slave->hot.scouted.sync_managers[sm];
     if (sm >= PROCESS_OUTPUTS && cm1e_bus_has_motors(slave)) {
+        /* cppcheck-suppress arrayIndexOutOfBoundsCond ; sm is one of the four */
         const cm1e_sync_manager_t *standard = &cm1e_device_sync_managers[sm];
         manager.start = manager.start ? manager.start : standard->start;
         manager.control = standard->control;

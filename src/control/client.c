@@ -263,7 +263,7 @@ cm1e_error_t cm1e_control_connect(cm1e_control_t **control, const char *target, 
     if (!target)
         error = connect_to_owner(control, interface_name, diag);
     else if (is_number(target))
-        error = connect_to_process(control, atoi(target), interface_name, diag);
+        error = connect_to_process(control, (int)strtol(target, NULL, 10), interface_name, diag);
     else
         error = connect_to(control, target, diag);
     if (error != CM1E_OK) {

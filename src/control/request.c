@@ -471,7 +471,7 @@ static json_t *end_write(control_request_t *request, control_run_t *run)
         return request->file ? cm1e_file_decided(request) : submitted(request, write->result);
     snprintf(text, sizeof text, "Axis \"%s\" is commanded by the program: nothing is written to slave %u until it "
              "is at standstill without a command.", cm1e_axis_configuration(run->view.axes[write->commanded])->name,
-             write->file ? write->file->position : request->sdo.position);
+             write->file ? (unsigned)write->file->position : (unsigned)request->sdo.position);
     request->state = REQUEST_NONE;
     return cm1e_request_refuse(request->id, write->result, 0, text);
 }

@@ -104,7 +104,8 @@ cm1e_error_t cm1e_output_check(const char *path, cm1e_diag_t *diag)
     if (error != CM1E_OK)
         return error;
     fclose(output.file);
-    unlink(output.temporary);
+    if (output.temporary) /* none, where a device has taken the place of the file meanwhile */
+        unlink(output.temporary);
     forget(&output);
     return CM1E_OK;
 }

@@ -106,8 +106,10 @@ static bool rational(double value, ratio_t *result)
 static bool multiply(ratio_t *a, wide_t numerator, wide_t denominator)
 {
     const wide_t left = divisor(a->numerator, denominator), right = divisor(numerator, a->denominator);
+    /* NOLINTNEXTLINE(clang-analyzer-core.DivideZero): a divisor is 0 only of two zeros */
     const wide_t up = a->numerator / left, by = numerator / right;
     const wide_t down = a->denominator / right, under = denominator / left;
+    /* NOLINTNEXTLINE(clang-analyzer-core.DivideZero): quotients by a divisor are above 0 */
     if (up > largest / by || down > largest / under)
         return false;
     *a = (ratio_t){up * by, down * under};

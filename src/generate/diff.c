@@ -14,6 +14,7 @@
 
 static bool is_product(const cm1e_description_t *described, const cm1e_description_t *live)
 {
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): live is there without an error */
     return described->vendor_id == live->vendor_id && described->product_given &&
            described->product_code == live->product_code;
 }
@@ -21,6 +22,7 @@ static bool is_product(const cm1e_description_t *described, const cm1e_descripti
 static cm1e_error_t not_described(const cm1e_description_t *live, cm1e_diag_t *diag)
 {
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "the file does not describe a device of vendor 0x%08X, product "
+                         /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): live is there without an error */
                          "0x%08X", (unsigned)live->vendor_id, (unsigned)live->product_code);
 }
 

@@ -309,6 +309,7 @@ static void read_items_of_info(dictionary_t *dictionary, const xmlNode *info, cm
             continue;
         cm1e_described_entry_t *entry = &object->entries.at[meant];
         entry->place = cm1e_xml_line(item);
+        /* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Branch): resolve() fills a slot for each entry */
         if (!slots[meant].key && *name)
             entry->name = name;
         read_values(dictionary, cm1e_xml_child(item, "Info"), entry);
@@ -322,6 +323,7 @@ static void split_default(dictionary_t *dictionary, cm1e_bytes_t whole, cm1e_des
 {
     for (size_t i = 0; i < object->entries.count; i++) {
         cm1e_described_entry_t *entry = &object->entries.at[i];
+        /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): resolve() fills a slot for each entry */
         const size_t bits = entry->bits, at = slots[i].offset < 0 ? SIZE_MAX / 2 : (size_t)slots[i].offset;
         if (bits == 0 || at + bits > 8 * whole.size)
             continue;
@@ -345,6 +347,7 @@ static void read_record(dictionary_t *dictionary, const xmlNode *node, size_t ty
     if (dictionary->reader->arena->failed)
         return;
     for (size_t i = 0; i < object->entries.count; i++)
+        /* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Branch): resolve() fills a slot for each entry */
         if (slots[i].key)
             read_values(dictionary, slots[i].item, &object->entries.at[i]);
     const cm1e_bytes_t whole = read_data(dictionary, cm1e_xml_child(info, "DefaultData"));

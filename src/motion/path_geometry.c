@@ -184,6 +184,7 @@ static void line_or_arc_at(const cm1e_path_piece_t *piece, int axes, double leng
     const double s = sin(l / piece->radius), c = cos(l / piece->radius), s2 = sin(l / piece->radius / 2);
     for (int i = 0; i < piece->measured; i++) {
         const double u = piece->u[end][i], v = piece->v[end][i];
+        /* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): measured is at most axes */
         point->position[i] += piece->radius * (v * s - 2 * u * s2 * s2);
         point->tangent[i] = v * c - u * s;
         point->curvature[i] = -(u * c + v * s) / piece->radius;
@@ -321,10 +322,12 @@ void cm1e_path_curve_derivatives(const cm1e_path_piece_t *curve, int axes, doubl
     for (int i = 0; i < axes; i++)
         third[i] = 6 * curve->power[3][i] + x * (24 * curve->power[4][i] + x * 60 * curve->power[5][i]);
     for (int i = 0; i < curve->measured; i++) {
+        /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): measured is at most axes */
         dot11 += first[i] * first[i];
         dot12 += first[i] * second[i];
         dot22 += second[i] * second[i];
-        dot13 += first[i] * third[i];
+        /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): measured is at most axes */
+        dot13 += first[i] * third[i]; /* cppcheck-suppress uninitvar ; measured is at most axes */
     }
     /* v, v' and v'' are the derivatives of the length by the parameter. */
     const double v = sqrt(dot11), v1 = dot12 / v, v2 = (dot22 + dot13 - v1 * v1) / v;
@@ -351,6 +354,7 @@ static double distance_from(const cm1e_path_piece_t *piece, const double *point)
     const bool arc = piece->kind == CM1E_PATH_ARC;
     double square = 0, out = 0, along = 0;
     for (int i = 0; i < piece->measured; i++) {
+        /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): measured is at most axes */
         const double from = point[i] - piece->from[i];
         square += from * from;
         out += arc ? from * u[i] : 0;

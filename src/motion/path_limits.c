@@ -53,7 +53,7 @@ static int steps_over(const cm1e_path_piece_t *curve)
     double shortest = INFINITY;
     for (int i = 0; i < CM1E_PATH_KNOTS; i++)
         shortest = smaller(shortest, curve->at[i + 1] - curve->at[i]);
-    const double steps = STEPS_LEAST / 2 * curve->length / CM1E_PATH_KNOTS / shortest;
+    const double steps = STEPS_LEAST / 2.0 * curve->length / CM1E_PATH_KNOTS / shortest;
     return (int)smaller(larger(steps, STEPS_LEAST), STEPS_MOST);
 }
 

@@ -53,6 +53,7 @@ static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *con
                              "Both interfaces of the ring are \"%s\": a ring needs two network interfaces.", names[0]);
     }
     for (int i = 0; i < link->ports; i++) {
+        /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): a link has two ports at most */
         const cm1e_error_t error = cm1e_raw_socket_open(&raw->sockets[i], names[i], diag);
         if (error != CM1E_OK) {
             raw_close(link);

@@ -211,6 +211,7 @@ static void outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_n
     for (uint8_t i = 0; i < image->slot_count && size >= image->bytes; i++) {
         const cm1e_sim_cia402_slot_t *slot = &image->slots[i];
         if (slot->value) {
+            /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): a slot has 1 byte or more */
             const uint64_t raw = cm1e_get_uint(data, slot->bytes), sign = UINT64_C(1) << (8 * slot->bytes - 1);
             *slot->value = slot->is_signed ? (int64_t)(raw ^ sign) - (int64_t)sign : (int64_t)raw;
         }

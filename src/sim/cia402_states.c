@@ -143,6 +143,7 @@ void cm1e_sim_cia402_command(cm1e_sim_cia402_t *drive)
     else if (drive->generator) /* no torque without a mode */
         apply(drive, controlword);
     if (drive->state == OPERATION_ENABLED)
+        /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): Operation enabled has a generator */
         drive->generator->outputs(drive, rising);
 }
 

@@ -152,6 +152,7 @@ static bool access_memory(cm1e_sim_slave_t *slave, uint32_t address, uint8_t *re
         else if (from)
             memcpy(slave->memory + address, from, n);
         else
+            /* NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): what is not written is read */
             memcpy(to, slave->memory + address, n);
         any = any || !sm;
     }

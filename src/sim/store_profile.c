@@ -76,6 +76,7 @@ static void add_entry(build_t *build, const cm1e_entry_t *ours, const cm1e_sim_p
     cm1e_sim_store_t *to = &build->to;
     cm1e_entry_t *entry = &to->own_entries[build->entry_count];
     *entry = ours ? *ours
+                  /* cppcheck-suppress nullPointerRedundantCheck ; one of the two is there */
                   : (cm1e_entry_t){.index = told->index, .subindex = told->subindex, .name = "", .unit = "",
                                    .default_string = "", .minimum = INT64_MIN, .maximum = INT64_MAX};
     if (told && !told->missing)

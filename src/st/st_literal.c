@@ -217,6 +217,7 @@ expr_t *cm1e_st_literal(st_t *st, place_t place, const char *text)
     if (strcmp(cleaned, "TRUE") == 0 || strcmp(cleaned, "FALSE") == 0)
         return made(st, place, T_BOOL, (constant_t){.integer = cleaned[0] == 'T'});
     if (strcmp(cleaned, "BOOL#TRUE") == 0 || strcmp(cleaned, "BOOL#FALSE") == 0)
+        /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): the text has more than 5 characters */
         return made(st, place, T_BOOL, (constant_t){.integer = cleaned[5] == 'T'});
     if (strcmp(cleaned, "NULL") == 0)
         return made(st, place, T_NULL, (constant_t){0});

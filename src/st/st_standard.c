@@ -82,15 +82,13 @@ static bool refuse(st_t *st, const expr_t *call, const expr_t *arg, const char *
 /** Gives the arguments from `first` on one type, the smallest that has all their values. */
 static bool one_type(st_t *st, expr_t *call, arg_t *first, bool (*good)(type_kind_t kind), const char *wanted)
 {
-    expr_t *sum = NULL;
+    expr_t *sum = first->value;
     for (arg_t *arg = first; arg; arg = arg->next) {
         const type_kind_t kind = arg->value->type->kind;
         if (!good(kind))
             return refuse(st, call, arg->value, wanted);
-        if (!sum) {
-            sum = arg->value;
+        if (arg == first)
             continue;
-        }
         const type_kind_t both = cm1e_st_type_for_both(sum, arg->value);
         if (both == T_NONE) {
             cm1e_st_report(st, arg->value->place, "%s needs values of one type; no type has all values of %s and %s",
@@ -196,7 +194,12 @@ static bool reference(st_t *st, expr_t *call)
 
 static bool give_type(st_t *st, expr_t *call)
 {
-    expr_t *first = call->args ? call->args->value : NULL;
+    if (call->standard->rule == R_NOW) { /* has no argument */
+        call->type = st->elementary[T_TIME];
+        return true;
+    }
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): check_args() has counted them */
+    expr_t *first = call->args->value;
     switch (call->standard->rule) {
     case R_REAL: return one_type(st, call, call->args, is_real, "REAL or LREAL");
     case R_NUMBER: return one_type(st, call, call->args, cm1e_st_is_number, "a number");
@@ -213,7 +216,7 @@ static bool give_type(st_t *st, expr_t *call)
         call->type = st->elementary[T_DINT];
         return true;
     case R_MOVE: *call = *cm1e_st_settle(st, first); return true;
-    case R_NOW: call->type = st->elementary[T_TIME]; return true;
+    case R_NOW: break;
     case R_REF: return reference(st, call);
     case R_VALID:
         if (first->kind != E_DEREF)

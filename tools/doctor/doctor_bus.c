@@ -167,6 +167,7 @@ static void say_foreign_frames(doctor_t *doctor, unsigned long long foreign)
 static void look_at_clocks(doctor_t *doctor, cm1e_bus_t *bus)
 {
     uint32_t worst_ns = 0, count = 0;
+    /* NOLINTNEXTLINE(bugprone-too-small-loop-variable): CM1E_MAX_SLAVES at most */
     for (uint16_t position = 1; position <= cm1e_bus_slave_count(bus); position++) {
         cm1e_slave_clock_t clock;
         cm1e_bus_slave_clock(bus, position, &clock);
