@@ -6,8 +6,10 @@
 #include "core/bytes.h"
 
 enum { GROUP_TRIES = 3, SILENT_LIMIT = 3, GROUP_BYTES_MAX = 8 };
-/** For one group. A memory chip takes some 100 to 300 us. */
+/** For one group. A memory chip takes some 100 to 300 us. When this time has passed because the master itself stood still,
+ *  the slave has not been looked at: so it also takes some looks. */
 #define GROUP_NS INT64_C(20000000)
+enum { LOOKS_MIN = 8 };
 #define NACK_PAUSE_NS INT64_C(1000000)
 
 static bool is_known(const cm1e_sii_fetch_t *fetch, unsigned word) { return fetch->known[word / 8] >> word % 8 & 1; }
@@ -17,7 +19,7 @@ static void go_on(cm1e_sii_fetch_t *fetch)
 {
     while (fetch->word < fetch->end && is_known(fetch, fetch->word))
         fetch->word++;
-    fetch->tries = 0;
+    fetch->tries = fetch->looks = 0;
     fetch->deadline_ns = 0;
     fetch->step = fetch->word == fetch->end ? FETCH_IDLE : FETCH_ASK;
 }
@@ -50,7 +52,7 @@ bool cm1e_sii_fetch_next(cm1e_sii_fetch_t *fetch, cm1e_datagram_t *d, int64_t no
     const uint16_t station = fetch->station;
     if (fetch->deadline_ns == 0)
         fetch->deadline_ns = now_ns + GROUP_TRIES * GROUP_NS;
-    if (fetch->step != FETCH_IDLE && now_ns >= fetch->deadline_ns)
+    if (fetch->step != FETCH_IDLE && now_ns >= fetch->deadline_ns && fetch->looks >= LOOKS_MIN)
         fail(fetch, fetch->silent > 0);
     if (now_ns < fetch->not_before_ns)
         return false;
@@ -105,6 +107,7 @@ static void not_answered(cm1e_sii_fetch_t *fetch)
 void cm1e_sii_fetch_result(cm1e_sii_fetch_t *fetch, const cm1e_datagram_t *d, int64_t now_ns)
 {
     const uint16_t status = cm1e_get_u16(d->data);
+    fetch->looks++;
     if (d->working_counter != 1) {
         not_answered(fetch);
         return;

@@ -25,6 +25,7 @@ typedef struct cm1e_sii_fetch {
     cm1e_fetch_step_t step;
     uint16_t word, end;         /**< what is to be fetched now */
     unsigned tries, silent;     /**< of one group; datagrams in a row that the slave did not answer */
+    unsigned looks;             /**< answers of one group */
     int64_t deadline_ns, not_before_ns;
     bool failed;                /**< it cannot be read */
     bool lost;                  /**< because its controller does not answer */
