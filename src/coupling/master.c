@@ -128,7 +128,7 @@ void cm1e_coupling_resume_slaves(cm1e_axis_t *axis)
 
 void cm1e_coupling_begin_slaves_anew(cm1e_axis_t *axis)
 {
-    for (link_t *link = axis->coupling->slaves; link; link = link->next)
+    for (link_t *link = axis->followed->slaves; link; link = link->next)
         if (axis_follows(link->slave) && !link->slave->setpoint.pursuit.under_way)
             cm1e_axis_begin_anew(link->slave, link->slave->setpoint.velocity);
 }
