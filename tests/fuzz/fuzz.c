@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 static const char *seed_folder;
 
@@ -29,6 +31,43 @@ void fuzz_seed(const char *name, const void *bytes, size_t size)
         fprintf(stderr, "cannot write %s\n", path);
         exit(1);
     }
+}
+
+void fuzz_seed_file(const char *path)
+{
+    char whole[4096], name[100];
+    static uint8_t bytes[65536];
+    snprintf(whole, sizeof whole, CM1E_SOURCE_DIR "/%s", path);
+    snprintf(name, sizeof name, "%s", path);
+    for (char *at = name; (at = strchr(at, '/'));)
+        *at = '_';
+    FILE *file = fopen(whole, "rb");
+    if (!file)
+        fuzz_fail("no seed %s", whole);
+    fuzz_seed(name, bytes, fread(bytes, 1, sizeof bytes, file));
+    fclose(file);
+}
+
+const char *fuzz_file(const uint8_t *bytes, size_t size)
+{
+    static char path[32];
+    static int fd = -1;
+    if (fd < 0) {
+        fd = memfd_create("input", 0);
+        snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    }
+    if (fd < 0 || ftruncate(fd, 0) != 0 || pwrite(fd, bytes, size, 0) != (ssize_t)size)
+        fuzz_fail("no file for the input");
+    return path;
+}
+
+void fuzz_use_text(const char *text)
+{
+    if (!text[0])
+        fuzz_fail("nothing is said");
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ' && *text != '\n')
+            fuzz_fail("a text for a terminal has the byte 0x%02X", (unsigned char)*text);
 }
 
 const cm1e_device_options_t *fuzz_devices(size_t *count)

@@ -21,6 +21,12 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
 /** Every target's: hands its good files to fuzz_seed(), made by our own writers. */
 void fuzz_seeds(void);
 void fuzz_seed(const char *name, const void *bytes, size_t size);
+/** Hands a file of the project to it, by its path from the root. */
+void fuzz_seed_file(const char *path);
+/** The input as a file, for readers that take a path: valid until the next call. */
+const char *fuzz_file(const uint8_t *bytes, size_t size);
+/** A text for a user says something, within its line. */
+void fuzz_use_text(const char *text);
 
 /** Device options that between them show everything that a description can hold: model, firmware, mapping ... */
 const cm1e_device_options_t *fuzz_devices(size_t *count);
