@@ -30,8 +30,6 @@
 #include "axis/axis_setpoint.h"
 #include "axis/axis_superimpose.h"
 
-/* Counts/s: the resolution of the actual velocity of old firmware, and of a velocity computed from two positions. */
-static const double velocity_noise = 3000.0;
 /* The part of the maximum velocity that is kept free for each cycle of silence, because a motor that has slowed down
  * overshoots when it gets back to its speed. */
 static const double reserve = 0.08;
@@ -208,7 +206,7 @@ static double velocity_left(const cm1e_axis_t *axis)
     const double most = fabs(set) * part_below(axis, highest_after(axis, axis->silence.silent_before));
     const double change = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration) * axis->cycle_s *
                           (double)(axis->silence.silent_before + 1);
-    const double kept = fabs(set - left) <= change + velocity_noise / fabs(axis->position.scale) ? set : left;
+    const double kept = fabs(set - left) <= change + CM1E_AXIS_VELOCITY_NOISE / fabs(axis->position.scale) ? set : left;
     return fmax(-most, fmin(kept, most));
 }
 

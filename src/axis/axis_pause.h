@@ -9,6 +9,9 @@
 
 #include "axis/axis_parts.h"
 
+/** Counts/s: the resolution of the actual velocity of old firmware, and of a velocity computed from two positions. */
+enum { CM1E_AXIS_VELOCITY_NOISE = 3000 };
+
 /** Called at the begin of a cycle: whether an answer has come. Without an answer it is not known which target the drive
  *  holds. */
 void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost);

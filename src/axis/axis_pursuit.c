@@ -28,6 +28,8 @@ static const double approach_s = 8e-3;
 static const double near = 0.5;
 /* Of that way: one that is no farther ahead follows its set-point. */
 static const double farthest_ways = 1.25;
+/* Counts: of the actual position. */
+static const double position_noise = 2.0;
 /* A motor that is not met by then is moved by its load. */
 static const double longest_s = 0.25;
 
@@ -84,7 +86,8 @@ static bool is_too_far(const cm1e_axis_t *axis)
 {
     const pursuit_t *pursuit = &axis->setpoint.pursuit;
     const double braking = fmax(0.0, pursuit->speed - speed_of_motor(axis)) / pursuit->unheard_s;
-    return lead_of_motor(axis) > fmax(farthest_ways * way_of_cycle(axis), braking * approach_s * approach_s / 2.0);
+    const double noise = (position_noise + CM1E_AXIS_VELOCITY_NOISE * axis->cycle_s) / fabs(axis->position.scale);
+    return lead_of_motor(axis) > fmax(farthest_ways * way_of_cycle(axis), braking * approach_s * approach_s / 2.0) + noise;
 }
 
 static bool begin(cm1e_axis_t *axis)

@@ -19,8 +19,12 @@
 
 #if defined __GNUC__
 #pragma GCC diagnostic ignored "-Woverflow" /* integers wrap, constants too */
-#if __GNUC__ >= 11 && !defined __clang__
+#if !defined __clang__
+#if __GNUC__ >= 11
 #pragma GCC diagnostic ignored "-Wstringop-overread" /* it does not see that the length of a text is looked at */
+#endif
+/* GCC 12 makes |x| of IF x < 0 THEN x := 0 - x, and takes that for above 0, although it wraps at the smallest number. */
+#pragma GCC optimize("no-ssa-phiopt")
 #endif
 #define ST_UNUSED __attribute__((unused))
 #define ST_EXPORT __attribute__((visibility("default")))
@@ -104,7 +108,7 @@ typedef void *st_interface_t;
         return b == -1 ? (T)-a : (T)(a / b);                                                                          \
     }                                                                                                                 \
     ST_UNUSED static inline T st_mod_##T(T a, T b) { return b == 0 || b == -1 ? 0 : (T)(a % b); }                     \
-    ST_UNUSED static inline T st_abs_##T(T a) { return a < 0 ? (T)-a : a; }
+    ST_UNUSED static inline T st_abs_##T(T a) { return a < 0 ? (T)(UINT64_C(0) - (uint64_t)a) : a; }
 #define ST_UNSIGNED_DIVISION(T)                                                                                       \
     ST_UNUSED static inline T st_div_##T(T a, T b, const char *file, int line)                                        \
     {                                                                                                                 \

@@ -26,6 +26,10 @@ FUNCTION Sum : DINT VAR_INPUT v : Row; END_VAR VAR i : INT; END_VAR
   FOR i := -1 TO 1 DO Sum := Sum + v[i]; END_FOR END_FUNCTION
 FUNCTION Move1 : Point VAR_INPUT p : Point; END_VAR Move1 := p; Move1.x := Move1.x + 1; END_FUNCTION
 FUNCTION Bump VAR_INPUT what : REFERENCE TO INT; more : INT; END_VAR what := what + more; END_FUNCTION
+FUNCTION Flat : INT VAR_INPUT d : DINT; END_VAR VAR z : DINT; END_VAR
+  IF ABS(d + 0) + 0 <= z + 0 THEN Flat := 1; END_IF END_FUNCTION
+FUNCTION Flat2 : INT VAR_INPUT d : DINT; END_VAR
+  IF d < 0 THEN d := 0 - d; END_IF IF d <= 0 THEN Flat2 := 1; END_IF END_FUNCTION
 FUNCTION_BLOCK Counter VAR_INPUT step : INT := 2; END_VAR VAR_OUTPUT total : INT := 100; END_VAR
   total := total + step; END_FUNCTION_BLOCK
 FUNCTION_BLOCK Outer VAR_IN_OUT shared : INT; END_VAR VAR inner : Counter := (step := 5); END_VAR
@@ -74,6 +78,8 @@ CASES = [
      {"b": True, "n": 7, "i": 4}),
     ("z REF= i; Bump(what := z, more := 3); z REF= j; z := 9;", {"i": 3, "j": 9}),
     ("b := 1.0 / (LREAL#0.0 - i) > 0.0;", {"b": True}),  # GCC 12 alone makes -0.0 of it
+    # GCC 12 alone takes |d| for above 0, which it is not at the smallest number.
+    ("d := -1; FOR i := 1 TO 31 DO d := d * 2; END_FOR j := Flat(d); n := Flat2(d);", {"d": -2**31, "j": 1, "n": 1}),
     ("IF i = 1 THEN j := 1; ELSIF i = 0 THEN j := 2; ELSIF TRUE THEN j := 3; ELSE j := 4; END_IF;", {"j": 2}),
     ("i := 4; CASE i OF 1, 2: j := 1; 3..5, 9: j := 2; n := 7; ELSE j := 3; END_CASE", {"j": 2, "n": 7}),
     ("i := 6; CASE i OF 1, 2: j := 1; 3..5: j := 2; ELSE j := 3; n := 1; END_CASE", {"j": 3, "n": 1}),
