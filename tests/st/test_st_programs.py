@@ -393,6 +393,8 @@ def check(binaries, folder, seed, count):
     for number in range(count):
         programs[f"P{number}"] = make_program(rng, number, functions)
     known = expected(python + [line for texts in programs.values() for line in texts[1]])
+    if not known:
+        return 0
     for name in known:
         st += programs[name][0]
     host = Host(binaries, folder, "\n".join(st), f"programs{seed}")
