@@ -19,6 +19,9 @@ AXES = """bus: {{interface: {interface}, lost_cycles_limit: 50}}
 axes: [{{name: X, {more}}}]
 """
 PATIENCE_S = 60
+# The simulated motor is behind its set-point by a time, whatever its velocity. That time depends on where in a cycle of the
+# servo a frame arrives: 1.10 to 1.48 ms were seen.
+LAG_S = (0.9e-3, 1.8e-3)
 
 
 class Bench:
@@ -53,10 +56,11 @@ def measurements(bench):
     step = bench.measured("step", *limits)["before"]["parts"][0]
     wire.check(0.02 < step["rise_s"] < 0.3 and step["overshoot_percent"] < 5 and 0 <= step["settling_s"] < 0.3 and
                0 < step["largest_lag"] < 0.05, f"step: {step}")
-    ramp = bench.measured("ramp", "--max-travel", "1", "--max-velocity", "2")["before"]["parts"][0]
-    faster = bench.measured("ramp", "--max-travel", "2", "--max-velocity", "4")["before"]["parts"][0]
-    wire.check(0 < ramp["steady_lag"] <= ramp["largest_lag"] and 1.6 < faster["steady_lag"] / ramp["steady_lag"] < 2.4,
-               f"the lag grows with the velocity: {ramp} {faster}")
+    for travel, velocity in ((1, 2), (4, 8)):
+        ramp = bench.measured("ramp", "--max-travel", str(travel), "--max-velocity", str(velocity))["before"]["parts"][0]
+        behind_s = ramp["steady_lag"] / velocity
+        wire.check(LAG_S[0] < behind_s < LAG_S[1] and ramp["steady_lag"] <= ramp["largest_lag"],
+                   f"the lag at {velocity} u/s is that of {behind_s:.6f} s: {ramp}")
     chirp = bench.measured("chirp", *limits, "--frequency", "6", "--to", "40", "--steps", "4")["before"]["parts"]
     wire.check([round(part["frequency"], 2) for part in chirp] == [6, 11.29, 21.25, 40], f"frequencies: {chirp}")
     for slow, fast in zip(chirp, chirp[1:]):
