@@ -28,9 +28,11 @@ def expect(condition, what, told=""):
 
 def wait_for(condition, what, seconds=10):
     end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
+    met = condition()
+    while not met and time.monotonic() < end:
         time.sleep(0.01)
-    expect(condition(), what)
+        met = condition()
+    expect(met, what)
 
 
 def path_of(name):
