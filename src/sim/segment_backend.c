@@ -52,8 +52,8 @@ static cm1e_error_t make_segment(sim_t *sim, const char *name, const cm1e_bus_co
     const bool by_file = bus_file(name) != NULL, by_config = !by_file && config->axis_count + config->slave_count > 0;
     if (by_file)
         error = cm1e_bus_config_load(&other, bus_file(name), diag);
-    else if (!by_config)
-        error = cm1e_bus_config_init(&other, CM1E_SIM_INTERFACE, 1);
+    else if (!by_config && (error = cm1e_bus_config_init(&other, CM1E_SIM_INTERFACE, 1)) != CM1E_OK)
+        cm1e_diag_set(diag, error, 0, "No memory for the simulated segment.");
     if (error == CM1E_OK) {
         cm1e_diag_t why = {.error = CM1E_ERROR_NO_MEMORY};
         sim->segment = cm1e_sim_segment_create(by_config ? config : &other, &why);
