@@ -34,7 +34,7 @@ typedef struct pursuit {
     double unheard_s;               /**< without targets */
     uint16_t cycles;                /**< in which the set-point has gone after it */
     bool under_way;                 /**< it has run ahead */
-    bool waits;                     /**< for the second answer after a pause */
+    uint8_t waits;                  /**< for so many answers after the pause: axis_pursuit.c */
 } pursuit_t;
 
 /** The set-point: its source, its state of motion, and the profile that it follows. Written by axis_setpoint.h,

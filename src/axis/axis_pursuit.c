@@ -39,8 +39,10 @@ static void end(cm1e_axis_t *axis)
     cm1e_axis_set_extra(axis, EXTRA_PURSUIT, false);
 }
 
-/* Without 0x606C the actual velocity is the mean since the last answer: only the second one shows how fast the motor
- * is. */
+/* Without 0x606C the actual velocity is the way since the last answer, as a way in one cycle. A pause ends anywhere in a
+ * cycle: the way to its first answer lasted longer, that to the second one may have lasted nearly no time. Only the
+ * third one shows how fast the motor is. So it is with the first answers after a silence, if one of them came late. */
+enum { WAITS_AFTER_PAUSE = 2, WAITS_AFTER_SILENCE = 1 };
 static bool shows_velocity(const cm1e_axis_t *axis) { return axis->drive.image.in_velocity.bytes > 0; }
 
 static bool may_pursue(const cm1e_axis_t *axis)
@@ -66,7 +68,7 @@ static double lead_of_motor(const cm1e_axis_t *axis)
 /* u; of the motion before. */
 static double way_of_cycle(const cm1e_axis_t *axis) { return fabs(axis->setpoint.pursuit.velocity) * axis->cycle_s; }
 
-static void prepare(cm1e_axis_t *axis, double unheard_s, bool waits)
+static void prepare(cm1e_axis_t *axis, double unheard_s, uint8_t waits)
 {
     if (!may_pursue(axis) || axis->setpoint.velocity == 0.0)
         return;
@@ -78,7 +80,7 @@ static void prepare(cm1e_axis_t *axis, double unheard_s, bool waits)
 
 void cm1e_axis_pursuit_prepare(cm1e_axis_t *axis, double unheard_s)
 {
-    prepare(axis, unheard_s, !shows_velocity(axis));
+    prepare(axis, unheard_s, shows_velocity(axis) ? 0 : WAITS_AFTER_PAUSE);
 }
 
 /* Whether a servo that brakes as hard as this one has braked would overshoot when it has pulled the motor back. */
@@ -115,7 +117,7 @@ bool cm1e_axis_pursuit_begin(cm1e_axis_t *axis)
         return true;
     if (composite && axis->silence.silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES) /* it would end */
         return false;
-    prepare(axis, cycles_of_braking(axis) * axis->cycle_s, false);
+    prepare(axis, cycles_of_braking(axis) * axis->cycle_s, shows_velocity(axis) ? 0 : WAITS_AFTER_SILENCE);
     return axis_has_extra(axis, EXTRA_PURSUIT) && shows_velocity(axis) && begin(axis);
 }
 
@@ -175,8 +177,9 @@ bool cm1e_axis_pursue(cm1e_axis_t *axis)
         return false;
     }
     pursuit_t *pursuit = &axis->setpoint.pursuit;
-    if (!pursuit->under_way && (axis->silence.resumed || pursuit->waits)) { /* what the drive has shown is older */
-        pursuit->waits = pursuit->waits && axis->silence.resumed;
+    if (!pursuit->under_way && (axis->silence.resumed || pursuit->waits > 0)) { /* what the drive has shown is older */
+        if (!axis->silence.resumed)
+            pursuit->waits--;
         return false;
     }
     if (!pursuit->under_way && !begin(axis))
