@@ -19,6 +19,8 @@
  * reaches the speed v behind by v^2 / 2 (1 / A - 1 / a), and A makes at most v sqrt(1 - A / a) more of that. */
 #define HOMING_OVERSHOOT 1.0
 #define RING_OVERSHOOT 0.12       /* where a cable of a ring breaks or is mended, targets come up to a cycle late */
+#define HEAVY_OVERSHOOT 0.04      /* a lost frame, and a load that the servo cannot pull back without overshoot; */
+#define COMPOSITE_OVERSHOOT 0.11  /* of a slave, a path, or what is superimposed (docs/SAFETY.md) */
 #define JOLT_OVERSHOOT 0.02       /* where frames are sent late, because those of another network were waited for */
 #define HOMING_SPEED 100000.0     /* counts/s, by the drive (scenario_machine.c) */
 #define HOMING_ACCELERATION 2000000.0 /* counts/s2 */
@@ -29,6 +31,8 @@
 #define COARSE_STILL_COUNTS 110.0 /* in CSV it hunts round its target, where friction is large (in_position.window) */
 #define ROTOR_INERTIA_PER_TORQUE 3e-5 /* kg m2 for a Nm of peak torque */
 #define RADIANS 6.283185307179586     /* of a revolution */
+#define LOST_OF_COMPOSITE 2.0 /* cycles */
+#define LOST_OF_ONE 1.25      /* cycles; with more the set-point goes after the motor */
 enum { GAIN_MS = 20, STILL_MS = 60, STALL_MS = 300, CATCH_MS = 500, QUIET_MS = 200, HALT_MS = 300 };
 
 static int cycles_of(const run_t *run, double ms) { return (int)(ms * 1000 / run->scenario->cycle_us); }
@@ -119,6 +123,47 @@ static bool recoils(const run_t *run, const machine_axis_t *axis)
            run->cycle - axis->seen.error_at < cycles_of(run, QUIET_MS);
 }
 
+/** Counts/s; how much faster than its set-point a shaft gets that stood at the place of the set-point while that moved
+ *  at `speed`. With all torque, for the acceleration A, it is as fast when it is speed^2 / 2 A behind. It goes on until
+ *  the damping of the servo (a ratio of 1: 2 / bandwidth times the velocity) equals what is left of that way. */
+static double catch_up_speed(const axis_spec_t *spec, double speed)
+{
+    const double acceleration = peak_torque(spec) * gain_of(spec), damping_s = 2 / SERVO_BANDWIDTH;
+    const double way = speed * speed / (2 * acceleration);
+    return acceleration * (sqrt(damping_s * damping_s + 2 * way / acceleration) - damping_s);
+}
+
+/** Whether the servo overshoots where it pulls a motor back that was not stopped for so many cycles: it begins to let go
+ *  where the way that is left takes 2 / bandwidth, and by then it has to be slow enough to stop there. */
+static bool is_heavy(const run_t *run, const axis_spec_t *spec, double cycles)
+{
+    const double damping_s = 2 / SERVO_BANDWIDTH, cycle_s = run->scenario->cycle_us * 1e-6;
+    const double ahead = fmin(cycles * cycle_s * spec->velocity, way_to_stop(spec, spec->velocity));
+    return ahead > 4 * damping_s * damping_s * peak_torque(spec) * gain_of(spec);
+}
+
+/** Whether its motion is one of several, which goes on after up to two lost cycles. */
+static bool is_composite(const run_t *run, const machine_axis_t *axis)
+{
+    return axis->info.state == CM1E_AXIS_SYNCHRONIZED_MOTION || axis->seen.superimposed ||
+           (run->grouped && axis->number < 2);
+}
+
+/** By how much of its maximum velocity a load is too fast that ran ahead while frames were lost, or in a pause. */
+static double heavy_share(const run_t *run, const machine_axis_t *axis)
+{
+    const bool paused = axis->seen.stalled < cycles_of(run, STALL_MS);
+    if (is_composite(run, axis) && is_heavy(run, axis->spec, paused ? INFINITY : LOST_OF_COMPOSITE))
+        return COMPOSITE_OVERSHOOT;
+    return is_heavy(run, axis->spec, LOST_OF_ONE) ? HEAVY_OVERSHOOT : 0;
+}
+
+/** A stop has held it, while its set-point turned round: it catches up (docs/SAFETY.md). */
+static bool leaves_stop(const run_t *run, const machine_axis_t *axis)
+{
+    return axis->seen.stopped < cycles_of(run, CATCH_MS);
+}
+
 /** By how much of its maximum velocity a shaft may be faster, beyond what the servo does by itself. */
 static double allowed_share(const run_t *run, const machine_axis_t *axis)
 {
@@ -126,8 +171,9 @@ static double allowed_share(const run_t *run, const machine_axis_t *axis)
     if (axis->seen.rung < lately)
         return RING_OVERSHOOT;
     if (axis->seen.stalled < cycles_of(run, STALL_MS))
-        return STALL_OVERSHOOT;
-    return run->networks > 1 && axis->seen.jolted < lately ? JOLT_OVERSHOOT : SERVO_OVERSHOOT;
+        return fmax(STALL_OVERSHOOT, is_composite(run, axis) ? heavy_share(run, axis) : 0);
+    const double servo = run->networks > 1 && axis->seen.jolted < lately ? JOLT_OVERSHOOT : SERVO_OVERSHOOT;
+    return axis->seen.quiet < lately ? fmax(servo, heavy_share(run, axis)) : servo;
 }
 
 /** The drive homes, or did not long ago and may still halt: by itself, with its own speed and acceleration. */
@@ -139,7 +185,8 @@ static bool is_homing(const run_t *run, const machine_axis_t *axis)
 /** Counts/s, without what the servo does by itself. */
 static double highest_speed(const run_t *run, const machine_axis_t *axis)
 {
-    const double by_axis = axis->spec->velocity * (1 + allowed_share(run, axis));
+    const double velocity = axis->spec->velocity, late = leaves_stop(run, axis) ? catch_up_speed(axis->spec, velocity) : 0;
+    const double by_axis = velocity * (1 + allowed_share(run, axis)) + late;
     const double by_drive = HOMING_SPEED * (1 + HOMING_OVERSHOOT);
     if (axis->info.state == CM1E_AXIS_HOMING)
         return by_drive;
@@ -225,7 +272,8 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
     const double gain = speed - before, noise = 1500 + 0.4 * SERVO_BANDWIDTH * slack_of(axis->spec);
     if (gain / most - 1 > run->outcome->over_gain && most > 5 * noise)
         run->outcome->over_gain = gain / most - 1;
-    if (is_pushed(run, axis) || !axis->probe.torque_on || recoils(run, axis) || is_caught(run, axis) || at_stop(axis))
+    if (is_pushed(run, axis) || !axis->probe.torque_on || recoils(run, axis) || is_caught(run, axis) ||
+        leaves_stop(run, axis))
         return;
     /* A motor that was held for a moment gets back to the speed that its set-point has by now, or a heavy load has run
      * on and comes back. Its maximum velocity holds all the same. */
@@ -254,7 +302,9 @@ static void judge_still(run_t *run, machine_axis_t *axis)
     seen->torque_on = axis->probe.torque_on;
     /* In CSV a drive that hears nothing goes on with what the position loop has asked for last (docs/SAFETY.md). */
     const bool goes_on = by_velocity(axis->spec) && run->bad[axis->network] > 0;
-    if (!at_rest(axis) || switched || goes_on || is_pushed(run, axis)) {
+    /* A target that was lost on its way out is not the place of rest until a frame arrives again, which has it too. */
+    const bool settled = seen->quiet == cycles_of(run, QUIET_MS);
+    if (!at_rest(axis) || switched || goes_on || settled || is_pushed(run, axis)) {
         seen->rest_cycles = 0;
         return;
     }
@@ -445,12 +495,14 @@ void judge_begin(run_t *run)
     for (int n = 0; n < run->scenario->axis_count; n++) {
         witness_t *seen = &run->axes[n].seen;
         *seen = (witness_t){.kept = true, .stalled = 1000000, .rung = 1000000, .caught = 1000000, .homing = 1000000,
-                            .quiet = 1000000, .jolted = 1000000, .pushed_until = -1000000};
+                            .stopped = 1000000, .quiet = 1000000, .jolted = 1000000, .pushed_until = -1000000};
         for (int i = 0; i < run->scenario->step_count; i++) {
             const char *name = scenario_blocks[(int)run->scenario->steps[i].block];
             if ((int)run->scenario->steps[i].axis == n &&
                 (strcmp(name, "MC_SetPosition") == 0 || strcmp(name, "MC_Home") == 0))
                 seen->shifted = true;
+            if ((int)run->scenario->steps[i].axis == n && strcmp(name, "MC_MoveSuperimposed") == 0)
+                seen->superimposed = true;
         }
     }
 }
@@ -463,6 +515,7 @@ void judge_cycle(run_t *run)
         judge_power(run, axis);
         axis->seen.stalled++;
         axis->seen.rung++;
+        axis->seen.stopped = at_stop(axis) && fabs(axis->probe.velocity_counts_per_s) < 1 ? 0 : axis->seen.stopped + 1;
         axis->seen.homing = axis->info.state == CM1E_AXIS_HOMING ? 0 : axis->seen.homing + 1;
         axis->seen.jolted = run->bad[0] > 0 || run->bad[SCENARIO_NETWORKS - 1] > 0 ? 0 : axis->seen.jolted + 1;
         axis->seen.quiet = run->bad[axis->network] > 0 ? 0 : axis->seen.quiet + 1;

@@ -34,11 +34,13 @@ typedef struct witness {
     int jolted;                           /**< cycles since any network had a bad cycle */
     int caught;                           /**< cycles since it was enabled while its shaft turned, or was lied about */
     int rung;                             /**< cycles since a cable of its ring broke or was mended */
+    int stopped;                          /**< cycles since a hard stop held it */
     int stalled;                          /**< cycles since the host stood still */
     double pushed_until;                  /**< cycle until which a load may move it */
     bool kept;                            /**< the device has not lost its position since the start */
     bool coasted;                         /**< beyond a software limit, since it had no torque */
     bool shifted;                         /**< its coordinates are not those of the start any more */
+    bool superimposed;                    /**< the program has a motion on top of others for it */
     int homing;                           /**< cycles since its drive homed */
     int error_at;                         /**< cycle in which it came into ErrorStop */
     cm1e_axis_state_t logged;             /**< last state that the log told */
