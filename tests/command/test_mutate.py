@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """scripts/mutate: which defects it can plant in a source, and that it leaves comments, texts and the lines alone;
-which tests it counts as near a source; that no entry of its list of equivalent defects is old.
+which tests it runs for a line, and its table; that no entry of its list of equivalent defects is old.
 
     test_mutate.py <source folder>
 """
@@ -41,11 +41,19 @@ def main():
     assert found == list(mutate.defects("a.c", SOURCE))
     for _, begin, end, new in found:
         assert "\n" not in SOURCE[begin:end] + new
-    regex = mutate.near(["src/drive/drive_cml_exchange.c", "src/drive/drive.c"])
-    for name, is_near in (("test_drive_enable", True), ("test_axis_drive_profile", True), ("test_cml_exchange", True),
-                          ("test_bridge_cml_exchange", True), ("test_cml_exchanges", False),
-                          ("test_drives", False), ("test_axis_home", False)):
-        assert bool(re.search(regex, name)) == is_near, (name, regex)
+    tests = {"quick": (0.1, {"a.c": {3, 5}}), "slow": (2.0, {"a.c": {5}, "b.c": {3}}), "other": (0.1, {"b.c": {3}})}
+    for path, line, coded, names in (("a.c", 3, True, ["quick"]), ("a.c", 5, True, ["quick", "slow"]),
+                                     ("a.c", 4, True, []), ("a.c", 4, False, ["quick", "slow"]),
+                                     ("b.c", 3, True, ["slow", "other"]), ("c.c", 3, True, [])):
+        assert mutate.that_run(tests, path, line, coded) == names, (path, line)
+    texts = [re.sub(":[0-9]+:", ":", mutate.shown(defect, SOURCE)) for defect in found]
+    assert 'a.c: " > " -> " >= " in: if (way > 2.5 && axis->count == 1)' in texts
+    output = "\n".join(f"{mutate.shown(defect, SOURCE)} (3 programs run it)" for defect in found)
+    assert set(texts) <= mutate.survivors(output)
+    shown = mutate.table({"a.c": {"killed": 3, "survived": 1, "same code": 2, "no code": 0}, "b.c":
+                          {"killed": 4, "survived": 0, "same code": 0, "no code": 1}}).splitlines()
+    assert [line.split() for line in shown[1:]] == [["a.c", "4", "3", "1", "2", "0"], ["b.c", "4", "4", "0", "0", "1"],
+                                                    ["all", "8", "7", "1", "2", "1"], ["87.5", "%", "killed"]], shown
     files = mutate.places(["src/drive/drive_io.c:3", "src/drive/drive_io.c:7-9", "src/drive/drive.c"])
     assert files == {"src/drive/drive.c": [], "src/drive/drive_io.c": [range(3, 4), range(7, 10)]}, files
     at = [SOURCE.count("\n", 0, defect[1]) + 1 for defect in found
