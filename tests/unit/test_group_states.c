@@ -336,6 +336,21 @@ static void test_a_relative_line_counts_from_where_the_axes_are(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, ends[n], axes_info(n).set_position);
 }
 
+/* A direction that is not permitted concerns a line that goes that way, and no other one. */
+static void test_a_line_asks_for_the_directions_of_axes_that_it_moves_only(void)
+{
+    for (int direction = -1; direction <= 1; direction += 2) {
+        again();
+        axes_bench.positive[1] = direction < 0;
+        axes_bench.negative[1] = direction > 0;
+        axes_cycles(1);
+        group_refused(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_RELATIVE, .position = {1.0, direction},
+                                              .velocity = 1.0}, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+        group_done(group_line(1.0, 0.0, 5.0, mcAborting));
+        TEST_ASSERT_EQUAL_DOUBLE(1.0, group_at(0));
+    }
+}
+
 static void test_stop_in_standby_holds_the_axes_where_they_are(void)
 {
     move_apart();
@@ -397,6 +412,9 @@ static void test_halt_may_be_aborted_and_be_waited_for(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, group_state_of(first));
     axes_cycles(100);
     const cm1e_command_id_t second = group_command(&halt);
+    group_refused(&(cm1e_group_command_t){.kind = CM1E_GROUP_CIRCULAR_RELATIVE, .auxiliary = {1.0}, .position = {2.0},
+                                          .velocity = 1.0}, CM1E_ERROR_GROUP_PATH); /* three points on a line */
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, group_state_of(second));
     const cm1e_command_id_t last = group_line(1.0, 1.0, 1.0, mcBuffered);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, group_state_of(other));
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_BUFFERED, group_state_of(last));
@@ -592,6 +610,7 @@ int main(void)
     RUN_TEST(test_stop_in_standby_holds_the_axes);
     RUN_TEST(test_stop_in_standby_holds_the_axes_where_they_are);
     RUN_TEST(test_a_relative_line_counts_from_where_the_axes_are);
+    RUN_TEST(test_a_line_asks_for_the_directions_of_axes_that_it_moves_only);
     RUN_TEST(test_stop_without_power_holds_the_group);
     RUN_TEST(test_stop_that_loses_all_axes_at_once_is_done);
     RUN_TEST(test_halt_may_be_aborted_and_be_waited_for);
