@@ -199,6 +199,15 @@ START_TEST(a_port_that_loops_back)
 }
 END_TEST
 
+/** Whether the next cycle takes the inputs of a slave: none of the bytes put there is left. */
+static bool takes_inputs(cm1e_bus_t *bus, uint16_t position)
+{
+    const cm1e_slave_placement_t *placement = &bus->slaves[position - 1].placement;
+    memset(bus->inputs + placement->input_offset, 0x5A, placement->input_bytes);
+    cycle(bus);
+    return !memchr(bus->inputs + placement->input_offset, 0x5A, placement->input_bytes);
+}
+
 /** Slave 2 is a junction: slaves 3 and 4 are at its port 3, slave 5 at port 1, slave 6 at port 2. A branch that is cut
  *  off leaves the others in operation. */
 START_TEST(a_junction_whose_branch_is_cut_off)
@@ -223,6 +232,8 @@ START_TEST(a_junction_whose_branch_is_cut_off)
         ck_assert_msg(cm1e_bus_slave_watch(bus, position).lost == (position == 3 || position == 4), "slave %u",
                       position);
     ck_assert(cm1e_bus_slave_watch(bus, 5).fresh && cm1e_bus_slave_watch(bus, 6).fresh);
+    for (uint16_t position = 1; position <= 6; position++)
+        ck_assert_msg(takes_inputs(bus, position) == (position != 3 && position != 4), "slave %u", position);
     ck_assert_uint_eq(cm1e_bus_port_faults(bus, 2, 3).lost_links, 1);
     cm1e_bus_close(bus);
 }
