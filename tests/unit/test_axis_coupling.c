@@ -104,6 +104,18 @@ static void test_nobody_follows_itself_by_way_of_others(void)
         TEST_ASSERT_NOT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, axes_state(n));
 }
 
+/* A gear that was to follow and was aborted before is no ring. */
+static void test_a_gear_that_waits_no_longer_makes_no_ring(void)
+{
+    axes_begin(2);
+    axes_move_to(1, 5.0, 1.0);
+    const cm1e_command_id_t waiting = buffered_gear(1, 0, 1);
+    axes_cycles(10);
+    axes_move_to(1, 1.0, 1.0);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, state_of(1, waiting));
+    axes_wait_reached(0, axes_gear_in(0, 1, 1, 1), 2000);
+}
+
 /* Two that wait for each other's end: the second one finds the ring when it is to begin. */
 static void test_a_ring_that_comes_to_be_by_waiting_is_refused_then(void)
 {
@@ -547,6 +559,7 @@ int main(void)
     RUN_TEST(test_two_masters_are_combined);
     RUN_TEST(test_a_chain_follows_within_the_cycle_in_every_order);
     RUN_TEST(test_nobody_follows_itself_by_way_of_others);
+    RUN_TEST(test_a_gear_that_waits_no_longer_makes_no_ring);
     RUN_TEST(test_a_ring_that_comes_to_be_by_waiting_is_refused_then);
     RUN_TEST(test_a_million_revolutions_lose_no_count);
     RUN_TEST(test_other_coordinates_move_nobody);

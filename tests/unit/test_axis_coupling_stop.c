@@ -170,6 +170,20 @@ static void test_every_failure_of_a_master_stops_the_slave_by_itself(void)
             }
 }
 
+static void test_the_master_that_fails_is_named(void)
+{
+    for (int failing = 0; failing < 2; failing++) {
+        axes_begin(3);
+        const cm1e_axis_coupling_t both = {.master = {{.axis = axes_reference(0), .numerator = 1, .denominator = 1},
+                                                      {.axis = axes_reference(1), .numerator = 1, .denominator = 1}}};
+        axes_command(2, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_COMBINE_AXES, .coupling = &both});
+        axes_cycles(10);
+        fake_bus_fault(axes_motor(failing), 0x2310);
+        axes_cycles(10);
+        failed(2, CM1E_ERROR_AXIS_MASTER_LOST, failing ? "\"axis1\"" : "\"axis0\"");
+    }
+}
+
 static void test_a_master_that_is_destroyed_is_lost(void)
 {
     begin(CM1E_COUPLING_STOP_KEEP_RATIO);
@@ -333,6 +347,7 @@ int main(void)
     RUN_TEST(test_a_direction_that_is_not_enabled_stops_it);
     RUN_TEST(test_a_direction_that_is_taken_away_stops_it);
     RUN_TEST(test_every_failure_of_a_master_stops_the_slave_by_itself);
+    RUN_TEST(test_the_master_that_fails_is_named);
     RUN_TEST(test_a_master_that_is_destroyed_is_lost);
     RUN_TEST(test_coupled_axes_stop_together);
     RUN_TEST(test_coupled_axes_stop_with_a_slave_whose_drive_fails);
