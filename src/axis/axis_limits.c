@@ -221,7 +221,7 @@ cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, co
 cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
                                      const override_t *override, cm1e_motion_limits_t *limits)
 {
-    const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
+    const from_t rest = {.position = axis->setpoint.position};
     const from_t from = {axis->setpoint.position, on_top->now.velocity, on_top->now.acceleration, false};
     const cm1e_motion_limits_t *share = &on_top->share;
     const cm1e_error_t error = cm1e_axis_limits_with(axis, &rest, &on_top->move, override, limits);

@@ -66,6 +66,14 @@ static cm1e_error_t start(const cm1e_axis_command_t *command)
 
 /* ---- table 5 ----------------------------------------------------------------------------------------------------- */
 
+static void test_limits_that_are_not_set_are_0(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameter(CM1E_PARAMETER_SW_LIMIT_POS));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameter(CM1E_PARAMETER_SW_LIMIT_NEG));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameter(CM1E_PARAMETER_ENABLE_LIMIT_POS));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameter(CM1E_PARAMETER_ENABLE_LIMIT_NEG));
+}
+
 static void test_every_number_of_the_table_can_be_read_and_no_other(void)
 {
     double value;
@@ -494,6 +502,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_number_of_the_table_can_be_read_and_no_other);
+    RUN_TEST(test_limits_that_are_not_set_are_0);
     RUN_TEST(test_in_position_by_number);
     RUN_TEST(test_what_only_can_be_read_is_not_written);
     RUN_TEST(test_position_and_velocities_follow_the_axis);
