@@ -243,16 +243,41 @@ static unit_t *add_part(parsing_t *parsing, place_t place, const char *name, typ
     return unit;
 }
 
-void cm1e_st_add_method(parsing_t *parsing, place_t place, const char *name, bool abstract, type_t *result, vars_t vars,
+int cm1e_st_with_modifier(parsing_t *parsing, place_t place, int modifiers, const char *word)
+{
+    static const struct {
+        const char *word;
+        int modifier;
+    } words[] = {{"PUBLIC", M_PUBLIC},     {"PRIVATE", M_PRIVATE},   {"PROTECTED", M_PROTECTED},
+                 {"INTERNAL", M_INTERNAL}, {"ABSTRACT", M_ABSTRACT}, {"FINAL", M_FINAL}};
+    int modifier = 0; /* OVERRIDE needs none */
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strcasecmp(word, words[i].word) == 0)
+            modifier = words[i].modifier;
+    if ((modifiers & modifier) || (modifier & M_ACCESS && modifiers & M_ACCESS))
+        cm1e_st_report(parsing->st, place, "%s is too many: one of PUBLIC, PRIVATE, PROTECTED and INTERNAL", word);
+    if (((modifiers | modifier) & (M_ABSTRACT | M_FINAL)) == (M_ABSTRACT | M_FINAL))
+        cm1e_st_report(parsing->st, place, "ABSTRACT and FINAL contradict each other");
+    return modifiers | modifier;
+}
+
+void cm1e_st_modify(object_t *object, int modifiers)
+{
+    object->abstract = modifiers & M_ABSTRACT;
+    object->final = modifiers & M_FINAL;
+    object->access = modifiers & M_ACCESS;
+}
+
+void cm1e_st_add_method(parsing_t *parsing, place_t place, const char *name, int modifiers, type_t *result, vars_t vars,
                         stmts_t body)
 {
-    add_part(parsing, place, name, result, vars, body)->object.abstract = abstract;
+    cm1e_st_modify(&add_part(parsing, place, name, result, vars, body)->object, modifiers);
 }
 
 void cm1e_st_add_getter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body)
 {
-    add_part(parsing, place, cm1e_st_format(parsing->st->arena, "get %s", parsing->property), parsing->property_type, vars,
-             body);
+    cm1e_st_add_method(parsing, place, cm1e_st_format(parsing->st->arena, "get %s", parsing->property),
+                       parsing->property_modifiers, parsing->property_type, vars, body);
 }
 
 void cm1e_st_add_setter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body)
@@ -262,7 +287,8 @@ void cm1e_st_add_setter(parsing_t *parsing, place_t place, vars_t vars, stmts_t 
     value->type = parsing->property_type;
     value->next = vars.first;
     vars.first = value;
-    add_part(parsing, place, cm1e_st_format(parsing->st->arena, "set %s", parsing->property), NULL, vars, body);
+    cm1e_st_add_method(parsing, place, cm1e_st_format(parsing->st->arena, "set %s", parsing->property),
+                       parsing->property_modifiers, NULL, vars, body);
 }
 
 void cm1e_st_add_globals(st_t *st, vars_t vars)

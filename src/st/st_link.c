@@ -73,6 +73,8 @@ static void link_unit(st_t *st, unit_t *unit)
     }
     object->base = object->base_name ? named_unit(st, unit, object->base_name, U_BLOCK, "function block") : NULL;
     if (object->base) {
+        if (object->base->object.final)
+            cm1e_st_report(st, unit->place, "\"%s\" is FINAL: nothing can extend it", object->base->name);
         link_unit(st, object->base);
         if (object->base)
             inherit_vars(st, unit);
@@ -102,6 +104,11 @@ unit_t *cm1e_st_find_method(const unit_t *unit, const char *name)
     for (const unit_t *at = unit; at && at->object.names && !found; at = at->object.base)
         found = cm1e_st_map_get(at->object.names, name);
     return found;
+}
+
+const char *cm1e_st_plain_name(const unit_t *method)
+{
+    return strncmp(method->name, "get ", 4) == 0 || strncmp(method->name, "set ", 4) == 0 ? method->name + 4 : method->name;
 }
 
 unit_t *cm1e_st_this(const st_t *st)
@@ -164,6 +171,12 @@ static bool same_signature(st_t *st, const unit_t *a, const unit_t *b)
 
 static void check_override(st_t *st, const unit_t *method, const unit_t *of)
 {
+    if (of && (of->object.final || of->object.access == M_PRIVATE))
+        cm1e_st_report(st, method->place, "\"%s\" is %s in \"%s\": what extends it cannot have one of that name",
+                       cm1e_st_plain_name(method), of->object.final ? "FINAL" : "PRIVATE", of->object.owner->name);
+    if (of && of->object.owner->kind == U_INTERFACE && method->object.access & ~M_PUBLIC)
+        cm1e_st_report(st, method->place, "\"%s\" is of the interface \"%s\", so it is PUBLIC", cm1e_st_plain_name(method),
+                       of->object.owner->name);
     if (of && strcasecmp(method->name, "FB_Init") != 0 && !same_signature(st, method, of))
         cm1e_st_report(st, method->place, "\"%s\" has another result or other parameters than that of \"%s\"", method->name,
                        of->object.owner->name);

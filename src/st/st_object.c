@@ -15,8 +15,23 @@ static bool is_super(st_t *st, const expr_t *expr)
            !cm1e_st_find_var(st, "SUPER");
 }
 
+/** Whether the statements that are looked at may use a method, by the word in front of its name. */
+static void check_access(st_t *st, const expr_t *call, const unit_t *method)
+{
+    static const char *const who[] = {[M_PRIVATE] = "PRIVATE: only this block itself",
+                                      [M_PROTECTED] = "PROTECTED: only this block and those that extend it",
+                                      [M_INTERNAL] = "INTERNAL: only its namespace"};
+    const unit_t *this = cm1e_st_this(st), *owner = method->object.owner;
+    const int access = method->object.access;
+    if ((access == M_PRIVATE && this != owner) || (access == M_PROTECTED && !cm1e_st_is_a(st, this, owner)) ||
+        (access == M_INTERNAL && !cm1e_st_same_namespace(st->unit->scope, method->scope)))
+        cm1e_st_report(st, call->place, "\"%s\" of \"%s\" is %s can use it", cm1e_st_plain_name(method), owner->name,
+                       who[access]);
+}
+
 static void finish(st_t *st, expr_t *call, unit_t *method, expr_t *object, unit_t *seen_as)
 {
+    check_access(st, call, method);
     call->unit = method;
     call->seen_as = seen_as;
     call->a = object;

@@ -176,16 +176,16 @@ result: %empty { $$ = NULL; } | ':' type { $$ = $2; };
 function: FUNCTION NAME result sections stmts END_FUNCTION
     { cm1e_st_add_unit(parsing, U_FUNCTION, @2, $2, $3, $4, $5); };
 function_block: FUNCTION_BLOCK begin_block modifiers NAME heritage parts body END_FUNCTION_BLOCK
-    { parsing->object.abstract = $3; cm1e_st_add_unit(parsing, U_BLOCK, @4, $4, NULL, $6, $7); };
+    { cm1e_st_modify(&parsing->object, $3); cm1e_st_add_unit(parsing, U_BLOCK, @4, $4, NULL, $6, $7); };
 class: CLASS begin_block modifiers NAME heritage parts END_CLASS
-    { parsing->object.abstract = $3; parsing->object.is_class = true;
+    { cm1e_st_modify(&parsing->object, $3); parsing->object.is_class = true;
       cm1e_st_add_unit(parsing, U_BLOCK, @4, $4, NULL, $6, (stmts_t){0}); };
 program: PROGRAM begin_block NAME parts body END_PROGRAM
     { cm1e_st_add_unit(parsing, U_PROGRAM, @3, $3, NULL, $4, $5); };
 
 /* ---- objects ---- */
 begin_block: %empty { parsing->object = (object_t){0}; parsing->methods = NULL; };
-modifiers: %empty { $$ = 0; } | modifiers MODIFIER { $$ = $1 | (($2[0] | 0x20) == 'a'); };
+modifiers: %empty { $$ = 0; } | modifiers MODIFIER { $$ = cm1e_st_with_modifier(parsing, @2, $1, $2); };
 heritage: %empty | heritage EXTENDS interface_names {
         parsing->object.base_name = $3.first->name;
         if ($3.first->next)
@@ -200,8 +200,9 @@ stmts_of_block: stmt { $$ = (stmts_t){0}; if ($1) ST_APPEND($$, $1); }
     | stmts_of_block stmt { $$ = $1; if ($2) ST_APPEND($$, $2); };
 late_parts: %empty | late_parts part;
 part: METHOD modifiers NAME result sections stmts END_METHOD { cm1e_st_add_method(parsing, @3, $3, $2, $4, $5, $6); }
-    | ACTION NAME ':' stmts END_ACTION { cm1e_st_add_method(parsing, @2, $2, false, NULL, (vars_t){0}, $4); }
-    | PROPERTY modifiers NAME ':' type { parsing->property = $3; parsing->property_type = $5; } accessors END_PROPERTY;
+    | ACTION NAME ':' stmts END_ACTION { cm1e_st_add_method(parsing, @2, $2, 0, NULL, (vars_t){0}, $4); }
+    | PROPERTY modifiers NAME ':' type { parsing->property = $3; parsing->property_type = $5;
+        parsing->property_modifiers = $2; } accessors END_PROPERTY;
 accessors: %empty | accessors accessor;
 accessor: GET sections stmts END_GET { cm1e_st_add_getter(parsing, @1, $2, $3); }
     | SET sections stmts END_SET { cm1e_st_add_setter(parsing, @1, $2, $3); };

@@ -23,6 +23,7 @@ typedef struct parsing {
     object_t object;       /**< of its heading */
     const char *property;
     type_t *property_type;
+    int property_modifiers; /**< M_... */
 } parsing_t;
 
 /* Lists, which grow at their ends. */
@@ -85,13 +86,17 @@ void cm1e_st_add_type(parsing_t *parsing, place_t place, const char *name, type_
 void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const char *name, type_t *result,
                       vars_t vars, stmts_t body);
 /** A method of the block that is read. */
-void cm1e_st_add_method(parsing_t *parsing, place_t place, const char *name, bool abstract, type_t *result, vars_t vars,
+void cm1e_st_add_method(parsing_t *parsing, place_t place, const char *name, int modifiers, type_t *result, vars_t vars,
                         stmts_t body);
 void cm1e_st_add_getter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body);
 void cm1e_st_add_setter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body);
 /** of the lexer: whether a word like METHOD can begin a part here, and what a word does to the heading. */
 bool cm1e_st_begins_part(const parsing_t *parsing);
 bool cm1e_st_is_modifier(const parsing_t *parsing);
+/** The modifiers with another one, by its word; two that contradict each other are reported. */
+int cm1e_st_with_modifier(parsing_t *parsing, place_t place, int modifiers, const char *word);
+/** What they say of a block, a method or a property. */
+void cm1e_st_modify(object_t *object, int modifiers);
 void cm1e_st_add_globals(st_t *st, vars_t vars);
 void cm1e_st_add_task(st_t *st, place_t place, const char *name, args_t settings);
 void cm1e_st_add_instance(st_t *st, place_t place, const char *name, const char *task, const char *program,

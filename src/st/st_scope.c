@@ -50,6 +50,15 @@ static void check_one(const char *name, void *value, void *context)
 
 void cm1e_st_check_used(st_t *st) { cm1e_st_map_each(st->used, check_one, st); }
 
+bool cm1e_st_same_namespace(const scope_t *scope, const scope_t *of)
+{
+    const char *space = of ? of->space : "";
+    const scope_t *at = scope;
+    while (*space && at && strcasecmp(at->space, space) != 0)
+        at = at->outer;
+    return !*space || at;
+}
+
 /* ---- names ------------------------------------------------------------------------------------------------------- */
 
 static void *in_space(st_t *st, const map_t *map, const char *space, const char *name)

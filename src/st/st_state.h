@@ -103,6 +103,8 @@ int64_t cm1e_st_wrap(type_kind_t kind, int64_t value);
 /* st_scope.c */
 /** What a name means where it is written: in its namespace and those around it, in one that is used there, or outside of
  *  all; NULL: nothing. Reports a name that several used namespaces have. */
+/** Whether a place is in a namespace, or in one within it. */
+bool cm1e_st_same_namespace(const scope_t *scope, const scope_t *of);
 void *cm1e_st_lookup(st_t *st, const map_t *map, const scope_t *scope, place_t place, const char *name);
 /** That the namespaces which USING names exist. */
 void cm1e_st_check_used(st_t *st);
@@ -180,6 +182,8 @@ const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owne
 unit_t *cm1e_st_find_method(const unit_t *unit, const char *name);
 /** Whether `unit` is `other`, extends it, or implements it. */
 bool cm1e_st_is_a(const st_t *st, const unit_t *unit, const unit_t *other);
+/** Its name as it is written; that of a property is "get name" or "set name". */
+const char *cm1e_st_plain_name(const unit_t *method);
 /** A method of an interface or of those that it extends; NULL: there is none. */
 unit_t *cm1e_st_interface_method(const st_t *st, const unit_t *interface, const char *name);
 

@@ -218,6 +218,9 @@ struct var {
     var_t *next;
 };
 
+/** The words in front of the name of a method, a property or a block; at most one of the first four. */
+enum { M_PUBLIC = 1, M_PRIVATE = 2, M_PROTECTED = 4, M_INTERNAL = 8, M_ACCESS = 15, M_ABSTRACT = 16, M_FINAL = 32 };
+
 typedef enum unit_kind { U_FUNCTION, U_BLOCK, U_PROGRAM, U_METHOD, U_INTERFACE } unit_kind_t;
 
 /** What object orientation adds to a unit. */
@@ -229,7 +232,8 @@ typedef struct object {
     const char *base_name;
     unit_t *base;        /**< EXTENDS */
     arg_t *interfaces;   /**< IMPLEMENTS, of an interface EXTENDS: names */
-    bool abstract;
+    bool abstract, final;
+    int access;          /**< of a method: M_PUBLIC ... M_INTERNAL; 0 is as M_PUBLIC */
     bool is_class;       /**< CLASS: without inputs, outputs and statements */
     bool has_class;      /**< its instances say which class they are */
     int class_id;

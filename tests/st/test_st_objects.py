@@ -114,6 +114,14 @@ EXPECTED = {"a1": 4, "n1": b"base", "ok": True, "a2": 3, "n2": b"circle", "is0":
             "left": 3, "eno": True, "eno2": False, "kept": 7, "timer": False}
 BASE = "INTERFACE I METHOD M : INT END_METHOD END_INTERFACE FUNCTION_BLOCK B METHOD M : INT M := 1; END_METHOD " \
        "END_FUNCTION_BLOCK "
+PRIVATE = "FUNCTION_BLOCK C METHOD PRIVATE Own : INT Own := 1; END_METHOD METHOD PROTECTED Near : INT Near := Own(); " \
+          "END_METHOD METHOD PUBLIC FINAL Last : INT Last := 1; END_METHOD PROPERTY PRIVATE X : INT GET X := 1; END_GET " \
+          "SET END_SET END_PROPERTY END_FUNCTION_BLOCK "
+# what may be used
+ALLOWED = PRIVATE + "FUNCTION_BLOCK D EXTENDS C METHOD O : INT O := Near(); O := SUPER^.Near(); O := Last(); END_METHOD " \
+    "END_FUNCTION_BLOCK NAMESPACE S FUNCTION_BLOCK G METHOD INTERNAL N END_METHOD END_FUNCTION_BLOCK NAMESPACE T " \
+    "FUNCTION_BLOCK H VAR g : G; END_VAR METHOD O g.N(); END_METHOD END_FUNCTION_BLOCK END_NAMESPACE END_NAMESPACE " \
+    "PROGRAM P VAR d : D; n : INT; END_VAR n := d.O(); n := d.Last(); END_PROGRAM"
 # (source behind BASE, what is said)
 REFUSED = [
     ("FUNCTION_BLOCK D EXTENDS G END_FUNCTION_BLOCK", 'no function block "G"'),
@@ -134,6 +142,20 @@ REFUSED = [
      "END_FUNCTION_BLOCK", "calls itself"),
     ("FUNCTION_BLOCK D PROPERTY X : INT GET X := 1; END_GET END_PROPERTY END_FUNCTION_BLOCK PROGRAM P VAR d : D; END_VAR "
      "d.X := 1; END_PROGRAM", "only a variable"),
+    (PRIVATE + "PROGRAM P VAR c : C; n : INT; END_VAR n := c.Own(); END_PROGRAM", '"Own" of "C" is PRIVATE'),
+    (PRIVATE + "PROGRAM P VAR c : C; n : INT; END_VAR n := c.Near(); END_PROGRAM", '"Near" of "C" is PROTECTED'),
+    (PRIVATE + "PROGRAM P VAR c : C; n : INT; END_VAR n := c.X; END_PROGRAM", '"X" of "C" is PRIVATE'),
+    (PRIVATE + "PROGRAM P VAR c : C; END_VAR c.X := 1; END_PROGRAM", '"X" of "C" is PRIVATE'),
+    (PRIVATE + "FUNCTION_BLOCK D EXTENDS C METHOD O : INT O := Own(); END_METHOD END_FUNCTION_BLOCK", "PRIVATE: only this"),
+    (PRIVATE + "FUNCTION_BLOCK D EXTENDS C METHOD O : INT O := SUPER^.Own(); END_METHOD END_FUNCTION_BLOCK", "PRIVATE"),
+    (PRIVATE + "FUNCTION_BLOCK D EXTENDS C METHOD Own : INT Own := 2; END_METHOD END_FUNCTION_BLOCK", '"Own" is PRIVATE in "C"'),
+    (PRIVATE + "FUNCTION_BLOCK D EXTENDS C METHOD Last : INT Last := 2; END_METHOD END_FUNCTION_BLOCK", '"Last" is FINAL in "C"'),
+    ("FUNCTION_BLOCK FINAL D END_FUNCTION_BLOCK FUNCTION_BLOCK E EXTENDS D END_FUNCTION_BLOCK", '"D" is FINAL'),
+    ("FUNCTION_BLOCK D IMPLEMENTS I METHOD PRIVATE M : INT M := 1; END_METHOD END_FUNCTION_BLOCK", "so it is PUBLIC"),
+    ("FUNCTION_BLOCK D METHOD PRIVATE PUBLIC N END_METHOD END_FUNCTION_BLOCK", "PUBLIC is too many"),
+    ("FUNCTION_BLOCK D METHOD ABSTRACT FINAL N END_METHOD END_FUNCTION_BLOCK", "contradict"),
+    ("NAMESPACE S FUNCTION_BLOCK D METHOD INTERNAL N END_METHOD END_FUNCTION_BLOCK END_NAMESPACE "
+     "PROGRAM P VAR d : S.D; END_VAR d.N(); END_PROGRAM", "INTERNAL: only its namespace"),
     ("FUNCTION F : INT VAR_INPUT x : INT; END_VAR F := x; END_FUNCTION PROGRAM P VAR n : INT; END_VAR "
      "n := 1 + F(EN := TRUE, x := 1); END_PROGRAM", "EN"),
 ]
@@ -167,7 +189,17 @@ def check_refused(folder):
             faults.append(f"{source}: \"{says}\" expected, found {texts} {result.stderr}")
 
 
+def check_allowed(folder):
+    path = os.path.join(folder, "allowed.st")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(ALLOWED)
+    result = subprocess.run([os.path.join(BIN, "cm1e"), "st", "check", path], capture_output=True, text=True, timeout=60)
+    if result.returncode != 0:
+        faults.append(f"what may be used is refused: {result}")
+
+
 with tempfile.TemporaryDirectory() as directory:
+    check_allowed(directory)
     check_values(directory)
     check_nothing(directory)
     check_refused(directory)
