@@ -356,6 +356,25 @@ static void test_a_smaller_jerk_keeps_the_maximum_of_the_application(void)
     bench_start();
 }
 
+/* The application lowers its maximum so far that an acceleration under way overshoots it with the largest jerk too. The
+ * jerk is then the one that was asked for. */
+static void test_a_maximum_lowered_too_far_does_not_raise_the_jerk(void)
+{
+    bench_enable();
+    bench_move_velocity(40.0);
+    bench_cycles(150);
+    const double a = bench_info().set_acceleration, jerk = axis->limits.maximum.jerk / 4.0;
+    const double most = bench_info().set_velocity + a * a / (4.0 * axis->limits.maximum.jerk);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_MAX_VELOCITY_APPL, most));
+    bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = most, .jerk = jerk});
+    double before = a;
+    for (int n = 0; n < 100; n++) {
+        bench_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(jerk * 0.001 * (1.0 + 1e-6), before, bench_info().set_acceleration);
+        before = bench_info().set_acceleration;
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -375,5 +394,6 @@ int main(void)
     RUN_TEST(test_a_limit_that_the_end_of_an_acceleration_would_overrun_is_refused);
     RUN_TEST(test_a_limit_that_a_reversal_would_overrun_is_refused);
     RUN_TEST(test_a_smaller_jerk_keeps_the_maximum_of_the_application);
+    RUN_TEST(test_a_maximum_lowered_too_far_does_not_raise_the_jerk);
     return UNITY_END();
 }
