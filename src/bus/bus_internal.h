@@ -110,6 +110,7 @@ typedef struct cm1e_listening {
 /** The one datagram of the supervision. */
 typedef struct cm1e_supervised {
     cm1e_datagram_t datagram;
+    bool asks;                               /**< it is to be sent in this cycle */
     bool sent;
     uint32_t place;                          /**< of the slave whose AL status was asked for last */
     cm1e_port_turn_t ports;
@@ -317,7 +318,9 @@ void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
 
 /** Whether a slave left the marker in its inputs in the frame that came back: it took no part (cycle.c). */
 bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave);
-/** Supervision: one slave's AL status in every cycle. */
+/** Supervision: one slave's AL status in every cycle. It chooses the question before the process data are sent, because
+ *  it rides in their frame if that has room, and if the last one came back; else it has a frame of its own. */
+void cm1e_supervision_ask(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns);
 /** Gives up the question that is on its way. */

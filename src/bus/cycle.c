@@ -126,6 +126,7 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     memcpy(bus->sent_outputs, bus->image, bus->output_bytes);
     memset(bus->image + bus->output_bytes, INPUT_PATTERN, bus->input_bytes);
     cm1e_dc_send(bus, now_ns);
+    cm1e_supervision_ask(bus, now_ns);
     cm1e_soem_send_process_data(bus->soem);
     bus->in_flight = true;
     bus->sent_ns = now_ns;

@@ -7,6 +7,7 @@
 #include "core/bytes.h"
 #include "core/clock.h"
 #include "device/device.h"
+#include "nic/rider.h"
 #include "nic/ring.h"
 
 cm1e_soem_t *cm1e_soem_create(cm1e_nic_t *nic, const cm1e_bus_config_t *config)
@@ -223,6 +224,7 @@ enum { DATAGRAM_HEADER_BYTES = 10, DATAGRAM_LENGTH = 0x07FF, FRAME_ROOM = EC_MAX
 
 void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
 {
+    d->rides = false;
     d->frame_index = ecx_getindex(&soem->port);
     d->sent_ns = now_ns;
     d->working_counter = DATAGRAM_LOST;
@@ -240,10 +242,9 @@ static bool is_answer(const cm1e_datagram_t *d, const uint8_t *header)
            cm1e_get_u16(header + 4) == d->offset && (!fixed_address || cm1e_get_u16(header + 2) == d->address);
 }
 
-/** Takes the answer to a datagram whose data are at `at` of the frame that is back. */
-static void take_answer(const cm1e_soem_t *soem, uint8_t index, unsigned at, cm1e_datagram_t *d)
+/** Takes the answer to a datagram whose data came back here. */
+static void take_data(const uint8_t *data, cm1e_datagram_t *d)
 {
-    const uint8_t *data = (const uint8_t *)&soem->port.rxbuf[index] + at;
     if (!is_answer(d, data - DATAGRAM_HEADER_BYTES))
         return;
     d->working_counter = cm1e_get_u16(data + d->length);
@@ -252,8 +253,55 @@ static void take_answer(const cm1e_soem_t *soem, uint8_t index, unsigned at, cm1
         memcpy(d->data, data, d->length);
 }
 
+/** Takes the answer to a datagram whose data are at `at` of the frame that is back. */
+static void take_answer(const cm1e_soem_t *soem, uint8_t index, unsigned at, cm1e_datagram_t *d)
+{
+    take_data((const uint8_t *)&soem->port.rxbuf[index] + at, d);
+}
+
+void cm1e_soem_offer(cm1e_soem_t *soem, cm1e_datagram_t *d)
+{
+    cm1e_port_rider_t *rider = &soem->port.rider;
+    const size_t bytes = DATAGRAM_HEADER_BYTES + d->length + EC_WKCSIZE;
+    if (d->command != COMMAND_FPRD || bytes > sizeof rider->datagrams)
+        return;
+    memset(rider->datagrams, 0, bytes);
+    rider->datagrams[0] = d->command;
+    cm1e_put_u16(rider->datagrams + 2, d->address);
+    cm1e_put_u16(rider->datagrams + 4, d->offset);
+    cm1e_put_u16(rider->datagrams + 6, d->length);
+    rider->bytes = (uint16_t)bytes;
+    rider->state = RIDER_WAITS;
+}
+
+bool cm1e_soem_rides(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_port_rider_t *rider = &soem->port.rider;
+    d->rides = rider->state == RIDER_ABOARD;
+    if (!d->rides) {
+        rider->state = RIDER_NONE;
+        return false;
+    }
+    d->sent_ns = now_ns;
+    d->working_counter = DATAGRAM_LOST;
+    return true;
+}
+
+static bool take_rider(cm1e_soem_t *soem, cm1e_datagram_t *d)
+{
+    cm1e_port_rider_t *rider = &soem->port.rider;
+    if (rider->state == RIDER_ABOARD)
+        return false;
+    if (rider->state == RIDER_BACK)
+        take_data(rider->datagrams + DATAGRAM_HEADER_BYTES, d);
+    rider->state = RIDER_NONE;
+    return true;
+}
+
 bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t timeout_ns)
 {
+    if (d->rides)
+        return take_rider(soem, d);
     const int working_counter = ecx_waitinframe(&soem->port, d->frame_index, (int)(timeout_ns / US_IN_NS));
     if (working_counter < 0)
         return false;
@@ -264,7 +312,10 @@ bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t timeout_ns)
 
 void cm1e_soem_drop(cm1e_soem_t *soem, cm1e_datagram_t *d)
 {
-    ecx_setbufstat(&soem->port, d->frame_index, EC_BUF_EMPTY);
+    if (d->rides)
+        soem->port.rider.state = RIDER_NONE;
+    else
+        ecx_setbufstat(&soem->port, d->frame_index, EC_BUF_EMPTY);
     d->working_counter = DATAGRAM_LOST;
 }
 

@@ -112,9 +112,15 @@ bool cm1e_soem_ring_is_broken(const cm1e_soem_t *soem);
 /** How many slaves either interface reaches, by the broadcast read that was answered last; false: it does not tell. */
 bool cm1e_soem_ring_reach(const cm1e_soem_t *soem, uint32_t reach[2]);
 
+/** Lets a read of one slave (FPRD) ride in the frame of the next process data. It must keep its values until then. */
+void cm1e_soem_offer(cm1e_soem_t *soem, cm1e_datagram_t *datagram);
+/** After the process data were sent: whether the datagram rides in their frame. If not, it was not sent. It is
+ *  answered or lost as soon as the process data are received. */
+bool cm1e_soem_rides(cm1e_soem_t *soem, cm1e_datagram_t *datagram, int64_t now_ns);
 /** Sends a datagram in a frame of its own. */
 void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *datagram, int64_t now_ns);
-/** Whether a datagram is back; its working counter and data are then filled in. */
+/** Whether a datagram is back; its working counter and data are then filled in. One that rode in a frame of process
+ *  data that is lost is back with DATAGRAM_LOST. */
 bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *datagram, int64_t timeout_ns);
 /** Stops waiting for a datagram. */
 void cm1e_soem_drop(cm1e_soem_t *soem, cm1e_datagram_t *datagram);

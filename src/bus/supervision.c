@@ -66,9 +66,10 @@ static bool ask_what_comes_first(cm1e_bus_t *bus, int64_t now_ns)
     return bus->search.sent;
 }
 
-void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
+void cm1e_supervision_ask(cm1e_bus_t *bus, int64_t now_ns)
 {
-    if (bus->supervised.sent || bus->slave_count == 0)
+    bus->supervised.asks = !bus->supervised.sent && bus->slave_count > 0;
+    if (!bus->supervised.asks)
         return;
     bus->supervised.ports.asked = false;
     if (!ask_what_comes_first(bus, now_ns)) {
@@ -78,7 +79,16 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
         else
             ask_state(bus);
     }
-    cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
+    if (bus->last_error != CM1E_ERROR_BUS_LOST)
+        cm1e_soem_offer(bus->soem, &bus->supervised.datagram);
+}
+
+void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
+{
+    if (!bus->supervised.asks)
+        return;
+    if (!cm1e_soem_rides(bus->soem, &bus->supervised.datagram, now_ns))
+        cm1e_soem_post(bus->soem, &bus->supervised.datagram, now_ns);
     bus->supervised.sent = true;
 }
 

@@ -11,6 +11,7 @@
 #include "nic/frame.h"
 #include "nic/nic_private.h"
 #include "nic/port_private.h"
+#include "nic/rider.h"
 #include "nic/ring.h"
 #include "oshw.h"
 
@@ -71,6 +72,7 @@ int ecx_setupnic(ecx_portt *port, const char *ifname, int secondary)
     memset(&port->counters, 0, sizeof port->counters);
     memset(port->slots, 0, sizeof port->slots);
     memset(&port->ring, 0, sizeof port->ring);
+    memset(&port->rider, 0, sizeof port->rider);
     port->redundant = false;
     port->last_index = 0;
     for (int i = 0; i < EC_MAXBUF; i++)
@@ -121,6 +123,7 @@ uint8 ecx_getindex(ecx_portt *port)
         port->counters.index_reused++;
     }
     port->last_index = idx;
+    cm1e_rider_lose(port, idx);
     port->slots[idx] = (cm1e_port_slot_t){.state = EC_BUF_ALLOC, .allocation = ++port->allocations};
     return idx;
 }
@@ -131,6 +134,7 @@ void ecx_setbufstat(ecx_portt *port, uint8 idx, int bufstat)
         return;
     if (port->redundant)
         cm1e_ring_give_up(port, idx);
+    cm1e_rider_lose(port, idx);
     port->slots[idx].state = (uint8_t)bufstat;
     port->slots[idx].answers = 0;
 }
@@ -202,7 +206,12 @@ static int send_frame(ecx_portt *port, uint8 idx, bool again)
     return sent ? port->txbuflength[idx] : -1;
 }
 
-int ecx_outframe_red(ecx_portt *port, uint8 idx) { return send_frame(port, idx, false); }
+int ecx_outframe_red(ecx_portt *port, uint8 idx)
+{
+    if (port->rider.state == RIDER_WAITS && can_send(port, idx))
+        cm1e_rider_board(port, idx);
+    return send_frame(port, idx, false);
+}
 
 int ecx_outframe(ecx_portt *port, uint8 idx, int stacknumber)
 {
@@ -328,7 +337,9 @@ bool cm1e_port_take_in(ecx_portt *port, int64_t deadline_ns)
 int cm1e_port_complete(ecx_portt *port, uint8 idx)
 {
     port->slots[idx].state = EC_BUF_COMPLETE;
-    const uint8_t *counter = port->rxbuf[idx] + port->txbuflength[idx] - ETHERNET_HEADER - 2;
+    cm1e_rider_return(port, idx);
+    const int length = port->txbuflength[idx] - port->slots[idx].rider_bytes; /* SOEM's part */
+    const uint8_t *counter = port->rxbuf[idx] + length - ETHERNET_HEADER - 2;
     return counter[0] | counter[1] << 8;
 }
 

@@ -308,27 +308,73 @@ START_TEST(silence_of_the_application_is_bounded)
 }
 END_TEST
 
-/** Counts the questions for an AL status, and lets no answer come back. */
-static cm1e_tap_verdict_t swallow(void *context, cm1e_tap_frame_t *frame)
+/** Questions for an AL status, as they are sent. */
+typedef struct asked {
+    bool swallow;            /**< no frame with a question comes back */
+    unsigned riding, alone;
+    bool rode;               /**< the last one was in the frame of the process data */
+    int64_t alone_ns;        /**< when the last one in a frame of its own was sent */
+    unsigned of[4];          /**< by slave */
+} asked_t;
+
+static void note_question(asked_t *asked, const cm1e_tap_frame_t *frame, uint16_t station)
 {
-    unsigned *asked = context;
-    if (frame->length <= HEADER || cm1e_get_u16(frame->bytes + 20) != REG_AL_STATUS)
-        return CM1E_TAP_PASS;
-    *asked += frame->direction == CM1E_TAP_SENT;
-    return frame->direction == CM1E_TAP_SENT ? CM1E_TAP_PASS : CM1E_TAP_DROP;
+    const bool rides = is_process_data(frame);
+    if (asked->swallow) {
+        ck_assert_int_ge(frame->time_ns - asked->alone_ns, 2000000);
+        ck_assert(!rides || !asked->rode); /* the process data did not come back */
+    }
+    asked->rode = rides;
+    asked->alone_ns = rides ? asked->alone_ns : frame->time_ns;
+    asked->riding += rides;
+    asked->alone += !rides;
+    asked->of[station & 3]++;
 }
 
-/** A question that is not answered is given up after 2 ms; until then there is no other one. */
+static cm1e_tap_verdict_t watch_questions(void *context, cm1e_tap_frame_t *frame)
+{
+    asked_t *asked = context;
+    uint16_t station;
+    if (find_read(frame, REG_AL_STATUS, &station) < 0)
+        return CM1E_TAP_PASS;
+    if (frame->direction == CM1E_TAP_SENT)
+        note_question(asked, frame, station);
+    return asked->swallow && frame->direction == CM1E_TAP_RECEIVED ? CM1E_TAP_DROP : CM1E_TAP_PASS;
+}
+
+/** A question in a frame of its own that is not answered is given up after 2 ms, and one in the frame of the process
+ *  data with that frame. Until then there is no other one. After a lost frame of process data it has its own. */
 START_TEST(supervision_has_one_question_on_its_way)
 {
     sim_config(1);
     cm1e_bus_t *bus = start_bus();
     cycles(bus, 50);
-    unsigned asked = 0;
-    cm1e_nic_set_tap(cm1e_bus_nic(bus), swallow, &asked);
+    asked_t asked = {.swallow = true};
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_questions, &asked);
     for (int n = 0; n < 60; n++)
         cycle(bus);
-    ck_assert_msg(asked >= 19 && asked <= 31, "%u questions in 60 cycles of 1 ms", asked);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL); /* the stop of the bus asks too */
+    const unsigned all = asked.alone + asked.riding;
+    ck_assert_msg(all >= 19 && all <= 31, "%u questions in 60 cycles of 1 ms", all);
+    ck_assert_msg(asked.alone >= 9 && asked.riding >= 9, "%u questions alone, %u riding", asked.alone, asked.riding);
+    ck_assert(!cm1e_bus_slave_watch(bus, 1).lost); /* a lost frame is no unanswered question */
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Every slave is asked in its turn, and no question needs a frame of its own. Every 20 ms it is for port counters. */
+START_TEST(questions_ride_with_the_process_data)
+{
+    sim_config(3);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 50);
+    asked_t asked = {.swallow = false};
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_questions, &asked);
+    cycles(bus, 63);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    ck_assert_uint_eq(asked.alone, 0);
+    for (int slave = 1; slave <= 3; slave++)
+        ck_assert_msg(asked.of[slave] >= 19, "slave %d was asked %u times", slave, asked.of[slave]);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -344,6 +390,7 @@ int main(void)
     tcase_add_loop_test(tests, health_falls_after_the_limit_and_returns_with_the_first_good_cycle, 0, 6);
     tcase_add_loop_test(tests, random_frame_faults_never_bring_inputs_of_another_cycle, 0, 12);
     tcase_add_test(tests, supervision_has_one_question_on_its_way);
+    tcase_add_test(tests, questions_ride_with_the_process_data);
     tcase_add_test(tests, silence_of_the_application_is_bounded);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

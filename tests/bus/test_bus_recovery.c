@@ -75,13 +75,14 @@ typedef struct questions {
 
 static cm1e_tap_verdict_t leave_unanswered(void *context, cm1e_tap_frame_t *frame)
 {
-    enum { FPRD = 4, HEADER = 26, AL_STATUS = 0x0130 };
+    enum { AL_STATUS = 0x0130 };
     questions_t *questions = context;
-    if (frame->direction != CM1E_TAP_RECEIVED || frame->length <= HEADER || frame->bytes[16] != FPRD ||
-        cm1e_get_u16(frame->bytes + 18) != questions->station || cm1e_get_u16(frame->bytes + 20) != AL_STATUS)
+    uint16_t station;
+    const int place = find_read(frame, AL_STATUS, &station);
+    if (frame->direction != CM1E_TAP_RECEIVED || place < 0 || station != questions->station)
         return CM1E_TAP_PASS;
     if (questions->pattern >> questions->asked++ & 1)
-        cm1e_frame_change_working_counter(frame->bytes, frame->length, 0, -1);
+        cm1e_frame_change_working_counter(frame->bytes, frame->length, (unsigned)place, -1);
     return CM1E_TAP_PASS;
 }
 

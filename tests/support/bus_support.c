@@ -1,5 +1,7 @@
 #include "bus_support.h"
 
+#include "nic/frame.h"
+
 cm1e_bus_config_t config;
 cm1e_diag_t diag;
 
@@ -74,6 +76,19 @@ void simulate(cm1e_bus_t *bus, const char *line)
 {
     char answer[256] = "";
     ck_assert_msg(cm1e_bus_simulate(bus, line, answer, sizeof answer) == CM1E_OK, "%s: %s", line, answer);
+}
+
+int find_read(const cm1e_tap_frame_t *frame, uint16_t offset, uint16_t *station)
+{
+    enum { FPRD = 4 };
+    datagram_t d = {.more = true};
+    size_t at = FRAME_HEADER;
+    for (int n = 0; d.more && cm1e_frame_datagram(frame->bytes, frame->length, &at, &d); n++)
+        if (d.header[0] == FPRD && cm1e_get_u16(d.header + 4) == offset) {
+            *station = cm1e_get_u16(d.header + 2);
+            return n;
+        }
+    return -1;
 }
 
 unsigned finish_sdo(cm1e_bus_t *bus, const cm1e_sdo_t *sdo)

@@ -49,6 +49,9 @@ void cycles(cm1e_bus_t *bus, unsigned n);
 
 void simulate(cm1e_bus_t *bus, const char *line);
 
+/** The datagram of a frame that reads this register of one slave: its place in the frame and its slave; -1: none. */
+int find_read(const cm1e_tap_frame_t *frame, uint16_t offset, uint16_t *station);
+
 /** Runs the cycle until a transfer has ended; returns how many cycles that took. */
 unsigned finish_sdo(cm1e_bus_t *bus, const cm1e_sdo_t *sdo);
 

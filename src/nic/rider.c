@@ -1,0 +1,73 @@
+#include "nic/rider.h"
+
+#include <string.h>
+
+#include "core/bytes.h"
+#include "nic/frame.h"
+#include "nic/nic.h"
+
+enum { COMMAND_LRD = 10, COMMAND_LWR = 11, COMMAND_LRW = 12, FRAME_CHECK_BYTES = 4 };
+
+static bool carries_process_data(const uint8_t *frame)
+{
+    const uint8_t command = frame[FRAME_HEADER];
+    return command == COMMAND_LRW || command == COMMAND_LRD || command == COMMAND_LWR;
+}
+
+/** The last datagram of a frame; false: the frame is not what its length says. */
+static bool find_last(const uint8_t *frame, size_t length, datagram_t *last)
+{
+    size_t offset = FRAME_HEADER;
+    last->more = true;
+    while (last->more)
+        if (!cm1e_frame_datagram(frame, length, &offset, last))
+            return false;
+    return offset == length;
+}
+
+static void give_index(uint8_t *datagrams, size_t bytes, uint8_t index)
+{
+    datagram_t d;
+    size_t offset = 0;
+    while (cm1e_frame_datagram(datagrams, bytes, &offset, &d))
+        d.header[1] = index;
+}
+
+void cm1e_rider_board(ecx_portt *port, uint8 idx)
+{
+    cm1e_port_rider_t *rider = &port->rider;
+    uint8_t *frame = port->txbuf[idx];
+    const size_t length = (size_t)port->txbuflength[idx], whole = length + rider->bytes;
+    datagram_t last;
+    if (!carries_process_data(frame) || whole > CM1E_FRAME_MAX - FRAME_CHECK_BYTES || !find_last(frame, length, &last))
+        return;
+    cm1e_put_u16(last.header + 6, cm1e_get_u16(last.header + 6) | DATAGRAM_MORE);
+    cm1e_put_u16(frame + ETHERNET_HEADER, (uint16_t)(cm1e_get_u16(frame + ETHERNET_HEADER) + rider->bytes));
+    give_index(rider->datagrams, rider->bytes, idx);
+    memcpy(frame + length, rider->datagrams, rider->bytes);
+    port->txbuflength[idx] = (int)whole;
+    port->slots[idx].rider_bytes = rider->bytes;
+    rider->index = idx;
+    rider->state = RIDER_ABOARD;
+}
+
+static bool is_aboard(const ecx_portt *port, uint8 idx)
+{
+    return port->rider.state == RIDER_ABOARD && port->rider.index == idx;
+}
+
+void cm1e_rider_return(ecx_portt *port, uint8 idx)
+{
+    cm1e_port_rider_t *rider = &port->rider;
+    if (!is_aboard(port, idx))
+        return;
+    const size_t end = (size_t)port->txbuflength[idx] - ETHERNET_HEADER;
+    memcpy(rider->datagrams, port->rxbuf[idx] + end - rider->bytes, rider->bytes);
+    rider->state = RIDER_BACK;
+}
+
+void cm1e_rider_lose(ecx_portt *port, uint8 idx)
+{
+    if (is_aboard(port, idx))
+        port->rider.state = RIDER_LOST;
+}
