@@ -10,15 +10,12 @@
  * SOEM does what its simple_test does, without distributed clocks, and assigns the PDOs that the library assigns. It
  * compares no identity, reads no firmware and sets no watchdog; the library does all of this.
  */
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "bus/bus_internal.h"
-#include "cm1e/sim.h"
+#include "served_drives.h"
 #include "start_soem.h"
 #include "support/veth.h"
 
@@ -159,46 +156,6 @@ static cost_t start_soem_on_wire(const char *interface, unsigned drives)
 
 /* ---- the wire ---------------------------------------------------------------------------------------------------- */
 
-static volatile int stop_serving;
-static void on_signal(int number) { stop_serving = number; }
-
-static void serve(unsigned drives, int ready)
-{
-    static const cm1e_sim_streams_t nowhere = {-1, -1, -1};
-    cm1e_bus_config_t config;
-    cm1e_diag_t diag = {0};
-    cm1e_sim_server_t *server;
-    signal(SIGTERM, on_signal);
-    describe(&config, "sim", drives);
-    cm1e_sim_segment_t *segment = cm1e_sim_segment_create(&config, &diag);
-    if (!segment || cm1e_sim_server_open(&server, segment, "wire1", &diag) != CM1E_OK)
-        fail(diag.text);
-    if (write(ready, "", 1) != 1)
-        fail("nobody waits");
-    cm1e_sim_server_run(server, &nowhere, &stop_serving);
-    cm1e_sim_server_close(server);
-    cm1e_sim_segment_destroy(segment);
-    cm1e_bus_config_free(&config);
-    exit(0);
-}
-
-static pid_t begin_serving(unsigned drives)
-{
-    int ready[2];
-    char byte;
-    if (pipe(ready) != 0)
-        fail("no pipe");
-    fflush(stdout);
-    const pid_t child = fork();
-    if (child == 0)
-        serve(drives, ready[1]);
-    close(ready[1]);
-    if (child < 0 || read(ready[0], &byte, 1) != 1)
-        fail("the simulated drives do not start");
-    close(ready[0]);
-    return child;
-}
-
 static void keep_best(cost_t *best, cost_t cost)
 {
     if (best->ms == 0 || cost.ms < best->ms)
@@ -207,13 +164,12 @@ static void keep_best(cost_t *best, cost_t cost)
 
 static void measure_on_wire(unsigned drives, cost_t best[SUBJECTS])
 {
-    const pid_t child = begin_serving(drives);
+    const pid_t server = served_drives_begin(drives);
     for (int round = 0; round < ROUNDS; round++) {
         keep_best(&best[0], start_ours("wire0", drives));
         keep_best(&best[1], start_soem_on_wire("wire0", drives));
     }
-    kill(child, SIGTERM);
-    waitpid(child, NULL, 0);
+    served_drives_end(server);
 }
 
 static void measure_in_process(unsigned drives, cost_t costs[SUBJECTS])
