@@ -275,10 +275,9 @@ void cm1e_axis_advance_any(cm1e_axis_t *axis)
     after_motion(axis, undisturbed);
 }
 
-void cm1e_axis_advance(cm1e_axis_t *axis)
+__attribute__((noinline)) void cm1e_axis_advance_undecided(cm1e_axis_t *axis)
 {
     bool over = false;
-    axis->advanced = true; /* first, as a master may be asked for its set-point on the way */
     if (cm1e_axis_ordinary_step(axis))
         return;
     if (!cm1e_axis_led_step(axis, &over))

@@ -228,16 +228,27 @@ typedef enum cm1e_lead {
  *  the next set-point in cm1e_axis_outputs(). A set-point that it could not follow is not sent to the motor: the axis
  *  stops with CM1E_ERROR_AXIS_COUPLING_LIMIT. */
 typedef struct cm1e_axis_leader {
+    /** The short way of an ordinary cycle, if `bounds` is not NULL. It is taken while the number of `course` stays and the
+     *  set-points were found to be well within the limits ahead. Then next() would do nothing but give the set-point.
+     *  Bits of the axes that have had the present set-point, and that of this one: */
+    uint32_t *asked;
+    uint32_t bit;
+    const double *position, *velocity, *acceleration; /**< of this axis in the present set-point */
+    const uint32_t *course;         /**< see bounds() */
+    /** Written by the axis: u, where the line of `position` has the origin of the counts; counts of its unit, with the
+     *  sign of the motor. */
+    double line_origin, line_counts;
+    /** Makes the next set-point of all axes. false, and nothing has changed: the cycle is not an ordinary one. */
+    bool (*ordinary)(void *context);
+    void *context;
+    uint32_t index;                 /**< number of the axis for the leader */
     /** Position (u, as cm1e_axis_get() counts it, without the turns of a modulo axis), velocity, acceleration of this
      *  cycle. */
     cm1e_lead_t (*next)(void *context, uint32_t index, double *position, double *velocity, double *acceleration);
-    /** A number that stays as long as what `bounds` has told of the axis holds: its largest velocity, acceleration and
+    /** `course` is a number that stays as long as what `bounds` has told of the axis holds: its largest velocity, acceleration and
      *  jerk from the last set-point on, and for how long at most. The number is that of the set-point which next() gave
      *  last. false: nothing is known ahead. NULL, both: nothing ever is. */
-    const uint32_t *course;
     bool (*bounds)(void *context, uint32_t index, cm1e_motion_bounds_t *most, double *left_s);
-    void *context;
-    uint32_t index;                 /**< number of the axis for the leader */
     /** The lead has ended, by MC_Stop, MC_Power or an error of the axis. `error` is that with which commands end;
      *  CM1E_OK: they are aborted. */
     void (*lost)(void *context, uint32_t index, cm1e_error_t error);
@@ -264,7 +275,7 @@ typedef struct cm1e_axis_leader {
 /** Gives an axis a leader. Until the lead ends, motion commands other than MC_Stop, and MC_SetPosition, are refused
  *  with CM1E_ERROR_AXIS_IN_GROUP. A lead begins only in Standstill: else CM1E_ERROR_AXIS_STATE. The leader must exist
  *  until the lead ends. @rt cycle */
-cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader);
+cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, cm1e_axis_leader_t *leader);
 /** Ends the lead: an axis at rest goes to Standstill; else it ramps down with its own limits. @rt cycle */
 void cm1e_axis_release(cm1e_axis_t *axis);
 /** Makes the axis a member of this group. false: it belongs to another one already. @rt cycle */

@@ -15,7 +15,7 @@ static bool at_rest(const cm1e_axis_t *axis)
     return axis->setpoint.velocity == 0.0 && axis->setpoint.acceleration == 0.0;
 }
 
-cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
+cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, cm1e_axis_leader_t *leader)
 {
     if (drive_profiles(axis))
         return CM1E_ERROR_UNSUPPORTED;
@@ -67,13 +67,15 @@ bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
 /* Whether all set-points are well within the limits, as long as the course of the leader stays. */
 CM1E_RARE static void look_ahead(cm1e_axis_t *axis)
 {
-    const cm1e_axis_leader_t *leader = axis->leader;
+    cm1e_axis_leader_t *leader = axis->leader;
     cm1e_motion_bounds_t most;
     double left_s;
     const bool kept = leader->bounds(leader->context, leader->index, &most, &left_s) &&
                       cm1e_axis_well_ahead(axis, &most, -most.velocity * left_s, most.velocity * left_s);
     /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a leader has a course */
     cm1e_axis_guard_decide(axis, kept, *leader->course);
+    leader->line_origin = axis->position.modulo_range > 0.0 ? 0.0 : axis->position.origin_units;
+    leader->line_counts = copysign(axis->position.unit.counts, axis->position.scale);
 }
 
 CM1E_RARE static bool refuse(cm1e_axis_t *axis, guard_t guard)
@@ -88,6 +90,35 @@ CM1E_RARE static bool be_left(cm1e_axis_t *axis)
     if (axis_led(axis))
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLED, 0.0, 0.0);
     return false;
+}
+
+/* What cm1e_axis_position_from_line() does, with what does not change while the axis is led, and without its checks: the
+ * position was found to be in the range of the counts ahead. */
+static inline bool take_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
+{
+    const double counts =
+        (*leader->position - leader->line_origin) * leader->line_counts / axis->position.unit.units;
+    const from_t next = {cm1e_position_plus(axis->position.origin, counts), *leader->velocity, *leader->acceleration,
+                         false};
+    *leader->asked |= leader->bit;
+    cm1e_axis_put_set_point(axis, &next);
+    return true;
+}
+
+/* The first axis that asks makes the set-point of all. Not inlined, so that the others save no registers. */
+static __attribute__((noinline)) bool take_first_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
+{
+    return leader->ordinary(leader->context) && take_set_point(axis, leader);
+}
+
+static bool ordinary(cm1e_axis_t *axis)
+{
+    const cm1e_axis_leader_t *leader = axis->leader;
+    if (!axis->guarding.kept_ahead || !cm1e_axis_guard_decided(axis, *leader->course))
+        return false;
+    if ((*leader->asked & leader->bit) != 0)
+        return take_first_set_point(axis, leader);
+    return take_set_point(axis, leader);
 }
 
 /* The leader may let the axis go while it gives the set-point. */
@@ -144,6 +175,7 @@ static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 
 const source_t cm1e_source_leader = {
     .step = step,
+    .ordinary = ordinary,
     .stop = cm1e_axis_stop_by_ramp,
     .begin_anew = begin_anew,
     .slow = slow,

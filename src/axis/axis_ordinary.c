@@ -40,19 +40,16 @@ static bool needs_no_check(const cm1e_axis_t *axis, double from_s, double until_
 }
 
 /* Whether the cycle at `time_s` is ordinary as far as the profile decides it, and until when the next ones are. */
-CM1E_RARE static bool look_ahead(cm1e_axis_t *axis, double time_s)
+CM1E_RARE static void look_ahead(cm1e_axis_t *axis, double time_s)
 {
     setpoint_t *s = &axis->setpoint;
     double until_s = smaller(s->stretch.until_s, time_s + cycles_ahead * axis->cycle_s);
     if (!s->reached && !s->paused && !s->stands) /* else the end of the profile is behind */
         until_s = smaller(until_s, s->profile.duration_s - profile_same_moment * axis->cycle_s);
-    if (!(time_s >= s->stretch.from_s && time_s < until_s))
-        return false;
-    if (!needs_no_check(axis, time_s, until_s))
-        return false;
+    if (!(time_s >= s->stretch.from_s && time_s < until_s) || !needs_no_check(axis, time_s, until_s))
+        return;
     s->ordinary_until_s = until_s;
     s->course++;
-    return true;
 }
 
 bool cm1e_axis_course(const cm1e_axis_t *axis, course_t *course)
@@ -70,24 +67,25 @@ bool cm1e_axis_course(const cm1e_axis_t *axis, course_t *course)
     return isfinite(course->most.velocity);
 }
 
-/* Whether the axis is in a motion of a command, a master or a leader, and has nothing to do beside it. */
-static inline bool only_moves(const cm1e_axis_t *axis)
+/* Whether the axis has nothing to do beside its motion. */
+static inline bool nothing_beside(const cm1e_axis_t *axis)
 {
-    return axis->state >= CM1E_AXIS_DISCRETE_MOTION && axis->state <= CM1E_AXIS_SYNCHRONIZED_MOTION && !axis->extras &&
-           axis_acts(axis) && axis->silence.silent_before == 0 && !axis->silence.frozen;
+    return !axis->extras && axis_acts(axis) && axis->silence.silent_before == 0 && !axis->silence.frozen;
 }
 
 /* Whether the axis has nothing to do but to follow its master or leader. */
 static inline bool only_follows(const cm1e_axis_t *axis)
 {
     const source_t *source = axis->setpoint.source;
-    return axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && !source->find_stretch && source->moves && only_moves(axis);
+    return axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && !source->find_stretch && source->moves &&
+           nothing_beside(axis);
 }
 
-bool cm1e_axis_led_ordinary_step(cm1e_axis_t *axis)
+static inline bool led_ordinary_step(cm1e_axis_t *axis)
 {
     const source_t *source = axis->setpoint.source;
-    return source->ordinary && only_follows(axis) && source->ordinary(axis);
+    return axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && nothing_beside(axis) && source->ordinary &&
+           source->ordinary(axis);
 }
 
 bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over)
@@ -96,8 +94,6 @@ bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over)
     if (!only_follows(axis))
         return false;
     *over = false;
-    if (source->ordinary && source->ordinary(axis))
-        return true;
     if (source->follows)
         axis->coupling_hooks->advance_masters(axis);
     cm1e_axis_in_position_leave(axis);
@@ -109,13 +105,18 @@ bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over)
     return true;
 }
 
-bool cm1e_axis_ordinary_step(cm1e_axis_t *axis)
+/* Whether the axis is on the profile of a command, and has nothing to do beside it. */
+static inline bool on_profile_only(const cm1e_axis_t *axis)
+{
+    return axis->setpoint.source == &cm1e_source_profile && axis->state >= CM1E_AXIS_DISCRETE_MOTION &&
+           axis->state < CM1E_AXIS_SYNCHRONIZED_MOTION && nothing_beside(axis);
+}
+
+static inline bool decided_step(cm1e_axis_t *axis)
 {
     setpoint_t *s = &axis->setpoint;
-    if (s->source != &cm1e_source_profile || axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION || !only_moves(axis))
-        return false;
     const double time_s = s->profile_next_s;
-    if (!(time_s < s->ordinary_until_s) && !look_ahead(axis, time_s))
+    if (!on_profile_only(axis) || !(time_s < s->ordinary_until_s))
         return false;
     cm1e_axis_count_cycle(axis);
     const cm1e_motion_state_t next = cm1e_profile_stretch_state(&s->stretch, time_s);
@@ -125,4 +126,21 @@ bool cm1e_axis_ordinary_step(cm1e_axis_t *axis)
     if (next.velocity != 0.0)
         s->positive_before = next.velocity > 0.0;
     return true;
+}
+
+bool cm1e_axis_ordinary_step(cm1e_axis_t *axis)
+{
+    const setpoint_t *s = &axis->setpoint;
+    if (on_profile_only(axis) && !(s->profile_next_s < s->ordinary_until_s))
+        look_ahead(axis, s->profile_next_s);
+    return decided_step(axis);
+}
+
+bool cm1e_axis_led_ordinary_step(cm1e_axis_t *axis) { return led_ordinary_step(axis); }
+
+void cm1e_axis_advance(cm1e_axis_t *axis)
+{
+    axis->advanced = true; /* first, as a master may be asked for its set-point on the way */
+    if (!decided_step(axis) && !led_ordinary_step(axis))
+        cm1e_axis_advance_undecided(axis);
 }

@@ -406,7 +406,7 @@ struct cm1e_axis {
     backlash_t backlash;
     setpoint_t setpoint;
     /* not in every cycle */
-    const cm1e_axis_leader_t *leader; /**< NULL: none */
+    cm1e_axis_leader_t *leader;     /**< NULL: none */
     const cm1e_axis_config_t *config;
     guard_t broken;                 /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
     override_t override, override_refused; /**< the second: the last refused one, for the text */

@@ -53,11 +53,14 @@ bool cm1e_axis_inputs_ordinary(cm1e_axis_t *axis, cm1e_error_t received, cm1e_er
 /** cm1e_axis_advance() for an ordinary cycle of a move; false, and nothing has changed: it is not one
  *  (axis_ordinary.c). */
 bool cm1e_axis_ordinary_step(cm1e_axis_t *axis);
+/** cm1e_axis_advance() but for the short ways of a cycle that was decided ahead. It is not inlined, so that these save no
+ *  registers. */
+void cm1e_axis_advance_undecided(cm1e_axis_t *axis);
 /** cm1e_axis_advance() for an axis in SynchronizedMotion that has nothing to do but to follow its master or leader.
  *  false, and nothing has changed: it has. `*over`: another source has taken over, and the cycle is not complete. */
 bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over);
-/** The part of it for a cycle about which everything was decided ahead (source_t.ordinary); false, and nothing but the
- *  masters has changed: it was not. */
+/** cm1e_axis_advance() of such an axis for a cycle about which everything was decided ahead (source_t.ordinary); false,
+ *  and nothing but the masters has changed: it was not. Called before cm1e_axis_led_step(). */
 bool cm1e_axis_led_ordinary_step(cm1e_axis_t *axis);
 /* What sources write that are no profile of axis_motion.c, and those who change something beside the motion. */
 /** Writes the set-point of this cycle. */

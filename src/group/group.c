@@ -22,6 +22,7 @@ cm1e_error_t cm1e_group_create(AXES_GROUP_REF_t *reference, const cm1e_group_con
         (void)memcpy(group->config.name, "group", sizeof "group");
     group->override = 1.0;
     group->reset_state = CM1E_COMMAND_DONE;
+    cm1e_group_make_leaders(group);
     if (!cm1e_group_take_handle(group)) {
         free(group);
         return cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes groups in this process.",

@@ -67,7 +67,7 @@ static void after_step(cm1e_group_t *group)
 /* The first axis of a cycle makes the step for all. */
 static void take_turn(cm1e_group_t *group, unsigned bit)
 {
-    if (group->asked == 0 || (group->asked & bit) != 0) {
+    if ((group->asked & bit) != 0) {
         group->asked = 0;
         if (!group->ending) {
             cm1e_path_step(&group->path, &group->sample);
@@ -75,6 +75,16 @@ static void take_turn(cm1e_group_t *group, unsigned bit)
         }
     }
     group->asked |= bit;
+}
+
+/* Axes on several buses may leave the path, so they take the long way. */
+static bool ordinary(void *context)
+{
+    cm1e_group_t *group = context;
+    if (group->ending || group->apart.several || !cm1e_path_ordinary_step(&group->path, &group->sample))
+        return false;
+    group->asked = 0;
+    return true;
 }
 
 static cm1e_lead_t next(void *context, uint32_t index, double *position, double *velocity, double *acceleration)
@@ -240,17 +250,34 @@ cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group)
     return CM1E_OK;
 }
 
+static const cm1e_axis_leader_t functions = {.next = next, .lost = lost, .paused = paused, .slow = slow,
+                                             .begins_anew = begins_anew, .stop_time = stop_time, .held = held,
+                                             .alone = cm1e_group_alone, .bounds = bounds, .ordinary = ordinary};
+
+void cm1e_group_make_leaders(cm1e_group_t *group)
+{
+    for (int i = 0; i < CM1E_GROUP_AXES; i++) {
+        cm1e_axis_leader_t *leader = &group->leads[i].leader;
+        *leader = functions;
+        leader->context = group;
+        leader->index = (uint32_t)i;
+        leader->course = &group->path.course;
+        leader->asked = &group->asked;
+        leader->bit = 1u << i;
+        leader->position = &group->sample.position[i];
+        leader->velocity = &group->sample.velocity[i];
+        leader->acceleration = &group->sample.acceleration[i];
+    }
+}
+
 cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
 {
-    group->led = group->asked = group->paused = group->slowed = 0;
+    group->led = group->paused = group->slowed = 0;
+    group->asked = UINT32_MAX;
     cm1e_group_together(group);
     group->ending = group->halting = false;
     for (int i = 0; i < group->axes; i++) {
         cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        group->leads[i].leader = (cm1e_axis_leader_t){.next = next, .lost = lost, .paused = paused, .slow = slow,
-                                           .begins_anew = begins_anew, .stop_time = stop_time, .held = held,
-                                           .alone = cm1e_group_alone, .course = &group->path.course,
-                                           .bounds = bounds, .context = group, .index = (uint32_t)i};
         if (axis && cm1e_axis_lead(axis, &group->leads[i].leader) == CM1E_OK) {
             group->led |= 1u << i;
         } else if (!some) {

@@ -95,8 +95,9 @@ struct cm1e_group {
     /* the motion: axes of the path are members in their order, without the gaps */
     int axes;
     uint8_t ident[CM1E_GROUP_AXES];     /**< IdentInGroup of the axes of the path */
-    unsigned led, asked, paused, slowed; /**< bits of axes of the path: led by the group; has had this sample; has
-                                              reported this pause, this silence */
+    unsigned led, paused, slowed;       /**< bits of axes of the path: led by the group; has reported this pause, this
+                                             silence */
+    uint32_t asked;                     /**< bits of axes of the path that have had this sample; at first all of them */
     bool ending;                        /**< the present set-point is the last one */
     bool halting;                       /**< MC_GroupHalt brakes, with ... */
     double halt_deceleration, halt_jerk;
@@ -177,6 +178,8 @@ void cm1e_group_finish_passed(cm1e_group_t *group);
 bool cm1e_group_at_rest(const cm1e_group_t *group);
 /** Begins a path without segments where the members are. */
 cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group);
+/** Makes what the axes of the path will have of the group. @rt init */
+void cm1e_group_make_leaders(cm1e_group_t *group);
 /** Leads the axes of the path, which are all at rest. After a refusal nothing has changed. `some`: leads those axes
  *  that can be led. */
 cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some);

@@ -26,6 +26,7 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
     }
     path->config = *config;
     path->course++;
+    cm1e_path_look_anew(path);
     path->override = 1;
     path->first_segment = path->segment_count = path->first_element = path->element_count = 0;
     path->cut = path->stop_wanted = path->stopping = false;
@@ -128,6 +129,7 @@ static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *comman
     const bool at_rest = path->element_count == 0;
     cm1e_path_segment_t *before = at_rest ? NULL : segment_at(path, path->segment_count - 1);
     path->segment_count++;
+    cm1e_path_look_anew(path);
     if (at_rest) {
         path->along = (cm1e_motion_state_t){0, 0, 0};
         path->begin = path->time_s = 0;
@@ -231,6 +233,7 @@ void cm1e_path_override(cm1e_path_t *path, double factor)
 {
     if (!(factor >= 0) || factor == path->override)
         return;
+    cm1e_path_look_anew(path);
     path->override = factor > 0 ? smaller(larger(factor, LEAST), LARGEST) : 0;
     if (path->element_count == 0 || is_at_rest(path))
         return;
@@ -250,6 +253,7 @@ void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk)
     if (path->element_count == 0)
         return;
     const cm1e_motion_limits_t least = least_limits(path);
+    cm1e_path_look_anew(path);
     path->stop_wanted = true;
     path->stop.deceleration = limit_of(deceleration, least.deceleration);
     path->stop.jerk = limit_of(jerk, least.jerk);
@@ -259,12 +263,14 @@ void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk)
 
 void cm1e_path_go_on(cm1e_path_t *path)
 {
+    cm1e_path_look_anew(path);
     path->stop_wanted = false;
     try_to_go_on(path);
 }
 
 void cm1e_path_clear(cm1e_path_t *path)
 {
+    cm1e_path_look_anew(path);
     if (path->element_count == 0)
         return;
     if (!is_at_rest(path)) {
@@ -285,6 +291,7 @@ void cm1e_path_clear(cm1e_path_t *path)
 
 void cm1e_path_pause(cm1e_path_t *path)
 {
+    cm1e_path_look_anew(path);
     if (path->element_count == 0)
         return;
     path->along.velocity = path->along.acceleration = 0;
@@ -383,23 +390,51 @@ bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *m
     return isfinite(v);
 }
 
-static void fill(cm1e_path_t *path, cm1e_path_sample_t *sample)
+/* A line has no curvature: 0 is added so that a zero has the sign that it has elsewhere. */
+static inline void fill_line(const cm1e_path_piece_t *line, int axes, double length, double v, double a,
+                             cm1e_path_sample_t *sample)
 {
-    const int axes = path->config.axes;
-    cm1e_motion_state_t along = path->along;
-    cm1e_slow_time_apply(&path->slow, &along);
-    const double v = along.velocity, a = along.acceleration;
-    sample->path_velocity = v;
-    sample->path_acceleration = a;
-    const cm1e_path_element_t *element = cm1e_path_element(path, 0);
+    double l;
+    const double *origin = cm1e_path_nearer_end(line, length, &l) ? line->to : line->from;
+    for (int i = 0; i < axes; i++) {
+        sample->position[i] = origin[i] + line->direction[i] * l;
+        sample->velocity[i] = line->direction[i] * v;
+        sample->acceleration[i] = 0.0 + line->direction[i] * a;
+    }
+}
+
+static void fill_curved(const cm1e_path_piece_t *piece, int axes, double length, double v, double a,
+                        cm1e_path_sample_t *sample)
+{
     cm1e_path_point_t point;
-    cm1e_path_point_at(element->piece, axes,
-                       element->skipped + smaller(larger(cm1e_path_here(path), 0), element->length), &point);
+    cm1e_path_point_at(piece, axes, length, &point);
     for (int i = 0; i < axes; i++) {
         sample->position[i] = point.position[i];
         sample->velocity[i] = point.tangent[i] * v;
         sample->acceleration[i] = point.curvature[i] * v * v + point.tangent[i] * a;
     }
+}
+
+/* The motion of all axes where the path is on its first element, at this velocity and acceleration. */
+static inline void fill_motion(const cm1e_path_t *path, const cm1e_path_element_t *element, double v, double a,
+                               cm1e_path_sample_t *sample)
+{
+    const double here = smaller(larger(path->along.position - path->begin, 0), element->length);
+    const int axes = path->config.axes;
+    sample->path_velocity = v;
+    sample->path_acceleration = a;
+    if (element->piece->kind == CM1E_PATH_LINE)
+        fill_line(element->piece, axes, element->skipped + here, v, a, sample);
+    else
+        fill_curved(element->piece, axes, element->skipped + here, v, a, sample);
+}
+
+static void fill(cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    const cm1e_path_element_t *element = cm1e_path_element(path, 0);
+    cm1e_motion_state_t along = path->along;
+    cm1e_slow_time_apply(&path->slow, &along);
+    fill_motion(path, element, along.velocity, along.acceleration, sample);
     sample->active = element->tag;
     sample->phase = !path->stop_wanted ? CM1E_PATH_MOVING : is_at_rest(path) ? CM1E_PATH_STOPPED : CM1E_PATH_STOPPING;
 }
@@ -419,6 +454,7 @@ void cm1e_path_slow(cm1e_path_t *path, double factor, cm1e_path_sample_t *sample
 {
     if (path->element_count == 0)
         return;
+    cm1e_path_look_anew(path);
     cm1e_slow_time_begin(&path->slow, factor);
     for (int i = 0; i < path->config.axes; i++) {
         const cm1e_path_axis_t *axis = &path->config.axis[i];
@@ -438,6 +474,31 @@ static void find_stretch(cm1e_path_t *path)
 {
     path->course++;
     cm1e_profile_stretch_at(&path->profile, path->time_s, &path->stretch);
+}
+
+/* Called when the step is made: whether the next ones are ordinary. */
+static void look_ahead(cm1e_path_t *path)
+{
+    cm1e_path_look_anew(path);
+    if (path->element_count == 0 || must_stop(path) || path->stopping || path->slow.missing != 0)
+        return;
+    path->present = cm1e_path_element(path, 0);
+    path->ordinary_until_s = smaller(path->stretch.until_s, path->profile.duration_s);
+}
+
+bool cm1e_path_ordinary_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    const double time_s = path->time_s + path->config.cycle_s;
+    if (!(time_s < path->ordinary_until_s))
+        return false;
+    const cm1e_motion_state_t along = cm1e_profile_stretch_state(&path->stretch, time_s);
+    if (!(along.position - path->begin < path->present->length))
+        return false;
+    path->time_s = time_s;
+    path->along = along;
+    sample->done = 0;
+    fill_motion(path, path->present, along.velocity, along.acceleration, sample);
+    return true;
 }
 
 void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
@@ -461,4 +522,5 @@ void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
         fill(path, sample);
     else
         fill_idle(path, sample);
+    look_ahead(path);
 }

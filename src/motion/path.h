@@ -198,6 +198,8 @@ typedef struct cm1e_path {
     cm1e_motion_state_t along;      /**< on the profile */
     cm1e_slow_time_t slow;          /**< the time of the profile runs slower */
     uint32_t course;                /**< a number: cm1e_path_course() */
+    double ordinary_until_s;        /**< on the profile: steps before it are ordinary; -INFINITY: none is */
+    const cm1e_path_element_t *present; /**< the first element, for these steps */
 } cm1e_path_t;
 
 /* ---- functions --------------------------------------------------------------------------------------------------- */
@@ -268,6 +270,9 @@ void cm1e_path_slow(cm1e_path_t *path, double factor, cm1e_path_sample_t *sample
 bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *most, double *left_s);
 static inline uint32_t cm1e_path_course(const cm1e_path_t *path) { return path->course; }
 
+/** cm1e_path_step() within one stretch of the profile and one element, while nothing else is wanted of the path. Most
+ *  steps are of this kind, and the step before has decided it. false, and nothing has changed: this one is not. */
+bool cm1e_path_ordinary_step(cm1e_path_t *path, cm1e_path_sample_t *sample);
 /** Computes the positions of the axes after one more cycle. */
 void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample);
 

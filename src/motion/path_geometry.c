@@ -171,9 +171,9 @@ bool cm1e_path_make_centre_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
 
 static void line_or_arc_at(const cm1e_path_piece_t *piece, int axes, double length, cm1e_path_point_t *point)
 {
-    const int end = length > piece->length / 2;
+    double l;
+    const int end = cm1e_path_nearer_end(piece, length, &l);
     const double *origin = end ? piece->to : piece->from;
-    const double l = end ? smaller(length - piece->length, 0) : length;
     for (int i = 0; i < axes; i++) {
         point->position[i] = origin[i] + piece->direction[i] * l;
         point->tangent[i] = piece->direction[i];

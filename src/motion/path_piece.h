@@ -35,6 +35,15 @@ double cm1e_path_reach_per_deviation(double cosine);
 double cm1e_path_deviation(const cm1e_path_piece_t *curve, const cm1e_path_frame_t *frame,
                            const cm1e_path_piece_t *before, const cm1e_path_piece_t *after);
 
+/** The nearer end of a line or an arc (0: its beginning), and how far the place is from there; negative: before the
+ *  end. */
+static inline int cm1e_path_nearer_end(const cm1e_path_piece_t *piece, double length, double *from_there)
+{
+    const bool end = length > piece->length / 2;
+    *from_there = !end ? length : length < piece->length ? length - piece->length : 0;
+    return end;
+}
+
 void cm1e_path_point_at(const cm1e_path_piece_t *piece, int axes, double length, cm1e_path_point_t *point);
 /** Range of an axis on the piece; for a curve an upper bound. */
 void cm1e_path_extent(const cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, int axis, double *lowest,

@@ -208,6 +208,7 @@ static void follow(cm1e_path_t *path, const cm1e_profile_t *profile, const cm1e_
     path->begin = 0;
     path->along = *start;
     path->stretch.until_s = -1;
+    cm1e_path_look_anew(path);
 }
 
 /** Plans it in one with what follows, where it is within the limits of that already. */

@@ -5,6 +5,8 @@
 #ifndef CM1E_MOTION_PATH_PRIVATE_H
 #define CM1E_MOTION_PATH_PRIVATE_H
 
+#include <math.h>
+
 #include "motion/path_piece.h"
 
 static inline cm1e_path_element_t *cm1e_path_element(cm1e_path_t *path, int index)
@@ -14,6 +16,9 @@ static inline cm1e_path_element_t *cm1e_path_element(cm1e_path_t *path, int inde
 
 /** The run from that element on, to the first element that is not joined, or before `until`. */
 cm1e_path_run_t cm1e_path_run(cm1e_path_t *path, int first, int until);
+
+/** Something has changed on which it depends whether the next steps are ordinary. */
+static inline void cm1e_path_look_anew(cm1e_path_t *path) { path->ordinary_until_s = -INFINITY; }
 
 /** Present distance on the first element. */
 static inline double cm1e_path_here(const cm1e_path_t *path)

@@ -3,8 +3,7 @@
  * A witness of the short ways of an ordinary cycle (axis_ordinary.c, coupling_ordinary.c, drive_ordinary.c): whenever
  * an axis takes one, a copy of the axis takes the long way, and afterwards every byte of both, and of the outputs on the
  * wire, must be the same. The benches of axes call it in place of cm1e_axis_inputs() and cm1e_axis_outputs(), so that
- * all tests of the axis look at it. A led axis has one way only, without the guard where that was decided ahead: there
- * the witness asks the guard.
+ * all tests of the axis look at it. Where the guard of a led axis was decided ahead, the witness asks the guard.
  */
 #ifndef CM1E_TESTS_ORDINARY_WITNESS_H
 #define CM1E_TESTS_ORDINARY_WITNESS_H
@@ -14,11 +13,13 @@
 /** How many cycles of a profile were advanced, and how many of them in the short way. How many inputs were read, and how
  *  many of them in the short way. */
 extern unsigned long long cycles_advanced, cycles_ordinary, inputs_seen, inputs_ordinary;
-/** How many cycles of followers, and of axes of a group, were advanced, and how many of them in the short way. */
-extern unsigned long long cycles_followed, cycles_followed_ordinary, cycles_led, cycles_led_ordinary;
+/** How many cycles of followers were advanced, and how many of those compared in the short way. Of axes of a group: how many were
+ *  decided ahead too. */
+extern unsigned long long cycles_followed, cycles_followed_ordinary, cycles_led, cycles_led_ordinary, cycles_led_short;
 
-/** Of followers one in so many cycles is compared, because their couplings are large. 1 in tests of the short way itself. */
-extern unsigned followers_compared_every;
+/** Of followers and of axes of a group one in so many cycles is compared, because couplings and groups are large. Of
+ *  followers 1 in tests of the short way itself. */
+extern unsigned followers_compared_every, led_compared_every;
 
 /** cm1e_axis_inputs() and cm1e_axis_outputs(). If the ways differ, they say where and end the program. */
 void ordinary_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns);

@@ -612,6 +612,7 @@ static void test_many_set_points_were_decided_ahead(void)
 {
     printf("%llu of %llu cycles of axes of a group were decided ahead\n", cycles_led_ordinary, cycles_led);
     TEST_ASSERT_TRUE(cycles_led_ordinary > cycles_led / 10);
+    TEST_ASSERT_TRUE(cycles_led_short > cycles_led / led_compared_every / 20);
 }
 
 int main(void)
