@@ -142,9 +142,17 @@ static void submit(cm1e_drive_t *drive, bool write)
     drive->change.phase = write ? PHASE_WRITING : PHASE_READING;
     if (!write)
         return;
+    drive->change.wrote = drive->change.data;
     drive->change.uncertain = true;
     drive->change.shown = CM1E_MODE_NONE;
     drive->change.abnormal |= drive->mode.wanted->leaves_abnormal;
+}
+
+/* Another mode was commanded meanwhile than the one that is written. The display may still show the mode before, and
+ * changes to the written one later: it proves nothing until the commanded mode is written too. */
+static bool is_outdated(const cm1e_drive_t *drive)
+{
+    return drive->change.uncertain && drive->change.wrote != (int8_t)drive->mode.commanded;
 }
 
 static void read_done(cm1e_drive_t *drive)
@@ -161,7 +169,7 @@ static void read_done(cm1e_drive_t *drive)
     if (now && drive->kind->asks_mode_first && !drive->change.known && !drive->change.uncertain)
         cm1e_drive_want_mode(drive, now);
     drive->change.known = true;
-    if (drive->change.read == (int8_t)drive->mode.commanded)
+    if (drive->change.read == (int8_t)drive->mode.commanded && !is_outdated(drive))
         drive->change.uncertain = false;
     drive->change.shown = drive->change.uncertain ? (int8_t)CM1E_MODE_NONE : drive->change.read;
     drive->change.phase = drive->change.uncertain ? PHASE_WAIT : PHASE_IDLE;
@@ -217,7 +225,8 @@ static void go_on(cm1e_drive_t *drive)
     }
     if (drive->now_ns < drive->change.retry_ns)
         return;
-    if (drive->change.phase == PHASE_WAIT && drive->now_ns - drive->change.write_ns < write_again_ns)
+    const bool fresh = !is_outdated(drive) && drive->now_ns - drive->change.write_ns < write_again_ns;
+    if (drive->change.phase == PHASE_WAIT && fresh)
         submit(drive, false);
     else if (drive->kind->asks_mode_first && !drive->change.known)
         submit(drive, false);

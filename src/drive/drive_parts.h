@@ -155,6 +155,7 @@ typedef struct cm1e_drive_change {
     uint8_t phase;
     int8_t data, shown;             /**< shown: stands for 0x6061 where that is not mapped */
     int8_t read;                    /**< the last value of 0x6061, also during a switch */
+    int8_t wrote;                   /**< the last value of 0x6060 */
     bool known;                     /**< 0x6061 was read after the device may have been switched off */
     bool uncertain;                 /**< 0x6060 was written, and 0x6061 has not shown it yet */
     bool abnormal;                  /**< behind a bridge: was in CMD or CPIO since power-on, as far as is known */

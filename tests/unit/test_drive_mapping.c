@@ -324,6 +324,30 @@ static void test_mode_over_sdo_is_set_before_and_switched_in_the_cycle(void)
     }
 }
 
+/* The display of a drive changes some cycles after it has taken a mode, and is that of the mode before until then. */
+static void test_mode_over_sdo_that_is_taken_back_at_any_moment_is_not_left_behind(void)
+{
+    enum { MOMENTS = 40 };
+    for (int moment = 0; moment < MOMENTS; moment++) {
+        fake_bus_init(&bus, CM1E_MAPPING_CSP, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.sdo_delay = 2;
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_init(&drive, &bus, 0, &diag));
+        fake_bus_show(&bus);
+        enable(CM1E_MODE_CSP);
+        bus.mode_delay = bus.mode_wait = 20;
+        drive.command.mode = CM1E_MODE_HM;
+        for (int i = 0; i < moment; i++)
+            cycle();
+        drive.command.enable = false;
+        drive.command.mode = CM1E_MODE_CSP;
+        for (int i = 0; i < 300; i++)
+            cycle();
+        TEST_ASSERT_EQUAL_INT8_MESSAGE(CM1E_MODE_CSP, bus.mode, "the drive homes, and its axis takes it for in CSP");
+        enable(CM1E_MODE_CSP);
+        TEST_ASSERT_EQUAL_INT8(CM1E_MODE_CSP, bus.mode);
+    }
+}
+
 static void answer_without_data(cm1e_bus_t *slave, cm1e_sdo_t *sdo)
 {
     (void)slave;
@@ -376,6 +400,7 @@ int main(void)
     RUN_TEST(test_mappings_support_the_modes_whose_targets_they_have);
     RUN_TEST(test_mode_that_cannot_be_read_is_an_error_in_words);
     RUN_TEST(test_mode_over_sdo_is_set_before_and_switched_in_the_cycle);
+    RUN_TEST(test_mode_over_sdo_that_is_taken_back_at_any_moment_is_not_left_behind);
     RUN_TEST(test_mode_over_sdo_that_is_refused_ends_in_a_timeout);
     return UNITY_END();
 }
