@@ -159,14 +159,28 @@ static void go_after(cm1e_axis_t *axis)
     cm1e_axis_begin_anew(axis, velocity);
 }
 
-/* Another motion has begun at the set-point, or there is none any more. A profile that began before must not go on. */
+/* u/s; of the motor, no faster than the set-point that goes after it. */
+static double velocity_of_motor(const cm1e_axis_t *axis)
+{
+    const double speed = fmax(0.0, fmin(speed_of_motor(axis), fabs(axis->setpoint.velocity)));
+    return copysign(speed, axis->setpoint.pursuit.velocity);
+}
+
+/* Another motion has begun at the set-point, or there is none any more. A profile that began before must not go on, and
+ * a slave must not begin with the velocity that was to meet the motor, which may be at rest. */
 static void give_up(cm1e_axis_t *axis)
 {
     const bool under_way = axis->setpoint.pursuit.under_way;
+    const double left = velocity_of_motor(axis);
     end(axis);
-    if (!under_way || !axis_on_profile(axis))
+    if (!under_way)
         return;
-    cm1e_axis_begin_anew(axis, axis->setpoint.velocity);
+    if (axis_on_profile(axis))
+        cm1e_axis_begin_anew(axis, axis->setpoint.velocity);
+    else if (axis_follows(axis))
+        cm1e_axis_begin_anew(axis, left);
+    else
+        return;
     tell_slaves(axis);
 }
 
