@@ -306,6 +306,16 @@ static bool contradicts(const cm1e_drive_t *drive, int32_t position)
            cm1e_drive_ways_differ(way, drive->feedback.velocity, elapsed_ns, cm1e_drive_tolerance(drive, elapsed_ns));
 }
 
+/* A position that stays the same although the motor turns agrees with no velocity, also where the tolerance is larger than
+ * the way of a slow motor. It does not end a contradiction. */
+static bool stays_frozen(const cm1e_drive_t *drive, int32_t position)
+{
+    static const int64_t least_way = 1500000000; /* 1.5 counts, as counts/s * ns: a turning motor shows one of them */
+    const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
+    return position == drive->feedback.position && elapsed_ns > 0 &&
+           llabs(drive->feedback.velocity) >= least_way / elapsed_ns;
+}
+
 /* false: the position is rejected. It becomes neither a target, nor a lag, nor a captured position. */
 static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
 {
@@ -324,7 +334,8 @@ static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t positi
     actual->distrusted = (uint8_t)(possible ? actual->distrusted - (actual->distrusted > 0) : POSITIONS_TO_TRUST);
     f->velocity = velocity_of(drive, in, position, mode);
     if (!contradicts(drive, position))
-        actual->contradictions = (uint8_t)(actual->contradictions - (actual->contradictions > 0));
+        actual->contradictions = (uint8_t)(actual->contradictions -
+                                           (actual->contradictions > 0 && !stays_frozen(drive, position)));
     else if (actual->contradictions < UINT8_MAX)
         actual->contradictions++;
     f->position = position;
