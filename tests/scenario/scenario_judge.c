@@ -19,7 +19,7 @@
  * reaches the speed v behind by v^2 / 2 (1 / A - 1 / a), and A makes at most v sqrt(1 - A / a) more of that. */
 #define HOMING_OVERSHOOT 1.0
 #define RING_OVERSHOOT 0.12       /* where a cable of a ring breaks or is mended, targets come up to a cycle late */
-#define HEAVY_OVERSHOOT 0.04      /* a lost frame, and a load that the servo cannot pull back without overshoot; */
+#define HEAVY_OVERSHOOT 0.08      /* a lost frame, and a load that the servo cannot pull back without overshoot; */
 #define COMPOSITE_OVERSHOOT 0.11  /* of a slave, a path, or what is superimposed (docs/SAFETY.md) */
 #define JOLT_OVERSHOOT 0.02       /* where frames are sent late, because those of another network were waited for */
 #define HOMING_SPEED 100000.0     /* counts/s, by the drive (scenario_machine.c) */
