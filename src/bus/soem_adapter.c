@@ -263,13 +263,13 @@ void cm1e_soem_offer(cm1e_soem_t *soem, cm1e_datagram_t *d)
 {
     cm1e_port_rider_t *rider = &soem->port.rider;
     const size_t bytes = DATAGRAM_HEADER_BYTES + d->length + EC_WKCSIZE;
-    if (d->command != COMMAND_FPRD || bytes > sizeof rider->datagrams)
+    if (d->command != COMMAND_FPRD || bytes > sizeof rider->datagram)
         return;
-    memset(rider->datagrams, 0, bytes);
-    rider->datagrams[0] = d->command;
-    cm1e_put_u16(rider->datagrams + 2, d->address);
-    cm1e_put_u16(rider->datagrams + 4, d->offset);
-    cm1e_put_u16(rider->datagrams + 6, d->length);
+    memset(rider->datagram, 0, bytes);
+    rider->datagram[0] = d->command;
+    cm1e_put_u16(rider->datagram + 2, d->address);
+    cm1e_put_u16(rider->datagram + 4, d->offset);
+    cm1e_put_u16(rider->datagram + 6, d->length);
     rider->bytes = (uint16_t)bytes;
     rider->state = RIDER_WAITS;
 }
@@ -293,7 +293,7 @@ static bool take_rider(cm1e_soem_t *soem, cm1e_datagram_t *d)
     if (rider->state == RIDER_ABOARD)
         return false;
     if (rider->state == RIDER_BACK)
-        take_data(rider->datagrams + DATAGRAM_HEADER_BYTES, d);
+        take_data(rider->datagram + DATAGRAM_HEADER_BYTES, d);
     rider->state = RIDER_NONE;
     return true;
 }

@@ -14,23 +14,18 @@ static bool carries_process_data(const uint8_t *frame)
     return command == COMMAND_LRW || command == COMMAND_LRD || command == COMMAND_LWR;
 }
 
-/** The last datagram of a frame; false: the frame is not what its length says. */
-static bool find_last(const uint8_t *frame, size_t length, datagram_t *last)
+/** The last datagram of a frame that SOEM made; NULL: the frame is not what its length says. */
+static uint8_t *find_last(uint8_t *frame, size_t length)
 {
-    size_t offset = FRAME_HEADER;
-    last->more = true;
-    while (last->more)
-        if (!cm1e_frame_datagram(frame, length, &offset, last))
-            return false;
-    return offset == length;
-}
-
-static void give_index(uint8_t *datagrams, size_t bytes, uint8_t index)
-{
-    datagram_t d;
-    size_t offset = 0;
-    while (cm1e_frame_datagram(datagrams, bytes, &offset, &d))
-        d.header[1] = index;
+    size_t at = FRAME_HEADER;
+    while (at + DATAGRAM_OVERHEAD <= length) {
+        const uint16_t field = cm1e_get_u16(frame + at + 6);
+        const size_t end = at + DATAGRAM_OVERHEAD + (field & DATAGRAM_LENGTH_MASK);
+        if (!(field & DATAGRAM_MORE))
+            return end == length ? frame + at : NULL;
+        at = end;
+    }
+    return NULL;
 }
 
 void cm1e_rider_board(ecx_portt *port, uint8 idx)
@@ -38,13 +33,13 @@ void cm1e_rider_board(ecx_portt *port, uint8 idx)
     cm1e_port_rider_t *rider = &port->rider;
     uint8_t *frame = port->txbuf[idx];
     const size_t length = (size_t)port->txbuflength[idx], whole = length + rider->bytes;
-    datagram_t last;
-    if (!carries_process_data(frame) || whole > CM1E_FRAME_MAX - FRAME_CHECK_BYTES || !find_last(frame, length, &last))
+    uint8_t *last = find_last(frame, length);
+    if (!carries_process_data(frame) || whole > CM1E_FRAME_MAX - FRAME_CHECK_BYTES || !last)
         return;
-    cm1e_put_u16(last.header + 6, cm1e_get_u16(last.header + 6) | DATAGRAM_MORE);
+    cm1e_put_u16(last + 6, cm1e_get_u16(last + 6) | DATAGRAM_MORE);
     cm1e_put_u16(frame + ETHERNET_HEADER, (uint16_t)(cm1e_get_u16(frame + ETHERNET_HEADER) + rider->bytes));
-    give_index(rider->datagrams, rider->bytes, idx);
-    memcpy(frame + length, rider->datagrams, rider->bytes);
+    rider->datagram[1] = idx;
+    memcpy(frame + length, rider->datagram, rider->bytes);
     port->txbuflength[idx] = (int)whole;
     port->slots[idx].rider_bytes = rider->bytes;
     rider->index = idx;
@@ -62,7 +57,7 @@ void cm1e_rider_return(ecx_portt *port, uint8 idx)
     if (!is_aboard(port, idx))
         return;
     const size_t end = (size_t)port->txbuflength[idx] - ETHERNET_HEADER;
-    memcpy(rider->datagrams, port->rxbuf[idx] + end - rider->bytes, rider->bytes);
+    memcpy(rider->datagram, port->rxbuf[idx] + end - rider->bytes, rider->bytes);
     rider->state = RIDER_BACK;
 }
 

@@ -1,9 +1,9 @@
 /**
  * @file rider.h
- * Datagrams of the bus that ride in a frame of SOEM's process data, behind SOEM's own datagrams, where that frame has
- * room. SOEM does not see them: it gets the working counter of its last datagram, as without a rider. They share the
- * fate of the frame: with it they come back or are lost. In a ring both halves process them, so each of them must
- * have a meaning in any order of the slaves (FRAME_ANY_ORDER). Inside port.c's thread. @rt cycle
+ * A datagram of the bus that rides in a frame of SOEM's process data, behind SOEM's own datagrams, where that frame has
+ * room. SOEM does not see it: it gets the working counter of its own last datagram, as without a rider. The rider shares
+ * the fate of the frame: with it, it comes back or is lost. In a ring both halves process it, so it must have a meaning
+ * in any order of the slaves (FRAME_ANY_ORDER). Inside port.c's thread. @rt cycle
  */
 #ifndef CM1E_NIC_RIDER_H
 #define CM1E_NIC_RIDER_H
@@ -17,7 +17,7 @@ typedef enum cm1e_rider_state {
     RIDER_NONE = 0,
     RIDER_WAITS,    /**< for the next frame of process data with room */
     RIDER_ABOARD,   /**< on its way */
-    RIDER_BACK,     /**< `datagrams` are those that came back */
+    RIDER_BACK,     /**< `datagram` is the one that came back */
     RIDER_LOST,     /**< its frame did not come back, or its owner has given it up */
 } rider_state_t;
 

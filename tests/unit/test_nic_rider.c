@@ -1,5 +1,5 @@
-/* Datagrams that ride in SOEM's process data: SOEM gets what it would get without them, in a line and in every state of
- * a ring; they come back or are lost with their frame. */
+/* A datagram that rides in SOEM's process data: SOEM gets what it would get without it, in a line and in every state of a
+ * ring; it comes back or is lost with its frame. */
 #include <ethercat.h>
 #include <unity.h>
 
@@ -38,7 +38,7 @@ static void offer(int slave)
 {
     const uint8_t datagram[BYTES] = {EC_CMD_FPRD, 0xEE, (uint8_t)(WIRE_STATION + slave - 1), WIRE_STATION >> 8, 2, 0,
                                      READ_BYTES};
-    memcpy(port.rider.datagrams, datagram, BYTES);
+    memcpy(port.rider.datagram, datagram, BYTES);
     port.rider.bytes = BYTES;
     port.rider.state = RIDER_WAITS;
 }
@@ -47,8 +47,8 @@ static void expect_answer(int slave)
 {
     TEST_ASSERT_EQUAL_UINT8(RIDER_BACK, port.rider.state);
     for (int i = 0; i < READ_BYTES; i++)
-        TEST_ASSERT_EQUAL_HEX8(slave * 16 + 2 + i, port.rider.datagrams[10 + i]);
-    TEST_ASSERT_EQUAL_UINT8(1, port.rider.datagrams[10 + READ_BYTES]);
+        TEST_ASSERT_EQUAL_HEX8(slave * 16 + 2 + i, port.rider.datagram[10 + i]);
+    TEST_ASSERT_EQUAL_UINT8(1, port.rider.datagram[10 + READ_BYTES]);
 }
 
 /** Process data of so many bytes, with the time of slave 1 behind them if `time`, as SOEM sends them. */
@@ -99,7 +99,7 @@ static void test_a_slave_that_does_not_answer_counts_nothing(void)
     const uint8 idx = send_image(2 * N, false);
     TEST_ASSERT_EQUAL_INT(3 * N, ecx_waitinframe(&port, idx, 250));
     TEST_ASSERT_EQUAL_UINT8(RIDER_BACK, port.rider.state);
-    TEST_ASSERT_EQUAL_UINT8(0, port.rider.datagrams[10 + READ_BYTES]);
+    TEST_ASSERT_EQUAL_UINT8(0, port.rider.datagram[10 + READ_BYTES]);
     expect_image(idx);
 }
 

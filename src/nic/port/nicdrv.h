@@ -43,17 +43,17 @@ typedef struct cm1e_port_slot {
     uint8_t stamp[2];       /**< last byte of the source MAC of the frame on its way from interface 0, 1 */
     uint8_t companion;      /**< ring.h: what left on the second interface with it */
     uint8_t answers;        /**< ring.h: which frames came back where */
-    uint16_t rider_bytes;   /**< at the end of the frame: datagrams that are not SOEM's (rider.h) */
+    uint16_t rider_bytes;   /**< at the end of the frame: a datagram that is not SOEM's (rider.h) */
 } cm1e_port_slot_t;
 
 enum { CM1E_RIDER_ROOM = 64 };
 
-/** Datagrams that ride behind SOEM's own in one of its frames (rider.h). */
+/** A datagram that rides behind SOEM's own in one of its frames (rider.h). */
 typedef struct cm1e_port_rider {
     uint8_t state;          /**< rider.h */
     uint8_t index;          /**< of the frame that carries it */
     uint16_t bytes;
-    uint8_t datagrams[CM1E_RIDER_ROOM]; /**< as they are sent, and then as they came back */
+    uint8_t datagram[CM1E_RIDER_ROOM]; /**< header, data and working counter: as sent, and then as it came back */
 } cm1e_port_rider_t;
 
 /** Second interface of a ring. */
