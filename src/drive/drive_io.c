@@ -276,14 +276,20 @@ static const int64_t position_age_ns = 2 * MS_IN_NS;
 /* Number of good positions in a row that are required before torque, after a bad one. */
 enum { POSITIONS_TO_TRUST = 3 };
 
+/* Seconds and the rest apart, because the product of both with nanoseconds would be too large after hours. */
+static int64_t way_in(int64_t counts_per_s, int64_t time_ns)
+{
+    return counts_per_s * (time_ns / S_IN_NS) + counts_per_s * (time_ns % S_IN_NS) / S_IN_NS;
+}
+
 int64_t cm1e_drive_farthest(const cm1e_drive_t *drive, int64_t elapsed_ns)
 {
-    return drive->range.velocity_possible * (elapsed_ns + position_age_ns) / 1000000000;
+    return way_in(drive->range.velocity_possible, elapsed_ns + position_age_ns);
 }
 
 int64_t cm1e_drive_tolerance(const cm1e_drive_t *drive, int64_t elapsed_ns)
 {
-    return drive->range.velocity_possible * elapsed_ns / 1000000000 / 100;
+    return way_in(drive->range.velocity_possible, elapsed_ns) / 100;
 }
 
 /* A position too far away is no motion: it is damaged, or has another origin. Under torque only homing may set an

@@ -75,6 +75,20 @@ static void test_under_torque_a_position_is_believed_up_to_what_the_motor_can_do
     }
 }
 
+/** Of motors with fine encoders too, after any time without an answer. */
+static void test_after_hours_a_position_is_believed(void)
+{
+    static const int64_t hours[] = {1, 3, 6, 24, 10000};
+    for (size_t i = 0; i < sizeof hours / sizeof hours[0]; i++) {
+        setUp();
+        enable();
+        drive.range.velocity_possible = 100000000;
+        bus.clock.virtual_now_ns += hours[i] * 3600 * INT64_C(1000000000);
+        shown_position += 10;
+        expect_position(shown_position, true);
+    }
+}
+
 /** docs/SAFETY.md: an error after lost_cycles_limit of them in a row, and not sooner. */
 static void test_positions_that_cannot_be_are_an_error_after_the_limit(void)
 {
@@ -181,6 +195,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_under_torque_a_position_is_believed_up_to_what_the_motor_can_do);
+    RUN_TEST(test_after_hours_a_position_is_believed);
     RUN_TEST(test_positions_that_cannot_be_are_an_error_after_the_limit);
     RUN_TEST(test_without_torque_a_jump_is_a_new_origin_that_needs_three_good_positions);
     RUN_TEST(test_a_drive_contradicts_itself_where_position_and_velocity_go_apart);
