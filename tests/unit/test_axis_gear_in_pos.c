@@ -380,6 +380,19 @@ static void test_buffered_behind_and_aborted_by_others(void)
     axes_wait_reached(SLAVE, gear, 3000);
 }
 
+/* A slave that waits for its master no longer can be the master of that axis. */
+static void test_aborted_while_it_waits_it_makes_no_ring(void)
+{
+    axes_begin(2);
+    axes_move_velocity(MASTER, 4);
+    const cm1e_axis_coupling_t far = meet(1000, 9, 10);
+    const cm1e_command_id_t waits = gear_in_pos(&far);
+    axes_cycles(10);
+    axes_move_velocity(SLAVE, 1);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, axes_status(SLAVE, waits).state);
+    axes_wait_reached(MASTER, axes_gear_in(MASTER, SLAVE, 1, 1), 3000);
+}
+
 /* It waits behind a move, and then for its master. */
 static void test_buffered_itself(void)
 {
@@ -639,6 +652,7 @@ int main(void)
     RUN_TEST(test_a_way_beyond_a_software_limit_is_refused);
     RUN_TEST(test_a_lost_master_ends_what_waits_and_nothing_else);
     RUN_TEST(test_buffered_behind_and_aborted_by_others);
+    RUN_TEST(test_aborted_while_it_waits_it_makes_no_ring);
     RUN_TEST(test_buffered_itself);
     RUN_TEST(test_wrong_inputs_are_refused);
     RUN_TEST(test_two_that_wait_for_each_other_are_refused);
