@@ -158,12 +158,18 @@ static int8_t true_mode(const bench_t *bench, uint32_t n)
                                      : (int8_t)bench_drive(bench, n)->objects.mode_display;
 }
 
+/** It has all datagrams that its header tells of; there may be others behind the process data. */
+static bool is_whole(const cm1e_tap_frame_t *frame)
+{
+    return frame->length >= 16u + (word_at(frame->bytes, 14) & 0x7FF);
+}
+
 /** Inputs that the master may believe: of the frame it sent last, with every slave's part in it. */
 static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
 {
     const uint8_t *data = frame->bytes + LRW_DATA;
     const uint32_t count = bench->config.axis_count;
-    if (frame->bytes[17] != bench->last_index || frame->delay_ns > 0 ||
+    if (frame->bytes[17] != bench->last_index || frame->delay_ns > 0 || !is_whole(frame) ||
         word_at(data, bench->image_bytes) != SLAVE_WORKING_COUNTER * bench->slaves ||
         memcmp(data, bench->last_outputs, (size_t)bench->output_bytes) != 0)
         return;
