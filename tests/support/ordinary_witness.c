@@ -177,7 +177,7 @@ static void advance_led(cm1e_axis_t *axis)
     static struct cm1e_axis at_first;
     memcpy(&copy, axis, sizeof copy);
     memcpy(&at_first, axis, sizeof at_first);
-    if (cycles_led++ % led_compared_every == 0)
+    if (cycles_led++ % led_compared_every == 0 && axis->leader->ordinary) /* a group: other leaders have no short way */
         compare_led(axis);
     else
         cm1e_axis_advance(axis);
