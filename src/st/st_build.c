@@ -254,7 +254,9 @@ int cm1e_st_with_modifier(parsing_t *parsing, place_t place, int modifiers, cons
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (strcasecmp(word, words[i].word) == 0)
             modifier = words[i].modifier;
-    if ((modifiers & modifier) || (modifier & M_ACCESS && modifiers & M_ACCESS))
+    if (modifiers & modifier)
+        cm1e_st_report(parsing->st, place, "%s stands here twice", word);
+    else if (modifier & M_ACCESS && modifiers & M_ACCESS)
         cm1e_st_report(parsing->st, place, "%s is too many: one of PUBLIC, PRIVATE, PROTECTED and INTERNAL", word);
     if (((modifiers | modifier) & (M_ABSTRACT | M_FINAL)) == (M_ABSTRACT | M_FINAL))
         cm1e_st_report(parsing->st, place, "ABSTRACT and FINAL contradict each other");

@@ -171,10 +171,11 @@ static bool same_signature(st_t *st, const unit_t *a, const unit_t *b)
 
 static void check_override(st_t *st, const unit_t *method, const unit_t *of)
 {
-    if (of && (of->object.final || of->object.access == M_PRIVATE))
+    const bool of_interface = of && of->object.owner->kind == U_INTERFACE;
+    if (of && !of_interface && (of->object.final || of->object.access == M_PRIVATE))
         cm1e_st_report(st, method->place, "\"%s\" is %s in \"%s\": what extends it cannot have one of that name",
                        cm1e_st_plain_name(method), of->object.final ? "FINAL" : "PRIVATE", of->object.owner->name);
-    if (of && of->object.owner->kind == U_INTERFACE && method->object.access & ~M_PUBLIC)
+    if (of_interface && method->object.access & ~M_PUBLIC)
         cm1e_st_report(st, method->place, "\"%s\" is of the interface \"%s\", so it is PUBLIC", cm1e_st_plain_name(method),
                        of->object.owner->name);
     if (of && strcasecmp(method->name, "FB_Init") != 0 && !same_signature(st, method, of))
@@ -209,9 +210,20 @@ static void check_abstract(st_t *st, const unit_t *unit)
                                unit->name, method->name, at->name);
 }
 
+/** What implements an interface is called by it from anywhere. */
+static void check_public(st_t *st, const unit_t *interface)
+{
+    for (const unit_t *method = interface->object.methods; method; method = method->object.next_method)
+        if (method->object.final || method->object.access & ~M_PUBLIC)
+            cm1e_st_report(st, method->place, "\"%s\" is of an interface: it is PUBLIC, and not FINAL",
+                           cm1e_st_plain_name(method));
+}
+
 void cm1e_st_check_objects(st_t *st)
 {
     for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
+        if (unit->kind == U_INTERFACE)
+            check_public(st, unit);
         if (unit->kind != U_BLOCK || unit->external)
             continue;
         for (const unit_t *method = unit->object.methods; method; method = method->object.next_method)

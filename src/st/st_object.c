@@ -24,7 +24,7 @@ static void check_access(st_t *st, const expr_t *call, const unit_t *method)
     const unit_t *this = cm1e_st_this(st), *owner = method->object.owner;
     const int access = method->object.access;
     if ((access == M_PRIVATE && this != owner) || (access == M_PROTECTED && !cm1e_st_is_a(st, this, owner)) ||
-        (access == M_INTERNAL && !cm1e_st_same_namespace(st->unit->scope, method->scope)))
+        (access == M_INTERNAL && !cm1e_st_same_namespace(st->unit ? st->unit->scope : NULL, method->scope)))
         cm1e_st_report(st, call->place, "\"%s\" of \"%s\" is %s can use it", cm1e_st_plain_name(method), owner->name,
                        who[access]);
 }
