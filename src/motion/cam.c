@@ -150,12 +150,16 @@ static cm1e_cam_fault_t find_extremes(cm1e_cam_t *cam, int *at)
         widen(&all, &(cm1e_curve_extremes_t){knot->slave, knot->slave, knot->slope, knot->slope,
                                              fabs(knot->curvature), 0});
     }
-    for (*at = 0; *at + 1 < cam->count && cam->curve != mcCamLinear; ++*at) {
+    for (*at = 0; *at + 1 < cam->count; ++*at) {
         cm1e_curve_t curve;
         cm1e_curve_extremes_t part;
-        hull(&cam->knots[*at], &part);
         const double h = span(cam->knots, *at);
-        if (!isnormal(h * h * h * h) || !isfinite(part.third / (h * h))) /* about the highest coefficient */
+        if (!isnormal(h * h * h * h)) /* of lines too: the number of a period must be finite */
+            return CM1E_CAM_STEEP;
+        if (cam->curve == mcCamLinear)
+            continue;
+        hull(&cam->knots[*at], &part);
+        if (!isfinite(part.third / (h * h))) /* about the highest coefficient */
             return CM1E_CAM_STEEP;
         all.third = larger(all.third, part.third);
         if (!adds(&all, &part))

@@ -338,9 +338,9 @@ static void test_every_wrong_number_is_found_and_named(void)
 /* Numbers at the ends of what doubles can hold: refused, or finite everywhere. */
 static void test_extreme_numbers_never_become_infinite(void)
 {
-    static const double sizes[] = {1e-300, 1e-100, 1e-12, 1, 1e12, 1e100, 1e300};
-    for (int m = 0; m < 7; m++)
-        for (int s = 0; s < 7; s++)
+    static const double sizes[] = {2e-317, 1e-300, 1e-100, 1e-12, 1, 1e12, 1e100, 1e300};
+    for (int m = 0; m < 8; m++)
+        for (int s = 0; s < 8; s++)
             for (int curve = mcCamPolynomial5; curve <= (int)mcCamLinear; curve++) {
                 MC_CAM_POINT points[5];
                 for (int k = 0; k < 5; k++)
@@ -353,8 +353,8 @@ static void test_extreme_numbers_never_become_infinite(void)
                     TEST_ASSERT_EQUAL_INT(CM1E_CAM_STEEP, fault);
                     continue;
                 }
-                for (int i = 0; i < 50; i++) {
-                    const cm1e_cam_sample_t here = at(cam.length * (i * 0.13 - 2));
+                for (int i = 0; i < 100; i++) { /* near its points, and where machines are */
+                    const cm1e_cam_sample_t here = at((i < 50 ? cam.length : 1e6) * (i % 50 * 0.13 - 2));
                     TEST_ASSERT_TRUE(isfinite(total(&here)) && isfinite(here.point.slope) &&
                                      isfinite(here.point.curvature) && isfinite(here.point.third));
                 }
