@@ -146,19 +146,6 @@ int attach_if_running(const common_options_t *options, cm1e_bus_config_t *config
     return error == CM1E_OK || (error == CM1E_ERROR_NOT_FOUND && !options->attach) ? EXIT_OK : fail(&diag);
 }
 
-json_t *ask_program(cm1e_control_t *control, json_t *request, const char *member, cm1e_diag_t *diag)
-{
-    char *asked = json_dumps(request, JSON_COMPACT), *told = NULL;
-    json_decref(request);
-    const cm1e_error_t error = cm1e_control_ask(control, asked ? asked : "", &told, diag);
-    json_t *reply = told ? json_loads(told, 0, NULL) : NULL;
-    free(asked);
-    free(told);
-    json_t *value = error == CM1E_OK ? json_incref(json_object_get(reply, member)) : NULL;
-    json_decref(reply);
-    return value;
-}
-
 static volatile sig_atomic_t signalled;
 
 static void on_signal(int number)

@@ -9,6 +9,7 @@
 #include "core/clock.h"
 #include "core/near.h"
 #include "command.h"
+#include "variable_value.h"
 
 enum { KEY_ALLOW = 0xC00, KEY_FOR, NAMES = 64, KEEP_MS = 1000, PAUSE_US = 200000 };
 
@@ -188,40 +189,12 @@ static int show(const var_options_t *options, cm1e_control_t *control)
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/** 'text' or "text": what is between the quotes; NULL: there are none, or it is no UTF-8. */
-static json_t *text_within(const char *text)
-{
-    const size_t length = strlen(text);
-    const bool quoted = length >= 2 && (text[0] == '\'' || text[0] == '"') && text[length - 1] == text[0];
-    return quoted ? json_stringn(text + 1, length - 2) : NULL;
-}
-
-/** A truth value, a number, or a text in quotes; NULL with a complaint: it is none of these. */
-static json_t *value_of(const char *text)
-{
-    char *end;
-    json_t *quoted = text_within(text);
-    if (quoted)
-        return quoted;
-    if (strcasecmp(text, "TRUE") == 0 || strcasecmp(text, "FALSE") == 0)
-        return json_boolean(strcasecmp(text, "TRUE") == 0);
-    errno = 0;
-    const long long whole = strtoll(text, &end, 0);
-    if (*text && !*end && errno == 0)
-        return json_integer(whole);
-    const double real = strtod(text, &end);
-    if (*text && !*end)
-        return json_real(real);
-    complain("\"%s\" is no value: expected TRUE, FALSE, a number, or a text in quotes: \"'text'\"", text);
-    return NULL;
-}
-
 /** NAME, NAME=VALUE, or a release: false, with a complaint or `diag`. */
 static bool change(const var_options_t *options, cm1e_control_t *control, int i, cm1e_diag_t *diag)
 {
     const char *equals = strchr(options->names[i], '=');
     const bool release = strcmp(options->word, "release") == 0;
-    json_t *value = release ? json_null() : value_of(equals + 1);
+    json_t *value = release ? json_null() : variable_value(equals + 1);
     if (!value)
         return false;
     json_t *name = json_stringn(options->names[i], release ? strlen(options->names[i]) : (size_t)(equals - options->names[i]));
