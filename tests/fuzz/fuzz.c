@@ -1,5 +1,6 @@
 #include "fuzz.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,6 +69,31 @@ void fuzz_use_text(const char *text)
     for (; *text; text++)
         if ((unsigned char)*text < ' ' && *text != '\n')
             fuzz_fail("a text for a terminal has the byte 0x%02X", (unsigned char)*text);
+}
+
+unsigned fuzz_take(const uint8_t **at, const uint8_t *end, unsigned bytes)
+{
+    unsigned value = 0;
+    for (unsigned i = 0; i < bytes; i++)
+        value |= (unsigned)(*at < end ? *(*at)++ : 0) << 8 * i;
+    return value;
+}
+
+double fuzz_take_real(const uint8_t **at, const uint8_t *end)
+{
+    static const double odd[] = {NAN, INFINITY, -INFINITY, -0.0, 5e-324, 2.2250738585072014e-308, 1e300, -1e300,
+                                 0x1p31, -0x1p31, 0x1p53, 0x1p63, 1e-9, 1, 360, 0};
+    const unsigned kind = fuzz_take(at, end, 1);
+    uint64_t bits;
+    double value;
+    if (kind < sizeof odd / sizeof odd[0])
+        return odd[kind];
+    if (kind >= 0x40)
+        return (int16_t)fuzz_take(at, end, 2) / (kind >= 0x80 ? 16.0 : 1024.0);
+    bits = fuzz_take(at, end, 4);
+    bits |= (uint64_t)fuzz_take(at, end, 4) << 32;
+    memcpy(&value, &bits, sizeof value);
+    return value;
 }
 
 const cm1e_device_options_t *fuzz_devices(size_t *count)

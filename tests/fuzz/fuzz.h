@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "cm1e/generate.h"
 #include "description/check.h"
@@ -30,6 +31,11 @@ void fuzz_use_text(const char *text);
 
 /** Device options that between them show everything that a description can hold: model, firmware, mapping ... */
 const cm1e_device_options_t *fuzz_devices(size_t *count);
+
+/** The next bytes of an input as a number, least significant first; behind its end 0. */
+unsigned fuzz_take(const uint8_t **at, const uint8_t *end, unsigned bytes);
+/** Any double: what no program should give (NaN, infinity, denormal, huge), plain numbers, or eight bytes as they are. */
+double fuzz_take_real(const uint8_t **at, const uint8_t *end);
 
 /** A finding: says what is wrong, and ends the program so that libFuzzer keeps the input. */
 _Noreturn void fuzz_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -57,13 +57,7 @@ typedef struct run {
 
 /* ---- instructions ----------------------------------------------------------------------------------------------- */
 
-static unsigned take(input_t *input, unsigned bytes)
-{
-    unsigned value = 0;
-    for (unsigned i = 0; i < bytes; i++)
-        value |= (unsigned)(input->at < input->end ? *input->at++ : 0) << 8 * i;
-    return value;
-}
+static unsigned take(input_t *input, unsigned bytes) { return fuzz_take(&input->at, input->end, bytes); }
 
 /** The beginning of a datagram of the frame, the n-th or the last before; 0: there is none. */
 static size_t datagram(const cm1e_tap_frame_t *frame, unsigned n)

@@ -1,10 +1,7 @@
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "cm1e/sim.h"
-#include "command.h"
-#include "fuzz.h"
+#include "fuzz_complain.h"
 #include "prove/profile_file.h"
 #include "sim/coe_server.h"
 #include "sim/esc_chip.h"
@@ -14,18 +11,6 @@
  * written, and whose process data goes both ways. Nothing is written anew. */
 
 enum { SLAVES = 3, IMAGE_BYTES = 4096, STEP_NS = 1000000 };
-
-/** Of the command: the reader says what is wrong with a file. */
-void complain(const char *format, ...)
-{
-    char text[1024];
-    va_list arguments;
-    va_start(arguments, format);
-    const int length = vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    if (length <= 0)
-        fuzz_fail("a complaint that says nothing");
-}
 
 /** A CM1-E, a bridge with a motor, a drive by CiA 402. */
 static cm1e_sim_segment_t *make_segment(void)
@@ -83,7 +68,10 @@ static void use(cm1e_sim_slave_t *slave)
 bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool must)
 {
     (void)written, (void)must;
+    const unsigned before = complaints;
     profile_file_t *file = profile_file_read("profile", bytes, size);
+    if (!file && complaints == before)
+        fuzz_fail("a file is refused without a complaint");
     if (!file)
         return false;
     cm1e_sim_segment_t *segment = make_segment();
