@@ -109,6 +109,28 @@ static void end_fault(run_t *run, const fault_t *fault)
 
 static double end_of(const fault_t *fault) { return fault->at + fault->length; }
 
+/** Both pull the same cable, or whatever it is that they do. */
+static bool do_the_same(const run_t *run, const fault_t *one, const fault_t *other)
+{
+    const char *begin = rows[(int)one->kind].begin, *begins = rows[(int)other->kind].begin;
+    const machine_axis_t *here = &run->axes[(int)one->axis], *there = &run->axes[(int)other->axis];
+    if (!begin)
+        return one->kind == other->kind && one->network == other->network;
+    return begins && strcmp(begin, begins) == 0 && here->network == there->network &&
+           here->position == there->position && (!strstr(begin, "%c") || here->channel == there->channel);
+}
+
+/** What ends now goes on, by another one. */
+static bool goes_on(const run_t *run, const fault_t *fault)
+{
+    for (int i = 0; i < run->scenario->fault_count; i++) {
+        const fault_t *other = &run->scenario->faults[i];
+        if (other != fault && other->at <= run->cycle && end_of(other) > run->cycle && do_the_same(run, fault, other))
+            return true;
+    }
+    return false;
+}
+
 /** Its slave has been without power, or somebody turned at it. */
 static void note(run_t *run, const fault_t *fault)
 {
@@ -214,7 +236,8 @@ void fault_cycle(run_t *run)
             continue;
         if (!is_of_frames(fault))
             replace(run, fault);
-        end_fault(run, fault);
+        if (lies || !goes_on(run, fault))
+            end_fault(run, fault);
     }
 }
 
