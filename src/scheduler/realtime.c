@@ -1,6 +1,7 @@
 #include "scheduler/realtime.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <linux/capability.h>
 #include <pthread.h>
 #include <stdint.h>
@@ -69,6 +70,19 @@ static bool bind_to_cpu(realtime_t *realtime, int cpu)
     return realtime->bound;
 }
 
+/** Forbids sleep states of the processors while the file is open, which ends with the process at the latest. A processor
+ *  that sleeps between two cycles wakes up late. It is no part of "real time is in force": the file is root's, unless the
+ *  administrator gave it away (docs/REALTIME.md), and a privilege does not replace that. */
+static void keep_awake(realtime_t *realtime)
+{
+    const int32_t latency_us = 0;
+    const int fd = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+    realtime->awake = fd >= 0 && write(fd, &latency_us, sizeof latency_us) == sizeof latency_us;
+    realtime->awake_fd = fd;
+    if (fd >= 0 && !realtime->awake)
+        close(fd);
+}
+
 /** "/path/of/this/program", or a name to be replaced. */
 static void program_path(char *path, size_t size)
 {
@@ -104,6 +118,7 @@ bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *co
     /* The priority first: locking takes tens of milliseconds of computing, and the slaves are in Operational already. On
      * a busy machine their watchdogs (100 ms) would not wait for it at an ordinary priority. */
     const bool fifo = take_fifo(realtime, config->realtime_priority);
+    keep_awake(realtime);
     touch_stack();
     const bool locked = lock_memory();
     if (!fifo || !locked)
@@ -113,6 +128,8 @@ bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *co
 
 void cm1e_realtime_end(const realtime_t *realtime)
 {
+    if (realtime->awake)
+        close(realtime->awake_fd);
     if (realtime->fifo)
         pthread_setschedparam(pthread_self(), realtime->policy, &realtime->parameters);
     if (realtime->bound)

@@ -1,7 +1,7 @@
 /**
  * @file realtime.h
  * What the operating system can do for the thread that runs the cycle: SCHED_FIFO, locked memory, a touched stack, one
- * CPU, exact timers. The advice about a missing privilege says what to do.
+ * CPU, exact timers, processors that do not sleep deeply. The advice about a missing privilege says what to do.
  */
 #ifndef CM1E_SCHEDULER_REALTIME_H
 #define CM1E_SCHEDULER_REALTIME_H
@@ -17,8 +17,9 @@ enum { REALTIME_DEFAULT_PRIORITY = 80 };
 
 /** State of the thread before, to be restored. */
 typedef struct realtime {
-    bool fifo, bound;
+    bool fifo, bound, awake;
     int policy, timer_slack_ns;
+    int awake_fd;              /**< processors stay awake while it is open; valid if `awake` */
     struct sched_param parameters;
     cpu_set_t cpus;
 } realtime_t;

@@ -307,6 +307,43 @@ START_TEST(test_thread_is_as_before_after_the_run)
 }
 END_TEST
 
+/* ---- processors that stay awake ---------------------------------------------------------------------------------- */
+
+/** Times that this process has the file open that keeps processors awake. */
+static int awake_files(void)
+{
+    char path[32], target[64];
+    int found = 0;
+    for (int fd = 0; fd < 256; fd++) {
+        snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+        const ssize_t length = readlink(path, target, sizeof target - 1);
+        target[length > 0 ? length : 0] = '\0';
+        found += strcmp(target, "/dev/cpu_dma_latency") == 0;
+    }
+    return found;
+}
+
+static void count_awake_files(void *context) { *(int *)context = awake_files(); }
+
+START_TEST(test_processors_stay_awake_during_a_run_in_real_time_and_no_longer)
+{
+    if (access("/dev/cpu_dma_latency", W_OK) != 0) {
+        printf("SKIPPED: processors that stay awake: /dev/cpu_dma_latency cannot be written here\n");
+        return;
+    }
+    for (int priority = -1; priority <= 0; priority++) {
+        int inside = -1;
+        machine_t machine = {.axis_count = 1, .real_time = true, .config = {.realtime_priority = priority}};
+        machine_open(&machine);
+        machine_add(&machine, "", 0, 0, count_awake_files, &inside);
+        machine_run(&machine, 20 * MS);
+        ck_assert_int_eq(inside, priority < 0 ? 0 : 1);
+        ck_assert_int_eq(awake_files(), 0);
+        machine_close(&machine);
+    }
+}
+END_TEST
+
 /* ---- the begin of a run ------------------------------------------------------------------------------------------ */
 
 static int policy_of_locking = -1;
@@ -345,6 +382,7 @@ static void add_short_tests(TCase *all)
         test_no_real_time_asked_is_no_advice,
         test_cpu_that_the_machine_lacks_is_told_and_one_it_has_is_used,
         test_thread_is_as_before_after_the_run,
+        test_processors_stay_awake_during_a_run_in_real_time_and_no_longer,
         test_memory_is_locked_with_the_priority_of_the_cycle,
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
