@@ -136,9 +136,9 @@ bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
             return false; /* these wait for the end of the superimposed motion */
         if (method->awaits && method->awaits(axis, &from, offset_s))
             return false;
-        if (is_planned(waiting_move(axis, 0)->kind) && offset_s == 0.0)
-            cm1e_axis_superimposed_give_way(axis, &from);
         move_t move = take_first(axis);
+        if (is_planned(move.kind) && offset_s == 0.0)
+            cm1e_axis_superimposed_give_way(axis, &move, &from);
         cm1e_error_t error = cm1e_axis_state_refusal(axis->state, kind->trigger);
         if (error == CM1E_OK)
             error = method->begin(axis, &move, &from, offset_s);

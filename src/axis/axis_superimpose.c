@@ -7,8 +7,9 @@
  * time (3.8). Both change with the same jerk, so that the sum also keeps the limits during the change. A base that is
  * about to arrive and needs its whole deceleration for that gets it; then the superimposed motion begins later. The
  * velocity of a follower is that of its master, which is not shared. If a command takes over from a follower that is
- * faster than the rest, the command gets the whole motion, and the superimposed motion waits, with what it has covered,
- * until there is room for it again. On an axis in Standstill the superimposed motion has all limits.
+ * faster than the rest, or is a halt that would pass a software limit with the rest, the command gets the whole motion,
+ * and the superimposed motion waits, with what it has covered, until there is room for it again. On an axis in
+ * Standstill the superimposed motion has all limits.
  *
  * Of the plan the axis keeps from what it was made, and makes it again when the motion comes to its next stretch: few axes
  * have such a motion, and the profile would be an eighth of the memory of all of them.
@@ -109,16 +110,15 @@ static cm1e_motion_limits_t share_of(const cm1e_axis_t *axis, const cm1e_motion_
 }
 
 /* Whether a halt with the rest of the limits would pass a software limit. */
-static bool needs_all_to_halt(const cm1e_axis_t *axis)
+static bool needs_all_to_halt(const cm1e_axis_t *axis, const from_t *from, const move_t *move)
 {
-    const from_t from = from_base(axis);
-    const cm1e_motion_state_t start = {0.0, from.velocity, from.acceleration};
+    const cm1e_motion_state_t start = {0.0, from->velocity, from->acceleration};
     cm1e_motion_limits_t limits;
     cm1e_profile_t stop;
-    return axis->commands.kind == CM1E_COMMAND_HALT && axis->limits.software_limits &&
-           (cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits) != CM1E_OK ||
+    return move->kind == CM1E_COMMAND_HALT && axis->limits.software_limits &&
+           (cm1e_axis_limits_of(axis, from, move, &limits) != CM1E_OK ||
             cm1e_profile_to_velocity(&stop, &start, 0.0, &limits) != CM1E_OK ||
-            !cm1e_axis_limits_contain(axis, &from, &stop));
+            !cm1e_axis_limits_contain(axis, from, &stop));
 }
 
 /* Plans the base with the rest of the limits; false: that is not possible now. */
@@ -126,9 +126,9 @@ static bool base_gives_way(cm1e_axis_t *axis)
 {
     if (axis->setpoint.stands)
         return true;
-    if (axis->commands.active && needs_all_to_halt(axis))
-        return false;
     const from_t from = from_base(axis);
+    if (axis->commands.active && needs_all_to_halt(axis, &from, &axis->commands.move))
+        return false;
     const double peak = peak_of(&from, axis->limits.maximum.jerk / 2.0);
     if (!axis->commands.active || peak + axis->superimposed.share.velocity > axis->limits.maximum.velocity)
         return false;
@@ -145,12 +145,13 @@ static bool begin(cm1e_axis_t *axis)
     return false;
 }
 
-void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from)
+void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, const move_t *move, from_t *from)
 {
     static const double rounding = 1.0 + 1e-9;
     superimposed_t *on_top = &axis->superimposed;
     const double peak = peak_of(from, axis->limits.maximum.jerk - on_top->share.jerk);
-    if (!from->shared || peak + on_top->share.velocity <= axis->limits.maximum.velocity * rounding)
+    if (!from->shared || (peak + on_top->share.velocity <= axis->limits.maximum.velocity * rounding &&
+                          !needs_all_to_halt(axis, from, move)))
         return;
     on_top->moving = false;
     on_top->now.velocity = on_top->now.acceleration = 0.0;

@@ -21,8 +21,9 @@ void cm1e_axis_superimposed_hold(cm1e_axis_t *axis, const cm1e_motion_state_t *b
 /** Goes on with this part of the velocity. false: it cannot, and nothing has changed. */
 bool cm1e_axis_superimposed_slow(cm1e_axis_t *axis, double part);
 /** Called when a command begins at `from` (the present set-point) as the base. If that is faster than the superimposed
- *  motion leaves room for, the superimposed motion waits, and its velocity becomes a part of the base. */
-void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from);
+ *  motion leaves room for, or is a halt that needs all limits to stay inside the software limits, the superimposed
+ *  motion waits, and its velocity becomes a part of the base. */
+void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, const move_t *move, from_t *from);
 /** Called after the set-point. When the superimposed motion has ended, the base gets all limits again. */
 void cm1e_axis_superimposed_after(cm1e_axis_t *axis);
 /** Ends the superimposed motion. It becomes a part of the motion that is planned next from the set-point. */

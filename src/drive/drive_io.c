@@ -309,7 +309,8 @@ static bool contradicts(const cm1e_drive_t *drive, int32_t position)
     const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
     const int64_t way = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
     return drive->actual.seen && drive->image.in_velocity.bytes > 0 &&
-           cm1e_drive_ways_differ(way, drive->feedback.velocity, elapsed_ns, cm1e_drive_tolerance(drive, elapsed_ns));
+           cm1e_drive_ways_differ(way, way_in(drive->feedback.velocity, elapsed_ns),
+                                  cm1e_drive_tolerance(drive, elapsed_ns));
 }
 
 /* A position that stays the same although the motor turns agrees with no velocity, also where the tolerance is larger than

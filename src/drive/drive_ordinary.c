@@ -9,6 +9,9 @@
 #include "core/rare.h"
 #include "drive/drive_private.h"
 
+/* Between two answers; beyond it the way that the motor tells takes more care (way_in() of drive_io.c). */
+static const int64_t longest_ns = 4 * S_IN_NS;
+
 /* What the device shows. */
 static bool shows_calm(const cm1e_drive_t *drive)
 {
@@ -52,14 +55,17 @@ bool cm1e_drive_read_ordinary(cm1e_drive_t *drive, int64_t now_ns)
     const int64_t elapsed_ns = now_ns - drive->actual.read_ns;
     if (cm1e_get_u16(in) != f->statusword || (int8_t)in[wire->in_mode] != f->mode || elapsed_ns <= 0)
         return false;
-    if (elapsed_ns != drive->ordinary.elapsed_ns)
+    if (elapsed_ns != drive->ordinary.elapsed_ns) {
+        if (elapsed_ns > longest_ns)
+            return false;
         renew(drive, elapsed_ns);
+    }
     const int32_t position = (int32_t)cm1e_get_u32(in + wire->in_position);
     const int64_t way = cm1e_drive_way_between(f->position, position);
     const int64_t shown = (int32_t)cm1e_get_u32(in + wire->in_velocity);
     const int32_t velocity = cm1e_drive_clamp(shown * drive->range.velocity_unit);
     if (llabs(way) > drive->ordinary.farthest ||
-        cm1e_drive_ways_differ(way, velocity, elapsed_ns, drive->ordinary.tolerance))
+        cm1e_drive_ways_differ(way, velocity * elapsed_ns / S_IN_NS, drive->ordinary.tolerance))
         return false;
     drive->now_ns = drive->actual.read_ns = now_ns;
     drive->answered = true;

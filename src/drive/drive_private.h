@@ -48,10 +48,9 @@ int32_t cm1e_drive_velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_pe
  *  differ then; counts. */
 int64_t cm1e_drive_farthest(const cm1e_drive_t *drive, int64_t elapsed_ns);
 int64_t cm1e_drive_tolerance(const cm1e_drive_t *drive, int64_t elapsed_ns);
-/** Whether position and velocity contradict each other, if the motor has gone `way` counts in a time. */
-static inline bool cm1e_drive_ways_differ(int64_t way, int32_t velocity, int64_t elapsed_ns, int64_t tolerance)
+/** Whether position and velocity contradict each other: the motor has gone `way` counts, and `told` by its velocity. */
+static inline bool cm1e_drive_ways_differ(int64_t way, int64_t told, int64_t tolerance)
 {
-    const int64_t told = (int64_t)velocity * elapsed_ns / 1000000000;
     return llabs(way - told) > llabs(told) / 2 + tolerance;
 }
 /** Whether a position may be a target. */

@@ -83,6 +83,8 @@ static void test_after_hours_a_position_is_believed(void)
         setUp();
         enable();
         drive.range.velocity_possible = 100000000;
+        shown_velocity = 5000000;
+        cycle();
         bus.clock.virtual_now_ns += hours[i] * 3600 * INT64_C(1000000000);
         shown_position += 10;
         expect_position(shown_position, true);
