@@ -104,6 +104,7 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
     if (axis->set_aside.driving->submitted && cm1e_sdo_state(&axis->set_aside.driving->sdo) == CM1E_SDO_BUSY)
         return CM1E_ERROR_BUSY; /* of a motion that was stopped */
     d->speed = limits.velocity * scale;
+    d->acceleration = acceleration;
     d->braking = braking;
     const double values[2][DRIVE_PARAMETERS] = {{d->speed, braking}, {acceleration, braking}};
     for (int i = 0; i < DRIVE_PARAMETERS; i++)
@@ -265,12 +266,21 @@ static void step_go(cm1e_axis_t *axis)
         cm1e_axis_fail(axis, CM1E_ERROR_TIMEOUT, 0.0, 0.0);
 }
 
+/* u/s; when a halt that is given now begins. The drive accelerates until then. */
+static double velocity_at_halt(const cm1e_axis_t *axis)
+{
+    const driving_t *d = axis->set_aside.driving;
+    const double v = axis->drive.feedback.velocity, most = d->target_velocity;
+    const double later = fmin(fabs(most), fabs(v) + d->acceleration * halt_latency_s);
+    return (v * most < 0.0 ? v : copysign(fmax(fabs(v), later), most)) / axis->position.scale;
+}
+
 /* Whether the halt, given now, would end inside the software limits. */
 static bool can_halt(const cm1e_axis_t *axis)
 {
     if (!axis->limits.software_limits)
         return true;
-    const double v = axis->drive.feedback.velocity / axis->position.scale;
+    const double v = velocity_at_halt(axis);
     const double now = cm1e_axis_units(axis, axis->setpoint.position);
     const double way = v * fabs(v) * fabs(axis->position.scale) / (2.0 * axis->set_aside.driving->braking);
     const double end = now + v * halt_latency_s + way;

@@ -309,7 +309,8 @@ typedef struct driving {
     double way;              /**< sign of its direction, in u */
     int32_t target;          /**< counts of the drive */
     int32_t target_velocity; /**< counts/s */
-    double speed, braking;   /**< counts/s, counts/s2 */
+    double speed;            /**< counts/s */
+    double acceleration, braking; /**< counts/s2 */
     uint32_t raw[DRIVE_PARAMETERS];
     uint8_t next;            /**< parameter to write next */
     bool submitted;
