@@ -267,10 +267,12 @@ static bool is_alone(const run_t *run, int number)
     return true;
 }
 
-/** In the cycle of the fault it has begun to brake before a limit: the first cause stays, the log has the other one. */
+/** In the cycle of the fault it has begun to brake before a limit, or because its coupling asks too much: the first cause
+ *  stays, the log has the other one. */
 static bool braked_before(const run_t *run, const fault_t *fault, const machine_axis_t *axis)
 {
-    return run->cycle == (int)fault->at + 1 && axis->info.error == CM1E_ERROR_AXIS_POSITION_RANGE;
+    return run->cycle == (int)fault->at + 1 && (axis->info.error == CM1E_ERROR_AXIS_POSITION_RANGE ||
+                                                axis->info.error == CM1E_ERROR_AXIS_COUPLING_LIMIT);
 }
 
 static void judge_text(run_t *run, int number, const machine_axis_t *axis)
@@ -291,6 +293,10 @@ static void judge_axis(run_t *run, int i, machine_axis_t *axis)
     const fault_t *fault = &run->scenario->faults[i];
     const fault_row_t *row = &rows[(int)fault->kind];
     int *good = &watches[i].age[axis->number];
+    if (fault->kind == FAULT_JUMP && run->cycle == (int)end_of(fault) && *good <= (int)run->scenario->lost_limit) {
+        watches[i].armed[axis->number] = false; /* frames were lost meanwhile: too few untrue positions have come */
+        return;
+    }
     *good += run->bad[axis->network] == 0;
     const int age = row->concerned == THE_AXIS ? *good : run->cycle - (int)fault->at;
     const int bound = row->beyond + (row->counts_lost ? (int)run->scenario->lost_limit : 0) +
