@@ -11,6 +11,15 @@
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
+/* What a device says of itself, as every reader of YAML takes it. */
+static void put_text(FILE *file, const char *key, const char *text)
+{
+    fprintf(file, "  %s: \"", key);
+    for (; *text; text++)
+        fputc(*text >= ' ' && *text <= '~' && *text != '"' && *text != '\\' ? *text : '?', file);
+    fputs("\"\n", file);
+}
+
 char *params_as_yaml(const params_head_t *head, const params_t *params)
 {
     char *text = NULL, number[16], range[80];
@@ -18,10 +27,13 @@ char *params_as_yaml(const params_head_t *head, const params_t *params)
     FILE *file = open_memstream(&text, &size);
     if (!file)
         return NULL;
-    fprintf(file, "# Parameters of a motor, written by `cm1e params backup`; `cm1e params restore` writes them back.\n"
-                  "# A value may be changed, and a line removed. What is behind # is from the guide of the motor.\n"
-                  "device:\n  kind: %s\n  name: %s\n  firmware: \"%s\"\n  serial: 0x%08X\nparameters:\n",
-            head->kind, head->name, head->firmware, (unsigned)head->serial);
+    fputs("# Parameters of a motor, written by `cm1e params backup`; `cm1e params restore` writes them back.\n"
+          "# A value may be changed, and a line removed. What is behind # is from the guide of the motor.\n"
+          "device:\n", file);
+    put_text(file, "kind", head->kind);
+    put_text(file, "name", head->name);
+    put_text(file, "firmware", head->firmware);
+    fprintf(file, "  serial: 0x%08X\nparameters:\n", (unsigned)head->serial);
     for (size_t i = 0; i < params->count; i++) {
         const cm1e_entry_t *entry = params->at[i].entry;
         char line[PARAM_NAME + 40];

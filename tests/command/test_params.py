@@ -139,10 +139,10 @@ def check_broken(folder, text):
     line = text[:text.index("  K47")].count("\n") + 1
     for change, told in ((("K47: 30", "K47: 300"), f"broken.yaml:{line}"), (("K47: 30", "K4711: 30"), f":{line}"),
                          (("K47: 30", "K47: [30]"), f":{line}"), (("K47: 30", "K46: 0"), "already"),
-                         (("kind: cm1-e", "kind: bridge"), 'is of a device "bridge"'),
+                         (('kind: "cm1-e"', 'kind: "bridge"'), 'is of a device "bridge"'),
                          (('"1.3.5"', '"1.3.2"'), "--other-firmware"), (("parameters:", "parametres:"), "parametres"),
                          (("K47: 30", "K47 30\n  x"), "broken.yaml"), ((text, "a: ["), "not YAML"), ((text, ""), "no param"),
-                         ((text, "- 1\n"), "expected names"), (("  name: CM1-E", "  nmae: x"), "nmae")):
+                         ((text, "- 1\n"), "expected names"), (('  name: "CM1-E', '  nmae: "x'), "nmae")):
         with open(path, "w", encoding="utf-8") as file:
             file.write(text.replace(*change, 1))
         wrong = on_sim("restore", "1", path, "--yes")
