@@ -95,5 +95,6 @@ install(DIRECTORY ${soem_dir}/soem ${soem_dir}/osal DESTINATION ${CMAKE_INSTALL_
 # The command once more, with its privileges, for members of the group: main.c starts it.
 install(PROGRAMS $<TARGET_FILE:cm1e> DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/cm1e COMPONENT tools)
 install(FILES ${debian}/cm1e.sysusers DESTINATION lib/sysusers.d RENAME cm1e.conf COMPONENT tools)
+install(FILES ${debian}/cm1e.rules DESTINATION lib/udev/rules.d RENAME 60-cm1e.rules COMPONENT tools)
 install(FILES ${debian}/cm1e@.service DESTINATION lib/systemd/system COMPONENT tools)
 include(CPack)

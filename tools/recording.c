@@ -12,10 +12,15 @@ static const char gap_mark[] = "samples were lost";
 
 /* ---- columns ----------------------------------------------------------------------------------------------------- */
 
+static const char *text_or_empty(const json_t *value)
+{
+    const char *text = json_string_value(value);
+    return text ? text : "";
+}
+
 static const char *text_of(const json_t *object, const char *name)
 {
-    const char *text = json_string_value(json_object_get(object, name));
-    return text ? text : "";
+    return text_or_empty(json_object_get(object, name));
 }
 
 /** Columns behind those of the axes and of the timing. */
@@ -40,7 +45,7 @@ static cm1e_error_t make_trace(recording_t *recording, uint32_t capacity, cm1e_d
     const char *names[CM1E_MAX_AXES];
     const size_t count = json_array_size(axes);
     for (size_t i = 0; i < count && i < CM1E_MAX_AXES; i++)
-        names[i] = json_string_value(json_array_get(axes, i));
+        names[i] = text_or_empty(json_array_get(axes, i));
     cm1e_error_t error = count > CM1E_MAX_AXES
                              ? cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The program has too many axes.")
                              : cm1e_trace_init(&recording->trace, names, (uint32_t)count, capacity, 1, diag);

@@ -113,7 +113,8 @@ json_t *cm1e_record_begin(control_request_t *request, control_run_t *run, const 
                  *variables = json_object_get(message, "variables");
     cm1e_diag_t diag = {0};
     if (run->view.recorders[request->client])
-        return refuse(request, CM1E_ERROR_BUSY, "This connection records already: send \"record_end\" before.");
+        return refuse(request, CM1E_ERROR_BUSY, "This connection records already. A "
+                      "recording ends with its connection: open another one.");
     if (every && !is_within(every, 1, EVERY_MOST))
         return refuse(request, CM1E_ERROR_INVALID_ARGUMENT, "\"every\" is expected to be 1 ... 10000 cycles, or to be "
                       "left out.");

@@ -54,7 +54,7 @@ FAULTS = [
     ({"sys/devices/system/cpu/cpu1/cpufreq/scaling_governor": "powersave"}, "frequency governor", "advice",
      '"powersave" at processor 1', "echo performance"),
     ({"sys/devices/system/cpu/cpu0/cpuidle/state1/disable": "0"}, "sleep states", "advice",
-     "C6 of the processors takes 170", "disable"),
+     "C6 of the processors takes 170", "udevadm trigger"),
     ({"sys/devices/system/clocksource/clocksource0/current_clocksource": "hpet"}, "clock source", "problem",
      "hpet", "echo tsc"),
     ({"proc/self/status": "CapEff:\t0000000000000000\n"}, "privileges", "problem", "may not open raw sockets", "setcap"),
@@ -114,6 +114,8 @@ def findings(changes):
 
 def check_faults():
     expect(findings({}) == [], f"findings on a machine without a fault: {findings({})}")
+    forbidden_by_a_run = {"sys/devices/system/cpu/cpu0/cpuidle/state1/disable": "0", "dev/cpu_dma_latency": ""}
+    expect(findings(forbidden_by_a_run) == [], f"sleep states that a run forbids: {findings(forbidden_by_a_run)}")
     for changes, subject, level, fact, fix in FAULTS:
         found = findings(changes)
         expect(len(found) == 1, f"{changes}: {found}")

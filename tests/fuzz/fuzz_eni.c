@@ -46,7 +46,8 @@ void fuzz_seeds(void)
         if (cm1e_describe(&described, &devices[i], CM1E_ESI_FLAT, NULL) == CM1E_OK) {
             cm1e_describe_io_module(&described);
             const cm1e_eni_slave_t slaves[] = {{.device = &described.devices.at[0], .name = "first", .alias = 0},
-                                               {&described.devices.at[1], "middle", (uint16_t)i},
+                                               {.device = &described.devices.at[1], .name = "middle",
+                                                .alias = (uint16_t)i},
                                                {.device = &described.devices.at[2], .name = "last", .alias = 0}};
             snprintf(name, sizeof name, "network_%zu.xml", i);
             if (cm1e_eni_make(&document, slaves, 3, 1000000, NULL) == CM1E_OK &&

@@ -151,7 +151,7 @@ def use(chroot):
     told = as_user("member")
     expect("is not Ethernet" in told.stderr, "a member opens a socket", told)
     for path in ("/usr/share/man/man1/cm1e-move.1.gz", "/usr/share/doc/cm1e/FIRST-HOUR.md", "/usr/include/cm1e/plcopen.h",
-                 "/lib/systemd/system/cm1e@.service", "/usr/lib/python3/dist-packages/cm1e/py.typed",
+                 "/lib/systemd/system/cm1e@.service", "/lib/udev/rules.d/60-cm1e.rules", "/usr/lib/python3/dist-packages/cm1e/py.typed",
                  "/usr/share/doc/cm1e/reference/index.html", "/usr/share/doc/cm1e/soem/soem/ethercatmain.c"):
         chroot.good("test", "-e", path)
     chroot.good("userdel", "member")

@@ -51,6 +51,8 @@ bool doctor_line(const doctor_t *doctor, char *line, size_t size, const char *fo
     __attribute__((format(printf, 4, 5)));
 /** Whether a file or folder is there. */
 bool doctor_exists(const doctor_t *doctor, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/** Whether this user may write the file. */
+bool doctor_may_write(const doctor_t *doctor, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /** Kernel, processors, clock, privileges. */
 void doctor_look_at_machine(doctor_t *doctor);

@@ -60,12 +60,26 @@ bool doctor_line(const doctor_t *doctor, char *line, size_t size, const char *fo
     return read;
 }
 
-bool doctor_exists(const doctor_t *doctor, const char *format, ...)
+static bool may(const doctor_t *doctor, int access_mode, const char *format, va_list arguments)
 {
     char path[512];
+    return path_of(doctor, path, sizeof path, format, arguments) && access(path, access_mode) == 0;
+}
+
+bool doctor_exists(const doctor_t *doctor, const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
-    const bool fits = path_of(doctor, path, sizeof path, format, arguments);
+    const bool exists = may(doctor, F_OK, format, arguments);
     va_end(arguments);
-    return fits && access(path, F_OK) == 0;
+    return exists;
+}
+
+bool doctor_may_write(const doctor_t *doctor, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const bool writable = may(doctor, W_OK, format, arguments);
+    va_end(arguments);
+    return writable;
 }

@@ -76,11 +76,13 @@ static void look_at_governor(doctor_t *doctor)
     }
 }
 
-/** Deep sleep costs its exit latency at every wake-up. */
+/** Deep sleep costs its exit latency at every wake-up. A run in real time forbids it, where it may. */
 static void look_at_sleep_states(doctor_t *doctor)
 {
     enum { LATENCY_US = 20 };
     char latency[32], disabled[8], name[64];
+    if (doctor_may_write(doctor, "/dev/cpu_dma_latency"))
+        return;
     for (int state = 0;
          doctor_line(doctor, latency, sizeof latency, "/sys/devices/system/cpu/cpu0/cpuidle/state%d/latency", state);
          state++) {
@@ -92,10 +94,11 @@ static void look_at_sleep_states(doctor_t *doctor)
                                   "state %s of the processors takes %s us "
                                   "to wake up",
                                   name, latency),
-                      "A processor that sleeps deeply between two cycles wakes up late.", "Forbid deep sleep states.",
-                      "for f in /sys/devices/system/cpu/cpu*/cpuidle/state*; do [ \"$(cat $f/latency)\" -le %d ] || "
-                      "echo 1 > $f/disable; done",
-                      LATENCY_US);
+                      "A processor that sleeps deeply between two cycles wakes up late.",
+                      "Let members of the group cm1e forbid sleep states for the time of a run.",
+                      "echo 'KERNEL==\"cpu_dma_latency\", GROUP=\"cm1e\", MODE=\"0660\"' > "
+                      "/etc/udev/rules.d/60-cm1e-latency.rules && udevadm control --reload && "
+                      "udevadm trigger --name-match=cpu_dma_latency");
         return;
     }
 }
