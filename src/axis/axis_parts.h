@@ -379,6 +379,8 @@ struct cm1e_axis {
     not_set_t not_set;
     belongs_t belongs;
     struct followed *followed;      /**< data of coupling_hooks about its slaves */
+    struct homing *homing;          /**< data of homing_hooks */
+    struct cool_muscle *muscle;     /**< data of motor_hooks */
     /* in every cycle */
     signals_t signals;
     cm1e_axis_state_t state;        /**< cm1e_axis_go() */
@@ -414,8 +416,6 @@ struct cm1e_axis {
     outside_t outside;
     set_aside_t set_aside;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */
-    struct homing *homing;          /**< data of these hooks */
-    struct cool_muscle *muscle;     /**< data of motor_hooks */
 };
 
 #endif

@@ -70,8 +70,10 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
 void cm1e_drive_free(cm1e_drive_t *drive)
 {
     free(drive->behind);
+    free(drive->foreign);
     free(drive->wiring);
     drive->behind = NULL;
+    drive->foreign = NULL;
     drive->wiring = NULL;
 }
 

@@ -38,29 +38,31 @@ static cm1e_sdo_t told(const cm1e_drive_t *drive, unsigned n, uint8_t data[4])
 /* A drive that does not have the object has no use for the value: its refusal is no error. */
 cm1e_error_t cm1e_drive_init_cia402(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
-    (void)diag;
     cm1e_diag_t refusal;
+    drive->foreign = calloc(1, sizeof *drive->foreign);
+    if (!drive->foreign)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis \"%s\".", drive->config->name);
     drive->range.velocity_most = (int32_t)cm1e_unit_peak_velocity(drive->config);
     for (unsigned n = 0; n < TOLD && !cm1e_drive_is_absent(drive); n++) {
-        const cm1e_sdo_t sdo = told(drive, n, drive->tell.data);
+        const cm1e_sdo_t sdo = told(drive, n, drive->foreign->data);
         (void)cm1e_sdo_write(drive->bus, drive->position, sdo.index, sdo.subindex, sdo.data, sdo.size, &refusal);
     }
-    drive->tell.next = TOLD;
+    drive->foreign->told = TOLD;
     return CM1E_OK;
 }
 
 /* It may have been switched off, and has forgotten it. One object after the other, beside the cycle. */
 static void tell_again(cm1e_drive_t *drive)
 {
-    cm1e_drive_tell_t *tell = &drive->tell;
-    const bool busy = cm1e_sdo_state(&tell->sdo) == CM1E_SDO_BUSY;
+    cm1e_drive_foreign_t *foreign = drive->foreign;
+    const bool busy = cm1e_sdo_state(&foreign->sdo) == CM1E_SDO_BUSY;
     if (drive->watch.lost || drive->watch.absent)
-        tell->next = 0;
-    if (busy || tell->next == TOLD || !cm1e_drive_operational(drive) || drive->watch.al_state == CM1E_AL_NONE)
+        foreign->told = 0;
+    if (busy || foreign->told == TOLD || !cm1e_drive_operational(drive) || drive->watch.al_state == CM1E_AL_NONE)
         return;
-    tell->sdo = told(drive, tell->next, tell->data);
-    if (cm1e_sdo_submit(drive->bus, &tell->sdo) == CM1E_OK)
-        tell->next++;
+    foreign->sdo = told(drive, foreign->told, foreign->data);
+    if (cm1e_sdo_submit(drive->bus, &foreign->sdo) == CM1E_OK)
+        foreign->told++;
 }
 
 /* ---- touch probes ------------------------------------------------------------------------------------------------ */
@@ -77,7 +79,7 @@ bool cm1e_drive_has_probe(const cm1e_drive_t *drive, int input, bool falling)
 
 void cm1e_drive_probe_arm(cm1e_drive_t *drive, int input, bool falling)
 {
-    cm1e_drive_probe_t *probe = &drive->probes.probe[input - 1];
+    cm1e_drive_probe_t *probe = &drive->foreign->probe[input - 1];
     probe->wanted |= edge(falling);
     probe->taken &= (uint8_t)~edge(falling);
     probe->on = false;
@@ -85,19 +87,19 @@ void cm1e_drive_probe_arm(cm1e_drive_t *drive, int input, bool falling)
 
 void cm1e_drive_probe_disarm(cm1e_drive_t *drive, int input, bool falling)
 {
-    drive->probes.probe[input - 1].wanted &= (uint8_t)~edge(falling);
+    drive->foreign->probe[input - 1].wanted &= (uint8_t)~edge(falling);
 }
 
 bool cm1e_drive_probe_taken(const cm1e_drive_t *drive, int input, bool falling, int32_t *position)
 {
-    const cm1e_drive_probe_t *probe = &drive->probes.probe[input - 1];
+    const cm1e_drive_probe_t *probe = &drive->foreign->probe[input - 1];
     *position = probe->positions[falling];
     return probe->taken & edge(falling);
 }
 
 static void take_edges(cm1e_drive_t *drive, unsigned n, unsigned status)
 {
-    cm1e_drive_probe_t *probe = &drive->probes.probe[n];
+    cm1e_drive_probe_t *probe = &drive->foreign->probe[n];
     const uint8_t *in = cm1e_bus_inputs(drive->bus);
     for (unsigned falling = 0; falling < 2; falling++) {
         const unsigned stored = (unsigned)CM1E_PROBE_POSITIVE_STORED << falling;
@@ -112,7 +114,7 @@ static void take_edges(cm1e_drive_t *drive, unsigned n, unsigned status)
 /* The enable bit goes off until the drive shows so, and on again: its rise arms the probe for one edge of each kind. */
 static unsigned step(cm1e_drive_t *drive, unsigned n, unsigned status)
 {
-    cm1e_drive_probe_t *probe = &drive->probes.probe[n];
+    cm1e_drive_probe_t *probe = &drive->foreign->probe[n];
     if (probe->on && status & CM1E_PROBE_ENABLED)
         take_edges(drive, n, status);
     probe->on = probe->wanted && (probe->on || !(status & CM1E_PROBE_ENABLED));
@@ -130,7 +132,7 @@ static void step_probes(cm1e_drive_t *drive)
     unsigned function = 0;
     for (unsigned n = 0; n < PROBES; n++)
         function |= step(drive, n, status >> BITS * n & 0xFF) << BITS * n;
-    drive->probes.function = (uint16_t)function;
+    drive->foreign->probe_function = (uint16_t)function;
 }
 
 void cm1e_drive_cia402_step(cm1e_drive_t *drive)

@@ -391,8 +391,8 @@ void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t positi
     if (drive->image.out_digital.bytes)
         put_by_size(out, drive->image.out_digital,
                     (uint32_t)drive->command.digital_outputs << drive->kind->signals.output_shift);
-    if (drive->image.out_probe.bytes)
-        cm1e_put_u16(out + drive->image.out_probe.offset, drive->probes.function);
+    if (drive->image.out_probe.bytes && drive->foreign)
+        cm1e_put_u16(out + drive->image.out_probe.offset, drive->foreign->probe_function);
     put_u32(out, drive->image.out_profile_velocity, drive->image.profile_velocity);
     put_u32(out, drive->image.out_profile_acceleration, drive->image.profile_acceleration);
     drive->target.position = position;

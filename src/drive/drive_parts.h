@@ -194,18 +194,15 @@ typedef struct cm1e_drive_probe {
     int32_t positions[2];           /**< counts: rising, falling */
 } cm1e_drive_probe_t;
 
-/** The touch probes of a drive that has them. Written by drive_cia402.c. */
-typedef struct cm1e_drive_probes {
-    uint16_t function;              /**< 0x60B8 */
+/** What only a drive of another maker has: its touch probes, and what it is told of the cycle, again after it was away.
+ *  Written by drive_cia402.c. */
+typedef struct cm1e_drive_foreign {
+    uint16_t probe_function;        /**< 0x60B8 */
     cm1e_drive_probe_t probe[2];
-} cm1e_drive_probes_t;
-
-/** What a drive of another maker is told of the cycle, again after it was away. Written by drive_cia402.c. */
-typedef struct cm1e_drive_tell {
-    uint8_t next;                   /**< object that is told next */
+    uint8_t told;                   /**< object that is told next */
     uint8_t data[4];
     cm1e_sdo_t sdo;
-} cm1e_drive_tell_t;
+} cm1e_drive_foreign_t;
 
 /** The order is that of the memory: what every cycle looks at comes first, and lies together. */
 typedef struct cm1e_drive {
@@ -234,14 +231,13 @@ typedef struct cm1e_drive {
     cm1e_drive_encoder_t encoder;   /**< of an encoder, as the program has written it since the last cycle */
     cm1e_drive_waits_t waits;
     cm1e_drive_change_t change;
-    cm1e_drive_probes_t probes;
-    cm1e_drive_tell_t tell;
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
     const cm1e_device_t *device;    /**< NULL: there is none */
     const cm1e_motor_t *motor;      /**< NULL behind a bridge */
     const cm1e_firmware_info_t *firmware;
     struct cm1e_drive_bridge *behind; /**< what a motor behind a bridge has beside this; else NULL */
+    cm1e_drive_foreign_t *foreign;  /**< what a drive of another maker has beside this; else NULL */
     struct cm1e_drive_wiring *wiring; /**< signals of other slaves (drive_wiring.h); NULL: none */
 } cm1e_drive_t;
 

@@ -417,7 +417,7 @@ START_TEST(touch_probes_of_the_drive_know_the_edge_to_the_count)
 }
 END_TEST
 
-static uint16_t probe_function(void) { return axis->drive.probes.function; }
+static uint16_t probe_function(void) { return axis->drive.foreign->probe_function; }
 
 /* 0x60B8 wants the edges that are waited for, and no others. For another edge the enable bit goes off until the drive
  * shows that: the edges that it has stored until then are old. */
