@@ -17,14 +17,15 @@ fb_outputs_t cm1e_fb_couple(cm1e_coupling_private_t *fb, const AXIS_REF_t *slave
 /** A whole block that ends a coupling: a command without CommandAborted. */
 fb_outputs_t cm1e_fb_decouple(cm1e_fb_private_t *fb, const AXIS_REF_t *slave, BOOL execute, cm1e_command_kind_t kind);
 
-/** fb_stands() for a coupling block; values that may still change are in `status`. `second` is NULL except for
+/** fb_stands() for a coupling block; values that may still change are in the result. `second` is NULL except for
  *  MC_CombineAxes. */
-static inline bool fb_follows(const cm1e_coupling_private_t *fb, const AXIS_REF_t *slave, const AXIS_REF_t *master,
-                              const AXIS_REF_t *second, BOOL execute, cm1e_command_status_t *status)
+static inline cm1e_following_t fb_follows(const cm1e_coupling_private_t *fb, const AXIS_REF_t *slave,
+                                          const AXIS_REF_t *master, const AXIS_REF_t *second, BOOL execute)
 {
-    return fb_same(&fb->common, slave, execute) && fb_master(master).Handle == fb->master &&
-           fb_master(second).Handle == fb->second_master &&
-           cm1e_axis_follows_by(*slave, fb->common.command, status);
+    if (CM1E_USUALLY(fb_same(&fb->common, slave, execute) && fb_master(master).Handle == fb->master &&
+                     fb_master(second).Handle == fb->second_master))
+        return cm1e_axis_follows_by(*slave, fb->common.command);
+    return (cm1e_following_t){.follows = false};
 }
 
 #endif

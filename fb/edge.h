@@ -10,6 +10,7 @@
 
 #include "axis/axis_api.h"
 #include "cm1e/plcopen.h"
+#include "core/rare.h"
 
 /** Outputs of a block. While Execute is TRUE, exactly one of the last four is TRUE. */
 typedef enum fb_state { FB_IDLE = 0, FB_BUSY, FB_DONE, FB_ABORTED, FB_ERROR } fb_state_t;
@@ -66,14 +67,14 @@ fb_outputs_t cm1e_fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *refer
  *  one. */
 static inline bool fb_same(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
 {
-    return fb->active && fb->state == FB_BUSY && !fb->continuous_update && !execute == !fb->trigger_before &&
-           reference && reference->Handle == fb->axis_handle;
+    return CM1E_USUALLY(fb->state == FB_BUSY && fb->active == TRUE && fb->continuous_update == FALSE &&
+                        fb->trigger_before == execute && reference && reference->Handle == fb->axis_handle);
 }
 /** Whether the command is also still active, so that the outputs do not change. Most calls are of this kind, and this
  *  check makes them cheap. */
 static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
 {
-    return fb_same(fb, reference, execute) && cm1e_axis_runs(*reference, fb->command);
+    return CM1E_USUALLY(fb_same(fb, reference, execute) && cm1e_axis_runs(*reference, fb->command));
 }
 
 /* Common code of the motion blocks: inputs and outputs with the names of the standard. */

@@ -29,9 +29,10 @@ cm1e_group_t *cm1e_fb_group_enable(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t
  *  did. */
 static inline bool fb_group_stands(const cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute)
 {
-    return fb->state == FB_BUSY && !execute == !fb->trigger_before && reference &&
-           reference->Handle == fb->axis_handle &&
-           (fb->active ? cm1e_group_runs(*reference, fb->command) : cm1e_group_waits(*reference, fb->command));
+    return CM1E_USUALLY(fb->state == FB_BUSY && fb->trigger_before == execute && reference &&
+                        reference->Handle == fb->axis_handle &&
+                        (fb->active ? cm1e_group_runs(*reference, fb->command)
+                                    : cm1e_group_waits(*reference, fb->command)));
 }
 
 /* Outputs of blocks that move a group. */

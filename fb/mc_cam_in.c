@@ -7,14 +7,8 @@ static void show_ends(MC_CamIn_t *fb, UDINT ends)
     fb->Private.ends = ends;
 }
 
-void MC_CamIn(MC_CamIn_t *fb)
+CM1E_APART static void work(MC_CamIn_t *fb)
 {
-    cm1e_command_status_t status;
-    if (fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute, &status)) {
-        fb->InSync = status.reached;
-        show_ends(fb, status.ends);
-        return;
-    }
     const cm1e_axis_coupling_t coupling = {
         .master = {{.axis = fb_master(fb->Master), .source = fb->MasterValueSource, .numerator = 1, .denominator = 1}},
         .master_sync_position = fb->MasterSyncPosition,
@@ -35,4 +29,15 @@ void MC_CamIn(MC_CamIn_t *fb)
     fb->InSync = out.reached;
     show_ends(fb, out.ends);
     FB_SHOW_ACTIVE(fb, out);
+}
+
+void MC_CamIn(MC_CamIn_t *fb)
+{
+    const cm1e_following_t now = fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute);
+    if (now.follows) {
+        fb->InSync = now.reached;
+        show_ends(fb, now.ends);
+    } else {
+        work(fb);
+    }
 }

@@ -12,13 +12,8 @@ static cm1e_coupling_master_t master(const AXIS_REF_t *axis, MC_SOURCE source, D
     };
 }
 
-void MC_CombineAxes(MC_CombineAxes_t *fb)
+CM1E_APART static void work(MC_CombineAxes_t *fb)
 {
-    cm1e_command_status_t status;
-    if (fb_follows(&fb->Private, fb->Slave, fb->Master1, fb->Master2, fb->Execute, &status)) {
-        fb->InSync = status.reached;
-        return;
-    }
     const cm1e_axis_coupling_t coupling = {
         .master = {master(fb->Master1, fb->MasterValueSourceM1, fb->GearRatioNumeratorM1, fb->GearRatioDenominatorM1),
                    master(fb->Master2, fb->MasterValueSourceM2, fb->GearRatioNumeratorM2, fb->GearRatioDenominatorM2)},
@@ -32,4 +27,13 @@ void MC_CombineAxes(MC_CombineAxes_t *fb)
     const fb_outputs_t out = cm1e_fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
     fb->InSync = out.reached;
     FB_SHOW_ACTIVE(fb, out);
+}
+
+void MC_CombineAxes(MC_CombineAxes_t *fb)
+{
+    const cm1e_following_t now = fb_follows(&fb->Private, fb->Slave, fb->Master1, fb->Master2, fb->Execute);
+    if (now.follows)
+        fb->InSync = now.reached;
+    else
+        work(fb);
 }

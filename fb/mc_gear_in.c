@@ -1,12 +1,7 @@
 #include "coupling_block.h"
 
-void MC_GearIn(MC_GearIn_t *fb)
+CM1E_APART static void work(MC_GearIn_t *fb)
 {
-    cm1e_command_status_t status;
-    if (fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute, &status)) {
-        fb->InGear = status.reached;
-        return;
-    }
     const cm1e_axis_coupling_t coupling = {
         .master = {{.axis = fb_master(fb->Master), .source = fb->MasterValueSource, .numerator = fb->RatioNumerator,
                     .denominator = fb->RatioDenominator}},
@@ -20,4 +15,13 @@ void MC_GearIn(MC_GearIn_t *fb)
     const fb_outputs_t out = cm1e_fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
     fb->InGear = out.reached;
     FB_SHOW_ACTIVE(fb, out);
+}
+
+void MC_GearIn(MC_GearIn_t *fb)
+{
+    const cm1e_following_t now = fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute);
+    if (now.follows)
+        fb->InGear = now.reached;
+    else
+        work(fb);
 }

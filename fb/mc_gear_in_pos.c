@@ -1,13 +1,7 @@
 #include "coupling_block.h"
 
-void MC_GearInPos(MC_GearInPos_t *fb)
+CM1E_APART static void work(MC_GearInPos_t *fb)
 {
-    cm1e_command_status_t status;
-    if (fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute, &status)) {
-        fb->StartSync = status.synchronizing;
-        fb->InSync = status.reached;
-        return;
-    }
     const cm1e_axis_coupling_t coupling = {
         .master = {{.axis = fb_master(fb->Master), .source = fb->MasterValueSource, .numerator = fb->RatioNumerator,
                     .denominator = fb->RatioDenominator}},
@@ -27,4 +21,15 @@ void MC_GearInPos(MC_GearInPos_t *fb)
     fb->StartSync = out.synchronizing;
     fb->InSync = out.reached;
     FB_SHOW_ACTIVE(fb, out);
+}
+
+void MC_GearInPos(MC_GearInPos_t *fb)
+{
+    const cm1e_following_t now = fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute);
+    if (now.follows) {
+        fb->StartSync = now.synchronizing;
+        fb->InSync = now.reached;
+    } else {
+        work(fb);
+    }
 }

@@ -1,9 +1,7 @@
 #include "edge.h"
 
-void MC_MoveAbsolute(MC_MoveAbsolute_t *fb)
+CM1E_APART static void work(MC_MoveAbsolute_t *fb)
 {
-    if (FB_STANDS(fb))
-        return;
     const cm1e_axis_command_t command = {
         .kind = CM1E_COMMAND_MOVE_ABSOLUTE,
         .position = fb->Position,
@@ -15,4 +13,10 @@ void MC_MoveAbsolute(MC_MoveAbsolute_t *fb)
     const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
+}
+
+void MC_MoveAbsolute(MC_MoveAbsolute_t *fb)
+{
+    if (!FB_STANDS(fb))
+        work(fb);
 }

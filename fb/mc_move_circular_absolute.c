@@ -1,9 +1,7 @@
 #include "group_edge.h"
 
-void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb)
+CM1E_APART static void work(MC_MoveCircularAbsolute_t *fb)
 {
-    if (fb_group_stands(&fb->Private, fb->AxesGroup, fb->Execute))
-        return;
     cm1e_group_command_t command = {
         .kind = CM1E_GROUP_CIRCULAR_ABSOLUTE,
         .circ_mode = fb->CircMode,
@@ -14,4 +12,10 @@ void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb)
     memcpy(command.auxiliary, fb->AuxPoint, sizeof command.auxiliary);
     const fb_outputs_t out = cm1e_fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
     FB_SHOW_GROUP_MOTION(fb, out);
+}
+
+void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb)
+{
+    if (!fb_group_stands(&fb->Private, fb->AxesGroup, fb->Execute))
+        work(fb);
 }

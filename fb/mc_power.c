@@ -1,6 +1,8 @@
+#include <stddef.h>
+#include <string.h>
+
 #include "axis/axis_guest.h"
 #include "core/in_task.h"
-#include "core/rare.h"
 #include "edge.h"
 
 /** Enable is a level for the power stage, not for the block (3.1). The axis is latched at Enable's rising edge, and
@@ -48,12 +50,21 @@ static cm1e_error_t follow_inputs(MC_Power_t *fb, cm1e_axis_t *axis)
     return error != CM1E_OK || fb->Status ? error : reason_for_no_power(axis);
 }
 
-/** Nothing has changed since the last call, which is the usual case: the outputs do not change. */
-static bool stands(const MC_Power_t *fb)
+/** All inputs but the axis, and all outputs, as one number. */
+static inline uint64_t shown(const MC_Power_t *fb)
 {
-    return fb->Enable && fb->Status && fb->Valid && fb->Private.trigger_before && fb->Axis &&
-           fb->Axis->Handle == fb->Private.axis_handle &&
-           cm1e_axis_power_stands(*fb->Axis, fb, fb->EnablePositive, fb->EnableNegative);
+    uint64_t word;
+    enum { FROM = offsetof(MC_Power_t, Enable), TO = offsetof(MC_Power_t, ErrorID) + sizeof fb->ErrorID };
+    _Static_assert(TO - FROM == sizeof word, "they fill a word");
+    memcpy(&word, (const char *)fb + FROM, sizeof word);
+    return word;
+}
+
+/** Nothing has changed since the last call, which is the usual case: the outputs do not change. */
+static inline bool stands(const MC_Power_t *fb)
+{
+    return CM1E_USUALLY(fb->Enable && fb->Axis && fb->Axis->Handle == fb->Private.axis_handle &&
+                        cm1e_axis_power_settled(*fb->Axis, fb, shown(fb)));
 }
 
 CM1E_RARE static void work(MC_Power_t *fb)
@@ -78,6 +89,8 @@ CM1E_RARE static void work(MC_Power_t *fb)
     fb->Error = fb->Enable && (failed || passing != CM1E_OK);
     fb->Valid = fb->Enable && !fb->Error;
     fb->ErrorID = fb->Error ? (failed ? private->error_id : cm1e_error_id(passing)) : 0;
+    if (axis && fb->Valid && fb->Status)
+        cm1e_axis_power_settle(axis, fb, shown(fb));
 }
 
 void MC_Power(MC_Power_t *fb)

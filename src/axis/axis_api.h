@@ -199,9 +199,15 @@ void cm1e_axis_feed(AXIS_REF_t reference, cm1e_command_id_t id, double position)
 /** Whether this is still the active command of an axis that exists. This cheap test suffices for a block while nothing
  *  changes. @rt cycle */
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id);
-/** For a block of a slave: whether the axis follows by this command. Then `reached`, `synchronizing` and `ends` are
- *  those of cm1e_axis_command_status(), and no other member is set. @rt cycle */
-bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_command_status_t *status);
+/** What a block of a slave shows of its command: the members have the meaning that they have in
+ *  cm1e_command_status_t. */
+typedef struct cm1e_following {
+    bool follows;       /**< the axis follows by this command; false: the others mean nothing */
+    bool reached, synchronizing;
+    uint32_t ends;
+} cm1e_following_t;
+/** For a block of a slave: what cm1e_axis_command_status() says, as far as it follows by this command. @rt cycle */
+cm1e_following_t cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id);
 /** Holds the axis in Stopping while MC_Stop.Execute is TRUE. @rt cycle */
 void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);
 
@@ -209,8 +215,12 @@ void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);
  *  CM1E_ERROR_FB_SECOND_POWER: another one owns it. @rt cycle */
 cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
                              bool enable_negative);
-/** Whether the power stage is on and cm1e_axis_power() with these values, enabled, would change nothing. @rt cycle */
-bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative);
+/** The owner has enabled the axis, and the power stage is on: nothing is left to do for it while it shows what it shows
+ *  now, and nothing of the power changes. `shown` is anything by which the owner recognises its inputs and outputs, but
+ *  not 0. @rt cycle */
+void cm1e_axis_power_settle(cm1e_axis_t *axis, const void *owner, uint64_t shown);
+/** Whether that is still so. @rt cycle */
+bool cm1e_axis_power_settled(AXIS_REF_t reference, const void *owner, uint64_t shown);
 /** Whether the power stage is on: MC_Power.Status. @rt cycle */
 bool cm1e_axis_powered(const cm1e_axis_t *axis);
 /** MC_Reset: starts a reset. Poll it with cm1e_axis_reset_state(). @rt cycle */

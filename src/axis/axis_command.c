@@ -11,6 +11,7 @@
 #include "axis/axis_superimpose.h"
 #include "axis/axis_table.h"
 #include "axis/axis_text.h"
+#include "core/rare.h"
 
 /* ---- ends -------------------------------------------------------------------------------------------------------- */
 
@@ -70,17 +71,15 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
-    return axis && id != 0 && axis->commands.active == id;
+    return CM1E_USUALLY(axis && id != 0 && axis->commands.active == id);
 }
 
-bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_command_status_t *status)
+cm1e_following_t cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
-    if (!axis || id == 0 || axis->commands.active != id || !axis_follows(axis))
-        return false;
-    status->reached = axis->setpoint.reached;
-    tell_of_coupling(axis, status);
-    return true;
+    if (CM1E_USUALLY(axis && id != 0 && axis->commands.active == id && axis_follows(axis)))
+        return (cm1e_following_t){true, axis->setpoint.reached, axis->setpoint.synchronizing, axis->setpoint.ends};
+    return (cm1e_following_t){.follows = false};
 }
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */

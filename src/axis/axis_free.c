@@ -33,6 +33,7 @@ void cm1e_axis_become_free(cm1e_axis_t *axis)
     cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);
     cm1e_axis_set_source(axis, &cm1e_source_free);
     axis->power.energized = false;
+    cm1e_axis_power_unsettle(axis);
     axis->homing_step.pushing = axis->homing_step.after_stop = false;
     axis->power.free_ns = axis->now_ns;
     cm1e_axis_set_to_actual(axis);

@@ -154,6 +154,7 @@ typedef struct power {
     cm1e_error_t reset_error;
     int64_t free_ns;                /**< since when no torque is commanded */
     int64_t brake_until_ns;         /**< until then the torque stays at least, to brake */
+    uint64_t settled;               /**< what the owner shows while it has nothing to do; 0: it has, or may have */
 } power_t;
 
 /** Why the axis is in ErrorStop. Written by axis_power.h and axis_power.c. */
@@ -380,7 +381,7 @@ struct cm1e_axis {
     belongs_t belongs;
     struct followed *followed;      /**< data of coupling_hooks about its slaves */
     struct homing *homing;          /**< data of homing_hooks */
-    struct cool_muscle *muscle;     /**< data of motor_hooks */
+    const axis_events_t *events;    /**< how a motion reports its end and its failure */
     /* in every cycle */
     signals_t signals;
     cm1e_axis_state_t state;        /**< cm1e_axis_go() */
@@ -394,7 +395,6 @@ struct cm1e_axis {
     homing_step_t homing_step;
     double cycle_s;
     int64_t now_ns;
-    const axis_events_t *events;    /**< how a motion reports its end and its failure */
     const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
     const coupling_hooks_t *coupling_hooks; /**< NULL: it can neither follow nor be followed */
     struct coupling *coupling;      /**< data of these hooks; NULL: it follows nothing */
@@ -416,6 +416,7 @@ struct cm1e_axis {
     outside_t outside;
     set_aside_t set_aside;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */
+    struct cool_muscle *muscle;     /**< data of motor_hooks */
 };
 
 #endif

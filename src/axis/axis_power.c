@@ -77,6 +77,7 @@ void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_n
     if (axis->config->type == CM1E_AXIS_ENCODER)
         return;
     axis->power.enable = false;
+    cm1e_axis_power_unsettle(axis);
     if (axis->state == CM1E_AXIS_ERROR_STOP)
         return;
     axis->fault.task = task;
@@ -149,6 +150,7 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
     if (!may_own(&axis->power, owner))
         return CM1E_ERROR_FB_SECOND_POWER;
     axis->power.owner = owner;
+    cm1e_axis_power_unsettle(axis);
     const bool positive_fell = axis->power.enable_positive && !enable_positive;
     const bool negative_fell = axis->power.enable_negative && !enable_negative;
     axis->power.shutting_down = false;
@@ -193,12 +195,17 @@ void cm1e_axis_claim_power(AXIS_REF_t reference)
     axis->power.claimed = true;
 }
 
-bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
+void cm1e_axis_power_settle(cm1e_axis_t *axis, const void *owner, uint64_t shown)
+{
+    if (axis->power.owner == owner && axis->power.enable && !axis->power.shutting_down && cm1e_axis_powered(axis))
+        axis->power.settled = shown;
+}
+
+bool cm1e_axis_power_settled(AXIS_REF_t reference, const void *owner, uint64_t shown)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
-    return axis && axis->power.owner == owner && axis->power.enable && !axis->power.shutting_down &&
-           axis->power.enable_positive == enable_positive && axis->power.enable_negative == enable_negative &&
-           cm1e_axis_powered(axis);
+    return axis && axis->power.owner == owner && axis->power.settled == shown &&
+           axis->drive.feedback.state == OPERATION_ENABLED;
 }
 
 bool cm1e_axis_powered(const cm1e_axis_t *axis)
@@ -237,8 +244,10 @@ void cm1e_axis_enable_step(cm1e_axis_t *axis)
 {
     axis->power.letting_go &= axis->drive.feedback.enabled;
     axis->drive.command.enable = !axis_free(axis) || (cm1e_axis_wants_enable(axis) && !axis->power.letting_go);
-    if (!axis->drive.command.enable && axis_free(axis))
+    if (!axis->drive.command.enable && axis_free(axis)) {
         axis->power.energized = false;
+        cm1e_axis_power_unsettle(axis);
+    }
 }
 
 /* ---- reset ------------------------------------------------------------------------------------------------------- */
@@ -293,6 +302,7 @@ void cm1e_axis_reset_step(cm1e_axis_t *axis)
 bool cm1e_axis_shut_down(cm1e_axis_t *axis)
 {
     axis->power.shutting_down = true;
+    cm1e_axis_power_unsettle(axis);
     power_off(axis);
     if (!axis_free(axis) || axis->drive.torque.asked ||
         (axis->motor_hooks && !axis->motor_hooks->released(axis)))

@@ -27,12 +27,12 @@ bool cm1e_handle_take(cm1e_handle_place_t *places, unsigned count, void *object,
 /** Nobody finds the object by its handle any more. @rt init */
 void cm1e_handle_give_back(cm1e_handle_place_t *places, uint16_t handle);
 
-/** The object at the place of a handle; NULL: none. The caller compares the handle in the object with this one: it may
- *  be an object that took the place later. @rt cycle */
+/** The object at the place of a handle; NULL: none. The caller compares the handle in the object, which is never 0, with
+ *  this one: it may be an object that took the place later. @rt cycle */
 static inline void *cm1e_handle_object(cm1e_handle_place_t *places, unsigned count, uint16_t handle)
 {
     const unsigned place = handle & 0xFFu;
-    return place < count && handle ? atomic_load_explicit(&places[place].object, memory_order_acquire) : NULL;
+    return place < count ? atomic_load_explicit(&places[place].object, memory_order_acquire) : NULL;
 }
 
 #endif

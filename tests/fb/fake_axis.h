@@ -29,6 +29,7 @@ struct cm1e_axis {
     bool hold;
     cm1e_command_id_t hold_id;
     const void *owner;
+    uint64_t settled;
     bool enable, positive, negative, powered;
     cm1e_error_t power_error;
     unsigned power_calls;
@@ -145,11 +146,15 @@ void cm1e_axis_claim_power(AXIS_REF_t reference) { (void)reference; }
 
 bool cm1e_axis_powered(const cm1e_axis_t *axis) { return axis->powered; }
 
-bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
+void cm1e_axis_power_settle(cm1e_axis_t *axis, const void *owner, uint64_t shown)
+{
+    axis->settled = axis->power_error == CM1E_OK && axis->owner == owner && axis->enable && axis->powered ? shown : 0;
+}
+
+bool cm1e_axis_power_settled(AXIS_REF_t reference, const void *owner, uint64_t shown)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
-    return axis && axis->power_error == CM1E_OK && axis->owner == owner && axis->enable &&
-           axis->positive == enable_positive && axis->negative == enable_negative && axis->powered;
+    return axis && axis->power_error == CM1E_OK && axis->owner == owner && axis->settled == shown && axis->powered;
 }
 
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
@@ -158,12 +163,12 @@ bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
     return axis && axis->status[id % FAKE_COMMANDS].state == CM1E_COMMAND_ACTIVE;
 }
 
-bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_command_status_t *status)
+cm1e_following_t cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id)
 {
     if (!cm1e_axis_runs(reference, id))
-        return false;
-    *status = cm1e_axis_command_status(cm1e_axis_from_reference(&reference), id);
-    return true;
+        return (cm1e_following_t){.follows = false};
+    const cm1e_command_status_t status = cm1e_axis_command_status(cm1e_axis_from_reference(&reference), id);
+    return (cm1e_following_t){true, status.reached, status.synchronizing, status.ends};
 }
 
 cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)

@@ -53,20 +53,63 @@ static void test_enable_after_the_shaft_was_turned_while_disabled(void)
     TEST_ASSERT_LESS_OR_EQUAL_INT64(251, bus.torque_step); /* of the move alone: 5 u/s */
 }
 
-/* MC_Power asks this in every cycle, and does nothing more where it is true. */
-static void test_power_stands_only_as_long_as_nothing_changes(void)
+/* MC_Power asks this in every cycle, and does nothing more where it is true. Whatever changes the power ends it. */
+static bool settled(void) { return cm1e_axis_power_settled(cm1e_axis_reference(axis), &owner, 7); }
+
+static void settle(void)
+{
+    cm1e_axis_power_settle(axis, &owner, 7);
+    TEST_ASSERT_TRUE(settled());
+}
+
+static void test_power_is_settled_only_as_long_as_nothing_changes(void)
 {
     const AXIS_REF_t reference = cm1e_axis_reference(axis);
     const int other = 0;
-    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &owner, true, true));
+    cm1e_axis_power_settle(axis, &owner, 7); /* it has no power */
+    TEST_ASSERT_FALSE(settled());
     bench_enable();
-    TEST_ASSERT_TRUE(cm1e_axis_power_stands(reference, &owner, true, true));
-    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &owner, true, false));
-    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &owner, false, true));
-    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &other, true, true));
-    TEST_ASSERT_FALSE(cm1e_axis_power_stands((AXIS_REF_t){0}, &owner, true, true));
+    TEST_ASSERT_FALSE(settled());
+    settle();
+    bench_cycles(10);
+    TEST_ASSERT_TRUE(settled());
+    TEST_ASSERT_FALSE(cm1e_axis_power_settled(reference, &owner, 8));
+    TEST_ASSERT_FALSE(cm1e_axis_power_settled(reference, &other, 7));
+    TEST_ASSERT_FALSE(cm1e_axis_power_settled((AXIS_REF_t){0}, &owner, 7));
+    cm1e_axis_power_settle(axis, &other, 8);
+    TEST_ASSERT_TRUE(settled());
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_power(axis, &owner, true, true, false));
+    TEST_ASSERT_FALSE(settled());
+    settle();
+    bench_power(false);
+    TEST_ASSERT_FALSE(settled());
+    bench_cycles(50);
+    cm1e_axis_power_settle(axis, &owner, 7);
+    TEST_ASSERT_FALSE(settled());
+    bench_enable();
+    settle();
     (void)cm1e_axis_shut_down(axis);
-    TEST_ASSERT_FALSE(cm1e_axis_power_stands(reference, &owner, true, true));
+    TEST_ASSERT_FALSE(settled());
+}
+
+static void test_power_is_settled_no_longer_without_torque(void)
+{
+    bench_enable();
+    settle();
+    bus.power = false;
+    bench_cycles(5);
+    TEST_ASSERT_FALSE(settled());
+    bus.power = true;
+    bench_cycles(5);
+    TEST_ASSERT_FALSE(settled());
+}
+
+static void test_power_is_settled_no_longer_without_program(void)
+{
+    bench_enable();
+    settle();
+    cm1e_axis_lose_program(axis, "task", 0);
+    TEST_ASSERT_FALSE(settled());
 }
 
 static void test_enable_waits_without_motor_power_and_ends_in_words(void)
@@ -397,7 +440,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_enable_never_moves_also_with_a_turning_shaft);
     RUN_TEST(test_enable_after_the_shaft_was_turned_while_disabled);
-    RUN_TEST(test_power_stands_only_as_long_as_nothing_changes);
+    RUN_TEST(test_power_is_settled_only_as_long_as_nothing_changes);
+    RUN_TEST(test_power_is_settled_no_longer_without_torque);
+    RUN_TEST(test_power_is_settled_no_longer_without_program);
     RUN_TEST(test_enable_waits_without_motor_power_and_ends_in_words);
     RUN_TEST(test_moves_end_exactly_and_in_time);
     RUN_TEST(test_relative_moves_do_not_drift);
