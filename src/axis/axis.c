@@ -56,6 +56,7 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
         return error;
     }
     cm1e_axis_signals_changed(axis);
+    cm1e_axis_note_disturbed(axis);
     const int64_t cycle_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
     axis->cycle_s = (double)(cycle_ns > 0 ? cycle_ns : MS_IN_NS) * 1e-9;
     cm1e_axis_guard_renew(axis);
@@ -172,13 +173,7 @@ bool cm1e_axis_inputs_ordinary(cm1e_axis_t *axis, cm1e_error_t received, cm1e_er
     return true;
 }
 
-void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)
-{
-    if (!cm1e_axis_inputs_ordinary(axis, received, health, now_ns))
-        cm1e_axis_inputs_any(axis, received, health, now_ns);
-}
-
-void cm1e_axis_inputs_any(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)
+static void take_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)
 {
     cm1e_drive_t *drive = &axis->drive;
     axis->now_ns = now_ns;
@@ -215,6 +210,18 @@ void cm1e_axis_inputs_any(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t
     if (health != CM1E_OK)
         cm1e_axis_hold_unheard(axis);
     watch_lag(axis);
+}
+
+CM1E_APART void cm1e_axis_inputs_any(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)
+{
+    take_inputs(axis, received, health, now_ns);
+    cm1e_axis_note_disturbed(axis);
+}
+
+void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)
+{
+    if (!cm1e_axis_inputs_ordinary(axis, received, health, now_ns))
+        cm1e_axis_inputs_any(axis, received, health, now_ns);
 }
 
 /* The common case, tested at once: a motion goes on, and nothing has happened that could change it. */
@@ -275,7 +282,7 @@ void cm1e_axis_advance_any(cm1e_axis_t *axis)
     after_motion(axis, undisturbed);
 }
 
-__attribute__((noinline)) void cm1e_axis_advance_undecided(cm1e_axis_t *axis)
+CM1E_APART void cm1e_axis_advance_undecided(cm1e_axis_t *axis)
 {
     bool over = false;
     if (cm1e_axis_ordinary_step(axis))

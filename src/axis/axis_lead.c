@@ -106,7 +106,7 @@ static inline bool take_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *l
 }
 
 /* The first axis that asks makes the set-point of all. Not inlined, so that the others save no registers. */
-static __attribute__((noinline)) bool take_first_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
+CM1E_APART static bool take_first_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
 {
     return leader->ordinary(leader->context) && take_set_point(axis, leader);
 }

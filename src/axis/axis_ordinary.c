@@ -70,7 +70,7 @@ bool cm1e_axis_course(const cm1e_axis_t *axis, course_t *course)
 /* Whether the axis has nothing to do beside its motion. */
 static inline bool nothing_beside(const cm1e_axis_t *axis)
 {
-    return !axis->extras && axis_acts(axis) && axis->silence.silent_before == 0 && !axis->silence.frozen;
+    return !axis->extras; /* EXTRA_DISTURBED is one of them */
 }
 
 /* Whether the axis has nothing to do but to follow its master or leader. */

@@ -354,6 +354,7 @@ typedef enum extra {
     EXTRA_BACKLASH = 8, /**< there is a gap between motor and load */
     EXTRA_OBJECTS = 16, /**< vendor parameters are asked for */
     EXTRA_PURSUIT = 32, /**< the motor has run ahead of its set-point, or perhaps has */
+    EXTRA_DISTURBED = 64, /**< our set-points do not act on the motor, or no answer came in this cycle or before it */
 } extra_t;
 
 /** What the axis is a part of. Written by axis.c and axis_lead.c. */

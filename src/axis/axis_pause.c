@@ -148,6 +148,7 @@ void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
 {
     note_silence(axis, missed);
     axis->silence.frozen = true;
+    cm1e_axis_note_disturbed(axis);
     cm1e_drive_slew(&axis->drive);
 }
 

@@ -7,6 +7,7 @@
 #define CM1E_AXIS_AXIS_SETPOINT_H
 
 #include "axis/axis_course.h"
+#include "axis/axis_extras.h"
 #include "axis/axis_position.h"
 
 /* Sets the source of the set-point. */
@@ -40,6 +41,13 @@ static inline bool drive_profiles(const cm1e_axis_t *axis) { return axis->config
 static inline bool axis_acts(const cm1e_axis_t *axis)
 {
     return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)axis->mode;
+}
+
+/** Called when that may have changed, or an answer of the bus is missing or has come again. */
+static inline void cm1e_axis_note_disturbed(cm1e_axis_t *axis)
+{
+    cm1e_axis_set_extra(axis, EXTRA_DISTURBED,
+                        !axis_acts(axis) || axis->silence.silent_before > 0 || axis->silence.frozen);
 }
 
 /** The first half of cm1e_axis_outputs(): state diagram and set-point, before they are written to the drive. */
