@@ -282,15 +282,16 @@ void cm1e_axis_advance_any(cm1e_axis_t *axis)
     after_motion(axis, undisturbed);
 }
 
-CM1E_APART void cm1e_axis_advance_undecided(cm1e_axis_t *axis)
+CM1E_APART bool cm1e_axis_advance_undecided(cm1e_axis_t *axis)
 {
     bool over = false;
     if (cm1e_axis_ordinary_step(axis))
-        return;
+        return true;
     if (!cm1e_axis_led_step(axis, &over))
         cm1e_axis_advance_any(axis);
     else if (over)
         after_motion(axis, true);
+    return true;
 }
 
 void cm1e_axis_outputs(cm1e_axis_t *axis)

@@ -105,19 +105,20 @@ static inline bool take_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *l
     return true;
 }
 
-/* The first axis that asks makes the set-point of all. Not inlined, so that the others save no registers. */
-CM1E_APART static bool take_first_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
+/* The first axis that asks makes the set-point of all. */
+CM1E_APART static bool take_first_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader,
+                                            axis_otherwise_t otherwise)
 {
-    return leader->ordinary(leader->context) && take_set_point(axis, leader);
+    return leader->ordinary(leader->context) ? take_set_point(axis, leader) : otherwise(axis);
 }
 
-static bool ordinary(cm1e_axis_t *axis)
+static bool ordinary(cm1e_axis_t *axis, axis_otherwise_t otherwise)
 {
     const cm1e_axis_leader_t *leader = axis->leader;
-    if (!axis->guarding.kept_ahead || !cm1e_axis_guard_decided(axis, *leader->course))
-        return false;
+    if (!CM1E_USUALLY(axis->guarding.kept_ahead && cm1e_axis_guard_decided(axis, *leader->course)))
+        return otherwise(axis);
     if ((*leader->asked & leader->bit) != 0)
-        return take_first_set_point(axis, leader);
+        return take_first_set_point(axis, leader, otherwise);
     return take_set_point(axis, leader);
 }
 

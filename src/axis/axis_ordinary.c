@@ -70,7 +70,7 @@ bool cm1e_axis_course(const cm1e_axis_t *axis, course_t *course)
 /* Whether the axis has nothing to do beside its motion. */
 static inline bool nothing_beside(const cm1e_axis_t *axis)
 {
-    return !axis->extras; /* EXTRA_DISTURBED is one of them */
+    return axis->extras == 0; /* EXTRA_DISTURBED is one of them */
 }
 
 /* Whether the axis has nothing to do but to follow its master or leader. */
@@ -81,11 +81,12 @@ static inline bool only_follows(const cm1e_axis_t *axis)
            nothing_beside(axis);
 }
 
-static inline bool led_ordinary_step(cm1e_axis_t *axis)
+static inline bool led_ordinary_step(cm1e_axis_t *axis, axis_otherwise_t otherwise)
 {
     const source_t *source = axis->setpoint.source;
-    return axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && nothing_beside(axis) && source->ordinary &&
-           source->ordinary(axis);
+    if (CM1E_USUALLY(axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && nothing_beside(axis) && source->ordinary))
+        return source->ordinary(axis, otherwise);
+    return otherwise(axis);
 }
 
 bool cm1e_axis_led_step(cm1e_axis_t *axis, bool *over)
@@ -136,11 +137,17 @@ bool cm1e_axis_ordinary_step(cm1e_axis_t *axis)
     return decided_step(axis);
 }
 
-bool cm1e_axis_led_ordinary_step(cm1e_axis_t *axis) { return led_ordinary_step(axis); }
+static bool not_made(cm1e_axis_t *axis)
+{
+    (void)axis;
+    return false;
+}
+
+bool cm1e_axis_led_ordinary_step(cm1e_axis_t *axis) { return led_ordinary_step(axis, not_made); }
 
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
     axis->advanced = true; /* first, as a master may be asked for its set-point on the way */
-    if (!decided_step(axis) && !led_ordinary_step(axis))
-        cm1e_axis_advance_undecided(axis);
+    if (!decided_step(axis))
+        (void)led_ordinary_step(axis, cm1e_axis_advance_undecided);
 }

@@ -12,13 +12,16 @@
 /** What follows when a motion by the drive has ended: its command is done, the axis holds, or it has no torque. */
 typedef enum home_goal { HOME_GOAL_DONE = 0, HOME_GOAL_HOLD, HOME_GOAL_OFF } home_goal_t;
 
+typedef bool (*axis_otherwise_t)(cm1e_axis_t *axis);
+
 typedef struct source {
     /** Makes the set-point of the cycle. false: the source has ended and made none; the profile that took over makes
      *  it. */
     bool (*step)(cm1e_axis_t *axis);
-    /** step() of an axis that is led, in a cycle about which everything was decided ahead; it has the same result. false,
-     *  and nothing has changed: it was not. NULL: nothing is decided ahead here. */
-    bool (*ordinary)(cm1e_axis_t *axis);
+    /** step() of an axis that is led, in a cycle about which everything was decided ahead: true. If it was not, nothing
+     *  has changed, and the result is that of `otherwise`, which is called last so that no registers are saved for it.
+     *  NULL: nothing is decided ahead here. */
+    bool (*ordinary)(cm1e_axis_t *axis, axis_otherwise_t otherwise);
     /** Brings the motion to rest by this ramp. A motion by the drive ends in the drive's own way, with `goal`. */
     void (*stop)(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
     /** Begins the motion anew at the present set-point. NULL: as a profile does (axis_pause.c), or nothing moves. */

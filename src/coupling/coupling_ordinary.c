@@ -14,27 +14,25 @@
 #include "core/rare.h"
 #include "coupling/coupling_private.h"
 
-/* A function of its own, so that a slave whose master has advanced saves no registers. The master may fail meanwhile,
- * and the slave with it. */
-CM1E_RARE static bool advance_master(cm1e_axis_t *axis)
+/* The master may fail meanwhile, and the slave with it: then the course of the slave is another one. */
+CM1E_RARE static bool step_after_master(cm1e_axis_t *axis, axis_otherwise_t otherwise)
 {
-    const coupling_t *c = axis->coupling;
-    cm1e_axis_advance(c->now->links[0].master);
-    return c->course == axis->setpoint.course;
+    cm1e_axis_advance(axis->coupling->now->links[0].master);
+    return cm1e_coupling_ordinary_step(axis, otherwise);
 }
 
-bool cm1e_coupling_ordinary_step(cm1e_axis_t *axis)
+bool cm1e_coupling_ordinary_step(cm1e_axis_t *axis, axis_otherwise_t otherwise)
 {
     coupling_t *c = axis->coupling;
-    if (!c->ordinary || c->course != axis->setpoint.course)
-        return false;
+    if (!CM1E_USUALLY(c->ordinary && c->course == axis->setpoint.course))
+        return otherwise(axis);
     link_t *link = &c->now->links[0];
     const cm1e_axis_t *master = link->master;
-    if (!master->advanced && !advance_master(axis))
-        return false;
+    if (!CM1E_USUALLY(master->advanced))
+        return step_after_master(axis, otherwise);
     const setpoint_t *seen = &master->setpoint;
-    if (c->masters_course != seen->course)
-        return false;
+    if (!CM1E_USUALLY(c->masters_course == seen->course))
+        return otherwise(axis);
     link->seen.counts = cm1e_position_minus(seen->position, link->origin) + c->phase.position * master->position.scale;
     link->seen.velocity = seen->velocity + c->phase.velocity;
     link->seen.acceleration = seen->acceleration + c->phase.acceleration;

@@ -273,7 +273,7 @@ static inline void cm1e_coupling_put(cm1e_axis_t *follower, const from_t *f)
     cm1e_axis_put_set_point(follower, f);
 }
 /** source_t.ordinary of followers. */
-bool cm1e_coupling_ordinary_step(cm1e_axis_t *axis);
+bool cm1e_coupling_ordinary_step(cm1e_axis_t *axis, axis_otherwise_t otherwise);
 /** Called after a step that was not ordinary: decides whether the next ones are, if that can be told anew. */
 void cm1e_coupling_look_ahead(cm1e_axis_t *axis);
 

@@ -43,6 +43,8 @@ typedef struct group_record {
 typedef struct group_queue {
     cm1e_command_id_t ids[CM1E_GROUP_COMMANDS]; /**< ring, in order */
     int first, count;
+    cm1e_command_id_t active;       /**< the first of them; 0: there is none */
+    bool in_a_row;                  /**< no number is missing between the first and the last one */
 } group_queue_t;
 
 /** The last refusal, for the text. */

@@ -1,4 +1,5 @@
 /* The commands of a group by number: the queue, whose first command is active, and how commands ended. */
+#include "core/rare.h"
 #include "group/group_private.h"
 
 void cm1e_group_record(cm1e_group_t *group, cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error)
@@ -8,7 +9,7 @@ void cm1e_group_record(cm1e_group_t *group, cm1e_command_id_t id, cm1e_command_s
 
 static cm1e_command_id_t first_of(const cm1e_group_t *group)
 {
-    return group->queue.count > 0 ? group->queue.ids[group->queue.first] : 0;
+    return group->queue.active;
 }
 
 void cm1e_group_finish(cm1e_group_t *group, cm1e_command_id_t id)
@@ -19,6 +20,7 @@ void cm1e_group_finish(cm1e_group_t *group, cm1e_command_id_t id)
     cm1e_group_record(group, id, CM1E_COMMAND_DONE, CM1E_OK);
     queue->first = (queue->first + 1) % CM1E_GROUP_COMMANDS;
     queue->count--;
+    queue->active = queue->count > 0 ? queue->ids[queue->first] : 0;
 }
 
 void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error)
@@ -26,6 +28,7 @@ void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_er
     for (int i = 0; i < group->queue.count; i++)
         cm1e_group_record(group, group->queue.ids[(group->queue.first + i) % CM1E_GROUP_COMMANDS], state, error);
     group->queue.count = 0;
+    group->queue.active = 0;
     group->stop = 0;
     group->stop_held = false;
 }
@@ -33,37 +36,40 @@ void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_er
 void cm1e_group_enqueue(cm1e_group_t *group, cm1e_command_id_t id)
 {
     group_queue_t *queue = &group->queue;
-    queue->ids[(queue->first + queue->count++) % CM1E_GROUP_COMMANDS] = id;
+    queue->ids[(queue->first + queue->count) % CM1E_GROUP_COMMANDS] = id;
+    if (queue->count == 0)
+        queue->active = id;
+    queue->in_a_row = queue->count == 0 || (queue->in_a_row && id == queue->active + (cm1e_command_id_t)queue->count);
+    queue->count++;
 }
 
-/* Numbers of commands rise. Where none is missing between the active one and this one, the place of this one is
- * known. */
-static bool is_waiting(const cm1e_group_t *group, cm1e_command_id_t id)
+static bool is_among(const group_queue_t *queue, cm1e_command_id_t id)
 {
-    const group_queue_t *queue = &group->queue;
-    const int32_t behind = (int32_t)(id - first_of(group));
-    if (behind <= 0 || queue->count == 0)
-        return false;
-    const int place = queue->first + (behind < queue->count ? behind : 0);
-    if (queue->ids[place < CM1E_GROUP_COMMANDS ? place : place - CM1E_GROUP_COMMANDS] == id)
-        return true;
     for (int i = 1; i < queue->count; i++)
         if (queue->ids[(queue->first + i) % CM1E_GROUP_COMMANDS] == id)
             return true;
     return false;
 }
 
+static bool is_waiting(const group_queue_t *queue, cm1e_command_id_t id)
+{
+    const cm1e_command_id_t behind = id - queue->active; /* 0: the active one; more than any place: one before it */
+    if (CM1E_USUALLY(queue->in_a_row))
+        return behind > 0 && behind < (cm1e_command_id_t)queue->count;
+    return is_among(queue, id);
+}
+
 bool cm1e_group_waits(AXES_GROUP_REF_t reference, cm1e_command_id_t id)
 {
     const cm1e_group_t *group = cm1e_group_from_reference(&reference);
-    return group && id != 0 && is_waiting(group, id);
+    return group && id != 0 && is_waiting(&group->queue, id);
 }
 
 cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id)
 {
     if (id != 0 && first_of(group) == id)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
-    if (is_waiting(group, id))
+    if (is_waiting(&group->queue, id))
         return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
     const group_record_t *record = &group->records[id % GROUP_RECORDS];
     if (id == 0 || record->id != id)

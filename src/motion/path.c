@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/extreme.h"
+#include "core/rare.h"
 #include "motion/path_private.h"
 
 static const double LARGEST = 1e15;
@@ -392,7 +393,7 @@ bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *m
 
 /* A line has no curvature: 0 is added so that a zero has the sign that it has elsewhere. */
 static inline void fill_line(const cm1e_path_piece_t *line, int axes, double length, double v, double a,
-                             cm1e_path_sample_t *sample)
+                             cm1e_path_sample_t *restrict sample)
 {
     double l;
     const double *origin = cm1e_path_nearer_end(line, length, &l) ? line->to : line->from;
@@ -403,7 +404,7 @@ static inline void fill_line(const cm1e_path_piece_t *line, int axes, double len
     }
 }
 
-static void fill_curved(const cm1e_path_piece_t *piece, int axes, double length, double v, double a,
+CM1E_APART static void fill_curved(const cm1e_path_piece_t *piece, int axes, double length, double v, double a,
                         cm1e_path_sample_t *sample)
 {
     cm1e_path_point_t point;
