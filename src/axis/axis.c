@@ -74,7 +74,7 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
         return;
     cm1e_axis_lead_end(axis, CM1E_ERROR_FB_AXIS_REF);
     if (axis->handle)
-        cm1e_handle_give_back(cm1e_axis_places, axis->handle);
+        cm1e_handle_give_back(&cm1e_axis_places, axis->handle);
     cm1e_drive_free(&axis->drive);
     free(axis->set_aside.tables);
     free(axis->set_aside.driving);

@@ -213,8 +213,8 @@ bool cm1e_axis_well_ahead(const cm1e_axis_t *axis, const cm1e_motion_bounds_t *m
 
 void cm1e_axis_guard_decide(cm1e_axis_t *axis, bool kept, uint32_t leaders_course)
 {
-    axis->guarding.kept_ahead = kept;
     axis->guarding.own_course = axis->setpoint.course;
+    axis->guarding.kept_course = kept ? axis->setpoint.course : axis->setpoint.course - 1;
     axis->guarding.leaders_course = leaders_course;
 }
 
@@ -235,6 +235,8 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
         .step = either * t * t / 4.0 * fabs(axis->position.scale) + slack_counts,
         .per_count = 1.0 / axis->position.scale,
         .per_step = axis_led(axis) ? 0.0 : 2.0 / (fabs(axis->position.scale) * t),
+        .own_course = axis->setpoint.course - 1, /* nothing was decided about this one */
+        .kept_course = axis->setpoint.course - 1,
     };
 }
 

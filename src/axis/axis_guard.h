@@ -52,6 +52,12 @@ static inline bool cm1e_axis_guard_decided(const cm1e_axis_t *axis, uint32_t lea
     const guarding_t *g = &axis->guarding;
     return g->own_course == axis->setpoint.course && g->leaders_course == leaders_course;
 }
+/** Whether all set-points on these courses are well within the limits. The leader may have no course: NULL. */
+static inline bool cm1e_axis_guard_kept(const cm1e_axis_t *axis, const uint32_t *leaders_course)
+{
+    const guarding_t *g = &axis->guarding;
+    return g->kept_course == axis->setpoint.course && g->leaders_course == *leaders_course;
+}
 /** Whether the next set-point may follow the present one. `kept_jerk`: the limit of jerk counts too. */
 static inline guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {

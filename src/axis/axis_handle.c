@@ -1,11 +1,11 @@
 #include "axis/axis_handle.h"
 #include "axis/axis_parts.h"
 
-cm1e_handle_place_t cm1e_axis_places[CM1E_AXIS_HANDLES];
+cm1e_handle_table_t cm1e_axis_places;
 
 cm1e_error_t cm1e_axis_publish(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
-    if (cm1e_handle_take(cm1e_axis_places, CM1E_AXIS_HANDLES, axis, &axis->handle))
+    if (cm1e_handle_take(&cm1e_axis_places, CM1E_AXIS_HANDLES, axis, &axis->handle))
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.", CM1E_AXIS_HANDLES);
 }

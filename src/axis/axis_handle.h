@@ -11,12 +11,12 @@
 enum { CM1E_AXIS_HANDLES = CM1E_HANDLE_PLACES };
 
 /** The table. Schedulers in several threads may create axes at the same time. */
-extern cm1e_handle_place_t cm1e_axis_places[CM1E_AXIS_HANDLES];
+extern cm1e_handle_table_t cm1e_axis_places;
 
 /** The axis of a handle; NULL: there is none. @rt cycle */
 static inline cm1e_axis_t *cm1e_axis_from_handle(uint16_t handle)
 {
-    cm1e_axis_t *axis = cm1e_handle_object(cm1e_axis_places, CM1E_AXIS_HANDLES, handle);
+    cm1e_axis_t *axis = cm1e_handle_object(&cm1e_axis_places, handle);
     return axis && axis->handle == handle ? axis : NULL;
 }
 

@@ -70,10 +70,9 @@ CM1E_RARE static void look_ahead(cm1e_axis_t *axis)
     cm1e_axis_leader_t *leader = axis->leader;
     cm1e_motion_bounds_t most;
     double left_s;
-    const bool kept = leader->bounds(leader->context, leader->index, &most, &left_s) &&
+    const bool kept = leader->bounds && leader->bounds(leader->context, leader->index, &most, &left_s) &&
                       cm1e_axis_well_ahead(axis, &most, -most.velocity * left_s, most.velocity * left_s);
-    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a leader has a course */
-    cm1e_axis_guard_decide(axis, kept, *leader->course);
+    cm1e_axis_guard_decide(axis, kept, leader->course ? *leader->course : 0);
     leader->line_origin = axis->position.modulo_range > 0.0 ? 0.0 : axis->position.origin_units;
     leader->line_counts = copysign(axis->position.unit.counts, axis->position.scale);
 }
@@ -115,7 +114,7 @@ CM1E_APART static bool take_first_set_point(cm1e_axis_t *axis, const cm1e_axis_l
 static bool ordinary(cm1e_axis_t *axis, axis_otherwise_t otherwise)
 {
     const cm1e_axis_leader_t *leader = axis->leader;
-    if (!CM1E_USUALLY(axis->guarding.kept_ahead && cm1e_axis_guard_decided(axis, *leader->course)))
+    if (!CM1E_USUALLY(cm1e_axis_guard_kept(axis, leader->course)))
         return otherwise(axis);
     if ((*leader->asked & leader->bit) != 0)
         return take_first_set_point(axis, leader, otherwise);
@@ -135,13 +134,13 @@ static bool step(cm1e_axis_t *axis)
     if (!cm1e_axis_position_from_line(axis, line, &next.position))
         return refuse(axis, (guard_t){.limit = GUARD_FINITE});
     const bool decided = course && cm1e_axis_guard_decided(axis, *course);
-    if (!decided || !axis->guarding.kept_ahead) {
+    if (!decided || !cm1e_axis_guard_kept(axis, course)) {
         const guard_t guard = cm1e_axis_guard(axis, &next, true);
         if (guard.limit)
             return refuse(axis, guard);
     }
     cm1e_axis_put_set_point(axis, &next);
-    if (!decided && axis_led(axis) && axis->leader->bounds)
+    if (!decided && axis_led(axis))
         look_ahead(axis);
     if (lead == CM1E_LEAD_LAST)
         cm1e_axis_release(axis);

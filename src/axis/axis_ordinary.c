@@ -116,16 +116,20 @@ static inline bool on_profile_only(const cm1e_axis_t *axis)
 static inline bool decided_step(cm1e_axis_t *axis)
 {
     setpoint_t *s = &axis->setpoint;
+    if (!on_profile_only(axis))
+        return false;
     const double time_s = s->profile_next_s;
-    if (!on_profile_only(axis) || !(time_s < s->ordinary_until_s))
+    if (!CM1E_USUALLY(time_s < s->ordinary_until_s))
         return false;
     cm1e_axis_count_cycle(axis);
     const cm1e_motion_state_t next = cm1e_profile_stretch_state(&s->stretch, time_s);
     s->position = cm1e_position_plus(s->base, next.position * axis->position.scale);
     s->velocity = next.velocity;
     s->acceleration = next.acceleration;
-    if (next.velocity != 0.0)
-        s->positive_before = next.velocity > 0.0;
+    if (next.velocity > 0.0)
+        s->positive_before = true;
+    else if (next.velocity < 0.0)
+        s->positive_before = false;
     return true;
 }
 

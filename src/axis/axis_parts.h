@@ -94,8 +94,8 @@ typedef struct guarding {
     double half_cycle, step; /**< counts in half a cycle at 1 u/s; tolerance in counts around the mean velocity */
     double per_count;        /**< u, signed */
     double per_step;         /**< u/s for a count beside the mean velocity, in the second difference; 0 in a group */
-    bool kept_ahead;         /**< of a led axis: all set-points on these courses are well within the limits */
-    uint32_t own_course, leaders_course;
+    uint32_t own_course, leaders_course; /**< of a led axis: about which something was decided */
+    uint32_t kept_course;    /**< its own_course, if all set-points on both are well within the limits */
 } guarding_t;
 
 /** The limits of the axis: dynamics, software limits, directions. Written by axis_limits.c and axis_parameter.c. */

@@ -9,6 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "core/rare.h"
+
 /** A position in counts without loss: whole counts and 0 <= fraction < 1. A double would lose the fraction after days
  *  in one direction. */
 typedef struct position {
@@ -20,6 +22,8 @@ static inline position_t cm1e_position_plus(position_t position, double counts)
 {
     const int64_t whole = (int64_t)counts;
     const double sum = position.fraction + (counts - (double)whole); /* -1 < sum < 2 */
+    if (CM1E_USUALLY(sum >= 0.0 && sum < 1.0))
+        return (position_t){position.counts + whole, sum};
     const double carry = sum >= 1.0 ? 1.0 : sum < 0.0 ? -1.0 : 0.0, fraction = sum - carry;
     position.counts += whole + (int64_t)carry;
     /* -1e-20 + 1 is 1 */

@@ -77,8 +77,10 @@ static inline void cm1e_axis_put_set_point(cm1e_axis_t *axis, const from_t *poin
     axis->setpoint.position = point->position;
     axis->setpoint.velocity = point->velocity;
     axis->setpoint.acceleration = point->acceleration;
-    if (point->velocity != 0.0)
-        axis->setpoint.positive_before = point->velocity > 0.0;
+    if (point->velocity > 0.0)
+        axis->setpoint.positive_before = true;
+    else if (point->velocity < 0.0)
+        axis->setpoint.positive_before = false;
 }
 static inline void cm1e_axis_put_position(cm1e_axis_t *axis, position_t position)
 {

@@ -12,27 +12,26 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { CM1E_HANDLE_PLACES = 256 }; /**< the most that a table can have: the place is a byte of the handle */
+enum { CM1E_HANDLE_PLACES = 256 }; /**< the place is a byte of the handle */
 
 /** Valid when zeroed. */
-typedef struct cm1e_handle_place {
-    _Atomic(void *) object; /**< NULL: free */
-    _Atomic uint8_t uses;
-} cm1e_handle_place_t;
+typedef struct cm1e_handle_table {
+    _Atomic(void *) objects[CM1E_HANDLE_PLACES]; /**< NULL: free */
+    _Atomic uint8_t uses[CM1E_HANDLE_PLACES];
+} cm1e_handle_table_t;
 
-/** Takes a free place for an object. `*handle` is a member of the object: it is written before anybody can find the
- *  object, so everything else in it has to be written before the call. It is never 0. false: all `count` places are
- *  taken, and `*handle` is 0. @rt init */
-bool cm1e_handle_take(cm1e_handle_place_t *places, unsigned count, void *object, uint16_t *handle);
+/** Takes a free place for an object, one of the first `count`. `*handle` is a member of the object: it is written before
+ *  anybody can find the object, so everything else in it has to be written before the call. It is never 0. false: all
+ *  these places are taken, and `*handle` is 0. @rt init */
+bool cm1e_handle_take(cm1e_handle_table_t *table, unsigned count, void *object, uint16_t *handle);
 /** Nobody finds the object by its handle any more. @rt init */
-void cm1e_handle_give_back(cm1e_handle_place_t *places, uint16_t handle);
+void cm1e_handle_give_back(cm1e_handle_table_t *table, uint16_t handle);
 
 /** The object at the place of a handle; NULL: none. The caller compares the handle in the object, which is never 0, with
  *  this one: it may be an object that took the place later. @rt cycle */
-static inline void *cm1e_handle_object(cm1e_handle_place_t *places, unsigned count, uint16_t handle)
+static inline void *cm1e_handle_object(cm1e_handle_table_t *table, uint16_t handle)
 {
-    const unsigned place = handle & 0xFFu;
-    return place < count ? atomic_load_explicit(&places[place].object, memory_order_acquire) : NULL;
+    return atomic_load_explicit(&table->objects[handle & 0xFFu], memory_order_acquire);
 }
 
 #endif

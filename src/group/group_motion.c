@@ -77,11 +77,12 @@ static void take_turn(cm1e_group_t *group, unsigned bit)
     group->asked |= bit;
 }
 
-/* Axes on several buses may leave the path, so they take the long way. */
+/* An axis that asks has found its bounds: the group does not end, and its axes are not on several buses, by which they may
+ * leave the path. */
 static bool ordinary(void *context)
 {
     cm1e_group_t *group = context;
-    if (group->ending || group->apart.several || !cm1e_path_ordinary_step(&group->path, &group->sample))
+    if (!cm1e_path_ordinary_step(&group->path, &group->sample))
         return false;
     group->asked = 0;
     return true;

@@ -62,7 +62,7 @@ static bool is_waiting(const group_queue_t *queue, cm1e_command_id_t id)
 bool cm1e_group_waits(AXES_GROUP_REF_t reference, cm1e_command_id_t id)
 {
     const cm1e_group_t *group = cm1e_group_from_reference(&reference);
-    return group && id != 0 && is_waiting(&group->queue, id);
+    return CM1E_USUALLY(group && is_waiting(&group->queue, id));
 }
 
 cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id)

@@ -392,16 +392,19 @@ bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *m
 }
 
 /* A line has no curvature: 0 is added so that a zero has the sign that it has elsewhere. */
+/* In pairs of axes: an axis behind the last one gets zeros. */
 static inline void fill_line(const cm1e_path_piece_t *line, int axes, double length, double v, double a,
                              cm1e_path_sample_t *restrict sample)
 {
     double l;
     const double *origin = cm1e_path_nearer_end(line, length, &l) ? line->to : line->from;
-    for (int i = 0; i < axes; i++) {
-        sample->position[i] = origin[i] + line->direction[i] * l;
-        sample->velocity[i] = line->direction[i] * v;
-        sample->acceleration[i] = 0.0 + line->direction[i] * a;
-    }
+    for (int first = 0; first < axes; first += 2)
+        for (int i = first; i < first + 2; i++) {
+            const double direction = line->direction[i];
+            sample->position[i] = origin[i] + direction * l;
+            sample->velocity[i] = direction * v;
+            sample->acceleration[i] = 0.0 + direction * a;
+        }
 }
 
 CM1E_APART static void fill_curved(const cm1e_path_piece_t *piece, int axes, double length, double v, double a,
@@ -416,11 +419,10 @@ CM1E_APART static void fill_curved(const cm1e_path_piece_t *piece, int axes, dou
     }
 }
 
-/* The motion of all axes where the path is on its first element, at this velocity and acceleration. */
-static inline void fill_motion(const cm1e_path_t *path, const cm1e_path_element_t *element, double v, double a,
-                               cm1e_path_sample_t *sample)
+/* The motion of all axes where the path is `here` on its first element, at this velocity and acceleration. */
+static inline void fill_motion(const cm1e_path_t *path, const cm1e_path_element_t *element, double here, double v,
+                               double a, cm1e_path_sample_t *sample)
 {
-    const double here = smaller(larger(path->along.position - path->begin, 0), element->length);
     const int axes = path->config.axes;
     sample->path_velocity = v;
     sample->path_acceleration = a;
@@ -435,7 +437,8 @@ static void fill(cm1e_path_t *path, cm1e_path_sample_t *sample)
     const cm1e_path_element_t *element = cm1e_path_element(path, 0);
     cm1e_motion_state_t along = path->along;
     cm1e_slow_time_apply(&path->slow, &along);
-    fill_motion(path, element, along.velocity, along.acceleration, sample);
+    const double here = smaller(larger(path->along.position - path->begin, 0), element->length);
+    fill_motion(path, element, here, along.velocity, along.acceleration, sample);
     sample->active = element->tag;
     sample->phase = !path->stop_wanted ? CM1E_PATH_MOVING : is_at_rest(path) ? CM1E_PATH_STOPPED : CM1E_PATH_STOPPING;
 }
@@ -493,12 +496,13 @@ bool cm1e_path_ordinary_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
     if (!(time_s < path->ordinary_until_s))
         return false;
     const cm1e_motion_state_t along = cm1e_profile_stretch_state(&path->stretch, time_s);
-    if (!(along.position - path->begin < path->present->length))
+    const double here = along.position - path->begin;
+    if (!(here < path->present->length))
         return false;
     path->time_s = time_s;
     path->along = along;
     sample->done = 0;
-    fill_motion(path, path->present, along.velocity, along.acceleration, sample);
+    fill_motion(path, path->present, here < 0 ? 0 : here, along.velocity, along.acceleration, sample);
     return true;
 }
 

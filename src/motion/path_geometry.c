@@ -72,6 +72,8 @@ void cm1e_path_make_line(cm1e_path_piece_t *piece, const cm1e_path_frame_t *fram
     set_ends(piece, frame, from, to);
     for (int i = 0; i < frame->axes; i++)
         piece->direction[i] = piece->length > 0 ? (to[i] - from[i]) / piece->length : 0;
+    if (frame->axes < CM1E_PATH_AXES) /* lines are computed for pairs of axes */
+        piece->from[frame->axes] = piece->to[frame->axes] = piece->direction[frame->axes] = 0;
 }
 
 /** `u` and `v`: at both ends. */

@@ -49,8 +49,7 @@ static void set_aside(cm1e_axis_t *axis)
 {
     axis->setpoint.ordinary_until_s = 0.0;
     axis->setpoint.course = 0;
-    axis->guarding.kept_ahead = false;
-    axis->guarding.own_course = axis->guarding.leaders_course = 0;
+    axis->guarding.kept_course = axis->guarding.own_course = axis->guarding.leaders_course = 0;
     axis->drive.ordinary = (cm1e_drive_ordinary_t){0};
 }
 
@@ -148,7 +147,7 @@ static void advance_follower(cm1e_axis_t *axis)
 
 static bool is_decided(const cm1e_axis_t *axis)
 {
-    return axis_led(axis) && axis->guarding.kept_ahead && cm1e_axis_guard_decided(axis, *axis->leader->course);
+    return axis_led(axis) && cm1e_axis_guard_kept(axis, axis->leader->course);
 }
 
 /* The group is beside the axis, so the long way gets it as it was before. */

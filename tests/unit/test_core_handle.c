@@ -1,6 +1,7 @@
 /* Handles: a place and a count of its uses; who finds an object finds the handle in it. */
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <unity.h>
 
@@ -12,24 +13,23 @@ typedef struct object {
     uint16_t handle;
 } object_t;
 
-static cm1e_handle_place_t places[PLACES];
+static cm1e_handle_table_t places;
 static object_t objects[PLACES + 1];
 
 void setUp(void)
 {
-    for (int i = 0; i < PLACES; i++)
-        places[i] = (cm1e_handle_place_t){0};
+    memset(&places, 0, sizeof places);
 }
 
 void tearDown(void) {}
 
 static object_t *find(uint16_t handle)
 {
-    object_t *object = cm1e_handle_object(places, PLACES, handle);
+    object_t *object = cm1e_handle_object(&places, handle);
     return object && object->handle == handle ? object : NULL;
 }
 
-static bool take(object_t *object) { return cm1e_handle_take(places, PLACES, object, &object->handle); }
+static bool take(object_t *object) { return cm1e_handle_take(&places, PLACES, object, &object->handle); }
 
 static void test_every_object_is_found_by_its_own_handle_until_the_table_is_full(void)
 {
@@ -53,7 +53,7 @@ static void test_a_handle_that_is_kept_names_none_for_254_further_uses_of_its_pl
     TEST_ASSERT_TRUE(take(&objects[0]));
     const uint16_t kept = objects[0].handle;
     for (int i = 0; i < 254; i++) {
-        cm1e_handle_give_back(places, objects[0].handle);
+        cm1e_handle_give_back(&places, objects[0].handle);
         TEST_ASSERT_NULL(find(kept));
         TEST_ASSERT_TRUE(take(&objects[0]));
         TEST_ASSERT_NOT_EQUAL(0, objects[0].handle >> 8);
@@ -72,7 +72,7 @@ static void *watch(void *unused)
 {
     while (!ended)
         for (unsigned i = 0; i < PLACES; i++) {
-            const object_t *object = cm1e_handle_object(places, PLACES, (uint16_t)(0x0100 | i));
+            const object_t *object = cm1e_handle_object(&places, (uint16_t)(0x0100 | i));
             if (object && (object->handle & 0xFF) != i)
                 unwritten++;
         }
@@ -86,7 +86,7 @@ static void *take_and_give_back(void *rounds)
     for (int n = 0; n < ROUNDS; n++) {
         made[n].handle = UINT16_MAX;
         if (take(&made[n]))
-            cm1e_handle_give_back(places, made[n].handle);
+            cm1e_handle_give_back(&places, made[n].handle);
     }
     return NULL;
 }
@@ -104,7 +104,7 @@ static void test_an_object_is_found_only_when_its_handle_is_written(void)
     pthread_join(watcher, NULL);
     TEST_ASSERT_EQUAL_UINT(0, unwritten);
     for (int i = 0; i < PLACES; i++)
-        TEST_ASSERT_NULL(places[i].object);
+        TEST_ASSERT_NULL(places.objects[i]);
     free(made[0]);
     free(made[1]);
 }
