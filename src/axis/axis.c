@@ -216,6 +216,7 @@ CM1E_APART void cm1e_axis_inputs_any(cm1e_axis_t *axis, cm1e_error_t received, c
 {
     take_inputs(axis, received, health, now_ns);
     cm1e_axis_note_disturbed(axis);
+    cm1e_axis_power_check(axis);
 }
 
 void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)

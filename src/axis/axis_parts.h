@@ -154,7 +154,8 @@ typedef struct power {
     cm1e_error_t reset_error;
     int64_t free_ns;                /**< since when no torque is commanded */
     int64_t brake_until_ns;         /**< until then the torque stays at least, to brake */
-    uint64_t settled;               /**< what the owner shows while it has nothing to do; 0: it has, or may have */
+    uint64_t settled;               /**< what the owner shows while the power stage is on and it has nothing to do; 0: it
+                                         has, or may have */
 } power_t;
 
 /** Why the axis is in ErrorStop. Written by axis_power.h and axis_power.c. */
@@ -196,7 +197,7 @@ typedef struct backlash {
     double velocity, acceleration; /**< of its compensation; counts/s, counts/s2 */
     double offset;                 /**< -gap ... 0: position of the motor relative to the load */
     double offset_velocity, target;
-    double gap;                    /**< 0: no backlash; read in every cycle */
+    double gap;                    /**< 0: no backlash */
 } backlash_t;
 
 /* ---- in position: axis_in_position.h ----------------------------------------------------------------------------- */
@@ -407,8 +408,8 @@ struct cm1e_axis {
     limits_t limits;
     fault_t fault;
     superimposed_t superimposed;
+    setpoint_t setpoint;            /**< begins at a cache line, which has all that others ask of it in every cycle */
     backlash_t backlash;
-    setpoint_t setpoint;
     /* not in every cycle */
     cm1e_axis_leader_t *leader;     /**< NULL: none */
     const cm1e_axis_config_t *config;

@@ -21,6 +21,7 @@
 #include "axis/axis_setpoint.h"
 #include "axis/axis_text.h"
 #include "core/clock.h"
+#include "core/rare.h"
 
 /* At the end of a run, the time after which an offline drive counts as gone. */
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
@@ -204,8 +205,13 @@ void cm1e_axis_power_settle(cm1e_axis_t *axis, const void *owner, uint64_t shown
 bool cm1e_axis_power_settled(AXIS_REF_t reference, const void *owner, uint64_t shown)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
-    return axis && axis->power.owner == owner && axis->power.settled == shown &&
-           axis->drive.feedback.state == OPERATION_ENABLED;
+    return CM1E_USUALLY(axis && axis->power.owner == owner && axis->power.settled == shown);
+}
+
+void cm1e_axis_power_check(cm1e_axis_t *axis)
+{
+    if (axis->drive.feedback.state != OPERATION_ENABLED)
+        cm1e_axis_power_unsettle(axis);
 }
 
 bool cm1e_axis_powered(const cm1e_axis_t *axis)

@@ -10,6 +10,8 @@
 static inline void cm1e_axis_power_init(cm1e_axis_t *axis) { axis->power.reset_state = CM1E_COMMAND_DONE; }
 /** Called when something of the power changes: its owner looks anew. */
 static inline void cm1e_axis_power_unsettle(cm1e_axis_t *axis) { axis->power.settled = 0; }
+/** Called when the drive may show another state. */
+void cm1e_axis_power_check(cm1e_axis_t *axis);
 /** Adds the drive's code of the fault, which may come a cycle later. */
 static inline void cm1e_axis_tell_device_error(cm1e_axis_t *axis, uint16_t code) { axis->fault.device_error = code; }
 static inline bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
