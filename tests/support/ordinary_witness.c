@@ -41,6 +41,8 @@ static void judge_extras(const cm1e_axis_t *axis)
     must(axis_has_extra(axis, EXTRA_ON_TOP) == (axis->superimposed.id != 0), "EXTRA_ON_TOP", 0);
     must(axis_has_extra(axis, EXTRA_BACKLASH) == (axis->backlash.gap > 0.0), "EXTRA_BACKLASH", 0);
     must(axis_has_extra(axis, EXTRA_OBJECTS) == (axis->objects.head != axis->objects.next), "EXTRA_OBJECTS", 0);
+    must(axis_has_extra(axis, EXTRA_DISTURBED) == (!axis_acts(axis) || cm1e_axis_held(axis) || cm1e_axis_was_silent(axis)),
+         "EXTRA_DISTURBED", 0);
 }
 
 /* Only the short ways use these, and only the long ways renew some of them. Bytes between members may differ where a
