@@ -38,14 +38,10 @@ static cm1e_error_t copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *
 cm1e_error_t cm1e_bus_make(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     cm1e_bus_t *made = calloc(1, sizeof *made);
-    if (made)
-        made->slaves = calloc(CM1E_MAX_SLAVES, sizeof *made->slaves);
-    if (made && made->slaves && copy_config(&made->config, config) == CM1E_OK) {
+    if (made && copy_config(&made->config, config) == CM1E_OK) {
         *bus = made;
         return CM1E_OK;
     }
-    if (made)
-        free(made->slaves);
     free(made);
     return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when opening the bus.");
 }

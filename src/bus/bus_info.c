@@ -1,5 +1,6 @@
-/* What the bus shows of itself and of its slaves, and how a slave is named in a diagnosis. */
+/* What the bus shows of itself and of its slaves, how a slave is named in a diagnosis, and the memory for slaves. */
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "bus/bus_internal.h"
 #include "cm1e/control.h"
@@ -79,4 +80,19 @@ bool cm1e_bus_slave_has_coe(const cm1e_bus_t *bus, uint16_t position)
 {
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     return slave && slave->facts.coe;
+}
+
+cm1e_error_t cm1e_bus_make_room(cm1e_bus_t *bus, uint32_t answering, cm1e_diag_t *diag)
+{
+    const uint32_t wanted = answering + bus->config.axis_count + bus->config.slave_count;
+    const uint32_t room = wanted < CM1E_MAX_SLAVES ? wanted : CM1E_MAX_SLAVES;
+    if (room <= bus->slave_room)
+        return CM1E_OK;
+    bus->slave_count = bus->scanned = 0;
+    free(bus->slaves);
+    bus->slaves = calloc(room, sizeof *bus->slaves);
+    bus->slave_room = bus->slaves ? room : 0;
+    if (!bus->slaves)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for %u slaves.", room);
+    return CM1E_OK;
 }

@@ -75,7 +75,7 @@ struct cm1e_bus_slave {
     bool by_pdos;                            /**< its process data are those of `mapped`, not of its SII */
     cm1e_slave_facts_t facts;
     const cm1e_firmware_info_t *firmware;    /**< NULL: unreadable */
-    uint8_t axes[CM1E_CHANNELS];             /**< configured axis of each channel, 1 = first; 0: none. No channel is
+    uint16_t axes[CM1E_CHANNELS];            /**< configured axis of each channel, 1 = first; 0: none. No channel is
                                                   beyond: cm1e_bus_config_check() */
 
     cm1e_datagram_t datagram;                /**< at most one on its way */
@@ -161,6 +161,12 @@ typedef struct cm1e_errands {
     uint32_t driven;                         /**< atomic; a scheduler makes the cycles: who waits for a file does not */
 } cm1e_errands_t;
 
+/** Of the last cycle that came back. */
+typedef struct cm1e_silence {
+    bool any;                                /**< some slave did not take part */
+    bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
+} cm1e_silence_t;
+
 struct cm1e_bus {
     cm1e_bus_config_t config;                /**< zeros of the bus itself replaced by their defaults */
     int phase;                               /**< cm1e_bus_phase_t; atomic: cm1e_sdo_submit() looks at it */
@@ -171,7 +177,8 @@ struct cm1e_bus {
 
     uint32_t slave_count;
     uint32_t scanned;                        /**< of these the scan has found; optional ones that are absent follow */
-    cm1e_bus_slave_t *slaves;                /**< CM1E_MAX_SLAVES; [0] is the first */
+    uint32_t slave_room;                     /**< there is memory for so many: cm1e_bus_make_room() */
+    cm1e_bus_slave_t *slaves;                /**< [0] is the first */
     uint16_t axis_position[CM1E_MAX_AXES];
 
     uint32_t layouts;                        /**< process images made so far */
@@ -188,8 +195,7 @@ struct cm1e_bus {
     int64_t next_cycle_ns;                   /**< blocking phases only */
     int64_t sent_ns;                         /**< of the last process data frame */
     uint32_t bad_cycles;                     /**< in a row */
-    bool any_silent;                         /**< some slave did not take part in the last cycle that came back */
-    bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
+    cm1e_silence_t silence;
     cm1e_error_t last_error;
     cm1e_bus_counters_t counters;
 
@@ -211,6 +217,9 @@ struct cm1e_bus {
 
 /** A bus with its configuration and no network yet. */
 cm1e_error_t cm1e_bus_make(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
+/** Memory for the slaves that answer, and for all of the configuration that may come later. Slaves that are known are
+ *  forgotten where it grows. */
+cm1e_error_t cm1e_bus_make_room(cm1e_bus_t *bus, uint32_t answering, cm1e_diag_t *diag);
 /** remote.c: the same of a bus that another program runs. The last one refuses; CM1E_OK: the bus is our own. */
 cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_transfer_remote(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo,

@@ -103,7 +103,7 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
     free(bus->inputs);
     free(bus->safe.values);
     free(bus->safe.mask);
-    for (uint32_t i = 0; i < CM1E_MAX_SLAVES; i++) {
+    for (uint32_t i = 0; i < bus->slave_room; i++) {
         free(bus->slaves[i].signals);
         bus->slaves[i].signals = NULL;
     }

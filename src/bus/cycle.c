@@ -19,14 +19,14 @@ bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 static bool find_silent_slaves(cm1e_bus_t *bus, int working_counter)
 {
     int missing = bus->expected_working_counter - working_counter, takers = 0;
-    bus->any_silent = false;
+    bus->silence.any = false;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (!slave->hot.counted)
             continue;
         const bool silent = cm1e_bus_is_silent(bus, slave), takes = slave->placement.output_bytes > 0;
         slave->silent_cycles = silent ? slave->silent_cycles + (slave->silent_cycles < UINT32_MAX) : 0;
-        bus->any_silent |= silent;
+        bus->silence.any |= silent;
         missing -= silent ? 1 + 2 * takes : 0;
         takers += takes && !silent;
     }
@@ -37,8 +37,8 @@ static bool find_silent_slaves(cm1e_bus_t *bus, int working_counter)
  *  identified. */
 static void take_slave_by_slave(cm1e_bus_t *bus, int working_counter)
 {
-    bus->partly_fresh = find_silent_slaves(bus, working_counter);
-    for (uint32_t i = 0; i < bus->slave_count && bus->partly_fresh; i++) {
+    bus->silence.partly_fresh = find_silent_slaves(bus, working_counter);
+    for (uint32_t i = 0; i < bus->slave_count && bus->silence.partly_fresh; i++) {
         const cm1e_slave_placement_t *placement = &bus->slaves[i].placement;
         if (bus->slaves[i].silent_cycles == 0 && bus->slaves[i].hot.counted)
             memcpy(bus->inputs + placement->input_offset, bus->image + bus->output_bytes + placement->input_offset,
@@ -48,9 +48,9 @@ static void take_slave_by_slave(cm1e_bus_t *bus, int working_counter)
 
 static void forget_silence(cm1e_bus_t *bus)
 {
-    for (uint32_t i = 0; i < bus->slave_count && bus->any_silent; i++)
+    for (uint32_t i = 0; i < bus->slave_count && bus->silence.any; i++)
         bus->slaves[i].silent_cycles = 0;
-    bus->any_silent = false;
+    bus->silence.any = false;
 }
 
 /** Judges a received process image. */
@@ -83,7 +83,7 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     const cm1e_error_t error = judge(bus, working_counter);
     cm1e_dc_receive(bus, error != CM1E_ERROR_BUS_LOST);
     bus->counters.cycles++;
-    bus->partly_fresh = false;
+    bus->silence.partly_fresh = false;
     if (error == CM1E_ERROR_BUS_WORKING_COUNTER)
         take_slave_by_slave(bus, working_counter);
     if (error == CM1E_OK) {

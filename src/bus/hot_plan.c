@@ -83,7 +83,7 @@ static void take_settings(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
     }
     if (slave->config && slave->config->hot_connect[0]) {
         slave->hot.group = slave->config->hot_connect;
-        slave->hot.member = cm1e_slave_is_member(slave->config) ? (uint8_t)slave->config->address : 1;
+        slave->hot.member = cm1e_slave_is_member(slave->config) ? slave->config->address : 1;
     }
     const bool motors = cm1e_bus_has_motors(slave);
     slave->hot.policy = policy != CM1E_RECOVER_DEFAULT ? policy : motors ? CM1E_RECOVER_ASK : CM1E_RECOVER_AUTO;

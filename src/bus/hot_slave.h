@@ -24,8 +24,8 @@ typedef struct cm1e_hot {
     bool away;               /**< nothing on the wire is identified as this slave */
     bool seen;               /**< in this walk of the search */
     bool counted;            /**< its share is in the expected working counter; else it may take part, and need not */
-    uint8_t member;          /**< its place in its group; 1: it has an address of its own */
-    uint8_t before;          /**< optional slaves before it on the wire at the scan */
+    uint16_t member;         /**< its place in its group; 1: it has an address of its own */
+    uint16_t before;         /**< optional slaves before it on the wire at the scan */
     uint16_t place;          /**< on the wire, as seen last; 0: nowhere */
     uint32_t bound;          /**< number of times that its process data were placed in operation */
     cm1e_recover_t policy;   /**< never DEFAULT */

@@ -200,7 +200,7 @@ static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t
     cm1e_error_t error = check_alone(bus, axis, slave, diag);
     slave->hot.optional = axis->optional;
     if (error == CM1E_OK && slave->hot.planned) {
-        slave->axes[axis->channel] = (uint8_t)(axis_index + 1);
+        slave->axes[axis->channel] = (uint16_t)(axis_index + 1);
         bus->axis_position[axis_index] = slave->info.position;
         return CM1E_OK;
     }
@@ -212,7 +212,7 @@ static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t
         error = check_motor(bus, axis, slave, diag);
     if (error == CM1E_OK)
         error = check_firmware(bus, axis, slave, diag);
-    slave->axes[axis->channel] = (uint8_t)(axis_index + 1);
+    slave->axes[axis->channel] = (uint16_t)(axis_index + 1);
     bus->axis_position[axis_index] = slave->info.position;
     return error;
 }
@@ -248,10 +248,10 @@ static cm1e_error_t match_all(cm1e_bus_t *bus, bool optional, cm1e_diag_t *diag)
 
 static void count_optional(cm1e_bus_t *bus)
 {
-    uint8_t before = 0;
+    uint16_t before = 0;
     for (uint32_t i = 0; i < bus->scanned; i++) {
         bus->slaves[i].hot.before = before;
-        before = (uint8_t)(before + bus->slaves[i].hot.optional);
+        before = (uint16_t)(before + bus->slaves[i].hot.optional);
     }
 }
 

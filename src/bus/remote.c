@@ -38,7 +38,9 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
     uint32_t count = 0;
     if (!told)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the slaves of another program.");
-    const cm1e_error_t error = bus->remote->scan(bus->remote_state, told, CM1E_MAX_SLAVES, &count, &network, diag);
+    cm1e_error_t error = bus->remote->scan(bus->remote_state, told, CM1E_MAX_SLAVES, &count, &network, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_make_room(bus, count, diag);
     bus->ring.ring = network.ring;
     bus->search.stranger_count = network.stranger_count;
     memcpy(bus->search.strangers, network.strangers, sizeof network.strangers);

@@ -184,11 +184,14 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return diagnose_scan(bus, found, position, diag);
     if (found == 0)
         return nobody_answers(bus, diag);
+    cm1e_error_t error = cm1e_bus_make_room(bus, (uint32_t)found, diag);
+    if (error != CM1E_OK)
+        return error;
     for (position = 1; position <= found; position++)
         set_up_slave(bus, position);
     bus->slave_count = bus->scanned = (uint32_t)found;
     cm1e_ring_watch_begin(bus);
-    cm1e_error_t error = cm1e_bus_all_to_state(bus, CM1E_AL_INIT, CM1E_STATE_TIMEOUT_NS, diag);
+    error = cm1e_bus_all_to_state(bus, CM1E_AL_INIT, CM1E_STATE_TIMEOUT_NS, diag);
     if (error == CM1E_OK) {
         cm1e_soem_set_up_mailboxes(bus->soem);
         error = cm1e_bus_all_to_state(bus, CM1E_AL_PRE_OP, CM1E_STATE_TIMEOUT_NS, diag);

@@ -124,9 +124,9 @@ void cm1e_supervision_forget(cm1e_bus_t *bus)
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_datagram_t *d = &bus->supervised.datagram;
-    cm1e_bus_slave_t *slave = &bus->slaves[bus->supervised.place];
     if (!bus->supervised.sent)
         return;
+    cm1e_bus_slave_t *slave = &bus->slaves[bus->supervised.place];
     if (!cm1e_soem_take(bus->soem, d, 0)) {
         if (now_ns - d->sent_ns < CM1E_FRAME_LOST_NS)
             return;
@@ -168,7 +168,7 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
     cm1e_slave_watch_t watch = slave->watch;
     watch.silent = slave->silent_cycles >= bus->config.lost_cycles_limit;
     watch.fresh = slave->hot.counted &&
-                  (bus->last_error == CM1E_OK || (bus->partly_fresh && slave->silent_cycles == 0));
+                  (bus->last_error == CM1E_OK || (bus->silence.partly_fresh && slave->silent_cycles == 0));
     watch.out = !slave->hot.counted;
     watch.bound = slave->hot.bound;
     const bool seems_there = watch.al_state == CM1E_AL_NONE || watch.al_state == CM1E_AL_OP;

@@ -95,7 +95,7 @@ typedef struct cm1e_busfile {
     cm1e_bus_config_t config; /**< without axes and slaves */
     uint32_t cycle_time_us, frame_timeout_us;
     uint32_t axis_count;
-    cm1e_busfile_axis_t axes[CM1E_MAX_AXES];
+    cm1e_busfile_axis_t *axes;
     uint32_t slave_count;
     cm1e_busfile_slave_t *slaves;
 } cm1e_busfile_t;

@@ -337,7 +337,8 @@ static const cyaml_schema_value_t slave_value = {
 
 #define ONE_BUS                                                                                                     \
     GROUP("bus", cm1e_busfile_t, bus_fields),                                                                       \
-    CYAML_FIELD_SEQUENCE_COUNT("axes", OPTIONAL, cm1e_busfile_t, axes, axis_count, &axis_value, 1, CM1E_MAX_AXES),  \
+    CYAML_FIELD_SEQUENCE_COUNT("axes", OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_t, axes, axis_count,             \
+                               &axis_value, 1, CM1E_MAX_AXES),                                                      \
     CYAML_FIELD_SEQUENCE_COUNT("slaves", OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_t, slaves, slave_count,        \
                                &slave_value, 1, CM1E_MAX_SLAVES)
 static const cyaml_schema_field_t file_fields[] = {ONE_BUS, CYAML_FIELD_END};

@@ -228,6 +228,21 @@ static bool check_axis(check_t *check)
            check_homing(check) && check_inputs(check) && cm1e_config_check_wiring(check) && check_sim(check);
 }
 
+/* An address that is not stated is counted, so all are counted once: each axis is compared with those before it. */
+static bool check_axes(check_t *check)
+{
+    uint16_t addresses[CM1E_MAX_AXES];
+    for (uint32_t i = 0; i < check->config->axis_count; i++)
+        addresses[i] = cm1e_axis_address(check->config, i);
+    check->addresses = addresses;
+    for (check->index = 0; check->index < check->config->axis_count; check->index++) {
+        check->axis = &check->config->axes[check->index];
+        if (!check_axis(check))
+            return false;
+    }
+    return true;
+}
+
 bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_problem_t *problem)
 {
     check_t check = {.config = config, .problem = problem};
@@ -243,12 +258,5 @@ bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_probl
                  "axes made with cm1e_bus_config_init() or cm1e_bus_config_add_axis()", config->axis_count);
         return false;
     }
-    if (!check_bus(&check))
-        return false;
-    for (check.index = 0; check.index < config->axis_count; check.index++) {
-        check.axis = &config->axes[check.index];
-        if (!check_axis(&check))
-            return false;
-    }
-    return cm1e_config_check_slaves(config, problem);
+    return check_bus(&check) && check_axes(&check) && cm1e_config_check_slaves(config, problem);
 }

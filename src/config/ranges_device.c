@@ -62,7 +62,7 @@ static bool at_same_address(const check_t *check, uint32_t other)
 {
     const cm1e_axis_config_t *axis = &check->config->axes[other];
     return cm1e_axis_has_motor(axis) && axis->address_kind == check->axis->address_kind &&
-           cm1e_axis_address(check->config, other) == cm1e_axis_address(check->config, check->index);
+           check->addresses[other] == check->addresses[check->index];
 }
 
 /* An earlier entry has the same address: allowed only behind one bridge, each axis at its own connector. */
@@ -72,7 +72,7 @@ static bool may_share(const check_t *check, uint32_t other)
     const bool other_shares = cm1e_device_is_shared(&check->config->axes[other]);
     const unsigned channel = check->axis->channel;
     const char *key = cm1e_config_addresses[check->axis->address_kind].key;
-    const unsigned address = cm1e_axis_address(check->config, check->index);
+    const unsigned address = check->addresses[check->index];
     if (!shares && !other_shares)
         return axis_wrong(check, key, "is %u, which entry %u of the list has already; expected one axis at each "
                           "address", address, other + 1);
@@ -91,7 +91,7 @@ static bool check_address(const check_t *check)
     if (kind > CM1E_ADDRESS_EXPLICIT_ID)
         return axis_wrong(check, "position", "is of the unknown kind %u; expected position, alias or explicit ID",
                           kind);
-    const uint16_t address = cm1e_axis_address(check->config, check->index);
+    const uint16_t address = check->addresses[check->index];
     if (address == 0 || address > cm1e_config_addresses[kind].maximum)
         return axis_wrong(check, cm1e_config_addresses[kind].key, "is %u; expected 1 ... %u", address, cm1e_config_addresses[kind].maximum);
     for (uint32_t i = 0; i < check->index; i++)

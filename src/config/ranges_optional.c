@@ -5,11 +5,11 @@
 #include "config/ranges.h"
 #include "device/place.h"
 
-static bool same_slave(const cm1e_bus_config_t *config, uint32_t a, uint32_t b)
+static bool same_slave(const check_t *check, uint32_t other)
 {
-    return cm1e_axis_has_motor(&config->axes[a]) && cm1e_axis_has_motor(&config->axes[b]) &&
-           config->axes[a].address_kind == config->axes[b].address_kind &&
-           cm1e_axis_address(config, a) == cm1e_axis_address(config, b);
+    const cm1e_axis_config_t *axis = &check->config->axes[other];
+    return cm1e_axis_has_motor(axis) && cm1e_axis_has_motor(check->axis) &&
+           axis->address_kind == check->axis->address_kind && check->addresses[other] == check->addresses[check->index];
 }
 
 bool cm1e_config_check_optional(const check_t *check)
@@ -26,7 +26,7 @@ bool cm1e_config_check_optional(const check_t *check)
                           "absent; expected one of the two");
     for (uint32_t i = 0; i < check->index; i++) {
         const cm1e_axis_config_t *other = &config->axes[i];
-        if (!same_slave(config, i, check->index))
+        if (!same_slave(check, i))
             continue;
         if (other->optional != axis->optional)
             return axis_wrong(check, "optional", "differs from that of entry %u of the list, which is on the same "

@@ -27,12 +27,12 @@ static inline uint32_t cm1e_motors_before(const cm1e_bus_config_t *config, uint3
 static inline uint16_t cm1e_axis_address(const cm1e_bus_config_t *config, uint32_t index)
 {
     const cm1e_axis_config_t *axis = &config->axes[index];
-    const bool stated = axis->address != 0 || axis->address_kind != CM1E_ADDRESS_POSITION;
     uint32_t optional = 0;
+    if (axis->address != 0 || axis->address_kind != CM1E_ADDRESS_POSITION || !cm1e_axis_has_motor(axis))
+        return axis->address;
     for (uint32_t i = 0; i < index && i < CM1E_MAX_AXES; i++)
         optional += cm1e_axis_has_motor(&config->axes[i]) && config->axes[i].optional;
-    return stated || !cm1e_axis_has_motor(axis)
-               ? axis->address : (uint16_t)(cm1e_motors_before(config, index) - optional + 1);
+    return (uint16_t)(cm1e_motors_before(config, index) - optional + 1);
 }
 
 /** Whether a slave of the list may be absent: it is optional, or in a Hot Connect group. */

@@ -25,7 +25,7 @@ enum {
     SLEEP_NS = 50000000,                /* while all is at rest: to look whether it is to stop, and to count time up */
     RETRY_NS = 200000000,               /* to look for an interface that is away */
     LINKS_NS = 1000000,                 /* to look whether the ends of a ring have a link */
-    ANSWER_LENGTH = 1 << 15,            /* the status of 128 slaves */
+    ANSWER_LENGTH = 1 << 17,            /* the status of 512 slaves */
 };
 enum { SOURCE_MAC = 6, LOCALLY_ADMINISTERED = 0x02 };
 enum { CONSOLE = CM1E_NIC_PORTS, WAITED }; /* what is waited for: the ends, the console */

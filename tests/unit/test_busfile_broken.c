@@ -85,7 +85,7 @@ static const struct {
     {"axes:\n  - homing: -2\n", "2:13", {"homing is '-2'", "group with the keys: method"}},
     {"axes: [{name: [X]}]\n", "1:15", {"name is a list", "single value"}},
     {"axes: [{position: {a: b}}]\n", "1:19", {"position is a group", "single value"}},
-    {"axes: [{position: one}]\n", "1:19", {"position is 'one'", "whole number, 1 ... 128"}},
+    {"axes: [{position: one}]\n", "1:19", {"position is 'one'", "whole number, 1 ... 512"}},
     {"axes: [{position: 1.0}]\n", "1:19", {"position is '1.0'", "whole number"}},
     {"axes: [{position: 010}]\n", "1:19", {"position is '010'", "whole number"}},
     {"axes: [{position: 0x1}]\n", "1:19", {"position is '0x1'", "whole number"}},
@@ -159,11 +159,11 @@ static const struct {
     {"axes: [{name: \"a\\nb\"}]\n", "1:15", {"name", "control characters"}},
     {"bus: {interface: \"\\e[2J\"}\naxes: [{}]\n", "1:18", {"interface", "control characters"}},
     /* out of range */
-    {"axes: [{position: 0}]\n", "1:19", {"position is '0'", "1 ... 128"}},
-    {"axes: [{position: 129}]\n", "1:19", {"position is '129'", "1 ... 128"}},
-    {"axes: [{position: -1}]\n", "1:19", {"position is '-1'", "1 ... 128"}},
-    {"axes: [{position: 65537}]\n", "1:19", {"position is '65537'", "1 ... 128"}},
-    {"axes: [{position: 99999999999999999999}]\n", "1:19", {"1 ... 128"}},
+    {"axes: [{position: 0}]\n", "1:19", {"position is '0'", "1 ... 512"}},
+    {"axes: [{position: 513}]\n", "1:19", {"position is '513'", "1 ... 512"}},
+    {"axes: [{position: -1}]\n", "1:19", {"position is '-1'", "1 ... 512"}},
+    {"axes: [{position: 65537}]\n", "1:19", {"position is '65537'", "1 ... 512"}},
+    {"axes: [{position: 99999999999999999999}]\n", "1:19", {"1 ... 512"}},
     {"axes: [{alias: 65536}]\n", "1:16", {"alias is '65536'", "1 ... 65535"}},
     {"axes: [{explicit_id: 255}]\n", "1:22", {"explicit_id is '255'", "1 ... 254"}},
     {"axes: [{homing: {method: 1}}]\n", "1:26", {"homing.method is 1", "-6 ... 0"}},
@@ -356,7 +356,7 @@ static void test_too_many_axes_are_told_at_the_first_one_too_many(void)
         strcat(text, "- {}\n");
     write_file(text, strlen(text));
     TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, load());
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, ":130:3: axes has 129 entries; expected at most 128"), diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, ":258:3: axes has 257 entries; expected at most 256"), diag.text);
 }
 
 /** Of this program's computing: other programs may have the machine. */

@@ -291,7 +291,7 @@ static void test_most_axes_load(void)
     load(text);
     TEST_ASSERT_EQUAL(CM1E_MAX_AXES, config.axis_count);
     TEST_ASSERT_EQUAL_STRING("axis128", config.axes[127].name);
-    TEST_ASSERT_EQUAL(128, config.axes[127].address);
+    TEST_ASSERT_EQUAL(CM1E_MAX_AXES, config.axes[CM1E_MAX_AXES - 1].address);
 }
 
 static void test_decimal_point_is_a_point_where_the_locale_has_a_comma(void)
@@ -313,7 +313,7 @@ static void test_decimal_point_is_a_point_where_the_locale_has_a_comma(void)
 
 static void test_init_makes_default_axes_that_pass_the_check(void)
 {
-    for (uint32_t count = 0; count <= CM1E_MAX_AXES; count++) {
+    for (uint32_t count = 0; count <= CM1E_MAX_AXES; count += count < 128 ? 1 : 64) {
         cm1e_bus_config_free(&config);
         cm1e_bus_config_init(&config, "eth7", count);
         TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_check(&config, &diag), diag.text);

@@ -172,7 +172,7 @@ static void test_enumerations_out_of_range_are_refused(void)
 
 static void test_addresses_are_in_range_and_single(void)
 {
-    config.axes[0].address = 129;
+    config.axes[0].address = CM1E_MAX_SLAVES + 1;
     expect_wrong("position");
     config.axes[0].address = 2;
     expect_wrong("position is 2, which entry 1");
