@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 #define CM1E_MAX_SLAVES 512 /**< maximum number of slaves on one bus */
-#define CM1E_MAX_AXES 256   /**< maximum number of axes on one bus, and of one scheduler */
+#define CM1E_MAX_AXES 512   /**< maximum number of axes on one bus, and of one scheduler */
 #define CM1E_MAX_BUSES 4    /**< maximum number of buses of one scheduler, and of those started before they are run */
 #define CM1E_NAME_LENGTH 32 /**< maximum length of an axis name, with its final 0 */
 

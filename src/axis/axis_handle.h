@@ -9,6 +9,7 @@
 #include "core/handle.h"
 
 enum { CM1E_AXIS_HANDLES = CM1E_HANDLE_PLACES };
+_Static_assert(CM1E_AXIS_HANDLES >= CM1E_MAX_AXES, "every axis of a scheduler has a handle");
 
 /** The table. Schedulers in several threads may create axes at the same time. */
 extern cm1e_handle_table_t cm1e_axis_places;

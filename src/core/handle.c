@@ -1,17 +1,21 @@
 #include "core/handle.h"
 
-static uint8_t next_use(_Atomic uint8_t *uses)
+/** Of the free places the one with the fewest uses; `count`: there is none. */
+static unsigned least_used(cm1e_handle_table_t *table, unsigned count)
 {
-    const uint8_t use = (uint8_t)(atomic_fetch_add(uses, 1) + 1);
-    return use ? use : (uint8_t)(atomic_fetch_add(uses, 1) + 1); /* 0 is left to "no object" */
+    unsigned best = count;
+    for (unsigned i = 0; i < count; i++)
+        if (!atomic_load(&table->objects[i]) &&
+            (best == count || atomic_load(&table->uses[i]) < atomic_load(&table->uses[best])))
+            best = i;
+    return best;
 }
 
 bool cm1e_handle_take(cm1e_handle_table_t *table, unsigned count, void *object, uint16_t *handle)
 {
-    for (unsigned i = 0; i < count; i++) {
-        if (atomic_load(&table->objects[i]))
-            continue;
-        *handle = (uint16_t)((unsigned)next_use(&table->uses[i]) << 8 | i);
+    for (unsigned i = least_used(table, count); i < count; i = least_used(table, count)) {
+        const unsigned use = 1 + atomic_fetch_add(&table->uses[i], 1) % CM1E_HANDLE_USES; /* 0 is left to "no object" */
+        *handle = (uint16_t)(use << CM1E_HANDLE_PLACE_BITS | i);
         void *none = NULL;
         if (atomic_compare_exchange_strong(&table->objects[i], &none, object))
             return true;
@@ -22,5 +26,5 @@ bool cm1e_handle_take(cm1e_handle_table_t *table, unsigned count, void *object, 
 
 void cm1e_handle_give_back(cm1e_handle_table_t *table, uint16_t handle)
 {
-    atomic_store(&table->objects[handle & 0xFF], NULL);
+    atomic_store(&table->objects[cm1e_handle_place(handle)], NULL);
 }

@@ -121,9 +121,9 @@ static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
     if (!cm1e_bus_follow_one_clock(clock_team_leader(&s->clocks), bus))
         return "its distributed clocks and those of another bus do not follow each other: start the buses in one thread, "
                "each while those before it are in operation";
-    _Static_assert(CM1E_MAX_AXES == 256, "the text says so");
+    _Static_assert(CM1E_MAX_AXES == 512, "the text says so");
     if (s->axis_count + cm1e_bus_configuration(bus)->axis_count > CM1E_MAX_AXES)
-        return "a scheduler has at most 256 axes";
+        return "a scheduler has at most 512 axes";
     return "";
 }
 

@@ -356,7 +356,7 @@ static void test_too_many_axes_are_told_at_the_first_one_too_many(void)
         strcat(text, "- {}\n");
     write_file(text, strlen(text));
     TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, load());
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, ":258:3: axes has 257 entries; expected at most 256"), diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, ":514:3: axes has 513 entries; expected at most 512"), diag.text);
 }
 
 /** Of this program's computing: other programs may have the machine. */

@@ -48,17 +48,45 @@ static void test_every_object_is_found_by_its_own_handle_until_the_table_is_full
     }
 }
 
-static void test_a_handle_that_is_kept_names_none_for_254_further_uses_of_its_place(void)
+/** The next so many objects, one after the other, are not found by the handle of this one; the one behind them is. */
+static void check_kept_handle(int further)
 {
     TEST_ASSERT_TRUE(take(&objects[0]));
     const uint16_t kept = objects[0].handle;
-    for (int i = 0; i < 254; i++) {
+    for (int i = 0; i < further; i++) {
         cm1e_handle_give_back(&places, objects[0].handle);
         TEST_ASSERT_NULL(find(kept));
         TEST_ASSERT_TRUE(take(&objects[0]));
-        TEST_ASSERT_NOT_EQUAL(0, objects[0].handle >> 8);
+        TEST_ASSERT_NOT_EQUAL(0, objects[0].handle >> CM1E_HANDLE_PLACE_BITS);
         TEST_ASSERT_NULL(find(kept));
         TEST_ASSERT_EQUAL_PTR(&objects[0], find(objects[0].handle));
+    }
+    cm1e_handle_give_back(&places, objects[0].handle);
+    TEST_ASSERT_TRUE(take(&objects[0]));
+    TEST_ASSERT_EQUAL_HEX16(kept, objects[0].handle);
+}
+
+static void test_a_handle_that_is_kept_names_none_for_126_further_uses_of_the_only_free_place(void)
+{
+    for (int i = 1; i < PLACES; i++)
+        TEST_ASSERT_TRUE(take(&objects[i]));
+    check_kept_handle(126);
+}
+
+static void test_a_handle_that_is_kept_names_none_for_127_uses_of_each_free_place(void)
+{
+    check_kept_handle(PLACES * 127 - 1);
+}
+
+static void test_a_count_of_uses_that_begins_anew_makes_no_handle_0(void)
+{
+    places.uses[0] = UINT32_MAX - 1;
+    for (int i = 1; i < PLACES; i++)
+        places.uses[i] = UINT32_MAX;
+    for (int i = 0; i < 3 * PLACES; i++) {
+        TEST_ASSERT_TRUE(take(&objects[0]));
+        TEST_ASSERT_NOT_EQUAL(0, objects[0].handle >> CM1E_HANDLE_PLACE_BITS);
+        cm1e_handle_give_back(&places, objects[0].handle);
     }
 }
 
@@ -72,8 +100,8 @@ static void *watch(void *unused)
 {
     while (!ended)
         for (unsigned i = 0; i < PLACES; i++) {
-            const object_t *object = cm1e_handle_object(&places, (uint16_t)(0x0100 | i));
-            if (object && (object->handle & 0xFF) != i)
+            const object_t *object = cm1e_handle_object(&places, (uint16_t)(1u << CM1E_HANDLE_PLACE_BITS | i));
+            if (object && cm1e_handle_place(object->handle) != i)
                 unwritten++;
         }
     return unused;
@@ -113,7 +141,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_object_is_found_by_its_own_handle_until_the_table_is_full);
-    RUN_TEST(test_a_handle_that_is_kept_names_none_for_254_further_uses_of_its_place);
+    RUN_TEST(test_a_handle_that_is_kept_names_none_for_126_further_uses_of_the_only_free_place);
+    RUN_TEST(test_a_handle_that_is_kept_names_none_for_127_uses_of_each_free_place);
+    RUN_TEST(test_a_count_of_uses_that_begins_anew_makes_no_handle_0);
     RUN_TEST(test_an_object_is_found_only_when_its_handle_is_written);
     return UNITY_END();
 }
