@@ -24,7 +24,7 @@
 
 enum {
     CM1E_SDO_WAITING_MAX = 64,     /**< transfers that may wait (a power of two) */
-    CM1E_DATAGRAMS_PER_CYCLE = 4,  /**< beside the process data and one of supervision */
+    CM1E_DATAGRAMS_PER_CYCLE = 4,  /**< at most, beside the process data and one of supervision */
     CM1E_LABEL_LENGTH = 224,       /**< four names of axes */
     CM1E_KIND_LENGTH = 48,
     CM1E_CHANNELS = 1 + CM1E_BRIDGE_AXES, /**< 0: the slave itself is the motor; 1 ... 4: connectors of a bridge */
@@ -148,6 +148,7 @@ typedef struct cm1e_acyclic_frame {
 typedef struct cm1e_acyclic {
     cm1e_acyclic_frame_t frames[CM1E_FRAMES_IN_FLIGHT]; /**< the first `count` are on their way */
     unsigned count;
+    unsigned per_cycle;                      /**< in operation; fewer where the process data leave little time */
     uint32_t next;                           /**< round robin: the slave whose turn it is */
     int64_t progress_ns;                     /**< when a slave was last sent another datagram than the one before */
     int64_t careful_until_ns;                /**< after a lost frame */

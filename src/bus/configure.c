@@ -11,8 +11,10 @@
 #define MAPPING_TIMEOUT_NS INT64_C(60000000000)
 
 /** The wire at 100 Mbit/s; a frame's preamble, headers, FCS and gap; the way through a slave, there and back; and what
- *  CM1E_DATAGRAMS_PER_CYCLE mailboxes of a CM1-E and the supervision take beside the process data. */
-enum { NS_PER_BYTE = 80, FRAME_OVERHEAD_BYTES = 52, NS_PER_SLAVE = 1000, BESIDE_PROCESS_DATA_NS = 65000 };
+ *  the supervision and one mailbox of a CM1-E take beside the process data. */
+enum {
+    NS_PER_BYTE = 80, FRAME_OVERHEAD_BYTES = 52, NS_PER_SLAVE = 1200, NS_OF_SUPERVISION = 7000, NS_OF_MAILBOX = 14500,
+};
 
 /** UG 4.3: four cycle times; before V1.3.2 only 1 ms (UG 10.1). An unreadable version is given the benefit. Behind a
  *  bridge 1 ms (BR 6.3). */
@@ -160,17 +162,21 @@ int64_t cm1e_bus_wire_ns(const cm1e_bus_t *bus)
     return (int64_t)bytes * NS_PER_BYTE + (int64_t)bus->slave_count * NS_PER_SLAVE;
 }
 
-/** A bus whose frames come back after the next cycle has begun would start, and then lose most of them. */
-static cm1e_error_t check_wire_time(const cm1e_bus_t *bus, cm1e_diag_t *diag)
+/** A bus whose frames come back after the next cycle has begun would start, and then lose most of them. Where the
+ *  process data leave little time, fewer mailboxes have their turn in a cycle. */
+static cm1e_error_t share_wire_time(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     const size_t frames = cm1e_soem_process_frames(bus->soem);
     const int64_t wire_ns = cm1e_bus_wire_ns(bus);
-    if (wire_ns + BESIDE_PROCESS_DATA_NS <= bus->config.cycle_time_ns)
+    const int64_t mailboxes = (bus->config.cycle_time_ns - wire_ns - NS_OF_SUPERVISION) / NS_OF_MAILBOX;
+    if (mailboxes >= 1) {
+        bus->acyclic.per_cycle = mailboxes < CM1E_DATAGRAMS_PER_CYCLE ? (unsigned)mailboxes : CM1E_DATAGRAMS_PER_CYCLE;
         return CM1E_OK;
+    }
     return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                         "The process data of %u slaves (%zu frames) takes about %lld us on the wire, mailboxes up to "
-                         "%d us more: too long for a cycle time of %lld us.", bus->slave_count, frames,
-                         (long long)(wire_ns / 1000), BESIDE_PROCESS_DATA_NS / 1000,
+                         "The process data of %u slaves (%zu frames) takes about %lld us on the wire, mailboxes and "
+                         "supervision at least %d us more: too long for a cycle time of %lld us.", bus->slave_count,
+                         frames, (long long)(wire_ns / 1000), (NS_OF_SUPERVISION + NS_OF_MAILBOX) / 1000,
                          (long long)(bus->config.cycle_time_ns / 1000));
 }
 
@@ -244,7 +250,7 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (error == CM1E_OK)
         error = list_signals(bus, diag);
     if (error == CM1E_OK)
-        error = check_wire_time(bus, diag);
+        error = share_wire_time(bus, diag);
     if (error == CM1E_OK)
         error = set_watchdogs(bus, diag);
     if (error == CM1E_OK)

@@ -130,7 +130,7 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     cm1e_soem_send_process_data(bus->soem);
     bus->in_flight = true;
     bus->sent_ns = now_ns;
-    cm1e_acyclic_send(bus, now_ns, CM1E_DATAGRAMS_PER_CYCLE);
+    cm1e_acyclic_send(bus, now_ns, bus->acyclic.per_cycle);
     cm1e_supervision_send(bus, now_ns);
 }
 
