@@ -4,9 +4,11 @@
  * delay of each slave.
  *
  *     bench_scale [CYCLE_US MOTORS ...]     39, 48, 98 and 198 motors at 200, 250, 500 and 1000 us
+ *     bench_scale --overlap ...             with overlapped inputs and outputs; 53, 67, 135 and 271 motors
  */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cm1e/config.h"
 #include "support/axes_described.h"
@@ -14,6 +16,7 @@
 
 enum { MOST_CYCLES = 20000, SHARE_PERCENT = 80 };
 static const double delays_us[] = {0.6, 1.2, 2.0};
+static bool overlap;
 
 static bool measure(unsigned cycle_us, uint32_t motors)
 {
@@ -25,6 +28,7 @@ static bool measure(unsigned cycle_us, uint32_t motors)
         return false;
     }
     config.cycle_time_ns = cycle_us * INT64_C(1000);
+    config.overlap = overlap;
     const cm1e_error_t error = moved_drives_run(&config, MOST_CYCLES, &result);
     cm1e_bus_config_free(&config);
     if (error != CM1E_OK) {
@@ -45,16 +49,19 @@ int main(int count, char **words)
 {
     static const struct {
         unsigned cycle_us;
-        uint32_t motors;
-    } usual[] = {{200, 39}, {250, 48}, {500, 98}, {1000, 198}};
+        uint32_t motors[2];
+    } usual[] = {{200, {39, 53}}, {250, {48, 67}}, {500, {98, 135}}, {1000, {198, 271}}};
     bool passed = true;
+    overlap = count > 1 && strcmp(words[1], "--overlap") == 0;
+    count -= overlap;
+    words += overlap;
     printf("Microseconds on the wire by the delay of a slave; !: not less than %d %% of the cycle.\n", SHARE_PERCENT);
     printf("%8s %6s %6s %8s %4s %6s %7s", "cycle us", "motors", "moved", "cycles", "bad", "frames", "bytes");
     for (size_t i = 0; i < sizeof delays_us / sizeof delays_us[0]; i++)
         printf(" %6.1f us", delays_us[i]);
     printf("\n");
     for (size_t i = 0; count < 3 && i < sizeof usual / sizeof usual[0]; i++)
-        passed &= measure(usual[i].cycle_us, usual[i].motors);
+        passed &= measure(usual[i].cycle_us, usual[i].motors[overlap]);
     for (int i = 2; i < count; i++)
         passed &= measure((unsigned)strtoul(words[1], NULL, 10), (uint32_t)strtoul(words[i], NULL, 10));
     return passed ? 0 : 1;

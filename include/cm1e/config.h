@@ -388,6 +388,9 @@ typedef struct cm1e_bus_config {
     bool distributed_clocks;         /**< true: the cycle follows the clock of the first slave that has one, so frames
                                           arrive at a constant phase; also if an axis has `dc` */
     char name[CM1E_NAME_LENGTH];     /**< of one of several buses of a bus file; "": there is only this one */
+    bool overlap;                    /**< true: in the frames the inputs of a slave take the place of its outputs, so
+                                          that more motors fit into a cycle; neither with `second_interface` nor with
+                                          optional slaves */
 } cm1e_bus_config_t;
 
 /** Does the work of cm1e_bus_config_init(), for a program with these sizes of the structs. @rt init */

@@ -14,6 +14,7 @@
 #include "bus/foe_job.h"
 #include "bus/hot_slave.h"
 #include "bus/mapping.h"
+#include "bus/overlap.h"
 #include "bus/port_watch.h"
 #include "bus/recognise.h"
 #include "bus/recovery.h"
@@ -168,6 +169,12 @@ typedef struct cm1e_silence {
     bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
 } cm1e_silence_t;
 
+/** Process images. */
+typedef struct cm1e_layout {
+    uint32_t made;                           /**< so far */
+    uint32_t present;                        /**< number of the present one, from 1; 0: there is none */
+} cm1e_layout_t;
+
 struct cm1e_bus {
     cm1e_bus_config_t config;                /**< zeros of the bus itself replaced by their defaults */
     int phase;                               /**< cm1e_bus_phase_t; atomic: cm1e_sdo_submit() looks at it */
@@ -182,10 +189,10 @@ struct cm1e_bus {
     cm1e_bus_slave_t *slaves;                /**< [0] is the first */
     uint16_t axis_position[CM1E_MAX_AXES];
 
-    uint32_t layouts;                        /**< process images made so far */
-    uint32_t layout;                         /**< number of the present process image, from 1; 0: there is none */
-    uint8_t *image;                          /**< what SOEM sends and receives: outputs, then inputs */
-    uint8_t *sent_outputs;                   /**< as they left, to know the frame again */
+    cm1e_layout_t layout;
+    uint8_t *image;                          /**< what SOEM sends and receives: outputs, then inputs, or overlapped */
+    uint8_t *sent;                           /**< outputs, or an overlapped image, as they left, to know the frame again */
+    cm1e_overlap_t overlap;
     uint8_t *outputs, *inputs;               /**< what the upper rooms write and read */
     cm1e_safe_outputs_t safe;
     size_t output_bytes, input_bytes;
@@ -326,7 +333,9 @@ bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns);
 void cm1e_sdo_queue_serve(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
 
-/** Whether a slave left the marker in its inputs in the frame that came back: it took no part (cycle.c). */
+/** Marker in the input bytes of a frame: a slave that takes part in the cycle overwrites all of it. */
+enum { CM1E_INPUT_PATTERN = 0xA5 };
+/** Whether a slave left its inputs in the frame that came back as they were sent: it took no part (cycle.c). */
 bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave);
 /** Supervision: one slave's AL status in every cycle. It chooses the question before the process data are sent, because
  *  it rides in their frame if that has room, and if the last one came back; else it has a frame of its own. */

@@ -100,7 +100,7 @@ static cm1e_error_t set_process_data(cm1e_bus_t *bus, cm1e_diag_t *diag)
 void cm1e_bus_free_image(cm1e_bus_t *bus)
 {
     free(bus->image);
-    free(bus->sent_outputs);
+    free(bus->sent);
     free(bus->outputs);
     free(bus->inputs);
     free(bus->safe.values);
@@ -112,35 +112,57 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
     bus->safe.values = bus->safe.mask = NULL;
     free(bus->safe.claimed);
     bus->safe.claimed = NULL;
-    bus->image = bus->sent_outputs = bus->outputs = bus->inputs = NULL;
+    bus->image = bus->sent = bus->outputs = bus->inputs = NULL;
     bus->output_bytes = bus->input_bytes = 0;
-    bus->layout = 0;
+    bus->layout.present = 0;
 }
 
-static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
+static bool make_image(cm1e_bus_t *bus, size_t room)
 {
-    const size_t room = cm1e_soem_image_bytes(bus->soem);
     cm1e_bus_free_image(bus);
     bus->image = calloc(1, room + 1);
-    bus->sent_outputs = calloc(1, room + 1);
+    bus->sent = calloc(1, room + 1);
     bus->outputs = calloc(1, room + 1);
     bus->inputs = calloc(1, room + 1);
     bus->safe.values = calloc(1, room + 1);
     bus->safe.mask = calloc(1, room + 1);
     bus->safe.claimed = calloc(1, room + 1);
-    if (!bus->image || !bus->sent_outputs || !bus->outputs || !bus->inputs || !bus->safe.values || !bus->safe.mask ||
-        !bus->safe.claimed)
+    return bus->image && bus->sent && bus->outputs && bus->inputs && bus->safe.values && bus->safe.mask &&
+           bus->safe.claimed;
+}
+
+static void take_placements(cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        cm1e_slave_placement_t *placement = &slave->placement;
+        cm1e_soem_placement(bus->soem, slave->info.position, placement);
+        placement->wire_output = placement->output_offset;
+        placement->wire_input = (uint32_t)bus->output_bytes + placement->input_offset;
+        slave->info.output_bytes = placement->output_bytes;
+        slave->info.input_bytes = placement->input_bytes;
+    }
+}
+
+static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    const size_t room = cm1e_soem_image_bytes(bus->soem);
+    bus->overlap.used = false;
+    if (!make_image(bus, room + (size_t)CM1E_PROCESS_FRAMES_MAX * CM1E_OVERLAP_NUMBER_BYTES))
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the process image.");
-    if (!cm1e_soem_map(bus->soem, bus->image, room, &bus->output_bytes, &bus->input_bytes))
+    /* Overlapped process data take at least half of the bytes. */
+    const unsigned most_frames = CM1E_PROCESS_FRAMES_MAX * (bus->config.overlap ? 2 : 1);
+    if (!cm1e_soem_map(bus->soem, bus->image, most_frames, &bus->output_bytes, &bus->input_bytes))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                              "The process data of all slaves (%zu bytes) needs more than %d frames a cycle.", room,
                              CM1E_PROCESS_FRAMES_MAX);
-    bus->layout = ++bus->layouts;
-    for (uint32_t i = 0; i < bus->slave_count; i++) {
-        cm1e_bus_slave_t *slave = &bus->slaves[i];
-        cm1e_soem_placement(bus->soem, slave->info.position, &slave->placement);
-        slave->info.output_bytes = slave->placement.output_bytes;
-        slave->info.input_bytes = slave->placement.input_bytes;
+    bus->layout.present = ++bus->layout.made;
+    take_placements(bus);
+    if (bus->config.overlap) {
+        const cm1e_error_t error = cm1e_overlap_map(bus, diag);
+        if (error != CM1E_OK)
+            return error;
+        bus->overlap.used = true;
     }
     cm1e_hot_count_begin(bus);
     return CM1E_OK;
@@ -158,8 +180,8 @@ static cm1e_error_t list_signals(cm1e_bus_t *bus, cm1e_diag_t *diag)
 int64_t cm1e_bus_wire_ns(const cm1e_bus_t *bus)
 {
     const size_t frames = cm1e_soem_process_frames(bus->soem);
-    const size_t bytes = bus->output_bytes + bus->input_bytes + frames * FRAME_OVERHEAD_BYTES;
-    return (int64_t)bytes * NS_PER_BYTE + (int64_t)bus->slave_count * NS_PER_SLAVE;
+    const size_t data = bus->overlap.used ? cm1e_overlap_bytes(bus) : bus->output_bytes + bus->input_bytes;
+    return (int64_t)(data + frames * FRAME_OVERHEAD_BYTES) * NS_PER_BYTE + (int64_t)bus->slave_count * NS_PER_SLAVE;
 }
 
 /** A bus whose frames come back after the next cycle has begun would start, and then lose most of them. Where the

@@ -2,14 +2,13 @@
 
 #include "bus/bus_internal.h"
 
-/** Marker in the input bytes of a frame: a slave that takes part in the cycle overwrites all of it. */
-enum { INPUT_PATTERN = 0xA5 };
-
 bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
-    const uint8_t *inputs = bus->image + bus->output_bytes + slave->placement.input_offset;
+    const uint8_t *inputs = bus->image + slave->placement.wire_input;
+    if (bus->overlap.used)
+        return cm1e_overlap_is_echo(bus, slave);
     for (unsigned i = 0; i < slave->placement.input_bytes; i++)
-        if (inputs[i] != INPUT_PATTERN)
+        if (inputs[i] != CM1E_INPUT_PATTERN)
             return false;
     return slave->placement.input_bytes > 0;
 }
@@ -41,8 +40,7 @@ static void take_slave_by_slave(cm1e_bus_t *bus, int working_counter)
     for (uint32_t i = 0; i < bus->slave_count && bus->silence.partly_fresh; i++) {
         const cm1e_slave_placement_t *placement = &bus->slaves[i].placement;
         if (bus->slaves[i].silent_cycles == 0 && bus->slaves[i].hot.counted)
-            memcpy(bus->inputs + placement->input_offset, bus->image + bus->output_bytes + placement->input_offset,
-                   placement->input_bytes);
+            memcpy(bus->inputs + placement->input_offset, bus->image + placement->wire_input, placement->input_bytes);
     }
 }
 
@@ -53,20 +51,21 @@ static void forget_silence(cm1e_bus_t *bus)
     bus->silence.any = false;
 }
 
+/** No slave changes outputs on their way. If they differ from those that were sent, the inputs are not trusted
+ *  either. */
+static bool is_answer(const cm1e_bus_t *bus)
+{
+    return bus->overlap.used ? cm1e_overlap_is_answer(bus) : memcmp(bus->image, bus->sent, bus->output_bytes) == 0;
+}
+
 /** Judges a received process image. */
 static cm1e_error_t judge(cm1e_bus_t *bus, int working_counter)
 {
-    if (working_counter == DATAGRAM_LOST) {
+    if (working_counter == DATAGRAM_LOST || !is_answer(bus)) {
         bus->counters.lost_frames++;
         return CM1E_ERROR_BUS_LOST;
     }
-    /* No slave changes outputs on their way. If they differ from those that were sent, the inputs are not trusted
-     * either. */
-    if (memcmp(bus->image, bus->sent_outputs, bus->output_bytes) != 0) {
-        bus->counters.lost_frames++;
-        return CM1E_ERROR_BUS_LOST;
-    }
-    if (!cm1e_hot_judge(bus, working_counter)) {
+    if (!cm1e_hot_judge(bus, working_counter) || (bus->overlap.used && cm1e_overlap_has_echo(bus))) {
         bus->counters.working_counter_errors++;
         return CM1E_ERROR_BUS_WORKING_COUNTER;
     }
@@ -88,7 +87,10 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
         take_slave_by_slave(bus, working_counter);
     if (error == CM1E_OK) {
         forget_silence(bus);
-        cm1e_hot_take_inputs(bus);
+        if (bus->overlap.used)
+            cm1e_overlap_take_inputs(bus);
+        else
+            cm1e_hot_take_inputs(bus);
         bus->bad_cycles = 0;
     } else {
         bus->bad_cycles += bus->bad_cycles < UINT32_MAX;
@@ -109,8 +111,22 @@ static void mute_recovering(cm1e_bus_t *bus)
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (cm1e_recovery_mutes(&slave->recovery) && !slave->config)
-            memset(bus->image + slave->placement.output_offset, 0, slave->placement.output_bytes);
+            memset(bus->image + slave->placement.wire_output, 0, slave->placement.output_bytes);
     }
+}
+
+static void fill_image(cm1e_bus_t *bus)
+{
+    if (bus->overlap.used) {
+        cm1e_overlap_fill(bus);
+        mute_recovering(bus);
+        cm1e_overlap_seal(bus);
+        return;
+    }
+    memcpy(bus->image, bus->outputs, bus->output_bytes);
+    mute_recovering(bus);
+    memcpy(bus->sent, bus->image, bus->output_bytes);
+    memset(bus->image + bus->output_bytes, CM1E_INPUT_PATTERN, bus->input_bytes);
 }
 
 void cm1e_bus_send(cm1e_bus_t *bus)
@@ -121,10 +137,7 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     if (bus->in_flight) /* never two frames: the old one is given up */
         cm1e_soem_receive_process_data(bus->soem, 0);
     cm1e_bus_make_outputs_safe(bus);
-    memcpy(bus->image, bus->outputs, bus->output_bytes);
-    mute_recovering(bus);
-    memcpy(bus->sent_outputs, bus->image, bus->output_bytes);
-    memset(bus->image + bus->output_bytes, INPUT_PATTERN, bus->input_bytes);
+    fill_image(bus);
     cm1e_dc_send(bus, now_ns);
     cm1e_supervision_ask(bus, now_ns);
     cm1e_soem_send_process_data(bus->soem);

@@ -20,7 +20,7 @@ static cm1e_error_t check_ready(const cm1e_bus_t *bus, cm1e_diag_t *diag)
     const cm1e_error_t attached = bus ? cm1e_bus_refuse_attached(bus, "Access to process data", diag) : CM1E_OK;
     if (attached != CM1E_OK)
         return attached;
-    if (!bus || !bus->layout)
+    if (!bus || !bus->layout.present)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Signals are known from cm1e_bus_configure() on: configure or "
                              "start the bus first.");
     return CM1E_OK;
@@ -53,7 +53,8 @@ static cm1e_error_t find_bits(cm1e_bus_t *bus, uint16_t position, bool output, u
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "Slave %u has %" PRIu32 " bits of %s: bits %" PRIu32
                              " ... %" PRIu32 " are not among them.", position, there, output ? "outputs" : "inputs",
                              bit_offset, bit_offset + bits - 1u);
-    *io = (cm1e_io_t){.bus = bus, .layout = bus->layout, .position = position, .bits = bits, .type = (uint8_t)type,
+    *io = (cm1e_io_t){.bus = bus, .layout = bus->layout.present, .position = position, .bits = bits,
+                      .type = (uint8_t)type,
                       .byte = (output ? placement->output_offset : placement->input_offset) + bit_offset / 8,
                       .shift = bit_offset % 8, .output = output};
     return CM1E_OK;
@@ -192,7 +193,7 @@ cm1e_error_t cm1e_io_guest_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io
 bool cm1e_io_guest_next(const cm1e_bus_t *bus, cm1e_io_info_t *info)
 {
     uint32_t position = info->position ? info->position : 1;
-    while (bus->layout && position <= bus->slave_count) {
+    while (bus->layout.present && position <= bus->slave_count) {
         if (cm1e_io_next(bus, cm1e_bus_at(bus, position), info))
             return true;
         *info = (cm1e_io_info_t){0};
@@ -231,7 +232,10 @@ const char *cm1e_io_quality_name(cm1e_io_quality_t quality)
     return (unsigned)quality < sizeof names / sizeof names[0] ? names[quality] : "?";
 }
 
-static bool is_valid(const cm1e_io_t *io) { return io->bus && io->layout == io->bus->layout && io->layout != 0; }
+static bool is_valid(const cm1e_io_t *io)
+{
+    return io->bus && io->layout == io->bus->layout.present && io->layout != 0;
+}
 
 cm1e_io_quality_t cm1e_io_quality(const cm1e_io_t *io)
 {

@@ -145,17 +145,37 @@ size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem)
     return bytes;
 }
 
-bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, size_t room, size_t *output_bytes, size_t *input_bytes)
+size_t cm1e_soem_frame_room(void) { return EC_MAXLRWDATA - EC_FIRSTDCDATAGRAM; }
+
+bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, unsigned most_frames, size_t *output_bytes, size_t *input_bytes)
 {
     ec_groupt *group = &soem->groups[0];
-    if (room > (size_t)CM1E_PROCESS_FRAMES_MAX * (EC_MAXLRWDATA - EC_FIRSTDCDATAGRAM))
+    const size_t room = cm1e_soem_image_bytes(soem);
+    if (room > most_frames * cm1e_soem_frame_room())
         return false;
     soem->image = image;
     const int used = ecx_config_map_group_aligned(&soem->context, image, 0);
     *output_bytes = group->Obytes;
     *input_bytes = group->Ibytes;
     group->hasdc = FALSE; /* until cm1e_soem_use_clocks() */
-    return used >= 0 && (size_t)used <= room && group->nsegments <= CM1E_PROCESS_FRAMES_MAX;
+    return used >= 0 && (size_t)used <= room && group->nsegments <= most_frames;
+}
+
+bool cm1e_soem_refuses_lrw(const cm1e_soem_t *soem, uint16_t position) { return soem->slaves[position].blockLRW; }
+
+void cm1e_soem_set_frames(cm1e_soem_t *soem, const uint32_t *sizes, unsigned count, unsigned takers, unsigned givers)
+{
+    ec_groupt *group = &soem->groups[0];
+    group->Obytes = 0;
+    for (unsigned i = 0; i < count; i++) {
+        group->IOsegment[i] = sizes[i];
+        group->Obytes += sizes[i];
+    }
+    group->Ibytes = 0; /* the inputs come back in the place of what is sent */
+    group->nsegments = (uint16)count;
+    group->outputs = soem->image;
+    group->outputsWKC = (uint16)takers;
+    group->inputsWKC = (uint16)givers;
 }
 
 void cm1e_soem_placement(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_placement_t *placement)

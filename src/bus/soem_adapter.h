@@ -41,6 +41,7 @@ typedef struct cm1e_slave_facts {
 /** Place of the process data of a slave after mapping, and the registers that define it (for its recovery). */
 typedef struct cm1e_slave_placement {
     uint32_t output_offset, input_offset; /**< from the beginning of the outputs and of the inputs */
+    uint32_t wire_output, wire_input;     /**< in the image of the frames */
     uint16_t output_bytes, input_bytes;
     uint8_t sync_managers[4][SYNC_MANAGER_BYTES];
     unsigned fmmu_count;
@@ -83,8 +84,16 @@ bool cm1e_soem_set_process_data_by_pdos(cm1e_soem_t *soem, uint16_t position, ui
                                         uint16_t input_bits);
 /** Upper bound of the image size in bytes, for all slaves set so far. */
 size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem);
-/** Maps into `image`, programs sync managers and FMMUs. False: it does not fit into CM1E_PROCESS_FRAMES_MAX frames. */
-bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, size_t room, size_t *output_bytes, size_t *input_bytes);
+/** Bytes of process data that every frame has room for. */
+size_t cm1e_soem_frame_room(void);
+/** Maps into `image`, programs sync managers and FMMUs: first all outputs, then all inputs. False: it does not fit into
+ *  so many frames. */
+bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, unsigned most_frames, size_t *output_bytes, size_t *input_bytes);
+/** The SII of a slave says that it does not know LRW. */
+bool cm1e_soem_refuses_lrw(const cm1e_soem_t *soem, uint16_t position);
+/** After cm1e_soem_map(): the image is sent in frames of these sizes, and comes back in its place. So many slaves take
+ *  outputs and give inputs. */
+void cm1e_soem_set_frames(cm1e_soem_t *soem, const uint32_t *sizes, unsigned count, unsigned takers, unsigned givers);
 void cm1e_soem_placement(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_placement_t *placement);
 /** Frames that one exchange takes. */
 unsigned cm1e_soem_process_frames(const cm1e_soem_t *soem);

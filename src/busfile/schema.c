@@ -89,6 +89,7 @@ static const cyaml_schema_field_t bus_fields[] = {
     ENUM_OF("sim_pdo_order", cm1e_busfile_t, config.sim_pdo_order, pdo_orders),
     ENUM_OF("sim_gaps", cm1e_busfile_t, config.sim_gaps, gaps),
     BUS_BOOL("distributed_clocks", config.distributed_clocks),
+    BUS_BOOL("overlap", config.overlap),
     ENUM_OF("control", cm1e_busfile_t, config.control, control_modes),
     CYAML_FIELD_END,
 };

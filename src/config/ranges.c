@@ -66,6 +66,24 @@ static bool check_times(const check_t *check)
     return true;
 }
 
+/* All slaves are checked before. */
+static bool check_overlap(const check_t *check)
+{
+    const cm1e_bus_config_t *config = check->config;
+    if (config->overlap && config->second_interface[0])
+        return bus_wrong(check, "overlap", "is true together with a second_interface: a ring sends a frame on that "
+                         "slaves have answered, and their inputs could reach them as outputs; expected one of the two");
+    for (uint32_t i = 0; config->overlap && i < config->axis_count; i++)
+        if (config->axes[i].optional)
+            return bus_wrong(check, "overlap", "is true, and entry %u of the axes is optional: a slave that comes and "
+                             "goes needs places of its own; expected one of the two", i + 1);
+    for (uint32_t i = 0; config->overlap && i < config->slave_count; i++)
+        if (cm1e_slave_is_optional(&config->slaves[i]))
+            return bus_wrong(check, "overlap", "is true, and entry %u of the slaves is optional: a slave that comes "
+                             "and goes needs places of its own; expected one of the two", i + 1);
+    return true;
+}
+
 static bool check_bus(const check_t *check)
 {
     const cm1e_bus_config_t *config = check->config;
@@ -258,5 +276,6 @@ bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_probl
                  "axes made with cm1e_bus_config_init() or cm1e_bus_config_add_axis()", config->axis_count);
         return false;
     }
-    return check_bus(&check) && check_axes(&check) && cm1e_config_check_slaves(config, problem);
+    return check_bus(&check) && check_axes(&check) && cm1e_config_check_slaves(config, problem) &&
+           check_overlap(&check);
 }

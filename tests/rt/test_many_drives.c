@@ -28,11 +28,27 @@ START_TEST(drives_271_on_one_network_are_enabled_and_moved)
 }
 END_TEST
 
+/** Overlapped, each takes the 21 bytes of its inputs, and each frame 4 more. At 1000 us these are 80 % of the wire. */
+START_TEST(drives_with_overlapped_process_data_are_enabled_and_moved)
+{
+    static const struct {
+        int64_t cycle_us;
+        uint32_t motors;
+        unsigned frames;
+    } runs[] = {{200, 53, 1}, {250, 67, 1}, {500, 135, 2}, {1000, 271, 4}};
+    describe_axes(&config, runs[_i].motors);
+    config.cycle_time_ns = runs[_i].cycle_us * 1000;
+    config.overlap = true;
+    check_moved(runs[_i].motors, runs[_i].frames, runs[_i].motors * 21 + runs[_i].frames * (52 + 4));
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("many_drives");
     TCase *tests = tcase_create("drives");
     tcase_add_test(tests, drives_271_on_one_network_are_enabled_and_moved);
+    tcase_add_loop_test(tests, drives_with_overlapped_process_data_are_enabled_and_moved, 0, 4);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_NORMAL);

@@ -102,10 +102,46 @@ bool is_bridge(const bench_t *bench, uint32_t position)
     return false;
 }
 
+/** One direction of one slave at `base`; returns its bytes. */
+static int locate_slave(bench_t *bench, uint32_t position, bool transmit, int base)
+{
+    int at = base;
+    if (!is_bridge(bench, position))
+        return locate_axis(bench, axis_at(bench, position, 0), 0, transmit, at);
+    for (unsigned channel = 1; channel <= CM1E_BRIDGE_AXES; channel++)
+        at += locate_axis(bench, axis_at(bench, position, channel), channel, transmit, at);
+    return at - base;
+}
+
 /** All outputs, then all inputs, each in the order of the slaves. */
-static void witness_layout(bench_t *bench)
+static void locate_apart(bench_t *bench)
 {
     int at = 0;
+    for (int transmit = 0; transmit < 2; transmit++) {
+        for (uint32_t position = 1; position <= (uint32_t)bench->slaves; position++)
+            at += locate_slave(bench, position, transmit, at);
+        if (!transmit)
+            bench->output_bytes = at;
+    }
+    bench->image_bytes = at;
+}
+
+/** Slave by slave: its inputs in the place of its outputs, but for four bytes; behind all the number of the cycle. */
+static void locate_overlapped(bench_t *bench)
+{
+    int at = 0;
+    for (uint32_t position = 1; position <= (uint32_t)bench->slaves; position++) {
+        const int outputs = locate_slave(bench, position, false, at);
+        const int inputs = locate_slave(bench, position, true, at); /* their number */
+        const int bytes = inputs > outputs + 4 ? inputs : outputs + 4;
+        locate_slave(bench, position, true, at + bytes - inputs);
+        at += bytes;
+    }
+    bench->image_bytes = at + 4;
+}
+
+static void witness_layout(bench_t *bench)
+{
     bench->slaves = 0;
     for (uint32_t n = 0; n < bench->config.axis_count; n++) {
         bench->witness[n] = (witness_t){0};
@@ -113,18 +149,10 @@ static void witness_layout(bench_t *bench)
         if ((int)bench_position(bench, n) > bench->slaves)
             bench->slaves = (int)bench_position(bench, n);
     }
-    for (int transmit = 0; transmit < 2; transmit++) {
-        for (uint32_t position = 1; position <= (uint32_t)bench->slaves; position++) {
-            if (!is_bridge(bench, position))
-                at += locate_axis(bench, axis_at(bench, position, 0), 0, transmit, at);
-            else
-                for (unsigned channel = 1; channel <= CM1E_BRIDGE_AXES; channel++)
-                    at += locate_axis(bench, axis_at(bench, position, channel), channel, transmit, at);
-        }
-        if (!transmit)
-            bench->output_bytes = at;
-    }
-    bench->image_bytes = at;
+    if (bench->config.overlap)
+        locate_overlapped(bench);
+    else
+        locate_apart(bench);
 }
 
 uint16_t word_at(const uint8_t *data, int place) { return (uint16_t)(data[place] | data[place + 1] << 8); }
@@ -164,6 +192,14 @@ static bool is_whole(const cm1e_tap_frame_t *frame)
     return frame->length >= 16u + (word_at(frame->bytes, 14) & 0x7FF);
 }
 
+/** Outputs come back as they left; overlapped, the number of the cycle does. */
+static bool is_of_last_frame(const bench_t *bench, const uint8_t *data)
+{
+    const int from = bench->config.overlap ? bench->image_bytes - 4 : 0;
+    const int to = bench->config.overlap ? bench->image_bytes : bench->output_bytes;
+    return memcmp(data + from, bench->last_sent + from, (size_t)(to - from)) == 0;
+}
+
 /** Inputs that the master may believe: of the frame it sent last, with every slave's part in it. */
 static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
 {
@@ -171,7 +207,7 @@ static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
     const uint32_t count = bench->config.axis_count;
     if (frame->bytes[17] != bench->last_index || frame->delay_ns > 0 || !is_whole(frame) ||
         word_at(data, bench->image_bytes) != SLAVE_WORKING_COUNTER * bench->slaves ||
-        memcmp(data, bench->last_outputs, (size_t)bench->output_bytes) != 0)
+        !is_of_last_frame(bench, data))
         return;
     bench->answered = true;
     for (uint32_t n = 0; n < count; n++) {
@@ -352,7 +388,7 @@ cm1e_tap_verdict_t bench_tap(void *context, cm1e_tap_frame_t *frame)
     }
     bench->process_frames++;
     bench->last_index = frame->bytes[17];
-    memcpy(bench->last_outputs, frame->bytes + LRW_DATA, (size_t)bench->output_bytes);
+    memcpy(bench->last_sent, frame->bytes + LRW_DATA, (size_t)bench->image_bytes);
     for (uint32_t n = 0; n < bench->config.axis_count; n++)
         witness_sent_axis(bench, n, frame->bytes + LRW_DATA);
     bench->answered = bench->paused = false;
@@ -408,6 +444,7 @@ void bench_open(bench_t *bench)
     cm1e_diag_t diag = {0};
     bench->cycle = 0;
     bench->process_frames = 0;
+    bench->config.overlap = getenv("CM1E_TEST_OVERLAP") != NULL;
     witness_layout(bench);
     if (cm1e_bus_open(&bench->bus, &bench->config, &diag) != CM1E_OK)
         bench_fail(bench, "%s", diag.text);

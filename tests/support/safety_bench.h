@@ -2,7 +2,7 @@
  * @file safety_bench.h
  * A bus of simulated axes, CM1-Es and motors behind bridges, with a witness who believes nobody: every process data
  * frame is decoded by the device's own tables, not by what the bus resolved, and what goes to a drive is judged before
- * the drive gets it.
+ * the drive gets it. With CM1E_TEST_OVERLAP in the environment, process data are overlapped.
  */
 #ifndef CM1E_TESTS_SAFETY_BENCH_H
 #define CM1E_TESTS_SAFETY_BENCH_H
@@ -67,7 +67,7 @@ struct bench {
     witness_t witness[BENCH_MOST];
     int image_bytes, output_bytes, slaves;
     uint8_t last_index;
-    uint8_t last_outputs[256];
+    uint8_t last_sent[512];
     /** What happens to a process data frame; NULL: nothing. Called before the witness looks at what is sent. */
     cm1e_tap_verdict_t (*fault)(bench_t *bench, cm1e_tap_frame_t *frame);
     /** What the master is told in place of what the witness has seen; NULL: the truth. */

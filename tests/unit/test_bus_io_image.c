@@ -16,7 +16,7 @@ enum { IMAGE = 40, TRIES = 200000 };
 static uint8_t outputs[IMAGE], claimed[IMAGE];
 static cm1e_bus_slave_t slave = {.info = {.position = 1}, .placement = {.output_bytes = IMAGE}};
 static cm1e_bus_t bus = {
-    .slaves = &slave, .slave_count = 1, .layout = 1, .outputs = outputs, .safe.claimed = claimed,
+    .slaves = &slave, .slave_count = 1, .layout = {1, 1}, .outputs = outputs, .safe.claimed = claimed,
     .phase = BUS_OPERATING,
 };
 
