@@ -191,7 +191,7 @@ struct cm1e_bus {
 
     cm1e_layout_t layout;
     uint8_t *image;                          /**< what SOEM sends and receives: outputs, then inputs, or overlapped */
-    uint8_t *sent;                           /**< outputs, or an overlapped image, as they left, to know the frame again */
+    uint8_t *sent;                           /**< outputs or an overlapped image as they left, to know the frame again */
     cm1e_overlap_t overlap;
     uint8_t *outputs, *inputs;               /**< what the upper rooms write and read */
     cm1e_safe_outputs_t safe;

@@ -319,6 +319,19 @@ START_TEST(slave_that_comes_back_has_its_places_again)
 }
 END_TEST
 
+/** The time of the reference goes beside the first frame of several, and keeps its room. */
+START_TEST(clocks_ride_beside_overlapped_process_data)
+{
+    sim_config(100);
+    config.overlap = config.distributed_clocks = true;
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 300);
+    for (uint16_t position = 1; position <= 100; position++)
+        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, position).al_state, CM1E_AL_OP);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- what is refused ---------------------------------------------------------------------------------------------- */
 
 /** As the SII says that has bit 1 in the flags of its category General. */
@@ -355,6 +368,7 @@ int main(void)
     tcase_add_test(tests, motor_that_returns_its_outputs_is_not_believed_even_if_the_working_counter_is_right);
     tcase_add_loop_test(tests, frame_that_was_not_sent_so_is_not_taken, 0, 2);
     tcase_add_loop_test(tests, slave_that_comes_back_has_its_places_again, 1, SLAVES + 1);
+    tcase_add_test(tests, clocks_ride_beside_overlapped_process_data);
     tcase_add_test(tests, slave_that_does_not_know_lrw_is_refused);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
