@@ -185,6 +185,7 @@ static void describe(cm1e_bus_config_t *config)
     cm1e_bus_config_init(config, "sim", 1);
     config->virtual_time = true;
     config->cycle_time_ns = CYCLE_NS;
+    config->overlap = getenv("CM1E_TEST_OVERLAP") != NULL;
     config->sim_pdo_order = devices[device].pdo_order;
     cm1e_axis_config_t *axis = &config->axes[0];
     snprintf(axis->firmware, sizeof axis->firmware, "%s", devices[device].firmware);

@@ -443,7 +443,8 @@ static void use_it_honestly(run_t *run)
 
 /* ---- the network ------------------------------------------------------------------------------------------------ */
 
-/** By the first byte: a motor of two firmwares, one beside simple slaves, a bridge with four; as a line or a ring. */
+/** By the first byte: a motor of two firmwares, one beside simple slaves, a bridge with four; as a line or a ring; a line
+ *  also with overlapped process data. */
 static void describe_network(cm1e_bus_config_t *config, unsigned kind)
 {
     enum { MOTOR, OLD_MOTOR, TERMINALS, BRIDGE };
@@ -454,6 +455,7 @@ static void describe_network(cm1e_bus_config_t *config, unsigned kind)
     config->sim_gaps = kind & 16 ? CM1E_SIM_IO_TERMINAL : CM1E_SIM_IO_COUPLER;
     if (kind & 4)
         strcpy(config->second_interface, "sim-second");
+    config->overlap = kind & 32 && !(kind & 4);
     cm1e_axis_config_t *axis = &config->axes[0];
     strcpy(axis->firmware, network == OLD_MOTOR ? "1.2.0" : network == BRIDGE ? "" : "1.3.5");
     if (network == OLD_MOTOR)
