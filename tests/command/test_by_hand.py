@@ -106,7 +106,7 @@ def check_refused():
                         (["jog", "-i", "sim", "--dead-man", "nan"], "number"), (["enable", "-i", "sim", "--for", "-1"],
                                                                               "above 0"),
                         (["led", "-i", "sim"], "which motor"), (["led", "-i", "sim", "1", "gren"], '"green"'),
-                        (["led", "-i", "sim", "1", "red", "blue"], "one colour"), (["led", "-i", "sim", "0"], "128"),
+                        (["led", "-i", "sim", "1", "red", "blue"], "one colour"), (["led", "-i", "sim", "0"], "512"),
                         (["led", "-i", "sim", "1", "--brightness", "17"], "0 ... 16"), (["led", "-i", "sim", "x"], "axis"),
                         (["alias", "-i", "sim"], "POSITION"), (["alias", "-i", "sim", "1", "7"], "--backup"),
                         (["alias", "-i", "sim", "1", "65536", "--backup", "never"], "65535"),

@@ -69,7 +69,7 @@ def check_set():
         wrong = on_sim("set", "1", *words)
         expect(wrong.returncode == WRONG_USE and told in wrong.stderr and "->" not in wrong.stdout, f"set {words}: {told}",
                wrong)
-    for words, told in ((["lst", "1"], '"list"'), (["get", "1"], "names"), (["list"], "position"), (["list", "0"], "128"),
+    for words, told in ((["lst", "1"], '"list"'), (["get", "1"], "names"), (["list"], "position"), (["list", "0"], "512"),
                         (["backup", "1"], "file"), (["list", "1", "--yes"], "--yes"), (["list", "X"], "no axis")):
         wrong = on_sim(*words)
         expect(wrong.returncode == WRONG_USE and told in wrong.stderr, f"{words}: {told}", wrong)

@@ -60,7 +60,7 @@ NUMBERS = [
     (HOME + ["--torque", "nan"], "torque"), (HOME + ["--for", "nan"], "time"), (HOME + ["--method", "99"], "-6 ... 4"),
     (HOME + ["--method", "1.5"], "-6 ... 4"), (["cml", "-i", "sim", "--timeout", "-1", "?99.1"], "3600"),
     (["cml", "-i", "sim", "--timeout", "nan", "?99.1"], "timeout"), (["cml", "-i", "sim", "--channel", "0"], "1 ... 4"),
-    (["sdo", "-i", "sim", "read", "0", "0x1018:1"], "position"), (["sdo", "-i", "sim", "read", "99999", "1"], "128"),
+    (["sdo", "-i", "sim", "read", "0", "0x1018:1"], "position"), (["sdo", "-i", "sim", "read", "99999", "1"], "512"),
     (["sdo", "-i", "sim", "read", "1", "0x10000"], "index"), (["sdo", "-i", "sim", "read", "1", "-1"], "index"),
     (["sdo", "-i", "sim", "read", "1", "0x1018:-1"], "sub-index"),
     (["sdo", "-i", "sim", "write", "1", "0x6060", "1000"], "127"),

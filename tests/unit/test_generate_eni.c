@@ -294,7 +294,7 @@ static void test_more_than_a_frame_holds_goes_into_the_next(void)
 {
     static const struct {
         size_t axes, frames, commands_of_last;
-    } rows[] = {{1, 1, 2}, {70, 1, 2}, {71, 2, 2}, {128, 2, 2}};
+    } rows[] = {{1, 1, 2}, {70, 1, 2}, {71, 2, 2}, {128, 2, 2}, {512, 8, 2}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         eni_network_t network = {.count = rows[i].axes};
         make(&network);
@@ -398,7 +398,7 @@ static void test_networks_that_no_file_can_describe_are_refused(void)
     const cm1e_eni_slave_t twice[] = {{.device = &described.devices.at[0], .name = "x"},
                                       {.device = &described.devices.at[0], .name = "x"}};
     const cm1e_eni_slave_t nameless = {.device = &described.devices.at[0], .name = ""};
-    refused(twice, 0, 1000000, "1 to 128");
+    refused(twice, 0, 1000000, "1 to 512");
     refused(twice, 2, 1000000, "twice");
     refused(&nameless, 1, 1000000, "name");
     refused(twice, 1, 1500, "microseconds");

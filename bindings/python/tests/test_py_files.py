@@ -27,7 +27,7 @@ def test_bus_of_a_text():
 
 
 @pytest.mark.parametrize("options, said", [
-    ({"axes": 200}, "configuration"), ({"axes": [{"name": "X" * 40}]}, "too long"),
+    ({"axes": 600}, "configuration"), ({"axes": [{"name": "X" * 40}]}, "too long"),
     ({"axes": [{"homing": {"methd": 1}}]}, "there is no methd"), ({"control": "all"}, "observe"),
     ({"realtime": "no"}, "try"), ({"cycle_time": 0.003}, "cycle"), ({"axes": 1, "trace": -1}, "trace"),
     ({"interface": "x" * 80}, "too long"), ({"interface": "none0"}, "none0")])
