@@ -112,7 +112,7 @@ static bool is_pushed(const run_t *run, machine_axis_t *axis)
     witness_t *seen = &axis->seen;
     const bool pushed = run->cycle < seen->pushed_until + cycles_of(run, QUIET_MS);
     if (pushed && fabs(axis->probe.velocity_counts_per_s) > 1 && !axis->probe.torque_on)
-        seen->pushed_until = run->cycle;
+        seen->pushed_until = fmax(seen->pushed_until, run->cycle);
     return pushed;
 }
 
