@@ -39,26 +39,6 @@ static bool next_datagram(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_
     return cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
 }
 
-/** Slaves send emergencies on their own. So in operation the bus looks into one mailbox after the other, while the
- *  client of that mailbox has nothing else to do. */
-static void listen_in_turn(cm1e_bus_t *bus, int64_t now_ns)
-{
-    cm1e_listening_t *listening = &bus->listening;
-    if (bus->phase != BUS_OPERATING || listening->paused || now_ns < listening->due_ns)
-        return;
-    listening->due_ns = now_ns + CM1E_LISTEN_PACE_NS;
-    for (uint32_t n = 0; n < bus->slave_count; n++) {
-        listening->place = listening->place + 1 < bus->slave_count ? listening->place + 1 : 0;
-        cm1e_bus_slave_t *slave = &bus->slaves[listening->place];
-        if (!slave->facts.coe || slave->watch.lost || slave->owner != OWNER_NONE || !cm1e_coe_idle(&slave->coe) ||
-            !cm1e_recovery_idle(&slave->recovery) || !cm1e_mapping_idle(&slave->mapping) ||
-            cm1e_foe_job_holds(bus, slave))
-            continue;
-        cm1e_coe_listen(&slave->coe, now_ns);
-        return;
-    }
-}
-
 /** Puts the datagram of a slave into the last frame, if one has been begun, or into a new one. In operation each has a
  *  frame of its own, so that a lost one concerns one slave. */
 static void put(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, bool begun, int64_t now_ns)
@@ -90,7 +70,7 @@ static bool goes_on(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
     return true;
 }
 
-/** Nothing is to be done with this slave, apart from errands and files. In a cycle that is so of most slaves. */
+/** Nothing is to be done with this slave, apart from errands and files. In most cycles that is so of all slaves. */
 static bool is_at_rest(const cm1e_bus_slave_t *slave)
 {
     return cm1e_coe_idle(&slave->coe) && cm1e_recovery_idle(&slave->recovery) && cm1e_al_idle(&slave->al) &&
@@ -104,24 +84,37 @@ static bool has_errands(const cm1e_bus_t *bus)
            __atomic_load_n(&bus->errands.file, __ATOMIC_ACQUIRE);
 }
 
-void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
+/** Sends datagrams of slaves in turn. Returns whether all slaves were met, and none of them has work left. */
+static bool serve_slaves(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
 {
-    cm1e_errand_serve(bus, now_ns);
-    cm1e_foe_job_serve(bus, now_ns);
-    cm1e_sdo_queue_serve(bus, now_ns);
-    listen_in_turn(bus, now_ns);
-    uint32_t place = bus->acyclic.next;
+    uint32_t place = bus->acyclic.next, n = 0;
     const unsigned before = bus->acyclic.count;
     const bool errands = has_errands(bus);
-    for (uint32_t n = 0; n < bus->slave_count && limit > 0 && bus->acyclic.count < CM1E_FRAMES_IN_FLIGHT; n++) {
+    bool rest = !errands;
+    for (; n < bus->slave_count && limit > 0 && bus->acyclic.count < CM1E_FRAMES_IN_FLIGHT; n++) {
         place = place + 1 < bus->slave_count ? place + 1 : 0;
         cm1e_bus_slave_t *slave = &bus->slaves[place];
-        if (slave->owner != OWNER_NONE || (!errands && is_at_rest(slave)) || !goes_on(bus, slave, now_ns))
+        if (slave->owner == OWNER_NONE && !errands && is_at_rest(slave))
+            continue;
+        rest = false;
+        if (slave->owner != OWNER_NONE || !goes_on(bus, slave, now_ns))
             continue;
         put(bus, slave, bus->acyclic.count > before, now_ns);
         bus->acyclic.next = place;
         limit--;
     }
+    return rest && n == bus->slave_count;
+}
+
+void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
+{
+    const unsigned before = bus->acyclic.count;
+    cm1e_errand_serve(bus, now_ns);
+    cm1e_foe_job_serve(bus, now_ns);
+    cm1e_sdo_queue_serve(bus, now_ns);
+    if (bus->acyclic.rests && bus->phase == BUS_OPERATING && !has_errands(bus))
+        return;
+    bus->acyclic.rests = serve_slaves(bus, now_ns, limit);
     if (bus->acyclic.count > before)
         cm1e_soem_post_bundle(bus->soem, &bus->acyclic.frames[bus->acyclic.count - 1].bundle, now_ns);
 }
@@ -188,7 +181,9 @@ void cm1e_acyclic_cancel(cm1e_bus_t *bus)
             frame->slaves[n]->owner = OWNER_NONE;
     }
     bus->acyclic.count = 0;
+    cm1e_acyclic_wake(bus);
     cm1e_supervision_forget(bus);
+    cm1e_listen_forget(bus);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         cm1e_recovery_cancel(slave);

@@ -100,10 +100,14 @@ struct cm1e_bus_slave {
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
 };
 
-/** Looking into mailboxes in turn, without having asked. */
+/** Looking into mailboxes in turn, without having asked (listening.c). */
 typedef struct cm1e_listening {
     uint32_t place;                          /**< the slave whose mailbox was looked into last */
     int64_t due_ns;
+    cm1e_datagram_t datagram;                /**< the look that rides */
+    bool asks;                               /**< a look is to be sent in this cycle */
+    bool sent;
+    bool again;                              /**< the last look was lost */
     bool paused;                             /**< while somebody waits until all slaves are idle */
     uint64_t emergencies;                    /**< heard of all slaves */
 } cm1e_listening_t;
@@ -153,6 +157,7 @@ typedef struct cm1e_acyclic {
     uint32_t next;                           /**< round robin: the slave whose turn it is */
     int64_t progress_ns;                     /**< when a slave was last sent another datagram than the one before */
     int64_t careful_until_ns;                /**< after a lost frame */
+    bool rests;                              /**< no slave has work since the last walk over all: cm1e_acyclic_wake() */
 } cm1e_acyclic_t;
 
 /** What others want of slaves beside SDO transfers (errand.h, foe_job.h). */
@@ -318,6 +323,8 @@ void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit);
 void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns);
 /** Keeps the emergency that the CoE client took last, if it is a new one. A datagram brings at most one. */
 void cm1e_bus_keep_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave);
+/** In operation slaves are passed over once none of them has work. Who gives work to one says so. */
+static inline void cm1e_acyclic_wake(cm1e_bus_t *bus) { bus->acyclic.rests = false; }
 /** Forgets everything under way. */
 void cm1e_acyclic_cancel(cm1e_bus_t *bus);
 /** One round of a blocking phase: a cycle when process data is exchanged, else datagrams at the pump's pace. */
@@ -345,6 +352,13 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns);
 /** Gives up the question that is on its way. */
 void cm1e_supervision_forget(cm1e_bus_t *bus);
 void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code);
+
+/** Looks into mailboxes in turn (listening.c), as the supervision does. A look that finds no room in the frame of the
+ *  process data has a frame of its own. One that is lost is repeated. */
+void cm1e_listen_ask(cm1e_bus_t *bus, int64_t now_ns);
+void cm1e_listen_send(cm1e_bus_t *bus, int64_t now_ns);
+void cm1e_listen_receive(cm1e_bus_t *bus, int64_t now_ns);
+void cm1e_listen_forget(cm1e_bus_t *bus);
 
 /** Brings all slaves to a state together; the first failure is diagnosed. */
 cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t timeout_ns, cm1e_diag_t *diag);

@@ -638,3 +638,24 @@ void cm1e_coe_result(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram,
     if (!cm1e_coe_idle(client) && now_ns >= client->deadline_ns)
         give_up(client, CM1E_ERROR_TIMEOUT);
 }
+
+/* ---- a look beside the client ------------------------------------------------------------------------------------ */
+
+bool cm1e_coe_look(const cm1e_coe_client_t *client, cm1e_datagram_t *datagram)
+{
+    if (!has_mailbox(client))
+        return false;
+    cm1e_mailbox_look(&client->mailbox, datagram);
+    return true;
+}
+
+bool cm1e_coe_has_mail(const cm1e_datagram_t *datagram)
+{
+    return datagram->working_counter == 1 && cm1e_mailbox_is_full(datagram);
+}
+
+void cm1e_coe_fetch(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram, int64_t now_ns)
+{
+    cm1e_coe_listen(client, now_ns);
+    cm1e_coe_result(client, datagram, now_ns);
+}

@@ -88,6 +88,12 @@ void cm1e_coe_begin_info(cm1e_coe_client_t *client, cm1e_info_request_t *info, i
 bool cm1e_coe_take_emergency(cm1e_coe_client_t *client, const uint8_t *message);
 /** Looks into the mailbox of the slave once, and takes the messages that are in it; the client must be idle. */
 void cm1e_coe_listen(cm1e_coe_client_t *client, int64_t now_ns);
+/** Fills a datagram that looks into the mailbox of the slave beside the client; false: there is no mailbox. */
+bool cm1e_coe_look(const cm1e_coe_client_t *client, cm1e_datagram_t *datagram);
+/** Whether such a datagram, which is back, shows a message. */
+bool cm1e_coe_has_mail(const cm1e_datagram_t *datagram);
+/** Takes the messages that it showed; the client must be idle. */
+void cm1e_coe_fetch(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram, int64_t now_ns);
 /** Fills the datagram to be sent next; false: none. Ends a transfer whose time is over. */
 bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns);
 /** Takes a datagram that is back or lost. */

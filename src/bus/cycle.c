@@ -101,14 +101,16 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     __atomic_store_n(&bus->counters.foreign_frames, cm1e_soem_foreign_frames(bus->soem), __ATOMIC_RELAXED);
     __atomic_store_n(&bus->counters.unsent_frames, cm1e_soem_unsent_frames(bus->soem), __ATOMIC_RELAXED);
     cm1e_acyclic_receive(bus, 0);
-    cm1e_supervision_receive(bus, cm1e_clock_now(bus->clock));
+    const int64_t now_ns = cm1e_clock_now(bus->clock);
+    cm1e_supervision_receive(bus, now_ns);
+    cm1e_listen_receive(bus, now_ns);
     return error;
 }
 
 /** Slaves of the configuration get their safe values instead: cm1e_bus_make_outputs_safe(). */
 static void mute_recovering(cm1e_bus_t *bus)
 {
-    for (uint32_t i = 0; i < bus->slave_count; i++) {
+    for (uint32_t i = 0; i < bus->slave_count && !bus->acyclic.rests; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (cm1e_recovery_mutes(&slave->recovery) && !slave->config)
             memset(bus->image + slave->placement.wire_output, 0, slave->placement.output_bytes);
@@ -140,10 +142,12 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     fill_image(bus);
     cm1e_dc_send(bus, now_ns);
     cm1e_supervision_ask(bus, now_ns);
+    cm1e_listen_ask(bus, now_ns);
     cm1e_soem_send_process_data(bus->soem);
     bus->in_flight = true;
     bus->sent_ns = now_ns;
-    cm1e_acyclic_send(bus, now_ns, bus->acyclic.per_cycle);
+    cm1e_listen_send(bus, now_ns);
+    cm1e_acyclic_send(bus, now_ns, bus->acyclic.per_cycle - bus->listening.sent); /* a look takes the turn of one */
     cm1e_supervision_send(bus, now_ns);
 }
 

@@ -58,7 +58,8 @@ enum { DATAGRAM_LOST = -1 };
 typedef struct cm1e_datagram {
     uint8_t command;     /**< cm1e_command_t */
     uint8_t frame_index; /**< SOEM's, while it is on its way */
-    bool rides;          /**< it is in a frame of process data */
+    bool rides;          /**< in a frame of process data, or it waits for one */
+    uint8_t seat;        /**< if it rides: which of those who may */
     uint16_t address, offset, length;
     int working_counter;
     int64_t sent_ns;

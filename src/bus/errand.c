@@ -73,7 +73,7 @@ static void begin(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_errand_t 
     errand->tries = 0;
     errand->deadline_ns = now_ns + ERRAND_TIMEOUT_NS;
     if (info)
-        cm1e_coe_begin_info(&slave->coe, &errand->info, now_ns);
+        cm1e_coe_begin_info(&slave->coe, &errand->info, now_ns); /* the errand keeps the bus awake */
 }
 
 void cm1e_errand_serve(cm1e_bus_t *bus, int64_t now_ns)

@@ -261,7 +261,7 @@ static void welcome(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
     slave->watch = (cm1e_slave_watch_t){.al_state = CM1E_AL_INIT};
     slave->info.al_state = CM1E_AL_INIT;
     if (cm1e_hot_may_recover(slave, false))
-        cm1e_recovery_begin_found(slave, now_ns);
+        cm1e_recovery_begin_found(bus, slave, now_ns);
     cm1e_hot_note(bus, slave);
 }
 

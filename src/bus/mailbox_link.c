@@ -66,6 +66,13 @@ void cm1e_mailbox_listen(cm1e_mailbox_t *mailbox)
 
 void cm1e_mailbox_stop(cm1e_mailbox_t *mailbox) { enter(mailbox, MAILBOX_IDLE); }
 
+void cm1e_mailbox_look(const cm1e_mailbox_t *mailbox, cm1e_datagram_t *d)
+{
+    cm1e_datagram_set(d, COMMAND_FPRD, mailbox->station, REG_SM1, SYNC_MANAGER_BYTES);
+}
+
+bool cm1e_mailbox_is_full(const cm1e_datagram_t *d) { return d->data[SM_STATUS] & SM_STATUS_FULL; }
+
 bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *d)
 {
     switch (mailbox->state) {
@@ -84,7 +91,7 @@ bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *d)
         }
         /* fall through */
     case MAILBOX_REPEAT_WAIT:
-        cm1e_datagram_set(d, COMMAND_FPRD, mailbox->station, REG_SM1, SYNC_MANAGER_BYTES);
+        cm1e_mailbox_look(mailbox, d);
         return true;
     case MAILBOX_READ:
         cm1e_datagram_set(d, COMMAND_FPRD, mailbox->station, mailbox->in_start, mailbox->in_length);

@@ -65,6 +65,11 @@ static inline bool cm1e_mailbox_delivered(const cm1e_mailbox_t *mailbox)
     return mailbox->state == MAILBOX_POLL && !mailbox->write_lost;
 }
 
+/** Fills a datagram that reads whether the slave has a message for us. */
+void cm1e_mailbox_look(const cm1e_mailbox_t *mailbox, cm1e_datagram_t *datagram);
+/** What its answer says. */
+bool cm1e_mailbox_is_full(const cm1e_datagram_t *datagram);
+
 /** Fills the datagram that is to be sent next; false: none. */
 bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *datagram);
 /** Takes a datagram that is back (or lost). Returns true if its data is a new message, header included. */

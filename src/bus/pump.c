@@ -35,6 +35,7 @@ static void work_between_cycles(cm1e_bus_t *bus)
 
 void cm1e_bus_pump(cm1e_bus_t *bus)
 {
+    cm1e_acyclic_wake(bus); /* for what its caller has begun */
     if (bus->exchanging) {
         cm1e_bus_pump_cycle(bus);
         work_between_cycles(bus);

@@ -128,16 +128,18 @@ static void fail(cm1e_bus_slave_t *slave, int64_t now_ns)
         enter(slave, releases ? RECOVERY_RELEASE : RECOVERY_PAUSE, now_ns);
 }
 
-void cm1e_recovery_begin(cm1e_bus_slave_t *slave)
+void cm1e_recovery_begin(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
     if (!cm1e_recovery_idle(&slave->recovery))
         return;
+    cm1e_acyclic_wake(bus);
     slave->recovery.step = RECOVERY_PAUSE;
     slave->recovery.deadline_ns = 0; /* over */
 }
 
-void cm1e_recovery_begin_found(cm1e_bus_slave_t *slave, int64_t now_ns)
+void cm1e_recovery_begin_found(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 {
+    cm1e_acyclic_wake(bus);
     slave->recovery.attempts++;
     slave->recovery.address_given = true;
     slave->recovery.failed_at = RECOVERY_IDLE;

@@ -59,9 +59,9 @@ typedef struct cm1e_recovery {
  *  stale command acts in the cycle in which it reaches Operational. */
 static inline bool cm1e_recovery_mutes(const cm1e_recovery_t *recovery) { return recovery->step >= RECOVERY_EEPROM; }
 static inline bool cm1e_recovery_idle(const cm1e_recovery_t *recovery) { return recovery->step == RECOVERY_IDLE; }
-void cm1e_recovery_begin(struct cm1e_bus_slave *slave);
+void cm1e_recovery_begin(cm1e_bus_t *bus, struct cm1e_bus_slave *slave);
 /** Begins with the configuration of a slave that the search has just identified. */
-void cm1e_recovery_begin_found(struct cm1e_bus_slave *slave, int64_t now_ns);
+void cm1e_recovery_begin_found(cm1e_bus_t *bus, struct cm1e_bus_slave *slave, int64_t now_ns);
 void cm1e_recovery_cancel(struct cm1e_bus_slave *slave);
 /** Fills the datagram to be sent next; false: none in this cycle. */
 bool cm1e_recovery_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns);

@@ -88,10 +88,12 @@ static bool dispatch(cm1e_bus_t *bus, cm1e_sdo_t *sdo, int64_t now_ns)
     else if (slave->watch.lost || cm1e_recovery_mutes(&slave->recovery) || !may_be_well(slave))
         cm1e_sdo_finish(sdo, CM1E_ERROR_BUS_LOST, 0);
     else if (cm1e_recovery_idle(&slave->recovery) && cm1e_coe_idle(&slave->coe) && cm1e_mapping_idle(&slave->mapping) &&
-             !cm1e_foe_job_holds(bus, slave))
+             !cm1e_foe_job_holds(bus, slave)) {
         cm1e_coe_begin(&slave->coe, sdo, now_ns);
-    else
+        cm1e_acyclic_wake(bus);
+    } else {
         return false;
+    }
     return true;
 }
 

@@ -279,12 +279,21 @@ static void take_answer(const cm1e_soem_t *soem, uint8_t index, unsigned at, cm1
     take_data((const uint8_t *)&soem->port.rxbuf[index] + at, d);
 }
 
+static bool find_seat(const ecx_portt *port, uint8_t *seat)
+{
+    for (*seat = 0; *seat < CM1E_RIDERS; ++*seat)
+        if (port->riders[*seat].state == RIDER_NONE)
+            return true;
+    return false;
+}
+
 void cm1e_soem_offer(cm1e_soem_t *soem, cm1e_datagram_t *d)
 {
-    cm1e_port_rider_t *rider = &soem->port.rider;
     const size_t bytes = DATAGRAM_HEADER_BYTES + d->length + EC_WKCSIZE;
-    if (d->command != COMMAND_FPRD || bytes > sizeof rider->datagram)
+    d->rides = d->command == COMMAND_FPRD && bytes <= CM1E_RIDER_ROOM && find_seat(&soem->port, &d->seat);
+    if (!d->rides)
         return;
+    cm1e_port_rider_t *rider = &soem->port.riders[d->seat];
     memset(rider->datagram, 0, bytes);
     rider->datagram[0] = d->command;
     cm1e_put_u16(rider->datagram + 2, d->address);
@@ -294,14 +303,18 @@ void cm1e_soem_offer(cm1e_soem_t *soem, cm1e_datagram_t *d)
     rider->state = RIDER_WAITS;
 }
 
+static void leave_seat(cm1e_soem_t *soem, cm1e_datagram_t *d)
+{
+    soem->port.riders[d->seat].state = RIDER_NONE;
+    d->rides = false;
+}
+
 bool cm1e_soem_rides(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
 {
-    cm1e_port_rider_t *rider = &soem->port.rider;
-    d->rides = rider->state == RIDER_ABOARD;
-    if (!d->rides) {
-        rider->state = RIDER_NONE;
+    if (d->rides && soem->port.riders[d->seat].state != RIDER_ABOARD)
+        leave_seat(soem, d);
+    if (!d->rides)
         return false;
-    }
     d->sent_ns = now_ns;
     d->working_counter = DATAGRAM_LOST;
     return true;
@@ -309,12 +322,12 @@ bool cm1e_soem_rides(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
 
 static bool take_rider(cm1e_soem_t *soem, cm1e_datagram_t *d)
 {
-    cm1e_port_rider_t *rider = &soem->port.rider;
+    const cm1e_port_rider_t *rider = &soem->port.riders[d->seat];
     if (rider->state == RIDER_ABOARD)
         return false;
     if (rider->state == RIDER_BACK)
         take_data(rider->datagram + DATAGRAM_HEADER_BYTES, d);
-    rider->state = RIDER_NONE;
+    leave_seat(soem, d);
     return true;
 }
 
@@ -333,7 +346,7 @@ bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t timeout_ns)
 void cm1e_soem_drop(cm1e_soem_t *soem, cm1e_datagram_t *d)
 {
     if (d->rides)
-        soem->port.rider.state = RIDER_NONE;
+        leave_seat(soem, d);
     else
         ecx_setbufstat(&soem->port, d->frame_index, EC_BUF_EMPTY);
     d->working_counter = DATAGRAM_LOST;

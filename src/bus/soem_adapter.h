@@ -121,7 +121,7 @@ bool cm1e_soem_ring_is_broken(const cm1e_soem_t *soem);
 /** How many slaves either interface reaches, by the broadcast read that was answered last; false: it does not tell. */
 bool cm1e_soem_ring_reach(const cm1e_soem_t *soem, uint32_t reach[2]);
 
-/** Lets a read of one slave (FPRD) ride in the frame of the next process data. It must keep its values until then. */
+/** Lets a read of one slave (FPRD) ride in the frame of the next process data; two may. cm1e_soem_rides() follows. */
 void cm1e_soem_offer(cm1e_soem_t *soem, cm1e_datagram_t *datagram);
 /** After the process data were sent: whether the datagram rides in their frame. If not, it was not sent. It is
  *  answered or lost as soon as the process data are received. */

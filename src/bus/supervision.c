@@ -98,7 +98,7 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
 static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
     if (bus->phase == BUS_OPERATING && slave->watch.al_state != CM1E_AL_OP && cm1e_hot_may_recover(slave, false))
-        cm1e_recovery_begin(slave);
+        cm1e_recovery_begin(bus, slave);
 }
 
 /** Notes that a slave is lost. An optional one is then searched for. */
@@ -192,5 +192,5 @@ void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position)
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (slave && bus->phase == BUS_OPERATING && cm1e_recovery_idle(&slave->recovery) &&
         cm1e_hot_may_recover(slave, true))
-        cm1e_recovery_begin(slave);
+        cm1e_recovery_begin(bus, slave);
 }

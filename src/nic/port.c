@@ -72,7 +72,7 @@ int ecx_setupnic(ecx_portt *port, const char *ifname, int secondary)
     memset(&port->counters, 0, sizeof port->counters);
     memset(port->slots, 0, sizeof port->slots);
     memset(&port->ring, 0, sizeof port->ring);
-    memset(&port->rider, 0, sizeof port->rider);
+    memset(port->riders, 0, sizeof port->riders);
     port->redundant = false;
     port->last_index = 0;
     for (int i = 0; i < EC_MAXBUF; i++)
@@ -208,7 +208,7 @@ static int send_frame(ecx_portt *port, uint8 idx, bool again)
 
 int ecx_outframe_red(ecx_portt *port, uint8 idx)
 {
-    if (port->rider.state == RIDER_WAITS && can_send(port, idx))
+    if (cm1e_rider_waits(port) && can_send(port, idx))
         cm1e_rider_board(port, idx);
     return send_frame(port, idx, false);
 }

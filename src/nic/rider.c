@@ -28,41 +28,53 @@ static uint8_t *find_last(uint8_t *frame, size_t length)
     return NULL;
 }
 
-void cm1e_rider_board(ecx_portt *port, uint8 idx)
+/** Appends a rider behind `last`, which becomes its datagram. */
+static void append(ecx_portt *port, uint8 idx, cm1e_port_rider_t *rider, uint8_t **last)
 {
-    cm1e_port_rider_t *rider = &port->rider;
     uint8_t *frame = port->txbuf[idx];
-    const size_t length = (size_t)port->txbuflength[idx], whole = length + rider->bytes;
-    uint8_t *last = find_last(frame, length);
-    if (!carries_process_data(frame) || whole > CM1E_FRAME_MAX - FRAME_CHECK_BYTES || !last)
-        return;
-    cm1e_put_u16(last + 6, cm1e_get_u16(last + 6) | DATAGRAM_MORE);
+    rider->at = (uint16_t)port->txbuflength[idx];
+    cm1e_put_u16(*last + 6, cm1e_get_u16(*last + 6) | DATAGRAM_MORE);
     cm1e_put_u16(frame + ETHERNET_HEADER, (uint16_t)(cm1e_get_u16(frame + ETHERNET_HEADER) + rider->bytes));
     rider->datagram[1] = idx;
-    memcpy(frame + length, rider->datagram, rider->bytes);
-    port->txbuflength[idx] = (int)whole;
-    port->slots[idx].rider_bytes = rider->bytes;
+    *last = frame + rider->at;
+    memcpy(*last, rider->datagram, rider->bytes);
+    port->txbuflength[idx] += rider->bytes;
+    port->slots[idx].rider_bytes = (uint16_t)(port->slots[idx].rider_bytes + rider->bytes);
     rider->index = idx;
     rider->state = RIDER_ABOARD;
 }
 
-static bool is_aboard(const ecx_portt *port, uint8 idx)
+void cm1e_rider_board(ecx_portt *port, uint8 idx)
 {
-    return port->rider.state == RIDER_ABOARD && port->rider.index == idx;
+    uint8_t *last = find_last(port->txbuf[idx], (size_t)port->txbuflength[idx]);
+    if (!carries_process_data(port->txbuf[idx]) || !last)
+        return;
+    for (int i = 0; i < CM1E_RIDERS; i++) {
+        cm1e_port_rider_t *rider = &port->riders[i];
+        if (rider->state == RIDER_WAITS && port->txbuflength[idx] + rider->bytes <= CM1E_FRAME_MAX - FRAME_CHECK_BYTES)
+            append(port, idx, rider, &last);
+    }
+}
+
+static bool is_aboard(const cm1e_port_rider_t *rider, uint8 idx)
+{
+    return rider->state == RIDER_ABOARD && rider->index == idx;
 }
 
 void cm1e_rider_return(ecx_portt *port, uint8 idx)
 {
-    cm1e_port_rider_t *rider = &port->rider;
-    if (!is_aboard(port, idx))
-        return;
-    const size_t end = (size_t)port->txbuflength[idx] - ETHERNET_HEADER;
-    memcpy(rider->datagram, port->rxbuf[idx] + end - rider->bytes, rider->bytes);
-    rider->state = RIDER_BACK;
+    for (int i = 0; i < CM1E_RIDERS && port->slots[idx].rider_bytes > 0; i++) {
+        cm1e_port_rider_t *rider = &port->riders[i];
+        if (!is_aboard(rider, idx))
+            continue;
+        memcpy(rider->datagram, port->rxbuf[idx] + rider->at - ETHERNET_HEADER, rider->bytes);
+        rider->state = RIDER_BACK;
+    }
 }
 
 void cm1e_rider_lose(ecx_portt *port, uint8 idx)
 {
-    if (is_aboard(port, idx))
-        port->rider.state = RIDER_LOST;
+    for (int i = 0; i < CM1E_RIDERS && port->slots[idx].rider_bytes > 0; i++)
+        if (is_aboard(&port->riders[i], idx))
+            port->riders[i].state = RIDER_LOST;
 }

@@ -1,7 +1,7 @@
 /**
  * @file rider.h
- * A datagram of the bus that rides in a frame of SOEM's process data, behind SOEM's own datagrams, where that frame has
- * room. SOEM does not see it: it gets the working counter of its own last datagram, as without a rider. The rider shares
+ * Datagrams of the bus that ride in a frame of SOEM's process data, behind SOEM's own datagrams, where that frame has
+ * room. SOEM does not see them: it gets the working counter of its own last datagram, as without them. A rider shares
  * the fate of the frame: with it, it comes back or is lost. In a ring both halves process it, so it must have a meaning
  * in any order of the slaves (FRAME_ANY_ORDER). Inside port.c's thread. @rt cycle
  */
@@ -21,7 +21,11 @@ typedef enum cm1e_rider_state {
     RIDER_LOST,     /**< its frame did not come back, or its owner has given it up */
 } rider_state_t;
 
-/** Puts the rider aboard the frame that is about to be sent, if it carries process data and has room. */
+static inline bool cm1e_rider_waits(const ecx_portt *port)
+{
+    return port->riders[0].state == RIDER_WAITS || port->riders[1].state == RIDER_WAITS;
+}
+/** Puts those who wait aboard the frame that is about to be sent, as far as it carries process data and has room. */
 void cm1e_rider_board(ecx_portt *port, uint8 idx);
 /** The answer in rxbuf[idx] is complete. */
 void cm1e_rider_return(ecx_portt *port, uint8 idx);

@@ -171,6 +171,198 @@ START_TEST(slaves_without_a_mailbox_are_passed_over)
 }
 END_TEST
 
+/* ---- looks on the wire ------------------------------------------------------------------------------------------ */
+
+enum { LRW = 12, COMMAND_AT = 16 };
+
+/** Frames as they are sent, and one that is lost. */
+typedef struct wire {
+    unsigned frames, looks, alone; /**< sent; looks into mailboxes; looks without process data */
+    unsigned of[4];                /**< looks by slave */
+    cm1e_tap_direction_t direction;
+    int lose;                      /**< this frame from now on; negative: none */
+    bool lost_process_data, no_process_data; /**< none come back */
+} wire_t;
+
+static void note_look(wire_t *wire, const cm1e_tap_frame_t *frame)
+{
+    uint16_t station;
+    wire->frames++;
+    if (find_read(frame, REG_SM1, &station) < 0)
+        return;
+    wire->looks++;
+    wire->alone += frame->bytes[COMMAND_AT] != LRW;
+    wire->of[station & 3]++;
+}
+
+static cm1e_tap_verdict_t watch_wire(void *context, cm1e_tap_frame_t *frame)
+{
+    wire_t *wire = context;
+    if (frame->direction == CM1E_TAP_SENT)
+        note_look(wire, frame);
+    if (wire->no_process_data && frame->direction == CM1E_TAP_RECEIVED && frame->bytes[COMMAND_AT] == LRW)
+        return CM1E_TAP_DROP;
+    if (frame->direction != wire->direction || wire->lose < 0 || wire->lose-- > 0)
+        return CM1E_TAP_PASS;
+    wire->lost_process_data = frame->bytes[COMMAND_AT] == LRW;
+    return CM1E_TAP_DROP;
+}
+
+/** Every slave has its look in its turn, and while no message waits there is one frame in a cycle. */
+START_TEST(looks_ride_with_the_process_data)
+{
+    sim_config(3);
+    cm1e_bus_t *bus = start_bus();
+    wire_t wire = {.lose = -1};
+    cycles(bus, 50);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_wire, &wire);
+    cycles(bus, 60);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    ck_assert_uint_eq(wire.frames, 60);
+    ck_assert_uint_eq(wire.looks, 12);
+    for (int slave = 1; slave <= 3; slave++)
+        ck_assert_uint_eq(wire.of[slave], 4);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** 43 motors leave 20 bytes of the frame: room for an AL status, but not for a look, which has a frame of its own, and
+ *  hears. Every 20 ms it is the other way round, because port counters have no room either. */
+START_TEST(a_look_without_room_has_a_frame_of_its_own)
+{
+    sim_config(43);
+    cm1e_bus_t *bus = start_bus();
+    wire_t wire = {.lose = -1};
+    cycles(bus, 50);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_wire, &wire);
+    cycles(bus, 50);
+    ck_assert_uint_eq(wire.looks, 10);
+    ck_assert_uint_ge(wire.alone, 7);
+    ck_assert_uint_eq(wire.frames, 50 + 10);
+    simulate(bus, "emergency 40 1000");
+    cycles(bus, 43 * 5 + 5);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    ck_assert_uint_eq(emergencies_of(bus, 40), 1);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Cycles from an emergency until it is known. */
+static unsigned cycles_until_heard(cm1e_bus_t *bus, uint16_t position)
+{
+    char line[40];
+    const uint64_t before = cm1e_history_last(bus->slaves[position - 1].emergencies);
+    unsigned n = 0;
+    snprintf(line, sizeof line, "emergency %u 1000", (unsigned)position);
+    simulate(bus, line);
+    for (; n < 100 && cm1e_history_last(bus->slaves[position - 1].emergencies) == before; n++)
+        cycle(bus);
+    return n;
+}
+
+/** Looks ride whatever the process data are: with places of their own, overlapped, with the clocks behind them, and in a
+ *  ring, whole or cut. Each slave is heard, and no working counter is wrong. */
+START_TEST(looks_ride_in_every_kind_of_frame)
+{
+    enum { SEPARATE, OVERLAPPED, CLOCKS, RING, CUT_RING };
+    sim_config(3);
+    config.overlap = _i == OVERLAPPED;
+    config.distributed_clocks = _i == CLOCKS;
+    if (_i >= RING)
+        strcpy(config.second_interface, "sim-second");
+    cm1e_bus_t *bus = start_bus();
+    wire_t wire = {.lose = -1};
+    cycles(bus, 50);
+    cm1e_sim_segment_cut(segment_of(bus), 2, _i == CUT_RING);
+    for (int n = 0; n < 50; n++) /* the cut is learned */
+        cycle(bus);
+    const cm1e_bus_counters_t before = bus->counters;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_wire, &wire);
+    cycles(bus, 3 * 5);
+    ck_assert_uint_ge(wire.looks, 3);
+    ck_assert_uint_eq(wire.alone, 0);
+    for (uint16_t position = 1; position <= 3; position++) {
+        ck_assert_uint_le(cycles_until_heard(bus, position), 3 * 5 + 2);
+        cycles(bus, 10);
+    }
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    ck_assert_uint_eq(bus->counters.lost_frames - before.lost_frames, 0);
+    ck_assert_uint_eq(bus->counters.working_counter_errors - before.working_counter_errors, 0);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus), 3);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Whichever frame is lost on its way out or back, every message is heard once. Lost process data cost two cycles, also
+ *  where the look was among them; the lost frame of a message costs 2 ms and the request to repeat it. */
+START_TEST(a_lost_frame_neither_loses_nor_delays_a_message)
+{
+    enum { SLAVES = 3, ROUND = SLAVES * 5, FETCH = 2, REPEATED = 6 };
+    sim_config(SLAVES);
+    cm1e_bus_t *bus = start_bus();
+    wire_t wire = {.direction = _i ? CM1E_TAP_RECEIVED : CM1E_TAP_SENT, .lose = -1};
+    unsigned messages = 0;
+    cycles(bus, 50);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_wire, &wire);
+    for (int lose = -1; lose < 24; lose++)
+        for (uint16_t position = 1; position <= SLAVES; position++) {
+            wire.lose = lose;
+            wire.lost_process_data = false;
+            const unsigned took = cycles_until_heard(bus, position);
+            const bool lost = lose >= 0 && wire.lose < 0;
+            const unsigned more = !lost ? 0 : wire.lost_process_data ? 2 : REPEATED;
+            ck_assert_msg(took <= ROUND + FETCH + more, "slave %u, frame %d lost: heard after %u cycles", position,
+                          lose, took);
+            messages++;
+            wire.lose = -1;
+            for (int n = 0; n < 20; n++)
+                cycle(bus);
+        }
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus), messages);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** While no process data come back, the looks have frames of their own, and hear. */
+START_TEST(messages_are_heard_without_process_data)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    wire_t wire = {.lose = -1, .no_process_data = true};
+    cycles(bus, 50);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_wire, &wire);
+    for (uint16_t position = 1; position <= 2; position++)
+        ck_assert_uint_le(cycles_until_heard(bus, position), 2 * 5 + 5);
+    ck_assert_int_eq(cm1e_bus_health(bus), CM1E_ERROR_BUS_LOST);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The looks of the others go on in their turn while a slave is away, and it is heard again when it is back. */
+START_TEST(a_slave_that_disappears_delays_no_other)
+{
+    enum { ROUND = 3 * 5, FETCH = 2 };
+    sim_config(3);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 50);
+    simulate(bus, "power 3 off");
+    for (int n = 0; n < 40; n++) {
+        const uint16_t position = (uint16_t)(1 + n % 2);
+        const unsigned took = cycles_until_heard(bus, position);
+        ck_assert_msg(took <= ROUND + FETCH, "slave %u heard after %u cycles", position, took);
+    }
+    simulate(bus, "power 3 on");
+    for (int n = 0; n < 4000 && cm1e_bus_slave_watch(bus, 3).al_state != CM1E_AL_OP; n++) {
+        cm1e_bus_request_recovery(bus, 3);
+        cycle(bus);
+    }
+    ck_assert_uint_le(cycles_until_heard(bus, 3), ROUND + FETCH);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- a reader beside the writer --------------------------------------------------------------------------------- */
 
 static cm1e_emergency_ring_t ring;
@@ -225,6 +417,12 @@ int main(void)
     tcase_add_test(tests, transfers_and_emergencies_do_not_disturb_each_other);
     tcase_add_test(tests, a_flood_keeps_no_transfer_waiting);
     tcase_add_test(tests, slaves_without_a_mailbox_are_passed_over);
+    tcase_add_test(tests, looks_ride_with_the_process_data);
+    tcase_add_loop_test(tests, looks_ride_in_every_kind_of_frame, 0, 5);
+    tcase_add_test(tests, a_look_without_room_has_a_frame_of_its_own);
+    tcase_add_loop_test(tests, a_lost_frame_neither_loses_nor_delays_a_message, 0, 2);
+    tcase_add_test(tests, messages_are_heard_without_process_data);
+    tcase_add_test(tests, a_slave_that_disappears_delays_no_other);
     tcase_add_test(tests, a_reader_in_another_thread_sees_whole_emergencies_in_order);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

@@ -34,22 +34,26 @@ void tearDown(void)
 }
 
 /** A read of six bytes of one slave waits for a frame. */
-static void offer(int slave)
+static void offer_seat(int seat, int slave)
 {
     const uint8_t datagram[BYTES] = {EC_CMD_FPRD, 0xEE, (uint8_t)(WIRE_STATION + slave - 1), WIRE_STATION >> 8, 2, 0,
                                      READ_BYTES};
-    memcpy(port.rider.datagram, datagram, BYTES);
-    port.rider.bytes = BYTES;
-    port.rider.state = RIDER_WAITS;
+    memcpy(port.riders[seat].datagram, datagram, BYTES);
+    port.riders[seat].bytes = BYTES;
+    port.riders[seat].state = RIDER_WAITS;
 }
 
-static void expect_answer(int slave)
+static void offer(int slave) { offer_seat(0, slave); }
+
+static void expect_answer_of(int seat, int slave)
 {
-    TEST_ASSERT_EQUAL_UINT8(RIDER_BACK, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_BACK, port.riders[seat].state);
     for (int i = 0; i < READ_BYTES; i++)
-        TEST_ASSERT_EQUAL_HEX8(slave * 16 + 2 + i, port.rider.datagram[10 + i]);
-    TEST_ASSERT_EQUAL_UINT8(1, port.rider.datagram[10 + READ_BYTES]);
+        TEST_ASSERT_EQUAL_HEX8(slave * 16 + 2 + i, port.riders[seat].datagram[10 + i]);
+    TEST_ASSERT_EQUAL_UINT8(1, port.riders[seat].datagram[10 + READ_BYTES]);
 }
+
+static void expect_answer(int slave) { expect_answer_of(0, slave); }
 
 /** Process data of so many bytes, with the time of slave 1 behind them if `time`, as SOEM sends them. */
 static uint8 send_image(uint16_t bytes, bool time)
@@ -83,12 +87,12 @@ static void test_soem_gets_what_it_gets_without_a_rider(void)
             offer(slave);
             const int before = wire.sent[0];
             const uint8 idx = send_image(2 * N, time);
-            TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.rider.state);
+            TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.riders[0].state);
             TEST_ASSERT_EQUAL_INT(time ? N : 3 * N, ecx_waitinframe(&port, idx, 250));
             TEST_ASSERT_EQUAL_INT(before + 1, wire.sent[0]);
             expect_answer(slave);
             expect_image(idx);
-            TEST_ASSERT_EQUAL_UINT8(RIDER_BACK, port.rider.state); /* a released frame does not take it away */
+            TEST_ASSERT_EQUAL_UINT8(RIDER_BACK, port.riders[0].state); /* a released frame does not take it away */
         }
     TEST_ASSERT_EQUAL_UINT64(0, port.counters.malformed);
 }
@@ -98,8 +102,8 @@ static void test_a_slave_that_does_not_answer_counts_nothing(void)
     offer(N + 7);
     const uint8 idx = send_image(2 * N, false);
     TEST_ASSERT_EQUAL_INT(3 * N, ecx_waitinframe(&port, idx, 250));
-    TEST_ASSERT_EQUAL_UINT8(RIDER_BACK, port.rider.state);
-    TEST_ASSERT_EQUAL_UINT8(0, port.rider.datagram[10 + READ_BYTES]);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_BACK, port.riders[0].state);
+    TEST_ASSERT_EQUAL_UINT8(0, port.riders[0].datagram[10 + READ_BYTES]);
     expect_image(idx);
 }
 
@@ -108,14 +112,14 @@ static void test_it_takes_the_first_frame_of_process_data_with_room(void)
     uint16_t value = 0;
     offer(2);
     TEST_ASSERT_EQUAL_INT(1, ecx_FPRD(&port, WIRE_STATION, 4, 2, &value, EC_TIMEOUTRET));
-    TEST_ASSERT_EQUAL_UINT8(RIDER_WAITS, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_WAITS, port.riders[0].state);
     const uint8 full = send_image(FULL - BYTES + 1, false);
-    TEST_ASSERT_EQUAL_UINT8(RIDER_WAITS, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_WAITS, port.riders[0].state);
     const uint8 next = send_image(FULL - BYTES, false), last = send_image(2 * N, false);
     TEST_ASSERT_EQUAL_INT(FRAME_END, port.txbuflength[next]);
     TEST_ASSERT_EQUAL_INT(28 + 2 * N, port.txbuflength[last]);
     TEST_ASSERT_EQUAL_INT(3 * N, ecx_waitinframe(&port, full, 500));
-    TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.riders[0].state);
     TEST_ASSERT_EQUAL_INT(3 * N, ecx_waitinframe(&port, last, 500));
     TEST_ASSERT_EQUAL_INT(3 * N, ecx_waitinframe(&port, next, 500));
     expect_answer(2);
@@ -124,18 +128,52 @@ static void test_it_takes_the_first_frame_of_process_data_with_room(void)
     expect_image(last);
 }
 
+static void test_two_ride_in_one_frame(void)
+{
+    for (int time = 0; time < 2; time++) {
+        offer_seat(0, 2);
+        offer_seat(1, 3);
+        const int before = wire.sent[0];
+        const uint8 idx = send_image(2 * N, time);
+        TEST_ASSERT_EQUAL_INT(time ? N : 3 * N, ecx_waitinframe(&port, idx, 250));
+        TEST_ASSERT_EQUAL_INT(before + 1, wire.sent[0]);
+        expect_answer_of(0, 2);
+        expect_answer_of(1, 3);
+        expect_image(idx);
+    }
+    TEST_ASSERT_EQUAL_UINT64(0, port.counters.malformed);
+}
+
+static void test_the_second_waits_where_only_one_has_room(void)
+{
+    offer_seat(0, 2);
+    offer_seat(1, 3);
+    const uint8 full = send_image(FULL - 2 * BYTES + 1, false);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.riders[0].state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_WAITS, port.riders[1].state);
+    const uint8 next = send_image(2 * N, false);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.riders[1].state);
+    TEST_ASSERT_EQUAL_INT(3 * N, ecx_waitinframe(&port, next, 500));
+    TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.riders[0].state); /* the frames come back in any order */
+    expect_answer_of(1, 3);
+    TEST_ASSERT_EQUAL_INT(3 * N, ecx_waitinframe(&port, full, 500));
+    expect_answer_of(0, 2);
+    expect_image(full);
+    expect_image(next);
+}
+
 static void test_it_is_lost_with_its_frame(void)
 {
     wire.mute = true;
     offer(3);
     const uint8 idx = send_image(2 * N, false);
     TEST_ASSERT_EQUAL_INT(EC_NOFRAME, ecx_waitinframe(&port, idx, 250));
-    TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.riders[0].state);
     ecx_setbufstat(&port, idx, EC_BUF_EMPTY);
-    TEST_ASSERT_EQUAL_UINT8(RIDER_LOST, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_LOST, port.riders[0].state);
     wire.mute = false;
     TEST_ASSERT_EQUAL_INT(3 * N, ecx_LRW(&port, 0, 2 * N, image, 250)); /* the next frame has nothing of it */
-    TEST_ASSERT_EQUAL_UINT8(RIDER_LOST, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_LOST, port.riders[0].state);
 }
 
 static void test_an_index_that_is_taken_away_loses_it(void)
@@ -144,7 +182,7 @@ static void test_an_index_that_is_taken_away_loses_it(void)
     send_image(2 * N, false);
     for (int i = 0; i < EC_MAXBUF; i++)
         ecx_getindex(&port);
-    TEST_ASSERT_EQUAL_UINT8(RIDER_LOST, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_LOST, port.riders[0].state);
 }
 
 /** Its owner may forget it: the frame still is SOEM's. */
@@ -152,9 +190,9 @@ static void test_a_frame_with_a_forgotten_rider_is_soems(void)
 {
     offer(3);
     const uint8 idx = send_image(2 * N, false);
-    port.rider.state = RIDER_NONE;
+    port.riders[0].state = RIDER_NONE;
     TEST_ASSERT_EQUAL_INT(3 * N, ecx_waitinframe(&port, idx, 250));
-    TEST_ASSERT_EQUAL_UINT8(RIDER_NONE, port.rider.state);
+    TEST_ASSERT_EQUAL_UINT8(RIDER_NONE, port.riders[0].state);
     expect_image(idx);
 }
 
@@ -168,8 +206,9 @@ static void test_a_ring_in_any_state_brings_both(void)
         for (int round = 0; round < 6; round++) {
             const int slave = 1 + round % N;
             offer(slave);
+            offer_seat(1, N + 1 - slave);
             const uint8 idx = send_image(2 * N, round % 2);
-            TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.rider.state);
+            TEST_ASSERT_EQUAL_UINT8(RIDER_ABOARD, port.riders[0].state);
             const int counted = ecx_waitinframe(&port, idx, 3000);
             if (round < 2) { /* the change is learned */
                 ecx_setbufstat(&port, idx, EC_BUF_EMPTY);
@@ -177,6 +216,7 @@ static void test_a_ring_in_any_state_brings_both(void)
             }
             TEST_ASSERT_EQUAL_INT(round % 2 ? N : 3 * N, counted);
             expect_answer(slave);
+            expect_answer_of(1, N + 1 - slave);
             expect_image(idx);
         }
     }
@@ -188,6 +228,8 @@ int main(void)
     RUN_TEST(test_soem_gets_what_it_gets_without_a_rider);
     RUN_TEST(test_a_slave_that_does_not_answer_counts_nothing);
     RUN_TEST(test_it_takes_the_first_frame_of_process_data_with_room);
+    RUN_TEST(test_two_ride_in_one_frame);
+    RUN_TEST(test_the_second_waits_where_only_one_has_room);
     RUN_TEST(test_it_is_lost_with_its_frame);
     RUN_TEST(test_an_index_that_is_taken_away_loses_it);
     RUN_TEST(test_a_frame_with_a_forgotten_rider_is_soems);

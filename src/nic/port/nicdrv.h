@@ -43,16 +43,17 @@ typedef struct cm1e_port_slot {
     uint8_t stamp[2];       /**< last byte of the source MAC of the frame on its way from interface 0, 1 */
     uint8_t companion;      /**< ring.h: what left on the second interface with it */
     uint8_t answers;        /**< ring.h: which frames came back where */
-    uint16_t rider_bytes;   /**< at the end of the frame: a datagram that is not SOEM's (rider.h) */
+    uint16_t rider_bytes;   /**< at the end of the frame: datagrams that are not SOEM's (rider.h) */
 } cm1e_port_slot_t;
 
-enum { CM1E_RIDER_ROOM = 64 };
+enum { CM1E_RIDERS = 2, CM1E_RIDER_ROOM = 64 };
 
 /** A datagram that rides behind SOEM's own in one of its frames (rider.h). */
 typedef struct cm1e_port_rider {
     uint8_t state;          /**< rider.h */
     uint8_t index;          /**< of the frame that carries it */
     uint16_t bytes;
+    uint16_t at;            /**< in that frame */
     uint8_t datagram[CM1E_RIDER_ROOM]; /**< header, data and working counter: as sent, and then as it came back */
 } cm1e_port_rider_t;
 
@@ -77,7 +78,7 @@ typedef struct ecx_port {
     cm1e_port_slot_t slots[EC_MAXBUF];
     uint8 last_index;
     uint32_t allocations, transmissions;
-    cm1e_port_rider_t rider;
+    cm1e_port_rider_t riders[CM1E_RIDERS];
     struct {
         uint8_t state;          /**< ring.h: what is known about the ring */
         uint8_t misses;         /**< frames in a row of which one half did not come back */
