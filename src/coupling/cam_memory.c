@@ -138,8 +138,9 @@ void cm1e_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
         snprintf(text, size, "Axis \"%s\": a cam has too many points; expected 2 ... %d, as `cam_points` of the bus "
                  "file says.", name, cams->points);
         break;
-    case CM1E_CAM_NOT_FINITE:
-        snprintf(text, size, "Axis \"%s\": a number of point %d of a cam is not finite.", name, point);
+    case CM1E_CAM_NO_NUMBER:
+        snprintf(text, size, "Axis \"%s\": a number of point %d of a cam is not finite or beyond 1e30; expected -1e30 "
+                 "... 1e30.", name, point);
         break;
     case CM1E_CAM_NOT_RISING:
         snprintf(text, size, "Axis \"%s\": Master of point %d of a cam is not above that of point %d; it must rise "
@@ -151,7 +152,8 @@ void cm1e_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
         break;
     case CM1E_CAM_STEEP:
         snprintf(text, size, "Axis \"%s\": points %d and %d of a cam are so close together, or so far apart, that the "
-                 "curve between them cannot be computed.", name, point, point + 1);
+                 "curve between them cannot be computed; expected distances of the master of 1e-30 or more, and slaves "
+                 "that the axis reaches.", name, point, point + 1);
         break;
     case CM1E_CAM_GOOD:
         break;

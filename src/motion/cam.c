@@ -6,9 +6,13 @@
 #include "core/extreme.h"
 #include "core/rare.h"
 #include "motion/cam.h"
+#include "motion/pieces.h"
 
 /* Fraction of the known extremes: an interval that cannot exceed them by more is not evaluated. */
 static const double next_to_nothing = 1e-9;
+
+/* Distance between two points. From there on the polynomials of numbers up to 1e30 are finite, roundings included. */
+static const double shortest = 1e-30;
 
 static double span(const cm1e_cam_knot_t *knots, int i) { return knots[i + 1].master - knots[i].master; }
 
@@ -23,8 +27,9 @@ static cm1e_cam_fault_t take_points(cm1e_cam_knot_t *knots, const MC_CAM_REF *ta
     for (*at = 0; *at < table->NumberOfPoints; ++*at) {
         const MC_CAM_POINT *point = &table->Points[*at];
         const double slope = whole ? point->Velocity : 0, curvature = whole ? point->Acceleration : 0;
-        if (!isfinite(point->Master) || !isfinite(point->Slave) || !isfinite(slope) || !isfinite(curvature))
-            return CM1E_CAM_NOT_FINITE;
+        if (!cm1e_motion_is_number(point->Master) || !cm1e_motion_is_number(point->Slave) ||
+            !cm1e_motion_is_number(slope) || !cm1e_motion_is_number(curvature))
+            return CM1E_CAM_NO_NUMBER;
         if (*at > 0 && !(point->Master > knots[*at - 1].master))
             return CM1E_CAM_NOT_RISING;
         knots[*at] = (cm1e_cam_knot_t){point->Master, point->Slave, slope, curvature};
@@ -145,8 +150,10 @@ static void find_corners(cm1e_cam_t *cam)
 static cm1e_cam_fault_t find_extremes(cm1e_cam_t *cam, int *at)
 {
     cm1e_curve_extremes_t all = {INFINITY, -INFINITY, INFINITY, -INFINITY, 0, 0};
-    for (int i = 0; i < cam->count; i++) {
-        const cm1e_cam_knot_t *knot = &cam->knots[i];
+    for (*at = 0; *at < cam->count; ++*at) {
+        const cm1e_cam_knot_t *knot = &cam->knots[*at];
+        if (!isfinite(knot->slope) || !isfinite(knot->curvature))
+            return CM1E_CAM_STEEP;
         widen(&all, &(cm1e_curve_extremes_t){knot->slave, knot->slave, knot->slope, knot->slope,
                                              fabs(knot->curvature), 0});
     }
@@ -154,7 +161,7 @@ static cm1e_cam_fault_t find_extremes(cm1e_cam_t *cam, int *at)
         cm1e_curve_t curve;
         cm1e_curve_extremes_t part;
         const double h = span(cam->knots, *at);
-        if (!isnormal(h * h * h * h)) /* of lines too: the number of a period must be finite */
+        if (!(h >= shortest)) /* of lines too: the number of a period must be finite */
             return CM1E_CAM_STEEP;
         if (cam->curve == mcCamLinear)
             continue;
@@ -250,8 +257,8 @@ CM1E_RARE static double find_turn(const cm1e_cam_t *cam, cm1e_cam_place_t *place
     if (phase < 0) /* the quotient was rounded to a whole number */
         phase = take_turn(cam, place, place->turn - 1, way);
     if (phase >= cam->length)
-        phase = larger(take_turn(cam, place, place->turn + 1, way), 0);
-    return phase;
+        phase = take_turn(cam, place, place->turn + 1, way);
+    return phase >= 0 && phase < cam->length ? phase : 0; /* 0: rounding, or periods too far away to be told apart */
 }
 
 void cm1e_cam_sample(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double master, cm1e_cam_sample_t *sample)

@@ -33,10 +33,11 @@ typedef enum cm1e_cam_fault {
     CM1E_CAM_GOOD = 0,
     CM1E_CAM_TOO_FEW,       /**< less than 2 points, or no array */
     CM1E_CAM_TOO_MANY,      /**< more points than there is memory for */
-    CM1E_CAM_NOT_FINITE,
+    CM1E_CAM_NO_NUMBER,     /**< not finite, or beyond +-1e30 */
     CM1E_CAM_NOT_RISING,    /**< the master's position is not above that of the point before */
     CM1E_CAM_CURVE,         /**< no such MC_CAM_CURVE */
-    CM1E_CAM_STEEP,         /**< points so close together that doubles cannot hold the curve between them */
+    CM1E_CAM_STEEP,         /**< points closer together than 1e-30, or so that doubles cannot hold the curve
+                                 between them */
 } cm1e_cam_fault_t;
 
 /** Compiles points; `knots` has room for `capacity` of them, and must outlive the cam. mcCamCubicSpline is continuous

@@ -100,6 +100,8 @@ void cm1e_curve_extremes(const cm1e_curve_t *curve, cm1e_curve_extremes_t *extre
     int count = 2;
     for (int k = DEGREE - 1; k >= 0; k--) { /* from the straight line up */
         range(p[k], DEGREE - k, stops, count, &lowest[k], &highest[k]);
+        if (k == 0)
+            break; /* its own changes are not needed, and there is no room for five of them */
         count = sign_changes(p[k], p[k + 1], DEGREE - k, stops, count, changes);
         for (int i = 0; i < count; i++)
             stops[i] = changes[i];

@@ -17,8 +17,8 @@ typedef enum cm1e_table_kind {
 } cm1e_table_kind_t;
 
 typedef struct cm1e_table_point {
-    double time_s; /**< time since the start, rising. A first point at 0 must be the state of the axis, otherwise the
-                        table is refused */
+    double time_s; /**< time since the start, rising by 1 ps at least. A first point at 0 must be the state of the axis,
+                        otherwise the table is refused */
     double value;
 } cm1e_table_point_t;
 
@@ -47,9 +47,9 @@ typedef struct cm1e_table_profile {
 
 /** Builds the motion from `start` along the points. `jerk` takes the last acceleration of a table of accelerations to
  *  0, after its end; INFINITY: at once. CM1E_ERROR_INVALID_ARGUMENT, after which the profile is invalid: no point, more
- *  than CM1E_TABLE_POINTS_MAX points, times that do not rise, numbers that are not finite, or a point of positions or
- *  velocities at time 0 that differs from the state of the axis (by more than a millionth of the range of the table).
- *  `extremes` may be NULL. */
+ *  than CM1E_TABLE_POINTS_MAX points, times that do not rise by 1 ps, numbers that are not finite or beyond 1e30, or a
+ *  point of positions or velocities at time 0 that differs from the state of the axis (by more than a millionth of the
+ *  range of the table). `extremes` may be NULL. */
 cm1e_error_t cm1e_table_profile(cm1e_table_profile_t *profile, cm1e_table_kind_t kind, const cm1e_motion_state_t *start,
                                 const cm1e_table_point_t *points, int count, double jerk,
                                 cm1e_table_extremes_t *extremes);

@@ -64,6 +64,9 @@ static void test_a_bad_cam_costs_no_good_one_and_is_told(void)
     points[7].Slave = NAN;
     refused(&table, CM1E_ERROR_AXIS_CAM_TABLE, "point 8");
     table = table_of(20);
+    points[19].Master = 1.9e171;
+    refused(&table, CM1E_ERROR_AXIS_CAM_TABLE, "point 20 of a cam is not finite or beyond 1e30; expected -1e30 ... 1e30");
+    table = table_of(20);
     points[7].Master = 6;
     refused(&table, CM1E_ERROR_AXIS_CAM_TABLE, "point 8 of a cam is not above that of point 7");
     table = table_of(20);
@@ -283,8 +286,8 @@ static void test_wrong_inputs_are_refused(void)
         coupling.slave_offset = i < 3 ? 0 : bad[0];
         cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
     }
-    points[0] = (MC_CAM_POINT){0, 1e30, 0, 0};
-    points[1] = (MC_CAM_POINT){1, 2e30, 0, 0};
+    points[0] = (MC_CAM_POINT){0, 1e29, 0, 0};
+    points[1] = (MC_CAM_POINT){1, 2e29, 0, 0};
     const MC_CAM_REF far = {points, 2, mcCamPolynomial5};
     coupling = by_cam(selected(SLAVE, &far, true, false), mcRelative);
     cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);

@@ -308,7 +308,7 @@ static void test_what_is_no_cam_is_refused(void)
 
 static void test_every_wrong_number_is_found_and_named(void)
 {
-    static const double bad[] = {NAN, INFINITY, -INFINITY};
+    static const double bad[] = {NAN, INFINITY, -1.01e30};
     for (int curve = mcCamPolynomial5; curve <= (int)mcCamLinear; curve++)
         for (int i = 0; i < 6; i++)
             for (int field = 0; field < 5; field++)
@@ -328,7 +328,7 @@ static void test_every_wrong_number_is_found_and_named(void)
                     const cm1e_cam_fault_t fault = cm1e_cam_compile(&cam, knots, 8, &table, b == 0, &wrong);
                     TEST_ASSERT_EQUAL_INT(ignored      ? CM1E_CAM_GOOD
                                           : field == 4 ? CM1E_CAM_NOT_RISING
-                                                       : CM1E_CAM_NOT_FINITE,
+                                                       : CM1E_CAM_NO_NUMBER,
                                           fault);
                     if (!ignored)
                         TEST_ASSERT_EQUAL_INT(i, wrong);
@@ -350,7 +350,7 @@ static void test_extreme_numbers_never_become_infinite(void)
                 const cm1e_cam_fault_t fault = cm1e_cam_compile(&cam, knots, 8, &table, true, &wrong);
                 place = (cm1e_cam_place_t){0};
                 if (fault != CM1E_CAM_GOOD) {
-                    TEST_ASSERT_EQUAL_INT(CM1E_CAM_STEEP, fault);
+                    TEST_ASSERT_EQUAL_INT(fmax(sizes[m], sizes[s]) > 1e30 ? CM1E_CAM_NO_NUMBER : CM1E_CAM_STEEP, fault);
                     continue;
                 }
                 for (int i = 0; i < 100; i++) { /* near its points, and where machines are */
@@ -360,6 +360,55 @@ static void test_extreme_numbers_never_become_infinite(void)
                 }
             }
     TEST_ASSERT_EQUAL_INT(32, sizeof(cm1e_cam_knot_t));
+}
+
+/* Between two points the slave goes five times through 0: all there is room for. */
+static void test_a_curve_with_five_zeros_has_its_extremes(void)
+{
+    double c[6] = {1};
+    for (int r = 0; r < 5; r++) /* times (x - 0.1), (x - 0.3) ... (x - 0.9) */
+        for (int i = r + 1; i >= 0; i--)
+            c[i] = (i > 0 ? c[i - 1] : 0) - (0.1 + 0.2 * r) * c[i];
+    double slave = 0, slope = 0, curvature = 0;
+    for (int i = 0; i <= 5; i++) {
+        slave += c[i];
+        slope += i * c[i];
+        curvature += i * (i - 1) * c[i];
+    }
+    const MC_CAM_POINT points[] = {{0, c[0], c[1], 2 * c[2]}, {1, slave, slope, curvature}};
+    compile(&(MC_CAM_REF){points, 2, mcCamPolynomial5}, false);
+    int zeros = 0;
+    double lowest = INFINITY, highest = -INFINITY, before = c[0];
+    for (int i = 1; i < 10000; i++) {
+        const double here = at(i * 1e-4).point.position;
+        zeros += here * before < 0;
+        before = here;
+        lowest = fmin(lowest, here);
+        highest = fmax(highest, here);
+    }
+    TEST_ASSERT_EQUAL_INT(5, zeros);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, fmin(lowest, c[0]), cam.extremes.lowest);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, fmax(highest, slave), cam.extremes.highest);
+}
+
+/* So far away that doubles do not tell the place in the period: still a place of the cam. */
+static void test_masters_too_far_away_for_periods_stay_on_the_cam(void)
+{
+    static const double lengths[] = {1e-25, 1e-9, 0.3, 360, 1e25};
+    for (int l = 0; l < 5; l++)
+        for (int curve = mcCamPolynomial5; curve <= (int)mcCamLinear; curve++) {
+            const double h = lengths[l];
+            MC_CAM_POINT points[] = {{0, 0, 0, 0}, {0.3 * h, 1, 0, 0}, {0.7 * h, 0.5, 0, 0}, {h, 0, 0, 0}};
+            const MC_CAM_REF table = {points, 4, (MC_CAM_CURVE)curve};
+            compile(&table, true);
+            for (int i = 0; i < 1000; i++) {
+                const double master = random_between(-1, 1) * random_decade(1e-9, 1e30);
+                const cm1e_cam_sample_t here = at(master);
+                TEST_ASSERT_TRUE(here.phase >= 0 && here.phase < cam.length && isfinite(here.turn));
+                TEST_ASSERT_TRUE(here.point.position >= cam.extremes.lowest - 1e-9 &&
+                                 here.point.position <= cam.extremes.highest + 1e-9);
+            }
+        }
 }
 
 /* A full table: the last point too, and samples in any order. */
@@ -397,6 +446,8 @@ int main(void)
     RUN_TEST(test_what_is_no_cam_is_refused);
     RUN_TEST(test_every_wrong_number_is_found_and_named);
     RUN_TEST(test_extreme_numbers_never_become_infinite);
+    RUN_TEST(test_a_curve_with_five_zeros_has_its_extremes);
+    RUN_TEST(test_masters_too_far_away_for_periods_stay_on_the_cam);
     RUN_TEST(test_4096_points);
     return UNITY_END();
 }

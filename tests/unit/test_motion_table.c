@@ -256,6 +256,10 @@ static void test_tables_without_sense_are_refused(void)
         {1, {{INFINITY, 1}}, true},
         {2, {{1, 1}, {2, NAN}}, true},
         {2, {{1, 1}, {2, -INFINITY}}, true},
+        {2, {{1, 1}, {2, 1.1e30}}, true},
+        {1, {{1.1e30, 1}}, true},
+        {2, {{1e-317, 1}, {2e-317, 2}}, true}, /* below 1 ps */
+        {2, {{1, 1}, {1 + 0.9e-12, 2}}, true},
         {2, {{0, 1.1}, {1, 2}}, true},        /* the axis is not there */
     };
     cm1e_table_profile_t profile;
