@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "../support/axis_bench.h"
+#include "axis/axis_limits.h"
 #include "axis/axis_parameters.h"
 
 void setUp(void) { bench_start(); }
@@ -176,6 +177,25 @@ static void test_an_axis_outside_its_limits_may_only_come_back(void)
     bench_cycles(3000);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(velocity));
     TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
+}
+
+/* At the limit itself nothing is left to brake in, however slow the motion would be. */
+static void test_an_axis_at_its_limit_may_not_go_on(void)
+{
+    bench_enable_within(-2.0, 3.0);
+    for (int i = 0; i < 2; i++) {
+        const double limit = i == 0 ? 3.0 : -2.0, outwards = i == 0 ? 1.0 : -1.0;
+        const cm1e_command_id_t id = bench_move_to(limit, 10.0);
+        bench_wait(id, 3000);
+        for (double speed = 0.01; speed < 20.0; speed *= 5.0) {
+            const cm1e_axis_command_t out = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = speed * outwards};
+            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_try_command(&out));
+        }
+        const cm1e_axis_command_t back = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = -0.01 * outwards};
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_try_command(&back));
+        bench_cycles(100);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
+    }
 }
 
 /* ---- enabled directions ------------------------------------------------------------------------------------------ */
@@ -375,6 +395,20 @@ static void test_a_maximum_lowered_too_far_does_not_raise_the_jerk(void)
     }
 }
 
+/* An acceleration that the largest jerk ends too late gets the jerk that ends it at the maximum velocity. */
+static void test_an_acceleration_near_the_maximum_ends_at_the_maximum(void)
+{
+    bench_enable();
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const double a = most->acceleration, room = a * a / (2.0 * most->jerk) / 3.0;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const from_t from = {.velocity = sign * (most->velocity - room), .acceleration = sign * a};
+        cm1e_motion_limits_t limits = {.jerk = most->jerk / 10.0};
+        cm1e_axis_keep_below_maximum(axis, &from, &limits);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6 * most->jerk, 3.0 * most->jerk, limits.jerk);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -386,6 +420,7 @@ int main(void)
     RUN_TEST(test_a_stop_that_is_taken_over_at_once_makes_no_step);
     RUN_TEST(test_a_move_back_inside_is_taken_while_braking_without_limit_of_jerk);
     RUN_TEST(test_an_axis_outside_its_limits_may_only_come_back);
+    RUN_TEST(test_an_axis_at_its_limit_may_not_go_on);
     RUN_TEST(test_motion_in_a_disabled_direction_is_refused);
     RUN_TEST(test_refused_numbers_are_told_as_they_are_judged);
     RUN_TEST(test_direction_disabled_while_running_stops_the_motion);
@@ -395,5 +430,6 @@ int main(void)
     RUN_TEST(test_a_limit_that_a_reversal_would_overrun_is_refused);
     RUN_TEST(test_a_smaller_jerk_keeps_the_maximum_of_the_application);
     RUN_TEST(test_a_maximum_lowered_too_far_does_not_raise_the_jerk);
+    RUN_TEST(test_an_acceleration_near_the_maximum_ends_at_the_maximum);
     return UNITY_END();
 }
