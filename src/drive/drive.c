@@ -137,7 +137,7 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     const bool operating = drive->mode.operates && drive->torque.asked;
     const bool shown = f->mode == (int8_t)drive->mode.commanded;
     cm1e_drive_latch_faults(drive);
-    if (operating && f->online)
+    if (operating && f->online && drive->actual.distrusted == 0)
         drive->torque.was_enabled = true;
     if (operating && shown && f->online)
         drive->torque.confirmed = true;
@@ -164,8 +164,11 @@ static bool wants_torque(const cm1e_drive_t *drive)
         return false;
     if (drive->fault.error != CM1E_OK)
         return drive_fault_allows_ramp(drive->fault.error) && drive->feedback.enabled;
-    if (!drive->torque.asked && (drive->feedback.state == OPERATION_ENABLED || drive->actual.distrusted > 0 ||
+    if (!drive->torque.asked && (drive->feedback.state == OPERATION_ENABLED ||
                                  drive->now_ns < drive->waits.torque_from_ns))
+        return false;
+    /* A jump of the position on the way to torque: it would be a target. The way begins anew. */
+    if (!drive->torque.was_enabled && drive->actual.distrusted > 0)
         return false;
     /* Without fresh inputs the actual position is unknown, so the drive takes no step towards torque. */
     return drive->feedback.online || drive->torque.was_enabled;

@@ -10,7 +10,7 @@ typedef enum lie { A_JUMP = 0, A_FAR_JUMP, TURNED_SIGN, A_SMALL_JUMP, FROZEN, LI
 static const char *const lie_names[LIES] = {"1,000,000 counts off", "100,000,000 counts off", "sign turned round",
                                             "3,000 counts off", "frozen"};
 static const int lengths[] = {1, 2, 3, 4, 20, 400};
-enum { LENGTHS = sizeof lengths / sizeof lengths[0], ENABLED = 260, LAST_PHASE = 520, LOST_LIMIT = 3, AFTER = 900 };
+enum { LENGTHS = sizeof lengths / sizeof lengths[0], ENABLED = 260, ENABLING = 100, LAST_PHASE = 520, LOST_LIMIT = 3, AFTER = 900 };
 static const double unit = 50000, speed_u = 10, way_u = 4;
 static const double SERVO_OVERSHOOT = 0.03; /* of the speed, at the end of a ramp without limit of jerk */
 
@@ -103,14 +103,15 @@ static void run(cm1e_mapping_t mapping, const char *firmware)
     bench_play(&bench);
 }
 
+static const struct {
+    cm1e_mapping_t mapping;
+    const char *firmware;
+} variants[] = {{CM1E_MAPPING_DYNAMIC, "1.3.5"}, {CM1E_MAPPING_DYNAMIC, "1.2.0"}, {CM1E_MAPPING_CSP, "1.3.0"},
+                {CM1E_MAPPING_CSV, "1.3.5"}};
+enum { VARIANTS = sizeof variants / sizeof variants[0] };
+
 START_TEST(test_no_motor_is_moved_by_what_is_told_of_it)
 {
-    static const struct {
-        cm1e_mapping_t mapping;
-        const char *firmware;
-    } variants[] = {{CM1E_MAPPING_DYNAMIC, "1.3.5"}, {CM1E_MAPPING_DYNAMIC, "1.2.0"}, {CM1E_MAPPING_CSP, "1.3.0"},
-                    {CM1E_MAPPING_CSV, "1.3.5"}};
-    enum { VARIANTS = sizeof variants / sizeof variants[0] };
     int moment = 0;
     const int stride = sweep_stride(23, 151);
     lie = (lie_t)_i;
@@ -124,8 +125,23 @@ START_TEST(test_no_motor_is_moved_by_what_is_told_of_it)
 }
 END_TEST
 
+/* A drive gets its torque some cycles after it was asked for. */
+START_TEST(test_no_motor_is_moved_by_what_is_told_of_it_while_it_is_enabled)
+{
+    lie = (lie_t)_i;
+    int moment = 0;
+    const int stride = sweep_stride(1, 17);
+    for (int v = 0; v < VARIANTS; v++)
+        for (length = 1; length <= LOST_LIMIT + 1; length++, moment++)
+            for (begin = 1 + moment * 5 % stride; begin < ENABLING; begin += stride)
+                run(variants[v].mapping, variants[v].firmware);
+}
+END_TEST
+
 int main(void)
 {
     return bench_main("actual positions that are not true", 250,
-                      (bench_test_t[]){{test_no_motor_is_moved_by_what_is_told_of_it, LIES}, {0}});
+                      (bench_test_t[]){{test_no_motor_is_moved_by_what_is_told_of_it, LIES},
+                                       {test_no_motor_is_moved_by_what_is_told_of_it_while_it_is_enabled, A_FAR_JUMP + 1},
+                                       {0}});
 }
