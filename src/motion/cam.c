@@ -161,7 +161,8 @@ static cm1e_cam_fault_t find_extremes(cm1e_cam_t *cam, int *at)
         cm1e_curve_t curve;
         cm1e_curve_extremes_t part;
         const double h = span(cam->knots, *at);
-        if (!(h >= shortest)) /* of lines too: the number of a period must be finite */
+        const double from = cam->knots[*at].master - cam->start, to = cam->knots[*at + 1].master - cam->start;
+        if (!(h >= shortest && to > from)) /* of lines too: the number of a period must be finite */
             return CM1E_CAM_STEEP;
         if (cam->curve == mcCamLinear)
             continue;

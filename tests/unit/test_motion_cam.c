@@ -391,6 +391,18 @@ static void test_a_curve_with_five_zeros_has_its_extremes(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, fmax(highest, slave), cam.extremes.highest);
 }
 
+/* Points that differ, but not by their distances from the first one. */
+static void test_points_that_rounding_puts_together_are_refused(void)
+{
+    const MC_CAM_POINT points[] = {{-0x1p53, 0, 0, 0}, {0.25, 1, 1, 0}, {0.5, 2, 1, 0}, {0x1p53, 3, 0, 0}};
+    for (int curve = mcCamPolynomial5; curve <= (int)mcCamLinear; curve++) {
+        int wrong = -1;
+        const MC_CAM_REF table = {points, 4, (MC_CAM_CURVE)curve};
+        TEST_ASSERT_EQUAL_INT(CM1E_CAM_STEEP, cm1e_cam_compile(&cam, knots, 8, &table, true, &wrong));
+        TEST_ASSERT_EQUAL_INT(1, wrong);
+    }
+}
+
 /* So far away that doubles do not tell the place in the period: still a place of the cam. */
 static void test_masters_too_far_away_for_periods_stay_on_the_cam(void)
 {
@@ -447,6 +459,7 @@ int main(void)
     RUN_TEST(test_every_wrong_number_is_found_and_named);
     RUN_TEST(test_extreme_numbers_never_become_infinite);
     RUN_TEST(test_a_curve_with_five_zeros_has_its_extremes);
+    RUN_TEST(test_points_that_rounding_puts_together_are_refused);
     RUN_TEST(test_masters_too_far_away_for_periods_stay_on_the_cam);
     RUN_TEST(test_4096_points);
     return UNITY_END();
