@@ -2,6 +2,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include "cia402/cia402.h"
 #include "scenario_private.h"
 
 /** Which axes must be in ErrorStop. */
@@ -287,6 +288,12 @@ static void judge_text(run_t *run, int number, const machine_axis_t *axis)
                       fault_names[(int)run->scenario->faults[number].kind], row->word, text);
 }
 
+/** A homing by the drive may set a new position until the drive has shown another mode (docs/SAFETY.md). */
+static bool may_set_position(const machine_axis_t *axis)
+{
+    return axis->info.mode == CM1E_MODE_HM || axis->info.mode == CM1E_MODE_NONE;
+}
+
 /** An armed axis has stopped, or was switched off by its program, or it is late. */
 static void judge_axis(run_t *run, int i, machine_axis_t *axis)
 {
@@ -307,7 +314,7 @@ static void judge_axis(run_t *run, int i, machine_axis_t *axis)
             run->outcome->faults[i].cycles = age;
         judge_text(run, i, axis);
     } else if (axis->info.state == CM1E_AXIS_DISABLED || !axis->power.Enable ||
-               (fault->kind == FAULT_JUMP && axis->info.state == CM1E_AXIS_HOMING)) /* it may set a new position */
+               (fault->kind == FAULT_JUMP && may_set_position(axis)))
         watches[i].armed[axis->number] = false;
     else if (age > bound)
         scenario_fail(run, "detection", "%s is in %s, %d cycles after \"%s\"; %d are allowed", axis->name,

@@ -33,6 +33,10 @@
 #define RADIANS 6.283185307179586     /* of a revolution */
 #define LOST_OF_COMPOSITE 2.0 /* cycles */
 #define LOST_OF_ONE 1.25      /* cycles; with more the set-point goes after the motor */
+#define RESTING 0.01          /* of the velocity of the axis */
+/* After a pause: the inputs of its first cycle are older, the set-point of the second one is the first that knows of it, and
+ * the drive has it in the third. */
+enum { AFTER_STALL = 2, LATE_CYCLES = 3 };
 enum { GAIN_MS = 20, STILL_MS = 60, STALL_MS = 300, CATCH_MS = 500, QUIET_MS = 200, HALT_MS = 300 };
 
 static int cycles_of(const run_t *run, double ms) { return (int)(ms * 1000 / run->scenario->cycle_us); }
@@ -95,6 +99,13 @@ static double gain_of(const axis_spec_t *spec)
 static double way_to_stop(const axis_spec_t *spec, double speed)
 {
     return speed * speed / (2 * peak_torque(spec) * gain_of(spec));
+}
+
+/** The way of a stop with the limits of the axis, from a constant velocity. */
+static double way_of_ramp(const axis_spec_t *spec, double speed)
+{
+    const double rounding = spec->jerk > 0 ? spec->deceleration / (2 * spec->jerk) : 0;
+    return speed * (speed / (2 * spec->deceleration) + rounding);
 }
 
 /** Counts at which friction holds the shaft off its target, until the integral of the servo breaks it free. */
@@ -325,10 +336,30 @@ static void judge_still(run_t *run, machine_axis_t *axis)
                       cm1e_axis_state_name(axis->info.state), axis->probe.position_counts - seen->rest_at);
 }
 
+/** In a pause of the host a motor runs on that has a velocity for a target, or a profile of the drive, and the drive may
+ *  accelerate by it (docs/SAFETY.md). It has to stop with its own limits from where it is when it hears of that, and has
+ *  stopped when it stands or comes back. */
+static void note_pause(const run_t *run, machine_axis_t *axis, double place, double velocity)
+{
+    const axis_spec_t *spec = axis->spec;
+    witness_t *seen = &axis->seen;
+    const bool runs_on = by_velocity(spec) || spec->motion != 0;
+    if (seen->stalled == AFTER_STALL && runs_on && axis->probe.torque_on && velocity != 0) {
+        const double late_s = LATE_CYCLES * run->scenario->cycle_us * 1e-6;
+        const double gain = spec->motion != 0 ? spec->acceleration * late_s : 0;
+        const double speed = fmax(fabs(velocity), fmin(fabs(velocity) + gain, spec->velocity));
+        seen->runs = velocity > 0 ? 1 : -1;
+        seen->runs_to = place + seen->runs * (speed * late_s + way_of_ramp(spec, speed));
+    } else if (velocity * seen->runs <= spec->velocity * RESTING) {
+        seen->runs = 0;
+    }
+}
+
 static void judge_place(run_t *run, machine_axis_t *axis)
 {
     const axis_spec_t *spec = axis->spec;
     const double place = axis->probe.position_counts * (spec->invert != 0 ? -1 : 1);
+    note_pause(run, axis, place, axis->probe.velocity_counts_per_s * (spec->invert != 0 ? -1 : 1));
     const bool inside = place >= spec->limit_negative && place <= spec->limit_positive;
     axis->seen.coasted = !inside && (axis->seen.coasted || !axis->probe.torque_on);
     if ((spec->limit_negative == 0 && spec->limit_positive == 0) || !axis->seen.kept || axis->seen.shifted ||
@@ -342,7 +373,8 @@ static void judge_place(run_t *run, machine_axis_t *axis)
     const double beyond = fmax(place - spec->limit_positive, spec->limit_negative - place);
     const double outwards = place > spec->limit_positive ? 1 : -1;
     const double velocity = axis->probe.velocity_counts_per_s * (spec->invert != 0 ? -1 : 1) * outwards;
-    if (beyond > margin && velocity > spec->velocity * 0.01)
+    const bool runs_on = axis->seen.runs == outwards && (axis->seen.runs_to - place) * outwards >= -margin;
+    if (!runs_on && beyond > margin && velocity > spec->velocity * RESTING)
         scenario_fail(run, "place", "%s (%s): the shaft is %.0f counts beyond its software limit and goes on",
                       axis->name, cm1e_axis_state_name(axis->info.state), beyond);
 }

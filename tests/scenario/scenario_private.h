@@ -36,6 +36,8 @@ typedef struct witness {
     int rung;                             /**< cycles since a cable of its ring broke or was mended */
     int stopped;                          /**< cycles since a hard stop held it */
     int stalled;                          /**< cycles since the host stood still */
+    double runs_to;                       /**< counts, in the direction of its axis: to there it may go on after a pause */
+    double runs;                          /**< in this direction: 1 or -1; 0: not */
     double pushed_until;                  /**< cycle until which a load may move it */
     bool kept;                            /**< the device has not lost its position since the start */
     bool coasted;                         /**< beyond a software limit, since it had no torque */
