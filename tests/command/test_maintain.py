@@ -109,6 +109,7 @@ def check_jog():
         jog_for(client, Y, 0.5, 0.3)
         jog_for(client, Y, -0.5, 0.5)
         expect(axis(client, Y)["velocity"] < 0, "a jog backwards right after one forwards", axis(client, Y))
+        client.ask("jog", axis=Y, velocity=-0.5, keep_ms=2000)  # it goes on also where this client has to wait
         reply = client.ask("stop", axis=Y)
         expect(reply["ok"], "stop is refused", reply)
         wait_for(lambda: stands(client, Y), "after stop the motor goes on", 1)
