@@ -332,6 +332,30 @@ static void test_it_goes_on_while_the_ratio_is_updated_again_and_again(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 6.0 * -0.4, axes_info(SLAVE).set_velocity);
 }
 
+/* Frames were not sent for a while: the slave begins anew in step, and the shift stays where it was. */
+static void test_a_pause_ends_it(void)
+{
+    axes_move_velocity(MASTER, 5.0);
+    axes_cycles(1000);
+    in_step(1, 1);
+    const cm1e_command_id_t id = by_shift(5.0, 1.0);
+    axes_cycles(500);
+    const double shifted = axes_status(SLAVE, id).covered;
+    TEST_ASSERT_TRUE(shifted > 0.1 && shifted < 4.0);
+    axes_inputs();
+    for (int n = 0; n < 3; n++) {
+        axes_bench.witness[n].strictness = AXES_UNWATCHED; /* the set velocity falls to 0 */
+        cm1e_axis_after_pause(axes_axis(n), 100000000);
+    }
+    axes_outputs();
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ABORTED, state_of(id));
+    for (int n = 0; n < 3; n++)
+        axes_bench.witness[n].strictness = AXES_SMOOTH;
+    axes_cycles(1500);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, off(shifted));
+    TEST_ASSERT_EQUAL_DOUBLE(5.0, axes_info(SLAVE).set_velocity);
+}
+
 static void test_another_master_ends_it(void)
 {
     axes_move_velocity(MASTER, 6.0);
@@ -672,6 +696,7 @@ int main(void)
     RUN_TEST(test_it_runs_while_the_slave_gets_into_step);
     RUN_TEST(test_it_goes_on_through_a_change_of_ratio);
     RUN_TEST(test_it_goes_on_while_the_ratio_is_updated_again_and_again);
+    RUN_TEST(test_a_pause_ends_it);
     RUN_TEST(test_another_master_ends_it);
     RUN_TEST(test_it_ends_with_the_coupling);
     RUN_TEST(test_a_shift_comes_to_rest_while_the_ratio_is_kept_to_the_end);
