@@ -552,8 +552,11 @@ void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
         cm1e_scout_result(&search->scout, d);
     else if (is_machine(search->step))
         cm1e_al_result(&search->al, d, now_ns);
-    else if (search->step == SEARCH_COUNT && d->working_counter >= 0)
-        take_count(bus, d->working_counter, now_ns);
+    if (search->step == SEARCH_COUNT) {
+        if (d->working_counter >= 0)
+            take_count(bus, d->working_counter, now_ns);
+        return; /* a count of 1 is not the answer to the first question of the walk that begins now */
+    }
     if (d->working_counter == APRW_WORKING_COUNTER && search->step == SEARCH_ADDRESS)
         take_address(search, d, now_ns);
     if (d->working_counter != 1)

@@ -161,6 +161,15 @@ static uint32_t parent_of(const cm1e_sim_segment_t *segment, uint32_t position)
     return parent;
 }
 
+/* The first slave that is not pulled out: the cable of the master leads to it. */
+static uint32_t first_of(const cm1e_sim_segment_t *segment)
+{
+    uint32_t position = 1;
+    while (position < segment->count && segment->slaves[position - 1]->detached)
+        position++;
+    return position;
+}
+
 static int port_of_parent(const cm1e_sim_segment_t *segment, uint32_t position)
 {
     const cm1e_sim_slave_t *slave = position <= segment->count ? segment->slaves[position - 1] : NULL;
@@ -230,7 +239,7 @@ static void time_frame(cm1e_sim_segment_t *segment, bool returns)
 static struct route primary_route(cm1e_sim_segment_t *segment)
 {
     struct route route = {.exit_port = CM1E_SIM_PORT_LOST, .branches = true};
-    if (!cable_connects(segment, 1))
+    if (!cable_connects(segment, first_of(segment)))
         return route;
     for (uint32_t position = 1; position <= segment->count; position++) {
         segment->places[position].reached = is_reached(segment, position);

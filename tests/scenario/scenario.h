@@ -32,6 +32,7 @@ typedef struct axis_spec {
     double stops;                        /**< 1: hard stops and switches where the simulator has them */
     double coupling_stop;
     double motion;                       /**< 1: the drive computes its motions */
+    double optional;                     /**< 1: its slave may come and go; it has an explicit device ID */
 } axis_spec_t;
 
 /** One command: at cycle `at` a block of this axis gets TRUE at Execute (or Enable), for `hold` cycles. */
@@ -44,13 +45,15 @@ typedef struct step {
     double numerator, denominator;
     double factor, relative, value, mode;
     double x, y, aux_x, aux_y;           /**< of a path */
+    double torque;                       /**< % of rated torque */
+    double period, points;               /**< of a table over time, or of positions from outside: ms, number */
 } step_t;
 
 typedef enum fault_kind {
     FAULT_LOSE = 0, FAULT_LOSE_OUT, FAULT_LOSE_BACK, FAULT_CORRUPT, FAULT_DELAY, FAULT_COUNTER, FAULT_STALL,
     FAULT_UNPLUG, FAULT_POWER_CYCLE, FAULT_FALL_BACK, FAULT_MOTOR_POWER, FAULT_ERROR, FAULT_OVER_TORQUE,
     FAULT_TEMPERATURE, FAULT_LOAD, FAULT_JUMP, FAULT_FREEZE, FAULT_RING, FAULT_CLOCK, FAULT_BRIDGE_ERROR,
-    FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_KINDS
+    FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_KINDS
 } fault_kind_t;
 
 /** One fault. What `value` is depends on the kind; see the table in scenario_fault.c. */
@@ -63,7 +66,7 @@ typedef struct fault {
 typedef struct scenario {
     uint64_t seed;                       /**< where it comes from; 0: written by hand */
     double cycles;                       /**< of the program, before the machine is brought back */
-    double cycle_us, lost_limit, ring, clocks, io;
+    double cycle_us, lost_limit, ring, clocks, io, overlap;
     double memory;                       /**< the allocation that fails in a set-up before the run; 0: none */
     int axis_count, step_count, fault_count;
     axis_spec_t axes[SCENARIO_AXES];

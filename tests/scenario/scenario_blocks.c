@@ -19,6 +19,19 @@ const block_member_t *block_member(const block_t *type, const char *name)
     return NULL;
 }
 
+const char *const step_homings[] = {"MC_StepAbsoluteSwitch", "MC_StepLimitSwitch", "MC_StepBlock", "MC_HomeDirect",
+                                    "MC_FinishHoming", NULL};
+const char *const table_blocks[] = {"MC_PositionProfile", "MC_VelocityProfile", "MC_AccelerationProfile", NULL};
+
+bool program_has(const scenario_t *scenario, int axis, const char *const *blocks)
+{
+    for (int i = 0; i < scenario->step_count; i++)
+        for (int n = 0; blocks[n] && (int)scenario->steps[i].axis == axis; n++)
+            if (strcmp(scenario_blocks[(int)scenario->steps[i].block], blocks[n]) == 0)
+                return true;
+    return false;
+}
+
 bool block_flag(const instance_t *block, const char *name)
 {
     const block_member_t *member = block_member(block->type, name);

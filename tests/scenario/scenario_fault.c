@@ -9,7 +9,8 @@
 typedef enum concerned { NOBODY = 0, THE_AXIS, THE_NETWORK } concerned_t;
 
 /** "%p": position of the slave, "%c": channel, "%l": length in cycles, "%m": length in ms, "%v": value, "%x": value as
- *  hexadecimal. NULL: it is not for the console. */
+ *  hexadecimal, "%i": its explicit device ID, "%s": that of a stranger. Orders are separated by ';'. NULL: it is not for the
+ *  console. */
 typedef struct fault_row {
     const char *begin, *end;
     concerned_t concerned;
@@ -18,6 +19,8 @@ typedef struct fault_row {
     bool brief;              /**< it is over with its last frame; nothing has to be ended */
     const char *word;        /**< what the text of the axis has; NULL: anything */
 } fault_row_t;
+
+enum { FRAMES_A_CYCLE = 3, ALONE_CYCLES = 80, ORDER_BYTES = 100, AWAY_CYCLES = 30 };
 
 static const fault_row_t rows[FAULT_KINDS] = {
     [FAULT_LOSE] = {"lose %l", NULL, THE_NETWORK, 1, true, true, NULL},
@@ -43,9 +46,10 @@ static const fault_row_t rows[FAULT_KINDS] = {
     [FAULT_BRIDGE_CABLE] = {"motor %p %c unplug", "motor %p %c replug", THE_AXIS, 60, false, false, NULL},
     [FAULT_SWITCH] = {"sensor %p 2 on", "sensor %p 2 auto", NOBODY, 0, false, false, NULL},
     [FAULT_EEPROM] = {"quirk %p slow-eeprom 20000", "quirk %p nothing", NOBODY, 0, false, false, NULL},
+    [FAULT_DETACH] = {"detach %p", "attach %p", THE_AXIS, AWAY_CYCLES, true, false, NULL},
+    [FAULT_STRANGER] = {"detach %p;switches %p %s;attach %p", "detach %p;switches %p %i;attach %p", THE_AXIS, AWAY_CYCLES,
+                        true, false, NULL},
 };
-
-enum { FRAMES_A_CYCLE = 3, ALONE_CYCLES = 80, ORDER_BYTES = 100 };
 
 /* ---- what is done ------------------------------------------------------------------------------------------------ */
 
@@ -68,12 +72,18 @@ static void order(run_t *run, const fault_t *fault, const char *format)
             used += (size_t)snprintf(line + used, room, "%.0f", fault->length * run->scenario->cycle_us / 1000 + 1);
         else if (*c == 'x')
             used += (size_t)snprintf(line + used, room, "%04X", (unsigned)fault->value);
+        else if (*c == 'i')
+            used += (size_t)snprintf(line + used, room, "%02X", (unsigned)(FIRST_ID + axis->number));
+        else if (*c == 's')
+            used += (size_t)snprintf(line + used, room, "%02X", (unsigned)STRANGER_ID);
         else
             used += (size_t)snprintf(line + used, room, "%.12g", fault->value);
     }
     const int network = rows[(int)fault->kind].concerned == THE_NETWORK ? (int)fault->network : axis->network;
-    if (cm1e_bus_simulate(run->buses[network], line, answer, sizeof answer) != CM1E_OK)
-        scenario_fail(run, "console", "%s: %s", line, answer);
+    char *rest, *one = strtok_r(line, ";", &rest);
+    for (; one; one = strtok_r(NULL, ";", &rest))
+        if (cm1e_bus_simulate(run->buses[network], one, answer, sizeof answer) != CM1E_OK)
+            scenario_fail(run, "console", "%s: %s", one, answer);
 }
 
 static wire_fault_t wire_of(const fault_t *fault)
@@ -104,6 +114,8 @@ static void end_fault(run_t *run, const fault_t *fault)
         order(run, fault, rows[(int)fault->kind].end);
     else if (!rows[(int)fault->kind].brief)
         wire_set((int)fault->network, wire_of(fault), false);
+    if (fault->kind == FAULT_STRANGER)
+        run->axes[(int)fault->axis].seen.stranger = false;
 }
 
 /* ---- whom it concerns -------------------------------------------------------------------------------------------- */
@@ -132,6 +144,9 @@ static bool goes_on(const run_t *run, const fault_t *fault)
     return false;
 }
 
+/** An optional slave is away, or a stranger is in its place. */
+static bool is_absence(const fault_t *fault) { return fault->kind == FAULT_DETACH || fault->kind == FAULT_STRANGER; }
+
 /** Its slave has been without power, or somebody turned at it. */
 static void note(run_t *run, const fault_t *fault)
 {
@@ -139,8 +154,12 @@ static void note(run_t *run, const fault_t *fault)
         machine_axis_t *axis = &run->axes[n];
         const bool same_slave = axis->network == run->axes[(int)fault->axis].network &&
                                 axis->position == run->axes[(int)fault->axis].position;
-        if (fault->kind == FAULT_POWER_CYCLE && same_slave)
+        if ((fault->kind == FAULT_POWER_CYCLE || is_absence(fault)) && same_slave)
             axis->seen.kept = false;
+        if (fault->kind == FAULT_STRANGER && n == (int)fault->axis) {
+            axis->seen.stranger = true;
+            axis->seen.stranger_from = run->cycle;
+        }
         if (fault->kind == FAULT_JUMP && n == (int)fault->axis) /* without torque it is the new origin */
             axis->seen.kept = false;
         /* Nor can the master help that a motor behind a bridge misses targets, and then gets to the last one. */
@@ -166,6 +185,8 @@ static bool concerns(const run_t *run, const fault_t *fault, const machine_axis_
     const fault_row_t *row = &rows[(int)fault->kind];
     if (fault->kind == FAULT_BRIDGE_CABLE && fault->length < row->beyond) /* nobody needs to notice it */
         return false;
+    if (fault->kind == FAULT_DETACH && fault->length < row->beyond + run->scenario->lost_limit)
+        return false;
     if (fault->kind == FAULT_JUMP && (fault->length < run->scenario->lost_limit + 1 || !wire_watches(axis)))
         return false;
     if (row->concerned == THE_AXIS)
@@ -175,8 +196,11 @@ static bool concerns(const run_t *run, const fault_t *fault, const machine_axis_
     /* Frames of supervision and of clocks may be lost in place of those with process data. */
     const bool by_frames = row->brief && fault->kind != FAULT_POWER_CYCLE;
     const double frames = (by_frames ? FRAMES_A_CYCLE : 1) * (run->scenario->lost_limit + 1);
-    const int network = fault->kind == FAULT_UNPLUG || fault->kind == FAULT_POWER_CYCLE
-                            ? run->axes[(int)fault->axis].network : (int)fault->network;
+    const machine_axis_t *there = &run->axes[(int)fault->axis];
+    const bool of_slave = fault->kind == FAULT_UNPLUG || fault->kind == FAULT_POWER_CYCLE;
+    const int network = of_slave ? there->network : (int)fault->network;
+    if (of_slave && there->spec->optional != 0) /* those that are not behind it go on */
+        return axis->network == network && axis->position >= there->position && fault->length >= frames + AWAY_CYCLES;
     return axis->network == network && fault->length >= frames;
 }
 
@@ -268,12 +292,24 @@ static bool is_alone(const run_t *run, int number)
     return true;
 }
 
-/** In the cycle of the fault it has begun to brake before a limit, or because its coupling asks too much: the first cause
- *  stays, the log has the other one. */
+bool fault_explains(const run_t *run, const machine_axis_t *axis)
+{
+    for (int i = 0; i < run->scenario->fault_count; i++) {
+        const fault_t *fault = &run->scenario->faults[i];
+        const machine_axis_t *there = &run->axes[(int)fault->axis];
+        if (fault->at <= run->cycle && (!is_absence(fault) || there == axis))
+            return true;
+    }
+    return false;
+}
+
+/** In the cycle of the fault it has begun to brake before a limit, because its coupling asks too much, or without its
+ *  master: the first cause stays, the log has the other one. */
 static bool braked_before(const run_t *run, const fault_t *fault, const machine_axis_t *axis)
 {
     return run->cycle == (int)fault->at + 1 && (axis->info.error == CM1E_ERROR_AXIS_POSITION_RANGE ||
-                                                axis->info.error == CM1E_ERROR_AXIS_COUPLING_LIMIT);
+                                                axis->info.error == CM1E_ERROR_AXIS_COUPLING_LIMIT ||
+                                                axis->info.error == CM1E_ERROR_AXIS_MASTER_LOST);
 }
 
 static void judge_text(run_t *run, int number, const machine_axis_t *axis)
@@ -307,7 +343,8 @@ static void judge_axis(run_t *run, int i, machine_axis_t *axis)
     *good += run->bad[axis->network] == 0;
     const int age = row->concerned == THE_AXIS ? *good : run->cycle - (int)fault->at;
     const int bound = row->beyond + (row->counts_lost ? (int)run->scenario->lost_limit : 0) +
-                      (row->brief && row->counts_lost ? (int)run->scenario->lost_limit + 2 : 0);
+                      (row->brief && row->counts_lost ? (int)run->scenario->lost_limit + 2 : 0) +
+                      (axis->spec->optional != 0 ? AWAY_CYCLES : 0);
     if (axis->info.state == CM1E_AXIS_ERROR_STOP) {
         watches[i].armed[axis->number] = false;
         if (age > run->outcome->faults[i].cycles)

@@ -199,7 +199,9 @@ static double highest_speed(const run_t *run, const machine_axis_t *axis)
     const double velocity = axis->spec->velocity, late = leaves_stop(run, axis) ? catch_up_speed(axis->spec, velocity) : 0;
     const double by_axis = velocity * (1 + allowed_share(run, axis)) + late;
     const double by_drive = HOMING_SPEED * (1 + HOMING_OVERSHOOT);
-    if (axis->info.state == CM1E_AXIS_HOMING)
+    if (!axis->seen.by_drive)
+        return by_axis;
+    if (axis->info.state == CM1E_AXIS_HOMING && !axis->seen.by_steps)
         return by_drive;
     return is_homing(run, axis) ? fmax(by_axis, by_drive) : by_axis;
 }
@@ -212,7 +214,7 @@ static void judge_speed(run_t *run, machine_axis_t *axis)
         return;
     const double servo = SERVO_FILTER_S * fmax(spec->acceleration, spec->deceleration) + SERVO_SPEED_COUNTS +
                          (by_velocity(spec) ? COARSE_COUNTS : 0);
-    const double own = is_homing(run, axis) ? HOMING_SPEED : 0, over = speed / fmax(spec->velocity, own) - 1;
+    const double own = is_homing(run, axis) && axis->seen.by_drive ? HOMING_SPEED : 0, over = speed / fmax(spec->velocity, own) - 1;
     run->outcome->over_speed = fmax(run->outcome->over_speed, over);
     const double above = (speed - highest_speed(run, axis) - servo) / spec->velocity;
     run->outcome->over_tolerance = fmax(run->outcome->over_tolerance, above);
@@ -234,12 +236,12 @@ static void judge_set_point(run_t *run, machine_axis_t *axis)
     const axis_spec_t *spec = axis->spec;
     const double speed = fabs(axis->info.set_velocity) * spec->counts_per_unit, before = axis->seen.set_speed;
     const double gain = fmax(spec->acceleration, spec->deceleration) * run->scenario->cycle_us * 1e-6;
+    const bool by_drive = axis->info.state == CM1E_AXIS_HOMING && axis->seen.by_drive;
     axis->seen.set_speed = speed;
-    if (speed - before > gain * (1 + 1e-6) + 1e-3 && !was_disturbed(run, &axis->seen) &&
-        axis->info.state != CM1E_AXIS_HOMING)
+    if (speed - before > gain * (1 + 1e-6) + 1e-3 && !was_disturbed(run, &axis->seen) && !by_drive)
         scenario_fail(run, "set-point", "%s (%s): the set velocity gains %.3f counts/s in a cycle, its limits allow "
                       "%.3f", axis->name, cm1e_axis_state_name(axis->info.state), speed - before, gain);
-    if (speed > axis->spec->velocity * (1 + 1e-6) + 1e-3 && axis->info.state != CM1E_AXIS_HOMING)
+    if (speed > axis->spec->velocity * (1 + 1e-6) + 1e-3 && !by_drive)
         scenario_fail(run, "set-point", "%s (%s): the set velocity is %.3f counts/s, the maximum %.3f", axis->name,
                       cm1e_axis_state_name(axis->info.state), speed, axis->spec->velocity);
 }
@@ -273,7 +275,7 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
     const double speed = fabs(axis->probe.velocity_counts_per_s);
     memmove(seen->speeds + 1, seen->speeds, sizeof seen->speeds - sizeof seen->speeds[0]);
     seen->speeds[0] = fmax(speed, speed_held_back(axis));
-    const double homing = is_homing(run, axis) ? HOMING_ACCELERATION : 0;
+    const double homing = is_homing(run, axis) && axis->seen.by_drive ? HOMING_ACCELERATION : 0;
     const double most = fmax(fmax(axis->spec->acceleration, axis->spec->deceleration), homing) * window *
                         run->scenario->cycle_us * 1e-6;
     double before = 0; /* a short silence stops a motor and lets it go on: it gets no faster than it was */
@@ -383,6 +385,18 @@ static void judge_place(run_t *run, machine_axis_t *axis)
 
 #define BIT(state) (1u << CM1E_AXIS_##state)
 
+/** An error of bus or drive, and none of the faults until now concerns this axis. An optional slave that leaves concerns
+ *  only its own axis. */
+static bool is_groundless(const run_t *run, const machine_axis_t *axis)
+{
+    const cm1e_error_t error = axis->info.error;
+    const bool of_bus = (error <= CM1E_ERROR_BUS_NO_SLAVES && error >= CM1E_ERROR_INTERFACE_IN_USE) ||
+                        error == CM1E_ERROR_BUS_CLOCKS || error == CM1E_ERROR_AXIS_OFFLINE;
+    const bool of_drive = error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_POSITION &&
+                          axis->spec->stops == 0; /* a motor that presses against its stop is overloaded */
+    return (of_bus || of_drive) && run->phase == PHASE_PROGRAM && !fault_explains(run, axis);
+}
+
 /** Figure 2 of PLCopen Part 1, without its causes. Two changes may happen between two cycles. */
 static void judge_state(run_t *run, machine_axis_t *axis)
 {
@@ -408,6 +422,9 @@ static void judge_state(run_t *run, machine_axis_t *axis)
     axis->seen.error_at = run->cycle;
     char text[CM1E_AXIS_ERROR_TEXT_BYTES];
     cm1e_axis_error_text(axis->reference, text, sizeof text);
+    if (is_groundless(run, axis))
+        scenario_fail(run, "groundless", "%s is in ErrorStop, error 0x%04X, and nothing has happened to it: %.200s",
+                      axis->name, cm1e_error_id(axis->info.error), text);
     if (axis->info.error == CM1E_OK || !strstr(text, axis->name))
         scenario_fail(run, "text", "%s: ErrorStop with error 0x%04X, and a text that does not name the axis: %.200s",
                       axis->name, cm1e_error_id(axis->info.error), text);
@@ -416,6 +433,9 @@ static void judge_state(run_t *run, machine_axis_t *axis)
 /** Without MC_Power.Enable, or in ErrorStop, the torque ends: after a ramp, and it does not come back. */
 static void judge_torque(run_t *run, machine_axis_t *axis)
 {
+    if (axis->seen.stranger && run->cycle > axis->seen.stranger_from && axis->probe.torque_on)
+        scenario_fail(run, "stranger", "%s: another device is in the place of its slave, and its motor has torque",
+                      axis->name);
     const axis_spec_t *spec = axis->spec;
     witness_t *seen = &axis->seen;
     const bool off = !axis->power.Enable || axis->info.state == CM1E_AXIS_ERROR_STOP;
@@ -523,6 +543,9 @@ static void judge_log(run_t *run)
 
 /* ---- each cycle -------------------------------------------------------------------------------------------------- */
 
+static const char *const drive_homings[] = {"MC_Home", NULL}, *const shifts[] = {"MC_SetPosition", NULL};
+static const char *const superimposed[] = {"MC_MoveSuperimposed", NULL};
+
 void judge_begin(run_t *run)
 {
     run->outcome->hash = UINT64_C(0xCBF29CE484222325);
@@ -530,14 +553,10 @@ void judge_begin(run_t *run)
         witness_t *seen = &run->axes[n].seen;
         *seen = (witness_t){.kept = true, .stalled = 1000000, .rung = 1000000, .caught = 1000000, .homing = 1000000,
                             .stopped = 1000000, .quiet = 1000000, .jolted = 1000000, .pushed_until = -1000000};
-        for (int i = 0; i < run->scenario->step_count; i++) {
-            const char *name = scenario_blocks[(int)run->scenario->steps[i].block];
-            if ((int)run->scenario->steps[i].axis == n &&
-                (strcmp(name, "MC_SetPosition") == 0 || strcmp(name, "MC_Home") == 0))
-                seen->shifted = true;
-            if ((int)run->scenario->steps[i].axis == n && strcmp(name, "MC_MoveSuperimposed") == 0)
-                seen->superimposed = true;
-        }
+        seen->by_steps = program_has(run->scenario, n, step_homings);
+        seen->by_drive = program_has(run->scenario, n, drive_homings);
+        seen->shifted = seen->by_steps || seen->by_drive || program_has(run->scenario, n, shifts);
+        seen->superimposed = program_has(run->scenario, n, superimposed);
     }
 }
 

@@ -9,6 +9,8 @@ enum { CIA402_COUNTS = 131072, CIA402_SPEED_RPM = 3000, CM1_K37 = 10 };
 
 bool is_motor(const machine_axis_t *axis) { return axis->position > 0; }
 
+static bool is_optional(const axis_spec_t *spec) { return spec->kind == AXIS_CM1E && spec->optional != 0; }
+
 static bool is_bridged(const axis_spec_t *spec) { return spec->kind >= AXIS_EB01 && spec->kind <= AXIS_EB12; }
 
 /** An axis behind a bridge that the axis before it has too. */
@@ -27,6 +29,11 @@ static void describe_device(cm1e_axis_config_t *axis, const machine_axis_t *mach
     axis->channel = (uint8_t)machine->channel;
     if (spec->kind == AXIS_VIRTUAL)
         axis->type = CM1E_AXIS_VIRTUAL;
+    if (is_optional(spec)) {
+        axis->optional = true;
+        axis->address_kind = CM1E_ADDRESS_EXPLICIT_ID;
+        axis->address = (uint16_t)(FIRST_ID + machine->number);
+    }
     if (spec->kind == AXIS_CM1E) {
         snprintf(axis->firmware, sizeof axis->firmware, "%s", firmwares[(int)spec->firmware]);
         axis->mapping = (cm1e_mapping_t)spec->mapping;
@@ -45,7 +52,7 @@ static void describe_device(cm1e_axis_config_t *axis, const machine_axis_t *mach
     }
 }
 
-static void describe_axis(cm1e_axis_config_t *axis, const machine_axis_t *machine)
+static void describe_axis(const scenario_t *scenario, cm1e_axis_config_t *axis, const machine_axis_t *machine)
 {
     const axis_spec_t *spec = machine->spec;
     const double unit = spec->counts_per_unit;
@@ -60,14 +67,35 @@ static void describe_axis(cm1e_axis_config_t *axis, const machine_axis_t *machin
     axis->software_limit_negative = spec->limit_negative / unit;
     axis->software_limit_positive = spec->limit_positive / unit;
     axis->coupling_stop = (cm1e_coupling_stop_t)spec->coupling_stop;
+    axis->table_profiles = program_has(scenario, machine->number, table_blocks);
     if (spec->kind == AXIS_VIRTUAL)
         return;
     axis->sim.load_inertia = spec->load_inertia;
     axis->sim.friction = spec->friction;
     axis->sim.no_stops = axis->sim.no_sensors = spec->stops == 0;
+    if (spec->stops != 0 && program_has(scenario, machine->number, step_homings))
+        axis->inputs = (cm1e_input_config_t){.limit_positive = spec->invert != 0 ? 3 : 2,
+                                             .limit_negative = spec->invert != 0 ? 2 : 3, .home = 2};
     if (spec->kind == AXIS_CM1E)
         axis->homing = (cm1e_homing_config_t){.method = -2, .velocity = 100000 / unit, .acceleration = 2000000 / unit,
                                               .torque = 30, .timeout_s = 3};
+}
+
+static int terminals_of(const run_t *run, int network, uint32_t motors)
+{
+    return network == 0 ? (int)run->scenario->io : motors == 0;
+}
+
+/** Optional slaves are behind all others. */
+static void place_optional(run_t *run, uint32_t slaves[])
+{
+    for (int i = 0; i < SCENARIO_NETWORKS; i++) {
+        run->fixed_motors[i] = slaves[i];
+        slaves[i] += (uint32_t)terminals_of(run, i, slaves[i]);
+    }
+    for (int n = 0; n < run->scenario->axis_count; n++)
+        if (is_optional(run->axes[n].spec))
+            run->axes[n].position = ++slaves[run->axes[n].network];
 }
 
 /** Which slave an axis is, in the order of the list. */
@@ -82,12 +110,13 @@ static void place_axes(run_t *run)
         axis->number = n;
         axis->network = axis->spec->network != 0;
         axis->channel = is_bridged(axis->spec) ? (unsigned)axis->spec->channel : 0;
-        if (axis->spec->kind != AXIS_VIRTUAL)
+        if (axis->spec->kind != AXIS_VIRTUAL && !is_optional(axis->spec))
             axis->position = shares_bridge(scenario, n) ? slaves[axis->network] : ++slaves[axis->network];
         snprintf(axis->name, sizeof axis->name, "X%d", n);
         if (axis->network == 1)
             run->networks = SCENARIO_NETWORKS;
     }
+    place_optional(run, slaves);
 }
 
 static bool add_axes(const run_t *run, cm1e_bus_config_t *config, int network)
@@ -98,31 +127,22 @@ static bool add_axes(const run_t *run, cm1e_bus_config_t *config, int network)
         cm1e_axis_config_t *axis = cm1e_bus_config_add_axis(config, run->axes[n].name);
         if (!axis)
             return false;
-        describe_axis(axis, &run->axes[n]);
+        describe_axis(run->scenario, axis, &run->axes[n]);
     }
     return true;
-}
-
-static uint32_t motors_of(const run_t *run, int network)
-{
-    uint32_t last = 0;
-    for (int n = 0; n < run->scenario->axis_count; n++)
-        if (run->axes[n].network == network && run->axes[n].position > last)
-            last = run->axes[n].position;
-    return last;
 }
 
 /** Digital terminals behind the motors of the first network. false: no memory. */
 static bool add_terminals(const run_t *run, cm1e_bus_config_t *config, int network)
 {
-    const int terminals = network == 0 ? (int)run->scenario->io : motors_of(run, network) == 0;
+    const int terminals = terminals_of(run, network, run->fixed_motors[network]);
     for (int i = 0; i < terminals; i++) {
         char name[16];
         snprintf(name, sizeof name, "io%d%d", network, i);
         cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(config, name);
         if (!slave)
             return false;
-        slave->address = (uint16_t)(motors_of(run, network) + 1 + (uint32_t)i);
+        slave->address = (uint16_t)(run->fixed_motors[network] + 1 + (uint32_t)i);
         slave->sim.kind = CM1E_SIM_SLAVE_DIGITAL;
         slave->sim.outputs = slave->sim.inputs = 4;
     }
@@ -142,6 +162,7 @@ static cm1e_error_t open_network(run_t *run, int network, cm1e_diag_t *diag)
     config.cycle_time_ns = (int64_t)scenario->cycle_us * 1000;
     config.lost_cycles_limit = (uint32_t)scenario->lost_limit;
     config.distributed_clocks = scenario->clocks != 0;
+    config.overlap = scenario->overlap != 0;
     if (scenario->ring != 0)
         snprintf(config.second_interface, sizeof config.second_interface, "sim-second");
     snprintf(config.name, sizeof config.name, network ? "second" : "first");

@@ -5,7 +5,8 @@
  *   scenario --play FILE ...       scenarios that are written in files
  *   scenario --write --seed N      the scenario as text
  * with --shrink: a failing one is made smaller and written to shrunk-<seed>.scenario; --trace FILE: every cycle as CSV;
- * --faultless: without faults, and what the servo does by itself; --table: outcome of every fault, for scripts/soak.
+ * --faultless: without faults, and what the servo does by itself; --table: outcome of every fault, for scripts/soak;
+ * --sample: a thousand seeds, or what tests/support/effort.h makes of them.
  */
 #include <errno.h>
 #include <stdlib.h>
@@ -105,6 +106,20 @@ static int play_seeds(const options_t *options)
     return failed;
 }
 
+/** As many of each kind of seeds (scenario_random.c). */
+static int play_sample(options_t *options)
+{
+    static const uint64_t firsts[] = {1, UINT64_C(1000000000), UINT64_C(2000000000)};
+    enum { KINDS = sizeof firsts / sizeof firsts[0] };
+    int failed = 0;
+    options->count = (uint64_t)(FULL_COUNT / KINDS / slowness()) + 1;
+    for (int i = 0; i < KINDS; i++) {
+        options->seed = firsts[i];
+        failed += play_seeds(options);
+    }
+    return failed;
+}
+
 /** A whole number from 0 on; else the program ends with a sentence. */
 static uint64_t number(const char *option, const char *word)
 {
@@ -166,11 +181,11 @@ int main(int count, char **words)
                         "[--table] [--trace FILE] [--play FILE ...]\n");
         return 2;
     }
-    if (options.sample)
-        options.count = (uint64_t)(FULL_COUNT / slowness());
     for (int i = first; i < count; i++)
         failed += !play_file(words[i], &options);
-    if (first == count)
+    if (options.sample)
+        failed = play_sample(&options);
+    else if (first == count)
         failed = play_seeds(&options);
     if (scenario_trace)
         fclose(scenario_trace);

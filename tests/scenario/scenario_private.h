@@ -12,13 +12,21 @@
 #include "scenario.h"
 #include "block_table.h"
 
-enum { BLOCK_ROOM = 1200, SPEEDS = 104, SPEEDS_SEEN = 64 };
+enum { FIRST_ID = 40 /* explicit device ID of the first axis */, STRANGER_ID = 99, BLOCK_ROOM = 2448, SPEEDS = 104, SPEEDS_SEEN = 64 };
 
 /** A block of the program, by the table of all blocks. */
 typedef struct instance {
     const block_t *type;
     const step_t *step;
-    bool triggered, was_busy;
+    bool triggered, was_busy, follows;
+    double from;                          /**< u; where positions from outside begin */
+    union {
+        MC_TP_REF positions;
+        MC_TV_REF velocities;
+        MC_TA_REF accelerations;
+        MC_CAMSWITCH_REF switches;
+    } data;
+    MC_OUTPUT_REF output;
     _Alignas(16) unsigned char memory[BLOCK_ROOM];
 } instance_t;
 
@@ -43,6 +51,9 @@ typedef struct witness {
     bool coasted;                         /**< beyond a software limit, since it had no torque */
     bool shifted;                         /**< its coordinates are not those of the start any more */
     bool superimposed;                    /**< the program has a motion on top of others for it */
+    bool by_steps, by_drive;              /**< it homes by itself, or its drive does */
+    bool stranger;                        /**< another device is in the place of its slave, */
+    int stranger_from;                    /**< since this cycle */
     int homing;                           /**< cycles since its drive homed */
     int error_at;                         /**< cycle in which it came into ErrorStop */
     cm1e_axis_state_t logged;             /**< last state that the log told */
@@ -81,6 +92,7 @@ typedef struct run {
     cm1e_bus_t *buses[SCENARIO_NETWORKS];
     cm1e_sim_segment_t *segments[SCENARIO_NETWORKS];
     int networks;
+    uint32_t fixed_motors[SCENARIO_NETWORKS]; /**< slaves with motors that are not optional */
     cm1e_scheduler_t *scheduler;
     AXES_GROUP_REF_t group;
     bool grouped;                         /**< the program has blocks of a group: of the first two axes */
@@ -133,6 +145,8 @@ void program_recover(run_t *run);
 void fault_cycle(run_t *run);
 /** All that is still wrong with the machine is mended. */
 void fault_mend(run_t *run);
+/** One of the faults until now may be the reason why this axis stops. */
+bool fault_explains(const run_t *run, const machine_axis_t *axis);
 /** What had to be detected, was, and in time. */
 void fault_judge(run_t *run);
 
@@ -163,7 +177,19 @@ void judge_block(run_t *run, instance_t *block);
 void judge_end(run_t *run);
 bool at_rest(const machine_axis_t *axis);
 
+/* ---- scenario_data.c --------------------------------------------------------------------------------------------- */
+
+/** Tables over time and cam switches, from the numbers of the step. */
+void data_prepare(const run_t *run, instance_t *block);
+/** Position of this cycle for CM_FollowPosition. */
+void data_cycle(const run_t *run, instance_t *block);
+
 /* ---- scenario_blocks.c ------------------------------------------------------------------------------------------- */
+
+/** The program has one of these blocks for the axis; NULL ends the list. */
+bool program_has(const scenario_t *scenario, int axis, const char *const *blocks);
+extern const char *const step_homings[];  /**< homings in steps, by the axis itself */
+extern const char *const table_blocks[];
 
 const block_t *block_type(const char *name);
 const block_member_t *block_member(const block_t *type, const char *name);

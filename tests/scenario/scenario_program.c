@@ -31,7 +31,9 @@ static const input_t inputs[] = {
     PLAIN("GearRatioNumeratorM1", numerator), PLAIN("GearRatioDenominatorM1", denominator),
     PLAIN("GearRatioNumeratorM2", numerator), PLAIN("GearRatioDenominatorM2", denominator),
     PLAIN("VelFactor", factor), PLAIN("Relative", relative), PLAIN("Value", value), PLAIN("Mode", mode),
-    PLAIN("StartMode", mode), PLAIN("CircMode", mode), PLAIN("OutputNumber", mode)};
+    PLAIN("StartMode", mode), PLAIN("CircMode", mode), PLAIN("OutputNumber", mode), PLAIN("SwitchMode", mode),
+    PLAIN("LimitSwitchMode", mode), PLAIN("TorqueLimit", torque), PLAIN("Torque", torque),
+    LENGTH("SetPosition", position), LENGTH("DistanceLimit", x)};
 
 static int cycles_of(const run_t *run, double ms) { return (int)(ms * 1000 / run->scenario->cycle_us); }
 
@@ -77,6 +79,7 @@ static void prepare_block(run_t *run, instance_t *block, const step_t *step)
     block_point(block, "Master2", &run->axes[0].reference);
     block_point(block, "AxesGroup", &run->group);
     block_point(block, "Output", output_of(axis));
+    data_prepare(run, block);
 }
 
 static void prepare_axis(machine_axis_t *axis)
@@ -152,6 +155,7 @@ static void call_block(run_t *run, instance_t *block)
         trigger = "JogBackwards";
     block->triggered = held;
     block_put(block, trigger, held);
+    data_cycle(run, block);
     block->type->call(block->memory);
     judge_block(run, block);
 }
@@ -233,10 +237,12 @@ static bool is_reset(run_t *run, machine_axis_t *axis)
         MC_Reset(&axis->reset);
         return axis->info.state == CM1E_AXIS_DISABLED;
     }
-    const bool in_vain = axis->reset.Done && run->cycle % cycles_of(run, AGAIN_MS) == 0;
-    if (in_vain)
-        axis->reset.Execute = FALSE;
-    else if (!axis->reset.Execute || axis->reset.Error) {
+    const bool from_time_to_time = run->cycle % cycles_of(run, AGAIN_MS) == 0;
+    const bool absent = axis->spec->optional != 0 && axis->reset.Error; /* as far as the bus knows by now */
+    if (axis->reset.Done || absent) {
+        axis->reset.Execute = !from_time_to_time;
+        axis->resets -= absent && from_time_to_time;
+    } else if (!axis->reset.Execute || axis->reset.Error) {
         axis->reset.Execute = !axis->reset.Execute && axis->resets < RESETS;
         axis->resets += axis->reset.Execute && axis->info.state == CM1E_AXIS_ERROR_STOP;
     }

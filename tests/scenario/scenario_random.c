@@ -6,10 +6,13 @@
 #include "chance.h"
 #include "scenario.h"
 
+#define PI 3.14159265358979323846
+
 enum { FIRST_STEP = 260, CYCLES_LEAST = 900, CYCLES_MOST = 2600, ALLOCATIONS = 600 };
 
 /** Seeds below have none of what make_more() adds, so that they stay as they were. */
 static const uint64_t more_from = UINT64_C(1000000000);
+static const uint64_t wide_from = UINT64_C(2000000000); /**< below, none of what make_wide() adds */
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */
 
@@ -293,6 +296,114 @@ static void make_more(scenario_t *scenario)
         lose_synchronism(scenario);
 }
 
+/* ---- seeds from wide_from on ------------------------------------------------------------------------------------- */
+
+static const choice_t wide[] = {
+    {"MC_PositionProfile", 4}, {"MC_VelocityProfile", 4}, {"MC_AccelerationProfile", 4}, {"CM_FollowPosition", 6},
+    {"MC_PhasingAbsolute", 2}, {"MC_DigitalCamSwitch", 3}, {"MC_TorqueControl", 1}, {"MC_AbortTrigger", 1},
+    {"MC_HomeDirect", 2}};
+static const choice_t homings[] = {
+    {"MC_StepAbsoluteSwitch", 3}, {"MC_StepLimitSwitch", 3}, {"MC_StepBlock", 3}, {"MC_HomeDirect", 1}};
+
+/** Slaves whose inputs take the place of their outputs, or that come and go. */
+static void make_wide_machine(scenario_t *scenario)
+{
+    if (scenario->ring == 0 && one_in(3)) {
+        scenario->overlap = 1;
+        return;
+    }
+    for (int n = 0; n < scenario->axis_count && scenario->ring == 0 && scenario->clocks == 0; n++)
+        scenario->axes[n].optional = scenario->axes[n].kind == AXIS_CM1E && one_in(2);
+}
+
+/** Hard stops and switches, for homings in steps. */
+static void make_stops(scenario_t *scenario)
+{
+    for (int n = 0; n < scenario->axis_count; n++)
+        if (scenario->axes[n].kind == AXIS_CM1E && one_in(2))
+            scenario->axes[n].stops = 1;
+}
+
+/** A swing over `distance` and back, as fast as the axis may be at most, or up to four times slower. */
+static void make_wide_step(const scenario_t *scenario, step_t *step)
+{
+    const axis_spec_t *axis = &scenario->axes[(int)step->axis];
+    const double way = fabs(step->distance), acceleration = fmin(axis->acceleration, axis->deceleration);
+    const double fastest_s = fmax(PI * way / axis->velocity, fmax(PI * sqrt(2 * way / acceleration),
+                                                                  2 * PI * cbrt(way / axis->jerk)));
+    step->block = random_block(wide, sizeof wide / sizeof wide[0]);
+    step->points = 4 + pick(28);
+    step->period = floor(1000 * fastest_s * uniform(0.9, 4)) + 20;
+    step->torque = one_in(2) ? 0 : 20 + pick(100);
+    step->mode = one_in(2) ? 0 : pick(4);
+    step->buffer = one_in(4) ? pick(6) : 0;
+    step->hold = 200 + pick(1500);
+}
+
+/** A motion that begins at rest only: a halt comes before it. */
+static void halt_before(const scenario_t *scenario, step_t *halt, const step_t *step)
+{
+    const axis_spec_t *axis = &scenario->axes[(int)step->axis];
+    *halt = (step_t){.at = fmax(FIRST_STEP, step->at - 100 - pick(300)), .axis = step->axis,
+                     .block = scenario_block("MC_Halt"), .hold = 400, .deceleration = axis->deceleration};
+}
+
+/** A homing in steps: a halt, a search, the end. */
+static void make_homing(const scenario_t *scenario, step_t *steps)
+{
+    const axis_spec_t *axis = &scenario->axes[(int)steps[1].axis];
+    step_t *search = &steps[1];
+    search->block = random_block(homings, sizeof homings / sizeof homings[0]);
+    search->direction = one_in(10) ? pick(4) : pick(2);
+    search->mode = search->block == scenario_block("MC_StepAbsoluteSwitch") ? pick(6) : pick(4);
+    search->velocity = floor(axis->velocity * uniform(0.05, one_in(4) ? 1 : 0.5));
+    search->torque = one_in(2) ? 0 : 20 + pick(100);
+    search->x = one_in(3) ? fabs(search->distance) : 0;
+    search->buffer = 0;
+    search->hold = 1500;
+    halt_before(scenario, &steps[0], search);
+    steps[2] = *search;
+    steps[2].block = scenario_block("MC_FinishHoming");
+    steps[2].at = search->at + 20 + pick(one_in(2) ? 1200 : 400);
+    steps[2].distance *= 0.05;
+}
+
+static void make_absence(scenario_t *scenario)
+{
+    const int n = pick(scenario->axis_count);
+    for (int i = 0; i < scenario->fault_count; i++) /* one of these for each axis */
+        if (scenario->faults[i].kind >= FAULT_DETACH && (int)scenario->faults[i].axis == n)
+            return;
+    if (scenario->fault_count == SCENARIO_FAULTS || scenario->axes[n].optional == 0)
+        return;
+    scenario->faults[scenario->fault_count++] = (fault_t){
+        .at = FIRST_STEP + pick((int)scenario->cycles - FIRST_STEP), .kind = one_in(2) ? FAULT_DETACH : FAULT_STRANGER,
+        .axis = n, .network = scenario->axes[n].network, .length = 1 + pick(one_in(2) ? 100 : 1200)};
+}
+
+/** After the draws of make_more(). */
+static void make_wide(scenario_t *scenario)
+{
+    make_wide_machine(scenario);
+    make_stops(scenario);
+    for (int i = 0; i < scenario->step_count; i++) {
+        step_t *steps = &scenario->steps[i];
+        const int left = scenario->step_count - i;
+        if (left > 2 && scenario->axes[(int)steps[1].axis].stops != 0 && one_in(3)) {
+            make_homing(scenario, steps);
+            i += 2;
+        } else if (left > 1 && one_in(3)) {
+            make_wide_step(scenario, &steps[1]);
+            halt_before(scenario, steps, &steps[1]);
+            i++;
+        }
+    }
+    if (one_in(3)) /* the others must go on */
+        scenario->fault_count = 0;
+    for (int i = 0; i < scenario->axis_count; i++)
+        make_absence(scenario);
+}
+
 void scenario_make(scenario_t *scenario, uint64_t seed)
 {
     static const double limits[] = {3, 3, 3, 2, 5, 10};
@@ -314,6 +425,8 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
         make_fault(scenario, &scenario->faults[i]);
     if (seed >= more_from)
         make_more(scenario);
+    if (seed >= wide_from)
+        make_wide(scenario);
     qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
     qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);
 }

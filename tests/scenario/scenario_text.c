@@ -21,7 +21,7 @@ static const char *const mappings[] = {"dynamic", "csp", "csv", "profile", NULL}
 const char *const fault_names[FAULT_KINDS + 1] = {
     "lose", "lose-out", "lose-back", "corrupt", "delay", "counter", "stall", "unplug", "power-cycle", "fall-back",
     "motor-power", "error", "over-torque", "temperature", "load", "jump", "freeze", "ring", "clock", "bridge-error",
-    "bridge-cable", "switch", "eeprom", NULL};
+    "bridge-cable", "switch", "eeprom", "detach", "stranger", NULL};
 
 const char *const scenario_blocks[] = {
     "MC_MoveAbsolute", "MC_MoveRelative", "MC_MoveAdditive", "MC_MoveVelocity", "MC_Halt", "MC_Stop", "MC_Power",
@@ -29,7 +29,9 @@ const char *const scenario_blocks[] = {
     "MC_MoveContinuousRelative", "MC_Jog", "MC_SetPosition", "MC_SetOverride", "MC_GearIn", "MC_GearOut", "MC_CamIn",
     "MC_CamOut", "MC_PhasingRelative", "MC_GearInPos", "MC_CombineAxes", "MC_WriteDigitalOutput", "MC_TouchProbe",
     "MC_MoveLinearAbsolute", "MC_MoveLinearRelative", "MC_MoveCircularRelative", "MC_GroupStop", "MC_GroupHalt",
-    "MC_GroupReset", NULL};
+    "MC_GroupReset", "MC_PositionProfile", "MC_VelocityProfile", "MC_AccelerationProfile", "CM_FollowPosition",
+    "MC_StepAbsoluteSwitch", "MC_StepLimitSwitch", "MC_StepBlock", "MC_HomeDirect", "MC_FinishHoming",
+    "MC_PhasingAbsolute", "MC_DigitalCamSwitch", "MC_TorqueControl", "MC_AbortTrigger", NULL};
 
 #define NUMBER(type, member) {#member, offsetof(type, member), NULL}
 #define WORD_OF(type, member, words) {#member, offsetof(type, member), words}
@@ -37,7 +39,7 @@ const char *const scenario_blocks[] = {
 
 static const field_t run_fields[] = {
     NUMBER(scenario_t, cycles), NUMBER(scenario_t, cycle_us), NUMBER(scenario_t, lost_limit), NUMBER(scenario_t, ring),
-    NUMBER(scenario_t, clocks), NUMBER(scenario_t, io), NUMBER(scenario_t, memory), END};
+    NUMBER(scenario_t, clocks), NUMBER(scenario_t, io), NUMBER(scenario_t, memory), NUMBER(scenario_t, overlap), END};
 static const field_t axis_fields[] = {
     WORD_OF(axis_spec_t, kind, kinds), NUMBER(axis_spec_t, network), NUMBER(axis_spec_t, channel),
     WORD_OF(axis_spec_t, firmware, firmwares), WORD_OF(axis_spec_t, mapping, mappings),
@@ -45,14 +47,15 @@ static const field_t axis_fields[] = {
     NUMBER(axis_spec_t, acceleration), NUMBER(axis_spec_t, deceleration), NUMBER(axis_spec_t, jerk),
     NUMBER(axis_spec_t, limit_negative), NUMBER(axis_spec_t, limit_positive), NUMBER(axis_spec_t, load_inertia),
     NUMBER(axis_spec_t, friction), NUMBER(axis_spec_t, stops),
-    NUMBER(axis_spec_t, coupling_stop), NUMBER(axis_spec_t, motion), END};
+    NUMBER(axis_spec_t, coupling_stop), NUMBER(axis_spec_t, motion), NUMBER(axis_spec_t, optional), END};
 static const field_t step_fields[] = {
     NUMBER(step_t, at), NUMBER(step_t, axis), WORD_OF(step_t, block, scenario_blocks), NUMBER(step_t, master),
     NUMBER(step_t, hold), NUMBER(step_t, position), NUMBER(step_t, distance), NUMBER(step_t, velocity),
     NUMBER(step_t, acceleration), NUMBER(step_t, deceleration), NUMBER(step_t, jerk), NUMBER(step_t, buffer),
     NUMBER(step_t, direction), NUMBER(step_t, end_velocity), NUMBER(step_t, numerator), NUMBER(step_t, denominator),
     NUMBER(step_t, factor), NUMBER(step_t, relative), NUMBER(step_t, value), NUMBER(step_t, mode), NUMBER(step_t, x),
-    NUMBER(step_t, y), NUMBER(step_t, aux_x), NUMBER(step_t, aux_y), END};
+    NUMBER(step_t, y), NUMBER(step_t, aux_x), NUMBER(step_t, aux_y), NUMBER(step_t, torque),
+    NUMBER(step_t, period), NUMBER(step_t, points), END};
 static const field_t fault_fields[] = {
     NUMBER(fault_t, at), WORD_OF(fault_t, kind, fault_names), NUMBER(fault_t, axis), NUMBER(fault_t, network),
     NUMBER(fault_t, length), NUMBER(fault_t, value), END};

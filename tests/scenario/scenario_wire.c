@@ -85,7 +85,8 @@ void wire_watch(run_t *run, const machine_axis_t *axis)
     const cm1e_bus_t *bus = run->buses[axis->network];
     const int inside = is_motor(axis) ? place_in_slave(bus, axis) : -1;
     size_t place = DATA_AT;
-    if (inside < 0 || run->scenario->io > 0) /* bits of terminals share bytes */
+    /* Bits of terminals share bytes; overlapped inputs are in other places. */
+    if (inside < 0 || run->scenario->io > 0 || run->scenario->overlap != 0)
         return;
     for (uint32_t n = 1; n <= cm1e_bus_slave_count(bus); n++)
         place += cm1e_bus_slave(bus, n)->output_bytes + (n < axis->position ? cm1e_bus_slave(bus, n)->input_bytes : 0u);

@@ -11,8 +11,8 @@ import tempfile
 from pathlib import Path
 
 PROGRAM = sys.argv[1]
-SEEDS = (1, 2, 7, 11, 1000000002)
-MORE, COUNT = 1000000000, 20  # seeds with what scenario_random.c has for seeds from there on
+SEEDS = (1, 2, 7, 11, 1000000002, 2000000006)
+MORE, WIDE, COUNT = 1000000000, 2000000000, 20  # seeds with what scenario_random.c has for seeds from there on
 # The judge takes a limit that the machine was not made for as a failure: a way to see that it can fail at all.
 SPOILED = ("run cycles=900 cycle_us=1000 lost_limit=3\n"
            "axis kind=cm1e counts_per_unit=1000 velocity=400000 acceleration=3e6 deceleration=3e6 jerk=1e8\n"
@@ -64,6 +64,15 @@ def check_more():
     assert " memory=" not in run("--seed", MORE - 1, "--write")[1]
 
 
+def check_wide():
+    code, said = run("--seed", WIDE, "--count", COUNT)
+    assert code == 0 and f"{COUNT} scenarios from seed {WIDE} on: 0 failed" in said, said
+    text = "".join(run("--seed", WIDE + number, "--write")[1] for number in range(COUNT))
+    for word in (" optional=1", " overlap=1", "kind=detach", "kind=stranger", "MC_Step", "Profile", "CM_FollowPosition"):
+        assert word in text, word
+        assert word not in run("--seed", WIDE - 1, "--write")[1], word
+
+
 def check_refusals(folder):
     for text, words in (("axis kind=nonsense\n", "line 1"), ("run cycles=100 cycle_us=1000\n", "needs an axis"),
                         ("nonsense\n", "expected run"), ("run cycles=abc\n", "not one of this name")):
@@ -80,6 +89,7 @@ def main():
         check_failure(Path(name))
         check_refusals(Path(name))
     check_more()
+    check_wide()
     print("ok")
 
 
