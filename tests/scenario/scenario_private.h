@@ -34,7 +34,7 @@ typedef struct instance {
 typedef struct witness {
     cm1e_axis_state_t state;
     double speeds[SPEEDS];                    /**< of the last cycles */
-    double set_speed;                     /**< counts/s, of the set-point */
+    double set_velocity;                  /**< counts/s, of the set-point */
     double rest_at;                       /**< counts; where it came to rest */
     int rest_cycles;                      /**< since it is to be at rest, and is */
     bool torque_on;                       /**< in the cycle before */
