@@ -90,7 +90,13 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
 
 AXIS_REF_t cm1e_axis_reference(const cm1e_axis_t *axis) { return (AXIS_REF_t){.Handle = axis->handle}; }
 
-const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis) { return axis->drive.bus; }
+bool cm1e_axis_is_heard_alone(const cm1e_axis_t *axis) { return axis->config->optional; }
+
+bool cm1e_axis_is_heard_with(const cm1e_axis_t *axis, const cm1e_axis_t *other)
+{
+    const bool alone = cm1e_axis_is_heard_alone(axis) || cm1e_axis_is_heard_alone(other);
+    return axis->drive.bus == other->drive.bus && (!alone || axis->drive.position == other->drive.position);
+}
 
 void cm1e_axis_share_cycle(cm1e_axis_t *axis, const void *cycle) { axis->belongs.cycle = cycle; }
 
@@ -178,8 +184,11 @@ static void take_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t h
     cm1e_drive_t *drive = &axis->drive;
     axis->now_ns = now_ns;
     axis->advanced = false;
-    cm1e_axis_note_answer(axis, received == CM1E_OK, health != CM1E_OK);
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
+    /* A good cycle may be one of the others, where the slave of this axis may come and go. */
+    const bool alone = cm1e_axis_is_heard_alone(axis);
+    cm1e_axis_note_answer(axis, received == CM1E_OK && (!alone || drive->answered),
+                          health != CM1E_OK || (alone && drive->watch.lost));
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
     if (axis->observed)
@@ -231,7 +240,7 @@ static bool moves_on(const cm1e_axis_t *axis)
     return set_points_move(axis) && axis->state != CM1E_AXIS_DISABLED && axis_acts(axis);
 }
 
-/* The bus is silent, so the set-point stays. Axes on another bus may go on. */
+/* The bus is silent, or the slave of this axis is, so the set-point stays. Axes that are heard may go on. */
 static void stay(cm1e_axis_t *axis)
 {
     const cm1e_axis_leader_t *leader = axis->leader;

@@ -168,8 +168,12 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns);
 /** Called before cm1e_axis_outputs() after a few cycles without a frame. The target is repeated until the next answer
  *  shows whether the motor has slowed down. @rt cycle */
 void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed);
-/** Called before cm1e_axis_outputs() where axes of several buses share a cycle: a bus may have been silent while the
- *  others were not, and all slaves see it before any axis goes on. @rt cycle */
+/** Whether the slave of the axis may be silent while the others of its bus go on: it is optional. @rt cycle */
+bool cm1e_axis_is_heard_alone(const cm1e_axis_t *axis);
+/** Whether a silence of one of them is always one of the other too: they are on one bus, or have one slave. @rt cycle */
+bool cm1e_axis_is_heard_with(const cm1e_axis_t *axis, const cm1e_axis_t *other);
+/** Called before cm1e_axis_outputs() where axes of one cycle are not all heard together: some may have been silent while
+ *  the others were not, and all slaves see it before any axis goes on. @rt cycle */
 void cm1e_axis_meet(cm1e_axis_t *const *axes, uint32_t count);
 
 /** Starts a command, or refuses it; then *id is 0 and nothing has changed. CM1E_ERROR_UNSUPPORTED: the profiles of a
@@ -296,8 +300,6 @@ void cm1e_axis_leave(cm1e_axis_t *axis, const void *group);
 bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context);
 /** The set or actual position in u, as a leader gives positions. @rt cycle */
 double cm1e_axis_place(const cm1e_axis_t *axis, bool actual);
-/** The bus of the axis. @rt cycle */
-const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis);
 /** Axes with the same `cycle` may follow each other, even on different buses: one thread advances all of them in the same
  *  cycle. @rt init */
 void cm1e_axis_share_cycle(cm1e_axis_t *axis, const void *cycle);

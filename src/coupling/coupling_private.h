@@ -50,7 +50,8 @@ typedef struct link {
     cm1e_axis_t *master;           /**< NULL: no master, or it was destroyed */
     MC_SOURCE source;
     bool listed;
-    bool apart;                    /**< the master is on another bus */
+    bool apart;                    /**< the master may be silent while the slave is not: it is on another bus, or one
+                                        of the two is optional */
     uint8_t assumed;               /**< assumption_t */
     position_t origin;             /**< position of the master, as seen, when the slave began to follow it */
     double ratio;                  /**< u of the slave per u of the master; of gears and combinations */

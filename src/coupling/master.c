@@ -400,7 +400,7 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
         cm1e_axis_advance(master);
     link_t *link = &follow->links[follow->count];
     *link = (link_t){.master = master, .slave = slave, .source = asked->source,
-                     .apart = master->drive.bus != slave->drive.bus};
+                     .apart = !cm1e_axis_is_heard_with(master, slave)};
     if (master->config->type == CM1E_AXIS_ENCODER || drive_profiles(master)) /* it has only an actual value */
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;

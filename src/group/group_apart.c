@@ -1,7 +1,8 @@
 /*
- * A group whose axes are on several buses. While all of its buses are silent at once, time stands still for all axes,
- * as on one bus. While only some of them are, the axes that are heard cannot stand still: their drives would hear it.
- * So the path comes to rest, within the limits of its axes. An axis whose bus was silent has left the path: it holds its
+ * A group whose axes are not all heard together: they are on several buses, or some are optional. While all of them are
+ * silent at once, time stands still for all axes, as on one bus. While only some of them are, the axes that are heard
+ * cannot stand still: their drives would hear it. So the path comes to rest, within the limits of its axes. An axis that
+ * was silent has left the path: it holds its
  * set-point, then comes to rest by itself, and goes back to its place on the path when that is at rest. Then the path
  * goes on. Each axis keeps its limits all the time. Behind a stop, a halt or an error no axis goes back: it is released
  * where it came to rest.
@@ -14,15 +15,14 @@ static const double least_part = 0.05;
 
 void cm1e_group_together(cm1e_group_t *group)
 {
-    const cm1e_bus_t *first = NULL;
+    const cm1e_axis_t *first = NULL;
     group->apart.off = group->apart.moving = 0;
     group->apart.passed_count = 0;
     group->apart.several = false;
     for (int i = 0; i < group->axes; i++) {
         const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        const cm1e_bus_t *bus = axis ? cm1e_axis_bus(axis) : first;
-        first = first ? first : bus;
-        group->apart.several |= bus != first;
+        first = first ? first : axis;
+        group->apart.several |= axis && !cm1e_axis_is_heard_with(axis, first);
     }
 }
 

@@ -73,9 +73,9 @@ typedef struct stray {
     cm1e_motion_state_t now;
 } stray_t;
 
-/** Axes of a group on several buses: group_apart.c. */
+/** Axes of a group that are not all heard together: group_apart.c. */
 typedef struct apart {
-    bool several;          /**< the axes of the path are on several buses */
+    bool several;          /**< the axes of the path are on several buses, or some are optional */
     unsigned off, moving;  /**< bits of axes that are not on the path, and of those whose set-points are not at rest */
     cm1e_command_id_t passed[CM1E_GROUP_COMMANDS]; /**< done but for the axes that are not on the path */
     int passed_count;

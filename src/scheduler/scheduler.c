@@ -144,7 +144,7 @@ static void set_outputs(cm1e_scheduler_t *s)
     s->sent_ns = now_ns;
     for (uint32_t i = 0; i < s->axis_count && missed > 0; i++)
         after_missed(s->axes[i], missed, silence_ns);
-    if (s->member_count > 1)
+    if (s->heard_apart)
         cm1e_axis_meet(s->axes, s->axis_count);
     for (uint32_t i = 0; i < s->axis_count; i++)
         cm1e_axis_outputs(s->axes[i]);

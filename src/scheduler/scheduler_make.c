@@ -51,6 +51,7 @@ static cm1e_error_t make_axes(cm1e_scheduler_t *s, member_t *member, cm1e_diag_t
         if (error != CM1E_OK)
             return error;
         cm1e_axis_share_cycle(s->axes[s->axis_count], s);
+        s->heard_apart |= s->member_count > 1 || cm1e_axis_is_heard_alone(s->axes[s->axis_count]);
         member->end = ++s->axis_count;
     }
     return CM1E_OK;

@@ -36,6 +36,7 @@ struct cm1e_scheduler {
     int64_t cycle_time_ns;
     cm1e_axis_t *axes[CM1E_MAX_AXES];
     uint32_t axis_count;
+    bool heard_apart;         /**< one axis may be silent while another one is not (cm1e_axis_meet()) */
     task_list_t tasks;
     task_watch_t watch;
     const task_t *ended;   /**< the first task that did not return in time; NULL: none */

@@ -95,7 +95,9 @@ static void program(void *context)
     machine->torque_unasked += !machine->wants_power && has_torque(machine);
 }
 
-static void open_machine(machine_t *machine, cm1e_recover_t policy, bool absent, void (*script)(machine_t *))
+/** `tool_velocity`: maximum of the tool, u/s; 0: as the motor has it. */
+static void open_machine_of(machine_t *machine, cm1e_recover_t policy, bool absent, double tool_velocity,
+                            void (*script)(machine_t *))
 {
     *machine = (machine_t){.script = script};
     cm1e_bus_config_free(&config);
@@ -112,6 +114,7 @@ static void open_machine(machine_t *machine, cm1e_recover_t policy, bool absent,
     config.axes[2].optional = true;
     config.axes[2].recover = policy;
     config.axes[2].sim_absent = absent;
+    config.axes[2].max_velocity = tool_velocity;
     ck_assert_msg(cm1e_bus_open(&machine->bus, &config, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_msg(cm1e_bus_start(machine->bus, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_msg(cm1e_scheduler_create(&machine->scheduler, machine->bus, NULL, &diag) == CM1E_OK, "%s", diag.text);
@@ -119,6 +122,11 @@ static void open_machine(machine_t *machine, cm1e_recover_t policy, bool absent,
         machine->axis[i] = cm1e_scheduler_axis(machine->scheduler, i);
     const cm1e_task_config_t task = {.name = "program", .interval_ns = 1000000, .program = program, .context = machine};
     ck_assert_int_eq(cm1e_scheduler_add_task(machine->scheduler, &task, &diag), CM1E_OK);
+}
+
+static void open_machine(machine_t *machine, cm1e_recover_t policy, bool absent, void (*script)(machine_t *))
+{
+    open_machine_of(machine, policy, absent, 0, script);
 }
 
 static void run(machine_t *machine, int ms)
@@ -209,6 +217,60 @@ START_TEST(motor_is_pulled_at_every_moment_of_its_return_and_the_others_turn_on)
         run(&machine, 3000);
         ck_assert_msg(machine.step == TURNS_AGAIN, "moment %d: step %d", moment, machine.step);
         ck_assert_uint_eq(machine.torque_unasked, 0);
+        close_machine(&machine);
+    }
+}
+END_TEST
+
+/* ---- its cable is loose -------------------------------------------------------------------------------------------- */
+
+#define TOOL_VELOCITY 10.0 /* u/s: what it is commanded, and its maximum */
+#define OVERSHOOT 1.0034   /* of the simulated servo by itself (docs/SAFETY.md) */
+
+enum { LOOSE_AT = 300 /* the tool begins to turn some cycles before, and is at its velocity 100 ms later */ };
+
+static int silent_cycles;
+static double held, fastest;
+static unsigned held_cycles;
+static bool unheard;
+
+/** From this moment on its slave misses some cycles, fewer than lost_cycles_limit. */
+static void shake_the_cable(machine_t *machine)
+{
+    char answer[100];
+    const cm1e_axis_info_t info = info_of(machine, 2);
+    cm1e_sim_probe_t probe;
+    cm1e_sim_probe(segment(machine), TOOL, &probe);
+    machine->wants_power = machine->cycles > LOOSE_AT - 20;
+    if (machine->cycles == (unsigned)(LOOSE_AT + machine->moment))
+        ck_assert_int_eq(cm1e_bus_simulate(machine->bus, "unplug 3", answer, sizeof answer), CM1E_OK);
+    if (machine->cycles == (unsigned)(LOOSE_AT + machine->moment + silent_cycles))
+        ck_assert_int_eq(cm1e_bus_simulate(machine->bus, "replug 3", answer, sizeof answer), CM1E_OK);
+    if (unheard) /* in the cycle before: its drive may hold the last target */
+        ck_assert_double_eq(info.set_position, held);
+    unheard = info.state == CM1E_AXIS_CONTINUOUS_MOTION && !info.online;
+    held_cycles += unheard;
+    ck_assert_int_eq(info.error, CM1E_OK);
+    held = info.set_position;
+    fastest = fmax(fastest, fabs(probe.velocity_counts_per_s) / 50000.0);
+}
+
+/** Its time stands still while it is not heard, so that it has nothing to catch up; the others go on. */
+START_TEST(motor_with_a_loose_cable_waits_and_never_leaps)
+{
+    const int stride = sweep_stride(7, 29);
+    silent_cycles = 1 + _i;
+    for (int moment = sweep_first(_i, stride); moment < 160; moment += stride) {
+        machine_t machine;
+        open_machine_of(&machine, CM1E_RECOVER_ASK, false, TOOL_VELOCITY, shake_the_cable);
+        machine.moment = moment;
+        fastest = 0;
+        held_cycles = 0;
+        unheard = false;
+        run(&machine, 800);
+        ck_assert_msg(machine.move[2].InVelocity, "moment %d", moment);
+        ck_assert_msg(held_cycles >= (unsigned)silent_cycles, "moment %d: not held", moment);
+        ck_assert_msg(fastest <= TOOL_VELOCITY * OVERSHOOT, "moment %d: the shaft turns at %.4f u/s", moment, fastest);
         close_machine(&machine);
     }
 }
@@ -331,6 +393,7 @@ int main(void)
     TCase *tests = tcase_create("axes");
     tcase_set_timeout(tests, 120);
     tcase_add_loop_test(tests, motor_is_pulled_at_every_moment_of_its_return_and_the_others_turn_on, 0, 2);
+    tcase_add_loop_test(tests, motor_with_a_loose_cable_waits_and_never_leaps, 0, 2);
     tcase_add_test(tests, reset_brings_a_motor_that_waits_to_operational_without_an_error_before);
     tcase_add_loop_test(tests, motor_that_is_absent_at_the_start_says_so_and_turns_when_it_has_come, 0, 4);
     suite_add_tcase(suite, tests);

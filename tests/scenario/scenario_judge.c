@@ -575,7 +575,9 @@ void judge_cycle(run_t *run)
         axis->seen.stopped = at_stop(axis) && fabs(axis->probe.velocity_counts_per_s) < 1 ? 0 : axis->seen.stopped + 1;
         axis->seen.homing = axis->info.state == CM1E_AXIS_HOMING ? 0 : axis->seen.homing + 1;
         axis->seen.jolted = run->bad[0] > 0 || run->bad[SCENARIO_NETWORKS - 1] > 0 ? 0 : axis->seen.jolted + 1;
-        axis->seen.quiet = run->bad[axis->network] > 0 ? 0 : axis->seen.quiet + 1;
+        /* An optional slave may be silent alone. */
+        const bool unheard = run->bad[axis->network] > 0 || (axis->spec->optional != 0 && !axis->info.online);
+        axis->seen.quiet = unheard ? 0 : axis->seen.quiet + 1;
         judge_set_point(run, axis);
         if (!is_motor(axis))
             continue;
