@@ -249,10 +249,8 @@ static bool check_axis(check_t *check)
 /* An address that is not stated is counted, so all are counted once: each axis is compared with those before it. */
 static bool check_axes(check_t *check)
 {
-    uint16_t addresses[CM1E_MAX_AXES];
     for (uint32_t i = 0; i < check->config->axis_count; i++)
-        addresses[i] = cm1e_axis_address(check->config, i);
-    check->addresses = addresses;
+        check->addresses[i] = cm1e_axis_address(check->config, i);
     for (check->index = 0; check->index < check->config->axis_count; check->index++) {
         check->axis = &check->config->axes[check->index];
         if (!check_axis(check))

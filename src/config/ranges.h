@@ -16,7 +16,7 @@ typedef struct check {
     cm1e_config_problem_t *problem;
     const cm1e_axis_config_t *axis; /* the axis being checked */
     uint32_t index;
-    const uint16_t *addresses; /* of all axes: cm1e_axis_address() */
+    uint16_t addresses[CM1E_MAX_AXES]; /* of all axes: cm1e_axis_address() */
     double counts_per_unit;
     double most_velocity; /* counts/s of the axis */
     char name[CM1E_NAME_LENGTH + 8];

@@ -240,6 +240,18 @@ static void expect_refused(const char *words)
     ck_assert_msg(strstr(diag.text, words), "%s", diag.text);
 }
 
+/* A signal without a type may have any number of bits. A count has at most 64. */
+START_TEST(test_a_count_of_more_than_64_bits_is_refused)
+{
+    describe_machine();
+    cm1e_slave_config_t *wide = add_slave("wide", CM1E_SIM_SLAVE_ANALOG, 8, 0);
+    wide->signals[0] = (cm1e_signal_config_t){.name = "long", .type_stated = true, .type = CM1E_IO_BYTES, .bits = 65};
+    wide->signal_count = 1;
+    snprintf(config.axes[WHEEL].wiring.encoder, CM1E_SIGNAL_LENGTH, "wide.long");
+    expect_refused("is no counter");
+}
+END_TEST
+
 START_TEST(test_wrong_signals_are_refused_in_words)
 {
     static const struct {
@@ -284,6 +296,7 @@ int main(void)
     tcase_add_loop_test(tests, test_an_edge_while_the_slave_was_away_is_an_error, 0, 2);
     tcase_add_test(tests, test_a_cam_switch_writes_each_track_to_its_output);
     tcase_add_loop_test(tests, test_cam_outputs_go_off_without_calls_and_with_an_error, 0, 2);
+    tcase_add_test(tests, test_a_count_of_more_than_64_bits_is_refused);
     tcase_add_test(tests, test_wrong_signals_are_refused_in_words);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);

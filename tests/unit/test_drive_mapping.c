@@ -121,6 +121,27 @@ static void test_wrong_axis_motor_or_firmware_is_an_error_in_words(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_init(&drive, &bus, 0, &diag));
 }
 
+/* Here the firmware that can be read says the other unit. */
+static void test_a_stated_unit_of_velocity_counts_more_than_the_firmware(void)
+{
+    for (int unreadable = 0; unreadable < 2; unreadable++)
+        for (int per_ms = 0; per_ms < 2; per_ms++) {
+            fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4,
+                          per_ms ? CM1E_FIRMWARE_1_3_5 : CM1E_FIRMWARE_1_3_0);
+            bus.firmware_unreadable = unreadable;
+            bus.config.axes[0].velocity_unit_stated = true;
+            bus.config.axes[0].velocity_in_counts_per_ms = per_ms;
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_init(&drive, &bus, 0, &diag));
+            enable(CM1E_MODE_CSV);
+            drive.command.target_velocity = 123000;
+            cm1e_drive_write(&drive);
+            TEST_ASSERT_EQUAL_INT32(per_ms ? 123 : 123000, (int32_t)fake_output(&bus, 0x60FF, 0));
+            drive.command.target_velocity = INT32_MAX;
+            cm1e_drive_write(&drive);
+            TEST_ASSERT_EQUAL_INT32(per_ms ? 2500 : 2500000, (int32_t)fake_output(&bus, 0x60FF, 0)); /* UG 6.3 */
+        }
+}
+
 static void test_velocity_has_the_unit_of_the_firmware_and_is_limited(void)
 {
     static const char *const motors[] = {"CM1-E-17S30D", "CM1-E-17L30D", "CM1-E-23S30D", "CM1-E-23L20D"};
@@ -390,6 +411,7 @@ int main(void)
     RUN_TEST(test_missing_object_is_named_with_its_mapping);
     RUN_TEST(test_object_of_a_wrong_size_is_refused);
     RUN_TEST(test_wrong_axis_motor_or_firmware_is_an_error_in_words);
+    RUN_TEST(test_a_stated_unit_of_velocity_counts_more_than_the_firmware);
     RUN_TEST(test_velocity_has_the_unit_of_the_firmware_and_is_limited);
     RUN_TEST(test_actual_velocity_has_counts_per_second_in_every_firmware);
     RUN_TEST(test_velocity_below_1_3_0_in_homing_comes_from_positions);
