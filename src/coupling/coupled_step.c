@@ -296,7 +296,6 @@ static bool stop_alone(cm1e_axis_t *axis, guard_t guard)
         cm1e_axis_guard_fail(axis, guard);
     else
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_MASTER_LOST, 0.0, 0.0);
-    axis->coupling->stopping = false;
     return false;
 }
 

@@ -352,6 +352,45 @@ static void test_a_ratio_is_updated_without_a_step(void)
     TEST_ASSERT_TRUE(axes_status(1, id).reached);
 }
 
+/* 2.4.6: also the numbers of a gear that waits, but not what it is. */
+static void test_a_ratio_is_updated_while_the_gear_waits(void)
+{
+    axes_begin(2);
+    axes_move_velocity(0, 4.0);
+    const cm1e_command_id_t move = axes_move_to(1, 1.0, 5.0);
+    cm1e_axis_coupling_t coupling = {.master = {by_ratio(0, 1, 1)}};
+    cm1e_axis_command_t command = {.kind = CM1E_COMMAND_GEAR_IN, .buffer_mode = mcBuffered, .coupling = &coupling};
+    const cm1e_command_id_t gear = axes_command(1, &command);
+    coupling.master[0].numerator = 2;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axes_axis(1), gear, &command));
+    coupling.master[0].numerator = 3;
+    command.kind = CM1E_COMMAND_CAM_IN;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_axis_update(axes_axis(1), gear, &command));
+    axes_wait(1, move, 2000);
+    axes_wait_reached(1, gear, 2000);
+    TEST_ASSERT_EQUAL_DOUBLE(8.0, axes_info(1).set_velocity);
+}
+
+/* The first command waits for its master's place and stays as it is. The one behind it may change. */
+static void test_a_ratio_is_updated_behind_a_gear_that_awaits_its_place(void)
+{
+    axes_begin(2);
+    cm1e_axis_coupling_t coupling = {.master = {by_ratio(0, 1, 1)}, .master_sync_position = 8.0,
+                                     .slave_sync_position = 2.0, .master_start_distance = 6.0};
+    cm1e_axis_command_t command = {.kind = CM1E_COMMAND_GEAR_IN_POS, .velocity = 20.0, .coupling = &coupling};
+    const cm1e_command_id_t first = axes_command(1, &command);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_axis_update(axes_axis(1), first, &command));
+    command.kind = CM1E_COMMAND_GEAR_IN;
+    command.buffer_mode = mcBuffered;
+    const cm1e_command_id_t gear = axes_command(1, &command);
+    coupling.master[0].numerator = 3;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axes_axis(1), gear, &command));
+    axes_move_velocity(0, 4.0);
+    AXES_UNTIL(state_of(1, first) == CM1E_COMMAND_ABORTED); /* InSync: the next has taken its place */
+    axes_wait_reached(1, gear, 2000);
+    TEST_ASSERT_EQUAL_DOUBLE(12.0, axes_info(1).set_velocity);
+}
+
 /* N6 */
 static void test_override_does_not_act_on_a_follower(void)
 {
@@ -572,6 +611,8 @@ int main(void)
     RUN_TEST(test_a_gear_waits_for_a_velocity);
     RUN_TEST(test_four_gears_that_wait_are_one_too_many);
     RUN_TEST(test_a_ratio_is_updated_without_a_step);
+    RUN_TEST(test_a_ratio_is_updated_while_the_gear_waits);
+    RUN_TEST(test_a_ratio_is_updated_behind_a_gear_that_awaits_its_place);
     RUN_TEST(test_override_does_not_act_on_a_follower);
     RUN_TEST(test_a_superimposed_motion_on_a_follower);
     RUN_TEST(test_a_command_takes_over_from_a_follower_that_left_the_superimposed_motion_no_room);

@@ -249,7 +249,9 @@ static void keeps_ratio_before_a_limit(int32_t numerator, uint32_t denominator, 
         TEST_ASSERT_DOUBLE_WITHIN(2e-5, axes_info(MASTER).set_position * numerator / denominator,
                                   axes_info(SLAVE).set_position);
     }
-    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "the software limit at");
+    char words[60];
+    snprintf(words, sizeof words, "the software limit at %g u", numerator > 0 ? limit : -limit);
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, words);
     failed(MASTER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
     TEST_ASSERT_TRUE(fabs(axes_info(SLAVE).set_position) <= limit);
     TEST_ASSERT_TRUE(fabs(axes_info(SLAVE).set_position) > limit - 0.1);
@@ -261,6 +263,33 @@ static void test_the_ratio_is_kept_to_the_standstill_before_a_software_limit(voi
     keeps_ratio_before_a_limit(1, 1, 10.0);
     keeps_ratio_before_a_limit(-3, 1, 10.0);
     keeps_ratio_before_a_limit(1, 4, 3.0);
+    keeps_ratio_before_a_limit(1, 10, 1.0);
+    keeps_ratio_before_a_limit(-1, 10, 1.0);
+}
+
+/* Beyond a software limit a slave may stand, also while its master is held at 0 by an override, and it may go back. */
+static void test_a_slave_beyond_a_software_limit_stands_and_is_led_back(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        axes_describe(2);
+        axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+        axes_config(SLAVE)->software_limit_negative = -10.0;
+        axes_config(SLAVE)->software_limit_positive = 10.0;
+        axes_motor(SLAVE)->position = axes_motor(SLAVE)->target_position = 12 * 50000 * sign;
+        axes_make();
+        axes_enable_all();
+        TEST_ASSERT_EQUAL_DOUBLE(12.0 * sign, axes_info(SLAVE).set_position);
+        axes_gear_in(SLAVE, MASTER, 1, 1);
+        axes_cycles(50);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axes_axis(MASTER), 0.0, 1.0, 1.0));
+        const cm1e_command_id_t back = axes_move_to(MASTER, -5.0 * sign, 4.0);
+        axes_cycles(50);
+        axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axes_axis(MASTER), 1.0, 1.0, 1.0));
+        axes_wait(MASTER, back, 5000);
+        axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-5, 7.0 * sign, axes_info(SLAVE).set_position);
+    }
 }
 
 static void test_the_ratio_is_kept_where_the_master_becomes_too_fast(void)
@@ -352,6 +381,7 @@ int main(void)
     RUN_TEST(test_coupled_axes_stop_together);
     RUN_TEST(test_coupled_axes_stop_with_a_slave_whose_drive_fails);
     RUN_TEST(test_the_ratio_is_kept_to_the_standstill_before_a_software_limit);
+    RUN_TEST(test_a_slave_beyond_a_software_limit_stands_and_is_led_back);
     RUN_TEST(test_the_ratio_is_kept_where_the_master_becomes_too_fast);
     RUN_TEST(test_a_slave_that_is_not_in_gear_yet_does_not_keep_its_master_turning);
     RUN_TEST(test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails);

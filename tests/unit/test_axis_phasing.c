@@ -534,6 +534,28 @@ static void test_a_shift_goes_on_through_a_change_of_cam(void)
     }
 }
 
+/* A cam that counts from where its master is begins at 0 of the cam: the slave sees the master there, shifted or not. */
+static void test_a_relative_cam_begins_where_the_slave_sees_its_master(void)
+{
+    begin_with_cams();
+    const MC_CAM_REF table = {points[0], POINTS, mcCamCubicSpline};
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_cam_select(axes_axis(SLAVE), &table, true, false, false, &ids[0]));
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
+    axes_cycles(500);
+    in_step(1, 1);
+    axes_wait(SLAVE, to_shift(2.5, 2.0), 5000);
+    const double master = axes_info(MASTER).set_position, slave = axes_info(SLAVE).set_position;
+    axes_wait_reached(SLAVE, cam_in(0), 2000);
+    axes_move_to(MASTER, master + 8.0, 2.0);
+    const double below = off_cam(0, -master); /* counts */
+    for (int n = 0; n < 6000; n++) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, below, off_cam(0, -master));
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, slave * 50000.0, below + points[0][0].Slave * 50000.0);
+    TEST_ASSERT_EQUAL_DOUBLE(master + 8.0, axes_info(MASTER).set_position);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -557,5 +579,6 @@ int main(void)
     RUN_TEST(test_of_two_masters_the_first_is_shifted);
     RUN_TEST(test_a_cam_is_followed_with_the_ideal_shift_at_every_sample);
     RUN_TEST(test_a_shift_goes_on_through_a_change_of_cam);
+    RUN_TEST(test_a_relative_cam_begins_where_the_slave_sees_its_master);
     return UNITY_END();
 }

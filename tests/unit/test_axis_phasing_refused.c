@@ -86,6 +86,26 @@ static void test_it_is_refused_where_it_is_too_fast_beside_the_master(void)
     axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
 }
 
+/* While a shift moves, the slave sees the master with the velocity of that shift. What counts is the master itself. */
+static void test_beside_a_shift_that_moves_only_the_velocity_of_the_master_counts(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        axes_begin(3);
+        axes_move_velocity(MASTER, 30.0);
+        axes_cycles(2000);
+        in_step(1, 1);
+        by_shift(100.0 * sign, 15.0);
+        axes_cycles(1000);
+        TEST_ASSERT_EQUAL_DOUBLE(30.0 + 15.0 * sign, axes_info(SLAVE).set_velocity);
+        cm1e_axis_command_t c = shift(true, 100.0, 21.0);
+        axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_VELOCITY_RANGE);
+        axes_told(SLAVE, "30 now");
+        by_shift(100.0, 19.0);
+        axes_cycles(1000);
+        TEST_ASSERT_EQUAL_DOUBLE(49.0, axes_info(SLAVE).set_velocity);
+    }
+}
+
 /* The guard: a master that becomes too fast while the shift runs. No set-point beyond the limits is given out. */
 static void test_a_master_that_becomes_too_fast_beside_it_stops_the_slave(void)
 {
@@ -108,6 +128,7 @@ int main(void)
     RUN_TEST(test_numbers_that_the_slave_cannot_follow_are_refused_in_words);
     RUN_TEST(test_without_numbers_half_of_the_limits_are_the_shifts);
     RUN_TEST(test_it_is_refused_where_it_is_too_fast_beside_the_master);
+    RUN_TEST(test_beside_a_shift_that_moves_only_the_velocity_of_the_master_counts);
     RUN_TEST(test_a_master_that_becomes_too_fast_beside_it_stops_the_slave);
     return UNITY_END();
 }
