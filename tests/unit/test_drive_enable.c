@@ -226,6 +226,25 @@ static void test_profile_position_announces_each_set_point_once(void)
     TEST_ASSERT_EQUAL_HEX16(0x000F, before);
 }
 
+/* Else the edge would come by itself with the next torque. */
+static void test_a_set_point_without_an_answer_is_forgotten_with_the_torque(void)
+{
+    start(CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5, 500);
+    enable_with_turning_shaft(CM1E_MODE_PP, 0);
+    bus.blocked = true;
+    drive.command.target_position = 1500;
+    cm1e_drive_write(&drive);
+    TEST_ASSERT_EQUAL_HEX16(0x001F, fake_output(&bus, 0x6040, 0));
+    for (int i = 0; i < 100; i++) {
+        drive.command.enable = i >= 50;
+        cycle();
+        drive.command.target_position = drive.feedback.position;
+        cm1e_drive_write(&drive);
+        TEST_ASSERT_EQUAL_HEX16(0, fake_output(&bus, 0x6040, 0) & 0x0010);
+    }
+    TEST_ASSERT_TRUE(drive.feedback.enabled);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -238,5 +257,6 @@ int main(void)
     RUN_TEST(test_no_step_towards_torque_before_inputs_or_without_fresh_ones);
     RUN_TEST(test_lost_frames_while_enabled_keep_the_targets);
     RUN_TEST(test_profile_position_announces_each_set_point_once);
+    RUN_TEST(test_a_set_point_without_an_answer_is_forgotten_with_the_torque);
     return UNITY_END();
 }

@@ -550,6 +550,17 @@ static void test_text_fits_any_buffer_and_is_empty_without_fault(void)
 }
 
 /** The fake's text of an AL status code is shorter than the longest real one (83 characters). */
+static void test_another_master_is_told_where_one_was_seen(void)
+{
+    fake_bus_fault(&bus, 0x4310);
+    cycle();
+    char text[1024];
+    cm1e_drive_fault_text(&drive, text, sizeof text);
+    TEST_ASSERT_NULL_MESSAGE(strstr(text, "Another master"), text);
+    bus.counters.foreign_frames = 1;
+    assert_text_has("Another master sends on this network: 1 of its frames");
+}
+
 static void test_longest_text_fits_the_size_that_is_promised(void)
 {
     enum { LONGER_AL_TEXT = 90 };
@@ -599,6 +610,7 @@ int main(void)
     RUN_TEST(test_reset_while_the_bus_is_away_keeps_the_cause);
     RUN_TEST(test_reset_with_enable_held_enables_again_without_a_jump);
     RUN_TEST(test_every_status_word_leaves_a_defined_output);
+    RUN_TEST(test_another_master_is_told_where_one_was_seen);
     RUN_TEST(test_longest_text_fits_the_size_that_is_promised);
     RUN_TEST(test_text_fits_any_buffer_and_is_empty_without_fault);
     return UNITY_END();
