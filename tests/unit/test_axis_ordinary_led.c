@@ -247,6 +247,38 @@ static void test_command_waits_in_the_middle(void)
     TEST_ASSERT_EQUAL(CM1E_COMMAND_GEAR_IN, axes_axis(1)->commands.kind);
 }
 
+/* Where the slave came to the corner at `at`, or a multiple of it, and stopped. The master comes from `from`. */
+static void stops_at_a_corner(MC_CAM_CURVE curve, double slope, double from, double at)
+{
+    const MC_CAM_POINT points[] = {{0.0, 0.0, slope, 0.0}, {5.0, 0.1, 0.0, 0.0}, {10.0, 0.0, -slope, 0.0}};
+    const MC_CAM_REF table = {points, 3, curve};
+    axes_describe(2);
+    axes_make();
+    cm1e_axis_coupling_t coupling = *one_to_one();
+    coupling.start_mode = mcRampIn;
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_cam_select(axes_axis(1), &table, true, true, true, &coupling.cam));
+    axes_enable_all();
+    axes_bench.witness[1].strictness = AXES_UNWATCHED;
+    axes_wait(0, axes_move_to(0, from, 20.0), 5000);
+    axes_wait_reached(1, axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling}),
+                      5000);
+    axes_command(0, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 5.0, .acceleration = 50.0,
+                                           .direction = mcPositiveDirection});
+    AXES_UNTIL(axes_state(1) == CM1E_AXIS_ERROR_STOP);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_AXIS_COUPLING_LIMIT, axes_info(1).error);
+    axes_told(1, "an acceleration of");
+    TEST_ASSERT_DOUBLE_WITHIN(0.011, 0.0, remainder(axes_info(0).set_position, at));
+}
+
+/* Straight lines have a corner at every point, and the end of a cam may be one: no course leads over it unseen. */
+static void test_corner_in_the_middle(void)
+{
+    for (double from = -9.0; from < 10.0; from += 1.25) {
+        stops_at_a_corner(mcCamLinear, 0.0, from, 5.0);
+        stops_at_a_corner(mcCamPolynomial5, 0.05, from, 10.0);
+    }
+}
+
 int main(void)
 {
     followers_compared_every = 1;
@@ -254,6 +286,7 @@ int main(void)
     RUN_TEST(test_lower_limit_in_the_middle);
     RUN_TEST(test_master_stops_in_the_middle);
     RUN_TEST(test_command_waits_in_the_middle);
+    RUN_TEST(test_corner_in_the_middle);
     RUN_TEST(test_slaves_side_by_side);
     return UNITY_END();
 }
