@@ -2,6 +2,7 @@
 #include "cm1e/foe.h" /* before the global `diag` of the tests */
 
 #include "bus/bus_internal.h"
+#include "bus/firmware_update.h"
 #include "bus_support.h"
 #include "cm1e/emergency.h"
 #include "core/bytes.h"
@@ -275,6 +276,43 @@ START_TEST(bootstrap_and_slaves_without_files)
 }
 END_TEST
 
+static unsigned wrong_answer, answers;
+
+/** Answer number `wrong_answer` of FoE has a service that there is not. */
+static cm1e_tap_verdict_t answer_wrongly(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    uint8_t *message = frame->bytes + 26;
+    const bool mailbox = frame->direction == CM1E_TAP_RECEIVED && frame->bytes[16] == 4 && frame->length > 100;
+    if (mailbox && (message[5] & 0x0F) == 4 &&
+        ++answers == wrong_answer)
+        message[6] = 0x7F;
+    return CM1E_TAP_PASS;
+}
+
+/** What an update that failed has left: before its first packet the old firmware, then a part of the new one. */
+START_TEST(an_update_that_fails_tells_what_the_slave_has)
+{
+    static const char image[] = "CM1-E simulated firmware 1.3.4, 2000 bytes\n";
+    static const cm1e_firmware_state_t states[] = {CM1E_FIRMWARE_WRITTEN, CM1E_FIRMWARE_UNTOUCHED,
+                                                   CM1E_FIRMWARE_PARTLY, CM1E_FIRMWARE_PARTLY};
+    memcpy(written, image, sizeof image);
+    for (wrong_answer = 0; wrong_answer < 4; wrong_answer++) {
+        sim_config(1);
+        cm1e_bus_t *bus = open_bus();
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), answer_wrongly, NULL);
+        answers = 0;
+        const cm1e_firmware_file_t file = {.name = "x.bin", .bytes = written, .size = 2000,
+                                           .options = {.answer_ns = 1000000000}};
+        cm1e_firmware_state_t state = CM1E_FIRMWARE_WRITTEN;
+        const cm1e_error_t error = cm1e_firmware_update(bus, 1, &file, &state, &diag);
+        ck_assert_msg((error == CM1E_OK) == (wrong_answer == 0), "answer %u: %s", wrong_answer, diag.text);
+        ck_assert_msg(state == states[wrong_answer], "answer %u: state %d", wrong_answer, (int)state);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
 /* ---- while the bus operates ------------------------------------------------------------------------------------- */
 
 /** A drive that keeps files, and a CM1-E; both in Operational. */
@@ -416,6 +454,7 @@ int main(void)
     tcase_add_test(tests, progress_is_told_and_may_break_off);
     tcase_add_test(tests, the_mailbox_is_shared);
     tcase_add_test(tests, bootstrap_and_slaves_without_files);
+    tcase_add_test(tests, an_update_that_fails_tells_what_the_slave_has);
     tcase_add_test(tests, files_go_beside_the_process_data);
     tcase_add_test(tests, refusals_in_operation);
     tcase_add_test(tests, files_and_sdo_transfers_take_turns);

@@ -227,6 +227,16 @@ static void test_refused_numbers_are_told_as_they_are_judged(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &fast, &id));
     bench_told("velocity -1e+09 was commanded; -");
     bench_told("u/s is right, but not 0");
+    static const cm1e_axis_command_t wrong[] = {
+        {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 1.0, .velocity = -1.0},
+        {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 1.0, .velocity = 1e9},
+        {.kind = CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, .position = 1.0, .velocity = -1.0, .end_velocity = 1.0},
+        {.kind = CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, .position = 1.0, .velocity = 1e9, .end_velocity = 1.0},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &wrong[i], &id));
+        bench_told("was commanded; above 0, up to");
+    }
     static const cm1e_axis_command_t small[] = {
         {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1e-300},
         {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1.0, .acceleration = 1e-300},

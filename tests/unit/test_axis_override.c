@@ -1,4 +1,6 @@
 /* MC_SetOverride (3.18): factors on the dynamics of what moves the axis. */
+#include "axis/axis_parameters.h"
+
 #include "../support/effort.h"
 #include "../support/axis_bench.h"
 #include "../support/axis_witness.h"
@@ -131,6 +133,28 @@ static void test_commands_given_while_velocity_is_0_begin_when_it_is_not(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 6.0, bench_info().set_position);
 }
 
+/* The software limit was moved before the target meanwhile. The axis stands, and other commands move it. */
+static void test_a_command_that_cannot_go_on_after_velocity_0_ends(void)
+{
+    for (int wait = 50; wait < 900; wait += 200) { /* from while it brakes on */
+        setUp();
+        const cm1e_command_id_t id = post(CM1E_COMMAND_MOVE_ABSOLUTE, 40.0, 10.0, mcAborting);
+        watch_cycles(600);
+        override(0.0, 1.0, 1.0);
+        watch_cycles(wait);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_SW_LIMIT_POS, 20.0));
+        override(1.0, 1.0, 1.0);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_command_status(axis, id).error);
+        watch_cycles(400);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, axis->setpoint.velocity);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+        const cm1e_command_id_t next = bench_move_to(19.0, 10.0);
+        watch_cycles(4000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(next));
+    }
+}
+
 /* 3.18, note 4, figure 36. */
 static void test_factors_out_of_range_change_nothing(void)
 {
@@ -251,6 +275,7 @@ int main(void)
     RUN_TEST(test_acceleration_and_jerk_factors_bound_what_follows);
     RUN_TEST(test_velocity_0_stands_without_standstill_and_goes_on);
     RUN_TEST(test_commands_given_while_velocity_is_0_begin_when_it_is_not);
+    RUN_TEST(test_a_command_that_cannot_go_on_after_velocity_0_ends);
     RUN_TEST(test_factors_out_of_range_change_nothing);
     RUN_TEST(test_less_deceleration_never_passes_the_target);
     RUN_TEST(test_less_jerk_while_braking_leads_neither_back_nor_beyond);
