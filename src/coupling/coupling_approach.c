@@ -151,7 +151,6 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
     approach->sync = sync;
     approach->begin = from->position;
     approach->end = cm1e_position_plus(meeting, shift);
-    approach->awaited = AWAIT_NOTHING;
     follow->cam.slave_zero = cm1e_position_plus(follow->cam.slave_zero, shift);
     return CM1E_OK;
 }

@@ -107,6 +107,26 @@ static void test_object_of_a_wrong_size_is_refused(void)
     TEST_ASSERT_GREATER_THAN_UINT(50, tried);
 }
 
+static void test_digital_outputs_of_every_size_arrive_and_nothing_beside_them(void)
+{
+    for (int bytes = 2; bytes <= 4; bytes++) {
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        TEST_ASSERT_TRUE(resize(&bus.rx, 0x60FE, 8 * bytes));
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_init(&drive, &bus, 0, &diag));
+        drive.command.digital_outputs = 0x8005;
+        cycle();
+        TEST_ASSERT_EQUAL_HEX32(0x8005, fake_output(&bus, 0x60FE, 0));
+        uint8_t with[sizeof bus.outputs];
+        memcpy(with, bus.outputs, sizeof with);
+        drive.command.digital_outputs = 0;
+        cm1e_drive_write(&drive);
+        unsigned changed = 0;
+        for (size_t i = 0; i < sizeof with; i++)
+            changed += with[i] != bus.outputs[i];
+        TEST_ASSERT_EQUAL_UINT(2, changed);
+    }
+}
+
 static void test_wrong_axis_motor_or_firmware_is_an_error_in_words(void)
 {
     fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
@@ -410,6 +430,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_missing_object_is_named_with_its_mapping);
     RUN_TEST(test_object_of_a_wrong_size_is_refused);
+    RUN_TEST(test_digital_outputs_of_every_size_arrive_and_nothing_beside_them);
     RUN_TEST(test_wrong_axis_motor_or_firmware_is_an_error_in_words);
     RUN_TEST(test_a_stated_unit_of_velocity_counts_more_than_the_firmware);
     RUN_TEST(test_velocity_has_the_unit_of_the_firmware_and_is_limited);
