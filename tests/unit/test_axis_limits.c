@@ -89,6 +89,23 @@ static void test_velocity_into_a_limit_is_braked_before_it(void)
         }
 }
 
+/* It would be beyond the point from which it can stop a cycle later. */
+static void test_a_velocity_from_which_no_stop_is_possible_is_refused(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.config.axes[0].max_jerk = 1e6;
+        bench_enable_within(-20.0, 20.0);
+        const cm1e_command_id_t running = bench_move_to(20.0 * sign, 20.0);
+        while (fabs(bench_info().set_position) < 19.5)
+            bench_cycles(1);
+        const cm1e_axis_command_t on = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 10.0 * sign};
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_try_command(&on));
+        bench_wait(running, 1000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(running));
+    }
+}
+
 /** Fast towards a limit, with so little jerk that a stop there has to do without a limit of jerk. */
 static void brake_hard_for(int cycles)
 {
@@ -426,6 +443,7 @@ int main(void)
     RUN_TEST(test_a_limit_is_reached_in_steps_that_are_rounded);
     RUN_TEST(test_a_retarget_that_would_overshoot_a_limit_is_refused);
     RUN_TEST(test_velocity_into_a_limit_is_braked_before_it);
+    RUN_TEST(test_a_velocity_from_which_no_stop_is_possible_is_refused);
     RUN_TEST(test_a_stop_without_limit_of_jerk_never_swings_back);
     RUN_TEST(test_a_stop_that_is_taken_over_at_once_makes_no_step);
     RUN_TEST(test_a_move_back_inside_is_taken_while_braking_without_limit_of_jerk);

@@ -226,6 +226,23 @@ static void test_profile_position_announces_each_set_point_once(void)
     TEST_ASSERT_EQUAL_HEX16(0x000F, before);
 }
 
+/* Also when frames return: nobody knows which velocity the drive had meanwhile. */
+static void test_after_lost_frames_the_velocity_changes_in_steps(void)
+{
+    start(CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5, 500);
+    enable_with_turning_shaft(CM1E_MODE_CSV, 0);
+    drive.command.target_velocity = 0;
+    drive.command.velocity_step = 100;
+    for (int i = 0; i < 12; i++) {
+        fake_bus_cycle(&bus, cycle_ns);
+        cm1e_drive_read(&drive, i != 1 && i != 2, bus.clock.virtual_now_ns);
+        cm1e_drive_write(&drive);
+        const int expected = i == 0 ? 0 : i < 10 ? 100 * i : i == 10 ? 1000 : 5000; /* in step again: no bound */
+        TEST_ASSERT_EQUAL_INT32(expected, fake_output(&bus, 0x60FF, 0));
+        drive.command.target_velocity = i < 10 ? 1000 : 5000;
+    }
+}
+
 /* Else the edge would come by itself with the next torque. */
 static void test_a_set_point_without_an_answer_is_forgotten_with_the_torque(void)
 {
@@ -257,6 +274,7 @@ int main(void)
     RUN_TEST(test_no_step_towards_torque_before_inputs_or_without_fresh_ones);
     RUN_TEST(test_lost_frames_while_enabled_keep_the_targets);
     RUN_TEST(test_profile_position_announces_each_set_point_once);
+    RUN_TEST(test_after_lost_frames_the_velocity_changes_in_steps);
     RUN_TEST(test_a_set_point_without_an_answer_is_forgotten_with_the_torque);
     return UNITY_END();
 }
