@@ -28,9 +28,12 @@ static cm1e_error_t no_device(const cm1e_slave_config_t *slave, const cm1e_descr
                               cm1e_diag_t *diag)
 {
     char list[200] = "";
-    for (size_t i = 0, used = 0; i < file->devices.count && used + 60 < sizeof list; i++)
+    for (size_t i = 0, used = 0; i < file->devices.count && used + 60 < sizeof list; i++) {
+        const cm1e_description_t *device = &file->devices.at[i];
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%.20s (0x%08X)", used ? ", " : "",
-                                 file->devices.at[i].type, (unsigned)file->devices.at[i].product_code);
+                                 /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): `count` devices are there */
+                                 device->type, (unsigned)device->product_code);
+    }
     if (several)
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "describes %zu devices, %s; expected the product of this "
                              "slave beside it", file->devices.count, list);

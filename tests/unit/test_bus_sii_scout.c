@@ -1,0 +1,172 @@
+/* What the search for a slave reads of its SII: identity, mailbox, sync managers, and the bits of each of them. */
+#include <string.h>
+
+#include "bus/eeprom_interface.h"
+#include "bus/sii_scout.h"
+#include "core/bytes.h"
+#include "description/sii_image.h"
+#include "unity.h"
+
+enum { SYNC_MANAGERS = 41, TX_PDO = 50, RX_PDO = 51, END = 0xFFFF, UNASSIGNED = 0xFF };
+
+static uint8_t sii[1024];
+static size_t used, category_at;
+static cm1e_scout_t scout;
+
+/* ---- an image ---------------------------------------------------------------------------------------------------- */
+
+static void put_u16(unsigned value)
+{
+    cm1e_put_u16(sii + used, (uint16_t)value);
+    used += 2;
+}
+
+static void category(unsigned type)
+{
+    category_at = used;
+    put_u16(type);
+    put_u16(0);
+}
+
+static void category_ends(void) { cm1e_put_u16(sii + category_at + 2, (uint16_t)((used - category_at - 4) / 2)); }
+
+static void pdo(unsigned index, unsigned entries, unsigned sync_manager)
+{
+    put_u16(index);
+    put_u16(entries | sync_manager << 8);
+    put_u16(0);
+    put_u16(0);
+}
+
+static void entry(unsigned bits)
+{
+    put_u16(0x6000);
+    put_u16(1);
+    put_u16(bits << 8); /* data type, bits */
+    put_u16(0);
+}
+
+void setUp(void)
+{
+    memset(sii, 0, sizeof sii);
+    cm1e_put_u32(sii + CM1E_SII_VENDOR, 0x1234);
+    cm1e_put_u32(sii + CM1E_SII_PRODUCT, 0x56789ABC);
+    cm1e_put_u32(sii + CM1E_SII_PRODUCT + 4, 0x00010002);
+    cm1e_put_u32(sii + CM1E_SII_SERIAL, 77);
+    used = CM1E_SII_HEADER_BYTES;
+}
+void tearDown(void) {}
+
+/* ---- the memory -------------------------------------------------------------------------------------------------- */
+
+static void read_all(void)
+{
+    uint32_t word = 0;
+    put_u16(END);
+    cm1e_scout_begin(&scout, 0x1001, 1000000);
+    for (int64_t now_ns = 0; !cm1e_scout_idle(&scout); now_ns++) {
+        cm1e_datagram_t d = {0};
+        if (!cm1e_scout_next(&scout, &d, now_ns))
+            break;
+        d.working_counter = 1;
+        if (d.command == COMMAND_FPWR && d.length == 6)
+            word = cm1e_get_u32(d.data + 2);
+        if (d.command == COMMAND_FPRD) {
+            memset(d.data, 0, d.length);
+            if (d.length > EEPROM_GROUP_AT && 2 * word + 4 <= sizeof sii)
+                memcpy(d.data + EEPROM_GROUP_AT, sii + 2 * word, 4);
+        }
+        cm1e_scout_result(&scout, &d);
+    }
+}
+
+/* ---- what was read ----------------------------------------------------------------------------------------------- */
+
+static void test_the_bits_of_several_pdos_are_added_by_sync_manager(void)
+{
+    category(TX_PDO);
+    pdo(0x1A00, 1, 3);
+    entry(1);
+    pdo(0x1A01, 3, 3);
+    entry(16);
+    entry(32);
+    entry(7);
+    pdo(0x1A02, 0, 3);
+    pdo(0x1A03, 1, UNASSIGNED);
+    entry(64);
+    pdo(0x1A04, 1, 1);
+    entry(8);
+    category_ends();
+    category(30); /* something else */
+    put_u16(0x0102);
+    category_ends();
+    category(RX_PDO);
+    pdo(0x1600, 2, 2);
+    entry(16);
+    entry(16);
+    pdo(0x1601, 1, 2);
+    entry(4);
+    category_ends();
+    read_all();
+    TEST_ASSERT_TRUE(scout.good);
+    const uint16_t inputs[] = {0, 8, 0, 1 + 16 + 32 + 7}, outputs[] = {0, 0, 16 + 16 + 4, 0};
+    TEST_ASSERT_EQUAL_UINT16_ARRAY(inputs, scout.found.bits[1], 4);
+    TEST_ASSERT_EQUAL_UINT16_ARRAY(outputs, scout.found.bits[0], 4);
+}
+
+static void test_identity_and_sync_managers_are_found_wherever_the_category_is(void)
+{
+    category(TX_PDO);
+    pdo(0x1A00, 1, 0);
+    entry(8);
+    category_ends();
+    category(SYNC_MANAGERS);
+    for (unsigned n = 0; n < 2; n++) {
+        put_u16(0x1000 + 0x100 * n);
+        put_u16(2 + n);
+        put_u16(0x44);
+        put_u16(1 | (3 + n) << 8);
+    }
+    category_ends();
+    read_all();
+    TEST_ASSERT_TRUE(scout.good);
+    TEST_ASSERT_EQUAL_HEX32(0x1234, scout.found.vendor_id);
+    TEST_ASSERT_EQUAL_HEX32(0x56789ABC, scout.found.product_code);
+    TEST_ASSERT_EQUAL_HEX32(0x00010002, scout.found.revision);
+    TEST_ASSERT_EQUAL_UINT32(77, scout.found.serial_number);
+    TEST_ASSERT_EQUAL_UINT8(2, scout.found.sync_manager_count);
+    for (unsigned n = 0; n < 2; n++) {
+        const cm1e_sii_sync_manager_t *manager = &scout.found.sync_managers[n];
+        TEST_ASSERT_EQUAL_HEX16(0x1000 + 0x100 * n, manager->start);
+        TEST_ASSERT_EQUAL_UINT16(2 + n, manager->length);
+        TEST_ASSERT_EQUAL_HEX8(0x44, manager->control);
+        TEST_ASSERT_EQUAL_HEX8(1, manager->enable);
+        TEST_ASSERT_EQUAL_UINT8(3 + n, manager->use);
+    }
+}
+
+/* A number of entries is not trusted beyond its category. */
+static void test_entries_that_are_not_there_are_not_counted(void)
+{
+    category(TX_PDO);
+    pdo(0x1A00, 200, 3);
+    entry(8);
+    category_ends();
+    category(RX_PDO);
+    pdo(0x1600, 1, 2);
+    entry(16);
+    category_ends();
+    read_all();
+    TEST_ASSERT_TRUE(scout.good);
+    TEST_ASSERT_EQUAL_UINT16(8, scout.found.bits[1][3]);
+    TEST_ASSERT_EQUAL_UINT16(16, scout.found.bits[0][2]);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_bits_of_several_pdos_are_added_by_sync_manager);
+    RUN_TEST(test_identity_and_sync_managers_are_found_wherever_the_category_is);
+    RUN_TEST(test_entries_that_are_not_there_are_not_counted);
+    return UNITY_END();
+}
