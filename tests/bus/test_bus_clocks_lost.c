@@ -77,6 +77,24 @@ START_TEST(a_drive_without_pulses_leaves_operational_and_comes_back)
 }
 END_TEST
 
+/** Only the codes that tell of the clock: 0x001A, 0x002C, 0x002D and 0x0030 ... 0x0037 (ETG.1020). */
+START_TEST(other_errors_of_a_drive_are_no_loss_of_its_clock)
+{
+    static const struct {
+        uint16_t code;
+        unsigned losses;
+    } rows[] = {{0x001A, 1}, {0x001B, 0}, {0x002B, 0}, {0x002C, 1}, {0x002D, 1}, {0x002E, 0},
+                {0x002F, 0}, {0x0030, 1}, {0x0037, 1}, {0x0038, 0}, {0x8000, 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        describe(1000);
+        cm1e_bus_t *bus = start_drifting(0, 10, 0);
+        note_status(bus, DRIVE, rows[i].code);
+        ck_assert_msg(clock_of(bus, DRIVE).losses == rows[i].losses, "0x%04X", rows[i].code);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
 /** Each time from the first step on: without power the controller has forgotten all of it. */
 START_TEST(a_clock_is_set_at_every_recovery)
 {
@@ -252,6 +270,7 @@ int main(void)
     tcase_add_test(lost, a_clock_that_leaves_the_reference_is_counted_once);
     tcase_add_test(lost, clocks_are_looked_at_while_an_optional_slave_is_searched_for);
     tcase_add_test(lost, a_drive_without_pulses_leaves_operational_and_comes_back);
+    tcase_add_test(lost, other_errors_of_a_drive_are_no_loss_of_its_clock);
     tcase_add_test(lost, a_clock_is_set_at_every_recovery);
     tcase_add_test(lost, a_drive_without_process_data_at_its_pulses_leaves_operational);
     tcase_add_test(lost, a_drive_whose_clock_runs_away_leaves_operational);

@@ -54,6 +54,26 @@ START_TEST(small_controllers)
 }
 END_TEST
 
+/** A terminal without a mailbox has a sync manager for each direction, and one is not enough for both. */
+START_TEST(small_terminal)
+{
+    for (int managers = 1; managers <= 2; managers++) {
+        sim_config(1);
+        cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "both");
+        slave->address = 2;
+        slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_DIGITAL, .inputs = 4, .outputs = 4};
+        cm1e_bus_t *bus = open_bus();
+        simulate(bus, managers == 1 ? "quirk 2 sync-managers 1" : "quirk 2 sync-managers 2");
+        if (managers == 1) {
+            expect_refusal(bus, CM1E_ERROR_CONFIG, "1 sync managers; its process data needs 2 and 2");
+        } else {
+            expect_start(bus);
+            cm1e_bus_close(bus);
+        }
+    }
+}
+END_TEST
+
 /** Two analog inputs, whose channels the bus file orders, or one of which it maps anew. */
 static void analog(bool maps)
 {
@@ -258,6 +278,7 @@ int main(void)
     TCase *tests = tcase_create("quirks");
     tcase_set_timeout(tests, 60);
     tcase_add_test(tests, small_controllers);
+    tcase_add_test(tests, small_terminal);
     tcase_add_test(tests, fixed_pdos);
     tcase_add_test(tests, a_slow_eeprom);
     tcase_add_test(tests, a_wrong_checksum);

@@ -1,5 +1,7 @@
 #include "clock_bench.h"
 
+#include "bus/bus_internal.h"
+
 int64_t plan_ns;
 
 void describe(double sync0_us)
@@ -60,6 +62,11 @@ cm1e_slave_clock_t clock_of(cm1e_bus_t *bus, uint16_t position)
     cm1e_slave_clock_t clock;
     cm1e_bus_slave_clock(bus, position, &clock);
     return clock;
+}
+
+void note_status(cm1e_bus_t *bus, uint16_t position, uint16_t al_status_code)
+{
+    cm1e_dc_note_status(&bus->slaves[position - 1], al_status_code);
 }
 
 cm1e_bus_clocks_t clocks_of(cm1e_bus_t *bus)

@@ -25,6 +25,8 @@ void run(cm1e_bus_t *bus, unsigned n);
 /** How much the clock of a slave is really ahead of that of the first slave. */
 double ahead_ns(cm1e_bus_t *bus, uint32_t position);
 cm1e_slave_clock_t clock_of(cm1e_bus_t *bus, uint16_t position);
+/** As if the slave had shown this AL status code. */
+void note_status(cm1e_bus_t *bus, uint16_t position, uint16_t al_status_code);
 cm1e_bus_clocks_t clocks_of(cm1e_bus_t *bus);
 
 #endif
