@@ -265,7 +265,9 @@ START_TEST(bootstrap_and_slaves_without_files)
     room = FILE_MAX;
     ck_assert_int_eq(cm1e_foe_read(bus, 1, "x.bin", got, &room, &in_bootstrap, &diag), CM1E_ERROR_BUS_MAILBOX);
     ck_assert_uint_eq(diag.foreign_code, 0x8001);
+    diag.foreign_code = 1;
     ck_assert_int_eq(cm1e_foe_write(bus, 1, "x.bin", written, 2000, &in_bootstrap, &diag), CM1E_ERROR_STATE);
+    ck_assert_uint_eq(diag.foreign_code, 0);
     ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
     ck_assert_msg(cm1e_foe_write(bus, 1, "x.bin", written, 2000, &in_bootstrap, &diag) == CM1E_OK, "%s", diag.text);
     simulate(bus, "power-cycle 1 100"); /* the simulated device starts its new firmware */
@@ -308,6 +310,7 @@ START_TEST(an_update_that_fails_tells_what_the_slave_has)
         const cm1e_error_t error = cm1e_firmware_update(bus, 1, &file, &state, &diag);
         ck_assert_msg((error == CM1E_OK) == (wrong_answer == 0), "answer %u: %s", wrong_answer, diag.text);
         ck_assert_msg(state == states[wrong_answer], "answer %u: state %d", wrong_answer, (int)state);
+        ck_assert_msg(!wrong_answer || strstr(diag.text, "127"), "%s", diag.text);
         cm1e_bus_close(bus);
     }
 }

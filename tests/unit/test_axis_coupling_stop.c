@@ -98,6 +98,33 @@ static void test_it_does_not_creep_over_a_software_limit(void)
     }
 }
 
+/* Also slower than 1 u/s, in both directions. */
+static void test_braking_has_a_limit_of_its_own_at_every_speed(void)
+{
+    static const double speeds[] = {0.5, 0.9, 5.0};
+    for (int i = 0; i < 6; i++) {
+        const double sign = i % 2 ? -1.0 : 1.0, v0 = sign * speeds[i / 2];
+        axes_describe(2);
+        axes_config(SLAVE)->max_acceleration = 100.0;
+        axes_config(SLAVE)->max_deceleration = 20.0;
+        axes_make();
+        axes_enable_all();
+        axes_wait_reached(SLAVE, axes_move_velocity(SLAVE, v0), 2000);
+        axes_cycles(2);
+        for (int brakes = 0; brakes < 2; brakes++) { /* 50 u/s2 */
+            const double v = v0 + (brakes ? -0.05 : 0.05) * sign, way = (v0 + v) / 2.0 * 0.001;
+            const from_t next = {cm1e_position_plus(axes_axis(SLAVE)->setpoint.position, way * 50000.0), v, 0.0, false};
+            TEST_ASSERT_EQUAL_INT(brakes ? GUARD_DECELERATION : GUARD_KEPT,
+                                  cm1e_axis_guard(axes_axis(SLAVE), &next, false).limit);
+        }
+        /* in its positions alone: it falls back by what 50 u/s2 brake in a cycle */
+        const double way = v0 * 0.001 - sign * 50.0 * 1e-6 / 2.0;
+        const from_t next = {cm1e_position_plus(axes_axis(SLAVE)->setpoint.position, way * 50000.0),
+                             v0 * (1.0 - 1e-6), 0.0, false};
+        TEST_ASSERT_EQUAL_INT(GUARD_DECELERATION, cm1e_axis_guard(axes_axis(SLAVE), &next, true).limit);
+    }
+}
+
 static void test_a_direction_that_is_not_enabled_stops_it(void)
 {
     begin(CM1E_COUPLING_STOP_THIS);
@@ -181,6 +208,7 @@ static void test_the_master_that_fails_is_named(void)
         fake_bus_fault(axes_motor(failing), 0x2310);
         axes_cycles(10);
         failed(2, CM1E_ERROR_AXIS_MASTER_LOST, failing ? "\"axis1\"" : "\"axis0\"");
+        axes_told(2, cm1e_strerror(CM1E_ERROR_DRIVE_FAULT)); /* why it fails */
     }
 }
 
@@ -373,6 +401,7 @@ int main(void)
     RUN_TEST(test_a_set_point_beyond_a_limit_is_not_given_out);
     RUN_TEST(test_it_stops_before_a_software_limit);
     RUN_TEST(test_it_does_not_creep_over_a_software_limit);
+    RUN_TEST(test_braking_has_a_limit_of_its_own_at_every_speed);
     RUN_TEST(test_a_direction_that_is_not_enabled_stops_it);
     RUN_TEST(test_a_direction_that_is_taken_away_stops_it);
     RUN_TEST(test_every_failure_of_a_master_stops_the_slave_by_itself);

@@ -108,8 +108,9 @@ static void test_power_is_settled_no_longer_without_program(void)
 {
     bench_enable();
     settle();
-    cm1e_axis_lose_program(axis, "task", 0);
+    cm1e_axis_lose_program(axis, "fast", 5000000);
     TEST_ASSERT_FALSE(settled());
+    bench_told("task \"fast\" did not return within 5 ms");
 }
 
 static void test_enable_waits_without_motor_power_and_ends_in_words(void)
