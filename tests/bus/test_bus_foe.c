@@ -173,7 +173,9 @@ START_TEST(refusals_have_code_and_text)
     name[sizeof name - 1] = 0;
     ck_assert_int_eq(cm1e_foe_write(bus, 1, name, written, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_int_eq(cm1e_foe_write(bus, 1, "", written, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    diag.foreign_code = 1;
     ck_assert_int_eq(cm1e_foe_write(bus, 2, "n", written, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_uint_eq(diag.foreign_code, 0);
     ck_assert_str_eq(cm1e_foe_error_text(0x8008), "in Bootstrap only");
     ck_assert_str_eq(cm1e_foe_error_text(7), "unknown");
     cm1e_bus_close(bus);
