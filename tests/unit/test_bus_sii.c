@@ -109,6 +109,23 @@ static void test_good_image_gives_everything(void)
     TEST_ASSERT_EQUAL_UINT32(0, sii.bits[0][3] + sii.bits[1][2]);
 }
 
+/* An entry without an index is a gap of so many bits. */
+static void test_padding_is_no_signal_and_keeps_its_place(void)
+{
+    static const uint8_t managers[32] = {[24] = 0x00, 0x11, 2, 0, 0x20, 0, 1, 4};
+    static const uint8_t tx[8 + 24] = {0x00, 0x1A, 3, 3, 0, 0, 0, 0, 0x00, 0x60, 1, 0, 1, 1, 0, 0,
+                                       0x00, 0x00, 0, 0, 0, 7, 0, 0, 0x01, 0x60, 1, 0, 5, 8, 0, 0};
+    put_category(41, managers, 16);
+    put_category(50, tx, 16);
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_NOT_NULL(sii.signals);
+    TEST_ASSERT_EQUAL_UINT32(2, sii.signals->count);
+    TEST_ASSERT_EQUAL_HEX16(0x6000, sii.signals->at[0].index);
+    TEST_ASSERT_EQUAL_HEX16(0x6001, sii.signals->at[1].index);
+    TEST_ASSERT_EQUAL_UINT32(8, sii.signals->at[1].bit_offset);
+    TEST_ASSERT_EQUAL_UINT32(16, sii.bits[1][3]);
+}
+
 static void test_read_that_fails_anywhere_is_reported(void)
 {
     put_good_categories();
@@ -280,6 +297,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_good_image_gives_everything);
+    RUN_TEST(test_padding_is_no_signal_and_keeps_its_place);
     RUN_TEST(test_read_that_fails_anywhere_is_reported);
     RUN_TEST(test_no_categories_at_all_is_a_slave_without_name);
     RUN_TEST(test_names_are_cut_and_cleaned);
