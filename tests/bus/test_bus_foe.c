@@ -280,13 +280,16 @@ START_TEST(bootstrap_and_slaves_without_files)
 }
 END_TEST
 
-static unsigned wrong_answer, answers;
+static unsigned wrong_answer, answers, switched_off;
 
-/** Answer number `wrong_answer` of FoE has a service that there is not. */
+/** Answer number `wrong_answer` of FoE has a service that there is not. Counts the sync managers that are switched off. */
 static cm1e_tap_verdict_t answer_wrongly(void *context, cm1e_tap_frame_t *frame)
 {
     (void)context;
     uint8_t *message = frame->bytes + 26;
+    const unsigned offset = cm1e_get_u16(frame->bytes + 20), bytes = cm1e_get_u16(frame->bytes + 22) & 0x7FF;
+    if (frame->direction == CM1E_TAP_SENT && (offset == 0x0806 || offset == 0x080E) && bytes == 1 && message[0] == 0)
+        switched_off++;
     const bool mailbox = frame->direction == CM1E_TAP_RECEIVED && frame->bytes[16] == 4 && frame->length > 100;
     if (mailbox && (message[5] & 0x0F) == 4 &&
         ++answers == wrong_answer)
@@ -305,7 +308,7 @@ START_TEST(an_update_that_fails_tells_what_the_slave_has)
         sim_config(1);
         cm1e_bus_t *bus = open_bus();
         cm1e_nic_set_tap(cm1e_bus_nic(bus), answer_wrongly, NULL);
-        answers = 0;
+        answers = switched_off = 0;
         const cm1e_firmware_file_t file = {.name = "x.bin", .bytes = written, .size = 2000,
                                            .options = {.answer_ns = 1000000000}};
         cm1e_firmware_state_t state = CM1E_FIRMWARE_WRITTEN;
@@ -313,6 +316,7 @@ START_TEST(an_update_that_fails_tells_what_the_slave_has)
         ck_assert_msg((error == CM1E_OK) == (wrong_answer == 0), "answer %u: %s", wrong_answer, diag.text);
         ck_assert_msg(state == states[wrong_answer], "answer %u: state %d", wrong_answer, (int)state);
         ck_assert_msg(!wrong_answer || strstr(diag.text, "127"), "%s", diag.text);
+        ck_assert_uint_eq(switched_off, 2); /* before they get another place */
         cm1e_bus_close(bus);
     }
 }

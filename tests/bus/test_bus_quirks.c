@@ -74,6 +74,40 @@ START_TEST(small_terminal)
 }
 END_TEST
 
+static uint8_t stated_units[2]; /**< FMMUs and sync managers */
+
+static cm1e_tap_verdict_t state_units(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    const bool units = cm1e_get_u16(frame->bytes + 20) == 0x0004 && (cm1e_get_u16(frame->bytes + 22) & 0x7FF) == 2;
+    if (units && frame->direction == CM1E_TAP_RECEIVED && cm1e_get_u16(frame->bytes + 18) == 0x1002)
+        memcpy(frame->bytes + 26, stated_units, sizeof stated_units);
+    return CM1E_TAP_PASS;
+}
+
+/** A controller that states 0 does not tell the number, and it counts for each of both by itself. */
+START_TEST(controllers_that_do_not_tell)
+{
+    static const struct {
+        uint8_t units[2];
+        const char *refused;
+    } rows[] = {{{0, 0}, NULL}, {{2, 0}, NULL}, {{0, 4}, NULL},
+                {{1, 0}, "has 1 FMMUs and 0 sync managers"}, {{0, 3}, "has 0 FMMUs and 3 sync managers"}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        sim_config(2);
+        cm1e_bus_t *bus = open_bus();
+        memcpy(stated_units, rows[i].units, sizeof stated_units);
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), state_units, NULL);
+        if (rows[i].refused) {
+            expect_refusal(bus, CM1E_ERROR_CONFIG, rows[i].refused);
+        } else {
+            expect_start(bus);
+            cm1e_bus_close(bus);
+        }
+    }
+}
+END_TEST
+
 /** Two analog inputs, whose channels the bus file orders, or one of which it maps anew. */
 static void analog(bool maps)
 {
@@ -279,6 +313,7 @@ int main(void)
     tcase_set_timeout(tests, 60);
     tcase_add_test(tests, small_controllers);
     tcase_add_test(tests, small_terminal);
+    tcase_add_test(tests, controllers_that_do_not_tell);
     tcase_add_test(tests, fixed_pdos);
     tcase_add_test(tests, a_slow_eeprom);
     tcase_add_test(tests, a_wrong_checksum);

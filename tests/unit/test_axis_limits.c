@@ -236,6 +236,24 @@ static void test_motion_in_a_disabled_direction_is_refused(void)
     }
 }
 
+/* Behind a velocity nobody knows where a command begins, but the direction of a distance is known. */
+static void test_a_distance_in_a_disabled_direction_is_refused_also_behind_a_velocity(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        bench_start();
+        bench_enable();
+        cm1e_axis_power(axis, &owner, true, sign > 0, sign < 0);
+        bench_move_velocity(1.0 * sign);
+        bench_cycles(100);
+        const cm1e_axis_command_t back = {.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = -1.0 * sign, .velocity = 1.0,
+                                          .buffer_mode = mcBuffered};
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED, bench_try_command(&back));
+        const cm1e_axis_command_t to = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = -9.0 * sign, .velocity = 1.0,
+                                        .buffer_mode = mcBuffered};
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_try_command(&to));
+    }
+}
+
 static void test_refused_numbers_are_told_as_they_are_judged(void)
 {
     bench_enable();
@@ -450,6 +468,7 @@ int main(void)
     RUN_TEST(test_an_axis_outside_its_limits_may_only_come_back);
     RUN_TEST(test_an_axis_at_its_limit_may_not_go_on);
     RUN_TEST(test_motion_in_a_disabled_direction_is_refused);
+    RUN_TEST(test_a_distance_in_a_disabled_direction_is_refused_also_behind_a_velocity);
     RUN_TEST(test_refused_numbers_are_told_as_they_are_judged);
     RUN_TEST(test_direction_disabled_while_running_stops_the_motion);
     RUN_TEST(test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped);
