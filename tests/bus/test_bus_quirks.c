@@ -74,6 +74,32 @@ START_TEST(small_terminal)
 }
 END_TEST
 
+static unsigned first_lost, addressed;
+
+/** Loses the frames that give stations their addresses, the first `first_lost` of them. */
+static cm1e_tap_verdict_t lose_addresses(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    const bool gives = frame->bytes[16] == COMMAND_APWR && cm1e_get_u16(frame->bytes + 20) == 0x0010;
+    return frame->direction == CM1E_TAP_SENT && gives && addressed++ < first_lost ? CM1E_TAP_DROP : CM1E_TAP_PASS;
+}
+
+/** A slave that did not take its address with all others takes it by itself. */
+START_TEST(addresses_that_did_not_arrive)
+{
+    for (first_lost = 0; first_lost <= 2; first_lost++) {
+        sim_config(3);
+        cm1e_bus_t *bus = open_bus();
+        addressed = 0;
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), lose_addresses, NULL);
+        expect_start(bus);
+        ck_assert_uint_eq(cm1e_bus_slave_count(bus), 3);
+        ck_assert_uint_ge(addressed, first_lost ? 4 : 1); /* all at once, then each */
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
 static uint8_t stated_units[2]; /**< FMMUs and sync managers */
 
 static cm1e_tap_verdict_t state_units(void *context, cm1e_tap_frame_t *frame)
@@ -313,6 +339,7 @@ int main(void)
     tcase_set_timeout(tests, 60);
     tcase_add_test(tests, small_controllers);
     tcase_add_test(tests, small_terminal);
+    tcase_add_test(tests, addresses_that_did_not_arrive);
     tcase_add_test(tests, controllers_that_do_not_tell);
     tcase_add_test(tests, fixed_pdos);
     tcase_add_test(tests, a_slow_eeprom);
