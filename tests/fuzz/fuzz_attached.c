@@ -1,7 +1,6 @@
 /* What another program answers at its control socket, which any program of the same user can be: a bus that is attached to
  * it, and a recording of its signals. Each line of an input is the body of an answer; a line that begins with "!" is sent
  * as it is, without its length. */
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -16,53 +15,41 @@
 #include "fuzz_complain.h"
 #include "recording.h"
 
-typedef struct other {
-    const uint8_t *bytes;
-    size_t size;
-    int listener;
-    char path[108];
-} other_t;
-
 static void send_line(int fd, const uint8_t *line, size_t length)
 {
     const uint8_t head[CM1E_MESSAGE_HEADER] = {0, 0, (uint8_t)(length >> 8), (uint8_t)length};
     const bool raw = length > 0 && line[0] == '!';
-    if (!raw && send(fd, head, sizeof head, MSG_NOSIGNAL) < 0)
+    if (!raw && send(fd, head, sizeof head, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
         return;
-    send(fd, line + raw, length - raw, MSG_NOSIGNAL);
+    send(fd, line + raw, length - raw, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
-/** Answers whatever it is asked with one line after the other. */
-static void *answer(void *context)
+/** Answers whatever it will be asked with one line after the other: what the client does not read waits in the socket. */
+static void answer(int fd, const uint8_t *bytes, size_t size)
 {
-    const other_t *other = context;
-    const int fd = accept(other->listener, NULL, NULL);
-    if (fd < 0)
-        fuzz_fail("no connection");
-    const uint8_t *end = other->bytes + other->size;
-    for (const uint8_t *at = other->bytes, *next; at < end; at = next + 1) {
+    const uint8_t *end = bytes + size;
+    for (const uint8_t *at = bytes, *next; at < end; at = next + 1) {
         next = memchr(at, '\n', (size_t)(end - at));
         next = next ? next : end;
         send_line(fd, at, (size_t)(next - at));
     }
     shutdown(fd, SHUT_WR);
-    char asked[4096]; /* until the client has closed: else it would be told that nobody reads */
-    while (recv(fd, asked, sizeof asked, 0) > 0)
-        ;
-    close(fd);
-    return NULL;
 }
 
-static void listen_once(other_t *other)
+/** Its address; the listener is there for all inputs. */
+static const char *listen_here(int *listener)
 {
-    struct sockaddr_un address = {.sun_family = AF_UNIX};
-    snprintf(other->path, sizeof other->path, "/tmp/fuzz_attached_%d", (int)getpid());
-    strcpy(address.sun_path, other->path);
-    unlink(other->path);
-    other->listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    if (other->listener < 0 || bind(other->listener, (struct sockaddr *)&address, sizeof address) != 0 ||
-        listen(other->listener, 1) != 0)
-        fuzz_fail("no socket");
+    static struct sockaddr_un address = {.sun_family = AF_UNIX};
+    static int fd = -1;
+    if (fd < 0) {
+        snprintf(address.sun_path, sizeof address.sun_path, "/tmp/fuzz_attached_%d", (int)getpid());
+        unlink(address.sun_path);
+        fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        if (fd < 0 || bind(fd, (struct sockaddr *)&address, sizeof address) != 0 || listen(fd, 1) != 0)
+            fuzz_fail("no socket");
+    }
+    *listener = fd;
+    return address.sun_path;
 }
 
 static void check(cm1e_error_t error, const cm1e_diag_t *diag, const char *what)
@@ -138,21 +125,20 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
     (void)written, (void)must;
     cm1e_diag_t diag = {0};
     cm1e_control_t *control;
-    pthread_t thread;
+    int listener;
     if (size == 0)
         return false;
-    other_t other = {.bytes = bytes + 1, .size = size - 1};
-    listen_once(&other);
-    if (pthread_create(&thread, NULL, answer, &other) != 0 ||
-        cm1e_control_connect(&control, other.path, NULL, &diag) != CM1E_OK)
+    if (cm1e_control_connect(&control, listen_here(&listener), NULL, &diag) != CM1E_OK)
         fuzz_fail("no connection: %s", diag.text);
+    const int fd = accept(listener, NULL, NULL);
+    if (fd < 0)
+        fuzz_fail("no connection");
+    answer(fd, bytes + 1, size - 1);
     if (bytes[0] % 2)
         record(control);
     else
         use_bus(control);
-    pthread_join(thread, NULL);
-    close(other.listener);
-    unlink(other.path);
+    close(fd); /* last: else the client would be told that nobody reads */
     return false;
 }
 

@@ -1,12 +1,18 @@
 /* Requests of the control socket, down to what the cycle of a running program does with them: messages as the server reads
  * them, the handlers, orders, transfers, jogs, forced variables, recordings, files. The network is simulated, the time is
- * virtual; the cycle and the thread of the socket take turns, so an input repeats exactly.
+ * virtual; the cycle and the thread of the socket take turns.
+ *
+ * To start a network takes longer than most inputs. So a program runs on over some of them, in a thread of its own, which
+ * waits between two inputs: no client is there, nothing moves. It ends early if anything may be left in a slave. A finding
+ * that does not repeat alone needs the inputs before it: run the target with `-runs=0` on the corpus.
  *
  * An input: a first byte, whether others may do more than look; then lines. The first letter of a line is the client, the
  * second one how many cycles pass before; what follows is the text of the message. "-" instead of a text: the client
  * leaves. */
 #include <jansson.h>
 #include <math.h>
+#include <pthread.h>
+#include <semaphore.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,7 +26,8 @@
 #include "fuzz.h"
 #include "scheduler/variables.h"
 
-enum { CLIENTS = 3, AXES = 2, FIRST_CYCLES = 5, MOST_CYCLES = 3000, LAST_CYCLES = 1500, PLACES = 31 };
+enum { CLIENTS = 3, AXES = 2, FIRST_CYCLES = 5, MOST_CYCLES = 3000, LAST_CYCLES = 1500, REST_CYCLES = 20, PLACES = 31,
+       PROGRAM_INPUTS = 16 };
 #define AXIS_SPEED 10.0  /* u/s */
 #define TOLERATED 1.05
 #define HOMING_SPEED 60000.0 /* counts/s */
@@ -32,17 +39,25 @@ typedef struct client {
 } client_t;
 
 typedef struct run {
-    const uint8_t *at, *end;
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
     control_run_t control;
+    pthread_t thread;
+    sem_t begin, done;       /**< of an input */
+    int inputs;              /**< of this program; 0: none runs */
+    bool begun, quit;        /**< begun: it waits for its first input, or has got it */
+
+    /* of an input */
+    const uint8_t *at, *end;
+    double begun_at[AXES];   /**< counts, where the shafts stood */
+    bool may;                /**< others may do more than look */
     client_t clients[CLIENTS];
     int cycle, wait, last;   /**< last: cycle in which the last line was sent */
-    double begun_at[AXES];   /**< counts, where the shafts stood */
-    bool may, homed;
+    int rest;                /**< cycles since all have left and nothing moves */
+    bool homed, lasting;     /**< lasting: a slave may have something else than at first */
 } run_t;
 
-static run_t *running;       /**< for the window, whose opening knows the scheduler only */
+static run_t run_of_all;     /**< also for the window, whose opening knows the scheduler only */
 static const uint32_t places[CLIENTS] = {0, 1, PLACES}; /**< of the clients among those of the server */
 
 /* ---- the variables of the program -------------------------------------------------------------------------------- */
@@ -95,18 +110,24 @@ static void judge_motors(const run_t *run)
     }
 }
 
-/** Whatever the clients held ended with them. */
-static void judge_rest(const run_t *run)
+/** Whatever the clients held ended with them. `must`: it is time. */
+static bool is_at_rest(const run_t *run, bool must)
 {
+    bool rest = run->control.view.maintained.count == 0 && run->control.view.outputs.count == 0;
+    if (must && !rest)
+        fuzz_fail("all have left, and axes or outputs are held");
     for (uint32_t i = 0; i < AXES; i++) {
         cm1e_sim_probe_t probe;
         cm1e_sim_probe_channel(cm1e_bus_segment(run->bus), i + 1, 0, &probe);
-        if (fabs(probe.velocity_counts_per_s) > 1 || probe.torque_on)
+        const bool turns = fabs(probe.velocity_counts_per_s) > 1 || probe.torque_on;
+        if (must && turns)
             fuzz_fail("all have left, and the shaft of axis %u turns at %g counts/s, torque %d", i + 1,
                       probe.velocity_counts_per_s, probe.torque_on);
+        rest = rest && !turns;
     }
-    if (run->control.view.maintained.count > 0 || run->control.view.outputs.count > 0)
-        fuzz_fail("all have left, and axes or outputs are held");
+    for (uint32_t n = 0; n < CLIENTS; n++)
+        rest = rest && !run->clients[n].left;
+    return rest;
 }
 
 /* ---- the server -------------------------------------------------------------------------------------------------- */
@@ -167,6 +188,8 @@ static void ask(run_t *run, client_t *client, uint32_t place, const uint8_t *tex
         return;
     const char *name = json_string_value(json_object_get(message, "request"));
     run->homed = run->homed || (name && strcmp(name, "home") == 0);
+    run->lasting = run->lasting || (name && (strcmp(name, "sdo_write") == 0 || strcmp(name, "recover") == 0 ||
+                                             strncmp(name, "file", 4) == 0));
     client->asked = json_incref(json_object_get(message, "id"));
     client->served = true;
     client->request.client = place;
@@ -219,11 +242,34 @@ static void serve(run_t *run, bool stopping)
 static void *open_window(cm1e_scheduler_t *scheduler, uint32_t bus, cm1e_window_told_t *told)
 {
     (void)told;
-    if (!running)
-        return NULL;
-    if (cm1e_view_init(&running->control.view, scheduler, bus) != CM1E_OK)
+    if (cm1e_view_init(&run_of_all.control.view, scheduler, bus) != CM1E_OK)
         fuzz_fail("no memory");
-    return running;
+    return &run_of_all;
+}
+
+/** The last input is over; waits for another one. */
+static void wait_for_input(run_t *run)
+{
+    if (run->begun)
+        sem_post(&run->done);
+    run->begun = true;
+    sem_wait(&run->begin);
+    if (run->quit)
+        cm1e_scheduler_stop(run->scheduler);
+}
+
+/** true: the input is over. */
+static bool play_input(run_t *run)
+{
+    run->cycle++;
+    serve(run, false);
+    const bool more = run->cycle < MOST_CYCLES && next_line(run, cm1e_scheduler_time_ns(run->scheduler));
+    if (more || run->cycle < FIRST_CYCLES)
+        return false;
+    for (uint32_t n = 0; n < CLIENTS && run->cycle < run->last + LAST_CYCLES; n++)
+        leave(run, n, false);
+    run->rest = is_at_rest(run, run->cycle == run->last + LAST_CYCLES) ? run->rest + 1 : 0;
+    return run->rest == REST_CYCLES || run->cycle >= run->last + LAST_CYCLES;
 }
 
 /** After the work of a cycle: what the cycle has for the others, then the thread, then the judge. */
@@ -233,19 +279,8 @@ static void look(void *window)
     cm1e_view_cycle(&run->control.view);
     judge_motors(run);
     judge_variables(run);
-    if (cm1e_scheduler_is_ending(run->scheduler))
-        return;
-    run->cycle++;
-    serve(run, false);
-    const bool more = run->cycle < MOST_CYCLES && next_line(run, cm1e_scheduler_time_ns(run->scheduler));
-    if (more || run->cycle < FIRST_CYCLES)
-        return;
-    for (uint32_t n = 0; n < CLIENTS && run->cycle < run->last + LAST_CYCLES; n++)
-        leave(run, n, false);
-    if (run->cycle == run->last + LAST_CYCLES)
-        judge_rest(run);
-    if (run->cycle >= run->last + LAST_CYCLES)
-        cm1e_scheduler_stop(run->scheduler);
+    if (!run->quit && (!run->begun || play_input(run)))
+        wait_for_input(run);
 }
 
 /** The bus has stopped: every transfer has ended. */
@@ -278,7 +313,6 @@ static void open_bus(run_t *run)
     if (cm1e_bus_config_init(&config, "sim", AXES) != CM1E_OK)
         fuzz_fail("no memory");
     config.virtual_time = true;
-    config.control = run->may ? CM1E_CONTROL_MAINTAIN : CM1E_CONTROL_OBSERVE;
     config.sim_gaps = CM1E_SIM_IO_TERMINAL;
     for (uint16_t i = 0; i < AXES; i++) {
         config.axes[i].address = (uint16_t)(i + 1);
@@ -300,33 +334,78 @@ static void open_bus(run_t *run)
     cm1e_bus_config_free(&config);
 }
 
+static void *run_program(void *context)
+{
+    run_t *run = context;
+    cm1e_diag_t diag = {0};
+    if (cm1e_scheduler_run(run->scheduler, 0, &diag) != CM1E_OK)
+        fuzz_fail("the run ends with \"%s\"", diag.text);
+    return NULL;
+}
+
+static void begin_program(run_t *run)
+{
+    cm1e_diag_t diag = {0};
+    *run = (run_t){.control = {.program = "fuzz"}};
+    cm1e_scheduler_register_window(&window);
+    open_bus(run);
+    cm1e_scheduler_set_variables(run->scheduler, rows, ROWS);
+    const cm1e_task_config_t task = {.program = program, .context = run};
+    if (cm1e_scheduler_add_task(run->scheduler, &task, &diag) != CM1E_OK)
+        fuzz_fail("no task: %s", diag.text);
+    if (sem_init(&run->begin, 0, 0) != 0 || sem_init(&run->done, 0, 0) != 0 ||
+        pthread_create(&run->thread, NULL, run_program, run) != 0)
+        fuzz_fail("no thread");
+}
+
+static void end_program(run_t *run)
+{
+    run->quit = true;
+    sem_post(&run->begin);
+    pthread_join(run->thread, NULL);
+    cm1e_scheduler_destroy(run->scheduler);
+    cm1e_bus_close(run->bus);
+    run->inputs = 0;
+}
+
+static bool is_as_at_first(const run_t *run)
+{
+    bool same = !run->lasting && cm1e_bus_health(run->bus) == CM1E_OK;
+    for (uint32_t i = 0; i < AXES; i++) {
+        cm1e_axis_info_t info;
+        (void)cm1e_axis_read(cm1e_scheduler_axis(run->scheduler, i), &info);
+        same = same && info.state == CM1E_AXIS_DISABLED && !info.homed;
+    }
+    return same;
+}
+
 bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool must)
 {
     (void)written, (void)must;
-    static run_t run;
-    cm1e_diag_t diag = {0};
     if (size == 0)
         return false;
+    run_t *run = &run_of_all;
+    if (run->inputs == 0)
+        begin_program(run);
     memset(&own, 0, sizeof own);
-    run = (run_t){.at = bytes + 1, .end = bytes + size, .may = bytes[0] % 8 != 0, .wait = -1};
-    run.control = (control_run_t){.control = run.may ? CM1E_CONTROL_MAINTAIN : CM1E_CONTROL_OBSERVE, .program = "fuzz"};
-    running = &run;
-    cm1e_scheduler_register_window(&window);
-    open_bus(&run);
-    cm1e_scheduler_set_variables(run.scheduler, rows, ROWS);
+    memset(run->clients, 0, sizeof run->clients);
+    run->at = bytes + 1;
+    run->end = bytes + size;
+    run->may = bytes[0] % 8 != 0;
+    run->control.control = run->may ? CM1E_CONTROL_MAINTAIN : CM1E_CONTROL_OBSERVE;
     for (uint32_t i = 0; i < AXES; i++) {
         cm1e_sim_probe_t probe;
-        cm1e_sim_probe_channel(cm1e_bus_segment(run.bus), i + 1, 0, &probe);
-        run.begun_at[i] = probe.position_counts;
+        cm1e_sim_probe_channel(cm1e_bus_segment(run->bus), i + 1, 0, &probe);
+        run->begun_at[i] = probe.position_counts;
     }
-    const cm1e_task_config_t task = {.program = program, .context = &run};
-    if (cm1e_scheduler_add_task(run.scheduler, &task, &diag) != CM1E_OK)
-        fuzz_fail("no task: %s", diag.text);
-    if (cm1e_scheduler_run(run.scheduler, 0, &diag) != CM1E_OK)
-        fuzz_fail("the run ends with \"%s\"", diag.text);
-    running = NULL;
-    cm1e_scheduler_destroy(run.scheduler);
-    cm1e_bus_close(run.bus);
+    run->cycle = run->last = run->rest = 0;
+    run->wait = -1;
+    run->homed = run->lasting = false;
+    run->inputs++;
+    sem_post(&run->begin);
+    sem_wait(&run->done);
+    if (run->inputs == PROGRAM_INPUTS || !is_as_at_first(run))
+        end_program(run);
     return false;
 }
 
