@@ -17,6 +17,7 @@ void _ck_assert_failed(const char *file, int line, const char *expression, const
     va_start(arguments, format);
     vfprintf(stderr, format, arguments);
     va_end(arguments);
+    fputc('\n', stderr);
     fuzz_fail("a rule of block_judge.h is broken");
 }
 
@@ -27,8 +28,8 @@ static cm1e_bus_t *slave(int n) { return n == 0 ? &machine.bus : &machine.others
 static void describe_axis(int n, unsigned kind)
 {
     cm1e_axis_config_t axis = {
-        .counts_per_unit = 1000, .invert = kind & INVERTED, .max_velocity = 50, .max_acceleration = 1000,
-        .max_deceleration = n == 1 ? 1500 : 1000, .max_jerk = n == 2 ? 200000 : 50000, .homing = {.method = -1},
+        .counts_per_unit = 1000, .invert = kind & INVERTED, .max_velocity = 50, .max_acceleration = 200,
+        .max_deceleration = n == 1 ? 300 : 200, .max_jerk = n == 2 ? 20000 : 5000, .homing = {.method = -1},
         .type = n == 0 ? CM1E_AXIS_MOTOR : n == 2 && kind & ENCODER ? CM1E_AXIS_ENCODER : CM1E_AXIS_VIRTUAL,
         .coupling_stop = kind & CONTINUE ? (cm1e_coupling_stop_t)1 : kind & STOP ? (cm1e_coupling_stop_t)2
                                                                                 : (cm1e_coupling_stop_t)0,

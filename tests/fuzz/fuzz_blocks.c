@@ -9,7 +9,9 @@
 
 enum { MOST_CYCLES = 800, LONG_CYCLES = 150 };
 
-typedef enum instruction { DO_PASS = 0, DO_MAKE, DO_PUT, DO_TRIGGER, DO_POWER, DO_FAULT, DO_TABLE, DO_TURN, INSTRUCTIONS } instruction_t;
+typedef enum instruction {
+    DO_PASS = 0, DO_MAKE, DO_PUT, DO_TRIGGER, DO_POWER, DO_FAULT, DO_TABLE, DO_TURN, INSTRUCTIONS,
+} instruction_t;
 
 /* What blocks point at, beside axes and groups. */
 static MC_TP_REF positions;
@@ -90,9 +92,18 @@ static void put_pair(const uint8_t **at, const uint8_t *end)
     const double value = fuzz_take_real(at, end);
     MC_CAM_POINT *point = &points[n % 8];
     switch (table % 8) {
-    case 0: positions.MC_TP_Array[n % 8] = (MC_TP){time, value}, positions.NumberOfPairs = (WORD)(n % 16); break;
-    case 1: velocities.MC_TV_Array[n % 8] = (MC_TV){time, value}, velocities.NumberOfPairs = (WORD)(n % 16); break;
-    case 2: accelerations.MC_TA_Array[n % 8] = (MC_TA){time, value}, accelerations.NumberOfPairs = (WORD)(n % 16); break;
+    case 0:
+        positions.MC_TP_Array[n % 8] = (MC_TP){time, value};
+        positions.NumberOfPairs = (WORD)(n % 16);
+        break;
+    case 1:
+        velocities.MC_TV_Array[n % 8] = (MC_TV){time, value};
+        velocities.NumberOfPairs = (WORD)(n % 16);
+        break;
+    case 2:
+        accelerations.MC_TA_Array[n % 8] = (MC_TA){time, value};
+        accelerations.NumberOfPairs = (WORD)(n % 16);
+        break;
     case 3: cam.Curve = (MC_CAM_CURVE)(time % 4), cam.NumberOfPoints = (UINT)(n % 10 > 8 ? 0 : n % 9); break;
     case 4: *(time & 1 ? &point->Master : &point->Slave) = value; break;
     case 5: *(time & 1 ? &point->Velocity : &point->Acceleration) = value; break;
@@ -169,31 +180,46 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
     return false;
 }
 
-/** Each block alone, and behind a motion; then with hostile numbers in each of its inputs. */
+/** Lets the second block try a member with a hostile value, and makes that good again. */
+static size_t try_member(uint8_t *bytes, uint8_t k, const block_member_t *m, uint8_t value)
+{
+    const bool real = m->type == BLOCK_LREAL;
+    const unsigned good = 160 + 80 * (k % 4u); /* 10 ... 25, so that a motion has to change */
+    const uint8_t begin[] = {DO_PUT, 1, k, value}, run[] = {DO_TRIGGER, 1, DO_PASS, 50, DO_TRIGGER, 1, DO_PASS, 1};
+    const uint8_t end[] = {DO_PUT, 1, k, real ? 0x90 : m->type == BLOCK_POINTER, (uint8_t)good, (uint8_t)(good >> 8)};
+    const size_t end_bytes = real ? 6 : 4;
+    memcpy(bytes, begin, sizeof begin);
+    memcpy(bytes + sizeof begin, run, sizeof run);
+    memcpy(bytes + sizeof begin + sizeof run, end, end_bytes);
+    return sizeof begin + sizeof run + end_bytes;
+}
+
+/** Each block behind a motion; then with one hostile number in each of its inputs, one after the other. */
 void fuzz_seeds(void)
 {
-    const block_t *mover = NULL;
+    static const uint8_t hostile[] = {0, 1, 6, 8}; /* of fuzz_take_real(): NaN, infinity, 1e300, 2^31 */
+    unsigned mover = 0;
     char name[80];
-    for (size_t i = 0; i < block_count; i++)
-        if (strcmp(block_table[i].name, "MC_MoveVelocity") == 0)
-            mover = &block_table[i];
-    for (size_t i = 0; i < block_count && mover; i++) {
-        uint8_t bytes[600] = {(uint8_t)(i * 37)};
-        size_t at = 1;
-        const uint8_t head[] = {DO_MAKE, (uint8_t)(mover - block_table), 1, DO_MAKE, (uint8_t)i, 0, DO_TRIGGER, 0, DO_PASS, 40,
-                                DO_TRIGGER, 1, DO_PASS, 0xF0, DO_TRIGGER, 1, DO_PASS, 2, DO_TRIGGER, 1, DO_PASS, 0xF0};
-        memcpy(bytes + at, head, sizeof head);
-        at += sizeof head;
-        snprintf(name, sizeof name, "%s.bin", block_table[i].name);
-        fuzz_seed(name, bytes, at);
-        for (size_t k = 0; k < block_table[i].member_count && at + 20 < sizeof bytes; k++) {
-            if (block_table[i].members[k].section == BLOCK_OUTPUT || block_table[i].members[k].type == BLOCK_BOOL)
-                continue;
-            const uint8_t put_one[] = {DO_PUT, 1, (uint8_t)k, (uint8_t)(k % 8), DO_TRIGGER, 1, DO_PASS, 3, DO_TRIGGER, 1, DO_PASS, 1};
-            memcpy(bytes + at, put_one, sizeof put_one);
-            at += sizeof put_one;
+    while (strcmp(block_table[mover].name, "MC_MoveVelocity") != 0)
+        mover++;
+    for (size_t i = 0; i < block_count; i++) {
+        const block_t *type = &block_table[i];
+        uint8_t bytes[1000] = {(uint8_t)(i * 37)};
+        const uint8_t head[] = {DO_MAKE, (uint8_t)mover, 1, DO_MAKE, (uint8_t)i, 0, DO_TRIGGER, 0, DO_PASS, 40,
+                                DO_TRIGGER, 1, DO_PASS, 0xF0, DO_TRIGGER, 1, DO_PASS, 2};
+        memcpy(bytes + 1, head, sizeof head);
+        snprintf(name, sizeof name, "%s.bin", type->name);
+        fuzz_seed(name, bytes, 1 + sizeof head);
+        for (size_t n = 0; n < sizeof hostile; n++) {
+            size_t at = 1 + sizeof head - 8; /* not yet with what makes sense */
+            for (size_t k = 0; k < type->member_count && at + 30 < sizeof bytes; k++) {
+                const block_member_t *m = &type->members[k];
+                const bool one_value = m->type == BLOCK_LREAL && m->size == sizeof(LREAL);
+                if (m->section != BLOCK_OUTPUT && (one_value || m->type == BLOCK_ENUM || m->type == BLOCK_POINTER))
+                    at += try_member(bytes + at, (uint8_t)k, m, hostile[n]);
+            }
+            snprintf(name, sizeof name, "%s_%u.bin", type->name, hostile[n]);
+            fuzz_seed(name, bytes, at);
         }
-        snprintf(name, sizeof name, "%s_hostile.bin", block_table[i].name);
-        fuzz_seed(name, bytes, at);
     }
 }

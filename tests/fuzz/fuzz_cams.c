@@ -189,7 +189,8 @@ void fuzz_seeds(void)
         uint8_t bytes[200] = {(uint8_t)(3 + seed % 6), (uint8_t)(seed % 3 | (seed & 8 ? 4 : 0) | (bends ? 16 : 0)), 15};
         size_t at = 3;
         for (int i = 0; i < POINTS; i++) {
-            const uint8_t point[] = {0x90, (uint8_t)(i ? 80 : 0), 0, 0x40, (uint8_t)(i % 2 ? 200 : 0), 3, 0x40, 10, 0, 15};
+            const uint8_t point[] = {0x90, (uint8_t)(i ? 80 : 0), 0, 0x40, (uint8_t)(i % 2 ? 200 : 0), 3,
+                                     0x40, 10, 0, 15};
             memcpy(bytes + at, point, sizeof point);
             at += bends ? sizeof point : 6;
         }

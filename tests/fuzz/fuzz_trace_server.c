@@ -23,6 +23,7 @@ enum { ANSWER_MS = 300, NO_ANSWER_MS = 5, HONEST_MS = 10000, HONEST_EVERY = 16 }
 typedef struct peer {
     int fd;
     bool knows;  /**< it named the page or the events */
+    bool hosted; /**< it named the host: a page from elsewhere names its own */
     int patience_ms;
 } peer_t;
 
@@ -96,6 +97,7 @@ static void send_words(peer_t *peer, const char *words, size_t length)
 {
     if (memmem(words, length, "\n\r\n", 3) || memmem(words, length, "\n\n", 2))
         peer->patience_ms = ANSWER_MS;
+    peer->hosted = peer->hosted || memmem(words, length, host, strlen(host));
     if (length > 0)
         (void)!send(peer->fd, words, length, MSG_NOSIGNAL); /* it may have closed */
 }
@@ -110,6 +112,7 @@ static bool speak(peer_t *peer, const uint8_t **at, const uint8_t *last)
         const uint8_t byte = *(*at)++;
         const char *whole = byte == 1 ? host : byte == 2 ? page : byte == 3 ? events : NULL;
         peer->knows = peer->knows || byte == 2 || byte == 3;
+        peer->hosted = peer->hosted || byte == 1;
         another = byte == 4;
         if (byte == 5) {
             send_words(peer, words, used);
@@ -162,6 +165,8 @@ static void judge(const peer_t *peer, const char *answer, size_t used)
         fuzz_fail("an answer that is none of HTTP: %.100s", answer);
     if (status == 200 && !peer->knows)
         fuzz_fail("somebody who does not know the address gets: %.300s", answer);
+    if (status == 200 && !peer->hosted)
+        fuzz_fail("a page under another name gets: %.300s", answer);
     if (memmem(answer, used, page + 1, TOKEN_DIGITS))
         fuzz_fail("the server tells its address");
     for (size_t i = 0; i < sizeof own / sizeof *own; i++)
