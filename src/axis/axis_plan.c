@@ -337,7 +337,8 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
     const command_plan_t plan = kind_row(move->kind)->plan;
     if (!move->paused && (plan == PLAN_TO_TARGET || (plan == PLAN_THROUGH_TARGET && !move->passing)))
         return move->target;
-    return cm1e_position_plus(from->position, profile->end.position * axis->position.scale);
+    /* A ramp that takes longer than the axis can count ends nowhere, and is left for another motion. */
+    return cm1e_position_towards(from->position, profile->end.position * axis->position.scale);
 }
 
 /* Whether the directions permit a profile. In a disabled direction only the braking under way is permitted. */

@@ -436,6 +436,27 @@ static void test_a_compensation_of_backlash_at_the_motors_peak_speed_is_refused(
     cm1e_axis_destroy(made);
 }
 
+/** A ramp that ends farther away than an axis can count: it ends ahead of the motor, and a motion after it takes over. */
+static void test_halt_without_an_end_lies_ahead(void)
+{
+    static const double slow[] = {1e-9, 1e-18, 1e-25};
+    for (size_t i = 0; i < sizeof slow / sizeof slow[0]; i++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            bench_end();
+            setUp();
+            bench_enable();
+            bench_move_velocity(sign * 5.0);
+            bench_cycles(500);
+            bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT, .deceleration = slow[i]});
+            const double way = cm1e_position_minus(axis->setpoint.target, axis->setpoint.position);
+            TEST_ASSERT_TRUE_MESSAGE(isfinite(way) && way * sign > 1e6, "the halt does not end ahead");
+            bench_cycles(100);
+            const cm1e_command_id_t id = bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
+            bench_wait(id, 2000);
+            TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+        }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -459,5 +480,6 @@ int main(void)
     RUN_TEST(test_csv_target_comes_back_with_the_largest_acceleration_after_lost_frames);
     RUN_TEST(test_configurations_that_contradict_themselves_are_refused);
     RUN_TEST(test_a_compensation_of_backlash_at_the_motors_peak_speed_is_refused);
+    RUN_TEST(test_halt_without_an_end_lies_ahead);
     return UNITY_END();
 }
