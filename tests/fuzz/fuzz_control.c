@@ -247,13 +247,20 @@ static void *open_window(cm1e_scheduler_t *scheduler, uint32_t bus, cm1e_window_
     return &run_of_all;
 }
 
+/** libFuzzer's timer interrupts it. */
+static void wait_on(sem_t *semaphore)
+{
+    while (sem_wait(semaphore) != 0)
+        ;
+}
+
 /** The last input is over; waits for another one. */
 static void wait_for_input(run_t *run)
 {
     if (run->begun)
         sem_post(&run->done);
     run->begun = true;
-    sem_wait(&run->begin);
+    wait_on(&run->begin);
     if (run->quit)
         cm1e_scheduler_stop(run->scheduler);
 }
@@ -403,7 +410,7 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
     run->homed = run->lasting = false;
     run->inputs++;
     sem_post(&run->begin);
-    sem_wait(&run->done);
+    wait_on(&run->done);
     if (run->inputs == PROGRAM_INPUTS || !is_as_at_first(run))
         end_program(run);
     return false;

@@ -5,6 +5,7 @@
  * An input is what is sent. Bytes that no request has stand for what an input cannot know: 1 the host, 2 the path of the
  * page, 3 that of the events. 4: another connection, the last one stays open; 5: the recording has another sample. */
 #include <arpa/inet.h>
+#include <errno.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -85,9 +86,15 @@ static void connect_peer(peer_t *peer)
     const struct linger reset = {.l_onoff = 1}; /* no port waits for a minute */
     struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)atoi(strchr(host, ':') + 1)),
                                   .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    *peer = (peer_t){.fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), .patience_ms = NO_ANSWER_MS};
-    if (peer->fd < 0 || connect(peer->fd, (struct sockaddr *)&address, sizeof address) != 0)
-        fuzz_fail("no connection");
+    bool connected = false;
+    for (int tries = 0; tries < 5 && !connected; tries++) { /* libFuzzer's timer interrupts it */
+        *peer = (peer_t){.fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), .patience_ms = NO_ANSWER_MS};
+        connected = peer->fd >= 0 && connect(peer->fd, (struct sockaddr *)&address, sizeof address) == 0;
+        if (peer->fd >= 0 && !connected)
+            close(peer->fd);
+    }
+    if (!connected)
+        fuzz_fail("no connection: %m");
     setsockopt(peer->fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
     setsockopt(peer->fd, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
 }
@@ -137,7 +144,10 @@ static size_t listen_to(const peer_t *peer, char *answer)
     struct pollfd poll_fd = {.fd = peer->fd, .events = POLLIN};
     shutdown(peer->fd, SHUT_WR);
     while (used + 1 < ANSWER_BYTES) {
-        if (poll(&poll_fd, 1, peer->patience_ms) <= 0)
+        const int ready = poll(&poll_fd, 1, peer->patience_ms);
+        if (ready < 0 && errno == EINTR)
+            continue;
+        if (ready <= 0)
             break;
         const ssize_t got = recv(peer->fd, answer + used, ANSWER_BYTES - 1 - used, 0);
         if (got <= 0)
