@@ -62,39 +62,23 @@ void cm1e_profile_sample(const cm1e_profile_t *profile, double time_s, cm1e_moti
 
 enum { PLACES = 3 };
 
-/** Whether the motion may turn round within a segment: the velocity has different signs at its ends, or it comes nearer
- *  to zero at first, and goes away from it later. */
-static bool may_turn(const cm1e_profile_t *profile, int index)
+/** Whether the motion may turn round between two states of constant jerk: the velocity has different signs there, or it
+ *  comes nearer to zero at first, and goes away from it later. */
+static inline bool may_turn(double v, double v_end, double a, double a_end)
 {
-    const cm1e_profile_segment_t *segment = &profile->segments[index];
-    const bool last = index == profile->segment_count - 1;
-    const double until_s = last ? profile->duration_s : segment[1].start_s;
-    const double v = segment->start.velocity, v_end = last ? profile->end.velocity : segment[1].start.velocity;
-    const double a = segment->start.acceleration, a_end = a + (until_s - segment->start_s) * segment->jerk;
     return v * v_end < 0 || (a * a_end < 0 && v * a <= 0);
-}
-
-/** Where a segment begins. */
-static double begin_of(const cm1e_profile_t *profile, int index)
-{
-    if (index < profile->segment_count - 1)
-        return profile->segments[index].start.position;
-    const cm1e_profile_stretch_t stretch = stretch_of(profile, index);
-    return cm1e_profile_stretch_state(&stretch, stretch.from_s).position;
 }
 
 /** Where a segment begins, and where it turns: besides its start it can do so where its velocity is zero, v + a t + j
  *  t2 / 2 = 0. In order; a missing one equals the one before. */
-static void places(const cm1e_profile_t *profile, int index, double position[PLACES])
+static void turning_places(const cm1e_profile_t *profile, int index, double begin, double position[PLACES])
 {
-    position[0] = position[1] = position[2] = begin_of(profile, index);
-    if (!may_turn(profile, index))
-        return;
     const cm1e_profile_segment_t *segment = &profile->segments[index];
     const cm1e_profile_stretch_t stretch = stretch_of(profile, index);
     const double v = segment->start.velocity, a = segment->start.acceleration, j = segment->jerk;
     const double root = sqrt(larger(0, a * a - 2 * j * v)), sum = -(a + copysign(root, a));
     const double one = 2 * v / sum, other = sum / j, times[PLACES] = {0, smaller(one, other), larger(one, other)};
+    position[0] = begin;
     for (int i = 1; i < PLACES; i++) {
         const bool inside = times[i] >= 0 && times[i] < stretch.until_s - stretch.from_s;
         position[i] = inside ? cm1e_profile_stretch_state(&stretch, stretch.from_s + times[i]).position
@@ -102,15 +86,34 @@ static void places(const cm1e_profile_t *profile, int index, double position[PLA
     }
 }
 
+/** Calls turning_places() for a segment that may turn; else returns false, and `*begin` is its only place. */
+static inline bool places(const cm1e_profile_t *profile, int index, double *begin, double position[PLACES])
+{
+    const cm1e_profile_segment_t *segment = &profile->segments[index];
+    const double v = segment->start.velocity, a = segment->start.acceleration;
+    bool turns;
+    if (index < profile->segment_count - 1) {
+        *begin = segment->start.position;
+        turns = may_turn(v, segment[1].start.velocity, a, a + (segment[1].start_s - segment->start_s) * segment->jerk);
+    } else { /* with jerk its acceleration comes to zero exactly at the end, so in between it does not change its sign */
+        const cm1e_profile_stretch_t stretch = stretch_of(profile, index);
+        *begin = cm1e_profile_stretch_state(&stretch, stretch.from_s).position;
+        turns = may_turn(v, profile->end.velocity, a, segment->jerk == 0 ? a : 0);
+    }
+    if (turns)
+        turning_places(profile, index, *begin, position);
+    return turns;
+}
+
 void cm1e_profile_extent(const cm1e_profile_t *profile, double *lowest, double *highest)
 {
     double least = profile->end.position, most = least;
     for (int i = 0; i < profile->segment_count; i++) {
-        double position[PLACES] = {begin_of(profile, i)};
-        const bool turns = may_turn(profile, i);
-        if (turns)
-            places(profile, i, position);
-        for (int k = 0; k < (turns ? PLACES : 1); k++) {
+        double begin, position[PLACES];
+        const bool turns = places(profile, i, &begin, position);
+        least = begin < least ? begin : least;
+        most = begin > most ? begin : most;
+        for (int k = 1; turns && k < PLACES; k++) {
             least = smaller(least, position[k]);
             most = larger(most, position[k]);
         }
@@ -123,12 +126,14 @@ double cm1e_profile_way_back(const cm1e_profile_t *profile, double sign)
 {
     double back = 0, after = profile->end.position;
     for (int i = profile->segment_count - 1; i >= 0; i--) {
-        double position[PLACES];
-        places(profile, i, position);
-        for (int k = PLACES - 1; k >= 0; k--) {
+        double begin, position[PLACES];
+        const bool turns = places(profile, i, &begin, position);
+        for (int k = PLACES - 1; turns && k > 0; k--) {
             back += larger(0, copysign(1, sign) * (position[k] - after));
             after = position[k];
         }
+        back += larger(0, copysign(1, sign) * (begin - after));
+        after = begin;
     }
     return back;
 }
