@@ -54,13 +54,30 @@ bool cm1e_motion_is_valid(const cm1e_motion_state_t *start, const cm1e_motion_li
            (is_limit(limits->jerk) || limits->jerk == INFINITY);
 }
 
+/** Rounding may miss the target by this fraction of the way. */
+static const double MISSED = 1e-9;
+
+/** At least the length of the whole way, there and back; `last`: the velocity at the end. */
+static double travelled(const cm1e_profile_t *profile, double last)
+{
+    double way = 0;
+    for (int i = 0; i < profile->segment_count; i++) {
+        const cm1e_profile_segment_t *segment = &profile->segments[i];
+        const bool is_last = i == profile->segment_count - 1;
+        const double until_s = is_last ? profile->duration_s : segment[1].start_s;
+        const double v_end = is_last ? last : segment[1].start.velocity;
+        way += larger(fabs(segment->start.velocity), fabs(v_end)) * (until_s - segment->start_s);
+    }
+    return way;
+}
+
 /** Makes the profile out of pieces that were planned mirrored by `sign` and relative to the start. The start and the
  *  end state are exact, without rounding. Refuses pieces that do not lead to the end: the numbers are then too far
  *  apart for doubles. */
 static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_pieces_t *pieces,
                           double sign, const cm1e_motion_state_t *end, const cm1e_motion_limits_t *limits)
 {
-    double time = 0, position = 0, travelled = 0, velocity = sign * start->velocity;
+    double time = 0, position = 0, velocity = sign * start->velocity;
     profile->segment_count = pieces->count;
     for (int i = 0; i < pieces->count; i++) {
         const cm1e_piece_t *piece = &pieces->piece[i];
@@ -72,7 +89,6 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
             .start = {start->position + sign * position, sign * velocity, sign * piece->acceleration},
         };
         const cm1e_motion_state_t next = cm1e_piece_state(piece, position, velocity, piece->duration_s);
-        travelled += larger(fabs(velocity), fabs(next.velocity)) * piece->duration_s;
         position = next.position;
         velocity = next.velocity;
         time += piece->duration_s;
@@ -82,8 +98,13 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
     if (isnan(end->position))
         profile->end.position = start->position + sign * position;
     const double missing = profile->end.position - start->position - sign * position;
-    const double noise = 1e-9 * travelled + 16 * DBL_EPSILON * (fabs(start->position) + fabs(profile->end.position));
-    return isfinite(time) && isfinite(noise) && fabs(missing) <= noise ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
+    const double noise = 16 * DBL_EPSILON * (fabs(start->position) + fabs(profile->end.position));
+    if (!isfinite(time))
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (fabs(missing) < MISSED * fabs(position) + noise) /* it is shorter than the whole way, and known already */
+        return CM1E_OK;
+    const double most = MISSED * travelled(profile, sign * velocity) + noise;
+    return isfinite(most) && fabs(missing) <= most ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
 }
 
 /** Valid if the change begins by lowering the acceleration; otherwise push and change are equal. */
@@ -297,6 +318,12 @@ static double change_at_limit(cm1e_pieces_t *change, double w, const cm1e_motion
     return cm1e_pieces_displacement(change, limits->velocity);
 }
 
+static void append_all(cm1e_pieces_t *pieces, const cm1e_pieces_t *more)
+{
+    for (int i = 0; i < more->count; i++)
+        cm1e_pieces_append(pieces, more->piece[i].jerk, more->piece[i].acceleration, more->piece[i].duration_s);
+}
+
 /** All mirrored so that the target lies beyond the end of the soonest change of velocity, `direct`. */
 static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
                                    double target_velocity, double direct, const cm1e_motion_limits_t *limits)
@@ -305,26 +332,29 @@ static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, doubl
     cm1e_pieces_t whole;
     whole.count = 0;
     cm1e_pieces_append_velocity_change(&whole, velocity, acceleration, limits->velocity, limits);
+    /* Where the reach never falls, the change begins within the push only if its end is too far. */
+    const bool simple = fabs(w) <= limits->velocity && (w >= 0 || limits->acceleration == limits->deceleration);
+    const double left = target - cm1e_pieces_displacement(&whole, velocity);
+    if (simple && w >= 0 && left >= 0) {
+        cm1e_pieces_t change;
+        const double cruise = left - change_at_limit(&change, w, limits);
+        if (cruise >= 0) {
+            append_all(pieces, &whole);
+            cm1e_pieces_append(pieces, 0, 0, cruise / limits->velocity);
+            append_all(pieces, &change);
+            return;
+        }
+    }
     push_t push = {
         .limits = limits, .start_velocity = velocity, .start_acceleration = acceleration,
         .target = target, .target_velocity = w,
         .per_jerk = 1 / limits->jerk, .per_deceleration = 1 / limits->deceleration,
-        .velocity = velocity, .reached = direct,
-        .simple = fabs(w) <= limits->velocity && (w >= 0 || limits->acceleration == limits->deceleration),
+        .velocity = velocity, .reached = direct, .simple = simple,
     };
-    cm1e_pieces_t change;
-    const double left = target - cm1e_pieces_displacement(&whole, velocity);
-    double braking = 0;
-    /* Where the reach never falls, the change begins within the push only if its end is too far. */
-    bool cruises = push.simple && w >= 0 && left >= 0;
-    if (cruises) {
-        braking = change_at_limit(&change, w, limits);
-        cruises = left - braking >= 0;
-    }
     for (int i = 0; i < whole.count; i++) {
         const cm1e_piece_t *piece = &push.piece;
         push.piece = whole.piece[i];
-        const double time = cruises ? -1 : switching_time(&push, i == 0);
+        const double time = switching_time(&push, i == 0);
         if (time >= 0) {
             append_change(pieces, &push, time);
             return;
@@ -334,12 +364,10 @@ static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, doubl
         push.position = state.position;
         push.velocity = state.velocity;
     }
-    if (!cruises)
-        braking = change_at_limit(&change, w, limits);
-    const double cruise = target - push.position - braking;
-    cm1e_pieces_append(pieces, 0, 0, cruise / limits->velocity);
-    for (int i = 0; i < change.count; i++)
-        cm1e_pieces_append(pieces, change.piece[i].jerk, change.piece[i].acceleration, change.piece[i].duration_s);
+    cm1e_pieces_t change;
+    const double braking = change_at_limit(&change, w, limits);
+    cm1e_pieces_append(pieces, 0, 0, (target - push.position - braking) / limits->velocity);
+    append_all(pieces, &change);
 }
 
 double cm1e_motion_noise(double start, double target, double displacement)
