@@ -69,13 +69,12 @@ static void plan_catch_up(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 {
     coupling_t *c = axis->coupling;
     catch_up_t *catch_up = &c->catch_up;
-    const cm1e_error_t error =
-        catch_up->to_place ? cm1e_profile_to_position(&catch_up->profile, &catch_up->now, 0.0, limits)
-                       : cm1e_profile_to_velocity(&catch_up->profile, &catch_up->now, 0.0, limits);
+    const cm1e_error_t error = catch_up->to_place ? cm1e_profile_to_position(&c->plan, &catch_up->now, 0.0, limits)
+                                                  : cm1e_profile_to_velocity(&c->plan, &catch_up->now, 0.0, limits);
     catch_up->cycles = 0;
-    catch_up->on = error != CM1E_OK || catch_up->profile.duration_s > 0.0 || catch_up->now.position != 0.0;
+    catch_up->on = error != CM1E_OK || c->plan.duration_s > 0.0 || catch_up->now.position != 0.0;
     if (error != CM1E_OK) /* the numbers are too large for doubles: the catch-up stays, and the guard judges it */
-        catch_up->profile = (cm1e_profile_t){.end = catch_up->now};
+        c->plan = (cm1e_profile_t){.end = catch_up->now};
 }
 
 /* Whether the catch-up makes up distance now, and not only velocity. A gear that accelerates may need all limits of the
@@ -92,7 +91,7 @@ static bool goes_to_place(const cm1e_axis_t *axis, const from_t *f, bool steady)
 static void next_of_catch_up(cm1e_axis_t *axis)
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
-    cm1e_profile_sample(&catch_up->profile, (double)++catch_up->cycles * axis->cycle_s, &catch_up->now);
+    cm1e_profile_sample(&axis->coupling->plan, (double)++catch_up->cycles * axis->cycle_s, &catch_up->now);
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
@@ -166,7 +165,7 @@ static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
     const double v = catch_up->now.velocity, a = catch_up->now.acceleration;
     if (attempt == WITHOUT_JERK) {
         catch_up->now = (cm1e_motion_state_t){catch_up->now.position + t * (v + t * a / 2.0), v + t * a, a};
-        catch_up->profile.duration_s = INFINITY;
+        axis->coupling->plan.duration_s = INFINITY;
     } else if (catch_up->on) {
         next_of_catch_up(axis);
     }
@@ -184,44 +183,60 @@ static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, attempt_t attempt, 
     return sum;
 }
 
-/* The catch-up was planned with the limits that the coupling function left at that time. If the function needs more,
- * the catch-up is planned anew in every cycle until it ends. The first attempt that is smooth is taken; if none is, the
- * first one that keeps the limits at the set-points. */
-static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
+/* Whether to look no further. Where the coupling function itself leads beyond a limit, a catch-up could hold the axis at
+ * it for ever. */
+static bool is_settled(const verdict_t *verdict)
 {
-    const catch_up_t before = axis->coupling->catch_up;
-    from_t sum;
-    if (!before.on) {
-        sum = sum_of(axis, f);
-        *verdict = judge_sum(axis, &sum);
-        return sum;
-    }
-    const coupling_t *c = axis->coupling;
-    const bool disturbed = f->acceleration != 0.0 || c->f_acceleration != 0.0;
-    const bool interrupted = disturbed && before.to_place && !c->now->to_position;
-    const attempt_t first = before.held_back || interrupted ? WITH_ALL_JERK : AS_PLANNED;
-    attempt_t kept = ATTEMPTS;
-    for (int attempt = (int)first; attempt < ATTEMPTS; attempt++) {
-        if (attempt > (int)first)
-            axis->coupling->catch_up = before;
+    return verdict->smooth || verdict->guard.limit == GUARD_DIRECTION || verdict->guard.limit == GUARD_SOFTWARE_LIMIT;
+}
+
+/* Tries the attempts after the first one, which was not smooth. The first attempt that is smooth is taken; if none is,
+ * the first one that keeps the limits at the set-points. */
+CM1E_RARE static from_t with_next_attempts(cm1e_axis_t *axis, const from_t *f, const catch_up_t *before, attempt_t first,
+                                           from_t sum, verdict_t *verdict)
+{
+    coupling_t *c = axis->coupling;
+    const cm1e_profile_t plan = c->plan; /* of the first attempt: it went by the plan before, or needs that no more */
+    attempt_t kept = verdict->guard.limit ? ATTEMPTS : first;
+    for (int attempt = (int)first + 1; attempt < ATTEMPTS; attempt++) {
+        c->catch_up = *before;
+        c->plan = plan;
         sum = attempt_to(axis, f, (attempt_t)attempt, verdict);
-        /* Where the coupling function itself leads beyond a limit, a catch-up could hold the axis at it for ever. */
-        if (verdict->smooth || verdict->guard.limit == GUARD_DIRECTION ||
-            verdict->guard.limit == GUARD_SOFTWARE_LIMIT)
+        if (is_settled(verdict))
             return sum;
         if (!verdict->guard.limit && kept == ATTEMPTS)
             kept = (attempt_t)attempt;
     }
     if (kept == ATTEMPTS || kept == WITHOUT_JERK)
         return sum;
-    axis->coupling->catch_up = before;
+    c->catch_up = *before;
+    c->plan = plan;
     return attempt_to(axis, f, kept, verdict);
+}
+
+/* The catch-up was planned with the limits that the coupling function left at that time. If the function needs more,
+ * the catch-up is planned anew in every cycle until it ends. */
+static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
+{
+    const coupling_t *c = axis->coupling;
+    if (!c->catch_up.on) {
+        const from_t sum = sum_of(axis, f);
+        *verdict = judge_sum(axis, &sum);
+        return sum;
+    }
+    const catch_up_t before = c->catch_up;
+    const bool disturbed = f->acceleration != 0.0 || c->f_acceleration != 0.0;
+    const bool interrupted = disturbed && before.to_place && !c->now->to_position;
+    const attempt_t first = before.held_back || interrupted ? WITH_ALL_JERK : AS_PLANNED;
+    const from_t sum = attempt_to(axis, f, first, verdict);
+    return is_settled(verdict) ? sum : with_next_attempts(axis, f, &before, first, sum, verdict);
 }
 
 /* With a superimposed motion: if the sum breaks a limit, that motion goes on without jerk for a cycle. */
 static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
     const catch_up_t catch_up_before = axis->coupling->catch_up;
+    const cm1e_profile_t plan_before = axis->coupling->plan;
     const cm1e_motion_state_t before = axis->superimposed.now;
     cm1e_motion_state_t unused = {0};
     cm1e_axis_superimposed_step(axis, &unused);
@@ -229,6 +244,7 @@ static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *v
     if (!verdict->guard.limit || !axis->superimposed.moving)
         return sum;
     axis->coupling->catch_up = catch_up_before;
+    axis->coupling->plan = plan_before;
     cm1e_axis_superimposed_hold(axis, &before);
     return with_catch_up(axis, f, verdict);
 }
@@ -246,7 +262,7 @@ static void emit(cm1e_axis_t *axis, const from_t *point)
 static void end_catch_up(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
-    const double left = c->catch_up.profile.end.position;
+    const double left = c->plan.end.position;
     if (!c->catch_up.made_up)
         c->now->anchor = cm1e_position_plus(c->now->anchor, left * axis->position.scale);
     c->catch_up.on = false;
@@ -275,7 +291,7 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
     coupling_t *c = axis->coupling;
     catch_up_t *catch_up = &c->catch_up;
     const double time_s = (double)catch_up->cycles * axis->cycle_s;
-    if (catch_up->on && time_s >= catch_up->profile.duration_s - same_moment * axis->cycle_s)
+    if (catch_up->on && time_s >= c->plan.duration_s - same_moment * axis->cycle_s)
         catch_up_ended(axis, f);
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);

@@ -110,7 +110,6 @@ typedef struct catch_up {
     int64_t cycles;
     cm1e_motion_state_t now;
     cm1e_motion_limits_t asked;    /**< limits of the command */
-    cm1e_profile_t profile;
 } catch_up_t;
 
 /** Why a master cannot be followed; for the text. */
@@ -179,6 +178,7 @@ typedef struct coupling {
                                         (StartSync) and the active command goes on until then (cm1e_axis_t.awaits) */
     phasing_t phasing;             /**< the motion that changes the phase */
     catch_up_t catch_up;
+    cm1e_profile_t plan;           /**< of the catch-up; beside it, so that a copy of the catch-up is short */
     follow_t follows[FOLLOWS];     /**< places in turn, because links are in lists and must not move */
     cams_t *cams;                  /**< the cams of this axis; NULL: it follows no cams */
     cm1e_error_t due_error;        /**< the error with which the awaited command fails; CM1E_OK: it begins */

@@ -391,9 +391,10 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
     cm1e_axis_t *master = cm1e_axis_from_reference(&asked->axis);
     if (!master || !cm1e_axis_shares_cycle(slave, master))
         return CM1E_ERROR_AXIS_MASTER;
-    set_other_name(slave, master);
-    if (would_follow_itself(slave, master))
+    if (would_follow_itself(slave, master)) {
+        set_other_name(slave, master);
         return CM1E_ERROR_AXIS_COUPLING_CYCLE;
+    }
     if (asked->source != mcSetValue && asked->source != mcActualValue)
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (slave->advanced && !master->advanced) /* a waiting command begins in this cycle */
