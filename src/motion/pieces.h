@@ -32,6 +32,12 @@ void cm1e_pieces_append(cm1e_pieces_t *pieces, double jerk, double acceleration,
 void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
                                         const cm1e_motion_limits_t *limits);
 
+/** Appends the move from (velocity, acceleration) to standstill `target` ahead, if it is of the common kind: the axis
+ *  stands or moves towards the target, within its limits, and never turns. Else it appends nothing and returns false.
+ *  The target must lie beyond the place where the axis could stand soonest. */
+bool cm1e_pieces_append_forward_move(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
+                                     const cm1e_motion_limits_t *limits);
+
 /** Distance covered by the pieces if they are entered with this velocity. */
 double cm1e_pieces_displacement(const cm1e_pieces_t *pieces, double velocity);
 

@@ -397,6 +397,12 @@ cm1e_error_t cm1e_profile_to_state(cm1e_profile_t *profile, const cm1e_motion_st
 
     const double sign = distance > change ? 1 : -1;
     pieces.count = 0;
+    if (target_velocity == 0 &&
+        cm1e_pieces_append_forward_move(&pieces, sign * start->velocity, sign * start->acceleration, sign * distance,
+                                        limits) &&
+        build(profile, start, &pieces, sign, &end, limits) == CM1E_OK)
+        return CM1E_OK;
+    pieces.count = 0;
     append_push_and_change(&pieces, sign * start->velocity, sign * start->acceleration, sign * distance,
                            sign * target_velocity, sign * change, limits);
     return build(profile, start, &pieces, sign, &end, limits);
