@@ -1,11 +1,13 @@
 /*
- * The common move: forward to standstill, with one rise of the velocity to a peak and one fall. Its ways are mean
+ * The common move: forward to standstill, with one rise of the velocity to a peak and one fall. An axis that moves away
+ * from the target first comes to standstill; what its acceleration is there does not depend on the peak. Its ways are mean
  * velocities by times, so no piece has to be integrated. Where the peak is the velocity limit, all is in closed form.
  * Else the peak is the root of the whole way, a convex function of the time in which the acceleration would be ramped
  * up to it: Newton's method finds it from any start.
  */
 #include <math.h>
 
+#include "core/extreme.h"
 #include "motion/pieces.h"
 
 enum { NEWTON_STEPS = 20 };
@@ -36,13 +38,15 @@ static inline double time_of(const change_t *change) { return 2 * change->ramp_s
 /** The time of the ramp up to the peak, as if acceleration had no limit; negative: the case is of another kind. */
 static double ramp_to_peak(const forward_t *f, double most, double excess)
 {
-    const change_t soonest = change_of(f->rest, f->down, f->per_down, f->jerk, f->per_jerk);
-    const double nearest = f->rest / 2 * time_of(&soonest);
-    const double largest = sqrt((most - f->rest) * f->per_jerk), missing = f->way - nearest;
-    if (!(f->rest >= 0 && missing > 0))
+    /* The nearest end: after a peak of that size, as below standstill the rise goes as far back as above it forward. */
+    const double low = fabs(f->rest);
+    const change_t soonest = change_of(low, f->down, f->per_down, f->jerk, f->per_jerk);
+    const double missing = f->way - low / 2 * time_of(&soonest);
+    const double largest = sqrt((most - f->rest) * f->per_jerk);
+    if (!(missing > 0))
         return -1;
     /* The way mostly grows like the third power. */
-    double ramp_s = largest * cbrt(missing / (missing + excess));
+    double ramp_s = larger(f->begun_s, largest * cbrt(missing / (missing + excess)));
     for (int i = 0; i < NEWTON_STEPS; i++) {
         const double gained = f->jerk * ramp_s * ramp_s, peak = f->rest + gained;
         const bool flat_up = f->jerk * ramp_s > f->up, flat_down = peak * f->jerk > f->down * f->down;
@@ -65,8 +69,17 @@ static double ramp_to_peak(const forward_t *f, double most, double excess)
 bool cm1e_pieces_append_forward_move(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
                                      const cm1e_motion_limits_t *limits)
 {
-    const double v = velocity, a = acceleration, jerk = limits->jerk, most = limits->velocity;
-    if (isinf(jerk) || v < 0 || a > limits->acceleration)
+    const double jerk = limits->jerk, most = limits->velocity;
+    double v = velocity, a = acceleration;
+    if (isinf(jerk))
+        return false;
+    if (v < 0) {
+        if (!cm1e_pieces_append_rise_to_standstill(pieces, velocity, acceleration, limits, &a))
+            return false;
+        target -= cm1e_pieces_displacement(pieces, velocity);
+        v = 0;
+    }
+    if (a > limits->acceleration)
         return false;
     const double per_jerk = 1 / jerk, begun_s = a * per_jerk, rest = v - a * begun_s / 2;
     if ((a < 0 && rest < 0) || rest > most || v + a * begun_s / 2 > most)

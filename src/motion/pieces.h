@@ -32,9 +32,15 @@ void cm1e_pieces_append(cm1e_pieces_t *pieces, double jerk, double acceleration,
 void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
                                         const cm1e_motion_limits_t *limits);
 
-/** Appends the move from (velocity, acceleration) to standstill `target` ahead, if it is of the common kind: the axis
- *  stands or moves towards the target, within its limits, and never turns. Else it appends nothing and returns false.
- *  The target must lie beyond the place where the axis could stand soonest. */
+/** Appends the fastest way from (velocity < 0, acceleration) to standstill, with the largest acceleration there from
+ *  which the velocity may rise on: `*at_zero`. false: the case is of another kind, and what was appended is of no use. A
+ *  limit of jerk is needed. */
+bool cm1e_pieces_append_rise_to_standstill(cm1e_pieces_t *pieces, double velocity, double acceleration,
+                                           const cm1e_motion_limits_t *limits, double *at_zero);
+
+/** Appends the move from (velocity, acceleration) to standstill `target` ahead, if it is of the common kind: within the
+ *  limits, at first perhaps away from the target, and then only forward. Else it returns false, and what it appended is
+ *  of no use. The target must lie beyond the place where the axis could stand soonest. */
 bool cm1e_pieces_append_forward_move(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
                                      const cm1e_motion_limits_t *limits);
 

@@ -56,6 +56,27 @@ static void append_rise(cm1e_pieces_t *pieces, double sign, double dv, double a,
     append(pieces, sign, -jerk, peak, (peak - a_end) / jerk);
 }
 
+/** From (v < 0, a >= 0) to standstill, and there to an acceleration `*at_zero` of at most `allowed`. false: appends
+ *  nothing, as the axis is too fast for that, or outside the limit. */
+static bool append_rise_to_zero(cm1e_pieces_t *pieces, double sign, double v, double a, double allowed,
+                                const cm1e_motion_limits_t *limits, double *at_zero)
+{
+    const double below = limits->deceleration, jerk = limits->jerk;
+    /* Squares of the acceleration at v = 0 when jerk is applied from now on, upwards and downwards. */
+    const double pushed = a * a - 2 * jerk * v, eased = a * a + 2 * jerk * v;
+    if (a <= below && pushed <= allowed * allowed) { /* no limit in the way below zero */
+        *at_zero = sqrt(pushed);
+        append(pieces, sign, jerk, a, (*at_zero - a) / jerk);
+        return true;
+    }
+    if (eased <= allowed * allowed) {
+        *at_zero = allowed;
+        append_rise(pieces, sign, -v, a, allowed, below, jerk);
+        return true;
+    }
+    return false;
+}
+
 /** The change from (v < 0, a >= 0) to (w > 0, 0). */
 static void append_rise_through_zero(cm1e_pieces_t *pieces, double sign, double v, double a, double w,
                                      const cm1e_motion_limits_t *limits)
@@ -64,23 +85,31 @@ static void append_rise_through_zero(cm1e_pieces_t *pieces, double sign, double 
     /* Maximum acceleration at v = 0: within both limits, and low enough to arrive at w. */
     const double lower = smaller(above, below);
     const double allowed = 2 * jerk * w < lower * lower ? sqrt(2 * jerk * w) : lower;
-    /* Squares of the acceleration at v = 0 when jerk is applied from now on, upwards and downwards. */
-    const double pushed = a * a - 2 * jerk * v, eased = a * a + 2 * jerk * v;
-
+    const double eased = a * a + 2 * jerk * v;
+    double at_zero;
     if (a > below && eased >= below * below) { /* from outside the limits, and still so at v = 0 */
-        const double at_zero = sqrt(eased);
+        at_zero = sqrt(eased);
         append(pieces, sign, -jerk, a, (a - at_zero) / jerk);
         append_rise(pieces, sign, w, at_zero, 0, above, jerk);
-    } else if (a <= below && pushed <= allowed * allowed) { /* no limit in the way below zero */
-        const double at_zero = sqrt(pushed);
-        append(pieces, sign, jerk, a, (at_zero - a) / jerk);
+    } else if (append_rise_to_zero(pieces, sign, v, a, allowed, limits, &at_zero)) {
         append_rise(pieces, sign, w, at_zero, 0, above, jerk);
-    } else if (eased <= allowed * allowed) {
-        append_rise(pieces, sign, -v, a, allowed, below, jerk);
-        append_rise(pieces, sign, w, allowed, 0, above, jerk);
     } else { /* too fast to obey the lower limit at v = 0: down to it at once */
         append_rise(pieces, sign, w - v, a, 0, above, jerk);
     }
+}
+
+bool cm1e_pieces_append_rise_to_standstill(cm1e_pieces_t *pieces, double velocity, double acceleration,
+                                           const cm1e_motion_limits_t *limits, double *at_zero)
+{
+    double v = velocity, a = acceleration;
+    if (a > limits->deceleration)
+        return false;
+    if (a < 0) {
+        append(pieces, 1, limits->jerk, a, -a / limits->jerk);
+        v -= a * (a / limits->jerk) / 2;
+        a = 0;
+    }
+    return append_rise_to_zero(pieces, 1, v, a, smaller(limits->acceleration, limits->deceleration), limits, at_zero);
 }
 
 static void append_up(cm1e_pieces_t *pieces, double sign, double v, double a, double w,
