@@ -323,6 +323,8 @@ bool cm1e_axis_may_go(const cm1e_axis_t *axis, bool positive);
  *  @rt cycle */
 void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, double *lower, double *upper);
 
+/** The state of the axis alone: a member of what cm1e_axis_get() gives, without the work for the others. @rt cycle */
+cm1e_axis_state_t cm1e_axis_present_state(const cm1e_axis_t *axis);
 CM1E_GUEST_API void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info);
 CM1E_GUEST_API const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis);
 

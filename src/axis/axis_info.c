@@ -16,6 +16,8 @@ static double actual_velocity(const cm1e_axis_t *axis)
     return (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale;
 }
 
+cm1e_axis_state_t cm1e_axis_present_state(const cm1e_axis_t *axis) { return axis->state; }
+
 void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;

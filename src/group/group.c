@@ -50,13 +50,6 @@ cm1e_error_t cm1e_group_destroy(AXES_GROUP_REF_t reference)
 
 /* ---- what became of the axes ------------------------------------------------------------------------------------- */
 
-static cm1e_axis_state_t state_of(const cm1e_axis_t *axis)
-{
-    cm1e_axis_info_t info;
-    cm1e_axis_get(axis, &info);
-    return info.state;
-}
-
 /* State of MC_GroupReset. It is done when none of its axes is in ErrorStop and the others have come to rest. */
 static void refresh_reset(cm1e_group_t *group)
 {
@@ -65,7 +58,7 @@ static void refresh_reset(cm1e_group_t *group)
     for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
         cm1e_axis_t *axis = cm1e_group_axis(group, ident);
         cm1e_error_t error = CM1E_ERROR_GROUP_AXIS;
-        if (group->member[ident - 1].Handle == 0 || (axis && state_of(axis) != CM1E_AXIS_ERROR_STOP))
+        if (group->member[ident - 1].Handle == 0 || (axis && cm1e_axis_present_state(axis) != CM1E_AXIS_ERROR_STOP))
             continue;
         if (axis && cm1e_axis_reset_state(axis, &error) == CM1E_COMMAND_ACTIVE)
             return;
@@ -84,7 +77,7 @@ static void refresh_members(cm1e_group_t *group)
 {
     for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
         const cm1e_axis_t *axis = cm1e_group_axis(group, ident);
-        if (group->member[ident - 1].Handle != 0 && (!axis || state_of(axis) == CM1E_AXIS_ERROR_STOP))
+        if (group->member[ident - 1].Handle != 0 && (!axis || cm1e_axis_present_state(axis) == CM1E_AXIS_ERROR_STOP))
             cm1e_group_fail(group, CM1E_ERROR_GROUP_AXIS, ident);
     }
 }
