@@ -24,7 +24,7 @@
 
 enum { ROUNDS = 5, PACED = 1000, QUICK = 4000, ALL = ROUNDS * (QUICK > PACED ? QUICK : PACED), WARM_UP = 20, PAUSE_NS = 1000000 };
 
-static const way_t *const ways[] = {&way_send_recv, &way_spin, &way_bypass, &way_busy_poll, &way_mmap, &way_uring, &way_xdp};
+static const way_t *const ways[] = {&way_send_recv, &way_poll_first, &way_spin, &way_bypass, &way_busy_poll, &way_mmap, &way_uring, &way_xdp};
 enum { WAYS = sizeof ways / sizeof ways[0] };
 
 typedef struct result {

@@ -93,6 +93,16 @@ static size_t look(int fd, uint8_t *frame)
     return n > 0 ? (size_t)n : 0;
 }
 
+/* Without a look before the sleep. */
+static size_t receive_later(void *state, uint8_t *frame)
+{
+    const int fd = *(int *)state;
+    size_t length = 0;
+    while (length == 0 && way_sleep(fd))
+        length = look(fd, frame);
+    return length;
+}
+
 /* As the library does it. */
 static size_t receive_sleeping(void *state, uint8_t *frame)
 {
@@ -126,6 +136,7 @@ static void close_plain(void *state)
     free(state);
 }
 
+const way_t way_poll_first = {"send, poll, recv", open_plain, send_plain, receive_later, close_plain};
 const way_t way_send_recv = {"send, recv, poll (the library)", open_plain, send_plain, receive_sleeping, close_plain};
 const way_t way_spin = {"send, recv without a pause", open_plain, send_plain, receive_spinning, close_plain};
 const way_t way_bypass = {"the same, PACKET_QDISC_BYPASS", open_bypass, send_plain, receive_sleeping, close_plain};

@@ -30,6 +30,6 @@ int way_packet_socket(unsigned interface_index);
 /** Sleeps until the descriptor has something, at most WAY_WAIT_MS. */
 bool way_sleep(int fd);
 
-extern const way_t way_send_recv, way_spin, way_bypass, way_busy_poll, way_mmap, way_uring, way_xdp;
+extern const way_t way_poll_first, way_send_recv, way_spin, way_bypass, way_busy_poll, way_mmap, way_uring, way_xdp;
 
 #endif

@@ -6,6 +6,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "config/interface.h"
+
 typedef struct buses {
     cm1e_bus_config_t configs[CM1E_MAX_BUSES];
     uint32_t count;
@@ -65,7 +67,7 @@ static int find(const buses_t *buses, const char *word)
         if (strcmp(buses->configs[i].name, word) == 0)
             return (int)i;
     for (uint32_t i = 0; i < buses->count; i++)
-        if (strcmp(buses->configs[i].interface_name, word) == 0)
+        if (cm1e_interface_is_same(buses->configs[i].interface_name, word))
             found = found == NONE ? (int)i : REFUSED;
     return found;
 }

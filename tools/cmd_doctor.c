@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "config/interface.h"
 #include "doctor/doctor.h"
 
 enum { KEY_FIX = 0x300, KEY_ROOT, KEY_SECONDS };
@@ -98,7 +99,9 @@ static bool is_named(const doctor_options_t *options)
 static void look(doctor_t *doctor, const doctor_options_t *options, const cm1e_bus_config_t *config)
 {
     const bool named = is_named(options);
+    char own_name[sizeof config->interface_name];
     const int64_t cycle_time_ns = config->cycle_time_ns ? config->cycle_time_ns : DEFAULT_CYCLE_NS;
+    cm1e_interface_own_name(own_name, sizeof own_name, config->interface_name);
     doctor_look_at_machine(doctor);
     if (options->seconds > 0)
         doctor_measure_latency(doctor, cycle_time_ns, options->seconds);
@@ -106,7 +109,7 @@ static void look(doctor_t *doctor, const doctor_options_t *options, const cm1e_b
         doctor_find(doctor, FINDING_NOTE, "interface", "interface",
                     "none named: -i NAME looks at it and at its slaves");
     else if (!config->interface_name[0] || !is_network(config->interface_name) ||
-             doctor_look_at_interface(doctor, config->interface_name))
+             doctor_look_at_interface(doctor, own_name))
         doctor_look_at_bus(doctor, &options->common, config);
 }
 

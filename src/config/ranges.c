@@ -84,6 +84,12 @@ static bool check_overlap(const check_t *check)
     return true;
 }
 
+static bool check_way(const check_t *check, const char *field, const char *name)
+{
+    char wrong[300];
+    return cm1e_interface_way(name, wrong, sizeof wrong) != CM1E_WAY_UNKNOWN || bus_wrong(check, field, "%s", wrong);
+}
+
 static bool check_bus(const check_t *check)
 {
     const cm1e_bus_config_t *config = check->config;
@@ -91,12 +97,15 @@ static bool check_bus(const check_t *check)
         return bus_wrong(check, "interface", NO_TEXT, sizeof config->interface_name);
     if (!IS_TEXT(config->second_interface))
         return bus_wrong(check, "second_interface", NO_TEXT, sizeof config->second_interface);
+    if (!check_way(check, "interface", config->interface_name) ||
+        !check_way(check, "second_interface", config->second_interface))
+        return false;
     if (!IS_TEXT(config->pcap_file))
         return bus_wrong(check, "pcap_file", NO_TEXT, sizeof config->pcap_file);
     if (config->second_interface[0] && cm1e_config_uses_clocks(config))
         return bus_wrong(check, "second_interface", "is given together with distributed clocks, whose time would reach "
                          "half of a broken ring before the reference has given it; expected one of the two");
-    if (config->second_interface[0] && strcmp(config->second_interface, config->interface_name) == 0)
+    if (config->second_interface[0] && cm1e_interface_is_same(config->second_interface, config->interface_name))
         return bus_wrong(check, "second_interface", "is %s like the first; expected the other end of the ring",
                          config->second_interface);
     if (config->virtual_time && !cm1e_interface_is_simulated(config->interface_name))

@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "config/interface.h"
 #include "control/message.h"
 #include "control/runtime_dir.h"
 #include "core/in_task.h"
@@ -183,7 +184,7 @@ static bool is_network(const json_t *hello, const char *word)
 {
     const char *interface = json_string_value(json_object_get(hello, "interface"));
     const char *name = json_string_value(json_object_get(hello, "network"));
-    return (interface && strcmp(interface, word) == 0) || (name && strcmp(name, word) == 0);
+    return (interface && cm1e_interface_is_same(interface, word)) || (name && strcmp(name, word) == 0);
 }
 
 /** A socket that was found by its name is that of the process in its name: any user can give a socket such a name. */

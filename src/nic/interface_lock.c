@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "config/interface.h"
 #include "core/program.h"
 #include "core/text.h"
 
@@ -73,12 +74,19 @@ static bool find_record(unsigned index, cm1e_interface_owner_t *owner)
     return found;
 }
 
+static unsigned index_of(const char *interface_name)
+{
+    char own[IFNAMSIZ + 1]; /* what is longer than a name can be is no interface */
+    cm1e_interface_own_name(own, sizeof own, interface_name);
+    return if_nametoindex(own);
+}
+
 static void write_name(char *name, size_t size, unsigned index) { snprintf(name, size, "cm1e-interface.%u", index); }
 
 bool cm1e_interface_owner(const char *interface_name, cm1e_interface_owner_t *owner)
 {
     char name[40];
-    const unsigned index = if_nametoindex(interface_name);
+    const unsigned index = index_of(interface_name);
     *owner = (cm1e_interface_owner_t){0};
     if (index == 0)
         return false;
@@ -143,7 +151,7 @@ cm1e_error_t cm1e_interface_lock_take(cm1e_interface_lock_t *lock, const char *i
 {
     char name[40], record[108], program[48];
     cm1e_interface_owner_t owner = {0};
-    const unsigned index = if_nametoindex(interface_name);
+    const unsigned index = index_of(interface_name);
     *lock = CM1E_INTERFACE_UNLOCKED;
     if (index == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "There is no network interface \"%s\".", interface_name);

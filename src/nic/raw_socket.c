@@ -13,6 +13,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "config/interface.h"
 #include "nic/nic.h"
 
 enum { ETHERTYPE_ETHERCAT = 0x88A4, RECEIVE_BUFFER = 1 << 20, DRAIN_LIMIT = 65536 };
@@ -60,9 +61,9 @@ static cm1e_error_t check_interface(int fd, const char *name, cm1e_diag_t *diag)
 bool cm1e_nic_lacks_link(const char *interface_name)
 {
     struct ifreq request = {0};
-    if (strlen(interface_name) >= sizeof request.ifr_name)
+    if (cm1e_interface_length(interface_name) >= sizeof request.ifr_name)
         return false;
-    memcpy(request.ifr_name, interface_name, strlen(interface_name));
+    memcpy(request.ifr_name, interface_name, cm1e_interface_length(interface_name));
     const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     const bool asked = fd >= 0 && ioctl(fd, SIOCGIFFLAGS, &request) == 0;
     if (fd >= 0)
@@ -106,13 +107,13 @@ static cm1e_error_t no_interface(const char *name, cm1e_diag_t *diag)
                          list);
 }
 
-static cm1e_error_t set_up(int fd, const char *name, unsigned index, cm1e_diag_t *diag)
+static cm1e_error_t set_up(int fd, const char *name, unsigned index, int ethertype, cm1e_diag_t *diag)
 {
     const cm1e_error_t error = check_interface(fd, name, diag);
     if (error != CM1E_OK)
         return error;
     tune(fd, (int)index);
-    const struct sockaddr_ll address = {.sll_family = AF_PACKET, .sll_protocol = htons(ETHERTYPE_ETHERCAT),
+    const struct sockaddr_ll address = {.sll_family = AF_PACKET, .sll_protocol = htons((uint16_t)ethertype),
                                         .sll_ifindex = (int)index};
     if (bind(fd, (const struct sockaddr *)&address, sizeof address) < 0)
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The packet socket cannot be bound to \"%s\": %s.", name,
@@ -120,13 +121,13 @@ static cm1e_error_t set_up(int fd, const char *name, unsigned index, cm1e_diag_t
     return CM1E_OK;
 }
 
-static cm1e_error_t open_socket(int *fd, const char *interface_name, unsigned index, cm1e_diag_t *diag)
+static cm1e_error_t open_socket(int *fd, const char *interface_name, unsigned index, int ethertype, cm1e_diag_t *diag)
 {
     /* Protocol 0: nothing is received before bind() names the interface. */
     *fd = socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (*fd < 0)
         return no_socket(errno, diag);
-    const cm1e_error_t error = set_up(*fd, interface_name, index, diag);
+    const cm1e_error_t error = set_up(*fd, interface_name, index, ethertype, diag);
     if (error != CM1E_OK)
         return error;
     uint8_t stale[64];
@@ -135,7 +136,7 @@ static cm1e_error_t open_socket(int *fd, const char *interface_name, unsigned in
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_raw_socket_open(cm1e_raw_socket_t *made, const char *interface_name, cm1e_diag_t *diag)
+static cm1e_error_t open_locked(cm1e_raw_socket_t *made, const char *interface_name, int ethertype, cm1e_diag_t *diag)
 {
     *made = CM1E_RAW_SOCKET_CLOSED;
     /* The name and the owner first: it needs no privilege to say that the interface is wrong or in use. */
@@ -144,10 +145,20 @@ cm1e_error_t cm1e_raw_socket_open(cm1e_raw_socket_t *made, const char *interface
         return no_interface(interface_name, diag);
     cm1e_error_t error = cm1e_interface_lock_take(&made->lock, interface_name, diag);
     if (error == CM1E_OK)
-        error = open_socket(&made->fd, interface_name, index, diag);
+        error = open_socket(&made->fd, interface_name, index, ethertype, diag);
     if (error != CM1E_OK)
         cm1e_raw_socket_close(made);
     return error;
+}
+
+cm1e_error_t cm1e_raw_socket_open(cm1e_raw_socket_t *made, const char *interface_name, cm1e_diag_t *diag)
+{
+    return open_locked(made, interface_name, ETHERTYPE_ETHERCAT, diag);
+}
+
+cm1e_error_t cm1e_raw_socket_hold(cm1e_raw_socket_t *made, const char *interface_name, cm1e_diag_t *diag)
+{
+    return open_locked(made, interface_name, 0, diag);
 }
 
 void cm1e_raw_socket_close(cm1e_raw_socket_t *closed)

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "cm1e/sim.h"
+#include "config/interface.h"
 #include "core/clock.h"
 #include "nic/frame.h"
 #include "nic/frame_queue.h"
@@ -341,15 +342,30 @@ void cm1e_sim_server_close(cm1e_sim_server_t *server)
     free(server);
 }
 
+static cm1e_error_t check_way(const char *name, cm1e_diag_t *diag)
+{
+    char wrong[300];
+    const cm1e_interface_way_t way = cm1e_interface_way(name, wrong, sizeof wrong);
+    if (way == CM1E_WAY_UNKNOWN)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Interface \"%s\" %s.", name, wrong);
+    if (way != CM1E_WAY_PACKET)
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "Interface \"%s\": a simulated segment answers through a "
+                             "packet socket only. Name the interface without a comma: \"%.*s\".", name,
+                             (int)cm1e_interface_length(name), name);
+    return CM1E_OK;
+}
+
 static cm1e_error_t open_ends(cm1e_sim_server_t *server, const char *const names[], int count, cm1e_diag_t *diag)
 {
-    if (count > 1 && strcmp(names[0], names[1]) == 0)
+    if (count > 1 && cm1e_interface_is_same(names[0], names[1]))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
                              "Both interfaces of the ring are \"%s\": a ring needs two network interfaces.", names[0]);
     for (int i = 0; i < count; i++) {
         end_t *end = &server->ends[i];
-        snprintf(end->interface_name, sizeof end->interface_name, "%s", names[i]);
-        const cm1e_error_t error = cm1e_raw_socket_open(&end->socket, names[i], diag);
+        cm1e_error_t error = check_way(names[i], diag);
+        cm1e_interface_own_name(end->interface_name, sizeof end->interface_name, names[i]);
+        if (error == CM1E_OK)
+            error = cm1e_raw_socket_open(&end->socket, end->interface_name, diag);
         if (error != CM1E_OK)
             return error;
         server->end_count++;
