@@ -259,6 +259,8 @@ cm1e_error_t cm1e_xdp_socket_open(cm1e_xdp_socket_t **made, const char *interfac
     x->fd = -1;
     x->program = CM1E_XDP_NO_PROGRAM;
     cm1e_error_t error = cm1e_raw_socket_hold(&x->holder, interface_name, diag);
+    if (error == CM1E_ERROR_PERMISSION)
+        error = no_right(interface_name, diag);
     if (error == CM1E_OK)
         error = check_queues(x, interface_name, diag);
     if (error == CM1E_OK)

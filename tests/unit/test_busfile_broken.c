@@ -257,6 +257,8 @@ static const struct {
     {"bus: {cycle_time_us: 250, frame_timeout_us: 251}\naxes: [{}]\n", "1:45", {"frame_timeout_us is 251", "250"}},
     {"bus: {interface: eth1, virtual_time: yes}\naxes: [{}]\n", "1:38", {"virtual_time is on", "eth1", "sim"}},
     {"bus: {interface: eth1, second_interface: eth1}\naxes: [{}]\n", "1:42", {"eth1 like the first"}},
+    {"bus: {interface: eth1, second_interface: \"eth1,xdp\"}\naxes: [{}]\n", "1:42", {"eth1,xdp like the first"}},
+    {"bus:\n  interface: eth1,fast\naxes: [{}]\n", "2:14", {"has \"fast\" behind its comma", "packet (as without", "xdp"}},
     {"bus: {interface: eth1, second_interface: eth2, overlap: true}\naxes: [{}]\n", "1:57", {"overlap", "a ring"}},
     {"bus: {overlap: true}\naxes: [{alias: 5}, {alias: 6, optional: true}]\n", "1:16",
      {"overlap", "entry 2 of the axes"}},

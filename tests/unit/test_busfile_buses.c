@@ -82,6 +82,8 @@ static const struct {
     {LEFT "- name: left\n  bus: {interface: eth2}\n  axes: [{name: y}]\n", ":5:9:", "two buses have the name left"},
     {LEFT "- name: right\n  bus: {interface: eth1}\n  axes: [{name: y}]\n", ":6:20:",
      "the bus left has the interface eth1 too"},
+    {LEFT "- name: right\n  bus: {interface: \"eth1,xdp\"}\n  axes: [{name: y}]\n", ":6:20:",
+     "the bus left has the interface eth1,xdp too"},
     {LEFT "- name: right\n  bus: {interface: eth2, second_interface: eth1}\n  axes: [{name: y}]\n", ":6:20:",
      "the bus left has the interface eth1 too"},
     {LEFT "- name: right\n  bus: {interface: eth2, cycle_time_us: 250}\n  axes: [{name: y}]\n", ":6:41:",

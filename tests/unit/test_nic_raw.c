@@ -1,5 +1,5 @@
-/* The raw socket on a veth pair of the test's own network namespace (skipped where that is not allowed), and what it
- * says when it cannot be opened. */
+/* The ways to the frames of a network interface, on a veth pair of the test's own network namespace (skipped where that is
+ * not allowed), and what the packet socket says when it cannot be opened. */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -19,6 +19,7 @@
 #include "nic/raw_socket.h"
 
 static bool have_wire;
+static const char *way = ""; /* ",xdp": AF_XDP */
 static cm1e_bus_config_t config;
 static cm1e_diag_t diag;
 
@@ -26,7 +27,7 @@ void setUp(void)
 {
     memset(&config, 0, sizeof config);
     memset(&diag, 0, sizeof diag);
-    strcpy(config.interface_name, "wire0");
+    snprintf(config.interface_name, sizeof config.interface_name, "wire0%s", way);
 }
 
 void tearDown(void) {}
@@ -99,7 +100,7 @@ static void test_frames_go_out_and_come_back(void)
     need_wire();
     start_echo(false);
     static ecx_portt port;
-    TEST_ASSERT_EQUAL_INT(1, ecx_setupnic(&port, "wire0", FALSE)); /* opened by the port itself */
+    TEST_ASSERT_EQUAL_INT(1, ecx_setupnic(&port, config.interface_name, FALSE)); /* opened by the port itself */
     for (int i = 0; i < 200; i++) {
         uint16_t data = 0;
         TEST_ASSERT_EQUAL_INT(1, ecx_BRD(&port, 0, 0, 2, &data, 200000));
@@ -193,7 +194,7 @@ static void test_a_lost_frame_costs_the_timeout(void)
     need_wire();
     start_echo(true);
     static ecx_portt port;
-    TEST_ASSERT_EQUAL_INT(1, ecx_setupnic(&port, "wire0", FALSE));
+    TEST_ASSERT_EQUAL_INT(1, ecx_setupnic(&port, config.interface_name, FALSE));
     int64_t best = INT64_MAX;
     for (int i = 0; i < 20; i++) {
         uint16_t data = 0;
@@ -212,8 +213,9 @@ static void test_an_interface_that_goes_away_is_no_busy_loop(void)
 {
     need_wire();
     cm1e_nic_t *nic = NULL;
-    TEST_ASSERT_EQUAL_INT(0, system("ip link add gone0 type veth peer name gone1 && ip link set gone0 up"));
-    strcpy(config.interface_name, "gone0");
+    TEST_ASSERT_EQUAL_INT(0, system("ip link add gone0 type veth peer name gone1 && ip link set gone0 up && "
+                                   "ip link set gone1 up"));
+    snprintf(config.interface_name, sizeof config.interface_name, "gone0%s", way);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_nic_open(&nic, &config, &diag));
     uint8_t frame[CM1E_FRAME_MAX] = {255, 255, 255, 255, 255, 255, 1, 1, 1, 1, 1, 1, 0x88, 0xA4};
     int port;
@@ -240,7 +242,9 @@ static void test_two_interfaces_make_a_ring(void)
     static ecx_portt port;
     static ecx_redportt red;
     ecx_contextt context = {.port = &port};
-    TEST_ASSERT_EQUAL_INT(1, ecx_init_redundant(&context, &red, "wire0", (char[]){"wire1"}));
+    char second[16];
+    snprintf(second, sizeof second, "wire1%s", way);
+    TEST_ASSERT_EQUAL_INT(1, ecx_init_redundant(&context, &red, config.interface_name, second));
     for (int i = 0; i < 50; i++) {
         uint16_t data = 0;
         TEST_ASSERT_EQUAL_INT(0, ecx_BRD(&port, 0, 0, 2, &data, 100000));
@@ -323,11 +327,9 @@ static void test_adapters_are_listed(void)
     TEST_ASSERT_EQUAL_HEX16(0x88A4, oshw_ntohs(0xA488));
 }
 
-int main(void)
+static void run_way(const char *stated)
 {
-    need_real_time();
-    have_wire = veth_make();
-    UNITY_BEGIN();
+    way = stated;
     RUN_TEST(test_frames_go_out_and_come_back);
     RUN_TEST(test_our_own_frames_are_not_received);
     RUN_TEST(test_frames_from_before_the_opening_are_not_received);
@@ -335,6 +337,28 @@ int main(void)
     RUN_TEST(test_a_lost_frame_costs_the_timeout);
     RUN_TEST(test_an_interface_that_goes_away_is_no_busy_loop);
     RUN_TEST(test_two_interfaces_make_a_ring);
+    way = "";
+}
+
+static bool have_xdp(void)
+{
+    cm1e_nic_t *nic = NULL;
+    cm1e_bus_config_t probe = {.interface_name = "wire0,xdp"};
+    const cm1e_error_t error = have_wire ? cm1e_nic_open(&nic, &probe, &diag) : CM1E_OK;
+    if (error != CM1E_OK)
+        printf("SKIPPED: AF_XDP: %s\n", diag.text);
+    cm1e_nic_close(nic);
+    return have_wire && error != CM1E_ERROR_PERMISSION && error != CM1E_ERROR_UNSUPPORTED;
+}
+
+int main(void)
+{
+    need_real_time();
+    have_wire = veth_make();
+    UNITY_BEGIN();
+    run_way("");
+    if (have_xdp())
+        run_way(",xdp");
     RUN_TEST(test_an_unknown_interface_is_named_with_those_that_exist);
     RUN_TEST(test_an_interface_that_is_down_is_diagnosed_with_the_cure);
     RUN_TEST(test_the_loopback_interface_is_refused);
