@@ -1,7 +1,8 @@
 /*
  * Round trips of a frame over a pair of network interfaces, by each way that Linux has to send and receive one: to another
- * process that sends it back, always in the same way. One round trip each millisecond, as a cycle does, and then without a
- * pause; the ways take turns. "refused" is what the kernel does not offer here.
+ * process that sends it back, always in the same way. One round trip each millisecond, then without a pause. "next cycle" is
+ * what the scheduler does: it sends, sleeps, and takes the answer of the cycle before, which is there; only the time of the
+ * two calls counts. The ways take turns. "refused" is what the kernel does not offer here.
  *
  *     bench_socket [BYTES ...]    usually frames of 64, 512 and 1514 bytes
  *
@@ -26,6 +27,10 @@ enum { ROUNDS = 5, PACED = 1000, QUICK = 4000, ALL = ROUNDS * (QUICK > PACED ? Q
 
 static const way_t *const ways[] = {&way_send_recv, &way_poll_first, &way_spin, &way_bypass, &way_busy_poll, &way_mmap, &way_uring, &way_xdp};
 enum { WAYS = sizeof ways / sizeof ways[0] };
+
+typedef enum manner { EACH_MS, NEXT_CYCLE, AT_ONCE, MANNERS } manner_t;
+static const char *const manners[MANNERS] = {"each 1 ms", "next cycle", "at once"};
+static const int counts[MANNERS] = {PACED, PACED, QUICK};
 
 typedef struct result {
     double us[ALL];
@@ -81,7 +86,22 @@ static bool round_trip(const way_t *way, void *state, uint8_t *sent, size_t byte
     return way->send(state, sent, bytes) && way->receive(state, got) == bytes && memcmp(sent, got, bytes) == 0;
 }
 
-static void one_round(const way_t *way, result_t *result, size_t bytes, int count, bool paced)
+/* Nanoseconds of the calls; < 0: the frame was lost. */
+static int64_t time_calls(const way_t *way, void *state, uint8_t *sent, size_t bytes, uint32_t number, int64_t next_ns)
+{
+    uint8_t got[WAY_FRAME_MAX];
+    memcpy(sent + 20, &number, sizeof number);
+    const int64_t begin = now_ns();
+    const bool left = way->send(state, sent, bytes);
+    const int64_t gone = now_ns();
+    sleep_until(next_ns);
+    const int64_t look = now_ns();
+    const bool came = left && way->receive(state, got) == bytes;
+    const int64_t end = now_ns();
+    return came && memcmp(sent, got, bytes) == 0 ? gone - begin + end - look : -1;
+}
+
+static void one_round(const way_t *way, result_t *result, size_t bytes, manner_t manner)
 {
     uint8_t sent[WAY_FRAME_MAX] = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, [12] = WAY_ETHERTYPE >> 8, WAY_ETHERTYPE & 0xFF};
     void *state = way->open(if_nametoindex("wire0"));
@@ -89,16 +109,19 @@ static void one_round(const way_t *way, result_t *result, size_t bytes, int coun
     for (uint32_t i = 0; state && i < WARM_UP; i++)
         round_trip(way, state, sent, bytes, UINT32_MAX - i);
     int64_t next = now_ns();
-    for (uint32_t i = 0; state && i < (uint32_t)count; i++) {
-        if (paced)
+    for (uint32_t i = 0; state && i < (uint32_t)counts[manner]; i++) {
+        if (manner == EACH_MS)
             sleep_until(next += PAUSE_NS);
         const unsigned long before = way_calls;
         const int64_t begin = now_ns();
-        const bool done = round_trip(way, state, sent, bytes, i);
-        const int64_t end = now_ns();
+        int64_t took = -1;
+        if (manner == NEXT_CYCLE)
+            took = time_calls(way, state, sent, bytes, i, next += PAUSE_NS);
+        else if (round_trip(way, state, sent, bytes, i))
+            took = now_ns() - begin;
         result->calls += way_calls - before;
-        if (done)
-            result->us[result->count++] = (double)(end - begin) / 1000.0;
+        if (took >= 0)
+            result->us[result->count++] = (double)took / 1000.0;
         else
             result->lost++;
     }
@@ -114,12 +137,12 @@ static int by_size(const void *a, const void *b)
 
 static double part(const result_t *result, double of) { return result->us[(int)((result->count - 1) * of)]; }
 
-static void print(size_t bytes, bool paced)
+static void print(size_t bytes, manner_t manner)
 {
     const double usual = results[0].count > 0 ? part(&results[0], 0.5) : 0.0;
     for (int w = 0; w < WAYS; w++) {
         const result_t *result = &results[w];
-        printf("%5zu  %-9s %-34s", bytes, paced ? "each 1 ms" : "at once", ways[w]->name);
+        printf("%5zu  %-10s %-34s", bytes, manners[manner], ways[w]->name);
         if (result->refused || result->count == 0)
             printf(" refused: %s\n", result->refused ? strerror(result->refused) : "no frame comes back");
         else
@@ -128,15 +151,15 @@ static void print(size_t bytes, bool paced)
     }
 }
 
-static void measure(size_t bytes, bool paced)
+static void measure(size_t bytes, manner_t manner)
 {
     memset(results, 0, sizeof results);
     for (int round = 0; round < ROUNDS; round++)
         for (int w = 0; w < WAYS; w++)
-            one_round(ways[w], &results[w], bytes, paced ? PACED : QUICK, paced);
+            one_round(ways[w], &results[w], bytes, manner);
     for (int w = 0; w < WAYS; w++)
         qsort(results[w].us, (size_t)results[w].count, sizeof results[w].us[0], by_size);
-    print(bytes, paced);
+    print(bytes, manner);
 }
 
 int main(int words, char **word)
@@ -152,15 +175,15 @@ int main(int words, char **word)
     if (other == 0)
         answer();
     pin(processors() - 1);
-    printf("%5s  %-9s %-34s %8s %8s %8s %7s %6s %5s\n", "bytes", "", "way", "median", "99 %", "99.9 %", "ratio", "calls", "lost");
+    printf("%5s  %-10s %-34s %8s %8s %8s %7s %6s %5s\n", "bytes", "", "way", "median", "99 %", "99.9 %", "ratio", "calls", "lost");
     for (int i = 0; i < given; i++) {
         const size_t bytes = strtoul(words > 1 ? word[i + 1] : usual[i], NULL, 10);
         if (bytes < 60 || bytes > WAY_FRAME_MAX) {
             fprintf(stderr, "bench_socket: a frame has 60 to %d bytes\n", WAY_FRAME_MAX);
             break;
         }
-        measure(bytes, true);
-        measure(bytes, false);
+        for (int manner = 0; manner < MANNERS; manner++)
+            measure(bytes, (manner_t)manner);
     }
     kill(other, SIGKILL);
     waitpid(other, NULL, 0);

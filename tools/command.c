@@ -16,7 +16,7 @@
 enum { KEY_PCAP = 0x100, KEY_JSON, KEY_NETWORK };
 
 static const struct argp_option common_option_table[] = {
-    {"interface", 'i', "INTERFACE", 0, "Network interface, or sim, or sim:BUS-FILE", 1},
+    {"interface", 'i', "INTERFACE", 0, "Network interface (eth1; eth1,xdp goes by AF_XDP), or sim, or sim:BUS-FILE", 1},
     {"bus", 'b', "BUS-FILE", 0, "Description of the network (YAML, see docs/BUS-FILE.md)", 1},
     {"network", KEY_NETWORK, "NAME", 0, "Of a bus file with several buses: this one, by its name or interface", 1},
     {"json", KEY_JSON, NULL, 0, "Write JSON", 1},

@@ -371,8 +371,10 @@ typedef struct cm1e_bus_config {
     size_t size, axis_size;          /**< bytes of this struct and of an axis; 0: the sizes that the library has */
     uint32_t axis_count;             /**< at most CM1E_MAX_AXES */
     cm1e_axis_config_t *axes;        /**< axes[0] ... axes[axis_count - 1] */
-    char interface_name[64];         /**< "eth1", "sim", "sim:<bus file>"; "" selects "sim" */
-    char second_interface[64];       /**< second network interface of a redundant ring; "": none */
+    char interface_name[64];         /**< "eth1", "sim", "sim:<bus file>"; "" selects "sim". "eth1,xdp" sends and
+                                          receives by AF_XDP, "eth1,packet" by a packet socket, as "eth1" does */
+    char second_interface[64];       /**< second network interface of a redundant ring, with a way of its own
+                                          ("eth2,xdp"); "": none */
     int64_t cycle_time_ns;           /**< 200,000, 250,000, 500,000 or 1,000,000; 0 selects 1,000,000 */
     int64_t frame_timeout_ns;        /**< time to wait for a late frame; 0 selects a quarter of the cycle time */
     uint32_t lost_cycles_limit;      /**< bad cycles in a row until ErrorStop, at most 50 ms of cycles; 0 selects 3 */
