@@ -4,6 +4,7 @@
  * under callgrind, measured_cycles() is counted, with a dump for each call (bench/README.md).
  *
  *     bench_bus [DRIVES ...]           1, 16 and 128 drives
+ *     bench_bus --veth,xdp [DRIVES ...]    as --veth, with the frames of the library by AF_XDP
  *     bench_bus --veth [DRIVES ...]    over a pair of network interfaces, beside SOEM with its own port, 1 and 16 drives:
  *                                      real time from before sending until the answer is taken, best of some rounds
  */
@@ -157,6 +158,7 @@ static double between_us(struct timespec from, struct timespec to)
 }
 
 static round_t last_round;
+static const char *wire_name = "wire0"; /* of the library */
 
 /** A cycle each millisecond. */
 static void measure_wire(void *master, int (*receive)(void *), void (*send)(void *))
@@ -185,7 +187,7 @@ static round_t ours_on_wire(unsigned drives)
     cm1e_bus_config_t config;
     cm1e_bus_t *bus;
     cm1e_diag_t diag = {0};
-    if (cm1e_bus_config_init(&config, "wire0", drives) != CM1E_OK)
+    if (cm1e_bus_config_init(&config, wire_name, drives) != CM1E_OK)
         fail("so many drives cannot be configured");
     if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
         fail(diag.text);
@@ -261,7 +263,9 @@ static void measure(unsigned drives, double target)
 
 int main(int words, char **word)
 {
-    if (words > 1 && strcmp(word[1], "--veth") == 0)
+    if (words > 1 && strcmp(word[1], "--veth,xdp") == 0)
+        wire_name = "wire0,xdp";
+    if (words > 1 && strncmp(word[1], "--veth", 6) == 0)
         return veth(words, word);
     printf("%6s %10s %10s %8s %8s\n", "drives", "cm1e, us", "SOEM, us", "ratio", "target");
     for (size_t i = 0; words == 1 && i < sizeof usual / sizeof usual[0]; i++)
