@@ -3,12 +3,14 @@
  * all ways to the frames of an interface promise. */
 #include <arpa/inet.h>
 #include <linux/if_packet.h>
+#include <linux/if_xdp.h>
 #include <net/if.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -263,6 +265,39 @@ static void test_an_interface_has_one_owner_whichever_way(void)
     TEST_ASSERT_TRUE_MESSAGE(has_program(), "a refused one has taken the program of the first away");
 }
 
+/* A program that knows no lock. */
+static int open_foreign(void *memory, size_t bytes)
+{
+    const struct xdp_umem_reg umem = {.addr = (uintptr_t)memory, .len = bytes, .chunk_size = 2048};
+    const struct sockaddr_xdp address = {.sxdp_family = AF_XDP, .sxdp_flags = XDP_COPY,
+                                         .sxdp_ifindex = if_nametoindex("wire0")};
+    const int size = 8, fd = socket(AF_XDP, SOCK_RAW | SOCK_CLOEXEC, 0);
+    TEST_ASSERT_EQUAL_INT(0, setsockopt(fd, SOL_XDP, XDP_UMEM_REG, &umem, sizeof umem));
+    TEST_ASSERT_EQUAL_INT(0, setsockopt(fd, SOL_XDP, XDP_UMEM_FILL_RING, &size, sizeof size));
+    TEST_ASSERT_EQUAL_INT(0, setsockopt(fd, SOL_XDP, XDP_UMEM_COMPLETION_RING, &size, sizeof size));
+    TEST_ASSERT_EQUAL_INT(0, setsockopt(fd, SOL_XDP, XDP_RX_RING, &size, sizeof size));
+    for (int i = 0; bind(fd, (const struct sockaddr *)&address, sizeof address) != 0; i++) {
+        TEST_ASSERT_LESS_THAN_INT(100, i); /* the kernel takes ours away a moment later */
+        usleep(10000);
+    }
+    return fd;
+}
+
+static void test_a_socket_of_another_program_is_told(void)
+{
+    enum { BYTES = 1 << 16 };
+    cm1e_xdp_socket_close(near_end);
+    near_end = NULL;
+    void *memory = mmap(NULL, BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    const int foreign = open_foreign(memory, BYTES);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INTERFACE_IN_USE, cm1e_xdp_socket_open(&near_end, "wire0", &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "Another program has an AF_XDP socket"), diag.text);
+    TEST_ASSERT_FALSE(has_program());
+    close(foreign);
+    munmap(memory, BYTES);
+    open_near();
+}
+
 int main(void)
 {
     if (veth_make()) {
@@ -283,5 +318,6 @@ int main(void)
     RUN_TEST(test_a_process_that_was_forked_off_keeps_nothing);
     RUN_TEST(test_it_opens_and_closes_again_and_again);
     RUN_TEST(test_an_interface_has_one_owner_whichever_way);
+    RUN_TEST(test_a_socket_of_another_program_is_told);
     return UNITY_END();
 }
