@@ -139,7 +139,7 @@ static void close_plain(void *state)
 const way_t way_poll_first = {"send, poll, recv", open_plain, send_plain, receive_later, close_plain};
 const way_t way_send_recv = {"send, recv, poll (the library)", open_plain, send_plain, receive_sleeping, close_plain};
 const way_t way_spin = {"send, recv without a pause", open_plain, send_plain, receive_spinning, close_plain};
-const way_t way_bypass = {"the same, PACKET_QDISC_BYPASS", open_bypass, send_plain, receive_sleeping, close_plain};
+const way_t way_bypass = {"send, recv, PACKET_QDISC_BYPASS", open_bypass, send_plain, receive_sleeping, close_plain};
 const way_t way_busy_poll = {"send, blocking recv, SO_BUSY_POLL", open_busy_poll, send_plain, receive_blocking, close_plain};
 
 /* ---- rings ------------------------------------------------------------------------------------------------------- */
