@@ -148,6 +148,17 @@ def loses_interface(segment, cm1e):
     moves(segment, cm1e)
 
 
+def is_chosen(segment, cm1e, folder):
+    """A network of several is found by its interface, whichever way its file and the command state."""
+    path = os.path.join(folder, "two.yaml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f'buses:\n- {{name: wire, bus: {{interface: "{XDP}"}}, axes: [{{name: x}}]}}\n'
+                   "- {name: none, bus: {interface: sim}, axes: [{name: y}, {name: z}]}\n")
+    for word in (NAME, XDP, f"{NAME},packet"):
+        listed = json.loads(told(segment, [cm1e, "scan", "-b", path, "--network", word, "--json"]))
+        wire.check(len(listed) == 1, f"--network {word}: {listed}")
+
+
 def refuses_in_words(segment, cm1e):
     refused(segment, [cm1e, "scan", "-i", f"{NAME},xpd"], '"xpd"', "packet", "xdp")
     refused(segment, [cm1e, "scan", "-i", "nosuch,xdp"], 'no network interface "nosuch"')
@@ -267,6 +278,7 @@ def main(cm1e):
             skip_where_refused(segment, cm1e)
             moves(segment, cm1e)
             is_seen_by(segment, cm1e, folder)
+            is_chosen(segment, cm1e, folder)
             refuses_in_words(segment, cm1e)
             refuses_a_taken_interface(segment, cm1e, folder)
             refuses_a_card(segment, cm1e)
