@@ -199,8 +199,8 @@ static bool concerns(const run_t *run, const fault_t *fault, const machine_axis_
     const machine_axis_t *there = &run->axes[(int)fault->axis];
     const bool of_slave = fault->kind == FAULT_UNPLUG || fault->kind == FAULT_POWER_CYCLE;
     const int network = of_slave ? there->network : (int)fault->network;
-    if (of_slave && there->spec->optional != 0) /* those that are not behind it go on */
-        return axis->network == network && axis->position >= there->position && fault->length >= frames + AWAY_CYCLES;
+    if (of_slave && there->spec->optional != 0) /* those that are not behind it go on, and all if it is pulled out */
+        return there->info.online && axis->network == network && axis->position >= there->position && fault->length >= frames + AWAY_CYCLES;
     return axis->network == network && fault->length >= frames;
 }
 
