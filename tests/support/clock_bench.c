@@ -1,6 +1,6 @@
-#include "clock_bench.h"
+#include "bus/bus_internal.h" /* first, as bus_support.h has a global `diag` */
 
-#include "bus/bus_internal.h"
+#include "clock_bench.h"
 
 int64_t plan_ns;
 
