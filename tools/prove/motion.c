@@ -83,6 +83,7 @@ static bool read_position(const prove_t *prove, const cm1e_axis_config_t *axis, 
     enum { CHANNEL_STEP = 0x800 };
     uint8_t data[4];
     size_t size = sizeof data;
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): axis_of() has found it */
     const uint16_t index = (uint16_t)(0x6064 + (axis->channel > 0 ? axis->channel - 1 : 0) * CHANNEL_STEP);
     const bool read = cm1e_sdo_read(prove->bus, prove->position, index, 0, data, &size, NULL) == CM1E_OK && size == 4;
     if (read)
