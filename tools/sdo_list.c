@@ -189,7 +189,7 @@ int list_dictionary(cm1e_bus_t *bus, const cm1e_slave_info_t *slave, bool values
     list_t list = {.bus = bus, .slave = slave, .position = position, .values = values,
                    .json = json ? json_array() : NULL};
     uint16_t *indexes = calloc(OBJECTS_MAX, sizeof *indexes);
-    size_t count = OBJECTS_MAX;
+    size_t count = indexes ? OBJECTS_MAX : 0;
     cm1e_error_t error = indexes ? cm1e_sdo_info_list(bus, position, CM1E_OBJECTS_ALL, indexes, &count, &list.diag)
                                  : cm1e_diag_set(&list.diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
     int status = EXIT_OK;
