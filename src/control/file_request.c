@@ -54,7 +54,8 @@ static json_t *get(const control_request_t *request, const control_file_t *file,
 {
     const size_t left = file->used - offset;
     const size_t piece = left < CM1E_FILE_PIECE ? left : CM1E_FILE_PIECE;
-    return cm1e_request_accept(request->id, "data", cm1e_show_bytes(file->bytes + offset, piece));
+    const uint8_t *bytes = file->bytes ? file->bytes + offset : NULL; /* NULL: there has been none yet */
+    return cm1e_request_accept(request->id, "data", cm1e_show_bytes(bytes, piece));
 }
 
 static json_t *put(const control_request_t *request, control_file_t *file, size_t offset, const json_t *message)

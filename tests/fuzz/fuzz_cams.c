@@ -13,7 +13,7 @@
 
 enum { POINTS = 8, SAMPLES = 32, MOST_CYCLES = 800, LONG_CYCLES = 150 };
 
-static MC_CAM_POINT points[POINTS];
+static MC_CAM_POINT points[POINTS + 1]; /* one more than a cam may have */
 static MC_CAM_REF table;
 
 /* ---- the curve --------------------------------------------------------------------------------------------------- */
