@@ -159,12 +159,12 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
 }
 
 /* The largest change of the velocity in t, from acceleration a to b, without an acceleration above `most`. */
-static double largest_gain(double a, double b, double t, double jerk, double most)
+static double largest_gain(double a, double b, double t, double jerk, double per_jerk, double most)
 {
     const double peak = (a + b + jerk * t) / 2.0;
     if (peak <= most)
-        return (a + b) / 2.0 * t + (jerk * t - (b - a)) * (jerk * t + (b - a)) / (4.0 * jerk);
-    return most * t - ((most - a) * (most - a) + (most - b) * (most - b)) / (2.0 * jerk);
+        return (a + b) / 2.0 * t + (jerk * t - (b - a)) * (jerk * t + (b - a)) * (per_jerk / 4.0);
+    return most * t - ((most - a) * (most - a) + (most - b) * (most - b)) * (per_jerk / 2.0);
 }
 
 /* The farthest position that a jerk of at most 1 reaches in a time of 1 from rest, if it ends with acceleration x and
@@ -180,16 +180,17 @@ CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *nex
     const cm1e_motion_limits_t *most = limits_of(axis);
     const double t = axis->cycle_s, jerk = most->jerk, v0 = axis->setpoint.velocity, a0 = axis->setpoint.acceleration;
     const double v = next->velocity, a = next->acceleration;
+    const double per_jerk = 1.0 / jerk, per_t = 1.0 / t; /* most of the time here is that of divisions */
     const bounds_t bounds = bounds_between(most, v0, v);
     const double noise = slack * jerk * t * t + 1e-12 * fabs(v), gain = v - v0;
-    if (gain > largest_gain(a0, a, t, jerk, larger(bounds.up, larger(a0, a))) + noise ||
-        -gain > largest_gain(-a0, -a, t, jerk, larger(bounds.down, larger(-a0, -a))) + noise)
+    if (gain > largest_gain(a0, a, t, jerk, per_jerk, larger(bounds.up, larger(a0, a))) + noise ||
+        -gain > largest_gain(-a0, -a, t, jerk, per_jerk, larger(bounds.down, larger(-a0, -a))) + noise)
         return false;
-    const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
-    const double x = (a - a0) / (jerk * t), y = (gain - a0 * t) / (jerk * t * t);
-    const double z = (step - t * (v0 + t * a0 / 2.0)) / (jerk * t * t * t);
-    const double step_noise = 1e-9 / fabs(axis->position.scale) + 1e-13 * fabs(step);
-    const double few = slack + step_noise / (jerk * t * t * t);
+    const double per_count = axis->guarding.per_count;
+    const double step = cm1e_position_minus(next->position, axis->setpoint.position) * per_count;
+    const double unit_a = per_jerk * per_t, unit_v = unit_a * per_t, unit_s = unit_v * per_t; /* of a jerk for a cycle */
+    const double x = (a - a0) * unit_a, y = (gain - a0 * t) * unit_v, z = (step - t * (v0 + t * a0 / 2.0)) * unit_s;
+    const double few = slack + (1e-9 * fabs(per_count) + 1e-13 * fabs(step)) * unit_s;
     return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few;
 }
 

@@ -450,7 +450,8 @@ static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked)
 {
     coupling_t *c = axis->coupling;
-    if (!axis_follows(axis) || c->now->links[0].master != follow->links[0].master)
+    const bool followed = axis_follows(axis);
+    if (!followed || c->now->links[0].master != follow->links[0].master)
         cm1e_phasing_forget(axis);
     if (c->now)
         cm1e_coupling_unlist_links(c->now);
@@ -460,7 +461,8 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     c->end_of_profile = c->stopping = c->due = false;
     begin_catch_up(axis, from, asked, c->now->to_position, false);
     cm1e_axis_set_source(axis, &cm1e_source_coupling);
-    cm1e_axis_guard_renew(axis);
+    if (!followed)
+        cm1e_axis_guard_renew(axis); /* else its numbers are of the present limits, and begin_catch_up() ended its course */
     cm1e_axis_set_synchronizing(axis, !follow->in_step);
     cm1e_axis_set_reached(axis, false);
     cm1e_axis_set_paused(axis, false);
