@@ -33,8 +33,8 @@ typedef struct cm1e_interface_owner {
     int64_t since_s;    /**< seconds since 1970; 0: not known */
 } cm1e_interface_owner_t;
 
-/** Takes the lock of an existing interface, whatever way its name states: "eth1" and "eth1,xdp" have one lock. CM1E_ERROR_INTERFACE_IN_USE: somebody has it, this process included; `diag`
- *  says who. @rt init */
+/** Takes the lock of an existing interface, whatever way its name states: "eth1" and "eth1,xdp" have one lock.
+ *  CM1E_ERROR_INTERFACE_IN_USE: somebody has it, this process included; `diag` says who. @rt init */
 cm1e_error_t cm1e_interface_lock_take(cm1e_interface_lock_t *lock, const char *interface_name, cm1e_diag_t *diag);
 /** Releases it. Releasing a lock that is not taken does nothing. @rt init */
 void cm1e_interface_lock_release(cm1e_interface_lock_t *lock);

@@ -59,7 +59,8 @@ bool cm1e_frame_change_working_counter(uint8_t *frame, size_t length, unsigned n
 /** Starts to write every frame (after the tap) to a pcap file (nanosecond pcap, Ethernet). */
 cm1e_error_t cm1e_nic_pcap(cm1e_nic_t *nic, const char *path, cm1e_diag_t *diag);
 
-/** An interface of this name (with or without a way) exists, and has no link: cable out, or the other end has no power. @rt block */
+/** An interface of this name (with or without a way) exists, and has no link: cable out, or the other end has no power.
+ *  @rt block */
 bool cm1e_nic_lacks_link(const char *interface_name);
 
 #endif
