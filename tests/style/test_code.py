@@ -224,8 +224,7 @@ def check_names():
     folders = {}
     for folder in FOLDERS:
         for parent, _, names in os.walk(os.path.join(SOURCE, folder)):
-            seeds = os.path.relpath(parent, SOURCE).startswith("tests/fuzz/seeds") # named by what they hold
-            if "__pycache__" not in parent and not seeds:
+            if "__pycache__" not in parent:
                 for name in set(names) - ANY_ROOM.keys():
                     folders.setdefault(name, []).append(os.path.relpath(parent, SOURCE))
     for name, rooms in sorted(folders.items()):
