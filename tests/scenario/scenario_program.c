@@ -10,6 +10,7 @@ enum { MEND_MS = 40, DOWN_MS = 40000, REST_MS = 40, RESET_MS = 10500, RESETS = 3
        TEST_MS = 8000, OFF_MS = 3000 };
 #define TEST_COUNTS 2000.0
 #define NEAR_STOP 200000.0
+#define STOP_COUNTS 249000.0 /* of 250,000 */
 #define TURNING 100.0 /* counts/s */
 #define CAM_MASTER_COUNTS 100000.0
 #define CAM_SLAVE_COUNTS 4000.0
@@ -263,7 +264,8 @@ static bool is_enabled(run_t *run, machine_axis_t *axis)
     return axis->info.state == CM1E_AXIS_STANDSTILL && axis->power.Status;
 }
 
-/** Inwards, as the configuration and the axis's own coordinates say. */
+/** Inwards, as the configuration and the axis's own coordinates say; 0: a homing in steps or MC_SetPosition has put it
+ *  outside its software limits, and the way back leads into a hard stop. */
 static double test_distance(const machine_axis_t *axis)
 {
     const double position = axis->info.actual_position * axis->spec->counts_per_unit;
@@ -271,7 +273,9 @@ static double test_distance(const machine_axis_t *axis)
     const bool limited = axis->spec->limit_positive != 0 || axis->spec->limit_negative != 0;
     const double shaft = axis->probe.position_counts * (axis->spec->invert != 0 ? -1 : 1);
     const bool by_limits = limited && fabs(shaft) < NEAR_STOP;
-    return (by_limits ? position > middle : shaft > 0) ? -TEST_COUNTS : TEST_COUNTS;
+    const bool outside = limited && (position > axis->spec->limit_positive || position < axis->spec->limit_negative);
+    const double by = (by_limits || outside ? position > middle : shaft > 0) ? -TEST_COUNTS : TEST_COUNTS;
+    return outside && axis->spec->stops != 0 && fabs(shaft + by) > STOP_COUNTS ? 0 : by;
 }
 
 static bool is_moved(run_t *run, machine_axis_t *axis)
@@ -283,6 +287,8 @@ static bool is_moved(run_t *run, machine_axis_t *axis)
         axis->test.Distance = axis->test_by / unit;
         axis->test.Velocity = axis->spec->velocity / unit * 0.3;
     }
+    if (axis->test_by == 0)
+        return true;
     axis->test.Execute = TRUE;
     MC_MoveRelative(&axis->test);
     /* In CSV friction lets the motor hunt round its target: judge_end() says how far from it is right. */
