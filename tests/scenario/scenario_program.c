@@ -56,7 +56,7 @@ static void set_path(const run_t *run, instance_t *block, const step_t *step)
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
         const block_member_t *member = block_member(block->type, ends[i].name);
         const double values[2] = {ends[i].x / first, ends[i].y / second};
-        if (member && member->size >= sizeof values && member->type != BLOCK_LREAL)
+        if (member && member->size >= sizeof values) /* an array, not one number */
             memcpy(block->memory + member->offset, values, sizeof values);
     }
 }
