@@ -348,6 +348,30 @@ static void test_reset_ends_the_transfer_and_starts_the_counters_anew(void)
     TEST_ASSERT_EQUAL_HEX8(1, slave.seen_counter);
 }
 
+/* A device that was off counts its answers from 1 again, as before. If the frame with its first answer is lost, the
+ * repeated answer is none of those from before the reset. */
+static void test_reset_forgets_the_number_of_the_last_answer(void)
+{
+    for (unsigned n = 1; n <= 6; n++) {
+        setUp();
+        cm1e_sdo_t sdo = reading(4);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+        TEST_ASSERT_EQUAL_HEX8(1, slave.counter);
+        cm1e_coe_reset(&client, CM1E_ERROR_BUS_LOST);
+        slave = (slave_t){.latency = 2, .size = 4};
+        fill(slave.store, 4, 99);
+        loss = two_losses;
+        lost_1 = n;
+        way_1 = WAY_BACK;
+        lost_2 = 0;
+        sdo = reading(4);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+        TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, 4));
+    }
+}
+
 static void test_mailbox_that_is_too_small_is_unsupported(void)
 {
     static const uint16_t sizes[] = {0, 6, 15, 1487};
@@ -657,6 +681,7 @@ int main(void)
     RUN_TEST(test_value_of_unknown_size_fills_the_room_there_is);
     RUN_TEST(test_answer_after_the_timeout_is_not_taken_for_the_next_one);
     RUN_TEST(test_reset_ends_the_transfer_and_starts_the_counters_anew);
+    RUN_TEST(test_reset_forgets_the_number_of_the_last_answer);
     RUN_TEST(test_slave_that_does_not_count_its_answers_is_understood);
     RUN_TEST(test_mailbox_that_is_too_small_is_unsupported);
     RUN_TEST(test_lies_of_a_slave_are_refused_with_the_right_error);
