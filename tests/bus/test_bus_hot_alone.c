@@ -1,11 +1,12 @@
 /* Networks on which a single device answers, or whose first device is the optional one: the count of the devices is 1
- * then, like the working counter of any question to one slave. */
+ * then, like the working counter of any question to one slave. And an optional motor between others: a stranger that it
+ * moves to another place, and outputs that it does not take. */
 #include "bus_support.h"
 #include "cm1e/hot_connect.h"
 #include "sim/esc_chip.h"
 #include "sim/segment.h"
 
-enum { ID = 7, SETTLE = 200, AWAY = 1500, COMES = 4000 };
+enum { ID = 7, SETTLE = 200, AWAY = 1500, COMES = 4000, AT_ONCE = 1000 };
 
 static void make_optional(cm1e_axis_config_t *axis, uint16_t id)
 {
@@ -97,6 +98,58 @@ START_TEST(the_second_of_two_tools_goes_on_when_the_first_one_leaves)
 }
 END_TEST
 
+/** The tool comes at the place of a stranger, which then answers one place farther. Every change of the number of slaves
+ * makes the search look at all of them again, not only when it is time to look at known strangers again (2 s). */
+START_TEST(a_tool_that_comes_at_the_place_of_a_stranger_is_found_at_once)
+{
+    cm1e_bus_config_t wire = *sim_config(3);
+    cm1e_stranger_t stranger[CM1E_STRANGERS];
+    make_optional(&wire.axes[1], ID);
+    make_optional(&wire.axes[2], ID + 1);
+    config = (cm1e_bus_config_t){0}; /* the other one has its memory now */
+    make_optional(&sim_config(2)->axes[1], ID);
+    cm1e_bus_t *bus = open_bus_on(&wire);
+    cm1e_sim_segment_detach(segment_of(bus), 2, false);
+    cm1e_sim_segment_detach(segment_of(bus), 3, false);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cycles(bus, SETTLE);
+    cm1e_sim_segment_attach(segment_of(bus), 3);
+    for (int n = 0; n < AWAY && cm1e_bus_strangers(bus, stranger, CM1E_STRANGERS) == 0; n++)
+        ck_assert_int_eq(cycle(bus), CM1E_OK);
+    ck_assert_uint_eq(cm1e_bus_strangers(bus, stranger, CM1E_STRANGERS), 1);
+    ck_assert_uint_eq(stranger[0].place, 2);
+    cm1e_sim_segment_attach(segment_of(bus), 2);
+    for (int n = 0; n < AT_ONCE && cm1e_bus_presence(bus, 2) != CM1E_PRESENCE_THERE; n++)
+        ck_assert_int_eq(cycle(bus), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_presence(bus, 2), CM1E_PRESENCE_THERE);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
+/** It says that it is in Operational, and takes no outputs: the others go on for as many cycles as three questions and
+ * an answer take, and not longer. */
+START_TEST(an_operational_tool_that_takes_no_outputs_is_an_error_after_seven_cycles)
+{
+    enum { FMMU_BYTES = 16, TYPE = 11, ACTIVATE = 12, WRITES = 2 };
+    make_optional(&sim_config(2)->axes[1], ID);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, SETTLE);
+    cm1e_sim_slave_t *tool = cm1e_sim_segment_slave(segment_of(bus), 2);
+    uint8_t *fmmu = tool->memory + ESC_FMMU;
+    while (!(fmmu[ACTIVATE] && fmmu[TYPE] == WRITES))
+        fmmu += FMMU_BYTES;
+    fmmu[ACTIVATE] = 0;
+    cm1e_sim_esc_fmmu_decode(tool);
+    unsigned good = 0;
+    while (good < 60 && cycle(bus) == CM1E_OK)
+        good++;
+    ck_assert_uint_eq(cm1e_sim_slave_al_state(tool), CM1E_AL_OP);
+    ck_assert_uint_eq(good, 1 + 7); /* the frame of the first cycle was on its way already */
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_alone");
@@ -105,6 +158,8 @@ int main(void)
     tcase_add_test(tests, a_motor_alone_keeps_its_address_while_the_tool_is_away);
     tcase_add_test(tests, a_tool_alone_comes_back);
     tcase_add_test(tests, the_second_of_two_tools_goes_on_when_the_first_one_leaves);
+    tcase_add_test(tests, a_tool_that_comes_at_the_place_of_a_stranger_is_found_at_once);
+    tcase_add_test(tests, an_operational_tool_that_takes_no_outputs_is_an_error_after_seven_cycles);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
