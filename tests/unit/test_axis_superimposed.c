@@ -388,6 +388,27 @@ static void test_a_base_has_to_leave_room_for_what_is_on_top(void)
     }
 }
 
+/* A motion that replaces a faster one passes its own end and comes back. The base has to leave room for that way too. */
+static void test_a_base_has_to_leave_room_for_what_is_on_top_and_passes_its_end(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        begin_with(100.0, 100.0, 25.0);
+        bench_move_to(10.0 * sign, 2.0);
+        watch_cycles(100);
+        superimpose(10.0 * sign, 10.0);
+        watch_cycles(500);
+        superimpose(0.1 * sign, 10.0); /* half of the deceleration takes more than 1 u */
+        const cm1e_axis_command_t bad = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 24.0 * sign, .velocity = 5.0,
+                                         .buffer_mode = mcBuffered};
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_try_command(&bad));
+        const cm1e_command_id_t id = post(CM1E_COMMAND_MOVE_ABSOLUTE, 23.0 * sign, 5.0, mcBuffered);
+        wait_for(id, CM1E_COMMAND_BUFFERED);
+        watch_cycles(20000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+        TEST_ASSERT_TRUE(watch.highest <= 25.0 && watch.lowest >= -25.0);
+    }
+}
+
 static void test_continuous_update_and_override(void)
 {
     bench_move_velocity(5.0);
@@ -524,6 +545,7 @@ int main(void)
     RUN_TEST(test_refusals);
     RUN_TEST(test_a_limit_has_to_leave_room_for_both);
     RUN_TEST(test_a_base_has_to_leave_room_for_what_is_on_top);
+    RUN_TEST(test_a_base_has_to_leave_room_for_what_is_on_top_and_passes_its_end);
     RUN_TEST(test_continuous_update_and_override);
     RUN_TEST(test_an_override_that_leaves_nothing_refuses_it_in_standstill);
     RUN_TEST(test_dynamics_of_next_to_nothing_are_refused_and_change_nothing);
