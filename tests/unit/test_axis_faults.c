@@ -1,5 +1,6 @@
 /* A motor that does not follow, and a bus that goes: ErrorStop, the ramp, and how long the torque stays. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "../support/axis_bench.h"
 
@@ -185,6 +186,59 @@ static void test_bus_trouble_while_moving_by_velocity_ramps_down_blindly(void)
     }
 }
 
+static void by_velocity_within(double limit)
+{
+    fake_bus_init(&bus, CM1E_MAPPING_CSV, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.config.axes[0].software_limit_negative = -limit;
+    bus.config.axes[0].software_limit_positive = limit;
+    bus.mode = bus.sdo_mode = CM1E_MODE_CSV;
+    bus.world = turn;
+    csv_shaft = csv_worst_change = csv_velocity_before = 0;
+    bench_create();
+    bench_enable();
+}
+
+/** The bus comes back at the end of the ramp of ErrorStop. A motor that is more than 50 counts farther away than one
+ *  that follows the ramp was offline, and brakes from where it is. A smaller lag is that of its control. */
+static void test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is(void)
+{
+    static const int lags[] = {-190, -60, -40, 40, 60, 190};
+    for (size_t n = 0; n < sizeof lags / sizeof lags[0]; n++) {
+        by_velocity_within(0.0);
+        bench_move_velocity(10.0);
+        bench_cycles(500);
+        received = health = CM1E_ERROR_BUS_LOST;
+        for (int i = 0; i < 1000 && bench_info().set_velocity > 0.35; i++)
+            bench_cycles(1);
+        const double way = bench_info().set_velocity * 50000.0 * 1e-3; /* counts, of a cycle */
+        TEST_ASSERT_TRUE(way > 1.0);
+        const double lag = lags[n] + copysign(2.0 * way, lags[n]);
+        csv_shaft = bench_info().set_position * 50000.0 - lag - bus.target_velocity_raw * 1e-3;
+        received = health = CM1E_OK;
+        bench_cycles(1);
+        const double left = fabs(bench_info().set_position * 50000.0 - bus.position);
+        if (abs(lags[n]) > 50)
+            TEST_ASSERT_TRUE(left <= way + 1.0);
+        else
+            TEST_ASSERT_TRUE(left >= fabs(lag) - 2.0 * way);
+    }
+}
+
+/** In CSV the motor goes on while the cycle pauses, here beyond its software limit. */
+static void test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit(void)
+{
+    static const double velocities[] = {-10.0, -0.5, 0.5, 10.0};
+    for (size_t n = 0; n < sizeof velocities / sizeof velocities[0]; n++) {
+        by_velocity_within(25.0);
+        bench_move_to(copysign(25.0, velocities[n]), fabs(velocities[n]));
+        bench_cycles(1000);
+        TEST_ASSERT_EQUAL_DOUBLE(velocities[n], bench_info().set_velocity);
+        cm1e_axis_after_pause(axis, 60000000000);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_info().error);
+        bench_told(velocities[n] > 0.0 ? " 25" : "-25");
+    }
+}
+
 static void test_bus_trouble_while_disabled_is_no_error_until_enable(void)
 {
     health = received = CM1E_ERROR_BUS_LOST;
@@ -215,6 +269,8 @@ int main(void)
     RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
+    RUN_TEST(test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is);
+    RUN_TEST(test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
     RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
     return UNITY_END();
