@@ -103,6 +103,25 @@ START_TEST(test_guest_ends_what_it_began_whatever_the_deceleration)
 }
 END_TEST
 
+/* While it stops, MC_Halt is refused, and the stop that nobody holds goes on all the same. */
+START_TEST(test_guest_ends_a_stop_that_is_under_way)
+{
+    start(1);
+    enable_by_guest(0);
+    cm1e_command_id_t id = jog(0, 1.0);
+    const cm1e_axis_command_t stop = {.kind = CM1E_COMMAND_STOP, .deceleration = 5.0};
+    ck_assert_int_eq(cm1e_axis_start(axis, &stop, &id), CM1E_OK);
+    cm1e_axis_hold_stop(axis, id, false);
+    cycles(50);
+    ck_assert_int_eq(info_of(0).state, CM1E_AXIS_STOPPING);
+    cm1e_axis_guest_end(axis, 5.0, &id);
+    ck_assert(cm1e_axis_guest_runs(axis, id));
+    cycles(1000);
+    ck_assert_msg(info_of(0).state == CM1E_AXIS_STANDSTILL, "%s", text_of(0));
+    close_segment();
+}
+END_TEST
+
 START_TEST(test_master_of_another_axis_is_not_a_guests)
 {
     start(2);
@@ -160,6 +179,7 @@ int main(void)
     tcase_add_test(tests, test_power_block_takes_the_axis_from_a_guest);
     tcase_add_test(tests, test_power_block_that_does_not_enable_takes_the_power_from_a_guest);
     tcase_add_test(tests, test_guest_ends_what_it_began_whatever_the_deceleration);
+    tcase_add_test(tests, test_guest_ends_a_stop_that_is_under_way);
     tcase_add_test(tests, test_master_of_another_axis_is_not_a_guests);
     tcase_add_test(tests, test_axis_of_a_group_is_not_a_guests);
     tcase_add_test(tests, test_reset_does_not_bring_back_the_power_of_a_guest_that_let_go);
