@@ -169,23 +169,7 @@ static void turn(cm1e_bus_t *motor)
     motor->position = (int32_t)lround(csv_shaft);
 }
 
-static void test_bus_trouble_while_moving_by_velocity_ramps_down_blindly(void)
-{
-    for (int back = 0; back < 2; back++) {
-        fake_bus_init(&bus, CM1E_MAPPING_CSV, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
-        bus.mode = bus.sdo_mode = CM1E_MODE_CSV;
-        bus.world = turn;
-        csv_shaft = csv_worst_change = csv_velocity_before = 0;
-        bench_create();
-        bench_enable();
-        const cm1e_command_id_t id = bench_move_velocity(10.0);
-        bench_cycles(500);
-        TEST_ASSERT_INT32_WITHIN(1000, 500000, bus.target_velocity_raw);
-        lose_the_bus(CM1E_ERROR_BUS_LOST, back, id);
-        TEST_ASSERT_LESS_OR_EQUAL_INT32(5200, csv_worst_change); /* 5,000,000 counts/s2, and the position loop */
-    }
-}
-
+/* In CSV; 0: without software limits. */
 static void by_velocity_within(double limit)
 {
     fake_bus_init(&bus, CM1E_MAPPING_CSV, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
@@ -196,6 +180,18 @@ static void by_velocity_within(double limit)
     csv_shaft = csv_worst_change = csv_velocity_before = 0;
     bench_create();
     bench_enable();
+}
+
+static void test_bus_trouble_while_moving_by_velocity_ramps_down_blindly(void)
+{
+    for (int back = 0; back < 2; back++) {
+        by_velocity_within(0.0);
+        const cm1e_command_id_t id = bench_move_velocity(10.0);
+        bench_cycles(500);
+        TEST_ASSERT_INT32_WITHIN(1000, 500000, bus.target_velocity_raw);
+        lose_the_bus(CM1E_ERROR_BUS_LOST, back, id);
+        TEST_ASSERT_LESS_OR_EQUAL_INT32(5200, csv_worst_change); /* 5,000,000 counts/s2, and the position loop */
+    }
 }
 
 /** The bus comes back at the end of the ramp of ErrorStop. A motor that is more than 50 counts farther away than one
