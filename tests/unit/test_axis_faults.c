@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "../support/axis_bench.h"
+#include "axis/axis_pause.h"
 
 void setUp(void) { bench_start(); }
 void tearDown(void) { bench_end(); }
@@ -235,6 +236,31 @@ static void test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit(void)
     }
 }
 
+static void turn_slowly(cm1e_bus_t *motor) { motor->velocity_raw = 10000; } /* 0.2 u/s */
+
+/** After a pause in an acceleration, in CSP. The motor is two cycles behind the set-point: of a set-point with 2.025 u/s
+ *  and 90 u/s2 it had 1.845 u/s. As hard as it has braked since then, it would be pulled back without an overshoot from
+ *  (1.845 - 0.2) / 4 ms * (8 ms)^2 / 2, which is 658 counts. From farther away the set-point goes after it. */
+static void test_motor_ahead_after_a_pause_is_judged_by_the_speed_that_it_had(void)
+{
+    static const int ahead[] = {600, 700};
+    for (int n = 0; n < 2; n++) {
+        bench_start();
+        bench_enable();
+        bench_move_velocity(10.0);
+        while (bench_info().set_velocity < 2.0)
+            bench_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.025, axis->setpoint.velocity);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 90.0, axis->setpoint.acceleration);
+        cm1e_axis_after_pause(axis, 4000000);
+        bus.blocked = true;
+        bus.position = (int32_t)lround(bench_info().set_position * 50000.0) + ahead[n];
+        bus.world = turn_slowly;
+        bench_cycles(1);
+        TEST_ASSERT_EQUAL_INT(ahead[n] > 658, bench_info().set_velocity > 0.2);
+    }
+}
+
 static void test_bus_trouble_while_disabled_is_no_error_until_enable(void)
 {
     health = received = CM1E_ERROR_BUS_LOST;
@@ -267,6 +293,7 @@ int main(void)
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
     RUN_TEST(test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is);
     RUN_TEST(test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit);
+    RUN_TEST(test_motor_ahead_after_a_pause_is_judged_by_the_speed_that_it_had);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
     RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
     return UNITY_END();
