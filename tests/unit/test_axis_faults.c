@@ -2,8 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "axis/axis_pause.h" /* first, as the bench has a global `axis` */
+
 #include "../support/axis_bench.h"
-#include "axis/axis_pause.h"
 
 void setUp(void) { bench_start(); }
 void tearDown(void) { bench_end(); }
