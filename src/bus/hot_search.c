@@ -311,6 +311,12 @@ static void next_place(cm1e_bus_t *bus, int64_t now_ns)
         enter(search, SEARCH_WALK, now_ns);
         return;
     }
+    if (search->crowded) { /* each of them is met without an address in the next walk */
+        search->crowded = false;
+        search->orphan = 0;
+        enter(search, SEARCH_RELEASE, now_ns);
+        return;
+    }
     if (search->orphan) {
         take_orphan(bus, now_ns);
         return;
@@ -344,7 +350,7 @@ static void take_count(cm1e_bus_t *bus, int working_counter, int64_t now_ns)
         search->strangers_ns = now_ns + STRANGER_PACE_NS;
     search->seen_strangers = 0;
     search->place = search->orphan = 0;
-    search->ends = false;
+    search->ends = search->crowded = false;
     for (uint32_t i = 0; i < bus->slave_count; i++)
         bus->slaves[i].hot.seen = false;
     next_place(bus, now_ns);
@@ -396,7 +402,10 @@ static void take_device(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
     search->al = (cm1e_al_machine_t){.station = CM1E_SEARCH_STATION};
     search->scout.found = (cm1e_scouted_t){0};
     if (search->station == CM1E_SEARCH_STATION || search->only_looks) {
-        search->orphan = search->station == CM1E_SEARCH_STATION ? search->place : search->orphan;
+        if (search->station == CM1E_SEARCH_STATION) {
+            search->crowded |= search->orphan != 0;
+            search->orphan = search->place;
+        }
         next_place(bus, now_ns);
     } else {
         enter(search, SEARCH_ADDRESS, now_ns);
@@ -559,7 +568,8 @@ void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
     }
     if (d->working_counter == APRW_WORKING_COUNTER && search->step == SEARCH_ADDRESS)
         take_address(search, d, now_ns);
-    if (d->working_counter != 1)
+    const bool of_several = search->step == SEARCH_RELEASE && d->working_counter > 1;
+    if (d->working_counter != 1 && !of_several)
         return; /* repeated until the deadline */
     switch (search->step) {
     case SEARCH_WALK:

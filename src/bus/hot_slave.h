@@ -70,6 +70,7 @@ typedef struct cm1e_search {
     uint16_t place, alias, station; /**< of the device that is looked at */
     uint16_t returned;       /**< station address that is given back */
     uint16_t orphan;         /**< place of a device with the address of the search; 0: none */
+    bool crowded;            /**< there are several: one could not be reached for a while, and kept it */
     bool entered, turn;
     bool only_looks;         /**< in this walk no device gets the address of the search */
     uint8_t doubles;         /**< walks in a row in which a slave was met twice */

@@ -3,6 +3,7 @@
  * moves to another place, and outputs that it does not take. */
 #include "bus_support.h"
 #include "cm1e/hot_connect.h"
+#include "effort.h"
 #include "sim/esc_chip.h"
 #include "sim/segment.h"
 
@@ -150,6 +151,29 @@ START_TEST(an_operational_tool_that_takes_no_outputs_is_an_error_after_seven_cyc
 }
 END_TEST
 
+/** The second of two tools is being identified when the first one loses its power, and with it the way to the second one,
+ *  which keeps the address of the search. Then both are there again. */
+START_TEST(two_tools_come_whenever_the_first_one_loses_its_power)
+{
+    const int stride = sweep_stride(3, 13);
+    for (int moment = sweep_first(0, stride); moment < 500; moment += stride) {
+        sim_config(3);
+        make_optional(&config.axes[1], ID);
+        make_optional(&config.axes[2], ID + 1);
+        cm1e_bus_t *bus = start_bus();
+        cycles(bus, SETTLE);
+        cm1e_sim_segment_detach(segment_of(bus), 3, false);
+        silent_cycles(bus, SETTLE);
+        cm1e_sim_segment_attach(segment_of(bus), 3);
+        silent_cycles(bus, moment);
+        simulate(bus, "power-cycle 2 150");
+        silent_cycles(bus, SETTLE);
+        ck_assert_msg(comes(bus, 2) && comes(bus, 3), "moment %d", moment);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_alone");
@@ -160,6 +184,7 @@ int main(void)
     tcase_add_test(tests, the_second_of_two_tools_goes_on_when_the_first_one_leaves);
     tcase_add_test(tests, a_tool_that_comes_at_the_place_of_a_stranger_is_found_at_once);
     tcase_add_test(tests, an_operational_tool_that_takes_no_outputs_is_an_error_after_seven_cycles);
+    tcase_add_test(tests, two_tools_come_whenever_the_first_one_loses_its_power);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

@@ -272,7 +272,7 @@ void fault_mend(run_t *run)
     memset(watches, 0, sizeof watches);
     for (int i = 0; i < run->scenario->fault_count; i++) {
         const fault_t *fault = &run->scenario->faults[i];
-        if (fault->at < run->cycle && end_of(fault) >= run->cycle && rows[(int)fault->kind].end)
+        if (fault->at <= run->cycle && end_of(fault) >= run->cycle && rows[(int)fault->kind].end)
             end_fault(run, fault);
     }
     for (int i = 0; i < run->networks; i++) {
