@@ -56,6 +56,16 @@ static void take_in(cm1e_bus_t *bus, int working_counter)
     }
 }
 
+/** A slave that is always there, and whose inputs show that it took no part: whatever else counts does not make up for
+ *  it. Optional ones have been taken out before. */
+static bool misses_one(const cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        if (bus->slaves[i].hot.counted && bus->slaves[i].silent_cycles > 0)
+            return true;
+    return false;
+}
+
 /** Slaves that are not counted may take part or not: on their way to Operational first the inputs count, then the
  *  outputs. A slave that is counted may have stopped to take outputs, or may have left if it has no inputs: nothing
  *  shows which one it is, so the optional ones are asked for their state at once. Until each of them can have
@@ -74,25 +84,35 @@ static bool explains(cm1e_bus_t *bus, int working_counter)
         least -= optional ? takes(slave) : 0;
         asked += optional && takes(slave);
     }
-    if (more % 2 != 0 || more > most || more < least)
+    bus->search.in_doubt = false;
+    if (misses_one(bus) || more % 2 != 0 || more > most || more < least)
         return false;
     bus->search.doubt = more < 0 ? bus->search.doubt + 1 : 0;
-    return bus->search.doubt <= ASKED_TIMES * asked + ON_THE_WAY;
+    if (bus->search.doubt > ASKED_TIMES * asked + ON_THE_WAY)
+        return false;
+    bus->search.in_doubt = bus->search.doubt > 0;
+    return true;
 }
 
-static bool has_lost_one(const cm1e_bus_t *bus)
+/** Whether one of those that are counted takes no part, although the working counter is the expected one: another one that
+ *  comes back makes up for it. */
+static bool hides_one(const cm1e_bus_t *bus)
 {
-    for (uint32_t i = 0; i < bus->slave_count; i++)
-        if (bus->slaves[i].hot.optional && bus->slaves[i].hot.counted && bus->slaves[i].watch.lost)
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->hot.counted &&
+            ((slave->hot.optional && slave->watch.lost) || (gives(slave) && cm1e_bus_is_silent(bus, slave))))
             return true;
+    }
     return false;
 }
 
 bool cm1e_hot_judge(cm1e_bus_t *bus, int working_counter)
 {
     const bool same = working_counter == bus->expected_working_counter;
-    if (!bus->search.used || (same && !has_lost_one(bus))) {
+    if (!bus->search.used || (same && !hides_one(bus))) {
         bus->search.doubt = 0;
+        bus->search.in_doubt = false;
         return same;
     }
     take_out(bus);

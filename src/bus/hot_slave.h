@@ -78,6 +78,7 @@ typedef struct cm1e_search {
     bool again;              /**< strangers are identified again in this walk */
     int64_t strangers_ns;    /**< when that is due next */
     unsigned doubt;          /**< cycles in a row in which an optional slave may have left (hot_count.c) */
+    bool in_doubt;           /**< this cycle is one of them, and the optional slaves are asked at once */
     uint32_t doubted;        /**< index of the slave that was asked last because of that */
     cm1e_scout_t scout;
     cm1e_al_machine_t al;

@@ -33,7 +33,7 @@ static uint32_t next_in_doubt(cm1e_bus_t *bus)
 
 static void ask_state(cm1e_bus_t *bus)
 {
-    if (bus->search.doubt > 0)
+    if (bus->search.in_doubt)
         bus->supervised.place = next_in_doubt(bus);
     else
         bus->supervised.place = next_of(bus, bus->supervised.place);
@@ -62,7 +62,7 @@ static bool ask_what_comes_first(cm1e_bus_t *bus, int64_t now_ns)
     bus->search.sent = false; /* the question before may have been given up */
     if (cm1e_ring_watch_ask(bus, d, now_ns) || cm1e_dc_next_look(bus, d))
         return true;
-    bus->search.sent = bus->phase == BUS_OPERATING && bus->search.doubt == 0 && cm1e_search_next(bus, d, now_ns);
+    bus->search.sent = bus->phase == BUS_OPERATING && !bus->search.in_doubt && cm1e_search_next(bus, d, now_ns);
     return bus->search.sent;
 }
 

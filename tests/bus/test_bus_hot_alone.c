@@ -174,6 +174,43 @@ START_TEST(two_tools_come_whenever_the_first_one_loses_its_power)
 }
 END_TEST
 
+static int counter_change;
+
+static cm1e_tap_verdict_t change_counter(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    if (frame->direction == CM1E_TAP_RECEIVED && counter_change != 0)
+        cm1e_frame_change_working_counter(frame->bytes, frame->length, 0, counter_change);
+    return CM1E_TAP_PASS;
+}
+
+/** A motor that is always there has lost its power, and two tools behind it answer again. Whatever the working counter is
+ *  then, no cycle is a good one, and its inputs are never taken from the frame. Afterwards it is found all the same. */
+START_TEST(no_working_counter_makes_up_for_a_motor_that_is_always_there)
+{
+    sim_config(3);
+    make_optional(&config.axes[1], ID);
+    make_optional(&config.axes[2], ID + 1);
+    config.axes[0].recover = CM1E_RECOVER_AUTO;
+    cm1e_bus_t *bus = start_bus();
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), change_counter, NULL);
+    cycles(bus, SETTLE);
+    uint8_t before[2];
+    memcpy(before, cm1e_bus_inputs(bus), sizeof before);
+    cm1e_sim_segment_detach(segment_of(bus), 1, false);
+    cycle(bus);
+    for (int n = 0; n < 200; n++) {
+        counter_change = n % 19 - 9;
+        ck_assert_int_ne(cycle(bus), CM1E_OK);
+        ck_assert_mem_eq(cm1e_bus_inputs(bus), before, sizeof before);
+    }
+    counter_change = 0;
+    cm1e_sim_segment_attach(segment_of(bus), 1);
+    ck_assert(comes(bus, 1) && comes(bus, 2) && comes(bus, 3));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_alone");
@@ -184,6 +221,7 @@ int main(void)
     tcase_add_test(tests, the_second_of_two_tools_goes_on_when_the_first_one_leaves);
     tcase_add_test(tests, a_tool_that_comes_at_the_place_of_a_stranger_is_found_at_once);
     tcase_add_test(tests, an_operational_tool_that_takes_no_outputs_is_an_error_after_seven_cycles);
+    tcase_add_test(tests, no_working_counter_makes_up_for_a_motor_that_is_always_there);
     tcase_add_test(tests, two_tools_come_whenever_the_first_one_loses_its_power);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
