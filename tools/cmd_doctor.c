@@ -99,7 +99,7 @@ static bool is_named(const doctor_options_t *options)
 static void look(doctor_t *doctor, const doctor_options_t *options, const cm1e_bus_config_t *config)
 {
     const bool named = is_named(options);
-    char own_name[sizeof config->interface_name];
+    static char own_name[sizeof config->interface_name]; /* findings point to it */
     const int64_t cycle_time_ns = config->cycle_time_ns ? config->cycle_time_ns : DEFAULT_CYCLE_NS;
     cm1e_interface_own_name(own_name, sizeof own_name, config->interface_name);
     doctor_look_at_machine(doctor);
