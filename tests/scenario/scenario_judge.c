@@ -245,7 +245,8 @@ static void judge_set_point(run_t *run, machine_axis_t *axis)
     const double most = fmax(spec->acceleration, spec->deceleration) * run->scenario->cycle_us * 1e-6;
     const bool by_drive = axis->info.state == CM1E_AXIS_HOMING && axis->seen.by_drive;
     /* Nobody can brake a motor that has no torque, that its bridge does not reach, or that a hard stop holds. */
-    const bool lied_to = axis->seen.caught < cycles_of(run, QUIET_MS); /* the ramp begins where the motor is */
+    /* In CSV, after an untrue position, the ramp begins where the motor is. */
+    const bool lied_to = by_velocity(spec) && axis->seen.caught < cycles_of(run, QUIET_MS);
     const bool gone = is_motor(axis) && axis->info.state == CM1E_AXIS_ERROR_STOP && velocity == 0 &&
                       (!axis->probe.torque_on || axis->channel > 0 || at_stop(axis));
     axis->seen.set_velocity = velocity;
