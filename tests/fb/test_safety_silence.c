@@ -55,7 +55,7 @@ static const variant_t variants[] = {
 };
 enum { SILENCES = sizeof silences / sizeof silences[0], VARIANTS = sizeof variants / sizeof variants[0] };
 enum { MASTER = 0, SLAVE, AXES, ENABLED = 260, LAST_PHASE = 500, ADDED_AT = ENABLED + 80 };
-enum { STRIDE = 499, EVERYDAY_STRIDE = 3253, SAMPLED_STRIDE = 4999 };
+enum { STRIDE = 499, SAMPLED_STRIDE = 4999 };
 enum { TABLE_POINTS = 13, TABLE_STEP_MS = 50 };
 
 static const double unit = 50000;      /* one revolution */
@@ -523,7 +523,7 @@ static bool is_possible(void)
 START_TEST(test_no_frame_that_is_heard_again_makes_a_motor_leap)
 {
     int moment = 0;
-    const int stride = sweep_stride_everyday(STRIDE, EVERYDAY_STRIDE, SAMPLED_STRIDE);
+    const int stride = sweep_stride(STRIDE, SAMPLED_STRIDE);
     motion = (motion_t)_i;
     memset(table, 0, sizeof table);
     make_points();
