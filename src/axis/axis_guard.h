@@ -6,6 +6,7 @@
 #define CM1E_AXIS_AXIS_GUARD_H
 
 #include "axis/axis_course.h"
+#include "core/extreme.h"
 
 guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk);
 /** Whether the next set-point can be reached with acceleration and jerk within their limits at every moment of the
@@ -30,7 +31,7 @@ static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *
         return false;
     const double a0 = axis->setpoint.acceleration, beside = fabs(2.0 * (v - v0) - (a0 + a) * axis->cycle_s);
     if (kept_jerk && !((a - a0) * (a - a0) + beside * g->twice_jerk <= g->jerk * g->jerk &&
-                       change + fabs(step) * g->per_step <= most &&
+                       change + fabs(step) * g->per_step <= smaller(g->up, g->down) &&
                        (a * v <= 0.0 || speed + a * a * g->ease <= g->velocity)))
         return false;
     if (!axis->limits.software_limits)

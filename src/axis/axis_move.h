@@ -55,11 +55,23 @@ typedef struct table_points {
     cm1e_table_point_t points[CM1E_TABLE_POINTS_MAX];
 } table_points_t;
 
+/** What was wrong with the last refused table (axis_table_text.c). */
+typedef enum table_fault {
+    TABLE_MISSING, TABLE_COUNT, TABLE_TIME_SCALE, TABLE_SCALE, TABLE_OFFSET, TABLE_TIME, TABLE_VALUE, TABLE_ONLY_NOW,
+    TABLE_JUMP, TABLE_BEYOND_NUMBERS,
+} table_fault_t;
+typedef struct table_refusal {
+    table_fault_t fault;
+    int point;              /**< 1: the first */
+    double given, right;    /**< of TABLE_TIME: s after the point before; of TABLE_JUMP: both */
+} table_refusal_t;
+
 /** Memory for table profiles, allocated with the axis. */
 typedef struct tables {
     cm1e_table_profile_t running;
     cm1e_command_id_t waiting_id;
     table_points_t waiting;
+    table_refusal_t refused;
 } tables_t;
 
 /** Factors of MC_SetOverride. The factor of the acceleration applies to the deceleration too. Written by axis.c,

@@ -11,6 +11,7 @@
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "axis/axis_table.h"
 #include "axis/axis_watch.h"
 
 static bool coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size)
@@ -208,6 +209,7 @@ static const struct {
     {CM1E_ERROR_AXIS_POSITION_RANGE, refused_position_text},
     {CM1E_ERROR_AXIS_SET_POINT_JUMP, cm1e_axis_outside_refused_text},
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
+    {CM1E_ERROR_AXIS_TABLE, cm1e_axis_table_refused_text},
 };
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)

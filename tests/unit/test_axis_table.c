@@ -53,6 +53,20 @@ static void expect_refusal(cm1e_error_t error, cm1e_command_kind_t kind, const p
     expect_refused(error, &command);
 }
 
+/* Why the table was refused. */
+static void expect_said(const char *words)
+{
+    char text[512];
+    cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, words), text);
+}
+
+static void expect_refusal_saying(const char *words, cm1e_command_kind_t kind, const pair_t *pairs, int count)
+{
+    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, pairs, count);
+    expect_said(words);
+}
+
 static void expect(cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error)
 {
     const cm1e_command_status_t status = cm1e_axis_command_status(axis, id);
@@ -220,29 +234,44 @@ static void test_tables_that_are_none(void)
     const pair_t nan_value[] = {{second, NAN}}, inf_value[] = {{second, INFINITY}};
     const pair_t elsewhere[] = {{0, 0.5}, {second, 1.0}}, only_now[] = {{0, 0.0}};
     const cm1e_command_kind_t kind = CM1E_COMMAND_POSITION_PROFILE;
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, many, 65);
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, many, 0);
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, many, -1);
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, zero, 2);
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, back, 2);
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, first_back, 1);
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, nan_value, 1);
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, inf_value, 1);
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, elsewhere, 2); /* a jump at the start */
-    expect_refusal(CM1E_ERROR_AXIS_TABLE, kind, only_now, 1);
+    expect_refusal_saying("has 65 points; 1 ... 64 are right", kind, many, 65);
+    expect_refusal_saying("has 0 points", kind, many, 0);
+    expect_refusal_saying("has -1 points", kind, many, -1);
+    expect_refusal_saying("point 2 of the table comes 0 s after the one before; above 0 is right.", kind, zero, 2);
+    expect_refusal_saying("point 2 of the table comes -1e-09 s", kind, back, 2);
+    expect_refusal_saying("point 1 of the table comes -1e-09 s after the one before; above 0 is right, or 0.", kind,
+                          first_back, 1);
+    expect_refusal_saying("the position of point 1 of the table is nan", kind, nan_value, 1);
+    expect_refusal_saying("the velocity of point 1 of the table is inf", CM1E_COMMAND_VELOCITY_PROFILE, inf_value, 1);
+    expect_refusal_saying("the acceleration of point 1 of the table is inf", CM1E_COMMAND_ACCELERATION_PROFILE, inf_value, 1);
+    expect_refusal_saying("begins with a jump: its first point, at time 0, has the position 0.5, and the axis has 0.", kind,
+                          elsewhere, 2);
+    expect_refusal_saying("has the velocity 0.5, and the axis has 0.", CM1E_COMMAND_VELOCITY_PROFILE, elsewhere, 2);
+    expect_refusal_saying("the only point of the table is at time 0", kind, only_now, 1);
+    const pair_t beyond[] = {{second, 1e300}, {second, -1e300}};
+    expect_refusal_saying("so large, or its times so short", CM1E_COMMAND_VELOCITY_PROFILE, beyond, 2);
     static const struct {
         double time_scale, scale, offset;
-    } factors[] = {{-1.0, 1.0, 0.0}, {NAN, 1.0, 0.0}, {INFINITY, 1.0, 0.0}, {1.0, NAN, 0.0}, {1.0, 1.0, INFINITY}};
+        const char *words;
+    } factors[] = {
+        {-1.0, 1.0, 0.0, "TimeScale is -1; above 0 is right, or 0"},
+        {NAN, 1.0, 0.0, "TimeScale is nan"},
+        {INFINITY, 1.0, 0.0, "TimeScale is inf"},
+        {1.0, NAN, 0.0, "the factor of all values is nan"},
+        {1.0, 1.0, INFINITY, "Offset is inf"},
+    };
     for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
         const cm1e_axis_command_t command = command_of(kind, positions, COUNT(positions));
         table.time_scale = factors[i].time_scale;
         table.scale = factors[i].scale;
         table.offset = factors[i].offset;
         expect_refused(CM1E_ERROR_AXIS_TABLE, &command);
+        expect_said(factors[i].words);
     }
     const cm1e_axis_table_t unread = {.count = 1};
     const cm1e_axis_command_t none = {.kind = kind}, no_reader = {.kind = kind, .table = &unread};
     expect_refused(CM1E_ERROR_AXIS_TABLE, &none);
+    expect_said("no table was given");
     expect_refused(CM1E_ERROR_AXIS_TABLE, &no_reader);
     TEST_ASSERT_EQUAL_INT(64, CM1E_TABLE_POINTS_MAX);
     const cm1e_command_id_t id = start(kind, many, 64);
