@@ -33,6 +33,7 @@ typedef struct axis_spec {
     double coupling_stop;
     double motion;                       /**< 1: the drive computes its motions */
     double optional;                     /**< 1: its slave may come and go; it has an explicit device ID */
+    double identified;                   /**< 1: its slave is always there, and has an explicit device ID */
 } axis_spec_t;
 
 /** One command: at cycle `at` a block of this axis gets TRUE at Execute (or Enable), for `hold` cycles. */
@@ -53,7 +54,7 @@ typedef enum fault_kind {
     FAULT_LOSE = 0, FAULT_LOSE_OUT, FAULT_LOSE_BACK, FAULT_CORRUPT, FAULT_DELAY, FAULT_COUNTER, FAULT_STALL,
     FAULT_UNPLUG, FAULT_POWER_CYCLE, FAULT_FALL_BACK, FAULT_MOTOR_POWER, FAULT_ERROR, FAULT_OVER_TORQUE,
     FAULT_TEMPERATURE, FAULT_LOAD, FAULT_JUMP, FAULT_FREEZE, FAULT_RING, FAULT_CLOCK, FAULT_BRIDGE_ERROR,
-    FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_KINDS
+    FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_SWAP, FAULT_KINDS
 } fault_kind_t;
 
 /** One fault. What `value` is depends on the kind; see the table in scenario_fault.c. */

@@ -9,8 +9,8 @@
 typedef enum concerned { NOBODY = 0, THE_AXIS, THE_NETWORK } concerned_t;
 
 /** "%p": position of the slave, "%c": channel, "%l": length in cycles, "%m": length in ms, "%v": value, "%x": value as
- *  hexadecimal, "%i": its explicit device ID, "%s": that of a stranger. Orders are separated by ';'. NULL: it is not for the
- *  console. */
+ *  hexadecimal, "%i": its explicit device ID, "%s": that of a stranger; "%o" and "%j": position and ID of the slave that
+ *  changes places with it. Orders are separated by ';'. NULL: it is not for the console. */
 typedef struct fault_row {
     const char *begin, *end;
     concerned_t concerned;
@@ -49,6 +49,8 @@ static const fault_row_t rows[FAULT_KINDS] = {
     [FAULT_DETACH] = {"detach %p", "attach %p", THE_AXIS, AWAY_CYCLES, true, false, NULL},
     [FAULT_STRANGER] = {"detach %p;switches %p %s;attach %p", "detach %p;switches %p %i;attach %p", THE_AXIS, AWAY_CYCLES,
                         true, false, NULL},
+    [FAULT_SWAP] = {"power-cycle %p 30;power-cycle %o 30;switches %p %j;switches %o %i",
+                    "power-cycle %p 30;power-cycle %o 30;switches %p %i;switches %o %j", THE_NETWORK, 1, true, false, NULL},
 };
 
 /* ---- what is done ------------------------------------------------------------------------------------------------ */
@@ -74,6 +76,10 @@ static void order(run_t *run, const fault_t *fault, const char *format)
             used += (size_t)snprintf(line + used, room, "%04X", (unsigned)fault->value);
         else if (*c == 'i')
             used += (size_t)snprintf(line + used, room, "%02X", (unsigned)(FIRST_ID + axis->number));
+        else if (*c == 'o')
+            used += (size_t)snprintf(line + used, room, "%u", run->axes[(int)fault->value].position);
+        else if (*c == 'j')
+            used += (size_t)snprintf(line + used, room, "%02X", (unsigned)(FIRST_ID + (int)fault->value));
         else if (*c == 's')
             used += (size_t)snprintf(line + used, room, "%02X", (unsigned)STRANGER_ID);
         else
@@ -114,8 +120,10 @@ static void end_fault(run_t *run, const fault_t *fault)
         order(run, fault, rows[(int)fault->kind].end);
     else if (!rows[(int)fault->kind].brief)
         wire_set((int)fault->network, wire_of(fault), false);
-    if (fault->kind == FAULT_STRANGER)
+    if (fault->kind == FAULT_STRANGER || fault->kind == FAULT_SWAP)
         run->axes[(int)fault->axis].seen.stranger = false;
+    if (fault->kind == FAULT_SWAP)
+        run->axes[(int)fault->value].seen.stranger = false;
 }
 
 /* ---- whom it concerns -------------------------------------------------------------------------------------------- */
@@ -154,9 +162,10 @@ static void note(run_t *run, const fault_t *fault)
         machine_axis_t *axis = &run->axes[n];
         const bool same_slave = axis->network == run->axes[(int)fault->axis].network &&
                                 axis->position == run->axes[(int)fault->axis].position;
-        if ((fault->kind == FAULT_POWER_CYCLE || is_absence(fault)) && same_slave)
+        const bool swapped = fault->kind == FAULT_SWAP && (n == (int)fault->axis || n == (int)fault->value);
+        if (((fault->kind == FAULT_POWER_CYCLE || is_absence(fault)) && same_slave) || swapped)
             axis->seen.kept = false;
-        if (fault->kind == FAULT_STRANGER && n == (int)fault->axis) {
+        if ((fault->kind == FAULT_STRANGER && n == (int)fault->axis) || swapped) {
             axis->seen.stranger = true;
             axis->seen.stranger_from = run->cycle;
         }
@@ -197,7 +206,7 @@ static bool concerns(const run_t *run, const fault_t *fault, const machine_axis_
     const bool by_frames = row->brief && fault->kind != FAULT_POWER_CYCLE;
     const double frames = (by_frames ? FRAMES_A_CYCLE : 1) * (run->scenario->lost_limit + 1);
     const machine_axis_t *there = &run->axes[(int)fault->axis];
-    const bool of_slave = fault->kind == FAULT_UNPLUG || fault->kind == FAULT_POWER_CYCLE;
+    const bool of_slave = fault->kind == FAULT_UNPLUG || fault->kind == FAULT_POWER_CYCLE || fault->kind == FAULT_SWAP;
     const int network = of_slave ? there->network : (int)fault->network;
     if (of_slave && there->spec->optional != 0) /* those that are not behind it go on, and all if it is pulled out */
         return there->info.online && axis->network == network && axis->position >= there->position && fault->length >= frames + AWAY_CYCLES;

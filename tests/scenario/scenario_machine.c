@@ -29,8 +29,8 @@ static void describe_device(cm1e_axis_config_t *axis, const machine_axis_t *mach
     axis->channel = (uint8_t)machine->channel;
     if (spec->kind == AXIS_VIRTUAL)
         axis->type = CM1E_AXIS_VIRTUAL;
-    if (is_optional(spec)) {
-        axis->optional = true;
+    axis->optional = is_optional(spec);
+    if (is_optional(spec) || spec->identified != 0) {
         axis->address_kind = CM1E_ADDRESS_EXPLICIT_ID;
         axis->address = (uint16_t)(FIRST_ID + machine->number);
     }

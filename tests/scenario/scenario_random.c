@@ -13,6 +13,7 @@ enum { FIRST_STEP = 260, CYCLES_LEAST = 900, CYCLES_MOST = 2600, ALLOCATIONS = 6
 /** Seeds below have none of what make_more() adds, so that they stay as they were. */
 static const uint64_t more_from = UINT64_C(1000000000);
 static const uint64_t wide_from = UINT64_C(2000000000); /**< below, none of what make_wide() adds */
+static const uint64_t swap_from = UINT64_C(3000000000); /**< below, no motors that change places */
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */
 
@@ -381,6 +382,43 @@ static void make_absence(scenario_t *scenario)
         .axis = n, .network = scenario->axes[n].network, .length = 1 + pick(one_in(2) ? 100 : 1200)};
 }
 
+static bool may_swap(const scenario_t *scenario, int a, int b)
+{
+    const axis_spec_t *one = &scenario->axes[a], *other = &scenario->axes[b];
+    return a != b && one->kind == AXIS_CM1E && other->kind == AXIS_CM1E && one->network == other->network &&
+           scenario->ring == 0;
+}
+
+/** No slave comes and goes. */
+static void make_all_stay(scenario_t *scenario)
+{
+    int kept = 0;
+    for (int i = 0; i < scenario->fault_count; i++)
+        if (scenario->faults[i].kind != FAULT_DETACH && scenario->faults[i].kind != FAULT_STRANGER)
+            scenario->faults[kept++] = scenario->faults[i];
+    scenario->fault_count = kept;
+    for (int n = 0; n < scenario->axis_count; n++)
+        scenario->axes[n].optional = 0;
+}
+
+/** Two motors with an ID change places for a while: they are without power, and then the one has the ID of the other. */
+static void make_swap(scenario_t *scenario)
+{
+    for (int tries = 0; tries < 8; tries++) {
+        const int a = pick(scenario->axis_count), b = pick(scenario->axis_count);
+        if (!may_swap(scenario, a, b))
+            continue;
+        make_all_stay(scenario);
+        if (scenario->fault_count == SCENARIO_FAULTS)
+            return;
+        scenario->axes[a].identified = scenario->axes[b].identified = 1;
+        scenario->faults[scenario->fault_count++] = (fault_t){
+            .at = FIRST_STEP + pick((int)scenario->cycles - FIRST_STEP), .kind = FAULT_SWAP, .axis = a,
+            .network = scenario->axes[a].network, .length = 100 + pick(2000), .value = b};
+        return;
+    }
+}
+
 /** After the draws of make_more(). */
 static void make_wide(scenario_t *scenario)
 {
@@ -427,6 +465,8 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
         make_more(scenario);
     if (seed >= wide_from)
         make_wide(scenario);
+    if (seed >= swap_from)
+        make_swap(scenario);
     qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
     qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);
 }

@@ -21,7 +21,7 @@ static const char *const mappings[] = {"dynamic", "csp", "csv", "profile", NULL}
 const char *const fault_names[FAULT_KINDS + 1] = {
     "lose", "lose-out", "lose-back", "corrupt", "delay", "counter", "stall", "unplug", "power-cycle", "fall-back",
     "motor-power", "error", "over-torque", "temperature", "load", "jump", "freeze", "ring", "clock", "bridge-error",
-    "bridge-cable", "switch", "eeprom", "detach", "stranger", NULL};
+    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", NULL};
 
 const char *const scenario_blocks[] = {
     "MC_MoveAbsolute", "MC_MoveRelative", "MC_MoveAdditive", "MC_MoveVelocity", "MC_Halt", "MC_Stop", "MC_Power",
@@ -47,7 +47,8 @@ static const field_t axis_fields[] = {
     NUMBER(axis_spec_t, acceleration), NUMBER(axis_spec_t, deceleration), NUMBER(axis_spec_t, jerk),
     NUMBER(axis_spec_t, limit_negative), NUMBER(axis_spec_t, limit_positive), NUMBER(axis_spec_t, load_inertia),
     NUMBER(axis_spec_t, friction), NUMBER(axis_spec_t, stops),
-    NUMBER(axis_spec_t, coupling_stop), NUMBER(axis_spec_t, motion), NUMBER(axis_spec_t, optional), END};
+    NUMBER(axis_spec_t, coupling_stop), NUMBER(axis_spec_t, motion), NUMBER(axis_spec_t, optional),
+    NUMBER(axis_spec_t, identified), END};
 static const field_t step_fields[] = {
     NUMBER(step_t, at), NUMBER(step_t, axis), WORD_OF(step_t, block, scenario_blocks), NUMBER(step_t, master),
     NUMBER(step_t, hold), NUMBER(step_t, position), NUMBER(step_t, distance), NUMBER(step_t, velocity),
