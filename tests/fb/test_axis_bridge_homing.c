@@ -198,6 +198,31 @@ START_TEST(test_an_offset_that_k45_does_not_allow_ends_the_homing)
 }
 END_TEST
 
+/* A load that swings the motor: the mode is not switched, and the text tells what to look for. */
+START_TEST(test_a_motor_that_does_not_come_to_rest_is_not_homed)
+{
+    describe_bridge();
+    open_enabled();
+    const cm1e_command_id_t id = home_of(CM2, 0.0, NULL);
+    char order[40];
+    for (int i = 0; i < 20000 && status_of(CM2, id).state == CM1E_COMMAND_ACTIVE; i++) {
+        snprintf(order, sizeof order, "motor 1 %d load %s", CM2 + 1, i / 20 % 2 ? "0.05" : "-0.05");
+        if (i % 20 == 0)
+            simulate(order);
+        cycles(1);
+    }
+    ck_assert_int_eq(status_of(CM2, id).state, CM1E_COMMAND_ERROR);
+    ck_assert_int_eq(status_of(CM2, id).error, CM1E_ERROR_AXIS_NOT_AT_REST);
+    told(CM2, "the mode is switched at rest: look for a load that moves the motor");
+    ck_assert_int_eq(info_of(CM2).state, CM1E_AXIS_STANDSTILL);
+    snprintf(order, sizeof order, "motor 1 %d load 0", CM2 + 1);
+    simulate(order);
+    cycles(300);
+    finish(CM2, home_of(CM2, 0.0, NULL), 20.0);
+    close_segment();
+}
+END_TEST
+
 /* ---- the end of a homing, at any time ---------------------------------------------------------------------------- */
 
 enum ending { BY_STOP = 0, BY_POWER, BY_DIRECTION, BY_SHUT_DOWN, ENDINGS };
@@ -308,6 +333,7 @@ int main(void)
     tcase_add_test(tcase, test_the_offset_goes_by_k45_of_a_cm2);
     tcase_add_test(tcase, test_what_is_wrong_with_a_homing_is_told_before_it_begins);
     tcase_add_test(tcase, test_an_offset_that_k45_does_not_allow_ends_the_homing);
+    tcase_add_test(tcase, test_a_motor_that_does_not_come_to_rest_is_not_homed);
     tcase_add_loop_test(tcase, test_a_homing_is_ended_at_every_moment, 0, 2 * ENDINGS);
     tcase_add_loop_test(tcase, test_an_error_of_the_motor_ends_its_homing_at_any_time, 0, 2 * FAULTS);
     SRunner *runner = srunner_create(suite);

@@ -155,6 +155,36 @@ START_TEST(what_the_drive_does_not_do_is_refused)
 END_TEST
 
 /* A halt at any moment, of the parameters, the switch of modes, the handshake, the motion and the way back. */
+/* Nothing moves, the text names the object, and the next command goes. */
+START_TEST(parameter_that_the_drive_refuses_ends_the_command)
+{
+    static const char *const objects[2][2] = {{"6081", "6083"}, {"6083", "6084"}};
+    for (int n = 0; n < 4; n++) {
+        const int velocity_mode = n / 2;
+        const char *object = objects[velocity_mode][n % 2];
+        char order[40];
+        begin(0);
+        const double from = info().actual_position;
+        snprintf(order, sizeof order, "refuse 1 %s:0", object);
+        simulate(order);
+        cm1e_command_id_t id = velocity_mode ? turn(50) : drive_to(from + 30, 100, 400);
+        for (int i = 0; i < 3000 && status(id).state == CM1E_COMMAND_ACTIVE; i++)
+            cycles(1);
+        ck_assert_int_eq(status(id).state, CM1E_COMMAND_ERROR);
+        ck_assert_int_eq(status(id).error, CM1E_ERROR_SDO_ABORT);
+        ck_assert_msg(strstr(text(), object), "%s: %s", object, text());
+        expect_standstill();
+        ck_assert_double_eq_tol(info().actual_position, from, 0.04);
+        simulate("refuse 1 nothing");
+        id = drive_to(from + 30, 200, 1000);
+        await(id, 3);
+        ck_assert_int_eq(status(id).state, CM1E_COMMAND_DONE);
+        expect_standstill();
+        close_segment();
+    }
+}
+END_TEST
+
 START_TEST(halt_at_any_cycle_ends_in_standstill)
 {
     for (int after = 0; after < 260; after += after < 40 ? 1 : 9)
@@ -303,6 +333,7 @@ int main(void)
     tcase_add_test(tests, moves_go_to_their_target_in_profile_position_mode);
     tcase_add_test(tests, velocities_turn_in_profile_velocity_mode_until_they_are_ended);
     tcase_add_test(tests, what_the_drive_does_not_do_is_refused);
+    tcase_add_test(tests, parameter_that_the_drive_refuses_ends_the_command);
     tcase_add_test(tests, halt_at_any_cycle_ends_in_standstill);
     tcase_add_loop_test(tests, power_that_is_wanted_again_while_the_drive_halts_moves_nothing, 0, 2);
     tcase_add_test(tests, ends_by_force_leave_a_motor_that_stands);

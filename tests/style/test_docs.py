@@ -3,7 +3,7 @@
 ErrorID and its text, every rule of the cross-checker in docs/CHECK-RULES.md and in a test, every proof in a table of
 features or of safety is a test, a case in one, or a file, every point of `cm1e prove` that is named exists, every
 relative link leads to a file and to a heading in it, every path of the repository that is mentioned exists, the rooms use
-each other as docs/DESIGN.md says.
+each other as docs/DESIGN.md says, figures of docs/PERFORMANCE.md were printed by a command.
 
 test_docs.py SOURCE-DIRECTORY
 """
@@ -243,6 +243,23 @@ def check_paths(path, text):
                 faults.append(f"{path}:{number}: there is no {mentioned}")
 
 
+def check_measured():
+    """Every figure of docs/PERFORMANCE.md is in a block that a command has printed, and `scripts/bench --document` can run
+    that command."""
+    path, blocks = "docs/PERFORMANCE.md", re.compile(r"^```console\n\$ (\S+)[^\n]*\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+    text = read(path)
+    for command, shown in blocks.findall(text):
+        program = re.fullmatch(r"build-release/bin/(\w+)", command)
+        if not exists(f"bench/{program[1]}.c" if program else command):
+            faults.append(f"{path}: there is no {command}")
+        if not shown.strip():
+            faults.append(f"{path}: {command} has printed nothing: scripts/bench --document {command}")
+    if not blocks.search(text):
+        faults.append(f"{path}: no command has printed anything")
+    for number, _ in rows(text):
+        faults.append(f"{path}:{number}: a table that no command has printed")
+
+
 def main():
     documents = expand("*.md") + expand("docs/*.md") + expand("docs/blocks/*.md") + expand("bench/*.md") \
         + expand("fb/interface/*.md") + expand("examples/*.md")
@@ -252,6 +269,7 @@ def main():
     check_proofs()
     check_points()
     check_rooms()
+    check_measured()
     for path in documents:
         text = read(path)
         check_links(path, text)
