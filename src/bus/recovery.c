@@ -384,6 +384,8 @@ static void result_al(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t
 
 /* ---- mailbox --------------------------------------------------------------------------------------------------- */
 
+enum { OF_SERIAL_NUMBER = 4 };
+
 /** Reads one sub-index of the identity object and compares it with what the scan found in the SII. */
 static bool check_identity(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, uint8_t subindex,
                            uint32_t expected)
@@ -403,10 +405,13 @@ static bool check_identity(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t 
     if (cm1e_coe_next(&slave->coe, d, now_ns))
         return true;
     if (cm1e_coe_idle(&slave->coe)) {
-        /* A device that does not have the sub-index (the serial number is optional) leaves it unchecked. */
-        const bool absent = recovery->sdo.error == CM1E_ERROR_SDO_ABORT;
-        const bool same = recovery->sdo.error == CM1E_OK && recovery->sdo.size == 4 &&
-                          cm1e_get_u32(recovery->data) == expected;
+        const bool read = recovery->sdo.error == CM1E_OK && recovery->sdo.size == 4;
+        const uint32_t value = read ? cm1e_get_u32(recovery->data) : 0;
+        /* A device that does not have the sub-index, or a serial number of 0 there (UG 7.1.6: the default) and another one
+         * in its EEPROM, leaves it unchecked. */
+        const bool absent = recovery->sdo.error == CM1E_ERROR_SDO_ABORT ||
+                            (read && value == 0 && subindex == OF_SERIAL_NUMBER);
+        const bool same = read && value == expected;
         if (absent || same)
             advance(slave, now_ns);
         else
@@ -429,7 +434,7 @@ static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
         advance(slave, now_ns);
         return false;
     }
-    return check_identity(slave, d, now_ns, 4, slave->info.serial_number);
+    return check_identity(slave, d, now_ns, OF_SERIAL_NUMBER, slave->info.serial_number);
 }
 
 /** Whether its objects are those of the expected device. A device that comes for the first time is compared with the

@@ -6,6 +6,7 @@
 #include "bus_support.h"
 #include "description/describe.h"
 #include "description/sii_image.h"
+#include "sim/cm1e_app.h"
 
 static const char *const firmwares[] = {"1.2.0", "1.3.0", "1.3.2", "1.3.3", "1.3.4", "1.3.5"};
 enum { FIRMWARES = 6, MAPPINGS = 4, ORDERS = 2, SLAVES = 2, SERIAL_NUMBER = 4711 };
@@ -167,12 +168,62 @@ START_TEST(default_of_the_image_is_not_the_default_of_the_device)
 }
 END_TEST
 
+/* ---- who comes back ---------------------------------------------------------------------------------------------- */
+
+/** Two motors from images, which have serial numbers in their EEPROMs, in Operational. */
+static cm1e_bus_t *start_numbered(void)
+{
+    const choice_t choice = {tested_firmware(), CM1E_MAPPING_DYNAMIC, tested_order()};
+    cm1e_bus_t *bus = bus_of(&choice);
+    for (uint32_t position = 1; position <= SLAVES; position++)
+        boot(bus, &choice, position);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+/** Object 0x1018:4 of the second motor; a device that starts again has its default. */
+static bool comes_back_with(cm1e_bus_t *bus, int64_t serial_number)
+{
+    cm1e_sim_cm1e_t *drive = cm1e_sim_cm1e_of(cm1e_sim_segment_slave(segment_of(bus), 2));
+    for (int n = 0; n < 1500; n++) {
+        cm1e_sim_store_set(&drive->store, OBJ_1018_IDENTITY, 4, serial_number);
+        cycle(bus);
+        const cm1e_slave_watch_t watch = cm1e_bus_slave_watch(bus, 2);
+        if (n > 100 && !watch.lost && watch.al_state == CM1E_AL_OP && cm1e_bus_health(bus) == CM1E_OK)
+            return true;
+        cm1e_bus_request_recovery(bus, 2);
+    }
+    return false;
+}
+
+START_TEST(a_motor_whose_object_does_not_have_its_serial_number_comes_back)
+{
+    cm1e_bus_t *bus = start_numbered();
+    simulate(bus, "power-cycle 2 20");
+    ck_assert(comes_back_with(bus, 0));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_motor_with_another_serial_number_does_not)
+{
+    cm1e_bus_t *bus = start_numbered();
+    simulate(bus, "power-cycle 2 20");
+    ck_assert(!comes_back_with(bus, SERIAL_NUMBER + 1)); /* that of the other one */
+    ck_assert_uint_le(cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), 2)), CM1E_AL_PRE_OP);
+    ck_assert(comes_back_with(bus, SERIAL_NUMBER + 2));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_boot");
     TCase *tests = tcase_create("boot");
     tcase_add_loop_test(tests, slaves_from_images_are_those_from_the_tables, 0, FIRMWARES * MAPPINGS * ORDERS);
     tcase_add_test(tests, default_of_the_image_is_not_the_default_of_the_device);
+    tcase_add_test(tests, a_motor_whose_object_does_not_have_its_serial_number_comes_back);
+    tcase_add_test(tests, a_motor_with_another_serial_number_does_not);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

@@ -581,6 +581,7 @@ START_TEST(test_a_search_in_cmd_that_lasts_too_long_is_ended)
     do_command(1, cmOriginSearch, (TIME)500000000);
     wait_for(&command_of[1].Busy, 5000);
     ck_assert_int_eq(ERROR_OF(command_of[1]), CM1E_ERROR_CM_SEARCH_TIMEOUT);
+    ck_assert_msg(strstr(text_of(1), cm1e_strerror(CM1E_ERROR_CM_SEARCH_TIMEOUT)), "%s", text_of(1));
     scan(1000);
     ck_assert(!cm1e_sim_search_running(&motor(1)->search));
     do_command(1, cmMotorEnable, 0);

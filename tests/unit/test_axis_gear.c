@@ -156,6 +156,7 @@ static void test_what_cannot_be_followed_is_refused(void)
     axes_refused(SLAVE, &command, CM1E_ERROR_AXIS_COUPLING_CYCLE);
     coupling.master[0].axis.Handle ^= 0x5500;
     axes_refused(SLAVE, &command, CM1E_ERROR_AXIS_MASTER);
+    axes_told(SLAVE, "Master names no axis of its scheduler; expected the AXIS_REF of another axis");
     coupling.master[0].axis = axes_reference(MASTER);
     coupling.master[0].numerator = 0;
     axes_refused(SLAVE, &command, CM1E_ERROR_AXIS_RATIO);
