@@ -364,8 +364,8 @@ typedef struct belongs {
     const void *cycle; /**< what runs its cycle: cm1e_axis_share_cycle(); NULL: its bus alone */
 } belongs_t;
 
-/** Memory that is set aside when the axis is made, where the configuration asks for it. Written by axis_table.c and
- *  axis_drive_profile.c. */
+/** Memory that is set aside when the axis is made, where the configuration asks for it. Written by axis_table.c,
+ *  axis_table_text.c and axis_drive_profile.c. */
 typedef struct set_aside {
     tables_t *tables;   /**< NULL: none (cm1e_axis_config_t.table_profiles) */
     driving_t *driving; /**< NULL: the host makes the motions (cm1e_axis_config_t.motion) */
