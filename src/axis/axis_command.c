@@ -259,10 +259,8 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
         cm1e_axis_forget_not_set(axis);
     cm1e_axis_remember_refusal(axis, command, start(axis, command, id));
     if (axis->commands.refusal && (unsigned)command->kind < CM1E_COMMAND_KIND_COUNT &&
-        kind_row(command->kind)->plan == PLAN_TABLE) {
-        cm1e_axis_table_note(axis, command);
+        kind_row(command->kind)->plan == PLAN_TABLE)
         cm1e_axis_table_needs(axis, command, &axis->commands.refused);
-    }
     return axis->commands.refusal;
 }
 

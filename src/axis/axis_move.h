@@ -55,7 +55,7 @@ typedef struct table_points {
     cm1e_table_point_t points[CM1E_TABLE_POINTS_MAX];
 } table_points_t;
 
-/** What was wrong with the last refused table (axis_table_text.c). */
+/** What was wrong with the last refused table. */
 typedef enum table_fault {
     TABLE_MISSING, TABLE_COUNT, TABLE_TIME_SCALE, TABLE_SCALE, TABLE_OFFSET, TABLE_TIME, TABLE_VALUE, TABLE_ONLY_NOW,
     TABLE_JUMP, TABLE_BEYOND_NUMBERS,

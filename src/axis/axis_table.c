@@ -16,6 +16,7 @@
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 #include "core/rare.h"
+#include "motion/pieces.h"
 
 static const double relative_tolerance = 1e-9;
 
@@ -36,32 +37,61 @@ cm1e_error_t cm1e_axis_table_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 
 /* ---- the points -------------------------------------------------------------------------------------------------- */
 
-static bool factor(double given, double *value)
+static bool is_wrong_as_a_whole(const cm1e_axis_table_t *table, table_refusal_t *wrong)
 {
-    *value = given == 0.0 ? 1.0 : given; /* the input was not set */
-    return isfinite(given);
+    if (!table || !table->read)
+        *wrong = (table_refusal_t){.fault = TABLE_MISSING};
+    else if (table->count < 1 || table->count > CM1E_TABLE_POINTS_MAX)
+        *wrong = (table_refusal_t){.fault = TABLE_COUNT, .given = table->count};
+    else if (!isfinite(table->time_scale) || table->time_scale < 0.0)
+        *wrong = (table_refusal_t){.fault = TABLE_TIME_SCALE, .given = table->time_scale};
+    else if (!isfinite(table->scale))
+        *wrong = (table_refusal_t){.fault = TABLE_SCALE, .given = table->scale};
+    else if (!isfinite(table->offset))
+        *wrong = (table_refusal_t){.fault = TABLE_OFFSET, .given = table->offset};
+    else
+        return false;
+    return true;
 }
 
-static cm1e_error_t read_points(const cm1e_axis_table_t *table, table_points_t *points)
+/* A factor of 0 is an input that was not set. */
+static double factor(double given) { return given == 0.0 ? 1.0 : given; }
+
+/* Reads point `i`, which comes after those before it. */
+static bool read_point(const cm1e_axis_table_t *table, int i, table_points_t *points, table_refusal_t *wrong)
 {
-    double time_scale, scale;
-    if (!table || !table->read || table->count < 1 || table->count > CM1E_TABLE_POINTS_MAX ||
-        !factor(table->time_scale, &time_scale) || !(time_scale > 0.0) || !factor(table->scale, &scale) ||
-        !isfinite(table->offset))
+    TIME delta_ns;
+    double value;
+    table->read(table->reference, i, &delta_ns, &value);
+    value = value * factor(table->scale) + table->offset;
+    const double before_s = i > 0 ? points->points[i - 1].time_s : 0.0;
+    const double delta_s = (double)delta_ns * 1e-9 * factor(table->time_scale), time_s = before_s + delta_s;
+    points->points[i] = (cm1e_table_point_t){time_s, value};
+    if (!(time_s - before_s >= CM1E_TABLE_SHORTEST_S) && !(i == 0 && delta_ns == 0))
+        *wrong = (table_refusal_t){TABLE_TIME, i + 1, delta_s, 0.0};
+    else if (!cm1e_motion_is_number(value))
+        *wrong = (table_refusal_t){TABLE_VALUE, i + 1, value, 0.0};
+    else if (!cm1e_motion_is_number(time_s))
+        *wrong = (table_refusal_t){.fault = TABLE_BEYOND_NUMBERS};
+    else
+        return true;
+    return false;
+}
+
+/* `wrong` says why it is no table. */
+static cm1e_error_t read_points(const cm1e_axis_table_t *table, table_points_t *points, table_refusal_t *wrong)
+{
+    if (is_wrong_as_a_whole(table, wrong))
         return CM1E_ERROR_AXIS_TABLE;
-    double time_s = 0.0;
     points->count = table->count;
     points->absolute = table->absolute;
-    for (int i = 0; i < table->count; i++) {
-        TIME delta_ns;
-        double value;
-        table->read(table->reference, i, &delta_ns, &value);
-        if (delta_ns < 0 || (delta_ns == 0 && i > 0))
+    for (int i = 0; i < table->count; i++)
+        if (!read_point(table, i, points, wrong))
             return CM1E_ERROR_AXIS_TABLE;
-        time_s += (double)delta_ns * 1e-9 * time_scale;
-        points->points[i] = (cm1e_table_point_t){time_s, value * scale + table->offset};
-    }
-    return CM1E_OK;
+    if (points->count > 1 || points->points[0].time_s > 0.0)
+        return CM1E_OK;
+    *wrong = (table_refusal_t){.fault = TABLE_ONLY_NOW};
+    return CM1E_ERROR_AXIS_TABLE;
 }
 
 /* The offset of the table for the kernel, which counts positions from the start, and velocities and accelerations from
@@ -148,8 +178,19 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const from_t *from, cm1e_tabl
                ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
+/* Why no motion leads along points that are right one by one. */
+static table_refusal_t find_fault(const table_points_t *points, const cm1e_table_profile_t *table, double more,
+                                  cm1e_command_kind_t kind)
+{
+    if (table->knot_count > 0 || points->points[0].time_s > 0.0 || kind == CM1E_COMMAND_ACCELERATION_PROFILE)
+        return (table_refusal_t){.fault = TABLE_BEYOND_NUMBERS};
+    const double present = kind == CM1E_COMMAND_POSITION_PROFILE ? 0.0 : table->start.velocity;
+    return (table_refusal_t){TABLE_JUMP, 1, points->points[0].value, present - more};
+}
+
 static cm1e_error_t prepare(const cm1e_axis_t *axis, const from_t *from, cm1e_command_kind_t kind,
-                            const table_points_t *points, cm1e_table_profile_t *table, cm1e_table_extremes_t *needed)
+                            const table_points_t *points, cm1e_table_profile_t *table, cm1e_table_extremes_t *needed,
+                            table_refusal_t *wrong)
 {
     const cm1e_motion_state_t start = {0.0, from->velocity, from->acceleration};
     const double more = shift(axis, from, kind, points->absolute);
@@ -157,9 +198,10 @@ static cm1e_error_t prepare(const cm1e_axis_t *axis, const from_t *from, cm1e_co
     for (int i = 0; i < points->count; i++)
         shifted[i] = (cm1e_table_point_t){points->points[i].time_s, points->points[i].value + more};
     if (cm1e_table_profile(table, table_kind(kind), &start, shifted, points->count, axis->limits.maximum.jerk,
-                           needed) != CM1E_OK)
-        return CM1E_ERROR_AXIS_TABLE;
-    return check(axis, from, table, needed);
+                           needed) == CM1E_OK)
+        return check(axis, from, table, needed);
+    *wrong = find_fault(points, table, more, kind);
+    return CM1E_ERROR_AXIS_TABLE;
 }
 
 /* ---- the command ------------------------------------------------------------------------------------------------- */
@@ -192,9 +234,10 @@ cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t 
     table_points_t points;
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;
-    cm1e_error_t error = axis->set_aside.tables ? read_points(command->table, &points) : CM1E_ERROR_AXIS_NO_TABLES;
+    tables_t *tables = axis->set_aside.tables;
+    cm1e_error_t error = tables ? read_points(command->table, &points, &tables->refused) : CM1E_ERROR_AXIS_NO_TABLES;
     if (error == CM1E_OK)
-        error = prepare(axis, &from, command->kind, &points, &table, &needed);
+        error = prepare(axis, &from, command->kind, &points, &table, &needed, &tables->refused);
     if (error != CM1E_OK)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
@@ -214,7 +257,7 @@ cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t
         return CM1E_ERROR_FULL;
     table_points_t points;
     move_t move = {.kind = (uint8_t)command->kind, .buffer_mode = mcBuffered};
-    cm1e_error_t error = read_points(command->table, &points);
+    cm1e_error_t error = read_points(command->table, &points, &axis->set_aside.tables->refused);
     if (error != CM1E_OK)
         return error;
     /* The number is set before it waits, because it may begin at once. */
@@ -232,7 +275,8 @@ cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, move_t *move, const from_t
     if (!axis->set_aside.tables || axis->set_aside.tables->waiting_id != move->id)
         return CM1E_ERROR_AXIS_STATE;
     const table_points_t *points = &axis->set_aside.tables->waiting;
-    const cm1e_error_t error = prepare(axis, from, (cm1e_command_kind_t)move->kind, points, &table, &needed);
+    const cm1e_error_t error = prepare(axis, from, (cm1e_command_kind_t)move->kind, points, &table, &needed,
+                                       &axis->set_aside.tables->refused);
     if (error == CM1E_OK)
         take(axis, move, from, points, &table, offset_s);
     return error;
@@ -244,9 +288,10 @@ void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *c
     table_points_t points;
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;
+    table_refusal_t wrong;
     needs->table = NULL;
-    if (read_points(command->table, &points) != CM1E_OK ||
-        prepare(axis, &from, command->kind, &points, &table, &needed) == CM1E_ERROR_AXIS_TABLE)
+    if (read_points(command->table, &points, &wrong) != CM1E_OK ||
+        prepare(axis, &from, command->kind, &points, &table, &needed, &wrong) == CM1E_ERROR_AXIS_TABLE)
         return;
     needs->velocity = needed.velocity;
     needs->acceleration = needed.acceleration;

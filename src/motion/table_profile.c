@@ -17,7 +17,6 @@
 #include "motion/pieces.h"
 
 /* Of an interval: below it, numbers of up to 1e30 by its powers could leave what doubles hold. */
-static const double shortest_s = 1e-12;
 
 enum { INTERVALS_MAX = CM1E_TABLE_POINTS_MAX };
 
@@ -82,7 +81,7 @@ static bool take_points(table_t *table, cm1e_table_kind_t kind, const cm1e_motio
         high = larger(high, point->value);
         if (i == 0 && point->time_s == 0)
             continue;
-        if (!(point->time_s - table->time[table->intervals] >= shortest_s))
+        if (!(point->time_s - table->time[table->intervals] >= CM1E_TABLE_SHORTEST_S))
             return false;
         table->intervals++;
         table->time[table->intervals] = point->time_s;

@@ -23,6 +23,7 @@ typedef struct cm1e_table_point {
 } cm1e_table_point_t;
 
 enum { CM1E_TABLE_POINTS_MAX = 64 };
+#define CM1E_TABLE_SHORTEST_S 1e-12 /**< from one point to the next */
 
 /** The acceleration is linear between knots. Two knots at the same time are a step. */
 typedef struct cm1e_table_knot {

@@ -244,8 +244,8 @@ def check_paths(path, text):
 
 
 def check_measured():
-    """Every figure of docs/PERFORMANCE.md is in a block that a command has printed, and `scripts/bench --document` can run
-    that command."""
+    """Every figure of docs/PERFORMANCE.md is in a block that a command has printed, and scripts/document can run that
+    command."""
     path, blocks = "docs/PERFORMANCE.md", re.compile(r"^```console\n\$ (\S+)[^\n]*\n(.*?)^```$", re.DOTALL | re.MULTILINE)
     text = read(path)
     for command, shown in blocks.findall(text):
@@ -253,7 +253,7 @@ def check_measured():
         if not exists(f"bench/{program[1]}.c" if program else command):
             faults.append(f"{path}: there is no {command}")
         if not shown.strip():
-            faults.append(f"{path}: {command} has printed nothing: scripts/bench --document {command}")
+            faults.append(f"{path}: {command} has printed nothing: scripts/document {path} {command}")
     if not blocks.search(text):
         faults.append(f"{path}: no command has printed anything")
     for number, _ in rows(text):

@@ -237,9 +237,10 @@ static void test_tables_that_are_none(void)
     expect_refusal_saying("has 65 points; 1 ... 64 are right", kind, many, 65);
     expect_refusal_saying("has 0 points", kind, many, 0);
     expect_refusal_saying("has -1 points", kind, many, -1);
-    expect_refusal_saying("point 2 of the table comes 0 s after the one before; above 0 is right.", kind, zero, 2);
+    expect_refusal_saying("point 2 of the table comes 0 s after the one before; 1e-12 s or more is right.", kind,
+                          zero, 2);
     expect_refusal_saying("point 2 of the table comes -1e-09 s", kind, back, 2);
-    expect_refusal_saying("point 1 of the table comes -1e-09 s after the one before; above 0 is right, or 0.", kind,
+    expect_refusal_saying("point 1 of the table comes -1e-09 s after the start; 1e-12 s or more is right, or 0.", kind,
                           first_back, 1);
     expect_refusal_saying("the position of point 1 of the table is nan", kind, nan_value, 1);
     expect_refusal_saying("the velocity of point 1 of the table is inf", CM1E_COMMAND_VELOCITY_PROFILE, inf_value, 1);
@@ -249,7 +250,8 @@ static void test_tables_that_are_none(void)
     expect_refusal_saying("has the velocity 0.5, and the axis has 0.", CM1E_COMMAND_VELOCITY_PROFILE, elsewhere, 2);
     expect_refusal_saying("the only point of the table is at time 0", kind, only_now, 1);
     const pair_t beyond[] = {{second, 1e300}, {second, -1e300}};
-    expect_refusal_saying("so large, or its times so short", CM1E_COMMAND_VELOCITY_PROFILE, beyond, 2);
+    expect_refusal_saying("the velocity of point 1 of the table is 1e+300; a number between -1e30 and 1e30",
+                          CM1E_COMMAND_VELOCITY_PROFILE, beyond, 2);
     static const struct {
         double time_scale, scale, offset;
         const char *words;
@@ -257,6 +259,8 @@ static void test_tables_that_are_none(void)
         {-1.0, 1.0, 0.0, "TimeScale is -1; above 0 is right, or 0"},
         {NAN, 1.0, 0.0, "TimeScale is nan"},
         {INFINITY, 1.0, 0.0, "TimeScale is inf"},
+        {1e-12, 1.0, 0.0, "point 1 of the table comes 5e-13 s after the start; 1e-12 s or more is right"},
+        {1e300, 1.0, 0.0, "the numbers of the table are so large"},
         {1.0, NAN, 0.0, "the factor of all values is nan"},
         {1.0, 1.0, INFINITY, "Offset is inf"},
     };
@@ -268,6 +272,11 @@ static void test_tables_that_are_none(void)
         expect_refused(CM1E_ERROR_AXIS_TABLE, &command);
         expect_said(factors[i].words);
     }
+    const pair_t begins_here[] = {{0, 0.0}, {1, 1.0}};
+    const cm1e_axis_command_t too_close = command_of(kind, begins_here, 2);
+    table.time_scale = 1e-6;
+    expect_refused(CM1E_ERROR_AXIS_TABLE, &too_close);
+    expect_said("point 2 of the table comes 1e-15 s after the one before");
     const cm1e_axis_table_t unread = {.count = 1};
     const cm1e_axis_command_t none = {.kind = kind}, no_reader = {.kind = kind, .table = &unread};
     expect_refused(CM1E_ERROR_AXIS_TABLE, &none);

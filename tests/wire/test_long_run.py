@@ -103,8 +103,21 @@ def judge_frames(segment, timing, said):
 
 
 def latencies(distribution):
-    rows = [(NAMES[n], count) for n, count in enumerate(distribution["histogram"]) if count]
-    return "; ".join(f"{name}: {count}" for name, count in rows)
+    return [(NAMES[n], count) for n, count in enumerate(distribution["histogram"]) if count]
+
+
+def tell(cycle_us, timing, said, frames, looks):
+    """What the run was like; `frames` and `looks` as judge_frames() and look_on() return them."""
+    (sent, missing), (first, last) = frames, looks
+    print(f"cycle {cycle_us} us: {timing['cycles']:,} cycles, {timing['overruns']:,} overruns\n"
+          f"  frames          {sent:,} sent, {missing} did not come back, {LOOKS * DROPPED} of these dropped by the simulator\n"
+          f"  for the master  {timing['lost_frames']:,} lost, {said['bus']['late_frames']:,} late")
+    for program, before in first.items():
+        after = last[program]
+        print(f"  {program:15} {before['VmRSS']:,} kB resident at the first look, {after['VmRSS']:,} at the last; "
+              f"{after['VmData']:,} allocated, {after['Threads']} threads, {after['files']} open files at both")
+    for name, count in latencies(said["wake_up_latency"]):
+        print(f"  wake-up latency {name:20} {count:>12,}")
 
 
 def run(cm1e, cycle_us, seconds):
@@ -119,11 +132,7 @@ def run(cm1e, cycle_us, seconds):
             wire.check(master.returncode == 0, f"{cycle_us} us: exit status {master.returncode}: {out}{told}")
             timing = json.loads(out)["timing"]
             judge_flat(first, last)
-            sent, missing = judge_frames(segment, timing, said)
-            print(f"cycle {cycle_us} us: {timing['cycles']} cycles, {timing['overruns']} overruns; {sent} frames sent, "
-                  f"{missing} did not come back, {LOOKS * DROPPED} of them dropped by the simulator; the master counts "
-                  f"{timing['lost_frames']} lost and {said['bus']['late_frames']} late.\n"
-                  f"    memory: {first} ... {last}\n    wake-up latency: {latencies(said['wake_up_latency'])}")
+            tell(cycle_us, timing, said, judge_frames(segment, timing, said), (first, last))
 
 
 if __name__ == "__main__":
