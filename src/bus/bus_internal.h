@@ -170,7 +170,8 @@ typedef struct cm1e_errands {
 
 /** Of the last cycle that came back. */
 typedef struct cm1e_silence {
-    bool any;                                /**< some slave did not take part */
+    bool found;                              /**< its slaves were looked at */
+    bool any;                                /**< a slave that counts did not take part */
     bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
 } cm1e_silence_t;
 
@@ -344,6 +345,8 @@ void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
 enum { CM1E_INPUT_PATTERN = 0xA5 };
 /** Whether a slave left its inputs in the frame that came back as they were sent: it took no part (cycle.c). */
 bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave);
+/** Notes of each slave whether it is silent, once in a cycle. */
+void cm1e_bus_find_silence(cm1e_bus_t *bus);
 /** Supervision: one slave's AL status in every cycle. It chooses the question before the process data are sent, because
  *  it rides in their frame if that has room, and if the last one came back; else it has a frame of its own. */
 void cm1e_supervision_ask(cm1e_bus_t *bus, int64_t now_ns);

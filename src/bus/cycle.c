@@ -13,19 +13,30 @@ bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
     return slave->placement.input_bytes > 0;
 }
 
-/** Finds the slaves that did not take part. Returns true if they explain the working counter: 3 less for each such
- *  slave (or its own share), 2 less for each slave that took no outputs. */
-static bool find_silent_slaves(cm1e_bus_t *bus, int working_counter)
+void cm1e_bus_find_silence(cm1e_bus_t *bus)
 {
-    int missing = bus->expected_working_counter - working_counter, takers = 0;
+    if (bus->silence.found)
+        return;
+    bus->silence.found = true;
     bus->silence.any = false;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const bool silent = cm1e_bus_is_silent(bus, slave);
+        slave->silent_cycles = silent ? slave->silent_cycles + (slave->silent_cycles < UINT32_MAX) : 0;
+        bus->silence.any |= silent && slave->hot.counted;
+    }
+}
+
+/** Returns true if the silent slaves explain the working counter: 3 less for each of them (or its own share), 2 less for
+ *  each slave that took no outputs. */
+static bool silence_explains(const cm1e_bus_t *bus, int working_counter)
+{
+    int missing = bus->expected_working_counter - working_counter, takers = 0;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (!slave->hot.counted)
             continue;
-        const bool silent = cm1e_bus_is_silent(bus, slave), takes = slave->placement.output_bytes > 0;
-        slave->silent_cycles = silent ? slave->silent_cycles + (slave->silent_cycles < UINT32_MAX) : 0;
-        bus->silence.any |= silent;
+        const bool silent = slave->silent_cycles > 0, takes = slave->placement.output_bytes > 0;
         missing -= silent ? 1 + 2 * takes : 0;
         takers += takes && !silent;
     }
@@ -36,7 +47,8 @@ static bool find_silent_slaves(cm1e_bus_t *bus, int working_counter)
  *  identified. */
 static void take_slave_by_slave(cm1e_bus_t *bus, int working_counter)
 {
-    bus->silence.partly_fresh = find_silent_slaves(bus, working_counter);
+    cm1e_bus_find_silence(bus);
+    bus->silence.partly_fresh = silence_explains(bus, working_counter);
     for (uint32_t i = 0; i < bus->slave_count && bus->silence.partly_fresh; i++) {
         const cm1e_slave_placement_t *placement = &bus->slaves[i].placement;
         if (bus->slaves[i].silent_cycles == 0 && bus->slaves[i].hot.counted)
@@ -47,7 +59,8 @@ static void take_slave_by_slave(cm1e_bus_t *bus, int working_counter)
 static void forget_silence(cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count && bus->silence.any; i++)
-        bus->slaves[i].silent_cycles = 0;
+        if (bus->slaves[i].hot.counted)
+            bus->slaves[i].silent_cycles = 0;
     bus->silence.any = false;
 }
 
@@ -77,7 +90,7 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     if (!bus->in_flight)
         return CM1E_ERROR_STATE;
     cm1e_clock_make_current(bus->clock);
-    bus->in_flight = false;
+    bus->in_flight = bus->silence.found = false;
     const int working_counter = cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns);
     const cm1e_error_t error = judge(bus, working_counter);
     cm1e_dc_receive(bus, error != CM1E_ERROR_BUS_LOST);

@@ -30,9 +30,7 @@ static void take_out(cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        const bool silent = gives(slave) && cm1e_bus_is_silent(bus, slave);
-        slave->silent_cycles = silent ? slave->silent_cycles + (slave->silent_cycles < UINT32_MAX) : 0;
-        if (!slave->hot.optional || !slave->hot.counted || !(silent || slave->watch.lost))
+        if (!slave->hot.optional || !slave->hot.counted || !(slave->silent_cycles > 0 || slave->watch.lost))
             continue;
         slave->hot.counted = false;
         slave->hot.out_since = bus->counters.cycles;
@@ -115,6 +113,7 @@ bool cm1e_hot_judge(cm1e_bus_t *bus, int working_counter)
         bus->search.in_doubt = false;
         return same;
     }
+    cm1e_bus_find_silence(bus);
     take_out(bus);
     take_in(bus, working_counter);
     return explains(bus, working_counter);

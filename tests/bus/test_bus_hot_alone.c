@@ -211,6 +211,30 @@ START_TEST(no_working_counter_makes_up_for_a_motor_that_is_always_there)
 }
 END_TEST
 
+/** As on a network without optional slaves: each silent cycle counts once. The optional one, which is behind it, may even be away. */
+START_TEST(a_motor_beside_an_optional_one_is_silent_after_the_tolerated_cycles)
+{
+    const uint32_t tolerated = (uint32_t)_i % 6 + 1;
+    make_optional(&sim_config(3)->axes[2], ID);
+    config.lost_cycles_limit = tolerated;
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, SETTLE);
+    if (_i >= 6) {
+        cm1e_sim_segment_detach(segment_of(bus), 3, false);
+        cycle(bus);
+        cycles(bus, SETTLE);
+    }
+    simulate(bus, "unplug 2");
+    cycle(bus); /* the frame that is on its way */
+    for (uint32_t n = 1; n <= tolerated + 1; n++) {
+        ck_assert_msg(cycle(bus) != CM1E_OK, "cycle %u", n);
+        ck_assert_msg(cm1e_bus_slave_watch(bus, 2).silent == (n >= tolerated), "cycle %u of %u", n, tolerated);
+        ck_assert(!cm1e_bus_slave_watch(bus, 1).silent && cm1e_bus_slave_watch(bus, 1).fresh);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_alone");
@@ -221,6 +245,7 @@ int main(void)
     tcase_add_test(tests, the_second_of_two_tools_goes_on_when_the_first_one_leaves);
     tcase_add_test(tests, a_tool_that_comes_at_the_place_of_a_stranger_is_found_at_once);
     tcase_add_test(tests, an_operational_tool_that_takes_no_outputs_is_an_error_after_seven_cycles);
+    tcase_add_loop_test(tests, a_motor_beside_an_optional_one_is_silent_after_the_tolerated_cycles, 0, 12);
     tcase_add_test(tests, no_working_counter_makes_up_for_a_motor_that_is_always_there);
     tcase_add_test(tests, two_tools_come_whenever_the_first_one_loses_its_power);
     suite_add_tcase(suite, tests);
