@@ -301,12 +301,27 @@ static bool is_alone(const run_t *run, int number)
     return true;
 }
 
-bool fault_explains(const run_t *run, const machine_axis_t *axis)
+/** It is shorter than lost_cycles_limit, and no other one is near, with which it could be longer. */
+static bool is_tolerated(const run_t *run, const fault_t *fault)
+{
+    enum { NEAR = 10 };
+    const bool is_brief = is_of_frames(fault) || is_set(fault) || fault->kind == FAULT_UNPLUG;
+    if (!is_brief || fault->length >= run->scenario->lost_limit)
+        return false;
+    for (int i = 0; i < run->scenario->fault_count; i++) {
+        const fault_t *other = &run->scenario->faults[i];
+        if (other != fault && other->at <= end_of(fault) + NEAR && end_of(other) + NEAR >= fault->at)
+            return false;
+    }
+    return true;
+}
+
+bool fault_explains(const run_t *run, const machine_axis_t *axis, bool of_bus)
 {
     for (int i = 0; i < run->scenario->fault_count; i++) {
         const fault_t *fault = &run->scenario->faults[i];
         const machine_axis_t *there = &run->axes[(int)fault->axis];
-        if (fault->at <= run->cycle && (!is_absence(fault) || there == axis))
+        if (fault->at <= run->cycle && (!is_absence(fault) || there == axis) && !(of_bus && is_tolerated(run, fault)))
             return true;
     }
     return false;

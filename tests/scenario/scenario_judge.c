@@ -392,7 +392,7 @@ static void judge_place(run_t *run, machine_axis_t *axis)
 
 #define BIT(state) (1u << CM1E_AXIS_##state)
 
-/** An error of bus or drive, and none of the faults until now concerns this axis. An optional slave that leaves concerns
+/** An error of bus or drive, and none of the faults until now concerns this axis and is long enough. An optional slave that leaves concerns
  *  only its own axis. */
 static bool is_groundless(const run_t *run, const machine_axis_t *axis)
 {
@@ -401,7 +401,7 @@ static bool is_groundless(const run_t *run, const machine_axis_t *axis)
                         error == CM1E_ERROR_BUS_CLOCKS || error == CM1E_ERROR_AXIS_OFFLINE;
     const bool of_drive = error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_POSITION &&
                           axis->spec->stops == 0; /* a motor that presses against its stop is overloaded */
-    return (of_bus || of_drive) && run->phase == PHASE_PROGRAM && !fault_explains(run, axis);
+    return (of_bus || of_drive) && run->phase == PHASE_PROGRAM && !fault_explains(run, axis, of_bus);
 }
 
 /** Figure 2 of PLCopen Part 1, without its causes. Two changes may happen between two cycles. */

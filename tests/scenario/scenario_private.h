@@ -146,7 +146,7 @@ void fault_cycle(run_t *run);
 /** All that is still wrong with the machine is mended. */
 void fault_mend(run_t *run);
 /** One of the faults until now may be the reason why this axis stops. */
-bool fault_explains(const run_t *run, const machine_axis_t *axis);
+bool fault_explains(const run_t *run, const machine_axis_t *axis, bool of_bus);
 /** What had to be detected, was, and in time. */
 void fault_judge(run_t *run);
 
