@@ -68,8 +68,21 @@ static double lead_of_motor(const cm1e_axis_t *axis)
 /* u; of the motion before. */
 static double way_of_cycle(const cm1e_axis_t *axis) { return fabs(axis->setpoint.pursuit.velocity) * axis->cycle_s; }
 
+/* Another pause or silence comes before the drive has shown where the motor is after the first one: the motor still has
+ * the velocity from before that one, and the set-point, which began anew, has hardly any. */
+static bool waits_for_motor(const cm1e_axis_t *axis)
+{
+    return axis_has_extra(axis, EXTRA_PURSUIT) && !axis->setpoint.pursuit.under_way &&
+           fabs(axis->setpoint.pursuit.velocity) >= fabs(axis->setpoint.velocity);
+}
+
 static void prepare(cm1e_axis_t *axis, double unheard_s, uint8_t waits)
 {
+    if (may_pursue(axis) && waits_for_motor(axis)) {
+        axis->setpoint.pursuit.unheard_s += unheard_s;
+        axis->setpoint.pursuit.waits = waits;
+        return;
+    }
     if (!may_pursue(axis) || axis->setpoint.velocity == 0.0)
         return;
     const double v = axis->setpoint.velocity, gain = axis->setpoint.acceleration * 2.0 * axis->cycle_s;

@@ -10,8 +10,13 @@ static const double cycle_s = 1e-3;
 /* A planner without a limit of jerk, as many controls have one. */
 static double position, velocity, acceleration;
 static cm1e_command_id_t follow;
+static int64_t most_step; /* counts */
 
-void setUp(void) { bench_start(); }
+void setUp(void)
+{
+    bench_start();
+    most_step = 101; /* 2 u/s are 100 counts a cycle */
+}
 void tearDown(void) { bench_end(); }
 
 static cm1e_error_t try_follow(double at)
@@ -77,7 +82,7 @@ static void failed_with(cm1e_error_t error, const char *words)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bench_info().set_velocity);
     bench_cycles(100);
     TEST_ASSERT_FALSE(bench_info().powered);
-    TEST_ASSERT_LESS_OR_EQUAL_INT64(101, worst_step); /* 2 u/s are 100 counts a cycle */
+    TEST_ASSERT_LESS_OR_EQUAL_INT64(most_step, worst_step);
 }
 
 static void test_the_motor_goes_where_the_planner_says(void)
@@ -241,6 +246,32 @@ static void test_a_short_silence_delays_it(void)
     bench_start();
 }
 
+/* At nearly the maximum velocity the motor would exceed it on its way back to its place, and a planner does not slow
+ * down: the axis stops then. Slower, it goes on. */
+static void test_a_short_silence_near_the_maximum_velocity_stops_it(void)
+{
+    most_step = 2500; /* of the maximum velocity */
+    for (int cycles = 1; cycles <= CM1E_AXIS_RIDDEN_OUT_CYCLES; cycles++) {
+        for (int fast = 0; fast <= 1; fast++) {
+            bench_start();
+            begin();
+            acceleration = axis->limits.system.acceleration / 4.0;
+            while (velocity < axis->limits.system.velocity * (fast ? 0.999 : 0.5))
+                plan(1);
+            acceleration = 0.0;
+            plan(100);
+            silent(cycles);
+            plan(2);
+            if (fast)
+                failed_with(CM1E_ERROR_AXIS_SET_POINT_LIMIT, "the bus paused or was silent");
+            else
+                TEST_ASSERT_EQUAL_INT(CM1E_AXIS_SYNCHRONIZED_MOTION, bench_info().state);
+            bench_end();
+        }
+    }
+    bench_start();
+}
+
 static void test_a_long_silence_stops_it(void)
 {
     begin_in_motion();
@@ -327,6 +358,7 @@ int main(void)
     RUN_TEST(test_power_off_ends_it);
     RUN_TEST(test_a_drive_fault_ends_it);
     RUN_TEST(test_a_short_silence_delays_it);
+    RUN_TEST(test_a_short_silence_near_the_maximum_velocity_stops_it);
     RUN_TEST(test_a_long_silence_stops_it);
     RUN_TEST(test_more_positions_than_can_wait_are_not_lost_in_silence);
     RUN_TEST(test_silence_does_not_matter_at_rest);
