@@ -14,6 +14,7 @@ enum { FIRST_STEP = 260, CYCLES_LEAST = 900, CYCLES_MOST = 2600, ALLOCATIONS = 6
 static const uint64_t more_from = UINT64_C(1000000000);
 static const uint64_t wide_from = UINT64_C(2000000000); /**< below, none of what make_wide() adds */
 static const uint64_t swap_from = UINT64_C(3000000000); /**< below, no motors that change places */
+static const uint64_t close_from = UINT64_C(4000000000); /**< below, none of what make_close() adds */
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */
 
@@ -442,6 +443,51 @@ static void make_wide(scenario_t *scenario)
         make_absence(scenario);
 }
 
+/** Frames are lost, or the host stands still, for some cycles. */
+static void make_brief(fault_t *fault, const fault_t *first)
+{
+    static const uint8_t kinds_of[] = {FAULT_STALL, FAULT_LOSE, FAULT_LOSE_OUT, FAULT_LOSE_BACK};
+    *fault = (fault_t){.kind = kinds_of[pick(4)], .axis = first->axis, .network = first->network, .length = 1 + pick(9)};
+}
+
+/** A fault that follows another one within some cycles: what was begun because of the first one is not over yet. */
+static void make_next(scenario_t *scenario, const fault_t *first)
+{
+    enum { CLOSE = 12 };
+    fault_t *next = &scenario->faults[scenario->fault_count];
+    if (scenario->fault_count == SCENARIO_FAULTS)
+        return;
+    if (one_in(3))
+        make_fault(scenario, next);
+    else
+        make_brief(next, first);
+    next->at = first->at + (one_in(2) ? 0 : first->length) + 1 + pick(CLOSE);
+    scenario->fault_count++;
+}
+
+/** Faults and commands just after faults, and heavy loads. */
+static void make_close(scenario_t *scenario)
+{
+    enum { AFTER = 40 };
+    const int count = scenario->fault_count;
+    for (int n = 0; n < scenario->axis_count; n++)
+        if (scenario->axes[n].kind != AXIS_VIRTUAL && one_in(2))
+            scenario->axes[n].load_inertia = uniform(2e-5, 6e-5);
+    for (int i = 0; i < count; i++) {
+        fault_t *first = &scenario->faults[i];
+        if (first->kind == FAULT_SWAP || one_in(3))
+            continue;
+        if (one_in(2)) {
+            const double at = first->at;
+            make_brief(first, first);
+            first->at = at;
+        }
+        make_next(scenario, first);
+        if (scenario->step_count > 0 && one_in(2))
+            scenario->steps[pick(scenario->step_count)].at = first->at + 1 + pick(AFTER);
+    }
+}
+
 void scenario_make(scenario_t *scenario, uint64_t seed)
 {
     static const double limits[] = {3, 3, 3, 2, 5, 10};
@@ -467,6 +513,8 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
         make_wide(scenario);
     if (seed >= swap_from)
         make_swap(scenario);
+    if (seed >= close_from)
+        make_close(scenario);
     qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
     qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);
 }
