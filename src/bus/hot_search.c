@@ -20,6 +20,8 @@
 #define ID_NS INT64_C(100000000)
 
 enum { APRW_WORKING_COUNTER = 3, DOUBLES_IN_A_ROW = 3 };
+/** So many questions in a row without an answer, while frames come back: the device is gone. */
+enum { UNANSWERED_LIMIT = 10 };
 enum { PROTOCOL_COE = 0x04, PROTOCOL_FOE = 0x08, MAILBOX_OUT_CONTROL = 0x26, MAILBOX_IN_CONTROL = 0x22 };
 
 static void enter(cm1e_search_t *search, cm1e_search_step_t step, int64_t now_ns)
@@ -535,6 +537,24 @@ static bool is_machine(cm1e_search_step_t step)
            step == SEARCH_LATE_ID || step == SEARCH_BACK;
 }
 
+/** A machine of several datagrams repeats a question until its own deadline, which is long: the one of the SII is 5 s. */
+static bool is_gone(cm1e_search_t *search, const cm1e_datagram_t *d)
+{
+    if (d->working_counter != 0)
+        search->unanswered = 0;
+    else
+        search->unanswered += is_machine(search->step);
+    return search->unanswered >= UNANSWERED_LIMIT;
+}
+
+/** What is on the wire now is found by the next walk. */
+static void give_up(cm1e_search_t *search, int64_t now_ns)
+{
+    search->unanswered = 0;
+    walk_again(search, now_ns);
+    search->due_ns = now_ns + COUNT_PACE_NS;
+}
+
 bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_search_t *search = &bus->search;
@@ -547,8 +567,7 @@ bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
         enter(search, SEARCH_COUNT, now_ns);
     const bool machine = is_machine(search->step);
     if (!machine && now_ns >= search->deadline_ns) { /* it is gone */
-        walk_again(search, now_ns);
-        search->due_ns = now_ns + COUNT_PACE_NS;
+        give_up(search, now_ns);
         return false;
     }
     return machine ? run_machine(bus, d, now_ns) : fill(search, d);
@@ -557,6 +576,10 @@ bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
 void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_search_t *search = &bus->search;
+    if (is_gone(search, d)) {
+        give_up(search, now_ns);
+        return;
+    }
     if (search->step == SEARCH_SCOUT)
         cm1e_scout_result(&search->scout, d);
     else if (is_machine(search->step))

@@ -73,6 +73,7 @@ typedef struct cm1e_search {
     bool crowded;            /**< there are several: one could not be reached for a while, and kept it */
     bool entered, turn;
     bool only_looks;         /**< in this walk no device gets the address of the search */
+    uint8_t unanswered;      /**< questions to the device in a row */
     uint8_t doubles;         /**< walks in a row in which a slave was met twice */
     bool ends;               /**< the walk, with the device that is looked at */
     bool again;              /**< strangers are identified again in this walk */

@@ -151,6 +151,33 @@ START_TEST(an_operational_tool_that_takes_no_outputs_is_an_error_after_seven_cyc
 }
 END_TEST
 
+/** Whenever it is pulled while it is identified, it is no stranger whose EEPROM cannot be read, and comes back as quickly
+ *  as ever. */
+START_TEST(a_tool_that_is_pulled_while_it_is_identified_comes_back_at_once)
+{
+    enum { IDENTIFIED = 900, AGAIN = 100 };
+    make_optional(&sim_config(2)->axes[1], ID);
+    cm1e_bus_t *bus = start_bus();
+    const int stride = sweep_stride(1, 12);
+    cycles(bus, SETTLE);
+    for (int moment = sweep_first(0, stride); moment < IDENTIFIED; moment += stride) {
+        cm1e_sim_segment_detach(segment_of(bus), 2, false);
+        silent_cycles(bus, SETTLE);
+        cm1e_sim_segment_attach(segment_of(bus), 2);
+        silent_cycles(bus, moment);
+        cm1e_sim_segment_detach(segment_of(bus), 2, false);
+        silent_cycles(bus, AGAIN);
+        cm1e_sim_segment_attach(segment_of(bus), 2);
+        for (int n = 0; n < AWAY && cm1e_bus_presence(bus, 2) != CM1E_PRESENCE_THERE; n++) {
+            cycle(bus);
+            ck_assert_msg(cm1e_bus_strangers(bus, NULL, 0) == 0, "moment %d", moment);
+        }
+        ck_assert_msg(cm1e_bus_presence(bus, 2) == CM1E_PRESENCE_THERE, "moment %d", moment);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** The second of two tools is being identified when the first one loses its power, and with it the way to the second one,
  *  which keeps the address of the search. Then both are there again. */
 START_TEST(two_tools_come_whenever_the_first_one_loses_its_power)
@@ -247,6 +274,7 @@ int main(void)
     tcase_add_test(tests, an_operational_tool_that_takes_no_outputs_is_an_error_after_seven_cycles);
     tcase_add_loop_test(tests, a_motor_beside_an_optional_one_is_silent_after_the_tolerated_cycles, 0, 12);
     tcase_add_test(tests, no_working_counter_makes_up_for_a_motor_that_is_always_there);
+    tcase_add_test(tests, a_tool_that_is_pulled_while_it_is_identified_comes_back_at_once);
     tcase_add_test(tests, two_tools_come_whenever_the_first_one_loses_its_power);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
