@@ -74,7 +74,7 @@ static bool must_release(const cm1e_bus_slave_t *slave)
     const cm1e_recovery_step_t first = recovery->address_given ? RECOVERY_ADDRESS : RECOVERY_ID;
     if (slave->hot.optional && recovery->step >= RECOVERY_EEPROM && recovery->step < RECOVERY_RELEASE)
         return true;
-    return recovery->step >= first && recovery->step <= RECOVERY_OBJECTS;
+    return recovery->step >= first && recovery->step <= RECOVERY_VERSION;
 }
 
 /** Why an optional slave that answers was not taken. */
@@ -491,15 +491,23 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
 
-/** Takes the firmware of a motor that comes for the first time, because its units depend on it. */
+/** Whether the firmware of a device makes a difference. */
+static bool has_firmware(const cm1e_bus_slave_t *slave) { return slave->info.device && slave->info.device->firmware; }
+
+/** Takes the firmware of a motor that comes for the first time, because its units depend on it. One that has come back
+ *  may be another motor with the same address: its firmware has to behave as before. */
 static bool takes_version(cm1e_bus_slave_t *slave)
 {
     const cm1e_axis_config_t *axis = slave->hot.axis;
-    const size_t size = slave->version_sdo.size < sizeof slave->version - 1 ? slave->version_sdo.size
-                                                                            : sizeof slave->version - 1;
+    const size_t longest = sizeof slave->info.software_version - 1;
+    const size_t size = slave->version_sdo.size < longest ? slave->version_sdo.size : longest;
     slave->version[slave->version_sdo.error == CM1E_OK ? size : 0] = '\0';
-    memcpy(slave->info.software_version, slave->version, sizeof slave->info.software_version - 1);
-    if (slave->info.device && slave->info.device->firmware)
+    for (char *c = slave->version; *c; c++)
+        *c = *c >= ' ' && *c <= '~' ? *c : '?';
+    if (!slave->hot.planned)
+        return slave->info.device->firmware(slave->version) == slave->firmware;
+    memcpy(slave->info.software_version, slave->version, longest);
+    if (has_firmware(slave))
         slave->firmware = slave->info.device->firmware(slave->info.software_version);
     const char *shown = slave->info.software_version + (slave->info.software_version[0] == 'V');
     return !axis || !axis->firmware[0] || strcmp(axis->firmware, shown) == 0;
@@ -507,7 +515,7 @@ static bool takes_version(cm1e_bus_slave_t *slave)
 
 static bool next_version(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
-    if (!slave->facts.coe || !slave->hot.planned) {
+    if (!slave->facts.coe || !(slave->hot.planned || has_firmware(slave))) {
         advance(slave, now_ns);
         return false;
     }

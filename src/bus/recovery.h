@@ -28,7 +28,7 @@ typedef enum cm1e_recovery_step {
     RECOVERY_PRODUCT,
     RECOVERY_SERIAL,
     RECOVERY_OBJECTS,         /**< checks that it is still a bridge of the same revision with the same motors */
-    RECOVERY_VERSION,         /**< reads the firmware, if the slave comes for the first time */
+    RECOVERY_VERSION,         /**< the firmware: of a slave that comes for the first time, and of a motor */
     RECOVERY_SETUP,           /**< what the configuration writes into it in Pre-Operational */
     RECOVERY_MAPPING,
     RECOVERY_PLACE,          /**< places the process data, if the slave comes for the first time */
