@@ -120,12 +120,14 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     return error;
 }
 
-/** Slaves of the configuration get their safe values instead: cm1e_bus_make_outputs_safe(). */
+/** Slaves of the configuration get their safe values instead: cm1e_bus_make_outputs_safe(). An optional slave that is
+ *  away may still take outputs, because its recovery has failed or its answers were lost. */
 static void mute_recovering(cm1e_bus_t *bus)
 {
-    for (uint32_t i = 0; i < bus->slave_count && !bus->acyclic.rests; i++) {
+    const bool none = bus->acyclic.rests && !bus->search.used;
+    for (uint32_t i = 0; i < bus->slave_count && !none; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (cm1e_recovery_mutes(&slave->recovery) && !slave->config)
+        if ((cm1e_recovery_mutes(&slave->recovery) || slave->hot.away) && !slave->config)
             memset(bus->image + slave->placement.wire_output, 0, slave->placement.output_bytes);
     }
 }

@@ -65,7 +65,7 @@ static bool misses_one(const cm1e_bus_t *bus)
 }
 
 /** Slaves that are not counted may take part or not: on their way to Operational first the inputs count, then the
- *  outputs. A slave that is counted may have stopped to take outputs, or may have left if it has no inputs: nothing
+ *  outputs, also of one that was refused on its way, until the search has met it again. A slave that is counted may have stopped to take outputs, or may have left if it has no inputs: nothing
  *  shows which one it is, so the optional ones are asked for their state at once. Until each of them can have
  *  answered, the others go on; after that the working counter is wrong. */
 static bool explains(cm1e_bus_t *bus, int working_counter)
@@ -75,7 +75,7 @@ static bool explains(cm1e_bus_t *bus, int working_counter)
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         const bool optional = slave->hot.optional && slave->hot.counted;
-        if (!slave->hot.counted && !(slave->hot.planned && slave->hot.away)) {
+        if (!slave->hot.counted && !(slave->hot.planned && slave->hot.bound == 0)) {
             more -= gives(slave) && slave->silent_cycles == 0;
             most += takes(slave);
         }
