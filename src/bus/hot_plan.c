@@ -104,6 +104,8 @@ cm1e_error_t cm1e_hot_describe(cm1e_bus_t *bus, cm1e_diag_t *diag)
                 describe_motors(bus, slave);
             else
                 describe_device(slave);
+            slave->hot.vendor_id = slave->info.vendor_id;
+            slave->hot.product_code = slave->info.product_code;
         }
         take_settings(bus, slave);
         bus->search.used = bus->search.used || slave->hot.optional;
@@ -189,7 +191,7 @@ static cm1e_error_t plan_device(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, 
 {
     char label[CM1E_LABEL_LENGTH];
     const cm1e_slave_config_t *config = slave->config;
-    bool stated[2];
+    bool *stated = slave->hot.stated;
     for (int direction = 0; direction < 2; direction++) {
         stated[direction] = plan_stated(config, direction, &slave->mapped[direction]);
         const unsigned bits = stated[direction] ? slave->mapped[direction].bits : bits_named(config, !direction);

@@ -48,6 +48,12 @@ void cm1e_hot_lose(cm1e_bus_slave_t *slave)
     slave->info.al_state = slave->info.al_status_code = 0;
 }
 
+void cm1e_hot_refuse(cm1e_bus_slave_t *slave, const char *reason)
+{
+    slave->hot.refused = reason;
+    slave->hot.refused_again = true;
+}
+
 /* ---- for others -------------------------------------------------------------------------------------------------- */
 
 cm1e_presence_t cm1e_bus_presence(const cm1e_bus_t *bus, uint32_t position)

@@ -97,6 +97,18 @@ static void forget_strangers(cm1e_bus_t *bus)
     }
 }
 
+/** Of the devices that were refused, too. */
+static void forget_refused(cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (!slave->hot.away || !slave->hot.refused || slave->hot.refused_again)
+            continue;
+        slave->hot.refused = NULL;
+        cm1e_hot_note(bus, slave);
+    }
+}
+
 /* ---- who it is --------------------------------------------------------------------------------------------------- */
 
 static cm1e_address_kind_t kind_of(const cm1e_bus_slave_t *slave)
@@ -105,13 +117,14 @@ static cm1e_address_kind_t kind_of(const cm1e_bus_slave_t *slave)
     return axis ? axis->address_kind : slave->config ? slave->config->address_kind : CM1E_ADDRESS_POSITION;
 }
 
-/** A vendor of 0: it is recognised by its objects, when it is in Pre-Operational. */
+/** A vendor of 0: it is recognised by its objects, when it is in Pre-Operational. What is noted of a slave that never
+ *  took part may be that of a device that was refused. */
 static bool has_identity(const cm1e_bus_slave_t *slave, const cm1e_scouted_t *found)
 {
-    const bool unknown = slave->info.vendor_id == 0;
+    const uint32_t vendor_id = slave->hot.planned ? slave->hot.vendor_id : slave->info.vendor_id;
+    const uint32_t product_code = slave->hot.planned ? slave->hot.product_code : slave->info.product_code;
     const bool revision = !slave->config || !slave->config->revision || slave->config->revision == found->revision;
-    return unknown || (slave->info.vendor_id == found->vendor_id && slave->info.product_code == found->product_code &&
-                       revision);
+    return vendor_id == 0 || (vendor_id == found->vendor_id && product_code == found->product_code && revision);
 }
 
 static const cm1e_bus_slave_t *head_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
@@ -143,7 +156,7 @@ static cm1e_bus_slave_t *find_candidate(cm1e_bus_t *bus)
             continue;
         if (has_identity(slave, &bus->search.scout.found))
             return slave;
-        slave->hot.refused = "its vendor, product or revision is another one";
+        cm1e_hot_refuse(slave, "its vendor, product or revision is another one");
         cm1e_hot_note(bus, slave);
     }
     return NULL;
@@ -235,6 +248,7 @@ static void take_facts(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
     slave->facts.coe = coe;
     slave->facts.foe = foe;
     slave->facts.swapped = cm1e_sii_is_swapped(found->sync_managers);
+    slave->by_pdos = slave->hot.stated[0] || slave->hot.stated[1]; /* not as the last device, which was refused */
     slave->coe.mailbox = (cm1e_mailbox_t){
         .station = slave->facts.station, .out_start = found->mailbox_out_start,
         .out_length = coe || foe ? found->mailbox_out_length : 0, .in_start = found->mailbox_in_start,
@@ -329,6 +343,8 @@ static void next_place(cm1e_bus_t *bus, int64_t now_ns)
         return;
     }
     forget_strangers(bus);
+    if (search->again)
+        forget_refused(bus);
     search->doubles = 0;
     search->walk_ns = now_ns + (any_missing(bus) ? WALK_PACE_NS : STRANGER_PACE_NS);
     pause_search(search, now_ns);
@@ -353,8 +369,10 @@ static void take_count(cm1e_bus_t *bus, int working_counter, int64_t now_ns)
     search->seen_strangers = 0;
     search->place = search->orphan = 0;
     search->ends = search->crowded = false;
-    for (uint32_t i = 0; i < bus->slave_count; i++)
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
         bus->slaves[i].hot.seen = false;
+        bus->slaves[i].hot.refused_again &= !search->again;
+    }
     next_place(bus, now_ns);
 }
 

@@ -32,11 +32,14 @@ typedef struct cm1e_hot {
     const char *group;       /**< "": none */
     const cm1e_axis_config_t *axis; /**< its first one; NULL: none */
     uint32_t outputs_begin, inputs_begin; /**< of its room in the process image, from the beginning of the outputs */
-    const char *refused;     /**< why the last device with its address was not taken; NULL: none was */
+    const char *refused;     /**< why the device with its address was not taken; NULL: none is there */
+    bool refused_again;      /**< since the last walk began in which strangers are identified again */
     uint32_t allowed;        /**< atomic: somebody has asked for it */
     uint32_t presence;       /**< atomic: cm1e_presence_t */
     uint64_t out_since;      /**< cycle in which it was taken out of the working counter */
     uint16_t room[2];        /**< bytes that are kept free for it: outputs, inputs */
+    uint32_t vendor_id, product_code; /**< of a planned one: those that are expected; a vendor of 0: not known */
+    bool stated[2];          /**< of a planned one: the configuration states its process data, so they are known */
     cm1e_scouted_t scouted;
 } cm1e_hot_t;
 
@@ -128,5 +131,8 @@ void cm1e_hot_note(cm1e_bus_t *bus, cm1e_bus_slave_t *slave);
 bool cm1e_hot_may_recover(cm1e_bus_slave_t *slave, bool asked);
 /** A recovery of an optional slave has failed: it is searched for again. @rt cycle */
 void cm1e_hot_lose(cm1e_bus_slave_t *slave);
+/** Notes why a device with its address is not taken; the search forgets it when no such device is met again.
+ *  @rt cycle */
+void cm1e_hot_refuse(cm1e_bus_slave_t *slave, const char *reason);
 
 #endif

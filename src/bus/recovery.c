@@ -101,8 +101,7 @@ static const char *refusal(cm1e_recovery_step_t step)
 static void give_to_search(cm1e_bus_slave_t *slave, const char *reason)
 {
     slave->recovery.step = RECOVERY_IDLE;
-    if (!slave->hot.refused)
-        slave->hot.refused = reason;
+    cm1e_hot_refuse(slave, slave->hot.refused ? slave->hot.refused : reason);
     cm1e_hot_lose(slave);
 }
 
@@ -581,7 +580,7 @@ static bool takes_mapping(cm1e_bus_slave_t *slave)
     const cm1e_mapping_job_t *job = &slave->mapping;
     const bool motors = cm1e_bus_has_motors(slave);
     for (int direction = 0; direction < 2; direction++) {
-        const bool free = slave->hot.planned && (motors || slave->mapped[direction].entry_count == 0);
+        const bool free = slave->hot.planned && (motors || !slave->hot.stated[direction]);
         if (!free && !cm1e_mapping_equal(&job->mapped[direction], &slave->mapped[direction]))
             return false;
     }
