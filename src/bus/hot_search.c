@@ -63,8 +63,9 @@ static bool is_known_stranger(const cm1e_search_t *search, uint16_t place)
 
 static void keep_stranger(cm1e_bus_t *bus)
 {
+    static const cm1e_scouted_t nothing;
     cm1e_search_t *search = &bus->search;
-    const cm1e_scouted_t *found = &search->scout.found;
+    const cm1e_scouted_t *found = search->scout.good ? &search->scout.found : &nothing;
     const cm1e_stranger_t stranger = {
         .place = search->place, .alias = search->alias, .explicit_id = search->al.explicit_id,
         .vendor_id = found->vendor_id, .product_code = found->product_code, .revision = found->revision,

@@ -273,12 +273,89 @@ START_TEST(the_wrong_device_is_refused_until_the_right_one_comes)
 }
 END_TEST
 
+/* ---- strangers --------------------------------------------------------------------------------------------------- */
+
+/** Behind the two motors; then the tool. */
+enum { STRANGERS = CM1E_STRANGERS + 3, FIRST_STRANGER = 3, BEHIND = FIRST_STRANGER + STRANGERS };
+
+static cm1e_bus_t *start_with_strangers(void)
+{
+    describe(&config, 2);
+    describe(&wire, 2);
+    add_tool(&config, "tool", CM1E_SIM_SLAVE_DIGITAL, 4);
+    for (unsigned n = 0; n < STRANGERS; n++) {
+        char name[16];
+        snprintf(name, sizeof name, "stranger%u", n);
+        add_tool(&wire, name, CM1E_SIM_SLAVE_DIGITAL, 4)->address++;
+    }
+    add_tool(&wire, "right", CM1E_SIM_SLAVE_DIGITAL, 4);
+    cm1e_bus_t *bus = open_bus_on(&wire);
+    for (uint32_t place = FIRST_STRANGER; place <= BEHIND; place++)
+        cm1e_sim_segment_detach(segment_of(bus), place, false);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+/** Those that are not kept are not configured either, and the tool behind all of them is found. */
+START_TEST(more_strangers_than_are_kept_keep_nobody_out)
+{
+    enum { TIME_OF_A_STRANGER = 1000 };
+    cm1e_stranger_t strangers[CM1E_STRANGERS];
+    cm1e_bus_t *bus = start_with_strangers();
+    for (uint32_t place = FIRST_STRANGER; place <= BEHIND; place++)
+        attach(bus, place);
+    for (int n = 0; n < STRANGERS * TIME_OF_A_STRANGER; n++)
+        ck_assert_int_eq(cycle(bus), CM1E_OK);
+    ck_assert_msg(cm1e_bus_presence(bus, TOOL) == CM1E_PRESENCE_THERE, "%s", how(bus));
+    ck_assert_uint_eq(cm1e_bus_strangers(bus, strangers, CM1E_STRANGERS), CM1E_STRANGERS);
+    for (uint32_t n = 0; n < CM1E_STRANGERS; n++)
+        ck_assert_uint_eq(strangers[n].place, FIRST_STRANGER + n);
+    for (uint32_t place = FIRST_STRANGER; place < BEHIND; place++) {
+        ck_assert_uint_eq(cm1e_sim_slave_al_state(at(bus, place)), CM1E_AL_INIT);
+        ck_assert(station_of(bus, place) == 0 || station_of(bus, place) == 0x2FFE);
+        detach(bus, place);
+    }
+    for (int n = 0; n < GONE; n++)
+        cycle(bus);
+    ck_assert_uint_eq(cm1e_bus_strangers(bus, strangers, CM1E_STRANGERS), 0);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
+/** Its EEPROM answers too slowly. When it is mended, the device is known. */
+START_TEST(a_device_whose_eeprom_cannot_be_read_is_named_and_may_be_mended)
+{
+    enum { SLOW = 8000 };
+    char text[CM1E_PRESENCE_TEXT];
+    cm1e_stranger_t stranger;
+    cm1e_bus_t *bus = start_without_tool(0);
+    simulate(bus, "quirk 3 slow-eeprom 1000000");
+    attach(bus, RIGHT);
+    for (int n = 0; n < SLOW; n++)
+        good_cycle(bus);
+    ck_assert_uint_eq(cm1e_bus_strangers(bus, &stranger, 1), 1);
+    cm1e_stranger_text(&stranger, text, sizeof text);
+    ck_assert_str_eq(text, "A device at place 2 of the wire was refused: its EEPROM cannot be read.");
+    ck_assert_int_eq(cm1e_bus_presence(bus, TOOL), CM1E_PRESENCE_ABSENT);
+    simulate(bus, "quirk 3 nothing");
+    for (int n = 0; n < SLOW && cm1e_bus_presence(bus, TOOL) != CM1E_PRESENCE_THERE; n++)
+        good_cycle(bus);
+    ck_assert_msg(cm1e_bus_presence(bus, TOOL) == CM1E_PRESENCE_THERE, "%s", how(bus));
+    ck_assert_uint_eq(cm1e_bus_strangers(bus, &stranger, 1), 0);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_refused");
     TCase *tests = tcase_create("refused");
     tcase_set_timeout(tests, 60);
     tcase_add_loop_test(tests, the_wrong_device_is_refused_until_the_right_one_comes, 0, CASES);
+    tcase_add_test(tests, more_strangers_than_are_kept_keep_nobody_out);
+    tcase_add_test(tests, a_device_whose_eeprom_cannot_be_read_is_named_and_may_be_mended);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
