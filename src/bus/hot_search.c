@@ -291,8 +291,15 @@ static void pause_search(cm1e_search_t *search, int64_t now_ns)
     search->due_ns = now_ns + COUNT_PACE_NS;
 }
 
+/** Whether a slave that does not answer at its address still runs, because its inputs come. One without inputs may run
+ *  until it counts as lost. */
+static bool runs(const cm1e_bus_slave_t *slave)
+{
+    return slave->hot.counted && (slave->placement.input_bytes > 0 ? slave->silent_cycles == 0 : !slave->watch.lost);
+}
+
 /** A device has the address of the search, and nobody knows which one it had: an answer was lost. It is the one of ours
- *  that was not seen; else it is a new one. */
+ *  that runs and was not seen; else it is a new one, or one of ours that has to be identified again. */
 static void take_orphan(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_search_t *search = &bus->search;
@@ -301,7 +308,7 @@ static void take_orphan(cm1e_bus_t *bus, int64_t now_ns)
     search->ends = true; /* all places have been seen */
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (slave->hot.seen || slave->hot.away)
+        if (slave->hot.seen || slave->hot.away || !runs(slave))
             continue;
         search->returned = slave->facts.station;
         enter(search, SEARCH_RETURN, now_ns);
