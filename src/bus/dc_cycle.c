@@ -28,14 +28,18 @@ static void lose(cm1e_dc_t *dc, cm1e_dc_slave_t *slave)
     dc->losses++;
 }
 
+/** Nobody looks at the deviation of a reference, which is none, so what was seen before is over. */
 static void set_reference(cm1e_bus_t *bus, uint16_t position)
 {
     cm1e_dc_t *dc = &bus->dc;
     dc->silent = 0;
     dc->candidate = 0;
     dc->reference = position;
-    if (position)
+    if (position) {
         dc->slaves[position - 1].clock.is_reference = true;
+        dc->slaves[position - 1].clock.lost = false;
+        dc->slaves[position - 1].beyond = 0;
+    }
     cm1e_soem_use_clocks(bus->soem, position);
 }
 
@@ -158,9 +162,12 @@ void cm1e_dc_note_status(cm1e_bus_slave_t *slave, uint16_t al_status_code)
 {
     enum { SYNC_ERROR = 0x001A, FATAL = 0x002C, NO_SYNC = 0x002D, FIRST_OF_CLOCKS = 0x0030, LAST_OF_CLOCKS = 0x0037 };
     const bool of_clocks = al_status_code >= FIRST_OF_CLOCKS && al_status_code <= LAST_OF_CLOCKS;
-    if (slave->dc && slave->dc->slaves[slave->info.position - 1].clock.sync0_ns &&
+    cm1e_dc_slave_t *own = slave->dc ? &slave->dc->slaves[slave->info.position - 1] : NULL;
+    if (own && own->clock.sync0_ns &&
         (of_clocks || al_status_code == SYNC_ERROR || al_status_code == FATAL || al_status_code == NO_SYNC))
-        lose(slave->dc, &slave->dc->slaves[slave->info.position - 1]);
+        lose(slave->dc, own);
+    else if (own && al_status_code == 0 && own->clock.is_reference && !slave->dc->leader)
+        own->clock.lost = false; /* nobody looks at its deviation */
 }
 
 bool cm1e_dc_next_look(cm1e_bus_t *bus, cm1e_datagram_t *d)

@@ -259,6 +259,7 @@ START_TEST(the_only_clock_is_the_reference_again)
     ck_assert_uint_eq(clocks_of(bus).reference, 1);
     ck_assert_msg(fabs(clocks_of(bus).phase_mean_ns) < 50, "%g ns", clocks_of(bus).phase_mean_ns);
     ck_assert_int_gt(clocks_of(bus).reference_ns, before_ns);
+    ck_assert(!clock_of(bus, 1).lost && clock_of(bus, 1).losses == 1);
     cm1e_bus_close(bus);
 }
 END_TEST
