@@ -89,6 +89,28 @@ START_TEST(a_motor_with_another_firmware_is_not_taken)
 }
 END_TEST
 
+/** Another master gave it the address of ours, and it has kept its power. Its alias tells that it is another one. */
+START_TEST(a_motor_with_our_address_and_another_alias_gives_it_back)
+{
+    enum { ALIAS = 5, FOUND = 1000 };
+    const char *version = tested_firmware();
+    cm1e_bus_t *bus = start_machine(version, version, false);
+    uint8_t *memory = cm1e_sim_segment_slave(segment_of(bus), NEW)->memory;
+    exchange(bus, OLD, NEW);
+    for (int n = 0; n < FOUND && !cm1e_sim_esc_present(cm1e_sim_segment_slave(segment_of(bus), NEW)); n++)
+        cycle(bus);
+    cm1e_put_u16(memory + ESC_STATION_ADDRESS, 0x1002);
+    cm1e_put_u16(memory + ESC_STATION_ALIAS, ALIAS);
+    ck_assert(!comes(bus, NEW));
+    ck_assert_uint_eq(cm1e_get_u16(memory + ESC_STATION_ADDRESS), 0);
+    ck_assert_uint_eq(state_of(bus, NEW), CM1E_AL_INIT);
+    exchange(bus, NEW, OLD);
+    ck_assert(comes(bus, OLD));
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_exchanged");
@@ -96,6 +118,7 @@ int main(void)
     tcase_set_timeout(tests, 60);
     tcase_add_loop_test(tests, a_motor_with_another_firmware_is_not_taken, 0,
                         2 * CM1E_FIRMWARE_COUNT * CM1E_FIRMWARE_COUNT);
+    tcase_add_test(tests, a_motor_with_our_address_and_another_alias_gives_it_back);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

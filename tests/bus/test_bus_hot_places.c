@@ -1,6 +1,6 @@
-/* The search for optional slaves addresses devices by their places on the wire, which move when a device comes. Whatever
- * moves between two of its datagrams, and whichever answer is lost: a slave that runs gets its own station address back,
- * no two devices have the same one, and a stranger never has one of ours. */
+/* The search for optional slaves, and the recovery, address devices by their places on the wire, which move when a device
+ * comes or leaves. Whatever moves between two of their datagrams, and whichever answer of the search is lost: a slave that
+ * runs gets its own station address back, no two devices have the same one, and a stranger never has one of ours. */
 #include "bus_support.h"
 #include "cm1e/hot_connect.h"
 #include "nic/frame.h"
@@ -184,6 +184,49 @@ START_TEST(a_stranger_never_gets_the_address_of_a_slave_that_is_lost)
 }
 END_TEST
 
+/* ---- the recovery ------------------------------------------------------------------------------------------------ */
+
+enum { RECOVERED = 2, BEHIND = 3 };
+
+/** The slave that is to get its address leaves just before: the next one is at its place. */
+static cm1e_tap_verdict_t leave(void *context, cm1e_tap_frame_t *frame)
+{
+    arrival_t *arrival = context;
+    if (frame->direction == CM1E_TAP_SENT && !arrival->come && asks_station(frame, APRW, RECOVERED)) {
+        cm1e_sim_segment_detach(segment_of(arrival->bus), RECOVERED, false);
+        arrival->come = true;
+    }
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(a_running_slave_that_the_recovery_meets_gets_its_address_back)
+{
+    enum { RETURNED = 5 };
+    sim_config(3);
+    config.axes[1].recover = CM1E_RECOVER_AUTO;
+    cm1e_bus_t *bus = start_bus();
+    arrival_t arrival = {.bus = bus};
+    unsigned without = 0;
+    cycles(bus, 20);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), leave, &arrival);
+    simulate(bus, "power-cycle 2 50");
+    for (int n = 0; n < COMES; n++) {
+        cycle(bus);
+        without += station_of(bus, BEHIND) != 0x1003;
+        ck_assert(cm1e_sim_slave_al_state(at(bus, BEHIND)) != CM1E_AL_INIT);
+        expect_no_doubles(bus);
+        if (n == COMES / 2)
+            cm1e_sim_segment_attach(segment_of(bus), RECOVERED);
+    }
+    ck_assert(arrival.come);
+    ck_assert_uint_gt(without, 0);
+    ck_assert_uint_le(without, RETURNED);
+    ck_assert_uint_eq(station_of(bus, RECOVERED), 0x1002);
+    ck_assert_uint_eq(cm1e_sim_slave_al_state(at(bus, RECOVERED)), CM1E_AL_OP);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_places");
@@ -191,6 +234,7 @@ int main(void)
     tcase_set_timeout(tests, 60);
     tcase_add_loop_test(tests, a_running_slave_that_moves_gets_its_address_back, 0, 4);
     tcase_add_loop_test(tests, a_stranger_never_gets_the_address_of_a_slave_that_is_lost, 0, 2 * 40);
+    tcase_add_test(tests, a_running_slave_that_the_recovery_meets_gets_its_address_back);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
