@@ -323,6 +323,27 @@ START_TEST(more_strangers_than_are_kept_keep_nobody_out)
 }
 END_TEST
 
+/** The one that came first is the tool. */
+START_TEST(a_second_device_with_the_same_address_is_a_stranger)
+{
+    cm1e_stranger_t stranger;
+    cm1e_bus_t *bus = start_without_tool(0);
+    attach(bus, RIGHT);
+    expect_there(bus, RIGHT);
+    const uint16_t own = station_of(bus, RIGHT);
+    attach(bus, WRONG);
+    for (int n = 0; n < REFUSED_CYCLES; n++) {
+        good_cycle(bus);
+        ck_assert_int_eq(cm1e_bus_presence(bus, TOOL), CM1E_PRESENCE_THERE);
+        ck_assert(station_of(bus, RIGHT) == own && station_of(bus, WRONG) != own);
+    }
+    ck_assert_uint_eq(cm1e_bus_strangers(bus, &stranger, 1), 1);
+    ck_assert(stranger.place == WRONG && stranger.alias == ALIAS);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 /** Its EEPROM answers too slowly. When it is mended, the device is known. */
 START_TEST(a_device_whose_eeprom_cannot_be_read_is_named_and_may_be_mended)
 {
@@ -355,6 +376,7 @@ int main(void)
     tcase_set_timeout(tests, 60);
     tcase_add_loop_test(tests, the_wrong_device_is_refused_until_the_right_one_comes, 0, CASES);
     tcase_add_test(tests, more_strangers_than_are_kept_keep_nobody_out);
+    tcase_add_test(tests, a_second_device_with_the_same_address_is_a_stranger);
     tcase_add_test(tests, a_device_whose_eeprom_cannot_be_read_is_named_and_may_be_mended);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

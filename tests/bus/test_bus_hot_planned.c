@@ -1,0 +1,137 @@
+/* What an optional slave that is absent at the start needs in the configuration, because nothing can be read of it: where
+ * it is missing, the start is refused in words, and with the slave plugged in it succeeds. */
+#include "bus_support.h"
+#include "cm1e/hot_connect.h"
+#include "sim/segment.h"
+
+enum { ALIAS = 4711, TOOL = 2 };
+
+static cm1e_bus_config_t wire;
+
+/** The same network twice: a motor, and an optional analog device with two inputs and outputs. */
+static void describe(cm1e_bus_config_t *to)
+{
+    cm1e_bus_config_free(to);
+    cm1e_bus_config_init(to, "sim", 1);
+    to->virtual_time = true;
+    to->sim_pdo_order = tested_order();
+    snprintf(to->axes[0].firmware, sizeof to->axes[0].firmware, "%s", tested_firmware());
+    cm1e_slave_config_t *tool = cm1e_bus_config_add_slave(to, "tool");
+    tool->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_ANALOG, .inputs = 2, .outputs = 2};
+    tool->vendor = 0x000004D8;
+    tool->product = 0x00001234;
+    tool->address_kind = CM1E_ADDRESS_ALIAS;
+    tool->address = ALIAS;
+    tool->optional = true;
+}
+
+static void has_pulses(void) { config.slaves[0].dc.sync0_us = 1000; }
+
+static void add_signal(bool output)
+{
+    cm1e_signal_config_t *signal = &config.slaves[0].signals[config.slaves[0].signal_count++];
+    snprintf(signal->name, sizeof signal->name, "level");
+    signal->output = output;
+    signal->index = output ? 0x7000 : 0x6000;
+    signal->subindex = 0x11;
+}
+
+static void names_an_input(void) { add_signal(false); }
+static void names_an_output(void) { add_signal(true); }
+
+/** Which entries they have is not stated. */
+static void assigns_pdos(void)
+{
+    config.slaves[0].inputs_pdo_count = 1;
+    config.slaves[0].inputs_pdos[0] = 0x1A00;
+    add_signal(false);
+}
+
+static const struct {
+    void (*change)(void);
+    cm1e_error_t error;
+    const char *words;
+} cases[] = {
+    {has_pulses, CM1E_ERROR_CONFIG, "is absent, and it has dc: its clock is set up only at the start. Start with the slave "
+     "plugged in."},
+    {names_an_input, CM1E_ERROR_PDO_MAPPING, "is absent, so where its object 0x6000:11 will be is not known (signal "
+     "\"level\"): state its bit, or inputs_pdos and mapping, or start with the slave plugged in."},
+    {names_an_output, CM1E_ERROR_PDO_MAPPING, "is absent, so where its object 0x7000:11 will be is not known (signal "
+     "\"level\"): state its bit, or outputs_pdos and mapping, or start with the slave plugged in."},
+    {assigns_pdos, CM1E_ERROR_PDO_MAPPING, "is absent, so where its object 0x6000:11 will be is not known (signal "
+     "\"level\"): state its bit, or inputs_pdos and mapping, or start with the slave plugged in."},
+};
+
+START_TEST(what_is_not_known_of_an_absent_slave_is_said)
+{
+    describe(&config);
+    describe(&wire);
+    cases[_i].change();
+    cm1e_bus_t *bus = open_bus_on(&wire);
+    cm1e_sim_segment_detach(segment_of(bus), TOOL, true);
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), cases[_i].error);
+    ck_assert_msg(strstr(diag.text, "\"tool\"") && strstr(diag.text, cases[_i].words), "%s", diag.text);
+    ck_assert_uint_eq(cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), 1)), CM1E_AL_INIT);
+    cm1e_sim_segment_attach(segment_of(bus), TOOL);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_bus_presence(bus, TOOL), CM1E_PRESENCE_THERE);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
+/** The network has as many as a bus may have, and the optional one would be one more. */
+START_TEST(more_slaves_than_a_bus_may_have_are_refused_in_words)
+{
+    describe(&config);
+    describe(&wire);
+    config.axes[0].address = wire.axes[0].address = CM1E_MAX_SLAVES;
+    wire.slave_count = 0;
+    wire.sim_gaps = CM1E_SIM_IO_COUPLER;
+    cm1e_bus_t *bus = open_bus_on(&wire);
+    const cm1e_error_t error = cm1e_bus_start(bus, &diag);
+    ck_assert_int_eq(error, CM1E_ERROR_BUS_IDENTITY);
+    ck_assert_int_eq(diag.error, error);
+    ck_assert_str_eq(diag.text, "With the optional slaves that are absent there are more than 512.");
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
+/** Of a slave that is not optional, and of one that there is not. */
+START_TEST(a_slave_that_does_not_answer_is_named)
+{
+    enum { LOST = 2, NONE = 3 };
+    char text[CM1E_PRESENCE_TEXT];
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 20);
+    simulate(bus, "power-cycle 2 60000");
+    for (int n = 0; n < 100; n++)
+        cycle(bus);
+    ck_assert_int_eq(cm1e_bus_presence(bus, LOST), CM1E_PRESENCE_ABSENT);
+    cm1e_bus_presence_text(bus, LOST, text, sizeof text);
+    ck_assert_str_eq(text, "Slave 2 (\"axis2\", CM1-E) does not answer: check its power and the cables up to it.");
+    ck_assert_int_eq(cm1e_bus_recover(bus, LOST, &diag), CM1E_ERROR_STATE);
+    ck_assert_str_eq(diag.text, text);
+    ck_assert_int_eq(cm1e_bus_presence(bus, NONE), CM1E_PRESENCE_ABSENT);
+    cm1e_bus_presence_text(bus, NONE, text, sizeof text);
+    ck_assert_str_eq(text, "");
+    ck_assert_int_eq(cm1e_bus_recover(bus, NONE, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_str_eq(diag.text, "There is no slave 3.");
+    ck_assert(cm1e_bus_slave_watch(bus, 0).lost && cm1e_bus_slave_watch(bus, NONE).lost);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_hot_planned");
+    TCase *tests = tcase_create("planned");
+    tcase_set_timeout(tests, 60);
+    tcase_add_loop_test(tests, what_is_not_known_of_an_absent_slave_is_said, 0, sizeof cases / sizeof cases[0]);
+    tcase_add_test(tests, a_slave_that_does_not_answer_is_named);
+    tcase_add_test(tests, more_slaves_than_a_bus_may_have_are_refused_in_words);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
