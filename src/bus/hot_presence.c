@@ -1,5 +1,6 @@
 /* How it stands with the slaves that come and go, in words; and who brings them back. */
 #include <stdio.h>
+#include <string.h>
 
 #include "bus/bus_internal.h"
 #include "bus/presence_text.h"
@@ -81,6 +82,15 @@ static void address_text(const cm1e_bus_slave_t *slave, char *text, size_t size)
                                       : kind == CM1E_ADDRESS_EXPLICIT_ID ? "explicit device ID" : "position", address);
 }
 
+/** Somebody who asks again and again wants to know why it is in vain. */
+static void add_failure(const cm1e_bus_slave_t *slave, char *text, size_t size)
+{
+    const char *why = cm1e_recovery_failure(&slave->recovery);
+    const size_t used = strnlen(text, size);
+    if (why)
+        snprintf(text + used, size - used, " The last attempt failed: %s.", why);
+}
+
 void cm1e_presence_sentence(const cm1e_bus_t *bus, uint32_t position, cm1e_presence_t presence, char *text,
                             size_t size)
 {
@@ -101,16 +111,22 @@ void cm1e_presence_sentence(const cm1e_bus_t *bus, uint32_t position, cm1e_prese
     case CM1E_PRESENCE_ABSENT:
         if (slave->hot.optional)
             snprintf(text, size, "%s is optional and absent: no device with %s is on the wire.", label, address);
+        else if (cm1e_recovery_failure(&slave->recovery)) /* it gave its address back */
+            snprintf(text, size, "%s is tried again.", label);
         else
             snprintf(text, size, "%s does not answer: check its power and the cables up to it.", label);
+        if (!slave->hot.optional)
+            add_failure(slave, text, size);
         break;
     case CM1E_PRESENCE_WAITS:
         snprintf(text, size, "%s answers and waits for being asked: %s`cm1e recover %u` or cm1e_bus_recover() brings "
                  "it back to Operational.", label, cm1e_bus_is_used(slave) ? "MC_Reset of its axis, " : "",
                  (unsigned)position);
+        add_failure(slave, text, size);
         break;
     case CM1E_PRESENCE_COMING:
         snprintf(text, size, "%s is on its way to Operational.", label);
+        add_failure(slave, text, size);
         break;
     case CM1E_PRESENCE_REFUSED:
         snprintf(text, size, "%s is absent: a device with %s was refused, %s.", label, address,

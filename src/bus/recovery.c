@@ -77,26 +77,6 @@ static bool must_release(const cm1e_bus_slave_t *slave)
     return recovery->step >= first && recovery->step <= RECOVERY_VERSION;
 }
 
-/** Why an optional slave that answers was not taken. */
-static const char *refusal(cm1e_recovery_step_t step)
-{
-    static const char *const reasons[RECOVERY_STEPS] = {
-        [RECOVERY_INIT] = "it does not go to Init", [RECOVERY_PRE_OP] = "it does not go to Pre-Operational",
-        [RECOVERY_ID] = "its explicit device ID is another one",
-        [RECOVERY_VENDOR] = "its vendor (0x1018:1) is not that of its EEPROM",
-        [RECOVERY_PRODUCT] = "its product code (0x1018:2) is not that of its EEPROM",
-        [RECOVERY_SERIAL] = "its serial number (0x1018:4) is not that of its EEPROM",
-        [RECOVERY_OBJECTS] = "it is not of the expected kind, or its motors are others",
-        [RECOVERY_VERSION] = "its firmware is not the expected one",
-        [RECOVERY_SETUP] = "it does not take what the configuration writes into it",
-        [RECOVERY_MAPPING] = "its PDO mapping cannot be used, or is another one than before",
-        [RECOVERY_SAFE_OP] = "it does not go to Safe-Operational",
-        [RECOVERY_SETUP_OP] = "it does not take what the configuration writes into it",
-        [RECOVERY_OP] = "it does not go to Operational",
-    };
-    return reasons[step] ? reasons[step] : "it cannot be configured";
-}
-
 /** Hands an optional slave to the search again after its recovery has ended. */
 static void give_to_search(cm1e_bus_slave_t *slave, const char *reason)
 {
@@ -230,7 +210,7 @@ static void result_release(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, in
 {
     (void)d;
     if (slave->hot.optional)
-        give_to_search(slave, refusal(slave->recovery.failed_at));
+        give_to_search(slave, cm1e_recovery_reason(slave->recovery.failed_at));
     else
         enter(slave, RECOVERY_PAUSE, now_ns);
 }

@@ -67,4 +67,10 @@ void cm1e_recovery_cancel(struct cm1e_bus_slave *slave);
 bool cm1e_recovery_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns);
 void cm1e_recovery_result(struct cm1e_bus_slave *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
 
+/* recovery_text.c */
+/** What an attempt that fails at this step says of a slave that answers. */
+const char *cm1e_recovery_reason(cm1e_recovery_step_t step);
+/** Why the last attempt with a slave that answers has failed: "it does not go to Operational"; NULL: it has not. */
+const char *cm1e_recovery_failure(const cm1e_recovery_t *recovery);
+
 #endif

@@ -102,10 +102,14 @@ static void expect_there(cm1e_bus_t *bus, uint16_t position)
 static void expect_refused(cm1e_bus_t *bus, uint16_t position, const char *reason)
 {
     unsigned refused = 0, tries = 0;
+    char failure[100];
+    snprintf(failure, sizeof failure, " The last attempt failed: %s.", reason);
     for (int n = 0; n < TRIES; n++) {
         const bool before = cm1e_bus_presence(bus, position) == CM1E_PRESENCE_REFUSED;
         good_cycle(bus, position);
         ck_assert_int_ne(cm1e_bus_presence(bus, position), CM1E_PRESENCE_THERE);
+        if (cm1e_bus_presence(bus, position) == CM1E_PRESENCE_WAITS && refused > 0)
+            ck_assert_msg(strstr(how(bus, position), failure) != NULL, "%s", how(bus, position));
         if (cm1e_bus_presence(bus, position) != CM1E_PRESENCE_REFUSED)
             continue;
         refused++;
@@ -190,12 +194,48 @@ START_TEST(a_motor_that_is_in_operational_without_being_known_to_be_gets_no_outp
 }
 END_TEST
 
+/** A motor that is always there is tried again for as long as it answers, and its text says why in vain. */
+START_TEST(a_motor_that_is_always_there_and_cannot_be_configured_is_tried_again)
+{
+    unwilling_t motor = cases[_i];
+    char text[200];
+    cm1e_sim_probe_t probe;
+    unsigned told = 0;
+    sim_config(3);
+    config.axes[TOOL - 1].recover = CM1E_RECOVER_AUTO;
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 20);
+    motor.station = 0x1000 + TOOL;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), spoil, &motor);
+    simulate(bus, "power-cycle 2 20");
+    for (int n = 0; n < 20; n++)
+        cycle(bus);
+    cm1e_put_u16(cm1e_bus_outputs(bus) + cm1e_bus_find_output(bus, TOOL, 0x6040, 0).offset, CONTROLWORD);
+    snprintf(text, sizeof text, " The last attempt failed: %s.", motor.reason);
+    for (int n = 0; n < TRIES; n++) {
+        cycle(bus);
+        cm1e_sim_probe(segment_of(bus), TOOL, &probe);
+        ck_assert_uint_eq(probe.controlword, 0);
+        ck_assert_uint_ne(cm1e_sim_slave_al_state(at(bus, TOOL)), CM1E_AL_OP);
+        told += strstr(how(bus, TOOL), text) != NULL;
+    }
+    ck_assert_msg(told > TRIES * 3 / 4, "%u: %s", told, how(bus, TOOL));
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    for (int n = 0; n < COMES && cm1e_bus_presence(bus, TOOL) != CM1E_PRESENCE_THERE; n++)
+        cycle(bus);
+    ck_assert_str_eq(how(bus, TOOL), "");
+    cycles(bus, 100);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_unwilling");
     TCase *tests = tcase_create("unwilling");
     tcase_set_timeout(tests, 60);
     tcase_add_loop_test(tests, a_motor_that_cannot_be_configured_is_refused_until_it_is_mended, 0, 4 * CASES);
+    tcase_add_loop_test(tests, a_motor_that_is_always_there_and_cannot_be_configured_is_tried_again, 0, CASES);
     tcase_add_test(tests, a_motor_that_is_in_operational_without_being_known_to_be_gets_no_outputs);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
