@@ -32,19 +32,20 @@ typedef struct unwilling {
     uint16_t offset;    /**< register that cannot be written; AL control: `state` is refused */
     uint8_t state;
     const char *reason;
+    unsigned kept;      /**< frames that were lost which take its address back */
 } unwilling_t;
 
 static const unwilling_t cases[] = {
-    {0, 0x0120, CM1E_AL_INIT, "it does not go to Init"},
-    {0, 0x0120, CM1E_AL_PRE_OP, "it does not go to Pre-Operational"},
-    {0, 0x0120, CM1E_AL_SAFE_OP, "it does not go to Safe-Operational"},
-    {0, 0x0120, CM1E_AL_OP, "it does not go to Operational"},
-    {0, 0x0500, 0, "it cannot be configured"},
-    {0, 0x0800, 0, "it cannot be configured"},
-    {0, 0x0810, 0, "it cannot be configured"},
-    {0, 0x0600, 0, "it cannot be configured"},
-    {0, 0x0400, 0, "it cannot be configured"},
-    {0, 0x0420, 0, "it cannot be configured"},
+    {0, 0x0120, CM1E_AL_INIT, "it does not go to Init", 0},
+    {0, 0x0120, CM1E_AL_PRE_OP, "it does not go to Pre-Operational", 0},
+    {0, 0x0120, CM1E_AL_SAFE_OP, "it does not go to Safe-Operational", 0},
+    {0, 0x0120, CM1E_AL_OP, "it does not go to Operational", 0},
+    {0, 0x0500, 0, "it cannot be configured", 0},
+    {0, 0x0800, 0, "it cannot be configured", 0},
+    {0, 0x0810, 0, "it cannot be configured", 0},
+    {0, 0x0600, 0, "it cannot be configured", 0},
+    {0, 0x0400, 0, "it cannot be configured", 0},
+    {0, 0x0420, 0, "it cannot be configured", 0},
 };
 enum { CASES = sizeof cases / sizeof cases[0] };
 
@@ -194,6 +195,37 @@ START_TEST(a_motor_that_is_in_operational_without_being_known_to_be_gets_no_outp
 }
 END_TEST
 
+/** The frames that take its address back are lost, too, so the search meets a device that has one of ours. */
+static cm1e_tap_verdict_t spoil_and_keep_address(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { COMMAND_AT = 16, STATION_AT = 18, OFFSET_AT = 20, FPWR = 5, STATION_ADDRESS = 0x0010 };
+    unwilling_t *motor = context;
+    const bool takes_back = frame->direction == CM1E_TAP_SENT && frame->bytes[COMMAND_AT] == FPWR &&
+                            cm1e_get_u16(frame->bytes + STATION_AT) == motor->station &&
+                            cm1e_get_u16(frame->bytes + OFFSET_AT) == STATION_ADDRESS;
+    motor->kept += takes_back;
+    return takes_back ? CM1E_TAP_DROP : spoil(context, frame);
+}
+
+START_TEST(a_motor_that_keeps_its_address_is_identified_again)
+{
+    unwilling_t motor = cases[_i];
+    cm1e_bus_t *bus = start_machine(false, CM1E_RECOVER_AUTO);
+    motor.station = 0x1000 + LAST;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), spoil_and_keep_address, &motor);
+    cm1e_sim_segment_attach(segment_of(bus), TOOL);
+    for (int n = 0; n < TRIES; n++) {
+        good_cycle(bus, LAST);
+        ck_assert_int_ne(cm1e_bus_presence(bus, LAST), CM1E_PRESENCE_THERE);
+    }
+    ck_assert_uint_gt(motor.kept, 0);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    expect_there(bus, LAST);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 /** A motor that is always there is tried again for as long as it answers, and its text says why in vain. */
 START_TEST(a_motor_that_is_always_there_and_cannot_be_configured_is_tried_again)
 {
@@ -236,6 +268,7 @@ int main(void)
     tcase_set_timeout(tests, 60);
     tcase_add_loop_test(tests, a_motor_that_cannot_be_configured_is_refused_until_it_is_mended, 0, 4 * CASES);
     tcase_add_loop_test(tests, a_motor_that_is_always_there_and_cannot_be_configured_is_tried_again, 0, CASES);
+    tcase_add_loop_test(tests, a_motor_that_keeps_its_address_is_identified_again, 0, CASES);
     tcase_add_test(tests, a_motor_that_is_in_operational_without_being_known_to_be_gets_no_outputs);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
