@@ -182,6 +182,7 @@ typedef struct pair {
     cm1e_bus_t *buses[BUSES];
     cm1e_scheduler_t *scheduler;
     int64_t cycle, silent_from, silent_to; /* cycles in which the first bus gets no frame */
+    int64_t lossy_from, lossy_to;          /* cycles in which the second bus loses frames now and then */
     double worst_ns;                       /* of the reference clocks against each other */
     double settled_ns, phase_ns;           /* the same after 5 s; then the largest mean phase of the second bus */
     uint64_t losses[BUSES];
@@ -213,7 +214,7 @@ static cm1e_bus_t *start_one(const char *name, const char *reference, const char
 
 static void start_pair(pair_t *p)
 {
-    *p = (pair_t){.silent_from = -1};
+    *p = (pair_t){.silent_from = -1, .lossy_from = -1, .lossy_to = -10000};
     p->buses[FIRST] = start_one("A", "clock 1 drift 40", "clock 2 drift -20");
     p->buses[SECOND] = start_one("B", "clock 1 drift -50", "clock 2 drift 30");
 }
@@ -238,6 +239,8 @@ static void watch_clocks(void *context)
         cm1e_bus_simulate(p->buses[FIRST], "unplug 1", answer, sizeof answer);
     if (p->cycle == p->silent_to)
         cm1e_bus_simulate(p->buses[FIRST], "replug 1", answer, sizeof answer);
+    if (p->cycle >= p->lossy_from && p->cycle < p->lossy_to && p->cycle % 97 == 0)
+        cm1e_bus_simulate(p->buses[SECOND], p->cycle % 2 ? "lose 2" : "lose 5", answer, sizeof answer);
     const bool settled = p->cycle > 5000;
     if (p->cycle++ % 50 == 0) {
         const double apart_ns = fabs(ahead_ns(p));
@@ -250,7 +253,9 @@ static void watch_clocks(void *context)
         p->losses[i] = clocks.sync_losses;
         p->led[i] = clocks.led;
         p->left[i] |= cm1e_bus_slave_watch(p->buses[i], DRIVE).al_state != CM1E_AL_OP;
-        p->phase_ns = fmax(p->phase_ns, settled && i == SECOND ? fabs(clocks.phase_mean_ns) : 0);
+        /* waiting for a lost frame delays the next one */
+        const bool delayed = p->cycle >= p->lossy_from && p->cycle < p->lossy_to + 2000;
+        p->phase_ns = fmax(p->phase_ns, settled && !delayed && i == SECOND ? fabs(clocks.phase_mean_ns) : 0);
     }
 }
 
@@ -310,6 +315,21 @@ START_TEST(test_the_second_bus_keeps_the_time_of_a_first_one_that_is_silent)
 }
 END_TEST
 
+/** Also of the frames that tell its reference the time: each is given up when the next one leaves. */
+START_TEST(test_the_second_bus_follows_although_it_loses_frames)
+{
+    pair_t p;
+    start_pair(&p);
+    p.lossy_from = 6000;
+    p.lossy_to = 15000;
+    run_pair(&p, FIRST, 20);
+    ck_assert(p.led[SECOND] && !p.left[FIRST] && !p.left[SECOND]);
+    ck_assert_uint_eq(p.losses[FIRST] + p.losses[SECOND], 0);
+    ck_assert_msg(p.settled_ns < 150 && p.phase_ns < 200, "%g ns, %g ns", p.settled_ns, p.phase_ns);
+    close_pair(&p);
+}
+END_TEST
+
 START_TEST(test_clocks_that_follow_no_common_one_are_refused)
 {
     pair_t p;
@@ -355,6 +375,7 @@ int main(void)
     tcase_add_test(all, test_without_clocks_nothing_is_told_of_them);
     tcase_add_loop_test(all, test_the_clocks_of_a_second_bus_follow_those_of_the_first, 0, BUSES);
     tcase_add_test(all, test_the_second_bus_keeps_the_time_of_a_first_one_that_is_silent);
+    tcase_add_test(all, test_the_second_bus_follows_although_it_loses_frames);
     tcase_add_test(all, test_clocks_that_follow_no_common_one_are_refused);
     tcase_add_test(all, test_the_lead_goes_over_when_a_bus_stops);
     suite_add_tcase(suite, all);
