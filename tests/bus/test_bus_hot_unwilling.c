@@ -3,6 +3,7 @@
  * motor gets no output, whatever the program writes, and the others lose no cycle. */
 #include "bus_support.h"
 #include "cm1e/hot_connect.h"
+#include "effort.h"
 #include "sim/esc_chip.h"
 #include "sim/segment.h"
 
@@ -84,7 +85,7 @@ static void good_cycle(cm1e_bus_t *bus, uint16_t position)
     ck_assert_int_eq(cycle(bus), CM1E_OK);
     ck_assert_uint_eq(cm1e_get_u16(at(bus, FIRST)->memory + ESC_STATION_ADDRESS), 0x1001);
     cm1e_sim_probe(segment_of(bus), TOOL, &probe);
-    if (cm1e_bus_presence(bus, position) != CM1E_PRESENCE_THERE)
+    if (cm1e_bus_presence(bus, position) != CM1E_PRESENCE_THERE && cm1e_sim_esc_present(at(bus, TOOL)))
         ck_assert_msg(probe.controlword == 0, "%s", how(bus, position));
 }
 
@@ -226,6 +227,36 @@ START_TEST(a_motor_that_keeps_its_address_is_identified_again)
 }
 END_TEST
 
+/** Somebody turns its switches, whenever that is, and turns them back. It takes part with the ID that it had when it was
+ *  asked last; if that was the wrong one, it has no address of ours. */
+START_TEST(a_motor_whose_switches_are_turned_while_it_comes_is_refused_or_takes_part)
+{
+    enum { BEGIN = 280, END = 440, TURNED = 3000 };
+    const int stride = sweep_stride(1, 12);
+    unsigned refused = 0, taken = 0;
+    cm1e_bus_t *bus = start_machine(true, CM1E_RECOVER_AUTO);
+    for (int moment = BEGIN + sweep_first(0, stride); moment < END; moment += stride) {
+        leave(bus, TOOL);
+        cm1e_sim_segment_attach(segment_of(bus), TOOL);
+        for (int n = 0; n < moment; n++)
+            good_cycle(bus, TOOL);
+        simulate(bus, "switches 2 08");
+        for (int n = 0; n < TURNED; n++)
+            good_cycle(bus, TOOL);
+        const bool there = cm1e_bus_presence(bus, TOOL) == CM1E_PRESENCE_THERE;
+        const uint16_t station = cm1e_get_u16(at(bus, TOOL)->memory + ESC_STATION_ADDRESS);
+        ck_assert_msg(there ? station == 0x1002 : station == 0 || station == 0x2FFE, "moment %d: 0x%04X", moment, station);
+        refused += !there;
+        taken += there;
+        simulate(bus, "switches 2 07");
+        expect_there(bus, TOOL);
+    }
+    ck_assert_msg(refused > 0 && taken > 0, "%u, %u", refused, taken);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 /** A motor that is always there is tried again for as long as it answers, and its text says why in vain. */
 START_TEST(a_motor_that_is_always_there_and_cannot_be_configured_is_tried_again)
 {
@@ -269,6 +300,7 @@ int main(void)
     tcase_add_loop_test(tests, a_motor_that_cannot_be_configured_is_refused_until_it_is_mended, 0, 4 * CASES);
     tcase_add_loop_test(tests, a_motor_that_is_always_there_and_cannot_be_configured_is_tried_again, 0, CASES);
     tcase_add_loop_test(tests, a_motor_that_keeps_its_address_is_identified_again, 0, CASES);
+    tcase_add_test(tests, a_motor_whose_switches_are_turned_while_it_comes_is_refused_or_takes_part);
     tcase_add_test(tests, a_motor_that_is_in_operational_without_being_known_to_be_gets_no_outputs);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
