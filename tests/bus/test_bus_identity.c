@@ -120,11 +120,52 @@ START_TEST(identity)
 }
 END_TEST
 
+/* ---- slaves beside the axes -------------------------------------------------------------------------------------- */
+
+/** On the wire: a motor with alias 3, a device with alias 4, and a third one. The configuration names the motor, and slaves
+ *  by these. */
+static const struct {
+    uint16_t third; /* its alias */
+    cm1e_address_kind_t kinds[2];
+    uint16_t addresses[2];
+    const char *words;
+} slave_cases[] = {
+    {4, {ALIAS}, {4}, "Slave \"first\": alias 4 is doubled, slaves 2 and 3 both have it. Found 3 slaves"},
+    {6, {ALIAS}, {5}, "Slave \"first\": expected at alias 5, where there is none. Found 3 slaves"},
+    {6, {POSITION, ALIAS}, {2, 4}, "\"first\" and \"second\" are both slave 2. Found 3 slaves"},
+    {6, {ALIAS}, {3}, "Slave \"first\" is slave 1, which an axis of the configuration is already. Found 3 slaves"},
+};
+
+START_TEST(identity_of_slaves)
+{
+    sim_config(1);
+    for (int i = 0; i < 2 && slave_cases[_i].addresses[i]; i++) {
+        cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, i ? "second" : "first");
+        slave->address_kind = slave_cases[_i].kinds[i];
+        slave->address = slave_cases[_i].addresses[i];
+    }
+    cm1e_slave_config_t device = {.sim = {.kind = CM1E_SIM_SLAVE_DIGITAL, .inputs = 4}, .address_kind = ALIAS,
+                                  .address = 4};
+    cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
+    cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[0], tested_order(), 3, 0));
+    cm1e_sim_segment_add(segment, cm1e_sim_io_create_as(CM1E_SIM_IO_MODULE, &device));
+    device.address = slave_cases[_i].third;
+    cm1e_sim_segment_add(segment, cm1e_sim_io_create_as(CM1E_SIM_IO_MODULE, &device));
+    cm1e_bus_t *bus = open_bus();
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), segment);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_bus_identify(bus, &diag), WRONG);
+    ck_assert_msg(strncmp(diag.text, slave_cases[_i].words, strlen(slave_cases[_i].words)) == 0, "%s", diag.text);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_identity");
     TCase *tests = tcase_create("identity");
     tcase_add_loop_test(tests, identity, 0, sizeof cases / sizeof cases[0]);
+    tcase_add_loop_test(tests, identity_of_slaves, 0, sizeof slave_cases / sizeof slave_cases[0]);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
