@@ -9,7 +9,6 @@
 #include "core/in_task.h"
 #include "core/sized.h"
 
-#define ANSWER_NS INT64_C(5000000000)
 #define LOOK_NS INT64_C(1000000) /* of a thread that waits beside the cycle */
 
 static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, bool bootstrap, const char *function, cm1e_diag_t *diag)
@@ -146,7 +145,7 @@ static cm1e_error_t execute(cm1e_bus_t *bus, uint16_t position, const transfer_t
     if (error != CM1E_OK)
         return error;
     if (foe.options.answer_ns <= 0)
-        foe.options.answer_ns = ANSWER_NS;
+        foe.options.answer_ns = CM1E_FOE_ANSWER_NS;
     if (foe.options.bootstrap)
         return in_bootstrap(&foe, transfer);
     if (driven)

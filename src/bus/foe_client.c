@@ -113,6 +113,8 @@ void cm1e_foe_begin(cm1e_foe_t *foe, int64_t now_ns)
     foe->last = foe->partly = false;
     __atomic_store_n(&foe->done, 0, __ATOMIC_RELAXED);
     foe->fault = (cm1e_foe_fault_t){.kind = FOE_GOOD};
+    if (foe->options.answer_ns <= 0)
+        foe->options.answer_ns = CM1E_FOE_ANSWER_NS;
     foe->busy_until_ns = now_ns + foe->options.answer_ns;
     const size_t name = strlen(foe->name);
     if (name == 0 || name > cm1e_foe_room(foe->mailbox))
@@ -193,9 +195,8 @@ static void on_packet(cm1e_foe_t *foe, const uint8_t *answer, size_t bytes, int6
         memcpy(foe->to + foe->done, answer + FOE_HEADER, bytes);
     count(foe, same ? 0 : bytes);
     foe->number = got;
-    foe->last = bytes < full;
-    if (!same || !foe->last)
-        go_on(foe, now_ns);
+    foe->last = !same && bytes < full; /* a file that has ended gets no packet again */
+    go_on(foe, now_ns);
     if (foe->last && foe->fault.kind == FOE_GOOD) {
         start_message(foe, FOE_ACK, got);
         say_farewell(foe, now_ns);
@@ -289,12 +290,7 @@ bool cm1e_foe_next(cm1e_foe_t *foe, cm1e_datagram_t *datagram, int64_t now_ns)
     check_time(foe, now_ns);
     if (foe->phase == FOE_PHASE_READY || foe->phase == FOE_PHASE_PAUSE)
         send_next(foe, now_ns);
-    if (!cm1e_foe_holds_mailbox(foe))
-        return false;
-    if (cm1e_mailbox_next(foe->mailbox, datagram))
-        return true;
-    cm1e_foe_give_up(foe, FOE_NO_MAILBOX);
-    return false;
+    return cm1e_foe_holds_mailbox(foe) && cm1e_mailbox_next(foe->mailbox, datagram);
 }
 
 void cm1e_foe_result(cm1e_foe_t *foe, const cm1e_datagram_t *datagram, int64_t now_ns)

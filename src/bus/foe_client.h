@@ -12,13 +12,15 @@
 
 typedef struct cm1e_bus_slave cm1e_bus_slave_t;
 
+/** The default of `answer_ns` of cm1e_foe_options_t. */
+#define CM1E_FOE_ANSWER_NS INT64_C(5000000000)
+
 /** What ended a transfer early. */
 typedef enum cm1e_foe_fault_kind {
     FOE_GOOD = 0,
     FOE_LOST,         /**< the slave stopped answering */
     FOE_NO_FOE,       /**< its mailbox refuses FoE */
     FOE_SILENT,       /**< no answer in time */
-    FOE_NO_MAILBOX,
     FOE_UNEXPECTED,   /**< `number`: the service that it answered with */
     FOE_REFUSED,      /**< `number`: its error code, `said`: its text */
     FOE_ALWAYS_BUSY,
@@ -51,7 +53,7 @@ typedef struct cm1e_foe {
     uint16_t position;
     cm1e_mailbox_t *mailbox;     /**< with its addresses */
     cm1e_bus_slave_t *slave;     /**< takes emergencies that come meanwhile; NULL: it sends none in this state */
-    cm1e_foe_options_t options;  /**< `answer_ns` is given */
+    cm1e_foe_options_t options;
     cm1e_diag_t *diag;           /**< of the waiting functions */
 
     bool writing;

@@ -5,7 +5,6 @@
 #include "bus/bus_internal.h"
 
 enum { MAILBOX_MIN = 32 };
-#define ANSWER_NS INT64_C(5000000000)
 
 static cm1e_foe_t *present(const cm1e_bus_t *bus) { return __atomic_load_n(&bus->errands.file, __ATOMIC_ACQUIRE); }
 
@@ -55,8 +54,6 @@ cm1e_error_t cm1e_foe_submit(cm1e_bus_t *bus, cm1e_foe_t *foe, cm1e_diag_t *diag
     foe->bus = bus;
     foe->slave = cm1e_bus_at(bus, foe->position);
     foe->mailbox = &foe->slave->coe.mailbox;
-    if (foe->options.answer_ns <= 0)
-        foe->options.answer_ns = ANSWER_NS;
     foe->begun = false;
     __atomic_store_n(&foe->given_back, 0, __ATOMIC_RELAXED);
     if (!__atomic_compare_exchange_n(&bus->errands.file, &none, foe, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))

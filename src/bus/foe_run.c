@@ -76,8 +76,6 @@ cm1e_error_t cm1e_foe_explain(const cm1e_foe_t *foe, cm1e_diag_t *diag)
         return FAIL(CM1E_ERROR_TIMEOUT, "Slave %u did not answer for %g s, %s.", foe->position, answer_s, place);
     case FOE_ALWAYS_BUSY:
         return FAIL(CM1E_ERROR_TIMEOUT, "Slave %u says for %g s that it is busy, %s.", foe->position, answer_s, place);
-    case FOE_NO_MAILBOX:
-        return FAIL(CM1E_ERROR_BUS_MAILBOX, "The mailbox of slave %u is not in use.", foe->position);
     case FOE_REFUSED: return refused(foe, place, diag);
     case FOE_TOO_LARGE:
         return FAIL(CM1E_ERROR_FULL, "The file of slave %u has more than %zu bytes.", foe->position, foe->room);
