@@ -1,6 +1,7 @@
 #include "bus/bootstrap.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "bus/bus_internal.h"
 #include "cm1e/sii.h"
@@ -9,7 +10,7 @@
 
 enum { PROTOCOL_FOE = 0x08 };
 enum { CONTROL_MAILBOX_OUT = 0x26, CONTROL_MAILBOX_IN = 0x22, SM_ENABLED = 1, EEPROM_OF_SLAVE = 1, MAILBOX_MIN = 32 };
-enum { REGISTER_TRIES = 10 };
+enum { REGISTER_TRIES = 10, STATUS_BYTES = 6 };
 #define POLL_NS INT64_C(2000000)
 #define STATE_NS INT64_C(10000000000)
 #define LEAVE_BOOTSTRAP_NS INT64_C(60000000000)
@@ -31,14 +32,26 @@ static bool transfer(const cm1e_bootstrap_t *bootstrap, cm1e_command_t command, 
     return false;
 }
 
-static bool read_register(const cm1e_bootstrap_t *bootstrap, uint16_t offset, void *data, uint16_t length)
-{
-    return transfer(bootstrap, COMMAND_FPRD, offset, data, length);
-}
-
 static bool write_register(const cm1e_bootstrap_t *bootstrap, uint16_t offset, void *data, uint16_t length)
 {
     return transfer(bootstrap, COMMAND_FPWR, offset, data, length);
+}
+
+/** Reads AL status and its code at the place of a slave that has no station address. */
+static bool read_status_at_place(const cm1e_bootstrap_t *bootstrap, uint8_t answer[STATUS_BYTES])
+{
+    cm1e_soem_t *soem = bootstrap->bus->soem;
+    const uint16_t place = (uint16_t)(1 - bootstrap->position);
+    uint8_t station[2];
+    return cm1e_soem_transfer(soem, COMMAND_APRD, place, REG_STATION_ADDRESS, station, sizeof station) == 1 &&
+           cm1e_get_u16(station) == 0 &&
+           cm1e_soem_transfer(soem, COMMAND_APRD, place, REG_AL_STATUS, answer, STATUS_BYTES) == 1;
+}
+
+static bool read_status(const cm1e_bootstrap_t *bootstrap, uint8_t answer[STATUS_BYTES])
+{
+    return transfer(bootstrap, COMMAND_FPRD, REG_AL_STATUS, answer, STATUS_BYTES) ||
+           (bootstrap->leaves && read_status_at_place(bootstrap, answer));
 }
 
 static cm1e_error_t lost(const cm1e_bootstrap_t *bootstrap)
@@ -47,25 +60,31 @@ static cm1e_error_t lost(const cm1e_bootstrap_t *bootstrap)
                 bootstrap->position);
 }
 
-/** Requests a state and waits for it. The request acknowledges an earlier error. A slave that starts anew is away for a
- *  moment. Then it has no station address, and the caller scans. */
+static cm1e_error_t refused(const cm1e_bootstrap_t *bootstrap, uint8_t target, unsigned code)
+{
+    return cm1e_diag_set(bootstrap->diag, CM1E_ERROR_BUS_STATE, code, "Slave %u refuses %s: AL status 0x%04X, %s.",
+                         bootstrap->position, cm1e_al_state_text(target), code, cm1e_al_status_text((uint16_t)code));
+}
+
+/** Requests a state and waits for it. The request acknowledges an earlier error, which the slave shows until it has read
+ *  the request. A slave that starts anew may not hear it, and has no station address; the caller scans. */
 static cm1e_error_t to_state(const cm1e_bootstrap_t *bootstrap, uint8_t target, int64_t timeout_ns)
 {
-    uint8_t request[2] = {(uint8_t)(target | AL_ERROR_FLAG), 0}, answer[6] = {0};
+    uint8_t request[2] = {(uint8_t)(target | AL_ERROR_FLAG), 0}, before[STATUS_BYTES] = {0}, answer[STATUS_BYTES] = {0};
     const int64_t deadline_ns = now(bootstrap) + timeout_ns;
-    if (!write_register(bootstrap, REG_AL_CONTROL, request, sizeof request))
+    (void)read_status(bootstrap, before);
+    if (!write_register(bootstrap, REG_AL_CONTROL, request, sizeof request) && !bootstrap->leaves)
         return lost(bootstrap);
     for (;;) {
         cm1e_clock_sleep_until(bootstrap->bus->clock, now(bootstrap) + POLL_NS);
-        const bool answered = read_register(bootstrap, REG_AL_STATUS, answer, sizeof answer);
-        const unsigned state = answer[0] & AL_STATE_MASK, code = cm1e_get_u16(answer + 4);
-        if (answered && state == target && !(answer[0] & AL_ERROR_FLAG))
+        const bool answered = read_status(bootstrap, answer), late = now(bootstrap) > deadline_ns;
+        const bool error = answer[0] & AL_ERROR_FLAG, earlier = memcmp(answer, before, sizeof answer) == 0;
+        const unsigned state = answer[0] & AL_STATE_MASK;
+        if (answered && state == target && !error)
             return CM1E_OK;
-        if (answered && answer[0] & AL_ERROR_FLAG)
-            return cm1e_diag_set(bootstrap->diag, CM1E_ERROR_BUS_STATE, code,
-                                 "Slave %u refuses %s: AL status 0x%04X, %s.", bootstrap->position,
-                                 cm1e_al_state_text(target), code, cm1e_al_status_text((uint16_t)code));
-        if (now(bootstrap) > deadline_ns)
+        if (answered && error && (late || !earlier))
+            return refused(bootstrap, target, cm1e_get_u16(answer + 4));
+        if (late)
             return answered ? FAIL(bootstrap, CM1E_ERROR_BUS_STATE, "Slave %u did not reach %s in time; it is in %s.",
                                    bootstrap->position, cm1e_al_state_text(target), cm1e_al_state_text((uint16_t)state))
                             : lost(bootstrap);
@@ -146,5 +165,6 @@ cm1e_error_t cm1e_bootstrap_enter(cm1e_bootstrap_t *bootstrap)
 
 cm1e_error_t cm1e_bootstrap_leave(cm1e_bootstrap_t *bootstrap)
 {
+    bootstrap->leaves = true;
     return to_state(bootstrap, CM1E_AL_INIT, LEAVE_BOOTSTRAP_NS);
 }

@@ -14,11 +14,13 @@ typedef struct cm1e_bootstrap {
     uint16_t position;
     cm1e_diag_t *diag;
     cm1e_mailbox_t mailbox; /**< valid after cm1e_bootstrap_enter() */
+    bool leaves;            /**< the slave may start anew and forget its station address */
 } cm1e_bootstrap_t;
 
 /** Brings the slave from any state to Init and then to Bootstrap. */
 cm1e_error_t cm1e_bootstrap_enter(cm1e_bootstrap_t *bootstrap);
-/** Brings the slave to Init. A device may copy its memory before it answers. */
+/** Brings the slave to Init. A device may copy its memory before it answers, or start anew: then it is in Init without a
+ *  station address. */
 cm1e_error_t cm1e_bootstrap_leave(cm1e_bootstrap_t *bootstrap);
 
 #endif
