@@ -75,7 +75,7 @@ static bool is_at_rest(const cm1e_bus_slave_t *slave)
 {
     return cm1e_coe_idle(&slave->coe) && cm1e_recovery_idle(&slave->recovery) && cm1e_al_idle(&slave->al) &&
            cm1e_recognise_idle(&slave->recognition) && cm1e_setup_idle(&slave->setup) &&
-           cm1e_mapping_idle(&slave->mapping);
+           cm1e_mapping_idle(&slave->mapping) && !slave->eeprom_owed;
 }
 
 static bool has_errands(const cm1e_bus_t *bus)

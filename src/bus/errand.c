@@ -52,11 +52,20 @@ cm1e_error_t cm1e_errand_submit(cm1e_bus_t *bus, cm1e_errand_t *errand)
 
 bool cm1e_errand_done(const cm1e_errand_t *errand) { return __atomic_load_n(&errand->done, __ATOMIC_ACQUIRE); }
 
+/** Whether the processor of the slave had its EEPROM before the errand, and does not have it now. */
+static bool owes_eeprom(const cm1e_errand_t *errand)
+{
+    return errand->kind == ERRAND_SII && errand->begun && errand->step >= STEP_FORCE && errand->was_offered;
+}
+
 /** Ends an errand. Afterwards it belongs to the thread that submitted it, and the bus does not touch it any more. */
 static void finish(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
 {
     if (errand->error == CM1E_OK)
         errand->error = error;
+    cm1e_bus_slave_t *slave = cm1e_bus_at(bus, errand->position);
+    if (slave)
+        slave->eeprom_owed |= owes_eeprom(errand);
     __atomic_store_n(&bus->errands.errand, NULL, __ATOMIC_SEQ_CST);
     __atomic_store_n(&errand->done, 1, __ATOMIC_RELEASE);
 }
@@ -71,6 +80,11 @@ static void begin(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_errand_t 
     errand->step = STEP_BEGIN;
     errand->taken = 0;
     errand->tries = 0;
+    errand->was_offered = false;
+    if (errand->kind == ERRAND_SII) {
+        errand->was_offered = slave->eeprom_owed;
+        slave->eeprom_owed = false;
+    }
     errand->deadline_ns = now_ns + ERRAND_TIMEOUT_NS;
     if (info)
         cm1e_coe_begin_info(&slave->coe, &errand->info, now_ns); /* the errand keeps the bus awake */
@@ -134,6 +148,10 @@ static void fill_sii(const cm1e_errand_t *errand, uint16_t station, cm1e_datagra
 bool cm1e_errand_next(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
     const cm1e_errand_t *errand = present(bus);
+    if (slave->eeprom_owed && !slave->watch.lost) {
+        configure(&slave->datagram, slave->facts.station, CONFIG_OFFERED);
+        return true;
+    }
     if (!errand || !errand->begun || errand->kind == ERRAND_INFO || cm1e_bus_at(bus, errand->position) != slave)
         return false;
     if (errand->kind == ERRAND_SII)
@@ -151,11 +169,11 @@ bool cm1e_errand_next(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 /** Ends an errand on the EEPROM. The EEPROM goes back to the processor of the slave, if that had it before. */
 static void end_sii(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
 {
-    const bool taken = errand->step > STEP_FORCE && errand->step != STEP_GIVE_BACK;
+    const bool taken = errand->step != STEP_GIVE_BACK && owes_eeprom(errand);
     errand->tries = 0;
     if (errand->error == CM1E_OK)
         errand->error = error;
-    if (taken && errand->was_offered)
+    if (taken)
         errand->step = STEP_GIVE_BACK;
     else
         finish(bus, errand, error);
@@ -187,7 +205,7 @@ static void take_sii(cm1e_bus_t *bus, cm1e_errand_t *errand, const uint8_t *answ
     const uint16_t status = cm1e_get_u16(answer);
     switch (errand->step) {
     case STEP_BEGIN:
-        errand->was_offered = answer[0] & CONFIG_OFFERED;
+        errand->was_offered |= answer[0] & CONFIG_OFFERED;
         errand->step = STEP_FORCE;
         break;
     case STEP_FORCE: errand->step = STEP_OWN; break;
@@ -199,7 +217,10 @@ static void take_sii(cm1e_bus_t *bus, cm1e_errand_t *errand, const uint8_t *answ
     case STEP_CLEAR: errand->step = STEP_ASK; break;
     case STEP_ASK: errand->step = STEP_TAKE; break;
     case STEP_TAKE: take_group(bus, errand, answer); break;
-    case STEP_GIVE_BACK: finish(bus, errand, CM1E_OK); break;
+    case STEP_GIVE_BACK:
+        errand->was_offered = false; /* done */
+        finish(bus, errand, CM1E_OK);
+        break;
     }
 }
 
@@ -207,6 +228,10 @@ void cm1e_errand_result(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns
 {
     cm1e_errand_t *errand = present(bus);
     const cm1e_datagram_t *datagram = &slave->datagram;
+    if (slave->eeprom_owed) { /* repeated until it is answered */
+        slave->eeprom_owed = datagram->working_counter != 1;
+        return;
+    }
     if (!errand || cm1e_bus_at(bus, errand->position) != slave)
         return;
     /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): the slave is one of the bus */

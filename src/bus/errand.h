@@ -31,7 +31,7 @@ typedef struct cm1e_errand {
     cm1e_error_t error;               /**< valid when done; SDO abort: info.abort_code */
 
     bool begun;                       /**< the rest belongs to the bus */
-    bool was_offered;                 /**< the slave's processor had its EEPROM before */
+    bool was_offered;                 /**< the slave's processor had its EEPROM before, and gets it back */
     cm1e_errand_step_t step;
     size_t taken;
     unsigned tries;

@@ -1,6 +1,7 @@
 #include "bus_support.h"
 
 #include "nic/frame.h"
+#include "sim/esc_chip.h"
 
 cm1e_bus_config_t config;
 cm1e_diag_t diag;
@@ -37,6 +38,16 @@ cm1e_bus_t *open_bus(void)
 }
 
 cm1e_sim_segment_t *segment_of(cm1e_bus_t *bus) { return cm1e_bus_segment(bus); }
+
+uint8_t *register_memory_of(cm1e_bus_t *bus, uint32_t position)
+{
+    return cm1e_sim_segment_slave(segment_of(bus), position)->memory;
+}
+
+uint8_t *sii_memory_of(cm1e_bus_t *bus, uint32_t position)
+{
+    return cm1e_sim_segment_slave(segment_of(bus), position)->sii;
+}
 
 cm1e_bus_t *open_bus_on(const cm1e_bus_config_t *segment_config)
 {
