@@ -152,7 +152,7 @@ static void take_pdo(cm1e_scout_t *scout, const uint8_t *pair)
     scout->sync_manager = pair[3];
     scout->word = (uint16_t)(scout->word + PDO_WORDS);
     scout->phase = ENTRY;
-    if (scout->items > 0) {
+    if (scout->items > 0 && scout->word + ENTRY_WORDS <= scout->next_category) {
         scout->word = (uint16_t)(scout->word + 2); /* the second half of an entry has its bits */
         return;
     }

@@ -12,6 +12,7 @@ enum { SYNC_MANAGERS = 41, TX_PDO = 50, RX_PDO = 51, END = 0xFFFF, UNASSIGNED = 
 static uint8_t sii[1024];
 static size_t used, category_at;
 static cm1e_scout_t scout;
+static unsigned errors_left, nacks_left, busy_left, clears; /* what the interface does wrong; commands that clear errors */
 
 /* ---- an image ---------------------------------------------------------------------------------------------------- */
 
@@ -48,6 +49,7 @@ static void entry(unsigned bits)
 
 void setUp(void)
 {
+    errors_left = nacks_left = busy_left = clears = 0;
     memset(sii, 0, sizeof sii);
     cm1e_put_u32(sii + CM1E_SII_VENDOR, 0x1234);
     cm1e_put_u32(sii + CM1E_SII_PRODUCT, 0x56789ABC);
@@ -59,25 +61,54 @@ void tearDown(void) {}
 
 /* ---- the memory -------------------------------------------------------------------------------------------------- */
 
-static void read_all(void)
+/** Status of the interface, before a command and after it. */
+static uint16_t status_now(bool after_command)
 {
-    uint32_t word = 0;
-    put_u16(END);
+    if (busy_left > 0) {
+        busy_left--;
+        return EEPROM_BUSY;
+    }
+    if (!after_command)
+        return errors_left > 0 ? EEPROM_NACK : 0;
+    nacks_left -= nacks_left > 0;
+    return nacks_left > 0 ? EEPROM_NACK : 0;
+}
+
+static void answer(cm1e_datagram_t *d)
+{
+    static uint32_t word;
+    d->working_counter = 1;
+    if (d->command == COMMAND_FPWR && d->length == 6)
+        word = cm1e_get_u32(d->data + 2);
+    if (d->command == COMMAND_FPWR && d->length == 2) {
+        clears++;
+        errors_left -= errors_left > 0;
+    }
+    if (d->command != COMMAND_FPRD)
+        return;
+    memset(d->data, 0, d->length);
+    cm1e_put_u16(d->data, status_now(d->length > EEPROM_GROUP_AT));
+    if (d->length > EEPROM_GROUP_AT && 2 * word + 4 <= sizeof sii)
+        memcpy(d->data + EEPROM_GROUP_AT, sii + 2 * word, 4);
+}
+
+/** Every datagram takes a nanosecond. */
+static void read_without_end(void)
+{
     cm1e_scout_begin(&scout, 0x1001, 1000000);
     for (int64_t now_ns = 0; !cm1e_scout_idle(&scout); now_ns++) {
         cm1e_datagram_t d = {0};
         if (!cm1e_scout_next(&scout, &d, now_ns))
             break;
-        d.working_counter = 1;
-        if (d.command == COMMAND_FPWR && d.length == 6)
-            word = cm1e_get_u32(d.data + 2);
-        if (d.command == COMMAND_FPRD) {
-            memset(d.data, 0, d.length);
-            if (d.length > EEPROM_GROUP_AT && 2 * word + 4 <= sizeof sii)
-                memcpy(d.data + EEPROM_GROUP_AT, sii + 2 * word, 4);
-        }
+        answer(&d);
         cm1e_scout_result(&scout, &d);
     }
+}
+
+static void read_all(void)
+{
+    put_u16(END);
+    read_without_end();
 }
 
 /* ---- what was read ----------------------------------------------------------------------------------------------- */
@@ -162,11 +193,129 @@ static void test_entries_that_are_not_there_are_not_counted(void)
     TEST_ASSERT_EQUAL_UINT16(16, scout.found.bits[0][2]);
 }
 
+/* Not even the first one, where the category ends behind the PDO. */
+static void test_an_entry_behind_its_category_is_not_counted(void)
+{
+    category(TX_PDO);
+    pdo(0x1A00, 1, 3);
+    category_ends();
+    category(RX_PDO);
+    pdo(0x1600, 1, 2);
+    entry(16);
+    category_ends();
+    read_all();
+    TEST_ASSERT_TRUE(scout.good);
+    TEST_ASSERT_EQUAL_UINT16(0, scout.found.bits[1][3]);
+    TEST_ASSERT_EQUAL_UINT16(16, scout.found.bits[0][2]);
+}
+
+static void test_more_sync_managers_than_there_is_room_for_are_passed_over(void)
+{
+    category(SYNC_MANAGERS);
+    for (unsigned n = 0; n < CM1E_SII_SYNC_MANAGERS + 3; n++) {
+        put_u16(0x1000 + n);
+        put_u16(n);
+        put_u16(0x44);
+        put_u16(1);
+    }
+    category_ends();
+    category(RX_PDO);
+    pdo(0x1600, 1, 2);
+    entry(16);
+    category_ends();
+    read_all();
+    TEST_ASSERT_TRUE(scout.good);
+    TEST_ASSERT_EQUAL_UINT8(CM1E_SII_SYNC_MANAGERS, scout.found.sync_manager_count);
+    TEST_ASSERT_EQUAL_HEX16(0x1000 + CM1E_SII_SYNC_MANAGERS - 1,
+                            scout.found.sync_managers[CM1E_SII_SYNC_MANAGERS - 1].start);
+    TEST_ASSERT_EQUAL_UINT16(16, scout.found.bits[0][2]);
+}
+
+/* ---- an SII that does not end, an interface that does not work --------------------------------------------------- */
+
+static void test_a_category_that_is_larger_than_any_eeprom_is_no_good_sii(void)
+{
+    category(TX_PDO);
+    pdo(0x1A00, 1, 3);
+    entry(8);
+    category_ends();
+    cm1e_put_u16(sii + category_at + 2, 0x2000);
+    read_all();
+    TEST_ASSERT_FALSE(scout.good);
+    TEST_ASSERT_TRUE(scout.reads < 20);
+}
+
+/* Empty categories all the way: behind the image there are zeros, and they go up to the largest word. */
+static void test_categories_that_never_end_are_no_good_sii(void)
+{
+    category(30);
+    category_ends();
+    read_without_end();
+    TEST_ASSERT_FALSE(scout.good);
+    TEST_ASSERT_EQUAL_UINT(1500, scout.reads);
+}
+
+static void a_small_sii(void)
+{
+    category(RX_PDO);
+    pdo(0x1600, 1, 2);
+    entry(16);
+    category_ends();
+}
+
+static void check_small_sii(void)
+{
+    TEST_ASSERT_TRUE(scout.good);
+    TEST_ASSERT_EQUAL_HEX32(0x56789ABC, scout.found.product_code);
+    TEST_ASSERT_EQUAL_UINT16(16, scout.found.bits[0][2]);
+}
+
+static void test_errors_of_the_interface_are_cleared_before_the_first_command(void)
+{
+    a_small_sii();
+    errors_left = 1;
+    read_all();
+    check_small_sii();
+    TEST_ASSERT_EQUAL_UINT(1, clears);
+}
+
+static void test_words_that_were_not_acknowledged_are_read_again(void)
+{
+    for (unsigned n = 2; n < 6; n++) {
+        setUp();
+        a_small_sii();
+        nacks_left = n;
+        read_all();
+        check_small_sii();
+        TEST_ASSERT_EQUAL_UINT(n - 1, clears);
+    }
+}
+
+static void test_an_interface_that_never_works_ends_at_the_deadline(void)
+{
+    unsigned *const faults[] = {&nacks_left, &busy_left};
+    for (int n = 0; n < 2; n++) {
+        setUp();
+        a_small_sii();
+        *faults[n] = UINT32_MAX;
+        read_all();
+        TEST_ASSERT_FALSE(scout.good);
+        TEST_ASSERT_EQUAL_UINT(0, scout.reads);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_bits_of_several_pdos_are_added_by_sync_manager);
     RUN_TEST(test_identity_and_sync_managers_are_found_wherever_the_category_is);
     RUN_TEST(test_entries_that_are_not_there_are_not_counted);
+    RUN_TEST(test_an_entry_behind_its_category_is_not_counted);
+    RUN_TEST(test_more_sync_managers_than_there_is_room_for_are_passed_over);
+    RUN_TEST(test_a_category_that_is_larger_than_any_eeprom_is_no_good_sii);
+    RUN_TEST(test_categories_that_never_end_are_no_good_sii);
+    RUN_TEST(test_errors_of_the_interface_are_cleared_before_the_first_command);
+    RUN_TEST(test_words_that_were_not_acknowledged_are_read_again);
+    RUN_TEST(test_an_interface_that_never_works_ends_at_the_deadline);
     return UNITY_END();
 }
