@@ -8,20 +8,35 @@
 
 enum { HIGHEST_STATE = 15 };
 
+static cm1e_error_t silent(uint16_t position, uint16_t address, cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer at register 0x%04X.", position, address);
+}
+
+/** Asks the program that runs the network, in pieces. `diag` has its words where it cannot be asked. */
+static cm1e_error_t read_remote(cm1e_bus_t *bus, uint16_t position, uint16_t address, uint8_t *data, uint16_t size,
+                                cm1e_diag_t *diag)
+{
+    for (uint16_t done = 0; done < size;) {
+        const uint16_t left = (uint16_t)(size - done), part = left < CM1E_ERRAND_BYTES ? left : CM1E_ERRAND_BYTES;
+        cm1e_errand_t errand = {.kind = ERRAND_REGISTERS, .position = position, .place = address + done, .size = part};
+        const cm1e_error_t error = cm1e_bus_errand_remote(bus, &errand, diag);
+        if (error != CM1E_OK)
+            return error;
+        if (errand.error != CM1E_OK)
+            return silent(position, address, diag);
+        memcpy(data + done, errand.data, part);
+        done = (uint16_t)(done + part);
+    }
+    return CM1E_OK;
+}
+
 bool cm1e_bus_read_registers(cm1e_bus_t *bus, uint16_t position, uint16_t address, uint8_t *data, uint16_t size)
 {
     const uint16_t station = cm1e_bus_at(bus, position)->facts.station;
     if (!bus->remote)
         return cm1e_soem_transfer(bus->soem, COMMAND_FPRD, station, address, data, size) == 1;
-    for (uint16_t done = 0; done < size;) {
-        const uint16_t left = (uint16_t)(size - done), part = left < CM1E_ERRAND_BYTES ? left : CM1E_ERRAND_BYTES;
-        cm1e_errand_t errand = {.kind = ERRAND_REGISTERS, .position = position, .place = address + done, .size = part};
-        if (cm1e_bus_errand_remote(bus, &errand, NULL) != CM1E_OK || errand.error != CM1E_OK)
-            return false;
-        memcpy(data + done, errand.data, part);
-        done = (uint16_t)(done + part);
-    }
-    return true;
+    return read_remote(bus, position, address, data, size, NULL) == CM1E_OK;
 }
 
 /** Reads registers of a network that another program runs: only those whose reading changes nothing. */
@@ -32,10 +47,7 @@ static cm1e_error_t read_attached(cm1e_bus_t *bus, uint16_t position, uint16_t a
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Slave %u, %u bytes from register 0x%04X: of a "
                              "network that another program runs, expected are slave 1 to %u and registers up to "
                              "0x%04X.", position, size, address, bus->slave_count, CM1E_ERRAND_REGISTERS_END - 1);
-    if (cm1e_bus_read_registers(bus, position, address, data, size))
-        return CM1E_OK;
-    return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer at register 0x%04X.", position,
-                         address);
+    return read_remote(bus, position, address, data, size, diag);
 }
 
 static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const char *function, cm1e_diag_t *diag)
@@ -63,8 +75,7 @@ static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_command_t command, uint16_t p
                              CM1E_ESC_BYTES);
     if (cm1e_soem_transfer(bus->soem, command, station, address, data, size) >= 1)
         return CM1E_OK;
-    return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer at register 0x%04X.", position,
-                         address);
+    return silent(position, address, diag);
 }
 
 cm1e_error_t cm1e_esc_read(cm1e_bus_t *bus, uint16_t position, uint16_t address, void *data, uint16_t size,

@@ -68,10 +68,13 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
 cm1e_error_t cm1e_bus_transfer_remote(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo,
                                       cm1e_diag_t *diag)
 {
+    cm1e_error_t error = CM1E_OK;
     if (!slave->facts.coe)
         sdo->error = CM1E_ERROR_UNSUPPORTED;
-    else if (bus->remote->transfer(bus->remote_state, sdo, diag) != CM1E_OK)
-        return diag ? diag->error : CM1E_ERROR_IO;
+    else
+        error = bus->remote->transfer(bus->remote_state, sdo, diag);
+    if (error != CM1E_OK)
+        return error;
     return sdo->error == CM1E_OK ? CM1E_OK : cm1e_bus_diagnose_sdo(bus, slave, sdo, "SDO transfer", diag);
 }
 

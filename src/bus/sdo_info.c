@@ -8,7 +8,7 @@
 #include "core/in_task.h"
 
 /* The list type and the maximum number of indexes. */
-enum { LIST_BYTES_MAX = 2 + 2 * 0x10000 };
+enum { LIST_TYPE_BYTES = 2, LIST_BYTES_MAX = LIST_TYPE_BYTES + 2 * 0x10000 };
 enum { INFO_VALUES = INFO_VALUE_UNIT | INFO_VALUE_DEFAULT | INFO_VALUE_MINIMUM | INFO_VALUE_MAXIMUM };
 
 static cm1e_error_t diagnose(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const cm1e_info_request_t *request,
@@ -88,9 +88,11 @@ cm1e_error_t cm1e_sdo_info_list(cm1e_bus_t *bus, uint16_t position, cm1e_info_li
     cm1e_info_request_t request = {.kind = INFO_LIST, .index = (uint16_t)list, .answer = answer,
                                    .size = LIST_BYTES_MAX};
     cm1e_error_t error = ask(bus, position, &request, diag);
-    if (error == CM1E_OK && (request.size - 2) / 2 > *count)
+    if (error == CM1E_OK && request.size < LIST_TYPE_BYTES)
+        error = malformed(position, "its objects", diag);
+    else if (error == CM1E_OK && (request.size - LIST_TYPE_BYTES) / 2 > *count)
         error = cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Slave %u has %zu objects, there is room for %zu.",
-                              position, (request.size - 2) / 2, *count);
+                              position, (request.size - LIST_TYPE_BYTES) / 2, *count);
     else if (error == CM1E_OK && !cm1e_info_take_list(indexes, *count, count, answer, request.size))
         error = malformed(position, "its objects", diag);
     free(answer);
