@@ -3,6 +3,7 @@
 #include <stdatomic.h>
 
 #include "bus/bus_internal.h"
+#include "bus/emergency_ring.h"
 #include "bus_support.h"
 #include "core/bytes.h"
 
@@ -56,6 +57,26 @@ START_TEST(texts_are_those_of_the_device_or_of_the_class)
     expect_text(bus, 1, &(cm1e_emergency_t){.code = 0xB000}, "no standard has");
     expect_text(bus, 1, &(cm1e_emergency_t){.code = 0, .data = {1, 0, 0xAB}}, "no error any more. Data: 01 00 AB 00 00");
     expect_text(bus, 1, &(cm1e_emergency_t){.code = 0x2310}, "Cure: ");
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A new scan may have found fewer slaves than the one that an emergency came from. */
+START_TEST(a_sentence_names_the_slave_or_says_that_it_is_gone)
+{
+    char text[CM1E_EMERGENCY_TEXT_BYTES] = "unchanged";
+    const cm1e_emergency_t emergency = {.code = 0x3999};
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    cm1e_emergency_text(bus, 1, &emergency, text, 0);
+    ck_assert_str_eq(text, "unchanged");
+    cm1e_emergency_text(bus, 1, &emergency, NULL, sizeof text);
+    cm1e_emergency_text(bus, 1, &emergency, text, 10);
+    ck_assert_str_eq(text, "emergency");
+    cm1e_emergency_sentence(bus, 1, &emergency, text, sizeof text);
+    ck_assert_msg(strstr(text, "lave 1") && strstr(text, ": emergency 0x3999, voltage."), "%s", text);
+    cm1e_emergency_sentence(bus, 2, &emergency, text, sizeof text);
+    ck_assert_str_eq(text, "A slave that is gone: emergency 0x3999, voltage. Error register 0x00.");
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -412,6 +433,7 @@ int main(void)
     tcase_set_timeout(tests, 60);
     tcase_add_test(tests, an_emergency_arrives_without_any_transfer);
     tcase_add_test(tests, texts_are_those_of_the_device_or_of_the_class);
+    tcase_add_test(tests, a_sentence_names_the_slave_or_says_that_it_is_gone);
     tcase_add_test(tests, an_error_of_a_drive_arrives_once);
     tcase_add_test(tests, the_last_ones_are_kept);
     tcase_add_test(tests, transfers_and_emergencies_do_not_disturb_each_other);

@@ -62,6 +62,47 @@ START_TEST(what_cannot_be_meant_is_refused_in_words)
 }
 END_TEST
 
+/** Its neighbour still answers. */
+START_TEST(a_slave_that_is_gone_is_named_with_the_register)
+{
+    cm1e_bus_t *bus = scanned_bus();
+    uint8_t value[2] = {0};
+    cm1e_al_answer_t answer = {0};
+    simulate(bus, "unplug 2");
+    ck_assert_int_eq(cm1e_esc_read(bus, 2, 0x0130, value, 2, &diag), CM1E_ERROR_TIMEOUT);
+    ck_assert_str_eq(diag.text, "Slave 2 does not answer at register 0x0130.");
+    ck_assert_int_eq(cm1e_esc_write(bus, 2, 0x0420, value, 2, &diag), CM1E_ERROR_TIMEOUT);
+    ck_assert_str_eq(diag.text, "Slave 2 does not answer at register 0x0420.");
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 2, CM1E_AL_INIT, TIMEOUT_NS, &answer, &diag), CM1E_ERROR_TIMEOUT);
+    ck_assert_msg(strstr(diag.text, "lave 2") && strstr(diag.text, "answer"), "%s", diag.text);
+    ck_assert_int_eq(cm1e_esc_read(bus, 1, 0x0130, value, 2, &diag), CM1E_OK);
+    simulate(bus, "replug 2");
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_esc_read(bus, 2, 0x0130, value, 2, &diag), CM1E_OK);
+    ck_assert_int_eq(value[0], CM1E_AL_PRE_OP);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Without a valid SII the processor of a slave does not run, so nobody reads the request. */
+START_TEST(a_slave_that_neither_goes_nor_refuses_is_told_with_its_present_state)
+{
+    cm1e_bus_t *bus = scanned_bus();
+    cm1e_al_answer_t answer = {0};
+    simulate(bus, "quirk 2 wrong-checksum");
+    const int64_t begun_ns = now_of(bus);
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 2, CM1E_AL_INIT, TIMEOUT_NS, &answer, &diag), CM1E_ERROR_TIMEOUT);
+    ck_assert_int_lt(now_of(bus) - begun_ns, 2 * TIMEOUT_NS);
+    ck_assert_int_eq(answer.state, CM1E_AL_PRE_OP);
+    ck_assert_int_eq(answer.code, 0);
+    ck_assert_msg(strstr(diag.text, "lave 2") && strstr(diag.text, "PRE-OP"), "%s", diag.text);
+    simulate(bus, "quirk 2 wrong-checksum"); /* right again */
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 2, CM1E_AL_INIT, TIMEOUT_NS, &answer, &diag), CM1E_OK);
+    ck_assert_int_eq(answer.state, CM1E_AL_INIT);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_esc");
@@ -69,6 +110,8 @@ int main(void)
     tcase_add_test(tests, registers_are_read_and_written);
     tcase_add_test(tests, states_are_requested_as_they_are);
     tcase_add_test(tests, what_cannot_be_meant_is_refused_in_words);
+    tcase_add_test(tests, a_slave_that_is_gone_is_named_with_the_register);
+    tcase_add_test(tests, a_slave_that_neither_goes_nor_refuses_is_told_with_its_present_state);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

@@ -5,8 +5,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bus/firmware_update.h"
 #include "cm1e/bridge.h"
 #include "cm1e/cml.h"
+#include "cm1e/esc.h"
+#include "cm1e/foe.h"
 #include "cm1e/plot.h"
 #include "cm1e/sdo_info.h"
 #include "cm1e/sii.h"
@@ -85,6 +88,23 @@ static cm1e_error_t call_bridge(cm1e_bus_t *bus)
 }
 static cm1e_error_t call_sii_read(cm1e_bus_t *bus) { return cm1e_sii_read_device(bus, 1, bytes, &size, &diag); }
 static cm1e_error_t call_sii_write(cm1e_bus_t *bus) { return cm1e_sii_write_device(bus, 1, bytes, 2048, NULL, &diag); }
+static cm1e_error_t call_foe_read(cm1e_bus_t *bus) { return cm1e_foe_read(bus, 1, "f", bytes, &size, NULL, &diag); }
+static cm1e_error_t call_foe_write(cm1e_bus_t *bus) { return cm1e_foe_write(bus, 1, "f", bytes, 1, NULL, &diag); }
+static cm1e_error_t call_firmware(cm1e_bus_t *bus)
+{
+    const cm1e_firmware_file_t file = {.name = "f", .bytes = bytes, .size = 1};
+    cm1e_firmware_state_t state = CM1E_FIRMWARE_WRITTEN;
+    const cm1e_error_t error = cm1e_firmware_update(bus, 1, &file, &state, &diag);
+    ck_assert_int_eq(state, CM1E_FIRMWARE_UNTOUCHED);
+    return error;
+}
+static cm1e_error_t call_esc_read(cm1e_bus_t *bus) { return cm1e_esc_read(bus, 1, 0x0130, bytes, 2, &diag); }
+static cm1e_error_t call_esc_write(cm1e_bus_t *bus) { return cm1e_esc_write(bus, 1, 0x0420, bytes, 2, &diag); }
+static cm1e_error_t call_esc_state(cm1e_bus_t *bus)
+{
+    cm1e_al_answer_t answer;
+    return cm1e_esc_request_state(bus, 1, CM1E_AL_INIT, 1, &answer, &diag);
+}
 static cm1e_error_t call_cml(cm1e_bus_t *bus)
 {
     static cm1e_cml_exchange_t exchange;
@@ -149,7 +169,9 @@ static const struct {
     {"cm1e_bus_configure()", call_configure}, {"cm1e_bus_operate()", call_operate}, {"cm1e_bus_start()", call_start},
     {"cm1e_sdo_read()", call_read}, {"cm1e_sdo_write()", call_write}, {"cm1e_sdo_info_list()", call_list},
     {"cm1e_sdo_info_object()", call_object}, {"cm1e_sdo_info_entry()", call_entry}, {"cm1e_bridge_read()", call_bridge},
-    {"cm1e_sii_read_device()", call_sii_read}, {"cm1e_sii_write_device()", call_sii_write},
+    {"cm1e_foe_read()", call_foe_read}, {"cm1e_foe_write()", call_foe_write}, {"cm1e_firmware_update()", call_firmware},
+    {"cm1e_esc_read()", call_esc_read}, {"cm1e_esc_write()", call_esc_write},
+    {"cm1e_esc_request_state()", call_esc_state}, {"cm1e_sii_read_device()", call_sii_read}, {"cm1e_sii_write_device()", call_sii_write},
     {"cm1e_cml_exchange()", call_cml}, {"cm1e_cml_leave()", call_cml_leave}, {"cm1e_bus_config_load()", call_load},
     {"cm1e_scheduler_create()", call_create}, {"cm1e_scheduler_run()", call_run},
     {"cm1e_scheduler_write_csv()", call_csv}, {"cm1e_scheduler_write_svg()", call_svg},
