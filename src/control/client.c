@@ -91,6 +91,14 @@ static cm1e_error_t receive(cm1e_control_t *control, json_t **reply, cm1e_diag_t
     }
 }
 
+/** Ends a connection on which an answer is missing: it could come later, and be taken for that of the next request. */
+static cm1e_error_t lose(cm1e_control_t *control, cm1e_error_t error)
+{
+    close(control->fd);
+    control->fd = -1;
+    return error;
+}
+
 /** The error of a reply, as the program has said it. */
 static cm1e_error_t error_of(const json_t *reply, cm1e_diag_t *diag)
 {
@@ -110,15 +118,18 @@ cm1e_error_t cm1e_control_call(cm1e_control_t *control, json_t *request, json_t 
     uint8_t *bytes = cm1e_message_write(request, &length);
     *reply = NULL;
     if (!bytes)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for a request.");
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for a request, or it is too long.");
     errno = 0;
-    const bool sent = send_all(control, bytes, length);
+    const bool is_lost = control->fd < 0, sent = !is_lost && send_all(control, bytes, length);
     free(bytes);
+    if (is_lost)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The connection to %s was given up because of an answer that did not "
+                             "come, or could not be read: connect again.", control->path);
     if (!sent && errno != EPIPE && errno != ECONNRESET)
-        return gone(control, diag);
+        return lose(control, gone(control, diag));
     /* One that was turned away has been told why before it asked. */
     const cm1e_error_t error = receive(control, reply, diag);
-    return error == CM1E_OK ? error_of(*reply, diag) : error;
+    return error == CM1E_OK ? error_of(*reply, diag) : lose(control, error);
 }
 
 cm1e_error_t cm1e_control_ask(cm1e_control_t *control, const char *request, char **reply, cm1e_diag_t *diag)

@@ -1,0 +1,280 @@
+/* A client of the control socket: every cut of an answer, answers that do not come, come late or cannot be read, and what
+ * is refused before anything is sent. An answer is never taken for that of another request. */
+#include <errno.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <unity.h>
+
+#include "cm1e/control.h"
+#include "control/message.h"
+#include "core/in_task.h"
+
+static const char path[] = CM1E_TEST_OUTPUT "/client.sock";
+static cm1e_control_t *control;
+static cm1e_diag_t diag;
+static char *reply;
+
+/* ---- a program that answers -------------------------------------------------------------------------------------- */
+
+/** What it does with a request; a late answer comes when the next request has come, before that of it. */
+typedef enum act { ANSWER = 0, BYTE_BY_BYTE, LATE, NO_JSON, TOO_LONG, NOT_OK, NO_REASON, CLOSE, ACTS } act_t;
+static act_t acts[4];
+static unsigned act_count;
+static int listening;
+static pthread_t thread;
+
+static void send_bytes(int fd, const void *bytes, size_t length) { (void)!send(fd, bytes, length, MSG_NOSIGNAL); }
+
+static void send_text(int fd, const char *text, bool byte_by_byte)
+{
+    const size_t length = strlen(text), step = byte_by_byte ? 1 : length;
+    const uint8_t header[CM1E_MESSAGE_HEADER] = {0, 0, (uint8_t)(length >> 8), (uint8_t)length};
+    for (size_t i = 0; i < sizeof header; i += byte_by_byte ? 1 : sizeof header)
+        send_bytes(fd, header + i, byte_by_byte ? 1 : sizeof header);
+    for (size_t i = 0; i < length; i += step)
+        send_bytes(fd, text + i, step);
+}
+
+static bool take_request(int fd)
+{
+    uint8_t bytes[CM1E_REQUEST_MAX];
+    if (recv(fd, bytes, CM1E_MESSAGE_HEADER, MSG_WAITALL) != CM1E_MESSAGE_HEADER)
+        return false;
+    const size_t length = (size_t)bytes[2] << 8 | bytes[3];
+    return recv(fd, bytes, length, MSG_WAITALL) == (ssize_t)length;
+}
+
+static void answer(int fd, unsigned number)
+{
+    static const uint8_t too_long[CM1E_MESSAGE_HEADER] = {0x7F, 0xFF, 0xFF, 0xFF};
+    char text[80];
+    snprintf(text, sizeof text, "{\"ok\": true, \"number\": %u}", number);
+    switch (acts[number]) {
+    case ANSWER: send_text(fd, text, false); break;
+    case BYTE_BY_BYTE: send_text(fd, text, true); break;
+    case NO_JSON: send_text(fd, "[1, 2", false); break;
+    case TOO_LONG: send_bytes(fd, too_long, sizeof too_long); break;
+    case NOT_OK: send_text(fd, "{\"ok\": false, \"error\": {\"code\": -11, \"foreign_code\": 5, \"text\": \"no\"}}", false); break;
+    case NO_REASON: send_text(fd, "{}", false); break;
+    case LATE:
+    case CLOSE:
+    case ACTS: break;
+    }
+}
+
+static void *serve(void *context)
+{
+    (void)context;
+    const int fd = accept(listening, NULL, NULL);
+    for (unsigned n = 0; n < act_count && take_request(fd) && acts[n] != CLOSE; n++) {
+        if (n > 0 && acts[n - 1] == LATE)
+            send_text(fd, "{\"ok\": true, \"number\": 99}", false);
+        answer(fd, n);
+    }
+    if (act_count == 0 || acts[act_count - 1] != CLOSE)
+        (void)take_request(fd); /* until the client has closed it */
+    close(fd);
+    return NULL;
+}
+
+/** The client waits for 65 s; here for 0.2 s. Its socket has the lowest number that is free. */
+static void connect_to(unsigned count, const act_t *list)
+{
+    const struct timeval patience = {.tv_usec = 200000};
+    act_count = count;
+    if (count > 0)
+        memcpy(acts, list, count * sizeof *list);
+    TEST_ASSERT_EQUAL_INT(0, pthread_create(&thread, NULL, serve, NULL));
+    const int next = dup(0);
+    close(next);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_control_connect(&control, path, NULL, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT(0, setsockopt(next, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience));
+}
+
+static void end(void)
+{
+    cm1e_control_close(control);
+    control = NULL;
+    pthread_join(thread, NULL);
+}
+
+static cm1e_error_t ask(void)
+{
+    free(reply);
+    diag = (cm1e_diag_t){0};
+    return cm1e_control_ask(control, "{\"request\": \"hello\"}", &reply, &diag);
+}
+
+static void check_number(unsigned number)
+{
+    char text[40];
+    snprintf(text, sizeof text, "\"number\":%u", number);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, ask(), diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reply, text), reply);
+}
+
+void setUp(void)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    snprintf(address.sun_path, sizeof address.sun_path, "%s", path);
+    unlink(path);
+    listening = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    TEST_ASSERT_EQUAL_INT(0, bind(listening, (struct sockaddr *)&address, sizeof address));
+    TEST_ASSERT_EQUAL_INT(0, listen(listening, 1));
+}
+
+void tearDown(void)
+{
+    free(reply);
+    reply = NULL;
+    close(listening);
+    unlink(path);
+}
+
+/* ---- answers ----------------------------------------------------------------------------------------------------- */
+
+static void test_answers_come_whole_or_byte_by_byte(void)
+{
+    connect_to(3, (const act_t[]){ANSWER, BYTE_BY_BYTE, ANSWER});
+    for (unsigned n = 0; n < 3; n++)
+        check_number(n);
+    end();
+}
+
+/* The late answer must not be that of the next request. */
+static void test_connection_is_given_up_after_an_answer_that_did_not_come(void)
+{
+    connect_to(2, (const act_t[]){LATE, ANSWER});
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, ask());
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "did not answer in time"), diag.text);
+    TEST_ASSERT_NULL(reply);
+    for (int n = 0; n < 2; n++) {
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_IO, ask());
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "connect again"), diag.text);
+        TEST_ASSERT_NULL(reply);
+    }
+    end();
+    connect_to(1, (const act_t[]){ANSWER});
+    check_number(0);
+    end();
+}
+
+static void test_answers_that_cannot_be_read_end_the_connection(void)
+{
+    static const struct {
+        act_t act;
+        const char *words;
+    } rows[] = {{NO_JSON, "cannot be read: "}, {TOO_LONG, "cannot be read: it is too long"}};
+    for (int i = 0; i < 2; i++) {
+        connect_to(2, (const act_t[]){rows[i].act, ANSWER});
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, ask());
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, rows[i].words), diag.text);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_IO, ask());
+        end();
+    }
+}
+
+static void test_program_that_closes_the_connection_has_ended(void)
+{
+    connect_to(2, (const act_t[]){ANSWER, CLOSE});
+    check_number(0);
+    for (int n = 0; n < 2; n++)
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_IO, ask());
+    end();
+    connect_to(1, (const act_t[]){CLOSE});
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_IO, ask());
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "has ended, or closed the connection"), diag.text);
+    end();
+}
+
+/* A refusal is an answer: the connection goes on. */
+static void test_refusal_has_the_words_of_the_program(void)
+{
+    connect_to(3, (const act_t[]){NOT_OK, NO_REASON, ANSWER});
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_STATE, ask());
+    TEST_ASSERT_EQUAL_STRING("no", diag.text);
+    TEST_ASSERT_EQUAL_UINT(5, diag.foreign_code);
+    TEST_ASSERT_NOT_NULL(reply);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_IO, ask());
+    TEST_ASSERT_EQUAL_STRING("The program refused without a reason.", diag.text);
+    check_number(2);
+    end();
+}
+
+/* ---- before anything is sent ------------------------------------------------------------------------------------- */
+
+static void test_request_that_is_no_object_is_not_sent(void)
+{
+    static const char *const requests[] = {"", "[]", "5", "{", "{\"a\": 1, \"a\": 2}", "no JSON"};
+    connect_to(1, (const act_t[]){ANSWER});
+    for (size_t i = 0; i < sizeof requests / sizeof requests[0]; i++) {
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_control_ask(control, requests[i], &reply, &diag));
+        TEST_ASSERT_EQUAL_STRING("The request is not a JSON object.", diag.text);
+        TEST_ASSERT_NULL(reply);
+    }
+    check_number(0);
+    end();
+}
+
+static void test_connections_that_cannot_be_made_say_why(void)
+{
+    char name[300];
+    memset(name, 'x', sizeof name);
+    name[0] = '/';
+    name[sizeof name - 1] = 0;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_control_connect(&control, name, NULL, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "is too long for a socket"), diag.text);
+    TEST_ASSERT_NULL(control);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_NOT_FOUND, cm1e_control_connect(&control, "/no/such/socket", NULL, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "/no/such/socket"), diag.text);
+    cm1e_in_task_begin();
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_STATE, cm1e_control_connect(&control, path, NULL, &diag));
+    cm1e_in_task_end();
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "cm1e_control_connect()"), diag.text);
+    TEST_ASSERT_NULL(control);
+}
+
+static void *listen_later(void *context)
+{
+    (void)context;
+    usleep(30000);
+    return listen(listening, 1) == 0 ? serve(NULL) : NULL;
+}
+
+/* A program that has just begun has the name of its socket for a moment before it listens. */
+static void test_socket_that_nobody_listens_to_yet_is_asked_again(void)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    snprintf(address.sun_path, sizeof address.sun_path, "%s", path);
+    close(listening);
+    unlink(path);
+    listening = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    TEST_ASSERT_EQUAL_INT(0, bind(listening, (struct sockaddr *)&address, sizeof address));
+    act_count = 1;
+    acts[0] = ANSWER;
+    TEST_ASSERT_EQUAL_INT(0, pthread_create(&thread, NULL, listen_later, NULL));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_control_connect(&control, path, NULL, &diag), diag.text);
+    check_number(0);
+    end();
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_answers_come_whole_or_byte_by_byte);
+    RUN_TEST(test_connection_is_given_up_after_an_answer_that_did_not_come);
+    RUN_TEST(test_answers_that_cannot_be_read_end_the_connection);
+    RUN_TEST(test_program_that_closes_the_connection_has_ended);
+    RUN_TEST(test_refusal_has_the_words_of_the_program);
+    RUN_TEST(test_request_that_is_no_object_is_not_sent);
+    RUN_TEST(test_connections_that_cannot_be_made_say_why);
+    RUN_TEST(test_socket_that_nobody_listens_to_yet_is_asked_again);
+    return UNITY_END();
+}
