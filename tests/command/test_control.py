@@ -136,6 +136,16 @@ WRONG = (b"", b"{", b"[]", b"null", b'"hello"', b"{}", b'{"request": 5}', b'{"re
          b'{"request": "sdo_info", "slave": 1, "kind": 2, "index": 1}', b'{"request": "sdo_info", "slave": 0, "kind": 1}', b'{"request": "' + b"x" * 60000 + b'"}')
 
 
+# What is wrong with each, as its answer says it.
+NAMED = (({"request": "sdo_info", "slave": 1, "kind": 3, "index": 65536}, '"index" is expected to be 0 ... 65535'),
+         ({"request": "sdo_info", "slave": 1, "kind": 5, "index": 1, "subindex": 256}, '"subindex" and "values" 0 ... 255'),
+         ({"request": "sdo_read", "slave": 1, "index": 4120, "timeout_ms": 0}, '"timeout_ms" is expected to be 1 ... 60000'),
+         ({"request": "sdo_read", "slave": 1, "index": 4120, "timeout_ms": 60001}, '"timeout_ms" is expected'),
+         ({"request": "sdo_read", "slave": 1, "index": 4120, "complete_access": 1}, '"complete_access" is expected to be true'),
+         ({"request": "variables", "from": -1}, '"from" is expected to be the number of a variable'),
+         ({"request": "record", "variables": 5}, '"variables" is expected to be a list of names'))
+
+
 def check_wrong_messages():
     with running("maintain") as program:
         with Client(program) as client:
@@ -143,6 +153,9 @@ def check_wrong_messages():
                 client.send(text)
                 reply = client.receive()
                 expect(reply and not reply["ok"] and reply["error"]["text"], f"{text[:60]}", reply)
+            for request, words in NAMED:
+                reply = client.ask(**request)
+                expect(not reply["ok"] and reply["error"]["code"] == -1 and words in reply["error"]["text"], request, reply)
             expect(client.ask("hello")["ok"], "the connection goes on after wrong messages")
         for length in (65537, 0x7FFFFFFF, 0xFFFFFFFF):
             with Client(program) as client:

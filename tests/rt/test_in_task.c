@@ -123,6 +123,7 @@ static cm1e_error_t call_create(cm1e_bus_t *bus)
     cm1e_scheduler_t *other;
     return cm1e_scheduler_create(&other, bus, NULL, &diag);
 }
+static cm1e_error_t call_add_bus(cm1e_bus_t *bus) { return cm1e_scheduler_add_bus(machine.scheduler, bus, &diag); }
 static cm1e_error_t call_run(cm1e_bus_t *bus)
 {
     (void)bus;
@@ -173,7 +174,8 @@ static const struct {
     {"cm1e_esc_read()", call_esc_read}, {"cm1e_esc_write()", call_esc_write},
     {"cm1e_esc_request_state()", call_esc_state}, {"cm1e_sii_read_device()", call_sii_read}, {"cm1e_sii_write_device()", call_sii_write},
     {"cm1e_cml_exchange()", call_cml}, {"cm1e_cml_leave()", call_cml_leave}, {"cm1e_bus_config_load()", call_load},
-    {"cm1e_scheduler_create()", call_create}, {"cm1e_scheduler_run()", call_run},
+    {"cm1e_scheduler_create()", call_create}, {"cm1e_scheduler_add_bus()", call_add_bus},
+    {"cm1e_scheduler_run()", call_run},
     {"cm1e_scheduler_write_csv()", call_csv}, {"cm1e_scheduler_write_svg()", call_svg},
     {"cm1e_scheduler_check_path()", call_check}, {"cm1e_bus_read_ports()", call_ports},
     {"cm1e_scheduler_write_html()", call_html}, {"cm1e_scheduler_write_npy()", call_npy},

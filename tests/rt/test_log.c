@@ -134,6 +134,40 @@ static void break_cables(void *context)
         cm1e_sim_segment_cut(segment, 1, now == 1000 * MS);
 }
 
+/** Records of every kind that a simulated machine does not bring by itself. Numbers of 32 bits keep all of them. */
+START_TEST(test_a_record_is_a_sentence_with_its_numbers)
+{
+    static const struct {
+        cm1e_log_event_t event;
+        const char *words;
+    } rows[] = {
+        {{.kind = CM1E_LOG_ERROR, .axis = 0, .code = CM1E_ERROR_BUS_LOST}, "axis1: "},
+        {{.kind = CM1E_LOG_ERROR, .axis = 0, .code = CM1E_ERROR_BUS_LOST, .value = 12.5, .bound = -3.25},
+         ": 12.5 u, allowed are -3.25 u."},
+        {{.kind = CM1E_LOG_ERROR, .axis = 0, .code = CM1E_ERROR_BUS_LOST, .detail = 0xEEEE},
+         " Device error 0xEEEE: not a code of the manual."},
+        {{.kind = CM1E_LOG_STRANGER, .axis = -1, .code = (int32_t)0x89ABCDEF, .detail = 3u << 24 | 0x0102,
+          .value = 0xFEDCBA98, .bound = 65536.0 * 0xFFFE + 0xFFFD}, "258"},
+        {{.kind = CM1E_LOG_STRANGER, .axis = -1, .code = (int32_t)0x89ABCDEF, .detail = 3u << 24 | 0x0102,
+          .value = 0xFEDCBA98}, "0xFEDCBA98"},
+        {{.kind = CM1E_LOG_STRANGER, .axis = -1, .code = (int32_t)0x89ABCDEF, .detail = 3u << 24 | 0x0102,
+          .value = 0xFEDCBA98}, "0x89ABCDEF"},
+        {{.kind = CM1E_LOG_RUN, .axis = -1}, "the run ended"},
+    };
+    char text[20] = "unchanged";
+    machine_t machine = {.axis_count = 1};
+    machine_open(&machine);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        expect_text(machine.scheduler, &rows[i].event, rows[i].words);
+    cm1e_log_text(machine.scheduler, &rows[0].event, NULL, sizeof text);
+    cm1e_log_text(machine.scheduler, &rows[0].event, text, 0);
+    ck_assert_str_eq(text, "unchanged");
+    cm1e_log_text(machine.scheduler, &rows[0].event, text, 7);
+    ck_assert_str_eq(text, "axis1:");
+    machine_close(&machine);
+}
+END_TEST
+
 START_TEST(test_a_ring_that_breaks_is_told_with_its_place)
 {
     static const struct {
@@ -254,6 +288,7 @@ int main(void)
     Suite *suite = suite_create("log");
     TCase *tcase = tcase_create("log");
     tcase_add_test(tcase, test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away);
+    tcase_add_test(tcase, test_a_record_is_a_sentence_with_its_numbers);
     tcase_add_test(tcase, test_a_ring_that_breaks_is_told_with_its_place);
     tcase_add_test(tcase, test_a_reader_goes_on_where_it_was);
     tcase_add_test(tcase, test_a_full_ring_keeps_the_newest_and_counts_the_others);

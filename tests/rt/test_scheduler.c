@@ -516,6 +516,29 @@ START_TEST(test_a_late_first_cycle_without_a_slave_is_an_error_in_words)
 }
 END_TEST
 
+/** Too short for the ramp, or for the drive to be disabled: the bus is stopped, and the run says so. */
+START_TEST(test_stop_timeout_that_is_too_short_is_told)
+{
+    unsigned late = 0, in_time = 0;
+    for (int64_t timeout_ns = MS; in_time < 3; timeout_ns += 2 * MS) {
+        machine_t machine = {.axis_count = 1, .config = {.stop_timeout_ns = timeout_ns}};
+        machine_open(&machine);
+        mover_t mover = make_mover(&machine, 300 * MS);
+        machine_add(&machine, "", 0, 0, moving_program, &mover);
+        cm1e_diag_t diag = {0};
+        const cm1e_error_t error = cm1e_scheduler_run(machine.scheduler, 0, &diag);
+        ck_assert_int_eq(error, in_time > 0 || error == CM1E_OK ? CM1E_OK : CM1E_ERROR_TIMEOUT);
+        ck_assert_msg(error == CM1E_OK || strstr(diag.text, "were not at rest and disabled within"), "%s", diag.text);
+        ck_assert_int_le(cm1e_scheduler_time_ns(machine.scheduler), 300 * MS + timeout_ns + 5 * MS);
+        ck_assert_int_eq(cm1e_bus_slave_watch(machine.bus, 1).al_state, CM1E_AL_INIT);
+        late += error != CM1E_OK;
+        in_time += error == CM1E_OK;
+        machine_close(&machine);
+    }
+    ck_assert_uint_gt(late, 8); /* the ramp takes 20 ms */
+}
+END_TEST
+
 START_TEST(test_longest_stop_timeout_is_no_short_one)
 {
     machine_t machine = {.axis_count = 1, .config = {.stop_timeout_ns = INT64_MAX}};
@@ -605,6 +628,7 @@ int main(void)
     tcase_add_loop_test(all, test_scheduler_of_a_bus_that_does_not_operate_is_refused, 0, 2);
     tcase_add_test(all, test_an_older_program_has_shorter_structs);
     tcase_add_test(all, test_scheduler_of_an_earlier_operation_is_refused);
+    tcase_add_test(all, test_stop_timeout_that_is_too_short_is_told);
     tcase_add_test(all, test_longest_stop_timeout_is_no_short_one);
     tcase_add_loop_test(all, test_a_late_first_cycle_finds_the_slaves_in_operational, 0, 12);
     tcase_add_test(all, test_a_late_first_cycle_without_a_slave_is_an_error_in_words);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "cm1e/sim.h"
+#include "scheduler/trace_recorder.h"
 #include "two_buses.h"
 
 enum { MOST_VELOCITY = 20, MOST_ACCELERATION = 200 }; /* u/s, u/s2 */
@@ -153,6 +154,34 @@ START_TEST(test_axes_of_both_buses_move_in_one_program)
     cm1e_scheduler_statistics(scheduler, &statistics);
     ck_assert_uint_eq(statistics.bus.lost_frames, 0);
     ck_assert_uint_eq(statistics.overruns, 0);
+    close_all();
+}
+END_TEST
+
+/** Both axes are at place 1 of their bus. The recorded counts are those of the axis that has the name. */
+START_TEST(test_objects_of_both_buses_are_recorded)
+{
+    const cm1e_scheduler_config_t config = {.trace_capacity = 1500};
+    prepare();
+    cm1e_scheduler_destroy(scheduler);
+    must(cm1e_scheduler_create(&scheduler, buses[A], &config, &diag));
+    must(cm1e_scheduler_add_bus(scheduler, buses[B], &diag));
+    const cm1e_task_config_t task = {.name = "both", .program = program};
+    must(cm1e_scheduler_add_task(scheduler, &task, &diag));
+    const trace_t *trace = cm1e_scheduler_trace(scheduler);
+    uint32_t column[BUSES];
+    for (int i = 0; i < BUSES; i++) {
+        axes[i] = cm1e_scheduler_axis(scheduler, (uint32_t)i);
+        must(cm1e_scheduler_trace_object(scheduler, axes[i], 0x6064, 0, &diag));
+        column[i] = trace->column_count - 1;
+        ck_assert_msg(strncmp(trace->columns[column[i]].name, i == A ? "X1 0x6064" : "Y1 0x6064", 9) == 0, "%s",
+                      trace->columns[column[i]].name);
+    }
+    must(cm1e_scheduler_run(scheduler, 1500 * MS_IN_NS, &diag));
+    ck_assert(moves[A].Done && moves[B].Done);
+    const double *last = cm1e_trace_sample(trace, trace->used - 1);
+    ck_assert_double_gt(last[column[A]], 0);
+    ck_assert_double_eq_tol(last[column[B]] / last[column[A]], 3.0 / 2.0, 0.003);
     close_all();
 }
 END_TEST
@@ -371,6 +400,7 @@ int main(void)
     TCase *all = tcase_create("several buses");
     tcase_add_test(all, test_the_first_bus_stays_operational_while_the_second_starts);
     tcase_add_test(all, test_axes_of_both_buses_move_in_one_program);
+    tcase_add_test(all, test_objects_of_both_buses_are_recorded);
     tcase_add_test(all, test_a_gear_from_one_bus_to_the_other_is_in_step);
     tcase_add_test(all, test_a_lost_bus_concerns_its_own_axes);
     tcase_add_test(all, test_what_cannot_run_together_is_refused);

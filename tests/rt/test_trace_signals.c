@@ -8,6 +8,7 @@
 
 #include "cm1e/sim.h"
 #include "cm1e/trace.h"
+#include "core/bytes.h"
 #include "machine.h"
 #include "scheduler/trace_recorder.h"
 
@@ -229,6 +230,29 @@ START_TEST(test_objects_in_both_directions_of_the_process_data)
 }
 END_TEST
 
+/** A mode has 8 bits and a sign; 32 inputs have none. */
+START_TEST(test_objects_have_the_size_and_the_sign_of_the_dictionary)
+{
+    memset(&plc, 0, sizeof plc);
+    machine = (machine_t){.axis_count = 1, .mapping = CM1E_MAPPING_DYNAMIC, .config = {.trace_capacity = 400}};
+    machine_open(&machine);
+    machine_add(&machine, "program", 0, 0, program, NULL);
+    const trace_t *trace = cm1e_scheduler_trace(machine.scheduler);
+    expect(cm1e_scheduler_trace_object(machine.scheduler, machine.axis[0], 0x6061, 0, &diag), CM1E_OK, "");
+    const uint32_t mode = trace->column_count - 1;
+    expect(cm1e_scheduler_trace_object(machine.scheduler, machine.axis[0], 0x60FD, 0, &diag), CM1E_OK, "");
+    const uint32_t inputs = trace->column_count - 1;
+    ck_assert_int_eq(trace->columns[mode].type, CM1E_TRACE_SINT);
+    ck_assert(trace->columns[inputs].type == CM1E_TRACE_UDINT || trace->columns[inputs].type == CM1E_TRACE_UINT);
+    machine_run(&machine, 300 * MS);
+    ck_assert_double_eq(cm1e_trace_sample(trace, 299)[mode], 8); /* CSP */
+    const cm1e_image_slot_t slot = cm1e_bus_find_input(machine.bus, 1, 0x60FD, 0);
+    const uint8_t *bytes = cm1e_bus_inputs(machine.bus) + slot.offset;
+    ck_assert_double_eq(cm1e_trace_sample(trace, trace->used - 1)[inputs], (double)cm1e_get_uint(bytes, slot.bytes));
+    machine_close(&machine);
+}
+END_TEST
+
 START_TEST(test_objects_that_no_cycle_brings_are_refused)
 {
     open_machine(20);
@@ -434,6 +458,7 @@ int main(void)
     tcase_add_test(tests, test_the_type_of_a_variable_is_that_of_the_compiler);
     tcase_add_test(tests, test_signals_that_cannot_be_are_refused_in_words);
     tcase_add_test(tests, test_objects_in_both_directions_of_the_process_data);
+    tcase_add_test(tests, test_objects_have_the_size_and_the_sign_of_the_dictionary);
     tcase_add_test(tests, test_objects_that_no_cycle_brings_are_refused);
     tcase_add_test(tests, test_the_cycle_itself_is_recorded);
     tcase_add_test(tests, test_triggers_keep_what_a_search_in_the_whole_signal_says);
