@@ -208,6 +208,13 @@ def check_ends(io):
         expect(told["ok"] and output() == 7, "a client", told)
         time.sleep(0.4)
         expect(output() == 0, "an output that is not renewed", output())
+        with Client(io.path) as other:
+            expect(client.ask("output", name="2.outputs", value=5, keep_ms=5000)["ok"] and output() == 5, "a client", output())
+            expect(other.ask("output", name="2.outputs", value=None)["ok"] and output() == 5, "let go of by another one", output())
+            expect(not other.ask("output", name="2.outputs", value=6)["ok"], "it is still held", output())
+            expect(client.ask("output", name="2.outputs", value=None)["ok"] and output() == 0, "let go of", output())
+            expect(other.ask("output", name="2.outputs", value=6)["ok"] and output() == 6, "another one has it then", output())
+            expect(other.ask("output", name="2.outputs", value=None)["ok"] and output() == 0, "let go of again", output())
         for wrong in ({}, {"name": 5, "value": 1}, {"name": "2.outputs"}, {"name": "2.outputs", "value": "1"},
                       {"name": "2.outputs", "value": 1, "keep_ms": 10},
                       {"name": "2.outputs", "value": 1, "keep_ms": 6000}):
