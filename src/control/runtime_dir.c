@@ -16,8 +16,9 @@
 static cm1e_error_t choose(char *path, size_t size, cm1e_diag_t *diag)
 {
     const char *stated = getenv("CM1E_RUNTIME_DIR"), *of_session = getenv("XDG_RUNTIME_DIR");
+    const bool is_stated = stated && stated[0];
     int length;
-    if (stated && stated[0])
+    if (is_stated)
         length = snprintf(path, size, "%s", stated);
     else if (geteuid() == 0)
         length = snprintf(path, size, "/run/cm1e");
@@ -26,8 +27,9 @@ static cm1e_error_t choose(char *path, size_t size, cm1e_diag_t *diag)
     else
         length = snprintf(path, size, "/tmp/cm1e-%u", (unsigned)geteuid());
     if (length < 0 || (size_t)length >= size || path[0] != '/')
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "CM1E_RUNTIME_DIR is \"%.80s\"; expected an absolute path "
-                             "of at most %zu bytes.", stated ? stated : "", size - 1);
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "%s is \"%.80s\"; expected an absolute path of at most %zu "
+                             "bytes.", is_stated ? "CM1E_RUNTIME_DIR" : "XDG_RUNTIME_DIR",
+                             is_stated ? stated : of_session, size - (is_stated ? 1 : sizeof "/cm1e"));
     return CM1E_OK;
 }
 
