@@ -111,6 +111,44 @@ static unsigned break_and_mend(cm1e_bus_t *bus, unsigned cable, unsigned moment,
 }
 
 /** Only a frame that was on the cable at that moment is lost, and only its cycle. */
+static cm1e_tap_verdict_t twice(void *context, cm1e_tap_frame_t *frame)
+{
+    const cm1e_tap_direction_t *direction = context;
+    if (frame->direction == *direction)
+        frame->copies = 2;
+    return CM1E_TAP_PASS;
+}
+
+/** A switch or a driver that sends frames twice, on both ways of the ring, which is whole or broken anywhere: each cycle
+ *  has the process data of all slaves, and SDO transfers give what the slave has. */
+START_TEST(frames_that_come_twice_disturb_no_ring)
+{
+    cm1e_tap_direction_t direction = _i % 2 ? CM1E_TAP_RECEIVED : CM1E_TAP_SENT;
+    const unsigned cable = (unsigned)_i / 2;
+    ring_config();
+    cm1e_bus_t *bus = open_bus();
+    if (cable > 0)
+        cm1e_sim_segment_cut(segment_of(bus), cable, true);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), twice, &direction);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    for (unsigned round = 0; round < 20; round++) {
+        uint8_t vendor[4] = {0};
+        const uint16_t position = (uint16_t)(1 + round % SLAVES);
+        cm1e_sdo_t sdo = {.position = position, .index = 0x1018, .subindex = 1, .data = vendor, .size = sizeof vendor};
+        ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+        finish_sdo(bus, &sdo);
+        ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+        ck_assert_uint_eq(cm1e_get_u32(vendor), CM1E_VENDOR_ID);
+        cycles(bus, 10);
+    }
+    expect_whole_operation(bus);
+    expect_broken_at(bus, cable);
+    ck_assert_uint_eq(cm1e_bus_counters(bus)->working_counter_errors, 0);
+    ck_assert_uint_eq(cm1e_bus_counters(bus)->lost_frames, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(every_cable_breaks_and_is_mended_at_every_moment)
 {
     ring_config();
@@ -199,6 +237,7 @@ int main(void)
     tcase_add_loop_test(tests, ring_that_is_cut_starts_and_runs, 1, SLAVES + 2);
     tcase_add_loop_test(tests, cut_and_mended_in_operation_no_slave_leaves_operational, 1, SLAVES + 2);
     tcase_add_loop_test(tests, every_cable_breaks_and_is_mended_at_every_moment, 0, 2);
+    tcase_add_loop_test(tests, frames_that_come_twice_disturb_no_ring, 0, 2 * (CABLES + 1));
     tcase_add_test(tests, the_place_of_a_break_is_told_in_words);
     tcase_add_loop_test(tests, the_place_is_known_after_a_scan, 1, SLAVES + 2);
     tcase_add_test(tests, a_line_is_no_ring);
