@@ -213,20 +213,6 @@ int ecx_outframe_red(ecx_portt *port, uint8 idx)
     return send_frame(port, idx, false);
 }
 
-int ecx_outframe(ecx_portt *port, uint8 idx, int stacknumber)
-{
-    if (!can_send(port, idx) || (stacknumber && !port->redundant))
-        return -1;
-    const int interface = stacknumber ? 1 : 0;
-    cm1e_port_slot_t *slot = &port->slots[idx];
-    slot->answers = 0;
-    slot->companion = interface ? RING_COPY : RING_NOTHING;
-    slot->sent_ns = cm1e_clock_now(port->nic->link.clock);
-    cm1e_port_stamp(port, port->txbuf[idx], idx, interface, ++port->transmissions);
-    slot->state = EC_BUF_TX;
-    return cm1e_port_send(port, interface, port->txbuf[idx], port->txbuflength[idx]) ? port->txbuflength[idx] : -1;
-}
-
 /* ---- receiving --------------------------------------------------------------------------------------------------- */
 
 /** Which of our interfaces a frame was sent by, or NO_ROUTE, FOREIGN_ROUTE. */

@@ -118,7 +118,6 @@ static void test_lengths_and_indices_out_of_range_are_refused(void)
     for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
         port.txbuflength[3] = lengths[i];
         TEST_ASSERT_EQUAL_INT(-1, ecx_outframe_red(&port, 3));
-        TEST_ASSERT_EQUAL_INT(-1, ecx_outframe(&port, 3, 0));
         TEST_ASSERT_EQUAL_INT(EC_NOFRAME, ecx_srconfirm(&port, 3, 100));
     }
     for (int idx = EC_MAXBUF; idx < 256; idx++) {

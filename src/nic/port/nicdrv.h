@@ -99,7 +99,6 @@ int ecx_setupnic(ecx_portt *port, const char *ifname, int secondary);
 int ecx_closenic(ecx_portt *port);
 void ecx_setbufstat(ecx_portt *port, uint8 idx, int bufstat);
 uint8 ecx_getindex(ecx_portt *port);
-int ecx_outframe(ecx_portt *port, uint8 idx, int stacknumber);
 int ecx_outframe_red(ecx_portt *port, uint8 idx);
 int ecx_inframe(ecx_portt *port, uint8 idx, int stacknumber);
 int ecx_waitinframe(ecx_portt *port, uint8 idx, int timeout);

@@ -75,7 +75,6 @@
 #define ecx_mbxempty                       cm1e_ecx_mbxempty
 #define ecx_mbxreceive                     cm1e_ecx_mbxreceive
 #define ecx_mbxsend                        cm1e_ecx_mbxsend
-#define ecx_outframe                       cm1e_ecx_outframe
 #define ecx_outframe_red                   cm1e_ecx_outframe_red
 #define ecx_packeterror                    cm1e_ecx_packeterror
 #define ecx_poperror                       cm1e_ecx_poperror
