@@ -17,6 +17,7 @@ void cm1e_al_request(cm1e_al_machine_t *machine, uint8_t target, int64_t deadlin
     machine->target = target;
     machine->deadline_ns = deadline_ns;
     machine->answered = false;
+    machine->unanswered = 0;
     machine->without_bit = false;
     machine->state = machine->code = 0;
     machine->error = CM1E_OK;
@@ -127,6 +128,7 @@ static void after_wait(cm1e_al_machine_t *machine)
 
 void cm1e_al_result(cm1e_al_machine_t *machine, const cm1e_datagram_t *d, int64_t now_ns)
 {
+    machine->unanswered = d->working_counter == 1 ? 0 : machine->unanswered + 1;
     if (d->working_counter != 1)
         return; /* lost or not answered: the request is repeated until the deadline */
     switch (machine->step) {

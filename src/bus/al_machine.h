@@ -21,12 +21,15 @@ typedef enum cm1e_al_step {
     AL_ID_END,
 } cm1e_al_step_t;
 
+enum { CM1E_AL_SILENT = 5 };
+
 typedef struct cm1e_al_machine {
     uint16_t station;
     cm1e_al_step_t step;
     uint8_t target;
     int64_t deadline_ns;
     bool answered;          /**< the slave has answered at its address since the start */
+    unsigned unanswered;    /**< datagrams in a row that nobody answered */
     bool without_bit;       /**< the next acknowledgement has no acknowledge bit */
     unsigned looks;         /**< since the last acknowledgement */
     int64_t acknowledged_ns;
@@ -35,6 +38,11 @@ typedef struct cm1e_al_machine {
     cm1e_error_t error;     /**< result, valid when idle */
 } cm1e_al_machine_t;
 
+/** Nobody answers, or nobody any more: several datagrams in a row. `state` is of before then. */
+static inline bool cm1e_al_is_silent(const cm1e_al_machine_t *machine)
+{
+    return !machine->answered || machine->unanswered >= CM1E_AL_SILENT;
+}
 static inline bool cm1e_al_idle(const cm1e_al_machine_t *machine) { return machine->step == AL_IDLE; }
 void cm1e_al_request(cm1e_al_machine_t *machine, uint8_t target, int64_t deadline_ns);
 /** A slave that does not support the request does not answer before the deadline: ID 0, no error. */

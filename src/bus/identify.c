@@ -142,10 +142,16 @@ static cm1e_error_t check_firmware(const cm1e_bus_t *bus, const cm1e_axis_config
     char problem[256];
     if (!axis->firmware[0] || !strcmp(plain_version(axis->firmware), plain_version(slave->info.software_version)))
         return CM1E_OK;
-    snprintf(problem, sizeof problem,
-             "Axis \"%s\" (slave %u): the configuration expects firmware %s, the device reports \"%s\" (object "
-             "0x100A). Correct \"firmware\" or leave it out.", axis->name, slave->info.position, axis->firmware,
-             slave->info.software_version);
+    const cm1e_error_t unread = slave->info.software_version[0] ? CM1E_OK : slave->version_sdo.error;
+    if (unread != CM1E_OK && unread != CM1E_ERROR_SDO_ABORT)
+        snprintf(problem, sizeof problem, "Axis \"%s\" (slave %u): the configuration expects firmware %s, and that of "
+                 "the device (object 0x100A) could not be read: %s. Check its power and the cables up to it.", axis->name,
+                 slave->info.position, axis->firmware, cm1e_strerror(unread));
+    else
+        snprintf(problem, sizeof problem,
+                 "Axis \"%s\" (slave %u): the configuration expects firmware %s, the device reports \"%s\" (object "
+                 "0x100A). Correct \"firmware\" or leave it out.", axis->name, slave->info.position, axis->firmware,
+                 slave->info.software_version);
     return cm1e_bus_identity_error(bus, diag, problem);
 }
 

@@ -32,7 +32,7 @@ cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *sl
     const char *target = cm1e_al_state_text(al->target);
     cm1e_bus_label_first(bus, slave, label);
     cm1e_bus_other_master(bus, other);
-    if (!al->answered)
+    if (cm1e_al_is_silent(al))
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, 0,
                              "%s does not answer when asked to go to %s: check its power and its cable.%s",
                              label, target, other);
