@@ -86,6 +86,8 @@ typedef struct coupling_hooks {
     bool (*by_actual)(const cm1e_axis_t *axis);
     /** After a pause or silence: whether it has to begin anew with its masters. */
     bool (*begins_anew)(const cm1e_axis_t *axis);
+    /** Looks at the masters in a cycle in which the axis does not step with them; true: it has to stop. */
+    bool (*sees_trouble)(cm1e_axis_t *axis);
     /** Whether the axis, in ErrorStop, follows its masters to their standstill. */
     bool (*stops_with_masters)(const cm1e_axis_t *axis);
     /** Called when the axis has failed: stops the other axes that have to stop. */

@@ -5,10 +5,11 @@
  * missing, and is beyond that target when the next one comes. If the motion began anew there, the servo would pull the
  * load back, even backwards, and the motor would exceed its maximum velocity while it catches up afterwards. So the
  * set-point first goes after the motor, never faster than before the silence or pause, and slower when it is near. The
- * motion begins anew where both meet. Slaves of the axis see another velocity of their master then, and catch up.
+ * motion begins anew where both meet. A slave makes up its distance to its master then, and slaves of the axis, which see
+ * another velocity of their master, catch up.
  *
- * Only the axis itself may decide that. A slave stays with its master, an axis of a group on its path, and a motion made
- * of several goes on after one or two cycles.
+ * Only the axis itself may decide that. An axis of a group stays on its path, and a motion made of several goes on after
+ * one or two cycles.
  */
 #include <math.h>
 
@@ -45,10 +46,16 @@ static void end(cm1e_axis_t *axis)
 enum { WAITS_AFTER_PAUSE = 2, WAITS_AFTER_SILENCE = 1 };
 static bool shows_velocity(const cm1e_axis_t *axis) { return axis->drive.image.in_velocity.bytes > 0; }
 
+/* A slave stops at once when its master fails. */
+static bool has_to_stop(cm1e_axis_t *axis)
+{
+    return axis->setpoint.pursuit.under_way && axis_follows(axis) && axis->coupling_hooks->sees_trouble(axis);
+}
+
 static bool may_pursue(const cm1e_axis_t *axis)
 {
     return axis->mode == CM1E_MODE_CSP && !cm1e_drive_is_virtual(&axis->drive) && set_points_move(axis) &&
-           axis->state != CM1E_AXIS_ERROR_STOP && !axis_follows(axis) && !axis_led(axis);
+           axis->state != CM1E_AXIS_ERROR_STOP && !axis_led(axis);
 }
 
 /* u/s, in the direction of the motion before. */
@@ -199,7 +206,7 @@ static void give_up(cm1e_axis_t *axis)
 
 bool cm1e_axis_pursue(cm1e_axis_t *axis)
 {
-    if (!may_pursue(axis)) {
+    if (!may_pursue(axis) || has_to_stop(axis)) {
         give_up(axis);
         return false;
     }

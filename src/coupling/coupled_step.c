@@ -337,6 +337,18 @@ CM1E_RARE static guard_t judge(cm1e_axis_t *axis, const from_t *f, from_t *next)
     return verdict.guard;
 }
 
+static bool has_to_stop(cm1e_axis_t *axis, master_trouble_t trouble)
+{
+    return trouble && !(axis->coupling->stopping && trouble == MASTER_STOPPING) &&
+           !cm1e_coupling_follows_to_the_end(axis, trouble);
+}
+
+/* Where the master begins anew meanwhile is no jump. */
+bool cm1e_coupling_sees_trouble(cm1e_axis_t *axis)
+{
+    return has_to_stop(axis, cm1e_coupling_look(axis, axis->coupling->now));
+}
+
 static bool step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
@@ -344,8 +356,7 @@ static bool step(cm1e_axis_t *axis)
     const from_t *next = &f;
     if (c->phasing.moving)
         cm1e_phasing_step(axis);
-    const master_trouble_t trouble = cm1e_coupling_see(axis, c->now);
-    if (trouble && !(c->stopping && trouble == MASTER_STOPPING) && !cm1e_coupling_follows_to_the_end(axis, trouble))
+    if (has_to_stop(axis, cm1e_coupling_see(axis, c->now)))
         return stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
     c->end_of_profile = false;
     c->now->function->evaluate(axis, c->now, &f);

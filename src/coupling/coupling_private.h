@@ -229,6 +229,7 @@ bool cm1e_coupling_settle(cm1e_axis_t *axis);
 void cm1e_coupling_held(cm1e_axis_t *axis);
 /** Whether a master began anew in this cycle, or is followed by its actual value. */
 bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis);
+bool cm1e_coupling_sees_trouble(cm1e_axis_t *axis); /* coupled_step.c */
 /** Fills in a master of a `follow` that is not in force yet: its origin and its view, for the slave's present
  *  set-point. After the errors CM1E_ERROR_AXIS_MASTER, _COUPLING_CYCLE, _MASTER_LOST and CM1E_ERROR_INVALID_ARGUMENT
  *  nothing has changed. */

@@ -99,6 +99,7 @@ static const coupling_hooks_t hooks = {
     .resume_slaves = cm1e_coupling_resume_slaves,
     .begin_slaves_anew = cm1e_coupling_begin_slaves_anew,
     .begins_anew = cm1e_coupling_begins_anew,
+    .sees_trouble = cm1e_coupling_sees_trouble,
     .look_across = cm1e_coupling_look_across,
     .held = cm1e_coupling_held,
     .phasing_end = cm1e_phasing_end,

@@ -20,7 +20,7 @@
 #define HOMING_OVERSHOOT 1.0
 #define RING_OVERSHOOT 0.12       /* where a cable of a ring breaks or is mended, targets come up to a cycle late */
 #define HEAVY_OVERSHOOT 0.08      /* a lost frame, and a load that the servo cannot pull back without overshoot; */
-#define COMPOSITE_OVERSHOOT 0.11  /* of a slave, a path, or what is superimposed (docs/SAFETY.md) */
+#define COMPOSITE_OVERSHOOT 0.11  /* of a path, or what is superimposed (docs/SAFETY.md) */
 #define JOLT_OVERSHOOT 0.02       /* where frames are sent late, because those of another network were waited for */
 #define HOMING_SPEED 100000.0     /* counts/s, by the drive (scenario_machine.c) */
 #define HOMING_ACCELERATION 2000000.0 /* counts/s2 */
@@ -156,8 +156,7 @@ static bool is_heavy(const run_t *run, const axis_spec_t *spec, double cycles)
 /** Whether its motion is one of several, which goes on after up to two lost cycles. */
 static bool is_composite(const run_t *run, const machine_axis_t *axis)
 {
-    return axis->info.state == CM1E_AXIS_SYNCHRONIZED_MOTION || axis->seen.superimposed ||
-           (run->grouped && axis->number < 2);
+    return axis->seen.superimposed || (run->grouped && axis->number < 2);
 }
 
 /** By how much of its maximum velocity a load is too fast that ran ahead while frames were lost, or in a pause. */
