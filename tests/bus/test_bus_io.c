@@ -127,6 +127,7 @@ START_TEST(wrong_names_are_told_what_there_is)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         ck_assert_int_eq(cm1e_io_find(bus, cases[i].name, &io, &diag), cases[i].error);
         ck_assert_msg(strstr(diag.text, cases[i].told), "%s: %s", cases[i].name, diag.text);
+        ck_assert_uint_eq(diag.foreign_code, 0);
         ck_assert_int_eq(cm1e_io_quality(&io), CM1E_IO_INVALID);
         ck_assert_int_eq(cm1e_io_set_bool(&io, true), CM1E_ERROR_STATE);
         ck_assert_int_eq(cm1e_io_integer(&io), 0);

@@ -282,6 +282,7 @@ START_TEST(pdos_that_exclude_each_other_are_refused)
     expect_refused(CM1E_ERROR_PDO_MAPPING, "The PDOs 0x1A00 and 0x1A01 of slave 4 (\"analog in\"");
     ck_assert_msg(strstr(diag.text, "exclude each other (object 0x1800:06)") && strstr(diag.text, "inputs_pdos"), "%s",
                   diag.text);
+    ck_assert_uint_eq(diag.foreign_code, 0);
     bus = open_bus();
     ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
     ck_assert_int_eq(cm1e_sdo_write(bus, ANALOG_IN, 0x1C13, 0, &counts[0], 1, &diag), CM1E_OK);

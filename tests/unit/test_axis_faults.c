@@ -134,6 +134,7 @@ static void test_bus_trouble_while_moving_holds_the_target_then_disables(void)
             const int32_t target = (int32_t)fake_output(&bus, OBJ_607A_TARGET_POSITION, 0);
             bench_forget_steps();
             lose_the_bus(errors[e], back, id);
+            bench_told(e == 0 ? "Check cable, network interface" : "Look for a slave without power");
             TEST_ASSERT_EQUAL_INT64(0, worst_step);
             TEST_ASSERT_EQUAL_INT32(target, bus.position);
         }
