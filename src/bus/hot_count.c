@@ -65,9 +65,10 @@ static bool misses_one(const cm1e_bus_t *bus)
 }
 
 /** Slaves that are not counted may take part or not: on their way to Operational first the inputs count, then the
- *  outputs, also of one that was refused on its way, until the search has met it again. A slave that is counted may have stopped to take outputs, or may have left if it has no inputs: nothing
- *  shows which one it is, so the optional ones are asked for their state at once. Until each of them can have
- *  answered, the others go on; after that the working counter is wrong. */
+ *  outputs, also of one that was refused on its way, until the search has met it again. A slave that is counted may have
+ *  stopped to take outputs, or may have left if it has no inputs: nothing shows which one it is, so the optional ones are
+ *  asked for their state at once. Until each of them can have answered, the others go on; after that the working counter
+ *  is wrong. */
 static bool explains(cm1e_bus_t *bus, int working_counter)
 {
     int more = working_counter - bus->expected_working_counter, most = 0, least = 0;
