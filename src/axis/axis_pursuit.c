@@ -148,12 +148,18 @@ static double speed_of_pursuit(const cm1e_axis_t *axis)
     return fmax(0.0, fmin(speed_of_motor(axis) + lead_of_motor(axis) / approach_s, fabs(before)));
 }
 
-static bool is_over(const cm1e_axis_t *axis, double speed)
+/* A homing does not know its software limits. */
+static bool runs_into_limit(const cm1e_axis_t *axis)
 {
     const cm1e_motion_state_t now = {0.0, axis->setpoint.velocity, 0.0};
-    return speed == 0.0 || lead_of_motor(axis) <= near * way_of_cycle(axis) ||
-           axis->setpoint.pursuit.cycles * axis->cycle_s > longest_s ||
+    return axis->state != CM1E_AXIS_HOMING &&
            !cm1e_axis_limits_can_stop(axis, cm1e_axis_line(axis, axis->setpoint.position), now);
+}
+
+static bool is_over(const cm1e_axis_t *axis, double speed)
+{
+    return speed == 0.0 || lead_of_motor(axis) <= near * way_of_cycle(axis) ||
+           axis->setpoint.pursuit.cycles * axis->cycle_s > longest_s || runs_into_limit(axis);
 }
 
 /* Called when the velocity has changed by a step, and before the set-point of the cycle is made. */

@@ -301,10 +301,13 @@ static bool is_alone(const run_t *run, int number)
     return true;
 }
 
-/** It is shorter than lost_cycles_limit, and no other one is near, with which it could be longer. */
+/** It is shorter than lost_cycles_limit, and no other one is near, with which it could be longer. A slave that answers none
+ *  of three questions is lost earlier; one slave is asked in each cycle. */
 static bool is_tolerated(const run_t *run, const fault_t *fault)
 {
-    enum { NEAR = 10 };
+    enum { NEAR = 10, QUESTIONS = 3 };
+    if (fault->kind == FAULT_UNPLUG && fault->length >= QUESTIONS)
+        return false;
     const bool is_brief = is_of_frames(fault) || is_set(fault) || fault->kind == FAULT_UNPLUG;
     if (!is_brief || fault->length >= run->scenario->lost_limit)
         return false;

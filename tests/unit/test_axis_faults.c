@@ -106,6 +106,7 @@ static void lose_the_bus(cm1e_error_t error, bool back_early, cm1e_command_id_t 
     bench_cycles(1);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
     TEST_ASSERT_EQUAL_INT(error, bench_info().error);
+    bench_told(error == CM1E_ERROR_BUS_LOST ? "Check cable, network interface" : "Look for a slave without power");
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
     bench_cycles(50);
     TEST_ASSERT_EQUAL_INT(OPERATION_ENABLED, bus.state); /* for the motor to stop by its torque */
@@ -134,7 +135,6 @@ static void test_bus_trouble_while_moving_holds_the_target_then_disables(void)
             const int32_t target = (int32_t)fake_output(&bus, OBJ_607A_TARGET_POSITION, 0);
             bench_forget_steps();
             lose_the_bus(errors[e], back, id);
-            bench_told(e == 0 ? "Check cable, network interface" : "Look for a slave without power");
             TEST_ASSERT_EQUAL_INT64(0, worst_step);
             TEST_ASSERT_EQUAL_INT32(target, bus.position);
         }
