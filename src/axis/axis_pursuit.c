@@ -8,8 +8,8 @@
  * motion begins anew where both meet. A slave makes up its distance to its master then, and slaves of the axis, which see
  * another velocity of their master, catch up.
  *
- * Only the axis itself may decide that. An axis of a group stays on its path, and a motion made of several goes on after
- * one or two cycles.
+ * Only the axis itself may decide that. An axis of a group stays on its path. A slave does so after a pause only: while
+ * frames are lost it stays with its master. A motion made of several goes on after one or two cycles.
  */
 #include <math.h>
 
@@ -135,6 +135,8 @@ bool cm1e_axis_pursuit_begin(cm1e_axis_t *axis)
         return false;
     if (axis->setpoint.pursuit.under_way) /* it goes on, and ends by what the drive shows now */
         return true;
+    if (axis_follows(axis)) /* it stays with its master */
+        return false;
     if (composite && axis->silence.silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES) /* it would end */
         return false;
     prepare(axis, cycles_of_braking(axis) * axis->cycle_s, shows_velocity(axis) ? 0 : WAITS_AFTER_SILENCE);

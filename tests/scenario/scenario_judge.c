@@ -20,7 +20,7 @@
 #define HOMING_OVERSHOOT 1.0
 #define RING_OVERSHOOT 0.12       /* where a cable of a ring breaks or is mended, targets come up to a cycle late */
 #define HEAVY_OVERSHOOT 0.08      /* a lost frame, and a load that the servo cannot pull back without overshoot; */
-#define COMPOSITE_OVERSHOOT 0.11  /* of a path, or what is superimposed (docs/SAFETY.md) */
+#define COMPOSITE_OVERSHOOT 0.11  /* of a slave, a path, or what is superimposed (docs/SAFETY.md) */
 #define JOLT_OVERSHOOT 0.02       /* where frames are sent late, because those of another network were waited for */
 #define HOMING_SPEED 100000.0     /* counts/s, by the drive (scenario_machine.c) */
 #define HOMING_ACCELERATION 2000000.0 /* counts/s2 */
@@ -163,7 +163,9 @@ static bool is_composite(const run_t *run, const machine_axis_t *axis)
 static double heavy_share(const run_t *run, const machine_axis_t *axis)
 {
     const bool paused = axis->seen.stalled < cycles_of(run, STALL_MS);
-    if (is_composite(run, axis) && is_heavy(run, axis->spec, paused ? INFINITY : LOST_OF_COMPOSITE))
+    const bool follows = axis->info.state == CM1E_AXIS_SYNCHRONIZED_MOTION; /* it goes after its motor in a pause */
+    if ((is_composite(run, axis) || (follows && !paused)) &&
+        is_heavy(run, axis->spec, paused ? INFINITY : LOST_OF_COMPOSITE))
         return COMPOSITE_OVERSHOOT;
     return is_heavy(run, axis->spec, LOST_OF_ONE) ? HEAVY_OVERSHOOT : 0;
 }
