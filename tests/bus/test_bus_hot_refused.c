@@ -44,8 +44,10 @@ typedef struct tools {
 
 static tools_t add_tools(cm1e_sim_slave_kind_t kind, unsigned wrong_channels, unsigned right_channels)
 {
-    return (tools_t){add_tool(&config, "tool", kind, right_channels), add_tool(&wire, "wrong", kind, wrong_channels),
-                     add_tool(&wire, "right", kind, right_channels)};
+    add_tool(&config, "tool", kind, right_channels);
+    add_tool(&wire, "wrong", kind, wrong_channels);
+    add_tool(&wire, "right", kind, right_channels);
+    return (tools_t){config.slaves, wire.slaves, wire.slaves + 1}; /* adding one may have moved the one before */
 }
 
 static void another_product(void) { add_tools(CM1E_SIM_SLAVE_DIGITAL, 4, 4).wrong->product++; }
