@@ -279,11 +279,15 @@ typedef struct cm1e_axis_leader {
     /** s; the time that the slowest axis of the leader needs to brake, for the common ramp when the bus is lost. NULL:
      *  each axis has its own ramp. */
     double (*stop_time)(void *context);
+    /** The set-point of the axis goes after its motor, which a load has turned on in a pause or silence, with this velocity
+     *  (u/s). Called in place of next(), in every cycle of that. Then next() gives set-points from there on. NULL: it does
+     *  not go after it. */
+    void (*strays)(void *context, uint32_t index, double velocity);
     /** The bus of the axis is silent: its set-point stays in this cycle. Called in place of next(). NULL: nothing. */
     void (*held)(void *context, uint32_t index);
-    /** Called after a silence, before the next set-point: whether other axes of the leader were not silent. Then the
-     *  axis goes on by itself: the next set-point begins at its last one, with the velocity that the motor has left.
-     *  NULL: they were. */
+    /** Called after a silence, before the next set-point: whether the axis is not where its leader has the others, because
+     *  these were not silent, or because it strays. Then the axis goes on by itself: the next set-point begins at its last
+     *  one, with the velocity that the motor has left. NULL: it is. */
     bool (*alone)(void *context, uint32_t index);
 } cm1e_axis_leader_t;
 /** Gives an axis a leader. Until the lead ends, motion commands other than MC_Stop, and MC_SetPosition, are refused

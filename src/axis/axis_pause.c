@@ -283,12 +283,14 @@ static void go_on_slower(cm1e_axis_t *axis)
         lost_speed(axis, before - axis->setpoint.velocity);
 }
 
-/* The leader went on with axes of other buses: this one comes back to them by itself. */
+/* The axis is not where its leader has the others: it comes back to them by itself. */
 static bool goes_on_alone(cm1e_axis_t *axis)
 {
     const cm1e_axis_leader_t *leader = axis->leader;
     if (!axis_led(axis) || !leader->alone || !leader->alone(leader->context, leader->index))
         return false;
+    if (cm1e_axis_pursuit_begin(axis))
+        return true;
     cm1e_axis_shift_set_point(axis, cm1e_axis_ran_on(axis));
     const double left = velocity_left(axis);
     lost_speed(axis, axis->setpoint.velocity - left);
@@ -298,8 +300,13 @@ static bool goes_on_alone(cm1e_axis_t *axis)
 
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
-    if (goes_on_alone(axis) || cm1e_axis_pursuit_begin(axis))
+    if (goes_on_alone(axis))
         return;
+    if (cm1e_axis_pursuit_begin(axis)) {
+        if (axis_led(axis)) /* the path begins anew from rest, as for the axes that stay on it */
+            axis->leader->paused(axis->leader->context, axis->leader->index);
+        return;
+    }
     const bool follows_on = axis_follows(axis) && axis->coupling_hooks->begins_anew(axis);
     const double ran_on = cm1e_axis_ran_on(axis);
     if (is_composite(axis) && !follows_on && !begins_anew(axis)) {

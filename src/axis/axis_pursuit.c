@@ -6,15 +6,16 @@
  * load back, even backwards, and the motor would exceed its maximum velocity while it catches up afterwards. So the
  * set-point first goes after the motor, never faster than before the silence or pause, and slower when it is near. The
  * motion begins anew where both meet. A slave makes up its distance to its master then, and slaves of the axis, which see
- * another velocity of their master, catch up.
+ * another velocity of their master, catch up. An axis of a group comes to rest, and goes back to its path, which waits.
  *
- * Only the axis itself may decide that. An axis of a group stays on its path. A slave does so after a pause only: while
- * frames are lost it stays with its master. A motion made of several goes on after one or two cycles.
+ * A slave does so after a pause only: while frames are lost it stays with its master. A motion made of several, and a
+ * path, go on after one or two cycles instead.
  */
 #include <math.h>
 
 #include "axis/axis_backlash.h"
 #include "axis/axis_extras.h"
+#include "axis/axis_guard.h"
 #include "axis/axis_hooks.h"
 #include "axis/axis_lead.h"
 #include "axis/axis_limits.h"
@@ -27,8 +28,10 @@
 static const double approach_s = 8e-3;
 /* Of the way in a cycle before: so near, the servo makes up the rest. */
 static const double near = 0.5;
-/* Of that way: one that is no farther ahead follows its set-point. */
-static const double farthest_ways = 1.25;
+/* Of that way: one that is no farther ahead follows its set-point. An axis leaves its path for more than that only. */
+static const double farthest_ways = 1.25, farthest_ways_on_path = 2.0;
+/* Of the velocity of the motor. */
+static const double least_part = 0.5;
 /* Counts: of the actual position. */
 static const double position_noise = 2.0;
 /* A motor that is not met by then is moved by its load. */
@@ -55,7 +58,7 @@ static bool has_to_stop(cm1e_axis_t *axis)
 static bool may_pursue(const cm1e_axis_t *axis)
 {
     return axis->mode == CM1E_MODE_CSP && !cm1e_drive_is_virtual(&axis->drive) && set_points_move(axis) &&
-           axis->state != CM1E_AXIS_ERROR_STOP && !axis_led(axis);
+           axis->state != CM1E_AXIS_ERROR_STOP && (!axis_led(axis) || axis->leader->strays);
 }
 
 /* u/s, in the direction of the motion before. */
@@ -103,18 +106,34 @@ void cm1e_axis_pursuit_prepare(cm1e_axis_t *axis, double unheard_s)
     prepare(axis, unheard_s, shows_velocity(axis) ? 0 : WAITS_AFTER_PAUSE);
 }
 
+/* u/s; an axis of a path rests until the drive has shown where the motor is. What its drive hears then is no faster than
+ * if it had braked since the silence began. */
+static void brake_meanwhile(cm1e_axis_t *axis, double time_s)
+{
+    double *velocity = &axis->setpoint.pursuit.velocity;
+    if (axis_led(axis))
+        *velocity = copysign(fmax(0.0, fabs(*velocity) - axis->limits.system.deceleration * time_s), *velocity);
+}
+
 /* Whether a servo that brakes as hard as this one has braked would overshoot when it has pulled the motor back. */
 static bool is_too_far(const cm1e_axis_t *axis)
 {
     const pursuit_t *pursuit = &axis->setpoint.pursuit;
     const double braking = fmax(0.0, pursuit->speed - speed_of_motor(axis)) / pursuit->unheard_s;
     const double noise = (position_noise + CM1E_AXIS_VELOCITY_NOISE * axis->cycle_s) / fabs(axis->position.scale);
-    return lead_of_motor(axis) > fmax(farthest_ways * way_of_cycle(axis), braking * approach_s * approach_s / 2.0) + noise;
+    const double ways = axis_led(axis) ? farthest_ways_on_path : farthest_ways;
+    return lead_of_motor(axis) > fmax(ways * way_of_cycle(axis), braking * approach_s * approach_s / 2.0) + noise;
+}
+
+/* A path that has just begun again is so slow that nothing is gained by going after a motor with its velocity. */
+static bool is_too_slow(const cm1e_axis_t *axis)
+{
+    return axis_led(axis) && fabs(axis->setpoint.pursuit.velocity) < least_part * speed_of_motor(axis);
 }
 
 static bool begin(cm1e_axis_t *axis)
 {
-    const bool ahead = speed_of_motor(axis) > 0.0 && is_too_far(axis);
+    const bool ahead = speed_of_motor(axis) > 0.0 && is_too_far(axis) && !is_too_slow(axis);
     axis->setpoint.pursuit.under_way = ahead;
     if (!ahead)
         end(axis);
@@ -128,16 +147,24 @@ static double cycles_of_braking(const cm1e_axis_t *axis)
     return silent + fmax(0.0, earlier) / 3.0;
 }
 
+/* A slave stays with its master. What is made of several motions would end after a short silence, which it rides out. */
+static bool goes_on(const cm1e_axis_t *axis)
+{
+    if (axis_follows(axis))
+        return true;
+    if (axis_led(axis))
+        return axis->leader->begins_anew && !axis->leader->begins_anew(axis->leader->context);
+    return (axis->setpoint.source->is_composite || axis->superimposed.id) &&
+           axis->silence.silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES;
+}
+
 bool cm1e_axis_pursuit_begin(cm1e_axis_t *axis)
 {
-    const bool composite = axis->setpoint.source->is_composite || axis->superimposed.id;
     if (!may_pursue(axis))
         return false;
     if (axis->setpoint.pursuit.under_way) /* it goes on, and ends by what the drive shows now */
         return true;
-    if (axis_follows(axis)) /* it stays with its master */
-        return false;
-    if (composite && axis->silence.silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES) /* it would end */
+    if (goes_on(axis))
         return false;
     prepare(axis, cycles_of_braking(axis) * axis->cycle_s, shows_velocity(axis) ? 0 : WAITS_AFTER_SILENCE);
     return axis_has_extra(axis, EXTRA_PURSUIT) && shows_velocity(axis) && begin(axis);
@@ -176,6 +203,8 @@ static void go_after(cm1e_axis_t *axis)
 {
     const double speed = speed_of_pursuit(axis), velocity = copysign(speed, axis->setpoint.pursuit.velocity);
     const bool over = is_over(axis, speed);
+    if (axis_led(axis))
+        axis->leader->strays(axis->leader->context, axis->leader->index, velocity);
     cm1e_axis_put_velocity(axis, velocity);
     cm1e_axis_set_reached(axis, false);
     tell_slaves(axis);
@@ -184,7 +213,9 @@ static void go_after(cm1e_axis_t *axis)
     if (!over)
         return;
     end(axis);
-    cm1e_axis_begin_anew(axis, velocity);
+    cm1e_axis_guard_renew(axis);
+    if (!axis_led(axis))
+        cm1e_axis_begin_anew(axis, velocity);
 }
 
 /* u/s; of the motor, no faster than the set-point that goes after it. */
@@ -203,6 +234,7 @@ static void give_up(cm1e_axis_t *axis)
     end(axis);
     if (!under_way)
         return;
+    cm1e_axis_guard_renew(axis);
     if (axis_on_profile(axis))
         cm1e_axis_begin_anew(axis, axis->setpoint.velocity);
     else if (axis_follows(axis))
@@ -220,6 +252,10 @@ bool cm1e_axis_pursue(cm1e_axis_t *axis)
     }
     pursuit_t *pursuit = &axis->setpoint.pursuit;
     if (!pursuit->under_way && (axis->silence.resumed || pursuit->waits > 0)) { /* what the drive has shown is older */
+        if (axis->silence.resumed == RESUMED_FROM_SILENCE)
+            brake_meanwhile(axis, (axis->silence.silent_before + 1) * axis->cycle_s);
+        else if (!axis->silence.resumed)
+            brake_meanwhile(axis, axis->cycle_s);
         if (!axis->silence.resumed)
             pursuit->waits--;
         return false;

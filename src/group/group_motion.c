@@ -64,11 +64,17 @@ static void after_step(cm1e_group_t *group)
         group->ending = true;
 }
 
+static void begin_step(cm1e_group_t *group)
+{
+    group->asked = 0;
+    group->told = false;
+}
+
 /* The first axis of a cycle makes the step for all. */
 static void take_turn(cm1e_group_t *group, unsigned bit)
 {
     if ((group->asked & bit) != 0) {
-        group->asked = 0;
+        begin_step(group);
         if (!group->ending) {
             cm1e_path_step(&group->path, &group->sample);
             after_step(group);
@@ -77,14 +83,13 @@ static void take_turn(cm1e_group_t *group, unsigned bit)
     group->asked |= bit;
 }
 
-/* An axis that asks has found its bounds: the group does not end, and its axes are not on several buses, by which they may
- * leave the path. */
+/* An axis that asks has found its bounds: the group does not end, and none of its axes may have left the path. */
 static bool ordinary(void *context)
 {
     cm1e_group_t *group = context;
     if (!cm1e_path_ordinary_step(&group->path, &group->sample))
         return false;
-    group->asked = 0;
+    begin_step(group);
     return true;
 }
 
@@ -119,6 +124,15 @@ static void held(void *context, uint32_t index)
     take_turn(group, 1u << index);
 }
 
+/* The motor of an axis has run ahead. The path waits until the axis has come back. */
+static void strays(void *context, uint32_t index, double velocity)
+{
+    cm1e_group_t *group = context;
+    cm1e_group_stray(group, index);
+    group->apart.strays[index].speed = larger(group->apart.strays[index].speed, fabs(velocity));
+    take_turn(group, 1u << index);
+}
+
 /* Called when an axis has lost the lead. At rest in GroupStopping that is no error, because the axis leaves no path.
  * After the last axis no step follows. */
 static void lost(void *context, uint32_t index, cm1e_error_t error)
@@ -133,21 +147,6 @@ static void lost(void *context, uint32_t index, cm1e_error_t error)
         (void)come_to_rest(group);
 }
 
-/* Called when the motor of an axis has come to rest in a pause. All axes report it before the first of them asks for a
- * set-point again. */
-static void paused(void *context, uint32_t index)
-{
-    cm1e_group_t *group = context;
-    const unsigned bit = 1u << index;
-    if (group->paused == 0 || (group->paused & bit) != 0) {
-        group->paused = 0;
-        cm1e_path_pause(&group->path);
-    }
-    group->paused |= bit;
-    if ((group->apart.off & bit) != 0)
-        cm1e_group_stray(group, index);
-}
-
 /* The smallest part of its velocity with which a motor of the group can go on. */
 static double part_left(const cm1e_group_t *group)
 {
@@ -160,19 +159,32 @@ static double part_left(const cm1e_group_t *group)
     return least;
 }
 
-/* Called after a silence, by all axes before the first of them asks for a set-point again. The first call is made
- * before any of them is slower. */
+/* Whether this axis is the first one to tell the path of a pause or silence, and none has had its next set-point. */
+static bool is_first(cm1e_group_t *group, uint32_t index)
+{
+    const bool first = !group->told && (group->asked & 1u << index) != 0;
+    group->told |= first;
+    return first;
+}
+
+/* Called when the motor of an axis has come to rest in a pause or silence, before it asks for its next set-point. */
+static void paused(void *context, uint32_t index)
+{
+    cm1e_group_t *group = context;
+    if (is_first(group, index))
+        cm1e_path_pause(&group->path);
+    if ((group->apart.off & 1u << index) != 0)
+        cm1e_group_stray(group, index);
+}
+
+/* Called after a silence, before the axis asks for its next set-point. The first call is made before any of the axes is
+ * slower. */
 static void slow(void *context, uint32_t index, double *velocity, double *acceleration)
 {
     cm1e_group_t *group = context;
-    const unsigned bit = 1u << index;
-    if (group->slowed == 0 || (group->slowed & bit) != 0) {
-        const double part = part_left(group);
-        group->slowed = 0;
-        if (part < 1.0)
-            cm1e_path_slow(&group->path, part, &group->sample);
-    }
-    group->slowed |= bit;
+    const double part = is_first(group, index) ? part_left(group) : 1.0;
+    if (part < 1.0)
+        cm1e_path_slow(&group->path, part, &group->sample);
     *velocity = group->sample.velocity[index];
     *acceleration = group->sample.acceleration[index];
 }
@@ -186,6 +198,19 @@ static bool begins_anew(void *context)
             return true;
     }
     return false;
+}
+
+/* Called after a silence: whether the axis goes on by itself. If all axes were silent, it tells the path too. */
+static bool alone(void *context, uint32_t index)
+{
+    cm1e_group_t *group = context;
+    if (!cm1e_group_strays(group, index))
+        return false;
+    if (!group->apart.several && begins_anew(group))
+        paused(group, index);
+    else
+        cm1e_group_stray(group, index);
+    return true;
 }
 
 static double stop_time(void *context)
@@ -204,11 +229,12 @@ static double stop_time(void *context)
     return longest_s;
 }
 
-/* Axes on several buses may leave the path. */
+/* Axes on several buses may leave the path, and one that strays has left it. */
 static bool bounds(void *context, uint32_t index, cm1e_motion_bounds_t *most, double *left_s)
 {
     const cm1e_group_t *group = context;
-    return !group->apart.several && !group->ending && cm1e_path_bounds(&group->path, (int)index, most, left_s);
+    return !group->apart.several && group->apart.off == 0 && !group->ending &&
+           cm1e_path_bounds(&group->path, (int)index, most, left_s);
 }
 
 /* ---- to take the axes, and to let them go ------------------------------------------------------------------------ */
@@ -252,8 +278,9 @@ cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group)
 }
 
 static const cm1e_axis_leader_t functions = {.next = next, .lost = lost, .paused = paused, .slow = slow,
-                                             .begins_anew = begins_anew, .stop_time = stop_time, .held = held,
-                                             .alone = cm1e_group_alone, .bounds = bounds, .ordinary = ordinary};
+                                             .begins_anew = begins_anew, .stop_time = stop_time, .strays = strays,
+                                             .held = held, .alone = alone, .bounds = bounds,
+                                             .ordinary = ordinary};
 
 void cm1e_group_make_leaders(cm1e_group_t *group)
 {
@@ -273,7 +300,8 @@ void cm1e_group_make_leaders(cm1e_group_t *group)
 
 cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
 {
-    group->led = group->paused = group->slowed = 0;
+    begin_step(group);
+    group->led = 0;
     group->asked = UINT32_MAX;
     cm1e_group_together(group);
     group->ending = group->halting = false;

@@ -97,8 +97,8 @@ struct cm1e_group {
     /* the motion: axes of the path are members in their order, without the gaps */
     int axes;
     uint8_t ident[CM1E_GROUP_AXES];     /**< IdentInGroup of the axes of the path */
-    unsigned led, paused, slowed;       /**< bits of axes of the path: led by the group; has reported this pause, this
-                                             silence */
+    unsigned led;                       /**< bits of axes of the path */
+    bool told;                          /**< since the last step the path was told of a pause or silence */
     uint32_t asked;                     /**< bits of axes of the path that have had this sample; at first all of them */
     bool ending;                        /**< the present set-point is the last one */
     bool halting;                       /**< MC_GroupHalt brakes, with ... */
@@ -165,8 +165,8 @@ void cm1e_group_together(cm1e_group_t *group);
 bool cm1e_group_all_held(const cm1e_group_t *group);
 /** The axis leaves the path where it is, and the path comes to rest. */
 void cm1e_group_stray(cm1e_group_t *group, uint32_t index);
-/** cm1e_axis_leader_t.alone */
-bool cm1e_group_alone(void *context, uint32_t index);
+/** Whether the axis has left the path, or does so because it was silent while others were not. */
+bool cm1e_group_strays(const cm1e_group_t *group, uint32_t index);
 /** The set-point of an axis that has left the path. */
 void cm1e_group_stray_step(cm1e_group_t *group, uint32_t index, cm1e_motion_state_t *point);
 /** The axis is no longer led. */

@@ -269,18 +269,9 @@ void cm1e_path_go_on(cm1e_path_t *path)
     try_to_go_on(path);
 }
 
-void cm1e_path_clear(cm1e_path_t *path)
+/** The path ends where it is, at rest. */
+static void end_here(cm1e_path_t *path)
 {
-    cm1e_path_look_anew(path);
-    if (path->element_count == 0)
-        return;
-    if (!is_at_rest(path)) {
-        if (!path->stop_wanted)
-            cm1e_path_stop(path, 0, 0);
-        cm1e_path_cut(path);
-        path->stop_wanted = false;
-        return;
-    }
     const cm1e_path_element_t *element = cm1e_path_element(path, 0);
     cm1e_path_point_t point;
     cm1e_path_point_at(element->piece, path->config.axes, element->skipped + cm1e_path_here(path), &point);
@@ -290,6 +281,21 @@ void cm1e_path_clear(cm1e_path_t *path)
     path->stop_wanted = path->stopping = false;
 }
 
+void cm1e_path_clear(cm1e_path_t *path)
+{
+    cm1e_path_look_anew(path);
+    if (path->element_count == 0)
+        return;
+    if (is_at_rest(path)) {
+        end_here(path);
+        return;
+    }
+    if (!path->stop_wanted)
+        cm1e_path_stop(path, 0, 0);
+    cm1e_path_cut(path);
+    path->stop_wanted = false;
+}
+
 void cm1e_path_pause(cm1e_path_t *path)
 {
     cm1e_path_look_anew(path);
@@ -297,6 +303,10 @@ void cm1e_path_pause(cm1e_path_t *path)
         return;
     path->along.velocity = path->along.acceleration = 0;
     path->slow.missing = 0;
+    if (path->cut) {
+        end_here(path);
+        return;
+    }
     path->stopping = false; /* a stop that is wanted is planned in the next step */
     (void)cm1e_path_plan(path, path->element_count);
 }

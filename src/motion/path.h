@@ -255,7 +255,7 @@ void cm1e_path_go_on(cm1e_path_t *path);
 void cm1e_path_clear(cm1e_path_t *path);
 
 /** The axes have come to rest at the last step, because no further set-points were sent. The remaining segments begin
- *  again from there, from rest. */
+ *  again from there, from rest. A path without further segments that comes to rest after cm1e_path_clear() ends there. */
 void cm1e_path_pause(cm1e_path_t *path);
 
 /** The axes go on with this part (0.5 ... 1) of their velocities at the last step, along the path, and get back to what

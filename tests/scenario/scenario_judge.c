@@ -159,13 +159,11 @@ static bool is_composite(const run_t *run, const machine_axis_t *axis)
     return axis->seen.superimposed || (run->grouped && axis->number < 2);
 }
 
-/** By how much of its maximum velocity a load is too fast that ran ahead while frames were lost, or in a pause. */
+/** By how much of its maximum velocity a load is too fast that ran ahead while frames were lost. */
 static double heavy_share(const run_t *run, const machine_axis_t *axis)
 {
-    const bool paused = axis->seen.stalled < cycles_of(run, STALL_MS);
-    const bool follows = axis->info.state == CM1E_AXIS_SYNCHRONIZED_MOTION; /* it goes after its motor in a pause */
-    if ((is_composite(run, axis) || (follows && !paused)) &&
-        is_heavy(run, axis->spec, paused ? INFINITY : LOST_OF_COMPOSITE))
+    const bool follows = axis->info.state == CM1E_AXIS_SYNCHRONIZED_MOTION;
+    if ((is_composite(run, axis) || follows) && is_heavy(run, axis->spec, LOST_OF_COMPOSITE))
         return COMPOSITE_OVERSHOOT;
     return is_heavy(run, axis->spec, LOST_OF_ONE) ? HEAVY_OVERSHOOT : 0;
 }
@@ -183,7 +181,7 @@ static double allowed_share(const run_t *run, const machine_axis_t *axis)
     if (axis->seen.rung < lately)
         return RING_OVERSHOOT;
     if (axis->seen.stalled < cycles_of(run, STALL_MS))
-        return fmax(STALL_OVERSHOOT, is_composite(run, axis) ? heavy_share(run, axis) : 0);
+        return STALL_OVERSHOOT;
     const double servo = run->networks > 1 && axis->seen.jolted < lately ? JOLT_OVERSHOOT : SERVO_OVERSHOOT;
     return axis->seen.quiet < lately ? fmax(servo, heavy_share(run, axis)) : servo;
 }

@@ -295,8 +295,9 @@ static void test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there(voi
     TEST_ASSERT_EQUAL(4, driven.done_tag);
 }
 
-/* A stop that ends in the second segment is cut off there, and then a pause of the master lets it begin again from rest
- * with most of the way still before it. The end of the cut is the end: it is not run over, nor met at speed. */
+/* A stop that ends in the second segment is cut off there. If the master pauses before, it ends where the pause finds it;
+ * with another segment behind it, it begins again from rest with most of the way still before it, and the end of the cut
+ * is not run over, nor met at speed. */
 static void test_a_path_that_was_cut_off_ends_there_also_after_a_pause(void)
 {
     const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
@@ -310,13 +311,20 @@ static void test_a_path_that_was_cut_off_ends_there_also_after_a_pause(void)
         cm1e_path_clear(&driven.path);
         double end[2];
         cm1e_path_end(&driven.path, end);
+        const bool goes_on = at % 2 == 0;
+        driven.next_tag = end[0] > 100 ? 2 : 1; /* those that were cut off are not done */
+        if (goes_on)
+            line((double[]){end[0], 40}, 50, CM1E_PATH_STOP, 0);
         step_path();
         cm1e_path_pause(&driven.path);
+        const double paused_at = driven.now.position[0];
         driven.now.path_velocity = 0;
         for (int i = 0; i < 2; i++)
             driven.now.velocity[i] = driven.now.acceleration[i] = 0;
         run_path(); /* position and velocity of every step fit together */
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, end[0], driven.now.position[0]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, goes_on ? end[0] : paused_at, driven.now.position[0]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, goes_on ? 40 : 0, driven.now.position[1]);
+        TEST_ASSERT_TRUE(goes_on || paused_at < end[0] - 1);
     }
 }
 
