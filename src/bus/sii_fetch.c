@@ -6,10 +6,10 @@
 #include "core/bytes.h"
 
 enum { GROUP_TRIES = 3, SILENT_LIMIT = 3, GROUP_BYTES_MAX = 8 };
-/** For one group. A memory chip takes some 100 to 300 us. When this time has passed because the master itself stood still,
- *  the slave has not been looked at: so it also takes some looks. */
-#define GROUP_NS INT64_C(20000000)
-enum { LOOKS_MIN = 8 };
+/** For one group. A memory chip takes some 100 to 300 us. */
+#define GROUP_NS INT64_C(60000000)
+/** When the master itself stands still, it does not look at the slave: such a time counts as so much. */
+#define LOOK_NS_MAX INT64_C(5000000)
 #define NACK_PAUSE_NS INT64_C(1000000)
 
 static bool is_known(const cm1e_sii_fetch_t *fetch, unsigned word) { return fetch->known[word / 8] >> word % 8 & 1; }
@@ -19,8 +19,8 @@ static void go_on(cm1e_sii_fetch_t *fetch)
 {
     while (fetch->word < fetch->end && is_known(fetch, fetch->word))
         fetch->word++;
-    fetch->tries = fetch->looks = 0;
-    fetch->deadline_ns = 0;
+    fetch->tries = 0;
+    fetch->looked_ns = fetch->waited_ns = 0;
     fetch->step = fetch->word == fetch->end ? FETCH_IDLE : FETCH_ASK;
 }
 
@@ -50,9 +50,10 @@ static void fail(cm1e_sii_fetch_t *fetch, bool lost)
 bool cm1e_sii_fetch_next(cm1e_sii_fetch_t *fetch, cm1e_datagram_t *d, int64_t now_ns)
 {
     const uint16_t station = fetch->station;
-    if (fetch->deadline_ns == 0)
-        fetch->deadline_ns = now_ns + GROUP_TRIES * GROUP_NS;
-    if (fetch->step != FETCH_IDLE && now_ns >= fetch->deadline_ns && fetch->looks >= LOOKS_MIN)
+    const int64_t since_ns = fetch->looked_ns == 0 ? 0 : now_ns - fetch->looked_ns;
+    fetch->looked_ns = now_ns;
+    fetch->waited_ns += since_ns < LOOK_NS_MAX ? since_ns : LOOK_NS_MAX;
+    if (fetch->step != FETCH_IDLE && fetch->waited_ns >= GROUP_NS)
         fail(fetch, fetch->silent > 0);
     if (now_ns < fetch->not_before_ns)
         return false;
@@ -107,7 +108,6 @@ static void not_answered(cm1e_sii_fetch_t *fetch)
 void cm1e_sii_fetch_result(cm1e_sii_fetch_t *fetch, const cm1e_datagram_t *d, int64_t now_ns)
 {
     const uint16_t status = cm1e_get_u16(d->data);
-    fetch->looks++;
     if (d->working_counter != 1) {
         not_answered(fetch);
         return;

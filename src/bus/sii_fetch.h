@@ -25,8 +25,9 @@ typedef struct cm1e_sii_fetch {
     cm1e_fetch_step_t step;
     uint16_t word, end;         /**< what is to be fetched now */
     unsigned tries, silent;     /**< of one group; datagrams in a row that the slave did not answer */
-    unsigned looks;             /**< answers of one group */
-    int64_t deadline_ns, not_before_ns;
+    int64_t looked_ns;          /**< when it was looked at last for this group; 0: not yet */
+    int64_t waited_ns;          /**< for this group, without the times in which the master stood still */
+    int64_t not_before_ns;
     bool failed;                /**< it cannot be read */
     bool lost;                  /**< because its controller does not answer */
     uint8_t image[2 * CM1E_FETCH_WORDS];

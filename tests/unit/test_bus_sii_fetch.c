@@ -11,12 +11,14 @@ static const int64_t ms = 1000000, us = 1000;
 
 static cm1e_sii_fetch_t fetch;
 static int64_t now_ns;
+static int stand_still_at; /* number of the exchange before which the master stands still; -1: never */
 
 void setUp(void)
 {
     memset(&fetch, 0, sizeof fetch);
     fetch.station = STATION;
     now_ns = 5 * ms;
+    stand_still_at = -1;
 }
 
 void tearDown(void) {}
@@ -40,7 +42,7 @@ static int fetch_words(int64_t each_ns, int64_t busy_ns)
     while (!cm1e_sii_fetched(&fetch, WORD, WORDS, bytes) && !fetch.failed)
         while (!cm1e_sii_fetch_idle(&fetch)) {
             cm1e_datagram_t d = {0};
-            now_ns += each_ns;
+            now_ns += each_ns + (exchanges == stand_still_at ? 1000 * ms : 0);
             if (!cm1e_sii_fetch_next(&fetch, &d, now_ns))
                 continue;
             answer(&d, busy_until_ns);
@@ -71,6 +73,17 @@ static void test_a_master_that_stands_still_does_not_give_up(void)
     TEST_ASSERT_FALSE(fetch.failed);
 }
 
+/* ... nor where that happens once, after it has looked many times at a memory that takes its time. */
+static void test_a_master_that_stood_still_once_looks_again(void)
+{
+    for (int at = 0; at < 40; at++) {
+        setUp();
+        stand_still_at = at;
+        fetch_words(50 * us, 3 * ms);
+        TEST_ASSERT_FALSE(fetch.failed);
+    }
+}
+
 static void test_a_slow_master_gives_up_too(void)
 {
     TEST_ASSERT_LESS_THAN(16, fetch_words(1000 * ms, 1000000 * ms));
@@ -83,6 +96,7 @@ int main(void)
     RUN_TEST(test_words_come_from_a_memory_that_takes_its_time);
     RUN_TEST(test_a_memory_that_stays_busy_is_given_up);
     RUN_TEST(test_a_master_that_stands_still_does_not_give_up);
+    RUN_TEST(test_a_master_that_stood_still_once_looks_again);
     RUN_TEST(test_a_slow_master_gives_up_too);
     return UNITY_END();
 }
