@@ -141,7 +141,7 @@ static void watch_lag(cm1e_axis_t *axis)
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag / axis->position.scale, axis->limits.max_lag);
         if (!cm1e_drive_contradicts_itself(&axis->drive)) /* else the motor may have followed: the ramp goes on */
             cm1e_axis_brake_from_actual(axis);
-    } else if (lost && cm1e_drive_contradicts_itself(&axis->drive)) {
+    } else if (lost && (cm1e_drive_contradicts_itself(&axis->drive) || cm1e_axis_may_lead(axis))) {
         return;
     } else if (lost) {
         cm1e_axis_become_free(axis); /* the motor does not follow this ramp either */

@@ -18,6 +18,7 @@
 #include "axis/axis_lead.h"
 #include "axis/axis_limits.h"
 #include "axis/axis_position.h"
+#include "axis/axis_pursuit.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_text.h"
 #include "core/clock.h"
@@ -94,14 +95,14 @@ void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns)
     fail_without_program(axis, pause_ns);
 }
 
-/* Begins to brake at the actual state, no faster and no farther than the set-point would have gone. The ramp lasts a
- * moment at least, because the feedback is some cycles old and the motor may just begin to move. */
+/* Begins to brake at the actual state, no faster and no farther than the set-point would have gone, or went before a
+ * pause. The ramp lasts a moment at least, because the feedback is some cycles old and the motor may just begin to move. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
 {
     if (axis_free(axis))
         return;
     const double motor = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
-    const double velocity = motor / axis->position.scale, before = axis->setpoint.velocity;
+    const double velocity = motor / axis->position.scale, before = cm1e_axis_pursuit_velocity(axis);
     cm1e_axis_set_to_actual(axis);
     cm1e_axis_put_velocity(axis, before > 0.0 ? fmax(0.0, fmin(velocity, before)) : fmin(0.0, fmax(velocity, before)));
     cm1e_axis_ramp_down(axis, &axis->limits.emergency);
@@ -119,6 +120,7 @@ void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
     if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
         return;
     cm1e_axis_keep_torque(axis, axis->setpoint.velocity);
+    cm1e_axis_pursuit_hold(axis);
     cm1e_axis_hold_here(axis);
 }
 

@@ -10,6 +10,9 @@
  *
  * A slave does so after a pause only: while frames are lost it stays with its master. A motion made of several, and a
  * path, go on after one or two cycles instead.
+ *
+ * Stops and ramps of errors are such motions too. Where the bus is lost, no set-point follows: the drive has braked by
+ * itself, and the motor is held where it comes to rest.
  */
 #include <math.h>
 
@@ -36,6 +39,10 @@ static const double least_part = 0.5;
 static const double position_noise = 2.0;
 /* A motor that is not met by then is moved by its load. */
 static const double longest_s = 0.25;
+/* A motor that does not come to rest by then. */
+static const double longest_hold_s = 2.0;
+/* Until a target reaches the drive: what the drive has shown is as old. */
+static const double delay_cycles = 2.0;
 
 static void end(cm1e_axis_t *axis)
 {
@@ -58,7 +65,7 @@ static bool has_to_stop(cm1e_axis_t *axis)
 static bool may_pursue(const cm1e_axis_t *axis)
 {
     return axis->mode == CM1E_MODE_CSP && !cm1e_drive_is_virtual(&axis->drive) && set_points_move(axis) &&
-           axis->state != CM1E_AXIS_ERROR_STOP && (!axis_led(axis) || axis->leader->strays);
+           (!axis_led(axis) || axis->leader->strays);
 }
 
 /* u/s, in the direction of the motion before. */
@@ -135,7 +142,8 @@ static bool begin(cm1e_axis_t *axis)
 {
     const bool ahead = speed_of_motor(axis) > 0.0 && is_too_far(axis) && !is_too_slow(axis);
     axis->setpoint.pursuit.under_way = ahead;
-    if (!ahead)
+    axis->setpoint.pursuit.holds = !ahead && axis->state == CM1E_AXIS_ERROR_STOP; /* it may come back already */
+    if (!ahead && !axis->setpoint.pursuit.holds)
         end(axis);
     return ahead;
 }
@@ -244,22 +252,70 @@ static void give_up(cm1e_axis_t *axis)
     tell_slaves(axis);
 }
 
+/* A stop from rest, which ends at once: it must not be done while the motor may turn. */
+static bool is_stop_from_rest(const cm1e_axis_t *axis)
+{
+    return axis_on_profile(axis) && axis->setpoint.velocity == 0.0 && axis->setpoint.profile.duration_s <= 0.0;
+}
+
+/* What the drive has shown is older than the pause or silence. true: there is no set-point before it has shown more. */
+static bool wait(cm1e_axis_t *axis)
+{
+    if (axis->silence.resumed == RESUMED_FROM_SILENCE)
+        brake_meanwhile(axis, (axis->silence.silent_before + 1) * axis->cycle_s);
+    else if (!axis->silence.resumed)
+        brake_meanwhile(axis, axis->cycle_s);
+    if (!axis->silence.resumed)
+        axis->setpoint.pursuit.waits--;
+    return is_stop_from_rest(axis);
+}
+
+double cm1e_axis_pursuit_velocity(const cm1e_axis_t *axis)
+{
+    const bool waits = axis_has_extra(axis, EXTRA_PURSUIT) && !axis->setpoint.pursuit.under_way;
+    return waits ? axis->setpoint.pursuit.velocity : axis->setpoint.velocity;
+}
+
+/* ---- a motor that nothing leads any more ------------------------------------------------------------------------- */
+
+void cm1e_axis_pursuit_hold(cm1e_axis_t *axis)
+{
+    prepare(axis, axis->silence.silent * axis->cycle_s, 0);
+    axis->setpoint.pursuit.holds = axis_has_extra(axis, EXTRA_PURSUIT);
+}
+
+/* The drive has braked by itself, with all of its torque, towards the last target. Where its load has turned it on beyond
+ * that, it would be pulled back as hard, to and fro. So it is held where it comes to rest. */
+static void hold_where_it_rests(cm1e_axis_t *axis)
+{
+    pursuit_t *pursuit = &axis->setpoint.pursuit;
+    pursuit->unheard_s += axis->cycle_s;
+    if (axis->silence.silent > 0 || axis->silence.resumed) /* it is not heard, or what it has shown is older */
+        return;
+    const double speed = speed_of_motor(axis), lost = (pursuit->speed - speed) * axis->cycle_s / pursuit->unheard_s;
+    const bool goes_on = axis_acts(axis) && !set_points_move(axis) && pursuit->unheard_s < longest_hold_s;
+    if (goes_on && fabs(speed) > delay_cycles * lost)
+        return;
+    if (goes_on && is_too_far(axis)) {
+        cm1e_axis_set_to_actual(axis);
+        cm1e_axis_hold_here(axis);
+    }
+    end(axis);
+}
+
 bool cm1e_axis_pursue(cm1e_axis_t *axis)
 {
+    if (axis->setpoint.pursuit.holds) {
+        hold_where_it_rests(axis);
+        return false;
+    }
     if (!may_pursue(axis) || has_to_stop(axis)) {
         give_up(axis);
         return false;
     }
     pursuit_t *pursuit = &axis->setpoint.pursuit;
-    if (!pursuit->under_way && (axis->silence.resumed || pursuit->waits > 0)) { /* what the drive has shown is older */
-        if (axis->silence.resumed == RESUMED_FROM_SILENCE)
-            brake_meanwhile(axis, (axis->silence.silent_before + 1) * axis->cycle_s);
-        else if (!axis->silence.resumed)
-            brake_meanwhile(axis, axis->cycle_s);
-        if (!axis->silence.resumed)
-            pursuit->waits--;
-        return false;
-    }
+    if (!pursuit->under_way && (axis->silence.resumed || pursuit->waits > 0))
+        return wait(axis);
     if (!pursuit->under_way && !begin(axis))
         return false;
     go_after(axis);

@@ -33,6 +33,8 @@
 #define RADIANS 6.283185307179586     /* of a revolution */
 #define LOST_OF_COMPOSITE 2.0 /* cycles */
 #define LOST_OF_ONE 1.25      /* cycles; with more the set-point goes after the motor */
+#define LET_GO 0.1            /* of the velocity of the axis, */
+#define LET_GO_SPEED 20000.0  /* counts/s; and this: friction may hold it back, and it breaks free */
 #define RESTING 0.01          /* of the velocity of the axis */
 /* After a pause: the inputs of its first cycle are older, the set-point of the second one is the first that knows of it, and
  * the drive has it in the third. */
@@ -455,6 +457,23 @@ static void judge_torque(run_t *run, machine_axis_t *axis)
                       cm1e_axis_state_name(axis->info.state), seen->off_cycles);
 }
 
+/** The master takes the torque off a motor that still turns, although it could brake it. */
+static void judge_let_go(run_t *run, machine_axis_t *axis)
+{
+    enum { ENABLED_BITS = 0x0F };
+    witness_t *seen = &axis->seen;
+    const unsigned told = axis->probe.controlword; /* 0: the drive is not in operation */
+    const bool enabled = (told & ENABLED_BITS) == ENABLED_BITS, taken = seen->enabled && !enabled && told != 0;
+    const double speed = fabs(axis->probe.velocity_counts_per_s);
+    const bool had_torque = seen->had_torque;
+    seen->enabled = enabled;
+    seen->had_torque = axis->probe.torque_on;
+    const bool heard = seen->quiet >= cycles_of(run, QUIET_MS); /* else the drive may have swung meanwhile */
+    if (taken && heard && had_torque && !axis->probe.torque_on && speed > LET_GO * axis->spec->velocity + LET_GO_SPEED)
+        scenario_fail(run, "let-go", "%s (%s): without torque at %.0f counts/s, error %04X, number %d", axis->name,
+                      cm1e_axis_state_name(axis->info.state), speed, cm1e_error_id(axis->info.error), axis->info.error);
+}
+
 static void judge_power(run_t *run, machine_axis_t *axis)
 {
     const MC_Power_t *power = &axis->power;
@@ -588,6 +607,7 @@ void judge_cycle(run_t *run)
         judge_gain(run, axis);
         judge_place(run, axis);
         judge_torque(run, axis);
+        judge_let_go(run, axis);
     }
     fault_judge(run);
     if (run->cycle % 64 == 0)

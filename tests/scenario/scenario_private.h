@@ -58,6 +58,7 @@ typedef struct witness {
     int error_at;                         /**< cycle in which it came into ErrorStop */
     cm1e_axis_state_t logged;             /**< last state that the log told */
     int off_cycles;                       /**< without MC_Power.Enable, or in ErrorStop, and still under torque */
+    bool enabled, had_torque;    /**< in the cycle before: the drive was told to have torque; it had it */
 } witness_t;
 
 typedef struct machine_axis {
