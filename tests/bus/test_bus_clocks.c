@@ -41,6 +41,35 @@ START_TEST(the_cycle_follows_the_reference_clock)
 }
 END_TEST
 
+/** Crystals that are not alike: how far the clocks were apart at the start is forgotten. */
+START_TEST(maxima_are_those_since_operational)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(200, -200, 100);
+    run(bus, 2);
+    const cm1e_bus_clocks_t clocks = clocks_of(bus);
+    ck_assert_msg((double)clocks.phase_maximum_ns < 1.1 * fabs(clocks.phase_mean_ns), "%d ns, now %g ns",
+                  (int)clocks.phase_maximum_ns, clocks.phase_mean_ns);
+    ck_assert_uint_le(clock_of(bus, DRIVE).maximum_ns, CM1E_CLOCK_TOLERANCE_NS);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(maxima_of_crystals_that_are_alike_are_0)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 0, 0);
+    run(bus, 1000);
+    ck_assert_int_eq(clocks_of(bus).phase_maximum_ns, 0);
+    for (uint16_t i = DRIVE; i <= LAST; i++) {
+        const cm1e_slave_clock_t clock = clock_of(bus, i);
+        ck_assert(clock.has_clock && !clock.lost);
+        ck_assert_uint_eq(clock.maximum_ns, 0);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** Neither the first frame of the run nor the pulses of the drive come at any other phase. */
 START_TEST(frames_and_pulses_have_one_phase)
 {
@@ -445,6 +474,8 @@ int main(void)
     TCase *good = tcase_create("in step"), *refused = tcase_create("refused");
     tcase_add_test(good, all_clocks_are_one_before_operational_and_stay_so);
     tcase_add_loop_test(good, the_cycle_follows_the_reference_clock, 0, 2);
+    tcase_add_test(good, maxima_are_those_since_operational);
+    tcase_add_test(good, maxima_of_crystals_that_are_alike_are_0);
     tcase_add_test(good, temperature_steps_are_followed);
     tcase_add_loop_test(good, frames_and_pulses_have_one_phase, 0, 4);
     tcase_add_test(good, the_first_frame_has_the_phase_already);

@@ -123,6 +123,38 @@ START_TEST(an_interface_that_stays_busy_ends_the_errand_in_time)
 }
 END_TEST
 
+/* ---- descriptions of objects ------------------------------------------------------------------------------------ */
+
+static void submit_info(cm1e_bus_t *bus, uint16_t index)
+{
+    static uint8_t answer[64];
+    errand = (cm1e_errand_t){.kind = ERRAND_INFO, .position = LAST,
+                             .info = {.kind = INFO_OBJECT, .index = index, .answer = answer, .size = sizeof answer}};
+    ck_assert_int_eq(cm1e_errand_submit(bus, &errand), CM1E_OK);
+}
+
+/** The errand ends with the answer of the slave, not before. */
+START_TEST(an_object_is_described_or_refused)
+{
+    enum { STATUSWORD = 0x6041, NO_OBJECT = 0x5FFF, UNSIGNED16 = 6, NOT_THERE = 0x06020000 };
+    cm1e_bus_t *bus = operating();
+    for (int round = 0; round < 2; round++) {
+        submit_info(bus, STATUSWORD);
+        ck_assert_uint_gt(finish(bus), 2);
+        ck_assert_msg(errand.error == CM1E_OK, "%s", cm1e_strerror(errand.error));
+        ck_assert_uint_gt(errand.info.size, 6);
+        ck_assert_uint_eq(cm1e_get_u16(errand.info.answer), STATUSWORD);
+        ck_assert_uint_eq(cm1e_get_u16(errand.info.answer + 2), UNSIGNED16);
+        submit_info(bus, NO_OBJECT);
+        finish(bus);
+        ck_assert_int_eq(errand.error, CM1E_ERROR_SDO_ABORT);
+        ck_assert_uint_eq(errand.info.abort_code, NOT_THERE);
+    }
+    check_undisturbed(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- lost frames ------------------------------------------------------------------------------------------------ */
 
 typedef struct loss {
@@ -291,6 +323,7 @@ int main(void)
     tcase_add_test(tests, an_eeprom_that_does_not_acknowledge_ends_the_errand_and_is_read_again);
     tcase_add_test(tests, an_sii_with_a_wrong_checksum_is_read_as_it_is);
     tcase_add_test(tests, an_interface_that_stays_busy_ends_the_errand_in_time);
+    tcase_add_test(tests, an_object_is_described_or_refused);
     tcase_add_loop_test(tests, lost_frames_lose_no_word, 0, 4);
     tcase_add_test(tests, registers_are_read_or_the_slave_is_lost);
     tcase_add_loop_test(tests, a_slave_that_is_lost_in_any_cycle_ends_the_errand_and_gets_its_eeprom_back, 0, FATES);

@@ -98,6 +98,54 @@ START_TEST(more_slaves_than_a_bus_may_have_are_refused_in_words)
 }
 END_TEST
 
+enum { SPARE = 1, MOTOR = 2, HEAD = 3, MEMBER = 4 };
+
+static cm1e_slave_config_t *add_fingers(cm1e_bus_config_t *to, const char *name, uint16_t address)
+{
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(to, name);
+    slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_DIGITAL, .inputs = 2, .outputs = 3};
+    slave->vendor = 0x000004D8;
+    slave->product = 0x00001235;
+    slave->address = address;
+    return slave;
+}
+
+/** A motor, and an optional group of a coupler and a device. On the wire the same device is before the motor, too. */
+static void describe_group(cm1e_bus_config_t *to, bool on_the_wire)
+{
+    describe(to);
+    to->axes[0].address = MOTOR;
+    to->slaves[0].sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_COUPLER};
+    snprintf(to->slaves[0].hot_connect, sizeof to->slaves[0].hot_connect, "gripper");
+    cm1e_slave_config_t *fingers = add_fingers(to, "fingers", on_the_wire ? MEMBER : 2);
+    if (on_the_wire)
+        (void)add_fingers(to, "spare", SPARE);
+    else
+        snprintf(fingers->hot_connect, sizeof fingers->hot_connect, "gripper");
+}
+
+/** Slave 1 is the device of a member, and no entry of the configuration has it. */
+START_TEST(a_slave_elsewhere_is_not_the_member_of_an_absent_group)
+{
+    describe_group(&config, false);
+    describe_group(&wire, true);
+    cm1e_bus_t *bus = open_bus_on(&wire);
+    for (uint32_t position = HEAD; position <= MEMBER; position++)
+        cm1e_sim_segment_detach(segment_of(bus), position, false);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, SPARE), "");
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, MEMBER), "fingers");
+    ck_assert_int_ne(cm1e_bus_presence(bus, MEMBER), CM1E_PRESENCE_THERE);
+    for (uint32_t position = HEAD; position <= MEMBER; position++)
+        cm1e_sim_segment_attach(segment_of(bus), position);
+    for (int n = 0; n < 4000 && cm1e_bus_presence(bus, MEMBER) != CM1E_PRESENCE_THERE; n++)
+        cycles(bus, 1);
+    ck_assert_int_eq(cm1e_bus_presence(bus, MEMBER), CM1E_PRESENCE_THERE);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 /** Of a slave that is not optional, and of one that there is not. */
 START_TEST(a_slave_that_does_not_answer_is_named)
 {
@@ -132,6 +180,7 @@ int main(void)
     tcase_add_loop_test(tests, what_is_not_known_of_an_absent_slave_is_said, 0, sizeof cases / sizeof cases[0]);
     tcase_add_test(tests, a_slave_that_does_not_answer_is_named);
     tcase_add_test(tests, more_slaves_than_a_bus_may_have_are_refused_in_words);
+    tcase_add_test(tests, a_slave_elsewhere_is_not_the_member_of_an_absent_group);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

@@ -187,6 +187,40 @@ START_TEST(stop_brings_all_slaves_to_init_and_start_works_again)
 }
 END_TEST
 
+typedef struct way_down {
+    cm1e_bus_t *bus;
+    unsigned requests, too_early;
+} way_down_t;
+
+/** Counts the requests of Init of all slaves, and those of a slave that is in Operational still. */
+static cm1e_tap_verdict_t watch_requests(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { COMMAND_AT = 16, OFFSET_AT = 20, DATA_AT = 26 };
+    way_down_t *way = context;
+    if (frame->direction != CM1E_TAP_SENT || frame->bytes[COMMAND_AT] != COMMAND_BWR ||
+        cm1e_get_u16(frame->bytes + OFFSET_AT) != REG_AL_CONTROL || frame->bytes[DATA_AT] != CM1E_AL_INIT)
+        return CM1E_TAP_PASS;
+    way->requests++;
+    for (uint32_t position = 1; position <= 2; position++)
+        way->too_early += cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(way->bus), position)) == CM1E_AL_OP;
+    return CM1E_TAP_PASS;
+}
+
+/** So its outputs are safe for as long as it needs, also of a slave that leaves Operational only after a while. */
+START_TEST(stop_asks_for_init_when_no_slave_is_in_operational)
+{
+    sim_config(2);
+    way_down_t way = {.bus = start_bus()};
+    cycles(way.bus, 10);
+    cm1e_nic_set_tap(cm1e_bus_nic(way.bus), watch_requests, &way);
+    cm1e_bus_stop(way.bus);
+    ck_assert_uint_ge(way.requests, 1);
+    ck_assert_uint_eq(way.too_early, 0);
+    cm1e_nic_set_tap(cm1e_bus_nic(way.bus), NULL, NULL);
+    cm1e_bus_close(way.bus);
+}
+END_TEST
+
 START_TEST(steps_out_of_order_are_refused)
 {
     sim_config(1);
@@ -402,6 +436,7 @@ int main(void)
     tcase_add_loop_test(tests, large_bus_runs_in_several_frames, 0, 4);
     tcase_add_test(tests, the_longest_network_has_motors_at_its_end);
     tcase_add_test(tests, stop_brings_all_slaves_to_init_and_start_works_again);
+    tcase_add_test(tests, stop_asks_for_init_when_no_slave_is_in_operational);
     tcase_add_test(tests, steps_out_of_order_are_refused);
     tcase_add_test(tests, cycle_time_must_suit_the_firmware);
     tcase_add_loop_test(tests, cycle_time_must_leave_the_frames_their_time, 0, 8);

@@ -1,6 +1,7 @@
 /* Inputs and outputs of axes on the bits of other slaves: digital inputs and outputs, touch probes, cam switches, and
  * what is refused. */
 #include "axis/axis_signals.h"
+#include "cm1e/io.h"
 #include "wired_machine.h"
 
 /* ---- inputs and outputs ------------------------------------------------------------------------------------------ */
@@ -284,6 +285,44 @@ START_TEST(test_wrong_signals_are_refused_in_words)
 }
 END_TEST
 
+/* As `cm1e io list` shows it: each signal of another slave with all axes that use it. */
+START_TEST(test_the_use_of_each_signal_is_told)
+{
+    static const struct {
+        unsigned slave, number;
+        const char *use;
+    } used[] = {
+        {VALVES, 1, "axis1: output 11"}, {VALVES, 2, "axis1: output 12"}, {VALVES, 3, "axis3: output 11"},
+        {SWITCHES, 1, "axis1: input 11, home switch"},
+        {SWITCHES, 2, "axis1: input 12, positive limit switch (normally closed)"},
+        {SWITCHES, 3, "axis1: input 13, negative limit switch (normally closed)"},
+        {SWITCHES, 4, "axis1: input 14; axis3: input 11"}, {SWITCHES, 5, "axis2: input 11"},
+        {COUNTER, 1, "axis2: encoder"},
+    };
+    enum { USED = sizeof used / sizeof used[0] };
+    unsigned seen = 0;
+    cm1e_io_info_t info;
+    describe_machine();
+    config.axes[MOTOR].inputs.limits_normally_closed = true;
+    config.axes[LINE].wiring.input_count = 1;
+    snprintf(config.axes[LINE].wiring.inputs[0], CM1E_SIGNAL_LENGTH, "switches.input 4");
+    open_segment();
+    for (uint32_t n = 0; cm1e_io_at(bus, n, &info); n++) {
+        char use[100];
+        const char *expected = "";
+        for (size_t i = 0; i < USED; i++)
+            if (info.position == used[i].slave && info.number == used[i].number) {
+                expected = used[i].use;
+                seen++;
+            }
+        ck_assert_int_eq(cm1e_io_use(bus, &info, use, sizeof use), expected[0] != '\0');
+        ck_assert_str_eq(use, expected);
+    }
+    ck_assert_uint_eq(seen, USED);
+    close_segment();
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("axis wiring");
@@ -298,6 +337,7 @@ int main(void)
     tcase_add_loop_test(tests, test_cam_outputs_go_off_without_calls_and_with_an_error, 0, 2);
     tcase_add_test(tests, test_a_count_of_more_than_64_bits_is_refused);
     tcase_add_test(tests, test_wrong_signals_are_refused_in_words);
+    tcase_add_test(tests, test_the_use_of_each_signal_is_told);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_NORMAL);

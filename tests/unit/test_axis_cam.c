@@ -347,6 +347,7 @@ static void test_offsets_and_scalings_change_while_it_runs(void)
         coupling.master_scaling = i % 4 ? 0 : 1.5;
         coupling.slave_scaling = i % 7 ? 1 : -0.5;
         TEST_ASSERT_EQUAL_INT(CM1E_OK, updated(id, &coupling));
+        TEST_ASSERT_FALSE(axes_status(SLAVE, id).reached); /* from now on, not from the next set-point on */
         axes_cycles(1);
         TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, axes_status(SLAVE, id).state);
         axes_cycles(i % 6 ? 97 : 1000);
