@@ -43,6 +43,37 @@ START_TEST(every_slave_is_seen_in_operational_at_once)
 }
 END_TEST
 
+static unsigned exchanges, questions;
+
+/** Counts the frames of process data, and those that ask a slave for its state. */
+static cm1e_tap_verdict_t count_questions(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { COMMAND_AT = 16, LRW_NUMBER = 12 };
+    uint16_t station;
+    (void)context;
+    if (frame->direction == CM1E_TAP_SENT && frame->bytes[COMMAND_AT] == LRW_NUMBER) {
+        exchanges++;
+        questions += find_read(frame, REG_AL_STATUS, &station) >= 0;
+    }
+    return CM1E_TAP_PASS;
+}
+
+/** Also after a question that was given up, because it is older than a change of the state. */
+START_TEST(every_cycle_of_a_start_asks_for_a_state)
+{
+    sim_config(3);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK);
+    ck_assert_msg(cm1e_bus_configure(bus, &diag) == CM1E_OK, "%s", diag.text);
+    exchanges = questions = 0;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), count_questions, NULL);
+    ck_assert_msg(cm1e_bus_operate(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_gt(exchanges, 3);
+    ck_assert_uint_eq(questions, exchanges);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 static void check_direction(cm1e_bus_t *bus, uint16_t position, const cm1e_axis_config_t *axis, bool transmit,
                             uint32_t base)
 {
@@ -431,6 +462,7 @@ int main(void)
     TCase *tests = tcase_create("start");
     tcase_add_loop_test(tests, scan_finds_every_slave_from_1_to_16, 1, 17);
     tcase_add_loop_test(tests, every_slave_is_seen_in_operational_at_once, 1, 9);
+    tcase_add_test(tests, every_cycle_of_a_start_asks_for_a_state);
     tcase_add_loop_test(tests, start_resolves_every_object_in_every_order_firmware_and_mapping, 0,
                         2 * FIRMWARES * MAPPINGS);
     tcase_add_loop_test(tests, large_bus_runs_in_several_frames, 0, 4);
