@@ -316,6 +316,35 @@ START_TEST(what_a_slave_refuses_is_told)
 }
 END_TEST
 
+/** Each message to a mailbox is on its way for 0.9 s: no transfer takes too long, all of them together do. */
+static cm1e_tap_verdict_t take_time(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { COMMAND_AT = 16, OFFSET_AT = 20, FPWR_NUMBER = 5, FIRST_MAILBOX = 0x1000 };
+    cm1e_bus_t *bus = context;
+    if (frame->direction == CM1E_TAP_SENT && frame->bytes[COMMAND_AT] == FPWR_NUMBER &&
+        cm1e_get_u16(frame->bytes + OFFSET_AT) >= FIRST_MAILBOX)
+        cm1e_clock_sleep_until(cm1e_bus_clock(bus), now_of(bus) + 900000000);
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(a_slave_that_tells_its_pdos_slowly_ends_the_start)
+{
+    sim_config(0);
+    add("analog", 1, CM1E_SIM_SLAVE_ANALOG, 8, 8);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), take_time, bus);
+    const int64_t begun_ns = now_of(bus);
+    ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_ERROR_TIMEOUT);
+    ck_assert_str_eq(diag.text, "A slave takes too long to report its PDO mapping.");
+    ck_assert_uint_eq(diag.foreign_code, 0);
+    ck_assert_int_lt(now_of(bus) - begun_ns, INT64_C(62000000000));
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** What the switches see of the valves: lamp has the safe value 1, blower keeps its value, the others have 0. */
 enum { LAMP = 2, BLOWER = 4, ALL = 15 };
 
@@ -454,6 +483,7 @@ int main(void)
     tcase_add_test(tests, what_is_written_at_the_start_is_written_again_after_the_slave_was_away);
     tcase_add_test(tests, pdos_that_exclude_each_other_are_refused);
     tcase_add_test(tests, what_a_slave_refuses_is_told);
+    tcase_add_test(tests, a_slave_that_tells_its_pdos_slowly_ends_the_start);
     tcase_add_test(tests, outputs_are_safe_before_the_program_and_after_it);
     tcase_add_test(tests, outputs_are_safe_after_the_bus_was_lost);
     tcase_add_test(tests, outputs_of_a_slave_that_was_away_are_safe_and_those_of_others_stay);
