@@ -173,7 +173,10 @@ START_TEST(an_image_shorter_than_the_eeprom_leaves_the_rest_as_it_is)
 {
     cm1e_bus_t *bus = with_images();
     cm1e_put_u16(image + 0x80, 0xFFFF); /* no categories */
-    ck_assert_msg(cm1e_sii_write_device(bus, 1, image, 0x82, NULL, &diag) == CM1E_OK, "%s", diag.text);
+    uint8_t *alone = malloc(0x82); /* sanitizers see who reads behind it */
+    memcpy(alone, image, 0x82);
+    ck_assert_msg(cm1e_sii_write_device(bus, 1, alone, 0x82, NULL, &diag) == CM1E_OK, "%s", diag.text);
+    free(alone);
     ck_assert_mem_eq(eeprom_of(bus, 1), image, 0x82);
     ck_assert_mem_eq(eeprom_of(bus, 1) + 0x82, before + 0x82, sizeof before - 0x82);
     cm1e_bus_close(bus);

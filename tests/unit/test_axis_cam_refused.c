@@ -361,6 +361,32 @@ static void test_the_second_difference_of_the_positions_is_judged(void)
     }
 }
 
+/* The jerk has one value in the first part of a cycle and the opposite one in the rest: `share` of the limit. */
+static guard_limit_t turns_jerk(double share, double part, int sign)
+{
+    cm1e_axis_t *axis = axes_axis(SLAVE);
+    const double jerk = sign * share * axis->limits.maximum.jerk, v0 = 1;
+    const double t1 = part * axis->cycle_s, t2 = (1 - part) * axis->cycle_s;
+    const double a1 = jerk * t1, v1 = v0 + jerk * t1 * t1 / 2;
+    const double step = v0 * t1 + jerk * t1 * t1 * t1 / 6 + v1 * t2 + a1 * t2 * t2 / 2 - jerk * t2 * t2 * t2 / 6;
+    axis->setpoint.velocity = v0;
+    axis->setpoint.acceleration = 0;
+    const from_t next = {.position = cm1e_position_plus(axis->setpoint.position, step * axis->position.scale),
+                         .velocity = v1 + a1 * t2 - jerk * t2 * t2 / 2, .acceleration = a1 - jerk * t2};
+    return cm1e_axis_look_closely(axis, &next, true).limit;
+}
+
+static void test_a_jerk_that_turns_inside_a_cycle_is_judged(void)
+{
+    axes_begin(2);
+    cm1e_axis_guard_renew(axes_axis(SLAVE));
+    for (int sign = -1; sign <= 1; sign += 2)
+        for (int tenths = 1; tenths <= 9; tenths++) {
+            TEST_ASSERT_EQUAL_INT(GUARD_KEPT, turns_jerk(0.99, tenths / 10.0, sign));
+            TEST_ASSERT_EQUAL_INT(GUARD_JERK, turns_jerk(1.01, tenths / 10.0, sign));
+        }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -377,5 +403,6 @@ int main(void)
     RUN_TEST(test_wrong_inputs_are_refused);
     RUN_TEST(test_a_kink_of_a_cam_inside_a_cycle_is_seen);
     RUN_TEST(test_the_second_difference_of_the_positions_is_judged);
+    RUN_TEST(test_a_jerk_that_turns_inside_a_cycle_is_judged);
     return UNITY_END();
 }
