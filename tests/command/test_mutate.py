@@ -14,7 +14,7 @@ SOURCE = '''#define MOST 7
 /* 1 < 2 && true; */
 static bool far(const axis_t *axis, double way)
 {
-    const char *text = "3 + 4";
+    char where[32], text[256] = "3 + 4";
     if (way > 2.5 && axis->count == 1)
         return false;
     axis->now = stop(axis);

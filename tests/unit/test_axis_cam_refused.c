@@ -297,6 +297,28 @@ static void test_wrong_inputs_are_refused(void)
     axes_must_be(SLAVE, CM1E_AXIS_STANDSTILL);
 }
 
+/* On a modulo axis a cam begins in the nearest turn. The way to its place in the table, and back to that turn, has to be
+ * one that the axis can count. */
+static void test_a_cam_many_turns_away_is_refused_on_a_modulo_axis(void)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->modulo_range = 1;
+    axes_make();
+    axes_enable_all();
+    const double farthest = (double)CM1E_FARTHEST_COUNTS / fabs(axes_axis(SLAVE)->position.scale);
+    for (int sign = -1; sign <= 1; sign += 2)
+        for (int tenths = 1; tenths <= 13; tenths += 3) {
+            for (int i = 0; i < 2; i++)
+                points[i] = (MC_CAM_POINT){.Master = i, .Slave = floor(sign * tenths / 10.0 * farthest)};
+            const MC_CAM_REF table = {points, 2, mcCamPolynomial5};
+            const cm1e_axis_coupling_t coupling = by_cam(selected(SLAVE, &table, false, true), mcRampIn);
+            if (tenths < 5)
+                axes_wait_reached(SLAVE, cam_in(&coupling), 5000);
+            else
+                cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
+        }
+}
+
 /* A cam that is flat before its first point and has a slope there: the velocity of the slave steps inside the cycle in
  * which the master passes that point. At the ends of that cycle the acceleration is 0. */
 static void pass_a_kink(double step)
@@ -401,6 +423,7 @@ int main(void)
     RUN_TEST(test_a_cam_that_leaves_the_software_limits_is_refused);
     RUN_TEST(test_a_cam_that_is_needed_is_not_overwritten);
     RUN_TEST(test_wrong_inputs_are_refused);
+    RUN_TEST(test_a_cam_many_turns_away_is_refused_on_a_modulo_axis);
     RUN_TEST(test_a_kink_of_a_cam_inside_a_cycle_is_seen);
     RUN_TEST(test_the_second_difference_of_the_positions_is_judged);
     RUN_TEST(test_a_jerk_that_turns_inside_a_cycle_is_judged);

@@ -149,6 +149,24 @@ static void test_another_ratio_takes_over_without_a_step(void)
     TEST_ASSERT_EQUAL_DOUBLE(-8.0, axes_info(SLAVE).set_velocity);
 }
 
+/* ContinuousUpdate: InGear is FALSE at once, not from the next set-point on. */
+static void test_another_ratio_of_the_same_command_is_reached_anew(void)
+{
+    const cm1e_axis_coupling_t twice = {.master = {{.axis = axes_reference(MASTER), .source = mcSetValue,
+                                                    .numerator = 2, .denominator = 1}}};
+    const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_GEAR_IN, .coupling = &twice};
+    axes_move_velocity(MASTER, 4.0);
+    const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_cycles(1000);
+    TEST_ASSERT_TRUE(axes_status(SLAVE, gear).reached);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axes_axis(SLAVE), gear, &command));
+    TEST_ASSERT_FALSE(axes_status(SLAVE, gear).reached);
+    axes_wait_reached(SLAVE, gear, 2000);
+    TEST_ASSERT_EQUAL_DOUBLE(8.0, axes_info(SLAVE).set_velocity);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axes_axis(SLAVE), gear, &command));
+    TEST_ASSERT_TRUE(axes_status(SLAVE, gear).reached);
+}
+
 static void test_what_cannot_be_followed_is_refused(void)
 {
     cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(SLAVE), .numerator = 1, .denominator = 1}}};
@@ -248,6 +266,7 @@ int main(void)
     RUN_TEST(test_what_waits_behind_the_way_out_begins_when_the_velocity_is_there);
     RUN_TEST(test_gear_out_does_not_end_a_cam_nor_anything_else);
     RUN_TEST(test_another_ratio_takes_over_without_a_step);
+    RUN_TEST(test_another_ratio_of_the_same_command_is_reached_anew);
     RUN_TEST(test_what_cannot_be_followed_is_refused);
     RUN_TEST(test_the_way_into_step_uses_the_jerk_that_the_master_leaves);
     return UNITY_END();
