@@ -280,6 +280,24 @@ static void test_out_of_a_cam_the_velocity_stays(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, velocity, axes_info(SLAVE).set_velocity);
 }
 
+/* The master moves already. The slave does not take its velocity first and its place afterwards. */
+static void test_ramp_in_leads_to_place_and_velocity_at_once(void)
+{
+    axes_begin(2);
+    axes_move_velocity(MASTER, 4);
+    axes_cycles(1000);
+    points[0] = (MC_CAM_POINT){0, 0, 0, 0};
+    points[1] = (MC_CAM_POINT){100, 100, 0, 0};
+    const MC_CAM_REF table = {points, 2, mcCamLinear};
+    const cm1e_axis_coupling_t coupling = by_cam(selected(SLAVE, &table, false, true), mcRampIn);
+    const cm1e_command_id_t id = cam_in(&coupling);
+    for (int i = 0; i < 2000 && axes_info(SLAVE).set_velocity < 4; i++)
+        axes_cycles(1);
+    TEST_ASSERT_TRUE(axes_axis(SLAVE)->setpoint.acceleration > 1); /* it is behind, and gets faster still */
+    axes_wait_reached(SLAVE, id, 2000);
+    TEST_ASSERT_EQUAL_DOUBLE(4, axes_info(SLAVE).set_velocity);
+}
+
 static void turn_at(double velocity)
 {
     axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = velocity,
@@ -413,6 +431,7 @@ int main(void)
     RUN_TEST(test_end_of_profile_of_a_single_shot);
     RUN_TEST(test_what_waits_begins_at_the_end_of_the_profile);
     RUN_TEST(test_out_of_a_cam_the_velocity_stays);
+    RUN_TEST(test_ramp_in_leads_to_place_and_velocity_at_once);
     RUN_TEST(test_modulo_axes_over_many_turns);
     RUN_TEST(test_offsets_and_scalings_change_while_it_runs);
     RUN_TEST(test_a_phase_shift_acts_through_the_cam);

@@ -448,7 +448,9 @@ static void test_set_position_is_refused_where_it_makes_no_sense(void)
     set(5, 1);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, 10.1, false));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, -10.1, true));
-    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_position(axis, 9, false));
+    static const double right[] = {10, -10, 9}; /* the limits themselves too */
+    for (int i = 0; i < 3; i++)
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_position(axis, right[i], false));
     bench_enable();
     bench_move_to(0, 5); /* to the limit, in the coordinates after the next line, and no farther */
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, -1.1, false));
