@@ -159,6 +159,29 @@ static void test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms(void)
     }
 }
 
+/** After a silent cycle the motor gets back to its speed with the 8 % that are left above the set velocity, to which
+ *  belongs what the set velocity grows meanwhile: 16 cycles. */
+static void test_a_silence_slows_an_axis_only_near_its_maximum_velocity(void)
+{
+    bench_start();
+    bench_enable();
+    const double most = axis->limits.system.velocity, highest = 0.92 * most, a = 100.0, gain = 16 * a * axis->cycle_s;
+    const struct {
+        double velocity, acceleration, part;
+    } rows[] = {
+        {0.0, 0.0, 1.0}, {1.0, 0.0, 1.0}, {1.0, a, 1.0}, {most, 0.0, 0.92}, {most, a, 0.92},
+        {highest - 0.5 * gain, 0.0, 1.0}, {highest - 0.5 * gain, -a, 1.0},
+        {highest - 0.5 * gain, a, highest / (highest + 0.5 * gain)},
+    };
+    axis->silence.shaken = CM1E_SHAKEN_BY_SILENCE;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            axis->setpoint.velocity = sign * rows[i].velocity;
+            axis->setpoint.acceleration = sign * rows[i].acceleration;
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, rows[i].part, cm1e_axis_part_left(axis));
+        }
+}
+
 static double csv_shaft;
 static int32_t csv_worst_change, csv_velocity_before;
 
@@ -291,6 +314,7 @@ int main(void)
     RUN_TEST(test_an_axis_brakes_from_the_velocity_of_its_motor);
     RUN_TEST(test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again);
     RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
+    RUN_TEST(test_a_silence_slows_an_axis_only_near_its_maximum_velocity);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
     RUN_TEST(test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is);
