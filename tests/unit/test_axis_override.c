@@ -180,6 +180,29 @@ static void test_factors_out_of_range_change_nothing(void)
     TEST_ASSERT_EQUAL_INT64(cycles, axis->setpoint.profile_cycles);
 }
 
+/* MC_MoveContinuousRelative by 0 of an axis that moves: its run-up leads back first, as slowly as the factors say. */
+static void test_factors_act_on_a_run_up_to_the_present_position(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        setUp();
+        bench_move_velocity(sign * 4.0);
+        watch_cycles(500);
+        override(1.0, 0.25, 1.0);
+        const double at = bench_info().set_position;
+        const cm1e_command_id_t id = bench_start_command(&(cm1e_axis_command_t){
+            .kind = CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, .velocity = 4.0, .end_velocity = sign * 2.0});
+        double most = 0.0;
+        for (int i = 0; i < 5000 && !cm1e_axis_command_status(axis, id).reached; i++) {
+            watch_cycles(1);
+            most = fmax(most, fabs(axis->setpoint.acceleration));
+        }
+        TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, id).reached);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-3, at, bench_info().set_position);
+        TEST_ASSERT_EQUAL_DOUBLE(sign * 2.0, axis->setpoint.velocity);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 25.0, most);
+    }
+}
+
 /* Less deceleration in the middle of braking does not lead beyond the target (note 9 warns of it). */
 static void test_less_deceleration_never_passes_the_target(void)
 {
@@ -273,6 +296,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_velocity_factor_acts_on_the_motion_and_on_the_next);
     RUN_TEST(test_acceleration_and_jerk_factors_bound_what_follows);
+    RUN_TEST(test_factors_act_on_a_run_up_to_the_present_position);
     RUN_TEST(test_velocity_0_stands_without_standstill_and_goes_on);
     RUN_TEST(test_commands_given_while_velocity_is_0_begin_when_it_is_not);
     RUN_TEST(test_a_command_that_cannot_go_on_after_velocity_0_ends);
