@@ -1,6 +1,7 @@
 /* The blocks of digital signals on motors behind the simulated bridge, a CM1 and a CM2 at a time: by SDO in csp, in the
  * words in CPIO, and what is refused outside of it (docs/FUNCTION-BLOCKS.md, "Motors behind a bridge"). */
 #include "axis/axis_parts.h"
+#include "axis/axis_signals.h"
 #include "cm1e/plcopen.h"
 #include "core/bytes.h"
 #include "homing/homing_private.h"
@@ -327,6 +328,29 @@ START_TEST(test_outputs_go_off_at_the_end_of_a_run)
 }
 END_TEST
 
+/* Whatever was asked of it last: the torque waits for it for a while, and goes then. */
+START_TEST(test_an_output_that_cannot_go_off_does_not_keep_the_torque)
+{
+    const int n = _i / 2;
+    uint16_t index = (uint16_t)(0x60FE + n * CM1E_BRIDGE_INDEX_INCREMENT);
+    begin_enabled(n, BY_SDO);
+    write_output(n, 2, TRUE, CM1E_OK);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_output, &index);
+    if (_i % 2)
+        ck_assert_int_eq(cm1e_axis_write_output(axes[n], 2, false), CM1E_OK);
+    int taken = 0;
+    for (bool off = false; taken < 1000 && !off; taken++) {
+        inputs();
+        off = cm1e_axis_shut_down(axes[n]);
+        outputs();
+    }
+    ck_assert_msg(taken > 500 && taken < 1000, "%d cycles", taken);
+    cycles(5);
+    ck_assert(motor(n)->motor_free);
+    close_segment();
+}
+END_TEST
+
 /* As with a CM1-E: what hangs on it is the program's business. By SDO it is reached under torque only. */
 START_TEST(test_an_output_stays_over_a_fault)
 {
@@ -550,6 +574,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_an_output_without_torque, 0, AXES * WAYS);
     tcase_add_loop_test(tcase, test_an_output_that_the_bridge_refuses, 0, AXES);
     tcase_add_loop_test(tcase, test_outputs_go_off_at_the_end_of_a_run, 0, AXES * WAYS);
+    tcase_add_loop_test(tcase, test_an_output_that_cannot_go_off_does_not_keep_the_torque, 0, 2 * AXES);
     tcase_add_loop_test(tcase, test_an_output_stays_over_a_fault, 0, AXES * WAYS);
     tcase_add_loop_test(tcase, test_an_output_stays_off_after_its_bridge_was_away, 0, AXES * WAYS);
     tcase_add_loop_test(tcase, test_read_axis_info, 0, AXES * WAYS);
