@@ -230,6 +230,25 @@ static void test_another_one_replaces_the_first_only(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(base));
 }
 
+/* What it takes from the base: no more than it asks for, and at most half of what there is. */
+static void test_its_share_of_the_limits_is_what_it_asks_for(void)
+{
+    static const cm1e_motion_limits_t asked[] = {{3.0, 20.0, 20.0, 100.0}, {3.0, 90.0, 90.0, 1900.0}};
+    static const cm1e_motion_limits_t given[] = {{3.0, 20.0, 20.0, 100.0}, {3.0, 50.0, 50.0, 1000.0}};
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        bench_move_velocity(5.0);
+        watch_cycles(500);
+        bench_start_command(&(cm1e_axis_command_t){
+            .kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 4.0, .velocity = asked[i].velocity,
+            .acceleration = asked[i].acceleration, .deceleration = asked[i].deceleration, .jerk = asked[i].jerk});
+        TEST_ASSERT_EQUAL_DOUBLE(given[i].velocity, axis->superimposed.share.velocity);
+        TEST_ASSERT_EQUAL_DOUBLE(given[i].acceleration, axis->superimposed.share.acceleration);
+        TEST_ASSERT_EQUAL_DOUBLE(given[i].deceleration, axis->superimposed.share.deceleration);
+        TEST_ASSERT_EQUAL_DOUBLE(given[i].jerk, axis->superimposed.share.jerk);
+    }
+}
+
 static void test_halt_superimposed_ends_it_and_leaves_the_base(void)
 {
     const cm1e_command_id_t base = bench_move_to(20.0, 10.0);
@@ -537,6 +556,7 @@ int main(void)
     RUN_TEST(test_on_a_base_with_a_small_jerk);
     RUN_TEST(test_on_a_halt_before_a_limit);
     RUN_TEST(test_another_one_replaces_the_first_only);
+    RUN_TEST(test_its_share_of_the_limits_is_what_it_asks_for);
     RUN_TEST(test_halt_superimposed_ends_it_and_leaves_the_base);
     RUN_TEST(test_after_a_pause_the_base_ends_beyond_by_what_was_covered);
     RUN_TEST(test_an_aborting_command_ends_both_without_a_step);

@@ -299,6 +299,13 @@ static void test_what_is_refused_in_motion_changes_nothing(void)
 
 /* ---- refused ----------------------------------------------------------------------------------------------------- */
 
+/* Its text names no number, because none was wrong. */
+static void refused_without_a_number(const cm1e_group_command_t *command, cm1e_error_t error)
+{
+    group_refused(command, error);
+    TEST_ASSERT_NULL_MESSAGE(strstr(group_text(), "was given"), group_text());
+}
+
 static void test_modes_and_numbers_that_are_none(void)
 {
     cm1e_group_command_t c = line_to(1.0, 1.0, -1.0);
@@ -315,15 +322,18 @@ static void test_modes_and_numbers_that_are_none(void)
                   CM1E_ERROR_AXIS_DYNAMICS_RANGE);
     c = line_to(1.0, 1.0, 1.0);
     c.buffer_mode = (MC_BUFFER_MODE)6;
-    group_refused(&c, CM1E_ERROR_AXIS_BUFFER_MODE);
+    refused_without_a_number(&c, CM1E_ERROR_AXIS_BUFFER_MODE);
+    c = (cm1e_group_command_t){.kind = CM1E_GROUP_HALT, .buffer_mode = mcBlendingLow};
+    refused_without_a_number(&c, CM1E_ERROR_AXIS_BUFFER_MODE);
+    group_told("MC_GroupHalt supports only mcAborting and mcBuffered.");
     c = line_to(1.0, 1.0, 1.0);
     c.coordinates = mcMCS;
-    group_refused(&c, CM1E_ERROR_GROUP_COORD_SYSTEM);
+    refused_without_a_number(&c, CM1E_ERROR_GROUP_COORD_SYSTEM);
     c = line_to(1.0, 1.0, 1.0);
     c.transition = mcTMConstantVelocity;
-    group_refused(&c, CM1E_ERROR_GROUP_TRANSITION);
+    refused_without_a_number(&c, CM1E_ERROR_GROUP_TRANSITION);
     c.transition = (MC_TRANSITION_MODE)-1;
-    group_refused(&c, CM1E_ERROR_GROUP_TRANSITION);
+    refused_without_a_number(&c, CM1E_ERROR_GROUP_TRANSITION);
     c.transition = mcTMCornerDistance;
     c.buffer_mode = mcBlendingHigh;
     group_refused(&c, CM1E_ERROR_GROUP_TRANSITION);
