@@ -99,6 +99,22 @@ static void sensor(int n, int number, const char *to)
 
 static void told(int n, const char *words) { ck_assert_msg(strstr(text_of(n), words), "%s", text_of(n)); }
 
+/* Every SDO answer of this object arrives as an abort. */
+static cm1e_tap_verdict_t refuse_object(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { COMMAND = 16, OFFSET = 20, MAILBOX = 26, READ = 4, ANSWERS_AT = 0x1080, ABORT = 0x80 };
+    const uint16_t *index = context;
+    uint8_t *mailbox = frame->bytes + MAILBOX;
+    if (frame->length > 60 && frame->direction == CM1E_TAP_RECEIVED && frame->bytes[COMMAND] == READ &&
+        cm1e_get_u16(frame->bytes + OFFSET) == ANSWERS_AT && cm1e_get_u16(mailbox + 9) == *index) {
+        cm1e_put_u16(mailbox, 10);
+        cm1e_put_u16(mailbox + 6, 2 << 12);
+        mailbox[8] = ABORT;
+        cm1e_put_u32(mailbox + 12, 0x08000021);
+    }
+    return CM1E_TAP_PASS;
+}
+
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */
 
 static bool has_input(int n, int way, int number)
@@ -156,6 +172,36 @@ START_TEST(test_read_digital_input)
         MC_ReadDigitalInput(&fb);
     }
     ck_assert(fb.Valid && fb.Value && !fb.Error);
+    close_segment();
+}
+END_TEST
+
+/* While nobody asks, no time passes. */
+START_TEST(test_inputs_that_the_bridge_refuses)
+{
+    enum { TIMEOUT = 1000, PAUSE = 1500 };
+    const int n = _i;
+    uint16_t index = (uint16_t)(0x60FD + n * CM1E_BRIDGE_INDEX_INCREMENT);
+    begin_enabled(n, BY_SDO);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_object, &index);
+    MC_INPUT_REF input = {.Axis = references[n], .Number = 4};
+    for (int round = 0; round < 2; round++) {
+        scan(PAUSE);
+        MC_ReadDigitalInput_t fb = {.Input = &input, .Enable = TRUE};
+        int taken = 0;
+        for (; taken < 2 * TIMEOUT && !fb.Error; taken++) {
+            MC_ReadDigitalInput(&fb);
+            ck_assert(!fb.Valid && !fb.Value);
+            scan(1);
+        }
+        ck_assert_msg(fb.ErrorID == id(CM1E_ERROR_TIMEOUT), "%s", text_of(n));
+        ck_assert_msg(taken >= TIMEOUT && taken < TIMEOUT + 10, "%d cycles", taken);
+    }
+    MC_ReadDigitalInput_t fb = {.Input = &input, .Enable = TRUE};
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    scan(PAUSE);
+    sensor(n, 4, "on");
+    read_until(&fb, TRUE);
     close_segment();
 }
 END_TEST
@@ -270,29 +316,13 @@ START_TEST(test_an_output_without_torque)
 }
 END_TEST
 
-/* Every SDO answer of this output arrives as an abort. */
-static cm1e_tap_verdict_t refuse_output(void *context, cm1e_tap_frame_t *frame)
-{
-    enum { COMMAND = 16, OFFSET = 20, MAILBOX = 26, READ = 4, ANSWERS_AT = 0x1080, ABORT = 0x80 };
-    const uint16_t *index = context;
-    uint8_t *mailbox = frame->bytes + MAILBOX;
-    if (frame->length > 60 && frame->direction == CM1E_TAP_RECEIVED && frame->bytes[COMMAND] == READ &&
-        cm1e_get_u16(frame->bytes + OFFSET) == ANSWERS_AT && cm1e_get_u16(mailbox + 9) == *index) {
-        cm1e_put_u16(mailbox, 10);
-        cm1e_put_u16(mailbox + 6, 2 << 12);
-        mailbox[8] = ABORT;
-        cm1e_put_u32(mailbox + 12, 0x08000021);
-    }
-    return CM1E_TAP_PASS;
-}
-
 START_TEST(test_an_output_that_the_bridge_refuses)
 {
     const int n = _i;
     uint16_t index = (uint16_t)(0x60FE + n * CM1E_BRIDGE_INDEX_INCREMENT);
     begin_enabled(n, BY_SDO);
     scan(100);
-    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_output, &index);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_object, &index);
     write_output(n, 2, TRUE, CM1E_ERROR_BUS_MAILBOX);
     told(n, "digital output 2 was not written: mailbox error");
     ck_assert_int_eq(info_of(n).state, CM1E_AXIS_STANDSTILL);
@@ -335,7 +365,7 @@ START_TEST(test_an_output_that_cannot_go_off_does_not_keep_the_torque)
     uint16_t index = (uint16_t)(0x60FE + n * CM1E_BRIDGE_INDEX_INCREMENT);
     begin_enabled(n, BY_SDO);
     write_output(n, 2, TRUE, CM1E_OK);
-    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_output, &index);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_object, &index);
     if (_i % 2)
         ck_assert_int_eq(cm1e_axis_write_output(axes[n], 2, false), CM1E_OK);
     int taken = 0;
@@ -569,6 +599,7 @@ int main(void)
     suite_add_tcase(suite, tcase);
     tcase_set_timeout(tcase, 60);
     tcase_add_loop_test(tcase, test_read_digital_input, 0, AXES * WAYS);
+    tcase_add_loop_test(tcase, test_inputs_that_the_bridge_refuses, 0, AXES);
     tcase_add_loop_test(tcase, test_inputs_while_it_homes, 0, AXES);
     tcase_add_loop_test(tcase, test_write_and_read_digital_output, 0, AXES * WAYS);
     tcase_add_loop_test(tcase, test_an_output_without_torque, 0, AXES * WAYS);

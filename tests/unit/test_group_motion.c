@@ -465,6 +465,29 @@ static void test_what_it_shows(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, path);
 }
 
+/* The path waits for an axis that is not on it, whatever the override, and goes on as fast as that says then. */
+static void test_an_override_acts_when_all_axes_are_on_the_path(void)
+{
+    static const double factors[] = {0.5, 1.0, 0.25};
+    const cm1e_command_id_t id = group_line(6.0, 8.0, 2.0, mcAborting);
+    axes_cycles(800);
+    cm1e_group_stray(group, 0);
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_set_override(group, factors[i]));
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, group->path.override);
+    }
+    int waited = 0;
+    for (; group->apart.off != 0 && waited < 2000; waited++) {
+        axes_cycles(1);
+        TEST_ASSERT_TRUE(group->apart.off == 0 || group->path.override == 0.0);
+    }
+    TEST_ASSERT_TRUE(waited > 0 && waited < 2000);
+    axes_cycles(1000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.5, group_info().path_velocity);
+    group_done(id);
+    TEST_ASSERT_EQUAL_DOUBLE(8.0, group_at(1));
+}
+
 /* Frames that were never sent: the motors stand at their last targets, and the path goes on from there. */
 static void test_after_a_pause_it_goes_on_along_the_path_from_rest(void)
 {
@@ -651,6 +674,7 @@ int main(void)
     RUN_TEST(test_single_axis_commands);
     RUN_TEST(test_override);
     RUN_TEST(test_what_it_shows);
+    RUN_TEST(test_an_override_acts_when_all_axes_are_on_the_path);
     RUN_TEST(test_after_a_pause_it_goes_on_along_the_path_from_rest);
     RUN_TEST(test_after_silence_the_path_begins_anew_at_once_for_all);
     RUN_TEST(test_after_a_short_silence_the_path_is_as_slow_as_its_slowest_motor);
