@@ -305,6 +305,31 @@ START_TEST(software_limits_hold)
 }
 END_TEST
 
+/* The drive goes on to accelerate until it has the halt. */
+START_TEST(software_limits_hold_while_the_drive_accelerates)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        describe_drive(0);
+        config.axes[0].software_limit_positive = 40;
+        config.axes[0].software_limit_negative = -40;
+        open_segment();
+        enable();
+        command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = sign * 300.0,
+                                       .acceleration = 3000, .deceleration = 1000});
+        double fastest = 0;
+        for (int n = 0; n < 2000; n++) {
+            cycles(1);
+            fastest = fmax(fastest, fabs(info().actual_velocity));
+        }
+        ck_assert_double_lt(fastest, 250); /* it has never had its velocity */
+        ck_assert_int_eq(info().error, CM1E_ERROR_AXIS_POSITION_RANGE);
+        ck_assert_double_le(fabs(info().actual_position), 40);
+        ck_assert_double_ge(fabs(info().actual_position), 35);
+        close_segment();
+    }
+}
+END_TEST
+
 START_TEST(direction_taken_away_ends_the_motion)
 {
     for (int velocity_mode = 0; velocity_mode < 2; velocity_mode++) {
@@ -339,6 +364,7 @@ int main(void)
     tcase_add_test(tests, ends_by_force_leave_a_motor_that_stands);
     tcase_add_test(tests, drive_that_hears_nothing_is_left_to_its_watchdog);
     tcase_add_test(tests, software_limits_hold);
+    tcase_add_test(tests, software_limits_hold_while_the_drive_accelerates);
     tcase_add_test(tests, direction_taken_away_ends_the_motion);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);
