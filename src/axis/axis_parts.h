@@ -34,7 +34,7 @@ typedef struct pursuit {
     double unheard_s;               /**< without targets */
     uint16_t cycles;                /**< in which the set-point has gone after it */
     bool under_way;                 /**< it has run ahead */
-    bool holds;                     /**< the bus was lost: it is held where it comes to rest */
+    bool holds;                     /**< no motion follows: it is held near where it comes to rest */
     uint8_t waits;                  /**< for so many answers after the pause: axis_pursuit.c */
 } pursuit_t;
 

@@ -12,7 +12,7 @@
  * path, go on after one or two cycles instead.
  *
  * Stops and ramps of errors are such motions too. Where the bus is lost, no set-point follows: the drive has braked by
- * itself, and the motor is held where it comes to rest.
+ * itself, and the motor is held near where it comes to rest.
  */
 #include <math.h>
 
@@ -113,13 +113,18 @@ void cm1e_axis_pursuit_prepare(cm1e_axis_t *axis, double unheard_s)
     prepare(axis, unheard_s, shows_velocity(axis) ? 0 : WAITS_AFTER_PAUSE);
 }
 
-/* u/s; an axis of a path rests until the drive has shown where the motor is. What its drive hears then is no faster than
- * if it had braked since the silence began. */
-static void brake_meanwhile(cm1e_axis_t *axis, double time_s)
+/* What the drive hears after a rest of the set-point is no faster than if it had braked meanwhile. */
+static void slow_down(cm1e_axis_t *axis, double time_s)
 {
     double *velocity = &axis->setpoint.pursuit.velocity;
+    *velocity = copysign(fmax(0.0, fabs(*velocity) - axis->limits.system.deceleration * time_s), *velocity);
+}
+
+/* An axis of a path rests until the drive has shown where the motor is. */
+static void brake_meanwhile(cm1e_axis_t *axis, double time_s)
+{
     if (axis_led(axis))
-        *velocity = copysign(fmax(0.0, fabs(*velocity) - axis->limits.system.deceleration * time_s), *velocity);
+        slow_down(axis, time_s);
 }
 
 /* Whether a servo that brakes as hard as this one has braked would overshoot when it has pulled the motor back. */
@@ -280,33 +285,45 @@ double cm1e_axis_pursuit_velocity(const cm1e_axis_t *axis)
 
 void cm1e_axis_pursuit_hold(cm1e_axis_t *axis)
 {
-    prepare(axis, axis->silence.silent * axis->cycle_s, 0);
+    const double unheard_s = axis->silence.silent * axis->cycle_s;
+    prepare(axis, unheard_s, 0);
+    slow_down(axis, unheard_s + axis->cycle_s);
     axis->setpoint.pursuit.holds = axis_has_extra(axis, EXTRA_PURSUIT);
 }
 
-/* The drive has braked by itself, with all of its torque, towards the last target. Where its load has turned it on beyond
- * that, it would be pulled back as hard, to and fro. So it is held where it comes to rest. */
-static void hold_where_it_rests(cm1e_axis_t *axis)
+/* The set-point goes to the motor. true: it is there. No target that is heard late makes a larger step than one of an axis
+ * that has braked since the bus was lost. */
+static bool go_to_motor(cm1e_axis_t *axis)
+{
+    const double sign = copysign(1.0, axis->setpoint.pursuit.velocity), way = way_of_cycle(axis);
+    const double ahead = sign * cm1e_position_minus(axis_actual(axis), axis->setpoint.position) / axis->position.scale;
+    cm1e_axis_shift_set_point(axis, sign * fmax(0.0, fmin(ahead, way)) * axis->position.scale);
+    cm1e_axis_hold_here(axis);
+    return ahead <= way;
+}
+
+/* The drive brakes by itself, with all of its torque, towards the last target. Where its load has turned it on beyond that,
+ * it would be pulled back as hard, to and fro. So it is held near the place where it comes to rest. */
+static void hold_near_rest(cm1e_axis_t *axis)
 {
     pursuit_t *pursuit = &axis->setpoint.pursuit;
     pursuit->unheard_s += axis->cycle_s;
+    slow_down(axis, axis->cycle_s);
     if (axis->silence.silent > 0 || axis->silence.resumed) /* it is not heard, or what it has shown is older */
         return;
     const double speed = speed_of_motor(axis), lost = (pursuit->speed - speed) * axis->cycle_s / pursuit->unheard_s;
     const bool goes_on = axis_acts(axis) && !set_points_move(axis) && pursuit->unheard_s < longest_hold_s;
-    if (goes_on && fabs(speed) > delay_cycles * lost)
+    if (goes_on && !pursuit->under_way && fabs(speed) > delay_cycles * lost)
         return;
-    if (goes_on && is_too_far(axis)) {
-        cm1e_axis_set_to_actual(axis);
-        cm1e_axis_hold_here(axis);
-    }
-    end(axis);
+    pursuit->under_way |= is_too_far(axis);
+    if (!goes_on || !pursuit->under_way || go_to_motor(axis))
+        end(axis);
 }
 
 bool cm1e_axis_pursue(cm1e_axis_t *axis)
 {
     if (axis->setpoint.pursuit.holds) {
-        hold_where_it_rests(axis);
+        hold_near_rest(axis);
         return false;
     }
     if (!may_pursue(axis) || has_to_stop(axis)) {
