@@ -15,6 +15,7 @@ static const uint64_t more_from = UINT64_C(1000000000);
 static const uint64_t wide_from = UINT64_C(2000000000); /**< below, none of what make_wide() adds */
 static const uint64_t swap_from = UINT64_C(3000000000); /**< below, no motors that change places */
 static const uint64_t close_from = UINT64_C(4000000000); /**< below, none of what make_close() adds */
+static const uint64_t ramp_from = UINT64_C(5000000000); /**< below, none of what make_ramps() adds */
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */
 
@@ -488,6 +489,33 @@ static void make_close(scenario_t *scenario)
     }
 }
 
+static void add_step(scenario_t *scenario, step_t step)
+{
+    if (scenario->step_count < SCENARIO_STEPS && step.at >= FIRST_STEP)
+        scenario->steps[scenario->step_count++] = step;
+}
+
+/** A fast motion, its stop, and a pause or lost frames in the ramp of that stop. */
+static void make_ramps(scenario_t *scenario)
+{
+    static const char *const stops[] = {"MC_Stop", "MC_Halt", "MC_Power", "MC_GroupStop", "MC_GroupHalt"};
+    enum { MOTION_BEFORE = 500, RAMP = 150, STOPS = sizeof stops / sizeof stops[0] };
+    for (int i = 0; i < scenario->fault_count; i++) {
+        fault_t *fault = &scenario->faults[i];
+        const int n = (int)fault->axis;
+        if (fault->kind == FAULT_SWAP || one_in(2))
+            continue;
+        const double at = fault->at, stops_at = at - pick(RAMP);
+        make_brief(fault, fault);
+        fault->at = at;
+        add_step(scenario, (step_t){.at = stops_at - 1 - pick(MOTION_BEFORE), .axis = n, .hold = 2 * MOTION_BEFORE,
+                                    .block = scenario_block("MC_MoveVelocity"),
+                                    .velocity = scenario->axes[n].velocity});
+        add_step(scenario, (step_t){.at = stops_at, .axis = n, .hold = 20 + pick(400),
+                                    .block = scenario_block(stops[pick(STOPS)])});
+    }
+}
+
 void scenario_make(scenario_t *scenario, uint64_t seed)
 {
     static const double limits[] = {3, 3, 3, 2, 5, 10};
@@ -515,6 +543,8 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
         make_swap(scenario);
     if (seed >= close_from)
         make_close(scenario);
+    if (seed >= ramp_from)
+        make_ramps(scenario);
     qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
     qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);
 }
