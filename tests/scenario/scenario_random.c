@@ -15,7 +15,7 @@ static const uint64_t more_from = UINT64_C(1000000000);
 static const uint64_t wide_from = UINT64_C(2000000000); /**< below, none of what make_wide() adds */
 static const uint64_t swap_from = UINT64_C(3000000000); /**< below, no motors that change places */
 static const uint64_t close_from = UINT64_C(4000000000); /**< below, none of what make_close() adds */
-static const uint64_t ramp_from = UINT64_C(5000000000); /**< below, none of what make_ramps() adds */
+static const uint64_t ramp_from = UINT64_C(5000000000); /**< below, none of what make_ramp() adds */
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */
 
@@ -495,25 +495,35 @@ static void add_step(scenario_t *scenario, step_t step)
         scenario->steps[scenario->step_count++] = step;
 }
 
-/** A fast motion, its stop, and a pause or lost frames in the ramp of that stop. */
-static void make_ramps(scenario_t *scenario)
+/** Before all that, a fast motion of a heavy load, its stop, and a pause or lost frames in the ramp of that stop. */
+static void make_ramp(scenario_t *scenario)
 {
-    static const char *const stops[] = {"MC_Stop", "MC_Halt", "MC_Power", "MC_GroupStop", "MC_GroupHalt"};
-    enum { MOTION_BEFORE = 500, RAMP = 150, STOPS = sizeof stops / sizeof stops[0] };
-    for (int i = 0; i < scenario->fault_count; i++) {
-        fault_t *fault = &scenario->faults[i];
-        const int n = (int)fault->axis;
-        if (fault->kind == FAULT_SWAP || one_in(2))
-            continue;
-        const double at = fault->at, stops_at = at - pick(RAMP);
-        make_brief(fault, fault);
-        fault->at = at;
-        add_step(scenario, (step_t){.at = stops_at - 1 - pick(MOTION_BEFORE), .axis = n, .hold = 2 * MOTION_BEFORE,
-                                    .block = scenario_block("MC_MoveVelocity"),
-                                    .velocity = scenario->axes[n].velocity});
-        add_step(scenario, (step_t){.at = stops_at, .axis = n, .hold = 20 + pick(400),
-                                    .block = scenario_block(stops[pick(STOPS)])});
-    }
+    static const char *const stops[] = {"MC_Stop", "MC_Halt", "MC_Power"};
+    enum { LATER = 900, SHORTEST = 200, MOTION = 200, RAMP = 100, LONGEST = 30, STOPS = sizeof stops / sizeof stops[0] };
+    const int n = pick(scenario->axis_count);
+    axis_spec_t *axis = &scenario->axes[n];
+    if (scenario->fault_count == SCENARIO_FAULTS || axis->kind == AXIS_VIRTUAL || axis->stops != 0)
+        return;
+    for (int i = 0; i < scenario->step_count; i++)
+        scenario->steps[i].at += LATER;
+    for (int i = 0; i < scenario->fault_count; i++)
+        scenario->faults[i].at += LATER;
+    scenario->cycles += LATER;
+    axis->velocity = is_bridged(axis) ? CM1_MOST : uniform(400000, 1200000);
+    axis->acceleration = axis->deceleration = uniform(2000000, 6000000);
+    axis->jerk = fmax(axis->jerk, 1e8);
+    axis->load_inertia = uniform(2e-5, 6e-5);
+    axis->limit_negative = axis->limit_positive = 0;
+    const double stops_at = FIRST_STEP + SHORTEST + pick(MOTION);
+    fault_t *fault = &scenario->faults[scenario->fault_count++];
+    *fault = (fault_t){.kind = one_in(2) ? FAULT_STALL : FAULT_LOSE, .axis = n, .network = axis->network,
+                       .length = 1 + pick(9), .at = stops_at + pick(RAMP)};
+    if (fault->kind == FAULT_STALL && one_in(2))
+        fault->length = 1 + pick(LONGEST);
+    add_step(scenario, (step_t){.at = FIRST_STEP, .axis = n, .hold = LATER, .block = scenario_block("MC_MoveVelocity"),
+                                .velocity = axis->velocity});
+    add_step(scenario, (step_t){.at = stops_at, .axis = n, .hold = 20 + pick(400),
+                                .block = scenario_block(stops[pick(STOPS)])});
 }
 
 void scenario_make(scenario_t *scenario, uint64_t seed)
@@ -544,7 +554,7 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
     if (seed >= close_from)
         make_close(scenario);
     if (seed >= ramp_from)
-        make_ramps(scenario);
+        make_ramp(scenario);
     qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
     qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);
 }
