@@ -469,7 +469,7 @@ static void judge_let_go(run_t *run, machine_axis_t *axis)
     seen->enabled = enabled;
     seen->had_torque = axis->probe.torque_on;
     const bool heard = seen->quiet >= cycles_of(run, QUIET_MS); /* else the drive may have swung meanwhile */
-    if (taken && heard && had_torque && !axis->probe.torque_on && speed > LET_GO * axis->spec->velocity + LET_GO_SPEED)
+    if (taken && heard && !recoils(run, axis) && had_torque && !axis->probe.torque_on && speed > LET_GO * axis->spec->velocity + LET_GO_SPEED)
         scenario_fail(run, "let-go", "%s (%s): without torque at %.0f counts/s, error %04X, number %d", axis->name,
                       cm1e_axis_state_name(axis->info.state), speed, cm1e_error_id(axis->info.error), axis->info.error);
 }
