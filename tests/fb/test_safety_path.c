@@ -189,7 +189,7 @@ START_TEST(test_an_axis_with_a_heavy_load_leaves_its_path_and_comes_back)
     int number = 0;
     order = (order_t)_i;
     left_path = 0;
-    const int stride = sweep_stride(131, 1571);
+    const int stride = sweep_stride(263, 1571);
     for (int l = 0; l < LOSSES * LENGTHS; l++)
         for (int m = 0; m < MOMENTS; m++, number++)
             for (loss_at = ENABLED + 40 + number * 7 % stride; loss_at < LAST; loss_at += stride) {
