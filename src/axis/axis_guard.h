@@ -12,8 +12,8 @@ guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool
 /** Whether the next set-point can be reached with acceleration and jerk within their limits at every moment of the
  *  cycle. Then the differences of the set positions keep these limits too. */
 bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next);
-/** Computes the numbers anew. Called when the axis begins to follow or to be led, when its limits are written, and when its
- *  set-point has gone after its motor. */
+/** Computes the numbers anew. Called when the axis begins to follow or to be led, when its limits are written, and when
+ *  its set-point has gone after its motor. */
 void cm1e_axis_guard_renew(cm1e_axis_t *axis);
 /** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT or CM1E_ERROR_AXIS_SET_POINT_LIMIT, whose text has the value asked for and the value allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);

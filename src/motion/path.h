@@ -187,7 +187,7 @@ typedef struct cm1e_path {
     cm1e_path_segment_t segment[CM1E_PATH_SEGMENTS]; /**< a ring */
     int first_element, element_count;
     cm1e_path_element_t element[CM1E_PATH_ELEMENTS]; /**< ring; the first is the present one */
-    bool cut;                       /**< the end is the end of a stop, not of a segment */
+    bool cut;                       /**< the end is the end of a stop: no segment goes on there */
     bool stop_wanted;
     bool stopping;                  /**< the profile is a stop without a given end position */
     cm1e_motion_limits_t stop;      /**< deceleration and jerk of it */
