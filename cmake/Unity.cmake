@@ -31,5 +31,6 @@ foreach(file unity.c unity.h unity_internals.h)
   endif()
 endforeach()
 add_library(unity STATIC ${unity_dir}/unity.c)
-target_compile_definitions(unity PUBLIC UNITY_INCLUDE_DOUBLE UNITY_DOUBLE_PRECISION=1e-12 UNITY_SUPPORT_64)
+# Flushed at each failure: a sanitizer that ends the process would lose the line that says which assertion it was.
+target_compile_definitions(unity PUBLIC UNITY_USE_FLUSH_STDOUT UNITY_INCLUDE_DOUBLE UNITY_DOUBLE_PRECISION=1e-12 UNITY_SUPPORT_64)
 target_include_directories(unity SYSTEM PUBLIC ${unity_dir})
