@@ -97,13 +97,26 @@ typedef struct fault_outcome {
     int cycles;                          /**< to detection; -1: nothing had to be detected */
 } fault_outcome_t;
 
+/** What lets a shaft be faster than the maximum velocity of its axis (docs/SAFETY.md). */
+typedef enum speed_reason {
+    SPEED_OF_SERVO = 0,   /**< overshoot of the servo alone */
+    SPEED_OF_NETWORK,     /**< targets come late, because the frame of another network was waited for */
+    SPEED_AFTER_SILENCE,  /**< lost frames */
+    SPEED_OF_LOAD,        /**< lost frames, and a load that the motor cannot stop meanwhile */
+    SPEED_IN_RING,        /**< a cable of a ring breaks or is mended */
+    SPEED_AFTER_PAUSE,    /**< of the host */
+    SPEED_FROM_STOP,      /**< a hard stop held it */
+    SPEED_OF_HOMING,      /**< the drive's own, which has its own velocity */
+    SPEED_REASONS
+} speed_reason_t;
+
 typedef struct outcome {
     bool failed;
     char rule[32];                       /**< which rule was broken: what a smaller scenario must break too */
     char text[400];
     int cycle;
     uint64_t hash;                       /**< of all states, set-points and shafts in all cycles */
-    double over_speed;                   /**< largest speed of a shaft over the maximum of its axis */
+    double over_speed[SPEED_REASONS];    /**< largest speed of a shaft over the maximum of its axis */
     double over_tolerance;               /**< the same beyond what the servo does by itself; below 0: never */
     double over_gain;                    /**< largest gain of speed over the maximum, as a share of it */
     int cycles;

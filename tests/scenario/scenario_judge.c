@@ -176,16 +176,27 @@ static bool leaves_stop(const run_t *run, const machine_axis_t *axis)
     return axis->seen.stopped < cycles_of(run, CATCH_MS);
 }
 
-/** By how much of its maximum velocity a shaft may be faster, beyond what the servo does by itself. */
-static double allowed_share(const run_t *run, const machine_axis_t *axis)
+/** What a shaft may have, beyond what the servo does by itself, and why. */
+typedef struct allowance {
+    double amount; /**< a share of its maximum velocity, or counts/s */
+    speed_reason_t reason;
+} allowance_t;
+
+static allowance_t larger(allowance_t one, allowance_t other) { return other.amount > one.amount ? other : one; }
+
+/** By how much of its maximum velocity it may be faster. */
+static allowance_t allowed_share(const run_t *run, const machine_axis_t *axis)
 {
     const int lately = cycles_of(run, QUIET_MS);
     if (axis->seen.rung < lately)
-        return RING_OVERSHOOT;
+        return (allowance_t){RING_OVERSHOOT, SPEED_IN_RING};
     if (axis->seen.stalled < cycles_of(run, STALL_MS))
-        return STALL_OVERSHOOT;
-    const double servo = run->networks > 1 && axis->seen.jolted < lately ? JOLT_OVERSHOOT : SERVO_OVERSHOOT;
-    return axis->seen.quiet < lately ? fmax(servo, heavy_share(run, axis)) : servo;
+        return (allowance_t){STALL_OVERSHOOT, SPEED_AFTER_PAUSE};
+    const bool waits = run->networks > 1 && axis->seen.jolted < lately, silent = axis->seen.quiet < lately;
+    const allowance_t servo = waits    ? (allowance_t){JOLT_OVERSHOOT, SPEED_OF_NETWORK}
+                              : silent ? (allowance_t){SERVO_OVERSHOOT, SPEED_AFTER_SILENCE}
+                                       : (allowance_t){SERVO_OVERSHOOT, SPEED_OF_SERVO};
+    return silent ? larger(servo, (allowance_t){heavy_share(run, axis), SPEED_OF_LOAD}) : servo;
 }
 
 /** The drive homes, or did not long ago and may still halt: by itself, with its own speed and acceleration. */
@@ -195,16 +206,19 @@ static bool is_homing(const run_t *run, const machine_axis_t *axis)
 }
 
 /** Counts/s, without what the servo does by itself. */
-static double highest_speed(const run_t *run, const machine_axis_t *axis)
+static allowance_t highest_speed(const run_t *run, const machine_axis_t *axis)
 {
-    const double velocity = axis->spec->velocity, late = leaves_stop(run, axis) ? catch_up_speed(axis->spec, velocity) : 0;
-    const double by_axis = velocity * (1 + allowed_share(run, axis)) + late;
-    const double by_drive = HOMING_SPEED * (1 + HOMING_OVERSHOOT);
+    const double velocity = axis->spec->velocity;
+    const allowance_t share = allowed_share(run, axis);
+    const allowance_t by_drive = {HOMING_SPEED * (1 + HOMING_OVERSHOOT), SPEED_OF_HOMING};
+    allowance_t by_axis = {velocity * (1 + share.amount), share.reason};
+    if (leaves_stop(run, axis))
+        by_axis = (allowance_t){by_axis.amount + catch_up_speed(axis->spec, velocity), SPEED_FROM_STOP};
     if (!axis->seen.by_drive)
         return by_axis;
     if (axis->info.state == CM1E_AXIS_HOMING && !axis->seen.by_steps)
         return by_drive;
-    return is_homing(run, axis) ? fmax(by_axis, by_drive) : by_axis;
+    return is_homing(run, axis) ? larger(by_axis, by_drive) : by_axis;
 }
 
 static void judge_speed(run_t *run, machine_axis_t *axis)
@@ -216,8 +230,10 @@ static void judge_speed(run_t *run, machine_axis_t *axis)
     const double servo = SERVO_FILTER_S * fmax(spec->acceleration, spec->deceleration) + SERVO_SPEED_COUNTS +
                          (by_velocity(spec) ? COARSE_COUNTS : 0);
     const double own = is_homing(run, axis) && axis->seen.by_drive ? HOMING_SPEED : 0, over = speed / fmax(spec->velocity, own) - 1;
-    run->outcome->over_speed = fmax(run->outcome->over_speed, over);
-    const double above = (speed - highest_speed(run, axis) - servo) / spec->velocity;
+    const allowance_t highest = highest_speed(run, axis);
+    double *over_speed = &run->outcome->over_speed[highest.reason];
+    *over_speed = fmax(*over_speed, over);
+    const double above = (speed - highest.amount - servo) / spec->velocity;
     run->outcome->over_tolerance = fmax(run->outcome->over_tolerance, above);
     if (above > 0)
         scenario_fail(run, "speed", "%s (%s): the shaft turns at %.0f counts/s, %.3f %% over the maximum of %.0f",

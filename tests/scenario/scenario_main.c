@@ -9,6 +9,7 @@
  * --sample: a thousand seeds, or what tests/support/effort.h makes of them.
  */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,12 +26,29 @@ typedef struct options {
 
 static double worst_speed, worst_gain;
 
+static const char *const speed_reason_names[SPEED_REASONS] = {
+    [SPEED_OF_SERVO] = "servo",           [SPEED_OF_NETWORK] = "another network", [SPEED_AFTER_SILENCE] = "lost frames",
+    [SPEED_OF_LOAD] = "lost frames and a heavy load", [SPEED_IN_RING] = "ring",   [SPEED_AFTER_PAUSE] = "pause",
+    [SPEED_FROM_STOP] = "hard stop",      [SPEED_OF_HOMING] = "homing by the drive",
+};
+
+static double largest_speed(const outcome_t *outcome)
+{
+    double largest = 0;
+    for (int i = 0; i < SPEED_REASONS; i++)
+        largest = fmax(largest, outcome->over_speed[i]);
+    return largest;
+}
+
 static void print_table(const scenario_t *scenario, const outcome_t *outcome)
 {
     for (int i = 0; i < scenario->fault_count; i++)
         printf("fault %s %d\n", fault_names[(int)scenario->faults[i].kind], outcome->faults[i].cycles);
-    printf("run %d %.6f %.6f %d %d\n", outcome->failed, outcome->over_speed, outcome->over_tolerance,
-           outcome->recoveries, outcome->cycles);
+    for (int i = 0; i < SPEED_REASONS; i++)
+        if (outcome->over_speed[i] > 0)
+            printf("speed %llu %.6f %s\n", (unsigned long long)scenario->seed, outcome->over_speed[i],
+                   speed_reason_names[i]);
+    printf("run %d %.6f %d %d\n", outcome->failed, outcome->over_tolerance, outcome->recoveries, outcome->cycles);
 }
 
 static void shrink(scenario_t scenario, const outcome_t *failure, const options_t *options)
@@ -59,8 +77,8 @@ static bool play(scenario_t *scenario, const char *name, const options_t *option
         scenario_run(scenario, &outcome);
     else
         scenario_run_apart(scenario, &outcome, LIMIT_S);
-    worst_speed = outcome.over_speed > worst_speed ? outcome.over_speed : worst_speed;
-    worst_gain = outcome.over_gain > worst_gain ? outcome.over_gain : worst_gain;
+    worst_speed = fmax(worst_speed, largest_speed(&outcome));
+    worst_gain = fmax(worst_gain, outcome.over_gain);
     if (options->table)
         print_table(scenario, &outcome);
     if (outcome.failed)
