@@ -1,8 +1,10 @@
 /** cm1e st: checks programs in Structured Text, and translates them into programs that `cm1e run` runs. */
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -141,33 +143,73 @@ static int refuse_to_build(const st_options_t *options)
     return EXIT_FAILED;
 }
 
-/** The C goes into a file of its own beside the program: the debugger needs it no longer, thanks to #line. */
-static int build(st_t *st, const st_options_t *options)
+/** What is written is no device, and none of the sources. */
+static bool may_write(const char *path, const st_options_t *options)
 {
-    char output[4096], c_file[4200], made[4200];
+    struct stat present, source;
+    if (stat(path, &present) != 0)
+        return true;
+    if (!S_ISREG(present.st_mode)) {
+        complain("%s is there already, and is not a file: name the file that is to be made", path);
+        return false;
+    }
+    for (int i = 0; i < options->source_count; i++)
+        if (stat(options->sources[i], &source) == 0 && source.st_dev == present.st_dev && source.st_ino == present.st_ino) {
+            complain("%s is a source of the program, and would be lost: name another file", path);
+            return false;
+        }
+    return true;
+}
+
+static bool write_c(st_t *st, const char *c_file, const char *program)
+{
     cm1e_diag_t diag = {0};
     cm1e_output_t file;
+    const char *slash = strrchr(program, '/');
+    if (cm1e_output_open(&file, c_file, &diag) == CM1E_OK) {
+        cm1e_st_emit(st, file.file, slash ? slash + 1 : program);
+        if (cm1e_output_close(&file, &diag) == CM1E_OK)
+            return true;
+    }
+    fail(&diag);
+    return false;
+}
+
+/** Makes the program, and its C without --c, in a folder of their own; the program is put in its place when it is complete.
+ *  The debugger needs the C no longer, thanks to #line. */
+static int build_in(const char *folder, st_t *st, const st_options_t *options, const char *output)
+{
+    char own_c[PATH_MAX + 40], made[PATH_MAX + 40], place[PATH_MAX];
+    snprintf(own_c, sizeof own_c, "%s/program.c", folder);
+    snprintf(made, sizeof made, "%s/program.so", folder);
+    const char *c_file = options->c_file ? options->c_file : own_c;
+    int status = write_c(st, c_file, output) ? compile(c_file, made) : EXIT_FAILED;
+    const char *target = realpath(output, place) ? place : output; /* a link stays a link */
+    if (status == EXIT_OK && rename(made, target) != 0) {
+        complain("%s cannot be written: %s", output, strerror(errno));
+        status = EXIT_FAILED;
+    }
+    unlink(made);
+    unlink(own_c);
+    return status;
+}
+
+static int build(st_t *st, const st_options_t *options)
+{
+    char output[PATH_MAX], folder[PATH_MAX + 20];
     if (options->output)
         snprintf(output, sizeof output, "%s", options->output);
     else
         name_beside(options->sources[0], ".so", output, sizeof output);
-    snprintf(c_file, sizeof c_file, options->c_file ? "%s" : "%s.c", options->c_file ? options->c_file : output);
-    snprintf(made, sizeof made, "%s.%ld.new", output, (long)getpid());
-    if (cm1e_output_open(&file, c_file, &diag) != CM1E_OK)
-        return fail(&diag);
-    const char *slash = strrchr(output, '/');
-    cm1e_st_emit(st, file.file, slash ? slash + 1 : output);
-    if (cm1e_output_close(&file, &diag) != CM1E_OK)
-        return fail(&diag);
-    int status = compile(c_file, made);
-    if (status == EXIT_OK && rename(made, output) != 0) {
+    if (!may_write(output, options) || (options->c_file && !may_write(options->c_file, options)))
+        return EXIT_FAILED;
+    snprintf(folder, sizeof folder, "%s.XXXXXX", output);
+    if (!mkdtemp(folder)) {
         complain("%s cannot be written: %s", output, strerror(errno));
-        status = EXIT_FAILED;
+        return EXIT_FAILED;
     }
-    if (status != EXIT_OK)
-        remove(made);
-    if (!options->c_file)
-        remove(c_file);
+    const int status = build_in(folder, st, options, output);
+    rmdir(folder);
     return status;
 }
 

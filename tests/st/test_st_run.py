@@ -64,6 +64,30 @@ def check_faults():
     run("loop.so", "-s", "3", "--loop-limit", "100", status=1, says="more than 100 times")
 
 
+def check_what_build_leaves_alone():
+    """Devices, sources, and files of others beside the program; a link stays a link."""
+    build("kept", "PROGRAM Main END_PROGRAM")
+    for name, text in (("kept.so.c", "mine"), ("other.c", "mine")):
+        with open(name, "w", encoding="ascii") as file:
+            file.write(text)
+    os.mkfifo("pipe")
+    os.symlink("other", "link")
+    with open("other", "w", encoding="ascii"):
+        pass
+    before = set(os.listdir())
+    for words, says in ((("-o", "pipe"), "is not a file"), (("-o", "kept.st"), "kept.st is a source"), (("-o", "."), "is not a file"),
+                        (("--c", "kept.st"), "kept.st is a source"), (("-o", "no/program"), "cannot be written"),
+                        (("-o", "link"), None), ((), None)):
+        result = cm1e("st", "build", "kept.st", *words)
+        if (result.returncode != 0) != bool(says) or (says or "") not in result.stderr:
+            faults.append(f"st build kept.st {words}: status {result.returncode}, {result.stderr}")
+    texts = [open(name, encoding="ascii").read() for name in ("kept.so.c", "other.c", "kept.st")]
+    if texts != ["mine", "mine", "PROGRAM Main END_PROGRAM"] or not os.path.islink("link") or os.path.getsize("other") == 0:
+        faults.append(f"st build wrote over other files: {texts}, {os.listdir()}")
+    if set(os.listdir()) != before:
+        faults.append(f"st build leaves {set(os.listdir()) ^ before}")
+
+
 def check_names():
     program = build("names", "VAR_GLOBAL XX : AXIS_REF; END_VAR PROGRAM Main END_PROGRAM")
     run(program, status=1, says='did you mean "X"?')
@@ -199,6 +223,7 @@ with tempfile.TemporaryDirectory() as folder:
     with open("bus.yaml", "w", encoding="ascii") as file:
         file.write(BUS)
     check_faults()
+    check_what_build_leaves_alone()
     check_names()
     check_without_bus_file()
     check_located()

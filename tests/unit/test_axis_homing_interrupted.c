@@ -1,5 +1,6 @@
 /* Homing in steps (Part 5): every way to be interrupted, at every cycle of a sequence of steps. */
 #include "../support/homing_bench.h"
+#include "effort.h"
 
 /* The sequence: the switch by way of a limit switch, the stop, a move away. Ends with the last command. */
 static cm1e_command_id_t sequence_id;
@@ -41,7 +42,9 @@ static bool sequence_until(int n)
     return true;
 }
 
-enum { STRIDE = 3 }; /* of the cycles that are interrupted */
+/** Of the cycles that are interrupted. */
+static int stride(void) { return sweep_stride(3, 10); }
+
 /* 1.5 u/s brakes within 0.1 s. */
 static const int32_t braking_counts = 7500;
 
@@ -56,7 +59,7 @@ static void settle(int at_most, cm1e_axis_state_t state, int32_t from)
 static void test_mc_stop_at_every_cycle(void)
 {
     int n = 0;
-    for (; sequence_until(n); n += STRIDE) {
+    for (; sequence_until(n); n += stride()) {
         const int32_t from = bus.position;
         const cm1e_command_id_t running = sequence_id;
         const bool was_active = bench_state_of(running) == CM1E_COMMAND_ACTIVE;
@@ -147,7 +150,7 @@ static void test_power_off_while_a_stop_relieves_leaves_nothing_behind(void)
 
 static void test_power_off_at_every_cycle(void)
 {
-    for (int n = 0; sequence_until(n); n += STRIDE) {
+    for (int n = 0; sequence_until(n); n += stride()) {
         const int32_t from = bus.position;
         bench_power(false);
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISABLED, bench_info().state);
@@ -160,7 +163,7 @@ static void test_power_off_at_every_cycle(void)
 static void test_direction_disabled_at_every_cycle(void)
 {
     for (int positive = 0; positive <= 1; positive++)
-        for (int n = 0; sequence_until(n); n += STRIDE) {
+        for (int n = 0; sequence_until(n); n += stride()) {
             const int32_t from = bus.position;
             TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_power(axis, &owner, true, positive, !positive));
             const int allowed = positive ? 1 : -1;
@@ -178,7 +181,7 @@ static void test_direction_disabled_at_every_cycle(void)
 
 static void test_bus_lost_at_every_cycle(void)
 {
-    for (int n = 0; sequence_until(n); n += STRIDE) {
+    for (int n = 0; sequence_until(n); n += stride()) {
         const int32_t from = bus.position;
         const bool was_active = bench_state_of(sequence_id) == CM1E_COMMAND_ACTIVE;
         received = health = CM1E_ERROR_BUS_LOST;
@@ -192,7 +195,7 @@ static void test_bus_lost_at_every_cycle(void)
 
 static void test_drive_fault_at_every_cycle(void)
 {
-    for (int n = 0; sequence_until(n); n += STRIDE) {
+    for (int n = 0; sequence_until(n); n += stride()) {
         fake_bus_fault(&bus, 0x2310);
         const int32_t from = bus.position;
         bench_cycles(3);
