@@ -2,6 +2,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "config/interface.h"
 #include "config/ranges.h"
@@ -139,7 +140,7 @@ static bool check_name(check_t *check)
     for (uint32_t i = 0; i < check->index; i++) {
         char other[sizeof check->name];
         effective_name(other, sizeof other, &check->config->axes[i], i);
-        if (strcmp(other, check->name) == 0)
+        if (strcasecmp(other, check->name) == 0)
             return axis_wrong(check, "name", "is also the name of entry %u of the list; expected a name of its own",
                               i + 1);
     }

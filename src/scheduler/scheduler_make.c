@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "assembly/assembly.h"
 #include "core/in_task.h"
@@ -128,13 +129,14 @@ static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
     return "";
 }
 
-/** NULL: every axis of the bus has a name of its own. */
+/** NULL: every axis of the bus has a name of its own, also where upper and lower case are one, as in IEC 61131-3. */
 static const char *name_taken(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
 {
     const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
     for (uint32_t i = 0; i < config->axis_count; i++)
-        if (cm1e_scheduler_axis_by_name(s, config->axes[i].name).Handle != 0)
-            return config->axes[i].name;
+        for (uint32_t other = 0; other < s->axis_count; other++)
+            if (strcasecmp(cm1e_axis_name(cm1e_axis_reference(s->axes[other])), config->axes[i].name) == 0)
+                return config->axes[i].name;
     return NULL;
 }
 

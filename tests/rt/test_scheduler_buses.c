@@ -238,6 +238,7 @@ START_TEST(test_what_cannot_run_together_is_refused)
         {"Z", MS_IN_NS / 2, true, true, "cycle_time_us differs"},
         {"Z", MS_IN_NS, false, true, "another time"},
         {"X", MS_IN_NS, true, true, "name \"X1\""},
+        {"x", MS_IN_NS, true, true, "name \"x1\""},
         {"Z", MS_IN_NS, true, false, "not in operation"},
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {

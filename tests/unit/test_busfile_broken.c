@@ -248,6 +248,7 @@ static const struct {
     {"axes:\n- position: 1\n  alias: 7\n", "3:10", {"addressed twice", "one of position, alias and explicit_id"}},
     {"axes:\n- explicit_id: 9\n  alias: 7\n", "2:16", {"addressed twice"}},
     {"axes:\n- name: X\n- name: Y\n- name: X\n", "4:9", {"axis X: name is also the name of entry 1"}},
+    {"axes:\n- name: feed\n- name: FEED\n", "3:9", {"axis FEED: name is also the name of entry 1"}}, /* one in IEC 61131-3 */
     {"axes:\n- name: axis2\n- position: 2\n", "3:3", {"axis axis2: name is also the name of entry 1"}},
     {"axes:\n- motor: CM1-E-17S30\n", "2:10", {"motor is 'CM1-E-17S30'", "CM1-E-17S30D", "CM1-E-23L20D"}},
     {"axes:\n- motor: CM1-E-17S30D-and-more\n", "2:10", {"21 bytes long", "at most 19"}},
