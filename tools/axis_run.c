@@ -159,11 +159,12 @@ static int run_on_bus(const axis_run_t *run, const cm1e_bus_config_t *config, cm
     return status;
 }
 
-int run_on_axes(const axis_run_t *run, const common_options_t *options, const cm1e_bus_config_t *config)
+int run_on_axes(const axis_run_t *run, const common_options_t *options, cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
     int status;
+    config->virtual_time &= !run->by_person;
     const bool open = cm1e_bus_open(&bus, config, &diag) == CM1E_OK;
     const int ready = open && run->ready ? run->ready(bus, run->context) : EXIT_OK;
     if (ready != EXIT_OK)

@@ -28,10 +28,11 @@ typedef struct axis_run {
     bool (*keep)(cm1e_scheduler_t *scheduler, void *context);
     cm1e_scheduler_config_t settings;
     void *context;
+    bool by_person;                      /**< a person looks on or presses keys: in real time, whatever the bus file says */
 } axis_run_t;
 
 /** Starts the bus, runs, closes the bus. Returns the exit status. */
-int run_on_axes(const axis_run_t *run, const common_options_t *options, const cm1e_bus_config_t *config);
+int run_on_axes(const axis_run_t *run, const common_options_t *options, cm1e_bus_config_t *config);
 
 /** Takes the argument AXIS of a command that acts on one axis: a second one is too many. For argp parsers. */
 error_t parse_axis_word(char *arg, struct argp_state *state, const char **word);

@@ -163,7 +163,7 @@ int command_enable(int argc, char **argv)
     if (p.seconds == 0 && !terminal_begin())
         return EXIT_FAILED;
     const axis_run_t run = {.what = "enable", .program = program, .prepare = prepare, .report = report,
-                            .watch = watch, .context = &p};
+                            .watch = watch, .context = &p, .by_person = p.seconds == 0};
     const int status = run_on_axes(&run, &p.common, &config);
     terminal_end();
     return status;

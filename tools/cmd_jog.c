@@ -202,7 +202,7 @@ int command_jog(int argc, char **argv)
     if (!terminal_begin())
         return EXIT_FAILED;
     const axis_run_t run = {.what = "jog", .program = program, .prepare = prepare, .report = report, .watch = watch,
-                            .context = &p};
+                            .context = &p, .by_person = true};
     const int status = run_on_axes(&run, &p.common, &config);
     terminal_end();
     return status;

@@ -277,7 +277,7 @@ static int watch_alone(const monitor_options_t *options, cm1e_bus_config_t *conf
     cm1e_control_serve_own(true);
     monitor.alone = true;
     const axis_run_t run = {.what = "monitor", .program = do_nothing, .prepare = prepare, .report = report,
-                            .watch = watch, .context = &alone};
+                            .watch = watch, .context = &alone, .by_person = true};
     return run_on_axes(&run, &options->common, config);
 }
 

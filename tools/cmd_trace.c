@@ -396,7 +396,7 @@ static int trace_alone(const trace_options_t *options, cm1e_bus_config_t *config
     alone.options = options;
     cm1e_control_serve_own(true);
     const axis_run_t run = {.what = "trace", .program = do_nothing, .prepare = prepare, .report = end_alone,
-                            .watch = watch, .context = &alone};
+                            .watch = watch, .context = &alone, .by_person = true};
     return run_on_axes(&run, &options->common, config);
 }
 

@@ -553,7 +553,7 @@ static bool make_records(tune_run_t runs[2], double cycle_s)
     return true;
 }
 
-static int run_one(tune_run_t *run, const cm1e_bus_config_t *config)
+static int run_one(tune_run_t *run, cm1e_bus_config_t *config)
 {
     const axis_run_t settings = {.what = "tune", .program = program, .prepare = prepare, .report = report,
                                  .watch = watch, .ready = ready, .context = run};
@@ -580,7 +580,7 @@ static int tell(tune_run_t runs[2], bool two, const cm1e_bus_config_t *config)
     return tune_write_page(options->html, &runs[0].record, names[0], other, names[1]) ? EXIT_OK : EXIT_FAILED;
 }
 
-static int run_both(tune_run_t runs[2], const cm1e_bus_config_t *config)
+static int run_both(tune_run_t runs[2], cm1e_bus_config_t *config)
 {
     const bool two = runs[0].options->setting_count > 0;
     int status = run_one(&runs[0], config);

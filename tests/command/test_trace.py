@@ -178,7 +178,18 @@ def check_alone():
     expect(told.returncode == 0 and "axis1 torque [%]" in told.stdout, "--list, alone", told)
 
 
+def check_who_watches_has_real_time():
+    """In virtual time nobody could attach, and a run until a key would take no time."""
+    bench.write("virtual.yaml", "bus: {interface: sim, virtual_time: true}\naxes: [{}]\n")
+    begin = time.monotonic()
+    for words in (("trace", "--list"), ("trace", "--for", "0.5", "--csv", path_of("virtual.csv")), ("monitor", "--json")):
+        told = subprocess.run([CM1E, *words, "-b", path_of("virtual.yaml")], capture_output=True, text=True, timeout=60,
+                              env=ENVIRONMENT)
+        expect(told.returncode == 0 and "axis1" in told.stdout + told.stderr or "samples" in told.stdout, words, told)
+    expect(time.monotonic() - begin > 0.5 and len(rows("virtual.csv")) > 400, "in real time", rows("virtual.csv")[-2:])
+
+
 if __name__ == "__main__":
     bench.write("bus.yaml", BUS)
     bench.run(check_gaps_are_counted, check_same_samples, check_many_and_gone, check_triggers, check_variables,
-              check_end_of_program, check_alone)
+              check_end_of_program, check_alone, check_who_watches_has_real_time)
