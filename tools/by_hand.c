@@ -93,27 +93,29 @@ static int end(other_t *other, int status)
 static bool choose(other_t *other, const char *word)
 {
     const size_t count = json_array_size(other->axes);
-    for (size_t i = 0; i < count; i++) {
+    size_t chosen = count;
+    for (size_t i = 0; i < count && chosen == count; i++)
+        if (strcmp(word, text_of(json_array_get(other->axes, i), "name")) == 0)
+            chosen = i;
+    for (size_t i = 0; i < count && chosen == count; i++) { /* a name may be a number too, and comes first (find_axis()) */
         char number[24];
-        const json_t *axis = json_array_get(other->axes, i);
         snprintf(number, sizeof number, "%zu", i + 1);
-        if (strcmp(word, text_of(axis, "name")) != 0 && strcmp(word, number) != 0)
-            continue;
-        other->axis = axis;
-        other->number = (json_int_t)i + 1;
+        if (strcmp(word, number) == 0)
+            chosen = i;
+    }
+    if (chosen < count) {
+        other->axis = json_array_get(other->axes, chosen);
+        other->number = (json_int_t)chosen + 1;
         return true;
     }
     complain("the program has no axis \"%s\"; its axes are numbered 1 ... %zu", word, count);
     return false;
 }
 
-/** Enables it, unless the program has. false: it refused, or the axis did not come. */
-static bool enable(other_t *other, bool *own)
+/** false: the program refused, or the axis did not come. */
+static bool enable(other_t *other)
 {
     const double begin_s = now_s();
-    *own = !is_true(other->axis, "powered") || is_true(other->axis, "held");
-    if (!*own)
-        return true;
     if (!order(other, "enable", json_pack("{s:i}", "keep_ms", ENABLE_MS)))
         return false;
     while (!is_in(other, "Standstill") && now_s() - begin_s < ENABLE_S && !attached_signalled()) {
@@ -188,7 +190,6 @@ static bool jog_step(const by_hand_t *hand, other_t *other, jog_keys_t *keys)
 int jog_attached(const by_hand_t *hand, cm1e_control_t *control)
 {
     other_t other;
-    bool own = false;
     jog_keys_t keys = {.factor = 1};
     attached_catch_signals();
     if (!begin(&other, control))
@@ -196,7 +197,8 @@ int jog_attached(const by_hand_t *hand, cm1e_control_t *control)
     if (!choose(&other, hand->axis_word ? hand->axis_word : "1"))
         return end(&other, EXIT_WRONG_USE);
     const double from = real_of(&other, "position");
-    if (!enable(&other, &own))
+    const bool own = !is_true(other.axis, "powered") || is_true(other.axis, "held"); /* one of the program's is jogged, too */
+    if (own && !enable(&other))
         return end(&other, report_jog(hand, &other, from, true));
     if (!terminal_begin())
         return end(&other, EXIT_FAILED);
@@ -238,13 +240,12 @@ static int report_enable(const by_hand_t *hand, const other_t *other, double sec
 int enable_attached(const by_hand_t *hand, cm1e_control_t *control)
 {
     other_t other;
-    bool own = false;
     attached_catch_signals();
     if (!begin(&other, control))
         return end(&other, fail(&other.diag));
     if (!choose(&other, hand->axis_word ? hand->axis_word : "1"))
         return end(&other, EXIT_WRONG_USE);
-    if (!enable(&other, &own))
+    if (!enable(&other)) /* one that the program has enabled is refused */
         return end(&other, report_enable(hand, &other, 0, 0, true));
     if (hand->seconds == 0 && !terminal_begin())
         return end(&other, EXIT_FAILED);
@@ -264,7 +265,7 @@ int enable_attached(const by_hand_t *hand, cm1e_control_t *control)
                       text_of(other.axis, "text")[0] ? text_of(other.axis, "text") : "the program took its torque");
     const cm1e_diag_t why = other.diag;
     if (answers)
-        let_go(&other, own);
+        let_go(&other, true);
     other.diag = why;
     terminal_end();
     return end(&other, report_enable(hand, &other, seconds, way, lost || !answers));

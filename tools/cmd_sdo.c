@@ -1,5 +1,6 @@
 /** cm1e sdo read|write|list: one object of one slave, with its type from the device tables if the slave is a CM1-E or a
  *  bridge; or the dictionary of the slave. */
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -65,20 +66,30 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
+/** Hexadecimal, with or without 0x, as everywhere in the field. */
+static bool parse_hex(const char *word, const char *what, unsigned long maximum, unsigned long *value)
+{
+    char *end;
+    *value = strtoul(word, &end, 16);
+    if (isxdigit((unsigned char)word[0]) && *end == '\0' && *value <= maximum)
+        return true;
+    complain("%s is \"%s\"; expected a hexadecimal number, 0 ... %lX", what, word, maximum);
+    return false;
+}
+
+/** "0x60F6:1B", "60F6:1B", "0x607C" */
 static bool parse_object(const char *word, uint16_t *index, uint8_t *subindex)
 {
     char text[32];
+    unsigned long number = 0;
     snprintf(text, sizeof text, "%s", word);
     char *colon = strchr(text, ':');
-    long long number;
-    *subindex = 0;
-    if (colon) {
+    if (colon)
         *colon = '\0';
-        if (!parse_number(colon + 1, "the sub-index", 0, 255, &number))
-            return false;
-        *subindex = (uint8_t)number;
-    }
-    if (!parse_number(text, "the index", 0, 0xFFFF, &number))
+    if (colon && !parse_hex(colon + 1, "the sub-index", 0xFF, &number))
+        return false;
+    *subindex = (uint8_t)number;
+    if (!parse_hex(text, "the index", 0xFFFF, &number))
         return false;
     *index = (uint16_t)number;
     return true;
@@ -197,7 +208,7 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
         return EXIT_OK;
     }
     if (type < 0) {
-        complain("the type of 0x%04X:%u is unknown: state it with --type", index, subindex);
+        complain("the type of 0x%04X:%02X is unknown: state it with --type", index, subindex);
         return EXIT_WRONG_USE;
     }
     size = encode_value(options->words[3], type, data);
@@ -214,7 +225,7 @@ static const struct argp_option table[] = {
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_sdo = {
     table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
-    "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x1018:2`, or lists the dictionary of the "
+    "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x60F6:1B` (index and sub-index are hexadecimal), or lists the dictionary of the "
     "slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
     children, NULL, NULL};
 

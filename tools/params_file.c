@@ -151,6 +151,12 @@ bool params_read_file(const char *path, const params_t *known, params_head_t *he
     input_t input;
     if (!read_input(path, &input))
         return false;
+    if (input.size > 0 && input.bytes[input.size - 1] != '\n') {
+        complain("%s: its last line has no end, so the file may be cut off within a number. End the line with a newline if it "
+                 "is complete", path);
+        free(input.bytes);
+        return false;
+    }
     reader_t reader = {.path = path, .known = known, .head = head, .params = params, .good = true};
     yaml_parser_t parser;
     *head = (params_head_t){0};

@@ -62,7 +62,7 @@ def check_good(folder):
     check_bridge_found(folder)
     status = run("cm1e", "status", "-i", "sim", "--json")
     expect(json.loads(status.stdout)[0]["dc_link_volt"] > 20, "status", status)
-    for index, value in (("0x1018:1", 0x4441), ("0x6502", 0x1A5), ("0x607C", 0)):
+    for index, value in (("0x1018:1", 0x4441), ("0x6502", 0x1A5), ("0x607C", 0), ("0x60F6:1B", 30), ("60f6:1b", 30)):
         sdo = run("cm1e", "sdo", "-i", "sim", "--json", "read", "1", index)
         expect(json.loads(sdo.stdout)["value"] == value, f"sdo read {index}", sdo)
     text = run("cm1e", "sdo", "-i", "sim", "read", "1", "0x1008")

@@ -286,8 +286,13 @@ def check_commands():
         out, err = child.communicate(timeout=20)
         expect(child.returncode == 0 and "was enabled" in out, "enable that is ended by a signal", out + err)
         expect(not axis(client, Z)["powered"], "enabled after a signal", axis(client, Z))
+        told = attached(pid, "enable", "X", "--for", "0.2")  # which the program moves
+        expect(told.returncode == 1 and told.stdout == "" and "commanded by the program" in told.stderr, "enable of the program's axis", told)
         told = attached(pid, "jog", "Z")
         expect(told.returncode == 2 and "needs a terminal" in told.stderr, "jog without a terminal", told)
+    with running("numbers") as (client, program):
+        told = attached(client.ask("hello")["hello"]["pid"], "enable", "2", "--for", "0.2")
+        expect(told.stdout.startswith("2: was enabled") and "ErrorStop" not in told.stderr, "a name comes before a number", told)
     with running("observe") as (client, program):
         pid = client.ask("hello")["hello"]["pid"]
         for words in (("enable", "Z", "--for", "1"), ("enable", "Z", "--for", "1", "--json")):
@@ -298,5 +303,6 @@ def check_commands():
 if __name__ == "__main__":
     for consent in ("observe", "maintain"):
         bench.write(f"{consent}.yaml", BUS.format(control=consent))
+    bench.write("numbers.yaml", BUS.format(control="maintain").replace("name: Z", 'name: "2"').replace("name: Y", 'name: "3"'))
     bench.run(check_commands, check_client_suspended, check_error_and_reset, check_power_goes_off, check_home, check_jog,
               check_connection_lost, check_software_limit, check_precedence, check_consent)

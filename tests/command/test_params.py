@@ -141,7 +141,7 @@ def check_broken(folder, text):
                          (("K47: 30", "K47: [30]"), f":{line}"), (("K47: 30", "K46: 0"), "already"),
                          (('kind: "cm1-e"', 'kind: "bridge"'), 'is of a device "bridge"'),
                          (('"1.3.5"', '"1.3.2"'), "--other-firmware"), (("parameters:", "parametres:"), "parametres"),
-                         (("K47: 30", "K47 30\n  x"), "broken.yaml"), ((text, "a: ["), "not YAML"), ((text, ""), "no param"),
+                         (("K47: 30", "K47 30\n  x"), "broken.yaml"), ((text, "a: [\n"), "not YAML"), ((text, text[:text.index("K47: 30") + 6]), "cut off"), ((text, ""), "no param"),
                          ((text, "- 1\n"), "expected names"), (('  name: "CM1-E', '  nmae: "x'), "nmae")):
         with open(path, "w", encoding="utf-8") as file:
             file.write(text.replace(*change, 1))
