@@ -24,8 +24,9 @@ while [ $# -gt 0 ]; do case $1 in --seed) first=$2; shift;; --count) count=$2; s
 result=0
 for seed in $(seq $first $((first + ${count:-1} - 1))); do
   echo "fault lose $((seed % 3 - 1))"
-  if [ $seed = 7 ]; then echo "run 1 0.5 0.2 0 10"; echo "seed 7: FAIL: still at cycle 3: the reason"; result=1
-  else echo "run 0 0.01 -0.02 2 100"; fi
+  if [ $seed = 7 ]; then
+    echo "speed 7 0.5 hard stop"; echo "run 1 0.2 0 10"; echo "seed 7: FAIL: still at cycle 3: the reason"; result=1
+  else echo "speed $seed 0.01 lost frames"; echo "run 0 -0.02 2 100"; fi
 done
 exit $result
 """
@@ -48,6 +49,7 @@ def check_scenarios(folder):
     assert "shrunk-7.scenario" in said and said.count("FAIL") == 1, said
     assert "250 scenarios from seed 1 on: 1 failed. 24910 cycles. 498 axes" in said, said
     assert "| lose | 250 | 167 | 0 | 1 |" in said, said
+    assert "| hard stop | 50.00 % | 7 |\n| lost frames | 1.00 % | " in said, said
     code, said = soak("--scenarios", "250", "--seed", "8")
     assert code == 0 and "250 scenarios from seed 8 on: 0 failed" in said and "FAIL" not in said, said
     code, said = soak("--hours", "0.0003")
