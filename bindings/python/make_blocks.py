@@ -18,7 +18,7 @@ from datetime import timedelta
 from enum import IntEnum
 from typing import Optional, Sequence
 
-from ._block import AXES_GROUP_REF, AXIS_REF, Block, Member, Struct
+from ._block import AXES_GROUP_REF, AXIS_REF, NOT_GIVEN, Block, Member, Struct
 '''
 
 
@@ -73,7 +73,7 @@ def enum(item):
 
 def default(variable, types):
     if not variable.default:
-        return "None"
+        return "NOT_GIVEN"
     item = types.known.get(types.base(variable.type))
     if item is not None and item.kind == "enum":
         return f"{item.name}.{variable.default}"
@@ -100,8 +100,8 @@ def annotations(variables, types):
 
 
 def parameters(variables, types, defaults):
-    return ", ".join(f"{variable.name}: Optional[{types.python(variable)}] = "
-                     f"{default(variable, types) if defaults else 'None'}" for variable in variables)
+    return ", ".join(f"{variable.name}: {types.python(variable)} = "
+                     f"{default(variable, types) if defaults else 'NOT_GIVEN'}" for variable in variables)
 
 
 def wrapped(head, tail):

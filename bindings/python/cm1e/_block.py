@@ -18,6 +18,9 @@ _RANGES = {"SINT": (-2**7, 2**7 - 1), "INT": (-2**15, 2**15 - 1), "UINT": (0, 2*
            "UDINT": (0, 2**32 - 1), "WORD": (0, 2**16 - 1), "DWORD": (0, 2**32 - 1)}
 _MOMENT = timedelta(microseconds=1)
 
+#: Of an argument that keeps its value. None is no value of any member: as a position it would be 0.
+NOT_GIVEN: Any = type("NotGiven", (), {"__repr__": lambda self: "NOT_GIVEN"})()
+
 
 class Member(NamedTuple):
     """A variable of a block or structure."""
@@ -137,7 +140,7 @@ class Struct:
         object.__setattr__(self, "_memory", {})  # and what C needs of them
         object.__setattr__(self, "_before", deque(maxlen=8))  # which the cycle may just be reading
         for name, value in values.items():
-            if value is not None:
+            if value is not NOT_GIVEN:
                 setattr(self, name, value)
 
     # Where the memory is used by the cycle, Block overrides these two.
@@ -327,7 +330,7 @@ class Block(Struct):
     def _act(self, values: Mapping[str, Any]) -> None:
         from .bus import bus_of_callback
         for name, value in values.items():
-            if value is not None:
+            if value is not NOT_GIVEN:
                 setattr(self, name, value)
         reference = next(references(self), None)
         bus = bus_of_callback() or (reference.bus if reference else None)

@@ -70,6 +70,9 @@ def test_values_out_of_range():
                                ("Position", True, TypeError)):
         with pytest.raises(error, match=name):
             setattr(move, name, wrong)
+    for name in ("Position", "Axis", "Direction", "Execute"):  # None is not "as it was", and not 0
+        with pytest.raises(TypeError, match=f"{name}: expected .*, not None"):
+            blocks.MC_MoveAbsolute(**{name: None})
     with pytest.raises(ValueError, match="INT"):
         blocks.MC_ReadParameter(ParameterNumber=40000)
     with pytest.raises(TypeError, match="timedelta"):
