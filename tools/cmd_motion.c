@@ -344,6 +344,8 @@ static int report(const motion_program_t *p)
     const char *what = p->what;
     char text[CM1E_AXIS_ERROR_TEXT_BYTES] = "";
     cm1e_axis_error_text(p->axis, text, sizeof text);
+    if (!p->done && !p->failed)
+        snprintf(text, sizeof text, "%s was interrupted", what);
     if (p->options->common.json)
         print_json(report_as_json(p, text));
     else if (p->done)
@@ -369,7 +371,10 @@ static void prepare_run(cm1e_scheduler_t *scheduler, void *context)
 
 static int report_run(void *context)
 {
-    return report(context);
+    motion_program_t *p = context;
+    if (p->ended_ns == 0) /* interrupted: it stands where the ramp of the run's end has left it */
+        cm1e_axis_read(p->axis, &p->after);
+    return report(p);
 }
 
 static void watch_run(void *context, bool end)
