@@ -7,6 +7,7 @@ test_by_hand.py BIN-DIRECTORY SOURCE-DIRECTORY
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -154,6 +155,24 @@ def check_alias_in(folder):
            and not os.path.exists(os.path.join(folder, "none")), "an alias that is taken", taken)
 
 
+def check_move_interrupted():
+    """What is said of it is where the motor stands then, as the trace says too."""
+    with tempfile.TemporaryDirectory() as folder:
+        csv_file = os.path.join(folder, "interrupted.csv")
+        with subprocess.Popen([os.path.join(BIN, "cm1e"), "move", "-i", "sim", "--by", "4", "-v", "0.5", "--json", "--csv", csv_file],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as move:
+            time.sleep(2.5)
+            move.send_signal(signal.SIGINT)
+            output, complaint = move.communicate(timeout=30)
+        told = json.loads(output)
+        with open(csv_file, encoding="utf-8") as file:
+            last = file.read().splitlines()[-1].split(",")
+    ended = subprocess.CompletedProcess("move", move.returncode, output, complaint + str(last))
+    expect(move.returncode == FAILED and not told["done"] and "interrupted" in told["details"] and
+           0 < told["to"] < 4 and abs(told["to"] - float(last[3])) < 0.01 and
+           abs(told["deviation"] - (told["to"] - 4)) < 1e-9, "move interrupted", ended)
+
+
 def check_reset():
     good = run("reset", "-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim", "--json")
     expect(good.returncode == 0 and [axis["had_error"] for axis in json.loads(good.stdout)] == [False] * 3, "reset", good)
@@ -164,7 +183,7 @@ def check_reset():
 def main():
     real_time.run_above_others()
     real_time.together(check_jog, *(lambda what=what: check_end_of_jog(what) for what in ("Ctrl-C", "closed")),
-                       check_enable, check_alias, check_refused, check_led, check_reset)
+                       check_enable, check_alias, check_refused, check_led, check_reset, check_move_interrupted)
     real_time.end(faults, "jog and enable in a terminal, led, alias, reset")
 
 

@@ -152,7 +152,6 @@ def check_files(folder):
     check_kept_files(folder)
     check_dictionary()
     check_cml(folder)
-    check_move_interrupted(folder)
     check_sii(folder)
     check_diff(folder)
 
@@ -328,23 +327,6 @@ def check_cml(folder):
         check_cml_ended(bus, number)
     none = run("cm1e", "cml", "-i", "sim", "?99.1")
     expect(none.returncode == FAILED and "no EtherCAT Cool MUSCLE Bridge" in none.stderr, "cml without a bridge", none)
-
-
-def check_move_interrupted(folder):
-    """What is said of it is where the motor stands then, as the trace says too."""
-    csv_file = os.path.join(folder, "interrupted.csv")
-    with subprocess.Popen([os.path.join(BIN, "cm1e"), "move", "-i", "sim", "--by", "50", "-v", "5", "--json", "--csv", csv_file],
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as move:
-        time.sleep(2.5)
-        move.send_signal(signal.SIGINT)
-        output, complaint = move.communicate(timeout=30)
-    told = json.loads(output)
-    with open(csv_file, encoding="utf-8") as file:
-        last = file.read().splitlines()[-1].split(",")
-    ended = subprocess.CompletedProcess("move", move.returncode, output, complaint + str(last))
-    expect(move.returncode == FAILED and not told["done"] and "interrupted" in told["details"] and
-           0 < told["to"] < 50 and abs(told["to"] - float(last[3])) < 0.01 and
-           abs(told["deviation"] - (told["to"] - 50)) < 1e-9, "move interrupted", ended)
 
 
 def check_cml_ended(bus, number):
