@@ -357,6 +357,10 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
     if (cm1e_st_unsupported(parsing, *yypcontext_location(context)))
         return 0;
     expectations(context, text, sizeof text);
+    if (strcmp(parsing->last, "=") == 0)
+        snprintf(text, sizeof text, "; a value is assigned by \":=\"");
+    if (strcasecmp(parsing->before, "ELSEIF") == 0)
+        snprintf(text, sizeof text, "; a further condition begins with ELSIF");
     if (found == YYSYMBOL_YYEOF)
         cm1e_st_report(ST, *yypcontext_location(context), "the source ends here, before something is complete%s", text);
     else

@@ -86,8 +86,19 @@ static void look_at(const char *name, void *value, void *context)
     cm1e_near_look(context, name);
 }
 
+/** A type of the standard that this translator has not. */
+static bool is_missing(const char *name)
+{
+    return strcasecmp(name, "CHAR") == 0 || strcasecmp(name, "WCHAR") == 0 || strcasecmp(name, "ANY") == 0 ||
+           strncasecmp(name, "ANY_", 4) == 0;
+}
+
 static type_t *unknown(st_t *st, type_t *type)
 {
+    if (is_missing(type->name)) {
+        cm1e_st_report(st, type->place, "the type %s is not supported by this translator", type->name);
+        return st->elementary[T_WRONG];
+    }
     char text[CM1E_NEAR_TEXT_BYTES];
     cm1e_near_t near = {.word = type->name};
     cm1e_st_map_each(st->types, look_at, &near);

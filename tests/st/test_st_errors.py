@@ -22,7 +22,8 @@ PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRIN
           "FUNCTION Change : INT\nVAR_IN_OUT v : INT; END_VAR\nv := v + 1; Change := v;\nEND_FUNCTION\n"
 STATEMENTS = [
     ("i := 1", "10:1", ["cannot stand here", '";"']),
-    ("i = 1;", "9:3", ["cannot stand here"]),
+    ("i = 1;", "9:3", ["cannot stand here", '":="']),
+    ("IF b THEN i := 1; ELSEIF b THEN i := 2; END_IF", "9:26", ["ELSIF"]),
     ("j := 1;", "9:1", ["no variable", '"j"']),
     ("ii := 1;", "9:1", ['did you mean "i"']),
     ("i := 1.5;", "9:6", ["INT"]),
@@ -149,6 +150,11 @@ STATEMENTS = [
     ("i;", "9:1", ["does nothing"]),
 ]
 SOURCES = [
+    ("PROGRAM Main VAR c : CHAR; END_VAR END_PROGRAM", "1:22", ["CHAR is not supported"]),
+    ("PROGRAM Main VAR c : ANY_INT; END_VAR END_PROGRAM", "1:22", ["ANY_INT is not supported"]),
+    ("TYPE U : UNION a : INT; b : REAL; END_UNION END_TYPE PROGRAM Main END_PROGRAM", "1:16", ["UNION is not supported"]),
+    ("PROGRAM Main VAR x : INT; END_VAR JMP l; l: x := 1; END_PROGRAM", "1:39", ["JMP is not supported"]),
+    ("FUNCTION F : INT VAR_INPUT a : ARRAY[*] OF INT; END_VAR F := 1; END_FUNCTION PROGRAM Main END_PROGRAM", "1:38", ["*"]),
     ("PROGRAM Main VAR i : INTT; END_VAR END_PROGRAM", "1:22", ['did you mean "INT"']),
     ("PROGRAM Main VAR i : INT; I : INT; END_VAR END_PROGRAM", "1:27", ["already"]),
     ("PROGRAM Main END_PROGRAM PROGRAM main END_PROGRAM", "1:34", ["already"]),
