@@ -1,4 +1,5 @@
 #include <stdlib.h>
+#include <string.h>
 
 #include "attach.h"
 
@@ -15,4 +16,17 @@ json_t *ask_program(cm1e_control_t *control, json_t *request, const char *member
     if (error == CM1E_OK && !value)
         cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The answer of the program has no \"%s\": it is of another version.", member);
     return value;
+}
+
+size_t axis_of_program(const json_t *axes, const char *word)
+{
+    const size_t count = json_array_size(axes);
+    char *end;
+    for (size_t i = 0; i < count; i++) {
+        const char *name = json_string_value(json_object_get(json_array_get(axes, i), "name"));
+        if (name && strcmp(name, word) == 0)
+            return i + 1;
+    }
+    const unsigned long number = strtoul(word, &end, 10);
+    return word[0] >= '0' && word[0] <= '9' && *end == '\0' && number <= count ? number : 0;
 }

@@ -92,24 +92,14 @@ static int end(other_t *other, int status)
 /** false, with a complaint: there is no such axis. */
 static bool choose(other_t *other, const char *word)
 {
-    const size_t count = json_array_size(other->axes);
-    size_t chosen = count;
-    for (size_t i = 0; i < count && chosen == count; i++)
-        if (strcmp(word, text_of(json_array_get(other->axes, i), "name")) == 0)
-            chosen = i;
-    for (size_t i = 0; i < count && chosen == count; i++) { /* a name may be a number too, and comes first (find_axis()) */
-        char number[24];
-        snprintf(number, sizeof number, "%zu", i + 1);
-        if (strcmp(word, number) == 0)
-            chosen = i;
+    const size_t number = axis_of_program(other->axes, word);
+    if (number == 0) {
+        complain("the program has no axis \"%s\"; its axes are numbered 1 ... %zu", word, json_array_size(other->axes));
+        return false;
     }
-    if (chosen < count) {
-        other->axis = json_array_get(other->axes, chosen);
-        other->number = (json_int_t)chosen + 1;
-        return true;
-    }
-    complain("the program has no axis \"%s\"; its axes are numbered 1 ... %zu", word, count);
-    return false;
+    other->axis = json_array_get(other->axes, number - 1);
+    other->number = (json_int_t)number;
+    return true;
 }
 
 /** false: the program refused, or the axis did not come. */

@@ -1,6 +1,5 @@
 /** cm1e sdo read|write|list: one object of one slave, with its type from the device tables if the slave is a CM1-E or a
  *  bridge; or the dictionary of the slave. */
-#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -66,33 +65,13 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-/** Hexadecimal, with or without 0x, as everywhere in the field. */
-static bool parse_hex(const char *word, const char *what, unsigned long maximum, unsigned long *value)
-{
-    char *end;
-    *value = strtoul(word, &end, 16);
-    if (isxdigit((unsigned char)word[0]) && *end == '\0' && *value <= maximum)
-        return true;
-    complain("%s is \"%s\"; expected a hexadecimal number, 0 ... %lX", what, word, maximum);
-    return false;
-}
-
-/** "0x60F6:1B", "60F6:1B", "0x607C" */
 static bool parse_object(const char *word, uint16_t *index, uint8_t *subindex)
 {
-    char text[32];
-    unsigned long number = 0;
-    snprintf(text, sizeof text, "%s", word);
-    char *colon = strchr(text, ':');
-    if (colon)
-        *colon = '\0';
-    if (colon && !parse_hex(colon + 1, "the sub-index", 0xFF, &number))
-        return false;
-    *subindex = (uint8_t)number;
-    if (!parse_hex(text, "the index", 0xFFFF, &number))
-        return false;
-    *index = (uint16_t)number;
-    return true;
+    if (read_object(word, index, subindex))
+        return true;
+    complain("the object is \"%s\"; expected the index, 0 ... FFFF, and behind a colon the sub-index, 0 ... FF, both hexadecimal, "
+             "for instance 0x60F6:1B", word);
+    return false;
 }
 
 /** Row of the type to use: the given type, otherwise that of the device table. -1: unknown (raw bytes); -2:
@@ -225,8 +204,8 @@ static const struct argp_option table[] = {
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_sdo = {
     table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
-    "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x60F6:1B` (index and sub-index are hexadecimal), or lists the dictionary of the "
-    "slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
+    "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x60F6:1B` (index and sub-index are hexadecimal), "
+    "or lists the dictionary of the slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
     children, NULL, NULL};
 
 static int act(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *options, uint16_t position)

@@ -164,28 +164,21 @@ static json_t *objects_as_json(const trace_options_t *options, const json_t *axe
 {
     json_t *all = json_array();
     for (int i = 0; i < options->object_count; i++) {
-        char name[64], trail;
-        unsigned index = 0, subindex = 0;
-        json_int_t axis = 0;
+        char name[64];
+        uint16_t index = 0;
+        uint8_t subindex = 0;
         const char *colon = strchr(options->objects[i], ':');
         const size_t bytes = colon ? (size_t)(colon - options->objects[i]) : 0;
         snprintf(name, sizeof name, "%.*s", (int)(bytes < sizeof name ? bytes : 0), options->objects[i]);
-        for (size_t n = 0; n < json_array_size(axes); n++) {
-            char number[24];
-            const char *known = json_string_value(json_object_get(json_array_get(axes, n), "name"));
-            snprintf(number, sizeof number, "%zu", n + 1);
-            if ((known && strcmp(name, known) == 0) || strcmp(name, number) == 0)
-                axis = (json_int_t)n + 1;
-        }
-        const int parts = colon ? sscanf(colon + 1, "%x:%x%c", &index, &subindex, &trail) : 0;
-        if (axis == 0 || (parts != 1 && parts != 2) || index == 0 || index > 0xFFFF || subindex > 0xFF) {
+        const size_t axis = axis_of_program(axes, name);
+        if (!colon || axis == 0 || !read_object(colon + 1, &index, &subindex) || index == 0) {
             complain("the object is \"%s\"; expected AXIS:INDEX or AXIS:INDEX:SUBINDEX, like 1:0x603F, with a name or "
                      "number of an axis", options->objects[i]);
             json_decref(all);
             return NULL;
         }
-        json_array_append_new(all, json_pack("{s:I, s:i, s:i}", "axis", axis, "index", (int)index, "subindex",
-                                             (int)subindex));
+        json_array_append_new(all, json_pack("{s:I, s:i, s:i}", "axis", (json_int_t)axis, "index", index, "subindex",
+                                             subindex));
     }
     return all;
 }

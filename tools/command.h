@@ -129,6 +129,8 @@ int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave
 
 /** A whole decimal or 0x number within [minimum, maximum]; false and a complaint that names `what` otherwise. */
 bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value);
+/** An object as the field writes it, hexadecimal with or without 0x: "0x60F6:1B", "607C" (sub-index 0). Complains of nothing. */
+bool read_object(const char *word, uint16_t *index, uint8_t *subindex);
 /** A finite decimal number; false and a complaint otherwise. */
 bool parse_real(const char *word, const char *what, double *value);
 /** As parse_real(), above 0. */

@@ -1,4 +1,5 @@
 /* Numbers as a user writes them. */
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,6 +16,27 @@ bool parse_number(const char *word, const char *what, long long minimum, long lo
         return true;
     complain("%s is \"%s\"; expected a whole number %lld ... %lld", what, word, minimum, maximum);
     return false;
+}
+
+/** The place behind a hexadecimal number; NULL: there is none, or it is above `maximum`. */
+static const char *read_hex(const char *word, unsigned long maximum, unsigned long *value)
+{
+    char *end;
+    if (!isxdigit((unsigned char)word[0]))
+        return NULL;
+    *value = strtoul(word, &end, 16);
+    return *value <= maximum ? end : NULL;
+}
+
+bool read_object(const char *word, uint16_t *index, uint8_t *subindex)
+{
+    unsigned long object = 0, part = 0;
+    const char *end = read_hex(word, 0xFFFF, &object);
+    if (end && *end == ':')
+        end = read_hex(end + 1, 0xFF, &part);
+    *index = (uint16_t)object;
+    *subindex = (uint8_t)part;
+    return end && *end == '\0';
 }
 
 bool parse_real(const char *word, const char *what, double *value)

@@ -47,18 +47,11 @@ static bool is_name(const char *name, const char *word)
     return *name == *word;
 }
 
-/** "0x60F6:1B", "60F6:1B", "0x607C" */
 static bool is_number(const cm1e_entry_t *entry, const char *word)
 {
-    char *end;
-    if (strncasecmp(word, "0x", 2) == 0)
-        word += 2;
-    if (!isxdigit((unsigned char)word[0]))
-        return false;
-    const unsigned long index = strtoul(word, &end, 16);
-    const bool has_sub = *end == ':' && isxdigit((unsigned char)end[1]);
-    const unsigned long subindex = has_sub ? strtoul(end + 1, &end, 16) : 0;
-    return *end == '\0' && index == entry->index && subindex == entry->subindex;
+    uint16_t index;
+    uint8_t subindex;
+    return read_object(word, &index, &subindex) && index == entry->index && subindex == entry->subindex;
 }
 
 const cm1e_entry_t *param_find(const params_t *params, const char *word)
