@@ -344,7 +344,8 @@ static int report(const motion_program_t *p)
     const char *what = p->what;
     char text[CM1E_AXIS_ERROR_TEXT_BYTES] = "";
     cm1e_axis_error_text(p->axis, text, sizeof text);
-    if (!p->done && !p->failed)
+    const bool stopped_well = !p->done && !p->failed && text[0] == '\0';
+    if (stopped_well)
         snprintf(text, sizeof text, "%s was interrupted", what);
     if (p->options->common.json)
         print_json(report_as_json(p, text));
@@ -355,7 +356,8 @@ static int report(const motion_program_t *p)
     if (p->failed)
         complain_of_axis(cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text);
     else if (!p->done)
-        complain("%s: %s was interrupted", cm1e_axis_name(p->axis), what);
+        complain("%s: %s was interrupted%s%s", cm1e_axis_name(p->axis), what, stopped_well ? "" : ", and then: ",
+                 stopped_well ? "" : text);
     if (p->failed && p->before_power_failed)
         complain("--reset does that here");
     return p->done ? EXIT_OK : EXIT_FAILED;

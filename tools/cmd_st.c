@@ -1,6 +1,7 @@
 /** cm1e st: checks programs in Structured Text, and translates them into programs that `cm1e run` runs. */
 #include <errno.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -90,17 +91,20 @@ static void print_errors(const st_t *st, bool json)
 /* ---- the compiler ------------------------------------------------------------------------------------------------ */
 
 /** Runs the C compiler; its output is the user's to see, for a complaint of it is a fault of ours. */
-static int compile(const char *c_file, const char *output)
+static int compile(const char *c_file, const char *folder, const char *output)
 {
     /* GCC 12 makes -x of 0.0 - x, which has another sign for 0, unless the rounding may change. */
     static const char *const flags[] = {"-std=c11", "-O2", "-g", "-fwrapv", "-fno-strict-aliasing", "-ffp-contract=off", "-frounding-math",
                                         "-fPIC", "-shared"};
     const char *compiler = getenv("CC");
+    char map[PATH_MAX + 60]; /* the name of the folder is another one each time, and is not to be in the program */
     const char *arguments[ARGUMENTS];
     size_t count = 0;
     arguments[count++] = compiler && compiler[0] ? compiler : "cc";
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++)
         arguments[count++] = flags[i];
+    snprintf(map, sizeof map, "-ffile-prefix-map=%s=.", folder);
+    arguments[count++] = map;
     arguments[count++] = "-o";
     arguments[count++] = output;
     arguments[count++] = "-x";
@@ -110,18 +114,24 @@ static int compile(const char *c_file, const char *output)
     arguments[count] = NULL;
     int status = 0;
     fflush(NULL);
+    void (*const on_interrupt)(int) = signal(SIGINT, SIG_IGN); /* Ctrl-C ends the compiler, and what it left is removed */
     const pid_t child = fork();
     if (child == 0) {
+        signal(SIGINT, on_interrupt);
         execvp(arguments[0], (char *const *)(uintptr_t)arguments);
         _exit(127);
     }
-    if (child < 0 || waitpid(child, &status, 0) != child) {
+    const bool ended = child >= 0 && waitpid(child, &status, 0) == child;
+    signal(SIGINT, on_interrupt);
+    if (!ended) {
         complain("the compiler %s cannot be started: %s", arguments[0], strerror(errno));
         return EXIT_FAILED;
     }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
         complain("there is no C compiler \"%s\"; install one (Debian: apt install gcc), or name it in the environment "
                  "variable CC", arguments[0]);
+    else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT)
+        complain("interrupted: no program was made");
     else if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         complain("the compiler %s could not compile %s", arguments[0], c_file);
     return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? EXIT_OK : EXIT_FAILED;
@@ -179,13 +189,12 @@ static bool write_c(st_t *st, const char *c_file, const char *program)
  *  The debugger needs the C no longer, thanks to #line. */
 static int build_in(const char *folder, st_t *st, const st_options_t *options, const char *output)
 {
-    char own_c[PATH_MAX + 40], made[PATH_MAX + 40], place[PATH_MAX];
+    char own_c[PATH_MAX + 40], made[PATH_MAX + 40];
     snprintf(own_c, sizeof own_c, "%s/program.c", folder);
     snprintf(made, sizeof made, "%s/program.so", folder);
     const char *c_file = options->c_file ? options->c_file : own_c;
-    int status = write_c(st, c_file, output) ? compile(c_file, made) : EXIT_FAILED;
-    const char *target = realpath(output, place) ? place : output; /* a link stays a link */
-    if (status == EXIT_OK && rename(made, target) != 0) {
+    int status = write_c(st, c_file, output) ? compile(c_file, folder, made) : EXIT_FAILED;
+    if (status == EXIT_OK && rename(made, output) != 0) {
         complain("%s cannot be written: %s", output, strerror(errno));
         status = EXIT_FAILED;
     }
@@ -196,19 +205,24 @@ static int build_in(const char *folder, st_t *st, const st_options_t *options, c
 
 static int build(st_t *st, const st_options_t *options)
 {
-    char output[PATH_MAX], folder[PATH_MAX + 20];
+    char output[PATH_MAX], place[PATH_MAX], folder[PATH_MAX + 20];
     if (options->output)
         snprintf(output, sizeof output, "%s", options->output);
     else
         name_beside(options->sources[0], ".so", output, sizeof output);
     if (!may_write(output, options) || (options->c_file && !may_write(options->c_file, options)))
         return EXIT_FAILED;
-    snprintf(folder, sizeof folder, "%s.XXXXXX", output);
+    if (options->c_file && strcmp(options->c_file, output) == 0) {
+        complain("--c and -o name the same file, %s: the program would replace its C", output);
+        return EXIT_FAILED;
+    }
+    const char *target = realpath(output, place) ? place : output; /* a link stays a link */
+    snprintf(folder, sizeof folder, "%s.XXXXXX", target);
     if (!mkdtemp(folder)) {
         complain("%s cannot be written: %s", output, strerror(errno));
         return EXIT_FAILED;
     }
-    const int status = build_in(folder, st, options, output);
+    const int status = build_in(folder, st, options, target);
     rmdir(folder);
     return status;
 }

@@ -359,6 +359,8 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
     expectations(context, text, sizeof text);
     if (strcmp(parsing->last, "=") == 0)
         snprintf(text, sizeof text, "; a value is assigned by \":=\"");
+    if (strcasecmp(parsing->last, "THEN") == 0)
+        snprintf(text, sizeof text, "; THEN is that of IF or ELSIF");
     if (strcasecmp(parsing->before, "ELSEIF") == 0)
         snprintf(text, sizeof text, "; a further condition begins with ELSIF");
     if (found == YYSYMBOL_YYEOF)

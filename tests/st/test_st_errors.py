@@ -23,6 +23,7 @@ PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRIN
 STATEMENTS = [
     ("i := 1", "10:1", ["cannot stand here", '";"']),
     ("i = 1;", "9:3", ["cannot stand here", '":="']),
+    ("IF b THEN i := 1; ELSEIF (i > 1) THEN i := 2; END_IF", "9:34", ["ELSIF"]),
     ("IF b THEN i := 1; ELSEIF b THEN i := 2; END_IF", "9:26", ["ELSIF"]),
     ("j := 1;", "9:1", ["no variable", '"j"']),
     ("ii := 1;", "9:1", ['did you mean "i"']),

@@ -77,13 +77,20 @@ def check_what_build_leaves_alone():
     before = set(os.listdir())
     for words, says in ((("-o", "pipe"), "is not a file"), (("-o", "kept.st"), "kept.st is a source"), (("-o", "."), "is not a file"),
                         (("--c", "kept.st"), "kept.st is a source"), (("-o", "no/program"), "cannot be written"),
-                        (("-o", "link"), None), ((), None)):
+                        (("-o", "same", "--c", "same"), "the same file"), (("-o", "link"), None), ((), None)):
         result = cm1e("st", "build", "kept.st", *words)
         if (result.returncode != 0) != bool(says) or (says or "") not in result.stderr:
             faults.append(f"st build kept.st {words}: status {result.returncode}, {result.stderr}")
     texts = [open(name, encoding="ascii").read() for name in ("kept.so.c", "other.c", "kept.st")]
     if texts != ["mine", "mine", "PROGRAM Main END_PROGRAM"] or not os.path.islink("link") or os.path.getsize("other") == 0:
         faults.append(f"st build wrote over other files: {texts}, {os.listdir()}")
+    programs = []
+    for _ in range(2):
+        build("kept", "PROGRAM Main END_PROGRAM")
+        with open("kept.so", "rb") as file:
+            programs.append(file.read())
+    if programs[0] != programs[1]:
+        faults.append("the same source gives two programs")
     if set(os.listdir()) != before:
         faults.append(f"st build leaves {set(os.listdir()) ^ before}")
 
