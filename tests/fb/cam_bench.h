@@ -5,11 +5,11 @@
 #ifndef CM1E_TESTS_CAM_BENCH_H
 #define CM1E_TESTS_CAM_BENCH_H
 
-#include <check.h>
 #include <math.h>
 
 #include "axis/axis_signals.h"
 #include "fake_axis.h"
+#include "quick_check.h"
 
 #define MS INT64_C(1000000)
 

@@ -6,10 +6,10 @@
 #ifndef CM1E_TESTS_EXECUTE_BLOCKS_H
 #define CM1E_TESTS_EXECUTE_BLOCKS_H
 
-#include <check.h>
 #include <stdio.h>
 
 #include "fake_axis.h"
+#include "quick_check.h"
 
 typedef struct outputs {
     BOOL done, busy, active, aborted, error;

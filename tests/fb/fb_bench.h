@@ -6,7 +6,6 @@
 #ifndef CM1E_TESTS_FB_BENCH_H
 #define CM1E_TESTS_FB_BENCH_H
 
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,6 +15,7 @@
 #include "axis/axis_api.h"
 #include "bus/bus_image.h"
 #include "cm1e/sim.h"
+#include "quick_check.h"
 
 /** The blocks of the Execute type, in the order of cm1e_command_kind_t, then MC_Reset. */
 typedef enum kind { ABSOLUTE = 0, RELATIVE, VELOCITY, HALT, STOP, HOME, RESET, KINDS } kind_t;

@@ -2,7 +2,6 @@
  * One fault at every cycle of start-up, enabling, homing and a move, on virtual time: each run ends in a defined state
  * with a right error text, and no run moves the simulated motor after the fault beyond its stopping ramp.
  */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +13,7 @@
 #include "cm1e/sim.h"
 #include "effort.h"
 #include "nic/nic.h"
+#include "quick_check.h"
 
 enum { CYCLE_NS = 1000000, SETTLE_CYCLES = 400, MAX_CYCLES = 4000 };
 

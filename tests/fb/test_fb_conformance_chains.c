@@ -2,8 +2,8 @@
  * Chains of slaves (PLCopen Part 1 v2.0, chapter 4): a slave that is another's master, broken at each of its links,
  * with blocks and axes in any order; and no axis follows itself, also not by way of others.
  */
-#include <check.h>
 
+#include "quick_check.h"
 #include "slave_bench.h"
 
 static instance_t mover, other, more[8];

@@ -3,9 +3,9 @@
  * met by each block that moves, by itself again, by the loss of its own axis and of its master; what must be refused.
  * Every call is judged by 2.4.1, every set-point by the limits of its axis. Chains: test_fb_conformance_chains.
  */
-#include <check.h>
 
 #include "effort.h"
+#include "quick_check.h"
 #include "slave_bench.h"
 
 static const char *const followers[] = {"MC_GearIn", "MC_CombineAxes", "MC_CamIn", "MC_GearInPos"};

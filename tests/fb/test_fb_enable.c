@@ -1,10 +1,10 @@
 /**
  * MC_Power and the reading blocks on axes without anything behind them, call by call (PLCopen Part 1 v2.0, 2.2.3, 3.1).
  */
-#include <check.h>
 #include <stdlib.h>
 
 #include "fake_axis.h"
+#include "quick_check.h"
 
 static AXIS_REF_t x = {1}, y = {2}, nothing = {0}, stranger = {99};
 static cm1e_axis_t *const axis_x = &fake_axes[0], *const axis_y = &fake_axes[1];

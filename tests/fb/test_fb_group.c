@@ -3,13 +3,13 @@
  * call; every block in every state of the group and every buffer mode, each behind each, triggered again, and with an
  * axis that loses its power in every phase. The witness of axes_bench.h looks at every set-point.
  */
-#include <check.h>
 #include <stdlib.h>
 
 #include "block_table.h"
 #include "cm1e/plcopen.h"
 #include "effort.h"
 #include "group_bench.h"
+#include "quick_check.h"
 
 /* ---- a block ----------------------------------------------------------------------------------------------------- */
 

@@ -1,7 +1,6 @@
 /* Two motors move by the scheduler while a third one, whose slave is optional, comes, leaves and comes back at swept
  * moments: they keep their velocity to the count, the third is in ErrorStop, and has no torque before MC_Power gets a
  * new edge after MC_Reset. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,6 +13,7 @@
 #include "core/bytes.h"
 #include "effort.h"
 #include "nic/nic.h"
+#include "quick_check.h"
 #include "sim/esc_chip.h"
 #include "sim/segment.h"
 #include "sim/segment_backend.h"

@@ -1,10 +1,10 @@
 /* Edges, bistables and counters of IEC 61131-3: every state with every input, and random sequences against a model. */
-#include <check.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "cm1e/iec.h"
+#include "quick_check.h"
 
 #define EXPECT(condition, ...)                                                                                         \
     do                                                                                                                 \

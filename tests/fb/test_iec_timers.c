@@ -1,11 +1,11 @@
 /* TON, TOF, TP against a model that knows the whole history of inputs, not a state (IEC 61131-3, 2.5.2.3.4). */
-#include <check.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "cm1e/iec.h"
 #include "cm1e/scan_time.h"
+#include "quick_check.h"
 
 #define MS INT64_C(1000000)
 #define DAY (INT64_C(86400) * 1000 * MS)

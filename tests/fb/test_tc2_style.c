@@ -1,12 +1,12 @@
 /* A program as it comes from TwinCAT (docs/TWINCAT.md), on the simulated segment: enable, move, jog at a velocity, add a
  * superimposed motion and take it away again, stop. Its names are Tc2_MC2's. */
-#include <check.h>
 #include <math.h>
 
 #include "axes_described.h"
 #include "cm1e/bus.h"
 #include "cm1e/scheduler.h"
 #include "cm1e/tc2_mc2.h"
+#include "quick_check.h"
 
 enum { SECOND = 1000 };
 

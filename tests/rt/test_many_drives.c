@@ -1,8 +1,7 @@
 /* As many motors as one network carries: started, enabled and moved. */
-#include <check.h>
-
 #include "axes_described.h"
 #include "moved_drives.h"
+#include "quick_check.h"
 
 enum { MOST_CYCLES = 2000 };
 

@@ -4,7 +4,6 @@
  * virtual time a grant is kept to the cycle, and ends with the block that is waited for. The everyday run shows that
  * nobody hangs; ThreadSanitizer, that nothing is used without order.
  */
-#include <check.h>
 #include <pthread.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -13,6 +12,7 @@
 
 #include "cm1e/plcopen.h"
 #include "py_session.h"
+#include "quick_check.h"
 
 enum { THREADS = 6, ROUNDS = 4 };
 

@@ -2,7 +2,6 @@
  * Every signal that would end or suspend a program, in the middle of a motion: the axis ramps down with its own
  * deceleration, however many signals follow, and the drive is disabled. Signals that the program ignores stay ignored.
  */
-#include <check.h>
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>
@@ -16,6 +15,7 @@
 
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
+#include "quick_check.h"
 #include "real_time.h"
 
 #define MS INT64_C(1000000)

@@ -1,12 +1,12 @@
 /**
  * A distribution of the statistics, read while the cycle adds to it: what is read is of one moment.
  */
-#include <check.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "quick_check.h"
 #include "scheduler/statistics.h"
 
 enum { MOMENTS = 500, PAUSE = 100 };

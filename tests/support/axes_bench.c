@@ -1,7 +1,6 @@
 #include "axes_bench.h"
 
-#include <check.h>
-
+#include "quick_check.h"
 #include "unity.h"
 #include "ordinary_witness.h"
 

@@ -5,7 +5,6 @@
 #ifndef CM1E_TESTS_AXIS_SEGMENT_H
 #define CM1E_TESTS_AXIS_SEGMENT_H
 
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +15,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/sim.h"
 #include "nic/nic.h"
+#include "quick_check.h"
 
 extern cm1e_bus_config_t config;
 extern cm1e_diag_t diag;

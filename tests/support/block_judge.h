@@ -6,7 +6,6 @@
 #ifndef CM1E_TESTS_BLOCK_JUDGE_H
 #define CM1E_TESTS_BLOCK_JUDGE_H
 
-#include <check.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -22,6 +21,7 @@
 #include "coupling/coupling_private.h"
 #include "block_table.h"
 #include "group/group_private.h"
+#include "quick_check.h"
 
 enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160, JUDGED_MOST = 4, INSTANCES_MOST = JUDGED_MOST * BLOCKS_MOST };
 

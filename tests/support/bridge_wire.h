@@ -7,7 +7,6 @@
 #ifndef CM1E_TESTS_BRIDGE_WIRE_H
 #define CM1E_TESTS_BRIDGE_WIRE_H
 
-#include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +14,7 @@
 #include "bus/bus_image.h"
 #include "core/bytes.h"
 #include "nic/nic.h"
+#include "quick_check.h"
 #include "sim/segment_backend.h"
 #include "sim/bridge_app.h"
 

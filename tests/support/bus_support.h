@@ -6,7 +6,6 @@
 #ifndef CM1E_TESTS_BUS_SUPPORT_H
 #define CM1E_TESTS_BUS_SUPPORT_H
 
-#include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +15,7 @@
 #include "cm1e/sii.h"
 #include "core/bytes.h"
 #include "nic/nic.h"
+#include "quick_check.h"
 #include "sim/segment_backend.h"
 #include "sim/slave.h"
 

@@ -5,7 +5,6 @@
 #ifndef CM1E_TESTS_MACHINE_H
 #define CM1E_TESTS_MACHINE_H
 
-#include <check.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +12,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
+#include "quick_check.h"
 
 enum { MACHINE_AXES = 4 };
 

@@ -6,11 +6,12 @@
 #ifndef CM1E_TESTS_REAL_TIME_H
 #define CM1E_TESTS_REAL_TIME_H
 
-#include <check.h>
 #include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+#include "quick_check.h"
 
 /** Below the cycle (80) and the programs of the wire tests (50, 60). */
 enum { TEST_PRIORITY = 10 };

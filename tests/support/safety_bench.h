@@ -7,7 +7,6 @@
 #ifndef CM1E_TESTS_SAFETY_BENCH_H
 #define CM1E_TESTS_SAFETY_BENCH_H
 
-#include <check.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -21,6 +20,7 @@
 #include "cm1e/scheduler.h"
 #include "device/unit.h"
 #include "nic/nic.h"
+#include "quick_check.h"
 #include "sim/segment_backend.h"
 #include "sim/bridge_app.h"
 #include "sim/cm1e_app.h"
