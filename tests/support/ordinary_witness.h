@@ -17,8 +17,9 @@ extern unsigned long long cycles_advanced, cycles_ordinary, inputs_seen, inputs_
  *  decided ahead too. */
 extern unsigned long long cycles_followed, cycles_followed_ordinary, cycles_led, cycles_led_ordinary, cycles_led_short;
 
-/** One in so many calls is compared: all of axes, except in tests of a million cycles and more; of followers and of axes of a
- *  group one in 23, because couplings and groups are large. Of followers 1 in tests of the short way itself. */
+/** One in so many calls is compared: all of axes, except in tests of a million cycles
+ *  and more and with AddressSanitizer; of followers and of axes of a group
+ *  one in 23, because couplings and groups are large. Of followers 1 in tests of the short way itself. */
 extern unsigned axes_compared_every, followers_compared_every, led_compared_every;
 
 /** cm1e_axis_inputs() and cm1e_axis_outputs(). If the ways differ, they say where and end the program. */

@@ -169,6 +169,7 @@ static void test_silent_cycle_is_not_ordinary(void)
 
 int main(void)
 {
+    axes_compared_every = 1;
     UNITY_BEGIN();
     RUN_TEST(test_random_motions);
     RUN_TEST(test_move_is_ordinary_but_for_its_stretches);
