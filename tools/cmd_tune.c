@@ -51,10 +51,10 @@ typedef struct tune_run {
     MC_Power_t power;
     MC_MoveRelative_t move;
     MC_PositionProfile_t profile;
-    MC_MoveAbsolute_t home;
+    MC_MoveRelative_t back;
     MC_Stop_t stop;
     MC_TP_REF table;
-    double start;
+    double start, set, actual; /* positions that go on counting where a modulo axis begins again */
     int64_t since_ns;
     bool done, failed, left_travel, outside_limits;
     WORD error_id;
@@ -238,28 +238,40 @@ static void follow_part(tune_run_t *run)
     if (run->part < run->part_count) {
         begin_part(run);
     } else {
-        run->home.Execute = TRUE;
+        run->back.Distance = run->start - run->set;
+        run->back.Execute = TRUE;
         enter(run, TUNE_RETURN);
     }
 }
 
-static void record(tune_run_t *run, const cm1e_axis_info_t *info)
+/** Of all places at which an axis shows `position`, the one nearest to `before`. */
+static double go_on(double before, double position, double modulo_range)
+{
+    return modulo_range > 0 ? before + remainder(position - before, modulo_range) : position;
+}
+
+static void follow(tune_run_t *run, const cm1e_axis_info_t *info)
+{
+    run->set = go_on(run->set, info->set_position, run->config->modulo_range);
+    run->actual = go_on(run->actual, info->actual_position, run->config->modulo_range);
+}
+
+static void record(tune_run_t *run)
 {
     tune_record_t *record = &run->record;
     if ((run->step != TUNE_MOVE && run->step != TUNE_AFTER) || record->count == TUNE_SAMPLES_MAX)
         return;
     record->time_s[record->count] = (double)cm1e_scheduler_time_ns(run->scheduler) * 1e-9;
-    record->set[record->count] = info->set_position - run->start;
-    record->actual[record->count] = info->actual_position - run->start;
+    record->set[record->count] = run->set - run->start;
+    record->actual[record->count] = run->actual - run->start;
     record->count++;
 }
 
 /** A motor that leaves the travel is stopped. */
-static void guard(tune_run_t *run, const cm1e_axis_info_t *info)
+static void guard(tune_run_t *run)
 {
-    const double way = fabs(info->actual_position - run->start), turn = run->config->modulo_range;
-    const double near = turn > 0 ? fabs(remainder(way, turn)) : way;
-    if (run->step < TUNE_MOVE || run->step > TUNE_RETURN || near <= BEYOND_TRAVEL * run->options->limits.travel)
+    const double way = fabs(run->actual - run->start);
+    if (run->step < TUNE_MOVE || run->step > TUNE_RETURN || way <= BEYOND_TRAVEL * run->options->limits.travel)
         return;
     run->left_travel = true;
     run->stop.Execute = TRUE;
@@ -272,7 +284,7 @@ static void call_blocks(tune_run_t *run)
     MC_Power(&run->power);
     MC_MoveRelative(&run->move);
     MC_PositionProfile(&run->profile);
-    MC_MoveAbsolute(&run->home);
+    MC_MoveRelative(&run->back);
     MC_Stop(&run->stop);
 }
 
@@ -281,8 +293,8 @@ static void wait_for_power(tune_run_t *run, const cm1e_axis_info_t *info)
     if (run->power.Error || info->state == CM1E_AXIS_ERROR_STOP) {
         end(run, true, run->power.Error ? run->power.ErrorID : cm1e_error_id(info->error));
     } else if (run->power.Status) {
-        run->start = info->set_position;
-        run->home.Position = run->start;
+        run->start = run->set = info->set_position;
+        run->actual = go_on(run->start, info->actual_position, run->config->modulo_range);
         run->outside_limits = !travel_is_free(run);
         if (run->outside_limits)
             end(run, true, 0);
@@ -296,8 +308,9 @@ static void program(void *context)
     tune_run_t *run = context;
     cm1e_axis_info_t info;
     cm1e_axis_read(run->axis, &info);
-    guard(run, &info);
-    record(run, &info);
+    follow(run, &info);
+    guard(run);
+    record(run);
     call_blocks(run);
     run->progress.position = info.actual_position;
     run->progress.seconds = (double)cm1e_scheduler_time_ns(run->scheduler) * 1e-9;
@@ -312,8 +325,8 @@ static void program(void *context)
     case TUNE_MOVE: watch_part(run); break;
     case TUNE_AFTER: follow_part(run); break;
     case TUNE_RETURN:
-        if (run->home.Done || run->home.Error)
-            end(run, run->home.Error, run->home.ErrorID);
+        if (run->back.Done || run->back.Error)
+            end(run, run->back.Error, run->back.ErrorID);
         break;
     case TUNE_OFF:
         if (!run->power.Status)
@@ -335,9 +348,9 @@ static void prepare(cm1e_scheduler_t *scheduler, void *context)
     run->move = (MC_MoveRelative_t){.Axis = &run->axis, .Acceleration = limits.acceleration,
                                     .Deceleration = limits.acceleration, .Jerk = limits.jerk};
     run->profile = (MC_PositionProfile_t){.Axis = &run->axis, .TimePosition = &run->table};
-    run->home = (MC_MoveAbsolute_t){.Axis = &run->axis, .Velocity = limits.velocity,
+    run->back = (MC_MoveRelative_t){.Axis = &run->axis, .Velocity = limits.velocity,
                                     .Acceleration = limits.acceleration, .Deceleration = limits.acceleration,
-                                    .Jerk = limits.jerk, .Direction = mcShortestWay};
+                                    .Jerk = limits.jerk};
     run->stop = (MC_Stop_t){.Axis = &run->axis};
 }
 
