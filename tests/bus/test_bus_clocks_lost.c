@@ -109,6 +109,21 @@ START_TEST(a_clock_is_set_at_every_recovery)
 }
 END_TEST
 
+/** From its first cycle on, before the controller of the slave has corrected anything. */
+START_TEST(a_clock_that_was_off_is_set_with_the_delay_of_its_cables)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 0, 0);
+    simulate(bus, "power-cycle 2 20");
+    run(bus, 300);
+    cm1e_bus_request_recovery(bus, DRIVE);
+    for (int n = 0; n < 3000 && fabs(ahead_ns(bus, DRIVE)) > ESC_HOP_NS * 100; n++)
+        run(bus, 1);
+    ck_assert_msg(fabs(ahead_ns(bus, DRIVE)) < ESC_HOP_NS / 5.0, "%g ns", ahead_ns(bus, DRIVE));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** Shorter than the watchdog of the process data: what acts is the supervision by SYNC0. */
 START_TEST(a_drive_without_process_data_at_its_pulses_leaves_operational)
 {
@@ -122,6 +137,22 @@ START_TEST(a_drive_without_process_data_at_its_pulses_leaves_operational)
     cm1e_clock_sleep_until(cm1e_bus_clock(bus), now_of(bus) + 70 * CYCLE_NS);
     plan_ns += 70 * CYCLE_NS;
     expect_left(bus, 0x001A);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** The plan that the bus makes for a program goes on in the raster of the reference clock. */
+START_TEST(the_next_cycle_after_a_pause_is_in_the_raster_of_the_ones_before)
+{
+    describe(1000);
+    cm1e_bus_t *bus = start_drifting(0, 0, 0);
+    const int64_t first_ns = cm1e_bus_next_start(bus, now_of(bus));
+    for (int64_t pause_ns = 0; pause_ns < 9 * CYCLE_NS; pause_ns += CYCLE_NS / 4) {
+        const int64_t now_ns = first_ns + pause_ns, next_ns = cm1e_bus_next_start(bus, now_ns);
+        ck_assert_int_eq((next_ns - first_ns) % CYCLE_NS, 0);
+        ck_assert_int_ge(next_ns, now_ns);
+        ck_assert_int_lt(next_ns, now_ns + CYCLE_NS);
+    }
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -273,7 +304,9 @@ int main(void)
     tcase_add_test(lost, a_drive_without_pulses_leaves_operational_and_comes_back);
     tcase_add_test(lost, other_errors_of_a_drive_are_no_loss_of_its_clock);
     tcase_add_test(lost, a_clock_is_set_at_every_recovery);
+    tcase_add_test(lost, a_clock_that_was_off_is_set_with_the_delay_of_its_cables);
     tcase_add_test(lost, a_drive_without_process_data_at_its_pulses_leaves_operational);
+    tcase_add_test(lost, the_next_cycle_after_a_pause_is_in_the_raster_of_the_ones_before);
     tcase_add_test(lost, a_drive_whose_clock_runs_away_leaves_operational);
     tcase_add_test(lost, the_clock_of_a_drive_that_was_off_is_set_again);
     tcase_add_test(lost, lost_frames_do_not_disturb_the_clocks);

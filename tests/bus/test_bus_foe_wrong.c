@@ -165,6 +165,37 @@ START_TEST(a_file_without_one_of_its_packets_is_no_whole_file)
 }
 END_TEST
 
+/** Packet `at`, or its acknowledgement, has another number. */
+static cm1e_tap_verdict_t skip_numbers(void *context, cm1e_tap_frame_t *frame)
+{
+    const wrong_t *wrong = context;
+    uint8_t *message = message_in(frame, CM1E_TAP_RECEIVED);
+    if (message && (message[SERVICE] == FOE_DATA || message[SERVICE] == FOE_ACK) &&
+        cm1e_get_u32(message + NUMBER) == wrong->at)
+        cm1e_put_u32(message + NUMBER, wrong->at + 7);
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(a_packet_that_was_not_expected_is_told_with_both_numbers)
+{
+    const wrong_t wrong = {.at = (unsigned)_i};
+    char words[90];
+    cm1e_bus_t *bus = scanned();
+    const size_t size = 3 * packet(bus) + 20;
+    size_t read;
+    check_next_transfer(bus, size);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), skip_numbers, (void *)(uintptr_t)&wrong);
+    ck_assert_int_eq(read_file(bus, &read), CM1E_ERROR_BUS_MAILBOX);
+    snprintf(words, sizeof words, "Slave 1 sends packet %d of the file, packet %d was expected.", _i + 7, _i);
+    ck_assert_str_eq(diag.text, words);
+    ck_assert_int_eq(write_file(bus, size), CM1E_ERROR_BUS_MAILBOX);
+    snprintf(words, sizeof words, "Slave 1 acknowledges packet %d of the file, packet %d was sent.", _i + 7, _i);
+    ck_assert_str_eq(diag.text, words);
+    check_next_transfer(bus, size);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- before it begins ------------------------------------------------------------------------------------------- */
 
 START_TEST(a_transfer_without_a_name_a_buffer_or_a_running_bus_is_refused)
@@ -241,6 +272,7 @@ int main(void)
     tcase_add_test(tests, a_mailbox_that_refuses_foe_ends_the_transfer);
     tcase_add_loop_test(tests, a_packet_that_comes_again_and_again_ends_the_transfer, 1, 5);
     tcase_add_loop_test(tests, a_file_without_one_of_its_packets_is_no_whole_file, 2, 5);
+    tcase_add_loop_test(tests, a_packet_that_was_not_expected_is_told_with_both_numbers, 1, 5);
     tcase_add_test(tests, a_transfer_without_a_name_a_buffer_or_a_running_bus_is_refused);
     tcase_add_test(tests, a_mailbox_of_no_good_size_has_no_files);
     tcase_add_test(tests, a_slave_that_is_busy_for_ever_is_given_up_after_the_default_time);

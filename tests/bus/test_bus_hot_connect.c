@@ -197,6 +197,7 @@ START_TEST(absent_at_the_start_then_comes_goes_and_comes_back)
         attach(bus, kind);
         ck_assert_msg(cycles_until_there(bus, position, kind, COMES) > 0, "kind %d round %d: %s", kind, round,
                       how(bus, position));
+        ck_assert_uint_eq(cm1e_bus_slave(bus, position)->al_state, CM1E_AL_OP);
         for (unsigned i = 0; i < slaves_of(kind); i++)
             ck_assert_uint_eq(state_of(bus, TOOL + i), CM1E_AL_OP);
         for (int n = 0; n < 100; n++)
@@ -206,6 +207,7 @@ START_TEST(absent_at_the_start_then_comes_goes_and_comes_back)
         for (int n = 0; n < 300; n++)
             good_cycle(bus);
         ck_assert_int_eq(cm1e_bus_presence(bus, position), CM1E_PRESENCE_ABSENT);
+        ck_assert_uint_eq(cm1e_bus_slave(bus, position)->al_state, 0); /* not known */
     }
     cm1e_bus_close(bus);
 }

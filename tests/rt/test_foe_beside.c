@@ -68,12 +68,13 @@ typedef struct worker {
     unsigned refused;      /**< because another file was on its way */
     size_t told, of;       /**< the progress that it saw */
     cm1e_error_t error;
-    bool same;
+    bool same, again;      /**< a progress was told twice */
 } worker_t;
 
 static bool tell(void *context, size_t done, size_t size)
 {
     worker_t *worker = context;
+    worker->again |= done == worker->told;
     worker->told = done;
     worker->of = size;
     return true;
@@ -85,6 +86,7 @@ static cm1e_error_t transfer(worker_t *worker, bool reads, uint8_t *bytes, size_
     cm1e_error_t error;
     do {
         cm1e_diag_t why;
+        worker->told = 0;
         error = reads ? cm1e_foe_read(bus, POSITION, "a.bin", bytes, size, &options, &why)
                       : cm1e_foe_write(bus, POSITION, "a.bin", bytes, *size, &options, &why);
         worker->refused += error == CM1E_ERROR_BUSY;
@@ -120,7 +122,7 @@ START_TEST(test_threads_beside_the_cycle_transfer_files)
     for (int i = 0; i < THREADS; i++) {
         pthread_join(workers[i].thread, NULL);
         ck_assert_int_eq(workers[i].error, CM1E_OK);
-        ck_assert(workers[i].same && workers[i].told > 0 && workers[i].told <= FILE_BYTES && workers[i].of == 0);
+        ck_assert(workers[i].same && !workers[i].again && workers[i].told > 0 && workers[i].told <= FILE_BYTES && workers[i].of == 0);
     }
     cm1e_scheduler_statistics(scheduler, &statistics);
     ck_assert_uint_eq(statistics.bus.lost_frames + statistics.bus.working_counter_errors, 0);

@@ -62,7 +62,7 @@ static void answer(int fd, unsigned number)
     case BYTE_BY_BYTE: send_text(fd, text, true); break;
     case NO_JSON: send_text(fd, "[1, 2", false); break;
     case TOO_LONG: send_bytes(fd, too_long, sizeof too_long); break;
-    case NOT_OK: send_text(fd, "{\"ok\": false, \"error\": {\"code\": -11, \"foreign_code\": 5, \"text\": \"no\"}}", false); break;
+    case NOT_OK: send_text(fd, "{\"ok\": false, \"error\": {\"code\": -22, \"foreign_code\": 5, \"text\": \"no\"}}", false); break;
     case NO_REASON: send_text(fd, "{}", false); break;
     case LATE:
     case CLOSE:
@@ -215,7 +215,7 @@ static void test_program_that_closes_the_connection_has_ended(void)
 static void test_refusal_has_the_words_of_the_program(void)
 {
     connect_to(3, (const act_t[]){NOT_OK, NO_REASON, ANSWER});
-    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_STATE, ask());
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_STATE, ask());
     TEST_ASSERT_EQUAL_STRING("no", diag.text);
     TEST_ASSERT_EQUAL_UINT(5, diag.foreign_code);
     TEST_ASSERT_NOT_NULL(reply);
