@@ -81,41 +81,12 @@ static const char *text_of(const json_t *object, const char *name)
     return text ? text : "";
 }
 
-/** A text as in a program: 'it$'s$N'. What is no character of a terminal is written as its number. */
-static void print_text(const char *text, char quote)
-{
-    printf("%c", quote);
-    for (; *text; text++)
-        if (*text == quote || *text == '$')
-            printf("$%c", *text);
-        else if (*text == '\n' || *text == '\r' || *text == '\t')
-            printf("$%c", *text == '\n' ? 'N' : *text == '\r' ? 'R' : 'T');
-        else if ((unsigned char)*text < ' ' || *text == 0x7F)
-            printf("$%02X", (unsigned)*text);
-        else
-            printf("%c", *text);
-    printf("%c", quote);
-}
-
-static void print_value(const json_t *row)
-{
-    const char *text = json_string_value(json_object_get(row, "value"));
-    if (text) {
-        print_text(text, strcmp(text_of(row, "type"), "WSTRING") == 0 ? '"' : '\'');
-        return;
-    }
-    const double value = json_number_value(json_object_get(row, "value"));
-    if (strcmp(text_of(row, "type"), "BOOL") == 0)
-        printf("%s", value != 0 ? "TRUE" : "FALSE");
-    else
-        printf("%.15g%s%s", value, *text_of(row, "unit") ? " " : "", text_of(row, "unit"));
-}
-
 static void print_row(const json_t *row)
 {
-    printf("%-40s %-10s ", text_of(row, "name"), text_of(row, "declared"));
-    print_value(row);
-    puts(json_is_true(json_object_get(row, "forced")) ? "  FORCED" : "");
+    char value[VARIABLE_TEXT_BYTES];
+    variable_text(row, value, sizeof value);
+    printf("%-40s %-10s %s%s\n", text_of(row, "name"), text_of(row, "declared"), value,
+           json_is_true(json_object_get(row, "forced")) ? "  FORCED" : "");
 }
 
 /** The name is wanted: one of those stated, or, of a list, with one of them in it. */

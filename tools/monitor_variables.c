@@ -4,6 +4,7 @@
 
 #include "command.h"
 #include "monitor.h"
+#include "variable_value.h"
 
 enum { BAD = 2, NAME_SHARE = 2, TEXT_BYTES = 600 }; /* BAD: the pair of colours of monitor_screen.c */
 
@@ -11,22 +12,6 @@ static const char *text_of(const json_t *object, const char *name)
 {
     const char *text = json_string_value(json_object_get(object, name));
     return text ? text : "";
-}
-
-static void value_of(const json_t *variable, char *text, size_t size)
-{
-    const json_t *value = json_object_get(variable, "value");
-    if (json_is_string(value))
-        snprintf(text, size, "'%s'", json_string_value(value));
-    else if (strcmp(text_of(variable, "type"), "BOOL") == 0)
-        snprintf(text, size, "%s", json_number_value(value) != 0 ? "TRUE" : "FALSE");
-    else if (json_is_number(value))
-        snprintf(text, size, "%.10g %s", json_number_value(value), text_of(variable, "unit"));
-    else
-        snprintf(text, size, "no number");
-    for (char *at = text; *at; at++)
-        if ((unsigned char)*at < ' ' || *at == 0x7F) /* a text of the program moves no cursor */
-            *at = '?';
 }
 
 void screen_draw_variables(const monitor_t *m, int line, int end)
@@ -41,7 +26,7 @@ void screen_draw_variables(const monitor_t *m, int line, int end)
         const json_t *variable = json_array_get(m->variables, i);
         const bool forced = json_is_true(json_object_get(variable, "forced"));
         char value[TEXT_BYTES], text[TEXT_BYTES + 16];
-        value_of(variable, value, sizeof value);
+        variable_text(variable, value, sizeof value);
         snprintf(text, sizeof text, "%s%s", value, forced ? "  FORCED" : "");
         mvprintw(line, 2, "%-*.*s", width, width - 1, text_of(variable, "name"));
         if (forced)
@@ -62,7 +47,7 @@ void screen_draw_forced(const monitor_t *m, int line)
     for (size_t i = 0; i < count; i++) {
         const size_t used = strlen(text);
         char value[TEXT_BYTES];
-        value_of(json_array_get(m->forced, i), value, sizeof value);
+        variable_text(json_array_get(m->forced, i), value, sizeof value);
         snprintf(text + used, sizeof text - used, "%s %s = %.40s", i ? "," : "",
                  text_of(json_array_get(m->forced, i), "name"), value);
     }

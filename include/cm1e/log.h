@@ -47,7 +47,8 @@ typedef enum cm1e_log_kind {
                                    detail: its place on the wire and 16777216 times the number of the bus, value: its
                                    vendor, bound: 65536 times its explicit device ID, and its alias */
     CM1E_LOG_VARIABLE,        /**< a variable of the program was released (code 0), forced (1) or written (2) from
-                                   outside; detail: the number of its signal in the trace, value: that value */
+                                   outside; detail: the number of its signal in the trace, value: that value; of 64 bits
+                                   that of the upper 53, and bound: what the lower 11 add to it */
     CM1E_LOG_TASK,            /**< a task did not return in time and was ended; code: its place among the tasks in the
                                    order in which they run (0 = first), value: the time that it had, in ms */
     CM1E_LOG_KIND_COUNT,

@@ -1,6 +1,8 @@
 #include "control/variable_request.h"
 
+#include <errno.h>
 #include <float.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,6 +64,24 @@ bool cm1e_variables_begin(variable_order_t *order, const view_t *view, uint32_t 
     return true;
 }
 
+/** JSON has integers of 64 bits with a sign: a ULINT above them is the text of its digits. */
+static json_t *show_number(const variable_t *variable, const variable_value_t *value)
+{
+    char digits[24];
+    double rest;
+    uint64_t whole;
+    const double real = cm1e_variable_number_of(variable, value, &rest);
+    memcpy(&whole, value->bytes, sizeof whole);
+    if (types[variable->type].bits == 0)
+        return cm1e_show_real(variable->type == CM1E_TRACE_REAL ? cm1e_variable_decimal((float)real) : real);
+    if (types[variable->type].bits < 64)
+        return json_integer((json_int_t)real);
+    if (types[variable->type].is_signed || whole <= INT64_MAX)
+        return json_integer((json_int_t)whole);
+    snprintf(digits, sizeof digits, "%" PRIu64, whole);
+    return json_string(digits);
+}
+
 static json_t *show_one(const variable_values_t *values, const variable_t *variable, uint32_t i)
 {
     static const char *const texts[] = {[VARIABLE_STRING] = "STRING", [VARIABLE_WSTRING] = "WSTRING"};
@@ -69,7 +89,7 @@ static json_t *show_one(const variable_values_t *values, const variable_t *varia
     return json_pack("{s:o, s:o, s:s, s:o, s:o, s:b}", "name", cm1e_show_text(variable->name), "unit",
                      cm1e_show_text(variable->unit), "type", number ? types[variable->type].name : texts[variable->form],
                      "declared", cm1e_show_text(variable->declared), "value",
-                     number ? cm1e_show_real(values->values[i].shown)
+                     number ? show_number(variable, &values->values[i])
                             : cm1e_variable_text_show(variable, values->values[i].bytes),
                      "forced", values->forced[i]);
 }
@@ -119,7 +139,7 @@ static bool encode(const json_t *value, cm1e_trace_type_t type, variable_value_t
     const int64_t whole = json_is_integer(value) ? json_integer_value(value) : json_is_boolean(value) ? json_is_true(value) : 0;
     const int bits = types[type].bits;
     const float narrow = (float)real;
-    *out = (variable_value_t){.shown = real};
+    *out = (variable_value_t){{0}};
     if (type == CM1E_TRACE_REAL) {
         memcpy(out->bytes, &narrow, sizeof narrow);
         return fabs(real) <= (double)FLT_MAX;
@@ -137,11 +157,23 @@ static bool encode(const json_t *value, cm1e_trace_type_t type, variable_value_t
     return whole < limit && whole >= (types[type].is_signed ? -limit : 0);
 }
 
+/** A ULINT as the text of its digits. */
+static bool encode_digits(const char *text, variable_value_t *out)
+{
+    errno = 0;
+    const uint64_t whole = strtoull(text, NULL, 10);
+    *out = (variable_value_t){{0}};
+    memcpy(out->bytes, &whole, sizeof whole);
+    return *text && text[strspn(text, "0123456789")] == '\0' && errno == 0;
+}
+
 /** false: it is no value of the variable. */
 static bool take_value(const json_t *value, const variable_t *variable, variable_value_t *out)
 {
     if (variable->form != VARIABLE_NUMBER)
         return json_is_string(value) && cm1e_variable_text_take(variable, value, out->bytes);
+    if (json_is_string(value))
+        return variable->type == CM1E_TRACE_ULINT && !variable->ranged && encode_digits(json_string_value(value), out);
     if (!(json_is_number(value) || json_is_boolean(value)) || !encode(value, variable->type, out))
         return false;
     const json_int_t whole = json_integer_value(value);

@@ -29,6 +29,13 @@ void cm1e_scheduler_apply_forced(cm1e_scheduler_t *scheduler)
             write_value(&p, p.forcing->rows[i].variable, &p.forcing->rows[i].value);
 }
 
+static void note(const forcing_parts_t *p, int what, uint32_t variable, const variable_value_t *value)
+{
+    double rest;
+    const double number = cm1e_variable_number_of(&p->forcing->variables.rows[variable], value, &rest);
+    cm1e_log_variable(p->log, what, variable, number, rest, p->run_ns);
+}
+
 static forced_t *find(forcing_t *forcing, uint32_t variable)
 {
     for (int i = 0; forcing->count > 0 && i < CM1E_FORCED; i++)
@@ -64,7 +71,7 @@ forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_
     row->held = true;
     write_value(&p, row->variable, &row->value);
     if (!renewed)
-        cm1e_log_variable(p.log, FORCED, row->variable, row->value.shown, p.run_ns);
+        note(&p, FORCED, row->variable, &row->value);
     return FORCING_DONE;
 }
 
@@ -72,7 +79,7 @@ static void release(const forcing_parts_t *p, forced_t *row)
 {
     row->held = false;
     p->forcing->count--;
-    cm1e_log_variable(p->log, RELEASED, row->variable, row->value.shown, p->run_ns);
+    note(p, RELEASED, row->variable, &row->value);
 }
 
 void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, uint32_t variable)
@@ -99,7 +106,7 @@ forcing_result_t cm1e_scheduler_write(cm1e_scheduler_t *scheduler, uint32_t vari
     if (p.ending || find(p.forcing, variable))
         return p.ending ? FORCING_ENDING : FORCING_HELD;
     write_value(&p, variable, value);
-    cm1e_log_variable(p.log, WRITTEN, variable, value->shown, p.run_ns);
+    note(&p, WRITTEN, variable, value);
     return FORCING_DONE;
 }
 

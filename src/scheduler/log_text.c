@@ -96,6 +96,16 @@ static void stranger_text(const cm1e_log_event_t *event, char *text, size_t size
     cm1e_stranger_text(&stranger, text, size);
 }
 
+static void number_text(cm1e_trace_type_t type, const cm1e_log_event_t *event, char *text, size_t size)
+{
+    if (type == CM1E_TRACE_LINT)
+        snprintf(text, size, "%" PRId64, (int64_t)event->value + (int64_t)event->bound);
+    else if (type == CM1E_TRACE_ULINT)
+        snprintf(text, size, "%" PRIu64, (uint64_t)event->value + (uint64_t)event->bound);
+    else
+        snprintf(text, size, "%.10g", type == CM1E_TRACE_REAL ? cm1e_variable_decimal((float)event->value) : event->value);
+}
+
 static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
 {
     const variables_t *variables = cm1e_scheduler_variables(scheduler);
@@ -103,7 +113,7 @@ static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_even
     const char *name = variable ? variable->name : "a variable";
     char value[40] = "a text";
     if (!variable || variable->form == VARIABLE_NUMBER)
-        snprintf(value, sizeof value, "%.10g", event->value);
+        number_text(variable ? variable->type : CM1E_TRACE_LREAL, event, value, sizeof value);
     if (event->code == 0)
         snprintf(text, size, "%s is no longer forced to %s", name, value);
     else

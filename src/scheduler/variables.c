@@ -1,7 +1,15 @@
 #include "scheduler/variables.h"
 
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+/** From here on a double does not hold every whole number; without the low bits it holds those of 64 bits. */
+#define EXACT 9007199254740992.0
+enum { LOW_BITS = 0x7FF };
 
 static size_t size_of(cm1e_trace_type_t type)
 {
@@ -31,6 +39,30 @@ double cm1e_variable_number(const variable_t *variable)
     return variable->form == VARIABLE_NUMBER ? cm1e_trace_value(&column) : 0;
 }
 
+double cm1e_variable_number_of(const variable_t *variable, const variable_value_t *value, double *rest)
+{
+    const trace_column_t column = {.type = variable->type, .value = value->bytes};
+    const double number = variable->form == VARIABLE_NUMBER ? cm1e_trace_value(&column) : 0;
+    uint64_t whole;
+    *rest = 0;
+    if ((column.type != CM1E_TRACE_LINT && column.type != CM1E_TRACE_ULINT) || fabs(number) < EXACT)
+        return number;
+    memcpy(&whole, value->bytes, sizeof whole);
+    const uint64_t low = whole & LOW_BITS;
+    *rest = (double)low;
+    return column.type == CM1E_TRACE_LINT ? (double)(int64_t)(whole - low) : (double)(whole - low);
+}
+
+double cm1e_variable_decimal(float value)
+{
+    char text[40];
+    int digits = FLT_DIG;
+    do
+        snprintf(text, sizeof text, "%.*g", digits, (double)value);
+    while (strtof(text, NULL) != value && digits++ < FLT_DECIMAL_DIG);
+    return strtod(text, NULL);
+}
+
 /** The bytes of a text up to its final 0. */
 static size_t used_bytes(const variable_t *variable, const uint8_t *bytes)
 {
@@ -43,8 +75,12 @@ static size_t used_bytes(const variable_t *variable, const uint8_t *bytes)
 
 void cm1e_variable_read(const variable_t *variable, variable_value_t *value)
 {
+    if (variable->bit) {
+        value->bytes[0] = cm1e_variable_number(variable) != 0;
+        return;
+    }
     if (variable->form == VARIABLE_NUMBER) {
-        value->shown = cm1e_variable_number(variable);
+        memcpy(value->bytes, variable->data, size_of(variable->type));
         return;
     }
     const size_t used = used_bytes(variable, variable->data);

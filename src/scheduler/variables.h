@@ -30,10 +30,9 @@ typedef struct variables {
     uint32_t count;
 } variables_t;
 
-/** A value as it lies in memory. */
+/** A value as it lies in memory. Of a BOOL that is one bit, the byte is 0 or 1. */
 typedef struct variable_value {
     uint8_t bytes[VARIABLE_BYTES];
-    double shown;             /**< the same as a number, for the log */
 } variable_value_t;
 
 /** Gives a scheduler the table, which must live as long as it. @rt init */
@@ -45,6 +44,10 @@ CM1E_GUEST_API uint32_t cm1e_variables_find(const variables_t *variables, const 
 CM1E_GUEST_API bool cm1e_variable_is_within(const char *name, const char *path);
 /** @rt cycle */
 CM1E_GUEST_API double cm1e_variable_number(const variable_t *variable);
+/** The shortest decimal number of a REAL: 0.1 for 0.100000001490116. @rt any */
+CM1E_GUEST_API double cm1e_variable_decimal(float value);
+/** Such bytes as a number, of a text 0. Of 64 bits a double holds 53: `*rest` is what is missing. @rt cycle */
+CM1E_GUEST_API double cm1e_variable_number_of(const variable_t *variable, const variable_value_t *value, double *rest);
 /** Copies the value, of a text up to its end. @rt cycle */
 CM1E_GUEST_API void cm1e_variable_read(const variable_t *variable, variable_value_t *value);
 /** @rt cycle */

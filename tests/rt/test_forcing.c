@@ -35,7 +35,7 @@ static void open_machine(cm1e_program_t program)
 static forcing_result_t force(uint32_t variable, uint8_t value, const void *owner)
 {
     const int64_t now_ns = cm1e_scheduler_time_ns(machine.scheduler);
-    const forced_t forced = {.owner = owner, .variable = variable, .value = {.bytes = {value}, .shown = value},
+    const forced_t forced = {.owner = owner, .variable = variable, .value = {.bytes = {value}},
                              .until_ns = now_ns + 20 * MS};
     return cm1e_scheduler_force(machine.scheduler, &forced);
 }
@@ -120,7 +120,7 @@ static unsigned calls;
 
 static void force_and_wait(void *context)
 {
-    const variable_value_t value = {.bytes = {3}, .shown = 3};
+    const variable_value_t value = {.bytes = {3}};
     const uint32_t variable = BITS;
     (void)context;
     cm1e_scheduler_forcing_cycle(machine.scheduler);

@@ -12,13 +12,18 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from control_client import Client  # noqa: E402
+
 CM1E, SOURCE = os.path.join(os.path.abspath(sys.argv[1]), "cm1e"), os.path.abspath(sys.argv[2])
 PROGRAM = """TYPE Point : STRUCT here : INT; END_STRUCT END_TYPE
 PROGRAM Main
 VAR
     n : INT;
     big : LINT;
-    r : REAL;
+    least : LINT := LINT#-9223372036854775808;
+    most : ULINT := ULINT#18446744073709551614;
+    r : REAL := 0.1;
     goal : LREAL := 3;
     lamp AT %QX2.0.2 : BOOL;
     seen AT %IX3.0.2 : BOOL;
@@ -90,7 +95,7 @@ def check_values(run):
     expect("3" in run.var("get", "main.goal"), "get")
     run.var("get", "Main.goat", status=1, says='did you mean "Main.goal"')
     run.var("set", "--allow-write", "Main.goal=-1.5", "Main.big=-9007199254740993")
-    expect(run.value("goal") == -1.5 and run.value("big") == -9007199254740992, "set", run.rows())
+    expect(run.value("goal") == -1.5 and run.value("big") == -9007199254740993, "set", run.rows())
     run.var("set", "Main.goal=1", status=2, says="--allow-write")
     run.var("set", "--allow-write", "Main.nothing=1", status=1, says="no variable")
     for wrong in ("Main.n=32768", "Main.n=1.5", "Main.copy=2", "Main.r=1e39"):
@@ -98,10 +103,35 @@ def check_values(run):
     run.var("set", "--allow-write", "Main.n=x", status=2, says="no value")
 
 
+def check_exact(run):
+    """Numbers of 64 bits to the last digit, and a REAL by the digits that it has."""
+    rows = run.rows()
+    for name, value, shown in (("least", -2**63, str(-2**63)), ("most", "18446744073709551614", "18446744073709551614"),
+                               ("r", 0.1, "0.1\n")):
+        expect(rows[f"Main.{name}"]["value"] == value, f"{name} as JSON", rows[f"Main.{name}"])
+        expect(shown in run.var("get", f"Main.{name}"), f"{name} for people", run.var("get", f"Main.{name}"))
+    for value in (2**63 - 1, -2**63 + 1, 9007199254740993):
+        run.var("set", "--allow-write", f"Main.least={value}")
+        expect(run.value("least") == value, "a LINT is written", (value, run.value("least")))
+    with Client(os.path.join("run", f"cm1e-{run.process.pid}-0.sock")) as program:
+        for value in (2**64 - 1, 2**63, 2**63 - 1, 12345678901):
+            program.ask("variable", name="Main.most", value=value if value < 2**63 else str(value))
+            expect(int(run.value("most")) == value, "a ULINT is written", (value, run.value("most")))
+        for wrong in (str(2**64), "-1", "", "1.5", "0x1"):
+            reply = program.ask("variable", name="Main.most", value=wrong)
+            expect(not reply["ok"], f"a ULINT is not {wrong}", reply)
+        program.ask("variable", name="Main.r", value=0.3)
+    log = subprocess.run([CM1E, "log", "--attach", str(run.process.pid)], capture_output=True, text=True, timeout=30).stdout
+    for text in ("Main.least was set to 9007199254740993 from", "Main.least was set to -9223372036854775807 from",
+                 "Main.most was set to 18446744073709551615 from", "Main.most was set to 12345678901 from",
+                 "Main.r was set to 0.3 from"):
+        expect(text in log, f"the log says \"{text}\"", log)
+
+
 def check_all(run):
     """Every variable is seen, more than one reply has; texts are read and written."""
     rows = run.rows()
-    expect(len(rows) == 10 + 400, "all variables", len(rows))
+    expect(len(rows) == 12 + 400, "all variables", len(rows))
     expect(rows["Main.table[1,-100].here"]["value"] == 0, "an element", rows["Main.table[1,-100].here"])
     expect(run.value("table[2,99].here") != 0, "the last element")
     expect(rows["Main.text"]["declared"] == "STRING[6]" and rows["Main.text"]["value"] == "it's", "a text", rows["Main.text"])
@@ -181,7 +211,7 @@ with tempfile.TemporaryDirectory() as folder:
     built = subprocess.run([CM1E, "st", "build", "force.st"], capture_output=True, text=True, timeout=60)
     if built.returncode:
         sys.exit(built.stderr)
-    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_all, check_values, check_trace, check_forced))):
+    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_all, check_exact, check_values, check_trace, check_forced))):
         program = Run(bus)
         for check in checks:
             check(program)

@@ -240,10 +240,11 @@ class Attached:
     def variables(self, part: str = "") -> dict[str, Any]:
         """The variables of a program in Structured Text with `part` in their names, and their values."""
         found: dict[str, Any] = {}
+        types = {"BOOL": bool, "ULINT": int}  # a ULINT above 2^63 - 1 comes as a text
         after: Optional[int] = 0
         while after is not None:
             reply = self._exchange({"request": "variables", "from": after})
-            found.update((row["name"], bool(row["value"]) if row["type"] == "BOOL" else row["value"])
+            found.update((row["name"], types.get(row["type"], lambda value: value)(row["value"]))
                          for row in reply["variables"] if part.lower() in row["name"].lower())
             after = reply.get("next")
         return found
