@@ -115,6 +115,36 @@ cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config
     return error;
 }
 
+static void add_axis(cm1e_bus_config_t *config, const json_t *told)
+{
+    const char *name = json_string_value(json_object_get(told, "name"));
+    const char *type = json_string_value(json_object_get(told, "type"));
+    cm1e_axis_config_t *axis = name ? cm1e_bus_config_add_axis(config, name) : NULL;
+    if (!axis)
+        return;
+    axis->address_kind = CM1E_ADDRESS_POSITION;
+    axis->address = (uint16_t)json_integer_value(json_object_get(told, "slave"));
+    axis->channel = (uint8_t)json_integer_value(json_object_get(told, "channel"));
+    if (!type || strcmp(type, "motor") != 0)
+        axis->type = type && strcmp(type, "encoder") == 0 ? CM1E_AXIS_ENCODER : CM1E_AXIS_VIRTUAL;
+}
+
+const cm1e_bus_config_t *axes_to_name(const common_options_t *options, const cm1e_bus_config_t *config)
+{
+    static cm1e_bus_config_t named;
+    cm1e_diag_t diag = {0};
+    cm1e_control_t *control;
+    if (!options->attach || config->axis_count > 0 || cm1e_bus_config_init(&named, NULL, 0) != CM1E_OK ||
+        connect_network(options, config, &control, &diag) != CM1E_OK)
+        return config;
+    json_t *axes = ask_program(control, json_pack("{s:s}", "request", "axes"), "axes", &diag);
+    for (size_t i = 0; i < json_array_size(axes); i++)
+        add_axis(&named, json_array_get(axes, i));
+    json_decref(axes);
+    cm1e_control_close(control);
+    return &named;
+}
+
 int look_at_loaded(const common_options_t *common, const cm1e_bus_config_t *config, const char *where,
                    slave_action_t action, const void *options)
 {
@@ -123,7 +153,7 @@ int look_at_loaded(const common_options_t *common, const cm1e_bus_config_t *conf
     uint16_t position = 0;
     if (open_network(common, config, &bus, &diag) != CM1E_OK)
         return fail(&diag);
-    int status = where ? find_slave(bus, config, where, &position) : EXIT_OK;
+    int status = where ? find_slave(bus, axes_to_name(common, config), where, &position) : EXIT_OK;
     if (status == EXIT_OK)
         status = action(bus, config, options, position);
     return close_bus(bus, common, status);

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cm1e/bridge.h"
 #include "cm1e/cml.h"
@@ -404,10 +403,8 @@ int command_init(int argc, char **argv)
     init_options_t options = {.output = "-"};
     if (parse_options(&argp_init, argc, argv, &options))
         return EXIT_WRONG_USE;
-    if (!options.force && strcmp(options.output, "-") != 0 && access(options.output, F_OK) == 0) {
-        complain("%s exists; --force writes over it", options.output);
+    if (!may_overwrite(options.output, options.force))
         return EXIT_WRONG_USE;
-    }
     char *networks[CM1E_MAX_BUSES] = {NULL};
     init_t init = {0};
     int status = EXIT_OK;

@@ -11,7 +11,7 @@
 #include "params.h"
 #include "terminal.h"
 
-enum { KEY_YES = 0x600, KEY_DRY_RUN, KEY_OTHER_FIRMWARE, KEY_ALLOW, MAX_NAMES = 32 };
+enum { KEY_YES = 0x600, KEY_DRY_RUN, KEY_OTHER_FIRMWARE, KEY_ALLOW, KEY_FORCE, MAX_NAMES = 32 };
 enum { ABORT_NO_OBJECT = 0x06020000, ABORT_NO_SUBINDEX = 0x06090011 };
 enum { LIST = 0, GET, SET, BACKUP, RESTORE, DIFF };
 #define ACTIONS "list|get|set|backup|restore|diff"
@@ -21,7 +21,7 @@ typedef struct params_options {
     int action; /* -1: not given yet */
     const char *where, *words[MAX_NAMES];
     int word_count;
-    bool yes, dry_run, other_firmware, allow_motion;
+    bool yes, dry_run, other_firmware, allow_motion, force;
 } params_options_t;
 
 static void check_words(const params_options_t *options, struct argp_state *state)
@@ -37,6 +37,8 @@ static void check_words(const params_options_t *options, struct argp_state *stat
     if ((options->dry_run || options->yes || options->other_firmware || options->allow_motion) &&
         options->action != SET && options->action != RESTORE)
         argp_error(state, "--yes, --dry-run, --other-firmware and --allow-motion are for set and restore");
+    if (options->force && options->action != BACKUP)
+        argp_error(state, "--force is for backup");
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -47,6 +49,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_YES: options->yes = true; return 0;
     case KEY_DRY_RUN: options->dry_run = true; return 0;
     case KEY_ALLOW: options->allow_motion = true; return 0;
+    case KEY_FORCE: options->force = true; return 0;
     case KEY_OTHER_FIRMWARE: options->other_firmware = true; return 0;
     case ARGP_KEY_ARG:
         if (options->action < 0) {
@@ -307,16 +310,33 @@ static int change(motor_t *motor, const params_options_t *options, params_t *par
     return status == EXIT_OK ? complete : status;
 }
 
+/** What a file says of its motor is compared with this one. */
+typedef struct comparison {
+    const motor_t *motor;
+    const params_options_t *options;
+} comparison_t;
+
 /** The file is of such a motor. */
-static bool suits(const motor_t *motor, const params_options_t *options, const params_head_t *head)
+static bool suits(const params_head_t *head, const void *context)
 {
+    const comparison_t *comparison = context;
+    const motor_t *motor = comparison->motor;
+    const params_options_t *options = comparison->options;
     params_head_t own;
     head_of(motor, &own);
+    if (!head->kind[0]) {
+        complain("%s does not say of which device it is: \"device: {kind: %s}\" is missing", options->words[0], own.kind);
+        return false;
+    }
     if (strcmp(head->kind, own.kind) != 0) {
         complain("%s is of a device \"%s\"; %s is a \"%s\"", options->words[0], head->kind, motor->label, own.kind);
         return false;
     }
-    if (strcmp(head->firmware, own.firmware) != 0 && !options->other_firmware) {
+    const bool same = strcmp(head->firmware, own.firmware) == 0;
+    if (!same && options->action == DIFF)
+        complain("%s is of firmware %s; %s has %s: units may differ (UG 10.1)", options->words[0], head->firmware,
+                 motor->label, own.firmware);
+    else if (!same && !options->other_firmware) {
         complain("%s is of firmware %s; %s has %s. Units may differ between firmwares (UG 10.1): look at the "
                  "values, then use --other-firmware", options->words[0], head->firmware, motor->label, own.firmware);
         return false;
@@ -377,15 +397,13 @@ static int diff(motor_t *motor, const params_options_t *options, params_t *file)
 
 static int run_with_file(motor_t *motor, const params_options_t *options)
 {
-    params_head_t head;
     static params_t file;
+    const comparison_t comparison = {motor, options};
     if (options->action == BACKUP)
         return backup(motor, options);
-    if (!params_read_file(options->words[0], &motor->params, &head, &file))
+    if (!params_read_file(options->words[0], &motor->params, suits, &comparison, &file))
         return EXIT_WRONG_USE;
-    if (options->action == DIFF)
-        return diff(motor, options, &file);
-    return suits(motor, options, &head) ? change(motor, options, &file) : EXIT_WRONG_USE;
+    return options->action == DIFF ? diff(motor, options, &file) : change(motor, options, &file);
 }
 
 /** "2.1" is connector 1 of slave 2; an axis of the bus file may be behind a bridge. Returns the exit status. */
@@ -448,6 +466,7 @@ static const struct argp_option table[] = {
     {"dry-run", KEY_DRY_RUN, NULL, 0, "set, restore: show what would change, write nothing", 0},
     {"allow-motion", KEY_ALLOW, NULL, 0, "set, restore: also what may move a motor behind a bridge at once", 0},
     {"other-firmware", KEY_OTHER_FIRMWARE, NULL, 0, "restore: allow a file of another firmware", 0},
+    {"force", KEY_FORCE, NULL, 0, "backup: write over a file that exists", 0},
     {0}};
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_params = {
@@ -468,7 +487,7 @@ static int act(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *con
     const params_options_t *options = context;
     (void)position;
     motor.bus = bus;
-    int status = find_motor(&motor, config, options->where);
+    int status = find_motor(&motor, axes_to_name(&options->common, config), options->where);
     motor.slave = status == EXIT_OK ? cm1e_bus_slave(bus, motor.position) : NULL;
     if (status == EXIT_OK)
         status = check_connector(&motor);
@@ -481,7 +500,8 @@ int command_params(int argc, char **argv)
 {
     static params_options_t options;
     options.action = -1;
-    if (parse_options(&argp_params, argc, argv, &options))
+    if (parse_options(&argp_params, argc, argv, &options) ||
+        (options.action == BACKUP && !may_overwrite(options.words[0], options.force)))
         return EXIT_WRONG_USE;
     return look_at_network(&options.common, NULL, act, &options);
 }

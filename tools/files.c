@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "command.h"
 #include "core/output.h"
@@ -70,6 +71,14 @@ bool read_input(const char *path, input_t *input)
     }
     if (!standard)
         fclose(file);
+    return good;
+}
+
+bool may_overwrite(const char *path, bool force)
+{
+    const bool good = force || strcmp(path, "-") == 0 || access(path, F_OK) != 0;
+    if (!good)
+        complain("%s exists; --force writes over it", path);
     return good;
 }
 

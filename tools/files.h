@@ -29,6 +29,9 @@ bool read_input(const char *path, input_t *input);
  *  an incomplete file. False and a complaint: it cannot be written. */
 bool write_output(const char *path, const void *bytes, size_t size);
 
+/** The file may be written: `force`, or there is none of this name; false and a complaint: it would be written over. */
+bool may_overwrite(const char *path, bool force);
+
 /** Prints findings in the format of compilers, "FILE:LINE: error: text [rule]", and their number; or as JSON. Returns
  *  the exit status: EXIT_FAILED if one of them is an error. */
 int print_findings(const char *path, const char *format, const cm1e_findings_t *findings, bool json);

@@ -60,7 +60,12 @@ typedef struct params_head {
 /** The file as text; the caller frees it. NULL: out of memory. */
 char *params_as_yaml(const params_head_t *head, const params_t *params);
 
-/** Reads a file. False, after a complaint for each fault with its line. `known` are the parameters of the device. */
-bool params_read_file(const char *path, const params_t *known, params_head_t *head, params_t *params);
+/** The head of a file suits; false, with a complaint: it does not. */
+typedef bool (*params_judge_t)(const params_head_t *head, const void *context);
+
+/** Reads a file, first its head, which `judge` accepts or not. False, after a complaint for each fault with its line, or
+ *  that of `judge`. `known` are the parameters of the device. */
+bool params_read_file(const char *path, const params_t *known, params_judge_t judge, const void *context,
+                      params_t *params);
 
 #endif

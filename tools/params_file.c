@@ -55,7 +55,7 @@ typedef struct reader {
     const char *path;
     yaml_document_t document;
     const params_t *known;
-    params_head_t *head;
+    params_head_t head;
     params_t *params;
     bool good;
 } reader_t;
@@ -79,7 +79,7 @@ static const char *scalar(const yaml_node_t *node)
 
 static void read_head(reader_t *reader, const yaml_node_t *key, const yaml_node_t *value)
 {
-    params_head_t *head = reader->head;
+    params_head_t *head = &reader->head;
     const struct {
         const char *key;
         char *to;
@@ -135,18 +135,41 @@ static void read_mapping(reader_t *reader, const yaml_node_t *node, const char *
              yaml_document_get_node(&reader->document, pair->value));
 }
 
-static void read_group(reader_t *reader, const yaml_node_t *key, const yaml_node_t *value)
+static bool is_parameters(const char *word) { return word && strcmp(word, "parameters") == 0; }
+
+/** All but the parameters. */
+static void read_device(reader_t *reader, const yaml_node_t *key, const yaml_node_t *value)
 {
     const char *word = scalar(key);
     if (word && strcmp(word, "device") == 0)
         read_mapping(reader, value, word, read_head);
-    else if (word && strcmp(word, "parameters") == 0)
-        read_mapping(reader, value, word, read_parameter);
-    else
+    else if (!is_parameters(word))
         wrong(reader, key, "unknown key \"%s\"; expected device and parameters", word ? word : "");
 }
 
-bool params_read_file(const char *path, const params_t *known, params_head_t *head, params_t *params)
+static void read_parameters(reader_t *reader, const yaml_node_t *key, const yaml_node_t *value)
+{
+    if (is_parameters(scalar(key)))
+        read_mapping(reader, value, "parameters", read_parameter);
+}
+
+/** The head first: the parameters of another device are all unknown. */
+static void read_document(reader_t *reader, params_judge_t judge, const void *context)
+{
+    const yaml_node_t *root = yaml_document_get_root_node(&reader->document);
+    if (root)
+        read_mapping(reader, root, "the file", read_device);
+    reader->good = reader->good && (!root || judge(&reader->head, context));
+    if (root && reader->good)
+        read_mapping(reader, root, "the file", read_parameters);
+    if (reader->good && reader->params->count == 0) {
+        complain("%s: there are no parameters in it", reader->path);
+        reader->good = false;
+    }
+}
+
+bool params_read_file(const char *path, const params_t *known, params_judge_t judge, const void *context,
+                      params_t *params)
 {
     input_t input;
     if (!read_input(path, &input))
@@ -157,9 +180,8 @@ bool params_read_file(const char *path, const params_t *known, params_head_t *he
         free(input.bytes);
         return false;
     }
-    reader_t reader = {.path = path, .known = known, .head = head, .params = params, .good = true};
+    reader_t reader = {.path = path, .known = known, .params = params, .good = true};
     yaml_parser_t parser;
-    *head = (params_head_t){0};
     params->count = 0;
     if (!yaml_parser_initialize(&parser)) {
         complain("out of memory");
@@ -168,14 +190,8 @@ bool params_read_file(const char *path, const params_t *known, params_head_t *he
     }
     yaml_parser_set_input_string(&parser, input.bytes, input.size);
     if (yaml_parser_load(&parser, &reader.document)) {
-        const yaml_node_t *root = yaml_document_get_root_node(&reader.document);
-        if (root)
-            read_mapping(&reader, root, "the file", read_group);
+        read_document(&reader, judge, context);
         yaml_document_delete(&reader.document);
-        if (reader.good && params->count == 0) {
-            complain("%s: there are no parameters in it", path);
-            reader.good = false;
-        }
     } else {
         complain("%s:%zu: not YAML: %s", path, parser.problem_mark.line + 1,
                  parser.problem ? parser.problem : "syntax error");

@@ -329,6 +329,11 @@ def check_more_commands():
                       ["diff", "2", values]):
             told = program.attached("params", *words)
             expect(told.returncode == 0, f"params {words}", told)
+        for word, status, says in (("Y", 0, "K47"), ("2", 0, "K47"), ("Z", 2, "axes of this network: X, Y")):
+            told = program.attached("params", "get", word, "K47")
+            expect(told.returncode == status and says in told.stdout + told.stderr, f"params get {word}, by name", told)
+        told = program.attached("reg", "read", "Y", "0x0130", "2")
+        expect(told.returncode == 0, "registers of a slave by its axis", told)
         doctor = program.attached("doctor", "--seconds", "0", "--json")
         found = {(row["subject"], row["level"]) for row in json.loads(doctor.stdout)}
         fact = next(row["fact"] for row in json.loads(doctor.stdout) if row["subject"] == "program")

@@ -82,6 +82,10 @@ def check_files(folder):
         text = file.read()
     expect(made.returncode == 0 and "  K47: 30                  # 0x60F6:1B, 10 ... 100 %: torque limit" in text
            and 'firmware: "1.3.5"' in text and len(re.findall(r"^  \S.*# 0x", text, re.MULTILINE)) == 102, "backup", made)
+    again = on_sim("backup", "1", path)
+    expect(again.returncode == WRONG_USE and "exists; --force writes over it" in again.stderr, "a backup is kept", again)
+    again = on_sim("backup", "1", path, "--force")
+    expect(again.returncode == 0 and "102 parameters" in again.stdout, "a backup is written over", again)
     same = on_sim("diff", "1", path)
     expect(same.returncode == 0 and "0 of 102 parameters differ" in same.stdout, "diff of the same", same)
     restored = on_sim("restore", "1", path)
@@ -140,6 +144,7 @@ def check_broken(folder, text):
     for change, told in ((("K47: 30", "K47: 300"), f"broken.yaml:{line}"), (("K47: 30", "K4711: 30"), f":{line}"),
                          (("K47: 30", "K47: [30]"), f":{line}"), (("K47: 30", "K46: 0"), "already"),
                          (('kind: "cm1-e"', 'kind: "bridge"'), 'is of a device "bridge"'),
+                         (('  kind: "cm1-e"\n', ""), "does not say of which device it is"),
                          (('"1.3.5"', '"1.3.2"'), "--other-firmware"), (("parameters:", "parametres:"), "parametres"),
                          (("K47: 30", "K47 30\n  x"), "broken.yaml"), ((text, "a: [\n"), "not YAML"), ((text, text[:text.index("K47: 30") + 6]), "cut off"), ((text, ""), "no param"),
                          ((text, "- 1\n"), "expected names"), (('  name: "CM1-E', '  nmae: "x'), "nmae")):
@@ -150,6 +155,9 @@ def check_broken(folder, text):
                f"{change[1][:40]!r}: {told}", wrong)
     with open(path, "w", encoding="utf-8") as file:
         file.write(text.replace('"1.3.5"', '"1.3.2"').replace("K47: 30", "K47: 31"))
+    other = on_sim("diff", "1", path)
+    expect(other.returncode == FAILED and "1 of 102" in other.stdout and "is of firmware 1.3.2; slave 1 has 1.3.5" in
+           other.stderr, "diff of another firmware", other)
     other = on_sim("restore", "1", path, "--yes", "--other-firmware")
     expect(other.returncode == 0 and "1 value written" in other.stdout, "another firmware, allowed", other)
     missing = on_sim("restore", "1", os.path.join(folder, "missing"))
@@ -182,12 +190,16 @@ def check_bridge(folder):
                        (("set", "X", "K42=0"), "1 ... 5000"), (("list", "9.1"), "no slave 9")):
         result = run(words[0], "-b", bus, *words[1:])
         expect(result.returncode in (FAILED, WRONG_USE) and why in result.stderr, f"{words}", result)
-    kept = os.path.join(folder, "motor.yaml")
+    kept = os.path.join(folder, "lift.yaml")
     result = run("backup", "-b", bus, "lift", kept)
     expect(result.returncode == 0 and "17 parameters of slave 1, connector 3" in result.stdout, "backup", result)
     for where, good in (("lift", True), ("1.4", True), ("X", False), ("Z", False)):
         result = run("restore", "-b", bus, where, kept, "--yes")
         expect((result.returncode == 0) == good, f"restore to {where}", result)
+    for action in ("restore", "diff"):
+        result = run(action, "-b", bus, "Z", kept)
+        expect(result.returncode == WRONG_USE and result.stderr.count("\n") == 1 and 'is of a device "bridge"' in result.stderr,
+               f"{action} of another device is one sentence", result)
     with open(bus, "w", encoding="utf-8") as file:
         file.write("bus: {interface: sim}\naxes: [{name: a}, {name: lift}]\n")
     named = run("get", "-b", bus, "lift", "K47")

@@ -29,15 +29,23 @@ static void check(const params_t *params)
     }
 }
 
+static params_head_t head; /* of the file that is read */
+
+static bool keep_head(const params_head_t *of_file, const void *context)
+{
+    (void)context;
+    head = *of_file;
+    return true;
+}
+
 bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool must)
 {
     static params_t known, params;
-    params_head_t head;
     if (size == 0)
         return false;
     const unsigned before = complaints;
     known_of(bytes[0], &known);
-    if (!params_read_file(fuzz_file(bytes + 1, size - 1), &known, &head, &params)) {
+    if (!params_read_file(fuzz_file(bytes + 1, size - 1), &known, keep_head, NULL, &params)) {
         if (must || complaints == before)
             fuzz_fail(must ? "a file of ours cannot be read" : "a file is refused without a complaint");
         return false;
@@ -60,14 +68,14 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
 void fuzz_seeds(void)
 {
     static const char by_hand[] = "\1device: {kind: eb01, serial: 0x12}\nparameters:\n  K23: 30\n  0x607C: -5 # home\n";
-    static const params_head_t head = {.kind = "cm1e", .name = "CM1-E", .firmware = "1.3.5", .serial = 4711};
+    static const params_head_t of_backup = {.kind = "cm1e", .name = "CM1-E", .firmware = "1.3.5", .serial = 4711};
     static params_t known;
     for (unsigned kind = 0; kind < 4; kind++) {
         char name[] = "backup0", *text, whole[65536];
         known_of(kind, &known);
         for (size_t i = 0; i < known.count; i++)
             known.at[i].value = known.at[i].entry->minimum;
-        text = params_as_yaml(&head, &known);
+        text = params_as_yaml(&of_backup, &known);
         name[6] = (char)('0' + kind);
         const int length = snprintf(whole, sizeof whole, "%c%.4000s", (char)('0' + kind), text ? text : "");
         fuzz_seed(name, whole, (size_t)length);
