@@ -17,6 +17,7 @@ typedef struct var_options {
     common_options_t common;
     const char *word;
     const char *names[NAMES]; /**< NAME, or NAME=VALUE */
+    json_t *values[NAMES];    /**< of set, force and release */
     int count;
     double seconds;
     bool allow;
@@ -69,7 +70,8 @@ static const struct argp_option table[] = {
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_var = {
     table, parse, "list [PART-OF-A-NAME...]\nget NAME...\nset NAME=VALUE...\nforce NAME=VALUE...\nrelease NAME...",
-    "Variables of a running program in Structured Text (`cm1e run`). set writes once; force keeps the values, whatever the "
+    "Variables of a running program in Structured Text (`cm1e run`). A value is written as in the program: TRUE, 12.5, 16#FF, "
+    "T#1m5s, the name of an enumerator, a text in quotes. set writes once; force keeps the values, whatever the "
     "program writes, until this command ends. Forced variables are marked, and the event log has who was forced when. "
     "Both need control: maintain in the bus file of the program. release ends what anybody forces.", children, NULL, NULL};
 
@@ -160,17 +162,35 @@ static int show(const var_options_t *options, cm1e_control_t *control)
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/** NAME, NAME=VALUE, or a release: false, with a complaint or `diag`. */
+static json_t *name_of(const char *word) { return json_stringn(word, strcspn(word, "=")); }
+
+/** What a word NAME=VALUE gives its variable, which the program describes; NULL, with a complaint or `diag`. */
+static json_t *value_of(const char *word, cm1e_control_t *control, cm1e_diag_t *diag)
+{
+    json_t *rows = ask_program(control, json_pack("{s:s, s:o}", "request", "variables", "name", name_of(word)), "variables",
+                               diag);
+    json_t *value = rows ? variable_value(json_array_get(rows, 0), strchr(word, '=') + 1) : NULL;
+    json_decref(rows);
+    return value;
+}
+
+/** The values of all words, of a release null; false: with a complaint or `diag`. */
+static bool take_values(var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
+{
+    bool good = true;
+    for (int i = 0; i < options->count && good; i++) {
+        options->values[i] = writes(options) ? value_of(options->names[i], control, diag) : json_null();
+        good = options->values[i] != NULL;
+    }
+    return good;
+}
+
+/** Writes, forces or releases one; false: `diag` says why. */
 static bool change(const var_options_t *options, cm1e_control_t *control, int i, cm1e_diag_t *diag)
 {
-    const char *equals = strchr(options->names[i], '=');
-    const bool release = strcmp(options->word, "release") == 0;
-    json_t *value = release ? json_null() : variable_value(equals + 1);
-    if (!value)
-        return false;
-    json_t *name = json_stringn(options->names[i], release ? strlen(options->names[i]) : (size_t)(equals - options->names[i]));
-    json_t *done = ask_program(control, json_pack("{s:s, s:o, s:o, s:b, s:i}", "request", "variable", "name", name, "value",
-                                                  value, "force", strcmp(options->word, "force") == 0, "keep_ms", KEEP_MS),
+    json_t *done = ask_program(control, json_pack("{s:s, s:o, s:O, s:b, s:i}", "request", "variable", "name",
+                                                  name_of(options->names[i]), "value", options->values[i], "force",
+                                                  strcmp(options->word, "force") == 0, "keep_ms", KEEP_MS),
                                "variable", diag);
     json_decref(done);
     return done != NULL;
@@ -201,20 +221,20 @@ static int force(const var_options_t *options, cm1e_control_t *control)
         ended = options->seconds > 0 &&
                 (double)(cm1e_clock_now(cm1e_clock_monotonic()) - begin_ns) * 1e-9 >= options->seconds;
     }
-    return good ? EXIT_OK : diag.text[0] ? fail(&diag) : EXIT_FAILED;
+    return good ? EXIT_OK : fail(&diag);
 }
 
-static int act(const var_options_t *options, cm1e_control_t *control)
+static int act(var_options_t *options, cm1e_control_t *control)
 {
     cm1e_diag_t diag = {0};
     if (strcmp(options->word, "list") == 0 || strcmp(options->word, "get") == 0)
         return show(options, control);
     attached_catch_signals();
+    if (!take_values(options, control, &diag))
+        return diag.text[0] ? fail(&diag) : EXIT_WRONG_USE;
     if (strcmp(options->word, "force") == 0)
         return force(options, control);
-    if (change_all(options, control, &diag))
-        return EXIT_OK;
-    return diag.text[0] ? fail(&diag) : EXIT_WRONG_USE;
+    return change_all(options, control, &diag) ? EXIT_OK : fail(&diag);
 }
 
 int command_var(int argc, char **argv)
@@ -230,6 +250,8 @@ int command_var(int argc, char **argv)
     if (error != CM1E_OK)
         return fail(&diag);
     const int status = act(&options, control);
+    for (int i = 0; i < options.count; i++)
+        json_decref(options.values[i]);
     cm1e_control_close(control); /* with it, what is forced is the program's again */
     return status;
 }

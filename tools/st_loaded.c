@@ -194,7 +194,8 @@ static variable_t variable_of(const st_variable_t *from)
         .form = from->kind == ST_KIND_STRING ? VARIABLE_STRING : from->kind == ST_KIND_WSTRING ? VARIABLE_WSTRING
                                                                                                : VARIABLE_NUMBER,
         .type = from->kind <= ST_KIND_TIME ? types[from->kind] : CM1E_TRACE_LREAL, .data = from->data,
-        .bytes = from->size, .bit = (uint8_t)from->bit, .ranged = from->ranged, .first = from->first, .last = from->last};
+        .bytes = from->size, .bit = (uint8_t)from->bit, .ranged = from->ranged, .first = from->first, .last = from->last,
+        .names = from->names, .values = from->values, .name_count = from->name_count};
 }
 
 static cm1e_error_t make_variables(st_loaded_t *loaded, cm1e_diag_t *diag)

@@ -1,11 +1,13 @@
 #include "variable_value.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "command.h"
+#include "st/st.h"
 
 /* ---- shown ------------------------------------------------------------------------------------------------------- */
 
@@ -41,10 +43,12 @@ static void quoted(const char *from, char quote, char *text, size_t size)
 void variable_text(const json_t *row, char *text, size_t size)
 {
     const json_t *value = json_object_get(row, "value");
-    const char *type = text_of(row, "type"), *unit = text_of(row, "unit");
+    const char *type = text_of(row, "type"), *unit = text_of(row, "unit"), *enumerator = text_of(row, "enumerator");
     const bool wide = strcmp(type, "WSTRING") == 0;
     if (wide || strcmp(type, "STRING") == 0)
         quoted(text_of(row, "value"), wide ? '"' : '\'', text, size);
+    else if (*enumerator)
+        snprintf(text, size, "%s", enumerator);
     else if (strcmp(type, "BOOL") == 0)
         snprintf(text, size, "%s", json_number_value(value) != 0 ? "TRUE" : "FALSE");
     else if (json_is_string(value)) /* a ULINT that JSON has no number for */
@@ -67,21 +71,80 @@ static json_t *text_within(const char *text)
     return quoted ? json_stringn(text + 1, length - 2) : NULL;
 }
 
-json_t *variable_value(const char *text)
+/** A whole number: JSON has those of 63 bits and a sign, the digits of others are a text. */
+static json_t *whole_number(uint64_t number, bool negative)
+{
+    char digits[24];
+    if (number <= INT64_MAX || (negative && number == (uint64_t)INT64_MAX + 1))
+        return json_integer((json_int_t)(negative ? 0 - number : number));
+    snprintf(digits, sizeof digits, "%s%" PRIu64, negative ? "-" : "", number);
+    return json_string(digits);
+}
+
+/** A number without a type: 12, -0x1F, 1.5e3; NULL: it is none. */
+static json_t *plain_number(const char *word)
 {
     char *end;
-    json_t *quoted = text_within(text);
-    if (quoted)
-        return quoted;
-    if (strcasecmp(text, "TRUE") == 0 || strcasecmp(text, "FALSE") == 0)
-        return json_boolean(strcasecmp(text, "TRUE") == 0);
+    const bool negative = word[0] == '-';
+    const char *digits = word + (negative || word[0] == '+');
+    const bool hexadecimal = digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X');
     errno = 0;
-    const long long whole = strtoll(text, &end, 0);
-    if (*text && !*end && errno == 0)
-        return json_integer(whole);
-    const double real = strtod(text, &end);
-    if (*text && !*end && isfinite(real)) /* JSON knows neither NaN nor infinity */
-        return json_real(real);
-    complain("\"%s\" is no value: expected TRUE, FALSE, a finite number, or a text in quotes: \"'text'\"", text);
-    return NULL;
+    const uint64_t whole = strtoull(digits, &end, hexadecimal ? 16 : 10);
+    if (digits[0] >= '0' && digits[0] <= '9' && !*end && errno == 0)
+        return whole_number(whole, negative);
+    const double real = strtod(word, &end);
+    return *word && !*end && isfinite(real) ? json_real(real) : NULL; /* JSON knows neither NaN nor infinity */
+}
+
+/** 16#FF, T#1m5s, D#2024-02-29 for a variable of that kind; NULL and a complaint: it is none. */
+static json_t *literal_value(const json_t *row, const char *word)
+{
+    char why[300];
+    st_literal_t literal;
+    const bool time = strcmp(text_of(row, "unit"), "ns") == 0;
+    static const char *const times[] = {"TIME", "DATE", "TOD", "DT"};
+    if (!cm1e_st_read_literal(word, &literal, why, sizeof why)) {
+        complain("%s: \"%s\" is no value: %s", text_of(row, "name"), word, why);
+        return NULL;
+    }
+    bool same = time == literal.is_time;
+    for (size_t i = 0; i < sizeof times / sizeof *times && same && time; i++) /* a type of the program may be any of them */
+        same = strcmp(text_of(row, "declared"), times[i]) != 0 || strcmp(literal.type, times[i]) == 0;
+    if (!same) {
+        complain("%s is %s, and \"%s\" is %s", text_of(row, "name"), text_of(row, "declared"), word,
+                 *literal.type ? literal.type : "a number");
+        return NULL;
+    }
+    if (strcmp(literal.type, "BOOL") == 0)
+        return json_boolean(literal.integer);
+    if (literal.is_real)
+        return json_real(literal.real);
+    return literal.huge ? whole_number((uint64_t)literal.integer, false) : json_integer(literal.integer);
+}
+
+/** What a variable is given, in words. */
+static const char *right_words(const json_t *row)
+{
+    const char *type = text_of(row, "type");
+    return strcmp(type, "STRING") == 0 || strcmp(type, "WSTRING") == 0 ? "a text in quotes: \"'text'\""
+           : strcmp(type, "BOOL") == 0 ? "TRUE or FALSE"
+           : json_object_get(row, "enumerator") ? "the name of an enumerator"
+           : strcmp(text_of(row, "unit"), "ns") == 0 ? "a time as T#1m5s, or a number of ns"
+                                                     : "a number, as 12, 1.5 or 16#FF";
+}
+
+json_t *variable_value(const json_t *row, const char *word)
+{
+    const bool enumeration = json_object_get(row, "enumerator"), text = strstr(text_of(row, "type"), "STRING");
+    json_t *value = text ? text_within(word) : plain_number(word);
+    if (!value && !text && (strcasecmp(word, "TRUE") == 0 || strcasecmp(word, "FALSE") == 0))
+        value = json_boolean(strcasecmp(word, "TRUE") == 0);
+    if (!value && enumeration && !(word[0] >= '0' && word[0] <= '9'))
+        value = *word ? json_string(word) : NULL;
+    if (!value && !text && strchr(word, '#'))
+        return literal_value(row, word);
+    if (!value)
+        complain("%s (%s): \"%s\" is no value: expected %s", text_of(row, "name"), text_of(row, "declared"), word,
+                 right_words(row));
+    return value;
 }

@@ -9,10 +9,12 @@
 
 enum { VARIABLE_TEXT_BYTES = 2100 }; /**< for any value: a character of a text takes up to 3 */
 
-/** The value of a row of `variables` (docs/CONTROL.md) in one line: 3.5, TRUE, 20 ns, 'text'. */
+/** The value of a row of `variables` (docs/CONTROL.md) in one line: 3.5, 20 ns, FAST, 'text'. */
 void variable_text(const json_t *row, char *text, size_t size);
 
-/** A truth value as in a program, a finite number, or a text in quotes ('text' or "text"); NULL and a complaint: it is none of these. */
-json_t *variable_value(const char *text);
+/** What a word means for the variable of a row: a number, a truth value, a text in quotes, a literal as in a program (T#1m5s,
+ *  16#FF), or the name of an enumerator. Whether it is in its range, the program decides. NULL and a complaint: it means
+ *  nothing. */
+json_t *variable_value(const json_t *row, const char *word);
 
 #endif

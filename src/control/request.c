@@ -331,10 +331,18 @@ static json_t *recover(control_request_t *request, control_run_t *run, const jso
 
 static json_t *variables(control_request_t *request, control_run_t *run, const json_t *message)
 {
+    char text[300];
     json_int_t from;
+    uint32_t row = 0;
+    const json_t *only = json_object_get(message, "name");
+    const char *name = json_string_value(only);
+    if (only && !name)
+        return wrong(request, "\"name\" is expected to be the name of a variable, or to be left out.");
     if (!cm1e_take_number(message, "from", 0, UINT32_MAX, 0, &from))
         return wrong(request, "\"from\" is expected to be the number of a variable, 0 = first, or to be left out.");
-    if (!cm1e_variables_begin(&request->variable, &run->view, (uint32_t)from,
+    if (name && !cm1e_variable_named(&run->view, name, &row, text, sizeof text))
+        return cm1e_request_refuse(request->id, CM1E_ERROR_NOT_FOUND, 0, text);
+    if (!cm1e_variables_begin(&request->variable, &run->view, name ? row : (uint32_t)from, name ? 1 : VARIABLES_OF_REPLY,
                               json_is_true(json_object_get(message, "forced"))))
         return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
     request->state = REQUEST_VARIABLE;
@@ -344,7 +352,7 @@ static json_t *variables(control_request_t *request, control_run_t *run, const j
 
 static json_t *variable(control_request_t *request, control_run_t *run, const json_t *message)
 {
-    char text[240];
+    char text[400];
     cm1e_error_t error = CM1E_OK;
     json_t *refused = check_consent(request, run, "Writing or forcing a variable");
     request->variable.forced.client = request->client;

@@ -23,9 +23,11 @@ typedef struct variable_order {
     struct variable_values *values; /**< of the list; NULL: there is none. Owned */
 } variable_order_t;
 
-/** Begins a list: of at most VARIABLES_OF_REPLY variables from number `from` on, or of those that are forced. false: no
- *  memory. */
-bool cm1e_variables_begin(variable_order_t *order, const view_t *view, uint32_t from, bool forced);
+/** Begins a list: of at most `most` variables (VARIABLES_OF_REPLY) from number `from` on, or of those that are forced.
+ *  false: no memory. */
+bool cm1e_variables_begin(variable_order_t *order, const view_t *view, uint32_t from, uint32_t most, bool forced);
+/** Finds the row of a variable by its name; false: there is none, which `text` says. */
+bool cm1e_variable_named(const view_t *view, const char *name, uint32_t *row, char *text, size_t size);
 /** The list, when the cycle has read it. */
 json_t *cm1e_variables_show(const variable_order_t *order, const view_t *view);
 /** Number of the first variable behind the list; 0: there is none. */

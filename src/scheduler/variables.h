@@ -23,6 +23,9 @@ typedef struct variable {
     uint8_t bit;              /**< of a BOOL that is one bit of a byte: 1 = bit 0; else 0 */
     bool ranged;              /**< `first` ... `last` are its values */
     int64_t first, last;
+    const char *const *names; /**< of an enumeration: its enumerators, with their values */
+    const int64_t *values;
+    uint32_t name_count;
 } variable_t;
 
 typedef struct variables {

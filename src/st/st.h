@@ -42,6 +42,16 @@ typedef struct st_error {
     uint32_t line, column;
 } st_error_t;
 st_error_t cm1e_st_error(const st_t *st, unsigned n);
+/** What a literal means. */
+typedef struct st_literal {
+    const char *type;  /**< "TIME", "INT" ...; "": a number without a type */
+    bool is_real, is_time;
+    bool huge;         /**< above 2^63 - 1: `integer` is it less 2^64 */
+    int64_t integer;   /**< also of a BOOL; of times in ns */
+    double real;
+} st_literal_t;
+/** Reads a literal as a program has it: 16#FF, T#1m5s, INT#5. False: it is none, `why` says what is right. */
+bool cm1e_st_read_literal(const char *text, st_literal_t *literal, char *why, size_t size);
 /** A number that changes with the interface of the blocks: a program runs only with the library it was made for. */
 uint64_t cm1e_st_interface(void);
 

@@ -61,6 +61,9 @@ static void row(listing_t *l, const char *name, const char *c_name, const type_t
     cm1e_st_put_quoted(l->st, detail);
     if (type->ranged)
         cm1e_st_put(l->st, ", 0, 1, %s, %s", cm1e_st_int64(l->st, type->first), cm1e_st_int64(l->st, type->last));
+    if (type->kind == T_ENUM)
+        cm1e_st_put(l->st, ", .names = names_%s, .values = values_%s, .name_count = sizeof names_%s / sizeof *names_%s",
+                    type->c_name, type->c_name, type->c_name, type->c_name);
     cm1e_st_put(l->st, "},\n");
     note_layout(l, cm1e_st_format(l->st->arena, "%s:%s:%llu;", name, cm1e_st_type_name(type), (unsigned long long)type->size));
 }

@@ -117,6 +117,19 @@ static void emit_reference(st_t *st, type_t *type)
         cm1e_st_emit_type(st, to);
 }
 
+/** For the table of variables: others see and write enumerators by name. */
+static void emit_names(st_t *st, const type_t *type)
+{
+    cm1e_st_put(st, "ST_UNUSED static const char *const names_%s[] = {", type->c_name);
+    for (const var_t *var = type->members; var; var = var->next) {
+        cm1e_st_put_quoted(st, var->name);
+        cm1e_st_put(st, var->next ? ", " : "};\n");
+    }
+    cm1e_st_put(st, "ST_UNUSED static const int64_t values_%s[] = {", type->c_name);
+    for (const var_t *var = type->members; var; var = var->next)
+        cm1e_st_put(st, "%s%s", cm1e_st_int64(st, var->value.integer), var->next ? ", " : "};\n");
+}
+
 static void emit_enum(st_t *st, type_t *type)
 {
     cm1e_st_put(st, "typedef %s %s;\nenum {", type->element->name, type->c_name);
@@ -125,6 +138,7 @@ static void emit_enum(st_t *st, type_t *type)
             cm1e_st_put(st, "%s%s = %lld", var == type->members ? " " : ", ", var->c_name,
                         (long long)var->value.integer);
     cm1e_st_put(st, " };\n");
+    emit_names(st, type);
 }
 
 void cm1e_st_emit_type(st_t *st, type_t *type)

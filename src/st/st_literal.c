@@ -71,10 +71,11 @@ static expr_t *number(st_t *st, place_t place, const char *text)
         cm1e_st_report(st, place, "\"%s\" is not a number of at most 64 bits; a base is 2, 8 or 16, as in 16#FF", text);
         return wrong(st, place);
     }
-    value.real = strtod(text, NULL);
-    if (isfinite(value.real))
+    char *end;
+    value.real = strtod(text, &end);
+    if (isfinite(value.real) && *end == '\0')
         return made(st, place, T_ANY_REAL, value);
-    cm1e_st_report(st, place, "\"%s\" is larger than any LREAL", text);
+    cm1e_st_report(st, place, *end ? "\"%s\" is no number" : "\"%s\" is larger than any LREAL", text);
     return wrong(st, place);
 }
 
@@ -171,7 +172,7 @@ static bool read_clock(const char *text, int64_t *result)
     const long hour = strtol(text, &end, 10);
     const long minute = *end == ':' ? strtol(end + 1, &end, 10) : 60;
     const double second = *end == ':' ? strtod(end + 1, &end) : 0;
-    if (*end != '\0' || hour > 23 || minute > 59 || second >= 60)
+    if (*end != '\0' || hour < 0 || hour > 23 || minute < 0 || minute > 59 || !(second >= 0 && second < 60))
         return false;
     *result = (hour * 3600 + minute * 60) * NS_PER_S + (int64_t)round(second * 1e9);
     return true;
@@ -233,6 +234,27 @@ expr_t *cm1e_st_literal(st_t *st, place_t place, const char *text)
     if (type && cm1e_st_is_time(type->kind))
         return time_literal(st, place, type->kind, mark + 1, text);
     return typed_number(st, place, prefix, mark + 1);
+}
+
+bool cm1e_st_read_literal(const char *text, st_literal_t *literal, char *why, size_t size)
+{
+    st_t *st = cm1e_st_new_bare();
+    if (!st) {
+        snprintf(why, size, "no memory");
+        return false;
+    }
+    const bool good_text = *text && text[strcspn(text, " \t\r\n")] == '\0';
+    const expr_t *expr = good_text ? cm1e_st_literal(st, (place_t){0}, text) : wrong(st, (place_t){0});
+    const type_kind_t kind = expr->type->kind;
+    const bool good = kind <= T_DT || kind == T_ANY_INT || kind == T_ANY_REAL;
+    *literal = (st_literal_t){.type = "", .huge = expr->value.huge, .integer = expr->value.integer, .real = expr->value.real,
+                              .is_real = cm1e_st_is_floating(kind) || kind == T_ANY_REAL, .is_time = cm1e_st_is_time(kind)};
+    if (good && kind <= T_DT)
+        literal->type = expr->type->name;
+    if (!good)
+        snprintf(why, size, "%s", cm1e_st_errors(st) > 0 ? cm1e_st_error(st, 0).text : "it is no literal");
+    cm1e_st_free(st);
+    return good;
 }
 
 /** The character of an escape behind a $, which may have `digits` hexadecimal ones; `length`: how many characters it has.

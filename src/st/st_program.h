@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-enum { ST_PROGRAM_VERSION = 2 };
+enum { ST_PROGRAM_VERSION = 3 };
 
 typedef enum st_kind {
     ST_KIND_BOOL, ST_KIND_SINT, ST_KIND_INT, ST_KIND_DINT, ST_KIND_LINT, ST_KIND_USINT, ST_KIND_UINT, ST_KIND_UDINT,
@@ -25,6 +25,9 @@ typedef struct st_variable {
     int bit;            /**< it is one bit of a byte: 1 = bit 0; else 0 */
     int ranged;         /**< its values are first ... last */
     int64_t first, last;
+    const char *const *names;  /**< of an enumeration: its enumerators */
+    const int64_t *values;
+    uint32_t name_count;
 } st_variable_t;
 
 typedef struct st_task {

@@ -143,6 +143,7 @@ NAMED = (({"request": "sdo_info", "slave": 1, "kind": 3, "index": 65536}, '"inde
          ({"request": "sdo_read", "slave": 1, "index": 4120, "timeout_ms": 60001}, '"timeout_ms" is expected'),
          ({"request": "sdo_read", "slave": 1, "index": 4120, "complete_access": 1}, '"complete_access" is expected to be true'),
          ({"request": "variables", "from": -1}, '"from" is expected to be the number of a variable'),
+         ({"request": "variables", "name": 5}, '"name" is expected to be the name of a variable'),
          ({"request": "record", "variables": 5}, '"variables" is expected to be a list of names'))
 
 

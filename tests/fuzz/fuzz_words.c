@@ -38,6 +38,26 @@ static void use_numbers(const char *word)
         fuzz_fail("%g s", real);
 }
 
+static const struct { const char *type, *declared; bool enumeration; } kinds[] = {
+    {"INT", "INT", false}, {"LINT", "TIME", false}, {"ULINT", "LWORD", false}, {"BOOL", "BOOL", false},
+    {"REAL", "REAL", false}, {"STRING", "STRING[6]", false}, {"DINT", "E", true},
+};
+
+static void use_value(const char *type, const char *declared, bool enumeration, const char *word)
+{
+    const unsigned before = complaints;
+    json_t *row = json_pack("{s:s, s:s, s:s, s:s}", "name", "Main.v", "type", type, "declared", declared, "unit",
+                            strcmp(declared, "TIME") == 0 ? "ns" : "");
+    if (enumeration)
+        json_object_set_new(row, "enumerator", json_null());
+    json_t *value = variable_value(row, word);
+    expect(value != NULL, before, "a value of a variable");
+    if (value && !json_is_boolean(value) && !json_is_number(value) && !json_is_string(value))
+        fuzz_fail("a value is no number, truth value or text");
+    json_decref(value);
+    json_decref(row);
+}
+
 bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool must)
 {
     (void)written, (void)must;
@@ -48,19 +68,16 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
         memcpy(word, bytes, size);
     word[size] = 0;
     use_numbers(word);
-    const unsigned before = complaints;
-    json_t *value = variable_value(word);
-    expect(value != NULL, before, "a value of a variable");
-    if (value && !json_is_boolean(value) && !json_is_number(value) && !json_is_string(value))
-        fuzz_fail("a value is no number, truth value or text");
-    json_decref(value);
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        use_value(kinds[i].type, kinds[i].declared, kinds[i].enumeration, word);
     free(word);
     return false;
 }
 
 void fuzz_seeds(void)
 {
-    static const char *const words[] = {"TRUE", "-0x1F", "1e3", "nan", "'te$Nxt'", "\"w\"", "1,5", "inf", "1e999", "-7"};
+    static const char *const words[] = {"TRUE", "-0x1F", "1e3", "nan", "'te$Nxt'", "\"w\"", "1,5", "inf", "1e999", "-7", "T#1m5s",
+                                        "16#FF", "DT#2024-02-29-1:2:3", "E.A"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         char name[16];
         snprintf(name, sizeof name, "word_%zu", i);

@@ -12,7 +12,8 @@ STRING, WSTRING = 12, 13
 class Variable(ctypes.Structure):
     _fields_ = [("name", ctypes.c_char_p), ("data", ctypes.c_void_p), ("size", ctypes.c_uint32), ("kind", ctypes.c_int),
                 ("detail", ctypes.c_char_p), ("bit", ctypes.c_int), ("ranged", ctypes.c_int), ("first", ctypes.c_int64),
-                ("last", ctypes.c_int64)]
+                ("last", ctypes.c_int64), ("names", ctypes.POINTER(ctypes.c_char_p)),
+                ("values", ctypes.POINTER(ctypes.c_int64)), ("name_count", ctypes.c_uint32)]
 
 
 class Task(ctypes.Structure):

@@ -16,7 +16,9 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from control_client import Client  # noqa: E402
 
 CM1E, SOURCE = os.path.join(os.path.abspath(sys.argv[1]), "cm1e"), os.path.abspath(sys.argv[2])
-PROGRAM = """TYPE Point : STRUCT here : INT; END_STRUCT END_TYPE
+PROGRAM = """TYPE E_Mode : (OFF := -1, SLOW := 2, FAST) INT; END_TYPE
+TYPE Share : INT (0..100); END_TYPE
+TYPE Point : STRUCT here : INT; END_STRUCT END_TYPE
 PROGRAM Main
 VAR
     n : INT;
@@ -25,6 +27,12 @@ VAR
     most : ULINT := ULINT#18446744073709551614;
     r : REAL := 0.1;
     goal : LREAL := 3;
+    mode : E_Mode := SLOW;
+    part : Share := 5;
+    wait : TIME := T#20ms;
+    day : DATE;
+    mask : LWORD;
+    small : SINT;
     lamp AT %QX2.0.2 : BOOL;
     seen AT %IX3.0.2 : BOOL;
     copy, cause : BOOL;
@@ -98,9 +106,47 @@ def check_values(run):
     expect(run.value("goal") == -1.5 and run.value("big") == -9007199254740993, "set", run.rows())
     run.var("set", "Main.goal=1", status=2, says="--allow-write")
     run.var("set", "--allow-write", "Main.nothing=1", status=1, says="no variable")
-    for wrong in ("Main.n=32768", "Main.n=1.5", "Main.copy=2", "Main.r=1e39"):
-        run.var("set", "--allow-write", wrong, status=1, says="is expected to be a value of")
+    for wrong, says in (("Main.n=32768", "Main.n (INT) takes -32768 ... 32767."), ("Main.n=1.5", "takes -32768 ... 32767."),
+                        ("Main.copy=2", "Main.copy (BOOL) takes TRUE or FALSE."), ("Main.small=-129", "takes -128 ... 127."),
+                        ("Main.r=1e39", "Main.r (REAL) takes a finite number up to 3.402823e+38."),
+                        ("Main.most=18446744073709551616", "Main.most (ULINT) takes 0 ... 18446744073709551615."),
+                        ("Main.least=9223372036854775808", "takes -9223372036854775808 ... 9223372036854775807."),
+                        ("Main.part=101", "Main.part (INT (0..100)) takes 0 ... 100.")):
+        run.var("set", "--allow-write", wrong, status=1, says=says)
     run.var("set", "--allow-write", "Main.n=x", status=2, says="no value")
+    run.var("set", "--allow-write", "Main.goat=1", status=1, says='did you mean "Main.goal"')
+
+
+def check_literals(run):
+    """Values as a program writes them, and the enumerators of an enumeration."""
+    hour = 3600 * 10**9
+    for word, value in (("wait=T#1h1s", hour + 10**9), ("wait=TIME#-2ms", -2 * 10**6), ("wait=15", 15), ("wait=LT#1us", 1000),
+                        ("day=D#1970-01-02", 24 * hour), ("mask=16#FF", 255), ("mask=2#1010_0001", 161), ("mask=0x10", 16),
+                        ("mask=18446744073709551615", str(2**64 - 1)), ("mask=16#8000_0000_0000_0000", str(2**63)),
+                        ("n=010", 10), ("n=INT#7", 7), ("n=-16", -16), ("small=-128", -128), ("copy=BOOL#1", 1),
+                        ("goal=LREAL#0.5", 0.5), ("goal=16#10", 16), ("mode=FAST", 3), ("mode=off", -1), ("mode=E_Mode.SLOW", 2),
+                        ("mode=E_Mode#FAST", 3), ("mode=2", 2), ("mode=16#3", 3), ("part=100", 100)):
+        name = word.split("=")[0]
+        run.var("set", "--allow-write", f"Main.{word}")
+        if name not in ("n", "copy"):  # those the program writes
+            expect(run.value(name) == value, word, run.value(name))
+    row = run.rows()["Main.mode"]
+    expect((row["enumerator"], row["value"], row["declared"], row["type"]) == ("FAST", 3, "E_Mode", "INT"), "an enumeration", row)
+    expect("E_Mode     FAST" in run.var("get", "Main.mode"), "an enumerator is shown", run.var("get", "Main.mode"))
+    expect("enumerator" not in run.rows()["Main.n"], "a number has no enumerator")
+    for wrong, says, status in (("mode=77", "Main.mode (E_Mode) takes OFF, SLOW, FAST.", 1), ("mode=FATS", "takes OFF, SLOW, FAST.", 1),
+                                ("mode=Point.FAST", "takes OFF", 1), ("mode=", "the name of an enumerator", 2),
+                                ("wait=T#1", "right is for instance T#1h30m", 2), ("wait=1m5s", "a time as T#1m5s", 2),
+                                ("wait=D#2024-01-01", "Main.wait is TIME, and \"D#2024-01-01\" is DATE", 2),
+                                ("n=T#5ms", "Main.n is INT, and \"T#5ms\" is TIME", 2), ("wait=16#FF", "is a number", 2),
+                                ("mask=16#1_0000_0000_0000_0000", "at most 64 bits", 2), ("mask=-1", "takes 0 ...", 1),
+                                ("n=3#12", "a base is 2, 8 or 16", 2), ("n=REAL#1.5x", "is no number", 2),
+                                ("text=long", "a text in quotes", 2), ("copy=yes", "expected TRUE or FALSE", 2)):
+        run.var("set", "--allow-write", f"Main.{wrong}", status=status, says=says)
+    window = run.force("Main.mode=OFF", "Main.wait=T#3s")
+    expect(run.value("mode") == -1 and run.value("wait") == 3 * 10**9, "literals are forced", run.rows()["Main.mode"])
+    window.send_signal(signal.SIGINT)
+    window.wait(10)
 
 
 def check_exact(run):
@@ -131,7 +177,7 @@ def check_exact(run):
 def check_all(run):
     """Every variable is seen, more than one reply has; texts are read and written."""
     rows = run.rows()
-    expect(len(rows) == 12 + 400, "all variables", len(rows))
+    expect(len(rows) == 18 + 400, "all variables", len(rows))
     expect(rows["Main.table[1,-100].here"]["value"] == 0, "an element", rows["Main.table[1,-100].here"])
     expect(run.value("table[2,99].here") != 0, "the last element")
     expect(rows["Main.text"]["declared"] == "STRING[6]" and rows["Main.text"]["value"] == "it's", "a text", rows["Main.text"])
@@ -141,8 +187,11 @@ def check_all(run):
     expect(rows["Main.wide"]["value"] == "\u00e4" and rows["Main.wide"]["type"] == "WSTRING", "a wide text", rows["Main.wide"])
     run.var("set", "--allow-write", "Main.wide='\U0001f600\u20ac'")
     expect(run.value("wide") == "\U0001f600\u20ac", "a wide text is written", run.rows()["Main.wide"])
-    for wrong in ("Main.text='longer!'", "Main.wide='12345'", "Main.wide='123\U0001f600'", "Main.text=5", "Main.n='5'"):
-        run.var("set", "--allow-write", wrong, status=1, says="is expected to be a value of")
+    for wrong, says, status in (("Main.text='longer!'", "Main.text (STRING[6]) takes a text of at most 6 bytes.", 1),
+                                ("Main.wide='12345'", "at most 4 characters of 16 bits", 1),
+                                ("Main.wide='123\U0001f600'", "takes", 1), ("Main.text=5", "a text in quotes", 2),
+                                ("Main.n='5'", "a number, as 12", 2)):
+        run.var("set", "--allow-write", wrong, status=status, says=says)
 
 
 def check_trace(run):
@@ -211,7 +260,7 @@ with tempfile.TemporaryDirectory() as folder:
     built = subprocess.run([CM1E, "st", "build", "force.st"], capture_output=True, text=True, timeout=60)
     if built.returncode:
         sys.exit(built.stderr)
-    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_all, check_exact, check_values, check_trace, check_forced))):
+    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_all, check_exact, check_values, check_literals, check_trace, check_forced))):
         program = Run(bus)
         for check in checks:
             check(program)
