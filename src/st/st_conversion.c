@@ -38,8 +38,13 @@ static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *wh
                        "change its meaning; %s_TO_%s(...) converts it", what, cm1e_st_type_name(type),
                        cm1e_st_type_name(expr->type), plain_name(expr->type), plain_name(type));
     else if (to == T_ENUM && from != T_ENUM)
-        cm1e_st_report(st, expr->place, "\"%s\" is %s, and takes its enumerators, for instance %s", what,
-                       cm1e_st_type_name(type), type->members ? type->members->name : "none");
+        cm1e_st_report(st, expr->place, "\"%s\" is %s, and takes its enumerators, for instance %s%s", what,
+                       cm1e_st_type_name(type), type->members ? type->members->name : "none", cm1e_st_is_integer(from) ?
+                       "; an integer may be none of them: choose one by CASE" : "");
+    else if (from == T_ENUM && cm1e_st_is_integer(to))
+        cm1e_st_report(st, expr->place, "\"%s\" is %s, and %s has values of %s, which it may not have: TO_%s(...) converts "
+                       "them", what, cm1e_st_type_name(type), cm1e_st_type_name(expr->type), expr->type->element->name,
+                       plain_name(type));
     else
         cm1e_st_report(st, expr->place, "\"%s\" is %s, and this is %s", what, cm1e_st_type_name(type),
                        cm1e_st_type_name(expr->type));

@@ -149,10 +149,12 @@ static void resolve_members(st_t *st, type_t *type)
     type->alignment = alignment;
 }
 
+/** Without a stated base it is INT, as in TwinCAT and CODESYS, or DINT if INT lacks a value. */
 static void resolve_enum(st_t *st, type_t *type)
 {
     int64_t next = 0;
-    type_t *base = type->element ? cm1e_st_resolve(st, type->element) : st->elementary[T_DINT];
+    const bool stated = type->element;
+    type_t *base = stated ? cm1e_st_resolve(st, type->element) : st->elementary[type->external ? T_DINT : T_INT];
     if (!cm1e_st_is_integer(base->kind) && base->kind != T_WRONG)
         cm1e_st_report(st, type->place, "the values of an enumeration are integers, not %s", base->name);
     type->element = cm1e_st_is_integer(base->kind) ? base : st->elementary[T_DINT];
@@ -160,6 +162,8 @@ static void resolve_enum(st_t *st, type_t *type)
         if (var->initial && !cm1e_st_integer_constant(st, var->initial, &next, "the value of an enumerator"))
             continue;
         var->value = (constant_t){.known = true, .integer = next};
+        if (!stated && !cm1e_st_fits(type->element->kind, &var->value))
+            type->element = st->elementary[T_DINT];
         if (!cm1e_st_fits(type->element->kind, &var->value))
             cm1e_st_report(st, var->place, "%lld is not a value of %s", (long long)next, type->element->name);
         next = (int64_t)((uint64_t)next + 1);

@@ -11,7 +11,7 @@ from st_host import Host
 
 BIN = sys.argv[1]
 UNITS = """
-TYPE E_Color : (Red, Green := 5, Blue); E_Small : (One := 1, Two) USINT;
+TYPE E_Color : (Red, Green := 5, Blue); E_Small : (One := 1, Two) USINT; E_Wide : (Near, Far := 70000);
   Point : STRUCT x : INT := 7; y : INT; END_STRUCT;
   Box : STRUCT low : Point; high : Point := (x := 9, y := 8); list : ARRAY[0..2] OF Point; END_STRUCT;
   Row : ARRAY[-1..1] OF INT; END_TYPE
@@ -73,6 +73,12 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
 # (statements, {variable: value after one call})
 CASES = [
     ("IF TRUE THEN i := 1; ELSE i := 2; END_IF", {"i": 1}),
+    ("c := Green; i := c; j := c + 1; n := 2 * Blue - c; b := c = 5 AND 6 = Blue AND c < i + 1 AND c >= Red;",
+     {"i": 5, "j": 6, "n": 7, "b": True}),
+    ("c := Green; d := E_Wide.Far - c; l := c / 2.0; f := -c; i := m MOD 2; n := TO_INT(E_Wide.Far); j := a[m + 1];",
+     {"d": 69995, "l": 2.5, "f": -5.0, "i": 1, "n": 4464, "j": 7}),
+    ("m := Two; u := m * m; FOR i := m TO c + 4 DO n := n + i; END_FOR b := c <> Blue AND m = Two; t := T#1s * m;",
+     {"u": 4, "n": 9, "b": True, "t": 2 * 10**9}),
     ("z REF= i; z := 5; j := z + 1; b := __ISVALIDREF(z);", {"i": 5, "j": 6, "b": True}),
     ("b := NOT __ISVALIDREF(z); zp REF= p; zp.y := 3; n := zp.x; zp.x := 4; Bump(what := i, more := p.x);",
      {"b": True, "n": 7, "i": 4}),
