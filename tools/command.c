@@ -13,7 +13,10 @@
 #include "device/devices.h"
 #include "device/place.h"
 
-enum { KEY_PCAP = 0x100, KEY_JSON, KEY_NETWORK };
+enum { KEY_PCAP = 0x100, KEY_JSON, KEY_NETWORK, COMPLAINTS_BYTES = 4096 };
+
+static bool json_wanted, json_printed;
+static char complaints[COMPLAINTS_BYTES]; /* all, in lines */
 
 static const struct argp_option common_option_table[] = {
     {"interface", 'i', "INTERFACE", 0, "Network interface (eth1; eth1,xdp goes by AF_XDP), or sim, or sim:BUS-FILE", 1},
@@ -36,7 +39,7 @@ static error_t parse_common(int key, char *arg, struct argp_state *state)
     case 'i': options->interface_name = arg; return 0;
     case 'b': options->bus_file = arg; return 0;
     case KEY_NETWORK: options->network = arg; return 0;
-    case KEY_JSON: options->json = true; return 0;
+    case KEY_JSON: options->json = json_wanted = true; return 0;
     case KEY_PCAP: options->pcap_file = arg; return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -51,6 +54,12 @@ void complain(const char *format, ...)
     fprintf(stderr, "%s: ", program_invocation_name);
     vfprintf(stderr, format, args);
     fputc('\n', stderr);
+    va_end(args);
+    size_t used = strlen(complaints);
+    if (used > 0 && used + 1 < sizeof complaints)
+        complaints[used++] = '\n';
+    va_start(args, format);
+    vsnprintf(complaints + used, sizeof complaints - used, format, args);
     va_end(args);
 }
 
@@ -376,9 +385,16 @@ json_t *text_as_json(const char *text)
 
 void print_json(json_t *value)
 {
+    json_printed = true;
     json_dumpf(value, stdout, JSON_INDENT(2));
     putchar('\n');
     json_decref(value);
+}
+
+void print_json_of_failure(void)
+{
+    if (json_wanted && !json_printed)
+        print_json(json_pack("{s:o}", "error", text_as_json(complaints)));
 }
 
 const char *al_state_name(uint16_t al_state, char *buffer, size_t size)

@@ -171,6 +171,9 @@ json_t *text_as_json(const char *text);
 /** Prints a JSON value on standard output with a final newline, and releases it. */
 void print_json(json_t *value);
 
+/** What was complained of as {"error": text}, where --json is given and nothing has been printed as JSON. */
+void print_json_of_failure(void);
+
 /** The name of an AL state: "Pre-Operational"; with the error flag "Pre-Operational + error". Static or in `buffer`. */
 const char *al_state_name(uint16_t al_state, char *buffer, size_t size);
 

@@ -1,4 +1,5 @@
 /** cm1e: the command line program. Each subcommand is a file cmd_<name>.c. */
+#include <errno.h>
 #include <linux/capability.h>
 #include <stdio.h>
 #include <string.h>
@@ -39,9 +40,23 @@ static int complain_unknown(const char *word)
     return EXIT_WRONG_USE;
 }
 
+static bool finished; /* by finish() */
+
+/* argp ends the process by itself after --help. */
+static void finish_help(void)
+{
+    if (finished || (fflush(stdout) == 0 && !ferror(stdout)))
+        return;
+    complain("cannot write to standard output");
+    _exit(EXIT_FAILED);
+}
+
 /* Output that was not written (a full disk, a closed pipe) is a failure. */
 static int finish(int status)
 {
+    finished = true;
+    if (status != EXIT_OK)
+        print_json_of_failure();
     if (fflush(stdout) == 0 && !ferror(stdout))
         return status;
     complain("cannot write to standard output");
@@ -67,21 +82,23 @@ static void become_privileged(char **argv) { (void)argv; }
 int main(int argc, char **argv)
 {
     become_privileged(argv);
+    program_invocation_name = program_invocation_short_name;
     if (argc < 2) {
         print_usage(stderr);
         return EXIT_WRONG_USE;
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         print_usage(stdout);
-        return EXIT_OK;
+        return finish(EXIT_OK);
     }
     if (strcmp(argv[1], "--version") == 0) {
         printf("cm1e %s\n", cm1e_version());
-        return EXIT_OK;
+        return finish(EXIT_OK);
     }
     if (strcmp(argv[1], "--describe") == 0)
         return finish(describe(argc - 2, argv + 2));
     argp_err_exit_status = EXIT_WRONG_USE;
+    atexit(finish_help);
     for (int i = 0; i < command_count; i++)
         if (strcmp(argv[1], commands[i].name) == 0) {
             char name[32];

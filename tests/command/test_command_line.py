@@ -227,7 +227,8 @@ def check_lost_output(folder):
     """What does not arrive is no success."""
     path = os.path.join(folder, "lost.sii")
     run("cm1e", "generate", "sii", "-o", path)
-    for words in (["check", path], ["check", "--json", path], ["sii", "decode", path], ["generate", "sii", "-o", "-"]):
+    for words in (["check", path], ["check", "--json", path], ["sii", "decode", path], ["generate", "sii", "-o", "-"],
+                  ["--version"], ["--help"], ["move", "--help"], ["sdo", "--usage"]):
         with open("/dev/full", "wb") as full:
             lost = subprocess.run([os.path.join(BIN, "cm1e"), *words], stdout=full, stderr=subprocess.PIPE, text=True,
                                   timeout=60)

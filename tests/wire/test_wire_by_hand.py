@@ -46,14 +46,16 @@ def check_alias(segment, cm1e, folder):
     written = segment.run([cm1e, "alias", "-b", bus, "1", "77", "--backup", backup])
     wire.check(written.returncode == 0, f"alias: {written}")
     segment.console("power-cycle 1 100")
-    wire.wait_for(lambda: json.loads(segment.run([cm1e, "scan", "-b", bus, "--json"]).stdout or "[{}]")[0].get("alias")
-                  == 77, 10, "the alias is not there after the power-on")
+
+    def has_alias(wanted):
+        scan = segment.run([cm1e, "scan", "-b", bus, "--json"])
+        return scan.returncode == 0 and json.loads(scan.stdout)[0]["alias"] == wanted
+    wire.wait_for(lambda: has_alias(77), 10, "the alias is not there after the power-on")
     back = segment.run([cm1e, "sii", "write", "1", backup, "--own-alias-and-serial", "-b", bus, "--backup",
                         os.path.join(folder, "other.sii")])
     wire.check(back.returncode == 0, f"the backup written back: {back}")
     segment.console("power-cycle 1 100")
-    wire.wait_for(lambda: json.loads(segment.run([cm1e, "scan", "-b", bus, "--json"]).stdout or "[{}]")[0].get("alias")
-                  == 0, 10, "the alias is still there after the backup was written back")
+    wire.wait_for(lambda: has_alias(0), 10, "the alias is still there after the backup was written back")
 
 
 def shows(terminal, words, what):
