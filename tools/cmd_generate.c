@@ -26,6 +26,7 @@ typedef struct generate_options {
     size_t number;     /**< of the device in the file read, 0 = first */
     bool mapping_given;
     uint32_t given;    /**< bit n: restricted[n] */
+    uint32_t once;     /**< bit n: option KEY_FIRMWARE + n of the present device, or of the file */
     struct {
         const char *path;
         uint32_t vendor_id, product_code;
@@ -250,6 +251,8 @@ static void check_words(const generate_options_t *options, struct argp_state *st
         argp_error(state, "the output is missing: -o FILE, or -o - for standard output");
     if (options->program && strcmp(options->program, options->file) == 0)
         argp_error(state, "-o and --program name the same file, \"%s\": each needs its own", options->file);
+    if (options->common.json)
+        argp_error(state, "generate prints nothing but the file: leave out --json");
     if (options->from && (options->what.devices || options->common.interface_name || options->common.bus_file))
         argp_error(state, "--from takes everything from the file: leave out the options of devices and of the network");
     check_restricted(options, state);
@@ -267,36 +270,6 @@ static void check_words(const generate_options_t *options, struct argp_state *st
             options->common.interface_name)
             argp_error(state, "the devices of an ENI come from the network; with a bus file alone, --device eb01 "
                        "(eb02, eb12) states the identity of its bridges");
-}
-
-static error_t parse(int key, char *arg, struct argp_state *state)
-{
-    generate_options_t *options = state->input;
-    int format;
-    switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
-    case ARGP_KEY_ARG:
-        if (options->what.format != CM1E_FILE_UNKNOWN)
-            argp_error(state, "one format at a time; \"%s\" is too many", arg);
-        if (!choose("format", arg, formats, &format))
-            return EINVAL;
-        options->what.format = (cm1e_file_format_t)format;
-        return 0;
-    case ARGP_KEY_END: check_words(options, state); return 0;
-    default: break;
-    }
-    for (int i = 0; i < RESTRICTED; i++)
-        if (restricted[i].key == key)
-            options->given |= 1u << i;
-    const error_t result = parse_file(key, arg, options);
-    if (result != ARGP_ERR_UNKNOWN)
-        return result;
-    const error_t device = parse_device(key, arg, options);
-    if (device == 0 && !options->what.devices && key != KEY_MAPPING)
-        options->what.devices = options->devices;
-    if (key == KEY_MAPPING)
-        options->mapping_given = true;
-    return device;
 }
 
 static const struct argp_option table[] = {
@@ -325,6 +298,55 @@ static const struct argp_option table[] = {
     {"dc", KEY_DC, NULL, 0, "Also offer DC Synchronous, which the guide does not mention", 3},
     {"complete-access", KEY_COMPLETE, NULL, 0, "Announce SDO complete access, which the guide does not mention", 3},
     {0}};
+
+/** The last one of two would count, which nobody sees. --device begins another device. */
+static void check_once(int key, generate_options_t *options, struct argp_state *state)
+{
+    static const int of_file[] = {KEY_LAYOUT, KEY_FROM, KEY_NUMBER, KEY_PROGRAM, KEY_DC_MODE, KEY_MAILBOX_RATE};
+    uint32_t kept = 0;
+    for (size_t i = 0; i < sizeof of_file / sizeof *of_file; i++)
+        kept |= options->once & 1u << (of_file[i] - KEY_FIRMWARE);
+    if (key == KEY_DEVICE)
+        options->once = kept;
+    if (key < KEY_FIRMWARE || key > KEY_MAILBOX_RATE || key == KEY_DEVICE)
+        return;
+    const uint32_t bit = 1u << (key - KEY_FIRMWARE);
+    for (const struct argp_option *option = table; options->once & bit; option++)
+        if (option->key == key)
+            argp_error(state, "--%s is there twice", option->name);
+    options->once |= bit;
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    generate_options_t *options = state->input;
+    int format;
+    check_once(key, options, state);
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_ARG:
+        if (options->what.format != CM1E_FILE_UNKNOWN)
+            argp_error(state, "one format at a time; \"%s\" is too many", arg);
+        if (!choose("format", arg, formats, &format))
+            return EINVAL;
+        options->what.format = (cm1e_file_format_t)format;
+        return 0;
+    case ARGP_KEY_END: check_words(options, state); return 0;
+    default: break;
+    }
+    for (int i = 0; i < RESTRICTED; i++)
+        if (restricted[i].key == key)
+            options->given |= 1u << i;
+    const error_t result = parse_file(key, arg, options);
+    if (result != ARGP_ERR_UNKNOWN)
+        return result;
+    const error_t device = parse_device(key, arg, options);
+    if (device == 0 && !options->what.devices && key != KEY_MAPPING)
+        options->what.devices = options->devices;
+    if (key == KEY_MAPPING)
+        options->mapping_given = true;
+    return device;
+}
 
 /* ---- what to do ------------------------------------------------------------------------------------------------- */
 

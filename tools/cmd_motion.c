@@ -10,6 +10,7 @@
 #include "cm1e/trace.h"
 #include "axis_run.h"
 #include "command.h"
+#include "trace_file.h"
 
 enum { KEY_TO = 0x300, KEY_BY, KEY_SPEED, KEY_FOR, KEY_JERK, KEY_METHOD, KEY_OFFSET, KEY_TORQUE, KEY_POSITION, KEY_CSV,
        KEY_SVG, KEY_HTML, KEY_NPY, KEY_RESET };
@@ -430,15 +431,12 @@ static void complete_homing(motion_options_t *options, const cm1e_homing_config_
 }
 
 /* A trace that cannot be written is an error before anything moves. */
-static bool files_can_be_written(const motion_options_t *options)
+static int check_traces(const motion_options_t *options)
 {
-    cm1e_diag_t diag = {0};
-    for (int i = 0; i < TRACE_FILES; i++)
-        if (options->files[i] && cm1e_scheduler_check_path(options->files[i], &diag) != CM1E_OK) {
-            fail(&diag);
-            return false;
-        }
-    return true;
+    int status = EXIT_OK;
+    for (int i = 0; i < TRACE_FILES && status == EXIT_OK; i++)
+        status = check_trace_file(trace_files[i].option, options->files[i]);
+    return status;
 }
 
 static bool has_homing_method(const motion_options_t *options)
@@ -453,8 +451,9 @@ static bool has_homing_method(const motion_options_t *options)
 static int move_or_home(motion_options_t *options, const char *what)
 {
     static cm1e_bus_config_t config;
-    if (!files_can_be_written(options))
-        return EXIT_FAILED;
+    const int files = check_traces(options);
+    if (files != EXIT_OK)
+        return files;
     static motion_program_t p;
     const int loaded = load_one_axis(&options->common, options->axis_word, &config, &p.axis_number);
     if (loaded != EXIT_OK)

@@ -8,6 +8,7 @@
 #include "command.h"
 #include "service_notify.h"
 #include "st_loaded.h"
+#include "trace_file.h"
 
 enum { KEY_VIRTUAL_TIME = 0x800, KEY_CSV, KEY_SVG, KEY_HTML, KEY_LOOPS, KEY_RETAIN, KEY_COLD, KEY_VARIABLE, FILES = 3, SAMPLES = 120000, PATHS = 64 };
 
@@ -106,9 +107,16 @@ static void tell_end(const cm1e_scheduler_t *scheduler, const run_options_t *opt
     cm1e_scheduler_statistics_t statistics;
     cm1e_scheduler_statistics(scheduler, &statistics);
     const double ran = (double)cm1e_scheduler_time_ns(scheduler) * 1e-9;
+    const bool over = options->seconds > 0 && ran >= options->seconds;
+    if (options->common.json) {
+        print_json(json_pack("{s:o, s:b, s:f, s:I, s:I, s:s, s:s}", "program", text_as_json(options->program), "simulated",
+                             is_simulated(config), "seconds", ran, "cycles", (json_int_t)statistics.cycles, "overruns",
+                             (json_int_t)statistics.overruns, "end", over ? "time" : "signal", "error", ""));
+        return;
+    }
     printf("%s%s ran for %.3f s, %llu cycles, %llu overruns; %s. The axes are disabled.\n", options->program,
            simulated_mark(config), ran, (unsigned long long)statistics.cycles, (unsigned long long)statistics.overruns,
-           options->seconds > 0 && ran >= options->seconds ? "its time was over" : "a signal ended it");
+           over ? "its time was over" : "a signal ended it");
 }
 
 static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const run_options_t *options,
@@ -166,6 +174,8 @@ static int begin_program(st_loaded_t *loaded, const run_options_t *options)
     const size_t length = strlen(options->program), ending = length > 3 && strcmp(options->program + length - 3, ".so") == 0;
     snprintf(path, sizeof path, "%.*s.retain", (int)(length - 3 * ending), options->program);
     const cm1e_error_t error = st_begin(loaded, options->retain ? options->retain : path, options->cold, &diag);
+    if (error == CM1E_OK && options->retain && loaded->program->retained.count == 0)
+        complain("--retain: the program has no RETAIN variables, and %s is not used", options->retain);
     if (error == CM1E_OK)
         return EXIT_OK;
     fail(&diag);
@@ -221,12 +231,15 @@ int command_run(int argc, char **argv)
     run_options_t options = {0};
     st_loaded_t loaded;
     cm1e_diag_t diag = {0};
+    static const char *const names[FILES] = {"--csv", "--svg", "--html"};
     if (parse_options(&argp_run, argc, argv, &options))
         return EXIT_WRONG_USE;
-    for (int i = 0; i < FILES; i++)
-        if (options.files[i] && cm1e_scheduler_check_path(options.files[i], &diag) != CM1E_OK)
-            return fail(&diag);
-    const int status = st_load(&loaded, options.program, &diag) == CM1E_OK ? run_on_network(&loaded, &options)
+    int status = EXIT_OK;
+    for (int i = 0; i < FILES && status == EXIT_OK; i++)
+        status = check_trace_file(names[i], options.files[i]);
+    if (status != EXIT_OK)
+        return status;
+    status = st_load(&loaded, options.program, &diag) == CM1E_OK ? run_on_network(&loaded, &options)
                                                                            : fail(&diag);
     st_unload(&loaded);
     return status;

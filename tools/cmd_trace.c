@@ -11,6 +11,7 @@
 #include "cm1e/plot.h"
 #include "plot/plot_files.h"
 #include "recording.h"
+#include "trace_file.h"
 #include "trace_server.h"
 
 enum { KEY_FOR = 0x600, KEY_EVERY, KEY_OBJECT, KEY_VARIABLE, KEY_TRIGGER, KEY_BEFORE, KEY_LIST, KEY_CSV, KEY_SVG, KEY_HTML, KEY_NPY,
@@ -398,14 +399,15 @@ int command_trace(int argc, char **argv)
     static cm1e_bus_config_t config;
     static trace_options_t options;
     cm1e_control_t *control;
-    cm1e_diag_t diag = {0};
     options = (trace_options_t){.every = 1};
     if (parse_options(&argp_trace, argc, argv, &options))
         return EXIT_WRONG_USE;
-    for (int i = 0; i < TRACE_FILES; i++)
-        if (options.files[i] && cm1e_scheduler_check_path(options.files[i], &diag) != CM1E_OK)
-            return fail(&diag);
-    const int status = attach_if_running(&options.common, &config, &control);
+    int status = EXIT_OK;
+    for (int i = 0; i < TRACE_FILES && status == EXIT_OK; i++)
+        status = check_trace_file(trace_files[i].option, options.files[i]);
+    if (status != EXIT_OK)
+        return status;
+    status = attach_if_running(&options.common, &config, &control);
     if (status != EXIT_OK)
         return status;
     return control ? trace_other(&options, control) : trace_alone(&options, &config);

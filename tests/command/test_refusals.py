@@ -78,6 +78,14 @@ NAMES = [
     (["sim", "-i", ""], "-i"), (["scan", "-b", ""], "-b"), (["scan", "-i", "sim", "--pcap", ""], "--pcap"),
     (MOVE + ["--by", "1", "--csv", ""], "--csv"), (MOVE + ["--by", "1", "--svg", ""], "--svg"),
     (MOVE + ["--by", "1", "--svg", "x", "--csv", "x"], "same file"),
+    (MOVE + ["--by", "1", "--csv", "-"], "--csv: standard output has the result"),
+    (HOME + ["--svg", "-"], "--svg: standard output has the result"),
+    (["run", "x.so", "-i", "sim", "--html", "-"], "--html: standard output has the result"),
+    (["trace", "-i", "sim", "--for", "1", "--npy", "-"], "--npy: standard output has the result"),
+    (["generate", "esi", "--json", "-o", "x"], "leave out --json"),
+    (["generate", "esi", "--mapping", "csp", "--mapping", "csv", "-o", "x"], "--mapping is there twice"),
+    (["generate", "esi", "--device", "cm1-e", "--dc", "--device", "cm1-e", "--dc", "--layout", "mdp", "--layout", "flat",
+      "-o", "x"], "--layout is there twice"),
 ]
 
 
@@ -131,6 +139,23 @@ def check_files_before_the_move(folder):
     moved = run("cm1e", *MOVE, "--by", "0.1", "--csv", os.path.join(inside, "trace.csv"))
     with open(victim, encoding="utf-8") as file:
         expect(moved.returncode == 0 and file.read() == "of somebody else", "a link named FILE.part", moved)
+
+
+def check_json_of_failures(folder):
+    """What fails without a result says so as JSON too; a result that tells of its error is the only document."""
+    path = os.path.join(folder, "firmware.bin")
+    with open(path, "wb") as file:
+        file.write(bytes(2000))
+    for words, status, says in ((["scan", "-i", "nosuch"], FAILED, 'no network interface "nosuch"'),
+                                (["params", "get", "-i", "sim", "1", "K4711"], WRONG_USE, 'no parameter "K4711"'),
+                                (["run", "nosuch.so", "-i", "sim"], FAILED, "cannot be loaded"),
+                                (["firmware", "update", path, "-i", "sim", "-p", "1"], FAILED,
+                                 "nothing was written: this needs --yes")):
+        failed = run("cm1e", *words, "--json")
+        expect(failed.returncode == status and says in json.loads(failed.stdout)["error"] and says in failed.stderr,
+               f"JSON of a failure of {words[0]}", failed)
+    moved = run("cm1e", "move", "-i", "sim", "--by", "1", "-v", "1000", "--json")
+    expect(moved.returncode == FAILED and json.loads(moved.stdout)["done"] is False, "one document", moved)
 
 
 def limit_files(size):
@@ -223,6 +248,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         check_wrong_words(folder)
         check_files_before_the_move(folder)
+        check_json_of_failures(folder)
         check_lost_frames(folder)
         check_axes_in_status(folder)
     check_what_is_told()

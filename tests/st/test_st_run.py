@@ -5,6 +5,7 @@ which the axes come to rest.
 test_st_run.py BIN-DIRECTORY SOURCE-DIRECTORY
 """
 import csv
+import json
 import os
 import subprocess
 import sys
@@ -182,6 +183,19 @@ def retained(expected, *words, program="retain.so", status=0, says=""):
             faults.append(f"RETAIN {words}: parts is {found}; expected {expected}")
 
 
+def check_end():
+    """The end of a run as JSON, and a file of RETAIN variables that there are none of."""
+    program = build("ends", "PROGRAM Main VAR n : INT; t : ARRAY[1..9] OF INT; END_VAR n := n + 1; t[n] := 1; END_PROGRAM")
+    told = run(program, "-s", "0.005", "--json", "--retain", "none.retain", says="no RETAIN variables, and none.retain is not used")
+    row = json.loads(told.stdout)
+    if (row["end"], row["error"], row["simulated"], row["overruns"]) != ("time", "", True, 0) or row["cycles"] < 5 or \
+            os.path.exists("none.retain"):
+        faults.append(f"the end as JSON: {row}")
+    told = run(program, "-s", "1", "--json", status=1, says="the index 10 is outside 1..9")
+    if "the index 10 is outside 1..9" not in json.loads(told.stdout)["error"]:
+        faults.append(f"a fault as JSON: {told.stdout}")
+
+
 def check_retain():
     build("retain", RETAIN)
     for expected in (6, 7, 8):
@@ -234,6 +248,7 @@ with tempfile.TemporaryDirectory() as folder:
     check_names()
     check_without_bus_file()
     check_located()
+    check_end()
     check_retain()
     check_twincat()
 if faults:
