@@ -9,6 +9,7 @@
 
 #include "attach.h"
 #include "axis_run.h"
+#include "config/io_types.h"
 #include "device/device.h"
 #include "io_rows.h"
 
@@ -88,9 +89,10 @@ static void find_writes(io_program_t *p)
         else if ((p->refused = is_driven(p, &write->io, use)))
             complain("%s belongs to an axis (%s): its blocks write it, MC_WriteDigitalOutput or MC_DigitalCamSwitch",
                      name, use);
-        else if ((p->refused = cm1e_io_set_real(&write->io, write->value) != CM1E_OK))
-            complain("%s cannot be written with %s: it is an input, belongs to a motor (MC_WriteDigitalOutput), or "
-                     "its type has no such value", name, write->equals + 1);
+        else if ((p->refused = cm1e_io_set_real(&write->io, write->value) != CM1E_OK)) {
+            cm1e_io_say_refusal(&write->io, write->value, use, sizeof use);
+            complain("%s cannot be written with %s: %s", name, write->equals + 1, use);
+        }
     }
     for (int i = 0; i < p->options.write_count && p->refused; i++) /* none of them is sent */
         cm1e_io_set_real(&p->options.writes[i].io, 0);

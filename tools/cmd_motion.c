@@ -326,7 +326,7 @@ static double deviation_of(const motion_program_t *p)
     if (p->started_ns == 0 || (p->options->kind == MOTION_SPEED && !p->done))
         return NAN;
     const double deviation = p->after.actual_position - target_of(p), turn = p->options->modulo_range;
-    return turn > 0 ? remainder(deviation, turn) : deviation;
+    return (turn > 0 ? remainder(deviation, turn) : deviation) + 0.0; /* no negative zero */
 }
 
 static json_t *report_as_json(const motion_program_t *p, const char *text)

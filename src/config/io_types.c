@@ -1,6 +1,7 @@
 #include "config/io_types.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <strings.h>
 
 const cm1e_io_type_row_t cm1e_io_types[CM1E_IO_TYPE_COUNT] = {
@@ -30,6 +31,23 @@ bool cm1e_io_fits(cm1e_io_type_t type, unsigned bits, double value)
         return isfinite(value);
     const double least = row->is_signed ? -ldexp(1, (int)bits - 1) : 0, end = ldexp(1, (int)bits - row->is_signed);
     return type != CM1E_IO_BYTES && value == floor(value) && value >= least && value < end;
+}
+
+void cm1e_io_say_refusal(const cm1e_io_t *io, double value, char *text, size_t size)
+{
+    const cm1e_io_type_row_t *row = &cm1e_io_types[io->type];
+    const int magnitude = io->bits - row->is_signed;
+    if (!io->output)
+        snprintf(text, size, "it is an input");
+    else if (io->type == CM1E_IO_BYTES)
+        snprintf(text, size, "it has %u bits, which are no number", io->bits);
+    else if (cm1e_io_fits((cm1e_io_type_t)io->type, io->bits, value))
+        snprintf(text, size, "it belongs to a motor (MC_WriteDigitalOutput)");
+    else if (io->bits == 1)
+        snprintf(text, size, "its type has no such value: %s, 0 or 1", row->name);
+    else
+        snprintf(text, size, "its type has no such value: %s, %.15g ... %.15g", row->name,
+                 row->is_signed ? -ldexp(1, magnitude) : 0, ldexp(1, magnitude) - 1);
 }
 
 unsigned cm1e_io_type_of_name(const char *name)

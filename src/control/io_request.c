@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "config/io_types.h"
 #include "control/show.h"
 
 enum { KEEP_LEAST_MS = 100, KEEP_MOST_MS = 5000, KEEP_MS = 1000, USE_TEXT = 256 };
@@ -165,15 +166,19 @@ const char *cm1e_output_take(output_order_t *order, view_t *view, const json_t *
     return text;
 }
 
-const char *cm1e_output_refusal(const output_order_t *order)
+const char *cm1e_output_refusal(const output_order_t *order, char *text, size_t size)
 {
+    char why[160];
     static const char *const texts[] = {
         [OUTPUT_DONE] = NULL,
-        [OUTPUT_BY_BUS] = "It is an input, belongs to a motor (MC_WriteDigitalOutput), or its type has no such value.",
         [OUTPUT_HELD] = "Another connection holds this output, or a part of it.",
         [OUTPUT_OFFLINE] = "The slave of this output does not take part in the cycle.",
         [OUTPUT_FULL] = "64 outputs are held already.",
         [OUTPUT_ENDING] = "The program ends.",
     };
-    return texts[order->refusal];
+    if (order->refusal != OUTPUT_BY_BUS)
+        return texts[order->refusal];
+    cm1e_io_say_refusal(&order->io, order->value, why, sizeof why);
+    snprintf(text, size, "It cannot be written with %.15g: %s.", order->value, why);
+    return text;
 }

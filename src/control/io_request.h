@@ -52,7 +52,7 @@ void cm1e_io_list_free(io_list_t *list);
 /** Takes the members of a message; NULL: the order is complete. Else `text`, which says what is wrong, with `error`. */
 const char *cm1e_output_take(output_order_t *order, view_t *view, const json_t *message, cm1e_error_t *error,
                              char *text, size_t size);
-/** Why it was refused by the cycle; NULL: it was not. */
-const char *cm1e_output_refusal(const output_order_t *order);
+/** Why it was refused by the cycle, perhaps in `text`; NULL: it was not. */
+const char *cm1e_output_refusal(const output_order_t *order, char *text, size_t size);
 
 #endif

@@ -316,7 +316,8 @@ static json_t *output(control_request_t *request, control_run_t *run, const json
 
 static json_t *end_output(const control_request_t *request)
 {
-    const char *refusal = cm1e_output_refusal(&request->output);
+    char text[240];
+    const char *refusal = cm1e_output_refusal(&request->output, text, sizeof text);
     return refusal ? cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, refusal)
                    : accept(request, "output", json_null());
 }

@@ -118,6 +118,12 @@ def check_in_position(folder):
         expect(stopped.returncode == FAILED and not stopped.stdout and words in stopped.stderr, words, stopped)
     text = run("cm1e", "move", "-b", bus, "--by", "0.5")
     expect("to 0.5, deviation 0 (simulated)\n" in text.stdout, "as text", text)
+    turn = os.path.join(folder, "turn.yaml")
+    with open(turn, "w", encoding="utf-8") as file:
+        file.write("bus: {interface: sim, virtual_time: true}\naxes: [{name: T, unit: {modulo_range: 360, "
+                   "units_per_revolution: 360}, sim: {no_stops: true}}]\n")
+    text = run("cm1e", "move", "-b", turn, "--by", "360", "-v", "1000")
+    expect("to 0, deviation 0 (simulated)\n" in text.stdout, "a whole turn", text)
     home = run("cm1e", "home", "-b", bus, "--method", "-3", "--position", "7.5", "--json")
     expect(home.returncode == 0 and abs(json.loads(home.stdout)["deviation"]) <= 0.0002001, "home", home)
 

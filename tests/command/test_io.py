@@ -75,8 +75,8 @@ def main(folder):
     expect(values == {"Inputs": "5", "Outputs": "5"}, "an output, and the input that is wired to it", written)
     for words, said in ((["2.outputs=5"], "--allow-output"), (["2.outputs=5", "--allow-output"], "--for"),
                         (["2.outputs"], "NAME=VALUE"), (["2.outputs=x", "--allow-output", "--for", "1"], "x"),
-                        (["2.outputs=256", "--allow-output", "--for", "1"], "cannot be written"),
-                        (["2.inputs=1", "--allow-output", "--for", "1"], "cannot be written"),
+                        (["2.outputs=256", "--allow-output", "--for", "1"], "with 256: its type has no such value: USINT, 0 ... 255"),
+                        (["2.inputs=1", "--allow-output", "--for", "1"], "cannot be written with 1: it is an input"),
                         (["1.0x6040:00=15", "--allow-output", "--for", "1"], "belongs to a motor"),
                         (["2.nothing=1", "--allow-output", "--for", "1"], "no signal \"nothing\"")):
         told = io(*words)
@@ -135,7 +135,8 @@ def attached(folder):
         written = io("2.outputs=5", "--allow-output", "--for", "1.5", "--json")
         expect(values(written) == {(2, "Inputs"): "5", (2, "Outputs"): "5"}, "written, and renewed", written)
         expect(values(io("--json")) == {(2, "Inputs"): "0", (2, "Outputs"): "0"}, "0 when it has ended", io("--json"))
-        for words, said in ((["2.outputs=256"], "no such value"), (["2.inputs=1"], "an input"),
+        for words, said in ((["2.outputs=256"], "with 256: its type has no such value: USINT, 0 ... 255."),
+                            (["2.inputs=1"], "with 1: it is an input."),
                             (["1.0x6040:00=15"], "belongs to a motor"), (["2.nothing=1"], "no signal \"nothing\""),
                             (["2.outputs=3", "9.outputs=1"], "names no slave")):
             told = io(*words, "--allow-output", "--for", "1")
