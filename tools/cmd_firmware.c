@@ -161,18 +161,26 @@ static bool confirmed(const firmware_options_t *options, uint16_t position, cons
 
 /* ---- during ----------------------------------------------------------------------------------------------------- */
 
+typedef struct update_progress {
+    int shown;    /* percent */
+    size_t taken; /* bytes that the slave has acknowledged */
+} update_progress_t;
+
 static bool show_progress(void *context, size_t taken, size_t size)
 {
-    int *shown = context;
+    update_progress_t *progress = context;
     const int percent = (int)(100 * taken / size);
-    if (percent != *shown && at_a_terminal())
+    if (percent != progress->shown && at_a_terminal())
         fprintf(stderr, "\r\033[K%zu of %zu bytes, %d %%%s", taken, size, percent, taken == size ? "\n" : "");
-    *shown = percent;
+    *progress = (update_progress_t){percent, taken};
     return !interrupted;
 }
 
-static void explain_recovery(cm1e_firmware_state_t state, uint16_t position)
+static void explain_recovery(cm1e_firmware_state_t state, size_t taken, uint16_t position)
 {
+    if (state == CM1E_FIRMWARE_PARTLY && taken == 0)
+        complain("slave %u was about to take the file, and has acknowledged no part of it: it does not say whether it has "
+                 "erased its firmware before", position);
     if (state == CM1E_FIRMWARE_UNTOUCHED)
         complain("nothing was written: slave %u keeps the firmware that it had", position);
     else if (state == CM1E_FIRMWARE_PARTLY)
@@ -218,14 +226,14 @@ static int update(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const firmwa
     char before[sizeof ((cm1e_slave_info_t *)0)->software_version], after[sizeof before] = "";
     const char *slash = strrchr(options->file, '/');
     uint16_t position;
-    int shown = -1;
+    update_progress_t progress = {.shown = -1};
     cm1e_diag_t diag = {0};
     cm1e_firmware_state_t state;
     const cm1e_firmware_file_t file = {
         .name = options->name ? options->name : slash ? slash + 1 : options->file, .bytes = image->bytes,
         .size = image->size,
         .options = {.password = (uint32_t)options->password, .answer_ns = (int64_t)(options->timeout_s * 1e9),
-                    .progress = show_progress, .context = &shown}};
+                    .progress = show_progress, .context = &progress}};
     if (!is_at_rest(bus, config))
         return EXIT_FAILED;
     int status = find(bus, config, options, &position, before, sizeof before);
@@ -238,13 +246,13 @@ static int update(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const firmwa
     signal(SIGTERM, on_interrupt);
     if (cm1e_firmware_update(bus, position, &file, &state, &diag) != CM1E_OK) {
         status = fail(&diag);
-        explain_recovery(state, position);
+        explain_recovery(state, progress.taken, position);
         return status;
     }
     if (read_back(bus, position, after, sizeof after, &diag))
         return tell(options, position, before, after);
     status = fail(&diag);
-    explain_recovery(state, position);
+    explain_recovery(state, progress.taken, position);
     return status;
 }
 

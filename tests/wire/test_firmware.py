@@ -119,7 +119,7 @@ def broken_off(bench):
     bench.bad(half, "did not answer for 0.3 s", True, "--timeout", "0.3")
     recovered()
     console("firmware 1 busy 1000000")
-    bench.bad(half, "busy", True, "--timeout", "0.3")
+    bench.bad(half, "has acknowledged no part of it: it does not say whether it has erased", True, "--timeout", "0.3")
     recovered("1.3.5")  # nothing of the file had come
     for what in (lambda process: console("power-cycle 1 300"), lambda process: process.send_signal(signal.SIGINT)):
         process = subprocess.Popen(bench.segment.command(bench.command(half)), stdout=subprocess.PIPE,
