@@ -1,7 +1,8 @@
 """Axes and groups: their values, and motions that wait, or can be awaited."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Generator, NamedTuple, Optional
+import contextlib
+from typing import TYPE_CHECKING, Any, Generator, Iterator, NamedTuple, Optional
 
 from . import blocks as fb
 from . import errors
@@ -227,12 +228,24 @@ class Axis(AXIS_REF):
     def read_parameter(self, number: int) -> float:
         """MC_ReadParameter, by its number in docs/FUNCTION-BLOCKS.md."""
         block = fb.MC_ReadParameter(Axis=self, Enable=True, ParameterNumber=number)
-        self.bus._once(block)
+        with self._named_parameter(number):
+            self.bus._once(block)
         return block.Value
 
     def write_parameter(self, number: int, value: float) -> None:
         """MC_WriteParameter."""
-        self.execute(fb.MC_WriteParameter(Axis=self, ParameterNumber=number, Value=value))
+        with self._named_parameter(number):
+            self.execute(fb.MC_WriteParameter(Axis=self, ParameterNumber=number, Value=value))
+
+    @contextlib.contextmanager
+    def _named_parameter(self, number: int) -> Iterator[None]:
+        try:
+            yield
+        except errors.AxisError as error:
+            if error.code != lib.CM1E_ERROR_AXIS_PARAMETER:
+                raise
+            raise errors.AxisError(f"{self.name} has no parameter {number}; docs/FUNCTION-BLOCKS.md lists those that can be "
+                                   "read and written.", error.code) from None
 
 
 class Group(AXES_GROUP_REF):

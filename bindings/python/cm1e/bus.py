@@ -371,11 +371,15 @@ class Bus(Devices):
 
     def advance(self, seconds: float) -> None:
         """Virtual time: lets so much time pass."""
-        self.cycles(max(0, round(seconds / self.cycle_time)))
+        if not 0 <= seconds < float("inf"):
+            raise ValueError(f"{seconds} s cannot pass; expected a time from 0 on")
+        self.cycles(round(seconds / self.cycle_time))
 
     def cycles(self, count: int) -> None:
         """Virtual time: lets so many cycles pass."""
         self._check_started()
+        if count < 0:
+            raise ValueError(f"{count} cycles cannot pass; expected a number from 0 on")
         if not self.virtual_time:
             raise errors.StateError("Only virtual time can be advanced; in real time use sleep().", lib.CM1E_ERROR_STATE)
         self._check_may_wait()

@@ -23,12 +23,19 @@ def _assign(data: Any, where: str, values: Mapping[str, object]) -> None:
             _assign(getattr(data, name), f"{where}.{name}", value)
         elif isinstance(value, str):
             raw = value.encode()
-            if fields[name].type.kind != "array" or len(raw) >= fields[name].type.length:
-                raise errors.ConfigError(f"{where}.{name}: {value!r} is too long, or no string belongs there.",
+            if fields[name].type.kind != "array":
+                raise errors.ConfigError(f"{where}.{name}: {value!r} is a text; a number belongs there.",
+                                         lib.CM1E_ERROR_CONFIG)
+            if len(raw) >= fields[name].type.length:
+                raise errors.ConfigError(f"{where}.{name}: {value!r} is too long: at most {fields[name].type.length - 1} bytes.",
                                          lib.CM1E_ERROR_CONFIG)
             setattr(data, name, raw)
         else:
-            setattr(data, name, value)
+            try:
+                setattr(data, name, value)
+            except (TypeError, OverflowError) as error:
+                raise errors.ConfigError(f"{where}.{name}: {value!r} does not belong there: {error}.",
+                                         lib.CM1E_ERROR_CONFIG) from None
 
 
 class Config:
@@ -40,9 +47,12 @@ class Config:
     @classmethod
     def of_axes(cls, axes: Axes) -> Config:
         """So many axes with defaults, or axes with these members of cm1e_axis_config_t."""
+        if isinstance(axes, int) and axes < 0:
+            raise errors.ConfigError(f"{axes} axes: a bus has 0 or more.", lib.CM1E_ERROR_CONFIG)
         listed: Sequence[Mapping[str, object]] = [{} for _ in range(axes)] if isinstance(axes, int) else list(axes)
         data = ffi.new("cm1e_bus_config_t *")
-        errors.check(lib.cm1e_bus_config_init(data, ffi.NULL, len(listed)))
+        code = lib.cm1e_bus_config_init(data, ffi.NULL, len(listed))
+        errors.check(code, None, f"{len(listed)} axes are more than a bus has." if code == lib.CM1E_ERROR_CONFIG else "")
         result = cls(data)
         for index, values in enumerate(listed):
             _assign(data.axes[index], f"axes[{index}]", values)

@@ -64,15 +64,32 @@ class Devices:
         """The bytes of an object, as on the wire; `size` is the most that it can have."""
         data = ffi.new("uint8_t[]", size)
         sdo = ffi.new("cm1e_sdo_t *", {"position": slave, "index": index, "subindex": subindex, "data": data, "size": size})
-        self._ask(lib.cm1e_py_sdo, sdo)
+        self._transfer(sdo)
         return bytes(ffi.buffer(data, sdo.size))
 
     def sdo_write(self, slave: int, index: int, subindex: int, value: bytes) -> None:
         """Writes an object; `value` is little endian, of the size of the object."""
-        data = ffi.new("uint8_t[]", value)
+        if not isinstance(value, (bytes, bytearray)):
+            raise TypeError(f"the value is {value!r}; expected bytes, little endian, of the size of the object, as from "
+                            "(5).to_bytes(4, 'little')")
+        data = ffi.new("uint8_t[]", bytes(value))
         sdo = ffi.new("cm1e_sdo_t *", {"position": slave, "index": index, "subindex": subindex, "data": data,
                                        "size": len(value), "write": True})
-        self._ask(lib.cm1e_py_sdo, sdo)
+        self._transfer(sdo)
+
+    def _transfer(self, sdo: Any) -> None:
+        try:
+            self._ask(lib.cm1e_py_sdo, sdo)
+        except errors.Error as error:
+            if error.code == lib.CM1E_ERROR_INVALID_ARGUMENT:
+                self._check_slave(sdo.position, self.slaves)
+            raise
+
+    @staticmethod
+    def _check_slave(slave: int, slaves: list[Slave]) -> None:
+        if not 1 <= slave <= len(slaves):
+            raise errors.NotFoundError(f"There is no slave {slave}; the network has {len(slaves)}.",
+                                       lib.CM1E_ERROR_NOT_FOUND) from None
 
     # ---- files -------------------------------------------------------------------------------------------------------
 
@@ -130,8 +147,7 @@ class Devices:
             raise errors.ConfigError(f"No firmware has {len(data)} bytes." if name else "The file needs a name.",
                                      lib.CM1E_ERROR_CONFIG)
         slaves = self.scan()
-        if not 1 <= slave <= len(slaves):
-            raise errors.NotFoundError(f"There is no slave {slave}; the network has {len(slaves)}.", lib.CM1E_ERROR_NOT_FOUND)
+        self._check_slave(slave, slaves)
         if slaves[slave - 1].kind != "cm1-e" and not other_device:
             raise errors.ConfigError(f"Slave {slave} is no CM1-E. other_device=True allows it.", lib.CM1E_ERROR_CONFIG)
         for motor in slaves:

@@ -303,6 +303,20 @@ def test_error_at_close_does_not_hide_the_first_one(monkeypatch):
     assert "closed with an error" in error.value.__notes__[0]
 
 
+def test_wrong_arguments_are_told(bus):
+    for wrong, kind, said in ((lambda: bus.advance(-1), ValueError, "-1 s cannot pass"),
+                              (lambda: bus.advance(float("nan")), ValueError, "cannot pass"),
+                              (lambda: bus.cycles(-1), ValueError, "-1 cycles cannot pass"),
+                              (lambda: bus.sdo_read(9, 0x6064), cm1e.NotFoundError, "There is no slave 9; the network has 2."),
+                              (lambda: bus.sdo_write(0, 0x6081, 0, b"1234"), cm1e.NotFoundError, "There is no slave 0"),
+                              (lambda: bus.sdo_write(1, 0x6064, 0, 5), TypeError, "the value is 5; expected bytes"),
+                              (lambda: bus["X"].read_parameter(999), cm1e.AxisError, "X has no parameter 999;"),
+                              (lambda: bus["X"].write_parameter(999, 1), cm1e.AxisError, "X has no parameter 999;")):
+        with pytest.raises(kind) as error:
+            wrong()
+        assert said in str(error.value)
+
+
 def disabled_at_end(pcap):
     """The logical process data of the last frames: controlword 0x0F in the run, and none with it at the end."""
     at, words = 24, []

@@ -27,7 +27,11 @@ def test_bus_of_a_text():
 
 
 @pytest.mark.parametrize("options, said", [
-    ({"axes": 600}, "configuration"), ({"axes": [{"name": "X" * 40}]}, "too long"),
+    ({"axes": 600}, "600 axes are more"), ({"axes": -3}, "-3 axes: a bus has 0 or more"),
+    ({"axes": [{"name": "X" * 40}]}, "too long: at most 31 bytes"),
+    ({"axes": [{"counts_per_unit": "a"}]}, "counts_per_unit: 'a' is a text; a number belongs there"),
+    ({"axes": [{"address": 70000}]}, "address: 70000 does not belong there"),
+    ({"axes": [{"address": None}]}, "address: None does not belong there"),
     ({"axes": [{"homing": {"methd": 1}}]}, "there is no methd"), ({"control": "all"}, "observe"),
     ({"realtime": "no"}, "try"), ({"cycle_time": 0.003}, "cycle"), ({"axes": 1, "trace": -1}, "trace"),
     ({"interface": "x" * 80}, "too long"), ({"interface": "none0"}, "none0")])
