@@ -349,11 +349,20 @@ ST_UNUSED static inline STRING_254 st_text_of_real(double value, int digits)
     snprintf(result.text, sizeof result.text, "%.*g", digits, value);
     return result;
 }
+/** The literal of the value, as TwinCAT and CODESYS write it: T#1h2m3s4ms, without units of which there are 0. */
 ST_UNUSED static inline STRING_254 st_text_of_time(int64_t value)
 {
+    static const struct { const char *name; uint64_t ns; } units[] = {
+        {"d", UINT64_C(86400000000000)}, {"h", UINT64_C(3600000000000)}, {"m", UINT64_C(60000000000)}, {"s", 1000000000},
+        {"ms", 1000000}, {"us", 1000}, {"ns", 1},
+    };
     STRING_254 result;
-    const long long us = (long long)((value < 0 ? 0 - (uint64_t)value : (uint64_t)value) / 1000);
-    snprintf(result.text, sizeof result.text, "T#%s%lld.%03lldms", value < 0 ? "-" : "", us / 1000, us % 1000);
+    uint64_t left = value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+    int used = snprintf(result.text, sizeof result.text, "T#%s%s", value < 0 ? "-" : "", left ? "" : "0ms");
+    for (size_t i = 0; left > 0; left %= units[i++].ns)
+        if (left >= units[i].ns)
+            used += snprintf(result.text + used, sizeof result.text - (size_t)used, "%llu%s",
+                             (unsigned long long)(left / units[i].ns), units[i].name);
     return result;
 }
 ST_UNUSED static inline STRING_254 st_text_of_bool(BOOL value)
