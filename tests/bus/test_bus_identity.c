@@ -1,5 +1,6 @@
 /* A wrong, missing, doubled or extra slave is an error that names what was expected and what was found. */
 #include "bus_support.h"
+#include "sim/esc_chip.h"
 
 typedef enum kind { END = 0, MOTOR, IO } kind_t;
 /** What hangs on the wire ... */
@@ -39,6 +40,8 @@ static const identity_case_t cases[] = {
     {"by alias, in any order", {{MOTOR, 30}, {MOTOR, 10}, {MOTOR, 20}}, 3, {{ALIAS, 10}, {ALIAS, 20}, {ALIAS, 30}},
      CM1E_OK, {2, 3, 1}, {0}},
     {"by ID, in any order", {{MOTOR, 0, 0xFE}, {MOTOR, 0, 1}}, 2, {{ID, 1}, {ID, 0xFE}}, CM1E_OK, {2, 1}, {0}},
+    {"aliases that are the stations of others", {{MOTOR, 0x1002}, {MOTOR, 0x1003}, {MOTOR, 0x1001}}, 3,
+     {{ALIAS, 0x1001}, {ALIAS, 0x1002}, {ALIAS, 0x1003}}, CM1E_OK, {3, 1, 2}, {0}},
     {"mixed", {{MOTOR}, {MOTOR, 7}, {MOTOR, 0, 9}}, 3, {{ID, 9}, {ALIAS, 7}, {POSITION, 1}}, CM1E_OK, {3, 2, 1}, {0}},
     {"another device in between", {{MOTOR}, {IO}, {MOTOR}}, 2, {{POSITION, 1}, {POSITION, 3}}, CM1E_OK, {1, 3}, {0}},
     {"whatever is there", {{MOTOR}, {IO}, {MOTOR, 5}}, 0, {{0}}, CM1E_OK, {0}, {0}},
@@ -89,6 +92,7 @@ static cm1e_bus_t *bus_of_case(const identity_case_t *c)
         cm1e_sim_slave_t *slave =
             device->kind == IO ? cm1e_sim_io_module_create()
                                : cm1e_sim_cm1e_create(&motor, tested_order(), device->alias, device->switches);
+        slave->memory[ESC_DL_ALIAS] = 1; /* an earlier master let it answer at its alias */
         ck_assert_int_eq(cm1e_sim_segment_add(segment, slave), CM1E_OK);
     }
     cm1e_bus_config_free(&config);

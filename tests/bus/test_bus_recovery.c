@@ -63,6 +63,8 @@ START_TEST(power_cycled_slave_comes_back)
     ck_assert_uint_gt(n, 0);
     ck_assert_uint_lt(n, 1500);
     check_all_run(bus);
+    for (uint32_t position = 1; position <= 3; position++) /* its processor may read its EEPROM, as after the start */
+        ck_assert_uint_eq(cm1e_sim_segment_slave(segment_of(bus), position)->memory[ESC_SII_CONFIG] & 1, 1);
     cm1e_bus_close(bus);
 }
 END_TEST

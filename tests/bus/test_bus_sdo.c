@@ -153,6 +153,25 @@ START_TEST(wrong_arguments_are_refused_at_once)
 }
 END_TEST
 
+START_TEST(a_request_that_was_refused_can_be_used_again)
+{
+    uint8_t data[4];
+    cm1e_bus_t *bus = start_bus();
+    cm1e_sdo_t sdo = {.position = 1, .index = 0x5FFF, .data = data, .size = sizeof data};
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    finish_sdo(bus, &sdo);
+    ck_assert_int_eq(sdo.error, CM1E_ERROR_SDO_ABORT);
+    ck_assert_uint_ne(sdo.abort_code, 0);
+    sdo.index = 0x1000;
+    sdo.size = sizeof data;
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    finish_sdo(bus, &sdo);
+    ck_assert_int_eq(sdo.error, CM1E_OK);
+    ck_assert_uint_eq(sdo.abort_code, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(complete_access_reads_what_the_single_reads_read)
 {
     static const uint16_t indices[] = {0x1018, 0x1C00, 0x1C12, 0x1600, 0x1A00, 0x60F6};
@@ -438,6 +457,7 @@ int main(void)
     tcase_add_test(tests, every_entry_is_written_or_refused_by_its_access);
     tcase_add_test(tests, abort_names_the_slave_the_object_and_the_reason);
     tcase_add_test(tests, wrong_arguments_are_refused_at_once);
+    tcase_add_test(tests, a_request_that_was_refused_can_be_used_again);
     tcase_add_test(tests, complete_access_reads_what_the_single_reads_read);
     tcase_add_test(tests, transfers_ride_in_the_cycle_without_disturbing_it);
     tcase_add_test(tests, queue_takes_64_and_refuses_the_65th);
