@@ -271,12 +271,22 @@ START_TEST(motor_that_returns_its_outputs_is_not_believed_even_if_the_working_co
 }
 END_TEST
 
+enum { OTHER_NUMBER, NUMBER_OF_THE_CYCLE_BEFORE, OTHER_OUTPUT, WRONG_FRAMES };
+
 /** Behind the first motor is the output of the module, which its input does not cover; at the end is the number. */
 static cm1e_tap_verdict_t change_bytes(void *context, cm1e_tap_frame_t *frame)
 {
-    const bool number = *(const int *)context == 0;
-    if (frame->direction == CM1E_TAP_RECEIVED && is_process_data(frame))
-        frame->bytes[DATA + (number ? data_bytes(frame) - 4 : MOTOR_BYTES)] ^= 0x10;
+    static uint32_t before;
+    const int what = *(const int *)context;
+    if (frame->direction != CM1E_TAP_RECEIVED || !is_process_data(frame))
+        return CM1E_TAP_PASS;
+    uint8_t *number = frame->bytes + DATA + data_bytes(frame) - 4;
+    const uint32_t own = cm1e_get_u32(number);
+    if (what == OTHER_OUTPUT)
+        frame->bytes[DATA + MOTOR_BYTES] ^= 0x10;
+    else
+        cm1e_put_u32(number, what == OTHER_NUMBER ? own ^ 0x10 : before);
+    before = own;
     return CM1E_TAP_PASS;
 }
 
@@ -366,7 +376,7 @@ int main(void)
     tcase_add_loop_test(tests, inputs_take_the_place_of_outputs, 0, 3);
     tcase_add_loop_test(tests, lost_frame_of_several_concerns_its_slaves, 0, 3);
     tcase_add_test(tests, motor_that_returns_its_outputs_is_not_believed_even_if_the_working_counter_is_right);
-    tcase_add_loop_test(tests, frame_that_was_not_sent_so_is_not_taken, 0, 2);
+    tcase_add_loop_test(tests, frame_that_was_not_sent_so_is_not_taken, 0, WRONG_FRAMES);
     tcase_add_loop_test(tests, slave_that_comes_back_has_its_places_again, 1, SLAVES + 1);
     tcase_add_test(tests, clocks_ride_beside_overlapped_process_data);
     tcase_add_test(tests, slave_that_does_not_know_lrw_is_refused);
