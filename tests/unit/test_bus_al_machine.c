@@ -87,7 +87,9 @@ static void test_an_old_error_is_acknowledged_with_the_bit_and_without_it_in_tur
 
 static void test_at_the_deadline_it_matters_whether_the_slave_ever_answered(void)
 {
-    for (int answers = 0; answers < 2; answers++) {
+    for (int n = 0; n < 3; n++) { /* what was answered to an earlier request does not matter */
+        const bool answers = n == 1;
+        time_ns = 0;
         cm1e_al_request(&machine, CM1E_AL_OP, DEADLINE_NS);
         if (answers)
             answered(REG_AL_STATUS, CM1E_AL_SAFE_OP, 0);
