@@ -157,6 +157,25 @@ START_TEST(the_next_cycle_after_a_pause_is_in_the_raster_of_the_ones_before)
 }
 END_TEST
 
+/** Between the configuration and the first cycle, too, as long as a program works with the slaves. */
+START_TEST(clocks_stay_together_while_a_configured_bus_is_asked)
+{
+    describe(1000);
+    cm1e_bus_t *bus = open_drifting(0, 100, -100);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK &&
+                  cm1e_bus_configure(bus, &diag) == CM1E_OK, "%s", diag.text);
+    const int64_t end_ns = now_of(bus) + 2000 * INT64_C(1000000);
+    while (now_of(bus) < end_ns) {
+        uint8_t type[4];
+        size_t size = sizeof type;
+        ck_assert_int_eq(cm1e_sdo_read(bus, CM1E, 0x1000, 0, type, &size, &diag), CM1E_OK);
+        ck_assert_msg(fabs(ahead_ns(bus, DRIVE)) < CM1E_CLOCK_TOLERANCE_NS && fabs(ahead_ns(bus, LAST)) < CM1E_CLOCK_TOLERANCE_NS,
+                      "%g and %g ns", ahead_ns(bus, DRIVE), ahead_ns(bus, LAST));
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(a_drive_whose_clock_runs_away_leaves_operational)
 {
     describe(1000);
@@ -307,6 +326,7 @@ int main(void)
     tcase_add_test(lost, a_clock_that_was_off_is_set_with_the_delay_of_its_cables);
     tcase_add_test(lost, a_drive_without_process_data_at_its_pulses_leaves_operational);
     tcase_add_test(lost, the_next_cycle_after_a_pause_is_in_the_raster_of_the_ones_before);
+    tcase_add_test(lost, clocks_stay_together_while_a_configured_bus_is_asked);
     tcase_add_test(lost, a_drive_whose_clock_runs_away_leaves_operational);
     tcase_add_test(lost, the_clock_of_a_drive_that_was_off_is_set_again);
     tcase_add_test(lost, lost_frames_do_not_disturb_the_clocks);
