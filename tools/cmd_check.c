@@ -15,7 +15,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     check_options_t *options = state->input;
     switch (key) {
-    case 'j': options->json = true; return 0;
+    case 'j': options->json = want_json(); return 0;
     case ARGP_KEY_ARG:
     case ARGP_KEY_END: return parse_file_word(key, arg, state, &options->file);
     default: return ARGP_ERR_UNKNOWN;

@@ -21,7 +21,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     explain_options_t *options = state->input;
     const size_t length = strlen(options->query);
     switch (key) {
-    case KEY_JSON: options->json = true; return 0;
+    case KEY_JSON: options->json = want_json(); return 0;
     case ARGP_KEY_ARG:
         if (length + strlen(arg) + 2 > sizeof options->query)
             argp_error(state, "the question is too long: at most %d characters", QUERY_BYTES - 2);

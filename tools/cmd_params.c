@@ -333,12 +333,13 @@ static bool suits(const params_head_t *head, const void *context)
         return false;
     }
     const bool same = strcmp(head->firmware, own.firmware) == 0;
+    const char *firmware = head->firmware[0] ? head->firmware : "(not stated)";
     if (!same && options->action == DIFF)
-        complain("%s is of firmware %s; %s has %s: units may differ (UG 10.1)", options->words[0], head->firmware,
+        complain("%s is of firmware %s; %s has %s: units may differ (UG 10.1)", options->words[0], firmware,
                  motor->label, own.firmware);
     else if (!same && !options->other_firmware) {
         complain("%s is of firmware %s; %s has %s. Units may differ between firmwares (UG 10.1): look at the "
-                 "values, then use --other-firmware", options->words[0], head->firmware, motor->label, own.firmware);
+                 "values, then use --other-firmware", options->words[0], firmware, motor->label, own.firmware);
         return false;
     }
     return true;

@@ -34,7 +34,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "the file needs a name; it is empty");
         *(key == 'o' ? &options->output : &options->c_file) = arg;
         return 0;
-    case KEY_JSON: options->json = true; return 0;
+    case KEY_JSON: options->json = want_json(); return 0;
     case KEY_VARIABLES:
         return parse_number(arg, "the number of variables", 0, 10000000, &options->variables) ? 0 : EINVAL;
     case ARGP_KEY_ARG:

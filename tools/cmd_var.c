@@ -199,8 +199,11 @@ static bool change(const var_options_t *options, cm1e_control_t *control, int i,
 static bool change_all(const var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
 {
     bool good = true;
-    for (int i = 0; i < options->count && good; i++)
+    for (int i = 0; i < options->count && good; i++) {
         good = change(options, control, i, diag);
+        if (!good && i > 0 && strcmp(options->word, "set") == 0)
+            complain("the first %d of %d variables were written, the others were not", i, options->count);
+    }
     return good;
 }
 

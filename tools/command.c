@@ -27,6 +27,8 @@ static const struct argp_option common_option_table[] = {
     {0},
 };
 
+bool want_json(void) { return json_wanted = true; }
+
 static error_t parse_common(int key, char *arg, struct argp_state *state)
 {
     common_options_t *options = state->input;
@@ -39,7 +41,7 @@ static error_t parse_common(int key, char *arg, struct argp_state *state)
     case 'i': options->interface_name = arg; return 0;
     case 'b': options->bus_file = arg; return 0;
     case KEY_NETWORK: options->network = arg; return 0;
-    case KEY_JSON: options->json = json_wanted = true; return 0;
+    case KEY_JSON: options->json = want_json(); return 0;
     case KEY_PCAP: options->pcap_file = arg; return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -56,8 +58,10 @@ void complain(const char *format, ...)
     fputc('\n', stderr);
     va_end(args);
     size_t used = strlen(complaints);
-    if (used > 0 && used + 1 < sizeof complaints)
-        complaints[used++] = '\n';
+    if (used > 0)
+        used += (size_t)snprintf(complaints + used, sizeof complaints - used, "; ");
+    if (used >= sizeof complaints)
+        return;
     va_start(args, format);
     vsnprintf(complaints + used, sizeof complaints - used, format, args);
     va_end(args);

@@ -171,6 +171,10 @@ json_t *text_as_json(const char *text);
 /** Prints a JSON value on standard output with a final newline, and releases it. */
 void print_json(json_t *value);
 
+/** For a parser of options: JSON is wanted. Returns true. A command that then fails without a result prints its
+ *  complaints as JSON. */
+bool want_json(void);
+
 /** What was complained of as {"error": text}, where --json is given and nothing has been printed as JSON. */
 void print_json_of_failure(void);
 

@@ -76,7 +76,8 @@ bool read_input(const char *path, input_t *input)
 
 bool may_overwrite(const char *path, bool force)
 {
-    const bool good = force || strcmp(path, "-") == 0 || access(path, F_OK) != 0;
+    struct stat found;
+    const bool good = force || strcmp(path, "-") == 0 || lstat(path, &found) != 0 || S_ISCHR(found.st_mode);
     if (!good)
         complain("%s exists; --force writes over it", path);
     return good;

@@ -30,14 +30,26 @@ static void escaped(char c, char quote, char text[4])
         snprintf(text, 4, "%c", c);
 }
 
+/** The control characters U+0080 to U+009F, in UTF-8. */
+static bool is_c1(const char *text)
+{
+    const unsigned char *bytes = (const unsigned char *)text;
+    return bytes[0] == 0xC2 && bytes[1] >= 0x80 && bytes[1] < 0xA0;
+}
+
+/** What there is no room for becomes "...". */
 static void quoted(const char *from, char quote, char *text, size_t size)
 {
+    enum { END_BYTES = 10 }; /* the last character, the dots and the quote */
     size_t used = (size_t)snprintf(text, size, "%c", quote);
-    for (char one[4]; *from && used + sizeof one + 1 < size; from++) {
-        escaped(*from, quote, one);
+    for (char one[4]; *from && (used + END_BYTES < size || ((unsigned char)*from & 0xC0) == 0x80); from++) {
+        if (is_c1(from))
+            snprintf(one, sizeof one, "$%02X", (unsigned char)*++from);
+        else
+            escaped(*from, quote, one);
         used += (size_t)snprintf(text + used, size - used, "%s", one);
     }
-    snprintf(text + used, size - used, "%c", quote);
+    snprintf(text + used, size - used, "%s%c", *from ? "..." : "", quote);
 }
 
 void variable_text(const json_t *row, char *text, size_t size)
@@ -133,7 +145,18 @@ static const char *right_words(const json_t *row)
                                                      : "a number, as 12, 1.5 or 16#FF";
 }
 
-json_t *variable_value(const json_t *row, const char *word)
+/** A number for a REAL: one of more than 63 bits is no text of digits there. Takes `value` over. */
+static json_t *as_real(json_t *value)
+{
+    const char *digits = json_string_value(value);
+    if (!digits)
+        return value;
+    json_t *real = json_real(strtod(digits, NULL));
+    json_decref(value);
+    return real;
+}
+
+static json_t *any_value(const json_t *row, const char *word)
 {
     const bool enumeration = json_object_get(row, "enumerator"), text = strstr(text_of(row, "type"), "STRING");
     json_t *value = text ? text_within(word) : plain_number(word);
@@ -141,10 +164,17 @@ json_t *variable_value(const json_t *row, const char *word)
         value = json_boolean(strcasecmp(word, "TRUE") == 0);
     if (!value && enumeration && !(word[0] >= '0' && word[0] <= '9'))
         value = *word ? json_string(word) : NULL;
-    if (!value && !text && strchr(word, '#'))
+    if (!value && !text && (strchr(word, '#') || (strchr(word, '_') && !enumeration)))
         return literal_value(row, word);
     if (!value)
         complain("%s (%s): \"%s\" is no value: expected %s", text_of(row, "name"), text_of(row, "declared"), word,
                  right_words(row));
     return value;
+}
+
+json_t *variable_value(const json_t *row, const char *word)
+{
+    const char *type = text_of(row, "type");
+    json_t *value = any_value(row, word);
+    return strcmp(type, "REAL") == 0 || strcmp(type, "LREAL") == 0 ? as_real(value) : value;
 }

@@ -18,7 +18,7 @@ typedef struct cm1e_firmware_file {
 /** What became of the slave. */
 typedef enum cm1e_firmware_state {
     CM1E_FIRMWARE_UNTOUCHED = 0, /**< nothing was written: it keeps the firmware that it had */
-    CM1E_FIRMWARE_PARTLY,        /**< it has taken a part of the file: its firmware may be incomplete */
+    CM1E_FIRMWARE_PARTLY,        /**< a part of the file was sent to it: its firmware may be incomplete */
     CM1E_FIRMWARE_WRITTEN,       /**< it has taken all of the file */
 } cm1e_firmware_state_t;
 

@@ -341,6 +341,8 @@ static json_t *variables(control_request_t *request, control_run_t *run, const j
         return wrong(request, "\"name\" is expected to be the name of a variable, or to be left out.");
     if (!cm1e_take_number(message, "from", 0, UINT32_MAX, 0, &from))
         return wrong(request, "\"from\" is expected to be the number of a variable, 0 = first, or to be left out.");
+    if (name && json_is_true(json_object_get(message, "forced")))
+        return wrong(request, "\"name\" and \"forced\" exclude each other.");
     if (name && !cm1e_variable_named(&run->view, name, &row, text, sizeof text))
         return cm1e_request_refuse(request->id, CM1E_ERROR_NOT_FOUND, 0, text);
     if (!cm1e_variables_begin(&request->variable, &run->view, name ? row : (uint32_t)from, name ? 1 : VARIABLES_OF_REPLY,

@@ -131,6 +131,8 @@ bool cm1e_variable_number_take(const variable_t *variable, const json_t *value, 
         return take_enumerator(variable, value, out);
     if (json_is_string(value))
         return variable->type == CM1E_TRACE_ULINT && !variable->ranged && encode_digits(json_string_value(value), out);
+    if (json_is_boolean(value) && variable->type != CM1E_TRACE_BOOL)
+        return false;
     if (!(json_is_number(value) || json_is_boolean(value)) || !encode(value, variable->type, out))
         return false;
     const json_int_t whole = json_integer_value(value);

@@ -149,11 +149,20 @@ def check_json_of_failures(folder):
     for words, status, says in ((["scan", "-i", "nosuch"], FAILED, 'no network interface "nosuch"'),
                                 (["params", "get", "-i", "sim", "1", "K4711"], WRONG_USE, 'no parameter "K4711"'),
                                 (["run", "nosuch.so", "-i", "sim"], FAILED, "cannot be loaded"),
+                                (["st", "check", "nosuch.st"], FAILED, "nosuch.st"),
+                                (["check", "nosuch.esi"], FAILED, "nosuch.esi"),
                                 (["firmware", "update", path, "-i", "sim", "-p", "1"], FAILED,
                                  "nothing was written: this needs --yes")):
         failed = run("cm1e", *words, "--json")
-        expect(failed.returncode == status and says in json.loads(failed.stdout)["error"] and says in failed.stderr,
+        expect(failed.stdout != "" and failed.returncode == status and says in json.loads(failed.stdout)["error"] and says in failed.stderr,
                f"JSON of a failure of {words[0]}", failed)
+    values = os.path.join(folder, "values.yaml")
+    run("cm1e", "params", "backup", "-i", "sim", "1", values)
+    with open(values, "a", encoding="utf-8") as file:
+        file.write("  K4711: 1\n  K4712: 1\n")
+    both = run("cm1e", "params", "diff", "-i", "sim", "1", values, "--json")
+    two = json.loads(both.stdout)["error"]
+    expect('"K4711"; ' in two and '; there is no parameter "K4712"' in two and "?" not in two, "two complaints", both)
     moved = run("cm1e", "move", "-i", "sim", "--by", "1", "-v", "1000", "--json")
     expect(moved.returncode == FAILED and json.loads(moved.stdout)["done"] is False, "one document", moved)
 

@@ -124,7 +124,9 @@ def check_literals(run):
                         ("day=D#1970-01-02", 24 * hour), ("mask=16#FF", 255), ("mask=2#1010_0001", 161), ("mask=0x10", 16),
                         ("mask=18446744073709551615", str(2**64 - 1)), ("mask=16#8000_0000_0000_0000", str(2**63)),
                         ("n=010", 10), ("n=INT#7", 7), ("n=-16", -16), ("small=-128", -128), ("copy=BOOL#1", 1),
-                        ("goal=LREAL#0.5", 0.5), ("goal=16#10", 16), ("mode=FAST", 3), ("mode=off", -1), ("mode=E_Mode.SLOW", 2),
+                        ("goal=LREAL#0.5", 0.5), ("goal=16#10", 16), ("goal=10000000000000000000", 1e19),
+                        ("goal=-9223372036854775809", -2.0**63), ("goal=16#FFFF_FFFF_FFFF_FFFF", 2.0**64), ("goal=1_000", 1000),
+                        ("mask=1_0", 10), ("mode=FAST", 3), ("mode=off", -1), ("mode=E_Mode.SLOW", 2),
                         ("mode=E_Mode#FAST", 3), ("mode=2", 2), ("mode=16#3", 3), ("part=100", 100)):
         name = word.split("=")[0]
         run.var("set", "--allow-write", f"Main.{word}")
@@ -141,7 +143,8 @@ def check_literals(run):
                                 ("n=T#5ms", "Main.n is INT, and \"T#5ms\" is TIME", 2), ("wait=16#FF", "is a number", 2),
                                 ("mask=16#1_0000_0000_0000_0000", "at most 64 bits", 2), ("mask=-1", "takes 0 ...", 1),
                                 ("n=3#12", "a base is 2, 8 or 16", 2), ("n=REAL#1.5x", "is no number", 2),
-                                ("text=long", "a text in quotes", 2), ("copy=yes", "expected TRUE or FALSE", 2)):
+                                ("text=long", "a text in quotes", 2), ("small=TRUE", "takes -128 ... 127.", 1),
+                                ("wait=TRUE", "takes -9223372036854775808", 1), ("mask=BOOL#1", "takes 0 ...", 1), ("copy=yes", "expected TRUE or FALSE", 2)):
         run.var("set", "--allow-write", f"Main.{wrong}", status=status, says=says)
     window = run.force("Main.mode=OFF", "Main.wait=T#3s")
     expect(run.value("mode") == -1 and run.value("wait") == 3 * 10**9, "literals are forced", run.rows()["Main.mode"])
@@ -167,6 +170,8 @@ def check_exact(run):
             reply = program.ask("variable", name="Main.most", value=wrong)
             expect(not reply["ok"], f"a ULINT is not {wrong}", reply)
         program.ask("variable", name="Main.r", value=0.3)
+        both = program.ask("variables", name="Main.r", forced=True)
+        expect(not both["ok"] and "exclude each other" in both["error"]["text"], "name and forced", both)
     log = subprocess.run([CM1E, "log", "--attach", str(run.process.pid)], capture_output=True, text=True, timeout=30).stdout
     for text in ("Main.least was set to 9007199254740993 from", "Main.least was set to -9223372036854775807 from",
                  "Main.most was set to 18446744073709551615 from", "Main.most was set to 12345678901 from",
@@ -185,6 +190,11 @@ def check_all(run):
     run.var("set", "--allow-write", "Main.text='grün'")
     expect(run.value("text") == "grün", "a text is written", run.rows()["Main.text"])
     expect(rows["Main.wide"]["value"] == "\u00e4" and rows["Main.wide"]["type"] == "WSTRING", "a wide text", rows["Main.wide"])
+    run.var("set", "--allow-write", "Main.text='\u009b3m'")
+    expect("'$9B3m'" in run.var("get", "Main.text"), "no control character reaches the terminal", run.var("get", "Main.text"))
+    run.var("set", "--allow-write", "Main.text='grün'")
+    run.var("set", "--allow-write", "Main.small=7", "Main.n=99999", status=1, says="the first 1 of 2 variables were written")
+    expect(run.value("small") == 7, "what was written before a refusal", run.value("small"))
     run.var("set", "--allow-write", "Main.wide='\U0001f600\u20ac'")
     expect(run.value("wide") == "\U0001f600\u20ac", "a wide text is written", run.rows()["Main.wide"])
     for wrong, says, status in (("Main.text='longer!'", "Main.text (STRING[6]) takes a text of at most 6 bytes.", 1),
