@@ -115,7 +115,8 @@ CM1E_API size_t cm1e_io_bytes(const cm1e_io_t *io, void *bytes, size_t size);
 CM1E_API cm1e_error_t cm1e_io_set_bool(const cm1e_io_t *io, bool value);
 /** As cm1e_io_set_bool(), a whole number. @rt cycle */
 CM1E_API cm1e_error_t cm1e_io_set_integer(const cm1e_io_t *io, int64_t value);
-/** As cm1e_io_set_bool(), any number; a signal that is no REAL or LREAL takes whole numbers only. @rt cycle */
+/** As cm1e_io_set_bool(), any finite number that its type has; a signal that is no REAL or LREAL takes
+ *  whole numbers only. @rt cycle */
 CM1E_API cm1e_error_t cm1e_io_set_real(const cm1e_io_t *io, double value);
 /** Sets the bits of an output of any type; `size`: as many bytes as it has. @rt cycle */
 CM1E_API cm1e_error_t cm1e_io_set_bytes(const cm1e_io_t *io, const void *bytes, size_t size);

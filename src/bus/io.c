@@ -369,6 +369,8 @@ cm1e_error_t cm1e_io_set_real(const cm1e_io_t *io, double value)
         const bool fits = value == floor(value) && fabs(value) < 0x1p63;
         return fits ? cm1e_io_set_integer(io, (int64_t)value) : CM1E_ERROR_INVALID_ARGUMENT;
     }
+    if (!cm1e_io_fits((cm1e_io_type_t)io->type, io->bits, value))
+        return CM1E_ERROR_INVALID_ARGUMENT;
     const float narrow = (float)value;
     uint32_t word;
     uint64_t wide;

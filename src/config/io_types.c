@@ -1,5 +1,6 @@
 #include "config/io_types.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <strings.h>
@@ -28,7 +29,7 @@ bool cm1e_io_fits(cm1e_io_type_t type, unsigned bits, double value)
 {
     const cm1e_io_type_row_t *row = &cm1e_io_types[type];
     if (row->is_real)
-        return isfinite(value);
+        return isfinite(value) && (type != CM1E_IO_REAL || fabs(value) <= (double)FLT_MAX);
     const double least = row->is_signed ? -ldexp(1, (int)bits - 1) : 0, end = ldexp(1, (int)bits - row->is_signed);
     return type != CM1E_IO_BYTES && value == floor(value) && value >= least && value < end;
 }
@@ -43,6 +44,9 @@ void cm1e_io_say_refusal(const cm1e_io_t *io, double value, char *text, size_t s
         snprintf(text, size, "it has %u bits, which are no number", io->bits);
     else if (cm1e_io_fits((cm1e_io_type_t)io->type, io->bits, value))
         snprintf(text, size, "it belongs to a motor (MC_WriteDigitalOutput)");
+    else if (row->is_real)
+        snprintf(text, size, "its type has no such value: %s, a finite number%s", row->name,
+                 io->type == CM1E_IO_REAL ? " up to 3.402823e+38" : "");
     else if (io->bits == 1)
         snprintf(text, size, "its type has no such value: %s, 0 or 1", row->name);
     else

@@ -1,10 +1,12 @@
 /* Signals in a process image, without a network: any type, any number of bits, at any place. */
+#include <math.h>
 #include <string.h>
 
 #include "bus/bus_internal.h"
 #include "bus/io_guest.h"
 #include "chance.h"
 #include "cm1e/io.h"
+#include "config/io_types.h"
 #include "unity.h"
 
 static cm1e_diag_t diag;
@@ -73,6 +75,31 @@ static void test_every_value_of_every_type_lies_anywhere(void)
     }
 }
 
+/** What would be infinite, or no number, on the wire is refused, in words, and the output stays. */
+static void test_a_real_output_takes_finite_numbers_of_its_type(void)
+{
+    static const struct {
+        cm1e_io_type_t type;
+        double value;
+        bool right;
+    } rows[] = {
+        {CM1E_IO_REAL, 3.4028234663852886e38, true}, {CM1E_IO_REAL, -3.4028234663852886e38, true}, {CM1E_IO_REAL, 1e-50, true},
+        {CM1E_IO_REAL, 3.5e38, false}, {CM1E_IO_REAL, -1e39, false}, {CM1E_IO_REAL, NAN, false}, {CM1E_IO_REAL, INFINITY, false},
+        {CM1E_IO_LREAL, 1e300, true}, {CM1E_IO_LREAL, NAN, false}, {CM1E_IO_LREAL, -INFINITY, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        char text[120];
+        cm1e_io_t io;
+        const uint16_t bits = rows[i].type == CM1E_IO_REAL ? 32 : 64;
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_io_find_bits(&bus, 1, true, 8, bits, rows[i].type, &io, &diag));
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_io_set_real(&io, 0.5));
+        TEST_ASSERT_EQUAL_INT(rows[i].right ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_real(&io, rows[i].value));
+        TEST_ASSERT_EQUAL_INT(!rows[i].right, cm1e_io_real(&io) == 0.5);
+        cm1e_io_say_refusal(&io, rows[i].value, text, sizeof text);
+        TEST_ASSERT_EQUAL_INT(!rows[i].right, strstr(text, "a finite number") != NULL);
+    }
+}
+
 static void test_bytes_of_any_length_lie_anywhere(void)
 {
     for (int n = 0; n < TRIES / 10; n++) {
@@ -101,6 +128,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_what_is_found_is_claimed_bit_by_bit);
     RUN_TEST(test_every_value_of_every_type_lies_anywhere);
+    RUN_TEST(test_a_real_output_takes_finite_numbers_of_its_type);
     RUN_TEST(test_bytes_of_any_length_lie_anywhere);
     return UNITY_END();
 }
