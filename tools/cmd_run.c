@@ -109,9 +109,9 @@ static void tell_end(const cm1e_scheduler_t *scheduler, const run_options_t *opt
     const double ran = (double)cm1e_scheduler_time_ns(scheduler) * 1e-9;
     const bool over = options->seconds > 0 && ran >= options->seconds;
     if (options->common.json) {
-        print_json(json_pack("{s:o, s:b, s:f, s:I, s:I, s:s, s:s}", "program", text_as_json(options->program), "simulated",
+        print_json(json_pack("{s:o, s:b, s:f, s:I, s:I, s:s}", "program", text_as_json(options->program), "simulated",
                              is_simulated(config), "seconds", ran, "cycles", (json_int_t)statistics.cycles, "overruns",
-                             (json_int_t)statistics.overruns, "end", over ? "time" : "signal", "error", ""));
+                             (json_int_t)statistics.overruns, "end", over ? "time" : "signal"));
         return;
     }
     printf("%s%s ran for %.3f s, %llu cycles, %llu overruns; %s. The axes are disabled.\n", options->program,
@@ -239,8 +239,7 @@ int command_run(int argc, char **argv)
         status = check_trace_file(names[i], options.files[i]);
     if (status != EXIT_OK)
         return status;
-    status = st_load(&loaded, options.program, &diag) == CM1E_OK ? run_on_network(&loaded, &options)
-                                                                           : fail(&diag);
+    status = st_load(&loaded, options.program, &diag) == CM1E_OK ? run_on_network(&loaded, &options) : fail(&diag);
     st_unload(&loaded);
     return status;
 }

@@ -126,6 +126,22 @@ static void test_padding_is_no_signal_and_keeps_its_place(void)
     TEST_ASSERT_EQUAL_UINT32(16, sii.bits[1][3]);
 }
 
+/* Behind the bytes of a sync manager begin those of the next one. */
+static void test_inputs_of_two_sync_managers_are_one_behind_the_other(void)
+{
+    static const uint8_t managers[32] = {[16] = 0x00, 0x11, 2, 0, 0x20, 0, 1, 4, 0x00, 0x12, 1, 0, 0x20, 0, 1, 4};
+    static const uint8_t tx[32] = {0x00, 0x1A, 1, 2, 0, 0, 0, 0, 0x00, 0x60, 1, 0, 0, 11, 0, 0,
+                                   0x01, 0x1A, 1, 3, 0, 0, 0, 0, 0x01, 0x60, 1, 0, 5, 8, 0, 0};
+    put_category(41, managers, 16);
+    put_category(50, tx, 16);
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_NOT_NULL(sii.signals);
+    TEST_ASSERT_EQUAL_UINT32(2, sii.signals->count);
+    TEST_ASSERT_EQUAL_UINT32(0, sii.signals->at[0].bit_offset);
+    TEST_ASSERT_EQUAL_UINT16(11, sii.signals->at[0].bits);
+    TEST_ASSERT_EQUAL_UINT32(16, sii.signals->at[1].bit_offset);
+}
+
 static void test_read_that_fails_anywhere_is_reported(void)
 {
     put_good_categories();
@@ -298,6 +314,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_good_image_gives_everything);
     RUN_TEST(test_padding_is_no_signal_and_keeps_its_place);
+    RUN_TEST(test_inputs_of_two_sync_managers_are_one_behind_the_other);
     RUN_TEST(test_read_that_fails_anywhere_is_reported);
     RUN_TEST(test_no_categories_at_all_is_a_slave_without_name);
     RUN_TEST(test_names_are_cut_and_cleaned);
