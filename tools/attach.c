@@ -138,6 +138,8 @@ const cm1e_bus_config_t *axes_to_name(const common_options_t *options, const cm1
         connect_network(options, config, &control, &diag) != CM1E_OK)
         return config;
     json_t *axes = ask_program(control, json_pack("{s:s}", "request", "axes"), "axes", &diag);
+    if (!axes)
+        (void)fail(&diag);
     for (size_t i = 0; i < json_array_size(axes); i++)
         add_axis(&named, json_array_get(axes, i));
     json_decref(axes);
