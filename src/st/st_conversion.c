@@ -25,10 +25,16 @@ static const char *plain_name(const type_t *type)
     return type->kind != T_STRING ? type->name : type->wide ? "WSTRING" : "STRING";
 }
 
+/** An enumerator that is known is judged by its value, as a literal is, where a number or bits are wanted. */
+static bool is_constant_enumerator(const expr_t *expr, type_kind_t to)
+{
+    return expr->type->kind == T_ENUM && cm1e_st_is_fixed(expr) && to > T_BOOL && to <= T_LREAL;
+}
+
 static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *what)
 {
     const type_kind_t from = expr->type->kind, to = type->kind;
-    if (from == T_ANY_INT && to <= T_LREAL && expr->value.known)
+    if ((from == T_ANY_INT && to <= T_LREAL && expr->value.known) || is_constant_enumerator(expr, to))
         cm1e_st_report(st, expr->place, "%s%lld is not a value of %s, which \"%s\" is", expr->value.huge ? "(as LINT) " : "",
                        (long long)expr->value.integer, type->name, what);
     else if (from == T_NONE)
@@ -41,7 +47,7 @@ static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *wh
         cm1e_st_report(st, expr->place, "\"%s\" is %s, and takes its enumerators, for instance %s%s", what,
                        cm1e_st_type_name(type), type->members ? type->members->name : "none", cm1e_st_is_integer(from) ?
                        "; an integer may be none of them: choose one by CASE" : "");
-    else if (from == T_ENUM && cm1e_st_is_integer(to))
+    else if (from == T_ENUM && to > T_BOOL && to <= T_LREAL)
         cm1e_st_report(st, expr->place, "\"%s\" is %s, and %s has values of %s, which it may not have: TO_%s(...) converts "
                        "them", what, cm1e_st_type_name(type), cm1e_st_type_name(expr->type), expr->type->element->name,
                        plain_name(type));
@@ -59,7 +65,7 @@ static expr_t *give_type(st_t *st, expr_t *expr, type_t *type)
     expr_t *node = cm1e_st_node(st, E_LITERAL, expr->place, NULL, NULL);
     node->type = type;
     node->value = expr->value;
-    if (cm1e_st_is_floating(type->kind) && expr->type->kind == T_ANY_INT)
+    if (cm1e_st_is_floating(type->kind) && !cm1e_st_is_floating(expr->type->kind))
         node->value = (constant_t){.known = true, .real = expr->value.huge ? (double)(uint64_t)expr->value.integer
                                                                           : (double)expr->value.integer};
     if (type->kind == T_REAL)
@@ -74,6 +80,8 @@ static bool takes_literal(const expr_t *expr, const type_t *type)
         return false;
     if (from == T_ANY_REAL)
         return cm1e_st_is_floating(to) && cm1e_st_fits(to, &expr->value);
+    if (is_constant_enumerator(expr, to))
+        return cm1e_st_fits(to, &expr->value);
     return from == T_ANY_INT && (cm1e_st_is_floating(to) || to == T_ANY_INT || cm1e_st_fits(to, &expr->value));
 }
 

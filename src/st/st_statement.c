@@ -59,7 +59,8 @@ static void call(st_t *st, stmt_t *stmt)
     cm1e_st_report(st, stmt->place, "the result of this function is not used");
 }
 
-static void label(st_t *st, arg_t *arg, type_t *type)
+/** A label of CASE takes the type of the selector; an integer beside an enumeration that of its base. */
+static void label(st_t *st, arg_t *arg, type_t *selector)
 {
     expr_t **ends[2] = {&arg->value, NULL};
     if (arg->value->kind == E_REPEAT) {
@@ -68,7 +69,8 @@ static void label(st_t *st, arg_t *arg, type_t *type)
     }
     for (int i = 0; i < 2 && ends[i]; i++) {
         cm1e_st_expression(st, *ends[i]);
-        *ends[i] = cm1e_st_coerce(st, *ends[i], type, "the selector");
+        const bool by_base = selector->kind == T_ENUM && cm1e_st_is_integer((*ends[i])->type->kind);
+        *ends[i] = cm1e_st_coerce(st, *ends[i], by_base ? selector->element : selector, "the selector");
         if ((*ends[i])->type->kind != T_WRONG && !(*ends[i])->value.known)
             cm1e_st_report(st, (*ends[i])->place, "a label of CASE is known before the program runs: a number, a CONSTANT "
                            "or an enumerator");

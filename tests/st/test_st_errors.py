@@ -17,7 +17,7 @@ faults = []
 # (declarations and statements of a program, or a whole source; line:column; words)
 PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRING; l : LREAL; u : UINT; t : TON; d : DINT;\n" \
           "  a : ARRAY[1..3] OF INT; tm : TIME; c : E_Color; p : Point; q : REF_TO INT; k : LINT; x : ULINT; d1 : DATE;\nEND_VAR\n" \
-          "VAR CONSTANT\n  N : INT := 3;\nEND_VAR\n{}\nEND_PROGRAM\nTYPE E_Color : (Red, Green); Point : STRUCT x, y : INT; " \
+          "VAR CONSTANT\n  N : INT := 3;\nEND_VAR\n{}\nEND_PROGRAM\nTYPE E_Color : (Red, Green); E_Wide : (Below := -1, Far := 70000); Point : STRUCT x, y : INT; " \
           "END_STRUCT; END_TYPE\nFUNCTION Twice : INT\nVAR_INPUT v : INT; END_VAR\nTwice := 2 * v;\nEND_FUNCTION\n" \
           "FUNCTION Change : INT\nVAR_IN_OUT v : INT; END_VAR\nv := v + 1; Change := v;\nEND_FUNCTION\n"
 STATEMENTS = [
@@ -94,6 +94,8 @@ STATEMENTS = [
     ("c := i;", "9:6", ["enumerators", "for instance Red"]),
     ("c := c + 1;", "9:8", ["enumerators"]),
     ("u := c;", "9:6", ["UINT", "E_Color has values of INT", "TO_UINT(...)"]),
+    ("u := E_Wide.Below;", "9:13", ["-1 is not a value of UINT"]),
+    ("b := Green;", "9:6", ["BOOL", "this is E_Color"]),
     ("b := c = b;", "9:8", ["E_Color = BOOL"]),
     ("w := c AND w;", "9:8", ["E_Color AND WORD"]),
     ("c := Blue;", "9:6", ["Blue"]),
@@ -148,7 +150,9 @@ STATEMENTS = [
     ("CASE i OF d: ; END_CASE", "9:11", ["DINT"]),
     ("CASE i OF a[1]: ; END_CASE", "9:11", ["before the program runs"]),
     ("CASE i OF i := 1; END_CASE", "9:11", ["label"]),
-    ("CASE c OF Red: ; 1: ; END_CASE", "9:18", ["enumerators"]),
+    ("CASE c OF Red: ; 0: ; END_CASE", "9:18", ["0 has a label already"]),
+    ("CASE c OF Red: ; 40000: ; END_CASE", "9:18", ["40000 is not a value of INT", "the selector"]),
+    ("CASE c OF Red: ; 1.5: ; END_CASE", "9:18", ["enumerators"]),
     ("%QX0.0 := TRUE;", "9:1", ["name"]),
     ("i := #;", "9:6", ["#"]),
     ("i := 1; (* no end", "9:9", ["no end"]),
