@@ -48,9 +48,9 @@ static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *wh
                        cm1e_st_type_name(type), type->members ? type->members->name : "none", cm1e_st_is_integer(from) ?
                        "; an integer may be none of them: choose one by CASE" : "");
     else if (from == T_ENUM && to > T_BOOL && to <= T_LREAL)
-        cm1e_st_report(st, expr->place, "\"%s\" is %s, and %s has values of %s, which it may not have: TO_%s(...) converts "
-                       "them", what, cm1e_st_type_name(type), cm1e_st_type_name(expr->type), expr->type->element->name,
-                       plain_name(type));
+        cm1e_st_report(st, expr->place, "\"%s\" is %s, and %s has values of %s, which could be lost or change their meaning: "
+                       "TO_%s(...) converts them", what, cm1e_st_type_name(type), cm1e_st_type_name(expr->type),
+                       expr->type->element->name, plain_name(type));
     else
         cm1e_st_report(st, expr->place, "\"%s\" is %s, and this is %s", what, cm1e_st_type_name(type),
                        cm1e_st_type_name(expr->type));
@@ -136,7 +136,7 @@ static expr_t *coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
         return give_type(st, expr, type);
     if (from <= T_DT && to <= T_DT && cm1e_st_widens(from, to))
         return cm1e_st_convert_node(st, expr, type);
-    if (from == T_ENUM && cm1e_st_is_integer(to) && to != T_ANY_INT && cm1e_st_widens(expr->type->element->kind, to))
+    if (from == T_ENUM && to <= T_DT && cm1e_st_widens(expr->type->element->kind, to))
         return cm1e_st_convert_node(st, expr, type);
     if (to == T_REF && type->automatic)
         return refer(st, expr, type, what);

@@ -16,7 +16,7 @@ faults = []
 
 # (declarations and statements of a program, or a whole source; line:column; words)
 PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRING; l : LREAL; u : UINT; t : TON; d : DINT;\n" \
-          "  a : ARRAY[1..3] OF INT; tm : TIME; c : E_Color; p : Point; q : REF_TO INT; k : LINT; x : ULINT; d1 : DATE;\nEND_VAR\n" \
+          "  a : ARRAY[1..3] OF INT; tm : TIME; c : E_Color; p : Point; q : REF_TO INT; k : LINT; x : ULINT; d1 : DATE; wide : E_Wide;\nEND_VAR\n" \
           "VAR CONSTANT\n  N : INT := 3;\nEND_VAR\n{}\nEND_PROGRAM\nTYPE E_Color : (Red, Green); E_Wide : (Below := -1, Far := 70000); Point : STRUCT x, y : INT; " \
           "END_STRUCT; END_TYPE\nFUNCTION Twice : INT\nVAR_INPUT v : INT; END_VAR\nTwice := 2 * v;\nEND_FUNCTION\n" \
           "FUNCTION Change : INT\nVAR_IN_OUT v : INT; END_VAR\nv := v + 1; Change := v;\nEND_FUNCTION\n"
@@ -95,6 +95,7 @@ STATEMENTS = [
     ("c := c + 1;", "9:8", ["enumerators"]),
     ("u := c;", "9:6", ["UINT", "E_Color has values of INT", "TO_UINT(...)"]),
     ("u := E_Wide.Below;", "9:13", ["-1 is not a value of UINT"]),
+    ("r := wide;", "9:6", ["REAL", "E_Wide has values of DINT", "TO_REAL(...)"]),
     ("b := Green;", "9:6", ["BOOL", "this is E_Color"]),
     ("b := c = b;", "9:8", ["E_Color = BOOL"]),
     ("w := c AND w;", "9:8", ["E_Color AND WORD"]),

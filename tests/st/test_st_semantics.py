@@ -16,6 +16,7 @@ TYPE E_Color : (Red, Green := 5, Blue); E_Small : (One := 1, Two) USINT; E_Wide 
   Box : STRUCT low : Point; high : Point := (x := 9, y := 8); list : ARRAY[0..2] OF Point; END_STRUCT;
   Row : ARRAY[-1..1] OF INT; END_TYPE
 FUNCTION Twice : INT VAR_INPUT v : INT := 4; END_VAR Twice := 2 * v; END_FUNCTION
+FUNCTION Real : REAL VAR_INPUT v : REAL; END_VAR Real := v + 0.5; END_FUNCTION
 FUNCTION Early : INT VAR_INPUT v : INT; END_VAR
   Early := 1; IF v > 0 THEN RETURN; END_IF Early := 2; END_FUNCTION
 FUNCTION Split : BOOL VAR_INPUT v : INT; END_VAR VAR_OUTPUT tens, ones : INT; END_VAR VAR_IN_OUT calls : INT; END_VAR
@@ -99,6 +100,7 @@ CASES = [
     ("c := Green; CASE c OF 0: j := 1; 5: j := 2; END_CASE CASE c OF Red..4: i := 1; 5..6: i := 2; END_CASE", {"i": 2, "j": 2}),
     ("u := Green; CASE u OF Red: j := 1; Green: j := 2; END_CASE w := Blue; CASE w OF 0..5: i := 1; Blue: i := 2; END_CASE",
      {"u": 5, "w": 6, "i": 2, "j": 2}),
+    ("c := Green; l := c; m := Two; f := m; c := Blue; t := T#1s * Real(c);", {"l": 5.0, "f": 2.0, "t": 6500 * 10**6}),
     ("x64 := E_Wide.Far; l := Green; f := Blue;", {"x64": 70000, "l": 5.0, "f": 6.0}),
     ("CASE 3 OF KK: j := 1; 3: j := 2; END_CASE", {"j": 2}),
     ("FOR i := 1 TO 5 DO j := j + i; END_FOR", {"i": 6, "j": 15}),
