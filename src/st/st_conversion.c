@@ -20,6 +20,11 @@ expr_t *cm1e_st_convert_node(st_t *st, expr_t *expr, type_t *type)
     return node;
 }
 
+expr_t *cm1e_st_as_integer(st_t *st, expr_t *expr)
+{
+    return expr->type->kind == T_ENUM ? cm1e_st_convert_node(st, expr, expr->type->element) : expr;
+}
+
 static const char *plain_name(const type_t *type) 
 {
     return type->kind != T_STRING ? type->name : type->wide ? "WSTRING" : "STRING";

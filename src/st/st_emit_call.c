@@ -237,7 +237,7 @@ static void from_text(st_t *st, const expr_t *expr)
 
 static void to_string(st_t *st, const expr_t *expr)
 {
-    const type_kind_t from = expr->a->type->kind == T_ENUM ? expr->a->type->element->kind : expr->a->type->kind;
+    const type_kind_t from = cm1e_st_plain_kind(expr->a->type);
     if (from == T_BOOL)
         around(st, "st_text_of_bool(", expr->a, ")");
     else if (from == T_TIME)

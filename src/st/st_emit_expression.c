@@ -17,7 +17,7 @@ static void emit_real(st_t *st, double value, const char *suffix, int digits)
 
 void cm1e_st_emit_constant(st_t *st, const type_t *type, const constant_t *value)
 {
-    const type_kind_t kind = type->kind == T_ENUM ? type->element->kind : type->kind;
+    const type_kind_t kind = cm1e_st_plain_kind(type);
     const int bits = cm1e_st_bits(kind);
     if (kind == T_NULL)
         cm1e_st_put(st, "NULL");

@@ -21,7 +21,7 @@ typedef struct listing {
 
 static const char *kind_of(const type_t *type)
 {
-    switch (type->kind == T_ENUM ? type->element->kind : type->kind) {
+    switch (cm1e_st_plain_kind(type)) {
     case T_BOOL: return "BOOL";
     case T_SINT: return "SINT";
     case T_INT: return "INT";

@@ -41,7 +41,7 @@ static void convert(st_t *st, expr_t *call, type_t *from, type_t *to)
     }
     cm1e_st_expression(st, arg->value);
     expr_t *value = from ? cm1e_st_coerce(st, arg->value, from, "the argument") : cm1e_st_settle(st, arg->value);
-    const type_kind_t kind = value->type->kind == T_ENUM ? value->type->element->kind : value->type->kind;
+    const type_kind_t kind = cm1e_st_plain_kind(value->type);
     if (kind != T_WRONG && !is_possible(kind, to->kind)) {
         cm1e_st_report(st, call->place, "there is no conversion of %s to %s", cm1e_st_type_name(value->type), to->name);
         value->type = st->elementary[T_WRONG];

@@ -340,13 +340,6 @@ static void logical(st_t *st, expr_t *expr)
     cm1e_st_fold(st, expr);
 }
 
-/** An enumeration is an integer within an expression (TwinCAT, CODESYS). */
-static void as_integer(st_t *st, expr_t **operand)
-{
-    if ((*operand)->type->kind == T_ENUM)
-        *operand = cm1e_st_convert_node(st, *operand, (*operand)->type->element);
-}
-
 static bool is_comparable(const expr_t *expr, type_kind_t kind)
 {
     const type_t *a = expr->a->type, *b = expr->b->type;
@@ -374,8 +367,8 @@ static void comparison(st_t *st, expr_t *expr)
     zero_as_null(st, expr->a, expr->b);
     zero_as_null(st, expr->b, expr->a);
     if (cm1e_st_is_number(expr->a->type->kind) || cm1e_st_is_number(expr->b->type->kind)) {
-        as_integer(st, &expr->a);
-        as_integer(st, &expr->b);
+        expr->a = cm1e_st_as_integer(st, expr->a);
+        expr->b = cm1e_st_as_integer(st, expr->b);
     }
     type_kind_t kind = cm1e_st_type_for_both(expr->a, expr->b);
     if (!is_comparable(expr, kind)) {
@@ -411,8 +404,8 @@ static type_kind_t time_result(const expr_t *expr)
 
 static void arithmetic(st_t *st, expr_t *expr)
 {
-    as_integer(st, &expr->a);
-    as_integer(st, &expr->b);
+    expr->a = cm1e_st_as_integer(st, expr->a);
+    expr->b = cm1e_st_as_integer(st, expr->b);
     if (cm1e_st_is_time(expr->a->type->kind) || cm1e_st_is_time(expr->b->type->kind)) {
         const type_kind_t result = time_result(expr);
         if (result == T_NONE) {
@@ -441,7 +434,7 @@ static void arithmetic(st_t *st, expr_t *expr)
 /** The base is real, the exponent any number; all is computed in the type of the base. */
 static void power(st_t *st, expr_t *expr)
 {
-    as_integer(st, &expr->b);
+    expr->b = cm1e_st_as_integer(st, expr->b);
     const type_kind_t base = expr->a->type->kind, exponent = expr->b->type->kind;
     if (!(cm1e_st_is_floating(base) || base == T_ANY_INT) || !cm1e_st_is_number(exponent)) {
         wrong_operands(st, expr);
@@ -482,7 +475,7 @@ static void unary(st_t *st, expr_t *expr)
     cm1e_st_expression(st, expr->a);
     if (expr->a->untyped)
         expr->a = cm1e_st_settle(st, expr->a);
-    as_integer(st, &expr->a);
+    expr->a = cm1e_st_as_integer(st, expr->a);
     const type_kind_t kind = expr->a->type->kind;
     expr->type = expr->a->type;
     expr->impure = expr->a->impure;

@@ -48,6 +48,7 @@ const char *cm1e_st_type_name(const type_t *type)
     return type->shown ? type->shown : type->name ? type->name : "this type";
 }
 
+type_kind_t cm1e_st_plain_kind(const type_t *type) { return type->kind == T_ENUM ? type->element->kind : type->kind; }
 int cm1e_st_bits(type_kind_t kind) { return elementary[kind].bits; }
 static int class_of(type_kind_t kind) { return kind <= T_WRONG ? elementary[kind].class : 0; }
 bool cm1e_st_is_signed(type_kind_t kind) { return class_of(kind) == SIGNED && kind != T_ANY_INT; }

@@ -79,16 +79,24 @@ static bool refuse(st_t *st, const expr_t *call, const expr_t *arg, const char *
     return false;
 }
 
+/** An integer, also an enumeration: a number of places, or which of several. */
+static bool whole(st_t *st, expr_t *call, arg_t *arg)
+{
+    arg->value = cm1e_st_as_integer(st, cm1e_st_settle(st, arg->value));
+    const type_kind_t kind = arg->value->type->kind;
+    return (cm1e_st_is_integer(kind) && kind != T_ULINT) || refuse(st, call, arg->value, "an integer");
+}
+
 /** Gives the arguments from `first` on one type, the smallest that has all their values. */
 static bool one_type(st_t *st, expr_t *call, arg_t *first, bool (*good)(type_kind_t kind), const char *wanted)
 {
-    expr_t *sum = first->value;
     for (arg_t *arg = first; arg; arg = arg->next) {
-        const type_kind_t kind = arg->value->type->kind;
-        if (!good(kind))
+        if (!good(cm1e_st_plain_kind(arg->value->type)))
             return refuse(st, call, arg->value, wanted);
-        if (arg == first)
-            continue;
+        arg->value = cm1e_st_as_integer(st, arg->value);
+    }
+    expr_t *sum = first->value;
+    for (arg_t *arg = first->next; arg; arg = arg->next) {
         const type_kind_t both = cm1e_st_type_for_both(sum, arg->value);
         if (both == T_NONE) {
             cm1e_st_report(st, arg->value->place, "%s needs values of one type; no type has all values of %s and %s",
@@ -111,15 +119,11 @@ static bool is_any(type_kind_t kind) { return kind != T_NONE && kind <= T_ANY_RE
 
 static bool select_one(st_t *st, expr_t *call)
 {
-    expr_t **selector = &call->args->value;
-    if (call->standard->rule == R_SELECT) {
-        if ((*selector)->type->kind != T_BOOL)
-            return refuse(st, call, *selector, "a BOOL");
-    } else {
-        *selector = cm1e_st_settle(st, *selector);
-        if (!cm1e_st_is_integer((*selector)->type->kind) || (*selector)->type->kind == T_ULINT)
-            return refuse(st, call, *selector, "an integer");
-    }
+    const expr_t *selector = call->args->value;
+    if (call->standard->rule == R_MUX && !whole(st, call, call->args))
+        return false;
+    if (call->standard->rule == R_SELECT && selector->type->kind != T_BOOL)
+        return refuse(st, call, selector, "a BOOL");
     const type_t *type = call->args->next->value->type;
     bool same = type->kind == T_ENUM;
     for (const arg_t *arg = call->args->next; arg; arg = arg->next)
@@ -133,15 +137,11 @@ static bool select_one(st_t *st, expr_t *call)
 
 static bool shift(st_t *st, expr_t *call)
 {
-    expr_t **places = &call->args->next->value;
     const type_kind_t kind = call->args->value->type->kind;
-    *places = cm1e_st_settle(st, *places);
     if (!cm1e_st_is_bits(kind) || kind == T_BOOL)
         return refuse(st, call, call->args->value, "BYTE, WORD, DWORD or LWORD");
-    if (!cm1e_st_is_integer((*places)->type->kind) || (*places)->type->kind == T_ULINT)
-        return refuse(st, call, *places, "an integer");
     call->type = call->args->value->type;
-    return true;
+    return whole(st, call, call->args->next);
 }
 
 /** ADD(a, b, c) is a + b + c. */
@@ -161,12 +161,10 @@ static bool strings(st_t *st, expr_t *call)
     const char *at = types + 1;
     const bool wide = call->args->value->type->wide;
     for (arg_t *arg = call->args; arg; arg = arg->next) {
-        arg->value = cm1e_st_settle(st, arg->value);
-        const type_kind_t kind = arg->value->type->kind;
-        if (*at == 'S' && (kind != T_STRING || arg->value->type->wide != wide))
+        if (*at == 'S' && (arg->value->type->kind != T_STRING || arg->value->type->wide != wide))
             return refuse(st, call, arg->value, wide ? "a WSTRING" : "a STRING");
-        if (*at == 'I' && (!cm1e_st_is_integer(kind) || kind == T_ULINT))
-            return refuse(st, call, arg->value, "an integer");
+        if (*at == 'I' && !whole(st, call, arg))
+            return false;
         at += at[1] != '\0';
     }
     call->type = types[0] == 'S' ? cm1e_st_text_type(st, ST_STRING_BYTES, wide) : st->elementary[T_INT];

@@ -91,6 +91,8 @@ bool cm1e_st_is_unsigned(type_kind_t kind);
 bool cm1e_st_is_bits(type_kind_t kind);    /* BOOL too */
 bool cm1e_st_is_integer(type_kind_t kind); /* T_ANY_INT too */
 bool cm1e_st_is_floating(type_kind_t kind); /* T_ANY_REAL too */
+/** Of an enumeration that of its base. */
+type_kind_t cm1e_st_plain_kind(const type_t *type);
 bool cm1e_st_is_number(type_kind_t kind);
 bool cm1e_st_is_time(type_kind_t kind);    /* TIME, DATE, TOD, DT */
 bool cm1e_st_fits(type_kind_t kind, const constant_t *value);
@@ -135,6 +137,8 @@ expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what);
 /** A literal without a type gets the one it has if nothing else says so. */
 expr_t *cm1e_st_settle(st_t *st, expr_t *expr);
 expr_t *cm1e_st_convert_node(st_t *st, expr_t *expr, type_t *type);
+/** An enumeration is an integer within an expression (TwinCAT, CODESYS); anything else stays what it is. */
+expr_t *cm1e_st_as_integer(st_t *st, expr_t *expr);
 /** Checks that something can be assigned to; reports why not. */
 bool cm1e_st_assignable(st_t *st, const expr_t *expr);
 /** A function may change nothing but its result, its locals and what it was given as VAR_IN_OUT. */
