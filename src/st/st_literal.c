@@ -175,7 +175,7 @@ static bool read_clock(const char *text, int64_t *result)
     if (*end != '\0' || hour < 0 || hour > 23 || minute < 0 || minute > 59 || !(second >= 0 && second < 60))
         return false;
     *result = (hour * 3600 + minute * 60) * NS_PER_S + (int64_t)round(second * 1e9);
-    return true;
+    return *result < DAY_S * NS_PER_S; /* not what is rounded up to midnight */
 }
 
 static expr_t *time_literal(st_t *st, place_t place, type_kind_t kind, const char *text, const char *whole)

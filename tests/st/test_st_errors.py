@@ -16,7 +16,7 @@ faults = []
 
 # (declarations and statements of a program, or a whole source; line:column; words)
 PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRING; l : LREAL; u : UINT; t : TON; d : DINT;\n" \
-          "  a : ARRAY[1..3] OF INT; tm : TIME; c : E_Color; p : Point; q : REF_TO INT; k : LINT; x : ULINT; d1 : DATE; wide : E_Wide;\nEND_VAR\n" \
+          "  a : ARRAY[1..3] OF INT; tm : TIME; c : E_Color; p : Point; q : REF_TO INT; k : LINT; x : ULINT; d1 : DATE; wide : E_Wide; tod : TOD;\nEND_VAR\n" \
           "VAR CONSTANT\n  N : INT := 3;\nEND_VAR\n{}\nEND_PROGRAM\nTYPE E_Color : (Red, Green); E_Wide : (Below := -1, Far := 70000); Point : STRUCT x, y : INT; " \
           "END_STRUCT; END_TYPE\nFUNCTION Twice : INT\nVAR_INPUT v : INT; END_VAR\nTwice := 2 * v;\nEND_FUNCTION\n" \
           "FUNCTION Change : INT\nVAR_IN_OUT v : INT; END_VAR\nv := v + 1; Change := v;\nEND_FUNCTION\n"
@@ -72,6 +72,7 @@ STATEMENTS = [
     ("tm := T#5x;", "9:7", ["TIME"]),
     ("tm := T#1s1h;", "9:7", ["largest unit first"]),
     ("tm := T#200000d;", "9:7", ["106751"]),
+    ("tod := TOD#23:59:59.9999999999;", "9:8", ["TOD", "23:59:59.999"]),
     ("d1 := D#2023-02-29;", "9:7", ["D#"]),
     ("d1 := D#2024-13-01;", "9:7", ["DATE"]),
     ("s := 'abc;", "9:6", ["no ' at its end"]),
