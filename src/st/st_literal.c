@@ -135,9 +135,10 @@ static bool read_duration(const char *text, int64_t *result)
         sum += count * (long double)last;
         text += strlen(units[unit].name);
     }
-    if (sum > (long double)INT64_MAX)
+    const long double ns = roundl(negative ? -sum : sum);
+    if (ns < (long double)INT64_MIN || ns > (long double)INT64_MAX)
         return false;
-    *result = (int64_t)roundl(negative ? -sum : sum);
+    *result = (int64_t)ns;
     return true;
 }
 

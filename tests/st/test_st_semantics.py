@@ -71,13 +71,17 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
        "e : Edges; e2 : Edges2; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
        "hue : Plant.Inner.Hue; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
+# The literal of a time and its value, in both directions.
+TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
+         ("T#106751d23h47m16s854ms775us807ns", 2**63 - 1), ("T#0ms", 0), ("T#-1ns", -1), ("T#-1h500us", -3600000500000)]
 # (statements, {variable: value after one call})
 CASES = [
     ("IF TRUE THEN i := 1; ELSE i := 2; END_IF", {"i": 1}),
     ("y2 := TIME_TO_WSTRING(T#1h2m3s4ms5us);", {"y2": "T#1h2m3s4ms5us"}),
     ("s := TIME_TO_STRING(T#90s); y := TIME_TO_WSTRING(T#0s);", {"s": b"T#1m30s", "y": "T#0ms"}),
     ("s := TIME_TO_STRING(T#-1d7ns); y := TIME_TO_WSTRING(T#3600s);", {"s": b"T#-1d7ns", "y": "T#1h"}),
-    ("t := T#-106751d23h47m16s854ms775us807ns; y2 := TIME_TO_WSTRING(t);", {"y2": "T#-106751d23h47m16s854ms775us807ns"}),
+    *((f"t := {text}; y2 := TIME_TO_WSTRING(t);", {"t": value, "y2": text}) for text, value in TIMES),
+    ("t := T#-106751d23h47m16s854ms775us808.4ns; b := t < T#0s AND -t = t;", {"t": -2**63, "b": True}),
     ("c := Green; i := c; j := c + 1; n := 2 * Blue - c; b := c = 5 AND 6 = Blue AND c < i + 1 AND c >= Red;",
      {"i": 5, "j": 6, "n": 7, "b": True}),
     ("c := Green; d := E_Wide.Far - c; l := c / 2.0; f := -c; i := m MOD 2; n := TO_INT(E_Wide.Far); j := a[m + 1];",
