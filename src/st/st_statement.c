@@ -135,6 +135,17 @@ static void choose(st_t *st, stmt_t *stmt)
         unique_labels(st, stmt);
 }
 
+static void wrong_counter(st_t *st, const expr_t *counter)
+{
+    if (counter->type->kind == T_ENUM)
+        cm1e_st_report(st, counter->place, "FOR counts with an integer, not with %s, whose values need not follow each "
+                       "other: declare an INT or DINT for it, which can count from one enumerator to another",
+                       cm1e_st_type_name(counter->type));
+    else
+        cm1e_st_report(st, counter->place, "FOR counts with a variable of a type of integers (not ULINT), without "
+                       "point or index");
+}
+
 static void count(st_t *st, stmt_t *stmt)
 {
     cm1e_st_expression(st, stmt->target);
@@ -142,8 +153,7 @@ static void count(st_t *st, stmt_t *stmt)
     type_t *type = stmt->target->type;
     const bool integer = cm1e_st_is_integer(type->kind) && type->kind != T_ULINT;
     if (stmt->target->kind != E_NAME || !stmt->target->var || (!integer && type->kind != T_WRONG)) {
-        cm1e_st_report(st, stmt->target->place, "FOR counts with a variable of a type of integers (not ULINT), without "
-                       "point or index");
+        wrong_counter(st, stmt->target);
         type = st->elementary[T_WRONG];
     }
     if (type->kind != T_WRONG && cm1e_st_assignable(st, stmt->target))

@@ -147,6 +147,7 @@ STATEMENTS = [
     ("IF b THEN i := 1;", "10:1", ["END_PROGRAM"]),
     ("WHILE 1 DO END_WHILE", "9:7", ["BOOL"]),
     ("FOR r := 1 TO 3 DO END_FOR", "9:5", ["integers"]),
+    ("FOR c := Red TO Green DO END_FOR", "9:5", ["FOR counts with an integer, not with E_Color", "INT or DINT"]),
     ("FOR i := 1 TO 40000 DO END_FOR", "9:15", ["40000"]),
     ("FOR i := 1 TO 3 BY 0 DO END_FOR", "9:20", ["0"]),
     ("FOR i := 1 TO 3 DO i := 2; END_FOR", "9:20", ["EXIT"]),

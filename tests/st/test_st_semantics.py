@@ -111,6 +111,7 @@ CASES = [
      {"w": 4, "d": 70000, "f": 2.0, "s": b"ab", "i": 6}),
     ("c := SEL(NOT b, Red, Green); m := MOVE(MUX(1, One, Two)); i := SEL(b, c, m);", {"c": 5, "m": 2, "i": 5}),
     ("t := TOD#23:59:59.9999999994 - TOD#22:58:59.9999999999;", {"t": 3660 * 10**9 - 1}),
+    ("FOR i := Red TO Blue DO j := j + 1; END_FOR FOR u := Green TO Blue DO n := n + u; END_FOR", {"j": 7, "n": 11}),
     ("x64 := E_Wide.Far; l := Green; f := Blue;", {"x64": 70000, "l": 5.0, "f": 6.0}),
     ("CASE 3 OF KK: j := 1; 3: j := 2; END_CASE", {"j": 2}),
     ("FOR i := 1 TO 5 DO j := j + i; END_FOR", {"i": 6, "j": 15}),
