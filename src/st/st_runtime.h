@@ -349,7 +349,8 @@ ST_UNUSED static inline STRING_254 st_text_of_real(double value, int digits)
     snprintf(result.text, sizeof result.text, "%.*g", digits, value);
     return result;
 }
-/** The literal of the value, as TwinCAT and CODESYS write it: T#1h2m3s4ms, without units of which there are 0. */
+/** The literal of the value: T#1h2m3s4ms, without units of which there are 0. TwinCAT and CODESYS document T#12ms for
+ *  a TIME; how they write others is not known. An LTIME is a TIME here, and begins with T#, too. */
 ST_UNUSED static inline STRING_254 st_text_of_time(int64_t value)
 {
     static const struct { const char *name; uint64_t ns; } units[] = {

@@ -78,6 +78,7 @@ TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s85
 CASES = [
     ("IF TRUE THEN i := 1; ELSE i := 2; END_IF", {"i": 1}),
     ("y2 := TIME_TO_WSTRING(T#1h2m3s4ms5us);", {"y2": "T#1h2m3s4ms5us"}),
+    ("y2 := LTIME_TO_WSTRING(LTIME#1ms2us3ns); s := LTIME_TO_STRING(LT#12ms);", {"y2": "T#1ms2us3ns", "s": b"T#12ms"}),
     ("s := TIME_TO_STRING(T#90s); y := TIME_TO_WSTRING(T#0s);", {"s": b"T#1m30s", "y": "T#0ms"}),
     ("s := TIME_TO_STRING(T#-1d7ns); y := TIME_TO_WSTRING(T#3600s);", {"s": b"T#-1d7ns", "y": "T#1h"}),
     *((f"t := {text}; y2 := TIME_TO_WSTRING(t);", {"t": value, "y2": text}) for text, value in TIMES),
