@@ -132,12 +132,10 @@ static void emit_names(st_t *st, const type_t *type)
 
 static void emit_enum(st_t *st, type_t *type)
 {
-    cm1e_st_put(st, "typedef %s %s;\nenum {", type->element->name, type->c_name);
+    cm1e_st_put(st, "typedef %s %s;\n", type->element->name, type->c_name);
     for (const var_t *var = type->members; var; var = var->next)
         if (var->value.integer >= INT32_MIN && var->value.integer <= INT32_MAX) /* C's enumerators are int */
-            cm1e_st_put(st, "%s%s = %lld", var == type->members ? " " : ", ", var->c_name,
-                        (long long)var->value.integer);
-    cm1e_st_put(st, " };\n");
+            cm1e_st_put(st, "enum { %s = %lld };\n", var->c_name, (long long)var->value.integer);
     emit_names(st, type);
 }
 

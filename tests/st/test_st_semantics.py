@@ -12,6 +12,7 @@ from st_host import Host
 BIN = sys.argv[1]
 UNITS = """
 TYPE E_Color : (Red, Green := 5, Blue); E_Small : (One := 1, Two) USINT; E_Wide : (Near, Far := 70000);
+  E_Long : (Long1 := 5000000000, Long2 := -5000000000, Long3 := 7) LINT; E_Longer : (Max := 9223372036854775807) LINT;
   Point : STRUCT x : INT := 7; y : INT; END_STRUCT;
   Box : STRUCT low : Point; high : Point := (x := 9, y := 8); list : ARRAY[0..2] OF Point; END_STRUCT;
   Row : ARRAY[-1..1] OF INT; END_TYPE
@@ -113,6 +114,8 @@ CASES = [
     ("c := SEL(NOT b, Red, Green); m := MOVE(MUX(1, One, Two)); i := SEL(b, c, m);", {"c": 5, "m": 2, "i": 5}),
     ("t := TOD#23:59:59.9999999994 - TOD#22:58:59.9999999999;", {"t": 3660 * 10**9 - 1}),
     ("FOR i := Red TO Blue DO j := j + 1; END_FOR FOR u := Green TO Blue DO n := n + u; END_FOR", {"j": 7, "n": 11}),
+    ("big := E_Longer.Max; CASE Long2 + i OF Long1..Long1: j := 1; -5000000000: j := 2; END_CASE n := Long3;",
+     {"big": 2**63 - 1, "j": 2, "n": 7}),
     ("x64 := E_Wide.Far; l := Green; f := Blue;", {"x64": 70000, "l": 5.0, "f": 6.0}),
     ("CASE 3 OF KK: j := 1; 3: j := 2; END_CASE", {"j": 2}),
     ("FOR i := 1 TO 5 DO j := j + i; END_FOR", {"i": 6, "j": 15}),
