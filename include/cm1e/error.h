@@ -156,7 +156,7 @@ CM1E_API cm1e_error_t cm1e_error_from_id(uint16_t error_id);
 typedef struct cm1e_diag {
     cm1e_error_t error;
     /** 0: none. CM1E_ERROR_SDO_ABORT: the SDO abort code; BUS_STATE: the AL status code; BUS_MAILBOX: the error code of
-     *  FoE or of the mailbox; PDO_MAPPING, CONFIG: the index of the object; INTERFACE_IN_USE: the process; IO: errno. */
+     *  FoE or of the mailbox; PDO_MAPPING, CONFIG: the index of an object; INTERFACE_IN_USE: the process; IO: errno */
     uint32_t foreign_code;
     char text[512];        /**< one or more sentences, no trailing newline */
 } cm1e_diag_t;
