@@ -392,9 +392,9 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
     if (size == 0)
         return false;
     run_t *run = &run_of_all;
+    memset(&own, 0, sizeof own); /* first: a program that begins is judged at once */
     if (run->inputs == 0)
         begin_program(run);
-    memset(&own, 0, sizeof own);
     memset(run->clients, 0, sizeof run->clients);
     run->at = bytes + 1;
     run->end = bytes + size;
