@@ -15,17 +15,9 @@
 enum { KEY_TO = 0x300, KEY_BY, KEY_SPEED, KEY_FOR, KEY_JERK, KEY_METHOD, KEY_OFFSET, KEY_TORQUE, KEY_POSITION, KEY_CSV,
        KEY_SVG, KEY_HTML, KEY_NPY, KEY_RESET };
 
-/** The files of a trace, in the order of their keys. */
-static const struct {
-    const char *option;
-    cm1e_error_t (*write)(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
-} trace_files[] = {{"--csv", cm1e_scheduler_write_csv},
-                   {"--svg", cm1e_scheduler_write_svg},
-                   {"--html", cm1e_scheduler_write_html},
-                   {"--npy", cm1e_scheduler_write_npy}};
-enum { TRACE_FILES = sizeof trace_files / sizeof trace_files[0], TRACE_SAMPLES = 60000 };
-
-enum { LONGEST_S = 1000000 };
+static cm1e_error_t (*const writers[TRACE_FILES])(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag) = {
+    cm1e_scheduler_write_csv, cm1e_scheduler_write_svg, cm1e_scheduler_write_html, cm1e_scheduler_write_npy};
+enum { TRACE_SAMPLES = 60000, LONGEST_S = 1000000 };
 
 #define DETAILS_NS INT64_C(200000000)
 
@@ -113,19 +105,6 @@ static void check_move(const motion_options_t *options, struct argp_state *state
         argp_error(state, "--speed already states the velocity: leave --velocity out");
 }
 
-/* Checked before anything moves. */
-static void check_files(const motion_options_t *options, struct argp_state *state)
-{
-    for (int i = 0; i < TRACE_FILES; i++) {
-        const char *file = options->files[i];
-        if (file && !file[0])
-            argp_error(state, "%s needs the name of a file", trace_files[i].option);
-        for (int k = 0; k < i && file; k++)
-            if (options->files[k] && strcmp(file, options->files[k]) == 0)
-                argp_error(state, "%s and %s write the same file", trace_files[k].option, trace_files[i].option);
-    }
-}
-
 /** What move and home have in common. */
 static error_t parse_any(int key, char *arg, struct argp_state *state)
 {
@@ -138,7 +117,7 @@ static error_t parse_any(int key, char *arg, struct argp_state *state)
     case KEY_HTML:
     case KEY_NPY: options->files[key - KEY_CSV] = arg; return 0;
     case ARGP_KEY_ARG: return parse_axis_word(arg, state, &options->axis_word);
-    case ARGP_KEY_END: check_files(options, state); return 0;
+    case ARGP_KEY_END: need_trace_files(state, options->files, TRACE_FILES); return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -403,7 +382,7 @@ static bool keep_traces(cm1e_scheduler_t *scheduler, void *context)
     cm1e_diag_t diag = {0};
     bool kept = true;
     for (int i = 0; i < TRACE_FILES; i++)
-        if (options->files[i] && trace_files[i].write(scheduler, options->files[i], &diag) != CM1E_OK)
+        if (options->files[i] && writers[i](scheduler, options->files[i], &diag) != CM1E_OK)
             kept = fail(&diag) == EXIT_OK;
     return kept;
 }
@@ -430,15 +409,6 @@ static void complete_homing(motion_options_t *options, const cm1e_homing_config_
     complete(&homing->timeout_s, rest->timeout_s);
 }
 
-/* A trace that cannot be written is an error before anything moves. */
-static int check_traces(const motion_options_t *options)
-{
-    int status = EXIT_OK;
-    for (int i = 0; i < TRACE_FILES && status == EXIT_OK; i++)
-        status = check_trace_file(trace_files[i].option, options->files[i]);
-    return status;
-}
-
 static bool has_homing_method(const motion_options_t *options)
 {
     if (options->kind != MOTION_HOME || options->homing.method != 0)
@@ -451,7 +421,7 @@ static bool has_homing_method(const motion_options_t *options)
 static int move_or_home(motion_options_t *options, const char *what)
 {
     static cm1e_bus_config_t config;
-    const int files = check_traces(options);
+    const int files = check_trace_files(options->files, TRACE_FILES);
     if (files != EXIT_OK)
         return files;
     static motion_program_t p;

@@ -10,7 +10,7 @@
 #include "st_loaded.h"
 #include "trace_file.h"
 
-enum { KEY_VIRTUAL_TIME = 0x800, KEY_CSV, KEY_SVG, KEY_HTML, KEY_LOOPS, KEY_RETAIN, KEY_COLD, KEY_VARIABLE, FILES = 3, SAMPLES = 120000, PATHS = 64 };
+enum { KEY_VIRTUAL_TIME = 0x800, KEY_CSV, KEY_SVG, KEY_HTML, KEY_LOOPS, KEY_RETAIN, KEY_COLD, KEY_VARIABLE, FILES = TRACE_HTML + 1, SAMPLES = 120000, PATHS = 64 };
 
 typedef struct run_options {
     common_options_t common;
@@ -62,6 +62,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (!options->common.bus_file && !(options->common.interface_name && simulated(options->common.interface_name)))
             argp_error(state, "-b BUS-FILE is needed: it says which axes there are. \"-i sim\" alone simulates a machine "
                        "with the axes of the program");
+        need_trace_files(state, options->files, FILES);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -231,12 +232,9 @@ int command_run(int argc, char **argv)
     run_options_t options = {0};
     st_loaded_t loaded;
     cm1e_diag_t diag = {0};
-    static const char *const names[FILES] = {"--csv", "--svg", "--html"};
     if (parse_options(&argp_run, argc, argv, &options))
         return EXIT_WRONG_USE;
-    int status = EXIT_OK;
-    for (int i = 0; i < FILES && status == EXIT_OK; i++)
-        status = check_trace_file(names[i], options.files[i]);
+    int status = check_trace_files(options.files, FILES);
     if (status != EXIT_OK)
         return status;
     status = st_load(&loaded, options.program, &diag) == CM1E_OK ? run_on_network(&loaded, &options) : fail(&diag);

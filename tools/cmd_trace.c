@@ -18,14 +18,9 @@ enum { KEY_FOR = 0x600, KEY_EVERY, KEY_OBJECT, KEY_VARIABLE, KEY_TRIGGER, KEY_BE
        KEY_LIVE, LONGEST_S = 86400, EVERY_MOST = 10000, PAUSE_US = 20000,
        LIVE_SAMPLES = 40000 };
 
-static const struct {
-    const char *option;
-    cm1e_error_t (*write)(const trace_t *trace, const char *path, cm1e_diag_t *diag);
-} trace_files[] = {{"--csv", cm1e_trace_write_csv},
-                   {"--svg", cm1e_plot_write_svg},
-                   {"--html", cm1e_plot_write_html},
-                   {"--npy", cm1e_trace_write_npy}};
-enum { TRACE_FILES = sizeof trace_files / sizeof trace_files[0], OBJECTS = 64, PATHS = 64 };
+static cm1e_error_t (*const writers[TRACE_FILES])(const trace_t *trace, const char *path, cm1e_diag_t *diag) = {
+    cm1e_trace_write_csv, cm1e_plot_write_svg, cm1e_plot_write_html, cm1e_trace_write_npy};
+enum { OBJECTS = 64, PATHS = 64 };
 
 typedef struct trace_options {
     common_options_t common;
@@ -75,13 +70,7 @@ static error_t parse_trigger(trace_options_t *options, const char *arg)
 
 static void check(const trace_options_t *options, struct argp_state *state)
 {
-    int files = 0;
-    for (int i = 0; i < TRACE_FILES; i++) {
-        files += options->files[i] != NULL;
-        if (options->files[i] && !options->files[i][0])
-            argp_error(state, "%s needs the name of a file", trace_files[i].option);
-    }
-    if (files == 0 && !options->list && !options->live)
+    if (need_trace_files(state, options->files, TRACE_FILES) == 0 && !options->list && !options->live)
         argp_error(state, "say what to write: --csv, --svg, --html or --npy FILE, or --list, or --live");
     if (options->list && options->live)
         argp_error(state, "--list ends at once, and --live shows what goes on: choose one");
@@ -260,7 +249,7 @@ static int write_files(const recording_t *recording, const trace_options_t *opti
     cm1e_diag_t diag = {0};
     int status = EXIT_OK;
     for (int i = 0; i < TRACE_FILES; i++)
-        if (options->files[i] && trace_files[i].write(&recording->trace, options->files[i], &diag) != CM1E_OK)
+        if (options->files[i] && writers[i](&recording->trace, options->files[i], &diag) != CM1E_OK)
             status = fail(&diag);
     return status;
 }
@@ -402,9 +391,7 @@ int command_trace(int argc, char **argv)
     options = (trace_options_t){.every = 1};
     if (parse_options(&argp_trace, argc, argv, &options))
         return EXIT_WRONG_USE;
-    int status = EXIT_OK;
-    for (int i = 0; i < TRACE_FILES && status == EXIT_OK; i++)
-        status = check_trace_file(trace_files[i].option, options.files[i]);
+    int status = check_trace_files(options.files, TRACE_FILES);
     if (status != EXIT_OK)
         return status;
     status = attach_if_running(&options.common, &config, &control);

@@ -5,7 +5,23 @@
 #include "cm1e/trace.h"
 #include "command.h"
 
-int check_trace_file(const char *option, const char *path)
+static const char *const options[TRACE_FILES] = {"--csv", "--svg", "--html", "--npy"};
+
+int need_trace_files(struct argp_state *state, const char *const *files, int count)
+{
+    int wanted = 0;
+    for (int i = 0; i < count; i++) {
+        wanted += files[i] != NULL;
+        if (files[i] && !files[i][0])
+            argp_error(state, "%s needs the name of a file", options[i]);
+        for (int k = 0; k < i && files[i]; k++)
+            if (files[k] && strcmp(files[i], files[k]) == 0)
+                argp_error(state, "%s and %s write the same file", options[k], options[i]);
+    }
+    return wanted;
+}
+
+static int check_file(const char *option, const char *path)
 {
     cm1e_diag_t diag = {0};
     if (!path)
@@ -14,4 +30,12 @@ int check_trace_file(const char *option, const char *path)
         return cm1e_scheduler_check_path(path, &diag) == CM1E_OK ? EXIT_OK : fail(&diag);
     complain("%s: standard output has the result of the command; give a file", option);
     return EXIT_WRONG_USE;
+}
+
+int check_trace_files(const char *const *files, int count)
+{
+    int status = EXIT_OK;
+    for (int i = 0; i < count && status == EXIT_OK; i++)
+        status = check_file(options[i], files[i]);
+    return status;
 }

@@ -5,8 +5,17 @@
 #ifndef CM1E_TOOLS_TRACE_FILE_H
 #define CM1E_TOOLS_TRACE_FILE_H
 
-/** A trace can be written to the file of this option; NULL: there is none. Returns the exit status, with a complaint. "-" is
- *  refused, because these commands print their result on standard output. */
-int check_trace_file(const char *option, const char *path);
+#include <argp.h>
+
+/** The files in their order; a command may take the first ones only. */
+enum { TRACE_CSV, TRACE_SVG, TRACE_HTML, TRACE_NPY, TRACE_FILES };
+
+/** Each file (NULL: there is none) has a name that no other one has; else the command ends with a complaint. Returns how
+ *  many there are. */
+int need_trace_files(struct argp_state *state, const char *const *files, int count);
+
+/** A trace can be written to each of these files. Returns the exit status, with a complaint. "-" is refused, because these
+ *  commands print their result on standard output. */
+int check_trace_files(const char *const *files, int count);
 
 #endif

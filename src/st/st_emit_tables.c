@@ -6,6 +6,8 @@
 
 enum { LARGE = 256 }; /* elements of an array that is listed behind all others */
 
+#define DAY_NS (INT64_C(86400) * 1000000000)
+
 typedef enum table { TABLE_VARIABLES, TABLE_AXES, TABLE_GROUPS, TABLE_LOCATED, TABLE_RETAINED, TABLES } table_t;
 
 static const char *const tables[TABLES] = {"variables", "axes", "groups", "located", "retained"};
@@ -59,8 +61,10 @@ static void row(listing_t *l, const char *name, const char *c_name, const type_t
     cm1e_st_put_quoted(l->st, name);
     cm1e_st_put(l->st, ", &%s, sizeof %s, ST_KIND_%s, ", c_name, c_name, kind_of(type));
     cm1e_st_put_quoted(l->st, detail);
-    if (type->ranged)
-        cm1e_st_put(l->st, ", 0, 1, %s, %s", cm1e_st_int64(l->st, type->first), cm1e_st_int64(l->st, type->last));
+    const bool of_day = type->kind == T_TOD;
+    if (type->ranged || of_day)
+        cm1e_st_put(l->st, ", 0, 1, %s, %s", cm1e_st_int64(l->st, of_day ? 0 : type->first),
+                    cm1e_st_int64(l->st, of_day ? DAY_NS - 1 : type->last));
     if (type->kind == T_ENUM)
         cm1e_st_put(l->st, ", .names = names_%s, .values = values_%s, .name_count = sizeof names_%s / sizeof *names_%s",
                     type->c_name, type->c_name, type->c_name, type->c_name);

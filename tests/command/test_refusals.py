@@ -78,6 +78,8 @@ NAMES = [
     (["sim", "-i", ""], "-i"), (["scan", "-b", ""], "-b"), (["scan", "-i", "sim", "--pcap", ""], "--pcap"),
     (MOVE + ["--by", "1", "--csv", ""], "--csv"), (MOVE + ["--by", "1", "--svg", ""], "--svg"),
     (MOVE + ["--by", "1", "--svg", "x", "--csv", "x"], "same file"),
+    (["run", "x.so", "-i", "sim", "--html", "x", "--csv", "x"], "--csv and --html write the same file"),
+    (["trace", "-i", "sim", "--svg", "x", "--npy", "x"], "--svg and --npy write the same file"),
     (MOVE + ["--by", "1", "--csv", "-"], "--csv: standard output has the result"),
     (HOME + ["--svg", "-"], "--svg: standard output has the result"),
     (["run", "x.so", "-i", "sim", "--html", "-"], "--html: standard output has the result"),

@@ -31,6 +31,7 @@ VAR
     part : Share := 5;
     wait : TIME := T#20ms;
     day : DATE;
+    clock : TOD;
     mask : LWORD;
     small : SINT;
     lamp AT %QX2.0.2 : BOOL;
@@ -121,7 +122,8 @@ def check_literals(run):
     """Values as a program writes them, and the enumerators of an enumeration."""
     hour = 3600 * 10**9
     for word, value in (("wait=T#1h1s", hour + 10**9), ("wait=TIME#-2ms", -2 * 10**6), ("wait=15", 15), ("wait=LT#1us", 1000),
-                        ("day=D#1970-01-02", 24 * hour), ("mask=16#FF", 255), ("mask=2#1010_0001", 161), ("mask=0x10", 16),
+                        ("day=D#1970-01-02", 24 * hour), ("clock=TOD#23:59:59.999999999", 24 * hour - 1), ("clock=0", 0),
+                        ("mask=16#FF", 255), ("mask=2#1010_0001", 161), ("mask=0x10", 16),
                         ("mask=18446744073709551615", str(2**64 - 1)), ("mask=16#8000_0000_0000_0000", str(2**63)),
                         ("small=010", 10), ("small=SINT#7", 7), ("small=-16", -16), ("small=-128", -128), ("copy=BOOL#1", 1),
                         ("goal=LREAL#0.5", 0.5), ("goal=16#10", 16), ("goal=10000000000000000000", 1e19),
@@ -139,6 +141,8 @@ def check_literals(run):
     for wrong, says, status in (("mode=77", "Main.mode (E_Mode) takes OFF, SLOW, FAST.", 1), ("mode=FATS", "takes OFF, SLOW, FAST.", 1),
                                 ("mode=Point.FAST", "takes OFF", 1), ("mode=", "the name of an enumerator", 2),
                                 ("wait=T#1", "right is for instance T#1h30m", 2), ("wait=1m5s", "a time as T#1m5s", 2),
+                                (f"clock={24 * hour}", "Main.clock (TOD) takes 0 ... 86399999999999 ns.", 1),
+                                ("clock=-1", "takes 0 ... 86399999999999 ns.", 1),
                                 ("wait=D#2024-01-01", "Main.wait is TIME, and \"D#2024-01-01\" is DATE", 2),
                                 ("n=T#5ms", "Main.n is INT, and \"T#5ms\" is TIME", 2), ("wait=16#FF", "is a number", 2),
                                 ("mask=16#1_0000_0000_0000_0000", "at most 64 bits", 2), ("mask=-1", "takes 0 ...", 1),
@@ -182,7 +186,7 @@ def check_exact(run):
 def check_all(run):
     """Every variable is seen, more than one reply has; texts are read and written."""
     rows = run.rows()
-    expect(len(rows) == 18 + 400, "all variables", len(rows))
+    expect(len(rows) == 19 + 400, "all variables", len(rows))
     expect(rows["Main.table[1,-100].here"]["value"] == 0, "an element", rows["Main.table[1,-100].here"])
     expect(run.value("table[2,99].here") != 0, "the last element")
     expect(rows["Main.text"]["declared"] == "STRING[6]" and rows["Main.text"]["value"] == "it's", "a text", rows["Main.text"])
