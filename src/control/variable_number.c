@@ -45,21 +45,12 @@ json_t *cm1e_variable_number_show(const variable_t *variable, const variable_val
     return json_string(digits);
 }
 
-/** The place of an enumerator with this value, `name_count`: there is none. */
-static uint32_t place_of(const variable_t *variable, int64_t value)
-{
-    uint32_t i = 0;
-    while (i < variable->name_count && variable->values[i] != value)
-        i++;
-    return i;
-}
-
 json_t *cm1e_variable_enumerator_show(const variable_t *variable, const variable_value_t *value)
 {
     json_t *number = cm1e_variable_number_show(variable, value);
-    const uint32_t i = place_of(variable, json_integer_value(number));
+    const char *name = cm1e_variable_enumerator(variable, json_integer_value(number));
     json_decref(number);
-    return i < variable->name_count ? cm1e_show_text(variable->names[i]) : json_null();
+    return name ? cm1e_show_text(name) : json_null();
 }
 
 /* ---- taken ------------------------------------------------------------------------------------------------------- */
@@ -110,19 +101,16 @@ static const char *bare_name(const variable_t *variable, const char *word)
 /** A value of an enumeration, by name or as a number. */
 static bool take_enumerator(const variable_t *variable, const json_t *value, variable_value_t *out)
 {
-    uint32_t i = 0;
-    if (json_is_integer(value))
-        i = place_of(variable, json_integer_value(value));
-    else if (json_is_string(value))
-        while (i < variable->name_count && strcasecmp(variable->names[i], bare_name(variable, json_string_value(value))) != 0)
-            i++;
-    else
-        return false;
-    if (i == variable->name_count)
-        return false;
+    const char *word = json_is_string(value) ? bare_name(variable, json_string_value(value)) : NULL;
+    int64_t whole = json_integer_value(value);
+    bool good = json_is_integer(value) && cm1e_variable_enumerator(variable, whole);
+    for (uint32_t i = 0; i < variable->name_count && word && !good; i++) {
+        good = strcasecmp(variable->names[i], word) == 0;
+        whole = variable->values[i];
+    }
     *out = (variable_value_t){{0}};
-    memcpy(out->bytes, &variable->values[i], sizeof *variable->values);
-    return true;
+    memcpy(out->bytes, &whole, sizeof whole);
+    return good;
 }
 
 bool cm1e_variable_number_take(const variable_t *variable, const json_t *value, variable_value_t *out)

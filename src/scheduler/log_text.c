@@ -96,14 +96,25 @@ static void stranger_text(const cm1e_log_event_t *event, char *text, size_t size
     cm1e_stranger_text(&stranger, text, size);
 }
 
-static void number_text(cm1e_trace_type_t type, const cm1e_log_event_t *event, char *text, size_t size)
+/** As a program writes it; a number with its unit. */
+static void number_text(const variable_t *variable, const cm1e_log_event_t *event, char *text, size_t size)
 {
-    if (type == CM1E_TRACE_LINT)
-        snprintf(text, size, "%" PRId64, (int64_t)event->value + (int64_t)event->bound);
+    const cm1e_trace_type_t type = variable->type;
+    const char *unit = variable->unit, *space = *unit ? " " : "";
+    const char *name = NULL;
+    if (type == CM1E_TRACE_BOOL)
+        name = event->value != 0.0 ? "TRUE" : "FALSE";
+    else if (variable->name_count > 0)
+        name = cm1e_variable_enumerator(variable, (int64_t)event->value + (int64_t)event->bound);
+    if (name)
+        snprintf(text, size, "%s", name);
+    else if (type == CM1E_TRACE_LINT)
+        snprintf(text, size, "%" PRId64 "%s%s", (int64_t)event->value + (int64_t)event->bound, space, unit);
     else if (type == CM1E_TRACE_ULINT)
-        snprintf(text, size, "%" PRIu64, (uint64_t)event->value + (uint64_t)event->bound);
+        snprintf(text, size, "%" PRIu64 "%s%s", (uint64_t)event->value + (uint64_t)event->bound, space, unit);
     else
-        snprintf(text, size, "%.10g", type == CM1E_TRACE_REAL ? cm1e_variable_decimal((float)event->value) : event->value);
+        snprintf(text, size, "%.10g%s%s", type == CM1E_TRACE_REAL ? cm1e_variable_decimal((float)event->value) : event->value,
+                 space, unit);
 }
 
 static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
@@ -111,9 +122,11 @@ static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_even
     const variables_t *variables = cm1e_scheduler_variables(scheduler);
     const variable_t *variable = event->detail < variables->count ? &variables->rows[event->detail] : NULL;
     const char *name = variable ? variable->name : "a variable";
-    char value[40] = "a text";
-    if (!variable || variable->form == VARIABLE_NUMBER)
-        number_text(variable ? variable->type : CM1E_TRACE_LREAL, event, value, sizeof value);
+    char value[100] = "a text";
+    if (!variable)
+        snprintf(value, sizeof value, "%.10g", event->value);
+    else if (variable->form == VARIABLE_NUMBER)
+        number_text(variable, event, value, sizeof value);
     if (event->code == 0)
         snprintf(text, size, "%s is no longer forced to %s", name, value);
     else

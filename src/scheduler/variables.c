@@ -63,6 +63,14 @@ double cm1e_variable_decimal(float value)
     return strtod(text, NULL);
 }
 
+const char *cm1e_variable_enumerator(const variable_t *variable, int64_t value)
+{
+    uint32_t i = 0;
+    while (i < variable->name_count && variable->values[i] != value)
+        i++;
+    return i < variable->name_count ? variable->names[i] : NULL;
+}
+
 /** The bytes of a text up to its final 0. */
 static size_t used_bytes(const variable_t *variable, const uint8_t *bytes)
 {

@@ -51,6 +51,8 @@ CM1E_GUEST_API double cm1e_variable_number(const variable_t *variable);
 CM1E_GUEST_API double cm1e_variable_decimal(float value);
 /** Such bytes as a number, of a text 0. Of 64 bits a double holds 53: `*rest` is what is missing. @rt cycle */
 CM1E_GUEST_API double cm1e_variable_number_of(const variable_t *variable, const variable_value_t *value, double *rest);
+/** The name of the enumerator with this value; NULL: it has none. @rt any */
+CM1E_GUEST_API const char *cm1e_variable_enumerator(const variable_t *variable, int64_t value);
 /** Copies the value, of a text up to its end. @rt cycle */
 CM1E_GUEST_API void cm1e_variable_read(const variable_t *variable, variable_value_t *value);
 /** @rt cycle */

@@ -73,6 +73,10 @@ class Run:
         expect(result.returncode == status and says in result.stderr, " ".join(words), (result.returncode, result.stderr))
         return result.stdout
 
+    def log(self):
+        return subprocess.run([CM1E, "log", "--attach", str(self.process.pid)], capture_output=True, text=True,
+                              timeout=30).stdout
+
     def rows(self):
         return {row["name"]: row for row in json.loads(self.var("list", "--json"))}
 
@@ -152,6 +156,10 @@ def check_literals(run):
         run.var("set", "--allow-write", f"Main.{wrong}", status=status, says=says)
     window = run.force("Main.mode=OFF", "Main.wait=T#3s")
     expect(run.value("mode") == -1 and run.value("wait") == 3 * 10**9, "literals are forced", run.rows()["Main.mode"])
+    log = run.log()
+    for text in ("Main.mode was forced to OFF from", "Main.mode was set to SLOW from",
+                 "Main.wait was forced to 3000000000 ns from", "Main.copy was set to TRUE from"):
+        expect(text in log, f"the log says \"{text}\"", log)
     window.send_signal(signal.SIGINT)
     window.wait(10)
 
@@ -176,7 +184,7 @@ def check_exact(run):
         program.ask("variable", name="Main.r", value=0.3)
         both = program.ask("variables", name="Main.r", forced=True)
         expect(not both["ok"] and "exclude each other" in both["error"]["text"], "name and forced", both)
-    log = subprocess.run([CM1E, "log", "--attach", str(run.process.pid)], capture_output=True, text=True, timeout=30).stdout
+    log = run.log()
     for text in ("Main.least was set to 9007199254740993 from", "Main.least was set to -9223372036854775807 from",
                  "Main.most was set to 18446744073709551615 from", "Main.most was set to 12345678901 from",
                  "Main.r was set to 0.3 from"):
@@ -248,7 +256,7 @@ def check_forced(run):
     window.send_signal(signal.SIGINT)
     window.wait(10)
     run.counts_again("released")
-    log = subprocess.run([CM1E, "log", "--attach", str(run.process.pid)], capture_output=True, text=True, timeout=30).stdout
+    log = run.log()
     for text in ("Main.n was forced to 77", "Main.n is no longer forced to 77", "Main.goal was set to -1.5",
                  "Main.text was forced to a text"):
         expect(text in log, f"the log says \"{text}\"", log)
