@@ -54,6 +54,13 @@ def _catch_signals() -> None:
                 signal.signal(number, _end_by_signal)
 
 
+def _listed(what: str, given: Any, kind: Any, right: str) -> list[Any]:
+    """A list of this kind. A single text is none: its letters would be taken."""
+    if isinstance(given, (list, tuple)) and all(isinstance(one, kind) for one in given):
+        return list(given)
+    raise TypeError(f"{what} is {given!r}; expected a list, as {right}")
+
+
 class Bus(Devices):
     """A network of motors. As a context manager it starts, and at the end of the block, whatever ends it, stops the axes
     in order and disables them. So does the end of the interpreter, and the loss of the last reference.
@@ -80,7 +87,7 @@ class Bus(Devices):
         self.virtual_time: bool = bool(config.data.virtual_time)
         self.cycle_time: float = (config.data.cycle_time_ns or 1_000_000) * 1e-9
         self._settings = self._scheduler_settings(trace, trace_every, realtime)
-        others = [Config.of_file(file) for file in networks]
+        others = [Config.of_file(file) for file in _listed("networks", networks, (str, os.PathLike), "['second.yaml']")]
         self._others = tuple(Network(self, n + 1, one) for n, one in enumerate(others))
         self._axis_names = [name for one in (config, *others) for name in one.axis_names()]
         self._process = os.getpid()
@@ -96,8 +103,8 @@ class Bus(Devices):
             for other in others:
                 other.set(virtual_time=self.virtual_time, cycle_time=cycle_time)
                 self._ask(lib.cm1e_py_add, other.data)
-            self._groups = {name: self._make_group(name) for name in groups}
-            for axis, index, subindex in trace_objects:
+            self._groups = {name: self._make_group(name) for name in _listed("groups", groups, str, "['table']")}
+            for axis, index, subindex in _listed("trace_objects", trace_objects, tuple, "[('X', 0x6077, 0)]"):
                 self._ask(lib.cm1e_py_trace_object, axis.encode(), index, subindex)
         except BaseException:
             self.close()

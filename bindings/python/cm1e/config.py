@@ -49,6 +49,9 @@ class Config:
         """So many axes with defaults, or axes with these members of cm1e_axis_config_t."""
         if isinstance(axes, int) and axes < 0:
             raise errors.ConfigError(f"{axes} axes: a bus has 0 or more.", lib.CM1E_ERROR_CONFIG)
+        if not isinstance(axes, int) and not (isinstance(axes, Sequence) and all(isinstance(one, Mapping) for one in axes)):
+            raise TypeError(f"axes is {axes!r}; expected a number of axes, or a list of their settings, as "
+                            "[{'name': 'X', 'counts_per_unit': 1000}]")
         listed: Sequence[Mapping[str, object]] = [{} for _ in range(axes)] if isinstance(axes, int) else list(axes)
         data = ffi.new("cm1e_bus_config_t *")
         code = lib.cm1e_bus_config_init(data, ffi.NULL, len(listed))

@@ -40,11 +40,15 @@ def test_mistakes_in_options(options, said):
         cm1e.Bus(**options).start()
 
 
-@pytest.mark.parametrize("options", [{"axes": "X"}, {"axes": [1]}, {"source": 1.5}, {"source": "a", "axes": 1},
-                                     {"axes": [{"gear_numerator": "1"}]}, {"axes": [{"max_velocity": "fast"}]},
-                                     {"cycle_time": "1"}, {"axes": 1, "trace_objects": [(1, 2, 3)]}])
-def test_wrong_types_of_options(options):
-    with pytest.raises((TypeError, cm1e.Error, AttributeError)):
+@pytest.mark.parametrize("options, said", [
+    ({"axes": "X"}, "axes is 'X'; expected a number of axes, or a list"), ({"axes": [1]}, r"axes is \[1\]; expected a number"),
+    ({"axes": 2.5}, "axes is 2.5"), ({"source": 1.5}, "float"), ({"source": "a", "axes": 1}, "give one of them"),
+    ({"axes": [{"gear_numerator": "1"}]}, "a number belongs there"), ({"cycle_time": "1"}, ""),
+    ({"axes": [{"max_velocity": "fast"}]}, "a number belongs there"), ({"groups": "table"}, r"as \['table'\]"),
+    ({"groups": [1]}, "groups is"), ({"networks": "b.yaml"}, r"as \['second.yaml'\]"),
+    ({"trace_objects": ("X", 1, 2)}, "trace_objects is"), ({"trace_objects": [(1, 2, 3)]}, "")])
+def test_wrong_types_of_options(options, said):
+    with pytest.raises((TypeError, cm1e.Error, AttributeError), match=said):
         cm1e.Bus(**options)
 
 
