@@ -58,16 +58,23 @@ static bool owes_eeprom(const cm1e_errand_t *errand)
     return errand->kind == ERRAND_SII && errand->begun && errand->step >= STEP_FORCE && errand->was_offered;
 }
 
-/** Ends an errand. Afterwards it belongs to the thread that submitted it, and the bus does not touch it any more. */
-static void finish(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
+/** Ends an errand whose place is free again. Afterwards it belongs to the thread that submitted it, and the bus does not
+ *  touch it any more. */
+static void give_back(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
 {
     if (errand->error == CM1E_OK)
         errand->error = error;
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, errand->position);
     if (slave)
         slave->eeprom_owed |= owes_eeprom(errand);
-    __atomic_store_n(&bus->errands.errand, NULL, __ATOMIC_SEQ_CST);
     __atomic_store_n(&errand->done, 1, __ATOMIC_RELEASE);
+}
+
+/** While the bus runs nobody else takes an errand from its place. */
+static void finish(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
+{
+    __atomic_store_n(&bus->errands.errand, NULL, __ATOMIC_SEQ_CST);
+    give_back(bus, errand, error);
 }
 
 static void begin(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_errand_t *errand, int64_t now_ns)
@@ -111,9 +118,10 @@ void cm1e_errand_serve(cm1e_bus_t *bus, int64_t now_ns)
 
 void cm1e_errand_cancel(cm1e_bus_t *bus)
 {
-    cm1e_errand_t *errand = present(bus);
+    /* Taken first: a thread that has seen the end of the bus may take it back, and frees it then. */
+    cm1e_errand_t *errand = __atomic_exchange_n(&bus->errands.errand, NULL, __ATOMIC_SEQ_CST);
     if (errand)
-        finish(bus, errand, CM1E_ERROR_CANCELLED);
+        give_back(bus, errand, CM1E_ERROR_CANCELLED);
 }
 
 /* ---- datagrams -------------------------------------------------------------------------------------------------- */
@@ -246,8 +254,8 @@ void cm1e_errand_result(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns
         finish(bus, errand, CM1E_OK);
     } else {
         take_sii(bus, errand, datagram->data);
-        errand = present(bus);
-        if (errand && errand->step != STEP_GIVE_BACK && now_ns > errand->deadline_ns)
+        errand = present(bus); /* perhaps another one, which has just come */
+        if (errand && errand->begun && errand->step != STEP_GIVE_BACK && now_ns > errand->deadline_ns)
             end_sii(bus, errand, CM1E_ERROR_TIMEOUT);
     }
 }

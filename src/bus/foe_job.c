@@ -73,12 +73,8 @@ cm1e_error_t cm1e_foe_result_of(const cm1e_foe_t *foe, cm1e_diag_t *diag) { retu
 
 /* ---- in the cycle ----------------------------------------------------------------------------------------------- */
 
-/** Nothing of it is touched any more afterwards: it belongs to its thread. */
-static void give_back(cm1e_bus_t *bus, cm1e_foe_t *foe)
-{
-    __atomic_store_n(&bus->errands.file, NULL, __ATOMIC_SEQ_CST);
-    __atomic_store_n(&foe->given_back, 1, __ATOMIC_RELEASE);
-}
+/** Nothing of it is touched any more afterwards: it belongs to its thread. Its place is free before. */
+static void give_back(cm1e_foe_t *foe) { __atomic_store_n(&foe->given_back, 1, __ATOMIC_RELEASE); }
 
 /** A slave that is lost, or is brought back, has forgotten the file; its mailbox begins anew. */
 static bool is_gone(const cm1e_bus_slave_t *slave)
@@ -97,8 +93,10 @@ void cm1e_foe_job_serve(cm1e_bus_t *bus, int64_t now_ns)
     }
     if (!cm1e_foe_ended(foe) && is_gone(foe->slave))
         cm1e_foe_give_up(foe, FOE_LOST);
-    if (cm1e_foe_ended(foe))
-        give_back(bus, foe);
+    if (!cm1e_foe_ended(foe))
+        return;
+    __atomic_store_n(&bus->errands.file, NULL, __ATOMIC_SEQ_CST);
+    give_back(foe);
 }
 
 /** A message begins when the CoE client has nothing to do; until it is answered, the client waits. Both in turn. */
@@ -125,11 +123,12 @@ void cm1e_foe_job_result(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_n
 
 void cm1e_foe_job_cancel(cm1e_bus_t *bus)
 {
-    cm1e_foe_t *foe = present(bus);
+    /* Taken first: a thread that has seen the end of the bus may take it back, and frees it then. */
+    cm1e_foe_t *foe = __atomic_exchange_n(&bus->errands.file, NULL, __ATOMIC_SEQ_CST);
     if (!foe)
         return;
     cm1e_foe_give_up(foe, FOE_BROKEN_OFF);
-    give_back(bus, foe);
+    give_back(foe);
 }
 
 bool cm1e_foe_job_holds(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
