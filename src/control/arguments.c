@@ -15,6 +15,14 @@ bool cm1e_take_number(const json_t *message, const char *name, json_int_t minimu
     return (!member || json_is_integer(member)) && *value >= minimum && *value <= maximum;
 }
 
+bool cm1e_take_keep(const json_t *message, int minimum_ms, int maximum_ms, int otherwise_ms, int64_t *keep_ns)
+{
+    json_int_t keep_ms;
+    const bool good = cm1e_take_number(message, "keep_ms", minimum_ms, maximum_ms, otherwise_ms, &keep_ms);
+    *keep_ns = good ? keep_ms * INT64_C(1000000) : 0;
+    return good;
+}
+
 static int nibble(char c)
 {
     static const char digits[] = "0123456789abcdef";

@@ -15,6 +15,8 @@
 /** A whole number; false: it is missing without a default, of another type or out of its range. */
 bool cm1e_take_number(const json_t *message, const char *name, json_int_t minimum, json_int_t maximum,
                       json_int_t otherwise, json_int_t *value);
+/** "keep_ms" in ns; false as above. */
+bool cm1e_take_keep(const json_t *message, int minimum_ms, int maximum_ms, int otherwise_ms, int64_t *keep_ns);
 /** Bytes as hexadecimal digits; false: they are not, or more than `room`. */
 bool cm1e_take_bytes(const json_t *message, const char *name, uint8_t *bytes, size_t room, size_t *length);
 json_t *cm1e_show_bytes(const uint8_t *bytes, size_t length);

@@ -103,6 +103,7 @@ static const char *take(control_file_t *file, const json_t *message)
         return "\"password\" is expected to be 0 ... 4294967295, \"timeout_ms\" 1 ... 600000 and \"maximum\" 1 ... "
                "67108864.";
     snprintf(file->name, sizeof file->name, "%s", name);
+    file->handed = false;
     file->foe = (cm1e_foe_t){.position = (uint16_t)slave, .writing = json_is_true(write), .name = file->name,
                              .options = {.password = (uint32_t)password, .answer_ns = timeout_ms * 1000000},
                              .room = (size_t)maximum};

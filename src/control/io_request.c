@@ -5,10 +5,10 @@
 #include <stdlib.h>
 
 #include "config/io_types.h"
+#include "control/arguments.h"
 #include "control/show.h"
 
 enum { KEEP_LEAST_MS = 100, KEEP_MOST_MS = 5000, KEEP_MS = 1000, USE_TEXT = 256 };
-#define NS_PER_MS INT64_C(1000000)
 
 /* ---- all signals ------------------------------------------------------------------------------------------------ */
 
@@ -138,17 +138,16 @@ const char *cm1e_output_take(output_order_t *order, view_t *view, const json_t *
                              char *text, size_t size)
 {
     const char *name = json_string_value(json_object_get(message, "name"));
-    const json_t *value = json_object_get(message, "value"), *keep = json_object_get(message, "keep_ms");
-    const json_int_t keep_ms = keep ? json_integer_value(keep) : KEEP_MS;
+    const json_t *value = json_object_get(message, "value");
     cm1e_diag_t diag = {0};
     *order = (output_order_t){.order.decide = set_output, .client = order->client, .release = json_is_null(value),
-                              .value = json_number_value(value), .keep_ns = keep_ms * NS_PER_MS};
+                              .value = json_number_value(value)};
     if (!name)
         return wrong(error, CM1E_ERROR_INVALID_ARGUMENT, "\"name\" is expected to be that of a signal, as "
                      "\"2.output 1\".");
     if (!order->release && (!json_is_number(value) || !isfinite(order->value)))
         return wrong(error, CM1E_ERROR_INVALID_ARGUMENT, "\"value\" is expected to be a number, or null to let go.");
-    if ((keep && !json_is_integer(keep)) || keep_ms < KEEP_LEAST_MS || keep_ms > KEEP_MOST_MS)
+    if (!cm1e_take_keep(message, KEEP_LEAST_MS, KEEP_MOST_MS, KEEP_MS, &order->keep_ns))
         return wrong(error, CM1E_ERROR_INVALID_ARGUMENT, "\"keep_ms\" is expected to be 100 ... 5000, or to be left "
                      "out.");
     *error = cm1e_io_guest_find(view->bus, name, &order->io, &diag);

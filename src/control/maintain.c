@@ -55,6 +55,7 @@ void cm1e_maintain_cycle(view_t *view)
     const uint32_t gone = atomic_exchange_explicit(&m->gone, 0, memory_order_acquire);
     const int64_t now_ns = cm1e_scheduler_time_ns(view->scheduler);
     for (uint32_t i = 0; i < view->axis_count; i++) {
+        m->stopped[i].any &= !(gone & UINT32_C(1) << m->stopped[i].client);
         if (!m->holds[i].held)
             continue;
         if (gone & UINT32_C(1) << m->holds[i].client)
@@ -113,11 +114,24 @@ static maintain_refusal_t moves(view_t *view, const maintain_order_t *order, hol
     return MAINTAIN_DONE;
 }
 
+/** Whether somebody else has stopped this jog, and its client has not let go of it since. */
+static bool was_stopped(view_t *view, const maintain_order_t *order, int64_t now_ns)
+{
+    stopped_t *stopped = &view->maintained.stopped[order->axis];
+    stopped->any &= now_ns < stopped->until_ns;
+    if (!stopped->any || stopped->client != order->client)
+        return false;
+    stopped->until_ns = now_ns + order->keep_ns;
+    return true;
+}
+
 static maintain_refusal_t jog(view_t *view, maintain_order_t *order, hold_t *hold, int64_t now_ns)
 {
     cm1e_axis_t *axis = view->axes[order->axis];
     cm1e_command_id_t command;
     const bool same = order->velocity == hold->velocity && order->acceleration == hold->acceleration;
+    if (was_stopped(view, order, now_ns))
+        return MAINTAIN_STOPPED;
     if (hold->held && hold->motion == HOLD_HOME)
         return MAINTAIN_MOVES;
     if (hold->held && hold->motion == HOLD_JOG && same)
@@ -146,9 +160,10 @@ static maintain_refusal_t home(view_t *view, maintain_order_t *order, hold_t *ho
 /** Of anybody's motion through this socket. */
 static maintain_refusal_t stop(view_t *view, maintain_order_t *order, hold_t *hold, int64_t now_ns)
 {
-    (void)now_ns;
     if (!hold->held || hold->motion == HOLD_NONE)
         return MAINTAIN_NOT_HELD;
+    if (hold->motion == HOLD_JOG && hold->client != order->client)
+        view->maintained.stopped[order->axis] = (stopped_t){true, hold->client, now_ns + hold->motion_keep_ns};
     end_motion(view->axes[order->axis], hold);
     return MAINTAIN_DONE;
 }

@@ -25,6 +25,7 @@ typedef enum maintain_refusal {
     MAINTAIN_HELD,             /**< another client holds it */
     MAINTAIN_NOT_HELD,         /**< it is not enabled by a client, or does not move by one */
     MAINTAIN_MOVES,            /**< it jogs or homes already, otherwise */
+    MAINTAIN_STOPPED,          /**< another client has stopped this jog */
     MAINTAIN_ENDING,           /**< the program ends */
 } maintain_refusal_t;
 

@@ -5,8 +5,6 @@
 
 #include "control/show.h"
 
-#define NS_PER_MS INT64_C(1000000)
-
 /* ---- what is asked for ------------------------------------------------------------------------------------------ */
 
 static const struct {
@@ -29,13 +27,9 @@ static const struct {
 
 static const char *take_keep(maintain_order_t *order, const json_t *message)
 {
-    const json_t *member = json_object_get(message, "keep_ms");
-    const json_int_t keep_ms = member ? json_integer_value(member) : rows[order->what].keep_default;
-    order->keep_ns = keep_ms * NS_PER_MS;
-    if (rows[order->what].keep_most == 0)
-        return NULL;
-    const bool good = (!member || json_is_integer(member)) && keep_ms >= rows[order->what].keep_least &&
-                      keep_ms <= rows[order->what].keep_most;
+    const bool good = rows[order->what].keep_most == 0 ||
+                      cm1e_take_keep(message, rows[order->what].keep_least, rows[order->what].keep_most,
+                                     rows[order->what].keep_default, &order->keep_ns);
     return good ? NULL : rows[order->what].keep_wrong;
 }
 
@@ -125,6 +119,9 @@ static json_t *refuse(const control_request_t *request, const char *name)
         break;
     case MAINTAIN_MOVES:
         snprintf(text, sizeof text, "Axis \"%s\" is already moved by this connection: stop it first.", name);
+        break;
+    case MAINTAIN_STOPPED:
+        snprintf(text, sizeof text, "Another connection has stopped axis \"%s\": let go of the jog, then jog again.", name);
         break;
     default: snprintf(text, sizeof text, "The program ends, and shuts its axes down."); break;
     }

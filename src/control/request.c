@@ -11,6 +11,7 @@
 #include "control/maintain_request.h"
 #include "control/message.h"
 #include "control/record_request.h"
+#include "control/recorder.h"
 #include "control/recover_request.h"
 #include "control/show.h"
 
@@ -420,9 +421,12 @@ json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const
 
 /* ---- those that go on ------------------------------------------------------------------------------------------- */
 
-static json_t *no_cycle(const control_request_t *request)
+static json_t *no_cycle(const control_request_t *request, bool stopping)
 {
-    return cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, "The cycle of the program does not run any more.");
+    if (request->wanted || stopping)
+        return cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, "The cycle of the program does not run any more.");
+    return cm1e_request_refuse(request->id, CM1E_ERROR_BUSY, 0, "Other connections ask the program for so much that this "
+                               "request has not had its turn for 2 s.");
 }
 
 /** What is told beside the slaves. */
@@ -436,15 +440,15 @@ static void add_network(json_t *reply, const view_t *view)
     json_decref(strangers);
 }
 
-/** A snapshot counts that was wanted after the request came. */
+/** A snapshot counts that begins after the request came. */
 static json_t *continue_snapshot(control_request_t *request, control_run_t *run)
 {
     if (!request->wanted) {
         request->wanted = true;
-        cm1e_view_want(&run->view);
+        request->snapshot = cm1e_view_want(&run->view);
         return NULL;
     }
-    if (!cm1e_view_filled(&run->view))
+    if (!cm1e_view_has(&run->view, request->snapshot))
         return NULL;
     json_t *reply = accept(request, request->name, request->show(&run->view));
     if (request->show == cm1e_show_slaves)
@@ -515,7 +519,7 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
     if (request->state == REQUEST_SDO && !reply && cm1e_sdo_state(&request->sdo) != CM1E_SDO_BUSY)
         reply = end_transfer(request);
     if (!reply && (stopping || now_ns - request->begun_ns > PATIENCE_NS) && give_up(request, run))
-        reply = no_cycle(request);
+        reply = no_cycle(request, stopping);
     if (reply)
         request->state = REQUEST_NONE;
     return reply;
@@ -536,4 +540,17 @@ void cm1e_request_clear(control_request_t *request)
     cm1e_variables_free(&request->variable);
     free(request->data);
     memset(request, 0, sizeof *request);
+}
+
+bool cm1e_request_leave(control_request_t *request, control_run_t *run, uint32_t client, bool stopping)
+{
+    cm1e_maintain_leave(&run->view, client);
+    cm1e_guest_outputs_leave(&run->view.outputs, client);
+    atomic_fetch_or_explicit(&run->view.gone, UINT32_C(1) << client, memory_order_release);
+    const bool recorded = cm1e_recorder_end(&run->view, client, stopping);
+    /* The file last: the cycle may have it for as long as the request has not ended. */
+    if (!recorded || cm1e_request_must_end(request) || !cm1e_file_leave(run, client))
+        return false;
+    cm1e_request_clear(request);
+    return true;
 }

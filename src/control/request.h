@@ -44,7 +44,8 @@ typedef struct control_request {
     uint32_t client;           /**< whose it is: its place, and its process */
     int pid;
     json_t *id;                /**< what the client calls it; NULL: nothing */
-    bool wanted;               /**< a snapshot was wanted after this request came */
+    bool wanted;               /**< a snapshot was wanted after this request came, or the cycle has its order */
+    uint32_t snapshot;         /**< SNAPSHOT: the number of the first one that counts */
     json_t *(*show)(const view_t *view); /**< SNAPSHOT: what of it */
     const char *name;          /**< SNAPSHOT: the name under which it is sent */
     int64_t begun_ns;
@@ -67,5 +68,8 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
 bool cm1e_request_must_end(const control_request_t *request);
 /** Frees what belongs to a request, which may be used again. */
 void cm1e_request_clear(control_request_t *request);
+/** The client is gone: what it holds ends, and its request is cleared. false: something of it is still on its way through
+ *  the cycle; ask again. */
+bool cm1e_request_leave(control_request_t *request, control_run_t *run, uint32_t client, bool stopping);
 
 #endif

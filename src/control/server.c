@@ -14,9 +14,7 @@
 #include <unistd.h>
 
 #include "cm1e/control.h"
-#include "control/file_request.h"
 #include "control/message.h"
-#include "control/recorder.h"
 #include "control/request.h"
 #include "control/runtime_dir.h"
 #include "core/program.h"
@@ -45,6 +43,7 @@ struct cm1e_control_server {
     control_run_t run;
     char path[CM1E_SOCKET_PATH];
     int listener, wake;
+    bool full;                 /**< the process had no descriptor for one that wanted to connect */
     pthread_t thread;
     atomic_bool stop;
     client_t clients[CLIENTS];
@@ -66,14 +65,8 @@ static void hang_up(client_t *client)
 static void leave(server_t *server, client_t *client)
 {
     hang_up(client);
-    cm1e_maintain_leave(&server->run.view, client->place);
-    cm1e_guest_outputs_leave(&server->run.view.outputs, client->place);
-    atomic_fetch_or_explicit(&server->run.view.gone, UINT32_C(1) << client->place, memory_order_release);
-    const bool recorded = !cm1e_recorder_end(&server->run.view, client->place, atomic_load(&server->stop));
-    const bool transfers = !cm1e_file_leave(&server->run, client->place);
-    if (cm1e_request_must_end(&client->request) || recorded || transfers)
+    if (!cm1e_request_leave(&client->request, &server->run, client->place, atomic_load(&server->stop)))
         return;
-    cm1e_request_clear(&client->request);
     free(client->in);
     free(client->out);
     *client = (client_t){.fd = -1};
@@ -178,15 +171,34 @@ static void serve_client(server_t *server, client_t *client, short events)
 
 /* ---- all of them ------------------------------------------------------------------------------------------------ */
 
-/** Those whose snapshot may be there first: the others want a new one. */
+/** Those first that wait for what the cycle has: the others make it begin anew. The cycle takes one order at a time: those
+ *  that stop or move an axis come before those that look. */
+static int rank(const client_t *client)
+{
+    return client->request.wanted ? 0 : client->request.state == REQUEST_MAINTAIN ? 1 : 2;
+}
+
+/** Of this rank the one that waits longest, of those that `done` has no bit of; NULL: there is none. */
+static client_t *next_waiting(server_t *server, int of_rank, uint32_t done)
+{
+    client_t *next = NULL;
+    for (int i = 0; i < CLIENTS; i++) {
+        client_t *client = &server->clients[i];
+        if (is_waiting(client) && rank(client) == of_rank && !(done & UINT32_C(1) << i) &&
+            (!next || client->request.begun_ns < next->request.begun_ns))
+            next = client;
+    }
+    return next;
+}
+
 static void continue_requests(server_t *server, bool stopping)
 {
-    for (int wanted = 1; wanted >= 0; wanted--)
-        for (int i = 0; i < CLIENTS; i++) {
-            client_t *client = &server->clients[i];
-            if (!is_waiting(client) || client->request.wanted != (wanted == 1))
-                continue;
+    uint32_t done = 0;
+    client_t *client;
+    for (int of_rank = 0; of_rank < 3; of_rank++)
+        while ((client = next_waiting(server, of_rank, done))) {
             json_t *reply = cm1e_request_continue(&client->request, &server->run, now_ns(), stopping);
+            done |= UINT32_C(1) << client->place;
             if (reply)
                 answer(client, reply);
         }
@@ -233,22 +245,44 @@ static void welcome(server_t *server, int fd)
                          .place = (uint32_t)(client - server->clients)};
 }
 
+/** What poll() is asked for: no more than there are, as a process with few descriptors may not ask for more. */
+typedef struct polled {
+    struct pollfd of[FIRST_CLIENT + CLIENTS];
+    nfds_t count;
+    client_t *clients[FIRST_CLIENT + CLIENTS]; /**< whose it is */
+} polled_t;
+
 /** Milliseconds until somebody has to be looked at, whether or not something comes. */
-static int fill_polled(const server_t *server, struct pollfd polled[FIRST_CLIENT + CLIENTS])
+static int fill_polled(server_t *server, polled_t *polled)
 {
     int wait_ms = -1;
-    polled[0] = (struct pollfd){.fd = atomic_load(&server->stop) ? -1 : server->wake, .events = POLLIN};
-    polled[1] = (struct pollfd){.fd = server->listener, .events = POLLIN};
+    polled->count = FIRST_CLIENT;
+    polled->of[0] = (struct pollfd){.fd = atomic_load(&server->stop) ? -1 : server->wake, .events = POLLIN};
+    polled->of[1] = (struct pollfd){.fd = server->full ? -1 : server->listener, .events = POLLIN};
     for (int i = 0; i < CLIENTS; i++) {
-        const client_t *client = &server->clients[i];
+        client_t *client = &server->clients[i];
         const short events = (short)((may_read(client) ? POLLIN : 0) | (client->out ? POLLOUT : 0));
-        polled[FIRST_CLIENT + i] = (struct pollfd){.fd = client->used ? client->fd : -1, .events = events};
+        if (client->used && client->fd >= 0) {
+            polled->clients[polled->count] = client;
+            polled->of[polled->count++] = (struct pollfd){.fd = client->fd, .events = events};
+        }
         if (is_waiting(client) || (client->used && client->fd < 0)) /* or has to be let go of */
             wait_ms = BUSY_MS;
         else if ((client->out || client->in_used > 0) && wait_ms < 0)
             wait_ms = IDLE_MS;
     }
-    return wait_ms;
+    return server->full && wait_ms < 0 ? IDLE_MS : wait_ms;
+}
+
+/** Takes those that want to connect. Without a descriptor for one it waits, and the listener is left alone for a while. */
+static void welcome_all(server_t *server)
+{
+    /* cppcheck-suppress nullPointer ; accept4() needs no place for an address that nobody wants */
+    for (int fd, n = 0; n < QUEUE && (fd = accept4(server->listener, NULL, NULL, ACCEPT_FLAGS)) >= 0; n++) {
+        welcome(server, fd);
+        errno = 0;
+    }
+    server->full = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
 }
 
 static bool is_anybody_there(const server_t *server)
@@ -264,24 +298,22 @@ static bool is_anybody_there(const server_t *server)
 static void *serve(void *context)
 {
     server_t *server = context;
-    struct pollfd polled[FIRST_CLIENT + CLIENTS];
+    polled_t polled;
     int64_t end_ns = INT64_MAX;
     while (now_ns() < end_ns) {
         const bool stopping = atomic_load(&server->stop);
-        const int wait_ms = fill_polled(server, polled);
+        const int wait_ms = fill_polled(server, &polled);
         if (stopping && end_ns == INT64_MAX)
             end_ns = now_ns() + FAREWELL_NS;
         if (stopping && !is_anybody_there(server))
             break;
-        if (poll(polled, FIRST_CLIENT + CLIENTS, stopping ? BUSY_MS : wait_ms) < 0 && errno != EINTR)
+        if (poll(polled.of, polled.count, stopping ? BUSY_MS : wait_ms) < 0 && errno != EINTR)
             break;
-        if (polled[1].revents)
-            /* cppcheck-suppress nullPointer ; accept4() needs no place for an address that nobody wants */
-            for (int fd, n = 0; n < QUEUE && (fd = accept4(server->listener, NULL, NULL, ACCEPT_FLAGS)) >= 0; n++)
-                welcome(server, fd);
-        for (int i = 0; i < CLIENTS; i++)
-            if (server->clients[i].used && polled[FIRST_CLIENT + i].fd >= 0)
-                serve_client(server, &server->clients[i], polled[FIRST_CLIENT + i].revents);
+        server->full = false;
+        if (polled.of[1].revents)
+            welcome_all(server);
+        for (nfds_t i = FIRST_CLIENT; i < polled.count; i++)
+            serve_client(server, polled.clients[i], polled.of[i].revents);
         continue_requests(server, stopping);
         for (int i = 0; i < CLIENTS; i++)
             if (server->clients[i].used && server->clients[i].fd < 0)

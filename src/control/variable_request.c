@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "control/arguments.h"
 #include "control/show.h"
 #include "control/variable_number.h"
 #include "control/variable_text.h"
 #include "core/near.h"
 
 enum { KEEP_LEAST_MS = 100, KEEP_MOST_MS = 5000, KEEP_MS = 1000 };
-#define NS_PER_MS INT64_C(1000000)
 
 _Static_assert((int)VARIABLES_OF_REPLY >= (int)CM1E_FORCED, "all forced variables are in one reply");
 
@@ -139,15 +139,14 @@ const char *cm1e_variable_take(variable_order_t *order, const view_t *view, cons
 {
     const variables_t *variables = cm1e_scheduler_variables(view->scheduler);
     const char *name = json_string_value(json_object_get(message, "name"));
-    const json_t *value = json_object_get(message, "value"), *keep = json_object_get(message, "keep_ms");
-    const json_int_t keep_ms = keep ? json_integer_value(keep) : KEEP_MS;
+    const json_t *value = json_object_get(message, "value");
     const uint32_t client = order->forced.client;
     *order = (variable_order_t){.order.decide = change, .force = json_is_true(json_object_get(message, "force")),
-                                .release = json_is_null(value), .keep_ns = keep_ms * NS_PER_MS,
+                                .release = json_is_null(value),
                                 .forced.client = client};
     if (!cm1e_variable_named(view, name ? name : "", &order->forced.variable, text, size))
         return wrong(error, CM1E_ERROR_NOT_FOUND, text);
-    if ((keep && !json_is_integer(keep)) || keep_ms < KEEP_LEAST_MS || keep_ms > KEEP_MOST_MS)
+    if (!cm1e_take_keep(message, KEEP_LEAST_MS, KEEP_MOST_MS, KEEP_MS, &order->keep_ns))
         return wrong(error, CM1E_ERROR_INVALID_ARGUMENT, "\"keep_ms\" is expected to be 100 ... 5000, or to be left out.");
     const variable_t *variable = &variables->rows[order->forced.variable];
     if (order->release || take_value(value, variable, &order->forced.value))

@@ -125,15 +125,27 @@ void cm1e_view_cycle(view_t *view)
 
 /* ---- the thread ------------------------------------------------------------------------------------------------- */
 
-void cm1e_view_want(view_t *view)
+static uint32_t want_next(view_t *view)
 {
-    if (atomic_load_explicit(&view->state, memory_order_acquire) != VIEW_WANTED)
-        atomic_store_explicit(&view->state, VIEW_WANTED, memory_order_release);
+    atomic_store_explicit(&view->state, VIEW_WANTED, memory_order_release);
+    return ++view->number;
 }
 
-bool cm1e_view_filled(const view_t *view)
+uint32_t cm1e_view_want(view_t *view)
 {
-    return atomic_load_explicit(&view->state, memory_order_acquire) == VIEW_FILLED;
+    /* The cycle may have begun the one that is wanted: its numbers are of that time. */
+    const bool wanted = atomic_load_explicit(&view->state, memory_order_acquire) == VIEW_WANTED;
+    return wanted ? view->number + 1 : want_next(view);
+}
+
+bool cm1e_view_has(view_t *view, uint32_t number)
+{
+    if (atomic_load_explicit(&view->state, memory_order_acquire) != VIEW_FILLED)
+        return false;
+    if (view->number - number <= UINT32_MAX / 2)
+        return true;
+    want_next(view);
+    return false;
 }
 
 void cm1e_view_text(const view_t *view, uint32_t axis, char *text, size_t size)

@@ -48,11 +48,19 @@ typedef struct hold {
     int64_t power_until_ns, power_keep_ns;
 } hold_t;
 
+/** A jog that another client has stopped does not go on: its client has to let go of it first. The cycle's. */
+typedef struct stopped {
+    bool any;
+    uint32_t client;           /**< that jogged */
+    int64_t until_ns;          /**< unless it asks for the jog again before */
+} stopped_t;
+
 struct recorder;
 enum { CM1E_CONTROL_CLIENTS = 32 };
 
 typedef struct maintained {
     hold_t holds[CM1E_MAX_AXES];
+    stopped_t stopped[CM1E_MAX_AXES];
     uint32_t count;            /**< of those that are held */
     _Atomic uint32_t gone;     /**< a bit for each client that is gone, and has left what it held */
 } maintained_t;
@@ -64,6 +72,7 @@ typedef struct view {
     uint32_t axis_count, slave_count;
     uint32_t first_axis;       /**< number of axes[0] in the scheduler, whose other axes are of other buses */
 
+    uint32_t number;           /**< the thread's: of the snapshot that was wanted last */
     _Atomic int state;         /**< view_state_t. WANTED: what follows belongs to the cycle; else to the thread */
     bool begun;
     uint32_t next;             /**< axis whose text is copied next: one in a cycle, because a copy is some kilobytes */
@@ -96,10 +105,11 @@ void cm1e_view_free(view_t *view);
 /** @rt cycle */
 void cm1e_view_cycle(view_t *view);
 
-/** Of the thread: wants a snapshot, unless one is wanted already. */
-void cm1e_view_want(view_t *view);
-/** A snapshot that was wanted is there. */
-bool cm1e_view_filled(const view_t *view);
+/** Of the thread: wants a snapshot; returns the number of the first one that begins from now on. */
+uint32_t cm1e_view_want(view_t *view);
+/** The snapshot of this number, or a later one, is there. Whoever needs a later one than is there makes the cycle fill it
+ *  in: so those that wait longest are asked first. */
+bool cm1e_view_has(view_t *view, uint32_t number);
 /** The text of an axis of the snapshot, "" if it has none. */
 void cm1e_view_text(const view_t *view, uint32_t axis, char *text, size_t size);
 /** Hands an order to the cycle; false: another one waits. */

@@ -163,6 +163,27 @@ def check_connection_lost():
             wait_for(lambda: stands(client, Y), "stop of another one's motion", 1)
 
 
+def check_stop_of_a_jog_that_is_renewed():
+    """It ends for good, until its own connection has let go of it for as long as one request lasts."""
+    with running() as (client, program), Client(program) as other:
+        enable(other, Y)
+        jog_for(other, Y, 0.5, 0.3)
+        expect(client.ask("stop", axis=Y)["ok"], "stop of a jog that goes on")
+        end, replies = time.monotonic() + 0.8, []
+        while time.monotonic() < end:
+            other.ask("keep")
+            replies.append(other.ask("jog", axis=Y, velocity=0.5 if len(replies) % 2 else -0.4))
+            time.sleep(0.03)
+        for reply in replies:
+            refused(reply, "Another connection has stopped axis \"Y\"", "a jog that was stopped")
+        expect(stands(client, Y), "a stopped jog moves on", axis(client, Y))
+        other.ask("keep")
+        time.sleep(0.35)
+        expect(jog_for(other, Y, 0.5, 0.2)["ok"], "a jog after letting go")
+        expect(other.ask("stop", axis=Y)["ok"] and other.ask("jog", axis=Y, velocity=-0.5)["ok"],
+               "a jog right after the own stop")
+
+
 CHILD = """
 import sys, time
 sys.path.insert(0, sys.argv[2])
@@ -305,4 +326,4 @@ if __name__ == "__main__":
         bench.write(f"{consent}.yaml", BUS.format(control=consent))
     bench.write("numbers.yaml", BUS.format(control="maintain").replace("name: Z", 'name: "2"').replace("name: Y", 'name: "3"'))
     bench.run(check_commands, check_client_suspended, check_error_and_reset, check_power_goes_off, check_home, check_jog,
-              check_connection_lost, check_software_limit, check_precedence, check_consent)
+              check_connection_lost, check_stop_of_a_jog_that_is_renewed, check_software_limit, check_precedence, check_consent)

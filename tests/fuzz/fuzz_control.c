@@ -19,9 +19,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/scheduler.h"
 #include "cm1e/sim.h"
-#include "control/file_request.h"
 #include "control/message.h"
-#include "control/recorder.h"
 #include "control/request.h"
 #include "fuzz.h"
 #include "scheduler/variables.h"
@@ -159,16 +157,9 @@ static void judge_reply(client_t *client, json_t *reply)
 static void leave(run_t *run, uint32_t n, bool stopped)
 {
     client_t *client = &run->clients[n];
-    view_t *view = &run->control.view;
-    cm1e_maintain_leave(view, places[n]);
-    cm1e_guest_outputs_leave(&view->outputs, places[n]);
-    atomic_fetch_or_explicit(&view->gone, UINT32_C(1) << places[n], memory_order_release);
-    const bool recorded = !cm1e_recorder_end(view, places[n], stopped);
-    const bool transfers = !cm1e_file_leave(&run->control, places[n]);
-    client->left = cm1e_request_must_end(&client->request) || recorded || transfers;
+    client->left = !cm1e_request_leave(&client->request, &run->control, places[n], stopped);
     if (client->left)
         return;
-    cm1e_request_clear(&client->request);
     json_decref(client->asked);
     *client = (client_t){0};
 }
