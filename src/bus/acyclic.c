@@ -31,9 +31,11 @@ static bool next_datagram(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_
         return cm1e_al_next(&slave->al, &slave->datagram, now_ns);
     }
     feed_job(bus, slave, now_ns);
-    bus->errands.sent = !bus->errands.sent && cm1e_errand_next(bus, slave);
-    slave->owner = bus->errands.sent ? OWNER_ERRAND : OWNER_FILE;
-    if (bus->errands.sent || cm1e_foe_job_next(bus, slave, now_ns))
+    const bool has_errand = cm1e_errand_next(bus, slave), sends_errand = has_errand && !bus->errands.sent;
+    if (has_errand)
+        bus->errands.sent = sends_errand;
+    slave->owner = sends_errand ? OWNER_ERRAND : OWNER_FILE;
+    if (sends_errand || cm1e_foe_job_next(bus, slave, now_ns))
         return true;
     slave->owner = OWNER_COE;
     return cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);

@@ -355,6 +355,8 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns);
 /** Gives up the question that is on its way. */
 void cm1e_supervision_forget(cm1e_bus_t *bus);
+/** Notes that a slave is lost. An optional one is then searched for. */
+void cm1e_supervision_lose(cm1e_bus_t *bus, cm1e_bus_slave_t *slave);
 void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code);
 
 /** Looks into mailboxes in turn (listening.c), as the supervision does. A look that finds no room in the frame of the

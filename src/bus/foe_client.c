@@ -281,8 +281,13 @@ static void check_time(cm1e_foe_t *foe, int64_t now_ns)
 {
     if (foe->phase == FOE_PHASE_FAREWELL && now_ns >= foe->farewell_until_ns)
         end(foe);
-    if (foe->phase == FOE_PHASE_ASKED && now_ns > foe->answer_until_ns)
-        end_early(foe, FOE_SILENT, 0, FOE_ERROR_UNDEFINED, now_ns);
+    const bool broken_off = __atomic_load_n(&foe->cancel, __ATOMIC_RELAXED);
+    if (foe->phase != FOE_PHASE_ASKED)
+        return;
+    if (broken_off && foe->answer_until_ns > now_ns + FAREWELL_NS)
+        foe->answer_until_ns = now_ns + FAREWELL_NS; /* a slave that answers at once has the end of its message */
+    if (now_ns > foe->answer_until_ns)
+        end_early(foe, broken_off ? FOE_BROKEN_OFF : FOE_SILENT, 0, FOE_ERROR_UNDEFINED, now_ns);
 }
 
 bool cm1e_foe_next(cm1e_foe_t *foe, cm1e_datagram_t *datagram, int64_t now_ns)

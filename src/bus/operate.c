@@ -78,11 +78,20 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+/** Optional slaves that left while nobody looked: their inputs show it. */
+static void lose_silent(cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        if (bus->slaves[i].hot.optional && !bus->slaves[i].hot.away && bus->slaves[i].silent_cycles > 0)
+            cm1e_supervision_lose(bus, &bus->slaves[i]);
+}
+
 cm1e_error_t cm1e_bus_resume(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_bus_enter(bus) - bus->sent_ns < WAITED_NS)
         return CM1E_OK;
     cm1e_error_t error = exchange(bus, false, diag);
+    lose_silent(bus);
     if (error == CM1E_OK)
         error = cm1e_bus_all_to_state(bus, CM1E_AL_OP, CM1E_STATE_TIMEOUT_NS, diag);
     if (error == CM1E_OK)

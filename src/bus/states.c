@@ -48,13 +48,20 @@ cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t time
 {
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + timeout_ns;
     for (uint32_t i = 0; i < bus->scanned; i++)
-        cm1e_al_request(&bus->slaves[i].al, target, deadline_ns);
+        if (!bus->slaves[i].hot.away)
+            cm1e_al_request(&bus->slaves[i].al, target, deadline_ns);
     /* The machines end by themselves; the margin is for datagrams that are still on their way. */
     cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
     cm1e_supervision_forget(bus); /* it may have asked before the slave changed its state */
     cm1e_error_t first = CM1E_OK;
     for (uint32_t i = 0; i < bus->scanned; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->hot.away)
+            continue;
+        if (bus->phase == BUS_OPERATING && slave->hot.optional && cm1e_al_is_silent(&slave->al)) {
+            cm1e_supervision_lose(bus, slave); /* it left while nobody looked */
+            continue;
+        }
         slave->info.al_state = slave->al.state;
         slave->info.al_status_code = slave->al.code;
         slave->watch = (cm1e_slave_watch_t){.al_state = slave->al.state, .al_status_code = slave->al.code};

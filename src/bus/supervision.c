@@ -101,8 +101,7 @@ static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
         cm1e_recovery_begin(bus, slave);
 }
 
-/** Notes that a slave is lost. An optional one is then searched for. */
-static void lose(cm1e_bus_slave_t *slave)
+void cm1e_supervision_lose(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
     slave->watch = (cm1e_slave_watch_t){.lost = true, .absent = slave->hot.away};
     slave->info.al_state = slave->info.al_status_code = 0;
@@ -112,6 +111,7 @@ static void lose(cm1e_bus_slave_t *slave)
     cm1e_coe_cancel(&slave->coe, CM1E_ERROR_BUS_LOST);
     slave->hot.refused = NULL;
     cm1e_hot_lose(slave);
+    cm1e_hot_note(bus, slave);
 }
 
 void cm1e_supervision_forget(cm1e_bus_t *bus)
@@ -154,7 +154,7 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
     if (d->working_counter == 1) {
         cm1e_supervision_note(slave, cm1e_get_u16(d->data), cm1e_get_u16(d->data + 4));
     } else if (d->working_counter == 0 && ++slave->unanswered >= UNANSWERED_LIMIT) {
-        lose(slave);
+        cm1e_supervision_lose(bus, slave);
     }
     recover_unasked(bus, slave);
     cm1e_hot_note(bus, slave);

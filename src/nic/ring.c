@@ -71,6 +71,8 @@ void cm1e_ring_observe(ecx_portt *port, uint32_t transmission, int arrival, int 
         learn(port, RING_INTACT, transmission);
     else if (port->ring.state == (arrival == 0 ? RING_SECOND_ONLY : RING_FIRST_ONLY))
         learn(port, RING_CUT, transmission);
+    else
+        port->ring.learned_from = transmission; /* it stays so, for more than 2^31 frames, too */
 }
 
 void cm1e_ring_dummy_answered(ecx_portt *port, int slaves) { port->ring.slaves_behind = slaves; }

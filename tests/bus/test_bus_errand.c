@@ -280,6 +280,31 @@ START_TEST(a_bus_that_stops_in_any_cycle_ends_the_errand)
 }
 END_TEST
 
+/** An SDO transfer with a slave whose SII is read has every second turn, however many other slaves there are. */
+START_TEST(an_object_is_read_beside_an_errand_of_the_same_slave)
+{
+    cm1e_bus_t *bus = operating();
+    uint8_t data[4];
+    unsigned alone = 0;
+    for (unsigned beside = 0; beside < 2; beside++) {
+        cm1e_sdo_t sdo = {.position = LAST, .index = 0x1018, .subindex = 1, .data = data, .size = sizeof data};
+        unsigned n = 0;
+        if (beside)
+            ck_assert_int_eq(submit_sii(bus, 0), CM1E_OK);
+        ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+        for (; cm1e_sdo_state(&sdo) == CM1E_SDO_BUSY; n++)
+            cycle(bus);
+        ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+        if (!beside)
+            alone = n;
+        else
+            ck_assert_msg(n <= 2 * alone + 2 && !cm1e_errand_done(&errand), "%u cycles, alone %u", n, alone);
+    }
+    finish(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(an_errand_that_cannot_be_done_is_refused)
 {
     static const struct {
@@ -328,6 +353,7 @@ int main(void)
     tcase_add_test(tests, registers_are_read_or_the_slave_is_lost);
     tcase_add_loop_test(tests, a_slave_that_is_lost_in_any_cycle_ends_the_errand_and_gets_its_eeprom_back, 0, FATES);
     tcase_add_test(tests, a_bus_that_stops_in_any_cycle_ends_the_errand);
+    tcase_add_test(tests, an_object_is_read_beside_an_errand_of_the_same_slave);
     tcase_add_test(tests, an_errand_that_cannot_be_done_is_refused);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

@@ -102,6 +102,42 @@ START_TEST(a_mailbox_that_refuses_foe_ends_the_transfer)
 }
 END_TEST
 
+static cm1e_tap_verdict_t hide_foe(void *unused, cm1e_tap_frame_t *frame)
+{
+    (void)unused;
+    uint8_t *message = message_in(frame, CM1E_TAP_RECEIVED);
+    if (message)
+        message[TYPE] |= 0x0F; /* of no protocol */
+    return CM1E_TAP_PASS;
+}
+
+/** Whoever breaks it off does not wait for the time of the answer, and the mailbox serves others. */
+START_TEST(a_file_without_an_answer_is_broken_off_within_half_a_second)
+{
+    enum { BEFORE = 50, MOST = 500 };
+    drive();
+    cm1e_bus_t *bus = start_bus();
+    for (unsigned writes = 0; writes < 2; writes++) {
+        cm1e_foe_t foe = {.position = 1, .writing = writes, .name = "a file.bin", .from = written, .to = got,
+                          .size = writes ? 100 : 0, .room = sizeof got, .options.answer_ns = INT64_C(600000000000)};
+        check_next_transfer(bus, 100);
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), hide_foe, NULL);
+        ck_assert_int_eq(cm1e_foe_submit(bus, &foe, &diag), CM1E_OK);
+        for (unsigned n = 0; n < BEFORE; n++)
+            ck_assert_int_eq(cycle(bus), CM1E_OK);
+        ck_assert(!cm1e_foe_done(&foe));
+        cm1e_foe_cancel(&foe);
+        for (unsigned n = 0; !cm1e_foe_done(&foe); n++) {
+            ck_assert_int_eq(cycle(bus), CM1E_OK);
+            ck_assert_uint_lt(n, MOST);
+        }
+        ck_assert_int_eq(cm1e_foe_result_of(&foe, &diag), CM1E_ERROR_CANCELLED);
+    }
+    check_next_transfer(bus, 100);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** From packet `shown` on the slave repeats itself: the acknowledgements come to it as if for what it has sent. */
 static cm1e_tap_verdict_t repeat_packet(void *context, cm1e_tap_frame_t *frame)
 {
@@ -270,6 +306,7 @@ int main(void)
     Suite *suite = suite_create("bus_foe_wrong");
     TCase *tests = tcase_create("foe_wrong");
     tcase_add_test(tests, a_mailbox_that_refuses_foe_ends_the_transfer);
+    tcase_add_test(tests, a_file_without_an_answer_is_broken_off_within_half_a_second);
     tcase_add_loop_test(tests, a_packet_that_comes_again_and_again_ends_the_transfer, 1, 5);
     tcase_add_loop_test(tests, a_file_without_one_of_its_packets_is_no_whole_file, 2, 5);
     tcase_add_loop_test(tests, a_packet_that_was_not_expected_is_told_with_both_numbers, 1, 5);

@@ -2,6 +2,7 @@
  * then, like the working counter of any question to one slave. And an optional motor between others: a stranger that it
  * moves to another place, and outputs that it does not take. */
 #include "bus_support.h"
+#include "bus/kept.h"
 #include "cm1e/hot_connect.h"
 #include "effort.h"
 #include "sim/esc_chip.h"
@@ -262,6 +263,40 @@ START_TEST(a_motor_beside_an_optional_one_is_silent_after_the_tolerated_cycles)
 }
 END_TEST
 
+static void detach_second(cm1e_bus_t *bus, bool noticed)
+{
+    cm1e_sim_segment_detach(segment_of(bus), 2, false);
+    if (noticed) {
+        silent_cycles(bus, SETTLE);
+        ck_assert_int_eq(cm1e_bus_presence(bus, 2), CM1E_PRESENCE_ABSENT);
+    }
+}
+
+/** A program that lets the bus wait for longer than its scheduler may: the tool is there, leaves meanwhile, or has left. */
+START_TEST(a_run_begins_whether_the_tool_has_left_or_not)
+{
+    enum { THERE, LEAVES, HAS_LEFT };
+    const int64_t waits_ns = 50000000, most_ns = 500000000;
+    make_optional(&sim_config(2)->axes[1], ID);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, SETTLE);
+    if (_i != THERE)
+        detach_second(bus, _i == HAS_LEFT);
+    cm1e_clock_t *clock = cm1e_bus_clock(bus);
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + waits_ns);
+    const int64_t began_ns = cm1e_clock_now(clock);
+    const cm1e_error_t error = cm1e_bus_resume(bus, &diag);
+    ck_assert_msg(error == CM1E_OK, "%s", diag.text);
+    ck_assert_int_lt(cm1e_clock_now(clock) - began_ns, most_ns);
+    for (int n = 0; n < SETTLE; n++)
+        ck_assert_int_eq(cycle(bus), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_presence(bus, 2), _i == THERE ? CM1E_PRESENCE_THERE : CM1E_PRESENCE_ABSENT);
+    cm1e_sim_segment_attach(segment_of(bus), 2);
+    ck_assert(comes(bus, 2));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_alone");
@@ -276,6 +311,7 @@ int main(void)
     tcase_add_test(tests, no_working_counter_makes_up_for_a_motor_that_is_always_there);
     tcase_add_test(tests, a_tool_that_is_pulled_while_it_is_identified_comes_back_at_once);
     tcase_add_test(tests, two_tools_come_whenever_the_first_one_loses_its_power);
+    tcase_add_loop_test(tests, a_run_begins_whether_the_tool_has_left_or_not, 0, 3);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

@@ -419,6 +419,31 @@ static void test_one_lost_half_in_a_cut_ring_costs_one_cycle(void)
     }
 }
 
+/** 2^31 frames pass while the ring is broken: 25 days with one in a ms. Then it is mended, and that is learned at once. */
+static void test_a_break_of_months_is_forgotten_when_the_ring_is_mended(void)
+{
+    char message[40];
+    for (int place = FIRST_DEAD; place < PLACES; place++)
+        for (int times = 1; times <= 3; times++) {
+            snprintf(message, sizeof message, "broken at %d, %d times 2^31 frames", place, times);
+            tearDown();
+            setUp();
+            TEST_ASSERT_EQUAL_INT(N, broadcast());
+            break_at(place);
+            for (int part = 0; part < 4 * times; part++) {
+                for (int i = 0; i < 5; i++)
+                    cyclic();
+                port.transmissions += UINT32_C(1) << 29;
+            }
+            for (int i = 0; i < 5; i++)
+                cyclic();
+            break_at(INTACT);
+            cyclic();
+            cyclic();
+            TEST_ASSERT_EQUAL_INT_MESSAGE(RING_INTACT, port.ring.state, message);
+        }
+}
+
 static void test_without_a_second_interface_set_up_fails(void)
 {
     ecx_portt single = {.nic = wire_start(false)};
@@ -444,6 +469,7 @@ int main(void)
     RUN_TEST(test_one_look_a_cycle_without_waiting_is_enough_to_learn);
     RUN_TEST(test_random_losses_and_breaks_never_give_wrong_data);
     RUN_TEST(test_one_lost_half_in_a_cut_ring_costs_one_cycle);
+    RUN_TEST(test_a_break_of_months_is_forgotten_when_the_ring_is_mended);
     RUN_TEST(test_without_a_second_interface_set_up_fails);
     return UNITY_END();
 }
