@@ -96,8 +96,8 @@ static inline cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, c
  *  while its thread starts another one. The bus must outlive the scheduler. CM1E_ERROR_INVALID_ARGUMENT: another cycle
  *  time, another clock (`virtual_time`), distributed clocks that follow no clock of the buses before because the bus
  *  was not started in the same thread while one of them was in operation, more than CM1E_MAX_BUSES buses or
- *  CM1E_MAX_AXES axes, or a name that another axis has. CM1E_ERROR_STATE: the bus is not in operation, or the
- *  scheduler ran. @rt init */
+ *  CM1E_MAX_AXES axes, or a name that another axis has. CM1E_ERROR_STATE: the bus is not in operation, the
+ *  scheduler ran, or its trace has variables, objects or a trigger already. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Frees a scheduler that does not run. NULL is allowed. In a task it is refused, and the run ends in order with an
  *  error. @rt init */

@@ -53,7 +53,7 @@ json_t *cm1e_show_bytes(const uint8_t *bytes, size_t length)
         snprintf(text + 2 * i, 3, "%02x", bytes[i]);
     if (text)
         text[2 * length] = 0;
-    json_t *value = json_string(text ? text : "");
+    json_t *value = text ? json_string(text) : NULL;
     free(text);
     return value;
 }
@@ -76,5 +76,7 @@ json_t *cm1e_request_refuse(json_t *id, cm1e_error_t error, uint32_t foreign_cod
 
 json_t *cm1e_request_accept(json_t *id, const char *name, json_t *value)
 {
+    if (!value)
+        return cm1e_request_refuse(id, CM1E_ERROR_NO_MEMORY, 0, "No memory for the reply.");
     return cm1e_request_with_id(json_pack("{s:b, s:o}", "ok", 1, name, value), id);
 }

@@ -19,9 +19,10 @@ bool cm1e_take_number(const json_t *message, const char *name, json_int_t minimu
 bool cm1e_take_keep(const json_t *message, int minimum_ms, int maximum_ms, int otherwise_ms, int64_t *keep_ns);
 /** Bytes as hexadecimal digits; false: they are not, or more than `room`. */
 bool cm1e_take_bytes(const json_t *message, const char *name, uint8_t *bytes, size_t room, size_t *length);
+/** NULL: no memory. */
 json_t *cm1e_show_bytes(const uint8_t *bytes, size_t length);
 
-/** Replies. `id` is what the client calls its request; NULL: nothing. The value is taken over. */
+/** Replies. `id` is what the client calls its request; NULL: nothing. The value is taken over; NULL: no memory. */
 json_t *cm1e_request_accept(json_t *id, const char *name, json_t *value);
 json_t *cm1e_request_refuse(json_t *id, cm1e_error_t error, uint32_t foreign_code, const char *text);
 json_t *cm1e_request_with_id(json_t *reply, json_t *id);

@@ -6,6 +6,7 @@
 #include "bus/remote.h"
 #include "control/arguments.h"
 #include "control/client.h"
+#include "control/message.h"
 #include "control/file_request.h"
 #include "core/clock.h"
 #include "core/text.h"
@@ -148,25 +149,24 @@ static bool take_data(void *data, size_t *size, const char *text)
     return true;
 }
 
+/** A whole ms, not less than the time. */
+static json_int_t milliseconds(int64_t ns) { return (json_int_t)((ns + 999999) / 1000000); }
+
+/** Bytes that a request has room for beside its other members, in hexadecimal digits. */
+enum { WRITE_MAX = (CM1E_REQUEST_MAX - 512) / 2 };
+
 static json_t *request_of(const cm1e_sdo_t *sdo)
 {
     json_t *request = json_pack("{s:s, s:i, s:i, s:i, s:b}", "request", sdo->write ? "sdo_write" : "sdo_read", "slave",
                                 sdo->position, "index", sdo->index, "subindex", sdo->subindex, "complete_access",
                                 sdo->complete_access);
     if (sdo->timeout_ns > 0)
-        json_object_set_new(request, "timeout_ms", json_integer(sdo->timeout_ns / 1000000 + 1));
+        json_object_set_new(request, "timeout_ms", json_integer(milliseconds(sdo->timeout_ns)));
     if (!sdo->write) {
         json_object_set_new(request, "size", json_integer((json_int_t)(sdo->size < 32768 ? sdo->size : 32768)));
         return request;
     }
-    const uint8_t *bytes = sdo->data;
-    char *text = sdo->size < 32768 ? malloc(2 * sdo->size + 1) : NULL;
-    if (text)
-        text[0] = 0;
-    for (size_t i = 0; text && i < sdo->size; i++)
-        snprintf(text + 2 * i, 3, "%02x", bytes[i]);
-    json_object_set_new(request, "data", json_string(text ? text : ""));
-    free(text);
+    json_object_set_new(request, "data", cm1e_show_bytes(sdo->data, sdo->size));
     return request;
 }
 
@@ -181,6 +181,9 @@ static cm1e_error_t transfer(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
 {
     json_t *reply = NULL;
     cm1e_diag_t told = {0};
+    if (sdo->write && sdo->size > WRITE_MAX)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Through the program that has the network an object of at "
+                             "most %d bytes is written; this one has %zu.", WRITE_MAX, sdo->size);
     cm1e_error_t error = cm1e_control_call(state, request_of(sdo), &reply, &told);
     const bool answered = reply != NULL;
     sdo->error = CM1E_OK;
@@ -302,7 +305,7 @@ static cm1e_error_t transfer_file(void *state, cm1e_foe_t *foe, cm1e_diag_t *dia
         error = order(state, json_pack("{s:s, s:i, s:s, s:b, s:I, s:I, s:I}", "request", "file_begin", "slave",
                                        foe->position, "name", foe->name, "write", foe->writing, "password",
                                        (json_int_t)foe->options.password, "timeout_ms",
-                                       (json_int_t)(foe->options.answer_ns / 1000000 + 1), "maximum",
+                                       milliseconds(foe->options.answer_ns), "maximum",
                                        foe->writing ? 1 : maximum), diag);
     if (error == CM1E_OK)
         error = follow(state, foe, &done, diag);

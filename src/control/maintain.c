@@ -91,11 +91,11 @@ static maintain_refusal_t disable(view_t *view, maintain_order_t *order, hold_t 
     return MAINTAIN_DONE;
 }
 
-/** What a motion is ended with: never less than a jog without pause was given before, so that nobody makes the way to
- *  standstill longer. 0 is the most that the axis has. */
+/** What a motion is ended with: never less than a jog without pause was given before, or the end of one that goes on, so
+ *  that nobody makes the way to standstill longer. 0 is the most that the axis has. */
 static double braking(const hold_t *hold, const maintain_order_t *order)
 {
-    if (hold->motion != HOLD_JOG || order->acceleration == 0.0)
+    if ((hold->motion != HOLD_JOG && hold->motion != HOLD_END) || order->acceleration == 0.0)
         return order->acceleration;
     return hold->deceleration == 0.0 ? 0.0 : fmax(hold->deceleration, order->acceleration);
 }

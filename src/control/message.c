@@ -1,8 +1,29 @@
 #include "control/message.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/** Lists and objects within each other: a library that follows them down needs as much more stack. */
+enum { DEPTH_MAX = 16 };
+
+static bool is_too_deep(const uint8_t *text, size_t length)
+{
+    unsigned depth = 0;
+    bool quoted = false;
+    for (size_t i = 0; i < length; i++) {
+        if (quoted && text[i] == '\\')
+            i++;
+        else if (text[i] == '"')
+            quoted = !quoted;
+        else if (!quoted && (text[i] == '[' || text[i] == '{') && ++depth > DEPTH_MAX)
+            return true;
+        else if (!quoted && (text[i] == ']' || text[i] == '}') && depth > 0)
+            depth--;
+    }
+    return false;
+}
 
 cm1e_message_state_t cm1e_message_read(const uint8_t *bytes, size_t length, size_t maximum, json_t **message,
                                        size_t *used, char why[JSON_ERROR_TEXT_LENGTH])
@@ -17,6 +38,10 @@ cm1e_message_state_t cm1e_message_read(const uint8_t *bytes, size_t length, size
     if (length - CM1E_MESSAGE_HEADER < body)
         return CM1E_MESSAGE_PART;
     *used = CM1E_MESSAGE_HEADER + body;
+    if (is_too_deep(bytes + CM1E_MESSAGE_HEADER, body)) {
+        snprintf(why, JSON_ERROR_TEXT_LENGTH, "lists and objects are more than %d deep", DEPTH_MAX);
+        return CM1E_MESSAGE_NOT_JSON;
+    }
     *message = json_loadb((const char *)bytes + CM1E_MESSAGE_HEADER, body, JSON_REJECT_DUPLICATES, &error);
     if (!*message) {
         snprintf(why, JSON_ERROR_TEXT_LENGTH, "%.120s (byte %d)", error.text, error.position);

@@ -13,12 +13,12 @@ static void write_value(const forcing_parts_t *p, uint32_t variable, const varia
 
 void cm1e_scheduler_set_variables(cm1e_scheduler_t *scheduler, const variable_t *rows, uint32_t count)
 {
-    cm1e_scheduler_forcing_parts(scheduler).forcing->variables = (variables_t){rows, count};
+    cm1e_scheduler_forcing(scheduler)->variables = (variables_t){rows, count};
 }
 
 const variables_t *cm1e_scheduler_variables(const cm1e_scheduler_t *scheduler)
 {
-    return &cm1e_scheduler_forcing_parts((cm1e_scheduler_t *)(uintptr_t)scheduler).forcing->variables;
+    return &cm1e_scheduler_forcing((cm1e_scheduler_t *)(uintptr_t)scheduler)->variables;
 }
 
 void cm1e_scheduler_apply_forced(cm1e_scheduler_t *scheduler)
@@ -118,7 +118,7 @@ bool cm1e_scheduler_is_forced(const cm1e_scheduler_t *scheduler, uint32_t variab
 
 uint32_t cm1e_scheduler_list_forced(const cm1e_scheduler_t *scheduler, uint32_t rows[CM1E_FORCED])
 {
-    const forcing_t *forcing = cm1e_scheduler_forcing_parts((cm1e_scheduler_t *)(uintptr_t)scheduler).forcing;
+    const forcing_t *forcing = cm1e_scheduler_forcing((cm1e_scheduler_t *)(uintptr_t)scheduler);
     uint32_t count = 0;
     for (int i = 0; i < CM1E_FORCED; i++)
         if (forcing->rows[i].held)

@@ -55,6 +55,7 @@ typedef struct forcing_parts {
     int64_t run_ns;
     bool ending;
 } forcing_parts_t;
-forcing_parts_t cm1e_scheduler_forcing_parts(cm1e_scheduler_t *scheduler);
+forcing_parts_t cm1e_scheduler_forcing_parts(cm1e_scheduler_t *scheduler); /**< @rt cycle */
+forcing_t *cm1e_scheduler_forcing(cm1e_scheduler_t *scheduler);
 
 #endif

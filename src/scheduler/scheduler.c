@@ -446,6 +446,8 @@ cm1e_error_t cm1e_scheduler_write_npy(const cm1e_scheduler_t *scheduler, const c
 
 const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return &scheduler->trace; }
 
+forcing_t *cm1e_scheduler_forcing(cm1e_scheduler_t *s) { return &s->forcing; }
+
 forcing_parts_t cm1e_scheduler_forcing_parts(cm1e_scheduler_t *s)
 {
     return (forcing_parts_t){&s->forcing, &s->log, cm1e_scheduler_time_ns(s), s->shutting_down};

@@ -148,6 +148,9 @@ cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler or a bus is missing.");
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Buses are added before the scheduler runs.");
+    if (scheduler->trace.variables > 0 || scheduler->trace.trigger.kind != CM1E_TRACE_NO_TRIGGER)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Buses are added before signals and the trigger of the trace, whose "
+                             "columns begin with those of all axes.");
     const char *refused = other_bus_refused(scheduler, bus), *taken = name_taken(scheduler, bus);
     if (refused[0])
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The bus on \"%s\" cannot be added to the scheduler: "

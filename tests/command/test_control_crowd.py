@@ -111,6 +111,16 @@ def check_times_that_are_too_large():
                 expect(not reply["ok"], f"{request} for {keep_ms} ms", reply)
 
 
+def check_deep_messages():
+    """Lists within lists: the reply to one with such an id needed more stack than its thread has."""
+    with bench.running("files.yaml") as program, Client(program) as client:
+        for levels in (15, 16, 2000, 20000):
+            client.send('{"request": "hello", "id": ' + "[" * levels + "]" * levels + "}")
+            reply = client.receive()
+            expect(reply["ok"] == (levels == 15) and ("id" in reply) == (levels == 15), f"{levels} levels", str(reply)[:200])
+        expect(client.ask("hello")["ok"], "the connection goes on")
+
+
 def computed(program):
     """s of a processor."""
     with open(f"/proc/{program.pid}/stat", encoding="ascii") as file:
@@ -144,4 +154,4 @@ if __name__ == "__main__":
     for name, text in (("files.yaml", FILES), ("many.yaml", MANY)):
         bench.write(name, text)
     bench.run(check_orders_have_their_turn, check_snapshots_are_new, check_gone_before_the_file_is_decided,
-              check_refused_file_gives_the_place_back, check_times_that_are_too_large, check_without_descriptors)
+              check_refused_file_gives_the_place_back, check_times_that_are_too_large, check_deep_messages, check_without_descriptors)

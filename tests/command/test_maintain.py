@@ -180,8 +180,15 @@ def check_stop_of_a_jog_that_is_renewed():
         other.ask("keep")
         time.sleep(0.35)
         expect(jog_for(other, Y, 0.5, 0.2)["ok"], "a jog after letting go")
-        expect(other.ask("stop", axis=Y)["ok"] and other.ask("jog", axis=Y, velocity=-0.5)["ok"],
-               "a jog right after the own stop")
+        wait_for(lambda: stands(client, Y), "the own stop")
+        for _ in range(5):
+            other.ask("jog", axis=Y, velocity=-3, acceleration=20)
+            time.sleep(0.05)
+        other.ask("stop", axis=Y)  # which takes 0.15 s
+        other.ask("jog", axis=Y, velocity=-3, acceleration=0.5)  # and let go: it would take 6 s with that
+        wait_for(lambda: stands(client, Y), "a jog behind a stop makes the way to standstill longer", 1.5)
+        for reply in (other.ask("jog", axis=Y, velocity=0.5), other.ask("stop", axis=Y), other.ask("jog", axis=Y, velocity=-0.5)):
+            expect(reply["ok"], "a jog right after the own stop", reply)
 
 
 CHILD = """

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "cm1e/sim.h"
+#include "cm1e/trace.h"
 #include "scheduler/trace_recorder.h"
 #include "two_buses.h"
 
@@ -258,6 +259,29 @@ START_TEST(test_what_cannot_run_together_is_refused)
 }
 END_TEST
 
+/** Signals and a trigger of the trace would be thrown away: its columns begin with those of all axes. */
+START_TEST(test_buses_come_before_the_signals_of_the_trace)
+{
+    static double level;
+    const cm1e_scheduler_config_t with_trace = {.trace_capacity = 10};
+    const cm1e_trace_trigger_t trigger = {.kind = CM1E_TRACE_ON_ERROR_STOP};
+    for (int signal = 0; signal < 2; signal++) {
+        cm1e_bus_t *first = open_bus("A", 1, MS_IN_NS, true), *second = open_bus("B", 1, MS_IN_NS, true);
+        must(cm1e_bus_start(first, &diag));
+        must(cm1e_bus_start(second, &diag));
+        must(cm1e_scheduler_create(&scheduler, first, &with_trace, &diag));
+        must(signal ? cm1e_scheduler_trace_variable(scheduler, "level", "mm", CM1E_TRACE_LREAL, &level, &diag)
+                    : cm1e_scheduler_trace_trigger(scheduler, &trigger, &diag));
+        ck_assert_int_eq(cm1e_scheduler_add_bus(scheduler, second, &diag), CM1E_ERROR_STATE);
+        ck_assert_msg(strstr(diag.text, "before signals and the trigger"), "%s", diag.text);
+        must(cm1e_scheduler_run(scheduler, 10 * MS_IN_NS, &diag));
+        cm1e_scheduler_destroy(scheduler);
+        cm1e_bus_close(first);
+        cm1e_bus_close(second);
+    }
+}
+END_TEST
+
 START_TEST(test_four_buses_and_no_more)
 {
     cm1e_bus_t *many[CM1E_MAX_BUSES + 1];
@@ -405,6 +429,7 @@ int main(void)
     tcase_add_test(all, test_a_gear_from_one_bus_to_the_other_is_in_step);
     tcase_add_test(all, test_a_lost_bus_concerns_its_own_axes);
     tcase_add_test(all, test_what_cannot_run_together_is_refused);
+    tcase_add_test(all, test_buses_come_before_the_signals_of_the_trace);
     tcase_add_test(all, test_four_buses_and_no_more);
     tcase_add_loop_test(all, test_a_group_across_buses_makes_up_what_one_of_them_loses, 0, 3);
     tcase_add_test(all, test_behind_a_stop_no_axis_goes_back_to_the_path);

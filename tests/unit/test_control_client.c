@@ -13,6 +13,7 @@
 
 #include <unity.h>
 
+#include "cm1e/bus.h"
 #include "cm1e/control.h"
 #include "control/message.h"
 #include "core/in_task.h"
@@ -25,7 +26,7 @@ static char *reply;
 /* ---- a program that answers -------------------------------------------------------------------------------------- */
 
 /** What it does with a request; a late answer comes when the next request has come, before that of it. */
-typedef enum act { ANSWER = 0, BYTE_BY_BYTE, LATE, NO_JSON, TOO_LONG, NOT_OK, NO_REASON, CLOSE, ACTS } act_t;
+typedef enum act { ANSWER = 0, BYTE_BY_BYTE, LATE, NO_JSON, TOO_LONG, NOT_OK, NO_REASON, CLOSE, SLAVES, ACTS } act_t;
 static act_t acts[4];
 static unsigned act_count;
 static int listening;
@@ -64,6 +65,7 @@ static void answer(int fd, unsigned number)
     case TOO_LONG: send_bytes(fd, too_long, sizeof too_long); break;
     case NOT_OK: send_text(fd, "{\"ok\": false, \"error\": {\"code\": -22, \"foreign_code\": 5, \"text\": \"no\"}}", false); break;
     case NO_REASON: send_text(fd, "{}", false); break;
+    case SLAVES: send_text(fd, "{\"ok\": true, \"slaves\": [{\"position\": 1, \"name\": \"a\", \"coe\": true}]}", false); break;
     case LATE:
     case CLOSE:
     case ACTS: break;
@@ -225,6 +227,30 @@ static void test_refusal_has_the_words_of_the_program(void)
     end();
 }
 
+/* ---- an attached bus ---------------------------------------------------------------------------------------------- */
+
+/* What does not fit into a request is refused; it was written as an empty value. */
+static void test_object_that_is_too_large_for_a_request_is_not_written(void)
+{
+    enum { MOST = (CM1E_REQUEST_MAX - 512) / 2 };
+    static uint8_t bytes[MOST + 10000];
+    static cm1e_bus_config_t config;
+    cm1e_bus_t *bus;
+    connect_to(2, (const act_t[]){SLAVES, ANSWER});
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_bus_config_init(&config, "eth9", 0));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_bus_open_attached(&bus, &config, control, &diag), diag.text);
+    cm1e_bus_config_free(&config);
+    control = NULL; /* the bus has it */
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_bus_scan(bus, &diag), diag.text);
+    for (size_t size = MOST + 1; size <= sizeof bytes; size += 3333) {
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_sdo_write(bus, 1, 0x2000, 0, bytes, size, &diag));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "at most 32512 bytes"), diag.text);
+    }
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_sdo_write(bus, 1, 0x2000, 0, bytes, MOST, &diag), diag.text);
+    cm1e_bus_close(bus);
+    pthread_join(thread, NULL);
+}
+
 /* ---- before anything is sent ------------------------------------------------------------------------------------- */
 
 static void test_request_that_is_no_object_is_not_sent(void)
@@ -309,6 +335,7 @@ int main(void)
     RUN_TEST(test_answers_that_cannot_be_read_end_the_connection);
     RUN_TEST(test_program_that_closes_the_connection_has_ended);
     RUN_TEST(test_refusal_has_the_words_of_the_program);
+    RUN_TEST(test_object_that_is_too_large_for_a_request_is_not_written);
     RUN_TEST(test_request_that_is_no_object_is_not_sent);
     RUN_TEST(test_connections_that_cannot_be_made_say_why);
     RUN_TEST(test_socket_that_nobody_listens_to_yet_is_asked_again);

@@ -66,6 +66,39 @@ static void test_what_is_no_object_is_named_and_skipped(void)
     }
 }
 
+/** 16 levels are read, the object among them; what is within texts is none. Each level of a library needs stack. */
+static void test_what_is_too_deep_is_refused(void)
+{
+    enum { MOST = 15 };
+    static const struct {
+        const char *open, *close;
+        unsigned levels;
+        cm1e_message_state_t state;
+    } rows[] = {
+        {"[", "]", MOST, CM1E_MESSAGE_WHOLE}, {"[", "]", MOST + 1, CM1E_MESSAGE_NOT_JSON},
+        {"[", "]", 30000, CM1E_MESSAGE_NOT_JSON}, {"{\"a\":", "}", 9000, CM1E_MESSAGE_NOT_JSON},
+        {"[[],", "]", MOST - 1, CM1E_MESSAGE_WHOLE}, {"\"[[[[[[[[[[[[[[[[[[[[\\\"[[[[[[[[", "\"", 1, CM1E_MESSAGE_WHOLE},
+    };
+    static uint8_t bytes[CM1E_MESSAGE_HEADER + CM1E_REQUEST_MAX + 1];
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char *text = (char *)bytes + CM1E_MESSAGE_HEADER;
+        size_t length = (size_t)sprintf(text, "{\"a\":");
+        for (unsigned level = 0; level < rows[i].levels; level++)
+            length += (size_t)sprintf(text + length, "%s", rows[i].open);
+        if (rows[i].levels > 1) /* what the innermost one has */
+            length += (size_t)sprintf(text + length, "1");
+        for (unsigned level = 0; level < rows[i].levels; level++)
+            length += (size_t)sprintf(text + length, "%s", rows[i].close);
+        length += (size_t)sprintf(text + length, "}");
+        memcpy(bytes, (uint8_t[]){0, 0, (uint8_t)(length >> 8), (uint8_t)length}, CM1E_MESSAGE_HEADER);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(rows[i].state, read_from(bytes, CM1E_MESSAGE_HEADER + length), why);
+        if (rows[i].state == CM1E_MESSAGE_NOT_JSON)
+            TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "more than 16 deep"), why);
+        json_decref(message);
+        message = NULL;
+    }
+}
+
 static void test_random_bytes_do_no_harm(void)
 {
     chance_seed(1);
@@ -88,6 +121,7 @@ int main(void)
     RUN_TEST(test_what_is_written_is_read);
     RUN_TEST(test_a_length_beyond_the_limit_is_refused_at_once);
     RUN_TEST(test_what_is_no_object_is_named_and_skipped);
+    RUN_TEST(test_what_is_too_deep_is_refused);
     RUN_TEST(test_random_bytes_do_no_harm);
     return UNITY_END();
 }
