@@ -6,7 +6,8 @@
  * acceleration and jerk, and the base is planned anew with the rest; a base that needs no more than the rest keeps its
  * time (3.8). Both change with the same jerk, so that the sum also keeps the limits during the change. A base that is
  * about to arrive and needs its whole deceleration for that gets it; then the superimposed motion begins later. The
- * velocity of a follower is that of its master, which is not shared. If a command takes over from a follower that is
+ * velocity of a follower is that of its master, which is not shared: where it takes the limits, the superimposed motion
+ * goes on with less acceleration, or the sum with more jerk (coupling/coupled_step.c). If a command takes over from a follower that is
  * faster than the rest, or is a halt that would pass a software limit with the rest, the command gets the whole motion,
  * and the superimposed motion waits, with what it has covered, until there is room for it again. On an axis in
  * Standstill the superimposed motion has all limits.
@@ -427,12 +428,50 @@ void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next)
     next->acceleration += on_top->now.acceleration;
 }
 
-void cm1e_axis_superimposed_hold(cm1e_axis_t *axis, const cm1e_motion_state_t *before)
+/* Whether it stays within VelocityDiff, or does not become faster, if its acceleration ends with its own jerk. */
+static bool keeps_velocity(const superimposed_t *on_top)
 {
-    superimposed_t *on_top = &axis->superimposed;
-    const double t = axis->cycle_s, v = before->velocity, a = before->acceleration;
-    on_top->now = (cm1e_motion_state_t){before->position + t * (v + t * a / 2.0), v + t * a, a};
-    (void)plan(axis, on_top);
+    static const double rounding = 1.0 + 1e-9;
+    const from_t from = {.velocity = on_top->now.velocity, .acceleration = on_top->now.acceleration};
+    return peak_of(&from, on_top->share.jerk) <= fmax(on_top->share.velocity, fabs(from.velocity)) * rounding;
+}
+
+static bool passes_target(const cm1e_axis_t *axis, const superimposed_t *on_top)
+{
+    const double target = on_top->move.position, now = on_top->now.position, tolerance = axis->limits.tolerance;
+    return on_top->move.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED && !on_top->paused &&
+           (on_top->highest > fmax(target, now) + tolerance || on_top->lowest < fmin(target, now) - tolerance);
+}
+
+/* Its state after `t`, in which its acceleration changes evenly to `acceleration`. */
+static void advance(cm1e_motion_state_t *state, double acceleration, double t)
+{
+    const double v = state->velocity, a = state->acceleration;
+    *state = (cm1e_motion_state_t){state->position + t * (v + t * (2.0 * a + acceleration) / 6.0),
+                                   v + t * (a + acceleration) / 2.0, acceleration};
+}
+
+bool cm1e_axis_superimposed_hold(cm1e_axis_t *axis, bool to_target)
+{
+    superimposed_t held = axis->superimposed;
+    advance(&held.now, held.now.acceleration, axis->cycle_s);
+    if (!keeps_velocity(&held) || !plan(axis, &held) || (to_target && passes_target(axis, &held)))
+        return false;
+    axis->superimposed = held;
+    return true;
+}
+
+bool cm1e_axis_superimposed_ease(cm1e_axis_t *axis)
+{
+    superimposed_t eased = axis->superimposed;
+    const double a = eased.now.acceleration, jerk = axis->limits.maximum.jerk, t = axis->cycle_s;
+    const double changing = fmin(t, fabs(a) / jerk);
+    advance(&eased.now, fabs(a) > jerk * t ? a - copysign(jerk * t, a) : 0.0, changing);
+    advance(&eased.now, eased.now.acceleration, t - changing);
+    if (a == 0.0 || !plan(axis, &eased))
+        return false;
+    axis->superimposed = eased;
+    return true;
 }
 
 void cm1e_axis_superimposed_after(cm1e_axis_t *axis)

@@ -16,8 +16,12 @@ cm1e_error_t cm1e_axis_superimpose(cm1e_axis_t *axis, const cm1e_axis_command_t 
 cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
 /** Adds the superimposed motion to the base of this cycle. */
 void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next);
-/** Called instead: moves the state `before` on without jerk, and plans the superimposed motion from there. */
-void cm1e_axis_superimposed_hold(cm1e_axis_t *axis, const cm1e_motion_state_t *before);
+/** Called instead where the sum would break a limit: goes on without jerk, and plans the rest from there. false, and
+ *  nothing has changed: its velocity would exceed VelocityDiff later, or (`to_target`) it would pass its target. */
+bool cm1e_axis_superimposed_hold(cm1e_axis_t *axis, bool to_target);
+/** Called instead: its acceleration goes towards 0 with the maximum jerk of the axis. false, and nothing has changed: it is
+ *  0, or there is no plan from there. */
+bool cm1e_axis_superimposed_ease(cm1e_axis_t *axis);
 /** Goes on with this part of the velocity. false: it cannot, and nothing has changed. */
 bool cm1e_axis_superimposed_slow(cm1e_axis_t *axis, double part);
 /** Called when a command begins at `from` (the present set-point) as the base. If that is faster than the superimposed

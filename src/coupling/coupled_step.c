@@ -232,21 +232,80 @@ static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdi
     return is_settled(verdict) ? sum : with_next_attempts(axis, f, &before, first, sum, verdict);
 }
 
-/* With a superimposed motion: if the sum breaks a limit, that motion goes on without jerk for a cycle. */
+/* What changes in an attempt to go on. */
+typedef struct parts {
+    superimposed_t on_top;
+    catch_up_t catch_up;
+    cm1e_profile_t plan;
+} parts_t;
+
+static parts_t parts_of(const cm1e_axis_t *axis)
+{
+    return (parts_t){axis->superimposed, axis->coupling->catch_up, axis->coupling->plan};
+}
+
+static void put_back(cm1e_axis_t *axis, const parts_t *parts)
+{
+    axis->superimposed = parts->on_top;
+    axis->coupling->catch_up = parts->catch_up;
+    axis->coupling->plan = parts->plan;
+}
+
+static bool breaks_more_than_jerk(const cm1e_axis_t *axis, const from_t *sum)
+{
+    return cm1e_axis_guard(axis, sum, false).limit;
+}
+
+/* The superimposed motion goes on without jerk for a cycle, or, where the acceleration of the sum is too large, without
+ * some of its own. It may pass its target then, and comes back. false: that does not help. */
+CM1E_RARE static bool goes_on_otherwise(cm1e_axis_t *axis, const from_t *f, const parts_t *before, from_t *sum)
+{
+    verdict_t verdict;
+    put_back(axis, before);
+    if (cm1e_axis_superimposed_hold(axis, false)) {
+        *sum = with_catch_up(axis, f, &verdict);
+        if (!breaks_more_than_jerk(axis, sum))
+            return true;
+    }
+    put_back(axis, before);
+    if (!cm1e_axis_superimposed_ease(axis))
+        return false;
+    *sum = with_catch_up(axis, f, &verdict);
+    return !breaks_more_than_jerk(axis, sum);
+}
+
+/* With a superimposed motion, whose sum with the function breaks a limit: if it is the jerk alone, the superimposed motion
+ * goes on without jerk as long as that leads neither beyond VelocityDiff nor beyond its target; then the jerk of the sum is
+ * larger than the maximum, by that of the superimposed motion at most. */
+CM1E_RARE static from_t with_less(cm1e_axis_t *axis, const from_t *f, const parts_t *before, from_t planned,
+                                  verdict_t *verdict)
+{
+    const parts_t as_planned = parts_of(axis);
+    const verdict_t refused = *verdict;
+    from_t sum = planned;
+    if (breaks_more_than_jerk(axis, &planned)) {
+        const bool good = goes_on_otherwise(axis, f, before, &sum);
+        *verdict = good ? (verdict_t){.smooth = true} : refused;
+        return good ? sum : planned;
+    }
+    put_back(axis, before);
+    if (cm1e_axis_superimposed_hold(axis, true)) {
+        sum = with_catch_up(axis, f, verdict);
+        if (!verdict->guard.limit)
+            return sum;
+    }
+    put_back(axis, &as_planned);
+    *verdict = (verdict_t){.smooth = true};
+    return planned;
+}
+
 static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
-    const catch_up_t catch_up_before = axis->coupling->catch_up;
-    const cm1e_profile_t plan_before = axis->coupling->plan;
-    const cm1e_motion_state_t before = axis->superimposed.now;
+    const parts_t before = parts_of(axis);
     cm1e_motion_state_t unused = {0};
     cm1e_axis_superimposed_step(axis, &unused);
     const from_t sum = with_catch_up(axis, f, verdict);
-    if (!verdict->guard.limit || !axis->superimposed.moving)
-        return sum;
-    axis->coupling->catch_up = catch_up_before;
-    axis->coupling->plan = plan_before;
-    cm1e_axis_superimposed_hold(axis, &before);
-    return with_catch_up(axis, f, verdict);
+    return verdict->guard.limit && axis->superimposed.moving ? with_less(axis, f, &before, sum, verdict) : sum;
 }
 
 static void emit(cm1e_axis_t *axis, const from_t *point)

@@ -81,6 +81,13 @@ static void axes_judge_steep(int n, double t, double most_a)
               step, w->velocity, v);
 }
 
+/** A superimposed motion keeps VelocityDiff and its way: its own jerk may come on top of that of a coupling. */
+static double axes_jerk(const cm1e_axis_t *axis)
+{
+    const bool both = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && (axis->superimposed.id || axis->superimposed.ended);
+    return axis->limits.maximum.jerk + (both ? axis->superimposed.share.jerk : 0.0);
+}
+
 static void axes_judge_smooth(int n, double t)
 {
     const cm1e_axis_t *axis = axes_bench.axes[n];
@@ -89,7 +96,7 @@ static void axes_judge_smooth(int n, double t)
     const double v0 = w->velocity, a0 = w->acceleration, v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
     /* Two jerks that add up to one within the limit over a cycle may change places in the middle of it. */
     const double corner = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION ? 2.0 : 1.0;
-    const double j = most->jerk, slack = 1.0 + 1e-6;
+    const double j = axes_jerk(axis), slack = 1.0 + 1e-6;
     const double step = cm1e_position_minus(axis->setpoint.position, w->set) / axis->position.scale;
     const double noise = 1e-9 * (fabs(step) + fabs(v0) * t) + 1e-4 / fabs(axis->position.scale);
     const char *state = cm1e_axis_state_name(axis->state);

@@ -1,0 +1,145 @@
+/* A superimposed motion on a slave whose master, or cam, takes all of the slave's dynamics meanwhile: halts, other
+ * velocities, a reversal, a cam with a jerk of its own. Whatever it is, the superimposed part keeps VelocityDiff, the sum
+ * keeps velocity and acceleration of the axis, the slave goes on following, and the distance is right in the end. */
+#include "unity.h"
+
+#include "../support/axes_bench.h"
+#include "../support/chance.h"
+
+enum { MASTER, SLAVE, WAITS = 6000 };
+#define MOST_VELOCITY 20.0
+#define MOST_ACCELERATION 100.0
+#define MOST_JERK 2000.0
+
+void setUp(void) {}
+void tearDown(void) { axes_end(); }
+
+static double sign(void) { return one_in(2) ? 1.0 : -1.0; }
+
+static void make_two(void)
+{
+    axes_describe(2);
+    for (int n = 0; n < 2; n++) {
+        axes_config(n)->max_velocity = MOST_VELOCITY;
+        axes_config(n)->max_acceleration = MOST_ACCELERATION;
+        axes_config(n)->max_jerk = MOST_JERK;
+    }
+    axes_make();
+    axes_enable_all();
+}
+
+static void move_master(double velocity)
+{
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = velocity == 0.0 ? CM1E_COMMAND_HALT : CM1E_COMMAND_MOVE_VELOCITY,
+                                                .velocity = velocity});
+}
+
+typedef struct on_top {
+    double distance, velocity;
+    cm1e_command_id_t id;
+    double farthest; /* u; of what was covered, in the direction of the distance */
+} on_top_t;
+
+static void begin_on_top(on_top_t *on_top)
+{
+    on_top->farthest = 0.0;
+    on_top->id = axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED,
+                                                            .position = on_top->distance, .velocity = on_top->velocity});
+}
+
+/* Cycles with the judge; the witness of the bench looks at every set-point besides. */
+static void watch(on_top_t *on_top, cm1e_command_id_t following, int count)
+{
+    for (int n = 0; n < count; n++) {
+        axes_cycles(1);
+        const double part = axes_axis(SLAVE)->superimposed.now.velocity;
+        const double covered = axes_axis(SLAVE)->superimposed.now.position;
+        AXES_MUST(axes_state(SLAVE) == CM1E_AXIS_SYNCHRONIZED_MOTION, "%s", axes_text(SLAVE));
+        AXES_MUST(axes_status(SLAVE, following).state == CM1E_COMMAND_ACTIVE, "the coupling has ended");
+        AXES_MUST(fabs(part) <= on_top->velocity * (1.0 + 1e-5), "%.12g u/s on top, VelocityDiff %.12g", part, on_top->velocity);
+        on_top->farthest = fmax(on_top->farthest, on_top->distance > 0.0 ? covered : -covered);
+    }
+}
+
+/* Until the superimposed motion has ended. */
+static void wait_for_end(on_top_t *on_top, cm1e_command_id_t following)
+{
+    int cycles = 0;
+    while (axes_status(SLAVE, on_top->id).state == CM1E_COMMAND_ACTIVE && cycles++ < WAITS)
+        watch(on_top, following, 1);
+    AXES_MUST(axes_status(SLAVE, on_top->id).state == CM1E_COMMAND_DONE, "it does not end");
+}
+
+static double ahead(void)
+{
+    return axes_info(SLAVE).set_position - axes_info(MASTER).set_position;
+}
+
+/* The case that was found: the slave came to 19.8 u/s with VelocityDiff 3, while its master stood. */
+static void test_a_master_that_halts_leaves_the_superimposed_motion_as_it_was_asked_for(void)
+{
+    for (int when = 0; when < 260; when += sweep_stride(1, 13)) {
+        on_top_t on_top = {.distance = 1.25, .velocity = 3.0};
+        make_two();
+        const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+        axes_wait_reached(SLAVE, gear, 100);
+        move_master(2.0);
+        axes_cycles(400);
+        const double before = ahead();
+        begin_on_top(&on_top);
+        watch(&on_top, gear, when);
+        move_master(0.0);
+        wait_for_end(&on_top, gear);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, before + on_top.distance, ahead());
+        TEST_ASSERT_TRUE_MESSAGE(on_top.farthest <= on_top.distance + 1e-9, "it passes its target");
+        axes_end();
+    }
+}
+
+/* At most the distance that the slave covers with VelocityDiff while its coupling takes all of its acceleration. */
+static void check_farthest(const on_top_t *on_top, double change)
+{
+    const double longest_s = change / MOST_ACCELERATION + 2.0 * MOST_ACCELERATION / MOST_JERK;
+    AXES_MUST(on_top->farthest <= fabs(on_top->distance) + on_top->velocity * longest_s, "%.9g u covered of %.9g u",
+              on_top->farthest, fabs(on_top->distance));
+}
+
+static void test_random_changes_of_the_master(void)
+{
+    static char text[40];
+    for (int run = 0; run < seed_count(4000); run++) {
+        chance_seed(seed_of(run));
+        snprintf(text, sizeof text, "seed %u", seed_of(run));
+        const double from = uniform(0.5, 9.0) * sign(), to = one_in(3) ? 0.0 : uniform(0.5, 9.0) * sign();
+        on_top_t on_top = {.distance = uniform(0.1, 3.0) * sign(), .velocity = uniform(0.5, 8.0)};
+        const bool halts = one_in(3);
+        make_two();
+        axes_bench.run = text;
+        const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+        axes_wait_reached(SLAVE, gear, 100);
+        move_master(from);
+        axes_cycles(600);
+        const double before = ahead();
+        begin_on_top(&on_top);
+        watch(&on_top, gear, pick(200));
+        move_master(to);
+        watch(&on_top, gear, pick(100));
+        if (halts && axes_status(SLAVE, on_top.id).state == CM1E_COMMAND_ACTIVE) {
+            on_top.id = axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT_SUPERIMPOSED});
+            wait_for_end(&on_top, gear);
+        } else {
+            wait_for_end(&on_top, gear);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, before + on_top.distance, ahead());
+        }
+        check_farthest(&on_top, fabs(to - from));
+        axes_end();
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_master_that_halts_leaves_the_superimposed_motion_as_it_was_asked_for);
+    RUN_TEST(test_random_changes_of_the_master);
+    return UNITY_END();
+}
