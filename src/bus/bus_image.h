@@ -36,6 +36,8 @@ typedef struct cm1e_slave_watch {
     bool fresh;  /**< its own inputs are those of this cycle, even if the working counter is wrong */
 } cm1e_slave_watch_t;
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position);
+/** How often the supervision has seen its AL status. @rt cycle */
+uint32_t cm1e_bus_slave_looks(const cm1e_bus_t *bus, uint16_t position);
 /** Whether this cycle is a good one, and cm1e_bus_slave_watch() would give what it gave before (`seen`) of a slave that
  *  is there. It costs less. @rt cycle */
 bool cm1e_bus_slave_goes_on(const cm1e_bus_t *bus, uint16_t position, const cm1e_slave_watch_t *seen);

@@ -98,6 +98,7 @@ struct cm1e_bus_slave {
     cm1e_dc_t *dc;                           /**< the clocks of the bus; NULL: they are not used */
     cm1e_port_watch_t ports;
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
+    uint32_t looks;                          /**< those that it answered */
     bool eeprom_owed;                        /**< an errand has ended before its EEPROM was given back */
 };
 

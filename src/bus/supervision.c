@@ -152,6 +152,7 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
         return;
     }
     if (d->working_counter == 1) {
+        slave->looks++;
         cm1e_supervision_note(slave, cm1e_get_u16(d->data), cm1e_get_u16(d->data + 4));
     } else if (d->working_counter == 0 && ++slave->unanswered >= UNANSWERED_LIMIT) {
         cm1e_supervision_lose(bus, slave);
@@ -176,6 +177,12 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
     if (!slave->hot.counted && seems_there && out_cycles >= bus->config.lost_cycles_limit)
         watch.lost = true; /* its inputs showed the loss long before the supervision has asked three times */
     return watch;
+}
+
+uint32_t cm1e_bus_slave_looks(const cm1e_bus_t *bus, uint16_t position)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    return slave ? slave->looks : 0;
 }
 
 bool cm1e_bus_slave_goes_on(const cm1e_bus_t *bus, uint16_t position, const cm1e_slave_watch_t *seen)

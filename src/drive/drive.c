@@ -123,6 +123,8 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     if (f->fresh)
         cm1e_drive_decode(drive);
     f->online = bus_ok && cm1e_drive_operational(drive);
+    if (!f->online)
+        drive->looks = cm1e_bus_slave_looks(drive->bus, drive->position);
     if (f->state != OPERATION_ENABLED || !drive->mode.may_hold)
         drive->target.holds = false;
     else if (f->mode == CM1E_MODE_NONE)

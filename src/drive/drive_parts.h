@@ -212,6 +212,7 @@ typedef struct cm1e_drive {
     void (*step)(struct cm1e_drive *drive); /**< of the kind; NULL: nothing */
     uint16_t position;              /**< slave; 0: there is no device */
     cm1e_slave_watch_t watch;
+    uint32_t looks;                 /**< cm1e_bus_slave_looks() when it was offline last */
     uint32_t bound;                 /**< cm1e_slave_watch_t.bound that the image was resolved for */
     cm1e_error_t unbound;           /**< why the slave that came cannot be this drive; CM1E_OK: it can */
     bool answered;                  /**< the last frame came back, with every slave's part in it */

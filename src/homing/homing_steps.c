@@ -616,8 +616,7 @@ static void complete(cm1e_axis_t *axis)
         return;
     }
     if (s->step.kind != CM1E_STEP_FINISH && !isnan(s->position)) {
-        cm1e_axis_set_origin(axis, s->step.kind == CM1E_STEP_DIRECT ? axis->setpoint.position : s->reference,
-                             s->position);
+        cm1e_axis_set_origin(axis, s->step.kind == CM1E_STEP_DIRECT ? axis_actual(axis) : s->reference, s->position);
         s->referenced = true;
     }
     if (last) {

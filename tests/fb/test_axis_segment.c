@@ -336,6 +336,40 @@ START_TEST(test_slave_unplugged_and_back_is_brought_to_operational_by_reset)
 }
 END_TEST
 
+/* The frames come back some cycles before the supervision sees that the slave has left Operational meanwhile. A reset that
+ * ended then was followed by another error. */
+START_TEST(test_reset_around_the_moment_of_the_cable_ends_when_the_slave_is_operational)
+{
+    const int out[] = {60, 110, 150, 300, 1000};
+    for (int after = -20; after <= 6; after += after < -6 ? 7 : 1) { /* cycles from the cable to the reset */
+        describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
+        describe_up_to(2);
+        open_segment();
+        enable();
+        command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 3.0});
+        cycles(300);
+        simulate("unplug 1");
+        cycles(out[_i] + (after < 0 ? after : 0));
+        if (after < 0) {
+            cm1e_axis_reset(axis);
+            cycles(-after);
+        }
+        simulate("replug 1");
+        cycles(after < 0 ? 0 : after);
+        if (after >= 0)
+            cm1e_axis_reset(axis);
+        for (int n = 0; n < 12000 && cm1e_axis_reset_state(axis, NULL) == CM1E_COMMAND_ACTIVE; n++)
+            cycles(1);
+        for (int n = 0; n < 300; n++) {
+            ck_assert_msg(info().state != CM1E_AXIS_ERROR_STOP, "out for %d, reset after %d: %s", out[_i], after, text());
+            cycles(1);
+        }
+        ck_assert_msg(info().state == CM1E_AXIS_STANDSTILL, "out for %d, reset after %d", out[_i], after);
+        close_segment();
+    }
+}
+END_TEST
+
 /* Nobody used the axis when its slave lost its power, so there is no error to be reset. Yet the slave keeps the working
  * counter of the whole bus wrong until it is brought back, and it answers to its address only then. */
 START_TEST(test_reset_brings_back_the_slave_of_an_axis_that_was_disabled)
@@ -441,6 +475,7 @@ int main(void)
     tcase_add_test(cases, test_overloaded_axis_says_that_it_does_not_follow);
     tcase_add_test(cases, test_motor_power_lost_and_back);
     tcase_add_test(cases, test_slave_unplugged_and_back_is_brought_to_operational_by_reset);
+    tcase_add_loop_test(cases, test_reset_around_the_moment_of_the_cable_ends_when_the_slave_is_operational, 0, 5);
     tcase_add_loop_test(cases, test_reset_brings_back_the_slave_of_an_axis_that_was_disabled, 0, 3);
     tcase_add_loop_test(cases, test_random_commands_move_the_motor_as_the_set_point_says, 0, 12);
     suite_add_tcase(suite, cases);

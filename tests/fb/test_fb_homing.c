@@ -175,6 +175,29 @@ START_TEST(test_mc_stop_ends_a_search_in_standstill_not_homed)
 }
 END_TEST
 
+/** The motor is beside its set-point, by a load that has just come: what is actual in that cycle gets SetPosition. */
+START_TEST(test_home_direct_gives_the_actual_position)
+{
+    begin(0);
+    simulate("load 1 0.05");
+    cycles(5);
+    const double set = info().set_position;
+    double lag = 0;
+    MC_HomeDirect_t direct = {.Axis = &reference, .Execute = TRUE, .SetPosition = 42.0};
+    for (int n = 0; n < 5 && !info().homed; n++) {
+        inputs();
+        lag = set - info().actual_position;
+        MC_HomeDirect(&direct);
+        outputs();
+    }
+    ck_assert(info().homed && !direct.Error);
+    ck_assert_double_ge(fabs(lag), 1e-4);
+    ck_assert_double_eq_tol(info().actual_position, 42.0, 1e-9);
+    ck_assert_double_eq_tol(info().set_position, 42.0 + lag, 1e-9);
+    close_segment();
+}
+END_TEST
+
 START_TEST(test_home_direct_and_what_the_motor_cannot)
 {
     begin(0);
@@ -281,6 +304,7 @@ int main(void)
     tcase_add_loop_test(tests, test_switch_then_hard_stop_then_away, 0, DEVICES);
     tcase_add_loop_test(tests, test_block_does_not_go_on_pushing, 0, DEVICES);
     tcase_add_test(tests, test_mc_stop_ends_a_search_in_standstill_not_homed);
+    tcase_add_test(tests, test_home_direct_gives_the_actual_position);
     tcase_add_test(tests, test_home_direct_and_what_the_motor_cannot);
     tcase_add_test(tests, test_signal_of_another_axis_is_refused);
     tcase_add_loop_test(tests, test_fault_at_every_cycle_ends_in_a_defined_state, 0, FAULTS);

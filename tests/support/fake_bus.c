@@ -257,6 +257,10 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
 {
     return fake_slave(bus, position)->watch;
 }
+uint32_t cm1e_bus_slave_looks(const cm1e_bus_t *bus, uint16_t position)
+{
+    return ++fake_slave(bus, position)->looks;
+}
 bool cm1e_bus_slave_goes_on(const cm1e_bus_t *bus, uint16_t position, const cm1e_slave_watch_t *seen)
 {
     const cm1e_slave_watch_t now = fake_slave(bus, position)->watch;

@@ -35,6 +35,7 @@ struct cm1e_bus {
     cm1e_slave_watch_t watch;
     cm1e_slave_info_t info;
     cm1e_bus_counters_t counters;
+    uint32_t looks;
     unsigned recoveries;
 
     /* the device */
