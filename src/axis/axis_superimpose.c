@@ -474,6 +474,8 @@ bool cm1e_axis_superimposed_ease(cm1e_axis_t *axis)
     return true;
 }
 
+void cm1e_axis_superimposed_put_back(cm1e_axis_t *axis, const superimposed_t *before) { axis->superimposed = *before; }
+
 void cm1e_axis_superimposed_after(cm1e_axis_t *axis)
 {
     superimposed_t *on_top = &axis->superimposed;

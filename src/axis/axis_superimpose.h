@@ -22,6 +22,8 @@ bool cm1e_axis_superimposed_hold(cm1e_axis_t *axis, bool to_target);
 /** Called instead: its acceleration goes towards 0 with the maximum jerk of the axis. false, and nothing has changed: it is
  *  0, or there is no plan from there. */
 bool cm1e_axis_superimposed_ease(cm1e_axis_t *axis);
+/** What it was before an attempt to go on. */
+void cm1e_axis_superimposed_put_back(cm1e_axis_t *axis, const superimposed_t *before);
 /** Goes on with this part of the velocity. false: it cannot, and nothing has changed. */
 bool cm1e_axis_superimposed_slow(cm1e_axis_t *axis, double part);
 /** Called when a command begins at `from` (the present set-point) as the base. If that is faster than the superimposed

@@ -246,7 +246,7 @@ static parts_t parts_of(const cm1e_axis_t *axis)
 
 static void put_back(cm1e_axis_t *axis, const parts_t *parts)
 {
-    axis->superimposed = parts->on_top;
+    cm1e_axis_superimposed_put_back(axis, &parts->on_top);
     axis->coupling->catch_up = parts->catch_up;
     axis->coupling->plan = parts->plan;
 }

@@ -212,7 +212,6 @@ typedef struct cm1e_drive {
     void (*step)(struct cm1e_drive *drive); /**< of the kind; NULL: nothing */
     uint16_t position;              /**< slave; 0: there is no device */
     cm1e_slave_watch_t watch;
-    uint32_t looks;                 /**< cm1e_bus_slave_looks() when it was offline last */
     uint32_t bound;                 /**< cm1e_slave_watch_t.bound that the image was resolved for */
     cm1e_error_t unbound;           /**< why the slave that came cannot be this drive; CM1E_OK: it can */
     bool answered;                  /**< the last frame came back, with every slave's part in it */
@@ -232,6 +231,7 @@ typedef struct cm1e_drive {
     cm1e_drive_encoder_t encoder;   /**< of an encoder, as the program has written it since the last cycle */
     cm1e_drive_waits_t waits;
     cm1e_drive_change_t change;
+    uint32_t looks;                 /**< cm1e_bus_slave_looks() when it was offline last */
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
     const cm1e_device_t *device;    /**< NULL: there is none */
