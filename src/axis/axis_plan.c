@@ -22,8 +22,8 @@ static cm1e_error_t stopping_way(const cm1e_axis_t *axis, const from_t *from, co
     cm1e_profile_t stop;
     const cm1e_motion_state_t start = start_of(from);
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (error == CM1E_OK)
-        error = cm1e_profile_to_velocity(&stop, &start, 0.0, &limits);
+    if (error == CM1E_OK && cm1e_profile_to_velocity(&stop, &start, 0.0, &limits) != CM1E_OK)
+        error = CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* too small to compute with */
     *way = error != CM1E_OK ? 0.0 : stop.end.position;
     return error;
 }

@@ -44,6 +44,10 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
                  cm1e_strerror(refused->error));
     } else if (refused->what == NOT_SET_OUTPUT) {
         signal_text(axis, "digital output", " was not written", text, size);
+    } else if (refused->what == NOT_SET_PROBE && refused->error == CM1E_ERROR_AXIS_POSITION_RANGE) {
+        snprintf(text, size, "Axis \"%s\": the window of the touch probe at input %d is none: FirstPosition and LastPosition "
+                 "are inside the range of the axis, and on a linear axis FirstPosition is not above LastPosition.", name,
+                 refused->number);
     } else if (refused->what == NOT_SET_PROBE) {
         signal_text(axis, "no touch probe at input", "", text, size);
     } else if (refused->what == NOT_SET_CAM) {

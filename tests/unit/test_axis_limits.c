@@ -282,6 +282,18 @@ static void test_refused_numbers_are_told_as_they_are_judged(void)
         TEST_ASSERT_NOT_EQUAL_INT(CM1E_OK, cm1e_axis_start(axis, &small[i], &id));
         bench_told("too small to compute with");
     }
+    bench_end();
+    fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.config.axes[0].modulo_range = 360.0;
+    bench_create();
+    bench_enable();
+    for (int deceleration = 0; deceleration < 2; deceleration++) {
+        const cm1e_axis_command_t slow = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1.0,
+                                          .acceleration = deceleration ? 0.0 : 1e-300,
+                                          .deceleration = deceleration ? 1e-300 : 0.0};
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &slow, &id));
+        bench_told("too small to compute with");
+    }
 }
 
 static void test_direction_disabled_while_running_stops_the_motion(void)
