@@ -81,14 +81,7 @@ static void axes_judge_steep(int n, double t, double most_a)
               step, w->velocity, v);
 }
 
-/** A superimposed motion keeps VelocityDiff and its way: its own jerk may come on top of that of a coupling. */
-static double axes_jerk(const cm1e_axis_t *axis)
-{
-    const bool both = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && (axis->superimposed.id || axis->superimposed.ended);
-    return axis->limits.maximum.jerk + (both ? axis->superimposed.share.jerk : 0.0);
-}
-
-static void axes_judge_smooth(int n, double t)
+static void axes_judge_smooth(int n, double t, double more_jerk)
 {
     const cm1e_axis_t *axis = axes_bench.axes[n];
     const axes_witness_t *w = &axes_bench.witness[n];
@@ -96,7 +89,7 @@ static void axes_judge_smooth(int n, double t)
     const double v0 = w->velocity, a0 = w->acceleration, v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
     /* Two jerks that add up to one within the limit over a cycle may change places in the middle of it. */
     const double corner = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION ? 2.0 : 1.0;
-    const double j = axes_jerk(axis), slack = 1.0 + 1e-6;
+    const double j = most->jerk + more_jerk, slack = 1.0 + 1e-6;
     const double step = cm1e_position_minus(axis->setpoint.position, w->set) / axis->position.scale;
     const double noise = 1e-9 * (fabs(step) + fabs(v0) * t) + 1e-4 / fabs(axis->position.scale);
     const char *state = cm1e_axis_state_name(axis->state);
@@ -139,6 +132,9 @@ static void axes_judge(int n)
     const bool ours = axes_own(axis);
     const bool hard = axis->state == CM1E_AXIS_ERROR_STOP || w->state == CM1E_AXIS_ERROR_STOP;
     const double most_a = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration);
+    const double more_jerk = jerk_on_coupling(axis, &w->on_coupling);
+    AXES_MUST(keeps_velocity_diff(axis), "axis %d: a superimposed motion of %.12g u/s, VelocityDiff %.12g", n,
+              axis->superimposed.now.velocity, axis->superimposed.share.velocity);
     if (ours && w->ours && w->strictness != AXES_UNWATCHED && !axes_judge_silence(n)) {
         AXES_MUST(fabs(axis->setpoint.velocity) <= axis->limits.maximum.velocity * (1.0 + 1e-9) || hard,
                   "axis %d, %s: velocity %.12g, limit %.12g", n, cm1e_axis_state_name(axis->state),
@@ -146,7 +142,7 @@ static void axes_judge(int n)
         if (hard || w->strictness == AXES_STEEP)
             axes_judge_steep(n, t, most_a);
         else
-            axes_judge_smooth(n, t);
+            axes_judge_smooth(n, t, more_jerk);
         w->worst_step = fmax(w->worst_step,
                              fabs(cm1e_position_minus(axis->setpoint.position, w->set) / axis->position.scale));
         w->worst_gain = fmax(w->worst_gain, fabs(axis->setpoint.velocity - w->velocity) / t);

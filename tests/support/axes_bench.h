@@ -31,6 +31,7 @@
 #include "axis/axis_setpoint.h"
 #include "coupling/coupling.h"
 #include "fake_bus.h"
+#include "on_coupling.h"
 
 enum { AXES_MOST = FAKE_SLAVES };
 
@@ -45,6 +46,7 @@ typedef enum axes_strictness {
 typedef struct axes_witness {
     axes_strictness_t strictness;
     bool ours;                     /**< the last set-point was the axis's own */
+    on_coupling_t on_coupling;
     cm1e_axis_state_t state;
     position_t set;
     double velocity, acceleration; /**< u */

@@ -424,6 +424,7 @@ void watch_set_point(void)
     const bool taken_over = watched.disabled && axis->state == CM1E_AXIS_STANDSTILL && v == 0.0 && a == 0.0 &&
                             cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) == 0.0;
     const bool goes_on = ours && watched.ours && !watched.lost && !taken_over;
+    const double most_jerk = most->jerk + jerk_on_coupling(axis, &watched.on_coupling);
     if (goes_on && !watched.rough) /* a hard one too */
         KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
     if (goes_on && !hard && !watch_silence()) {
@@ -436,12 +437,14 @@ void watch_set_point(void)
         const double guarded = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION ? 1e-5 / fabs(axis->position.scale) : 0.0;
         KEEPS(gain <= largest * t * slack + guarded + 1e-12, "velocity from %.9g to %.9g in a cycle",
               watched.velocity, v);
-        KEEPS(jerk <= fmax(most->jerk, jerk_to_stay_below(most)) * slack + 1e-9,
-              "jerk %.9g, limit %.9g (acceleration from %.9g to %.9g, velocity %.9g)", jerk, most->jerk,
+        KEEPS(jerk <= fmax(most_jerk, jerk_to_stay_below(most)) * slack + 1e-9,
+              "jerk %.9g, limit %.9g (acceleration from %.9g to %.9g, velocity %.9g)", jerk, most_jerk,
              watched.acceleration, a, v);
-        KEEPS(off <= most->jerk * t * t * t / 6.0 * slack + rounding,
+        KEEPS(off <= most_jerk * t * t * t / 6.0 * slack + rounding,
              "the position moves by %.9g, the velocities are %.9g and %.9g", way, watched.velocity, v);
     }
+    KEEPS(keeps_velocity_diff(axis), "a superimposed motion of %.9g u/s, VelocityDiff %.9g", axis->superimposed.now.velocity,
+          axis->superimposed.share.velocity);
     judged.stopped = false;
     watched.hard = is_hard;
     watched.moving += ours && v != 0.0;

@@ -22,6 +22,7 @@
 #include "block_table.h"
 #include "group/group_private.h"
 #include "quick_check.h"
+#include "on_coupling.h"
 
 enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160, JUDGED_MOST = 4, INSTANCES_MOST = JUDGED_MOST * BLOCKS_MOST };
 
@@ -101,6 +102,7 @@ void call(instance_t *fb);
 /* ---- watching the set-point -------------------------------------------------------------------------------------- */
 
 struct watched_axis {
+    on_coupling_t on_coupling;
     bool ours;                 /**< the set-point was the axis's own */
     position_t set;
     double velocity, acceleration;
