@@ -428,12 +428,14 @@ void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next)
     next->acceleration += on_top->now.acceleration;
 }
 
-/* Whether it stays within VelocityDiff, or does not become faster, if its acceleration ends with its own jerk. */
+/* Whether it stays within the velocity that it is to have (0 if it comes to rest), or does not become faster, if its
+ * acceleration ends with its own jerk. */
 static bool keeps_velocity(const superimposed_t *on_top)
 {
     static const double rounding = 1.0 + 1e-9;
+    const double most = isnan(on_top->plan.target) ? 0.0 : on_top->plan.limits.velocity;
     const from_t from = {.velocity = on_top->now.velocity, .acceleration = on_top->now.acceleration};
-    return peak_of(&from, on_top->share.jerk) <= fmax(on_top->share.velocity, fabs(from.velocity)) * rounding;
+    return peak_of(&from, on_top->share.jerk) <= fmax(most, fabs(from.velocity)) * rounding;
 }
 
 static bool passes_target(const cm1e_axis_t *axis, const superimposed_t *on_top)

@@ -160,10 +160,12 @@ static maintain_refusal_t home(view_t *view, maintain_order_t *order, hold_t *ho
 /** Of anybody's motion through this socket. */
 static maintain_refusal_t stop(view_t *view, maintain_order_t *order, hold_t *hold, int64_t now_ns)
 {
+    stopped_t *stopped = &view->maintained.stopped[order->axis];
+    stopped->any &= stopped->client != order->client; /* who stops it itself has let go of it */
     if (!hold->held || hold->motion == HOLD_NONE)
         return MAINTAIN_NOT_HELD;
-    if (hold->motion == HOLD_JOG && hold->client != order->client)
-        view->maintained.stopped[order->axis] = (stopped_t){true, hold->client, now_ns + hold->motion_keep_ns};
+    if (hold->motion != HOLD_HOME && hold->client != order->client) /* also while a jog ends that was renewed too late */
+        *stopped = (stopped_t){true, hold->client, now_ns + hold->motion_keep_ns};
     end_motion(view->axes[order->axis], hold);
     return MAINTAIN_DONE;
 }

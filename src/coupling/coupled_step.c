@@ -251,6 +251,13 @@ static void put_back(cm1e_axis_t *axis, const parts_t *parts)
     axis->coupling->plan = parts->plan;
 }
 
+/* Whether what the masters ask for has more jerk by itself than the axis has. */
+static bool function_jerks(const cm1e_axis_t *axis, const from_t *f)
+{
+    const double most = axis->limits.maximum.jerk, rounding = 1e-9 * axis->limits.maximum.acceleration / axis->cycle_s;
+    return coupling_keeps_jerk(axis->coupling) && jerk_of_function(axis, f) > most * (1.0 + 1e-6) + rounding;
+}
+
 static bool breaks_more_than_jerk(const cm1e_axis_t *axis, const from_t *sum)
 {
     return cm1e_axis_guard(axis, sum, false).limit;
@@ -283,6 +290,8 @@ CM1E_RARE static from_t with_less(cm1e_axis_t *axis, const from_t *f, const part
     const parts_t as_planned = parts_of(axis);
     const verdict_t refused = *verdict;
     from_t sum = planned;
+    if (function_jerks(axis, f))
+        return planned;
     if (breaks_more_than_jerk(axis, &planned)) {
         const bool good = goes_on_otherwise(axis, f, before, &sum);
         *verdict = good ? (verdict_t){.smooth = true} : refused;

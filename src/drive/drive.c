@@ -102,6 +102,17 @@ static void bind(cm1e_drive_t *drive)
     cm1e_drive_mode_forget(drive);
 }
 
+/* After some cycles without a frame the state of the slave is known when the supervision has seen it again; no watchdog
+ * ends before. */
+static void note_offline(cm1e_drive_t *drive, bool was_online)
+{
+    static const int64_t some_cycles_ns = 5 * MS_IN_NS;
+    if (was_online)
+        drive->offline_ns = drive->now_ns;
+    if (drive->now_ns - drive->offline_ns >= some_cycles_ns)
+        drive->looks = cm1e_bus_slave_looks(drive->bus, drive->position);
+}
+
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
@@ -122,9 +133,10 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     f->fresh = bus_ok || (drive->watch.fresh && drive->unbound == CM1E_OK);
     if (f->fresh)
         cm1e_drive_decode(drive);
+    const bool was_online = f->online;
     f->online = bus_ok && cm1e_drive_operational(drive);
     if (!f->online)
-        drive->looks = cm1e_bus_slave_looks(drive->bus, drive->position);
+        note_offline(drive, was_online);
     if (f->state != OPERATION_ENABLED || !drive->mode.may_hold)
         drive->target.holds = false;
     else if (f->mode == CM1E_MODE_NONE)

@@ -231,7 +231,8 @@ typedef struct cm1e_drive {
     cm1e_drive_encoder_t encoder;   /**< of an encoder, as the program has written it since the last cycle */
     cm1e_drive_waits_t waits;
     cm1e_drive_change_t change;
-    uint32_t looks;                 /**< cm1e_bus_slave_looks() when it was offline last */
+    int64_t offline_ns;             /**< since when it is, or was last */
+    uint32_t looks;                 /**< cm1e_bus_slave_looks() then, if it lasted */
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
     const cm1e_device_t *device;    /**< NULL: there is none */

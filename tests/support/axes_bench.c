@@ -133,8 +133,8 @@ static void axes_judge(int n)
     const bool hard = axis->state == CM1E_AXIS_ERROR_STOP || w->state == CM1E_AXIS_ERROR_STOP;
     const double most_a = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration);
     const double more_jerk = jerk_on_coupling(axis, &w->on_coupling);
-    AXES_MUST(keeps_velocity_diff(axis), "axis %d: a superimposed motion of %.12g u/s, VelocityDiff %.12g", n,
-              axis->superimposed.now.velocity, axis->superimposed.share.velocity);
+    AXES_MUST(keeps_velocity_diff(axis, &w->on_coupling), "axis %d: a superimposed motion of %.12g u/s, right is %.12g", n,
+              axis->superimposed.now.velocity, axis->superimposed.plan.limits.velocity);
     if (ours && w->ours && w->strictness != AXES_UNWATCHED && !axes_judge_silence(n)) {
         AXES_MUST(fabs(axis->setpoint.velocity) <= axis->limits.maximum.velocity * (1.0 + 1e-9) || hard,
                   "axis %d, %s: velocity %.12g, limit %.12g", n, cm1e_axis_state_name(axis->state),

@@ -443,8 +443,8 @@ void watch_set_point(void)
         KEEPS(off <= most_jerk * t * t * t / 6.0 * slack + rounding,
              "the position moves by %.9g, the velocities are %.9g and %.9g", way, watched.velocity, v);
     }
-    KEEPS(keeps_velocity_diff(axis), "a superimposed motion of %.9g u/s, VelocityDiff %.9g", axis->superimposed.now.velocity,
-          axis->superimposed.share.velocity);
+    KEEPS(keeps_velocity_diff(axis, &watched.on_coupling), "a superimposed motion of %.9g u/s, right is %.9g",
+          axis->superimposed.now.velocity, axis->superimposed.plan.limits.velocity);
     judged.stopped = false;
     watched.hard = is_hard;
     watched.moving += ours && v != 0.0;

@@ -9,7 +9,7 @@ import time
 import weakref
 from contextvars import ContextVar
 from types import TracebackType
-from typing import Any, Callable, Literal, Optional, Sequence, Union
+from typing import Any, Callable, Iterable, Literal, Optional, Sequence, Union
 
 from . import blocks as fb
 from . import errors
@@ -56,8 +56,9 @@ def _catch_signals() -> None:
 
 def _listed(what: str, given: Any, kind: Any, right: str) -> list[Any]:
     """A list of this kind. A single text is none: its letters would be taken."""
-    if isinstance(given, (list, tuple)) and all(isinstance(one, kind) for one in given):
-        return list(given)
+    listed = list(given) if isinstance(given, Iterable) and not isinstance(given, (str, bytes)) else [None]
+    if all(isinstance(one, kind) for one in listed):
+        return listed
     raise TypeError(f"{what} is {given!r}; expected a list, as {right}")
 
 
@@ -104,7 +105,7 @@ class Bus(Devices):
                 other.set(virtual_time=self.virtual_time, cycle_time=cycle_time)
                 self._ask(lib.cm1e_py_add, other.data)
             self._groups = {name: self._make_group(name) for name in _listed("groups", groups, str, "['table']")}
-            for axis, index, subindex in _listed("trace_objects", trace_objects, tuple, "[('X', 0x6077, 0)]"):
+            for axis, index, subindex in _listed("trace_objects", trace_objects, (tuple, list), "[('X', 0x6077, 0)]"):
                 self._ask(lib.cm1e_py_trace_object, axis.encode(), index, subindex)
         except BaseException:
             self.close()

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from typing import Any, Mapping, Optional, Sequence, Union
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
 from . import errors
 from ._cm1e import ffi, lib
@@ -49,10 +49,11 @@ class Config:
         """So many axes with defaults, or axes with these members of cm1e_axis_config_t."""
         if isinstance(axes, int) and axes < 0:
             raise errors.ConfigError(f"{axes} axes: a bus has 0 or more.", lib.CM1E_ERROR_CONFIG)
-        if not isinstance(axes, int) and not (isinstance(axes, Sequence) and all(isinstance(one, Mapping) for one in axes)):
+        counted = [{} for _ in range(axes)] if isinstance(axes, int) else axes
+        listed: list[Mapping[str, object]] = list(counted) if isinstance(counted, Iterable) else []
+        if not isinstance(counted, Iterable) or not all(isinstance(one, Mapping) for one in listed):
             raise TypeError(f"axes is {axes!r}; expected a number of axes, or a list of their settings, as "
                             "[{'name': 'X', 'counts_per_unit': 1000}]")
-        listed: Sequence[Mapping[str, object]] = [{} for _ in range(axes)] if isinstance(axes, int) else list(axes)
         data = ffi.new("cm1e_bus_config_t *")
         code = lib.cm1e_bus_config_init(data, ffi.NULL, len(listed))
         errors.check(code, None, f"{len(listed)} axes are more than a bus has." if code == lib.CM1E_ERROR_CONFIG else "")
