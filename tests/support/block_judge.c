@@ -476,7 +476,9 @@ void judge_cycle(void)
     const cm1e_axis_state_t before = judged.state, after = judged.axis->state;
     bool waits = judged.waited;
     const bool led = judged.led; /* its group has come to rest, and lets it go with the last set-point */
+    const bool kept = judged.kept && before == CM1E_AXIS_CONTINUOUS_MOTION; /* else it is halted in the cycle */
     judged.led = judged.axis->setpoint.source == &cm1e_source_leader;
+    judged.kept = judged.axis->commands.kept != 0;
     judged.waited = judged.axis->commands.waiting.count > 0;
     if (after == before)
         return;
@@ -486,7 +488,7 @@ void judge_cycle(void)
                            (called[i]->now.busy && !called[i]->now.active)));
     const bool let_go = led && before == CM1E_AXIS_SYNCHRONIZED_MOTION;
     const unsigned allowed = to[before] | 1u << CM1E_AXIS_ERROR_STOP | (waits ? begins : 0) |
-                             (let_go ? 1u << CM1E_AXIS_STANDSTILL : 0);
+                             (let_go ? 1u << CM1E_AXIS_STANDSTILL : 0) | (kept ? 1u << CM1E_AXIS_DISCRETE_MOTION : 0);
     MUST(allowed >> after & 1u, "from %s to %s in the cycle, a command waits: %d", cm1e_axis_state_name(before),
          cm1e_axis_state_name(after), waits);
     MUST(before != CM1E_AXIS_ERROR_STOP || judged.reset_asked, "ErrorStop was left without MC_Reset");

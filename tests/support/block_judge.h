@@ -56,6 +56,7 @@ struct judged_axis {
     cm1e_axis_state_t state;        /**< last judged */
     bool reset_asked;               /**< since ErrorStop */
     bool searched;                  /**< a call of this cycle found or left it in Homing, which may end in the cycle */
+    bool kept;                      /**< it goes on for as long as a block renews it (MC_Jog) */
     bool stopped;                   /**< the calls of this cycle left it in a stop, which may end in the cycle too */
     bool waited;                    /**< a command did, maybe of a block that has lost it by an error of its own */
     bool led;                       /**< by an axes group, when it was judged last */
