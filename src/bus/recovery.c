@@ -249,6 +249,15 @@ static bool next_eeprom(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return true;
 }
 
+/** A request to repeat an answer, sent before the slave lost its power, activates an empty SM1 if it comes after that. */
+static bool next_clear(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_SM0, 4 * SYNC_MANAGER_BYTES);
+    memset(d->data, 0, 4 * SYNC_MANAGER_BYTES);
+    return true;
+}
+
 static bool next_mailbox(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
@@ -618,6 +627,7 @@ static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_LOOK] = {STEP_NS, next_look, result_look},
     [RECOVERY_EEPROM] = {STEP_NS, next_eeprom, result_next_step},
     [RECOVERY_INIT] = {CM1E_STATE_TIMEOUT_NS, next_init, result_al},
+    [RECOVERY_CLEAR] = {STEP_NS, next_clear, result_next_step},
     [RECOVERY_MAILBOX] = {STEP_NS, next_mailbox, result_next_step},
     [RECOVERY_PRE_OP] = {CM1E_STATE_TIMEOUT_NS, next_pre_op, result_al},
     [RECOVERY_ID] = {STEP_NS, next_id, result_al},

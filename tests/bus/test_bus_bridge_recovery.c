@@ -66,7 +66,7 @@ START_TEST(bridge_comes_back_for_all_its_axes_with_zeros_until_operational)
     ck_assert(cm1e_bus_slave_watch(bus, 2).lost);
     ck_assert(!cm1e_bus_slave_watch(bus, 1).lost);
     simulate(bus, "replug 2");
-    for (int n = 0; n < 30; n++)
+    for (int n = 0; n < 32; n++) /* so that the supervision sees Operational a cycle after it is reached */
         cycle(bus);
     if (_i == 1) { /* it was not without power: its watchdog told it */
         ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 2).al_state, CM1E_AL_SAFE_OP | CM1E_AL_ERROR);
