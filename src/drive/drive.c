@@ -104,12 +104,12 @@ static void bind(cm1e_drive_t *drive)
 
 /* After some cycles without a frame the state of the slave is known when the supervision has seen it again; no watchdog
  * ends before. */
-static void note_offline(cm1e_drive_t *drive, bool was_online)
+static void note_offline(cm1e_drive_t *drive)
 {
-    static const int64_t some_cycles_ns = 5 * MS_IN_NS;
-    if (was_online)
-        drive->offline_ns = drive->now_ns;
-    if (drive->now_ns - drive->offline_ns >= some_cycles_ns)
+    enum { SOME_CYCLES = 5 };
+    if (drive->offline < SOME_CYCLES)
+        drive->offline++;
+    else
         drive->looks = cm1e_bus_slave_looks(drive->bus, drive->position);
 }
 
@@ -133,10 +133,11 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     f->fresh = bus_ok || (drive->watch.fresh && drive->unbound == CM1E_OK);
     if (f->fresh)
         cm1e_drive_decode(drive);
-    const bool was_online = f->online;
     f->online = bus_ok && cm1e_drive_operational(drive);
-    if (!f->online)
-        note_offline(drive, was_online);
+    if (f->online)
+        drive->offline = 0;
+    else
+        note_offline(drive);
     if (f->state != OPERATION_ENABLED || !drive->mode.may_hold)
         drive->target.holds = false;
     else if (f->mode == CM1E_MODE_NONE)

@@ -211,6 +211,7 @@ typedef struct cm1e_drive {
     const cm1e_device_drive_t *kind;
     void (*step)(struct cm1e_drive *drive); /**< of the kind; NULL: nothing */
     uint16_t position;              /**< slave; 0: there is no device */
+    uint8_t offline;                /**< cycles, up to some */
     cm1e_slave_watch_t watch;
     uint32_t bound;                 /**< cm1e_slave_watch_t.bound that the image was resolved for */
     cm1e_error_t unbound;           /**< why the slave that came cannot be this drive; CM1E_OK: it can */
@@ -231,8 +232,7 @@ typedef struct cm1e_drive {
     cm1e_drive_encoder_t encoder;   /**< of an encoder, as the program has written it since the last cycle */
     cm1e_drive_waits_t waits;
     cm1e_drive_change_t change;
-    int64_t offline_ns;             /**< since when it is, or was last */
-    uint32_t looks;                 /**< cm1e_bus_slave_looks() then, if it lasted */
+    uint32_t looks;                 /**< cm1e_bus_slave_looks() when it was offline last, for more than some cycles */
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
     const cm1e_device_t *device;    /**< NULL: there is none */

@@ -417,7 +417,9 @@ void watch_set_point(void)
                       (!axis->commands.active || stops(axis) || judged.stopped || axis->setpoint.paused);
     const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
     watched.rough = follows_roughly(axis, JUDGED_MOST) || (watched.rough && ours && watched.velocity != 0.0);
-    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->limits.software_limits) ||
+    /* Without an answer nobody knows that the torque is off: the ramp goes on. */
+    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping ||
+                         (axis->state == CM1E_AXIS_DISABLED && !axis->drive.answered) || (stop && axis->limits.software_limits) ||
                          watched.rough;
     const bool hard = is_hard || watched.hard;
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
