@@ -118,18 +118,41 @@ typedef struct verdict {
     bool smooth; /**< the motion between the set-points keeps the limits too */
 } verdict_t;
 
+/* The accelerations, u/s2, with which the axis can go on within its limits: its jerk ends the one before the maximum
+ * velocity, and turns a larger deceleration into the acceleration until the velocity changes its sign. */
+typedef struct room {
+    double up, down;
+} room_t;
+
+static room_t room_at(const cm1e_axis_t *axis, double velocity)
+{
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const double speed = fabs(velocity), a = most->acceleration;
+    const double faster = smaller(a, sqrt(2.0 * most->jerk * larger(0.0, most->velocity - speed)));
+    const double slower = smaller(most->deceleration, larger(a, sqrt(a * a + 2.0 * most->jerk * speed)));
+    return velocity >= 0.0 ? (room_t){faster, slower} : (room_t){slower, faster};
+}
+
+static bool has_room(const cm1e_axis_t *axis, const from_t *sum)
+{
+    const room_t room = room_at(axis, sum->velocity);
+    const double rounding = 1e-6 * axis->limits.maximum.acceleration;
+    return sum->acceleration <= room.up + rounding && sum->acceleration >= -room.down - rounding;
+}
+
 static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
 {
     const bool kept_jerk = coupling_keeps_jerk(axis->coupling);
     const guard_t guard = cm1e_axis_guard(axis, sum, kept_jerk);
-    return (verdict_t){guard, !guard.limit && (!kept_jerk || cm1e_axis_guard_smooth(axis, sum))};
+    return (verdict_t){guard, !guard.limit && (!kept_jerk || (has_room(axis, sum) && cm1e_axis_guard_smooth(axis, sum)))};
 }
 
 /* How the catch-up may go on in a cycle, in the order in which it is tried: by its plan; by a new plan with the whole
  * jerk, which may act against the jerk of the coupling function; by a new plan with the jerk that the function leaves,
- * and with parts of it, because the function may have begun its jerk within the cycle; without jerk. */
+ * and with parts of it, because the function may have begun its jerk within the cycle; without jerk; giving way to the
+ * function where that takes all of a limit. */
 typedef enum attempt {
-    AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITH_HALF_OF_IT, WITH_QUARTER_OF_IT, WITHOUT_JERK, ATTEMPTS
+    AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITH_HALF_OF_IT, WITH_QUARTER_OF_IT, WITHOUT_JERK, AT_THE_LIMIT, ATTEMPTS
 } attempt_t;
 
 static const double part_of_jerk_left[ATTEMPTS] = {
@@ -152,6 +175,23 @@ static double jerk_of_attempt(const cm1e_axis_t *axis, const from_t *f, attempt_
     return part_of_jerk_left[attempt] * at_most(asked, axis->limits.maximum.jerk, jerk_of_function(axis, f));
 }
 
+/* The catch-up is what is left between the function and a set-point of which the acceleration changes evenly, to that of
+ * the function and the present catch-up as far as its limits allow. */
+static void stay_at_limit(cm1e_axis_t *axis, const from_t *f)
+{
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const cm1e_motion_state_t on_top = axis->superimposed.id ? axis->superimposed.now : (cm1e_motion_state_t){0};
+    cm1e_motion_state_t *now = &axis->coupling->catch_up.now;
+    const double t = axis->cycle_s, v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
+    const room_t room = room_at(axis, v + t * a);
+    const double asked = smaller(room.up, larger(-room.down, f->acceleration + now->acceleration + on_top.acceleration));
+    const double next = smaller(a + most->jerk * t, larger(a - most->jerk * t, asked));
+    const double so_far = cm1e_position_minus(axis->setpoint.position, f->position) / axis->position.scale;
+    *now = (cm1e_motion_state_t){so_far + t * (v + t * (2.0 * a + next) / 6.0) - on_top.position,
+                                 v + t * (a + next) / 2.0 - f->velocity - on_top.velocity,
+                                 next - f->acceleration - on_top.acceleration};
+}
+
 static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
@@ -163,8 +203,11 @@ static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
         plan_catch_up(axis, &limits);
     }
     const double v = catch_up->now.velocity, a = catch_up->now.acceleration;
-    if (attempt == WITHOUT_JERK) {
-        catch_up->now = (cm1e_motion_state_t){catch_up->now.position + t * (v + t * a / 2.0), v + t * a, a};
+    if (attempt >= WITHOUT_JERK) {
+        if (attempt == WITHOUT_JERK)
+            catch_up->now = (cm1e_motion_state_t){catch_up->now.position + t * (v + t * a / 2.0), v + t * a, a};
+        else
+            stay_at_limit(axis, f);
         axis->coupling->plan.duration_s = INFINITY;
     } else if (catch_up->on) {
         next_of_catch_up(axis);
@@ -176,7 +219,7 @@ static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, attempt_t attempt, 
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
     const bool disturbed = f->acceleration != 0.0 || axis->coupling->f_acceleration != 0.0;
-    catch_up->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
+    catch_up->held_back = attempt >= WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
     go_on(axis, f, attempt);
     const from_t sum = sum_of(axis, f);
     *verdict = judge_sum(axis, &sum);

@@ -104,22 +104,23 @@ static void axes_judge_smooth(int n, double t, double more_jerk)
               "axis %d, %s: the position moves by %.12g at %.12g u/s, %.12g u/s2", n, state, step, v0, a0);
 }
 
-/** While no answer comes, no target moves; after it the motion is no faster than before. TRUE: nothing else is to be
- *  said of this cycle. */
+/** While no answer comes, no target moves; after it the motion is no faster than before, but for what its jerk makes of
+ *  the motion without acceleration, or of rest, in a cycle. TRUE: nothing else is to be said of this cycle. */
 static bool axes_judge_silence(int n)
 {
     const cm1e_axis_t *axis = axes_bench.axes[n];
     const axes_witness_t *w = &axes_bench.witness[n];
     const bool silent = axis->silence.frozen || (axis->silence.silent > 0 && axis->mode == CM1E_MODE_CSP &&
                                                  !cm1e_drive_is_virtual(&axis->drive));
-    const double v = axis->setpoint.velocity;
+    const double v = axis->setpoint.velocity, t = axis->cycle_s, jerk = axis->limits.maximum.jerk * (1 + 1e-9);
     const double step = cm1e_position_minus(axis->setpoint.position, w->set) / axis->position.scale;
     if (silent)
         AXES_MUST(step == 0, "axis %d: its target moves by %.12g while no frame comes back", n, step);
     else if (axis->silence.began_anew)
-        AXES_MUST(v * w->velocity >= 0 &&
-                  fabs(v) <= fabs(w->velocity) + axis->limits.maximum.acceleration * axis->cycle_s &&
-                      fabs(step) <= fabs(w->velocity) * axis->cycle_s * (1 + 1e-9) + 1e-6 / fabs(axis->position.scale),
+        AXES_MUST((v * w->velocity >= 0 || fabs(v) <= jerk * t * t / 2) &&
+                      fabs(v) <= fabs(w->velocity) + axis->limits.maximum.acceleration * t &&
+                      fabs(step) <= fabs(w->velocity) * t * (1 + 1e-9) + jerk * t * t * t / 6 +
+                                        1e-6 / fabs(axis->position.scale),
                   "axis %d: after silence %.12g u/s and a step of %.12g u, before %.12g u/s", n, v, step, w->velocity);
     return silent || axis->silence.began_anew;
 }
