@@ -145,20 +145,61 @@ static bool evaluate(const look_t *look, const MC_CAMSWITCH *cam, const MC_TRACK
 
 /* ---- the block --------------------------------------------------------------------------------------------------- */
 
-static bool switch_is_right(const look_t *look, const MC_CAMSWITCH *cam)
+/** An input, and whether it is out of its range. */
+typedef struct checked {
+    bool wrong;
+    cm1e_cam_switch_input_t input;
+    double value;
+} checked_t;
+
+/** The first of them that is wrong; NULL: none. */
+static const checked_t *first_wrong(const checked_t inputs[], int count)
 {
-    return cam->TrackNumber >= 1 && cam->TrackNumber <= CM1E_CAM_TRACKS && isfinite(cam->FirstOnPosition) &&
-           (cam->CamSwitchMode == 1 || isfinite(cam->LastOnPosition)) &&
-           (cam->CamSwitchMode == 1 || look->axis.modulo_range > 0.0 || cam->FirstOnPosition <= cam->LastOnPosition) &&
-           cam->AxisDirection >= 0 && cam->AxisDirection <= 2 &&
-           (cam->CamSwitchMode == 0 || (cam->CamSwitchMode == 1 && cam->Duration >= 0));
+    for (int i = 0; i < count; i++)
+        if (inputs[i].wrong)
+            return &inputs[i];
+    return NULL;
 }
 
-static bool track_is_right(const MC_TRACK *track)
+static bool is_place(const look_t *look, double position)
+{
+    const double range = look->axis.modulo_range;
+    return isfinite(position) && (range <= 0.0 || (position >= 0.0 && position <= range));
+}
+
+static bool refuse(cm1e_axis_t *axis, int number, const checked_t *wrong)
+{
+    if (wrong)
+        cm1e_axis_refuse_cam_switch(axis, wrong->input, number, wrong->value);
+    return wrong != NULL;
+}
+
+static bool refuses_switch(cm1e_axis_t *axis, const look_t *look, const MC_CAMSWITCH *cam, int number)
+{
+    const bool by_time = cam->CamSwitchMode == 1, linear = look->axis.modulo_range <= 0.0;
+    const checked_t inputs[] = {
+        {cam->TrackNumber < 1 || cam->TrackNumber > CM1E_CAM_TRACKS, CM1E_CAM_SWITCH_TRACK, cam->TrackNumber},
+        {cam->AxisDirection < 0 || cam->AxisDirection > 2, CM1E_CAM_SWITCH_DIRECTION, cam->AxisDirection},
+        {cam->CamSwitchMode < 0 || cam->CamSwitchMode > 1, CM1E_CAM_SWITCH_MODE, cam->CamSwitchMode},
+        {!by_time && !is_place(look, cam->LastOnPosition), CM1E_CAM_SWITCH_LAST_ON, cam->LastOnPosition},
+        {!is_place(look, cam->FirstOnPosition) || (!by_time && linear && cam->FirstOnPosition > cam->LastOnPosition),
+         CM1E_CAM_SWITCH_FIRST_ON, cam->FirstOnPosition},
+        {by_time && cam->Duration < 0, CM1E_CAM_SWITCH_DURATION, (double)cam->Duration},
+    };
+    return refuse(axis, number, first_wrong(inputs, sizeof inputs / sizeof inputs[0]));
+}
+
+static bool refuses_track(cm1e_axis_t *axis, const MC_TRACK *track, int number)
 {
     const TIME most = INT64_C(3600) * 1000000000;
-    return track->Hysteresis >= 0.0 && isfinite(track->Hysteresis) && track->OnCompensation <= most &&
-           track->OnCompensation >= -most && track->OffCompensation <= most && track->OffCompensation >= -most;
+    const checked_t inputs[] = {
+        {track->OnCompensation > most || track->OnCompensation < -most, CM1E_CAM_SWITCH_ON_COMPENSATION,
+         (double)track->OnCompensation},
+        {track->OffCompensation > most || track->OffCompensation < -most, CM1E_CAM_SWITCH_OFF_COMPENSATION,
+         (double)track->OffCompensation},
+        {!(track->Hysteresis >= 0.0 && isfinite(track->Hysteresis)), CM1E_CAM_SWITCH_HYSTERESIS, track->Hysteresis},
+    };
+    return refuse(axis, number, first_wrong(inputs, sizeof inputs / sizeof inputs[0]));
 }
 
 static const MC_TRACK *track_of(const MC_DigitalCamSwitch_t *fb, const MC_CAMSWITCH *cam)
@@ -171,13 +212,15 @@ static const MC_TRACK *track_of(const MC_DigitalCamSwitch_t *fb, const MC_CAMSWI
 static cm1e_error_t evaluate_all(MC_DigitalCamSwitch_t *fb, const look_t *look, DWORD *tracks)
 {
     const MC_CAMSWITCH_REF *cams = fb->Switches;
+    cm1e_axis_t *axis = cm1e_fb_axis(&fb->Private.common);
+    const int count = cams ? cams->NumberOfSwitches : 0;
     *tracks = 0;
-    if (!cams || cams->NumberOfSwitches < 1 || cams->NumberOfSwitches > CM1E_CAM_SWITCHES)
+    if (refuse(axis, 0, count < 1 || count > CM1E_CAM_SWITCHES ? &(checked_t){true, CM1E_CAM_SWITCH_COUNT, count} : NULL))
         return CM1E_ERROR_FB_CAM_SWITCH;
     DWORD on = 0;
-    for (int i = 0; i < cams->NumberOfSwitches; i++) {
+    for (int i = 0; i < count; i++) {
         const MC_CAMSWITCH *cam = &cams->Switches[i];
-        if (!switch_is_right(look, cam) || !track_is_right(track_of(fb, cam)))
+        if (refuses_switch(axis, look, cam, i + 1) || refuses_track(axis, track_of(fb, cam), i + 1))
             return CM1E_ERROR_FB_CAM_SWITCH;
         if (evaluate(look, cam, track_of(fb, cam), &fb->Private.switches[i]))
             on |= (DWORD)1 << (cam->TrackNumber - 1);

@@ -332,6 +332,7 @@ typedef enum not_set_what {
     NOT_SET_OUTPUT,        /**< digital output `number` */
     NOT_SET_PROBE,         /**< a touch probe at input `number` */
     NOT_SET_CAM,           /**< MC_CamTableSelect; see cams_t */
+    NOT_SET_CAM_SWITCH,    /**< MC_DigitalCamSwitch: the input of switch `number` that is `value` */
     NOT_FINISHED,          /**< a command of the kind `number` was accepted and ended with the error */
 } not_set_what_t;
 
@@ -341,7 +342,10 @@ typedef struct not_set {
     not_set_what_t what;
     int number;
     double value;
-    uint32_t abort_code;
+    union {
+        uint32_t abort_code; /**< of a parameter */
+        uint32_t input;      /**< of a switch: cm1e_cam_switch_input_t */
+    };
 } not_set_t;
 
 /* ---- beside the motion: axis_extras.h ---------------------------------------------------------------------------- */

@@ -38,6 +38,14 @@ cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns);
 /** The commanded value of an output. @rt cycle */
 cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value);
+/** Inputs of MC_DigitalCamSwitch that have a range. */
+typedef enum cm1e_cam_switch_input {
+    CM1E_CAM_SWITCH_COUNT = 0, CM1E_CAM_SWITCH_TRACK, CM1E_CAM_SWITCH_FIRST_ON, CM1E_CAM_SWITCH_LAST_ON,
+    CM1E_CAM_SWITCH_DIRECTION, CM1E_CAM_SWITCH_MODE, CM1E_CAM_SWITCH_DURATION, CM1E_CAM_SWITCH_ON_COMPENSATION,
+    CM1E_CAM_SWITCH_OFF_COMPENSATION, CM1E_CAM_SWITCH_HYSTERESIS,
+} cm1e_cam_switch_input_t;
+/** Keeps for the text of the axis that this input of a switch (1 ...; times in ns) is refused. @rt cycle */
+void cm1e_axis_refuse_cam_switch(cm1e_axis_t *axis, cm1e_cam_switch_input_t input, int number, double value);
 /** Whether an input is in the process data, so that it is seen in every cycle. @rt cycle */
 bool cm1e_axis_sees_input(const cm1e_axis_t *axis, int number);
 /** Reads the actual torque in % of rated torque. CM1E_ERROR_PDO_MAPPING: it is not in the process data.

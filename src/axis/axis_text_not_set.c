@@ -3,6 +3,7 @@
 
 #include "axis/axis_device.h"
 #include "axis/axis_parameters.h"
+#include "axis/axis_signals.h"
 #include "axis/axis_text.h"
 
 const char *cm1e_axis_wired_name(const cm1e_axis_t *axis, int number, bool output)
@@ -31,6 +32,42 @@ static void override_text(const cm1e_axis_t *axis, char *text, size_t size)
              asked->acceleration, asked->jerk, cm1e_strerror(axis->not_set.error));
 }
 
+void cm1e_axis_refuse_cam_switch(cm1e_axis_t *axis, cm1e_cam_switch_input_t input, int number, double value)
+{
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = CM1E_ERROR_FB_CAM_SWITCH, .what = NOT_SET_CAM_SWITCH,
+                                                 .number = number, .value = value, .input = input});
+}
+
+static void cam_switch_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    static const struct {
+        const char *name, *right;
+        double scale;
+    } inputs[] = {
+        [CM1E_CAM_SWITCH_COUNT] = {"NumberOfSwitches", "1 ... 32 is right", 1.0},
+        [CM1E_CAM_SWITCH_TRACK] = {"TrackNumber", "1 ... 32 is right", 1.0},
+        [CM1E_CAM_SWITCH_FIRST_ON] = {"FirstOnPosition", "a number that is not above LastOnPosition is right", 1.0},
+        [CM1E_CAM_SWITCH_LAST_ON] = {"LastOnPosition", "a number is right", 1.0},
+        [CM1E_CAM_SWITCH_DIRECTION] = {"AxisDirection", "0, 1 or 2 is right", 1.0},
+        [CM1E_CAM_SWITCH_MODE] = {"CamSwitchMode", "0 or 1 is right", 1.0},
+        [CM1E_CAM_SWITCH_DURATION] = {"Duration in ms", "0 or more is right", 1e-6},
+        [CM1E_CAM_SWITCH_ON_COMPENSATION] = {"OnCompensation of its track in ms", "up to an hour is right, or minus an hour",
+                                             1e-6},
+        [CM1E_CAM_SWITCH_OFF_COMPENSATION] = {"OffCompensation of its track in ms",
+                                              "up to an hour is right, or minus an hour", 1e-6},
+        [CM1E_CAM_SWITCH_HYSTERESIS] = {"Hysteresis of its track", "0 or more is right", 1.0},
+    };
+    const not_set_t *refused = &axis->not_set;
+    const bool place = refused->input == CM1E_CAM_SWITCH_FIRST_ON || refused->input == CM1E_CAM_SWITCH_LAST_ON;
+    char which[24] = "", range[48];
+    if (refused->input != CM1E_CAM_SWITCH_COUNT)
+        snprintf(which, sizeof which, "switch %d: ", refused->number);
+    snprintf(range, sizeof range, "0 ... %.9g u is right", axis->position.modulo_range);
+    snprintf(text, size, "Axis \"%s\": MC_DigitalCamSwitch: %s%s is %.9g; %s.", axis->config->name, which,
+             inputs[refused->input].name, refused->value * inputs[refused->input].scale,
+             place && axis->position.modulo_range > 0.0 ? range : inputs[refused->input].right);
+}
+
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const not_set_t *refused = &axis->not_set;
@@ -52,6 +89,8 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
         signal_text(axis, "no touch probe at input", "", text, size);
     } else if (refused->what == NOT_SET_CAM) {
         axis->coupling_hooks->cam_text(axis, text, size);
+    } else if (refused->what == NOT_SET_CAM_SWITCH) {
+        cam_switch_text(axis, text, size);
     } else if (cm1e_axis_parameter_is_object(refused->number)) {
         cm1e_axis_object_text(axis, text, size);
     } else {

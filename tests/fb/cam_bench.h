@@ -24,6 +24,11 @@ static struct {
     unsigned writes;
     cm1e_error_t error;
 } output;
+static struct {
+    cm1e_cam_switch_input_t input;
+    int number;
+    double value;
+} refused; /* the last switch */
 
 int64_t cm1e_axis_time(const cm1e_axis_t *axis)
 {
@@ -45,6 +50,13 @@ cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, in
     output.keep_ns = keep_ns;
     output.writes++;
     return CM1E_OK;
+}
+void cm1e_axis_refuse_cam_switch(cm1e_axis_t *axis, cm1e_cam_switch_input_t input, int number, double value)
+{
+    (void)axis;
+    refused.input = input;
+    refused.number = number;
+    refused.value = value;
 }
 cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
 {

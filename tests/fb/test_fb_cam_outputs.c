@@ -105,34 +105,40 @@ START_TEST(test_switches_and_tracks_that_cannot_be)
 {
     const TIME day = INT64_C(86400000) * MS;
     static const MC_CAMSWITCH good = {.TrackNumber = 1, .FirstOnPosition = 1.0, .LastOnPosition = 2.0};
-    for (int i = 0; i < 18; i++) {
-        fresh(0.0);
+    for (int i = 0; i < 21; i++) {
+        cm1e_cam_switch_input_t input = CM1E_CAM_SWITCH_COUNT;
+        int number = 2;
+        fresh(i < 18 ? 0.0 : 360.0);
         add(2, 0.0, 10.0);
         MC_CAMSWITCH *cam = add(1, 1.0, 2.0);
         at(5.0, 0.0);
         ck_assert_uint_eq(outputs.Values, 2);
         switch (i) {
-        case 0: cam->TrackNumber = 0; break;
-        case 1: cam->TrackNumber = 33; break;
-        case 2: cam->TrackNumber = -1; break;
-        case 3: cam->FirstOnPosition = NAN; break;
-        case 4: cam->LastOnPosition = INFINITY; break;
-        case 5: cam->LastOnPosition = 0.5; break;
-        case 6: cam->AxisDirection = 3; break;
-        case 7: cam->AxisDirection = -1; break;
-        case 8: cam->CamSwitchMode = 2; break;
-        case 9: cam->CamSwitchMode = 1, cam->Duration = -1; break;
-        case 10: tracks.Tracks[0].Hysteresis = -0.1; break;
-        case 11: tracks.Tracks[0].Hysteresis = NAN; break;
-        case 12: tracks.Tracks[0].OnCompensation = -day; break;
-        case 13: tracks.Tracks[0].OffCompensation = INT64_MAX; break;
-        case 14: tracks.Tracks[0].OffCompensation = INT64_MIN; break;
-        case 15: cams.NumberOfSwitches = 0; break;
-        case 16: cams.NumberOfSwitches = 33; break;
-        case 17: fb.Switches = NULL; break;
+        case 0: cam->TrackNumber = 0, input = CM1E_CAM_SWITCH_TRACK; break;
+        case 1: cam->TrackNumber = 33, input = CM1E_CAM_SWITCH_TRACK; break;
+        case 2: cam->TrackNumber = -1, input = CM1E_CAM_SWITCH_TRACK; break;
+        case 3: cam->FirstOnPosition = NAN, input = CM1E_CAM_SWITCH_FIRST_ON; break;
+        case 4: cam->LastOnPosition = INFINITY, input = CM1E_CAM_SWITCH_LAST_ON; break;
+        case 5: cam->LastOnPosition = 0.5, input = CM1E_CAM_SWITCH_FIRST_ON; break;
+        case 6: cam->AxisDirection = 3, input = CM1E_CAM_SWITCH_DIRECTION; break;
+        case 7: cam->AxisDirection = -1, input = CM1E_CAM_SWITCH_DIRECTION; break;
+        case 8: cam->CamSwitchMode = 2, input = CM1E_CAM_SWITCH_MODE; break;
+        case 9: cam->CamSwitchMode = 1, cam->Duration = -1, input = CM1E_CAM_SWITCH_DURATION; break;
+        case 10: tracks.Tracks[0].Hysteresis = -0.1, input = CM1E_CAM_SWITCH_HYSTERESIS; break;
+        case 11: tracks.Tracks[0].Hysteresis = NAN, input = CM1E_CAM_SWITCH_HYSTERESIS; break;
+        case 12: tracks.Tracks[0].OnCompensation = -day, input = CM1E_CAM_SWITCH_ON_COMPENSATION; break;
+        case 13: tracks.Tracks[0].OffCompensation = INT64_MAX, input = CM1E_CAM_SWITCH_OFF_COMPENSATION; break;
+        case 14: tracks.Tracks[0].OffCompensation = INT64_MIN, input = CM1E_CAM_SWITCH_OFF_COMPENSATION; break;
+        case 15: cams.NumberOfSwitches = 0, number = 0; break;
+        case 16: cams.NumberOfSwitches = 33, number = 0; break;
+        case 17: fb.Switches = NULL, number = 0; break;
+        case 18: cam->FirstOnPosition = -0.001, input = CM1E_CAM_SWITCH_FIRST_ON; break;
+        case 19: cam->FirstOnPosition = 360.001, input = CM1E_CAM_SWITCH_FIRST_ON; break;
+        case 20: cam->LastOnPosition = 360.001, input = CM1E_CAM_SWITCH_LAST_ON; break;
         }
         at(5.0, 0.0);
         expect_error(CM1E_ERROR_FB_CAM_SWITCH);
+        ck_assert(refused.input == input && refused.number == number);
         *cam = good;
         memset(&tracks, 0, sizeof tracks);
         cams.NumberOfSwitches = 2;

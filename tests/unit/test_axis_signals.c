@@ -322,6 +322,36 @@ static void test_what_is_kept_does_not_touch_another_motion(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(other));
 }
 
+/* ---- cam switches ------------------------------------------------------------------------------------------------ */
+
+static void test_a_refused_cam_switch_is_told_with_its_value_and_what_is_right(void)
+{
+    static const struct {
+        cm1e_cam_switch_input_t input;
+        double value;
+        const char *words;
+    } cases[] = {
+        {CM1E_CAM_SWITCH_COUNT, 33.0, "MC_DigitalCamSwitch: NumberOfSwitches is 33; 1 ... 32 is right."},
+        {CM1E_CAM_SWITCH_TRACK, 0.0, "switch 7: TrackNumber is 0; 1 ... 32 is right."},
+        {CM1E_CAM_SWITCH_FIRST_ON, 2.5, "switch 7: FirstOnPosition is 2.5; a number that is not above LastOnPosition is right."},
+        {CM1E_CAM_SWITCH_LAST_ON, NAN, "switch 7: LastOnPosition is nan; a number is right."},
+        {CM1E_CAM_SWITCH_DIRECTION, -1.0, "switch 7: AxisDirection is -1; 0, 1 or 2 is right."},
+        {CM1E_CAM_SWITCH_MODE, 2.0, "switch 7: CamSwitchMode is 2; 0 or 1 is right."},
+        {CM1E_CAM_SWITCH_DURATION, -1500000.0, "switch 7: Duration in ms is -1.5; 0 or more is right."},
+        {CM1E_CAM_SWITCH_ON_COMPENSATION, 3600001e6, "OnCompensation of its track in ms is 3600001; up to an hour is right"},
+        {CM1E_CAM_SWITCH_OFF_COMPENSATION, -3600001e6, "OffCompensation of its track in ms is -3600001; up to"},
+        {CM1E_CAM_SWITCH_HYSTERESIS, -0.1, "Hysteresis of its track is -0.1; 0 or more is right."},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        cm1e_axis_refuse_cam_switch(axis, cases[i].input, 7, cases[i].value);
+        bench_told(cases[i].words);
+    }
+    bus.config.axes[0].modulo_range = 360.0;
+    bench_create();
+    cm1e_axis_refuse_cam_switch(axis, CM1E_CAM_SWITCH_FIRST_ON, 1, -10.0);
+    bench_told("switch 1: FirstOnPosition is -10; 0 ... 360 u is right.");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -341,5 +371,6 @@ int main(void)
     RUN_TEST(test_kept_motion_goes_on_while_it_is_renewed_and_halts_after);
     RUN_TEST(test_kept_motion_with_impossible_values_halts_all_the_same);
     RUN_TEST(test_what_is_kept_does_not_touch_another_motion);
+    RUN_TEST(test_a_refused_cam_switch_is_told_with_its_value_and_what_is_right);
     return UNITY_END();
 }
