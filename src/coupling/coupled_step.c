@@ -118,26 +118,16 @@ typedef struct verdict {
     bool smooth; /**< the motion between the set-points keeps the limits too */
 } verdict_t;
 
-/* The accelerations, u/s2, with which the axis can go on within its limits: its jerk ends the one before the maximum
- * velocity, and turns a larger deceleration into the acceleration until the velocity changes its sign. */
-typedef struct room {
-    double up, down;
-} room_t;
-
-static room_t room_at(const cm1e_axis_t *axis, double velocity)
-{
-    const cm1e_motion_limits_t *most = &axis->limits.maximum;
-    const double speed = fabs(velocity), a = most->acceleration;
-    const double faster = smaller(a, sqrt(2.0 * most->jerk * larger(0.0, most->velocity - speed)));
-    const double slower = smaller(most->deceleration, larger(a, sqrt(a * a + 2.0 * most->jerk * speed)));
-    return velocity >= 0.0 ? (room_t){faster, slower} : (room_t){slower, faster};
-}
-
+/* Whether the axis can go on within its limits: where its deceleration may be larger than its acceleration, the jerk has
+ * to turn the one into the other until the velocity changes its sign. */
 static bool has_room(const cm1e_axis_t *axis, const from_t *sum)
 {
-    const room_t room = room_at(axis, sum->velocity);
-    const double rounding = 1e-6 * axis->limits.maximum.acceleration;
-    return sum->acceleration <= room.up + rounding && sum->acceleration >= -room.down - rounding;
+    static const double rounding = 1.0 + 1e-6;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const double a = fabs(sum->acceleration), at_rest = most->acceleration * rounding;
+    if (sum->acceleration * sum->velocity >= 0.0)
+        return a <= at_rest;
+    return a <= most->deceleration * rounding && a * a <= at_rest * at_rest + 2.0 * most->jerk * fabs(sum->velocity);
 }
 
 static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
@@ -175,17 +165,35 @@ static double jerk_of_attempt(const cm1e_axis_t *axis, const from_t *f, attempt_
     return part_of_jerk_left[attempt] * at_most(asked, axis->limits.maximum.jerk, jerk_of_function(axis, f));
 }
 
+/* u/s2; the largest acceleration at the end of a cycle, into which it changes evenly from `a`, with which the axis has room
+ * then (has_room()), and its jerk can end the acceleration before the maximum velocity. */
+static double largest_acceleration(const cm1e_axis_t *axis, double v, double a)
+{
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const double t = axis->cycle_s, jerk = most->jerk, half = jerk * t / 2.0, left = most->velocity - v - a * t / 2.0;
+    if (v + a * t / 2.0 >= 0.0)
+        return smaller(most->acceleration, left < 0.0 ? 2.0 * left / t : sqrt(half * half + 2.0 * jerk * left) - half);
+    const double square = half * half + most->acceleration * most->acceleration - 2.0 * jerk * (v + a * t / 2.0);
+    return smaller(most->deceleration, larger(most->acceleration, sqrt(square) - half));
+}
+
+/* u/s2; the acceleration nearest to `asked` that the axis can have at the end of the cycle. */
+static double nearest_acceleration(const cm1e_axis_t *axis, double asked)
+{
+    const double v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
+    const double step = axis->limits.maximum.jerk * axis->cycle_s;
+    const double next = smaller(largest_acceleration(axis, v, a), larger(-largest_acceleration(axis, -v, -a), asked));
+    return smaller(a + step, larger(a - step, next));
+}
+
 /* The catch-up is what is left between the function and a set-point of which the acceleration changes evenly, to that of
  * the function and the present catch-up as far as its limits allow. */
 static void stay_at_limit(cm1e_axis_t *axis, const from_t *f)
 {
-    const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const cm1e_motion_state_t on_top = axis->superimposed.id ? axis->superimposed.now : (cm1e_motion_state_t){0};
     cm1e_motion_state_t *now = &axis->coupling->catch_up.now;
     const double t = axis->cycle_s, v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
-    const room_t room = room_at(axis, v + t * a);
-    const double asked = smaller(room.up, larger(-room.down, f->acceleration + now->acceleration + on_top.acceleration));
-    const double next = smaller(a + most->jerk * t, larger(a - most->jerk * t, asked));
+    const double next = nearest_acceleration(axis, f->acceleration + now->acceleration + on_top.acceleration);
     const double so_far = cm1e_position_minus(axis->setpoint.position, f->position) / axis->position.scale;
     *now = (cm1e_motion_state_t){so_far + t * (v + t * (2.0 * a + next) / 6.0) - on_top.position,
                                  v + t * (a + next) / 2.0 - f->velocity - on_top.velocity,

@@ -5,27 +5,27 @@
 #include "../support/axes_bench.h"
 #include "../support/chance.h"
 
-enum { MASTER, SLAVE, WAITS = 60000 };
+enum { MASTER, SLAVE, THIRD, WAITS = 60000 };
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }
 
 static double fastest; /* u/s; of the master */
+static char run_text[40];
 
 static double any_velocity(double most)
 {
     return uniform(0.02, one_in(3) ? 0.98 : 0.5) * most * (one_in(2) ? 1.0 : -1.0);
 }
 
-/* The master has what the slave can follow, at times all of it. */
-static void make_two(int numerator, uint32_t denominator)
+/* Axes with the same limits; the master has so much of them, at times all of what the slave can follow. */
+static void make(int count, double masters_part)
 {
     const double most[] = {uniform(5.0, 25.0), uniform(20.0, 300.0), one_in(2) ? 1.0 : uniform(0.3, 3.0),
                            uniform(300.0, 8000.0)};
-    const double part = one_in(2) ? 1.0 : uniform(0.2, 1.0);
-    axes_describe(2);
-    for (int n = 0; n < 2; n++) {
-        const double scale = n == MASTER ? part * denominator / numerator : 1.0;
+    axes_describe(count);
+    for (int n = 0; n < count; n++) {
+        const double scale = n == MASTER ? masters_part : 1.0;
         cm1e_axis_config_t *config = axes_config(n);
         config->max_velocity = fmin(most[0] * scale, 49.0);
         config->max_acceleration = most[1] * scale;
@@ -34,6 +34,7 @@ static void make_two(int numerator, uint32_t denominator)
     }
     fastest = axes_config(MASTER)->max_velocity;
     axes_make();
+    axes_bench.run = run_text;
     axes_enable_all();
 }
 
@@ -43,12 +44,12 @@ static void move_master(double velocity)
                                                 .velocity = velocity});
 }
 
-static void watch(cm1e_command_id_t gear, int count)
+static void watch(int slave, cm1e_command_id_t gear, int count)
 {
     for (int n = 0; n < count; n++) {
         axes_cycles(1);
-        AXES_MUST(axes_state(SLAVE) == CM1E_AXIS_SYNCHRONIZED_MOTION, "%s", axes_text(SLAVE));
-        AXES_MUST(axes_status(SLAVE, gear).state == CM1E_COMMAND_ACTIVE, "the coupling has ended");
+        AXES_MUST(axes_state(slave) == CM1E_AXIS_SYNCHRONIZED_MOTION, "%s", axes_text(slave));
+        AXES_MUST(axes_status(slave, gear).state == CM1E_COMMAND_ACTIVE, "the coupling has ended");
     }
 }
 
@@ -56,30 +57,40 @@ static void watch(cm1e_command_id_t gear, int count)
 static void pause_for(cm1e_command_id_t gear, int cycles)
 {
     axes_bench.received = CM1E_ERROR_TIMEOUT;
-    watch(gear, cycles);
+    watch(SLAVE, gear, cycles);
     axes_bench.received = CM1E_OK;
+}
+
+static void begin_run(int run)
+{
+    chance_seed(seed_of(run));
+    snprintf(run_text, sizeof run_text, "seed %u", seed_of(run));
+}
+
+static void let_them_move(int last)
+{
+    for (int n = SLAVE; n <= last; n++)
+        if (one_in(2))
+            axes_move_velocity(n, any_velocity(axes_config(n)->max_velocity));
+    move_master(any_velocity(fastest));
+    axes_cycles(one_in(2) ? 600 : pick(300));
 }
 
 static void check(int run, bool pauses)
 {
-    static char text[40];
+    begin_run(run);
     const int numerator = 1 + pick(3);
     const uint32_t denominator = 1 + (uint32_t)pick(3);
-    snprintf(text, sizeof text, "seed %u", seed_of(run));
-    make_two(numerator, denominator);
-    axes_bench.run = text;
-    if (one_in(2))
-        axes_move_velocity(SLAVE, any_velocity(axes_config(SLAVE)->max_velocity));
-    move_master(any_velocity(fastest));
-    axes_cycles(one_in(2) ? 600 : pick(300));
+    make(2, (one_in(2) ? 1.0 : uniform(0.2, 1.0)) * denominator / numerator);
+    let_them_move(SLAVE);
     const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, numerator, denominator);
     if (pauses)
         axes_wait_reached(SLAVE, gear, WAITS);
     for (int n = pick(4); n >= 0; n--) {
-        watch(gear, pick(pauses ? 60 : 300));
+        watch(SLAVE, gear, pick(pauses ? 60 : 300));
         move_master(one_in(3) ? 0.0 : any_velocity(fastest));
         if (pauses) {
-            watch(gear, pick(100));
+            watch(SLAVE, gear, pick(100));
             pause_for(gear, 1 + pick(8));
         }
     }
@@ -89,17 +100,40 @@ static void check(int run, bool pauses)
 
 static void test_random_changes_of_the_master_before_the_slave_is_in_gear(void)
 {
-    for (int run = 0; run < seed_count(4000); run++) {
-        chance_seed(seed_of(run));
+    for (int run = 0; run < seed_count(4000); run++)
         check(run, false);
-    }
 }
 
 static void test_random_changes_of_the_master_about_a_pause(void)
 {
-    for (int run = 0; run < seed_count(4000); run++) {
-        chance_seed(seed_of(run));
+    for (int run = 0; run < seed_count(4000); run++)
         check(run, true);
+}
+
+/* Another ratio makes the coupling function's velocity and acceleration jump. The slave of a slave gets what that has on
+ * its way into gear. */
+static void test_random_ratios_in_a_chain_of_slaves(void)
+{
+    for (int run = 0; run < seed_count(4000); run++) {
+        begin_run(run);
+        make(3, 1.0);
+        let_them_move(THIRD);
+        cm1e_command_id_t gear[] = {[SLAVE] = axes_gear_in(SLAVE, MASTER, 1, 1),
+                                    [THIRD] = axes_gear_in(THIRD, SLAVE, one_in(2) ? 1 : -1, 1)};
+        for (int n = pick(6); n >= 0; n--) {
+            for (int left = pick(300); left > 0; left--) {
+                watch(SLAVE, gear[SLAVE], 1);
+                AXES_MUST(axes_state(THIRD) == CM1E_AXIS_SYNCHRONIZED_MOTION, "%s", axes_text(THIRD));
+            }
+            const int slave = one_in(2) ? MASTER : one_in(2) ? SLAVE : THIRD;
+            if (slave == MASTER)
+                move_master(one_in(3) ? 0.0 : any_velocity(fastest));
+            else
+                gear[slave] = axes_gear_in(slave, slave - 1, (one_in(2) ? 1 : -1) * (1 + pick(2)), 2);
+        }
+        axes_wait_reached(SLAVE, gear[SLAVE], WAITS);
+        axes_wait_reached(THIRD, gear[THIRD], WAITS);
+        axes_end();
     }
 }
 
@@ -108,5 +142,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_random_changes_of_the_master_before_the_slave_is_in_gear);
     RUN_TEST(test_random_changes_of_the_master_about_a_pause);
+    RUN_TEST(test_random_ratios_in_a_chain_of_slaves);
     return UNITY_END();
 }
