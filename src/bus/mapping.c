@@ -1,11 +1,13 @@
 #include "bus/mapping.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "core/bytes.h"
 
 static const uint16_t assign_index[2] = {OBJ_1C12_RXPDO_ASSIGN, OBJ_1C13_TXPDO_ASSIGN};
 enum { SDO_TIMEOUT_NS = 1000000000, DIRECTION_BITS_MAX = 8 * 1024 };
+static const uint32_t abort_no_subindex = 0x06090011;
 
 void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_pdo_choice_t *choice)
 {
@@ -116,15 +118,20 @@ static void took_entry(cm1e_mapping_job_t *job)
     cm1e_mapped_direction_t *mapped = &job->mapped[job->direction];
     const uint32_t value = cm1e_get_u32(job->data);
     const uint8_t bits = (uint8_t)value;
-    if (mapped->entry_count >= CM1E_MAPPED_ENTRIES || bits == 0 || mapped->bits + bits > DIRECTION_BITS_MAX) {
-        end(job, CM1E_ERROR_PDO_MAPPING, "its PDO has too many entries or an entry of no bits");
-        return;
+    if (value != 0) { /* else a row that is not used */
+        if (mapped->entry_count >= CM1E_MAPPED_ENTRIES || bits == 0 || mapped->bits + bits > DIRECTION_BITS_MAX) {
+            end(job, CM1E_ERROR_PDO_MAPPING, "its PDO has too many entries or an entry of no bits");
+            return;
+        }
+        mapped->entries[mapped->entry_count++] =
+            (cm1e_mapped_entry_t){.index = (uint16_t)(value >> 16), .subindex = (uint8_t)(value >> 8), .bits = bits,
+                                  .bit_offset = mapped->bits};
+        mapped->bits = (uint16_t)(mapped->bits + bits);
     }
-    mapped->entries[mapped->entry_count++] = (cm1e_mapped_entry_t){
-        .index = (uint16_t)(value >> 16), .subindex = (uint8_t)(value >> 8), .bits = bits, .bit_offset = mapped->bits};
-    mapped->bits = (uint16_t)(mapped->bits + bits);
     if (job->entry < job->entries)
         job->entry++;
+    else if (mapped->bits == 0 && !job->any)
+        end(job, CM1E_ERROR_PDO_MAPPING, "its PDO is empty");
     else
         read_next_pdo(job);
 }
@@ -186,10 +193,24 @@ static void took(cm1e_mapping_job_t *job)
     }
 }
 
+/** Behind the first row: sub-index 0 states more rows than there are, as the tables of UG 7.2 do. The slave checks the size
+ *  of its process data on the way to Safe-Operational. */
+static bool no_more_rows(const cm1e_mapping_job_t *job)
+{
+    return job->step == MAPPING_READ_ENTRY && job->entry > 1 && job->sdo.error == CM1E_ERROR_SDO_ABORT &&
+           job->sdo.abort_code == abort_no_subindex;
+}
+
 /** Whether the job may go on after a transfer. A refused write is no error yet, because what is read back decides. A
  *  slave may have no object for its assignment. */
 static bool may_go_on(cm1e_mapping_job_t *job)
 {
+    if (no_more_rows(job)) {
+        memset(job->data, 0, sizeof job->data);
+        job->entries = job->entry;
+        job->sdo.size = 4;
+        return true;
+    }
     if (job->any && job->step == MAPPING_READ_COUNT && job->sdo.error == CM1E_ERROR_SDO_ABORT) {
         job->unknown++;
         job->data[0] = 0;

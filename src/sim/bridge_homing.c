@@ -4,12 +4,13 @@
 #define DEFAULT_TORQUE_PERCENT 30
 #define SEARCH_LIMIT_S 60.0 /* the guide names a time-out (BR 7.1.3) and no time */
 enum { K_SPEED = 42, K_ACCELERATION = 43, K_OFFSET_UNIT = 45, K_TORQUE = 47, K_OFFSET = 48 };
+enum { METHODS = 4 };
 
 /* BR 6.4.1, in the order of 0x6098. */
 static const struct {
     int8_t direction;
     bool by_sensor;
-} methods[] = {{+1, false}, {-1, false}, {+1, true}, {-1, true}};
+} methods[METHODS] = {{+1, false}, {-1, false}, {+1, true}, {-1, true}};
 
 static void look_at_sensor(cm1e_sim_bridge_axis_t *axis)
 {
@@ -31,6 +32,10 @@ void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     const unsigned n = axis->number;
     const int64_t method = *cm1e_sim_bridge_value(bridge, n, OBJ_6098_HOMING_METHOD, 0);
     const int64_t torque = *cm1e_sim_bridge_k(bridge, n, K_TORQUE);
+    axis->search = (cm1e_sim_search_t){0};
+    axis->search_failed = method < 1 || method > METHODS; /* as a profile may have it */
+    if (axis->search_failed)
+        return;
     axis->search = (cm1e_sim_search_t){
         .direction = methods[method - 1].direction,
         .speed = CM1E_BRIDGE_SPEED_UNIT * (double)*cm1e_sim_bridge_k(bridge, n, K_SPEED) / axis->scale,
@@ -43,7 +48,6 @@ void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     cm1e_sim_search_begin(&axis->search, methods[method - 1].by_sensor);
     cm1e_sim_bridge_axis_torque(axis, torque > 0 && torque <= 100 ? (double)torque : DEFAULT_TORQUE_PERCENT);
     axis->search_s = 0;
-    axis->search_failed = false;
 }
 
 void cm1e_sim_bridge_search_reset(cm1e_sim_bridge_axis_t *axis)

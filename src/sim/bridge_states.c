@@ -64,7 +64,7 @@ void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_axis_t *axis, unsigned controlwor
         if (wants_power)
             switch_on(axis); /* 3 */
         else if (command == COMMAND_DISABLE_VOLTAGE)
-            cm1e_sim_bridge_axis_release(axis, SWITCH_ON_DISABLED); /* 7 */
+            axis->state = SWITCH_ON_DISABLED; /* 7: from state A to state A, which leaves the motor as it is */
         break;
     case SWITCHED_ON:
     case OPERATION_ENABLED:

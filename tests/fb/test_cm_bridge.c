@@ -133,7 +133,7 @@ START_TEST(test_queries_parameters_and_outputs)
     sends(0, "K53.1", "K53.1=0");
     sends(0, "K53.1=100", "");
     sends(0, "K53", "K53.1=100");
-    sends(0, "?99.1", "Ux.1=16");
+    sends(0, "?99.1", "Ux.1=8");
     sends(2, "?96.3", "Px.3=0");
     sends(0, "O2.1", "");
     ck_assert_int_eq(motor(0)->outputs, 2);
@@ -231,7 +231,7 @@ START_TEST(test_a_query_while_the_others_move)
     }
     scan(500);
     for (int round = 0; round < 20; round++) {
-        sends(0, "?99.1", "Ux.1=16");
+        sends(0, "?99.1", "Ux.1=8");
         for (int i = 1; i < AXES; i++) {
             ck_assert_int_eq(info_of(i).state, CM1E_AXIS_CONTINUOUS_MOTION);
             ck_assert(turning[i].InVelocity);
@@ -242,10 +242,12 @@ START_TEST(test_a_query_while_the_others_move)
 }
 END_TEST
 
+/* A CM1 has torque from its power-on (BR 6.1.1), and keeps it on the way to CML, until it was enabled once. */
 START_TEST(test_mc_power_leaves_cml_and_nothing_jumps)
 {
     start();
-    sends(0, "?99.1", "Ux.1=16");
+    sends(0, "?99.1", "Ux.1=8");
+    ck_assert(!motor(0)->motor_free);
     const double at = info_of(0).actual_position;
     enable_axis(0);
     ck_assert_int_eq(info_of(0).mode, CM1E_BRIDGE_MODE_CSP);
@@ -254,6 +256,10 @@ START_TEST(test_mc_power_leaves_cml_and_nothing_jumps)
     turning[0].Execute = TRUE;
     scan(500);
     ck_assert_msg(turning[0].InVelocity, "%s", text_of(0));
+    power_of[0].Enable = FALSE;
+    scan(2000);
+    sends(0, "?99.1", "Ux.1=16");
+    ck_assert(motor(0)->motor_free);
     close_segment();
 }
 END_TEST
@@ -324,7 +330,7 @@ END_TEST
 START_TEST(test_a_motor_that_is_unplugged_or_broken_is_a_word)
 {
     start();
-    sends(0, "?99.1", "Ux.1=16");
+    sends(0, "?99.1", "Ux.1=8");
     simulate("motor 1 1 unplug");
     send(0, "?99.1", FALSE);
     ck_assert(cml[0].Error);
@@ -399,7 +405,7 @@ START_TEST(test_modes_and_their_dead_ends)
     scan(2);
     switch_mode(0, cmCML, FALSE);
     ck_assert_msg(set_mode[0].Done, "%s", text_of(0));
-    sends(0, "?99.1", "Ux.1=16");
+    sends(0, "?99.1", "Ux.1=8");
     power_of[0].Enable = TRUE; /* by way of CML only where that was insisted on */
     scan(50);
     ck_assert_int_eq(ERROR_OF(power_of[0]), CM1E_ERROR_CM_MODE);

@@ -8,9 +8,9 @@
 #include "sim/segment.h"
 
 /* Device profiles: what can be read is played by every device that plays profiles, whose objects are then read and
- * written, and whose process data goes both ways. Nothing is written anew. */
+ * written, and whose process data goes both ways, as far as a homing. Nothing is written anew. */
 
-enum { SLAVES = 3, IMAGE_BYTES = 4096, STEP_NS = 1000000 };
+enum { SLAVES = 3, IMAGE_BYTES = 4096, STEP_NS = 10000000, CYCLES_EACH = 6, CYCLES = 8 * CYCLES_EACH };
 
 /** A CM1-E, a bridge with a motor, a drive by CiA 402. */
 static cm1e_sim_segment_t *make_segment(void)
@@ -49,7 +49,9 @@ static void use_object(cm1e_sim_slave_t *slave, const cm1e_object_t *object)
 
 static void use(cm1e_sim_slave_t *slave)
 {
+    static const uint16_t controlwords[] = {0, 0x06, 0x07, 0x0F, 0x0F, 0x1F, 0x1F, 0};
     static uint8_t image[IMAGE_BYTES];
+    const uint8_t homing = 6;
     uint16_t outputs, inputs;
     const cm1e_object_t *object;
     for (size_t n = 0; (object = slave->ops->object(slave->app, n)) != NULL; n++)
@@ -57,8 +59,11 @@ static void use(cm1e_sim_slave_t *slave)
     slave->ops->process_data_sizes(slave->app, &outputs, &inputs);
     if (outputs > IMAGE_BYTES || inputs > IMAGE_BYTES)
         fuzz_fail("%u and %u bytes of process data", outputs, inputs);
-    for (int cycle = 1; cycle < 4; cycle++) {
-        memset(image, cycle == 1 ? 0x0F : 0, sizeof image);
+    slave->ops->sdo_write(slave->app, 0x6060, 0, 2, &homing, sizeof homing);
+    for (int cycle = 0; cycle < CYCLES; cycle++) {
+        const uint16_t word = controlwords[cycle / CYCLES_EACH];
+        for (int i = 0; i < IMAGE_BYTES; i++) /* in whichever place the controlword is */
+            image[i] = (uint8_t)(i % 2 ? word >> 8 : word);
         slave->ops->outputs(slave->app, image, outputs, cycle * STEP_NS);
         slave->ops->advance(slave->app, cycle * STEP_NS);
         slave->ops->inputs(slave->app, image, inputs);
@@ -99,6 +104,7 @@ void fuzz_seeds(void)
         "{\"cm1e_profile\":1,\"device\":\"drive\",\"firmware\":\"1\",\"sii\":\"0000\",\"entries\":["
         "{\"entry\":\"0x6065\",\"default\":7,\"minimum\":-1,\"maximum\":9},"
         "{\"entry\":\"0x1600:01\",\"value\":1614807056},{\"entry\":\"0x1C12:01\",\"default\":5633}]}",
+        "{\"cm1e_profile\":1,\"entries\":[{\"entry\":\"0x6098\",\"value\":254}]}",
     };
     for (size_t i = 0; i < sizeof profiles / sizeof *profiles; i++) {
         char name[] = "profile0";

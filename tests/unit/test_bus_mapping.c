@@ -7,7 +7,7 @@
 #include "bus/mapping.h"
 #include "core/bytes.h"
 
-enum { ABORT_READ_ONLY = 0x06010002, TRANSFERS_MAX = 400 };
+enum { ABORT_READ_ONLY = 0x06010002, ABORT_NO_SUBINDEX = 0x06090011, TRANSFERS_MAX = 400 };
 
 /** What can be done to one transfer. */
 typedef enum harm { NO_HARM = 0, ABORT, TIMEOUT, OTHER_VALUE, SHORT, EMPTY, HARMS } harm_t;
@@ -18,6 +18,8 @@ static struct {
     uint16_t pdos[2][CM1E_BRIDGE_AXES];
     bool count_read_only, places_read_only;
     unsigned entries;            /**< of every PDO */
+    unsigned unused;             /**< so many more are stated by sub-index 0 */
+    bool absent;                 /**< these are no sub-indexes; else they are 0 */
     uint8_t bits;                /**< of every entry */
     unsigned transfers, harm_at; /**< from 1; 0: never */
     harm_t harm;
@@ -81,7 +83,11 @@ static void serve(cm1e_sdo_t *sdo)
     else if (sdo->index >= OBJ_1C12_RXPDO_ASSIGN)
         answer(sdo, device.pdos[direction][sdo->subindex - 1], 2);
     else if (sdo->subindex == 0)
-        answer(sdo, device.entries, 1);
+        answer(sdo, device.entries + device.unused, 1);
+    else if (sdo->subindex > device.entries && device.absent)
+        finish(sdo, CM1E_ERROR_SDO_ABORT, ABORT_NO_SUBINDEX);
+    else if (sdo->subindex > device.entries)
+        answer(sdo, 0, 4);
     else
         answer(sdo, (uint32_t)(sdo->index + 0x100 * sdo->subindex) << 16 | device.bits, 4);
 }
@@ -270,6 +276,29 @@ static void test_too_many_entries_and_entries_of_no_bits_are_refused(void)
     TEST_ASSERT_EQUAL(CM1E_ERROR_PDO_MAPPING, job.error); /* 2,040 bytes */
 }
 
+/* The tables of UG 7.2 state up to two rows more than they have. */
+static void test_rows_that_are_stated_and_not_used_are_passed_over(void)
+{
+    for (unsigned unused = 1; unused <= 3; unused++) {
+        device.unused = unused;
+        for (int absent = 0; absent < 2; absent++) {
+            device.absent = absent;
+            run(&bridge);
+            check_mapped(&bridge);
+            run(&single);
+            check_mapped(&single);
+        }
+    }
+    device.entries = 0; /* nothing but such rows */
+    device.absent = false;
+    run(&single);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_PDO_MAPPING, job.error);
+    TEST_ASSERT_EQUAL_STRING("its PDO is empty", job.reason);
+    device.absent = true;
+    run(&single);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_SDO_ABORT, job.error);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -278,6 +307,7 @@ int main(void)
     RUN_TEST(test_assignment_that_cannot_be_written_is_right_if_it_is_the_chosen_one);
     RUN_TEST(test_assignment_that_cannot_be_written_and_is_another_is_the_refusal);
     RUN_TEST(test_harm_at_every_transfer_ends_defined);
+    RUN_TEST(test_rows_that_are_stated_and_not_used_are_passed_over);
     RUN_TEST(test_too_many_entries_and_entries_of_no_bits_are_refused);
     return UNITY_END();
 }

@@ -41,6 +41,23 @@ static bool monitor(int axis, int ms)
     return attained;
 }
 
+/* A profile of a device may have values of 0x6098 that no SDO may write. */
+static void test_a_method_that_is_none_starts_no_search(void)
+{
+    static const int64_t none[] = {0, 5, 254, -1};
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
+        tearDown();
+        setUp();
+        prepare(0, 1);
+        const double before = b.bridge->axes[0].mechanics.position;
+        *cm1e_sim_bridge_value(b.bridge, 0, 0x6098, 0) = none[i];
+        b.axes[0].controlword = 0x1F;
+        bench_cycles(&b, 100);
+        TEST_ASSERT_EQUAL_HEX16(ERROR | REACHED, b.axes[0].statusword & BITS);
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, before, b.bridge->axes[0].mechanics.position);
+    }
+}
+
 static double shaft(int axis) { return b.bridge->axes[axis].mechanics.position; }
 
 static void test_the_four_methods_with_both_kinds_of_motor(void)
@@ -170,6 +187,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_four_methods_with_both_kinds_of_motor);
+    RUN_TEST(test_a_method_that_is_none_starts_no_search);
     RUN_TEST(test_the_offset_has_the_unit_of_the_motor);
     RUN_TEST(test_the_speed_is_that_of_k42);
     RUN_TEST(test_a_start_is_an_edge_in_operation_enabled);

@@ -55,6 +55,25 @@ static void test_after_power_on_a_cm1_holds_and_a_cm2_is_free_unless_k68_says_ot
     check(2, SWITCH_ON_DISABLED, false);
 }
 
+/* "When transiting to state A from state B or C, Cool Muscle will be motor free": not within state A. */
+static void test_within_state_a_a_cm1_keeps_its_torque_until_it_was_enabled_once(void)
+{
+    bench_cycles(&b, 60);
+    for (int round = 0; round < 3; round++) {
+        command(0, 0x06);
+        check(0, READY_TO_SWITCH_ON, false);
+        command(0, 0x00);
+        check(0, SWITCH_ON_DISABLED, false);
+    }
+    command(0, 0x06);
+    command(0, 0x07);
+    check(0, SWITCHED_ON, false);
+    command(0, 0x06);
+    check(0, READY_TO_SWITCH_ON, true);
+    command(0, 0x00);
+    check(0, SWITCH_ON_DISABLED, true);
+}
+
 /* Every command in every state: the transitions of BR 6.1.1, one each cycle, and no others. */
 static void test_every_command_in_every_state(void)
 {
@@ -211,6 +230,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_after_power_on_a_cm1_holds_and_a_cm2_is_free_unless_k68_says_otherwise);
+    RUN_TEST(test_within_state_a_a_cm1_keeps_its_torque_until_it_was_enabled_once);
     RUN_TEST(test_every_command_in_every_state);
     RUN_TEST(test_one_controlword_goes_through_switched_on);
     RUN_TEST(test_all_axes_follow_their_targets);
