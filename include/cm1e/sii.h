@@ -33,7 +33,7 @@ typedef struct cm1e_sii_write_options {
     bool force_checksum;       /**< allow an image whose word 7 is not the checksum of words 0-6: no slave loads it */
     bool force_identity;       /**< allow a slave that is not the product of the image, or not a CM1-E */
     bool force_configuration;  /**< allow words 0-3, 5, 6 that differ from the slave's: they say how its processor is
-                                    connected */
+                                    connected; and an alias beside rotary switches that are set */
     bool own_alias_and_serial; /**< write alias (word 4) and serial number (words 0x0E, 0x0F) of the image too. By
                                     default those of the slave stay, so that no two slaves become equal */
 } cm1e_sii_write_options_t;
@@ -46,7 +46,8 @@ CM1E_API cm1e_error_t cm1e_sii_write_device_sized(cm1e_bus_t *bus, uint16_t posi
  *  words 0-7 last. Each word is read back, and at the end the whole image. The slave uses it from its next power-on.
  *  Make a backup with cm1e_sii_read_device() before: it is the only way back. Errors after which nothing was written:
  *  CM1E_ERROR_FILE: the image is not valid; CM1E_ERROR_STATE: the slave is neither in Init nor in Pre-Operational;
- *  CM1E_ERROR_BUS_IDENTITY: another product; CM1E_ERROR_CONFIG: another configuration. After CM1E_ERROR_TIMEOUT and
+ *  CM1E_ERROR_BUS_IDENTITY: another product; CM1E_ERROR_CONFIG: another configuration, or an alias for a CM1-E whose
+ *  rotary switches are set, which refuses to start with both (UG 4.2.4). After CM1E_ERROR_TIMEOUT and
  *  CM1E_ERROR_BUS_LOST `diag` says at which word the writing stopped. @rt block */
 static inline cm1e_error_t cm1e_sii_write_device(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
                                                  const cm1e_sii_write_options_t *options, cm1e_diag_t *diag)

@@ -255,6 +255,22 @@ static cm1e_error_t check_configuration(const session_t *session, const uint8_t 
     return CM1E_OK;
 }
 
+/** A CM1-E with both kinds of address has an internal error from its next power-on (UG 4.2.4). */
+static cm1e_error_t check_alias(const session_t *session, const uint8_t *image, const uint8_t *present,
+                                const cm1e_sii_write_options_t *options, cm1e_diag_t *diag)
+{
+    const cm1e_slave_info_t *slave = cm1e_bus_slave(session->bus, session->position);
+    const uint16_t alias = word_at(image, WORD_ALIAS);
+    if (!options->own_alias_and_serial || options->force_configuration || alias == 0 ||
+        alias == word_at(present, WORD_ALIAS) || !slave || !slave->device || !slave->device->explicit_id ||
+        slave->explicit_id == 0)
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                         "The rotary switches of %s are set (explicit device ID %u). With the alias %u too, it has an "
+                         "internal error from its next power-on (UG 4.2.4): set both switches to 0 first, and switch it "
+                         "off and on.", session->label, slave->explicit_id, alias);
+}
+
 static cm1e_error_t check_size(session_t *session, const uint8_t *image, size_t size, cm1e_diag_t *diag)
 {
     size_t of_slave = 0;
@@ -340,6 +356,8 @@ static cm1e_error_t write_image(session_t *session, const uint8_t *image, uint8_
         error = check_identity(session, image, present, options, diag);
     if (error == CM1E_OK)
         error = check_configuration(session, image, present, options, diag);
+    if (error == CM1E_OK)
+        error = check_alias(session, image, present, options, diag);
     if (error != CM1E_OK)
         return error;
     memcpy(wanted, image, size);

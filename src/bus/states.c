@@ -25,21 +25,34 @@ static const char *why_in_init(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
            "decode` shows it, `cm1e sii write` writes it anew.";
 }
 
+/** What only the combination of an alias and of rotary switches is refused for (UG 4.2.4). */
+static void why_both_addresses(const cm1e_bus_slave_t *slave, char *text, size_t size)
+{
+    const cm1e_device_t *device = slave->info.device;
+    text[0] = '\0';
+    if (device && device->explicit_id && slave->info.alias != 0 && slave->al.target == CM1E_AL_PRE_OP &&
+        (slave->al.state & ~AL_ERROR_FLAG) == CM1E_AL_INIT)
+        snprintf(text, size, " It has the alias %u: with its rotary switches set too, it has an internal error. Set both "
+                 "switches to 0, and switch it off and on. `cm1e alias` takes the alias away, if the switches are to count.",
+                 slave->info.alias);
+}
+
 cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
-    char label[CM1E_LABEL_LENGTH], other[CM1E_OTHER_MASTER_LENGTH];
+    char label[CM1E_LABEL_LENGTH], other[CM1E_OTHER_MASTER_LENGTH], both[240];
     const cm1e_al_machine_t *al = &slave->al;
     const char *target = cm1e_al_state_text(al->target);
     cm1e_bus_label_first(bus, slave, label);
     cm1e_bus_other_master(bus, other);
+    why_both_addresses(slave, both, sizeof both);
     if (cm1e_al_is_silent(al))
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, 0,
                              "%s does not answer when asked to go to %s: check its power and its cable.%s",
                              label, target, other);
     if (al->state & AL_ERROR_FLAG)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code,
-                             "%s refuses %s and is in %s: AL status 0x%04X, %s.%s", label, target,
-                             cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code), other);
+                             "%s refuses %s and is in %s: AL status 0x%04X, %s.%s%s", label, target,
+                             cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code), both, other);
     return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s did not reach %s in time; it stays in %s.%s%s",
                          label, target, cm1e_al_state_text(al->state), why_in_init(bus, slave), other);
 }

@@ -107,9 +107,6 @@ static cm1e_error_t take_image(const boot_t *boot, const uint8_t *image, size_t 
     free(boot->slave->sii);
     boot->slave->sii = copy;
     boot->slave->sii_size = bytes;
-    cm1e_sim_cm1e_t *drive = cm1e_sim_cm1e_of(boot->slave);
-    if (drive)
-        drive->alias = boot->image->eeprom.alias;
     cm1e_sim_esc_power_on(boot->slave, boot->slave->now_ns);
     return CM1E_OK;
 }

@@ -92,6 +92,8 @@ static uint16_t explicit_device_id(void *app)
     return drive->rotary_switches == ID_RESERVED ? 0 : drive->rotary_switches; /* UG 4.2.3 */
 }
 
+static void station_alias(void *app, uint16_t alias) { ((cm1e_sim_cm1e_t *)app)->alias = alias; }
+
 static uint16_t state_change(void *app, uint8_t from, uint8_t to)
 {
     cm1e_sim_cm1e_t *drive = app;
@@ -175,7 +177,8 @@ static bool play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns)
     .advance = advance, .due = due, .state_change = state_change,                                                   \
     .process_data_sizes = cm1e_sim_process_data_sizes, .outputs = outputs, .inputs = cm1e_sim_inputs,               \
     .sdo_read = cm1e_sim_sdo_read, .sdo_write = cm1e_sim_sdo_write, .object = cm1e_sim_object,                      \
-    .entry = cm1e_sim_entry, .explicit_device_id = explicit_device_id, .power_on = cm1e_sim_cm1e_power_on,          \
+    .entry = cm1e_sim_entry, .explicit_device_id = explicit_device_id, .station_alias = station_alias,                  \
+    .power_on = cm1e_sim_cm1e_power_on,                                                                         \
     .file_begin = cm1e_sim_firmware_begin, .file_data = cm1e_sim_firmware_data, .destroy = destroy, .play = play
 
 /* The watchdog came with V1.3.0 (UG 10.1): before it a drive goes on with the outputs that it had last. */

@@ -201,6 +201,8 @@ static inline int64_t cm1e_sim_rounded(double value) { return (int64_t)(value < 
 /* ---- cm1e_objects.c --------------------------------------------------------------------------------------------- */
 /** Which int32_t of cm1e_sim_objects_t an object is; -1: it is not among them. */
 int cm1e_sim_object_place(uint16_t index, uint8_t subindex);
+/** The drive alone says what such an object has, whatever a profile does; it is in the dictionary of the device. */
+bool cm1e_sim_tells_itself(uint16_t index, uint8_t subindex);
 /** An entry of the device tables as this drive has it. */
 const cm1e_entry_t *cm1e_sim_own_entry(const cm1e_sim_cm1e_t *drive, const cm1e_entry_t *entry);
 /** All to their defaults. */

@@ -67,7 +67,8 @@ static void set_profile_values(cm1e_sim_cm1e_t *drive)
     cm1e_sim_store_set_profile_values(&drive->store);
     for (size_t i = 0; profile && i < profile->entry_count; i++) {
         const int place = cm1e_sim_object_place(profile->entries[i].index, profile->entries[i].subindex);
-        if (place >= 0 && profile->entries[i].has_value)
+        if (place >= 0 && profile->entries[i].has_value &&
+            !cm1e_sim_tells_itself(profile->entries[i].index, profile->entries[i].subindex))
             ((int32_t *)&drive->objects)[place] = (int32_t)profile->entries[i].value;
     }
 }

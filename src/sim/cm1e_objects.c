@@ -64,15 +64,20 @@ const cm1e_entry_t *cm1e_sim_own_entry(const cm1e_sim_cm1e_t *drive, const cm1e_
     return entry;
 }
 
+bool cm1e_sim_tells_itself(uint16_t index, uint8_t subindex)
+{
+    return !(cm1e_device_entry(index, subindex)->access & CM1E_ACCESS_WRITE);
+}
+
 void cm1e_sim_objects_reset(cm1e_sim_cm1e_t *drive)
 {
     drive->objects = (cm1e_sim_objects_t){0};
     int32_t *objects = (int32_t *)&drive->objects;
     for (size_t i = 0; i < PLACE_COUNT; i++) {
         cm1e_sim_cell_t cell;
-        const cm1e_entry_t *entry = cm1e_sim_store_find(&drive->store, places[i].index, places[i].subindex, &cell) == 0
-                                        ? cell.entry
-                                        : cm1e_device_entry(places[i].index, places[i].subindex);
+        const bool kept = !cm1e_sim_tells_itself(places[i].index, places[i].subindex) &&
+                          cm1e_sim_store_find(&drive->store, places[i].index, places[i].subindex, &cell) == 0;
+        const cm1e_entry_t *entry = kept ? cell.entry : cm1e_device_entry(places[i].index, places[i].subindex);
         objects[places[i].place] = (int32_t)cm1e_sim_own_entry(drive, entry)->default_value;
     }
 }

@@ -134,8 +134,9 @@ static cm1e_error_t run_show(call_t *call)
 {
     const cm1e_sim_cm1e_t *drive = call->drive;
     const cm1e_sim_objects_t *objects = &drive->objects;
+    const cm1e_device_error_t *error = cm1e_device_error((uint16_t)objects->error_code);
     say_status(call, call->position);
-    say(call, "\n   %s", cm1e_device_error((uint16_t)objects->error_code)->text);
+    say(call, "\n   %s", error ? error->text : "an error that only its profile has");
     say(call, "\n   controlword 0x%04X, statusword 0x%04X, mode commanded %s", (unsigned)objects->controlword,
         (unsigned)objects->statusword, mode_name(objects->mode));
     say(call, "\n   shaft at %.1f counts since the start, %.1f counts/s, motor torque %.4f Nm, load %.4f Nm",

@@ -46,6 +46,8 @@ void cm1e_sim_esc_sii_power_on(cm1e_sim_slave_t *slave)
     /* The alias is taken over by the first loading only: a reload does not change it (0x0012). */
     if (slave->sii_valid)
         memcpy(slave->memory + ESC_STATION_ALIAS, slave->sii + CM1E_SII_ALIAS, 2);
+    if (slave->ops->station_alias)
+        slave->ops->station_alias(slave->app, cm1e_get_u16(slave->memory + ESC_STATION_ALIAS));
 }
 
 bool cm1e_sim_esc_sii_writable(const cm1e_sim_slave_t *slave)

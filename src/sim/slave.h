@@ -78,6 +78,8 @@ typedef struct cm1e_sim_app_ops {
     const cm1e_entry_t *(*entry)(void *app, uint16_t index, uint8_t subindex);
     /** Value for register 0x0134 when AL control bit 5 asks for it. */
     uint16_t (*explicit_device_id)(void *app);
+    /** The alias that the controller has taken from the EEPROM at power-on. NULL: it does not matter. */
+    void (*station_alias)(void *app, uint16_t alias);
     /** A file that the master writes: its name, then its bytes from `offset` on. Return 0, an error code of FoE, BUSY (asked again
      *  later) or SILENT. NULL: the device takes no file. */
     uint32_t (*file_begin)(void *app, const char *name, uint32_t password);

@@ -209,6 +209,35 @@ START_TEST(alias_and_serial_number_stay_those_of_the_slave_unless_asked)
 }
 END_TEST
 
+/* UG 4.2.4: rotary switches and an alias exclude each other. */
+START_TEST(an_alias_beside_rotary_switches_is_refused_and_told_at_the_next_start)
+{
+    const cm1e_sii_write_options_t own = {.own_alias_and_serial = true};
+    const cm1e_sii_write_options_t forced = {.own_alias_and_serial = true, .force_configuration = true};
+    char said[100];
+    cm1e_bus_t *bus = with_images();
+    cm1e_bus_simulate(bus, "switches 1 07", said, sizeof said);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_put_u16(image + 2 * 4, 5);
+    put_checksum(image);
+    ck_assert_int_eq(write_image(bus, &own), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "explicit device ID 7") && strstr(diag.text, "alias 5"), "%s", diag.text);
+    check_unchanged(bus);
+    ck_assert_msg(write_image(bus, &forced) == CM1E_OK, "%s", diag.text);
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment_of(bus), 1);
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK); /* until its next power-on */
+    cm1e_sim_esc_power_on(slave, slave->now_ns);
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_ERROR_BUS_STATE);
+    ck_assert_msg(strstr(diag.text, "refuses PRE-OP") && strstr(diag.text, "the alias 5") &&
+                      strstr(diag.text, "rotary switches"), "%s", diag.text);
+    cm1e_bus_simulate(bus, "switches 1 00", said, sizeof said);
+    cm1e_sim_esc_power_on(slave, slave->now_ns);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(cm1e_bus_slave(bus, 1)->alias, 5);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- refused ---------------------------------------------------------------------------------------------------- */
 
 static void break_checksum(cm1e_bus_t *bus) { (void)bus, image[2 * WORD_CHECKSUM] ^= 1; }
@@ -463,6 +492,7 @@ int main(void)
     Suite *suite = suite_create("bus_sii_access");
     TCase *reading = tcase_create("reading");
     tcase_add_test(reading, the_whole_sii_is_read_with_and_without_a_scan);
+    tcase_add_test(reading, an_alias_beside_rotary_switches_is_refused_and_told_at_the_next_start);
     tcase_add_test(reading, a_buffer_too_small_is_told_the_size);
     tcase_add_test(reading, an_sii_that_states_no_size_is_read_as_16_kbit);
     tcase_add_test(reading, an_sii_that_states_more_than_there_is_ends_in_an_error_at_its_end);

@@ -10,7 +10,7 @@
 /* Device profiles: what can be read is played by every device that plays profiles, whose objects are then read and
  * written, and whose process data goes both ways, as far as a homing. Nothing is written anew. */
 
-enum { SLAVES = 3, IMAGE_BYTES = 4096, STEP_NS = 10000000, CYCLES_EACH = 6, CYCLES = 8 * CYCLES_EACH };
+enum { SLAVES = 3, IMAGE_BYTES = 4096, STEP_NS = 10000000, CYCLES_EACH = 6, CYCLES = 12 * CYCLES_EACH };
 
 /** A CM1-E, a bridge with a motor, a drive by CiA 402. */
 static cm1e_sim_segment_t *make_segment(void)
@@ -47,9 +47,10 @@ static void use_object(cm1e_sim_slave_t *slave, const cm1e_object_t *object)
     }
 }
 
+/** In the middle the watchdog of the process data ends, as if outputs had stayed away. */
 static void use(cm1e_sim_slave_t *slave)
 {
-    static const uint16_t controlwords[] = {0, 0x06, 0x07, 0x0F, 0x0F, 0x1F, 0x1F, 0};
+    static const uint16_t controlwords[] = {0, 0x06, 0x07, 0x0F, 0x0F, 0x1F, 0x1F, 0x0F, 0x0F, 0x1F, 0x0F, 0};
     static uint8_t image[IMAGE_BYTES];
     const uint8_t homing = 6;
     uint16_t outputs, inputs;
@@ -67,7 +68,18 @@ static void use(cm1e_sim_slave_t *slave)
         slave->ops->outputs(slave->app, image, outputs, cycle * STEP_NS);
         slave->ops->advance(slave->app, cycle * STEP_NS);
         slave->ops->inputs(slave->app, image, inputs);
+        if (cycle == CYCLES / 2 && slave->ops->watchdog_expired)
+            slave->ops->watchdog_expired(slave->app);
     }
+}
+
+static void ask_console(cm1e_sim_segment_t *segment, uint32_t position)
+{
+    static char answer[4096];
+    char show[20];
+    snprintf(show, sizeof show, "show %u", (unsigned)position);
+    cm1e_sim_console(segment, show, answer, sizeof answer);
+    cm1e_sim_console(segment, "status", answer, sizeof answer);
 }
 
 bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool must)
@@ -83,7 +95,7 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
     for (uint32_t position = 1; position <= SLAVES; position++) {
         cm1e_diag_t diag = {0};
         if (cm1e_sim_segment_play(segment, position, profile_file_content(file), &diag) == CM1E_OK)
-            use(cm1e_sim_segment_slave(segment, position));
+            use(cm1e_sim_segment_slave(segment, position)), ask_console(segment, position);
         else if (!diag.text[0])
             fuzz_fail("a profile is refused without a reason");
     }
@@ -105,6 +117,8 @@ void fuzz_seeds(void)
         "{\"entry\":\"0x6065\",\"default\":7,\"minimum\":-1,\"maximum\":9},"
         "{\"entry\":\"0x1600:01\",\"value\":1614807056},{\"entry\":\"0x1C12:01\",\"default\":5633}]}",
         "{\"cm1e_profile\":1,\"entries\":[{\"entry\":\"0x6098\",\"value\":254}]}",
+        "{\"cm1e_profile\":1,\"entries\":[{\"entry\":\"0x6061\",\"default\":8}],\"codes\":{\"errors\":{"
+        "\"0x4502\":\"0x5555\"}}}",
     };
     for (size_t i = 0; i < sizeof profiles / sizeof *profiles; i++) {
         char name[] = "profile0";

@@ -3,6 +3,7 @@
 
 #include "cm1e/sdo_info.h"
 #include "core/bytes.h"
+#include "sim/cm1e_app.h"
 #include "sim/coe_server.h"
 #include "sim/esc_chip.h"
 #include "sim/segment.h"
@@ -66,6 +67,31 @@ static void test_values_entries_and_what_is_missing(void)
     TEST_ASSERT_NULL(cm1e_sim_coe_object(slave(), 0x2201));
     TEST_ASSERT_EQUAL_HEX32(0, read(0x1000, 0, &value));
     TEST_ASSERT_EQUAL_HEX32(0x00040192, value);
+}
+
+/* What the drive itself says does not come from a profile, which has it as the device had it at some moment: with another
+ * mode shown, the drive could never be enabled. An error code that UG 7.3.1 does not have is a word, too. */
+static void test_what_the_drive_says_itself_is_not_played(void)
+{
+    static const uint16_t own[] = {0x1001, 0x603F, 0x6041, 0x6061, 0x6064, 0x606C, 0x6077, 0x60FD};
+    cm1e_sim_profile_entry_t entries[2 * sizeof own / sizeof own[0]];
+    const cm1e_sim_profile_code_t code = {CM1E_SIM_CODE_ERROR, 0x4502, 0x5555};
+    char said[2000];
+    for (size_t i = 0; i < sizeof own / sizeof own[0]; i++) {
+        entries[2 * i] = (cm1e_sim_profile_entry_t){.index = own[i], .has_default = true, .default_value = 8};
+        entries[2 * i + 1] = (cm1e_sim_profile_entry_t){.index = own[i], .has_value = true, .value = 9};
+    }
+    const cm1e_sim_profile_t profile = {.entries = entries, .entry_count = sizeof entries / sizeof entries[0],
+                                        .codes = &code, .code_count = 1};
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_sim_segment_play(segment, 2, &profile, &diag), diag.text);
+    const cm1e_sim_objects_t *objects = &cm1e_sim_cm1e_of(slave())->objects;
+    TEST_ASSERT_EQUAL_INT(0, objects->mode_display);
+    TEST_ASSERT_EQUAL_INT(0, objects->error_register);
+    TEST_ASSERT_EQUAL_HEX32(0x0230, objects->statusword);
+    TEST_ASSERT_EQUAL_INT(0, objects->position);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_sim_console(segment, "show 2", said, sizeof said));
+    TEST_ASSERT_NOT_NULL(strstr(said, "error 0x5555"));
+    TEST_ASSERT_NOT_NULL(strstr(said, "only its profile has"));
 }
 
 /* A description that no simulated value can have is left alone; of two rows the last one counts. */
@@ -163,6 +189,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_values_entries_and_what_is_missing);
+    RUN_TEST(test_what_the_drive_says_itself_is_not_played);
     RUN_TEST(test_odd_profiles_do_no_harm);
     RUN_TEST(test_a_profile_that_is_all_zero_changes_nothing);
     RUN_TEST(test_refusals_say_why);
