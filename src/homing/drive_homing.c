@@ -140,6 +140,12 @@ void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
              has_default ? ", or 0 for the default" : "");
 }
 
+double cm1e_homing_velocity(const cm1e_axis_t *axis)
+{
+    const drive_homing_t *home = &axis->homing->drive;
+    return home->raw[SPEED] * object_of(axis, SPEED, home->raw[METHOD]).unit / fabs(axis->position.scale);
+}
+
 static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_t *c)
 {
     const double scale = fabs(axis->position.scale);

@@ -88,6 +88,8 @@ typedef struct homing {
 /* drive_homing.c */
 /** Whether a method searches for a switch and not for a stop. */
 bool cm1e_homing_by_switch(const cm1e_axis_t *axis, int method);
+/** u/s; of the search, for the text. */
+double cm1e_homing_velocity(const cm1e_axis_t *axis);
 cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
 /** Explains which parameter cm1e_homing_prepare() refused. */
 void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);

@@ -19,12 +19,13 @@ bool cm1e_homing_failed_text(const cm1e_axis_t *axis, char *text, size_t size)
         return true;
     }
     snprintf(text, size,
-             "Axis \"%s\": %s. Method %d; statusword bits 13 (error), 12 (attained), 10 (reached) were %u %u %u; "
-             "homing began with %u %u %u. Check that the %s is reached in this direction, speed, torque limit and "
-             "timeout; then reset the axis with MC_Reset.",
-             axis->config->name, cm1e_strerror(axis->fault.error), (int)home->raw[1], bits >> 2 & 1u, bits >> 1 & 1u,
+             "Axis \"%s\": %s. Method %d, with %.6g u/s for up to %.6g s; statusword bits 13 (error), 12 (attained), 10 "
+             "(reached) were %u %u %u; homing began with %u %u %u. Check that the %s is reached in this direction, speed "
+             "(homing.velocity), torque limit and timeout; then reset the axis with MC_Reset.",
+             axis->config->name, cm1e_strerror(axis->fault.error), (int)home->raw[CM1E_HOMING_METHOD],
+             cm1e_homing_velocity(axis), (double)home->timeout_ns * 1e-9, bits >> 2 & 1u, bits >> 1 & 1u,
              bits & 1u, home->bits_before >> 2 & 1u, home->bits_before >> 1 & 1u, home->bits_before & 1u,
-             cm1e_homing_by_switch(axis, home->raw[1]) ? "sensor" : "hard stop");
+             cm1e_homing_by_switch(axis, home->raw[CM1E_HOMING_METHOD]) ? "sensor" : "hard stop");
     return true;
 }
 

@@ -87,6 +87,13 @@ static bool wrong_cycle_time(cm1e_sim_bridge_t *bridge, bool late, bool early)
                              : cm1e_sim_bridge_wrong_cycles(bridge) != 0;
 }
 
+/* 0x1C32:1 = 0: free run, with any cycle time. */
+static bool runs_free(cm1e_sim_bridge_t *bridge)
+{
+    cm1e_sim_cell_t type;
+    return cm1e_sim_store_find(&bridge->store, OBJ_1C32_SM_OUTPUT_PARAMETER, 1, &type) == 0 && *type.value == 0;
+}
+
 static void watch_cycle(cm1e_sim_bridge_t *bridge, int64_t now_ns)
 {
     const int64_t interval_us = (now_ns - bridge->last_outputs_ns + 500) / 1000;
@@ -101,6 +108,8 @@ static void watch_cycle(cm1e_sim_bridge_t *bridge, int64_t now_ns)
         bridge->longest_us = us;
     if (us < bridge->shortest_us || bridge->shortest_us == 0)
         bridge->shortest_us = us;
+    if (runs_free(bridge))
+        return;
     bridge->late_cycles += late;
     bridge->early_cycles += early;
     if (wrong_cycle_time(bridge, late, early) && bridge->slave)

@@ -114,6 +114,17 @@ static void test_another_cycle_time_than_1_ms_is_a_synchronisation_error(void)
 }
 
 /* What the console says of it, asked (status) and unasked. */
+/* BR 2.3: free run. */
+static void test_in_free_run_no_cycle_time_is_wrong(void)
+{
+    bench_write(&b, 0x1C32, 1, 0);
+    cycles_of(2000, 200);
+    TEST_ASSERT_EQUAL(BENCH_OP, slave->al_state);
+    bench_write(&b, 0x1C32, 1, 1);
+    cycles_of(2000, 101);
+    TEST_ASSERT_EQUAL(BENCH_SAFEOP, slave->al_state);
+}
+
 static void test_a_wrong_cycle_time_is_said_in_words(void)
 {
     static const struct {
@@ -180,6 +191,7 @@ int main(void)
     RUN_TEST(test_complete_access);
     RUN_TEST(test_cycles_are_measured);
     RUN_TEST(test_another_cycle_time_than_1_ms_is_a_synchronisation_error);
+    RUN_TEST(test_in_free_run_no_cycle_time_is_wrong);
     RUN_TEST(test_a_wrong_cycle_time_is_said_in_words);
     RUN_TEST(test_a_host_that_is_late_and_then_early_is_let_pass);
     RUN_TEST(test_a_stated_limit_of_synchronisation_errors);
