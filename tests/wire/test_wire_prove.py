@@ -52,6 +52,18 @@ def look(segment, cm1e, folder):
         wire.check(os.path.exists(os.path.join(folder, "report" + ending)), f"no report{ending}")
 
 
+def look_at_wrong_unit(segment, cm1e, folder):
+    """A bus file that says kcounts/s2 of a motor that takes counts/s2 (UG 6.2.2, 6.2.3): a thousandth of the acceleration."""
+    wrong = os.path.join(folder, "wrong.yaml")
+    with open(wrong, "w", encoding="utf-8") as file:
+        file.write(f"bus: {{interface: {wire.MASTER_INTERFACE}, lost_cycles_limit: 50}}\n"
+                   "axes: [{position: 1, wire: {acceleration_unit: kcounts_per_s2}}]\n")
+    done = prove(segment, cm1e, "-b", wrong, "--json", "--point", "move.pv", *MOTION)
+    point = next(point for point in json.loads(done.stdout)["points"] if point["id"] == "move.pv")
+    wire.check(done.returncode == 1 and point["verdict"] == "differs", f"a wrong unit: {point}")
+    wire.check("acceleration by positions (0x6083)" in json.dumps(point), f"a wrong unit: {point}")
+
+
 def running_move(segment, cm1e, bus_file):
     move = subprocess.Popen(segment.command([cm1e, "move", "-b", bus_file, "1", "--speed", "0.5", "--for", "20"]),
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -82,6 +94,7 @@ def main():
             file.write("axes: [{position: 1, firmware: 1.2.0, sim: {no_stops: true}}]\n")
         with wire.segment(cm1e, "--profile", planted) as segment:
             look(segment, cm1e, folder)
+            look_at_wrong_unit(segment, cm1e, folder)
         with wire.segment(cm1e, old) as segment:
             refuse(segment, cm1e)
 

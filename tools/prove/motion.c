@@ -112,6 +112,7 @@ static bool configure(motion_t *m, cm1e_bus_config_t *config, uint32_t *number)
     limit_axis(m, &config->axes[axis], position);
     m->velocity = fmin(config->axes[axis].max_velocity, prove->options->max_travel);
     m->distance = fmin(1, prove->options->max_travel / 2);
+    m->acceleration = config->axes[axis].max_acceleration;
     return true;
 }
 

@@ -19,6 +19,7 @@ struct motion {
     cm1e_scheduler_t *scheduler;
     AXIS_REF_t axis;
     double velocity, distance;  /**< revolutions/s, revolutions */
+    double acceleration;        /**< revolutions/s2, of the axis */
 
     motion_step_t step;
     int64_t step_ns;            /**< when the step began */
@@ -35,6 +36,8 @@ struct motion {
     double deviation_there, deviation_back, from_position, shown_sum;
     int64_t from_ns;
     unsigned shown_count;
+    int64_t last_ns, quarter_ns, three_quarters_ns; /**< the last cycle; when a run had these parts of its velocity */
+    double speed;               /**< revolutions/s, by the positions of the last two cycles */
     int8_t mode;                /**< while it moved */
     double shown, measured;     /**< velocities, of a run */
     bool enabled, done, failed, beyond, paused;

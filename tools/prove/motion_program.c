@@ -49,9 +49,20 @@ static bool move(motion_t *m)
     return m->back.Done;
 }
 
+/** How long half of the change of the velocity takes, in its middle, where no start and no end disturbs. */
+static void look_at_ramp(motion_t *m)
+{
+    const int64_t now_ns = cm1e_scheduler_time_ns(m->scheduler);
+    if (m->quarter_ns == 0 && fabs(m->speed) >= m->velocity / 4)
+        m->quarter_ns = now_ns;
+    if (m->three_quarters_ns == 0 && fabs(m->speed) >= m->velocity * 3 / 4)
+        m->three_quarters_ns = now_ns;
+}
+
 /** The velocity that the drive shows, and the one of its positions, at constant velocity. */
 static bool run(motion_t *m)
 {
+    look_at_ramp(m);
     m->run.Execute = TRUE;
     MC_MoveVelocity(&m->run);
     if (m->run.Error) {
@@ -114,6 +125,9 @@ static bool act(motion_t *m)
 static void follow(motion_t *m)
 {
     const double step = m->now.actual_position - m->last_position;
+    const int64_t now_ns = cm1e_scheduler_time_ns(m->scheduler);
+    m->speed = m->last_ns && now_ns > m->last_ns ? step / ((double)(now_ns - m->last_ns) * 1e-9) : 0;
+    m->last_ns = now_ns;
     if (m->enabled && fabs(step) < NEW_ZERO)
         m->travelled += step;
     m->last_position = m->now.actual_position;
@@ -197,6 +211,23 @@ static void judge_velocity(motion_t *m)
     prove_note(m->prove, "shown %.4g, by its positions %.4g revolutions/s", m->shown, m->measured);
 }
 
+/** The guide has two units for 0x6083 (UG 6.2.2, 6.2.3): with the wrong one the ramp is a thousand times as short or long. */
+static void judge_ramp(motion_t *m)
+{
+    const double ramp_s = (double)(m->three_quarters_ns - m->quarter_ns) * 1e-9;
+    const double reached = m->velocity > 0 ? m->measured / m->velocity : 0;
+    const double found = m->three_quarters_ns && ramp_s > 0 ? m->velocity / 2 / ramp_s : INFINITY;
+    const double ratio = m->three_quarters_ns ? found / m->acceleration : 0;
+    char velocity[64], acceleration[64];
+    snprintf(velocity, sizeof velocity, "%.4g times the commanded one", reached);
+    snprintf(acceleration, sizeof acceleration, "%.3g times the commanded one", ratio);
+    prove_compare(m->prove, "velocity by positions (0x60FF)", "the commanded one",
+                  fabs(reached - 1) < 0.05 ? "the commanded one" : velocity);
+    prove_compare(m->prove, "acceleration by positions (0x6083)", "the commanded one",
+                  ratio > 0.5 && ratio < 2 ? "the commanded one" : acceleration);
+    prove_note(m->prove, "acceleration %.3g, commanded %.3g revolutions/s2", found, m->acceleration);
+}
+
 static void judge_move(motion_t *m, int8_t mode)
 {
     judge_mode(m, mode);
@@ -248,7 +279,7 @@ static void judge_done(motion_t *m)
     case MOVE_CSP: judge_move(m, CM1E_MODE_CSP); break;
     case MOVE_CSV: judge_move(m, CM1E_MODE_CSV); break;
     case MOVE_PP: judge_move(m, CM1E_MODE_PP); break;
-    case MOVE_PV: judge_mode(m, CM1E_MODE_PV); judge_velocity(m); break;
+    case MOVE_PV: judge_mode(m, CM1E_MODE_PV); judge_velocity(m); judge_ramp(m); break;
     case MOVE_UNIT: judge_velocity(m); break;
     case MOVE_WATCHDOG: judge_pause(m); break;
     default: judge_home(m); break;
