@@ -3,6 +3,7 @@
  * on the way to the next, and the change from one command to the next. The change is at the exact time, inside a cycle,
  * at which the first command ends.
  */
+#include <float.h>
 #include <math.h>
 
 #include "axis/axis_commands.h"
@@ -113,14 +114,38 @@ static move_t take_first(cm1e_axis_t *axis)
     return move;
 }
 
+/* Whether a waiting command begins where the one before it has passed its target. The look-ahead has chosen that velocity
+ * by the target of the waiting command, which is on a modulo axis in the turn that is next from there. */
+static bool was_looked_ahead(const cm1e_axis_t *axis, const from_t *from)
+{
+    const double way = cm1e_position_minus(from->position, axis->commands.move.target) / axis->position.scale;
+    return kind_row(axis->commands.kind)->plan == PLAN_TO_TARGET && fabs(way) <= axis->limits.tolerance;
+}
+
+/* The velocity of the begin was planned with larger maxima than the application allows now: the command needs them. */
+static cm1e_error_t plan_with_system_limits(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    cm1e_motion_limits_t most = axis->limits.system;
+    most.velocity = axis->limits.maximum.velocity;
+    cm1e_axis_exchange_maximum(axis, &most);
+    const cm1e_error_t error = cm1e_axis_plan(axis, from, move, true, profile);
+    cm1e_axis_exchange_maximum(axis, &most);
+    return error;
+}
+
 cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t *from, double offset_s)
 {
     cm1e_profile_t profile;
+    from_t at = *from;
     move->origin = from->position;
-    cm1e_error_t error = cm1e_axis_resolve(axis, from, move);
+    if (was_looked_ahead(axis, from)) /* the direction alone counts, as there */
+        at.velocity = copysign(DBL_MIN, from->velocity), at.acceleration = 0.0;
+    cm1e_error_t error = cm1e_axis_resolve(axis, &at, move);
     if (error != CM1E_OK)
         return error;
     error = cm1e_axis_plan(axis, from, move, true, &profile);
+    if (was_looked_ahead(axis, from) && cm1e_axis_goes_wrong(axis, from, move, &profile, error))
+        error = plan_with_system_limits(axis, from, move, &profile);
     if (error == CM1E_OK)
         cm1e_axis_take(axis, move, from, &profile, offset_s);
     return error;
@@ -137,8 +162,8 @@ bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
         if (method->awaits && method->awaits(axis, &from, offset_s))
             return false;
         move_t move = take_first(axis);
-        if (is_planned(move.kind) && offset_s == 0.0)
-            cm1e_axis_superimposed_give_way(axis, &move, &from);
+        if (is_planned(move.kind) && cm1e_axis_superimposed_give_way(axis, &move, &from) && offset_s != 0.0)
+            offset_s = axis->cycle_s; /* since the present set-point */
         cm1e_error_t error = cm1e_axis_state_refusal(axis->state, kind->trigger);
         if (error == CM1E_OK)
             error = method->begin(axis, &move, &from, offset_s);

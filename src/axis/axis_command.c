@@ -93,8 +93,7 @@ static position_t commanded_position(const cm1e_axis_t *axis)
     const commands_t *commands = &axis->commands;
     const bool has_target = commands->active && kind_row(commands->kind)->plan == PLAN_TO_TARGET;
     const position_t base = has_target ? commands->move.target : axis->setpoint.target;
-    const double on_top = axis->superimposed.id ? axis->superimposed.plan.end : 0.0;
-    return cm1e_position_plus(base, on_top * axis->position.scale);
+    return cm1e_position_plus(base, cm1e_axis_superimposed_goal(axis) * axis->position.scale);
 }
 
 static void hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id)

@@ -33,10 +33,10 @@ const command_kind_t cm1e_axis_kinds[] = {
     ROW(GEAR_IN_POS, "MC_GearInPos", COUPLE, COUPLING, NONE,                          1, 0, 1, 0, 0, 1, 0),
     ROW(CAM_IN, "MC_CamIn", COUPLE, COUPLING, NONE,                                   1, 0, 0, 0, 0, 1, 0),
     ROW(COMBINE_AXES, "MC_CombineAxes", COUPLE, COUPLING, NONE,                       1, 0, 0, 0, 0, 1, 0),
-    ROW(GEAR_OUT, "MC_GearOut", DECOUPLE, KEEP_VELOCITY, NONE,                        0, 1, 0, 0, 0, 1, 0),
-    ROW(CAM_OUT, "MC_CamOut", DECOUPLE, KEEP_VELOCITY, NONE,                          0, 1, 0, 0, 0, 1, 0),
-    ROW(PHASING_ABSOLUTE, "MC_PhasingAbsolute", SHIFT_PHASE, PHASING, NONE,           1, 0, 1, 0, 1, 0, 0),
-    ROW(PHASING_RELATIVE, "MC_PhasingRelative", SHIFT_PHASE, PHASING, NONE,           1, 0, 1, 0, 1, 0, 0),
+    ROW(GEAR_OUT, "MC_GearOut", DECOUPLE, KEEP_VELOCITY, NONE,                        0, 1, 0, 0, 1, 1, 0),
+    ROW(CAM_OUT, "MC_CamOut", DECOUPLE, KEEP_VELOCITY, NONE,                          0, 1, 0, 0, 1, 1, 0),
+    ROW(PHASING_ABSOLUTE, "MC_PhasingAbsolute", SHIFT_PHASE, PHASING, NONE,           1, 0, 1, 0, 0, 0, 0),
+    ROW(PHASING_RELATIVE, "MC_PhasingRelative", SHIFT_PHASE, PHASING, NONE,           1, 0, 1, 0, 0, 0, 0),
     ROW(FOLLOW_POSITION, "CM_FollowPosition", FOLLOW, OUTSIDE, NONE,                  0, 0, 0, 0, 0, 0, 0),
 };
 

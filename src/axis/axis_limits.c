@@ -178,15 +178,18 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
 }
 
 /* Takes the share of a superimposed motion off the limits, so that the sum of both stays within the maximum values in
- * every direction. An acceleration above the rest falls as fast as that of the other motion can rise. */
+ * every direction. An acceleration above the rest falls as fast as that of the other motion can rise. Where the maxima
+ * were lowered since, and the superimposed motion goes on as it was commanded, there is half of them for the other one. */
 static void share_with_superimposed(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum, *share = &axis->superimposed.share;
-    const double rest = smaller(most->acceleration, most->deceleration) - share->acceleration;
-    limits->velocity = smaller(limits->velocity, most->velocity - share->velocity);
+    const double least = smaller(most->acceleration, most->deceleration);
+    const double rest = larger(least - share->acceleration, least / 2.0), left = most->velocity - share->velocity;
+    const double half = smaller(most->velocity / 2.0, axis->limits.system.velocity - share->velocity);
+    limits->velocity = smaller(limits->velocity, left > 0.0 ? left : half);
     limits->acceleration = smaller(limits->acceleration, rest);
     limits->deceleration = smaller(limits->deceleration, rest);
-    limits->jerk = smaller(limits->jerk, most->jerk - share->jerk);
+    limits->jerk = smaller(limits->jerk, larger(most->jerk - share->jerk, most->jerk / 2.0));
     if (fabs(from->acceleration) > rest)
         limits->jerk = larger(limits->jerk, share->jerk);
 }
@@ -206,6 +209,8 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
     if (from->shared)
         share_with_superimposed(axis, from, limits);
     const cm1e_motion_limits_t nothing = {0}, *share = from->shared ? &axis->superimposed.share : &nothing;
+    if (!(limits->velocity > 0.0))
+        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     keep_below_maximum_velocity(from, axis->limits.maximum.velocity - share->velocity,
                                 axis->limits.system.velocity - share->velocity,
                                 axis->limits.maximum.jerk - share->jerk, limits);
@@ -224,13 +229,26 @@ cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed
     const from_t rest = {.position = axis->setpoint.position};
     const from_t from = {axis->setpoint.position, on_top->now.velocity, on_top->now.acceleration, false};
     const cm1e_motion_limits_t *share = &on_top->share;
-    const cm1e_error_t error = cm1e_axis_limits_with(axis, &rest, &on_top->move, override, limits);
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    move_t move = on_top->move; /* it was accepted: a maximum that was lowered since limits it */
+    move.velocity = smaller(move.velocity, most->velocity);
+    move.acceleration = smaller(move.acceleration, most->acceleration);
+    move.deceleration = smaller(move.deceleration, most->deceleration);
+    move.jerk = smaller(move.jerk, most->jerk);
+    const cm1e_error_t error = cm1e_axis_limits_with(axis, &rest, &move, override, limits);
     limits->velocity = smaller(limits->velocity, share->velocity);
     limits->acceleration = smaller(limits->acceleration, share->acceleration);
     limits->deceleration = smaller(limits->deceleration, share->deceleration);
     limits->jerk = smaller(limits->jerk, share->jerk);
     keep_below_maximum_velocity(&from, share->velocity, share->velocity, share->jerk, limits);
     return error;
+}
+
+void cm1e_axis_exchange_maximum(cm1e_axis_t *axis, cm1e_motion_limits_t *most)
+{
+    const cm1e_motion_limits_t before = axis->limits.maximum;
+    axis->limits.maximum = *most;
+    *most = before;
 }
 
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
@@ -274,14 +292,12 @@ bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const
     return meaningless || cm1e_axis_limits_keep_within(axis, from, profile);
 }
 
-/* The whole profile is judged, from its begin. So a limit that the axis has already passed may be refused too. */
-bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper)
+/* The whole motion is judged, from its begin. So a limit that the axis has already passed may be refused too. */
+bool cm1e_axis_way_keeps(const cm1e_axis_t *axis, double lowest, double highest, double lower, double upper)
 {
     const double base = axis->setpoint.base_line, now = cm1e_axis_line(axis, axis->setpoint.position);
     const double v = axis->setpoint.velocity;
     const double end = axis->setpoint.profile.end.velocity, brake = axis->limits.emergency_way;
-    double lowest, highest;
-    cm1e_profile_extent(&axis->setpoint.profile, &lowest, &highest);
     const superimposed_t *on_top = &axis->superimposed;
     const double below = on_top->id ? smaller(on_top->lowest, 0.0) : 0.0;
     const double above = on_top->id ? larger(on_top->highest, 0.0) : 0.0;
@@ -291,4 +307,11 @@ bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper
         if (stops[i] > upper + axis->limits.tolerance || stops[i] < lower - axis->limits.tolerance)
             return false;
     return true;
+}
+
+bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper)
+{
+    double lowest, highest;
+    cm1e_profile_extent(&axis->setpoint.profile, &lowest, &highest);
+    return cm1e_axis_way_keeps(axis, lowest, highest, lower, upper);
 }

@@ -20,6 +20,8 @@ void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, c
 /** The dynamics of a superimposed motion: its inputs times these factors, limited to its share. */
 cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
                                      const override_t *override, cm1e_motion_limits_t *limits);
+/** For the planning of one motion: the maximum values become these, and these become what they were. */
+void cm1e_axis_exchange_maximum(cm1e_axis_t *axis, cm1e_motion_limits_t *most);
 /** Whether a target is inside the software limits, or not farther outside than the begin of the way. A superimposed
  *  motion of `from` is included. */
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target);
@@ -31,6 +33,8 @@ bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const
 bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 
+/** Whether a motion that goes so far from its begin (u), and ends as the profile of the axis, keeps these limits. */
+bool cm1e_axis_way_keeps(const cm1e_axis_t *axis, double lowest, double highest, double lower, double upper);
 /** source_t.keeps of a profile. */
 bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper);
 

@@ -55,7 +55,8 @@ static void ramp_down_from(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
 
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 {
-    const from_t from = from_set(axis);
+    const from_t from = from_set(axis); /* with what is superimposed, so that ends here */
+    cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     ramp_down_from(axis, &from, limits, 0.0);
 }
 
@@ -108,7 +109,7 @@ static void brake_after(cm1e_axis_t *axis, const from_t *end, double late_s)
     const from_t from = from_set(axis);
     const bool on_top = axis->superimposed.id != 0;
     cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    if (on_top) /* from the last set-point, which includes both motions */
+    if (on_top) /* from the last set-point, which has both motions */
         ramp_down_from(axis, &from, &axis->limits.maximum, axis->cycle_s);
     else
         ramp_down_from(axis, end, &axis->limits.maximum, late_s);

@@ -69,6 +69,7 @@ typedef struct table_refusal {
 /** Memory for table profiles, allocated with the axis. */
 typedef struct tables {
     cm1e_table_profile_t running;
+    double lowest, highest;     /**< u, from its begin; how far it goes */
     cm1e_command_id_t waiting_id;
     table_points_t waiting;
     table_refusal_t refused;

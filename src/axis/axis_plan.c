@@ -172,6 +172,12 @@ static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const from_t *from, m
     return check_endless(axis, from, profile);
 }
 
+/* u/s; what a superimposed motion leaves of the maximum. */
+static double velocity_left(const cm1e_axis_t *axis, const from_t *from)
+{
+    return axis->limits.maximum.velocity - (from->shared ? axis->superimposed.share.velocity : 0.0);
+}
+
 /* Plans a motion through the position with the end velocity (3.11); if necessary the axis goes back first. If the
  * position lies ahead, and only the way is too short to reach the end velocity there, the axis does not go back. It
  * passes the position with a lower velocity and reaches the end velocity later. */
@@ -184,7 +190,7 @@ static cm1e_error_t plan_through_target(const cm1e_axis_t *axis, const from_t *f
         return error;
     const cm1e_motion_state_t start = start_of(from);
     const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
-    const double left = axis->limits.maximum.velocity - (from->shared ? axis->superimposed.share.velocity : 0.0);
+    const double left = velocity_left(axis, from);
     const double end = larger(-left, smaller(move->exit_velocity, left)), cruise = limits.velocity;
     limits.velocity = larger(cruise, fabs(end));
     if (cm1e_profile_to_velocity(profile, &start, end, &limits) != CM1E_OK)
@@ -233,7 +239,7 @@ static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_
     return error != CM1E_OK ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
 }
 
-/* Plans the motion after a master was left: it keeps the velocity (4.4, 4.6). */
+/* Plans the motion after a master was left: it keeps the velocity (4.4, 4.6), which an override scales from then on. */
 static cm1e_error_t plan_kept(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     cm1e_motion_limits_t limits;
@@ -241,7 +247,10 @@ static cm1e_error_t plan_kept(const cm1e_axis_t *axis, const from_t *from, move_
     const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
     if (error != CM1E_OK)
         return error;
-    if (cm1e_profile_to_velocity(profile, &start, move->end_velocity, &limits) != CM1E_OK)
+    const double left = velocity_left(axis, from), factor = axis->override.velocity > 0.0 ? axis->override.velocity : 1.0;
+    const double kept = larger(-left, smaller(move->end_velocity * factor, left));
+    limits.velocity = larger(limits.velocity, fabs(kept));
+    if (cm1e_profile_to_velocity(profile, &start, kept, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     return CM1E_OK;
 }
@@ -292,7 +301,7 @@ static cm1e_error_t plan_with_exit(const cm1e_axis_t *axis, const from_t *from, 
                                    cm1e_profile_t *profile)
 {
     const command_plan_t plan = kind_row(move->kind)->plan;
-    const bool moves = plan != PLAN_STOP && plan != PLAN_KEEP_VELOCITY;
+    const bool moves = plan != PLAN_STOP;
     move->passing = passing;
     const cm1e_error_t error = planners[plan](axis, from, move, profile);
     move->paused = error == CM1E_OK && moves && axis->override.velocity == 0.0 && plan_pause(axis, from, move, profile);
@@ -305,6 +314,13 @@ static double exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t 
     return has_exit ? cm1e_axis_exit_velocity(axis, from, move) : 0.0;
 }
 
+bool cm1e_axis_goes_wrong(const cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile,
+                          cm1e_error_t error)
+{
+    return error == CM1E_ERROR_AXIS_POSITION_RANGE || error == CM1E_ERROR_AXIS_DIRECTION_DISABLED ||
+           (error == CM1E_OK && cm1e_axis_profile_strays(axis, from, move, profile));
+}
+
 /* Plans a command. An override reduces acceleration and jerk only so far that the axis does not overrun its target and
  * does not go back (3.18, note 9). If the axis is too fast to slow down within the way, it leaves the way no faster
  * than it entered it: this was its plan before the override changed. */
@@ -315,12 +331,12 @@ cm1e_error_t cm1e_axis_plan(cm1e_axis_t *axis, const from_t *from, move_t *move,
     const bool passing = move->passing;
     move->exit_velocity = exit_velocity(axis, from, move, before_others);
     cm1e_error_t error = plan_with_exit(axis, from, move, passing, profile);
-    if (error != CM1E_OK || !slowed(axis) || !cm1e_axis_profile_strays(axis, from, move, profile))
+    if (!slowed(axis) || !cm1e_axis_goes_wrong(axis, from, move, profile, error))
         return error;
     axis->override = (override_t){factors.velocity, 1.0, 1.0};
     move->exit_velocity = exit_velocity(axis, from, move, before_others);
     error = plan_with_exit(axis, from, move, passing, profile);
-    if (error == CM1E_OK && before_others && cm1e_axis_profile_strays(axis, from, move, profile)) {
+    if (before_others && cm1e_axis_goes_wrong(axis, from, move, profile, error)) {
         axis->override = no_override;
         const double most = fabs(from->velocity);
         move->exit_velocity = larger(-most, smaller(exit_velocity(axis, from, move, true), most));
@@ -341,19 +357,20 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
     return cm1e_position_towards(from->position, profile->end.position * axis->position.scale);
 }
 
-/* Whether the directions permit a profile. In a disabled direction only the braking under way is permitted. */
+/* Whether the directions permit a profile. In a disabled direction only the braking under way is permitted, and no way
+ * back to a target that is too near. */
 static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
+    const double tolerance = axis->limits.tolerance;
+    cm1e_profile_t brake;
     if (axis->power.enable_positive && axis->power.enable_negative)
         return true;
-    double lowest, highest, brake_lowest, brake_highest;
-    cm1e_profile_extent(profile, &lowest, &highest);
-    cm1e_profile_t brake;
     if (cm1e_axis_plan_stop(axis, from, &axis->limits.maximum, &brake) != CM1E_OK)
         return false;
-    cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
-    return (axis->power.enable_positive || highest <= larger(brake_highest, 0.0) + axis->limits.tolerance) &&
-           (axis->power.enable_negative || lowest >= smaller(brake_lowest, 0.0) - axis->limits.tolerance);
+    return (axis->power.enable_positive ||
+            cm1e_profile_way_back(profile, -1.0) <= cm1e_profile_way_back(&brake, -1.0) + tolerance) &&
+           (axis->power.enable_negative ||
+            cm1e_profile_way_back(profile, 1.0) <= cm1e_profile_way_back(&brake, 1.0) + tolerance);
 }
 
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)

@@ -40,6 +40,10 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
 /** Whether a profile overruns its target (NULL: none), or goes back although its target lies ahead. */
 bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start, const double *target,
                       const cm1e_profile_t *profile);
+/** Whether a plan that ended with this error leads where it should not: it strays, or, which is an error, beyond a software
+ *  limit or in a disabled direction. */
+bool cm1e_axis_goes_wrong(const cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile,
+                          cm1e_error_t error);
 /** Like cm1e_axis_strays(), for the profile of a command. */
 bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                               const cm1e_profile_t *profile);

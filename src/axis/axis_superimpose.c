@@ -122,6 +122,14 @@ static bool needs_all_to_halt(const cm1e_axis_t *axis, const from_t *from, const
             !cm1e_axis_limits_contain(axis, from, &stop));
 }
 
+/* u/s; what both may have together. A maximum that was lowered below the share of a superimposed motion, which goes on as it
+ * was commanded, leaves the base what there is in all (axis_limits.c). */
+static double velocity_of_both(const cm1e_axis_t *axis)
+{
+    const double most = axis->limits.maximum.velocity;
+    return axis->superimposed.share.velocity < most ? most : axis->limits.system.velocity;
+}
+
 /* Plans the base with the rest of the limits; false: that is not possible now. */
 static bool base_gives_way(cm1e_axis_t *axis)
 {
@@ -131,7 +139,7 @@ static bool base_gives_way(cm1e_axis_t *axis)
     if (axis->commands.active && needs_all_to_halt(axis, &from, &axis->commands.move))
         return false;
     const double peak = peak_of(&from, axis->limits.maximum.jerk / 2.0);
-    if (!axis->commands.active || peak + axis->superimposed.share.velocity > axis->limits.maximum.velocity)
+    if (!axis->commands.active || peak + axis->superimposed.share.velocity > velocity_of_both(axis))
         return false;
     return axis->setpoint.reached || cm1e_axis_replan_if(axis); /* InVelocity stays (3.10) */
 }
@@ -146,17 +154,18 @@ static bool begin(cm1e_axis_t *axis)
     return false;
 }
 
-void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, const move_t *move, from_t *from)
+bool cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, const move_t *move, from_t *from)
 {
     static const double rounding = 1.0 + 1e-9;
     superimposed_t *on_top = &axis->superimposed;
     const double peak = peak_of(from, axis->limits.maximum.jerk - on_top->share.jerk);
-    if (!from->shared || (peak + on_top->share.velocity <= axis->limits.maximum.velocity * rounding &&
+    if (!from->shared || (peak + on_top->share.velocity <= velocity_of_both(axis) * rounding &&
                           !needs_all_to_halt(axis, from, move)))
-        return;
+        return false;
     on_top->moving = false;
     on_top->now.velocity = on_top->now.acceleration = 0.0;
     *from = from_base(axis);
+    return true;
 }
 
 /* ---- its place in the base --------------------------------------------------------------------------------------- */
@@ -246,14 +255,26 @@ static void finish(cm1e_axis_t *axis)
 
 /* ---- commands ---------------------------------------------------------------------------------------------------- */
 
+double cm1e_axis_superimposed_goal(const cm1e_axis_t *axis)
+{
+    const superimposed_t *on_top = &axis->superimposed;
+    if (!on_top->id)
+        return 0.0;
+    if (on_top->move.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED)
+        return on_top->move.position;
+    return on_top->moving ? on_top->plan.end : on_top->now.position;
+}
+
 /* Whether the present position and the target of the base, with the superimposed distance, are inside the software
- * limits. */
+ * limits. What a motion that is replaced has covered becomes a part of the base. */
 static bool inside(cm1e_axis_t *axis, double distance)
 {
+    const double covered = axis->superimposed.id ? axis->superimposed.now.position * axis->position.scale : 0.0;
     const position_t base = from_base(axis).position;
     const bool rests = axis->setpoint.stands || axis_holds(axis);
     const command_kind_t *kind = kind_row(axis->commands.kind);
-    position_t ends[CM1E_AXIS_BUFFER_DEPTH + 2] = {base, rests ? base : axis->setpoint.target};
+    position_t ends[CM1E_AXIS_BUFFER_DEPTH + 2] = {
+        cm1e_position_plus(base, covered), cm1e_position_plus(rests ? base : axis->setpoint.target, covered)};
     int count = axis->commands.active && (kind->is_endless || kind->plan == PLAN_COUPLING) ? 1 : 2;
     for (int i = 0; i < axis->commands.waiting.count; i++)
         if (kind_row(waiting_move(axis, i)->kind)->plan == PLAN_TO_TARGET)

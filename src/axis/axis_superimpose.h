@@ -26,16 +26,18 @@ bool cm1e_axis_superimposed_ease(cm1e_axis_t *axis);
 void cm1e_axis_superimposed_put_back(cm1e_axis_t *axis, const superimposed_t *before);
 /** Goes on with this part of the velocity. false: it cannot, and nothing has changed. */
 bool cm1e_axis_superimposed_slow(cm1e_axis_t *axis, double part);
-/** Called when a command begins at `from` (the present set-point) as the base. If that is faster than the superimposed
- *  motion leaves room for, or is a halt that needs all limits to stay inside the software limits, the superimposed
- *  motion waits, and its velocity becomes a part of the base. */
-void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, const move_t *move, from_t *from);
+/** Called when a command begins at `from` as the base. If that is faster than the superimposed motion leaves room for, or
+ *  is a halt that needs all limits to stay inside the software limits, the superimposed motion waits, its velocity
+ *  becomes a part of the base, and `*from` is the present set-point. false: it goes on. */
+bool cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, const move_t *move, from_t *from);
 /** Called after the set-point. When the superimposed motion has ended, the base gets all limits again. */
 void cm1e_axis_superimposed_after(cm1e_axis_t *axis);
 /** Ends the superimposed motion. It becomes a part of the motion that is planned next from the set-point. */
 void cm1e_axis_superimposed_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
 /** Aborts the superimposed motion. The base goes on alone, and its target is shifted by the covered distance. */
 void cm1e_axis_superimposed_abandon(cm1e_axis_t *axis);
+/** u; the distance that is commanded of it, whether it has begun or waits for room; of a halt where it ends. 0: there is none. */
+double cm1e_axis_superimposed_goal(const cm1e_axis_t *axis);
 void cm1e_axis_superimposed_replan(cm1e_axis_t *axis);
 /** Whether the superimposed motion moves in the direction `sign`, now or later. */
 bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign);

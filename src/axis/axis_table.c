@@ -15,6 +15,7 @@
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "core/extreme.h"
 #include "core/rare.h"
 #include "motion/pieces.h"
 
@@ -137,21 +138,30 @@ CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
     cm1e_table_profile_stretch_at(&axis->set_aside.tables->running, time_s, &axis->setpoint.stretch);
 }
 
+static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
+{
+    const tables_t *tables = axis->set_aside.tables;
+    return cm1e_axis_way_keeps(axis, tables->lowest, tables->highest, lower, upper);
+}
+
 const source_t cm1e_source_table = {
     .step = cm1e_axis_timed_step,
     .slow = cm1e_axis_timed_slow,
     .stop = cm1e_axis_stop_by_ramp,
     .goes = goes,
-    .keeps = cm1e_axis_profile_keeps,
+    .keeps = keeps,
     .find_stretch = find_stretch,
     .moves = true,
     .is_composite = true,
 };
 
-static void run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
-                      double offset_s)
+static void run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table,
+                      const cm1e_table_extremes_t *needed, position_t target, double offset_s)
 {
-    axis->set_aside.tables->running = *table;
+    tables_t *tables = axis->set_aside.tables;
+    tables->running = *table;
+    tables->lowest = smaller(needed->lowest, 0.0);
+    tables->highest = larger(needed->highest, 0.0);
     cm1e_axis_put_duration(axis, table->duration_s, table->end);
     cm1e_axis_begin_run(axis, &cm1e_source_table, from, target, offset_s);
 }
@@ -218,14 +228,14 @@ static position_t end_of(const cm1e_axis_t *axis, const from_t *from, cm1e_comma
 }
 
 static void take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const table_points_t *points,
-                 const cm1e_table_profile_t *table, double offset_s)
+                 const cm1e_table_profile_t *table, const cm1e_table_extremes_t *needed, double offset_s)
 {
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     move_t taken = *move;
     taken.target = end_of(axis, from, kind, points, table);
     cm1e_axis_activate(axis, &taken);
-    run_table(axis, from, table, taken.target, offset_s);
+    run_table(axis, from, table, needed, taken.target, offset_s);
 }
 
 cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
@@ -243,7 +253,7 @@ cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t 
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     *id = cm1e_axis_next_id(axis);
     take(axis, &(move_t){.id = *id, .kind = (uint8_t)command->kind, .origin = from.position}, &from, &points, &table,
-         0.0);
+         &needed, 0.0);
     return CM1E_OK;
 }
 
@@ -278,7 +288,7 @@ cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, move_t *move, const from_t
     const cm1e_error_t error = prepare(axis, from, (cm1e_command_kind_t)move->kind, points, &table, &needed,
                                        &axis->set_aside.tables->refused);
     if (error == CM1E_OK)
-        take(axis, move, from, points, &table, offset_s);
+        take(axis, move, from, points, &table, &needed, offset_s);
     return error;
 }
 

@@ -147,13 +147,14 @@ static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
 static void refused_on_top_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const from_t base = from_base(axis);
+    const double covered = axis->superimposed.id ? axis->superimposed.now.position : 0.0;
     const bool goes = axis_on_profile(axis) && !axis->setpoint.stands && axis->commands.active &&
                       !kind_row(axis->commands.kind)->is_endless;
     snprintf(text, size,
              "Axis \"%s\": the superimposed distance %.6g, added to a motion that is at %.6g and ends at %.6g%s, "
              "would leave the software limits %.6g ... %.6g u.",
-             axis->config->name, axis->commands.refused.position, cm1e_axis_units(axis, base.position),
-             cm1e_axis_units(axis, goes ? axis->setpoint.target : base.position),
+             axis->config->name, axis->commands.refused.position, cm1e_axis_units(axis, base.position) + covered,
+             cm1e_axis_units(axis, goes ? axis->setpoint.target : base.position) + covered,
              axis->commands.waiting.count > 0 ? ", and to those that wait" : "", axis->limits.lower,
              axis->limits.upper);
 }

@@ -118,16 +118,16 @@ typedef struct verdict {
     bool smooth; /**< the motion between the set-points keeps the limits too */
 } verdict_t;
 
-/* Whether the axis can go on within its limits: where its deceleration may be larger than its acceleration, the jerk has
- * to turn the one into the other until the velocity changes its sign. */
+/* Whether the axis can go on within its limits: its jerk ends an acceleration before the maximum velocity, and where the
+ * deceleration may be larger than the acceleration, turns the one into the other until the velocity changes its sign. */
 static bool has_room(const cm1e_axis_t *axis, const from_t *sum)
 {
-    static const double rounding = 1.0 + 1e-6;
+    static const double rounding = 1.0 + 1e-6, few = 1.0 + 1e-10;
     const cm1e_motion_limits_t *most = &axis->limits.maximum;
-    const double a = fabs(sum->acceleration), at_rest = most->acceleration * rounding;
+    const double a = fabs(sum->acceleration), at_rest = most->acceleration * rounding, speed = fabs(sum->velocity);
     if (sum->acceleration * sum->velocity >= 0.0)
-        return a <= at_rest;
-    return a <= most->deceleration * rounding && a * a <= at_rest * at_rest + 2.0 * most->jerk * fabs(sum->velocity);
+        return a <= at_rest && speed + a * a / (2.0 * most->jerk) <= most->velocity * few;
+    return a <= most->deceleration * rounding && a * a <= at_rest * at_rest + 2.0 * most->jerk * speed;
 }
 
 static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)

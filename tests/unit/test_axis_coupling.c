@@ -401,9 +401,38 @@ static void test_override_does_not_act_on_a_follower(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axes_axis(1), 0.0, 0.5, 0.5));
     axes_cycles(500);
     TEST_ASSERT_EQUAL_DOUBLE(4.0, axes_info(1).set_velocity);
-    axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_OUT});
-    axes_cycles(100);
+    axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_OUT}); /* it is no follower any more */
+    axes_cycles(500);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_info(1).set_velocity);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_CONTINUOUS_MOTION, axes_state(1));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axes_axis(1), 1.0, 1.0, 1.0));
+    axes_cycles(500);
     TEST_ASSERT_EQUAL_DOUBLE(4.0, axes_info(1).set_velocity);
+}
+
+/* The velocity stays what it is, and a change of the factor acts on it; never beyond the maximum. */
+static void test_override_acts_on_the_velocity_that_was_kept(void)
+{
+    for (int with_limit = 0; with_limit < 2; with_limit++) {
+        const double velocity = with_limit ? 30.0 : 4.0; /* of at most 50 */
+        axes_begin(2);
+        const cm1e_command_id_t gear = axes_gear_in(1, 0, 1, 1);
+        axes_move_velocity(0, velocity);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axes_axis(1), 0.5, 1.0, 1.0));
+        axes_cycles(2000);
+        TEST_ASSERT_TRUE(axes_status(1, gear).reached);
+        axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_OUT});
+        axes_cycles(500);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, velocity, axes_info(1).set_velocity);
+        static const double factors[] = {0.25, 0.0, 0.1, 1.0};
+        for (int i = 0; i < 4; i++) {
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axes_axis(1), factors[i], 1.0, 1.0));
+            axes_cycles(2000);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, fmin(2.0 * velocity * factors[i], 50.0), axes_info(1).set_velocity);
+            TEST_ASSERT_EQUAL_INT(CM1E_AXIS_CONTINUOUS_MOTION, axes_state(1));
+        }
+        axes_end();
+    }
 }
 
 /* 3.8: on top of what the master asks for. */
@@ -614,6 +643,7 @@ int main(void)
     RUN_TEST(test_a_ratio_is_updated_while_the_gear_waits);
     RUN_TEST(test_a_ratio_is_updated_behind_a_gear_that_awaits_its_place);
     RUN_TEST(test_override_does_not_act_on_a_follower);
+    RUN_TEST(test_override_acts_on_the_velocity_that_was_kept);
     RUN_TEST(test_a_superimposed_motion_on_a_follower);
     RUN_TEST(test_a_command_takes_over_from_a_follower_that_left_the_superimposed_motion_no_room);
     RUN_TEST(test_a_halt_just_before_the_maximum_velocity_keeps_the_jerk);
