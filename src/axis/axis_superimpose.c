@@ -86,7 +86,7 @@ static double base_velocity(cm1e_axis_t *axis)
 {
     const from_t from = from_base(axis);
     double fastest = fabs(from.velocity);
-    if (axis->commands.active)
+    if (axis->commands.active && !axis_follows(axis)) /* Velocity of MC_GearInPos is that of its approach */
         fastest = fmax(fastest, fmax(fabs(axis->commands.move.velocity), fabs(axis->commands.move.end_velocity)));
     for (int i = 0; i < axis->commands.waiting.count; i++) {
         const waiting_t *move = waiting_move(axis, i);

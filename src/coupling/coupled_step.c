@@ -139,10 +139,10 @@ static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
 
 /* How the catch-up may go on in a cycle, in the order in which it is tried: by its plan; by a new plan with the whole
  * jerk, which may act against the jerk of the coupling function; by a new plan with the jerk that the function leaves,
- * and with parts of it, because the function may have begun its jerk within the cycle; without jerk; giving way to the
- * function where that takes all of a limit. */
+ * and with parts of it, because the function may have begun its jerk within the cycle; without jerk, but for giving way
+ * where the function takes all of a limit. */
 typedef enum attempt {
-    AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITH_HALF_OF_IT, WITH_QUARTER_OF_IT, WITHOUT_JERK, AT_THE_LIMIT, ATTEMPTS
+    AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITH_HALF_OF_IT, WITH_QUARTER_OF_IT, WITHOUT_JERK, ATTEMPTS
 } attempt_t;
 
 static const double part_of_jerk_left[ATTEMPTS] = {
@@ -181,14 +181,14 @@ static double largest_acceleration(const cm1e_axis_t *axis, double v, double a)
 static double nearest_acceleration(const cm1e_axis_t *axis, double asked)
 {
     const double v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
-    const double step = axis->limits.maximum.jerk * axis->cycle_s;
+    const double step = coupling_keeps_jerk(axis->coupling) ? axis->limits.maximum.jerk * axis->cycle_s : INFINITY;
     const double next = smaller(largest_acceleration(axis, v, a), larger(-largest_acceleration(axis, -v, -a), asked));
     return smaller(a + step, larger(a - step, next));
 }
 
 /* The catch-up is what is left between the function and a set-point of which the acceleration changes evenly, to that of
- * the function and the present catch-up as far as its limits allow. */
-static void stay_at_limit(cm1e_axis_t *axis, const from_t *f)
+ * the function and the present catch-up as far as the limits of the axis allow. */
+static void go_on_without_jerk(cm1e_axis_t *axis, const from_t *f)
 {
     const cm1e_motion_state_t on_top = axis->superimposed.id ? axis->superimposed.now : (cm1e_motion_state_t){0};
     cm1e_motion_state_t *now = &axis->coupling->catch_up.now;
@@ -203,19 +203,14 @@ static void stay_at_limit(cm1e_axis_t *axis, const from_t *f)
 static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
-    const double t = axis->cycle_s;
     if (attempt > AS_PLANNED && attempt < WITHOUT_JERK) {
         const bool steady = f->acceleration == 0.0 && axis->coupling->f_acceleration == 0.0;
         catch_up->to_place = goes_to_place(axis, f, steady);
         const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_attempt(axis, f, attempt));
         plan_catch_up(axis, &limits);
     }
-    const double v = catch_up->now.velocity, a = catch_up->now.acceleration;
-    if (attempt >= WITHOUT_JERK) {
-        if (attempt == WITHOUT_JERK)
-            catch_up->now = (cm1e_motion_state_t){catch_up->now.position + t * (v + t * a / 2.0), v + t * a, a};
-        else
-            stay_at_limit(axis, f);
+    if (attempt == WITHOUT_JERK) {
+        go_on_without_jerk(axis, f);
         axis->coupling->plan.duration_s = INFINITY;
     } else if (catch_up->on) {
         next_of_catch_up(axis);
@@ -227,7 +222,7 @@ static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, attempt_t attempt, 
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
     const bool disturbed = f->acceleration != 0.0 || axis->coupling->f_acceleration != 0.0;
-    catch_up->held_back = attempt >= WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
+    catch_up->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
     go_on(axis, f, attempt);
     const from_t sum = sum_of(axis, f);
     *verdict = judge_sum(axis, &sum);
@@ -309,9 +304,14 @@ static bool function_jerks(const cm1e_axis_t *axis, const from_t *f)
     return coupling_keeps_jerk(axis->coupling) && jerk_of_function(axis, f) > most * (1.0 + 1e-6) + rounding;
 }
 
+static bool lacks_room(const cm1e_axis_t *axis, const from_t *sum)
+{
+    return coupling_keeps_jerk(axis->coupling) && !has_room(axis, sum);
+}
+
 static bool breaks_more_than_jerk(const cm1e_axis_t *axis, const from_t *sum)
 {
-    return cm1e_axis_guard(axis, sum, false).limit;
+    return cm1e_axis_guard(axis, sum, false).limit || lacks_room(axis, sum);
 }
 
 /* The superimposed motion goes on without jerk for a cycle, or, where the acceleration of the sum is too large, without
@@ -365,7 +365,8 @@ static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *v
     cm1e_motion_state_t unused = {0};
     cm1e_axis_superimposed_step(axis, &unused);
     const from_t sum = with_catch_up(axis, f, verdict);
-    return verdict->guard.limit && axis->superimposed.moving ? with_less(axis, f, &before, sum, verdict) : sum;
+    const bool too_much = verdict->guard.limit || lacks_room(axis, &sum);
+    return too_much && axis->superimposed.moving ? with_less(axis, f, &before, sum, verdict) : sum;
 }
 
 static void emit(cm1e_axis_t *axis, const from_t *point)

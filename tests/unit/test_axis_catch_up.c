@@ -18,10 +18,11 @@ static double any_velocity(double most)
     return uniform(0.02, one_in(3) ? 0.98 : 0.5) * most * (one_in(2) ? 1.0 : -1.0);
 }
 
-/* Axes with the same limits; the master has so much of them, at times all of what the slave can follow. */
-static void make(int count, double masters_part)
+/* Axes with the same limits; the master has so much of them, at times all of what the slave can follow. `equal`: they brake
+ * as they accelerate. */
+static void make(int count, double masters_part, bool equal)
 {
-    const double most[] = {uniform(5.0, 25.0), uniform(20.0, 300.0), one_in(2) ? 1.0 : uniform(0.3, 3.0),
+    const double most[] = {uniform(5.0, 25.0), uniform(20.0, 300.0), equal || one_in(2) ? 1.0 : uniform(0.3, 3.0),
                            uniform(300.0, 8000.0)};
     axes_describe(count);
     for (int n = 0; n < count; n++) {
@@ -81,7 +82,7 @@ static void check(int run, bool pauses)
     begin_run(run);
     const int numerator = 1 + pick(3);
     const uint32_t denominator = 1 + (uint32_t)pick(3);
-    make(2, (one_in(2) ? 1.0 : uniform(0.2, 1.0)) * denominator / numerator);
+    make(2, (one_in(2) ? 1.0 : uniform(0.2, 1.0)) * denominator / numerator, false);
     let_them_move(SLAVE);
     const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, numerator, denominator);
     if (pauses)
@@ -110,13 +111,43 @@ static void test_random_changes_of_the_master_about_a_pause(void)
         check(run, true);
 }
 
+/* A superimposed motion on top of the way into gear keeps its velocity and its distance (the bench judges the former). It
+ * is refused where master and slave leave it no velocity. With another deceleration than acceleration a slave that the sum
+ * turns round can end in ErrorStop (MC_MoveSuperimposed says so). */
+static void test_random_changes_of_the_master_below_a_superimposed_motion(void)
+{
+    for (int run = 0; run < seed_count(4000); run++) {
+        cm1e_command_id_t on_top = 0;
+        begin_run(run);
+        make(2, uniform(0.2, 0.6), true);
+        let_them_move(SLAVE);
+        const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+        watch(SLAVE, gear, pick(100));
+        const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = uniform(-3.0, 3.0),
+                                             .velocity = uniform(0.02, 0.4) * axes_config(SLAVE)->max_velocity};
+        const bool begun = cm1e_axis_start(axes_axis(SLAVE), &command, &on_top) == CM1E_OK;
+        for (int n = pick(4); n >= 0; n--) {
+            watch(SLAVE, gear, pick(200));
+            move_master(one_in(3) ? 0.0 : any_velocity(fastest));
+        }
+        for (int n = 0; begun && n < WAITS && axes_status(SLAVE, on_top).state == CM1E_COMMAND_ACTIVE; n++)
+            watch(SLAVE, gear, 1);
+        if (begun)
+            AXES_MUST(axes_status(SLAVE, on_top).state == CM1E_COMMAND_DONE &&
+                          fabs(axes_status(SLAVE, on_top).covered - command.position) < 1e-9,
+                      "%.12g of %.12g u are covered", axes_status(SLAVE, on_top).covered, command.position);
+        axes_wait_reached(SLAVE, gear, WAITS);
+        axes_end();
+    }
+}
+
 /* Another ratio makes the coupling function's velocity and acceleration jump. The slave of a slave gets what that has on
  * its way into gear. */
 static void test_random_ratios_in_a_chain_of_slaves(void)
 {
     for (int run = 0; run < seed_count(4000); run++) {
         begin_run(run);
-        make(3, 1.0);
+        make(3, 1.0, false);
         let_them_move(THIRD);
         cm1e_command_id_t gear[] = {[SLAVE] = axes_gear_in(SLAVE, MASTER, 1, 1),
                                     [THIRD] = axes_gear_in(THIRD, SLAVE, one_in(2) ? 1 : -1, 1)};
@@ -142,6 +173,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_random_changes_of_the_master_before_the_slave_is_in_gear);
     RUN_TEST(test_random_changes_of_the_master_about_a_pause);
+    RUN_TEST(test_random_changes_of_the_master_below_a_superimposed_motion);
     RUN_TEST(test_random_ratios_in_a_chain_of_slaves);
     return UNITY_END();
 }
