@@ -33,13 +33,19 @@ static double way_between(const look_t *look, double a, double b)
     return range > 0.0 ? remainder(b - a, range) : b - a;
 }
 
+/** Distance from `a` to `b` in the positive direction; on a modulo axis below its range. */
+static double way_up(const look_t *look, double a, double b)
+{
+    const double range = look->axis.modulo_range, way = b - a;
+    return range > 0.0 ? way - floor(way / range) * range : way;
+}
+
 static bool inside(const look_t *look, const MC_CAMSWITCH *cam, double position)
 {
-    const double few = 0.01 * look->axis.resolution;
-    if (look->axis.modulo_range > 0.0)
-        position -= floor(position / look->axis.modulo_range) * look->axis.modulo_range;
-    const bool above = position >= cam->FirstOnPosition - few, below = position <= cam->LastOnPosition + few;
-    return cam->FirstOnPosition <= cam->LastOnPosition ? above && below : above || below;
+    const double few = 0.01 * look->axis.resolution, range = look->axis.modulo_range;
+    const double length = way_up(look, cam->FirstOnPosition, cam->LastOnPosition);
+    const double way = way_up(look, cam->FirstOnPosition, position);
+    return (way >= -few && way <= length + few) || (range > 0.0 && way >= range - few);
 }
 
 /** Moves the point to `position`. Returns its signed distance since the last call. */
@@ -161,35 +167,32 @@ static const checked_t *first_wrong(const checked_t inputs[], int count)
     return NULL;
 }
 
-static bool is_place(const look_t *look, double position)
+/** The axis keeps for its text what was wrong first, so that no later refusal of another kind is hidden in every call. */
+static bool refuse(const MC_DigitalCamSwitch_t *fb, int number, const checked_t *wrong)
 {
-    const double range = look->axis.modulo_range;
-    return isfinite(position) && (range <= 0.0 || (position >= 0.0 && position <= range));
-}
-
-static bool refuse(cm1e_axis_t *axis, int number, const checked_t *wrong)
-{
-    if (wrong)
-        cm1e_axis_refuse_cam_switch(axis, wrong->input, number, wrong->value);
+    if (wrong && fb->ErrorID != cm1e_error_id(CM1E_ERROR_FB_CAM_SWITCH))
+        cm1e_axis_refuse_cam_switch(cm1e_fb_axis(&fb->Private.common), wrong->input, number, wrong->value);
     return wrong != NULL;
 }
 
-static bool refuses_switch(cm1e_axis_t *axis, const look_t *look, const MC_CAMSWITCH *cam, int number)
+static bool refuses_switch(const MC_DigitalCamSwitch_t *fb, const look_t *look, const MC_CAMSWITCH *cam, int number)
 {
-    const bool by_time = cam->CamSwitchMode == 1, linear = look->axis.modulo_range <= 0.0;
+    const bool by_time = cam->CamSwitchMode == 1;
+    const double length = cam->LastOnPosition - cam->FirstOnPosition, range = look->axis.modulo_range;
+    const bool too_long = range > 0.0 && !(length < range), negative = range <= 0.0 && length < 0.0;
     const checked_t inputs[] = {
         {cam->TrackNumber < 1 || cam->TrackNumber > CM1E_CAM_TRACKS, CM1E_CAM_SWITCH_TRACK, cam->TrackNumber},
         {cam->AxisDirection < 0 || cam->AxisDirection > 2, CM1E_CAM_SWITCH_DIRECTION, cam->AxisDirection},
         {cam->CamSwitchMode < 0 || cam->CamSwitchMode > 1, CM1E_CAM_SWITCH_MODE, cam->CamSwitchMode},
-        {!by_time && !is_place(look, cam->LastOnPosition), CM1E_CAM_SWITCH_LAST_ON, cam->LastOnPosition},
-        {!is_place(look, cam->FirstOnPosition) || (!by_time && linear && cam->FirstOnPosition > cam->LastOnPosition),
-         CM1E_CAM_SWITCH_FIRST_ON, cam->FirstOnPosition},
+        {!isfinite(cam->FirstOnPosition), CM1E_CAM_SWITCH_FIRST_ON, cam->FirstOnPosition},
+        {!by_time && (!isfinite(cam->LastOnPosition) || too_long), CM1E_CAM_SWITCH_LAST_ON, cam->LastOnPosition},
+        {!by_time && negative, CM1E_CAM_SWITCH_FIRST_ON, cam->FirstOnPosition},
         {by_time && cam->Duration < 0, CM1E_CAM_SWITCH_DURATION, (double)cam->Duration},
     };
-    return refuse(axis, number, first_wrong(inputs, sizeof inputs / sizeof inputs[0]));
+    return refuse(fb, number, first_wrong(inputs, sizeof inputs / sizeof inputs[0]));
 }
 
-static bool refuses_track(cm1e_axis_t *axis, const MC_TRACK *track, int number)
+static bool refuses_track(const MC_DigitalCamSwitch_t *fb, const MC_TRACK *track, int number)
 {
     const TIME most = INT64_C(3600) * 1000000000;
     const checked_t inputs[] = {
@@ -199,7 +202,7 @@ static bool refuses_track(cm1e_axis_t *axis, const MC_TRACK *track, int number)
          (double)track->OffCompensation},
         {!(track->Hysteresis >= 0.0 && isfinite(track->Hysteresis)), CM1E_CAM_SWITCH_HYSTERESIS, track->Hysteresis},
     };
-    return refuse(axis, number, first_wrong(inputs, sizeof inputs / sizeof inputs[0]));
+    return refuse(fb, number, first_wrong(inputs, sizeof inputs / sizeof inputs[0]));
 }
 
 static const MC_TRACK *track_of(const MC_DigitalCamSwitch_t *fb, const MC_CAMSWITCH *cam)
@@ -212,20 +215,21 @@ static const MC_TRACK *track_of(const MC_DigitalCamSwitch_t *fb, const MC_CAMSWI
 static cm1e_error_t evaluate_all(MC_DigitalCamSwitch_t *fb, const look_t *look, DWORD *tracks)
 {
     const MC_CAMSWITCH_REF *cams = fb->Switches;
-    cm1e_axis_t *axis = cm1e_fb_axis(&fb->Private.common);
     const int count = cams ? cams->NumberOfSwitches : 0;
     *tracks = 0;
-    if (refuse(axis, 0, count < 1 || count > CM1E_CAM_SWITCHES ? &(checked_t){true, CM1E_CAM_SWITCH_COUNT, count} : NULL))
+    if (refuse(fb, 0, count < 1 || count > CM1E_CAM_SWITCHES ? &(checked_t){true, CM1E_CAM_SWITCH_COUNT, count} : NULL))
         return CM1E_ERROR_FB_CAM_SWITCH;
     DWORD on = 0;
     for (int i = 0; i < count; i++) {
         const MC_CAMSWITCH *cam = &cams->Switches[i];
-        if (refuses_switch(axis, look, cam, i + 1) || refuses_track(axis, track_of(fb, cam), i + 1))
+        if (refuses_switch(fb, look, cam, i + 1) || refuses_track(fb, track_of(fb, cam), i + 1))
             return CM1E_ERROR_FB_CAM_SWITCH;
         if (evaluate(look, cam, track_of(fb, cam), &fb->Private.switches[i]))
             on |= (DWORD)1 << (cam->TrackNumber - 1);
     }
     *tracks = on & fb->EnableMask;
+    if (fb->ErrorID == cm1e_error_id(CM1E_ERROR_FB_CAM_SWITCH))
+        cm1e_axis_cam_switches_right(cm1e_fb_axis(&fb->Private.common));
     return CM1E_OK;
 }
 

@@ -122,13 +122,18 @@ static bool was_looked_ahead(const cm1e_axis_t *axis, const from_t *from)
     return kind_row(axis->commands.kind)->plan == PLAN_TO_TARGET && fabs(way) <= axis->limits.tolerance;
 }
 
+void cm1e_axis_maximum_lowered(cm1e_axis_t *axis) { axis->commands.lowered = true; }
+
 /* The velocity of the begin was planned with larger maxima than the application allows now: the command needs them. */
 static cm1e_error_t plan_with_system_limits(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     cm1e_motion_limits_t most = axis->limits.system;
     most.velocity = axis->limits.maximum.velocity;
+    move->exit_velocity = cm1e_axis_exit_velocity(axis, from, move); /* by the present ones */
     cm1e_axis_exchange_maximum(axis, &most);
-    const cm1e_error_t error = cm1e_axis_plan(axis, from, move, true, profile);
+    cm1e_error_t error = cm1e_axis_plan_to_exit(axis, from, move, profile);
+    if (cm1e_axis_goes_wrong(axis, from, move, profile, error)) /* it cannot become so slow on its way */
+        error = cm1e_axis_plan(axis, from, move, true, profile);
     cm1e_axis_exchange_maximum(axis, &most);
     return error;
 }
@@ -138,16 +143,19 @@ cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t 
     cm1e_profile_t profile;
     from_t at = *from;
     move->origin = from->position;
-    if (was_looked_ahead(axis, from)) /* the direction alone counts, as there */
+    if (was_looked_ahead(axis, from) && from->velocity != 0.0) /* the direction alone counts, as there */
         at.velocity = copysign(DBL_MIN, from->velocity), at.acceleration = 0.0;
     cm1e_error_t error = cm1e_axis_resolve(axis, &at, move);
     if (error != CM1E_OK)
         return error;
     error = cm1e_axis_plan(axis, from, move, true, &profile);
-    if (was_looked_ahead(axis, from) && cm1e_axis_goes_wrong(axis, from, move, &profile, error))
+    const bool lowered = axis->commands.lowered && was_looked_ahead(axis, from) &&
+                         cm1e_axis_goes_wrong(axis, from, move, &profile, error);
+    if (lowered)
         error = plan_with_system_limits(axis, from, move, &profile);
     if (error == CM1E_OK)
         cm1e_axis_take(axis, move, from, &profile, offset_s);
+    axis->commands.lowered = axis->commands.lowered || lowered;
     return error;
 }
 
@@ -162,7 +170,8 @@ bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
         if (method->awaits && method->awaits(axis, &from, offset_s))
             return false;
         move_t move = take_first(axis);
-        if (is_planned(move.kind) && cm1e_axis_superimposed_give_way(axis, &move, &from) && offset_s != 0.0)
+        const bool may_begin_now = offset_s == 0.0 || move.kind == CM1E_COMMAND_HALT; /* a halt has no place to count from */
+        if (is_planned(move.kind) && may_begin_now && cm1e_axis_superimposed_give_way(axis, &move, &from) && offset_s != 0.0)
             offset_s = axis->cycle_s; /* since the present set-point */
         cm1e_error_t error = cm1e_axis_state_refusal(axis->state, kind->trigger);
         if (error == CM1E_OK)

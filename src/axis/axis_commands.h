@@ -23,6 +23,7 @@ static inline void cm1e_axis_activate(cm1e_axis_t *axis, const move_t *move)
 {
     axis->commands.active = move->id;
     axis->commands.kind = (cm1e_command_kind_t)move->kind;
+    axis->commands.lowered = false;
     axis->commands.move = *move;
 }
 /** Makes a homing the active command. */
@@ -112,6 +113,8 @@ bool cm1e_axis_waiting_hold(cm1e_axis_t *axis, double lower, double upper);
 /** Shifts the targets of waiting commands with the coordinates, so that they end at the same places. false, and nothing
  *  has changed: by the limits there, the present motion would have to reach its end slower, and it cannot. */
 bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift);
+/** A maximum value was lowered: a command that is entered with a velocity planned before may need the earlier one. */
+void cm1e_axis_maximum_lowered(cm1e_axis_t *axis);
 /** The velocity with which a move that begins at `from` has to pass its target, as the waiting commands need it. */
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move);
 cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);

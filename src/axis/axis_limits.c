@@ -177,6 +177,14 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
     return CM1E_OK;
 }
 
+double cm1e_axis_velocity_beside(const cm1e_axis_t *axis)
+{
+    const double most = axis->limits.maximum.velocity, share = axis->superimposed.share.velocity, left = most - share;
+    if (left >= -relative_tolerance * most)
+        return larger(left, 0.0);
+    return larger(smaller(most / 2.0, axis->limits.system.velocity - share), 0.0);
+}
+
 /* Takes the share of a superimposed motion off the limits, so that the sum of both stays within the maximum values in
  * every direction. An acceleration above the rest falls as fast as that of the other motion can rise. Where the maxima
  * were lowered since, and the superimposed motion goes on as it was commanded, there is half of them for the other one. */
@@ -184,9 +192,8 @@ static void share_with_superimposed(const cm1e_axis_t *axis, const from_t *from,
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum, *share = &axis->superimposed.share;
     const double least = smaller(most->acceleration, most->deceleration);
-    const double rest = larger(least - share->acceleration, least / 2.0), left = most->velocity - share->velocity;
-    const double half = smaller(most->velocity / 2.0, axis->limits.system.velocity - share->velocity);
-    limits->velocity = smaller(limits->velocity, left > 0.0 ? left : half);
+    const double rest = larger(least - share->acceleration, least / 2.0);
+    limits->velocity = smaller(limits->velocity, cm1e_axis_velocity_beside(axis));
     limits->acceleration = smaller(limits->acceleration, rest);
     limits->deceleration = smaller(limits->deceleration, rest);
     limits->jerk = smaller(limits->jerk, larger(most->jerk - share->jerk, most->jerk / 2.0));
@@ -209,8 +216,6 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
     if (from->shared)
         share_with_superimposed(axis, from, limits);
     const cm1e_motion_limits_t nothing = {0}, *share = from->shared ? &axis->superimposed.share : &nothing;
-    if (!(limits->velocity > 0.0))
-        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     keep_below_maximum_velocity(from, axis->limits.maximum.velocity - share->velocity,
                                 axis->limits.system.velocity - share->velocity,
                                 axis->limits.maximum.jerk - share->jerk, limits);

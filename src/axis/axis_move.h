@@ -123,6 +123,7 @@ typedef struct commands {
     cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
     cm1e_command_id_t stop;         /**< the MC_Stop that holds the axis in Stopping */
     bool stop_held;
+    bool lowered;                   /**< a maximum was lowered since the active one began */
     buffer_t waiting;
     move_t move;                    /**< the active one, unless it is a homing */
     command_record_t records[COMMANDS_REMEMBERED];

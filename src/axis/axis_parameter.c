@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "axis/axis_commands.h"
 #include "axis/axis_guard.h"
 #include "axis/axis_limits.h"
 #include "axis/axis_text.h"
@@ -160,7 +161,10 @@ static cm1e_error_t write_number(cm1e_axis_t *axis, const parameter_t *parameter
 {
     if (!(value * fabs(axis->position.scale) >= least_counts * (1.0 - 1e-9)) || !(value <= largest))
         return CM1E_ERROR_AXIS_PARAMETER_RANGE;
-    *(double *)((char *)axis + parameter->value) = value;
+    double *present = (double *)((char *)axis + parameter->value);
+    if (value < *present)
+        cm1e_axis_maximum_lowered(axis);
+    *present = value;
     cm1e_axis_guard_renew(axis);
     return CM1E_OK;
 }

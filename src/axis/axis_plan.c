@@ -175,7 +175,7 @@ static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const from_t *from, m
 /* u/s; what a superimposed motion leaves of the maximum. */
 static double velocity_left(const cm1e_axis_t *axis, const from_t *from)
 {
-    return axis->limits.maximum.velocity - (from->shared ? axis->superimposed.share.velocity : 0.0);
+    return from->shared ? cm1e_axis_velocity_beside(axis) : axis->limits.maximum.velocity;
 }
 
 /* Plans a motion through the position with the end velocity (3.11); if necessary the axis goes back first. If the
@@ -239,20 +239,26 @@ static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_
     return error != CM1E_OK ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
 }
 
-/* Plans the motion after a master was left: it keeps the velocity (4.4, 4.6), which an override scales from then on. */
+/* Plans the motion after a master was left: it keeps the velocity (4.4, 4.6). A VelFactor that is smaller than the one of that
+ * time, move->velocity, reduces it; none makes it faster than it was. */
 static cm1e_error_t plan_kept(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
+    static const double next_to_nothing = 1e-12;
     cm1e_motion_limits_t limits;
     const cm1e_motion_state_t start = start_of(from);
     const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
     if (error != CM1E_OK)
         return error;
-    const double left = velocity_left(axis, from), factor = axis->override.velocity > 0.0 ? axis->override.velocity : 1.0;
-    const double kept = larger(-left, smaller(move->end_velocity * factor, left));
+    const double left = velocity_left(axis, from);
+    const double factor = axis->override.velocity > 0.0 ? smaller(axis->override.velocity / move->velocity, 1.0) : 1.0;
+    const double scaled = larger(-left, smaller(move->end_velocity * factor, left));
+    const double kept = fabs(scaled) > next_to_nothing * left ? scaled : 0.0;
     limits.velocity = larger(limits.velocity, fabs(kept));
+    if (!cm1e_axis_direction_enabled(axis, kept))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     if (cm1e_profile_to_velocity(profile, &start, kept, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
-    return CM1E_OK;
+    return from->velocity == 0.0 && kept != 0.0 ? check_endless(axis, from, profile) : CM1E_OK; /* it begins again */
 }
 
 /* ---- by kind ----------------------------------------------------------------------------------------------------- */
@@ -306,6 +312,11 @@ static cm1e_error_t plan_with_exit(const cm1e_axis_t *axis, const from_t *from, 
     const cm1e_error_t error = planners[plan](axis, from, move, profile);
     move->paused = error == CM1E_OK && moves && axis->override.velocity == 0.0 && plan_pause(axis, from, move, profile);
     return error;
+}
+
+cm1e_error_t cm1e_axis_plan_to_exit(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    return plan_with_exit(axis, from, move, move->passing, profile);
 }
 
 static double exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move, bool before_others)

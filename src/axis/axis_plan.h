@@ -44,6 +44,8 @@ bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start,
  *  limit or in a disabled direction. */
 bool cm1e_axis_goes_wrong(const cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile,
                           cm1e_error_t error);
+/** Plans a command that leaves its target with move->exit_velocity, with the present factors. */
+cm1e_error_t cm1e_axis_plan_to_exit(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
 /** Like cm1e_axis_strays(), for the profile of a command. */
 bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                               const cm1e_profile_t *profile);

@@ -42,14 +42,23 @@ bool cm1e_axis_can_replan(const cm1e_axis_t *axis)
            is_planned(axis->commands.kind);
 }
 
-/* Plans the command anew. `careful`: not if it would then overrun its target or go back. */
+/* Whether the present profile goes both ways. */
+static bool turns_round(const cm1e_axis_t *axis)
+{
+    const cm1e_profile_t *profile = &axis->setpoint.profile;
+    const double tolerance = axis->limits.tolerance;
+    return cm1e_profile_way_back(profile, 1.0) > tolerance && cm1e_profile_way_back(profile, -1.0) > tolerance;
+}
+
+/* Plans the command anew. `careful`: not if it would then overrun its target or go back. An axis that turns round anyway may
+ * need a way back to come to rest in a pause. */
 static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
 {
     move_t move = axis->commands.move;
     cm1e_profile_t profile;
     const from_t from = from_base(axis);
     const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
-    *done = error == CM1E_OK && !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile));
+    *done = error == CM1E_OK && ((move.paused && turns_round(axis)) || !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile)));
     if (*done)
         go_on_as(axis, &from, &move, &profile);
     return error;

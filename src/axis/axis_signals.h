@@ -46,6 +46,8 @@ typedef enum cm1e_cam_switch_input {
 } cm1e_cam_switch_input_t;
 /** Keeps for the text of the axis that this input of a switch (1 ...; times in ns) is refused. @rt cycle */
 void cm1e_axis_refuse_cam_switch(cm1e_axis_t *axis, cm1e_cam_switch_input_t input, int number, double value);
+/** They are right again: that text is forgotten. @rt cycle */
+void cm1e_axis_cam_switches_right(cm1e_axis_t *axis);
 /** Whether an input is in the process data, so that it is seen in every cycle. @rt cycle */
 bool cm1e_axis_sees_input(const cm1e_axis_t *axis, int number);
 /** Reads the actual torque in % of rated torque. CM1E_ERROR_PDO_MAPPING: it is not in the process data.

@@ -86,7 +86,8 @@ static double base_velocity(cm1e_axis_t *axis)
 {
     const from_t from = from_base(axis);
     double fastest = fabs(from.velocity);
-    if (axis->commands.active && !axis_follows(axis)) /* Velocity of MC_GearInPos is that of its approach */
+    const bool has_own = axis->commands.active && kind_row(axis->commands.kind)->plan != PLAN_KEEP_VELOCITY;
+    if (has_own && !axis_follows(axis)) /* Velocity of MC_GearInPos is that of its approach */
         fastest = fmax(fastest, fmax(fabs(axis->commands.move.velocity), fabs(axis->commands.move.end_velocity)));
     for (int i = 0; i < axis->commands.waiting.count; i++) {
         const waiting_t *move = waiting_move(axis, i);
@@ -122,12 +123,10 @@ static bool needs_all_to_halt(const cm1e_axis_t *axis, const from_t *from, const
             !cm1e_axis_limits_contain(axis, from, &stop));
 }
 
-/* u/s; what both may have together. A maximum that was lowered below the share of a superimposed motion, which goes on as it
- * was commanded, leaves the base what there is in all (axis_limits.c). */
+/* u/s; what both may have together: the maximum, but where that was lowered. */
 static double velocity_of_both(const cm1e_axis_t *axis)
 {
-    const double most = axis->limits.maximum.velocity;
-    return axis->superimposed.share.velocity < most ? most : axis->limits.system.velocity;
+    return axis->superimposed.share.velocity + cm1e_axis_velocity_beside(axis);
 }
 
 /* Plans the base with the rest of the limits; false: that is not possible now. */
@@ -267,9 +266,9 @@ double cm1e_axis_superimposed_goal(const cm1e_axis_t *axis)
 
 /* Whether the present position and the target of the base, with the superimposed distance, are inside the software
  * limits. What a motion that is replaced has covered becomes a part of the base. */
-static bool inside(cm1e_axis_t *axis, double distance)
+static bool inside(cm1e_axis_t *axis, double distance, bool replaces)
 {
-    const double covered = axis->superimposed.id ? axis->superimposed.now.position * axis->position.scale : 0.0;
+    const double covered = replaces ? axis->superimposed.now.position * axis->position.scale : 0.0;
     const position_t base = from_base(axis).position;
     const bool rests = axis->setpoint.stands || axis_holds(axis);
     const command_kind_t *kind = kind_row(axis->commands.kind);
@@ -287,7 +286,8 @@ static bool inside(cm1e_axis_t *axis, double distance)
     return true;
 }
 
-static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, cm1e_motion_limits_t *limits)
+/* `replaces`: it takes the place of a superimposed motion, and does not only change its inputs. */
+static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, bool replaces, cm1e_motion_limits_t *limits)
 {
     static const override_t none = {1.0, 1.0, 1.0};
     const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
@@ -297,7 +297,7 @@ static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, cm1
     const double counts = move->position * axis->position.scale;
     if (error != CM1E_OK)
         return error;
-    if (!isfinite(counts) || fabs(counts) > 4.5e15 || !inside(axis, move->position))
+    if (!isfinite(counts) || fabs(counts) > 4.5e15 || !inside(axis, move->position, replaces))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!cm1e_axis_direction_enabled(axis, move->position))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
@@ -331,7 +331,7 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     superimposed_t *on_top = &axis->superimposed;
     const bool replaces = on_top->id && on_top->moving, alone = axis_holds(axis) || (replaces && on_top->alone);
     cm1e_motion_limits_t limits;
-    const cm1e_error_t error = check(axis, move, alone, &limits);
+    const cm1e_error_t error = check(axis, move, alone, on_top->id != 0, &limits);
     if (error != CM1E_OK)
         return error;
     /* A motion that replaces another one gets the share of that one. */
@@ -401,7 +401,7 @@ cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t i
     if (cm1e_axis_same_inputs(&on_top->move, &inputs))
         return CM1E_OK;
     cm1e_motion_limits_t limits;
-    const cm1e_error_t error = check(axis, &inputs, true, &limits);
+    const cm1e_error_t error = check(axis, &inputs, true, false, &limits);
     if (error != CM1E_OK)
         return error;
     superimposed_t next = *on_top;

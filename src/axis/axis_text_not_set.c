@@ -38,6 +38,11 @@ void cm1e_axis_refuse_cam_switch(cm1e_axis_t *axis, cm1e_cam_switch_input_t inpu
                                                  .number = number, .value = value, .input = input});
 }
 
+void cm1e_axis_cam_switches_right(cm1e_axis_t *axis)
+{
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = CM1E_OK, .what = NOT_SET_CAM_SWITCH});
+}
+
 static void cam_switch_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     static const struct {
@@ -46,8 +51,10 @@ static void cam_switch_text(const cm1e_axis_t *axis, char *text, size_t size)
     } inputs[] = {
         [CM1E_CAM_SWITCH_COUNT] = {"NumberOfSwitches", "1 ... 32 is right", 1.0},
         [CM1E_CAM_SWITCH_TRACK] = {"TrackNumber", "1 ... 32 is right", 1.0},
-        [CM1E_CAM_SWITCH_FIRST_ON] = {"FirstOnPosition", "a number that is not above LastOnPosition is right", 1.0},
-        [CM1E_CAM_SWITCH_LAST_ON] = {"LastOnPosition", "a number is right", 1.0},
+        [CM1E_CAM_SWITCH_FIRST_ON] = {"FirstOnPosition", "a number is right, on a linear axis not above "
+                                      "LastOnPosition", 1.0},
+        [CM1E_CAM_SWITCH_LAST_ON] = {"LastOnPosition", "a number is right, on a modulo axis less than a turn after "
+                                     "FirstOnPosition", 1.0},
         [CM1E_CAM_SWITCH_DIRECTION] = {"AxisDirection", "0, 1 or 2 is right", 1.0},
         [CM1E_CAM_SWITCH_MODE] = {"CamSwitchMode", "0 or 1 is right", 1.0},
         [CM1E_CAM_SWITCH_DURATION] = {"Duration in ms", "0 or more is right", 1e-6},
@@ -58,14 +65,12 @@ static void cam_switch_text(const cm1e_axis_t *axis, char *text, size_t size)
         [CM1E_CAM_SWITCH_HYSTERESIS] = {"Hysteresis of its track", "0 or more is right", 1.0},
     };
     const not_set_t *refused = &axis->not_set;
-    const bool place = refused->input == CM1E_CAM_SWITCH_FIRST_ON || refused->input == CM1E_CAM_SWITCH_LAST_ON;
-    char which[24] = "", range[48];
+    char which[24] = "";
     if (refused->input != CM1E_CAM_SWITCH_COUNT)
         snprintf(which, sizeof which, "switch %d: ", refused->number);
-    snprintf(range, sizeof range, "0 ... %.9g u is right", axis->position.modulo_range);
     snprintf(text, size, "Axis \"%s\": MC_DigitalCamSwitch: %s%s is %.9g; %s.", axis->config->name, which,
              inputs[refused->input].name, refused->value * inputs[refused->input].scale,
-             place && axis->position.modulo_range > 0.0 ? range : inputs[refused->input].right);
+             inputs[refused->input].right);
 }
 
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)

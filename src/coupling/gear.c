@@ -95,8 +95,8 @@ static bool leaves(cm1e_command_kind_t out, cm1e_command_kind_t in)
 cm1e_error_t cm1e_gear_out(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);
-    const double factor = axis->override.velocity > 0.0 ? axis->override.velocity : 1.0; /* acts from now on: as it is */
-    move_t move = {.kind = (uint8_t)command->kind, .end_velocity = from_base(axis).velocity / factor};
+    const double factor = axis->override.velocity > 0.0 ? axis->override.velocity : 1.0;
+    move_t move = {.kind = (uint8_t)command->kind, .end_velocity = from_base(axis).velocity, .velocity = factor};
     cm1e_profile_t profile;
     if (!axis_follows(axis) || !axis->commands.active || !leaves(command->kind, axis->commands.kind))
         return CM1E_ERROR_AXIS_NOT_COUPLED;

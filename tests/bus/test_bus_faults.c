@@ -191,8 +191,8 @@ static const struct {
     const char *word;
 } lies[] = {
     {{0x1C12, 0, 0}, "number of PDOs"},    {{0x1C13, 0, 2}, "number of PDOs"},    {{0x1C12, 1, 0x1601}, "assigned PDO"},
-    {{0x1C13, 1, 0x6040}, "assigned PDO"}, {{0x1600, 0, 0}, "empty"},             {{0x1A00, 0, 255}, "lave 1"},
-    {{0x1600, 1, 0}, "no bits"},           {{0x1A00, 3, 0x606400FF}, "lave 1"},
+    {{0x1C13, 1, 0x6040}, "assigned PDO"}, {{0x1600, 0, 0}, "empty"},             {{0x1600, 1, 0x60400000}, "no bits"},
+    {{0x1600, 1, 0}, "invalid output configuration"}, {{0x1A00, 3, 0x606400FF}, "lave 1"},
 };
 
 START_TEST(mapping_that_cannot_be_is_refused_in_words)

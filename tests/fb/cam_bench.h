@@ -28,6 +28,7 @@ static struct {
     cm1e_cam_switch_input_t input;
     int number;
     double value;
+    unsigned count, right;
 } refused; /* the last switch */
 
 int64_t cm1e_axis_time(const cm1e_axis_t *axis)
@@ -57,6 +58,12 @@ void cm1e_axis_refuse_cam_switch(cm1e_axis_t *axis, cm1e_cam_switch_input_t inpu
     refused.input = input;
     refused.number = number;
     refused.value = value;
+    refused.count++;
+}
+void cm1e_axis_cam_switches_right(cm1e_axis_t *axis)
+{
+    (void)axis;
+    refused.right++;
 }
 cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
 {

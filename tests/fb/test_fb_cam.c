@@ -7,6 +7,22 @@
 
 /* ---- positions, directions, times -------------------------------------------------------------------------------- */
 
+/* On a modulo axis a switch may be stated beyond the range on either side. */
+START_TEST(test_a_switch_over_the_end_of_a_turn_may_be_stated_in_any_turn)
+{
+    static const double ends[][2] = {{-10.0, 10.0}, {350.0, 370.0}, {350.0, 10.0}, {710.0, 730.0}};
+    for (int i = 0; i < 4; i++) {
+        fresh(360.0);
+        add(1, ends[i][0], ends[i][1]);
+        for (int place = 0; place < 360; place++) {
+            at(place, 0.0);
+            ck_assert_msg(fb.InOperation && outputs.Values == (place <= 10 || place >= 350), "%g ... %g at %d", ends[i][0],
+                          ends[i][1], place);
+        }
+    }
+}
+END_TEST
+
 /* The standard's own example: a modulo axis of 5000 u, tracks 1 and 2. */
 START_TEST(test_the_example_of_the_standard_in_both_directions)
 {
@@ -288,6 +304,7 @@ int main(void)
 {
     Suite *suite = suite_create("MC_DigitalCamSwitch");
     TCase *tcase = tcase_create("cams");
+    tcase_add_test(tcase, test_a_switch_over_the_end_of_a_turn_may_be_stated_in_any_turn);
     tcase_add_test(tcase, test_the_example_of_the_standard_in_both_directions);
     tcase_add_test(tcase, test_ends_are_included_and_a_standing_axis_is_judged_at_once);
     tcase_add_test(tcase, test_a_switch_of_one_direction_needs_a_motion_in_it);

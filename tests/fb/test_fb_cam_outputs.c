@@ -105,7 +105,7 @@ START_TEST(test_switches_and_tracks_that_cannot_be)
 {
     const TIME day = INT64_C(86400000) * MS;
     static const MC_CAMSWITCH good = {.TrackNumber = 1, .FirstOnPosition = 1.0, .LastOnPosition = 2.0};
-    for (int i = 0; i < 21; i++) {
+    for (int i = 0; i < 20; i++) {
         cm1e_cam_switch_input_t input = CM1E_CAM_SWITCH_COUNT;
         int number = 2;
         fresh(i < 18 ? 0.0 : 360.0);
@@ -132,19 +132,21 @@ START_TEST(test_switches_and_tracks_that_cannot_be)
         case 15: cams.NumberOfSwitches = 0, number = 0; break;
         case 16: cams.NumberOfSwitches = 33, number = 0; break;
         case 17: fb.Switches = NULL, number = 0; break;
-        case 18: cam->FirstOnPosition = -0.001, input = CM1E_CAM_SWITCH_FIRST_ON; break;
-        case 19: cam->FirstOnPosition = 360.001, input = CM1E_CAM_SWITCH_FIRST_ON; break;
-        case 20: cam->LastOnPosition = 360.001, input = CM1E_CAM_SWITCH_LAST_ON; break;
+        case 18: cam->LastOnPosition = 361.0, input = CM1E_CAM_SWITCH_LAST_ON; break;
+        case 19: cam->LastOnPosition = NAN, input = CM1E_CAM_SWITCH_LAST_ON; break;
         }
         at(5.0, 0.0);
         expect_error(CM1E_ERROR_FB_CAM_SWITCH);
         ck_assert(refused.input == input && refused.number == number);
+        const unsigned count = refused.count, right = refused.right;
+        at(5.0, 0.0);
+        ck_assert(refused.count == count && refused.right == right); /* it is told once */
         *cam = good;
         memset(&tracks, 0, sizeof tracks);
         cams.NumberOfSwitches = 2;
         fb.Switches = &cams;
         at(5.0, 0.0);
-        ck_assert(fb.InOperation && outputs.Values == 2);
+        ck_assert(fb.InOperation && outputs.Values == 2 && refused.right == right + 1);
     }
     fb.ValueSource = mcCommandedValue;
     at(5.0, 0.0);

@@ -118,7 +118,7 @@ static bool axes_judge_silence(int n)
         AXES_MUST(step == 0, "axis %d: its target moves by %.12g while no frame comes back", n, step);
     else if (axis->silence.began_anew)
         AXES_MUST((v * w->velocity >= 0 || fabs(v) <= jerk * t * t / 2) &&
-                      fabs(v) <= fabs(w->velocity) + axis->limits.maximum.acceleration * t &&
+                      fabs(v) <= fabs(w->velocity) + jerk * t * t / 2 &&
                       fabs(step) <= fabs(w->velocity) * t * (1 + 1e-9) + jerk * t * t * t / 6 +
                                         1e-6 / fabs(axis->position.scale),
                   "axis %d: after silence %.12g u/s and a step of %.12g u, before %.12g u/s", n, v, step, w->velocity);

@@ -1,4 +1,4 @@
-/* MC_CamIn and MC_GearInPos take over a slave at every moment of a move at its limits: on the way up, at its maximum
+/* MC_CamIn and MC_GearIn take over a slave at every moment of a move at its limits: on the way up, at its maximum
  * velocity, braking with a deceleration that is larger or smaller than its acceleration, before and behind standstill. The
  * cam and the master need next to nothing of its limits, and the witness of the bench sees every set-point. */
 #include "unity.h"

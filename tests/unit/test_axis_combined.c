@@ -100,6 +100,28 @@ static void test_a_small_factor_before_a_software_limit_is_no_error(void)
         }
 }
 
+/* An axis that turns round in its motion needs a little way back to come to rest; else the factor would be ignored. */
+static void test_a_motion_that_turns_round_pauses_at_every_moment(void)
+{
+    for (int when = 0; when < 700; when += sweep_stride(3, 21)) {
+        axes_begin(1);
+        axes_move_velocity(A, -3.0);
+        axes_cycles(1000);
+        const double begin = place();
+        const cm1e_command_id_t move = axes_command(A, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE,
+                                                                              .position = 20.0, .velocity = 20.0});
+        axes_cycles(when);
+        override(0.0, 1.0, 0.4);
+        axes_cycles(1200);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, axes_status(A, move).state);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, axis()->setpoint.velocity);
+        override(1.0, 1.0, 1.0);
+        rest();
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, begin + 20.0, place());
+        axes_end();
+    }
+}
+
 /* ---- a modulo axis ----------------------------------------------------------------------------------------------- */
 
 /* Moves one way that pass their targets: each ends in the turn in which the look-ahead has seen it. */
@@ -135,6 +157,25 @@ static void test_moves_that_blend_make_no_turn_too_many(void)
         }
         const double turned = cm1e_position_minus(axis()->setpoint.position, first) / axis()->position.scale;
         AXES_MUST(fabs(turned - way) < 1e-6, "seed %u: turned by %.9g in place of %.9g", seed_of(run), turned, way);
+        axes_end();
+    }
+}
+
+/* From rest, mcCurrentDirection is the direction of the last motion. */
+static void test_the_current_direction_of_a_move_that_waits_is_that_of_the_one_before(void)
+{
+    static const MC_BUFFER_MODE modes[] = {mcBuffered, mcBlendingLow, mcBlendingHigh};
+    for (int i = 0; i < 3; i++) {
+        axes_describe(1);
+        axes_config(A)->modulo_range = 360.0;
+        axes_make();
+        axes_enable_all();
+        const position_t first = axis()->setpoint.position;
+        axes_command(A, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = -50.0, .velocity = 20.0});
+        axes_command(A, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 300.0, .velocity = 20.0,
+                                               .direction = mcCurrentDirection, .buffer_mode = modes[i]});
+        rest();
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, -60.0, cm1e_position_minus(axis()->setpoint.position, first) / axis()->position.scale);
         axes_end();
     }
 }
@@ -204,6 +245,21 @@ static void test_what_a_replaced_motion_has_covered_counts_for_the_limit(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 11.95, place());
 }
 
+/* Other inputs of the same motion count the distance once. */
+static void test_changed_inputs_of_a_superimposed_motion_count_its_distance_once(void)
+{
+    make_within(-1.0, 12.0);
+    axes_move_to(A, 10.0, 5.0);
+    axes_cycles(100);
+    cm1e_axis_command_t command = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 1.5, .velocity = 5.0};
+    const cm1e_command_id_t top = axes_command(A, &command);
+    AXES_UNTIL(axes_status(A, top).covered >= 1.0);
+    command.velocity = 3.0;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axis(), top, &command));
+    rest();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 11.5, place());
+}
+
 /* A superimposed motion goes on as it was commanded when the maxima are lowered; a command that waits begins. */
 static void test_lowered_maxima_under_a_superimposed_motion_end_no_command(void)
 {
@@ -253,6 +309,33 @@ static void test_a_deceleration_lowered_before_a_junction_leads_beyond_no_target
         }
 }
 
+/* Only what brakes from a velocity of before needs more than the lowered deceleration: the moves that are commanded then
+ * keep it, but for the first ones. */
+static void test_a_chain_keeps_lowered_maxima_from_the_next_move_on(void)
+{
+    enum { MOVES = 8 };
+    static const double ways[] = {1.16, 1.97, 3.34};
+    for (int i = 0; i < 3; i++) {
+        cm1e_command_id_t ids[MOVES];
+        axes_begin(1);
+        axes_bench.witness[A].strictness = AXES_UNWATCHED;
+        axes_move_to(A, 10.0, 20.0);
+        axes_cycles(300);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis(), CM1E_PARAMETER_MAX_DECELERATION_APPL, 20.0));
+        for (int n = 0; n < MOVES; n++)
+            ids[n] = axes_command(A, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = ways[i],
+                                                            .velocity = 20.0, .buffer_mode = mcBlendingHigh});
+        while (axes_state(A) != CM1E_AXIS_STANDSTILL) {
+            axes_cycles(1);
+            if (axes_status(A, ids[3]).state == CM1E_COMMAND_DONE)
+                AXES_MUST(axis()->setpoint.acceleration >= -20.0 - 1e-6, "moves of %g u: %.9g u/s2", ways[i],
+                          axis()->setpoint.acceleration);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10.0 + MOVES * ways[i], place());
+        axes_end();
+    }
+}
+
 /* ---- a table over time ------------------------------------------------------------------------------------------- */
 
 static void point_of(const void *reference, int i, TIME *delta, LREAL *value)
@@ -288,6 +371,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_paused_command_that_cannot_go_on_leaves_the_axis_where_it_is);
     RUN_TEST(test_a_small_factor_before_a_software_limit_is_no_error);
+    RUN_TEST(test_a_motion_that_turns_round_pauses_at_every_moment);
+    RUN_TEST(test_the_current_direction_of_a_move_that_waits_is_that_of_the_one_before);
+    RUN_TEST(test_changed_inputs_of_a_superimposed_motion_count_its_distance_once);
+    RUN_TEST(test_a_chain_keeps_lowered_maxima_from_the_next_move_on);
     RUN_TEST(test_moves_that_blend_make_no_turn_too_many);
     RUN_TEST(test_no_move_comes_back_in_a_disabled_direction);
     RUN_TEST(test_an_additive_move_counts_what_is_superimposed_now);

@@ -410,11 +410,11 @@ static void test_override_does_not_act_on_a_follower(void)
     TEST_ASSERT_EQUAL_DOUBLE(4.0, axes_info(1).set_velocity);
 }
 
-/* The velocity stays what it is, and a change of the factor acts on it; never beyond the maximum. */
+/* The velocity stays what it is; a smaller factor than that of this time reduces it, a larger one raises it no more. */
 static void test_override_acts_on_the_velocity_that_was_kept(void)
 {
-    for (int with_limit = 0; with_limit < 2; with_limit++) {
-        const double velocity = with_limit ? 30.0 : 4.0; /* of at most 50 */
+    for (int fast = 0; fast < 2; fast++) {
+        const double velocity = fast ? 30.0 : 4.0; /* of at most 50 */
         axes_begin(2);
         const cm1e_command_id_t gear = axes_gear_in(1, 0, 1, 1);
         axes_move_velocity(0, velocity);
@@ -428,11 +428,32 @@ static void test_override_acts_on_the_velocity_that_was_kept(void)
         for (int i = 0; i < 4; i++) {
             TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axes_axis(1), factors[i], 1.0, 1.0));
             axes_cycles(2000);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-9, fmin(2.0 * velocity * factors[i], 50.0), axes_info(1).set_velocity);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, velocity * fmin(factors[i] / 0.5, 1.0), axes_info(1).set_velocity);
             TEST_ASSERT_EQUAL_INT(CM1E_AXIS_CONTINUOUS_MOTION, axes_state(1));
         }
         axes_end();
     }
+}
+
+/* It is VelFactor alone: the acceleration that the slave has ends with the whole jerk. */
+static void test_a_small_jerk_factor_makes_no_slave_faster_that_leaves_its_master(void)
+{
+    double fastest[2] = {0.0, 0.0};
+    for (int small = 0; small < 2; small++) {
+        axes_begin(2);
+        axes_gear_in(1, 0, 1, 1);
+        axes_move_velocity(0, 40.0);
+        axes_cycles(120);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axes_axis(1), 1.0, small ? 0.05 : 1.0, small ? 0.05 : 1.0));
+        axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_OUT});
+        for (int n = 0; n < 2000; n++) {
+            axes_cycles(1);
+            fastest[small] = fmax(fastest[small], axes_info(1).set_velocity);
+        }
+        axes_end();
+    }
+    TEST_ASSERT_TRUE(fastest[0] < 20.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, fastest[0], fastest[1]);
 }
 
 /* 3.8: on top of what the master asks for. */
@@ -644,6 +665,7 @@ int main(void)
     RUN_TEST(test_a_ratio_is_updated_behind_a_gear_that_awaits_its_place);
     RUN_TEST(test_override_does_not_act_on_a_follower);
     RUN_TEST(test_override_acts_on_the_velocity_that_was_kept);
+    RUN_TEST(test_a_small_jerk_factor_makes_no_slave_faster_that_leaves_its_master);
     RUN_TEST(test_a_superimposed_motion_on_a_follower);
     RUN_TEST(test_a_command_takes_over_from_a_follower_that_left_the_superimposed_motion_no_room);
     RUN_TEST(test_a_halt_just_before_the_maximum_velocity_keeps_the_jerk);

@@ -36,7 +36,7 @@ static void test_every_kind_can_be_done(void)
 
 /* By hand, so that a slip in the table shows. B: may be buffered (table 4; phasing by its own queue), E: goes on when it
  * has reached what it was to reach, V: Velocity is an input that moves it, S: a stop, O: MC_SetOverride acts on it
- * (3.18), T: a superimposed motion may be on top of it (3.8), D: by the drive too (docs/BUS-FILE.md, `motion`). */
+ * (3.18; on the velocity that MC_GearOut keeps VelFactor alone), T: a superimposed motion may be on top of it (3.8), D: by the drive too (docs/BUS-FILE.md, `motion`). */
 static const char *const expected[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_MOVE_ABSOLUTE] = "BVOTD",
     [CM1E_COMMAND_MOVE_RELATIVE] = "BVOTD",
@@ -57,8 +57,8 @@ static const char *const expected[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_GEAR_IN_POS] = "BVT",
     [CM1E_COMMAND_CAM_IN] = "BT",
     [CM1E_COMMAND_COMBINE_AXES] = "BT",
-    [CM1E_COMMAND_GEAR_OUT] = "EOT",
-    [CM1E_COMMAND_CAM_OUT] = "EOT",
+    [CM1E_COMMAND_GEAR_OUT] = "ET",
+    [CM1E_COMMAND_CAM_OUT] = "ET",
     [CM1E_COMMAND_PHASING_ABSOLUTE] = "BV",
     [CM1E_COMMAND_PHASING_RELATIVE] = "BV",
     [CM1E_COMMAND_FOLLOW_POSITION] = "",
