@@ -201,8 +201,9 @@ static void check_in_out(st_t *st, arg_t *arg)
 static void check_arg(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
 {
     var_t *var = arg->parameter;
-    if (!arg->value && var->section == V_INPUT && cm1e_st_is_function(unit))
-        cm1e_st_report(st, arg->place, "a value for \"%s\" is missing behind :=", var->name);
+    if (!arg->value && (var->section == V_IN_OUT || (var->section == V_INPUT && cm1e_st_is_function(unit))))
+        cm1e_st_report(st, arg->place, "a %s for \"%s\" is missing behind :=",
+                       var->section == V_IN_OUT ? "variable" : "value", var->name);
     if (!arg->value)
         return;
     if (var->section == V_OUTPUT) {
@@ -297,8 +298,10 @@ void cm1e_st_call(st_t *st, expr_t *call, bool statement)
         return;
     if (call->a->kind == E_NAME) {
         unit_t *unit = cm1e_st_lookup(st, st->units, call->a->scope, call->a->place, call->a->name);
-        const bool is_variable = cm1e_st_find_var(st, call->a->name) && !(unit && unit->kind == U_FUNCTION);
-        if (!is_variable && unit && unit->kind == U_FUNCTION) {
+        const var_t *var = cm1e_st_find_var(st, call->a->name);
+        const bool is_function = unit && unit->kind == U_FUNCTION;
+        const bool is_variable = var && (!is_function || cm1e_st_resolve(st, var->type)->kind == T_BLOCK);
+        if (!is_variable && is_function) {
             call_function(st, call, unit);
             return;
         }

@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const operators[] = {"|", "||", "^", "&", "&&", "==", "!=", "<", ">", "<=", ">=", "+", "-", "*", "/",
@@ -97,7 +98,7 @@ static void emit_member(st_t *st, const expr_t *expr)
     if (expr->bit) {
         cm1e_st_put(st, "(BOOL)(((ULINT)");
         cm1e_st_emit_expression(st, expr->a);
-        cm1e_st_put(st, " >> %s) & 1u)", expr->name);
+        cm1e_st_put(st, " >> %ld) & 1u)", strtol(expr->name, NULL, 10));
     } else if (expr->a == st->callee) {
         cm1e_st_put(st, "fb->%s", expr->var->c_name);
     } else {

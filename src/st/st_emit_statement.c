@@ -1,6 +1,8 @@
 /* Statements in C, each with the line of ST that it comes from. */
 #include "st/st_emit.h"
 
+#include <stdlib.h>
+
 static void emit_body(st_t *st, const stmt_t *list)
 {
     st->indent++;
@@ -11,13 +13,15 @@ static void emit_body(st_t *st, const stmt_t *list)
 static void emit_bit(st_t *st, const expr_t *target, const expr_t *value)
 {
     const char *type = target->a->type->name;
-    cm1e_st_begin_line(st);
+    const unsigned n = ++st->temporaries;
+    const long number = strtol(target->name, NULL, 10);
+    cm1e_st_line(st, "{ const BOOL bit%u = (", n); /* first: a call may change what the bit is of */
+    cm1e_st_emit_expression(st, value);
+    cm1e_st_put(st, ") != 0; ");
     cm1e_st_emit_expression(st, target->a);
     cm1e_st_put(st, " = (%s)(((ULINT)", type);
     cm1e_st_emit_expression(st, target->a);
-    cm1e_st_put(st, " & ~(1ULL << %s)) | ((ULINT)((", target->name);
-    cm1e_st_emit_expression(st, value);
-    cm1e_st_put(st, ") != 0) << %s));\n", target->name);
+    cm1e_st_put(st, " & ~(1ULL << %ld)) | ((ULINT)bit%u << %ld)); }\n", number, n, number);
 }
 
 void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value)
@@ -64,9 +68,8 @@ static void emit_input(st_t *st, const arg_t *arg)
 
 static void emit_block_call(st_t *st, const expr_t *call)
 {
-    cm1e_st_line(st, "{\n");
+    cm1e_st_line(st, "{ %s *const fb = &", call->unit->c_type);
     st->indent++;
-    cm1e_st_line(st, "%s *const fb = &", call->unit->c_type);
     cm1e_st_emit_expression(st, call->a);
     cm1e_st_put(st, ";\n");
     for (const arg_t *arg = call->args; arg; arg = arg->next)
@@ -153,9 +156,8 @@ static void emit_branches(st_t *st, const stmt_t *stmt, unsigned selector)
 static void emit_case(st_t *st, const stmt_t *stmt)
 {
     const unsigned selector = ++st->temporaries;
-    cm1e_st_line(st, "{\n");
+    cm1e_st_line(st, "{ ST_UNUSED const int64_t selector%u = (int64_t)", selector);
     st->indent++;
-    cm1e_st_line(st, "ST_UNUSED const int64_t selector%u = (int64_t)", selector);
     cm1e_st_emit_expression(st, stmt->value);
     cm1e_st_put(st, ";\n");
     emit_branches(st, stmt, selector);
@@ -190,23 +192,25 @@ static void emit_count(st_t *st, const expr_t *target, unsigned n)
                 cm1e_st_int64(st, type->last));
 }
 
+/** The limits are evaluated one after the other, as they are written: a call in one may change the next one. All stands in
+ *  one line, which is that of the FOR in a fault. */
 static void emit_for(st_t *st, const stmt_t *stmt)
 {
     const unsigned n = ++st->temporaries;
-    cm1e_st_line(st, "for (st_for_t for%u = st_for((int64_t)", n);
+    cm1e_st_line(st, "{ const int64_t from%u = ", n);
     cm1e_st_emit_expression(st, stmt->value);
-    cm1e_st_put(st, ", (int64_t)");
+    cm1e_st_put(st, ", to%u = ", n);
     cm1e_st_emit_expression(st, stmt->to);
-    cm1e_st_put(st, ", ");
+    cm1e_st_put(st, ", by%u = ", n);
     if (stmt->by)
         cm1e_st_emit_expression(st, stmt->by);
     else
         cm1e_st_put(st, "1");
-    cm1e_st_put(st, ", ST_HERE); ");
+    cm1e_st_put(st, "; for (st_for_t for%u = st_for(from%u, to%u, by%u, ST_HERE); ", n, n, n, n);
     emit_count(st, stmt->target, n);
     cm1e_st_put(st, "; st_next(&for%u)) {\n", n);
     emit_passes(st, stmt);
-    cm1e_st_line(st, "}\n");
+    cm1e_st_line(st, "} }\n");
 }
 
 static void emit_while(st_t *st, const stmt_t *stmt)

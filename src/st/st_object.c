@@ -92,6 +92,7 @@ static bool call_base(st_t *st, expr_t *call, const char *name)
         finish(st, call, method, NULL, base);
         return true;
     }
+    cm1e_st_note_call(st, base);
     call->unit = base;
     call->a = NULL;
     call->seen_as = base;

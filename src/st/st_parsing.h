@@ -50,7 +50,7 @@ typedef struct vars { var_t *first, *last; } vars_t;
     } while (0)
 
 /* of the lexer */
-void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, place_t *place);
+void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, bool skipped, place_t *place);
 /** A word of the standard that this translator does not have explains the error at the last word: reports that. */
 bool cm1e_st_unsupported(parsing_t *parsing, place_t place);
 void cm1e_st_bad_character(parsing_t *parsing, place_t place, char character);

@@ -105,11 +105,21 @@ cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag)
 
 /* ---- what the lexer calls ---------------------------------------------------------------------------------------- */
 
-void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, place_t *place)
+/** What stands between words, and does not count: blanks, comments, pragmas, the mark of UTF-8 at the beginning of a file. */
+static bool is_between(const char *text, size_t length)
+{
+    static const char *const begins[] = {"//", "(*", "/*", "{", "\xEF\xBB\xBF"};
+    for (size_t i = 0; i < sizeof begins / sizeof begins[0]; i++)
+        if (length >= strlen(begins[i]) && memcmp(text, begins[i], strlen(begins[i])) == 0)
+            return true;
+    return length == 0 || (unsigned char)text[0] <= ' ';
+}
+
+void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, bool skipped, place_t *place)
 {
     *place = (place_t){.file = (uint16_t)parsing->st->source, .line = parsing->line, .column = parsing->column};
     const size_t kept = length < sizeof parsing->last - 1 ? length : sizeof parsing->last - 1;
-    if (kept > 0 && (unsigned char)text[0] > ' ') { /* blanks between words do not count */
+    if (!skipped && !is_between(text, length)) {
         memcpy(parsing->before, parsing->last, sizeof parsing->before);
         memcpy(parsing->last, text, kept);
         parsing->last[kept] = '\0';

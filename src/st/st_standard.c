@@ -32,7 +32,7 @@ struct standard {
     rule_t rule;
     int fewest, most;
     operation_t op;
-    const char *types, *parameters;
+    const char *types, *parameters; /* the inputs in their order; "IN1+": IN1, IN2 and so on; "": they have no names */
 };
 
 static const standard_t standards[] = {
@@ -40,22 +40,22 @@ static const standard_t standards[] = {
     {"LOG", R_REAL, 1, 1, 0, "", "IN"}, {"EXP", R_REAL, 1, 1, 0, "", "IN"}, {"SIN", R_REAL, 1, 1, 0, "", "IN"},
     {"COS", R_REAL, 1, 1, 0, "", "IN"}, {"TAN", R_REAL, 1, 1, 0, "", "IN"}, {"ASIN", R_REAL, 1, 1, 0, "", "IN"},
     {"ACOS", R_REAL, 1, 1, 0, "", "IN"}, {"ATAN", R_REAL, 1, 1, 0, "", "IN"},
-    {"ATAN2", R_REAL, 2, 2, 0, "", "Y X"}, {"MIN", R_ORDERED, 2, MANY, 0, "", ""},
-    {"MAX", R_ORDERED, 2, MANY, 0, "", ""}, {"LIMIT", R_ORDERED, 3, 3, 0, "", "MN IN MX"},
-    {"SEL", R_SELECT, 3, 3, 0, "", "G IN0 IN1"}, {"MUX", R_MUX, 3, MANY, 0, "", ""},
+    {"ATAN2", R_REAL, 2, 2, 0, "", "Y X"}, {"MIN", R_ORDERED, 2, MANY, 0, "", "IN1+"},
+    {"MAX", R_ORDERED, 2, MANY, 0, "", "IN1+"}, {"LIMIT", R_ORDERED, 3, 3, 0, "", "MN IN MX"},
+    {"SEL", R_SELECT, 3, 3, 0, "", "G IN0 IN1"}, {"MUX", R_MUX, 3, MANY, 0, "", "K IN0+"},
     {"SHL", R_SHIFT, 2, 2, 0, "", "IN N"}, {"SHR", R_SHIFT, 2, 2, 0, "", "IN N"}, {"ROL", R_SHIFT, 2, 2, 0, "", "IN N"},
-    {"ROR", R_SHIFT, 2, 2, 0, "", "IN N"}, {"ADD", R_OPERATION, 2, MANY, OP_ADD, "", ""},
-    {"MUL", R_OPERATION, 2, MANY, OP_MUL, "", ""}, {"SUB", R_OPERATION, 2, 2, OP_SUB, "", ""},
-    {"DIV", R_OPERATION, 2, 2, OP_DIV, "", ""}, {"EXPT", R_OPERATION, 2, 2, OP_POWER, "", ""},
-    {"GT", R_COMPARE, 2, 2, OP_GT, "", ""}, {"GE", R_COMPARE, 2, 2, OP_GE, "", ""},
-    {"EQ", R_COMPARE, 2, 2, OP_EQ, "", ""}, {"NE", R_COMPARE, 2, 2, OP_NE, "", ""},
-    {"LE", R_COMPARE, 2, 2, OP_LE, "", ""}, {"LT", R_COMPARE, 2, 2, OP_LT, "", ""},
+    {"ROR", R_SHIFT, 2, 2, 0, "", "IN N"}, {"ADD", R_OPERATION, 2, MANY, OP_ADD, "", "IN1+"},
+    {"MUL", R_OPERATION, 2, MANY, OP_MUL, "", "IN1+"}, {"SUB", R_OPERATION, 2, 2, OP_SUB, "", "IN1 IN2"},
+    {"DIV", R_OPERATION, 2, 2, OP_DIV, "", "IN1 IN2"}, {"EXPT", R_OPERATION, 2, 2, OP_POWER, "", "IN1 IN2"},
+    {"GT", R_COMPARE, 2, 2, OP_GT, "", "IN1 IN2"}, {"GE", R_COMPARE, 2, 2, OP_GE, "", "IN1 IN2"},
+    {"EQ", R_COMPARE, 2, 2, OP_EQ, "", "IN1 IN2"}, {"NE", R_COMPARE, 2, 2, OP_NE, "", "IN1 IN2"},
+    {"LE", R_COMPARE, 2, 2, OP_LE, "", "IN1 IN2"}, {"LT", R_COMPARE, 2, 2, OP_LT, "", "IN1 IN2"},
     {"TRUNC", R_TRUNC, 1, 1, 0, "", "IN"}, {"MOVE", R_MOVE, 1, 1, 0, "", "IN"}, {"TIME", R_NOW, 0, 0, 0, "", ""},
     {"REF", R_REF, 1, 1, 0, "", ""}, {"ADR", R_REF, 1, 1, 0, "", ""},
     {"__ISVALIDREF", R_VALID, 1, 1, 0, "", ""}, {"SIZEOF", R_SIZE, 1, 1, 0, "", ""},
     {"LEN", R_STRING, 1, 1, 0, "IS", "IN"}, {"LEFT", R_STRING, 2, 2, 0, "SSI", "IN L"},
     {"RIGHT", R_STRING, 2, 2, 0, "SSI", "IN L"}, {"MID", R_STRING, 3, 3, 0, "SSII", "IN L P"},
-    {"CONCAT", R_STRING, 2, MANY, 0, "SSS", ""}, {"INSERT", R_STRING, 3, 3, 0, "SSSI", "IN1 IN2 P"},
+    {"CONCAT", R_STRING, 2, MANY, 0, "SSS", "IN1+"}, {"INSERT", R_STRING, 3, 3, 0, "SSSI", "IN1 IN2 P"},
     {"DELETE", R_STRING, 3, 3, 0, "SSII", "IN L P"}, {"REPLACE", R_STRING, 4, 4, 0, "SSSII", "IN1 IN2 L P"},
     {"FIND", R_STRING, 2, 2, 0, "ISS", "IN1 IN2"},
 };
@@ -114,8 +114,15 @@ static bool one_type(st_t *st, expr_t *call, arg_t *first, bool (*good)(type_kin
     return true;
 }
 
-static bool is_real(type_kind_t kind) { return cm1e_st_is_floating(kind) || kind == T_ANY_INT; }
 static bool is_any(type_kind_t kind) { return kind != T_NONE && kind <= T_ANY_REAL; }
+
+/** SQRT(2) is SQRT(2.0). */
+static void literals_are_real(st_t *st, expr_t *call)
+{
+    for (arg_t *arg = call->args; arg; arg = arg->next)
+        if (arg->value->type->kind == T_ANY_INT)
+            arg->value = cm1e_st_coerce(st, arg->value, st->elementary[T_ANY_REAL], "the argument");
+}
 
 static bool select_one(st_t *st, expr_t *call)
 {
@@ -199,7 +206,9 @@ static bool give_type(st_t *st, expr_t *call)
     /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): check_args() has counted them */
     expr_t *first = call->args->value;
     switch (call->standard->rule) {
-    case R_REAL: return one_type(st, call, call->args, is_real, "REAL or LREAL");
+    case R_REAL:
+        literals_are_real(st, call);
+        return one_type(st, call, call->args, cm1e_st_is_floating, "REAL or LREAL");
     case R_NUMBER: return one_type(st, call, call->args, cm1e_st_is_number, "a number");
     case R_ORDERED: return one_type(st, call, call->args, is_any, "values of an elementary type");
     case R_SELECT:
@@ -231,24 +240,39 @@ static bool give_type(st_t *st, expr_t *call)
     return false;
 }
 
-/** Named arguments of a standard function come into the order of its parameters. */
-static bool order_args(st_t *st, expr_t *call)
+/** The name of an input, 0 = the first. */
+static const char *input_name(st_t *st, const standard_t *standard, int number)
+{
+    const char *at = standard->parameters;
+    for (; number > 0 && strchr(at, ' '); number--)
+        at = strchr(at, ' ') + 1;
+    const int length = (int)strcspn(at, " +");
+    if (at[length] != '+')
+        return cm1e_st_format(st->arena, "%.*s", length, at);
+    return cm1e_st_format(st->arena, "%.*s%d", length - 1, at, at[length - 1] - '0' + number);
+}
+
+/** Named arguments of a standard function come into the order of its inputs. There are as many as it takes. */
+static bool order_args(st_t *st, expr_t *call, int count)
 {
     args_t ordered = {0};
-    const char *at = call->standard->parameters;
-    while (*at) {
-        const size_t length = strcspn(at, " ");
+    if (!*call->standard->parameters) {
+        cm1e_st_report(st, call->place, "%s takes its argument without a name: %s(x)", call->standard->name,
+                       call->standard->name);
+        return false;
+    }
+    for (int i = 0; i < count; i++) {
+        const char *name = input_name(st, call->standard, i);
         arg_t *found = NULL;
         for (arg_t *arg = call->args; arg; arg = arg->next)
-            if (arg->name && strncasecmp(arg->name, at, length) == 0 && arg->name[length] == '\0')
+            if (arg->name && strcasecmp(arg->name, name) == 0)
                 found = arg;
         if (!found || found->output || !found->value) {
-            cm1e_st_report(st, call->place, "%s needs the input \"%.*s\"", call->standard->name, (int)length, at);
+            cm1e_st_report(st, call->place, "%s needs a value for the input \"%s\"", call->standard->name, name);
             return false;
         }
         arg_t *copy = cm1e_st_arg(st, found->place, NULL, found->value);
         ST_APPEND(ordered, copy);
-        at += length + (at[length] == ' ');
     }
     call->args = ordered.first;
     return true;
@@ -266,7 +290,7 @@ static bool check_args(st_t *st, expr_t *call)
                        call->standard->most == 1 ? "" : "s", count);
         return false;
     }
-    if (named && !order_args(st, call))
+    if (named && !order_args(st, call, count))
         return false;
     for (arg_t *arg = call->args; arg; arg = arg->next) {
         cm1e_st_expression(st, arg->value);

@@ -14,8 +14,9 @@ from st_host import Host
 
 BIN = sys.argv[1]
 PROGRAM = """
+// Comments and pragmas stand anywhere.
 INTERFACE I_Shape
-METHOD Area : LREAL
+(* first *) METHOD (* of two *) Area : LREAL
 END_METHOD
 METHOD Scale : BOOL
 VAR_INPUT factor : LREAL; END_VAR
@@ -46,7 +47,7 @@ END_PROPERTY
 bodies := bodies + 1;
 END_FUNCTION_BLOCK
 
-FUNCTION_BLOCK FB_Square EXTENDS FB_Base
+FUNCTION_BLOCK FB_Square EXTENDS (* of {both} *) FB_Base
 VAR_INPUT side : LREAL := 2; END_VAR
 METHOD Area : LREAL
 Area := side * side;
@@ -56,15 +57,18 @@ VAR_INPUT factor : LREAL; END_VAR
 Scale := SUPER^.Scale(factor);
 IF Scale THEN THIS^.side := side * factor; END_IF
 END_METHOD
-PROPERTY Side2 : LREAL
-GET
+// twice the side
+{attribute 'doubled'}
+PROPERTY Side2 : LREAL // read
+GET // and written
 Side2 := side * 2;
 END_GET
 SET
 side := Side2 / 2;
 END_SET
 END_PROPERTY
-SUPER^();
+SUPER^(); // the end
+/* again */ ACTION Clear: total := 0; END_ACTION
 END_FUNCTION_BLOCK
 
 FUNCTION_BLOCK FB_Circle EXTENDS FB_Base
@@ -141,6 +145,8 @@ REFUSED = [
     ("PROGRAM P VAR b : B; n : INT; END_VAR n := b.M(1); END_PROGRAM", "0 arguments"),
     ("FUNCTION_BLOCK D METHOD M M(); END_METHOD END_FUNCTION_BLOCK", "calls itself"),
     ("FUNCTION_BLOCK D EXTENDS B METHOD M : INT M := THIS^.N(); END_METHOD METHOD N : INT N := M(); END_METHOD "
+     "END_FUNCTION_BLOCK", "calls itself"),
+    ("FUNCTION_BLOCK D METHOD N END_METHOD N(); END_FUNCTION_BLOCK FUNCTION_BLOCK E EXTENDS D METHOD N SUPER^(); END_METHOD "
      "END_FUNCTION_BLOCK", "calls itself"),
     ("FUNCTION_BLOCK D PROPERTY X : INT GET X := 1; END_GET END_PROPERTY END_FUNCTION_BLOCK PROGRAM P VAR d : D; END_VAR "
      "d.X := 1; END_PROGRAM", "only a variable"),

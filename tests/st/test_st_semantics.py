@@ -61,6 +61,9 @@ NAMESPACE Plant
 END_NAMESPACE
 NAMESPACE Tools.Math FUNCTION Double : INT VAR_INPUT v : INT; END_VAR Double := 2 * v; END_FUNCTION END_NAMESPACE
 FUNCTION Double : INT VAR_INPUT v : INT; END_VAR Double := 200 * v; END_FUNCTION
+FUNCTION Speed : INT VAR_INPUT step : INT; END_VAR Speed := step; END_FUNCTION
+FUNCTION Next : INT VAR_IN_OUT c : INT; END_VAR c := c + 1; Next := c; END_FUNCTION
+FUNCTION Fill : BOOL VAR_IN_OUT w : WORD; END_VAR w := w OR 16#F0; Fill := TRUE; END_FUNCTION
 VAR_GLOBAL flag AT %MX0.3 : BOOL := TRUE; bits AT %MB0 : BYTE; word2 AT %MW2 : WORD; low2 AT %MB2 : BYTE; real8 AT %MD8 : REAL;
   raw8 AT %MD8 : DWORD; END_VAR
 VAR_GLOBAL g : INT := 3; END_VAR
@@ -70,7 +73,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "w : WORD; q : REF_TO INT; q2 : REF_TO Point; z : REFERENCE TO INT; zp : REFERENCE TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
-       "e : Edges; e2 : Edges2; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
+       "e : Edges; e2 : Edges2; speed : Counter; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
        "hue : Plant.Inner.Hue; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # The literal of a time and its value, in both directions.
 TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
@@ -199,6 +202,14 @@ CASES = [
      "b := hue = Plant.Inner.Hue#Green;", {"i": 8, "j": 800, "n": 2, "hue": 1, "b": 1}),
     ("b := flag; i := bits; flag := NOT flag; j := bits; word2 := 16#1234; n := low2; low2 := 16#FF; w := word2; real8 := 1.0;",
      {"b": 1, "i": 8, "j": 0, "n": 0x34, "w": 0x12FF, "raw8": 0x3F800000}),
+    # Calls: named inputs of functions with any number of them, real functions of integers, what a call changes.
+    ("i := MAX(IN2 := 5, IN1 := 3); j := MUX(K := 1, IN0 := 3, IN1 := 7); s := CONCAT(IN2 := 'b', IN1 := 'a'); n := "
+     "ADD(IN1 := 1, IN2 := 2, IN3 := 4); b := GT(IN1 := 2, IN2 := 1);", {"i": 5, "j": 7, "s": b"ab", "n": 7, "b": 1}),
+    ("l := 2 * SQRT(4) / 8 + SQRT(MAX(SQRT(16), 1)); t := T#1s * SQRT(2); d := TRUNC(10 * SQRT(2)); f := SQRT(4); "
+     "i := LREAL_TO_INT(10 * SEL(TRUE, SQRT(2), SIN(1)));", {"l": 2.5, "t": 1414213562, "d": 14, "f": 2.0, "i": 8}),
+    ("FOR i := Next(n) TO Next(n) + 2 DO j := j * 10 + i; END_FOR", {"j": 1234, "i": 5}),
+    ("w.0 := Fill(w); w.012 := TRUE; b := w.012;", {"w": 0x10F1, "b": 1}),
+    ("speed(step := 4); j := speed.total; i := 3; k(step := Twice(i));", {"j": 104, "k.total": 106}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
@@ -211,6 +222,7 @@ FAULTS = [
     ("FOR i := 1 TO 3 BY n DO j := 1; END_FOR", "steps of 0"), ("i := MUX(n + 3, 1, 2);", "3 is outside 0..1"),
     ("t := t / f;", "divided by zero"), ("i := 101; h := i;", "the value 101 is outside the range 10..100"),
     ("near := near * -3;", "-6 is outside the range -5..5"), ("n := Half(v := n);", "0 is outside the range 10..100"),
+    ("CASE a[n - 1] OF 1: j := 1; END_CASE", "-1 is outside 1..4"),
     ("k(total => near);", "102 is outside the range -5..5"),
 ]
 faults = []
