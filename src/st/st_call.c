@@ -300,14 +300,14 @@ void cm1e_st_call(st_t *st, expr_t *call, bool statement)
         unit_t *unit = cm1e_st_lookup(st, st->units, call->a->scope, call->a->place, call->a->name);
         const var_t *var = cm1e_st_find_var(st, call->a->name);
         const bool is_function = unit && unit->kind == U_FUNCTION;
-        const bool is_variable = var && (!is_function || cm1e_st_resolve(st, var->type)->kind == T_BLOCK);
-        if (!is_variable && is_function) {
+        const bool is_instance = var && cm1e_st_resolve(st, var->type)->kind == T_BLOCK;
+        if (!is_instance && is_function) {
             call_function(st, call, unit);
             return;
         }
-        if (!is_variable && cm1e_st_standard_call(st, call, call->a->name))
+        if (!is_instance && cm1e_st_standard_call(st, call, call->a->name))
             return;
-        if (!is_variable) {
+        if (!var) {
             if (unit)
                 cm1e_st_report(st, call->place, unit->kind == U_BLOCK ?
                                "\"%s\" is a function block: declare an instance of it, and call that" :

@@ -19,10 +19,12 @@ static void emit_functions(st_t *st, bool bodies)
             (unit->kind == U_METHOD && (unit->object.abstract || unit->object.owner->kind == U_INTERFACE));
         if (unit->external || unused || declared_only)
             continue;
-        if (bodies)
+        if (bodies) {
             cm1e_st_emit_unit(st, unit);
-        else
-            cm1e_st_emit_prototype(st, unit);
+            continue;
+        }
+        cm1e_st_emit_prototype(st, unit);
+        cm1e_st_emit_default_functions(st, unit);
     }
 }
 
@@ -67,6 +69,7 @@ void cm1e_st_emit(st_t *st, FILE *file, const char *name)
     emit_functions(st, false);
     cm1e_st_emit_dispatchers(st, false);
     cm1e_st_emit_dispatchers(st, true);
+    cm1e_st_emit_init_functions(st);
     emit_functions(st, true);
     st->unit = NULL;
     cm1e_st_put(st, "#line 1 \"%s.c\"\n", name);

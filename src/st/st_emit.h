@@ -23,6 +23,9 @@ bool cm1e_st_is_stored(const var_t *var);
 bool cm1e_st_needs_initial(const type_t *type);
 /** The initial value of an enumeration or a subrange without another one: the first. */
 int64_t cm1e_st_default_of(const type_t *type);
+/** An input of a function whose initial value C cannot write within a call: a function of this name gives it. */
+bool cm1e_st_has_default_function(const var_t *var);
+const char *cm1e_st_default_function(st_t *st, const var_t *var);
 /** The unit has inputs with R_EDGE or F_EDGE: edges_<type>() is called before it. */
 bool cm1e_st_has_edges(const unit_t *unit);
 /** The characters of a text in C, and the function that assigns one. */
@@ -40,6 +43,8 @@ void cm1e_st_emit_type(st_t *st, type_t *type);
 const char *cm1e_st_int64(st_t *st, int64_t value);
 /** The type of runtime functions that takes these values: enumerations and times are integers there. */
 const char *cm1e_st_plain_type(const type_t *type);
+/** The functions init_<type>(): each stands before all that uses a type, and refers to variables that stand behind it. */
+void cm1e_st_emit_init_functions(st_t *st);
 /** Gives something of this type, which is zeroed, its initial value: that of the variable or else that of its type. */
 void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr_t *initial);
 /** The same for a variable, with its FB_Init. */
@@ -47,6 +52,8 @@ void cm1e_st_emit_var_initial(st_t *st, const char *target, const var_t *var);
 
 /* st_emit_expression.c */
 void cm1e_st_emit_expression(st_t *st, const expr_t *expr);
+/** A VAR_IN_OUT of the block in a method, which may be called before the block got one: a fault then. */
+void cm1e_st_emit_in_out(st_t *st, const var_t *var);
 void cm1e_st_emit_constant(st_t *st, const type_t *type, const constant_t *value);
 /** A text as a `const char *`. */
 void cm1e_st_emit_text(st_t *st, const expr_t *expr);
@@ -64,6 +71,8 @@ void cm1e_st_emit_statements(st_t *st, const stmt_t *list);
 void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value);
 /* st_emit_unit.c */
 void cm1e_st_emit_unit(st_t *st, unit_t *unit);
+/** The functions that give its inputs their initial values. */
+void cm1e_st_emit_default_functions(st_t *st, const unit_t *unit);
 /* st_emit_tables.c */
 void cm1e_st_emit_tables(st_t *st, const char *name);
 

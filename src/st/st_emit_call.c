@@ -26,7 +26,9 @@ static void emit_missing(st_t *st, const var_t *var)
             cm1e_st_emit_text(st, var->initial);
         else
             cm1e_st_put(st, "%s", var->type->wide ? "(const uint16_t[1]){0}" : "\"\"");
-    } else if (var->initial && var->initial->value.known)
+    } else if (cm1e_st_has_default_function(var))
+        cm1e_st_put(st, "%s()", cm1e_st_default_function(st, var));
+    else if (var->initial)
         cm1e_st_emit_expression(st, var->initial);
     else if (var->type->kind == T_STRUCT || var->type->kind == T_ARRAY)
         cm1e_st_put(st, "(%s){0}", var->type->c_name);

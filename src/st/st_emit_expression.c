@@ -46,6 +46,15 @@ static const char *instance_of(const st_t *st, const unit_t *unit)
     return instance->name;
 }
 
+void cm1e_st_emit_in_out(st_t *st, const var_t *var)
+{
+    const char *says = cm1e_st_format(st->arena, "\"%s\" is a VAR_IN_OUT of %s and has no variable yet: call the instance with "
+                                      "%s := ... before its methods", var->name, var->unit->name, var->name);
+    cm1e_st_put(st, "(*(%s *)st_given(self->%s, ", cm1e_st_c_type(st, var->type), var->c_name);
+    cm1e_st_put_quoted(st, says);
+    cm1e_st_put(st, ", ST_HERE))");
+}
+
 static void emit_variable(st_t *st, const var_t *var)
 {
     if (var->section == V_EXTERNAL)
@@ -66,6 +75,8 @@ static void emit_variable(st_t *st, const var_t *var)
         cm1e_st_put(st, pointer ? "(*%s)" : "%s", var->c_name);
     else if (var->section == V_TEMP)
         cm1e_st_put(st, "%s", var->c_name);
+    else if (pointer && st->unit && st->unit->kind == U_METHOD)
+        cm1e_st_emit_in_out(st, var);
     else
         cm1e_st_put(st, pointer ? "(*self->%s)" : "self->%s%s", var->c_name, var->qualifiers & Q_EDGE ? "edge" : "");
 }
@@ -99,6 +110,8 @@ static void emit_member(st_t *st, const expr_t *expr)
         cm1e_st_put(st, "(BOOL)(((ULINT)");
         cm1e_st_emit_expression(st, expr->a);
         cm1e_st_put(st, " >> %ld) & 1u)", strtol(expr->name, NULL, 10));
+    } else if (expr->a->kind == E_THIS && expr->var->section == V_IN_OUT) {
+        emit_variable(st, expr->var);
     } else if (expr->a == st->callee) {
         cm1e_st_put(st, "fb->%s", expr->var->c_name);
     } else {

@@ -30,6 +30,18 @@ bool cm1e_st_needs_initial(const type_t *type)
     return false;
 }
 
+bool cm1e_st_has_default_function(const var_t *var)
+{
+    const type_kind_t kind = var->type->kind;
+    const bool parts = kind == T_STRUCT || kind == T_ARRAY;
+    return kind != T_STRING && (parts ? var->initial || cm1e_st_needs_initial(var->type) : var->initial && !var->initial->value.known);
+}
+
+const char *cm1e_st_default_function(st_t *st, const var_t *var)
+{
+    return cm1e_st_format(st->arena, "default_%s__%s", var->unit->c_name, var->c_name);
+}
+
 bool cm1e_st_has_edges(const unit_t *unit)
 {
     for (const var_t *var = unit->vars; var; var = var->next)

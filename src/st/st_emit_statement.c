@@ -66,6 +66,23 @@ static void emit_input(st_t *st, const arg_t *arg)
     cm1e_st_put(st, ";\n");
 }
 
+/** It ends with the present call: a local variable of a function, VAR_TEMP, or what a function itself got by VAR_IN_OUT. */
+static bool ends_with_call(const expr_t *expr)
+{
+    while ((expr->kind == E_MEMBER || expr->kind == E_INDEX) && expr->a)
+        expr = expr->a;
+    return expr->kind == E_NAME && expr->var &&
+           (expr->var->section == V_TEMP || (expr->var->unit && cm1e_st_is_function(expr->var->unit)));
+}
+
+/** Methods that are called later do not see a variable that there is no more. */
+static void emit_ends(st_t *st, const expr_t *call)
+{
+    for (const arg_t *arg = call->args; arg; arg = arg->next)
+        if (arg->value && arg->parameter && arg->parameter->section == V_IN_OUT && ends_with_call(arg->value))
+            cm1e_st_line(st, "fb->%s = NULL;\n", arg->parameter->c_name);
+}
+
 static void emit_block_call(st_t *st, const expr_t *call)
 {
     cm1e_st_line(st, "{ %s *const fb = &", call->unit->c_type);
@@ -83,6 +100,7 @@ static void emit_block_call(st_t *st, const expr_t *call)
     if (cm1e_st_has_edges(call->unit))
         cm1e_st_line(st, "edges_%s(fb);\n", call->unit->c_type);
     cm1e_st_line(st, "%s(fb);\n", call->unit->c_name);
+    emit_ends(st, call);
     st->callee = call->a;
     for (const arg_t *arg = call->args; arg; arg = arg->next)
         if (arg->value && arg->parameter && arg->parameter->section == V_OUTPUT) {
@@ -94,9 +112,23 @@ static void emit_block_call(st_t *st, const expr_t *call)
     cm1e_st_line(st, "}\n");
 }
 
+/** SUPER^() in a method: the statements of the base use its VAR_IN_OUT. */
+static void emit_in_outs(st_t *st, const unit_t *base)
+{
+    for (const var_t *var = st->unit->kind == U_METHOD ? base->vars : NULL; var; var = var->next)
+        if (var->section == V_IN_OUT) {
+            cm1e_st_begin_line(st);
+            cm1e_st_put(st, "(void)&");
+            cm1e_st_emit_in_out(st, var);
+            cm1e_st_put(st, ";\n");
+        }
+}
+
 static void emit_call(st_t *st, const stmt_t *stmt)
 {
     if (stmt->value->super && stmt->value->unit->kind == U_BLOCK) {
+        emit_in_outs(st, stmt->value->unit);
+        cm1e_st_place(st, stmt->place);
         cm1e_st_line(st, "%s((%s *)self);\n", stmt->value->unit->c_name, stmt->value->unit->c_type);
         return;
     }

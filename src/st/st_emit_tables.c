@@ -69,7 +69,20 @@ static void row(listing_t *l, const char *name, const char *c_name, const type_t
         cm1e_st_put(l->st, ", .names = names_%s, .values = values_%s, .name_count = sizeof names_%s / sizeof *names_%s",
                     type->c_name, type->c_name, type->c_name, type->c_name);
     cm1e_st_put(l->st, "},\n");
-    note_layout(l, cm1e_st_format(l->st->arena, "%s:%s:%llu;", name, cm1e_st_type_name(type), (unsigned long long)type->size));
+}
+
+/** What a value consists of, with the names of its parts: a file of RETAIN variables must mean the same. */
+static void note_shape(listing_t *l, const char *name, const type_t *type)
+{
+    note_layout(l, cm1e_st_format(l->st->arena, "%s:%s:%llu", name, cm1e_st_type_name(type), (unsigned long long)type->size));
+    if (type->kind == T_ARRAY)
+        note_shape(l, "", type->element);
+    for (const var_t *var = type->kind == T_STRUCT || type->kind == T_ENUM ? type->members : NULL; var; var = var->next)
+        if (type->kind == T_ENUM)
+            note_layout(l, cm1e_st_format(l->st->arena, ",%s=%" PRId64, var->name, var->value.integer));
+        else
+            note_shape(l, cm1e_st_format(l->st->arena, ",%s", var->name), var->type);
+    note_layout(l, ";");
 }
 
 /** A BOOL AT %MX is a bit of a byte. */
@@ -174,8 +187,10 @@ static void list_variable(listing_t *l, const char *name, const char *c_name, co
             row(l, name, c_name, type, var->address->name);
         break;
     default:
-        if (var->qualifiers & Q_RETAIN)
+        if (var->qualifiers & Q_RETAIN) {
             row(l, name, c_name, type, cm1e_st_type_name(type));
+            note_shape(l, name, type);
+        }
         break;
     }
 }

@@ -66,18 +66,6 @@ static void emit_init_calls(st_t *st, const unit_t *unit, const char *target, co
     cm1e_st_put(st, ");\n");
 }
 
-/** FB_Init is called where an instance gets its initial values, which stands before all methods. */
-static void emit_init_prototypes(st_t *st, const unit_t *unit)
-{
-    for (; unit; unit = unit->object.base) {
-        const unit_t *method = cm1e_st_init_method(unit);
-        for (var_t *var = method ? method->vars : NULL; var; var = var->next)
-            cm1e_st_emit_type(st, var->type);
-        if (method)
-            cm1e_st_emit_prototype(st, method);
-    }
-}
-
 void cm1e_st_emit_var_initial(st_t *st, const char *target, const var_t *var)
 {
     cm1e_st_emit_initial(st, target, var->type, var->initial);
@@ -85,24 +73,39 @@ void cm1e_st_emit_var_initial(st_t *st, const char *target, const var_t *var)
         emit_init_calls(st, var->type->unit, cm1e_st_format(st->arena, "&%s", target), var);
 }
 
-static void emit_init_function(st_t *st, type_t *type)
+/** Its name is known from here on; what it does is written by cm1e_st_emit_init_functions(). */
+static void declare_init_function(st_t *st, type_t *type)
 {
     if (!cm1e_st_needs_initial(type))
         return;
-    const bool block = type->kind == T_BLOCK;
-    if (block)
-        emit_init_prototypes(st, type->unit);
+    cm1e_st_put(st, "ST_UNUSED static void init_%s(%s *self);\n", type->c_name, type->c_name);
+    type->next_initial = st->initials;
+    st->initials = type;
+}
+
+static void emit_init_function(st_t *st, const type_t *type)
+{
+    const unit_t *unit = type->kind == T_BLOCK ? type->unit : NULL;
     cm1e_st_put(st, "ST_UNUSED static void init_%s(%s *self)\n{\n", type->c_name, type->c_name);
     st->indent++;
-    if (type->kind == T_BLOCK && type->unit->object.has_class)
-        cm1e_st_line(st, "self->class_ = %d;\n", type->unit->object.class_id);
+    if (unit && unit->object.has_class)
+        cm1e_st_line(st, "self->class_ = %d;\n", unit->object.class_id);
     for (const var_t *var = type->members; var; var = var->next)
         if (cm1e_st_is_stored(var) && var->section != V_IN_OUT)
             cm1e_st_emit_var_initial(st, cm1e_st_format(st->arena, "self->%s", var->c_name), var);
-    if (block && cm1e_st_has_init(type->unit) && !cm1e_st_init_takes(type->unit))
-        emit_init_calls(st, type->unit, "self", NULL);
+    if (unit && cm1e_st_has_init(unit) && !cm1e_st_init_takes(unit))
+        emit_init_calls(st, unit, "self", NULL);
     st->indent--;
     cm1e_st_put(st, "}\n");
+}
+
+void cm1e_st_emit_init_functions(st_t *st)
+{
+    for (const type_t *type = st->initials; type; type = type->next_initial) {
+        st->unit = type->kind == T_BLOCK ? type->unit : NULL; /* whose variables are those of `self` */
+        emit_init_function(st, type);
+    }
+    st->unit = NULL;
 }
 
 /** What a reference refers to may be declared later, and is a struct then. */
@@ -168,7 +171,7 @@ void cm1e_st_emit_type(st_t *st, type_t *type)
         for (var_t *var = type->members; var; var = var->next)
             cm1e_st_emit_type(st, var->type);
         emit_members(st, type);
-        emit_init_function(st, type);
+        declare_init_function(st, type);
         if (type->kind == T_BLOCK && cm1e_st_has_edges(type->unit))
             emit_edges(st, type);
         if (type->kind == T_BLOCK && type->external)

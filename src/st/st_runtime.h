@@ -93,6 +93,14 @@ ST_UNUSED static inline void *st_reach(void *to, const char *file, int line)
     return to;
 }
 
+/** The variable that a VAR_IN_OUT of a block has; `says` is told if it has none. */
+ST_UNUSED static inline void *st_given(void *to, const char *says, const char *file, int line)
+{
+    if (!to)
+        st_fail(file, line, says, 0, 0, 0);
+    return to;
+}
+
 /** A variable of an interface: the address of an instance. */
 typedef void *st_interface_t;
 

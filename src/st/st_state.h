@@ -53,6 +53,7 @@ struct st {
     unsigned error_count, suppressed;
     FILE *out;
     const expr_t *callee; /**< instance whose call is emitted: it is `fb` there */
+    type_t *initials;     /**< emitted types that have an init_...() */
     bool leaves;          /**< the unit that is emitted has a RETURN */
     int indent;
     unsigned temporaries;

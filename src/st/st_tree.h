@@ -94,6 +94,7 @@ struct type {
     bool automatic;          /**< REFERENCE TO: a name of this type is what it refers to */
     int state;               /**< 0 new, 1 being resolved, 2 resolved */
     bool emitted;
+    type_t *next_initial;    /**< in the list of those that have an init_...() */
     uint64_t size, alignment;
     type_t *next;
 };

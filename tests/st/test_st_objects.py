@@ -83,13 +83,22 @@ END_GET
 END_PROPERTY
 END_FUNCTION_BLOCK
 
+VAR_GLOBAL gi : INT := 4; gref : REF_TO INT := REF(gi); END_VAR
+FUNCTION_BLOCK FB_User
+VAR what : I_Shape; own : INT := 3; inner : REF_TO INT := REF(own); also : REFERENCE TO INT := gi; END_VAR
+VAR_INPUT ref : REF_TO INT; END_VAR
+METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; what : I_Shape; END_VAR THIS^.what := what; END_METHOD
+METHOD Sum : INT Sum := LREAL_TO_INT(what.Area()) * 1000 + ref^ * 100 + inner^ * 10 + also; END_METHOD
+END_FUNCTION_BLOCK
+
 FUNCTION LEFTOVER : INT VAR_INPUT a : INT; END_VAR
 LEFTOVER := a MOD 4;
 END_FUNCTION
 
 PROGRAM Main
 VAR sq : FB_Square; ci : FB_Circle; shape, none : I_Shape; a1, a2, a3 : LREAL; n1, n2 : STRING[20]; is0, isnt0, ok : BOOL; s2, method, get : LREAL;
-left, kept : INT; eno, eno2, timer : BOOL; t : TON; END_VAR
+left, kept, viaref, injected, mine : INT; eno, eno2, timer : BOOL; t : TON;
+kept9 : INT := 9; ref : REF_TO INT := REF(kept9); early : I_Shape := sq; user : FB_User(what := ci) := (ref := REF(kept9)); END_VAR
 ACTION Init: a3 := 5; END_ACTION
 is0 := none = 0;
 shape := sq;
@@ -110,12 +119,22 @@ method := 1; get := method + 1;
 left := LEFTOVER(EN := TRUE, a := 7, ENO => eno);
 kept := 7;
 kept := LEFTOVER(EN := FALSE, a := 8, ENO => eno2);
+viaref := ref^ + gref^;
+injected := user.Sum();
+mine := LREAL_TO_INT(early.Area());
 t(EN := FALSE, IN := TRUE, PT := T#0s, Q => timer);
 END_PROGRAM
 """
 EXPECTED = {"a1": 4, "n1": b"base", "ok": True, "a2": 3, "n2": b"circle", "is0": True, "isnt0": True, "a3": 5, "s2": 20,
             "sq.total": 9, "sq.calls": 1, "sq.bodies": 1, "sq.side": 10, "ci.total": 3, "ci.calls": 0, "method": 1, "get": 2,
-            "left": 3, "eno": True, "eno2": False, "kept": 7, "timer": False}
+            "left": 3, "eno": True, "eno2": False, "kept": 7, "timer": False, "viaref": 13,
+            "injected": 3934, "mine": 100}
+# What a method uses of the VAR_IN_OUT of its block before that has a variable, or when there is none any more.
+IN_OUT = "FUNCTION_BLOCK F VAR_IN_OUT x : INT; END_VAR METHOD M : INT M := x; END_METHOD METHOD N THIS.x := THIS.x + 1; END_METHOD " \
+         "METHOD O THIS^(x := x); END_METHOD x := x; END_FUNCTION_BLOCK FUNCTION_BLOCK E EXTENDS F METHOD P SUPER^(); END_METHOD " \
+         "END_FUNCTION_BLOCK FUNCTION Lend : INT VAR_IN_OUT f : F; END_VAR VAR own : INT := 42; END_VAR f(x := own); END_FUNCTION\n" \
+         "PROGRAM Q VAR f : F; e : E; i, n : INT; END_VAR "
+WITHOUT = ["i := f.M();", "f.O();", "e.P();", "f(x := i); i := Lend(f := f); f.N();"]
 BASE = "INTERFACE I METHOD M : INT END_METHOD END_INTERFACE FUNCTION_BLOCK B METHOD M : INT M := 1; END_METHOD " \
        "END_FUNCTION_BLOCK "
 PRIVATE = "FUNCTION_BLOCK C METHOD PRIVATE Own : INT Own := 1; END_METHOD METHOD PROTECTED Near : INT Near := Own(); " \
@@ -189,6 +208,16 @@ def check_nothing(folder):
         faults.append(f"a call by an interface without an instance: {host.fault()}")
 
 
+def check_in_out(folder):
+    host = Host(BIN, folder, IN_OUT + "n := 4; f(x := n); i := f.M(); f.N(); END_PROGRAM", "given")
+    if not host.run() or (host.value("Q.i"), host.value("Q.n")) != (4, 5):
+        faults.append(f"a method and the VAR_IN_OUT of its block: {host.fault()}, {host.value('Q.i')}, {host.value('Q.n')}")
+    for n, statements in enumerate(WITHOUT):
+        host = Host(BIN, folder, IN_OUT + statements + " END_PROGRAM", f"without{n}")
+        if host.run() or '"x" is a VAR_IN_OUT of F and has no variable' not in host.fault()[1]:
+            faults.append(f"{statements}: {host.fault()}")
+
+
 def check_refused(folder):
     path = os.path.join(folder, "refused.st")
     for source, says in REFUSED:
@@ -214,6 +243,7 @@ with tempfile.TemporaryDirectory() as directory:
     check_allowed(directory)
     check_values(directory)
     check_nothing(directory)
+    check_in_out(directory)
     check_refused(directory)
 if faults:
     sys.exit("\n".join(faults) + f"\n{len(faults)} faults")

@@ -62,6 +62,10 @@ END_NAMESPACE
 NAMESPACE Tools.Math FUNCTION Double : INT VAR_INPUT v : INT; END_VAR Double := 2 * v; END_FUNCTION END_NAMESPACE
 FUNCTION Double : INT VAR_INPUT v : INT; END_VAR Double := 200 * v; END_FUNCTION
 FUNCTION Speed : INT VAR_INPUT step : INT; END_VAR Speed := step; END_FUNCTION
+TYPE Lamps : ARRAY[0..2] OF Lamp; END_TYPE
+FUNCTION LeftOut : INT VAR_INPUT a : INT; p : Point := (y := 4); row : Row := [1, 2, 3]; q : Point; l : Lamps; END_VAR
+  LeftOut := p.x * 1000 + p.y * 100 + row[1] * 10 + q.x + l[2]; END_FUNCTION
+FUNCTION_BLOCK Leaver METHOD M : INT VAR_INPUT a : INT; p : Point; END_VAR M := p.x; END_METHOD END_FUNCTION_BLOCK
 FUNCTION Next : INT VAR_IN_OUT c : INT; END_VAR c := c + 1; Next := c; END_FUNCTION
 FUNCTION Fill : BOOL VAR_IN_OUT w : WORD; END_VAR w := w OR 16#F0; Fill := TRUE; END_FUNCTION
 VAR_GLOBAL flag AT %MX0.3 : BOOL := TRUE; bits AT %MB0 : BYTE; word2 AT %MW2 : WORD; low2 AT %MB2 : BYTE; real8 AT %MD8 : REAL;
@@ -73,7 +77,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "w : WORD; q : REF_TO INT; q2 : REF_TO Point; z : REFERENCE TO INT; zp : REFERENCE TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
-       "e : Edges; e2 : Edges2; speed : Counter; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
+       "e : Edges; e2 : Edges2; speed : Counter; leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
        "hue : Plant.Inner.Hue; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # The literal of a time and its value, in both directions.
 TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
@@ -210,6 +214,7 @@ CASES = [
     ("FOR i := Next(n) TO Next(n) + 2 DO j := j * 10 + i; END_FOR", {"j": 1234, "i": 5}),
     ("w.0 := Fill(w); w.012 := TRUE; b := w.012;", {"w": 0x10F1, "b": 1}),
     ("speed(step := 4); j := speed.total; i := 3; k(step := Twice(i));", {"j": 104, "k.total": 106}),
+    ("i := LeftOut(a := 1); j := leaver.M(a := 1);", {"i": 7438, "j": 7}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
@@ -280,7 +285,25 @@ def check_events(folder):
         faults.append(f"intervals of tasks: {intervals}")
 
 
+KEPT = "TYPE Mode : (Idle, Run := 5); Recipe : STRUCT speed : INT; depth : INT; mode : Mode; list : ARRAY[1..2] OF INT; " \
+       "END_STRUCT; END_TYPE VAR_GLOBAL RETAIN rec : ARRAY[0..1] OF Recipe; END_VAR PROGRAM P END_PROGRAM"
+KEPT_OTHERWISE = [("speed : INT; depth : INT", "depth : INT; speed : INT"), ("depth", "width"), ("Idle, Run := 5", "Run, Idle := 5"),
+                  ("[1..2]", "[0..1]")]
+
+
+def check_layouts(folder):
+    """What RETAIN variables consist of, by name: a file of others is refused."""
+    known = [Host(BIN, folder, KEPT, "kept").table.layout]
+    if Host(BIN, folder, KEPT + "\n(* again *)", "same").table.layout != known[0]:
+        faults.append("RETAIN: a comment changes the layout")
+    for n, (old, new) in enumerate(KEPT_OTHERWISE):
+        known.append(Host(BIN, folder, KEPT.replace(old, new), f"kept{n}").table.layout)
+        if known[-1] in known[:-1]:
+            faults.append(f"RETAIN: {old} and {new} have one layout")
+
+
 with tempfile.TemporaryDirectory() as folder:
+    check_layouts(folder)
     check_events(folder)
     check_cases(folder)
     check_faults(folder)
