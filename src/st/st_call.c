@@ -187,14 +187,17 @@ static void check_in_out(st_t *st, arg_t *arg)
     var_t *var = arg->parameter;
     cm1e_st_expression(st, arg->value);
     var->type = cm1e_st_resolve(st, var->type);
+    const bool constant = var->qualifiers & Q_CONSTANT, value = constant && cm1e_st_plain_kind(var->type) <= T_DT;
+    if (value) /* a number can be given, too */
+        arg->value = cm1e_st_coerce(st, arg->value, var->type, var->name);
     if (arg->value->type->kind == T_WRONG || var->type->kind == T_WRONG)
         return;
-    if (arg->value->type != var->type)
+    if (arg->value->type != var->type || (!value && !cm1e_st_is_place(arg->value)))
         cm1e_st_report(st, arg->place, "\"%s\" is a VAR_IN_OUT of type %s and needs a variable of this type, not %s",
                        var->name, cm1e_st_type_name(var->type), cm1e_st_type_name(arg->value->type));
     else if (arg->value->bit)
         cm1e_st_report(st, arg->place, "a single bit cannot be a VAR_IN_OUT");
-    else if (!(var->qualifiers & Q_CONSTANT) && cm1e_st_assignable(st, arg->value) && st->unit)
+    else if (!constant && cm1e_st_assignable(st, arg->value) && st->unit)
         cm1e_st_note_change(st, arg->value);
 }
 
@@ -264,9 +267,11 @@ static void call_function(st_t *st, expr_t *call, unit_t *unit)
 {
     call->unit = unit;
     call->type = unit->result_type ? cm1e_st_resolve(st, unit->result_type) : st->elementary[T_NONE];
-    for (var_t *var = unit->vars; var; var = var->next)
-        call->impure |= var->section == V_OUTPUT || var->section == V_IN_OUT ||
-                        (var->section == V_INPUT && cm1e_st_resolve(st, var->type)->kind == T_REF);
+    for (var_t *var = unit->vars; var; var = var->next) {
+        const type_kind_t kind = var->section == V_INPUT ? cm1e_st_resolve(st, var->type)->kind : T_NONE;
+        call->impure |= cm1e_st_gives_back(var) || kind == T_REF ||
+                        (kind == T_INTERFACE && cm1e_st_body_changes(st, unit));
+    }
     cm1e_st_note_call(st, unit);
     check_args(st, unit, call);
 }

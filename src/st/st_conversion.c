@@ -78,9 +78,9 @@ static expr_t *give_type(st_t *st, expr_t *expr, type_t *type)
     return node;
 }
 
-static bool takes_literal(const expr_t *expr, const type_t *type)
+static bool takes_literal(const expr_t *expr, type_kind_t to)
 {
-    const type_kind_t from = expr->type->kind, to = type->kind;
+    const type_kind_t from = expr->type->kind;
     if (!expr->value.known || to > T_ANY_REAL || cm1e_st_is_time(to))
         return false;
     if (from == T_ANY_REAL)
@@ -90,15 +90,22 @@ static bool takes_literal(const expr_t *expr, const type_t *type)
     return from == T_ANY_INT && (cm1e_st_is_floating(to) || to == T_ANY_INT || cm1e_st_fits(to, &expr->value));
 }
 
-/** MAX(1, 2), SIN(0.5): the literals, and with them the result, take the type that is wanted. */
-static bool retype(st_t *st, expr_t *call, type_t *type)
+/** Whether a call of literals only, MAX(1, 2) or SIN(0.5), can have another type. */
+static bool can_retype(const expr_t *call, type_kind_t to)
 {
-    const bool of_reals = cm1e_st_is_floating(call->type->kind);
-    if (of_reals && !cm1e_st_is_floating(type->kind))
+    if (!call->untyped || to > T_LREAL || (cm1e_st_is_floating(call->type->kind) && !cm1e_st_is_floating(to)))
         return false;
     for (const arg_t *arg = call->typed_args; arg; arg = arg->next)
-        if (!takes_literal(arg->value, type))
+        if (!takes_literal(arg->value, to))
             return false;
+    return true;
+}
+
+/** The literals, and with them the result, take the type that is wanted. */
+static bool retype(st_t *st, expr_t *call, type_t *type)
+{
+    if (!can_retype(call, type->kind))
+        return false;
     for (arg_t *arg = call->typed_args; arg; arg = arg->next)
         arg->value = give_type(st, arg->value, type);
     call->type = type;
@@ -123,8 +130,7 @@ static expr_t *refer(st_t *st, expr_t *expr, type_t *type, const char *what)
     return call;
 }
 
-/** Something that has an address. */
-static bool is_place(const expr_t *expr)
+bool cm1e_st_is_place(const expr_t *expr)
 {
     return expr->kind == E_NAME || expr->kind == E_MEMBER || expr->kind == E_INDEX || expr->kind == E_DEREF ||
            expr->kind == E_THIS;
@@ -133,11 +139,11 @@ static bool is_place(const expr_t *expr)
 static expr_t *coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
 {
     const type_kind_t from = expr->type->kind, to = type->kind;
-    if (expr->untyped && to <= T_LREAL && retype(st, expr, type))
+    if (retype(st, expr, type))
         return expr;
     if (expr->type == type || from == T_WRONG || to == T_WRONG)
         return expr;
-    if (takes_literal(expr, type))
+    if (takes_literal(expr, to))
         return give_type(st, expr, type);
     if (from <= T_DT && to <= T_DT && cm1e_st_widens(from, to))
         return cm1e_st_convert_node(st, expr, type);
@@ -148,7 +154,7 @@ static expr_t *coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
     if ((from == T_STRING && to == T_STRING && expr->type->wide == type->wide) || (from == T_NULL && (to == T_REF || to == T_INTERFACE)))
         return expr;
     const bool object = (from == T_BLOCK || from == T_INTERFACE) && to == T_INTERFACE;
-    if (object && cm1e_st_is_a(st, expr->type->unit, type->unit) && (from == T_INTERFACE || is_place(expr)))
+    if (object && cm1e_st_is_a(st, expr->type->unit, type->unit) && (from == T_INTERFACE || cm1e_st_is_place(expr)))
         return cm1e_st_convert_node(st, expr, type);
     return refuse(st, expr, type, what);
 }
@@ -170,7 +176,7 @@ expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
 {
     if (!type->ranged)
         return coerce(st, expr, type, what);
-    if (expr->type == type && (is_place(expr) || (expr->kind == E_CALL && expr->unit)))
+    if (expr->type == type && (cm1e_st_is_place(expr) || (expr->kind == E_CALL && expr->unit)))
         return expr;
     return confine(st, coerce(st, expr, st->elementary[type->kind], what), type, what);
 }
@@ -267,6 +273,10 @@ type_kind_t cm1e_st_type_for_both(const expr_t *a, const expr_t *b)
 {
     const type_kind_t ka = a->type->kind, kb = b->type->kind;
     if (ka == kb)
+        return ka;
+    if (kb != T_BOOL && can_retype(a, kb))
+        return kb;
+    if (ka != T_BOOL && can_retype(b, ka))
         return ka;
     if ((ka == T_ANY_INT || ka == T_ANY_REAL) && (kb == T_ANY_INT || kb == T_ANY_REAL))
         return T_ANY_REAL;

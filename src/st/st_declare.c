@@ -210,7 +210,9 @@ var_t *cm1e_st_find_var(st_t *st, const char *name)
         var = cm1e_st_map_get(st->unit->object.owner->names, name);
     if (!var)
         var = cm1e_st_map_get(st->globals, name);
-    if (var && var->section != V_EXTERNAL && var->type->state != ST_READY)
+    if (var && var->section == V_EXTERNAL && !var->global)
+        var->global = cm1e_st_map_get(st->globals, var->name);
+    if (var && var->type->state != ST_READY)
         var->type = cm1e_st_resolve(st, var->type);
     else if (var && var->type->same)
         var->type = var->type->same;

@@ -59,6 +59,10 @@ void cm1e_st_emit_constant(st_t *st, const type_t *type, const constant_t *value
 void cm1e_st_emit_text(st_t *st, const expr_t *expr);
 /* st_emit_call.c */
 void cm1e_st_emit_call(st_t *st, const expr_t *call);
+/** It is a variable in C, too: a CONSTANT is its number there. */
+bool cm1e_st_is_variable(const expr_t *expr);
+/** The address of a variable; of a value for VAR_IN_OUT CONSTANT that of a copy, which ends with the call. */
+void cm1e_st_emit_address(st_t *st, const expr_t *expr);
 /* st_emit_object.c */
 /** The name of the function that a call of a method calls, and the instance that it gets. */
 void cm1e_st_emit_method(st_t *st, const expr_t *call);

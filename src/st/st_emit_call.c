@@ -12,10 +12,19 @@ static const arg_t *arg_of(const expr_t *call, const var_t *var)
     return NULL;
 }
 
-static void emit_address(st_t *st, const expr_t *expr)
+bool cm1e_st_is_variable(const expr_t *expr)
 {
+    return cm1e_st_is_place(expr) && (!expr->value.known || expr->type->kind == T_STRING);
+}
+
+void cm1e_st_emit_address(st_t *st, const expr_t *expr)
+{
+    const bool variable = cm1e_st_is_variable(expr);
     cm1e_st_put(st, "&");
+    if (!variable)
+        cm1e_st_put(st, "(%s){", cm1e_st_c_type(st, expr->type));
     cm1e_st_emit_expression(st, expr);
+    cm1e_st_put(st, variable ? "" : "}");
 }
 
 /** An input that a call leaves out has its initial value, or 0. */
@@ -60,7 +69,7 @@ static void emit_function_call(st_t *st, const expr_t *call)
         else if (var->section == V_INPUT)
             cm1e_st_emit_expression(st, arg->value);
         else if (arg && arg->value)
-            emit_address(st, arg->value);
+            cm1e_st_emit_address(st, arg->value);
         else
             cm1e_st_put(st, "NULL");
     }
@@ -177,7 +186,7 @@ static void emit_standard(st_t *st, const expr_t *call)
         emit_args(st, call->args);
         cm1e_st_put(st, ")");
     } else if (strcmp(name, "REF") == 0 || strcmp(name, "ADR") == 0) {
-        emit_address(st, call->args->value);
+        cm1e_st_emit_address(st, call->args->value);
     } else {
         emit_real_function(st, call, name);
     }

@@ -52,8 +52,8 @@ static void emit_input(st_t *st, const arg_t *arg)
     const var_t *var = arg->parameter;
     cm1e_st_place(st, arg->place);
     if (var->section == V_IN_OUT) {
-        cm1e_st_line(st, "fb->%s = &", var->c_name);
-        cm1e_st_emit_expression(st, arg->value);
+        cm1e_st_line(st, "fb->%s = ", var->c_name);
+        cm1e_st_emit_address(st, arg->value);
     } else if (var->type->kind == T_STRING) {
         cm1e_st_line(st, "%s(fb->%s.text, %llu, ", cm1e_st_text_assign(var->type), var->c_name,
                      (unsigned long long)var->type->size);
@@ -69,6 +69,8 @@ static void emit_input(st_t *st, const arg_t *arg)
 /** It ends with the present call: a local variable of a function, VAR_TEMP, or what a function itself got by VAR_IN_OUT. */
 static bool ends_with_call(const expr_t *expr)
 {
+    if (!cm1e_st_is_variable(expr))
+        return true;
     while ((expr->kind == E_MEMBER || expr->kind == E_INDEX) && expr->a)
         expr = expr->a;
     return expr->kind == E_NAME && expr->var &&

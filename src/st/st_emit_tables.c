@@ -249,7 +249,7 @@ static void emit_program(st_t *st, const instance_t *instance)
 /** The function of a task: all its programs; of `alone`, a program without a task. */
 static void emit_task(st_t *st, const char *name, const task_t *task, const instance_t *alone)
 {
-    cm1e_st_put(st, "static void task_%s(void)\n{\n", name);
+    cm1e_st_put(st, "static void %s(void)\n{\n", name);
     st->indent = 1;
     cm1e_st_line(st, "if (st_fault.happened || setjmp(st_leave) != 0)\n        return;\n");
     cm1e_st_line(st, "st_loops_left = st_loop_limit;\n");
@@ -263,20 +263,20 @@ static void emit_task(st_t *st, const char *name, const task_t *task, const inst
 /** A task with SINGLE runs at its rising edge; with an INTERVAL too, periodically in between (IEC 61131-3). */
 static void emit_event(st_t *st, const task_t *task)
 {
-    cm1e_st_put(st, "static void task_%s_at_edge(void)\n{\n    static BOOL before;\n    const BOOL now = ", task->name);
+    cm1e_st_put(st, "static void edge_task_%s(void)\n{\n    static BOOL before;\n    const BOOL now = ", task->name);
     cm1e_st_emit_expression(st, task->single);
     cm1e_st_put(st, ", edge = now && !before;\n    before = now;\n    if (edge)\n        task_%s();\n}\n", task->name);
     if (task->interval_ns == 0)
         return;
-    cm1e_st_put(st, "static void task_%s_between(void)\n{\n    if (!", task->name);
+    cm1e_st_put(st, "static void between_task_%s(void)\n{\n    if (!", task->name);
     cm1e_st_emit_expression(st, task->single);
     cm1e_st_put(st, ")\n        task_%s();\n}\n", task->name);
 }
 
-static void emit_task_row(st_t *st, unsigned *count, const char *name, const task_t *task, const char *ending, int64_t interval_ns)
+static void emit_task_row(st_t *st, unsigned *count, const char *name, const task_t *task, const char *before, int64_t interval_ns)
 {
-    cm1e_st_put(st, "    {\"%s\", INT64_C(%" PRId64 "), %" PRId64 ", task_%s%s},\n", name, interval_ns, task->priority,
-                task->name, ending);
+    cm1e_st_put(st, "    {\"%s\", INT64_C(%" PRId64 "), %" PRId64 ", %stask_%s},\n", name, interval_ns, task->priority,
+                before, task->name);
     ++*count;
 }
 
@@ -284,23 +284,23 @@ static void emit_tasks(st_t *st)
 {
     unsigned count = 0;
     for (const task_t *task = st->tree.tasks; task; task = task->next) {
-        emit_task(st, task->name, task, NULL);
+        emit_task(st, cm1e_st_format(st->arena, "task_%s", task->name), task, NULL);
         if (task->single)
             emit_event(st, task);
     }
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         if (!instance->task)
-            emit_task(st, cm1e_st_format(st->arena, "of_%s", instance->name), NULL, instance);
+            emit_task(st, cm1e_st_format(st->arena, "program_task_%s", instance->name), NULL, instance);
     cm1e_st_put(st, "static const st_task_t st_tasks[] = {\n");
     for (const task_t *task = st->tree.tasks; task; task = task->next) {
         if (task->single)
-            emit_task_row(st, &count, cm1e_st_format(st->arena, "%s (SINGLE)", task->name), task, "_at_edge", 0);
+            emit_task_row(st, &count, cm1e_st_format(st->arena, "%s (SINGLE)", task->name), task, "edge_", 0);
         if (task->interval_ns > 0 || !task->single)
-            emit_task_row(st, &count, task->name, task, task->single ? "_between" : "", task->interval_ns);
+            emit_task_row(st, &count, task->name, task, task->single ? "between_" : "", task->interval_ns);
     }
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         if (!instance->task) {
-            cm1e_st_put(st, "    {\"%s\", 0, 65535, task_of_%s},\n", instance->name, instance->name);
+            cm1e_st_put(st, "    {\"%s\", 0, 65535, program_task_%s},\n", instance->name, instance->name);
             count++;
         }
     cm1e_st_put(st, "    {0, 0, 0, 0}\n};\nenum { ST_COUNT_tasks = %u };\n", count);

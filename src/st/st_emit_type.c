@@ -8,7 +8,7 @@ static void emit_members(st_t *st, type_t *type)
     cm1e_st_put(st, "typedef struct %s {\n", type->c_name);
     bool empty = true;
     if (type->kind == T_BLOCK && type->unit->object.has_class) {
-        cm1e_st_put(st, "    uint32_t class_;\n");
+        cm1e_st_put(st, "    uint32_t the_class;\n");
         empty = false;
     }
     for (const var_t *var = type->members; var; var = var->next) {
@@ -66,13 +66,6 @@ static void emit_init_calls(st_t *st, const unit_t *unit, const char *target, co
     cm1e_st_put(st, ");\n");
 }
 
-void cm1e_st_emit_var_initial(st_t *st, const char *target, const var_t *var)
-{
-    cm1e_st_emit_initial(st, target, var->type, var->initial);
-    if (var->type->kind == T_BLOCK && cm1e_st_init_takes(var->type->unit))
-        emit_init_calls(st, var->type->unit, cm1e_st_format(st->arena, "&%s", target), var);
-}
-
 /** Its name is known from here on; what it does is written by cm1e_st_emit_init_functions(). */
 static void declare_init_function(st_t *st, type_t *type)
 {
@@ -89,7 +82,7 @@ static void emit_init_function(st_t *st, const type_t *type)
     cm1e_st_put(st, "ST_UNUSED static void init_%s(%s *self)\n{\n", type->c_name, type->c_name);
     st->indent++;
     if (unit && unit->object.has_class)
-        cm1e_st_line(st, "self->class_ = %d;\n", unit->object.class_id);
+        cm1e_st_line(st, "self->the_class = %d;\n", unit->object.class_id);
     for (const var_t *var = type->members; var; var = var->next)
         if (cm1e_st_is_stored(var) && var->section != V_IN_OUT)
             cm1e_st_emit_var_initial(st, cm1e_st_format(st->arena, "self->%s", var->c_name), var);
@@ -221,12 +214,9 @@ static void emit_elements(st_t *st, const char *target, type_t *type, const expr
     }
 }
 
-void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr_t *initial)
+/** What a declaration gives, over the values of the type. */
+static void emit_given(st_t *st, const char *target, type_t *type, const expr_t *initial)
 {
-    if (!initial || initial->kind == E_STRUCT_INIT || initial->kind == E_ARRAY_INIT)
-        emit_default(st, target, type);
-    if (!initial)
-        return;
     if (initial->kind == E_ARRAY_INIT) {
         emit_elements(st, target, type, initial);
     } else if (initial->kind == E_STRUCT_INIT) {
@@ -242,4 +232,24 @@ void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr
         cm1e_st_emit_expression(st, initial);
         cm1e_st_put(st, ";\n");
     }
+}
+
+void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr_t *initial)
+{
+    if (!initial || initial->kind == E_STRUCT_INIT || initial->kind == E_ARRAY_INIT)
+        emit_default(st, target, type);
+    if (initial)
+        emit_given(st, target, type, initial);
+}
+
+void cm1e_st_emit_var_initial(st_t *st, const char *target, const var_t *var)
+{
+    if (var->type->kind != T_BLOCK || !cm1e_st_init_takes(var->type->unit)) {
+        cm1e_st_emit_initial(st, target, var->type, var->initial);
+        return;
+    }
+    emit_default(st, target, var->type);
+    emit_init_calls(st, var->type->unit, cm1e_st_format(st->arena, "&%s", target), var);
+    if (var->initial)
+        emit_given(st, target, var->type, var->initial);
 }

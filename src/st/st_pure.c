@@ -17,34 +17,72 @@ static bool is_own(const unit_t *unit, const expr_t *target)
     return var && var->section != V_IN_OUT && var->section != V_EXTERNAL;
 }
 
-static bool is_pure_callee(st_t *st, const expr_t *callee)
+/** The parameter that an argument of a function is for; NULL: an error that is reported elsewhere. */
+static var_t *parameter_of(const unit_t *function, const expr_t *call, const arg_t *wanted)
 {
-    const unit_t *function = callee->kind == E_NAME ? cm1e_st_map_get(st->units, callee->name) : NULL;
-    if (function && function->kind == U_FUNCTION)
-        return true; /* a function changes no global variable, and VAR_IN_OUT is seen by its caller */
-    if (callee->kind == E_NAME || callee->kind == E_MEMBER)
-        return !cm1e_st_changes(st, callee->name);
+    if (wanted->name)
+        return cm1e_st_map_get(function->names, wanted->name);
+    var_t *var = function->vars;
+    for (const arg_t *arg = call->args; var; var = var->next) {
+        if (var->section != V_INPUT && var->section != V_IN_OUT)
+            continue;
+        if (arg == wanted)
+            return var;
+        arg = arg->next;
+    }
+    return NULL;
+}
+
+/** A function changes no global variable, but what it gets by VAR_IN_OUT, by reference or by an interface. */
+static bool function_changes(st_t *st, const unit_t *unit, unit_t *function, const expr_t *call)
+{
+    for (const arg_t *arg = call->args; arg; arg = arg->next) {
+        var_t *var = parameter_of(function, call, arg);
+        const type_kind_t kind = var && var->section == V_INPUT ? cm1e_st_resolve(st, var->type)->kind : T_NONE;
+        const bool given = var && (cm1e_st_gives_back(var) || kind == T_REF);
+        if ((given && arg->value && !is_own(unit, arg->value)) || (kind == T_INTERFACE && cm1e_st_body_changes(st, function)))
+            return true;
+    }
     return false;
 }
 
-static bool expression_changes(st_t *st, const expr_t *expr)
+static bool call_changes(st_t *st, const unit_t *unit, const expr_t *call)
+{
+    const expr_t *callee = call->a;
+    unit_t *function = callee->kind == E_NAME ? cm1e_st_map_get(st->units, callee->name) : NULL;
+    if (function && function->kind == U_FUNCTION)
+        return function_changes(st, unit, function, call);
+    return (callee->kind != E_NAME && callee->kind != E_MEMBER) || cm1e_st_changes(st, callee->name);
+}
+
+/** A name that is no variable may be a property, whose GET changes something. */
+static bool property_changes(st_t *st, const unit_t *unit, const expr_t *expr)
+{
+    const unit_t *owner = unit->object.owner;
+    if (expr->kind == E_NAME && (!owner || cm1e_st_map_get(unit->names, expr->name) || cm1e_st_map_get(owner->names, expr->name)))
+        return false;
+    return (expr->kind == E_NAME || expr->kind == E_MEMBER) && !expr->bit &&
+           cm1e_st_changes(st, cm1e_st_format(st->arena, "get %s", expr->name));
+}
+
+static bool expression_changes(st_t *st, const unit_t *unit, const expr_t *expr)
 {
     if (!expr)
         return false;
-    bool changes = expr->kind == E_CALL && expr->a && !is_pure_callee(st, expr->a);
+    bool changes = expr->kind == E_CALL && expr->a ? call_changes(st, unit, expr) : property_changes(st, unit, expr);
     for (const arg_t *arg = expr->args; arg && !changes; arg = arg->next)
-        changes = arg->output || expression_changes(st, arg->value);
-    return changes || expression_changes(st, expr->a) || expression_changes(st, expr->b);
+        changes = arg->output || expression_changes(st, unit, arg->value);
+    return changes || expression_changes(st, unit, expr->a) || expression_changes(st, unit, expr->b);
 }
 
 static bool statement_changes(st_t *st, const unit_t *unit, const stmt_t *stmt)
 {
     bool changes = stmt->kind == S_CALL || (stmt->target && !is_own(unit, stmt->target)) ||
-                   expression_changes(st, stmt->target) || expression_changes(st, stmt->value) ||
-                   expression_changes(st, stmt->to) || expression_changes(st, stmt->by) ||
+                   expression_changes(st, unit, stmt->target) || expression_changes(st, unit, stmt->value) ||
+                   expression_changes(st, unit, stmt->to) || expression_changes(st, unit, stmt->by) ||
                    changes_in(st, unit, stmt->body);
     for (const branch_t *branch = stmt->branches; branch && !changes; branch = branch->next)
-        changes = expression_changes(st, branch->condition) || changes_in(st, unit, branch->body);
+        changes = expression_changes(st, unit, branch->condition) || changes_in(st, unit, branch->body);
     return changes;
 }
 
@@ -56,6 +94,15 @@ static bool changes_in(st_t *st, const unit_t *unit, const stmt_t *list)
     return false;
 }
 
+bool cm1e_st_body_changes(st_t *st, unit_t *unit)
+{
+    if (unit->object.purity == UNKNOWN) {
+        unit->object.purity = BUSY;
+        unit->object.purity = changes_in(st, unit, unit->body) ? CHANGES : PURE;
+    }
+    return unit->object.purity == CHANGES; /* BUSY: a method of this name that calls another one of it, as by SUPER^ */
+}
+
 /** Any method of this name, because which one is called may be known when the program runs only. A name that is no method
  *  is one of a standard function or an error. */
 bool cm1e_st_changes(st_t *st, const char *name)
@@ -64,13 +111,9 @@ bool cm1e_st_changes(st_t *st, const char *name)
     for (unit_t *unit = st->tree.units; unit && !changes; unit = unit->next) {
         if (unit->kind != U_METHOD || strcasecmp(unit->name, name) != 0)
             continue;
-        if (unit->object.purity == UNKNOWN) {
-            unit->object.purity = BUSY;
-            unit->object.purity = changes_in(st, unit, unit->body) ? CHANGES : PURE;
-        }
-        changes = unit->object.purity != PURE;
+        changes = cm1e_st_body_changes(st, unit);
         for (const var_t *var = unit->vars; var && !changes; var = var->next)
-            changes = var->section == V_OUTPUT || var->section == V_IN_OUT;
+            changes = cm1e_st_gives_back(var);
     }
     return changes;
 }

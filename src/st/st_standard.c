@@ -116,12 +116,14 @@ static bool one_type(st_t *st, expr_t *call, arg_t *first, bool (*good)(type_kin
 
 static bool is_any(type_kind_t kind) { return kind != T_NONE && kind <= T_ANY_REAL; }
 
-/** SQRT(2) is SQRT(2.0). */
+/** SQRT(2) is SQRT(2.0), and SQRT(MAX(1, 2)) is SQRT(MAX(1.0, 2.0)). */
 static void literals_are_real(st_t *st, expr_t *call)
 {
     for (arg_t *arg = call->args; arg; arg = arg->next)
         if (arg->value->type->kind == T_ANY_INT)
             arg->value = cm1e_st_coerce(st, arg->value, st->elementary[T_ANY_REAL], "the argument");
+        else if (arg->value->untyped && !cm1e_st_is_floating(arg->value->type->kind))
+            arg->value = cm1e_st_coerce(st, arg->value, st->elementary[T_LREAL], "the argument");
 }
 
 static bool select_one(st_t *st, expr_t *call)
@@ -222,7 +224,7 @@ static bool give_type(st_t *st, expr_t *call)
             return refuse(st, call, first, "REAL or LREAL");
         call->type = st->elementary[T_DINT];
         return true;
-    case R_MOVE: *call = *cm1e_st_settle(st, first); return true;
+    case R_MOVE: *call = *first; return true;
     case R_NOW: break;
     case R_REF: return reference(st, call);
     case R_VALID:

@@ -141,6 +141,8 @@ expr_t *cm1e_st_convert_node(st_t *st, expr_t *expr, type_t *type);
 /** An enumeration is an integer within an expression (TwinCAT, CODESYS); anything else stays what it is. */
 expr_t *cm1e_st_as_integer(st_t *st, expr_t *expr);
 /** Checks that something can be assigned to; reports why not. */
+/** Something that has an address. */
+bool cm1e_st_is_place(const expr_t *expr);
 bool cm1e_st_assignable(st_t *st, const expr_t *expr);
 /** A function may change nothing but its result, its locals and what it was given as VAR_IN_OUT. */
 void cm1e_st_note_change(st_t *st, const expr_t *expr);
@@ -203,6 +205,8 @@ bool cm1e_st_write_property(st_t *st, stmt_t *stmt);
 void cm1e_st_follow_reference(st_t *st, expr_t *expr);
 /** st_pure.c: whether a method of this name changes more than its own variables. */
 bool cm1e_st_changes(st_t *st, const char *name);
+/** Whether the statements of a method or a function change more than its own variables. */
+bool cm1e_st_body_changes(st_t *st, unit_t *unit);
 /** The block of the statements that are checked; NULL: there is none. */
 unit_t *cm1e_st_this(const st_t *st);
 /** Notes that the present unit calls another one. */

@@ -219,6 +219,12 @@ struct var {
     var_t *next;
 };
 
+/** By it a call changes a variable of its caller. */
+static inline bool cm1e_st_gives_back(const var_t *var)
+{
+    return var->section == V_OUTPUT || (var->section == V_IN_OUT && !(var->qualifiers & Q_CONSTANT));
+}
+
 /** The words in front of the name of a method, a property or a block; at most one of the first four. */
 enum { M_PUBLIC = 1, M_PRIVATE = 2, M_PROTECTED = 4, M_INTERNAL = 8, M_ACCESS = 15, M_ABSTRACT = 16, M_FINAL = 32 };
 

@@ -26,12 +26,12 @@ static void name_array(st_t *st, type_t *type)
                                (long long)(d->last < 0 ? -d->last : d->last));
     }
     type->name = cm1e_st_format(st->arena, "ARRAY [%s] OF %s", bounds, cm1e_st_type_name(type->element));
-    const char *element = type->element->kind == T_REF ? "REF" : type->element->c_name;
+    const bool unnamed = type->element->kind == T_REF || type->element->kind == T_INTERFACE; /* C has no name for each */
     unsigned same = 0;
     for (const type_t *other = st->made; other; other = other->next)
-        same += other->kind == T_ARRAY && type->element->kind == T_REF;
-    type->c_name = type->element->kind == T_REF ? cm1e_st_format(st->arena, "ARRAY%s_OF_REF_%u", parts, same)
-                                                : cm1e_st_format(st->arena, "ARRAY%s_OF_%s", parts, element);
+        same += other->kind == T_ARRAY && unnamed;
+    type->c_name = unnamed ? cm1e_st_format(st->arena, "ARRAY%s_OF_REF_%u", parts, same)
+                           : cm1e_st_format(st->arena, "ARRAY%s_OF_%s", parts, type->element->c_name);
 }
 
 /** Bounds, element and size of an array; the one with these that is there already. */
@@ -145,6 +145,7 @@ static void resolve_members(st_t *st, type_t *type)
             size = 0;
         }
     }
+    size = size ? size : 1; /* C has no empty struct */
     type->size = (size + alignment - 1) / alignment * alignment;
     type->alignment = alignment;
 }

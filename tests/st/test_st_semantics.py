@@ -62,6 +62,11 @@ END_NAMESPACE
 NAMESPACE Tools.Math FUNCTION Double : INT VAR_INPUT v : INT; END_VAR Double := 2 * v; END_FUNCTION END_NAMESPACE
 FUNCTION Double : INT VAR_INPUT v : INT; END_VAR Double := 200 * v; END_FUNCTION
 FUNCTION Speed : INT VAR_INPUT step : INT; END_VAR Speed := step; END_FUNCTION
+TYPE Nothing : STRUCT END_STRUCT; END_TYPE
+FUNCTION_BLOCK Idle METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR END_METHOD END_FUNCTION_BLOCK
+FUNCTION More : INT VAR_IN_OUT CONSTANT v : INT; END_VAR More := v + 1; END_FUNCTION
+FUNCTION_BLOCK Late VAR_INPUT a : INT := 1; END_VAR VAR_OUTPUT o : INT; END_VAR
+  METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; n : INT; END_VAR o := a; a := n; END_METHOD END_FUNCTION_BLOCK
 TYPE Lamps : ARRAY[0..2] OF Lamp; END_TYPE
 FUNCTION LeftOut : INT VAR_INPUT a : INT; p : Point := (y := 4); row : Row := [1, 2, 3]; q : Point; l : Lamps; END_VAR
   LeftOut := p.x * 1000 + p.y * 100 + row[1] * 10 + q.x + l[2]; END_FUNCTION
@@ -77,7 +82,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "w : WORD; q : REF_TO INT; q2 : REF_TO Point; z : REFERENCE TO INT; zp : REFERENCE TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
-       "e : Edges; e2 : Edges2; speed : Counter; leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
+       "e : Edges; e2 : Edges2; speed : Counter; idle : ARRAY[1..3] OF Idle; empty : ARRAY[1..3] OF Nothing; behind : BYTE := 7; late : Late(n := 5) := (a := 9); leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
        "hue : Plant.Inner.Hue; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # The literal of a time and its value, in both directions.
 TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
@@ -214,6 +219,11 @@ CASES = [
     ("FOR i := Next(n) TO Next(n) + 2 DO j := j * 10 + i; END_FOR", {"j": 1234, "i": 5}),
     ("w.0 := Fill(w); w.012 := TRUE; b := w.012;", {"w": 0x10F1, "b": 1}),
     ("speed(step := 4); j := speed.total; i := 3; k(step := Twice(i));", {"j": 104, "k.total": 106}),
+    ("i := 2; empty[i] := empty[1]; empty[3] := empty[1]; j := behind; n := late.o * 10 + late.a;", {"j": 7, "n": 19}),
+    ("i := More(v := KK); j := More(v := i + 1); n := More(v := 3) * 10 + More(v := i);", {"i": 5, "j": 7, "n": 46}),
+    # A call of literals only takes the type of what it is used with.
+    ("i := 3; i := i + SEL(b, -1, 1); j := MAX(1, 2) * i; n := MOVE(5); f := 2; f := f * SQRT(4) * SEL(b, 1.0, -1.0); "
+     "w := w OR SEL(b, 1, 2); u := LIMIT(0, u, MAX(1, 7));", {"i": 4 - 2, "j": 4, "n": 5, "f": 4.0, "w": 1, "u": 0}),
     ("i := LeftOut(a := 1); j := leaver.M(a := 1);", {"i": 7438, "j": 7}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
@@ -265,10 +275,13 @@ def check_faults(folder):
 
 EVENTS = """
 PROGRAM Main VAR n : INT; up AT %MX0.0 : BOOL; END_VAR n := n + 1; up := n MOD 4 >= 2; END_PROGRAM
+VAR_GLOBAL CONSTANT most : INT := 3; END_VAR
+PROGRAM Other VAR_EXTERNAL CONSTANT most : INT; END_VAR VAR a : ARRAY[1..most] OF INT; END_VAR a[3] := 1; END_PROGRAM
 PROGRAM Event VAR c : INT; END_VAR c := c + 1; END_PROGRAM
 CONFIGURATION C RESOURCE R ON PC TASK T1 (PRIORITY := 1); TASK T2 (SINGLE := m.up, PRIORITY := 2);
 TASK T3 (SINGLE := m.up, INTERVAL := T#10ms, PRIORITY := 3); PROGRAM m WITH T1 : Main; PROGRAM at WITH T2 : Event;
-PROGRAM both WITH T3 : Event; END_RESOURCE END_CONFIGURATION
+TASK of_last (PRIORITY := 4); TASK T2_at_edge (PRIORITY := 5); PROGRAM last : Other; PROGRAM p4 WITH of_last : Other;
+PROGRAM p5 WITH T2_at_edge : Other; PROGRAM both WITH T3 : Event; END_RESOURCE END_CONFIGURATION
 """
 
 
@@ -281,7 +294,7 @@ def check_events(folder):
     if found != (2, 6):
         faults.append(f"tasks by event ran {found} times; expected 2 and 2 + 4")
     intervals = [host.table.tasks[i].interval_ns for i in range(host.table.task_count)]
-    if intervals != [0, 0, 0, 10000000]:
+    if intervals != [0, 0, 0, 10000000, 0, 0, 0]:
         faults.append(f"intervals of tasks: {intervals}")
 
 
