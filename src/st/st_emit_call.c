@@ -235,11 +235,10 @@ static void from_text(st_t *st, const expr_t *expr)
     const type_kind_t to = expr->type->kind;
     const bool wide = expr->a->type->wide;
     const char *narrow = wide ? "st_narrow(" : "", *end = wide ? ").text" : "";
-    if (to == T_BOOL)
-        around(st, cm1e_st_format(st->arena, "(BOOL)(strcmp(%s", narrow), expr->a,
-               cm1e_st_format(st->arena, "%s, \"TRUE\") == 0)", end));
-    else if (cm1e_st_is_floating(to))
-        around(st, cm1e_st_format(st->arena, "(%s)st_real_of(%s", expr->type->name, narrow), expr->a,
+    const char *reads = to == T_BOOL ? "bool" : to == T_TIME ? "time" : to == T_ULINT || to == T_LWORD ? "unsigned" :
+                        cm1e_st_is_floating(to) ? "real" : NULL;
+    if (reads)
+        around(st, cm1e_st_format(st->arena, "(%s)st_%s_of(%s", expr->type->name, reads, narrow), expr->a,
                cm1e_st_format(st->arena, "%s)", end));
     else
         around(st, cm1e_st_format(st->arena, "(%s)st_integer_of(%s", expr->type->name, narrow), expr->a,

@@ -357,34 +357,136 @@ ST_UNUSED static inline STRING_254 st_text_of_real(double value, int digits)
     snprintf(result.text, sizeof result.text, "%.*g", digits, value);
     return result;
 }
+static const struct { const char *name; uint64_t ns; } st_time_units[] = {
+    {"d", UINT64_C(86400000000000)}, {"h", UINT64_C(3600000000000)}, {"m", UINT64_C(60000000000)}, {"s", 1000000000},
+    {"ms", 1000000}, {"us", 1000}, {"ns", 1},
+};
+enum { ST_TIME_UNITS = sizeof st_time_units / sizeof st_time_units[0] };
 /** The literal of the value: T#1h2m3s4ms, without units of which there are 0. TwinCAT and CODESYS document T#12ms for
  *  a TIME; how they write others is not known. An LTIME is a TIME here, and begins with T#, too. */
 ST_UNUSED static inline STRING_254 st_text_of_time(int64_t value)
 {
-    static const struct { const char *name; uint64_t ns; } units[] = {
-        {"d", UINT64_C(86400000000000)}, {"h", UINT64_C(3600000000000)}, {"m", UINT64_C(60000000000)}, {"s", 1000000000},
-        {"ms", 1000000}, {"us", 1000}, {"ns", 1},
-    };
     STRING_254 result;
     uint64_t left = value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
     int used = snprintf(result.text, sizeof result.text, "T#%s%s", value < 0 ? "-" : "", left ? "" : "0ms");
-    for (size_t i = 0; left > 0; left %= units[i++].ns)
-        if (left >= units[i].ns)
+    for (size_t i = 0; left > 0; left %= st_time_units[i++].ns)
+        if (left >= st_time_units[i].ns)
             used += snprintf(result.text + used, sizeof result.text - (size_t)used, "%llu%s",
-                             (unsigned long long)(left / units[i].ns), units[i].name);
+                             (unsigned long long)(left / st_time_units[i].ns), st_time_units[i].name);
     return result;
 }
 ST_UNUSED static inline STRING_254 st_text_of_bool(BOOL value)
 {
     return value ? (STRING_254){"TRUE"} : (STRING_254){"FALSE"};
 }
-/** The number that a text begins with; 0: it begins with none. */
+
+/* Texts are read as literals: 1_000, 16#FF, T#2h. What is behind the value does not count; a text that begins with none
+ * is 0. */
+
+ST_UNUSED static inline const char *st_sign_of(const char *text, int *negative)
+{
+    text += strspn(text, " \t\r\n");
+    *negative = *text == '-';
+    return text + (*text == '-' || *text == '+');
+}
+/** The value of a digit; 99: it is none. */
+ST_UNUSED static inline unsigned st_digit_of(char digit)
+{
+    return digit >= '0' && digit <= '9' ? (unsigned)(digit - '0') : digit >= 'A' && digit <= 'F' ? (unsigned)(digit - 'A') + 10 :
+           digit >= 'a' && digit <= 'f' ? (unsigned)(digit - 'a') + 10 : 99;
+}
+/** Digits; what has more than 64 bits is the largest number. */
+ST_UNUSED static inline uint64_t st_digits_of(const char **text, unsigned base)
+{
+    uint64_t value = 0;
+    for (; st_digit_of(**text) < base || (**text == '_' && st_digit_of((*text)[1]) < base); ++*text) {
+        const unsigned digit = st_digit_of(**text);
+        if (**text != '_')
+            value = value > (UINT64_MAX - digit) / base ? UINT64_MAX : value * base + digit;
+    }
+    return value;
+}
+ST_UNUSED static inline uint64_t st_number_of(const char *text)
+{
+    const uint64_t value = st_digits_of(&text, 10);
+    const int based = *text == '#' && (value == 2 || value == 8 || value == 16);
+    text += based;
+    return based ? st_digits_of(&text, (unsigned)value) : value;
+}
 ST_UNUSED static inline int64_t st_integer_of(const char *text, int64_t low, int64_t high)
 {
-    const long long value = strtoll(text, NULL, 10);
-    return value < low ? low : value > high ? high : value;
+    int negative;
+    const uint64_t number = st_number_of(st_sign_of(text, &negative));
+    if (negative)
+        return number > 0 - (uint64_t)low ? low : (int64_t)(0 - number);
+    return number > (uint64_t)high ? high : (int64_t)number;
 }
-ST_UNUSED static inline double st_real_of(const char *text) { return strtod(text, NULL); }
+ST_UNUSED static inline uint64_t st_unsigned_of(const char *text)
+{
+    int negative;
+    const uint64_t number = st_number_of(st_sign_of(text, &negative));
+    return negative ? 0 : number;
+}
+ST_UNUSED static inline double st_real_of(const char *text)
+{
+    char number[255]; /* without underscores, and without what C reads and ST does not */
+    size_t used = 0;
+    int negative;
+    for (text = st_sign_of(text, &negative); *text && strchr("0123456789_.eE+-", *text) && used < sizeof number - 1; text++)
+        if (*text != '_')
+            number[used++] = *text;
+    number[used] = '\0';
+    if (st_digit_of(number[0]) > 9 && number[0] != '.')
+        return 0;
+    return negative ? -strtod(number, NULL) : strtod(number, NULL);
+}
+/** Whether a text begins with `length` characters of a word, in upper or lower case. */
+ST_UNUSED static inline int st_begins(const char *text, const char *word, size_t length)
+{
+    for (size_t i = 0; i < length; i++)
+        if (text[i] != word[i] && (text[i] ^ word[i]) != ('a' ^ 'A'))
+            return 0;
+    return 1;
+}
+ST_UNUSED static inline BOOL st_bool_of(const char *text) { return (BOOL)st_begins(text, "TRUE", sizeof "TRUE"); }
+/** Digits, and a fraction. */
+ST_UNUSED static inline long double st_count_of(const char **text)
+{
+    long double count = (long double)st_digits_of(text, 10), place = 1;
+    if (**text == '.')
+        for (++*text; st_digit_of(**text) < 10; ++*text)
+            count += (long double)st_digit_of(**text) * (place /= 10);
+    return count;
+}
+/** "1h2m3.5s" */
+ST_UNUSED static inline TIME st_duration_of(const char *text)
+{
+    long double sum = 0;
+    int negative;
+    for (text = st_sign_of(text, &negative); st_digit_of(*text) < 10;) {
+        const long double count = st_count_of(&text);
+        const size_t length = strcspn(text, "0123456789");
+        size_t unit = 0;
+        while (unit < ST_TIME_UNITS && (strlen(st_time_units[unit].name) != length ||
+                                        !st_begins(text, st_time_units[unit].name, length)))
+            unit++;
+        if (unit == ST_TIME_UNITS)
+            break;
+        sum += count * (long double)st_time_units[unit].ns;
+        text += length;
+    }
+    const long double ns = roundl(negative ? -sum : sum);
+    return ns <= (long double)INT64_MIN ? INT64_MIN : ns >= (long double)INT64_MAX ? INT64_MAX : (TIME)ns;
+}
+ST_UNUSED static inline TIME st_time_of(const char *text)
+{
+    static const char *const begins[] = {"LTIME#", "TIME#", "LT#", "T#"};
+    text += strspn(text, " \t\r\n");
+    for (size_t i = 0; i < sizeof begins / sizeof begins[0]; i++)
+        if (st_begins(text, begins[i], strlen(begins[i])))
+            return st_duration_of(text + strlen(begins[i]));
+    return 0;
+}
 
 /* ---- loops ------------------------------------------------------------------------------------------------------- */
 

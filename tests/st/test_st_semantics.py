@@ -224,6 +224,15 @@ CASES = [
     # A call of literals only takes the type of what it is used with.
     ("i := 3; i := i + SEL(b, -1, 1); j := MAX(1, 2) * i; n := MOVE(5); f := 2; f := f * SQRT(4) * SEL(b, 1.0, -1.0); "
      "w := w OR SEL(b, 1, 2); u := LIMIT(0, u, MAX(1, 7));", {"i": 4 - 2, "j": 4, "n": 5, "f": 4.0, "w": 1, "u": 0}),
+    # Texts are read as literals.
+    ("x64 := STRING_TO_ULINT('18446744073709551615'); i := STRING_TO_INT('16#FF') + STRING_TO_INT(' -1_000x'); w := "
+     "STRING_TO_WORD('2#1111_1111'); b := STRING_TO_BOOL('true'); l := STRING_TO_LREAL('-1_0.5e1'); j := STRING_TO_INT('-99999');",
+     {"x64": 2 ** 64 - 1, "i": -745, "w": 255, "b": 1, "l": -105.0, "j": -32768}),
+    ("t := STRING_TO_TIME(' T#1h2m'); d := TIME_TO_DINT(STRING_TO_TIME('ltime#2.5S3ms')); l := STRING_TO_LREAL('0x1A') + "
+     "STRING_TO_LREAL('inf'); i := LWORD_TO_INT(STRING_TO_LWORD('-5')); b := STRING_TO_TIME('5') = T#0s;",
+     {"t": 3720 * 10**9, "d": 2503, "l": 0.0, "i": 0, "b": 1}),
+    *((f"t := STRING_TO_TIME('{text}'); y2 := TIME_TO_WSTRING(WSTRING_TO_TIME(\"{text}\"));", {"t": value, "y2": text})
+      for text, value in TIMES),
     ("i := LeftOut(a := 1); j := leaver.M(a := 1);", {"i": 7438, "j": 7}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
