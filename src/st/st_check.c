@@ -140,9 +140,12 @@ static void check_instance(st_t *st, instance_t *instance)
 static void default_instances(st_t *st)
 {
     args_t none = {0};
-    unit_t *units[256];
-    int count = 0;
-    for (unit_t *unit = st->tree.units; unit && count < 256; unit = unit->next)
+    size_t count = 0;
+    for (const unit_t *unit = st->tree.units; unit; unit = unit->next)
+        count += unit->kind == U_PROGRAM;
+    unit_t **units = cm1e_st_take(st->arena, (count + 1) * sizeof(unit_t *));
+    count = 0;
+    for (unit_t *unit = st->tree.units; unit; unit = unit->next)
         if (unit->kind == U_PROGRAM)
             units[count++] = unit;
     while (count-- > 0) /* the list has the last one first */

@@ -46,7 +46,7 @@ static void fold_any(st_t *st, expr_t *expr)
     }
     switch (expr->op) {
     case OP_NEGATE:
-        overflow = expr->a->value.huge ? (uint64_t)a != (uint64_t)INT64_MAX + 1 : false;
+        overflow = expr->a->value.huge ? (uint64_t)a != (uint64_t)INT64_MAX + 1 : a == INT64_MIN;
         result = (int64_t)(0 - (uint64_t)a);
         break;
     case OP_ADD: overflow |= __builtin_add_overflow(a, b, &result); break;

@@ -11,6 +11,14 @@ static void emit_embedded(st_t *st, const char *name, const char *begin, const c
     fwrite(begin, 1, (size_t)(end - begin), st->out);
 }
 
+/** What follows comes from no source. */
+static void begin_own(st_t *st, const char *name)
+{
+    cm1e_st_put(st, "#line 1 ");
+    cm1e_st_put_quoted(st, cm1e_st_format(st->arena, "%s.c", name));
+    cm1e_st_put(st, "\n");
+}
+
 static void emit_functions(st_t *st, bool bodies)
 {
     for (unit_t *unit = st->tree.units; unit; unit = unit->next) {
@@ -61,7 +69,8 @@ void cm1e_st_emit(st_t *st, FILE *file, const char *name)
     cm1e_st_put(st, "/* Translated from Structured Text by cm1e st build. Compile with -std=c11 -fwrapv -fPIC -shared. */\n");
     emit_embedded(st, "st_program.h", cm1e_st_program_begin, cm1e_st_program_end);
     emit_embedded(st, "st_runtime.h", cm1e_st_runtime_begin, cm1e_st_runtime_end);
-    cm1e_st_put(st, "\n#line 1 \"%s.c\"\n", name);
+    cm1e_st_put(st, "\n");
+    begin_own(st, name);
     cm1e_st_put(st, "/* ---- types ---- */\n\n");
     emit_types(st);
     cm1e_st_put(st, "\n/* ---- variables ---- */\n\n");
@@ -72,6 +81,6 @@ void cm1e_st_emit(st_t *st, FILE *file, const char *name)
     cm1e_st_emit_init_functions(st);
     emit_functions(st, true);
     st->unit = NULL;
-    cm1e_st_put(st, "#line 1 \"%s.c\"\n", name);
+    begin_own(st, name);
     cm1e_st_emit_tables(st, name);
 }

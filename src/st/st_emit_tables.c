@@ -151,7 +151,7 @@ static void list_values(listing_t *l, const char *name, const char *c_name, cons
     } else if (type->kind == T_STRUCT || block) {
         for (const var_t *var = type->members; var; var = var->next) {
             const bool inner = type->external && block && var->section == V_LOCAL;
-            if (inner || var->section == V_TEMP || var->section == V_EXTERNAL || var->section == V_IN_OUT)
+            if (inner || (var->qualifiers & Q_CONSTANT) || var->section == V_TEMP || var->section == V_EXTERNAL || var->section == V_IN_OUT)
                 continue;
             list_values(l, cm1e_st_format(arena, "%s.%s", name, var->name),
                         cm1e_st_format(arena, "%s.%s", c_name, var->c_name), var->type);
@@ -314,16 +314,29 @@ static void emit_memory_initial(st_t *st, const var_t *var)
         cm1e_st_line(st, "%s |= 1u << %d;\n", var->c_name, var->memory_bit - 1);
 }
 
+/** In the order of their declaration, which that of the list is not. */
+static void emit_globals_initial(st_t *st)
+{
+    size_t count = 0;
+    for (const var_t *var = st->tree.globals; var; var = var->next)
+        count++;
+    const var_t **vars = cm1e_st_take(st->arena, (count + 1) * sizeof(const var_t *));
+    size_t at = count;
+    for (const var_t *var = st->tree.globals; var; var = var->next)
+        vars[--at] = var;
+    for (; at < count; at++)
+        if (vars[at]->in_memory)
+            emit_memory_initial(st, vars[at]);
+        else if (!st->sources[vars[at]->place.file].external)
+            cm1e_st_emit_var_initial(st, vars[at]->c_name, vars[at]);
+}
+
 static void emit_begin(st_t *st)
 {
     cm1e_st_put(st, "static void begin(void)\n{\n");
     st->indent = 1;
     cm1e_st_line(st, "if (setjmp(st_leave) != 0)\n        return;\n    st_loops_left = st_loop_limit;\n"); /* FB_Init may fail */
-    for (const var_t *var = st->tree.globals; var; var = var->next)
-        if (var->in_memory)
-            emit_memory_initial(st, var);
-        else if (!st->sources[var->place.file].external)
-            cm1e_st_emit_var_initial(st, var->c_name, var);
+    emit_globals_initial(st);
     for (const unit_t *unit = st->tree.units; unit; unit = unit->next)
         for (const var_t *var = unit->vars; var; var = var->next)
             if (var->in_memory)

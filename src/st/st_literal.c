@@ -98,6 +98,8 @@ static expr_t *typed_number(st_t *st, place_t place, const char *name, const cha
         cm1e_st_report(st, place, "%s is not a value of %s", text, type->name);
         return wrong(st, place);
     }
+    if (type->kind == T_REAL)
+        expr->value.real = (float)expr->value.real;
     expr->type = type;
     return expr;
 }

@@ -32,6 +32,9 @@ static void check_access(st_t *st, const expr_t *call, const unit_t *method)
 static void finish(st_t *st, expr_t *call, unit_t *method, expr_t *object, unit_t *seen_as)
 {
     check_access(st, call, method);
+    if (call->super && method->object.abstract)
+        cm1e_st_report(st, call->place, "\"%s\" of \"%s\" is ABSTRACT: there is nothing that could be called",
+                       cm1e_st_plain_name(method), seen_as->name);
     call->unit = method;
     call->seen_as = seen_as;
     call->a = object;
@@ -40,6 +43,8 @@ static void finish(st_t *st, expr_t *call, unit_t *method, expr_t *object, unit_
     call->type = method->result_type ? cm1e_st_resolve(st, method->result_type) : st->elementary[T_NONE];
     if (object && call->impure)
         cm1e_st_note_change(st, object);
+    if (call->super)
+        cm1e_st_note_call(st, method);
     for (unit_t *other = st->tree.units; other && !call->super; other = other->next)
         if (other->kind == U_METHOD && strcasecmp(other->name, method->name) == 0 &&
             cm1e_st_is_a(st, other->object.owner, seen_as))
@@ -82,7 +87,7 @@ static bool call_base(st_t *st, expr_t *call, const char *name)
     unit_t *base = cm1e_st_this(st)->object.base;
     unit_t *method = name ? cm1e_st_find_method(base, name) : base;
     call->super = true;
-    if (!method || (name && method->object.abstract)) {
+    if (!method) {
         /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): SUPER is known where there is a base only */
         cm1e_st_report(st, call->place, "\"%s\" has no method \"%s\" that could be called", base->name, name ? name : "");
         call->type = st->elementary[T_WRONG];
@@ -125,12 +130,19 @@ bool cm1e_st_call_method(st_t *st, expr_t *call, bool statement)
 
 /* ---- properties -------------------------------------------------------------------------------------------------- */
 
+/** GET or SET of a property; NULL: it is none. With SUPER^ that of the base, whatever overrides it. */
 static unit_t *accessor(st_t *st, expr_t *expr, const char *what, expr_t **object, unit_t **seen_as)
 {
     const char *name = expr->name ? cm1e_st_format(st->arena, "%s %s", what, expr->name) : "";
     unit_t *this = cm1e_st_this(st);
     *object = expr->kind == E_MEMBER ? expr->a : NULL;
     *seen_as = this;
+    if (expr->kind == E_MEMBER && !expr->bit && is_super(st, expr->a)) {
+        *object = NULL;
+        *seen_as = this->object.base;
+        expr->super = true;
+        return cm1e_st_find_method(this->object.base, name);
+    }
     if (expr->kind == E_NAME)
         return this && !cm1e_st_find_var(st, expr->name) ? cm1e_st_find_method(this, name) : NULL;
     return expr->kind == E_MEMBER && !expr->bit ? method_of(st, expr->a, name, seen_as) : NULL;
@@ -157,6 +169,7 @@ bool cm1e_st_write_property(st_t *st, stmt_t *stmt)
     arg_t *arg = cm1e_st_arg(st, stmt->place, NULL, stmt->value);
     ST_APPEND(args, arg);
     stmt->value = cm1e_st_with_args(st, E_CALL, stmt->target->place, NULL, args);
+    stmt->value->super = stmt->target->super;
     stmt->kind = S_CALL;
     finish(st, stmt->value, method, object, seen_as);
     return true;

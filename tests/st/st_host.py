@@ -50,12 +50,12 @@ def fast_compiler(folder):
 class Host:
     """One built program."""
 
-    def __init__(self, binaries, folder, text, name="program"):
+    def __init__(self, binaries, folder, text, name="program", *words):
         self.source = os.path.join(folder, name + ".st")
         library = os.path.join(folder, name + ".so")
         with open(self.source, "w", encoding="utf-8") as file:
             file.write(text)
-        result = subprocess.run([os.path.join(binaries, "cm1e"), "st", "build", self.source, "-o", library],
+        result = subprocess.run([os.path.join(binaries, "cm1e"), "st", "build", self.source, "-o", library, *words],
                                 capture_output=True, text=True, timeout=300, errors="replace", env=fast_compiler(folder))
         if result.returncode != 0 or result.stderr:
             raise RuntimeError(f"{result.stderr}{result.stdout}\n{text if len(text) < 5000 else self.source}")

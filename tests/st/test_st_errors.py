@@ -132,6 +132,7 @@ STATEMENTS = [
     ("q := REF(IN := i);", "9:6", ["without a name"]),
     ("i := SQRT(2);", "9:6", ["INT", "LREAL"]),
     ("i := 1; {IF defined (X)} i := 2; {ELSE} i := 3; {END_IF}", "9:9", ["{IF ...}", "not supported"]),
+    ("k := -(-9223372036854775808);", "9:6", ["64 bits"]),
     ("i := Change(3);", "9:13", ["variable"]),
     ("i := Change(d);", "9:13", ["VAR_IN_OUT of type INT"]),
     ("i := Change();", "9:6", ["needs a value"]),

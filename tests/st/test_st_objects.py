@@ -87,13 +87,15 @@ VAR_GLOBAL gi : INT := 4; gref : REF_TO INT := REF(gi); END_VAR
 FUNCTION NEXT_OF : INT VAR_IN_OUT c : INT; END_VAR c := c + 1; NEXT_OF := c; END_FUNCTION
 INTERFACE I_Empty END_INTERFACE
 FUNCTION_BLOCK FB_Drive IMPLEMENTS I_Empty
-VAR class : INT := 1; END_VAR
+VAR class : INT := 1; END_VAR VAR CONSTANT fixed : INT := 3; END_VAR
+PROPERTY Grade : INT GET Grade := class + fixed; END_GET SET class := Grade; END_SET END_PROPERTY
 METHOD Axis_Reset : INT Axis_Reset := class; END_METHOD
 METHOD Calc : INT VAR_INPUT x : INT; END_VAR Calc := x * 2; END_METHOD
 METHOD Local : INT VAR own : INT; END_VAR Local := NEXT_OF(c := own); END_METHOD
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK FB_Drive_Axis EXTENDS FB_Drive
 METHOD Reset : INT Reset := 2; END_METHOD
+PROPERTY Grade : INT GET Grade := SUPER^.Grade * 2; END_GET SET SUPER^.Grade := Grade + 1; END_SET END_PROPERTY
 METHOD Calc : INT VAR_INPUT x : INT; END_VAR Calc := SUPER^.Calc(x := x) + x; END_METHOD
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK FB_User
@@ -109,7 +111,7 @@ END_FUNCTION
 
 PROGRAM Main
 VAR sq : FB_Square; ci : FB_Circle; shape, none : I_Shape; a1, a2, a3 : LREAL; n1, n2 : STRING[20]; is0, isnt0, ok : BOOL; s2, method, get : LREAL;
-drive : FB_Drive; axis : FB_Drive_Axis; shapes : ARRAY[1..2] OF I_Shape; empties : ARRAY[1..2] OF I_Empty; names, sums : INT;
+drive : FB_Drive; axis : FB_Drive_Axis; shapes : ARRAY[1..2] OF I_Shape; empties : ARRAY[1..2] OF I_Empty; names, sums, grade : INT;
 left, kept, viaref, injected, mine : INT; eno, eno2, timer : BOOL; t : TON;
 kept9 : INT := 9; ref : REF_TO INT := REF(kept9); early : I_Shape := sq; user : FB_User(what := ci) := (ref := REF(kept9)); END_VAR
 ACTION Init: a3 := 5; END_ACTION
@@ -135,6 +137,7 @@ kept := LEFTOVER(EN := FALSE, a := 8, ENO => eno2);
 shapes[1] := sq; empties[1] := drive;
 names := drive.Axis_Reset() * 10 + axis.Reset();
 sums := axis.Calc(4) + axis.Calc(5) * 100 + axis.Local();
+grade := axis.Grade; axis.Grade := 6; grade := grade * 100 + axis.Grade;
 viaref := ref^ + gref^;
 injected := user.Sum();
 mine := LREAL_TO_INT(early.Area());
@@ -144,7 +147,7 @@ END_PROGRAM
 EXPECTED = {"a1": 4, "n1": b"base", "ok": True, "a2": 3, "n2": b"circle", "is0": True, "isnt0": True, "a3": 5, "s2": 20,
             "sq.total": 9, "sq.calls": 1, "sq.bodies": 1, "sq.side": 10, "ci.total": 3, "ci.calls": 0, "method": 1, "get": 2,
             "left": 3, "eno": True, "eno2": False, "kept": 7, "timer": False, "viaref": 13,
-            "injected": 3934, "names": 12, "sums": 1513, "mine": 100}
+            "injected": 3934, "names": 12, "grade": 820, "sums": 1513, "mine": 100}
 # What a method uses of the VAR_IN_OUT of its block before that has a variable, or when there is none any more.
 IN_OUT = "FUNCTION_BLOCK F VAR_IN_OUT x : INT; END_VAR METHOD M : INT M := x; END_METHOD METHOD N THIS.x := THIS.x + 1; END_METHOD " \
          "METHOD O THIS^(x := x); END_METHOD x := x; END_FUNCTION_BLOCK FUNCTION_BLOCK E EXTENDS F METHOD P SUPER^(); END_METHOD " \
@@ -191,6 +194,10 @@ REFUSED = [
     ("FUNCTION_BLOCK D IMPLEMENTS I VAR n : INT; END_VAR METHOD M : INT n := n + 1; M := n; END_METHOD END_FUNCTION_BLOCK FUNCTION N "
      ": INT VAR_INPUT o : I; END_VAR N := o.M(); END_FUNCTION PROGRAM P VAR d : D; i : INT; END_VAR i := N(d) + N(d); END_PROGRAM",
      "can change variables"),
+    ("FUNCTION_BLOCK D METHOD Q R(); END_METHOD METHOD R END_METHOD END_FUNCTION_BLOCK FUNCTION_BLOCK E EXTENDS D METHOD Q SUPER^.Q(); "
+     "END_METHOD METHOD R Q(); END_METHOD END_FUNCTION_BLOCK", "calls itself"),
+    ("FUNCTION_BLOCK ABSTRACT D METHOD ABSTRACT Q END_METHOD END_FUNCTION_BLOCK FUNCTION_BLOCK E EXTENDS D METHOD Q SUPER^.Q(); "
+     "END_METHOD END_FUNCTION_BLOCK", '"Q" of "D" is ABSTRACT'),
     ("FUNCTION_BLOCK D PROPERTY X : INT GET X := 1; END_GET END_PROPERTY END_FUNCTION_BLOCK PROGRAM P VAR d : D; END_VAR "
      "d.X := 1; END_PROGRAM", "only a variable"),
     (PRIVATE + "PROGRAM P VAR c : C; n : INT; END_VAR n := c.Own(); END_PROGRAM", '"Own" of "C" is PRIVATE'),
@@ -224,6 +231,10 @@ def check_values(folder):
     for name, value in EXPECTED.items():
         if host.value(f"Main.{name}") != value:
             faults.append(f"{name} is {host.value(f'Main.{name}')!r}; expected {value!r}")
+
+
+    if any(name.lower().endswith(".fixed") for name in host.variables):
+        faults.append("a constant of a block is listed as a variable")
 
 
 def check_nothing(folder):

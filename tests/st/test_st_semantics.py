@@ -75,7 +75,7 @@ FUNCTION Next : INT VAR_IN_OUT c : INT; END_VAR c := c + 1; Next := c; END_FUNCT
 FUNCTION Fill : BOOL VAR_IN_OUT w : WORD; END_VAR w := w OR 16#F0; Fill := TRUE; END_FUNCTION
 VAR_GLOBAL flag AT %MX0.3 : BOOL := TRUE; bits AT %MB0 : BYTE; word2 AT %MW2 : WORD; low2 AT %MB2 : BYTE; real8 AT %MD8 : REAL;
   raw8 AT %MD8 : DWORD; END_VAR
-VAR_GLOBAL g : INT := 3; END_VAR
+VAR_GLOBAL g : INT := 3; over AT %MW20 : INT := 4; under AT %MB21 : BYTE := 7; END_VAR
 VAR_GLOBAL CONSTANT KK : INT := 4; KK2 : INT := KK * 2 + 1; END_VAR
 """
 VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Small; p : Point; x : Box; r : Row; " \
@@ -224,6 +224,7 @@ CASES = [
     # A call of literals only takes the type of what it is used with.
     ("i := 3; i := i + SEL(b, -1, 1); j := MAX(1, 2) * i; n := MOVE(5); f := 2; f := f * SQRT(4) * SEL(b, 1.0, -1.0); "
      "w := w OR SEL(b, 1, 2); u := LIMIT(0, u, MAX(1, 7));", {"i": 4 - 2, "j": 4, "n": 5, "f": 4.0, "w": 1, "u": 0}),
+    ("i := over; l := REAL#0.1; b := REAL#0.1 = LREAL#0.1;", {"i": 0x704, "l": 0.10000000149011612, "b": 0}),
     # Texts are read as literals.
     ("x64 := STRING_TO_ULINT('18446744073709551615'); i := STRING_TO_INT('16#FF') + STRING_TO_INT(' -1_000x'); w := "
      "STRING_TO_WORD('2#1111_1111'); b := STRING_TO_BOOL('true'); l := STRING_TO_LREAL('-1_0.5e1'); j := STRING_TO_INT('-99999');",
@@ -257,7 +258,7 @@ def program(number, body):
 
 
 def check_cases(folder):
-    host = Host(BIN, folder, UNITS + "".join(program(n, body) for n, (body, _) in enumerate(CASES)), "cases")
+    host = Host(BIN, folder, UNITS + "".join(program(n, body) for n, (body, _) in enumerate(CASES)), "cases", "--variables", "20000")
     for n, (body, expected) in enumerate(CASES):
         host.table.begin()
         for i in range(host.table.task_count):
