@@ -134,7 +134,13 @@ simple_type: dotted { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); }
 text_type: STRING { $$ = 0; } | WSTRING { $$ = 1; };
 
 /* ---- variables ---- */
-initial: %empty { $$ = NULL; } | ASSIGN constant_initial { $$ = $2; };
+initial: %empty { $$ = NULL; } | ASSIGN constant_initial { $$ = $2; }
+    | REF_ASSIGN expr { /* REF= x is := REF(x) */
+        args_t args = {0};
+        arg_t *arg = cm1e_st_arg(ST, @2, NULL, $2);
+        ST_APPEND(args, arg);
+        $$ = cm1e_st_with_args(ST, E_CALL, @2, cm1e_st_named(ST, E_NAME, @2, NULL, "REF"), args);
+    };
 constant_initial: expr { $$ = $1; }
     | '[' element_inits ']' { $$ = cm1e_st_with_args(ST, E_ARRAY_INIT, @1, NULL, $2); }
     | '(' member_inits ')' { $$ = cm1e_st_with_args(ST, E_STRUCT_INIT, @1, NULL, $2); };

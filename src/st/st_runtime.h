@@ -25,6 +25,8 @@
 #endif
 /* GCC 12 makes |x| of IF x < 0 THEN x := 0 - x, and takes that for above 0, although it wraps at the smallest number. */
 #pragma GCC optimize("no-ssa-phiopt")
+#else
+#pragma clang diagnostic ignored "-Wparentheses-equality" /* every operation has brackets */
 #endif
 #define ST_UNUSED __attribute__((unused))
 #define ST_EXPORT __attribute__((visibility("default")))

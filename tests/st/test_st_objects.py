@@ -99,10 +99,10 @@ PROPERTY Grade : INT GET Grade := SUPER^.Grade * 2; END_GET SET SUPER^.Grade := 
 METHOD Calc : INT VAR_INPUT x : INT; END_VAR Calc := SUPER^.Calc(x := x) + x; END_METHOD
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK FB_User
-VAR what : I_Shape; own : INT := 3; inner : REF_TO INT := REF(own); also : REFERENCE TO INT := gi; END_VAR
+VAR what : I_Shape; own : INT := 3; inner : REF_TO INT := REF(own); also : REFERENCE TO INT REF= gi; too : REFERENCE TO INT := gi; END_VAR
 VAR_INPUT ref : REF_TO INT; END_VAR
 METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; what : I_Shape; END_VAR THIS^.what := what; END_METHOD
-METHOD Sum : INT Sum := LREAL_TO_INT(what.Area()) * 1000 + ref^ * 100 + inner^ * 10 + also; END_METHOD
+METHOD Sum : INT Sum := LREAL_TO_INT(what.Area()) * 1000 + ref^ * 100 + inner^ * 10 + also + too - 4; END_METHOD
 END_FUNCTION_BLOCK
 
 FUNCTION LEFTOVER : INT VAR_INPUT a : INT; END_VAR
