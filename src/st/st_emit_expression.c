@@ -48,8 +48,8 @@ static const char *instance_of(const st_t *st, const unit_t *unit)
 
 void cm1e_st_emit_in_out(st_t *st, const var_t *var)
 {
-    const char *says = cm1e_st_format(st->arena, "\"%s\" is a VAR_IN_OUT of %s and has no variable yet: call the instance with "
-                                      "%s := ... before its methods", var->name, var->unit->name, var->name);
+    const char *says = cm1e_st_format(st->arena, "\"%s\" is a VAR_IN_OUT of %s and has no variable yet: call the instance "
+                                      "with %s := ... before its methods", var->name, var->unit->name, var->name);
     cm1e_st_put(st, "(*(%s *)st_given(self->%s, ", cm1e_st_c_type(st, var->type), var->c_name);
     cm1e_st_put_quoted(st, says);
     cm1e_st_put(st, ", ST_HERE))");

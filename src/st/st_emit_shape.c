@@ -33,8 +33,9 @@ bool cm1e_st_needs_initial(const type_t *type)
 bool cm1e_st_has_default_function(const var_t *var)
 {
     const type_kind_t kind = var->type->kind;
-    const bool parts = kind == T_STRUCT || kind == T_ARRAY;
-    return kind != T_STRING && (parts ? var->initial || cm1e_st_needs_initial(var->type) : var->initial && !var->initial->value.known);
+    if (kind == T_STRUCT || kind == T_ARRAY)
+        return var->initial || cm1e_st_needs_initial(var->type);
+    return kind != T_STRING && var->initial && !var->initial->value.known;
 }
 
 const char *cm1e_st_default_function(st_t *st, const var_t *var)

@@ -74,7 +74,8 @@ static void row(listing_t *l, const char *name, const char *c_name, const type_t
 /** What a value consists of, with the names of its parts: a file of RETAIN variables must mean the same. */
 static void note_shape(listing_t *l, const char *name, const type_t *type)
 {
-    note_layout(l, cm1e_st_format(l->st->arena, "%s:%s:%llu", name, cm1e_st_type_name(type), (unsigned long long)type->size));
+    note_layout(l, cm1e_st_format(l->st->arena, "%s:%s:%llu", name, cm1e_st_type_name(type),
+                                  (unsigned long long)type->size));
     if (type->kind == T_ARRAY)
         note_shape(l, "", type->element);
     for (const var_t *var = type->kind == T_STRUCT || type->kind == T_ENUM ? type->members : NULL; var; var = var->next)
@@ -151,7 +152,8 @@ static void list_values(listing_t *l, const char *name, const char *c_name, cons
     } else if (type->kind == T_STRUCT || block) {
         for (const var_t *var = type->members; var; var = var->next) {
             const bool inner = type->external && block && var->section == V_LOCAL;
-            if (inner || (var->qualifiers & Q_CONSTANT) || var->section == V_TEMP || var->section == V_EXTERNAL || var->section == V_IN_OUT)
+            if (inner || (var->qualifiers & Q_CONSTANT) || var->section == V_TEMP || var->section == V_EXTERNAL ||
+                var->section == V_IN_OUT)
                 continue;
             list_values(l, cm1e_st_format(arena, "%s.%s", name, var->name),
                         cm1e_st_format(arena, "%s.%s", c_name, var->c_name), var->type);
@@ -273,7 +275,8 @@ static void emit_event(st_t *st, const task_t *task)
     cm1e_st_put(st, ")\n        task_%s();\n}\n", task->name);
 }
 
-static void emit_task_row(st_t *st, unsigned *count, const char *name, const task_t *task, const char *before, int64_t interval_ns)
+static void emit_task_row(st_t *st, unsigned *count, const char *name, const task_t *task, const char *before,
+                          int64_t interval_ns)
 {
     cm1e_st_put(st, "    {\"%s\", INT64_C(%" PRId64 "), %" PRId64 ", %stask_%s},\n", name, interval_ns, task->priority,
                 before, task->name);

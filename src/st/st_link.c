@@ -7,8 +7,8 @@
 const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owner, const char *name)
 {
     const bool get = strncmp(name, "get ", 4) == 0, set = strncmp(name, "set ", 4) == 0;
-    return cm1e_st_format(st->arena, "%s_%s__%s%s", prefix, cm1e_st_c_name(st, owner->name), get ? "get__" : set ? "set__" : "",
-                          get || set ? name + 4 : name);
+    return cm1e_st_format(st->arena, "%s_%s__%s%s", prefix, cm1e_st_c_name(st, owner->name),
+                          get ? "get__" : set ? "set__" : "", get || set ? name + 4 : name);
 }
 
 /* ---- links ------------------------------------------------------------------------------------------------------- */

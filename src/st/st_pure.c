@@ -40,7 +40,9 @@ static bool function_changes(st_t *st, const unit_t *unit, unit_t *function, con
         var_t *var = parameter_of(function, call, arg);
         const type_kind_t kind = var && var->section == V_INPUT ? cm1e_st_resolve(st, var->type)->kind : T_NONE;
         const bool given = var && (cm1e_st_gives_back(var) || kind == T_REF);
-        if ((given && arg->value && !is_own(unit, arg->value)) || (kind == T_INTERFACE && cm1e_st_body_changes(st, function)))
+        if (given && arg->value && !is_own(unit, arg->value))
+            return true;
+        if (kind == T_INTERFACE && cm1e_st_body_changes(st, function))
             return true;
     }
     return false;
@@ -59,7 +61,8 @@ static bool call_changes(st_t *st, const unit_t *unit, const expr_t *call)
 static bool property_changes(st_t *st, const unit_t *unit, const expr_t *expr)
 {
     const unit_t *owner = unit->object.owner;
-    if (expr->kind == E_NAME && (!owner || cm1e_st_map_get(unit->names, expr->name) || cm1e_st_map_get(owner->names, expr->name)))
+    if (expr->kind == E_NAME &&
+        (!owner || cm1e_st_map_get(unit->names, expr->name) || cm1e_st_map_get(owner->names, expr->name)))
         return false;
     return (expr->kind == E_NAME || expr->kind == E_MEMBER) && !expr->bit &&
            cm1e_st_changes(st, cm1e_st_format(st->arena, "get %s", expr->name));

@@ -105,7 +105,7 @@ cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag)
 
 /* ---- what the lexer calls ---------------------------------------------------------------------------------------- */
 
-/** What stands between words, and does not count: blanks, comments, pragmas, the mark of UTF-8 at the beginning of a file. */
+/** What stands between words, and does not count: blanks, comments, pragmas, the mark of UTF-8 that begins a file. */
 static bool is_between(const char *text, size_t length)
 {
     static const char *const begins[] = {"//", "(*", "/*", "{", "\xEF\xBB\xBF"};

@@ -394,8 +394,9 @@ ST_UNUSED static inline const char *st_sign_of(const char *text, int *negative)
 /** The value of a digit; 99: it is none. */
 ST_UNUSED static inline unsigned st_digit_of(char digit)
 {
-    return digit >= '0' && digit <= '9' ? (unsigned)(digit - '0') : digit >= 'A' && digit <= 'F' ? (unsigned)(digit - 'A') + 10 :
-           digit >= 'a' && digit <= 'f' ? (unsigned)(digit - 'a') + 10 : 99;
+    return digit >= '0' && digit <= '9' ? (unsigned)(digit - '0')
+         : digit >= 'A' && digit <= 'F' ? (unsigned)(digit - 'A') + 10
+         : digit >= 'a' && digit <= 'f' ? (unsigned)(digit - 'a') + 10 : 99;
 }
 /** Digits; what has more than 64 bits is the largest number. */
 ST_UNUSED static inline uint64_t st_digits_of(const char **text, unsigned base)
