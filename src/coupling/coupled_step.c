@@ -13,6 +13,7 @@
 
 static const double same_moment = 1e-6; /* cycles */
 static const double rounding_counts = 1e-3;
+static const double few = 1.0 + 1e-10;
 
 /* ---- what is not in step yet ------------------------------------------------------------------------------------- */
 
@@ -122,7 +123,7 @@ typedef struct verdict {
  * deceleration may be larger than the acceleration, turns the one into the other until the velocity changes its sign. */
 static bool has_room(const cm1e_axis_t *axis, const from_t *sum)
 {
-    static const double rounding = 1.0 + 1e-6, few = 1.0 + 1e-10;
+    static const double rounding = 1.0 + 1e-6;
     const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const double a = fabs(sum->acceleration), at_rest = most->acceleration * rounding, speed = fabs(sum->velocity);
     if (sum->acceleration * sum->velocity >= 0.0)
@@ -130,11 +131,17 @@ static bool has_room(const cm1e_axis_t *axis, const from_t *sum)
     return a <= most->deceleration * rounding && a * a <= at_rest * at_rest + 2.0 * most->jerk * speed;
 }
 
+/* What moves beside the function uses next to nothing of the guard's tolerance of velocity, which is for its rounding. */
 static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
 {
     const bool kept_jerk = coupling_keeps_jerk(axis->coupling);
-    const guard_t guard = cm1e_axis_guard(axis, sum, kept_jerk);
-    return (verdict_t){guard, !guard.limit && (!kept_jerk || (has_room(axis, sum) && cm1e_axis_guard_smooth(axis, sum)))};
+    const double way = cm1e_position_minus(sum->position, axis->setpoint.position) / axis->position.scale;
+    const double speed = larger(fabs(sum->velocity), fabs(way) / axis->cycle_s), most = axis->limits.maximum.velocity;
+    guard_t guard = cm1e_axis_guard(axis, sum, kept_jerk);
+    if (!guard.limit && speed > most * (1.0 + 1e-8))
+        guard = (guard_t){.limit = GUARD_VELOCITY, .asked = speed, .allowed = most};
+    return (verdict_t){guard, !guard.limit && (!kept_jerk || (has_room(axis, sum) && speed <= most * (1.0 + 1e-9) &&
+                                                             cm1e_axis_guard_smooth(axis, sum)))};
 }
 
 /* How the catch-up may go on in a cycle, in the order in which it is tried: by its plan; by a new plan with the whole
@@ -171,8 +178,10 @@ static double largest_acceleration(const cm1e_axis_t *axis, double v, double a)
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const double t = axis->cycle_s, jerk = most->jerk, half = jerk * t / 2.0, left = most->velocity - v - a * t / 2.0;
+    if (v + a * t / 2.0 >= 0.0 && left < 0.0) /* it ends within the cycle: neither the end nor the mean is too fast */
+        return smaller(2.0 * left / t, 6.0 * (most->velocity - v) / t - 2.0 * a);
     if (v + a * t / 2.0 >= 0.0)
-        return smaller(most->acceleration, left < 0.0 ? 2.0 * left / t : sqrt(half * half + 2.0 * jerk * left) - half);
+        return smaller(most->acceleration, sqrt(half * half + 2.0 * jerk * left) - half);
     const double square = half * half + most->acceleration * most->acceleration - 2.0 * jerk * (v + a * t / 2.0);
     return smaller(most->deceleration, larger(most->acceleration, sqrt(square) - half));
 }

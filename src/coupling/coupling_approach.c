@@ -95,15 +95,18 @@ static bool beyond(cm1e_axis_t *axis, const char *what, const char *unit, double
     return true;
 }
 
-/* Whether the curve keeps the limits of the slave at the present velocity of the master. */
+/* Whether the curve keeps the limits of the slave at the present velocity of the master. It may begin with the acceleration
+ * that the slave has, if that may be an acceleration and a deceleration of the axis. */
 static bool keeps_limits(cm1e_axis_t *axis, const follow_t *follow, const from_t *from,
                          const cm1e_motion_limits_t *limits, const cm1e_curve_extremes_t *extremes)
 {
     cm1e_motion_limits_t demand;
+    const double either = smaller(axis->limits.maximum.acceleration, axis->limits.maximum.deceleration);
+    const bool both = fabs(from->acceleration) <= either * (1.0 + relative_tolerance);
     cm1e_approach_demand(extremes, follow->links[0].seen.velocity, &demand);
     return !beyond(axis, "velocity", "u/s", demand.velocity, limits->velocity, from->velocity) &&
            !beyond(axis, "acceleration", "u/s2", demand.acceleration, smaller(limits->acceleration, limits->deceleration),
-                   from->acceleration) &&
+                   both ? from->acceleration : 0.0) &&
            !beyond(axis, "jerk", "u/s3", demand.jerk, limits->jerk, 0.0);
 }
 

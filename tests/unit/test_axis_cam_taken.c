@@ -1,4 +1,4 @@
-/* MC_CamIn and MC_GearIn take over a slave at every moment of a move at its limits: on the way up, at its maximum
+/* MC_CamIn, MC_GearIn and MC_GearInPos take over a slave at every moment of a move at its limits: on the way up, at its maximum
  * velocity, braking with a deceleration that is larger or smaller than its acceleration, before and behind standstill. The
  * cam and the master need next to nothing of its limits, and the witness of the bench sees every set-point. */
 #include "unity.h"
@@ -73,10 +73,38 @@ static void test_a_gear_takes_over_at_every_moment(void)
             }
 }
 
+/* The master goes on as it is: what is accepted is followed. The way may be refused, where the slave brakes harder than it
+ * may accelerate, or the other way round. */
+static void test_a_gear_in_pos_that_is_accepted_is_reached(void)
+{
+    int taken = 0;
+    for (int run = 0; run < seed_count(2000); run++) {
+        chance_seed(seed_of(run));
+        const int i = pick(6), numerator = 1 + pick(3);
+        const double ahead = uniform(0.05, 3.0), way = uniform(-3.0, 3.0);
+        make_two(limits[i][0], limits[i][1]);
+        moves_at(uniform(-8.0, 8.0), uniform(3.0, MOST_VELOCITY), pick(600));
+        const cm1e_axis_coupling_t coupling = {
+            .master = {{.axis = axes_reference(MASTER), .numerator = numerator, .denominator = 2}},
+            .master_sync_position = set_of(MASTER) + ahead, .slave_sync_position = set_of(SLAVE) + way};
+        cm1e_command_id_t id;
+        const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_GEAR_IN_POS, .velocity = MOST_VELOCITY,
+                                             .coupling = &coupling};
+        if (cm1e_axis_start(axes_axis(SLAVE), &command, &id) == CM1E_OK) {
+            must_follow(id);
+            taken++;
+        }
+        axes_end();
+    }
+    printf("%d of %d taken\n", taken, seed_count(2000));
+    TEST_ASSERT_TRUE(taken * 10 > seed_count(2000));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_cam_takes_over_at_every_moment);
     RUN_TEST(test_a_gear_takes_over_at_every_moment);
+    RUN_TEST(test_a_gear_in_pos_that_is_accepted_is_reached);
     return UNITY_END();
 }
