@@ -54,7 +54,7 @@ static const char *listen_here(int *listener)
 
 static void check(cm1e_error_t error, const cm1e_diag_t *diag, const char *what)
 {
-    if (error != CM1E_OK && (diag->error == CM1E_OK || strlen(diag->text) < 2))
+    if (error != CM1E_OK && (diag->error == CM1E_OK || !diag->text[0])) /* the text may be the other program's: short */
         fuzz_fail("%s fails (%d) and says %d, \"%s\"", what, (int)error, (int)diag->error, diag->text);
     if (error != CM1E_OK)
         fuzz_use_text(diag->text);
