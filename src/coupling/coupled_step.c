@@ -127,20 +127,27 @@ static bool has_room(const cm1e_axis_t *axis, const from_t *sum)
     const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const double a = fabs(sum->acceleration), at_rest = most->acceleration * rounding, speed = fabs(sum->velocity);
     if (sum->acceleration * sum->velocity >= 0.0)
-        return a <= at_rest && speed + a * a / (2.0 * most->jerk) <= most->velocity * few;
+        return a <= at_rest && speed + a * a * axis->guarding.ease <= most->velocity * few;
     return a <= most->deceleration * rounding && a * a <= at_rest * at_rest + 2.0 * most->jerk * speed;
 }
 
-/* What moves beside the function uses next to nothing of the guard's tolerance of velocity, which is for its rounding. */
+/* What moves beside the function uses next to nothing of the guard's tolerance of velocity, which is for its rounding. Here
+ * `most` is a little more than the maximum. */
+static bool keeps_velocity(const cm1e_axis_t *axis, const from_t *sum, double most)
+{
+    const double way = cm1e_position_minus(sum->position, axis->setpoint.position) * axis->guarding.per_count;
+    return fabs(sum->velocity) <= most && fabs(way) <= most * axis->cycle_s;
+}
+
 static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
 {
     const bool kept_jerk = coupling_keeps_jerk(axis->coupling);
-    const double way = cm1e_position_minus(sum->position, axis->setpoint.position) / axis->position.scale;
-    const double speed = larger(fabs(sum->velocity), fabs(way) / axis->cycle_s), most = axis->limits.maximum.velocity;
+    const double most = axis->limits.maximum.velocity;
+    const bool kept = keeps_velocity(axis, sum, most * (1.0 + 1e-9));
     guard_t guard = cm1e_axis_guard(axis, sum, kept_jerk);
-    if (!guard.limit && speed > most * (1.0 + 1e-8))
-        guard = (guard_t){.limit = GUARD_VELOCITY, .asked = speed, .allowed = most};
-    return (verdict_t){guard, !guard.limit && (!kept_jerk || (has_room(axis, sum) && speed <= most * (1.0 + 1e-9) &&
+    if (!kept && !guard.limit && !keeps_velocity(axis, sum, most * (1.0 + 1e-8)))
+        guard = (guard_t){.limit = GUARD_VELOCITY, .asked = fabs(sum->velocity), .allowed = most};
+    return (verdict_t){guard, !guard.limit && (!kept_jerk || (kept && has_room(axis, sum) &&
                                                              cm1e_axis_guard_smooth(axis, sum)))};
 }
 
