@@ -297,6 +297,15 @@ static bool call_in_namespace(st_t *st, expr_t *call)
     return true;
 }
 
+/** An instance, also by REFERENCE TO. */
+static bool is_instance(st_t *st, const var_t *var)
+{
+    type_t *type = var ? cm1e_st_resolve(st, var->type) : NULL;
+    if (type && type->kind == T_REF && type->automatic)
+        type = cm1e_st_resolve(st, type->element);
+    return type && type->kind == T_BLOCK;
+}
+
 void cm1e_st_call(st_t *st, expr_t *call, bool statement)
 {
     if (st->checker->call_method(st, call, statement))
@@ -305,12 +314,12 @@ void cm1e_st_call(st_t *st, expr_t *call, bool statement)
         unit_t *unit = cm1e_st_lookup(st, st->units, call->a->scope, call->a->place, call->a->name);
         const var_t *var = cm1e_st_find_var(st, call->a->name);
         const bool is_function = unit && unit->kind == U_FUNCTION;
-        const bool is_instance = var && cm1e_st_resolve(st, var->type)->kind == T_BLOCK;
-        if (!is_instance && is_function) {
+        const bool instance = is_instance(st, var);
+        if (!instance && is_function) {
             call_function(st, call, unit);
             return;
         }
-        if (!is_instance && cm1e_st_standard_call(st, call, call->a->name))
+        if (!instance && cm1e_st_standard_call(st, call, call->a->name))
             return;
         if (!var) {
             if (unit)

@@ -274,10 +274,6 @@ type_kind_t cm1e_st_type_for_both(const expr_t *a, const expr_t *b)
     const type_kind_t ka = a->type->kind, kb = b->type->kind;
     if (ka == kb)
         return ka;
-    if (kb != T_BOOL && can_retype(a, kb))
-        return kb;
-    if (ka != T_BOOL && can_retype(b, ka))
-        return ka;
     if ((ka == T_ANY_INT || ka == T_ANY_REAL) && (kb == T_ANY_INT || kb == T_ANY_REAL))
         return T_ANY_REAL;
     if (ka == T_ANY_INT || ka == T_ANY_REAL)

@@ -25,14 +25,14 @@ static void emit_functions(st_t *st, bool bodies)
         const bool unused = st->sources[unit->place.file].library && !(unit->type && unit->type->emitted);
         const bool declared_only = unit->kind == U_INTERFACE ||
             (unit->kind == U_METHOD && (unit->object.abstract || unit->object.owner->kind == U_INTERFACE));
-        if (unit->external || unused || declared_only)
+        if (unit->external || unused)
             continue;
-        if (bodies) {
+        if (!bodies && !declared_only)
+            cm1e_st_emit_prototype(st, unit);
+        if (!bodies) /* a call over an interface or an ABSTRACT block leaves inputs out, too */
+            cm1e_st_emit_default_functions(st, unit);
+        else if (!declared_only)
             cm1e_st_emit_unit(st, unit);
-            continue;
-        }
-        cm1e_st_emit_prototype(st, unit);
-        cm1e_st_emit_default_functions(st, unit);
     }
 }
 

@@ -66,6 +66,8 @@ void cm1e_st_emit_address(st_t *st, const expr_t *expr);
 /* st_emit_object.c */
 /** The name of the function that a call of a method calls, and the instance that it gets. */
 void cm1e_st_emit_method(st_t *st, const expr_t *call);
+/** The instance alone; NULL: a function has none. */
+void cm1e_st_emit_instance(st_t *st, const expr_t *call);
 /** Functions that choose between methods of one name by the class of the instance. */
 void cm1e_st_emit_dispatchers(st_t *st, bool bodies);
 void cm1e_st_emit_conversion(st_t *st, const expr_t *expr);
@@ -76,7 +78,7 @@ void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value
 /* st_emit_unit.c */
 void cm1e_st_emit_unit(st_t *st, unit_t *unit);
 /** The functions that give its inputs their initial values. */
-void cm1e_st_emit_default_functions(st_t *st, const unit_t *unit);
+void cm1e_st_emit_default_functions(st_t *st, unit_t *unit);
 /* st_emit_tables.c */
 void cm1e_st_emit_tables(st_t *st, const char *name);
 

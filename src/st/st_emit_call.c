@@ -28,16 +28,18 @@ void cm1e_st_emit_address(st_t *st, const expr_t *expr)
 }
 
 /** An input that a call leaves out has its initial value, or 0. */
-static void emit_missing(st_t *st, const var_t *var)
+static void emit_missing(st_t *st, const expr_t *call, const var_t *var)
 {
     if (var->type->kind == T_STRING) {
         if (var->initial)
             cm1e_st_emit_text(st, var->initial);
         else
             cm1e_st_put(st, "%s", var->type->wide ? "(const uint16_t[1]){0}" : "\"\"");
-    } else if (cm1e_st_has_default_function(var))
-        cm1e_st_put(st, "%s()", cm1e_st_default_function(st, var));
-    else if (var->initial)
+    } else if (cm1e_st_has_default_function(var)) {
+        cm1e_st_put(st, "%s(", cm1e_st_default_function(st, var));
+        cm1e_st_emit_instance(st, call);
+        cm1e_st_put(st, ")");
+    } else if (var->initial)
         cm1e_st_emit_expression(st, var->initial);
     else if (var->type->kind == T_STRUCT || var->type->kind == T_ARRAY)
         cm1e_st_put(st, "(%s){0}", var->type->c_name);
@@ -63,7 +65,7 @@ static void emit_function_call(st_t *st, const expr_t *call)
         cm1e_st_put(st, "%s", comma);
         comma = ", ";
         if (var->section == V_INPUT && (!arg || !arg->value))
-            emit_missing(st, var);
+            emit_missing(st, call, var);
         else if (var->section == V_INPUT && var->type->kind == T_STRING)
             cm1e_st_emit_text(st, arg->value);
         else if (var->section == V_INPUT)

@@ -17,15 +17,11 @@ static bool is_overridden(const st_t *st, const unit_t *unit, const char *name)
     return unit->kind == U_INTERFACE || (ours && ours->object.abstract);
 }
 
-void cm1e_st_emit_method(st_t *st, const expr_t *call)
+void cm1e_st_emit_instance(st_t *st, const expr_t *call)
 {
-    const unit_t *method = call->unit;
-    const bool chosen = !call->super && is_overridden(st, call->seen_as, method->name);
-    if (chosen)
-        cm1e_st_put(st, "%s(", cm1e_st_method_name(st, "CALL", call->seen_as, method->name));
-    else
-        cm1e_st_put(st, "%s((%s *)", method->c_name, method->c_type);
-    if (!call->a) {
+    if (call->unit->kind != U_METHOD) {
+        cm1e_st_put(st, "NULL");
+    } else if (!call->a) {
         cm1e_st_put(st, "self");
     } else if (call->a->type->kind == T_INTERFACE) {
         cm1e_st_put(st, "st_reach(");
@@ -35,6 +31,17 @@ void cm1e_st_emit_method(st_t *st, const expr_t *call)
         cm1e_st_put(st, "&");
         cm1e_st_emit_expression(st, call->a);
     }
+}
+
+void cm1e_st_emit_method(st_t *st, const expr_t *call)
+{
+    const unit_t *method = call->unit;
+    const bool chosen = !call->super && is_overridden(st, call->seen_as, method->name);
+    if (chosen)
+        cm1e_st_put(st, "%s(", cm1e_st_method_name(st, "CALL", call->seen_as, method->name));
+    else
+        cm1e_st_put(st, "%s((%s *)", method->c_name, method->c_type);
+    cm1e_st_emit_instance(st, call);
 }
 
 static void emit_arguments(st_t *st, const unit_t *method, bool declare)

@@ -66,22 +66,11 @@ static void emit_input(st_t *st, const arg_t *arg)
     cm1e_st_put(st, ";\n");
 }
 
-/** It ends with the present call: a local variable of a function, VAR_TEMP, or what a function itself got by VAR_IN_OUT. */
-static bool ends_with_call(const expr_t *expr)
-{
-    if (!cm1e_st_is_variable(expr))
-        return true;
-    while ((expr->kind == E_MEMBER || expr->kind == E_INDEX) && expr->a)
-        expr = expr->a;
-    return expr->kind == E_NAME && expr->var &&
-           (expr->var->section == V_TEMP || (expr->var->unit && cm1e_st_is_function(expr->var->unit)));
-}
-
-/** Methods that are called later do not see a variable that there is no more. */
+/** A value for VAR_IN_OUT CONSTANT ends with the call: methods that are called later do not see it. */
 static void emit_ends(st_t *st, const expr_t *call)
 {
     for (const arg_t *arg = call->args; arg; arg = arg->next)
-        if (arg->value && arg->parameter && arg->parameter->section == V_IN_OUT && ends_with_call(arg->value))
+        if (arg->value && arg->parameter && arg->parameter->section == V_IN_OUT && !cm1e_st_is_variable(arg->value))
             cm1e_st_line(st, "fb->%s = NULL;\n", arg->parameter->c_name);
 }
 

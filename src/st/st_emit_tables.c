@@ -152,7 +152,8 @@ static void list_values(listing_t *l, const char *name, const char *c_name, cons
     } else if (type->kind == T_STRUCT || block) {
         for (const var_t *var = type->members; var; var = var->next) {
             const bool inner = type->external && block && var->section == V_LOCAL;
-            if (inner || (var->qualifiers & Q_CONSTANT) || var->section == V_TEMP || var->section == V_EXTERNAL ||
+            const bool constant = (var->qualifiers & Q_CONSTANT) && var->section != V_INPUT;
+            if (inner || constant || var->section == V_TEMP || var->section == V_EXTERNAL ||
                 var->section == V_IN_OUT)
                 continue;
             list_values(l, cm1e_st_format(arena, "%s.%s", name, var->name),
@@ -317,7 +318,31 @@ static void emit_memory_initial(st_t *st, const var_t *var)
         cm1e_st_line(st, "%s |= 1u << %d;\n", var->c_name, var->memory_bit - 1);
 }
 
-/** In the order of their declaration, which that of the list is not. */
+/** An FB_Init is called for it, or for a part of it. */
+static bool calls_init(const type_t *type)
+{
+    if (type->kind == T_ARRAY)
+        return calls_init(type->element);
+    if (type->kind == T_BLOCK && cm1e_st_has_init(type->unit))
+        return true;
+    for (const var_t *var = type->kind == T_BLOCK || type->kind == T_STRUCT ? type->members : NULL; var; var = var->next)
+        if (cm1e_st_is_stored(var) && var->section != V_IN_OUT && calls_init(var->type))
+            return true;
+    return false;
+}
+
+static void emit_global_initial(st_t *st, const var_t *var, bool with_init)
+{
+    const bool init = !var->in_memory && calls_init(var->type);
+    if (init != with_init)
+        return;
+    if (var->in_memory)
+        emit_memory_initial(st, var);
+    else if (!st->sources[var->place.file].external)
+        cm1e_st_emit_var_initial(st, var->c_name, var);
+}
+
+/** In the order of their declaration, which that of the list is not; at last those with FB_Init, which may use others. */
 static void emit_globals_initial(st_t *st)
 {
     size_t count = 0;
@@ -328,10 +353,9 @@ static void emit_globals_initial(st_t *st)
     for (const var_t *var = st->tree.globals; var; var = var->next)
         vars[--at] = var;
     for (; at < count; at++)
-        if (vars[at]->in_memory)
-            emit_memory_initial(st, vars[at]);
-        else if (!st->sources[vars[at]->place.file].external)
-            cm1e_st_emit_var_initial(st, vars[at]->c_name, vars[at]);
+        emit_global_initial(st, vars[at], false);
+    for (at = 0; at < count; at++)
+        emit_global_initial(st, vars[at], true);
 }
 
 static void emit_begin(st_t *st)

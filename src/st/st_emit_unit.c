@@ -36,20 +36,29 @@ static void emit_end(st_t *st, const unit_t *unit)
         cm1e_st_line(st, "return %s;\n", unit->result->c_name);
 }
 
-void cm1e_st_emit_default_functions(st_t *st, const unit_t *unit)
+/** `instance` is that of a method, whose block's variables an initial value may refer to. */
+static void emit_default_function(st_t *st, const unit_t *unit, const var_t *var)
 {
-    for (const var_t *var = cm1e_st_is_function(unit) ? unit->vars : NULL; var; var = var->next) {
-        if (var->section != V_INPUT || !cm1e_st_has_default_function(var))
-            continue;
-        const char *c_type = cm1e_st_c_type(st, var->type);
-        cm1e_st_put(st, "ST_UNUSED static %s %s(void)\n{\n", c_type, cm1e_st_default_function(st, var));
-        st->indent = 1;
-        cm1e_st_line(st, "%s %s;\n    memset(&%s, 0, sizeof %s);\n", c_type, var->c_name, var->c_name, var->c_name);
-        cm1e_st_emit_initial(st, var->c_name, var->type, var->initial);
-        cm1e_st_line(st, "return %s;\n", var->c_name);
-        st->indent = 0;
-        cm1e_st_put(st, "}\n");
-    }
+    const char *c_type = cm1e_st_c_type(st, var->type);
+    const bool of_block = unit->kind == U_METHOD && unit->object.owner->kind == U_BLOCK;
+    cm1e_st_put(st, "ST_UNUSED static %s %s(ST_UNUSED void *instance)\n{\n", c_type, cm1e_st_default_function(st, var));
+    st->indent = 1;
+    if (of_block)
+        cm1e_st_line(st, "ST_UNUSED %s *const self = instance;\n", unit->c_type);
+    cm1e_st_line(st, "%s %s;\n    memset(&%s, 0, sizeof %s);\n", c_type, var->c_name, var->c_name, var->c_name);
+    cm1e_st_emit_initial(st, var->c_name, var->type, var->initial);
+    cm1e_st_line(st, "return %s;\n", var->c_name);
+    st->indent = 0;
+    cm1e_st_put(st, "}\n");
+}
+
+void cm1e_st_emit_default_functions(st_t *st, unit_t *unit)
+{
+    st->unit = unit;
+    for (const var_t *var = cm1e_st_is_function(unit) ? unit->vars : NULL; var; var = var->next)
+        if (var->section == V_INPUT && cm1e_st_has_default_function(var))
+            emit_default_function(st, unit, var);
+    st->unit = NULL;
 }
 
 void cm1e_st_emit_unit(st_t *st, unit_t *unit)

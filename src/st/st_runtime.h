@@ -451,7 +451,15 @@ ST_UNUSED static inline int st_begins(const char *text, const char *word, size_t
             return 0;
     return 1;
 }
-ST_UNUSED static inline BOOL st_bool_of(const char *text) { return (BOOL)st_begins(text, "TRUE", sizeof "TRUE"); }
+ST_UNUSED static inline size_t st_letters_of(const char *text)
+{
+    return strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+}
+ST_UNUSED static inline BOOL st_bool_of(const char *text)
+{
+    text += strspn(text, " \t\r\n");
+    return (BOOL)(st_letters_of(text) == 4 && st_begins(text, "TRUE", 4) && text[4] != '_' && st_digit_of(text[4]) > 9);
+}
 /** Digits, and a fraction. */
 ST_UNUSED static inline long double st_count_of(const char **text)
 {
@@ -468,7 +476,7 @@ ST_UNUSED static inline TIME st_duration_of(const char *text)
     int negative;
     for (text = st_sign_of(text, &negative); st_digit_of(*text) < 10;) {
         const long double count = st_count_of(&text);
-        const size_t length = strcspn(text, "0123456789");
+        const size_t length = st_letters_of(text);
         size_t unit = 0;
         while (unit < ST_TIME_UNITS && (strlen(st_time_units[unit].name) != length ||
                                         !st_begins(text, st_time_units[unit].name, length)))
@@ -477,6 +485,7 @@ ST_UNUSED static inline TIME st_duration_of(const char *text)
             break;
         sum += count * (long double)st_time_units[unit].ns;
         text += length;
+        text += *text == '_' && st_digit_of(text[1]) < 10;
     }
     const long double ns = roundl(negative ? -sum : sum);
     return ns <= (long double)INT64_MIN ? INT64_MIN : ns >= (long double)INT64_MAX ? INT64_MAX : (TIME)ns;

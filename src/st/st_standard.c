@@ -224,7 +224,7 @@ static bool give_type(st_t *st, expr_t *call)
             return refuse(st, call, first, "REAL or LREAL");
         call->type = st->elementary[T_DINT];
         return true;
-    case R_MOVE: *call = *first; return true;
+    case R_MOVE: *call = *cm1e_st_settle(st, first); return true;
     case R_NOW: break;
     case R_REF: return reference(st, call);
     case R_VALID:

@@ -83,6 +83,19 @@ END_GET
 END_PROPERTY
 END_FUNCTION_BLOCK
 
+TYPE Start : STRUCT a : INT := 5; END_STRUCT; END_TYPE
+INTERFACE I_Go METHOD Go : INT VAR_INPUT k : INT; s : Start; l : INT := 3; END_VAR END_METHOD END_INTERFACE
+FUNCTION_BLOCK ABSTRACT FB_Go IMPLEMENTS I_Go VAR n : INT := 9; END_VAR
+METHOD ABSTRACT Go : INT VAR_INPUT k : INT; s : Start; l : INT := 3; END_VAR END_METHOD
+METHOD Twice : INT Twice := Go(k := 1) * 2; END_METHOD
+METHOD Given : INT VAR_INPUT k : INT; r : REF_TO INT := REF(n); v : REFERENCE TO INT := n; END_VAR Given := r^ * k + v; END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK FB_Went EXTENDS FB_Go
+METHOD Go : INT VAR_INPUT k : INT; s : Start; l : INT := 3; END_VAR Go := s.a * 10 + k + l; END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION Log2 : INT VAR_INPUT step : INT; END_VAR Log2 := step; END_FUNCTION
+FUNCTION_BLOCK FB_Log VAR_INPUT step : INT; END_VAR VAR_OUTPUT o : INT; END_VAR o := o + step * 2; END_FUNCTION_BLOCK
+
 VAR_GLOBAL gi : INT := 4; gref : REF_TO INT := REF(gi); END_VAR
 FUNCTION NEXT_OF : INT VAR_IN_OUT c : INT; END_VAR c := c + 1; NEXT_OF := c; END_FUNCTION
 INTERFACE I_Empty END_INTERFACE
@@ -113,7 +126,8 @@ PROGRAM Main
 VAR sq : FB_Square; ci : FB_Circle; shape, none : I_Shape; a1, a2, a3 : LREAL; n1, n2 : STRING[20]; is0, isnt0, ok : BOOL; s2, method, get : LREAL;
 drive : FB_Drive; axis : FB_Drive_Axis; shapes : ARRAY[1..2] OF I_Shape; empties : ARRAY[1..2] OF I_Empty; names, sums, grade : INT;
 left, kept, viaref, injected, mine : INT; eno, eno2, timer : BOOL; t : TON;
-kept9 : INT := 9; ref : REF_TO INT := REF(kept9); early : I_Shape := sq; user : FB_User(what := ci) := (ref := REF(kept9)); END_VAR
+went : FB_Went; igo : I_Go := went; goes, logs : INT; wents : ARRAY[1..2] OF FB_Went;
+logger : FB_Log; log : REFERENCE TO FB_Log; log2 : REFERENCE TO FB_Log; kept9 : INT := 9; ref : REF_TO INT := REF(kept9); early : I_Shape := sq; user : FB_User(what := ci) := (ref := REF(kept9)); END_VAR
 ACTION Init: a3 := 5; END_ACTION
 is0 := none = 0;
 shape := sq;
@@ -141,19 +155,25 @@ grade := axis.Grade; axis.Grade := 6; grade := grade * 100 + axis.Grade;
 viaref := ref^ + gref^;
 injected := user.Sum();
 mine := LREAL_TO_INT(early.Area());
+goes := igo.Go(k := 2) + went.Twice() * 10 + wents[2].Given(k := 10);
+log REF= logger; log(step := 3); log2 REF= logger; log2(step := 4); logs := logger.o;
 t(EN := FALSE, IN := TRUE, PT := T#0s, Q => timer);
 END_PROGRAM
 """
 EXPECTED = {"a1": 4, "n1": b"base", "ok": True, "a2": 3, "n2": b"circle", "is0": True, "isnt0": True, "a3": 5, "s2": 20,
             "sq.total": 9, "sq.calls": 1, "sq.bodies": 1, "sq.side": 10, "ci.total": 3, "ci.calls": 0, "method": 1, "get": 2,
             "left": 3, "eno": True, "eno2": False, "kept": 7, "timer": False, "viaref": 13,
-            "injected": 3934, "names": 12, "grade": 820, "sums": 1513, "mine": 100}
-# What a method uses of the VAR_IN_OUT of its block before that has a variable, or when there is none any more.
+            "injected": 3934, "names": 12, "grade": 820, "sums": 1513, "mine": 100, "goes": 55 + 1080 + 99, "logs": 14}
+# What a method uses of the VAR_IN_OUT of its block before that has a variable.
 IN_OUT = "FUNCTION_BLOCK F VAR_IN_OUT x : INT; END_VAR METHOD M : INT M := x; END_METHOD METHOD N THIS.x := THIS.x + 1; END_METHOD " \
          "METHOD O THIS^(x := x); END_METHOD x := x; END_FUNCTION_BLOCK FUNCTION_BLOCK E EXTENDS F METHOD P SUPER^(); END_METHOD " \
-         "END_FUNCTION_BLOCK FUNCTION Lend : INT VAR_IN_OUT f : F; END_VAR VAR own : INT := 42; END_VAR f(x := own); END_FUNCTION\n" \
-         "PROGRAM Q VAR f : F; e : E; i, n : INT; END_VAR "
-WITHOUT = ["i := f.M();", "f.O();", "e.P();", "f(x := i); i := Lend(f := f); f.N();"]
+         "END_FUNCTION_BLOCK\n" \
+         "FUNCTION_BLOCK C VAR_IN_OUT CONSTANT x : INT; END_VAR METHOD M : INT M := x; END_METHOD END_FUNCTION_BLOCK\n" \
+         "FUNCTION_BLOCK W VAR f : F; c : C; END_VAR METHOD Cyclic : INT VAR_IN_OUT x : INT; END_VAR f(x := x); c(x := x); " \
+         "Cyclic := f.M(); END_METHOD METHOD Get : INT Get := f.M() + c.M(); END_METHOD END_FUNCTION_BLOCK\n" \
+         "FUNCTION Lend : INT VAR_IN_OUT f : F; x : INT; END_VAR f(x := x); END_FUNCTION\n" \
+         "PROGRAM Q VAR f : F; e : E; c : C; w : W; i, n : INT; END_VAR VAR_TEMP t : INT; END_VAR "
+WITHOUT = ["i := f.M();", "f.O();", "e.P();", "c(x := 3); i := c.M();"]
 BASE = "INTERFACE I METHOD M : INT END_METHOD END_INTERFACE FUNCTION_BLOCK B METHOD M : INT M := 1; END_METHOD " \
        "END_FUNCTION_BLOCK "
 PRIVATE = "FUNCTION_BLOCK C METHOD PRIVATE Own : INT Own := 1; END_METHOD METHOD PROTECTED Near : INT Near := Own(); " \
@@ -247,9 +267,14 @@ def check_in_out(folder):
     host = Host(BIN, folder, IN_OUT + "n := 4; f(x := n); i := f.M(); f.N(); END_PROGRAM", "given")
     if not host.run() or (host.value("Q.i"), host.value("Q.n")) != (4, 5):
         faults.append(f"a method and the VAR_IN_OUT of its block: {host.fault()}, {host.value('Q.i')}, {host.value('Q.n')}")
+    passed = "n := 4; i := w.Cyclic(x := n); i := i * 100 + w.Get() * 10; t := Lend(f := f, x := n); i := i + f.M(); t := 6; f(x := t); " \
+             "n := f.M(); END_PROGRAM"
+    host = Host(BIN, folder, IN_OUT + passed, "passed")
+    if not (host.run() and host.run()) or (host.value("Q.i"), host.value("Q.n")) != (484, 6):
+        faults.append(f"a VAR_IN_OUT that is passed on: {host.fault()}, {host.value('Q.i')}, {host.value('Q.n')}")
     for n, statements in enumerate(WITHOUT):
         host = Host(BIN, folder, IN_OUT + statements + " END_PROGRAM", f"without{n}")
-        if host.run() or '"x" is a VAR_IN_OUT of F and has no variable' not in host.fault()[1]:
+        if host.run() or f'"x" is a VAR_IN_OUT of {"C" if n == 3 else "F"} and has no variable' not in host.fault()[1]:
             faults.append(f"{statements}: {host.fault()}")
 
 

@@ -19,6 +19,10 @@ MOVE = "VAR_GLOBAL X : AXIS_REF; END_VAR\nPROGRAM Main\nVAR power : MC_Power := 
        "TRUE); turn : MC_MoveVelocity; n, zero : INT; a : ARRAY[1..400] OF INT; END_VAR\n" \
        "power(Axis := X, Enable := TRUE); turn(Axis := X, Execute := power.Status, Velocity := 20);\n" \
        "n := n + 1;\n{}\nEND_PROGRAM\n"
+PASSED = "VAR_GLOBAL X : AXIS_REF; END_VAR\nFUNCTION_BLOCK FB_Axis VAR_IN_OUT ax : AXIS_REF; END_VAR VAR p : MC_ReadActualPosition; " \
+         "END_VAR METHOD Ask p(Axis := ax, Enable := TRUE); END_METHOD END_FUNCTION_BLOCK\n" \
+         "FUNCTION_BLOCK FB_Unit VAR a : FB_Axis; END_VAR METHOD Cyclic VAR_IN_OUT ax : AXIS_REF; END_VAR a(ax := ax); a.Ask(); " \
+         "END_METHOD END_FUNCTION_BLOCK\nPROGRAM Main VAR u : FB_Unit; END_VAR u.Cyclic(ax := X); END_PROGRAM\n"
 faults = []
 
 
@@ -49,6 +53,7 @@ def trace(path):
 
 
 def check_faults():
+    run(build("passed", PASSED), "-s", "0.1") # an axis that a method passes on
     for name, statement, says in (("index", "a[n] := 1;", "index.st:6: the index 401 is outside 1..400"),
                                   ("zero", "IF n > 400 THEN a[1] := n / zero; END_IF", "zero.st:6: 401 is divided by zero"),
                                   ("loop", "WHILE n > 400 DO ; END_WHILE", "loop.st:6: this loop")):

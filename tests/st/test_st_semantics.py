@@ -76,6 +76,9 @@ FUNCTION Fill : BOOL VAR_IN_OUT w : WORD; END_VAR w := w OR 16#F0; Fill := TRUE;
 VAR_GLOBAL flag AT %MX0.3 : BOOL := TRUE; bits AT %MB0 : BYTE; word2 AT %MW2 : WORD; low2 AT %MB2 : BYTE; real8 AT %MD8 : REAL;
   raw8 AT %MD8 : DWORD; END_VAR
 VAR_GLOBAL g : INT := 3; over AT %MW20 : INT := 4; under AT %MB21 : BYTE := 7; END_VAR
+FUNCTION_BLOCK Reader VAR_INPUT CONSTANT most : INT := 3; END_VAR VAR_EXTERNAL read : INT; END_VAR
+  METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; k : INT; END_VAR read := read * 10 + k; END_METHOD END_FUNCTION_BLOCK
+VAR_GLOBAL first1 : Reader(k := 1); read : INT := 9; second2 : Reader(k := 2); END_VAR
 VAR_GLOBAL CONSTANT KK : INT := 4; KK2 : INT := KK * 2 + 1; END_VAR
 """
 VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Small; p : Point; x : Box; r : Row; " \
@@ -221,9 +224,11 @@ CASES = [
     ("speed(step := 4); j := speed.total; i := 3; k(step := Twice(i));", {"j": 104, "k.total": 106}),
     ("i := 2; empty[i] := empty[1]; empty[3] := empty[1]; j := behind; n := late.o * 10 + late.a;", {"j": 7, "n": 19}),
     ("i := More(v := KK); j := More(v := i + 1); n := More(v := 3) * 10 + More(v := i);", {"i": 5, "j": 7, "n": 46}),
-    # A call of literals only takes the type of what it is used with.
-    ("i := 3; i := i + SEL(b, -1, 1); j := MAX(1, 2) * i; n := MOVE(5); f := 2; f := f * SQRT(4) * SEL(b, 1.0, -1.0); "
-     "w := w OR SEL(b, 1, 2); u := LIMIT(0, u, MAX(1, 7));", {"i": 4 - 2, "j": 4, "n": 5, "f": 4.0, "w": 1, "u": 0}),
+    # A call of literals only has the type of what it is assigned to; beside other operands it is DINT or LREAL.
+    ("i := MAX(1, 2); u := LIMIT(0, 7, 5); f := SQRT(4); u := 255; d := u + MAX(1, 2); n := 100; big := n * MAX(1000, 2); "
+     "l := f * SQRT(2) / SQRT(2); x64 := DINT_TO_ULINT(n * MOVE(1000)); b := i + ABS(-32768) = 32770;",
+     {"i": 2, "f": 2.0, "d": 257, "big": 100000, "l": 2.0, "x64": 100000, "b": 1}),
+    ("i := 0; d := i + ABS(-32768); j := read;", {"d": 32768, "j": 912}),
     ("i := over; l := REAL#0.1; b := REAL#0.1 = LREAL#0.1;", {"i": 0x704, "l": 0.10000000149011612, "b": 0}),
     # Texts are read as literals.
     ("x64 := STRING_TO_ULINT('18446744073709551615'); i := STRING_TO_INT('16#FF') + STRING_TO_INT(' -1_000x'); w := "
@@ -234,6 +239,8 @@ CASES = [
      {"t": 3720 * 10**9, "d": 2503, "l": 0.0, "i": 0, "b": 1}),
     *((f"t := STRING_TO_TIME('{text}'); y2 := TIME_TO_WSTRING(WSTRING_TO_TIME(\"{text}\"));", {"t": value, "y2": text})
       for text, value in TIMES),
+    ("t := STRING_TO_TIME('T#2h and more'); big := TIME_TO_LINT(STRING_TO_TIME('T#1h_30m ')); b := STRING_TO_BOOL(' TRUE;') AND NOT "
+     "STRING_TO_BOOL('TRUEX'); { if not for us: a note } i := 3; { else where }", {"t": 7200 * 10**9, "big": 5400000, "b": 1, "i": 3}),
     ("i := LeftOut(a := 1); j := leaver.M(a := 1);", {"i": 7438, "j": 7}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
