@@ -57,15 +57,55 @@ static bool call_changes(st_t *st, const unit_t *unit, const expr_t *call)
     return (callee->kind != E_NAME && callee->kind != E_MEMBER) || cm1e_st_changes(st, callee->name);
 }
 
+static var_t *variable_named(const st_t *st, const unit_t *unit, const char *name)
+{
+    var_t *var = cm1e_st_map_get(unit->names, name);
+    if (!var && unit->object.owner && unit->object.owner->names)
+        var = cm1e_st_map_get(unit->object.owner->names, name);
+    return var ? var : cm1e_st_map_get(st->globals, name);
+}
+
+static type_t *type_of(st_t *st, const unit_t *unit, const expr_t *expr);
+
+/** NULL: it is none, or what it is of is not known here. */
+static var_t *member_of(st_t *st, const unit_t *unit, const expr_t *expr)
+{
+    const type_t *type = expr->kind == E_MEMBER && expr->a ? type_of(st, unit, expr->a) : NULL;
+    const bool has = type && (type->kind == T_STRUCT || type->kind == T_BLOCK);
+    for (var_t *var = has ? type->members : NULL; var; var = var->next)
+        if (expr->name && strcasecmp(var->name, expr->name) == 0)
+            return var;
+    return NULL;
+}
+
+/** The type of variables and their parts, as they were read; NULL: another expression. */
+static type_t *type_of(st_t *st, const unit_t *unit, const expr_t *expr)
+{
+    const bool this = expr->kind == E_THIS || (expr->kind == E_NAME && strcasecmp(expr->name, "THIS") == 0);
+    type_t *type = NULL;
+    if (this)
+        return unit->object.owner ? unit->object.owner->type : NULL;
+    if (expr->kind == E_NAME || expr->kind == E_MEMBER) {
+        const var_t *var = expr->kind == E_NAME ? variable_named(st, unit, expr->name) : member_of(st, unit, expr);
+        type = var ? cm1e_st_resolve(st, var->type) : NULL;
+    } else if ((expr->kind == E_INDEX || expr->kind == E_DEREF) && expr->a) {
+        type = type_of(st, unit, expr->a);
+        if (type && type->kind == T_ARRAY && expr->kind == E_INDEX)
+            type = cm1e_st_resolve(st, type->element);
+    }
+    return type && type->kind == T_REF ? cm1e_st_resolve(st, type->element) : type;
+}
+
 /** A name that is no variable may be a property, whose GET changes something. */
 static bool property_changes(st_t *st, const unit_t *unit, const expr_t *expr)
 {
-    const unit_t *owner = unit->object.owner;
-    if (expr->kind == E_NAME &&
-        (!owner || cm1e_st_map_get(unit->names, expr->name) || cm1e_st_map_get(owner->names, expr->name)))
+    if ((expr->kind != E_NAME && expr->kind != E_MEMBER) || expr->bit || !expr->name || member_of(st, unit, expr))
         return false;
-    return (expr->kind == E_NAME || expr->kind == E_MEMBER) && !expr->bit &&
-           cm1e_st_changes(st, cm1e_st_format(st->arena, "get %s", expr->name));
+    const unit_t *owner = unit->object.owner;
+    const char *get = cm1e_st_format(st->arena, "get %s", expr->name);
+    if (expr->kind == E_NAME && (!owner || variable_named(st, unit, expr->name) || !cm1e_st_find_method(owner, get)))
+        return false;
+    return cm1e_st_changes(st, get);
 }
 
 static bool expression_changes(st_t *st, const unit_t *unit, const expr_t *expr)
