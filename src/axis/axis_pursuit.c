@@ -103,7 +103,9 @@ static void prepare(cm1e_axis_t *axis, double unheard_s, uint8_t waits)
     if (!may_pursue(axis) || axis->setpoint.velocity == 0.0)
         return;
     const double v = axis->setpoint.velocity, gain = axis->setpoint.acceleration * 2.0 * axis->cycle_s;
-    const double speed = fabs(v) - fmax(0.0, v > 0.0 ? gain : -gain);
+    double speed = fabs(v) - fmax(0.0, v > 0.0 ? gain : -gain);
+    if (axis->setpoint.pursuit.under_way) /* the motor is slower than the set-point that goes after it */
+        speed = fmin(speed, speed_of_motor(axis));
     axis->setpoint.pursuit = (pursuit_t){.velocity = v, .speed = speed, .unheard_s = unheard_s, .waits = waits};
     cm1e_axis_set_extra(axis, EXTRA_PURSUIT, true);
 }
