@@ -1,11 +1,7 @@
 #!/usr/bin/env python3
 """Writes everything that follows from the ST declarations in fb/interface/*.st: the public headers, the table of blocks
-for tests, the reference pages, and what `cm1e explain` says of an ErrorID. The same input gives the same bytes.
-
-    fb/interface/generate.py                writes into the source tree
-    fb/interface/generate.py FOLDER         writes below FOLDER instead
-    fb/interface/generate.py --check        writes nothing; says what is not as it should be, and fails then
-"""
+for tests, the reference pages, and what `cm1e explain` says of an ErrorID. The same input gives the same bytes."""
+import argparse
 import os
 import sys
 
@@ -60,14 +56,19 @@ def check(texts):
     return faults
 
 
-def main(arguments):
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", nargs="?", default=SOURCE, help="writes below FOLDER (default: into the source tree)")
+    parser.add_argument("--check", action="store_true",
+                        help="writes nothing; says what is not as it should be, and fails then")
+    arguments = parser.parse_args()
     try:
         texts = outputs()
     except st.Fault as fault:
         print(fault, file=sys.stderr)
         return 1
-    if arguments != ["--check"]:
-        write(arguments[0] if arguments else SOURCE, texts)
+    if not arguments.check:
+        write(arguments.folder, texts)
         return 0
     faults = check(texts)
     print("\n".join(faults + [f"run {COMMAND} and commit what it writes"]) if faults
@@ -76,4 +77,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())
