@@ -278,7 +278,8 @@ static cm1e_error_t add_tasks(st_loaded_t *loaded, cm1e_diag_t *diag)
     const st_program_t *program = loaded->program;
     cm1e_error_t error = CM1E_OK;
     if (program->task_count > CM1E_MAX_TASKS)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the program has %u tasks; %d are the most", program->task_count,
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the program has %u tasks; %d are the most: in a "
+                             "CONFIGURATION several programs can run WITH the same TASK", program->task_count,
                              CM1E_MAX_TASKS);
     for (uint32_t i = 0; i < program->task_count && error == CM1E_OK; i++) {
         loaded->tasks[i].loaded = loaded;

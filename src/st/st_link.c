@@ -4,11 +4,13 @@
 
 #include "st/st_parsing.h"
 
+/** The length of the first name says where the second begins: B__C of A is not C of A__B. */
 const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owner, const char *name)
 {
     const bool get = strncmp(name, "get ", 4) == 0, set = strncmp(name, "set ", 4) == 0;
-    return cm1e_st_format(st->arena, "%s_%s__%s%s", prefix, cm1e_st_c_name(st, owner->name),
-                          get ? "get__" : set ? "set__" : "", get || set ? name + 4 : name);
+    const char *class_name = cm1e_st_c_name(st, owner->name);
+    return cm1e_st_format(st->arena, "%s%s%zu_%s_%s", prefix, get ? "_GET" : set ? "_SET" : "", strlen(class_name), class_name,
+                          get || set ? name + 4 : name);
 }
 
 /* ---- links ------------------------------------------------------------------------------------------------------- */

@@ -54,6 +54,7 @@ def trace(path):
 
 def check_faults():
     run(build("passed", PASSED), "-s", "0.1") # an axis that a method passes on
+    run(build("many", "".join(f"PROGRAM P{i} END_PROGRAM\n" for i in range(17))), status=1, says="16 are the most: in a CONFIGURATION")
     for name, statement, says in (("index", "a[n] := 1;", "index.st:6: the index 401 is outside 1..400"),
                                   ("zero", "IF n > 400 THEN a[1] := n / zero; END_IF", "zero.st:6: 401 is divided by zero"),
                                   ("loop", "WHILE n > 400 DO ; END_WHILE", "loop.st:6: this loop")):

@@ -49,6 +49,9 @@ FUNCTION_BLOCK Made VAR_OUTPUT id, seen : INT; END_VAR
   END_FUNCTION_BLOCK
 FUNCTION_BLOCK Made2 EXTENDS Made METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; number : INT;
   who : STRING; END_VAR seen := seen * 10 + LEN(who); id := number; END_METHOD END_FUNCTION_BLOCK
+FUNCTION_BLOCK Pump METHOD Set__Up : INT Set__Up := 3; END_METHOD METHOD get__level : INT get__level := 1; END_METHOD
+  PROPERTY level : INT GET level := 2; END_GET END_PROPERTY END_FUNCTION_BLOCK
+FUNCTION_BLOCK Pump__Set METHOD Up : INT Up := 4; END_METHOD END_FUNCTION_BLOCK
 NAMESPACE Plant
   USING Tools.Math;
   CLASS ABSTRACT Shape VAR PUBLIC name : STRING := 'shape'; END_VAR VAR sides : INT := 2; END_VAR
@@ -85,7 +88,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "w : WORD; q : REF_TO INT; q2 : REF_TO Point; z : REFERENCE TO INT; zp : REFERENCE TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
-       "e : Edges; e2 : Edges2; speed : Counter; idle : ARRAY[1..3] OF Idle; empty : ARRAY[1..3] OF Nothing; behind : BYTE := 7; late : Late(n := 5) := (a := 9); leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; " \
+       "e : Edges; e2 : Edges2; speed : Counter; idle : ARRAY[1..3] OF Idle; empty : ARRAY[1..3] OF Nothing; behind : BYTE := 7; late : Late(n := 5) := (a := 9); leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; pump : Pump; pump2 : Pump__Set; " \
        "hue : Plant.Inner.Hue; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # The literal of a time and its value, in both directions.
 TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
@@ -210,6 +213,7 @@ CASES = [
      {"y": "-42", "i": 123, "y2": "-2", "l": 2.5}),
     ("n := e.left * 10 + e2.left; i := made.id * 10 + made.seen; j := made2.id * 100 + made2.seen;", {"n": 55, "i": 71, "j": 313}),
     ("sq.Grow(more := 1); i := sq.Area(); j := sq.Sides(); sq.name := 'sq'; s := sq.name;", {"i": 16, "j": 6, "s": b"sq"}),
+    ("i := pump.Set__Up() * 1000 + pump2.Up() * 100 + pump.get__level() * 10 + pump.level;", {"i": 3412}),
     ("i := Tools.Math.Double(4); j := Double(4); n := Plant.Inner.Two(); hue := Plant.Inner.Hue#Green; "
      "b := hue = Plant.Inner.Hue#Green;", {"i": 8, "j": 800, "n": 2, "hue": 1, "b": 1}),
     ("b := flag; i := bits; flag := NOT flag; j := bits; word2 := 16#1234; n := low2; low2 := 16#FF; w := word2; real8 := 1.0;",
