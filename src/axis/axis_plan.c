@@ -222,6 +222,15 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
 
 static const override_t no_override = {1.0, 1.0, 1.0};
 
+/* The braking before may be harder than the jerk of a stop can end before the axis stands: it would turn round. The jerk
+ * becomes the one with which velocity and braking end together, or the maximum, which a superimposed motion shares. */
+static void keep_direction(const cm1e_axis_t *axis, const from_t *from, const move_t *move, cm1e_motion_limits_t *limits)
+{
+    const double v = from->velocity, a = from->acceleration;
+    if (v * a < 0.0 && kind_row(move->kind)->is_stop && !from->shared)
+        limits->jerk = larger(limits->jerk, smaller(a * a / (2.0 * fabs(v)), axis->limits.maximum.jerk));
+}
+
 /* Plans a stop by a command, with the override as far as the stop then keeps the software limits. */
 static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
@@ -230,6 +239,7 @@ static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
     if (error != CM1E_OK)
         return error;
+    keep_direction(axis, from, move, &limits);
     /* The other numbers are the axis's own, so the inputs are too small to compute with. */
     if (cm1e_profile_to_velocity(profile, &start, 0.0, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;

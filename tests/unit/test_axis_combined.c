@@ -366,6 +366,31 @@ static void test_a_running_table_keeps_its_path_within_the_limits(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_COMMAND_DONE, axes_status(A, run).state, axes_text(A));
 }
 
+/* A stop with a small jerk, at every moment of the braking and of the acceleration of a move: where the maximum jerk is
+ * enough, the axis does not turn round, and so does not move in a disabled direction. */
+static void test_a_stop_with_a_small_jerk_does_not_turn_round(void)
+{
+    static const cm1e_command_kind_t stops[] = {CM1E_COMMAND_HALT, CM1E_COMMAND_STOP};
+    for (int kind = 0; kind < 2; kind++)
+        for (double sign = -1.0; sign <= 1.0; sign += 2.0)
+            for (int at = 1;; at++) {
+                axes_begin(1);
+                const cm1e_command_id_t move = axes_move_to(A, sign * 1.5, 10.0);
+                axes_cycles(at);
+                if (axes_status(A, move).state != CM1E_COMMAND_ACTIVE)
+                    break;
+                (sign > 0.0 ? axes_bench.negative : axes_bench.positive)[A] = false;
+                const double deceleration = axis()->limits.maximum.deceleration, jerk = axis()->limits.maximum.jerk;
+                axes_command(A, &(cm1e_axis_command_t){.kind = stops[kind], .deceleration = deceleration, .jerk = jerk / 200.0});
+                for (double last = place(), n = 0; n < WAITS && axis()->setpoint.velocity != 0.0; n++, last = place()) {
+                    axes_cycles(1);
+                    AXES_MUST((place() - last) * sign >= -1e-9, "stop in cycle %d: back by %g u", at, last - place());
+                }
+                TEST_ASSERT_EQUAL_DOUBLE(0.0, axis()->setpoint.velocity);
+                axes_end();
+            }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -382,5 +407,6 @@ int main(void)
     RUN_TEST(test_lowered_maxima_under_a_superimposed_motion_end_no_command);
     RUN_TEST(test_a_deceleration_lowered_before_a_junction_leads_beyond_no_target);
     RUN_TEST(test_a_running_table_keeps_its_path_within_the_limits);
+    RUN_TEST(test_a_stop_with_a_small_jerk_does_not_turn_round);
     return UNITY_END();
 }
