@@ -137,6 +137,7 @@ static void deliver(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
         break;
     case OWNER_RECOVERY:
         cm1e_recovery_result(slave, &slave->datagram, now_ns);
+        cm1e_bus_keep_emergency(bus, slave); /* one that came before the answer to a transfer of the recovery */
         cm1e_hot_note(bus, slave);
         break;
     case OWNER_ERRAND:

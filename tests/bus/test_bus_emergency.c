@@ -176,6 +176,37 @@ START_TEST(a_flood_keeps_no_transfer_waiting)
 }
 END_TEST
 
+/** Messages of a slave that is brought back, which its recovery fetches with the answers to its own questions: each is
+ *  kept once, when it comes. */
+START_TEST(those_of_a_slave_that_is_brought_back_are_kept_once_each)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    char line[40], answer[100];
+    unsigned sent = 0, n = 0;
+    simulate(bus, "power-cycle 1 200");
+    while (!cm1e_bus_slave_watch(bus, 1).lost)
+        cycle(bus);
+    cm1e_bus_request_recovery(bus, 1);
+    for (; cm1e_bus_slave_watch(bus, 1).al_state != CM1E_AL_OP && n < 20000; n++) {
+        snprintf(line, sizeof line, "emergency 1 %x", 0x1001 + sent);
+        if (sent < 3 && cm1e_bus_simulate(bus, line, answer, sizeof answer) == CM1E_OK)
+            sent++;
+        cycle(bus);
+    }
+    ck_assert_uint_lt(n, 20000);
+    ck_assert_uint_eq(emergencies_of(bus, 1), 3);
+    cycles(bus, 20);
+    simulate(bus, "emergency 1 1004");
+    cycles(bus, 200);
+    ck_assert_uint_eq(emergencies_of(bus, 1), 4);
+    for (unsigned i = 0; i < 4; i++)
+        ck_assert_uint_eq(all[i].code, 0x1001 + i);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus), 4);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** A slave without CoE, and one that is away, are not asked; the others still are. */
 START_TEST(slaves_without_a_mailbox_are_passed_over)
 {
@@ -438,6 +469,7 @@ int main(void)
     tcase_add_test(tests, the_last_ones_are_kept);
     tcase_add_test(tests, transfers_and_emergencies_do_not_disturb_each_other);
     tcase_add_test(tests, a_flood_keeps_no_transfer_waiting);
+    tcase_add_test(tests, those_of_a_slave_that_is_brought_back_are_kept_once_each);
     tcase_add_test(tests, slaves_without_a_mailbox_are_passed_over);
     tcase_add_test(tests, looks_ride_with_the_process_data);
     tcase_add_loop_test(tests, looks_ride_in_every_kind_of_frame, 0, 5);
