@@ -170,8 +170,9 @@ typedef struct cm1e_errands {
     uint32_t driven;                         /**< atomic; a scheduler makes the cycles: who waits for a file does not */
 } cm1e_errands_t;
 
-/** Of the last cycle that came back. */
+/** Who took no part in the last cycle that came back. */
 typedef struct cm1e_silence {
+    uint8_t marker;                          /**< of the frame that was sent last: cm1e_bus_mark_inputs() */
     bool found;                              /**< its slaves were looked at */
     bool any;                                /**< a slave that counts did not take part */
     bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
@@ -343,8 +344,9 @@ bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns);
 void cm1e_sdo_queue_serve(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
 
-/** Marker in the input bytes of a frame: a slave that takes part in the cycle overwrites all of it. */
-enum { CM1E_INPUT_PATTERN = 0xA5 };
+/** Marks the place of the inputs of slaves in a frame: a slave that takes part in the cycle overwrites all of it. The
+ *  marker is made of the inputs that came last, so that no inputs are like it for long, whatever they are. */
+void cm1e_bus_mark_inputs(const cm1e_bus_t *bus, uint8_t *place, uint32_t input_offset, size_t bytes);
 /** Whether a slave left its inputs in the frame that came back as they were sent: it took no part (cycle.c). */
 bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave);
 /** Notes of each slave whether it is silent, once in a cycle. */

@@ -136,9 +136,9 @@ size_t cm1e_overlap_bytes(const cm1e_bus_t *bus)
 
 void cm1e_overlap_fill(cm1e_bus_t *bus)
 {
-    memset(bus->image, CM1E_INPUT_PATTERN, cm1e_overlap_bytes(bus));
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_slave_placement_t *placement = &bus->slaves[i].placement;
+        cm1e_bus_mark_inputs(bus, bus->image + placement->wire_input, placement->input_offset, placement->input_bytes);
         memcpy(bus->image + placement->wire_output, bus->outputs + placement->output_offset, placement->output_bytes);
     }
 }

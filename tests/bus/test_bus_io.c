@@ -224,6 +224,62 @@ START_TEST(lost_frame_makes_inputs_stale_for_a_cycle)
 }
 END_TEST
 
+static cm1e_slave_config_t *add_digital(const char *name, uint16_t address, uint8_t inputs, uint8_t outputs)
+{
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, name);
+    slave->sim = (cm1e_sim_slave_config_t){.kind = CM1E_SIM_SLAVE_DIGITAL, .inputs = inputs, .outputs = outputs};
+    slave->address = address;
+    return slave;
+}
+
+/** Eight inputs, a motor and outputs. With an optional slave that is absent; with nothing else, and with overlapped
+ *  process data, where the outputs lose their power. */
+static cm1e_bus_t *start_switches(int network)
+{
+    sim_config(1);
+    config.axes[0].address = MOTOR;
+    config.overlap = network == 2;
+    add_digital("switches", 1, 8, 0);
+    add_digital("valves", 3, 0, 4);
+    if (network == 0) {
+        cm1e_slave_config_t *lamp = add_digital("lamp", 4711, 4, 4);
+        lamp->address_kind = CM1E_ADDRESS_ALIAS;
+        lamp->vendor = 0x000004D8;
+        lamp->product = 0x00001235;
+        lamp->optional = lamp->sim_absent = true;
+    }
+    cm1e_bus_t *bus = start_bus();
+    if (network > 0)
+        simulate(bus, "power-cycle 3 60000");
+    for (unsigned n = 0; n < 50; n++)
+        cycle(bus);
+    return bus;
+}
+
+/** By its inputs the bus knows whether a slave takes part: none of their values means that it does not. */
+START_TEST(every_value_of_the_inputs_is_a_value)
+{
+    cm1e_bus_t *bus = start_switches(_i);
+    const cm1e_error_t result = _i == 0 ? CM1E_OK : CM1E_ERROR_BUS_WORKING_COUNTER;
+    char line[32];
+    cm1e_io_t io;
+    ck_assert_int_eq(cm1e_io_find_bits(bus, 1, false, 0, 8, CM1E_IO_USINT, &io, &diag), CM1E_OK);
+    for (int value = 0xFF; value >= 0; value--) {
+        for (int bit = 0; bit < 8; bit++) {
+            snprintf(line, sizeof line, "input 1 %d %s", bit + 1, value >> bit & 1 ? "on" : "off");
+            simulate(bus, line);
+        }
+        for (unsigned n = 0; n < 6; n++) {
+            ck_assert_msg(cycle(bus) == result, "value %02X", value);
+            ck_assert_msg(cm1e_io_quality(&io) == CM1E_IO_GOOD, "value %02X: %s", value,
+                          cm1e_io_quality_name(cm1e_io_quality(&io)));
+        }
+        ck_assert_int_eq(cm1e_io_integer(&io), value);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(handle_ends_with_the_start_of_the_bus_that_it_was_found_in)
 {
     cm1e_bus_t *bus = start_with(CM1E_SIM_IO_MODULE);
@@ -255,6 +311,7 @@ int main(void)
     tcase_add_test(tests, slave_that_is_away_says_so_and_comes_back_with_its_outputs);
     tcase_add_test(tests, outputs_of_the_neighbours_of_a_lost_terminal_stay);
     tcase_add_test(tests, lost_frame_makes_inputs_stale_for_a_cycle);
+    tcase_add_loop_test(tests, every_value_of_the_inputs_is_a_value, 0, 3);
     tcase_add_test(tests, handle_ends_with_the_start_of_the_bus_that_it_was_found_in);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
