@@ -29,8 +29,9 @@ CM1E_API void cm1e_control_serve_own(bool serve);
 typedef struct cm1e_control cm1e_control_t;
 
 /** Connects to a running program. `target` is the path of its socket or the number of its process; NULL: the program
- *  that has the network interface `interface_name`. CM1E_ERROR_NOT_FOUND: nobody has it; CM1E_ERROR_INTERFACE_IN_USE:
- *  somebody has it and cannot be asked, `diag` says why. @rt block */
+ *  that has the network interface `interface_name`. CM1E_ERROR_NOT_FOUND: nobody has it; CM1E_ERROR_TIMEOUT: the
+ *  program is suspended; CM1E_ERROR_INTERFACE_IN_USE: somebody has the interface and cannot be asked, `diag` says why.
+ *  @rt block */
 CM1E_API cm1e_error_t cm1e_control_connect(cm1e_control_t **control, const char *target, const char *interface_name,
                                            cm1e_diag_t *diag);
 /** Sends a request and waits for its reply, both JSON texts. `*reply` is to be freed; it is set also where the program

@@ -17,8 +17,9 @@
 #include "core/in_task.h"
 #include "nic/interface_lock.h"
 
-/** Longer than the longest transfer (request.c). */
-enum { REPLY_TIMEOUT_S = 65, LISTEN_TRIES = 10 };
+/** For a reply longer than the longest transfer (request.c). A program accepts connections within milliseconds, so one
+ *  whose queue stays full for so long is suspended. */
+enum { REPLY_TIMEOUT_S = 65, CONNECT_TIMEOUT_S = 5, LISTEN_TRIES = 10 };
 
 struct cm1e_control {
     int fd;
@@ -162,9 +163,14 @@ static int connect_patiently(int fd, const struct sockaddr_un *address)
     }
 }
 
+static void set_patience(int fd, int option, int seconds)
+{
+    const struct timeval patience = {.tv_sec = seconds};
+    setsockopt(fd, SOL_SOCKET, option, &patience, sizeof patience);
+}
+
 static cm1e_error_t connect_to(cm1e_control_t **control, const char *path, cm1e_diag_t *diag)
 {
-    const struct timeval patience = {.tv_sec = REPLY_TIMEOUT_S};
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     if (strlen(path) >= sizeof address.sun_path)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The path %.100s... is too long for a socket.",
@@ -175,9 +181,11 @@ static cm1e_error_t connect_to(cm1e_control_t **control, const char *path, cm1e_
     strcpy(address.sun_path, path);
     strcpy(made->path, path);
     made->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (made->fd >= 0)
+        set_patience(made->fd, SO_SNDTIMEO, CONNECT_TIMEOUT_S); /* connect() takes it, too */
     if (made->fd >= 0 && connect_patiently(made->fd, &address) == 0) {
-        setsockopt(made->fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-        setsockopt(made->fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+        set_patience(made->fd, SO_RCVTIMEO, REPLY_TIMEOUT_S);
+        set_patience(made->fd, SO_SNDTIMEO, REPLY_TIMEOUT_S);
         *control = made;
         return CM1E_OK;
     }
@@ -186,6 +194,9 @@ static cm1e_error_t connect_to(cm1e_control_t **control, const char *path, cm1e_
     if (why == EACCES || why == EPERM)
         return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "The control socket %s belongs to another user: use the "
                              "rights of the one who started the program, or sudo.", path);
+    if (why == EAGAIN)
+        return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "The program at %s has let nobody in for %d s: it is suspended, "
+                             "or it hangs.", path, CONNECT_TIMEOUT_S);
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "No program serves the control socket %s: %s.", path,
                          strerror(why));
 }

@@ -291,6 +291,27 @@ static double seconds(void)
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
+/* A program that is suspended accepts nobody. Its queue takes some, and then connecting would wait for ever. */
+static void test_program_that_lets_nobody_in_is_given_up(void)
+{
+    enum { QUEUED = 8 };
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    int fds[QUEUED], count = 0, full = 0;
+    snprintf(address.sun_path, sizeof address.sun_path, "%s", path);
+    while (count < QUEUED && !full) {
+        fds[count] = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+        full = connect(fds[count++], (struct sockaddr *)&address, sizeof address) != 0;
+    }
+    TEST_ASSERT_TRUE(full);
+    const double begin = seconds();
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, cm1e_control_connect(&control, path, NULL, &diag));
+    TEST_ASSERT_TRUE(seconds() - begin < 30);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "has let nobody in for 5 s"), diag.text);
+    TEST_ASSERT_NULL(control);
+    while (count > 0)
+        close(fds[--count]);
+}
+
 static double listens_since;
 
 static void *listen_later(void *context)
@@ -338,6 +359,7 @@ int main(void)
     RUN_TEST(test_object_that_is_too_large_for_a_request_is_not_written);
     RUN_TEST(test_request_that_is_no_object_is_not_sent);
     RUN_TEST(test_connections_that_cannot_be_made_say_why);
+    RUN_TEST(test_program_that_lets_nobody_in_is_given_up);
     RUN_TEST(test_socket_that_nobody_listens_to_yet_is_asked_again);
     return UNITY_END();
 }
