@@ -327,7 +327,11 @@ static void *serve(void *context)
 
 /* ---- begin and end ---------------------------------------------------------------------------------------------- */
 
-static cm1e_error_t listen_at(server_t *server, const char *directory, cm1e_diag_t *diag)
+/** Several schedulers of a program may begin or end at the same time: one after the other looks for a number that none of
+ *  them has, and removes what is left at its path, which must not be the socket of another one. */
+static pthread_mutex_t sockets_of_process = PTHREAD_MUTEX_INITIALIZER;
+
+static cm1e_error_t find_path(server_t *server, const char *directory, cm1e_diag_t *diag)
 {
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     server->listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -351,6 +355,14 @@ static cm1e_error_t listen_at(server_t *server, const char *directory, cm1e_diag
                          strerror(errno));
 }
 
+static cm1e_error_t listen_at(server_t *server, const char *directory, cm1e_diag_t *diag)
+{
+    pthread_mutex_lock(&sockets_of_process);
+    const cm1e_error_t error = find_path(server, directory, diag);
+    pthread_mutex_unlock(&sockets_of_process);
+    return error;
+}
+
 /** An ordinary thread, whatever the one that starts it is; signals are for the program's own threads. */
 static int start_thread(server_t *server)
 {
@@ -372,10 +384,12 @@ static int start_thread(server_t *server)
 
 static void free_server(server_t *server)
 {
+    pthread_mutex_lock(&sockets_of_process);
     if (server->listener >= 0) {
         close(server->listener);
         unlink(server->path);
     }
+    pthread_mutex_unlock(&sockets_of_process);
     if (server->wake >= 0)
         close(server->wake);
     cm1e_view_free(&server->run.view);

@@ -1,0 +1,106 @@
+/* Control sockets of several schedulers of one program, which begin and end at the same time: each has a socket of its own,
+ * and keeps it. */
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <unity.h>
+
+#include "cm1e/control.h"
+#include "cm1e/scheduler.h"
+#include "cm1e/sim.h"
+#include "control/server.h"
+
+enum { THREADS = 8, TIMES = 60, PATH = 112 };
+
+static cm1e_bus_t *bus;
+static cm1e_scheduler_t *scheduler;
+static cm1e_bus_config_t config;
+static cm1e_diag_t diag;
+static char directory[] = "/tmp/cm1e-test-XXXXXX", paths[THREADS][PATH];
+static pthread_barrier_t meet;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static bool is_served(const char *path)
+{
+    cm1e_control_t *control;
+    const cm1e_error_t error = cm1e_control_connect(&control, path, NULL, NULL);
+    cm1e_control_close(control);
+    return error == CM1E_OK;
+}
+
+/** Returns how often something was wrong. */
+static void *begin_together(void *context)
+{
+    char *path = context;
+    unsigned long faults = 0;
+    for (int n = 0; n < TIMES; n++) {
+        cm1e_control_server_t *server;
+        pthread_barrier_wait(&meet);
+        const cm1e_error_t error = cm1e_control_server_start(&server, scheduler, 0, path, PATH, NULL);
+        pthread_barrier_wait(&meet);
+        for (int i = 0; i < THREADS; i++)
+            faults += paths[i] != path && strcmp(paths[i], path) == 0;
+        pthread_barrier_wait(&meet);
+        if (error == CM1E_OK)
+            cm1e_control_server_stop(server);
+        faults += error != CM1E_OK;
+    }
+    return (void *)faults;
+}
+
+static void *begin_while_others_end(void *context)
+{
+    char *path = context;
+    unsigned long faults = 0;
+    for (int n = 0; n < TIMES; n++) {
+        cm1e_control_server_t *server;
+        const cm1e_error_t error = cm1e_control_server_start(&server, scheduler, 0, path, PATH, NULL);
+        faults += error != CM1E_OK || !is_served(path);
+        if (error == CM1E_OK)
+            cm1e_control_server_stop(server);
+    }
+    return (void *)faults;
+}
+
+static void run(void *(*program)(void *))
+{
+    pthread_t threads[THREADS];
+    pthread_barrier_init(&meet, NULL, THREADS);
+    for (int i = 0; i < THREADS; i++)
+        TEST_ASSERT_EQUAL_INT(0, pthread_create(&threads[i], NULL, program, paths[i]));
+    unsigned long faults = 0;
+    for (int i = 0; i < THREADS; i++) {
+        void *found;
+        pthread_join(threads[i], &found);
+        faults += (unsigned long)found;
+    }
+    pthread_barrier_destroy(&meet);
+    TEST_ASSERT_EQUAL_UINT_MESSAGE(0, faults, "a socket was given twice, or is gone");
+}
+
+static void test_those_that_begin_together_have_different_sockets(void) { run(begin_together); }
+static void test_one_that_ends_leaves_those_of_others_alone(void) { run(begin_while_others_end); }
+
+int main(void)
+{
+    UNITY_BEGIN();
+    cm1e_bus_config_init(&config, "sim", 1);
+    config.virtual_time = true;
+    if (!mkdtemp(directory) || setenv("CM1E_RUNTIME_DIR", directory, 1) != 0 ||
+        cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK ||
+        cm1e_scheduler_create(&scheduler, bus, NULL, &diag) != CM1E_OK) {
+        printf("%s\n", diag.text);
+        return 1;
+    }
+    RUN_TEST(test_those_that_begin_together_have_different_sockets);
+    RUN_TEST(test_one_that_ends_leaves_those_of_others_alone);
+    cm1e_scheduler_destroy(scheduler);
+    cm1e_bus_close(bus);
+    rmdir(directory);
+    return UNITY_END();
+}
