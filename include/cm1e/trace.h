@@ -62,8 +62,10 @@ CM1E_API cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler,
 #endif
 
 /** Records an object in the process data of an axis, as "<axis> 0x6077:00 <name of the object>", in the unit and type
- *  of the device's dictionary. An object that the dictionary does not know is an unsigned integer. Errors as above, and
- *  CM1E_ERROR_PDO_MAPPING: the object is in neither direction of the process data. @rt init */
+ *  of the device's dictionary. An object that the dictionary does not know is an unsigned integer. Of an optional drive
+ *  that is absent the planned process data count until it comes, and then its own; an object that these do not have is
+ *  not a number from then on. Errors as above, and CM1E_ERROR_PDO_MAPPING: the object is in neither direction of the
+ *  process data. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t axis, uint16_t index,
                                                   uint8_t subindex, cm1e_diag_t *diag);
 

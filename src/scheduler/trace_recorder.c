@@ -46,10 +46,10 @@ static void add_timing_columns(trace_t *trace)
                                           .value = &timing->wake_up_latency_us};
     *new_column(trace) = (trace_column_t){"execution time", "us", .type = CM1E_TRACE_LREAL,
                                           .value = &timing->execution_time_us};
-    *new_column(trace) = (trace_column_t){"lost frames", "", TRACE_KIND_COUNT, CM1E_TRACE_ULINT, &timing->lost_frames,
-                                          false, 0};
-    *new_column(trace) = (trace_column_t){"overruns", "", TRACE_KIND_COUNT, CM1E_TRACE_ULINT, &timing->overruns, false,
-                                          0};
+    *new_column(trace) = (trace_column_t){"lost frames", "", TRACE_KIND_COUNT, .type = CM1E_TRACE_ULINT,
+                                          .value = &timing->lost_frames};
+    *new_column(trace) = (trace_column_t){"overruns", "", TRACE_KIND_COUNT, .type = CM1E_TRACE_ULINT,
+                                          .value = &timing->overruns};
 }
 
 static void add_error_columns(trace_t *trace)
@@ -281,13 +281,19 @@ double cm1e_trace_value(const trace_column_t *column)
 /** In the process image an integer is little-endian; its type says its size and its sign. */
 static double value_in_image(const trace_column_t *column)
 {
-    switch (column->type) {
-    case CM1E_TRACE_SINT: return (int8_t)cm1e_get_uint(column->value, 1);
-    case CM1E_TRACE_INT: return (int16_t)cm1e_get_uint(column->value, 2);
-    case CM1E_TRACE_DINT: return (int32_t)cm1e_get_uint(column->value, 4);
-    case CM1E_TRACE_UINT: return (double)cm1e_get_uint(column->value, 2);
-    case CM1E_TRACE_UDINT: return (double)cm1e_get_uint(column->value, 4);
-    default: return (double)cm1e_get_uint(column->value, 1);
+    cm1e_trace_type_t type = column->type;
+    const uint8_t *place = column->value;
+    if (column->absent.bus)
+        place = cm1e_trace_find_object(&column->absent, &type);
+    if (!place)
+        return NAN;
+    switch (type) {
+    case CM1E_TRACE_SINT: return (int8_t)cm1e_get_uint(place, 1);
+    case CM1E_TRACE_INT: return (int16_t)cm1e_get_uint(place, 2);
+    case CM1E_TRACE_DINT: return (int32_t)cm1e_get_uint(place, 4);
+    case CM1E_TRACE_UINT: return (double)cm1e_get_uint(place, 2);
+    case CM1E_TRACE_UDINT: return (double)cm1e_get_uint(place, 4);
+    default: return (double)cm1e_get_uint(place, 1);
     }
 }
 

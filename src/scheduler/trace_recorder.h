@@ -26,6 +26,13 @@ typedef enum trace_kind {
     TRACE_KIND_COUNT,  /**< a number of events since the start */
 } trace_kind_t;
 
+/** An object of a drive that took no part when its column was added: where it lies shows when the drive has come. */
+typedef struct trace_object {
+    cm1e_bus_t *bus; /**< NULL: there is no such object */
+    uint16_t position, index;
+    uint8_t subindex;
+} trace_object_t;
+
 /** One signal. */
 typedef struct trace_column {
     char name[CM1E_TRACE_NAME_BYTES], unit[CM1E_TRACE_UNIT_BYTES];
@@ -34,6 +41,7 @@ typedef struct trace_column {
     const void *value;  /**< where it is read; NULL: a column of an axis */
     bool little_endian; /**< it lies in the process image */
     uint8_t bit;        /**< it is one bit of a byte: 1 = bit 0; else 0 */
+    trace_object_t absent;
 } trace_column_t;
 
 /** A moment that the program marked. */
@@ -91,6 +99,9 @@ CM1E_GUEST_API cm1e_error_t cm1e_trace_add(trace_t *trace, const trace_column_t 
 CM1E_GUEST_API cm1e_error_t cm1e_trace_add_object(trace_t *trace, cm1e_bus_t *bus, uint16_t position,
                                                   const char *axis, uint16_t index, uint8_t subindex,
                                                   cm1e_diag_t *diag);
+/** Finds such an object in the present process data; NULL: it is not there. `*type` keeps its sign, and gets its size.
+ *  @rt cycle */
+const uint8_t *cm1e_trace_find_object(const trace_object_t *object, cm1e_trace_type_t *type);
 cm1e_error_t cm1e_trace_set_trigger(trace_t *trace, const cm1e_trace_trigger_t *trigger, cm1e_diag_t *diag);
 /** Allocates the samples; columns are complete. @rt init */
 CM1E_GUEST_API cm1e_error_t cm1e_trace_begin(trace_t *trace, cm1e_diag_t *diag);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "cm1e/hot_connect.h"
 #include "cm1e/sim.h"
 #include "cm1e/trace.h"
 #include "core/bytes.h"
@@ -253,6 +254,52 @@ START_TEST(test_objects_have_the_size_and_the_sign_of_the_dictionary)
 }
 END_TEST
 
+/** Plugs the second motor in, and asks for it. */
+static void plug_in(void *context)
+{
+    const int64_t n = plc.cycles++;
+    char answer[200];
+    (void)context;
+    if (n == 50)
+        ck_assert_int_eq(cm1e_bus_simulate(machine.bus, "attach 2", answer, sizeof answer), CM1E_OK);
+    if (n > 50 && n % 50 == 0)
+        (void)cm1e_bus_recover(machine.bus, 2, &diag);
+}
+
+/** A motor that was absent at the start has its objects in the one order or in the other. */
+START_TEST(test_objects_of_a_motor_that_comes_are_where_it_has_them)
+{
+    static const uint16_t objects[] = {0x6041, 0x6061, 0x6064, 0x60FD, 0x607A};
+    enum { OBJECTS = sizeof objects / sizeof objects[0], CYCLES = 3000 };
+    static cm1e_bus_config_t config;
+    memset(&plc, 0, sizeof plc);
+    machine = (machine_t){.axis_count = 2, .config = {.trace_capacity = CYCLES}};
+    ck_assert_int_eq(cm1e_bus_config_init(&config, "sim", 2), CM1E_OK);
+    config.virtual_time = true;
+    config.sim_pdo_order = _i ? CM1E_PDO_ORDER_UG_7_2 : CM1E_PDO_ORDER_UG_4_4;
+    config.axes[1].address_kind = CM1E_ADDRESS_ALIAS;
+    config.axes[1].address = 17;
+    config.axes[1].optional = config.axes[1].sim_absent = true;
+    expect(cm1e_bus_open(&machine.bus, &config, &diag), CM1E_OK, "");
+    expect(cm1e_bus_start(machine.bus, &diag), CM1E_OK, "");
+    expect(cm1e_scheduler_create(&machine.scheduler, machine.bus, &machine.config, &diag), CM1E_OK, "");
+    machine_add(&machine, "program", 0, 0, plug_in, NULL);
+    const trace_t *trace = cm1e_scheduler_trace(machine.scheduler);
+    const uint32_t first = trace->column_count;
+    for (int i = 0; i < OBJECTS; i++)
+        expect(cm1e_scheduler_trace_object(machine.scheduler, cm1e_scheduler_axis(machine.scheduler, 1), objects[i], 0,
+                                           &diag), CM1E_OK, "");
+    machine_run(&machine, CYCLES * MS);
+    ck_assert_uint_eq(trace->used, CYCLES);
+    ck_assert_double_eq(cm1e_trace_sample(trace, 0)[first], 0);
+    ck_assert_int_eq((int)cm1e_trace_sample(trace, CYCLES - 1)[first] & 0x6F, 0x21); /* Ready to switch on */
+    ck_assert_double_eq(cm1e_trace_sample(trace, CYCLES - 1)[first + 1], 8); /* CSP */
+    ck_assert_double_eq(cm1e_trace_sample(trace, CYCLES - 1)[first + 3], 0); /* no input is on */
+    machine_close(&machine);
+    cm1e_bus_config_free(&config);
+}
+END_TEST
+
 START_TEST(test_objects_that_no_cycle_brings_are_refused)
 {
     open_machine(20);
@@ -459,6 +506,7 @@ int main(void)
     tcase_add_test(tests, test_signals_that_cannot_be_are_refused_in_words);
     tcase_add_test(tests, test_objects_in_both_directions_of_the_process_data);
     tcase_add_test(tests, test_objects_have_the_size_and_the_sign_of_the_dictionary);
+    tcase_add_loop_test(tests, test_objects_of_a_motor_that_comes_are_where_it_has_them, 0, 2);
     tcase_add_test(tests, test_objects_that_no_cycle_brings_are_refused);
     tcase_add_test(tests, test_the_cycle_itself_is_recorded);
     tcase_add_test(tests, test_triggers_keep_what_a_search_in_the_whole_signal_says);
