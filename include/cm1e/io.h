@@ -49,10 +49,11 @@ typedef struct cm1e_io_info {
 } cm1e_io_info_t;
 
 /** A signal, found. The caller owns it; its members are the library's. It is valid until the next cm1e_bus_scan() or
- *  cm1e_bus_close(): find it again after a new start of the bus. */
+ *  cm1e_bus_close(): find it again after a new start of the bus. One of an optional drive that was found before the drive
+ *  came is valid until the drive comes with other process data than was planned: find it again then. */
 typedef struct cm1e_io {
     cm1e_bus_t *bus;
-    uint32_t layout, byte; /**< number of the process image; place in it */
+    uint32_t layout, byte; /**< number of the process image and of the slave's part; place in it */
     uint16_t position, bits;
     uint8_t shift, type;
     bool output;
@@ -63,7 +64,8 @@ typedef enum cm1e_io_quality {
     CM1E_IO_GOOD = 0, /**< the slave took part in this cycle, and is in Operational */
     CM1E_IO_STALE,    /**< nothing came from the slave in this cycle: the value is the last one that did */
     CM1E_IO_OFFLINE,  /**< the slave has left Operational, does not answer, or the bus is not in operation */
-    CM1E_IO_INVALID,  /**< the handle is of an earlier start of the bus, or names nothing */
+    CM1E_IO_INVALID,  /**< the handle is of an earlier start of the bus, or of process data that were planned and are
+                           others, or names nothing */
 } cm1e_io_quality_t;
 
 /** "good", "stale", "offline", "invalid"; never NULL. @rt any */

@@ -28,6 +28,7 @@ typedef struct cm1e_hot {
     uint16_t before;         /**< optional slaves before it on the wire at the scan */
     uint16_t place;          /**< on the wire, as seen last; 0: nowhere */
     uint32_t bound;          /**< number of times that its process data were placed in operation */
+    uint32_t relaid;         /**< number of times that a motor had other process data than was known before it came */
     cm1e_recover_t policy;   /**< never DEFAULT */
     const char *group;       /**< "": none */
     const cm1e_axis_config_t *axis; /**< its first one; NULL: none */

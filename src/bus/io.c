@@ -32,6 +32,15 @@ static cm1e_error_t no_slave(const cm1e_bus_t *bus, uint32_t position, cm1e_diag
                          position, bus->slave_count);
 }
 
+/** Number of the process image, and of what the slave has in it: a motor that comes may have its objects elsewhere than
+ *  was planned, and a handle would show another one. */
+static uint32_t layout_of(const cm1e_bus_t *bus, uint16_t position)
+{
+    enum { RELAID_AT = 16 };
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    return bus->layout.present && slave ? bus->layout.present + (slave->hot.relaid << RELAID_AT) : 0;
+}
+
 static cm1e_error_t find_bits(cm1e_bus_t *bus, uint16_t position, bool output, uint32_t bit_offset, uint16_t bits,
                               cm1e_io_type_t type, cm1e_io_t *io, cm1e_diag_t *diag)
 {
@@ -53,7 +62,7 @@ static cm1e_error_t find_bits(cm1e_bus_t *bus, uint16_t position, bool output, u
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "Slave %u has %" PRIu32 " bits of %s: bits %" PRIu32
                              " ... %" PRIu32 " are not among them.", position, there, output ? "outputs" : "inputs",
                              bit_offset, bit_offset + bits - 1u);
-    *io = (cm1e_io_t){.bus = bus, .layout = bus->layout.present, .position = position, .bits = bits,
+    *io = (cm1e_io_t){.bus = bus, .layout = layout_of(bus, position), .position = position, .bits = bits,
                       .type = (uint8_t)type,
                       .byte = (output ? placement->output_offset : placement->input_offset) + bit_offset / 8,
                       .shift = bit_offset % 8, .output = output};
@@ -234,7 +243,7 @@ const char *cm1e_io_quality_name(cm1e_io_quality_t quality)
 
 static bool is_valid(const cm1e_io_t *io)
 {
-    return io->bus && io->layout == io->bus->layout.present && io->layout != 0;
+    return io->bus && io->layout != 0 && io->layout == layout_of(io->bus, io->position);
 }
 
 cm1e_io_quality_t cm1e_io_quality(const cm1e_io_t *io)

@@ -575,6 +575,8 @@ static bool takes_mapping(cm1e_bus_slave_t *slave)
     }
     if (!slave->hot.planned)
         return true;
+    for (int direction = 0; direction < 2; direction++)
+        slave->hot.relaid += motors && !cm1e_mapping_equal(&job->mapped[direction], &slave->mapped[direction]);
     slave->by_pdos = !motors && job->unknown < 2;
     memcpy(slave->mapped, job->mapped, sizeof slave->mapped);
     return true;
