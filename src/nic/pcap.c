@@ -2,10 +2,14 @@
 #include "core/clock.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum { BUFFER_SIZE = 1 << 20, SNAP_LENGTH = 65535, LINK_ETHERNET = 1 };
 
@@ -38,15 +42,38 @@ static cm1e_error_t cannot_write(const char *path, cm1e_diag_t *diag)
     return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s cannot be written: %s.", path, strerror(errno));
 }
 
+/** Opens a file that nobody else writes, and empties it: two that write one file damage the records of each other. A lock
+ *  needs no file of its own and ends with the process. -1: errno is EWOULDBLOCK where somebody writes it. */
+static int open_alone(const char *path)
+{
+    struct stat found;
+    const int fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (fd < 0 || fstat(fd, &found) != 0 || !S_ISREG(found.st_mode))
+        return fd;
+    const bool taken = flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (!taken && ftruncate(fd, 0) == 0)
+        return fd;
+    const int why = taken ? EWOULDBLOCK : errno;
+    close(fd);
+    errno = why;
+    return -1;
+}
+
 cm1e_error_t cm1e_pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag)
 {
     *pcap = NULL;
     pcap_file_t *p = calloc(1, sizeof *p);
     if (!p)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the buffer of the pcap file.");
-    p->file = fopen(path, "wbe");
+    const int fd = open_alone(path);
+    p->file = fd >= 0 ? fdopen(fd, "wb") : NULL;
     if (!p->file) {
         free(p);
+        if (fd >= 0)
+            close(fd);
+        else if (errno == EWOULDBLOCK)
+            return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s is being written already, for another network "
+                                 "or by another program: name another file.", path);
         return cannot_write(path, diag);
     }
     setvbuf(p->file, p->buffer, _IOFBF, sizeof p->buffer);

@@ -13,7 +13,7 @@
 
 typedef struct pcap_file pcap_file_t;
 
-/** CM1E_ERROR_IO: the file cannot be made. */
+/** CM1E_ERROR_IO: the file cannot be made, or somebody else writes it. */
 cm1e_error_t cm1e_pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag);
 /** CM1E_ERROR_IO: what was written so far does not arrive. Not in the cycle. */
 cm1e_error_t cm1e_pcap_check(pcap_file_t *pcap, const char *path, cm1e_diag_t *diag);

@@ -1,6 +1,8 @@
 /* The tap: every verdict on a fake wire, injected frames, the pcap file byte by byte, the frame queue, opening. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -10,6 +12,7 @@
 #include "../support/fake_wire.h"
 #include "core/bytes.h"
 #include "nic/frame.h"
+#include "nic/pcap.h"
 
 enum { RTT_NS = WIRE_BASE_NS + WIRE_SLAVES * WIRE_SLAVE_NS };
 
@@ -300,6 +303,33 @@ static void test_the_pcap_file_holds_every_frame_after_the_tap(void)
     }
 }
 
+/* Two networks with one file: the second is told, and the records of the first stay whole. */
+static void test_a_pcap_file_has_one_writer(void)
+{
+    const char *path = CM1E_TEST_OUTPUT "/test_nic_tap_twice.pcap";
+    pcap_file_t *first, *second;
+    static uint8_t frame[60];
+    struct stat found;
+    cm1e_diag_t diag;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_open(&first, path, NULL));
+    cm1e_pcap_write(first, 1, frame, sizeof frame);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_check(first, path, NULL));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_IO, cm1e_pcap_open(&second, path, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "is being written already, for another network"), diag.text);
+    TEST_ASSERT_NULL(second);
+    TEST_ASSERT_EQUAL_INT(0, stat(path, &found));
+    TEST_ASSERT_EQUAL_INT(24 + 16 + sizeof frame, found.st_size);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_close(first));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_open(&second, path, NULL)); /* and a later one begins anew */
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_close(second));
+    TEST_ASSERT_EQUAL_INT(0, stat(path, &found));
+    TEST_ASSERT_EQUAL_INT(24, found.st_size);
+    for (int i = 0; i < 2; i++) /* no file */
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_open(i ? &second : &first, "/dev/null", NULL));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_close(first));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_close(second));
+}
+
 static void test_a_pcap_file_that_cannot_be_written_is_diagnosed(void)
 {
     cm1e_diag_t diag = {0};
@@ -337,6 +367,7 @@ int main(void)
     RUN_TEST(test_injection_refuses_what_does_not_fit);
     RUN_TEST(test_the_frame_queue_sorts_by_time_and_keeps_the_order_of_equals);
     RUN_TEST(test_the_pcap_file_holds_every_frame_after_the_tap);
+    RUN_TEST(test_a_pcap_file_has_one_writer);
     RUN_TEST(test_a_pcap_file_that_cannot_be_written_is_diagnosed);
     RUN_TEST(test_closing_leaves_no_virtual_clock_behind);
     return UNITY_END();
