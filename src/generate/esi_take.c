@@ -1,10 +1,13 @@
 #include "generate/esi_take.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "config/clock_pulses.h"
 #include "config/esi_reader.h"
@@ -390,13 +393,32 @@ cm1e_error_t cm1e_esi_take(cm1e_slave_config_t *slave, const void *bytes, size_t
     return error;
 }
 
+/** Only a regular file: opening a FIFO that nobody writes to would wait for ever. NULL: `diag` says why. */
+static FILE *open_file(const char *path, cm1e_diag_t *diag)
+{
+    struct stat about;
+    const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    FILE *file = NULL;
+    if (descriptor < 0 || fstat(descriptor, &about) != 0)
+        cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "cannot be read: %s", strerror(errno));
+    else if (!S_ISREG(about.st_mode))
+        cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "is %s; expected the file of an ESI",
+                      S_ISDIR(about.st_mode) ? "a folder" : "not a regular file");
+    else if (!(file = fdopen(descriptor, "rb")))
+        cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "cannot be read: out of memory");
+    if (!file && descriptor >= 0)
+        close(descriptor);
+    return file;
+}
+
 static cm1e_error_t read_file(const char *path, uint8_t **bytes, size_t *size, cm1e_diag_t *diag)
 {
-    FILE *file = fopen(path, "rb");
+    cm1e_diag_t why = {0};
+    FILE *file = open_file(path, &why);
     *size = 0;
     *bytes = NULL;
     if (!file)
-        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "cannot be read: %s", strerror(errno));
+        return cm1e_diag_set(diag, why.error, 0, "%s", why.text);
     for (size_t room = 1 << 20; !ferror(file) && !feof(file) && room <= FILE_MAX; room *= 2) {
         uint8_t *larger = realloc(*bytes, room);
         if (!larger)

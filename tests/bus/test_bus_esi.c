@@ -203,6 +203,21 @@ START_TEST(test_a_bad_file_is_told_in_words)
 }
 END_TEST
 
+/* A FIFO without a writer would let the program wait for ever, and a folder is no ESI that is too large. */
+START_TEST(test_only_a_regular_file_is_read)
+{
+    remove(esi_path);
+    ck_assert_int_eq(mkfifo(esi_path, 0600), 0);
+    ck_assert_int_eq(load(NULL, ""), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "bus_esi.xml: is not a regular file; expected the file of an ESI"), "%s", diag.text);
+    ck_assert_int_eq(remove(esi_path), 0);
+    ck_assert_int_eq(mkdir(esi_path, 0700), 0);
+    ck_assert_int_eq(load(NULL, ""), CM1E_ERROR_CONFIG);
+    ck_assert_msg(strstr(diag.text, "bus_esi.xml: is a folder; expected the file of an ESI"), "%s", diag.text);
+    ck_assert_int_eq(remove(esi_path), 0);
+}
+END_TEST
+
 START_TEST(test_a_slave_is_configured_by_it)
 {
     cm1e_io_t io;
@@ -374,6 +389,7 @@ int main(void)
     tcase_add_test(tests, test_the_first_mode_with_sync0_is_the_default_of_its_maker);
     tcase_add_test(tests, test_a_slave_without_a_mailbox_is_named_by_its_bits);
     tcase_add_test(tests, test_a_bad_file_is_told_in_words);
+    tcase_add_test(tests, test_only_a_regular_file_is_read);
     tcase_add_test(tests, test_a_slave_is_configured_by_it);
     tcase_add_test(tests, test_an_absent_slave_has_its_signals_from_the_file);
     tcase_add_test(tests, test_start_up_commands_with_complete_access);
