@@ -176,6 +176,18 @@ static cm1e_error_t describe_slave(cm1e_description_file_t *file, cm1e_bus_t *bu
     return CM1E_OK;
 }
 
+/* The PDOs that a configuration names for a servo drive of another maker are assigned as those of a slave without an
+ * axis. */
+static cm1e_error_t configure_drive(cm1e_description_file_t *file, const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
+{
+    cm1e_slave_config_t slave = {.outputs_pdos = {axis->outputs_pdo}, .outputs_pdo_count = 1,
+                                 .inputs_pdos = {axis->inputs_pdo}, .inputs_pdo_count = 1};
+    if (!axis->outputs_pdo)
+        return CM1E_OK;
+    snprintf(slave.name, sizeof slave.name, "%s", axis->name);
+    return cm1e_eni_configure_slave(file, &slave, diag);
+}
+
 cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag)
 {
     const uint32_t count = cm1e_bus_slave_count(bus);
@@ -197,6 +209,8 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
         const cm1e_slave_config_t *other = axis ? NULL : slave_config_of(cm1e_bus_configuration(bus), slave);
         if (error == CM1E_OK && other)
             error = cm1e_eni_configure_slave(&described, other, diag);
+        if (error == CM1E_OK && axis)
+            error = configure_drive(&described, axis, diag);
         if (error == CM1E_OK)
             slaves[position - 1].name =
                 other ? cm1e_arena_text(&described.arena, other->name)

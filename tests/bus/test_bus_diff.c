@@ -185,6 +185,30 @@ START_TEST(the_eni_of_a_scan_has_the_protocols_of_the_sii)
 }
 END_TEST
 
+/* The drive has 0x1600 and 0x1A00 assigned itself. */
+START_TEST(the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive)
+{
+    sim_config(1);
+    cm1e_axis_config_t *axis = &config.axes[0];
+    axis->firmware[0] = 0;
+    strcpy(axis->device, "cia402");
+    axis->counts_per_revolution = 131072;
+    axis->max_speed_rpm = 3000;
+    axis->outputs_pdo = 0x1601;
+    axis->inputs_pdo = 0x1A01;
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_file_t file = {0};
+    ck_assert_msg(cm1e_generate_eni_of_bus(&file, bus, CM1E_MAPPING_DYNAMIC, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert(contains(&file, "<Pdo>5633</Pdo>") && contains(&file, "<Pdo>6657</Pdo>")); /* in the sync managers */
+    ck_assert(!contains(&file, "<Pdo>5632</Pdo>") && !contains(&file, "<Pdo>6656</Pdo>"));
+    ck_assert(contains(&file, "<Data>0116</Data>") && contains(&file, "<Data>011A</Data>")); /* assigned by SDO */
+    ck_assert(contains(&file, "<DataLength>12</DataLength>")); /* of the LRW: the inputs are longer */
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 static void compare_modular(cm1e_bus_t *bus, const char *firmware)
 {
     cm1e_file_t file = {0};
@@ -538,6 +562,7 @@ int main(void)
     tcase_add_loop_test(equal, a_file_of_every_format_that_is_made_for_a_bridge_differs_in_nothing, 0, 3);
     tcase_add_loop_test(equal, the_eni_of_a_scan_is_that_of_the_configuration_of_a_bridge, 0, 3);
     tcase_add_test(equal, the_eni_of_a_scan_has_the_protocols_of_the_sii);
+    tcase_add_test(equal, the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive);
     tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
     tcase_add_test(equal, a_modular_file_differs_in_nothing);
     tcase_add_test(equal, a_lost_frame_changes_no_finding);
