@@ -74,6 +74,14 @@ static const cm1e_slave_config_t *slave_config_of(const cm1e_bus_config_t *confi
     return NULL;
 }
 
+/* The alias by which the configuration finds a slave, for the master to look for it too; 0: none. */
+static uint16_t alias_of(const cm1e_axis_config_t *axis, const cm1e_slave_config_t *other)
+{
+    if (axis && axis->address_kind == CM1E_ADDRESS_ALIAS)
+        return axis->address;
+    return other && other->address_kind == CM1E_ADDRESS_ALIAS ? other->address : 0;
+}
+
 /* The mode that a configuration names, by the EEPROM of the slave. */
 static cm1e_error_t take_mode(cm1e_eni_slave_t *slave, const cm1e_dc_config_t *stated, int64_t cycle_time_ns,
                               cm1e_diag_t *diag)
@@ -211,6 +219,7 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
             error = cm1e_eni_configure_slave(&described, other, diag);
         if (error == CM1E_OK && axis)
             error = configure_drive(&described, axis, diag);
+        slaves[position - 1].alias = alias_of(axis, other);
         if (error == CM1E_OK)
             slaves[position - 1].name =
                 other ? cm1e_arena_text(&described.arena, other->name)

@@ -185,6 +185,28 @@ START_TEST(the_eni_of_a_scan_has_the_protocols_of_the_sii)
 }
 END_TEST
 
+START_TEST(the_eni_of_a_scan_is_that_of_the_configuration_of_motors_with_aliases)
+{
+    sim_config(2);
+    for (unsigned i = 0; i < 2; i++) {
+        config.axes[i].address_kind = CM1E_ADDRESS_ALIAS;
+        config.axes[i].address = (uint16_t)(77 + i);
+    }
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ENI, .network = &config};
+    cm1e_file_t configured = {0}, scanned = {0};
+    ck_assert_msg(cm1e_generate(&configured, &options, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_generate_eni_of_bus(&scanned, bus, CM1E_MAPPING_DYNAMIC, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert(contains(&scanned, "check station alias"));
+    ck_assert_uint_eq(scanned.size, configured.size);
+    ck_assert(!memcmp(scanned.bytes, configured.bytes, scanned.size));
+    cm1e_file_free(&configured);
+    cm1e_file_free(&scanned);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* The drive has 0x1600 and 0x1A00 assigned itself. */
 START_TEST(the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive)
 {
@@ -562,6 +584,7 @@ int main(void)
     tcase_add_loop_test(equal, a_file_of_every_format_that_is_made_for_a_bridge_differs_in_nothing, 0, 3);
     tcase_add_loop_test(equal, the_eni_of_a_scan_is_that_of_the_configuration_of_a_bridge, 0, 3);
     tcase_add_test(equal, the_eni_of_a_scan_has_the_protocols_of_the_sii);
+    tcase_add_test(equal, the_eni_of_a_scan_is_that_of_the_configuration_of_motors_with_aliases);
     tcase_add_test(equal, the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive);
     tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
     tcase_add_test(equal, a_modular_file_differs_in_nothing);
