@@ -216,6 +216,19 @@ static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_co
     return error;
 }
 
+/* An axis behind a connector for which the device has no process data would be a name and nothing else. */
+static cm1e_error_t check_axes(const node_t *node, const cm1e_device_options_t *device, cm1e_diag_t *diag)
+{
+    const unsigned axes = device->axes ? device->axes : CM1E_BRIDGE_AXES;
+    for (unsigned channel = CM1E_BRIDGE_AXES; channel > axes; channel--)
+        if (node->motors[channel - 1])
+            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                                 "%s: one of its axes has channel %u, but the given %s has %u axes; expected at least "
+                                 "%u, or no number (4)", node->name, channel, cm1e_device_of_model(device->model)->name,
+                                 axes, channel);
+    return CM1E_OK;
+}
+
 /* The guide of the bridge states no identity, so the user must state it. */
 static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const node_t *node,
                                     const cm1e_generate_options_t *options, cm1e_diag_t *diag)
@@ -239,7 +252,8 @@ static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const no
                              "%s: it is behind a bridge, whose guide states no identity, and no given device has these "
                              "motors: state model (eb01, eb02, eb12), vendor, product code and revision, as `cm1e "
                              "scan` shows them; or make the ENI from a scan of the network", node->name);
-    return cm1e_describe(described, found, CM1E_ESI_FLAT, diag);
+    const cm1e_error_t error = check_axes(node, found, diag);
+    return error == CM1E_OK ? cm1e_describe(described, found, CM1E_ESI_FLAT, diag) : error;
 }
 
 static cm1e_error_t describe_slave(cm1e_description_file_t *described, const cm1e_slave_config_t *slave,

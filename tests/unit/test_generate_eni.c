@@ -141,6 +141,16 @@ static void test_identity_of_a_bridge_has_to_be_stated(void)
     bridge_refused(&two_bridges[1], 1, "no given device has these motors");
 }
 
+static void test_every_axis_has_process_data_in_its_bridge(void)
+{
+    cm1e_device_options_t of_two = eb12[0];
+    of_two.axes = 2;
+    set_network(4, mixed_axes); /* the channels 1 and 3 */
+    bridge_refused(&of_two, 1, "A2, A3: one of its axes has channel 3, but the given EB12 has 2 axes; expected at least 3");
+    of_two.axes = 3;
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, generate_network(&of_two, 1), diag.text);
+}
+
 static void test_places_that_do_not_follow_are_refused(void)
 {
     static const uint16_t gap[][2] = {{1, 1}, {1, 2}, {3, 0}}, first_missing[][2] = {{2, 1}, {2, 2}};
@@ -467,6 +477,7 @@ int main(void)
     RUN_TEST(test_axes_behind_a_bridge_are_one_slave);
     RUN_TEST(test_the_bridge_is_the_stated_one_that_has_the_motors);
     RUN_TEST(test_identity_of_a_bridge_has_to_be_stated);
+    RUN_TEST(test_every_axis_has_process_data_in_its_bridge);
     RUN_TEST(test_places_that_do_not_follow_are_refused);
     RUN_TEST(test_networks_that_no_file_can_describe_are_refused);
     RUN_TEST(test_the_same_names_of_entries_get_numbers);
