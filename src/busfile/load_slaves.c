@@ -1,5 +1,8 @@
 /* The slaves of a bus file: texts that name objects, PDOs and values become numbers. */
 #include <errno.h>
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -153,11 +156,18 @@ static bool take_whole(const char *text, bool is_signed, unsigned bits, uint64_t
     return !negative && (bits == 64 || size >> bits == 0);
 }
 
-static bool take_real(const char *text, double *value)
+/* Finite in the type, and 0 only if 0 is meant. */
+static bool take_real(const char *text, bool is_narrow, double *value)
 {
     char *end;
+    errno = 0;
     *value = strtod(text, &end);
-    return end != text && *end == '\0' && !strpbrk(text, "xXnN");
+    if (end == text || *end != '\0' || strpbrk(text, "xXnN"))
+        return false;
+    if (!isfinite(*value) || (is_narrow && fabs(*value) > (double)FLT_MAX))
+        return false;
+    const double kept = is_narrow ? (double)(float)*value : *value;
+    return kept != 0 || (*value == 0 && errno == 0);
 }
 
 /* The bits of a value of this type; false: it is none. */
@@ -169,7 +179,7 @@ static bool take_value(const char *text, cm1e_io_type_t type, uint64_t *raw)
         return true;
     if (!row->is_real)
         return take_whole(text, row->is_signed, row->bits, raw);
-    if (!take_real(text, &value))
+    if (!take_real(text, type == CM1E_IO_REAL, &value))
         return false;
     const float narrow = (float)value;
     uint32_t word;
@@ -177,6 +187,21 @@ static bool take_value(const char *text, cm1e_io_type_t type, uint64_t *raw)
     memcpy(raw, &value, sizeof value);
     *raw = type == CM1E_IO_REAL ? word : *raw;
     return true;
+}
+
+/* What a value of this type can be. */
+static void list_values(cm1e_io_type_t type, char text[80])
+{
+    const cm1e_io_type_row_t *row = &cm1e_io_types[type];
+    const uint64_t largest = UINT64_MAX >> (64 - row->bits), half = largest >> 1;
+    if (type == CM1E_IO_BOOL)
+        snprintf(text, 80, "true, false, 0 or 1");
+    else if (row->is_real)
+        snprintf(text, 80, "a number that is neither too large nor too small for it");
+    else if (row->is_signed)
+        snprintf(text, 80, "-%" PRIu64 " ... %" PRIu64 ", or 0x0 ... 0x%" PRIX64, half + 1, half, largest);
+    else
+        snprintf(text, 80, "0 ... %" PRIu64 ", or 0x0 ... 0x%" PRIX64, largest, largest);
 }
 
 /* "BOOL, SINT ...": of numbers only. */
@@ -210,8 +235,10 @@ static bool convert_sdo(const place_t *place, unsigned n, const cm1e_busfile_sdo
     sdo->bytes = (uint8_t)((cm1e_io_types[type].bits + 7) / 8);
     sdo->before_op = from->before_op != 0;
     snprintf(key, sizeof key, "sdo[%u].value", n);
+    char values[80];
+    list_values(type, values);
     return take_value(from->value, type, &sdo->value) ||
-           wrong(place, key, "value is '%s', which is no %s", from->value, cm1e_io_types[type].name);
+           wrong(place, key, "value is '%s', which is no %s; expected %s", from->value, cm1e_io_types[type].name, values);
 }
 
 /* ---- signals ----------------------------------------------------------------------------------------------------- */
@@ -220,7 +247,7 @@ static bool convert_safe(const place_t *place, const char *key, const char *text
 {
     uint64_t truth;
     signal->hold = strcasecmp(text, "hold") == 0;
-    if (text[0] == '\0' || signal->hold || take_real(text, &signal->safe))
+    if (text[0] == '\0' || signal->hold || take_real(text, false, &signal->safe))
         return true;
     signal->safe = 0;
     if (!take_truth(text, &truth))

@@ -195,12 +195,21 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
         {"mapping: [{pdo: 0x1A00}]", "3:29", "'entries' is missing"},
         {"mapping: [{pdo: 0x1A00, entries: [gap/8]}, {pdo: 0x1A01, entries: [gap/8]}, {pdo: 0x1A00, "
          "entries: [gap/8]}]", "3:28", "has the PDO 0x1A00 twice"},
-        {"sdo: [{object: 0x8000:01, type: UINT, value: 65536}]", "3:64", "value is '65536', which is no UINT"},
+        {"sdo: [{object: 0x8000:01, type: UINT, value: 65536}]", "3:64", "value is '65536', which is no UINT; expected 0 ... 65535, "
+         "or 0x0 ... 0xFFFF"},
         {"sdo: [{object: 0x8000:01, type: INT, value: -32769}]", "3:63", "which is no INT"},
         {"sdo: [{object: 0x8000:01, type: UINT, value: 1.5}]", "3:64", "which is no UINT"},
         {"sdo: [{object: 0x8000:01, type: UINT, value: 0x10000}]", "3:64", "which is no UINT"},
         {"sdo: [{object: 0x8000:01, type: UINT, value: true}]", "3:64", "which is no UINT"},
+        {"sdo: [{object: 0x8000:01, type: LINT, value: 9223372036854775808}]", "3:64", "which is no LINT; expected "
+         "-9223372036854775808 ... 9223372036854775807, or 0x0 ... 0xFFFFFFFFFFFFFFFF"},
+        {"sdo: [{object: 0x8000:01, type: BOOL, value: 2}]", "3:64", "which is no BOOL; expected true, false, 0 or 1"},
         {"sdo: [{object: 0x8000:01, type: REAL, value: nan}]", "3:64", "which is no REAL"},
+        {"sdo: [{object: 0x8000:01, type: REAL, value: -1e39}]", "3:64", "which is no REAL; expected a number that is "
+         "neither too large nor too small for it"},
+        {"sdo: [{object: 0x8000:01, type: REAL, value: 1e-60}]", "3:64", "which is no REAL; expected"},
+        {"sdo: [{object: 0x8000:01, type: LREAL, value: 1e309}]", "3:65", "which is no LREAL; expected"},
+        {"sdo: [{object: 0x8000:01, type: LREAL, value: 1e-400}]", "3:65", "which is no LREAL; expected"},
         {"sdo: [{object: 0x8000:01, type: WORD, value: 1}]", "3:51", "type is 'WORD'; expected one of: BOOL, SINT"},
         {"sdo: [{object: 8000, type: UINT, value: 1}]", "3:34", "object is '8000'"},
         {"sdo: [{object: 0x0800:01, type: UINT, value: 1}]", "3:34", "expected an object from 0x1000 on"},
