@@ -142,6 +142,18 @@ cm1e_description_t cm1e_eni_describe(cm1e_arena_t *arena, const cm1e_eni_device_
     return description;
 }
 
+/* A master switches a sync manager on for its PDOs only, while a description proposes to switch it on for those that may
+ * be assigned. Of one without PDOs a file says nothing about that. */
+static void take_enable(cm1e_description_t *file, const cm1e_description_t *device)
+{
+    for (size_t n = 0; n < file->sync_managers.count && n < device->sync_managers.count; n++) {
+        cm1e_described_sync_manager_t *manager = &file->sync_managers.at[n];
+        const bool of_process_data = manager->use == CM1E_SM_OUTPUTS || manager->use == CM1E_SM_INPUTS;
+        if (of_process_data && cm1e_description_process_bytes(file, (unsigned)n) == 0)
+            manager->enable = device->sync_managers.at[n].enable;
+    }
+}
+
 void cm1e_eni_compare(cm1e_findings_t *findings, const cm1e_eni_t *document, uint16_t position,
                       const cm1e_description_t *device)
 {
@@ -151,10 +163,11 @@ void cm1e_eni_compare(cm1e_findings_t *findings, const cm1e_eni_t *document, uin
         return;
     }
     cm1e_arena_t arena = {0};
-    const cm1e_description_t described = cm1e_eni_describe(&arena, &document->devices.at[position - 1]);
-    if (arena.failed)
-        findings->arena.failed = true;
-    else
+    cm1e_description_t described = cm1e_eni_describe(&arena, &document->devices.at[position - 1]);
+    if (!arena.failed) {
+        take_enable(&described, device);
         cm1e_compare(findings, &described, device);
+    }
+    findings->arena.failed |= arena.failed;
     cm1e_arena_free(&arena);
 }

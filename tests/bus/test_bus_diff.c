@@ -231,6 +231,32 @@ START_TEST(the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive)
 }
 END_TEST
 
+/* Devices with a sync manager that carries nothing: one has inputs only, one outputs only. */
+START_TEST(the_eni_of_a_scan_of_terminals_differs_in_nothing)
+{
+    sim_config(1);
+    for (uint16_t place = 2; place <= 4; place++) {
+        char name[8];
+        snprintf(name, sizeof name, "s%u", place);
+        cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, name);
+        slave->address = place;
+        slave->sim.kind = place == 4 ? CM1E_SIM_SLAVE_DIGITAL : CM1E_SIM_SLAVE_ANALOG;
+        slave->sim.inputs = place != 3;
+        slave->sim.outputs = place != 2;
+    }
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_file_t file = {0};
+    ck_assert_msg(cm1e_generate_eni_of_bus(&file, bus, CM1E_MAPPING_DYNAMIC, &diag) == CM1E_OK, "%s", diag.text);
+    for (uint16_t place = 1; place <= 4; place++) {
+        compare(bus, place, file.bytes, file.size);
+        check_no_finding();
+    }
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 static void compare_modular(cm1e_bus_t *bus, const char *firmware)
 {
     cm1e_file_t file = {0};
@@ -586,6 +612,7 @@ int main(void)
     tcase_add_test(equal, the_eni_of_a_scan_has_the_protocols_of_the_sii);
     tcase_add_test(equal, the_eni_of_a_scan_is_that_of_the_configuration_of_motors_with_aliases);
     tcase_add_test(equal, the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive);
+    tcase_add_test(equal, the_eni_of_a_scan_of_terminals_differs_in_nothing);
     tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
     tcase_add_test(equal, a_modular_file_differs_in_nothing);
     tcase_add_test(equal, a_lost_frame_changes_no_finding);
