@@ -87,6 +87,7 @@ static void read_identity(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_d
     device->revision_given = revision >= 0;
     device->product_code = product >= 0 ? (uint32_t)product : 0;
     device->revision = revision >= 0 ? (uint32_t)revision : 0;
+    device->no_lrw = cm1e_xml_attribute_flag(reader, type, "UseLrdLwr", false);
     if (type)
         device->type = cm1e_xml_text(reader, type);
     device->name = cm1e_esi_text(reader, node, "Name", "");

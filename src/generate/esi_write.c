@@ -354,6 +354,7 @@ static void put_type(cm1e_xml_writer_t *xml, const cm1e_description_t *device)
         cm1e_xml_put_attribute(xml, "ProductCode", "#x%08" PRIX32, device->product_code);
     if (device->revision_given)
         cm1e_xml_put_attribute(xml, "RevisionNo", "#x%08" PRIX32, device->revision);
+    put_flag_if(xml, "UseLrdLwr", device->no_lrw);
     cm1e_xml_put_text(xml, "%s", device->type);
     cm1e_xml_close(xml);
 }

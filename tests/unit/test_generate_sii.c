@@ -65,6 +65,30 @@ static void test_image_is_the_same_by_way_of_an_esi(void)
     }
 }
 
+/* The flag of the category General (ETG.2010) is the attribute UseLrdLwr of the Type (ETG.2000). */
+static void test_a_device_without_lrw_stays_one(void)
+{
+    const cm1e_device_options_t device = {0};
+    generate(&esi, CM1E_FILE_ESI, CM1E_ESI_FLAT, &device);
+    TEST_ASSERT_NULL(strstr((const char *)esi.bytes, "UseLrdLwr"));
+    convert(&sii, &esi, CM1E_FILE_SII);
+    TEST_ASSERT_FALSE(read(&sii)->no_lrw);
+    const size_t before = (size_t)(strstr((const char *)esi.bytes, " RevisionNo=") - (const char *)esi.bytes);
+    static const char attribute[] = " UseLrdLwr=\"true\"";
+    cm1e_file_t changed = {.bytes = malloc(esi.size + sizeof attribute), .size = esi.size + sizeof attribute - 1};
+    TEST_ASSERT_NOT_NULL(changed.bytes);
+    memcpy(changed.bytes, esi.bytes, before);
+    memcpy(changed.bytes + before, attribute, sizeof attribute - 1);
+    memcpy(changed.bytes + before + sizeof attribute - 1, esi.bytes + before, esi.size - before + 1);
+    convert(&sii, &changed, CM1E_FILE_SII);
+    cm1e_file_free(&changed);
+    TEST_ASSERT_TRUE(read(&sii)->no_lrw);
+    convert(&esi, &sii, CM1E_FILE_ESI);
+    TEST_ASSERT_NOT_NULL(strstr((const char *)esi.bytes, "UseLrdLwr=\"1\""));
+    convert(&again, &esi, CM1E_FILE_SII);
+    expect_same_bytes(&sii, &again);
+}
+
 static void test_layout_is_an_affair_of_the_esi(void)
 {
     const cm1e_device_options_t device = {.mapping = CM1E_MAPPING_CSV};
@@ -126,6 +150,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_image_is_the_same_by_way_of_an_esi);
+    RUN_TEST(test_a_device_without_lrw_stays_one);
     RUN_TEST(test_layout_is_an_affair_of_the_esi);
     RUN_TEST(test_image_of_a_modular_esi_has_the_default_modules);
     RUN_TEST(test_an_image_with_guessed_configuration_words_says_so);
