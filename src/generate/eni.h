@@ -231,9 +231,13 @@ bool cm1e_eni_sets(const cm1e_eni_command_t *command, uint16_t first, unsigned s
 bool cm1e_eni_add_pdo_bits(const cm1e_eni_device_t *device, const cm1e_eni_sync_manager_t *manager, uint32_t *bits);
 /** A slave of the file in the words of descriptions, in `arena`. */
 cm1e_description_t cm1e_eni_describe(cm1e_arena_t *arena, const cm1e_eni_device_t *device);
+/** Logical addresses of the process data of a slave. */
+typedef struct cm1e_eni_logical {
+    uint32_t outputs, inputs;
+} cm1e_eni_logical_t;
 /** The InitCmds that start a slave of our making; its addresses, sync managers, PDOs and mailbox are already there.
- *  `logical` is the address of its process data, `alias` 0: none. */
-void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, uint32_t logical, uint16_t alias,
+ *  `alias` 0: none. */
+void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, cm1e_eni_logical_t logical, uint16_t alias,
                             uint16_t assign_activate);
 /** `clocks`: there is a slave whose clock is used. */
 void cm1e_eni_make_master_commands(cm1e_arena_t *arena, cm1e_eni_command_list_t *list, bool clocks);

@@ -239,12 +239,10 @@ static void set_fmmu(maker_t *maker, unsigned number, const cm1e_described_sync_
     set_bytes(maker, command, registers, sizeof registers);
 }
 
-/* One FMMU for each sync manager; outputs and inputs both from the slave's logical address on. LRW takes the outputs
- * out of the frame before it puts the inputs there (ETG.1000.4 5.4.3), so the frame is as long as the longer of the
- * two. Returns how many there are. */
-static unsigned make_fmmus(maker_t *maker, uint32_t logical)
+/* One FMMU for each sync manager. Returns how many there are. */
+static unsigned make_fmmus(maker_t *maker, cm1e_eni_logical_t logical)
 {
-    uint32_t next[2] = {logical, logical};
+    uint32_t next[2] = {logical.outputs, logical.inputs};
     unsigned number = 0;
     for (size_t i = 0; i < maker->device->sync_managers.count; i++) {
         const cm1e_eni_sync_manager_t *manager = &maker->device->sync_managers.at[i];
@@ -314,7 +312,7 @@ static void make_forward(maker_t *maker, uint32_t entry)
     await(maker, CM1E_ENI_SO, CM1E_ENI_FPRD, AL_OP, true, TIME_OP, "check device state for OP");
 }
 
-void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, uint32_t logical, uint16_t alias,
+void cm1e_eni_make_commands(cm1e_arena_t *arena, cm1e_eni_device_t *device, cm1e_eni_logical_t logical, uint16_t alias,
                             uint16_t assign_activate)
 {
     maker_t maker = {arena, device};

@@ -21,7 +21,7 @@ typedef struct maker {
     cm1e_arena_t *arena;
     cm1e_diag_t *diag;
     cm1e_eni_frame_t *frame;     /* that slaves are being put into; NULL: none yet */
-    cm1e_eni_command_t *process_data; /* its LRW */
+    cm1e_eni_command_t *shared;  /* its last command, if that is an LRW, which further slaves share; else NULL */
     uint32_t frames;
     int64_t cycle_time_ns;
     bool reference;              /* there is a reference clock */
@@ -212,22 +212,42 @@ static void begin_frame(maker_t *maker)
 {
     maker->frame = CM1E_APPEND(maker->arena, &maker->document->cyclics.at[0].frames);
     maker->frames++;
-    maker->process_data = NULL;
+    maker->shared = NULL;
 }
 
-/* The LRW of the frame at hand, in which there is room for `bytes` more; maybe of a new frame. */
-static cm1e_eni_command_t *process_data_for(maker_t *maker, uint32_t bytes)
+static uint32_t data_bytes(const cm1e_eni_frame_t *frame)
 {
-    const uint32_t wanted = bytes + (maker->process_data ? 0 : CM1E_ENI_DATAGRAM_OVERHEAD);
+    return frame_bytes(frame) - (uint32_t)frame->commands.count * CM1E_ENI_DATAGRAM_OVERHEAD;
+}
+
+/* A command in which there is room for `bytes` more: the LRW at the end of the frame at hand, or a new one, maybe of a
+ * new frame. */
+static cm1e_eni_command_t *process_data_for(maker_t *maker, uint8_t code, uint32_t bytes)
+{
+    const bool shares = code == CM1E_ENI_LRW && maker->shared;
+    const uint32_t wanted = bytes + (shares ? 0 : CM1E_ENI_DATAGRAM_OVERHEAD);
     if (!maker->frame || frame_bytes(maker->frame) + wanted > CM1E_ENI_FRAME_BYTES)
         begin_frame(maker);
-    if (!maker->process_data) {
-        maker->process_data =
-            add_command(maker, CM1E_ENI_LRW, CM1E_ENI_SAFEOP | CM1E_ENI_OPERATIONAL, "process data");
-        maker->process_data->address = FIRST_LOGICAL + (maker->frames - 1) * LOGICAL_PER_FRAME;
-        maker->process_data->count = 0;
-    }
-    return maker->process_data;
+    if (code == CM1E_ENI_LRW && maker->shared)
+        return maker->shared;
+    const uint32_t address = FIRST_LOGICAL + (maker->frames - 1) * LOGICAL_PER_FRAME + data_bytes(maker->frame);
+    cm1e_eni_command_t *command =
+        add_command(maker, code, CM1E_ENI_SAFEOP | CM1E_ENI_OPERATIONAL, "process data");
+    command->address = address;
+    command->count = 0;
+    maker->shared = code == CM1E_ENI_LRW ? command : NULL;
+    return command;
+}
+
+/* Puts data of a slave into a frame. Returns where they are in the images, in bits. */
+static uint32_t take_room(maker_t *maker, uint8_t code, uint32_t bytes, int32_t count, uint32_t *logical)
+{
+    cm1e_eni_command_t *command = process_data_for(maker, code, bytes);
+    const uint32_t bit = ((uint32_t)command->input_offset + CM1E_ENI_DATAGRAM_HEADER + command->length) * 8;
+    *logical = command->address + command->length;
+    command->length += bytes;
+    command->count += count;
+    return bit;
 }
 
 static bool is_taken(const cm1e_eni_image_t *image, const char *name)
@@ -279,24 +299,33 @@ static void add_variables(maker_t *maker, cm1e_eni_image_t *image, const cm1e_en
     }
 }
 
-/* Puts a slave's process data into a frame and into both images; `*logical` is where. */
-static void place_process_data(maker_t *maker, cm1e_eni_device_t *device, uint32_t *logical)
+/* Puts a slave's process data into a frame and into both images. LRW takes the outputs out of the frame before it puts
+ * the inputs there (ETG.1000.4 5.4.3), so both have one place, as long as the longer of the two. A slave that cannot do
+ * LRW has an LWR and an LRD of its own. */
+static cm1e_eni_logical_t place_process_data(maker_t *maker, cm1e_eni_device_t *device, bool no_lrw)
 {
     const uint32_t outputs = directed_bytes(device, CM1E_SM_OUTPUTS), inputs = directed_bytes(device, CM1E_SM_INPUTS);
-    const uint32_t bytes = outputs > inputs ? outputs : inputs;
-    if (bytes == 0)
-        return;
-    cm1e_eni_command_t *command = process_data_for(maker, bytes);
-    const uint32_t bit = ((uint32_t)command->input_offset + CM1E_ENI_DATAGRAM_HEADER + command->length) * 8;
-    *logical = command->address + command->length;
-    command->length += bytes;
-    command->count += (outputs ? LRW_OUTPUTS : 0) + (inputs ? LRW_INPUTS : 0);
+    uint32_t outputs_bit = 0, inputs_bit = 0;
+    cm1e_eni_logical_t logical = {FIRST_LOGICAL, FIRST_LOGICAL};
+    if (no_lrw) {
+        if (outputs)
+            outputs_bit = take_room(maker, CM1E_ENI_LWR, outputs, 1, &logical.outputs);
+        if (inputs)
+            inputs_bit = take_room(maker, CM1E_ENI_LRD, inputs, 1, &logical.inputs);
+    } else if (outputs || inputs) {
+        outputs_bit = inputs_bit = take_room(maker, CM1E_ENI_LRW, outputs > inputs ? outputs : inputs,
+                                             (outputs ? LRW_OUTPUTS : 0) + (inputs ? LRW_INPUTS : 0), &logical.outputs);
+        logical.inputs = logical.outputs;
+    }
     device->has_send = outputs > 0;
-    device->send = (cm1e_eni_range_t){.start = bit, .length = outputs * 8};
     device->has_receive = inputs > 0;
-    device->receive = (cm1e_eni_range_t){.start = bit, .length = inputs * 8};
-    add_variables(maker, &maker->document->outputs, device, CM1E_SM_OUTPUTS, bit);
-    add_variables(maker, &maker->document->inputs, device, CM1E_SM_INPUTS, bit);
+    if (outputs)
+        device->send = (cm1e_eni_range_t){.start = outputs_bit, .length = outputs * 8};
+    if (inputs)
+        device->receive = (cm1e_eni_range_t){.start = inputs_bit, .length = inputs * 8};
+    add_variables(maker, &maker->document->outputs, device, CM1E_SM_OUTPUTS, outputs_bit);
+    add_variables(maker, &maker->document->inputs, device, CM1E_SM_INPUTS, inputs_bit);
+    return logical;
 }
 
 /* The states of all slaves, or-ed together, at the end of every cycle: with this and the working counters a master
@@ -383,12 +412,11 @@ static void make_network(maker_t *maker, const cm1e_eni_slave_t *slaves, size_t 
     cyclic->priority = 1;
     cyclic->task = "1";
     for (size_t i = 0; i < count; i++) {
-        uint32_t logical = FIRST_LOGICAL;
         cm1e_eni_device_t *device = CM1E_APPEND(maker->arena, &document->devices);
         make_device(maker, device, &slaves[i], i);
         if (maker->arena->failed)
             return;
-        place_process_data(maker, device, &logical);
+        const cm1e_eni_logical_t logical = place_process_data(maker, device, slaves[i].device->no_lrw);
         cm1e_eni_make_commands(maker->arena, device, logical, slaves[i].alias, assign_activate(&slaves[i]));
     }
     if (maker->arena->failed)

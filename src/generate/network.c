@@ -179,6 +179,7 @@ static cm1e_error_t describe_slave(cm1e_description_file_t *file, cm1e_bus_t *bu
     cm1e_description_t *device = &file->devices.at[file->devices.count - 1], *live = device - 1;
     take_mappings(&file->arena, device, live);
     take_mailbox(device, live);
+    device->no_lrw = live->no_lrw;
     *live = *device;
     file->devices.count--;
     return CM1E_OK;

@@ -288,6 +288,47 @@ static void test_variables_lie_where_their_slaves_data_do(void)
         }
 }
 
+/* Three motors; the slave controller of the middle one cannot do LRW. */
+static void test_a_slave_without_lrw_has_commands_of_its_own(void)
+{
+    static const struct {
+        uint8_t code;
+        uint32_t address, length;
+        int32_t count;
+    } rows[] = {{CM1E_ENI_LRW, 0x01000000, 21, 3}, {CM1E_ENI_LWR, 0x01000015, 13, 1}, {CM1E_ENI_LRD, 0x01000022, 21, 1},
+                {CM1E_ENI_LRW, 0x01000037, 21, 3}, {CM1E_ENI_BRD, 0, 2, 3}};
+    enum { COMMANDS = sizeof rows / sizeof rows[0] };
+    static const char *const names[] = {"a", "b", "c"};
+    const cm1e_device_options_t options = {0};
+    cm1e_eni_slave_t slaves[3];
+    for (int i = 0; i < 3; i++)
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_describe(&described, &options, CM1E_ESI_FLAT, &diag));
+    described.devices.at[1].no_lrw = true;
+    for (int i = 0; i < 3; i++)
+        slaves[i] = (cm1e_eni_slave_t){.device = &described.devices.at[i], .name = names[i]};
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_eni_make(&document, slaves, 3, 1000000, &diag), diag.text);
+    const cm1e_eni_command_list_t *list = &document.cyclics.at[0].frames.at[0].commands;
+    TEST_ASSERT_EQUAL(1, document.cyclics.at[0].frames.count);
+    TEST_ASSERT_EQUAL(COMMANDS, list->count);
+    for (uint32_t i = 0, at = 16; i < COMMANDS; at += rows[i++].length + 12) {
+        TEST_ASSERT_EQUAL(rows[i].code, list->at[i].code);
+        TEST_ASSERT_EQUAL_HEX32(rows[i].address, list->at[i].address);
+        TEST_ASSERT_EQUAL(rows[i].length, list->at[i].length);
+        TEST_ASSERT_EQUAL(rows[i].count, list->at[i].count);
+        TEST_ASSERT_EQUAL(at, list->at[i].input_offset);
+    }
+    const cm1e_eni_device_t *middle = &document.devices.at[1];
+    TEST_ASSERT_EQUAL_HEX32(0x01000015,
+                            cm1e_get_u32(find_command(middle, "set fmmu 0 (outputs)", CM1E_ENI_PS)->data.data));
+    TEST_ASSERT_EQUAL_HEX32(0x01000022, cm1e_get_u32(find_command(middle, "set fmmu 1 (inputs)", CM1E_ENI_PS)->data.data));
+    TEST_ASSERT_EQUAL((list->at[1].input_offset + 10) * 8, middle->send.start);
+    TEST_ASSERT_EQUAL((list->at[2].input_offset + 10) * 8, middle->receive.start);
+    cm1e_findings_t *findings = cm1e_findings_create();
+    cm1e_eni_check(findings, &document);
+    TEST_ASSERT_EQUAL(0, cm1e_findings_count(findings));
+    cm1e_findings_free(findings);
+}
+
 static void test_the_alias_is_asked_for(void)
 {
     static const eni_network_t network = {.slaves = {ENI_CM1E}, .count = 1, .alias = 7};
@@ -472,6 +513,7 @@ int main(void)
     RUN_TEST(test_an_io_module_has_no_mailbox_and_no_sdo);
     RUN_TEST(test_variables_lie_where_their_slaves_data_do);
     RUN_TEST(test_clocks_are_set_up_and_kept_together);
+    RUN_TEST(test_a_slave_without_lrw_has_commands_of_its_own);
     RUN_TEST(test_the_alias_is_asked_for);
     RUN_TEST(test_more_than_a_frame_holds_goes_into_the_next);
     RUN_TEST(test_axes_behind_a_bridge_are_one_slave);

@@ -156,6 +156,26 @@ def beside_device_emulation(cm1e):
         succeeds(segment, path, move("CM1-E 4"), "scan, beside device emulation")
 
 
+def without_lrw(cm1e):
+    """The controller of the middle one of three motors cannot do LRW, so its ESI says: it has an LWR and an LRD."""
+    with segment_of(cm1e, "axes: [{}, {}, {}]\n") as segment:
+        esi = os.path.join(segment.folder, "no_lrw.xml")
+        result = segment.run([cm1e, "generate", "esi", "-o", esi])
+        wire.check(result.returncode == 0, f"generate esi: {result.stdout}{result.stderr}")
+        with open(esi, encoding="utf-8") as file:
+            text = file.read()
+        with open(esi, "w", encoding="utf-8") as file:
+            file.write(text.replace(" RevisionNo=", " UseLrdLwr=\"1\" RevisionNo="))
+        network = os.path.join(segment.folder, "network.yaml")
+        with open(network, "w", encoding="utf-8") as file:
+            file.write("bus: {interface: " + wire.MASTER_INTERFACE + "}\n"
+                       "axes: [{name: X, position: 1}, {name: Z, position: 3}]\n"
+                       "slaves: [{name: Y, position: 2, esi: no_lrw.xml}]\n")
+        path = generate(segment, cm1e, "-b", network)
+        for axis in "YZ":
+            succeeds(segment, path, move(axis), "bus file, a motor without LRW between two")
+
+
 def runs(cm1e, path, *programs):
     with segment_of(cm1e, NETWORKS[os.path.basename(path)]) as segment:
         for program in programs:
@@ -189,6 +209,7 @@ if __name__ == "__main__":
         lambda: from_a_bus_file(command, "dynamic", 500),
         lambda: from_a_scan(command),
         lambda: beside_device_emulation(command),
+        lambda: without_lrw(command),
         lambda: is_refused(command, one, "<Data>02204144</Data>", "<Data>03204144</Data>", "check product code"),
         lambda: is_refused(command, one, "<Cnt>3</Cnt>", "<Cnt>2</Cnt>", "working counter 3, not 2"),
         lambda: is_refused(command, one, "<Data>00110D0064000100</Data>", "<Data>00110E0064000100</Data>", "SAFEOP"))
