@@ -154,21 +154,42 @@ static bool is_common(const cm1e_slave_config_t *stated, const cm1e_description_
     return same > 1;
 }
 
+enum { ENDS = 30 };
+
+/** Beginning and end of a text; what is between them is lost anyhow. */
+static void take_ends(char ends[2 * ENDS + 1], const char *text)
+{
+    const size_t length = strlen(text);
+    const size_t skipped = length > 2 * ENDS ? length - 2 * ENDS : 0;
+    snprintf(ends, 2 * ENDS + 1, "%.*s%s", skipped ? ENDS : 2 * ENDS, text, skipped ? text + ENDS + skipped : "");
+}
+
+/** Whether a letter of UTF-8 goes on here. */
+static bool goes_on(char c) { return ((unsigned char)c & 0xC0) == 0x80; }
+
 /** The name of the entry, with that of its PDO where several entries have it. A long one is cut. false: none is
  *  left. */
 static bool make_name(const cm1e_slave_config_t *slave, const char *pdo, const char *entry,
                       char name[CM1E_NAME_LENGTH])
 {
-    char words[2 * CM1E_SIGNAL_LENGTH];
-    snprintf(words, sizeof words, "%.60s%s%.60s", pdo, pdo[0] ? " " : "", entry);
+    char words[4 * ENDS + 2], of_pdo[2 * ENDS + 1], of_entry[2 * ENDS + 1];
+    take_ends(of_pdo, pdo);
+    take_ends(of_entry, entry);
+    snprintf(words, sizeof words, "%s%s%s", of_pdo, pdo[0] ? " " : "", of_entry);
     for (char *c = words; *c; c++)
         *c = (unsigned char)*c < ' ' || *c == 0x7F ? '_' : *c;
     const size_t length = strlen(words);
-    /* The end tells channels apart, so a long name loses its middle. */
-    if (length < CM1E_NAME_LENGTH)
+    /* The end tells channels apart, so a long name loses its middle, in whole letters. */
+    if (length < CM1E_NAME_LENGTH) {
         memcpy(name, words, length + 1);
-    else
-        snprintf(name, CM1E_NAME_LENGTH, "%.14s~%s", words, words + length - (CM1E_NAME_LENGTH - 16));
+    } else {
+        size_t head = 14, tail = length - (CM1E_NAME_LENGTH - 16);
+        while (head > 0 && goes_on(words[head]))
+            head--;
+        while (goes_on(words[tail]))
+            tail++;
+        snprintf(name, CM1E_NAME_LENGTH, "%.*s~%s", (int)head, words, words + tail);
+    }
     return is_a_name(name) && !is_taken(slave, name);
 }
 

@@ -126,6 +126,23 @@ START_TEST(test_what_is_taken)
 }
 END_TEST
 
+/* The end of a name is its own end, and no letter is cut: neither the second byte of one is left alone, nor the first. */
+START_TEST(test_a_long_name_loses_its_middle_in_whole_letters)
+{
+    static const char long_names[] = FILE_OF(DEVICE(000A0002, 1, "Names", COE(""), TXPDO(" Sm='3'", 1A00, "Standard",
+        ENTRY(6000, 1, 1, "thirteen char\u00E4cters, then others, \u00E4234567890123456", "BOOL")
+        ENTRY(6000, 2, 1, "a name of more than sixty bytes, which is all that was looked at once, channel 2", "BOOL")
+        GAP(14)
+        ENTRY(6000, 11, 16, "a name of more than sixty bytes, which is all that was looked at once, channel 17", "INT")),
+        ""));
+    ck_assert_msg(load(long_names, "product: 0x000A0002,") == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(config.slaves[0].signal_count, 3);
+    ck_assert_str_eq(signal_at(0)->name, "thirteen char~234567890123456");
+    ck_assert_str_eq(signal_at(1)->name, "a name of more~ once, channel 2");
+    ck_assert_str_eq(signal_at(2)->name, "a name of more~once, channel 17");
+}
+END_TEST
+
 /* PDOs, values and names of the bus file stay; the names of other PDOs are those of the ESI; pulses by the name of the
  * mode. */
 START_TEST(test_the_bus_file_overrules)
@@ -385,6 +402,7 @@ int main(void)
     TCase *tests = tcase_create("esi");
     tcase_add_unchecked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, test_what_is_taken);
+    tcase_add_test(tests, test_a_long_name_loses_its_middle_in_whole_letters);
     tcase_add_test(tests, test_the_bus_file_overrules);
     tcase_add_test(tests, test_the_first_mode_with_sync0_is_the_default_of_its_maker);
     tcase_add_test(tests, test_a_slave_without_a_mailbox_is_named_by_its_bits);
