@@ -76,6 +76,7 @@ static void print_signals(FILE *file, const pdo_list_t *list, bool output, unsig
 /** Bits in a row from 0 on, and nothing else. */
 static bool is_digital(const pdo_list_t *list, unsigned counts[2])
 {
+    counts[0] = counts[1] = 0;
     for (size_t i = 0; i < list->count; i++) {
         const listed_entry_t *entry = &list->entries[i];
         if (list->by_coe || entry->bits != 1 || entry->index == 0 || entry->bit != counts[entry->output])
@@ -85,14 +86,16 @@ static bool is_digital(const pdo_list_t *list, unsigned counts[2])
     return counts[0] <= CHANNELS && counts[1] <= CHANNELS && counts[0] + counts[1] > 0;
 }
 
-/** Whether the simulated analog device has the objects: see src/sim/io_device_objects.c. */
-static bool is_analog(const pdo_list_t *list, unsigned counts[2])
+/** Whether a simulated device with CoE has the objects, analog or encoder: see src/sim/io_device_objects.c. `states`: of
+ *  the bits that it has for an input. */
+static bool is_of_values(const pdo_list_t *list, unsigned bits, unsigned states, unsigned counts[2])
 {
+    counts[0] = counts[1] = 0;
     for (size_t i = 0; i < list->count; i++) {
         const listed_entry_t *entry = &list->entries[i];
         const unsigned first = entry->output ? OUTPUTS : INPUTS, channel = (entry->index - first) / STEP;
-        const bool value = entry->subindex == VALUE && entry->bits == 16;
-        const bool state = !entry->output && (entry->subindex == 1 || entry->subindex == 2) && entry->bits == 1;
+        const bool value = entry->subindex == VALUE && entry->bits == bits;
+        const bool state = !entry->output && entry->subindex >= 1 && entry->subindex <= states && entry->bits == 1;
         if (entry->index == 0)
             continue;
         if (entry->index < first || entry->index % STEP || channel >= CHANNELS || (!value && !state))
@@ -101,6 +104,16 @@ static bool is_analog(const pdo_list_t *list, unsigned counts[2])
             counts[entry->output] = channel + 1;
     }
     return list->by_coe && counts[0] + counts[1] > 0;
+}
+
+/** The kind of the simulated device that has these process data, and its channels, inputs and outputs; NULL: none. */
+static const char *simulated_device(const pdo_list_t *list, unsigned counts[2])
+{
+    if (is_digital(list, counts))
+        return "digital";
+    if (is_of_values(list, 16, 2, counts))
+        return "analog";
+    return is_of_values(list, 32, 1, counts) && !counts[1] ? "encoder" : NULL;
 }
 
 /** A byte each way: the device that the simulator has where the file names none (`sim_gaps`). */
@@ -120,17 +133,16 @@ static bool are_simulated(const module_list_t *modules)
 
 static void print_sim(FILE *file, const pdo_list_t *list, const module_list_t *modules)
 {
-    unsigned digital[2] = {0, 0}, analog[2] = {0, 0}; /* inputs, outputs */
-    const bool is_bits = is_digital(list, digital), is_words = is_analog(list, analog);
-    const unsigned *counts = is_bits ? digital : analog;
+    unsigned counts[2]; /* inputs, outputs */
+    const char *device = simulated_device(list, counts);
     if (list->unknown)
         return;
     if (are_simulated(modules)) {
         fprintf(file, "    sim: {device: modular}\n");
     } else if (list->count == 0) {
         fprintf(file, "    sim: {device: coupler}\n");
-    } else if (is_bits || is_words) {
-        fprintf(file, "    sim: {device: %s", is_bits ? "digital" : "analog");
+    } else if (device) {
+        fprintf(file, "    sim: {device: %s", device);
         if (counts[0])
             fprintf(file, ", inputs: %u", counts[0]);
         if (counts[1])

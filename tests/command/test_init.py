@@ -41,12 +41,13 @@ slaves:
 """
 SLAVES = """\
 axes:
-  - {name: feed, position: 6}
+  - {name: feed, position: 7}
 slaves:
   - {name: coupler, position: 1, sim: {device: coupler}}
   - {name: both, position: 2, sim: {device: digital, inputs: 3, outputs: 2}}
   - {name: level, position: 3, sim: {device: analog, inputs: 1}}
   - {name: speed, alias: 1001, vendor: 0x00000002, product: 0x03F03052, sim: {device: analog, outputs: 2}}
+  - {name: counter, position: 6, sim: {device: encoder, inputs: 2}}
 """
 
 
@@ -123,14 +124,16 @@ def signals(path):
 def check_slaves(folder):
     """What the file names is there, on that network and on the segment that the simulator makes of the file itself."""
     done, path, text = init(folder, "slaves", SLAVES)
-    expect("1 axis, 5 slaves without an axis" in done.stdout, f"{done}")
+    expect("1 axis, 6 slaves without an axis" in done.stdout, f"{done}")
+    expect("The simulator has no such device" not in text, text)
     for wanted in (r"- name: io1\n.*position: 1 .*\n.*product: 0x000C0000\n.*\n    sim: \{device: coupler\}",
                    r"alias: 1001 .*\n    vendor: 0x00000002\n    product: 0x03F03052\n",
                    r"- \{name: in3, bit: 2\}   # BOOL, Channel 3, Input\n    sim: \{device: digital, inputs: 3, outputs: 2\}",
-                   r"- \{name: in3, object: 0x6000:11\}   # INT, AI Standard Channel 1, Value\n"):
+                   r"- \{name: in3, object: 0x6000:11\}   # INT, AI Standard Channel 1, Value\n",
+                   r"- \{name: in4, object: 0x6010:11\}   # UDINT, .*\n    sim: \{device: encoder, inputs: 2\}\n"):
         expect(re.search(wanted, text), f"{wanted} is not in\n{text}")
     listed = signals(path)
-    expect(len(listed) == 5 + 3 + 2 + 2, f"{listed}")
+    expect(len(listed) == 5 + 3 + 2 + 2 + 4, f"{listed}")
     expect(("io2", "out2", "BOOL", True) in listed and ("io3", "in3", "INT", False) in listed, f"{listed}")
     own = write(os.path.join(folder, "own.yaml"), re.sub(r"interface: .*", "interface: sim", text))
     expect(signals(own) == listed, f"on a segment of its own: {signals(own)}, not {listed}")
