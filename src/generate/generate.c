@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cm1e/generate.h"
+#include "config/clock_pulses.h"
 #include "config/copy.h"
 #include "config/interface.h"
 #include "description/describe.h"
@@ -311,6 +312,28 @@ static cm1e_error_t describe_nodes(cm1e_eni_slave_t *slaves, cm1e_description_fi
     return error;
 }
 
+/* A file is a script for one network, and what is there is known from the bus file alone. */
+static void warn_of_bus_file(cm1e_file_t *file, const cm1e_bus_config_t *network)
+{
+    const cm1e_axis_config_t *optional = NULL;
+    for (uint32_t i = 0; i < network->axis_count && !optional; i++)
+        if (network->axes[i].optional && cm1e_axis_has_motor(&network->axes[i]))
+            optional = &network->axes[i];
+    const bool clocks = cm1e_config_uses_clocks(network);
+    if (optional)
+        snprintf(file->warning, sizeof file->warning,
+                 "%s may be absent by the bus file, but a master that runs this file needs all of its slaves. ",
+                 optional->name);
+    const size_t used = strlen(file->warning);
+    if (clocks)
+        snprintf(file->warning + used, sizeof file->warning - used,
+                 "The distributed clocks that the bus file asks for are not in this file, because only a scan shows who "
+                 "has one. ");
+    if (optional || clocks)
+        snprintf(file->warning + strlen(file->warning), sizeof file->warning - strlen(file->warning),
+                 "Make the ENI from a scan of the network");
+}
+
 static cm1e_error_t eni_of_network(cm1e_file_t *file, const cm1e_bus_config_t *network,
                                    const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
@@ -328,6 +351,8 @@ static cm1e_error_t eni_of_network(cm1e_file_t *file, const cm1e_bus_config_t *n
     if (error == CM1E_OK)
         error = cm1e_file_of_eni(file, slaves, count, network->cycle_time_ns > 0 ? network->cycle_time_ns : 1000000,
                                  diag);
+    if (error == CM1E_OK)
+        warn_of_bus_file(file, network);
     cm1e_description_file_free(&described);
     free(slaves);
     free(nodes);

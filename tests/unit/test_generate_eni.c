@@ -151,6 +151,23 @@ static void test_every_axis_has_process_data_in_its_bridge(void)
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, generate_network(&of_two, 1), diag.text);
 }
 
+static void test_what_a_file_of_the_bus_file_alone_leaves_out_is_a_warning(void)
+{
+    static const uint16_t axes[][2] = {{77, 0}, {78, 0}};
+    set_network(2, axes);
+    configured.axes[0].address_kind = configured.axes[1].address_kind = CM1E_ADDRESS_ALIAS;
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, generate_network(NULL, 0), diag.text);
+    TEST_ASSERT_EQUAL_STRING("", file.warning);
+    configured.axes[1].optional = true;
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, generate_network(NULL, 0), diag.text);
+    TEST_ASSERT_EQUAL_STRING("A2 may be absent by the bus file, but a master that runs this file needs all of its slaves. "
+                             "Make the ENI from a scan of the network", file.warning);
+    configured.distributed_clocks = true;
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, generate_network(NULL, 0), diag.text);
+    TEST_ASSERT_NOT_NULL(strstr(file.warning, "A2 may be absent"));
+    TEST_ASSERT_NOT_NULL(strstr(file.warning, "The distributed clocks that the bus file asks for are not in this file"));
+}
+
 static void test_places_that_do_not_follow_are_refused(void)
 {
     static const uint16_t gap[][2] = {{1, 1}, {1, 2}, {3, 0}}, first_missing[][2] = {{2, 1}, {2, 2}};
@@ -520,6 +537,7 @@ int main(void)
     RUN_TEST(test_the_bridge_is_the_stated_one_that_has_the_motors);
     RUN_TEST(test_identity_of_a_bridge_has_to_be_stated);
     RUN_TEST(test_every_axis_has_process_data_in_its_bridge);
+    RUN_TEST(test_what_a_file_of_the_bus_file_alone_leaves_out_is_a_warning);
     RUN_TEST(test_places_that_do_not_follow_are_refused);
     RUN_TEST(test_networks_that_no_file_can_describe_are_refused);
     RUN_TEST(test_the_same_names_of_entries_get_numbers);
