@@ -4,11 +4,15 @@
 #include <stddef.h>
 #include <time.h>
 
+/* CLOCK_MONOTONIC stands still while the machine is suspended: a cycle that goes on after hours would not see that its
+ * motors were without set-points. */
+#define CLOCK_OF_MACHINE CLOCK_BOOTTIME
+
 static int64_t monotonic_now_ns(const cm1e_clock_t *clock)
 {
     (void)clock;
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_OF_MACHINE, &t);
     return (int64_t)t.tv_sec * S_IN_NS + t.tv_nsec;
 }
 
@@ -18,7 +22,7 @@ static void monotonic_sleep_until_ns(cm1e_clock_t *clock, int64_t time_ns)
     if (time_ns <= monotonic_now_ns(clock))
         return;
     const struct timespec t = {.tv_sec = time_ns / S_IN_NS, .tv_nsec = time_ns % S_IN_NS};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL) == EINTR)
+    while (clock_nanosleep(CLOCK_OF_MACHINE, TIMER_ABSTIME, &t, NULL) == EINTR)
         ;
 }
 
