@@ -81,7 +81,7 @@ static const cm1e_object_t objects[] = {
     VAR(0x603F, "Error code", RO_TXPDO, UINT, "", 0),
     VAR(0x6040, "Controlword", RW_RXPDO, UINT, "", 0),
     VAR(0x6041, "Statusword", RO_TXPDO, UINT, "", 0),
-    VAR_RANGE(0x605A, "Quick stop option code", RW, INT, "", 2, 0, 2, ),
+    VAR_RANGE(0x605A, "Quick stop option code", RW, INT, "", 2, 0, 8, ),
     VAR(0x6060, "Modes of operation", RW_RXPDO, SINT, "", 0),
     VAR(0x6061, "Modes of operation display", RO_TXPDO, SINT, "", 0),
     VAR(0x6064, "Position actual value", RO_TXPDO, DINT, "counts", 0),

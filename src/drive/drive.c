@@ -12,6 +12,10 @@ static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
 /* A controlword shows in the statusword some cycles later. After the torque was taken away, it is not requested again
  * for this time. Otherwise the answer to the old command would look like a loss of the new torque. */
 static const int64_t torque_pause_ns = 20 * MS_IN_NS;
+/* At the latest then a quick stop that the drive has begun by itself is ended. */
+static const int64_t quick_stop_ns = 10000 * MS_IN_NS;
+/* Of the velocity that the motor may have: below this part a quick stop counts as over. */
+enum { QUICK_STOP_PART = 100 };
 
 /* cm1e_bus_identify() has matched the slave with the axis. A bus without that step may have another device there. */
 static cm1e_error_t find_device(cm1e_drive_t *drive, const cm1e_drive_kind_t **kind, cm1e_diag_t *diag)
@@ -212,13 +216,28 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
     return bits;
 }
 
+/* A drive that is in Quick stop active by itself brakes, and may stay in that state under torque (0x605A). Shutdown does
+ * not lead out of it, but Disable voltage does (CiA 402, transition 12). It waits until the ramp of the drive is over. */
+static bool ends_quick_stop(cm1e_drive_t *drive)
+{
+    if (drive->feedback.state != QUICK_STOP_ACTIVE) {
+        drive->waits.quick_stop_ns = drive->now_ns;
+        return false;
+    }
+    const int64_t slow = drive->range.velocity_possible / QUICK_STOP_PART;
+    return llabs((int64_t)drive->feedback.velocity) <= slow || drive->now_ns - drive->waits.quick_stop_ns >= quick_stop_ns;
+}
+
 /* During a switch to a mode with other words, the present words are meaningless. */
-static uint16_t no_torque_word(const cm1e_drive_t *drive)
+static uint16_t no_torque_word(cm1e_drive_t *drive)
 {
     const cm1e_device_words_t *words = drive->mode.words;
+    const bool ends = ends_quick_stop(drive);
     if (words != drive->mode.wanted->words)
         return 0;
-    return words->commands ? cm1e_drive_cmd_word(drive) : words->no_torque;
+    if (words->commands)
+        return cm1e_drive_cmd_word(drive);
+    return ends ? cm1e_fsa_commands[COMMAND_DISABLE_VOLTAGE].controlword : words->no_torque;
 }
 
 /* Sends one command per cycle, chosen from the state that the drive shows (UG 6.1.2, BR 6.1.2). */

@@ -52,8 +52,20 @@ static const advice_t advices[] = {
     {CM1E_ERROR_DRIVE_RESET_TIMEOUT, "The fault came back or stayed. Remove its cause, or switch the drive off and on"},
 };
 
-static const char *advice(cm1e_error_t error)
+static const cm1e_fsa_row_t *states_of(const cm1e_drive_t *drive)
 {
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->fault.mode_shown);
+    return (row ? row : drive->mode.wanted)->words->states;
+}
+
+static const char *advice(const cm1e_drive_t *drive)
+{
+    const cm1e_error_t error = drive->fault.error;
+    const cm1e_fsa_row_t *states = states_of(drive);
+    if (error == CM1E_ERROR_DRIVE_ENABLE_LOST && states &&
+        cm1e_fsa_decode_by(states, drive->fault.statusword) == QUICK_STOP_ACTIVE)
+        return "The drive has begun a quick stop by itself. Check its limit switches, its input for a quick stop, and "
+               "whether another tool controls it";
     for (size_t i = 0; i < sizeof advices / sizeof advices[0]; i++)
         if (advices[i].error == error)
             return advices[i].text;
@@ -69,8 +81,7 @@ static const char *mode_name(const cm1e_drive_t *drive, int8_t mode)
 static void say_words(writer_t *w, const cm1e_drive_t *drive)
 {
     const cm1e_drive_fault_t *fault = &drive->fault;
-    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, fault->mode_shown);
-    const cm1e_fsa_row_t *states = (row ? row : drive->mode.wanted)->words->states;
+    const cm1e_fsa_row_t *states = states_of(drive);
     say(w, " Statusword 0x%04X", fault->statusword);
     if (states)
         say(w, " (%s)", cm1e_fsa_name(cm1e_fsa_decode_by(states, fault->statusword)));
@@ -141,5 +152,5 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
         say(&w, ". The slave is optional and absent. Plug it in, then reset the axis with MC_Reset.");
         return;
     }
-    say(&w, ". %s%s%s, then reset the axis with MC_Reset.", advice(fault->error), more ? ". " : "", more ? more : "");
+    say(&w, ". %s%s%s, then reset the axis with MC_Reset.", advice(drive), more ? ". " : "", more ? more : "");
 }

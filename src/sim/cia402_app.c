@@ -10,6 +10,7 @@
 
 enum { INIT = 1, OPERATIONAL = 8, DIRECTIONS = 2 };
 enum { ERROR_FOLLOWING = 0x8611 };
+enum { QUICK_STOP_STAYS = 5 }; /* 0x605A: from this code on the drive stays in Quick stop active */
 #define LAG_TIME_S 0.01
 #define STANDSTILL_COUNTS_PER_S 100.0
 #define STANDSTILL_TIME_S 0.005
@@ -272,7 +273,7 @@ static void move(cm1e_sim_cia402_t *drive, double step_s)
     if (drive->state == OPERATION_ENABLED)
         drive->generator->step(drive, step_s);
     else if (drive->state == QUICK_STOP_ACTIVE && cm1e_sim_cia402_brake(drive, step_s) &&
-             cm1e_sim_cia402_stands(drive))
+             cm1e_sim_cia402_stands(drive) && *drive->v.quick_stop_option < QUICK_STOP_STAYS)
         cm1e_sim_cia402_disable(drive);
     if (drive->state == OPERATION_ENABLED || drive->state == QUICK_STOP_ACTIVE) {
         torque = cm1e_servo_step(&drive->servo, &drive->mechanics, step_s);

@@ -6,6 +6,7 @@
 #include "axis/axis_signals.h"
 #include "cm1e/generate.h"
 #include "device/cia402_drive.h"
+#include "sim/cia402_app.h"
 #include "axis_segment.h"
 
 enum { COUNTS = 131072, EDGE_COUNTS = 150000 };
@@ -303,6 +304,45 @@ START_TEST(a_fault_in_a_move_ends_it_and_a_reset_clears_it)
 }
 END_TEST
 
+/* By its limit switch or an input of its own. 0x605A: with 2 it leaves the state after its ramp, with 6 it stays there
+ * under torque until Disable voltage. */
+START_TEST(a_quick_stop_of_the_drive_itself_ends_its_ramp_and_then_has_no_torque)
+{
+    static const int16_t options[] = {2, 6};
+    describe_other(0);
+    config.axes[0].sim.no_stops = true;
+    open_segment();
+    ck_assert(cm1e_sdo_write(bus, 1, OBJ_605A_QUICK_STOP_OPTION, 0, &options[_i], 2, &diag) == CM1E_OK);
+    enable();
+    command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 300});
+    cycles(600);
+    const double speed = probe().velocity_counts_per_s;
+    ck_assert_double_gt(speed, 25 * COUNTS);
+    cm1e_sim_cia402_of(cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1))->state = QUICK_STOP_ACTIVE;
+    int braking = 0;
+    for (int n = 0; n < 1000; n++) {
+        cycles(1);
+        const cm1e_sim_probe_t now = probe();
+        braking += now.torque_on;
+        ck_assert_msg(now.torque_on || fabs(now.velocity_counts_per_s) < 0.03 * speed, "torque off at %.0f counts/s",
+                      now.velocity_counts_per_s);
+    }
+    ck_assert_int_gt(braking, 100);
+    ck_assert(!probe().torque_on);
+    ck_assert_int_eq(info().state, CM1E_AXIS_ERROR_STOP);
+    ck_assert_int_eq(info().error, CM1E_ERROR_DRIVE_ENABLE_LOST);
+    ck_assert_ptr_nonnull(strstr(text(), "quick stop by itself"));
+    const double from = shaft();
+    reset_axis();
+    enable();
+    cycles(200);
+    ck_assert_double_eq_tol(shaft(), from, 0.01);
+    move_to(info().actual_position - 10, 50);
+    ck_assert_double_eq_tol(shaft(), from - 10, 0.02);
+    close_segment();
+}
+END_TEST
+
 START_TEST(a_cause_that_stays_is_there_after_the_reset)
 {
     begin(0);
@@ -510,6 +550,7 @@ int main(void)
     tcase_add_loop_test(tests, homing_finds_the_place_and_reckons_the_offset, 0, sizeof homings / sizeof homings[0]);
     tcase_add_test(tests, a_method_that_the_drive_lacks_fails_and_a_stop_ends_a_homing);
     tcase_add_loop_test(tests, a_fault_in_a_move_ends_it_and_a_reset_clears_it, 0, 4);
+    tcase_add_loop_test(tests, a_quick_stop_of_the_drive_itself_ends_its_ramp_and_then_has_no_torque, 0, 2);
     tcase_add_test(tests, a_cause_that_stays_is_there_after_the_reset);
     tcase_add_loop_test(tests, wherever_the_power_goes_the_axis_ends_in_a_known_state, 0, 4);
     tcase_add_test(tests, the_status_of_touch_probes_has_the_bits_of_the_standard);
