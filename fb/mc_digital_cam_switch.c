@@ -20,7 +20,7 @@ typedef struct look {
     cm1e_axis_measures_t axis;
     TIME now;
     double position, velocity;
-    bool first;      /* there was no earlier call */
+    bool first;      /* there was no earlier call, or none with this switch */
     int direction;   /* direction of the last motion: 1 positive, 2 negative, 0 none */
 } look_t;
 
@@ -142,11 +142,26 @@ static bool delayed(const look_t *look, const MC_TRACK *track, bool wanted, TIME
     return (look->now >= state->on_from && look->now < state->off_at) || look->now < state->still_until;
 }
 
-static bool evaluate(const look_t *look, const MC_CAMSWITCH *cam, const MC_TRACK *track, cm1e_cam_switch_t *state)
+/** A switch that was not there in the last call has passed nothing. */
+static bool is_new(const cm1e_cam_switch_t *state) { return isnan(state->on_point.position); }
+
+static bool evaluate(const look_t *looked, const MC_CAMSWITCH *cam, const MC_TRACK *track, cm1e_cam_switch_t *state)
 {
+    look_t look = *looked;
+    if (is_new(state)) {
+        *state = (cm1e_cam_switch_t){0};
+        look.first = true;
+    }
     if (cam->CamSwitchMode == 1) /* Duration sets the length: both ends have the same delay */
-        return delayed(look, track, wanted_by_time(look, cam, track, state), delay(track->OnCompensation), state);
-    return delayed(look, track, wanted_by_position(look, cam, track, state), delay(track->OffCompensation), state);
+        return delayed(&look, track, wanted_by_time(&look, cam, track, state), delay(track->OnCompensation), state);
+    return delayed(&look, track, wanted_by_position(&look, cam, track, state), delay(track->OffCompensation), state);
+}
+
+/** Switches from number `count` on are not there. Behind the first of them that is forgotten already, all are. */
+static void forget_from(cm1e_cam_private_t *p, int count)
+{
+    for (int i = count; i < CM1E_CAM_SWITCHES && !is_new(&p->switches[i]); i++)
+        p->switches[i].on_point.position = NAN;
 }
 
 /* ---- the block --------------------------------------------------------------------------------------------------- */
@@ -227,6 +242,7 @@ static cm1e_error_t evaluate_all(MC_DigitalCamSwitch_t *fb, const look_t *look, 
         if (evaluate(look, cam, track_of(fb, cam), &fb->Private.switches[i]))
             on |= (DWORD)1 << (cam->TrackNumber - 1);
     }
+    forget_from(&fb->Private, count);
     *tracks = on & fb->EnableMask;
     if (fb->ErrorID == cm1e_error_id(CM1E_ERROR_FB_CAM_SWITCH))
         cm1e_axis_cam_switches_right(cm1e_fb_axis(&fb->Private.common));

@@ -256,6 +256,32 @@ END_TEST
 
 /* ---- any motion -------------------------------------------------------------------------------------------------- */
 
+/** What a switch would have passed before it was there, or while it was not, it has not passed. */
+START_TEST(test_a_switch_that_is_added_has_passed_nothing)
+{
+    for (int away = 0; away < 2; away++) {
+        fresh(0.0);
+        add(1, 100.0, 101.0);
+        add(2, 5.0, 5.5);
+        MC_CAMSWITCH *by_time = add(3, 5.0, 0.0);
+        by_time->CamSwitchMode = 1;
+        by_time->Duration = 500 * MS;
+        cams.NumberOfSwitches = away ? 3 : 1;
+        at(1.0, 0.0);
+        cams.NumberOfSwitches = 1;
+        for (int n = 2; n <= 8; n++)
+            at(n, 1000.0);
+        cams.NumberOfSwitches = 3;
+        at(8.0, 0.0);
+        ck_assert_uint_eq(outputs.Values, 0);
+        at(6.0, -1000.0);
+        ck_assert_uint_eq(outputs.Values, 0);
+        at(4.0, -2000.0);
+        ck_assert_uint_eq(outputs.Values, 6); /* now it has passed them */
+    }
+}
+END_TEST
+
 START_TEST(test_random_motion_over_random_switches)
 {
     const char *given = getenv("CM1E_TEST_SEED");
@@ -315,6 +341,7 @@ int main(void)
     tcase_add_test(tcase, test_a_time_switch_can_be_ahead_and_late);
     tcase_add_test(tcase, test_a_duration_without_end_has_none);
     tcase_add_test(tcase, test_hysteresis_switches_once_until_it_is_left);
+    tcase_add_test(tcase, test_a_switch_that_is_added_has_passed_nothing);
     tcase_add_test(tcase, test_random_motion_over_random_switches);
     suite_add_tcase(suite, tcase);
     SRunner *runner = srunner_create(suite);
