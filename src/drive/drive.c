@@ -220,12 +220,14 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
  * not lead out of it, but Disable voltage does (CiA 402, transition 12). It waits until the ramp of the drive is over. */
 static bool ends_quick_stop(cm1e_drive_t *drive)
 {
+    int64_t *since = &drive->waits.quick_stop_ns;
     if (drive->feedback.state != QUICK_STOP_ACTIVE) {
-        drive->waits.quick_stop_ns = drive->now_ns;
+        *since = 0;
         return false;
     }
+    *since = *since ? *since : drive->now_ns;
     const int64_t slow = drive->range.velocity_possible / QUICK_STOP_PART;
-    return llabs((int64_t)drive->feedback.velocity) <= slow || drive->now_ns - drive->waits.quick_stop_ns >= quick_stop_ns;
+    return llabs((int64_t)drive->feedback.velocity) <= slow || drive->now_ns - *since >= quick_stop_ns;
 }
 
 /* During a switch to a mode with other words, the present words are meaningless. */

@@ -315,7 +315,7 @@ START_TEST(a_quick_stop_of_the_drive_itself_ends_its_ramp_and_then_has_no_torque
     ck_assert(cm1e_sdo_write(bus, 1, OBJ_605A_QUICK_STOP_OPTION, 0, &options[_i], 2, &diag) == CM1E_OK);
     enable();
     command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 300});
-    cycles(600);
+    cycles(12000); /* longer than a quick stop may take */
     const double speed = probe().velocity_counts_per_s;
     ck_assert_double_gt(speed, 25 * COUNTS);
     cm1e_sim_cia402_of(cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1))->state = QUICK_STOP_ACTIVE;
