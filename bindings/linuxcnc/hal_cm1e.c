@@ -122,12 +122,13 @@ static void write_command(void *unused, long period_ns)
                         period_ns);
     }
     command.enable = command.reset = command.home = 0;
+    command.stop = !*pins->enable_in || wrong_period;
     for (uint32_t i = 0; i < shared->axis_count; i++) {
         const axis_pins_t *p = &pins->axes[i];
         command.positions[i] = *p->pos_cmd;
-        command.enable |= (uint32_t)(*p->enable && *pins->enable_in && !wrong_period) << i;
+        command.enable |= (uint32_t)(*p->enable != 0) << i;
         command.reset |= (uint32_t)(*p->reset != 0) << i;
-        command.home |= (uint32_t)(*p->home && *pins->enable_in) << i;
+        command.home |= (uint32_t)(*p->home != 0) << i; /* the end of an emergency stop is no edge */
         command.digital[i] = 0;
         for (uint32_t n = 0; n < shared->digital_outputs[i]; n++)
             command.digital[i] |= (uint32_t)(*p->outputs[n] != 0) << n;

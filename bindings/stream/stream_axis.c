@@ -59,14 +59,23 @@ static bool has_fault(const stream_axis_t *axis, const cm1e_axis_info_t *info)
 
 /* ---- homing by the drive ----------------------------------------------------------------------------------------- */
 
+/* A fault ends it also while it waits for torque: after a reset nothing may move without a new edge. */
+static bool ends_homing(stream_axis_t *axis, const stream_wish_t *wish, const cm1e_axis_info_t *info)
+{
+    const bool error = info->state == CM1E_AXIS_ERROR_STOP;
+    if (error && !axis->homing.Busy) /* else MC_Home tells its error */
+        stop_for(axis, STREAM_NOT_HOMED, 0);
+    return error || axis->notice.reason || wish->enable || wish->stop || !wish->alive;
+}
+
 static void home(stream_axis_t *axis, const stream_wish_t *wish, const cm1e_axis_info_t *info)
 {
     const bool edge = rises(wish->home, &axis->home_before);
-    if (edge && !wish->enable && !axis->homing.Execute && !has_fault(axis, info))
+    if (edge && !wish->enable && !wish->stop && !axis->homing.Execute && !has_fault(axis, info))
         axis->homing.Execute = TRUE;
     if (!axis->homing.Execute && !axis->homing.Busy)
         return;
-    if (axis->homing.Execute && (wish->enable || !wish->alive))
+    if (axis->homing.Execute && ends_homing(axis, wish, info))
         axis->homing.Execute = FALSE; /* its power goes off */
     if (info->state != CM1E_AXIS_STANDSTILL && !axis->homing.Busy)
         return; /* it waits for torque */

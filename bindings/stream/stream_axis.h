@@ -32,6 +32,7 @@ typedef struct stream_notice {
 /** What the axis gets in a cycle. */
 typedef struct stream_wish {
     bool enable, reset, home;
+    bool stop;           /**< it may have no torque, also not for a homing */
     bool alive;          /**< `position` is that of this cycle; else the control is silent */
     bool rests;          /**< `position` is not changing */
     double position;     /**< u */

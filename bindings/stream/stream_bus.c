@@ -74,9 +74,10 @@ static void move(stream_bus_t *s, uint32_t axis, bool alive)
 {
     const stream_command_t *command = &s->command;
     const stream_wish_t wish = {
-        .enable = command->enable >> axis & 1,
+        .enable = !command->stop && (command->enable >> axis & 1),
         .reset = command->reset >> axis & 1,
         .home = command->home >> axis & 1,
+        .stop = command->stop,
         .alive = alive,
         .rests = alive && curve_rests(&s->curve, axis),
         .position = alive ? curve_at(&s->curve, axis) : 0.0,

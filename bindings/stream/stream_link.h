@@ -14,7 +14,7 @@
 #include "stream_types.h"
 
 enum {
-    STREAM_VERSION = 1,
+    STREAM_VERSION = 2,
     STREAM_NAME = 48,
     STREAM_TEXT = 1024,
     STREAM_DEPTH = 64,     /**< places of a ring; a power of 2 */

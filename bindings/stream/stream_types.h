@@ -21,6 +21,7 @@ typedef struct stream_command {
     uint32_t enable;       /**< torque; a rising edge also acknowledges a fault */
     uint32_t reset;        /**< a rising edge acknowledges a fault */
     uint32_t home;         /**< a rising edge homes a disabled axis by its drive, as the bus file says */
+    bool stop;             /**< no axis may have torque: all ramp down, and a homing ends */
     uint32_t digital[STREAM_AXES];   /**< outputs of the motors; bit 0: output 1 */
     double positions[STREAM_AXES];   /**< u of each axis; of this moment */
     double outputs[STREAM_SIGNALS];  /**< of slaves without a motor */

@@ -293,6 +293,65 @@ START_TEST(test_a_homing_that_fails_is_a_fault)
 }
 END_TEST
 
+/* Faults before the motor has the torque for its homing: a reset must not begin it again. */
+START_TEST(test_a_homing_that_a_fault_has_ended_does_not_begin_after_the_reset)
+{
+    static const char *const faults[] = {"power 1 off", "error 1 0x2310", "lose 500"};
+    char words[2000];
+    for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+        for (int home_stays = 0; home_stays <= 1; home_stays++) {
+            begin();
+            wish.home = true;
+            scans(i == 0 ? 0 : 3);
+            simulate(faults[i]);
+            for (int n = 0; n < 20000 && !has(STREAM_FAULT); n++)
+                scan();
+            ck_assert_msg(has(STREAM_FAULT) && !has(STREAM_HOMING), "%s", faults[i]);
+            stream_notice_text(&stream.notice, "x", words, sizeof words);
+            ck_assert_ptr_nonnull(strstr(words, "x was not homed."));
+            wish.home = home_stays;
+            if (i == 0)
+                simulate("power 1 on");
+            scans(2000);
+            const double at = probe().position_counts;
+            wish.reset = true;
+            for (int n = 0; n < 5000; n++) {
+                scan();
+                ck_assert_msg(!has(STREAM_POWERED | STREAM_HOMING), "%s: after %d cycles", faults[i], n);
+            }
+            ck_assert_msg(!has(STREAM_FAULT), "%s: %s", faults[i], text());
+            ck_assert_double_eq_tol(probe().position_counts, at, 1.0);
+            close_segment();
+        }
+}
+END_TEST
+
+START_TEST(test_an_emergency_stop_ends_a_homing)
+{
+    begin();
+    wish.home = true;
+    scans(400);
+    ck_assert(has(STREAM_HOMING) && has(STREAM_POWERED));
+    wish.stop = true;
+    scans(3000);
+    ck_assert(!has(STREAM_HOMING | STREAM_POWERED | STREAM_HOMED));
+    const double at = probe().position_counts;
+    wish.stop = false; /* `home` is still TRUE: that is no edge */
+    scans(3000);
+    ck_assert(!has(STREAM_HOMING) && !has(STREAM_POWERED));
+    ck_assert_double_eq_tol(probe().position_counts, at, 1.0);
+    wish.home = false;
+    wish.stop = true;
+    scans(10);
+    wish.home = true; /* an edge meanwhile does not count */
+    scans(10);
+    wish.stop = false;
+    scans(3000);
+    ck_assert(!has(STREAM_HOMING) && !has(STREAM_POWERED));
+    close_segment();
+}
+END_TEST
+
 START_TEST(test_an_enabled_axis_is_not_homed)
 {
     begin_following();
@@ -333,6 +392,8 @@ int main(void)
     tcase_add_test(tcase, test_the_drive_homes_while_it_is_not_enabled);
     tcase_add_test(tcase, test_a_homing_ends_with_the_control_and_with_machine_on);
     tcase_add_test(tcase, test_a_homing_that_fails_is_a_fault);
+    tcase_add_test(tcase, test_a_homing_that_a_fault_has_ended_does_not_begin_after_the_reset);
+    tcase_add_test(tcase, test_an_emergency_stop_ends_a_homing);
     tcase_add_test(tcase, test_an_enabled_axis_is_not_homed);
     tcase_add_test(tcase, test_the_output_of_the_motor_follows);
     suite_add_tcase(suite, tcase);
