@@ -207,8 +207,27 @@ static bool change_all(const var_options_t *options, cm1e_control_t *control, cm
     return good;
 }
 
+/** Renews what is forced. What somebody else has released is left out from then on; false: `diag` says what is wrong. */
+static bool renew_all(var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
+{
+    for (int i = 0; i < options->count;) {
+        if (change(options, control, i, diag)) {
+            i++;
+            continue;
+        }
+        if (diag->error != CM1E_ERROR_CANCELLED)
+            return false;
+        complain("somebody else has released %.*s", (int)strcspn(options->names[i], "="), options->names[i]);
+        json_decref(options->values[i]);
+        options->count--;
+        options->names[i] = options->names[options->count];
+        options->values[i] = options->values[options->count];
+    }
+    return true;
+}
+
 /** Renews what is forced until the end; the program ends it if this process is suspended or killed. */
-static int force(const var_options_t *options, cm1e_control_t *control)
+static int force(var_options_t *options, cm1e_control_t *control)
 {
     cm1e_diag_t diag = {0};
     const int64_t begin_ns = cm1e_clock_now(cm1e_clock_monotonic());
@@ -218,13 +237,17 @@ static int force(const var_options_t *options, cm1e_control_t *control)
                 options->seconds > 0 ? "the program has them again afterwards" : "Ctrl-C gives them back to the program");
         fflush(stderr);
     }
+    const int forced = options->count;
     while (good && !ended && !attached_signalled()) {
         usleep(PAUSE_US);
-        good = change_all(options, control, &diag);
-        ended = options->seconds > 0 &&
-                (double)(cm1e_clock_now(cm1e_clock_monotonic()) - begin_ns) * 1e-9 >= options->seconds;
+        good = renew_all(options, control, &diag);
+        ended = options->count == 0 ||
+                (options->seconds > 0 &&
+                 (double)(cm1e_clock_now(cm1e_clock_monotonic()) - begin_ns) * 1e-9 >= options->seconds);
     }
-    return good ? EXIT_OK : fail(&diag);
+    if (good)
+        return options->count == forced ? EXIT_OK : EXIT_FAILED;
+    return fail(&diag);
 }
 
 static int act(var_options_t *options, cm1e_control_t *control)

@@ -378,8 +378,9 @@ static json_t *end_variable(const control_request_t *request, const control_run_
             json_object_set_new(reply, "next", json_integer(next));
         return reply;
     }
+    const bool taken = request->variable.result == FORCING_TAKEN;
     const char *refusal = cm1e_variable_refusal(&request->variable);
-    return refusal ? cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, refusal)
+    return refusal ? cm1e_request_refuse(request->id, taken ? CM1E_ERROR_CANCELLED : CM1E_ERROR_STATE, 0, refusal)
                    : accept(request, "variable", json_null());
 }
 

@@ -101,7 +101,7 @@ static void change(view_t *view, view_order_t *order)
     of->forced.owner = view;
     of->forced.until_ns = cm1e_scheduler_time_ns(view->scheduler) + of->keep_ns;
     if (of->release)
-        cm1e_scheduler_release(view->scheduler, of->forced.variable);
+        cm1e_scheduler_release(view->scheduler, &of->forced);
     else if (of->force)
         of->result = cm1e_scheduler_force(view->scheduler, &of->forced);
     else
@@ -162,6 +162,8 @@ const char *cm1e_variable_refusal(const variable_order_t *order)
         [FORCING_HELD] = "The variable is forced, by another connection or by this one.",
         [FORCING_FULL] = "64 variables are forced already.",
         [FORCING_ENDING] = "The program ends.",
+        [FORCING_TAKEN] = "Another connection has released the variable. This one can force it again when it has released "
+                          "it too, or has not asked for it for \"keep_ms\".",
     };
     return texts[order->result];
 }

@@ -44,12 +44,31 @@ static forced_t *find(forcing_t *forcing, uint32_t variable)
     return NULL;
 }
 
-static forced_t *find_free(forcing_t *forcing)
+static bool is_of(const forced_t *row, const forced_t *who) { return row->owner == who->owner && row->client == who->client; }
+
+/** The place of what another one has released, and which this owner has not let go of; NULL: there is none. */
+static forced_t *find_taken(const forcing_parts_t *p, const forced_t *who)
 {
-    for (int i = 0; i < CM1E_FORCED; i++)
-        if (!forcing->rows[i].held)
-            return &forcing->rows[i];
+    for (int i = 0; i < CM1E_FORCED; i++) {
+        forced_t *row = &p->forcing->rows[i];
+        if (row->taken && p->run_ns < row->until_ns && row->variable == who->variable && is_of(row, who))
+            return row;
+    }
     return NULL;
+}
+
+/** A place that is not held; the last ones that are used are those of `taken`. */
+static forced_t *find_free(const forcing_parts_t *p)
+{
+    forced_t *free = NULL;
+    for (int i = 0; i < CM1E_FORCED; i++) {
+        forced_t *row = &p->forcing->rows[i];
+        if (!row->held && !(row->taken && p->run_ns < row->until_ns))
+            return row;
+        if (!row->held)
+            free = row;
+    }
+    return free;
 }
 
 forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_t *forced)
@@ -57,18 +76,24 @@ forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
     forced_t *row = find(p.forcing, forced->variable);
     const bool renewed = row && memcmp(row->value.bytes, forced->value.bytes, sizeof row->value.bytes) == 0;
+    forced_t *taken = find_taken(&p, forced);
     if (p.ending)
         return FORCING_ENDING;
-    if (row && (row->owner != forced->owner || row->client != forced->client))
+    if (taken) {
+        taken->until_ns = forced->until_ns;
+        return FORCING_TAKEN;
+    }
+    if (row && !is_of(row, forced))
         return FORCING_HELD;
     p.forcing->count += !row;
-    row = row ? row : find_free(p.forcing);
+    row = row ? row : find_free(&p);
     if (!row) {
         p.forcing->count--;
         return FORCING_FULL;
     }
     *row = *forced;
     row->held = true;
+    row->taken = false;
     write_value(&p, row->variable, &row->value);
     if (!renewed)
         note(&p, FORCED, row->variable, &row->value);
@@ -82,21 +107,28 @@ static void release(const forcing_parts_t *p, forced_t *row)
     note(p, RELEASED, row->variable, &row->value);
 }
 
-void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, uint32_t variable)
+void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, const forced_t *who)
 {
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
-    forced_t *row = find(p.forcing, variable);
-    if (row)
-        release(&p, row);
+    forced_t *row = find(p.forcing, who->variable), *taken = find_taken(&p, who);
+    if (taken)
+        taken->taken = false; /* its owner has let go of it */
+    if (!row)
+        return;
+    release(&p, row);
+    row->taken = !is_of(row, who);
 }
 
 void cm1e_scheduler_release_all(cm1e_scheduler_t *scheduler, const void *owner, uint32_t client)
 {
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
-    for (int i = 0; p.forcing->count > 0 && i < CM1E_FORCED; i++) {
+    const forced_t who = {.owner = owner, .client = client};
+    for (int i = 0; i < CM1E_FORCED; i++) {
         forced_t *row = &p.forcing->rows[i];
-        if (row->held && row->owner == owner && row->client == client)
+        if (row->held && is_of(row, &who))
             release(&p, row);
+        if (is_of(row, &who))
+            row->taken = false;
     }
 }
 

@@ -14,6 +14,7 @@ enum { CM1E_FORCED = 64 };
 
 typedef struct forced {
     bool held;
+    bool taken;              /**< not held: another one has released it. Its owner is refused until `until_ns` */
     const void *owner;       /**< who forces it, with its number */
     uint32_t client;
     uint32_t variable;       /**< its row in the table */
@@ -27,15 +28,22 @@ typedef struct forcing {
     uint32_t count;          /**< of those that are held */
 } forcing_t;
 
-typedef enum forcing_result { FORCING_DONE = 0, FORCING_HELD, FORCING_FULL, FORCING_ENDING } forcing_result_t;
+typedef enum forcing_result {
+    FORCING_DONE = 0,
+    FORCING_HELD,
+    FORCING_FULL,
+    FORCING_ENDING,
+    FORCING_TAKEN,           /**< another one has released it, and this owner has not let go of it since */
+} forcing_result_t;
 
 /** Gives the forced variables their values: between the inputs and the program, and behind it. */
 CM1E_GUEST_API void cm1e_scheduler_apply_forced(cm1e_scheduler_t *scheduler);
 
-/** Forces a variable, or renews that. */
+/** Forces a variable, or renews that. An owner whose variable another one has released is refused, until it has let go of
+ *  it: has released it too, or has not asked for it for the time of `until_ns`. */
 CM1E_GUEST_API forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_t *forced);
-/** Whoever forces it, it is the program's again. */
-CM1E_GUEST_API void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, uint32_t variable);
+/** Whoever forces it, it is the program's again. `who` has the variable, and the owner that releases it. */
+CM1E_GUEST_API void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, const forced_t *who);
 /** Ends what this client forces. */
 CM1E_GUEST_API void cm1e_scheduler_release_all(cm1e_scheduler_t *scheduler, const void *owner, uint32_t client);
 /** Writes a variable once; the program may change it. */

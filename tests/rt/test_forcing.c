@@ -40,6 +40,11 @@ static forcing_result_t force(uint32_t variable, uint8_t value, const void *owne
     return cm1e_scheduler_force(machine.scheduler, &forced);
 }
 
+static void release(uint32_t variable, const void *owner)
+{
+    cm1e_scheduler_release(machine.scheduler, &(forced_t){.owner = owner, .variable = variable});
+}
+
 static uint32_t count_forced(void)
 {
     uint32_t list[CM1E_FORCED];
@@ -67,7 +72,7 @@ static void force_bits(void *context)
         ck_assert_uint_eq(bytes[0], mask);
     }
     for (uint32_t bit = 0; bit < BITS; bit++)
-        cm1e_scheduler_release(machine.scheduler, bit);
+        release(bit, &here);
     ck_assert_uint_eq(count_forced(), 0);
     cm1e_scheduler_stop(machine.scheduler);
 }
@@ -96,7 +101,7 @@ static void force_too_many(void *context)
         ck_assert_int_eq(force(first, 9, &here), FORCING_DONE); /* one that is forced needs no place */
         ck_assert_uint_eq(bytes[first], 9);
     }
-    cm1e_scheduler_release(machine.scheduler, first);
+    release(first, &here);
     ck_assert_int_eq(force(VARIABLES - 1, 7, &here), FORCING_DONE);
     ck_assert_int_eq(force(first, 7, &here), FORCING_FULL);
     cm1e_scheduler_release_all(machine.scheduler, &here, 0);
@@ -155,6 +160,62 @@ START_TEST(test_what_is_not_renewed_in_time_is_free_and_nothing_is_forced_behind
 }
 END_TEST
 
+/* ---- released by another one ------------------------------------------------------------------------------------- */
+
+static void force_what_was_released(void *context)
+{
+    const uint32_t variable = BITS, other = BITS + 1;
+    (void)context;
+    cm1e_scheduler_forcing_cycle(machine.scheduler);
+    switch (calls++) {
+    case 0:
+        ck_assert_int_eq(force(variable, 5, &here), FORCING_DONE);
+        ck_assert_int_eq(force(other, 5, &here), FORCING_DONE);
+        release(variable, &there);
+        ck_assert_uint_eq(count_forced(), 1);
+        break;
+    case 10: /* it asks on: no renewal forces it again, and the others stay as they are */
+    case 25:
+        ck_assert_int_eq(force(variable, 5, &here), FORCING_TAKEN);
+        ck_assert_int_eq(force(other, 5, &here), FORCING_DONE);
+        break;
+    case 26: /* who released it may force it, and whoever did not have it */
+        ck_assert_int_eq(force(variable, 6, &there), FORCING_DONE);
+        ck_assert_int_eq(force(variable, 5, &here), FORCING_TAKEN);
+        release(variable, &there);
+        break;
+    case 27: /* the owner lets go of it by a release */
+        release(variable, &here);
+        ck_assert_int_eq(force(variable, 5, &here), FORCING_DONE);
+        release(variable, &there);
+        break;
+    case 60: /* and by not asking */
+        ck_assert_int_eq(force(variable, 5, &here), FORCING_DONE);
+        release(variable, &there);
+        cm1e_scheduler_release_all(machine.scheduler, &here, 0); /* another connection may have its number */
+        ck_assert_int_eq(force(variable, 5, &here), FORCING_DONE);
+        for (uint32_t i = 0; i < CM1E_FORCED; i++) { /* what is remembered of them takes no place */
+            ck_assert_int_eq(force(i, 1, &here), FORCING_DONE);
+            release(i, &there);
+        }
+        for (uint32_t i = 0; i < CM1E_FORCED; i++)
+            ck_assert_int_eq(force(i, 1, &there), FORCING_DONE);
+        cm1e_scheduler_stop(machine.scheduler);
+        break;
+    default: break;
+    }
+}
+
+START_TEST(test_what_another_one_has_released_is_not_renewed)
+{
+    calls = 0;
+    open_machine(force_what_was_released);
+    machine_run(&machine, 0);
+    ck_assert_uint_eq(calls, 61);
+    machine_close(&machine);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("forcing");
@@ -162,6 +223,7 @@ int main(void)
     tcase_add_test(tests, test_bits_of_a_byte_are_forced_each_by_itself);
     tcase_add_test(tests, test_one_more_than_there_are_places_is_refused);
     tcase_add_test(tests, test_what_is_not_renewed_in_time_is_free_and_nothing_is_forced_behind_the_run);
+    tcase_add_test(tests, test_what_another_one_has_released_is_not_renewed);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

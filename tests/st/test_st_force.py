@@ -253,9 +253,16 @@ def check_forced(run):
         window.wait(10)
     window = run.force("Main.n=79")
     run.var("release", "Main.n")
+    run.counts_again("released, while the window goes on")
+    expect(window.wait(10) == 1, "a window without a variable ends, and has not done what it was told")
+    window = run.force("Main.n=80", "Main.text='held'")
+    run.var("release", "Main.n")
+    run.counts_again("one of two released")
+    time.sleep(0.5)
+    expect(window.poll() is None and "FORCED" in run.var("get", "Main.text"), "the other one stays forced",
+           run.var("get", "Main.text"))
     window.send_signal(signal.SIGINT)
-    window.wait(10)
-    run.counts_again("released")
+    expect(window.wait(10) == 1, "a window that has lost a variable says so")
     log = run.log()
     for text in ("Main.n was forced to 77", "Main.n is no longer forced to 77", "Main.goal was set to -1.5",
                  "Main.text was forced to a text"):
