@@ -10,6 +10,7 @@ import re
 import socket
 import stat
 import struct
+import threading
 import time
 from types import TracebackType
 from typing import Any, Iterator, NamedTuple, Optional, Sequence, Union
@@ -100,10 +101,12 @@ def _path_of(target: Target) -> tuple[str, Optional[int]]:
 
 class Attached:
     """A connection to a running program: the path of its socket, the number of its process, or None: the only one that
-    there is. What it may do, `control` in the bus file of the program says. What it moves ends with the connection."""
+    there is. What it may do, `control` in the bus file of the program says. What it moves ends with the connection. Threads
+    may share one; their requests are asked in turn. A request that is broken off (Ctrl-C, no answer in time) closes it."""
 
     def __init__(self, target: Target = None, timeout: float = 5.0) -> None:
         self._path, pid = _path_of(target)
+        self._asking = threading.Lock()
         self._socket: Optional[socket.socket] = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._socket.settimeout(timeout)
         try:
@@ -140,13 +143,11 @@ class Attached:
 
     # ---- the protocol ------------------------------------------------------------------------------------------------
 
-    def _read(self, size: int) -> bytes:
-        assert self._socket is not None
+    def _read(self, connection: socket.socket, size: int) -> bytes:
         data = b""
         while len(data) < size:
-            part = self._socket.recv(min(size - len(data), 1 << 20))
+            part = connection.recv(min(size - len(data), 1 << 20))
             if not part:
-                self.close()
                 raise errors.StateError("The program has ended.", lib.CM1E_ERROR_STATE)
             data += part
         return data
@@ -158,18 +159,23 @@ class Attached:
         return self._exchange(message).get(_MEMBER.get(request, request))
 
     def _exchange(self, message: dict[str, object]) -> Any:
-        if self._socket is None:
-            errors.closed("The connection")
         data = json.dumps(message).encode()
-        try:
-            self._socket.sendall(struct.pack(">I", len(data)) + data)
-            reply = json.loads(self._read(struct.unpack(">I", self._read(4))[0]))
-        except TimeoutError:
-            self.close()  # its reply, if it comes, would be taken for that of the next request
-            raise errors.WaitTimeout("The program does not answer.", lib.CM1E_ERROR_TIMEOUT) from None
-        except OSError:
-            self.close()
-            raise errors.StateError("The program has ended.", lib.CM1E_ERROR_STATE) from None
+        with self._asking:
+            connection = self._socket
+            if connection is None:
+                errors.closed("The connection")
+            try:
+                connection.sendall(struct.pack(">I", len(data)) + data)
+                reply = json.loads(self._read(connection, struct.unpack(">I", self._read(connection, 4))[0]))
+            except TimeoutError:
+                self.close()  # its reply, if it comes, would be taken for that of the next request
+                raise errors.WaitTimeout("The program does not answer.", lib.CM1E_ERROR_TIMEOUT) from None
+            except OSError:
+                self.close()
+                raise errors.StateError("The program has ended.", lib.CM1E_ERROR_STATE) from None
+            except BaseException:
+                self.close()
+                raise
         if not reply["ok"]:
             diag = reply["error"]
             raise errors._class_of(diag["code"])(diag["text"], diag["code"], diag["foreign_code"])

@@ -1,9 +1,14 @@
 """Whom attach() trusts: sockets in a folder of the right owner, served by the process that they are named after. What
-another user plants is refused in words."""
+another user plants is refused in words. And that each request gets its own reply."""
+import json
 import os
+import signal
 import socket
+import struct
 import subprocess
 import sys
+import threading
+import time
 
 import pytest
 
@@ -77,3 +82,53 @@ def test_socket_of_another_process_is_refused(folder):
         assert said.returncode == 1 and f"process {server.pid} of user {os.getuid()} serves it" in said.stderr
     finally:
         server.communicate(b"", timeout=20)
+
+
+@pytest.fixture
+def echo(tmp_path):
+    """A program that answers a request with its name, "slow" after a while; yields the path of its socket."""
+    path, server = str(tmp_path / "echo.sock"), socket.socket(socket.AF_UNIX)
+    server.bind(path)
+    server.listen()
+
+    def serve():
+        stream = server.accept()[0].makefile("rwb")
+        while head := stream.read(4):
+            name = json.loads(stream.read(struct.unpack(">I", head)[0]))["request"]
+            time.sleep(0.5 if name == "slow" else 0)
+            reply = json.dumps({"ok": True, name: name}).encode()
+            try:
+                stream.write(struct.pack(">I", len(reply)) + reply)
+                stream.flush()
+            except OSError:
+                return
+    thread = threading.Thread(target=serve, daemon=True)
+    thread.start()
+    yield path
+    server.close()
+
+
+def test_reply_of_a_request_that_is_broken_off_is_not_taken_for_that_of_the_next(echo):
+    program, main = cm1e.attach(echo), threading.main_thread().ident
+    timer = threading.Timer(0.1, lambda: signal.pthread_kill(main, signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        program.ask("slow")
+    timer.join()
+    with pytest.raises(cm1e.StateError, match="The connection is closed"):
+        program.ask("next")
+
+
+def test_threads_that_share_a_connection_get_their_own_replies(echo):
+    wrong = []
+    with cm1e.attach(echo) as program:
+        def ask(name):
+            for _ in range(300):
+                if (got := program.ask(name)) != name:
+                    wrong.append((name, got))
+        threads = [threading.Thread(target=ask, args=(name,)) for name in ("a", "b", "c")]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert not wrong
