@@ -46,10 +46,10 @@ typedef struct cm1e_path_config {
 /** How the end of the previous segment is passed. */
 typedef enum cm1e_path_junction {
     CM1E_PATH_STOP,  /**< at rest */
-    /** Exactly along both segments. If the tangent of any axis breaks, the path stops there. If only the curvature
-     *  breaks (a line into an arc), the acceleration of axes steps. The junction is then passed so slowly that the step
-     *  is at most half of what the jerk limit of the axis allows in a cycle; the path has the other half of that limit
-     *  for one cycle before and after. */
+    /** Exactly along both segments. If the tangent of any axis breaks by more than 0.001, the path stops there. If it
+     *  breaks by less, or only the curvature does (a line into an arc), the acceleration of axes steps. The junction is
+     *  then passed so slowly that the step is at most half of what the jerk limit of the axis allows in a cycle; for one
+     *  cycle before and after, the path has the other half of that limit, and what is left of the acceleration. */
     CM1E_PATH_EXACT,
     /** By a transition from `parameter` u (length of path) before the end to the same distance behind it, smooth in
      *  tangent and curvature. It is shorter if that is more than half of one of the segments, or has begun. */

@@ -29,6 +29,8 @@ static const double SAVED = 0.15;
 /** Which part of a limit of jerk is for steps of the acceleration. */
 static const double STEP_SHARE = 0.5;
 
+static const cm1e_path_share_t ALL = {1, 1};
+
 static cm1e_path_frame_t frame_of(const cm1e_path_t *path)
 {
     return (cm1e_path_frame_t){path->config.axes, path->config.space};
@@ -38,14 +40,14 @@ static void pop_last(cm1e_path_t *path, int count) { path->element_count -= coun
 
 /** Puts a part of a piece behind everything, not to be entered but from rest. */
 static cm1e_path_element_t *push(cm1e_path_t *path, const cm1e_path_piece_t *piece, double skipped, double length,
-                                 const cm1e_path_command_t *command, double jerk_share)
+                                 const cm1e_path_command_t *command, const cm1e_path_share_t *share)
 {
     cm1e_path_element_t *element = cm1e_path_element(path, path->element_count++);
     *element = (cm1e_path_element_t){.piece = piece, .tag = command->tag, .last_of_tag = true, .skipped = skipped,
                                      .length = length};
     cm1e_path_allowance_t allowance = {{1, 1, 1, 1}, 1, {1, 1, 1, 1}};
     if (piece->length > 0)
-        cm1e_path_allow(&allowance, piece, &path->config, jerk_share, &command->limits);
+        cm1e_path_allow(&allowance, piece, &path->config, share, &command->limits);
     element->limits = allowance.limits;
     element->highest = allowance.highest;
     element->most = allowance.most;
@@ -125,6 +127,7 @@ static double room_on_last(cm1e_path_t *path)
 typedef struct {
     bool corner, even; /**< a break of the tangent; no step of the acceleration either */
     double velocity;   /**< at which the step is as large as it may be */
+    double bend_s;     /**< of the acceleration of an axis, per velocity: what a break of the tangent makes in a cycle */
 } break_t;
 
 static break_t look_at_break(const cm1e_path_t *path, const cm1e_path_piece_t *before, const cm1e_path_piece_t *after,
@@ -134,13 +137,14 @@ static break_t look_at_break(const cm1e_path_t *path, const cm1e_path_piece_t *b
     cm1e_path_point_t a, b;
     cm1e_path_point_at(before, config->axes, before->length, &a);
     cm1e_path_point_at(after, config->axes, 0, &b);
-    break_t found = {before->measured != after->measured, true, INFINITY};
+    break_t found = {before->measured != after->measured, true, INFINITY, 0};
     for (int i = 0; i < config->axes; i++) {
         const double bend = fabs(b.tangent[i] - a.tangent[i]) / config->cycle_s;
         const double curve = fabs(b.curvature[i] - a.curvature[i]);
         const double allowed = STEP_SHARE * smaller(config->axis[i].jerk * config->cycle_s, config->axis[i].acceleration);
         found.corner = found.corner || bend * config->cycle_s > CORNER;
         found.even = found.even && bend * velocity + curve * velocity * velocity <= NO_STEP * allowed;
+        found.bend_s = larger(found.bend_s, bend / config->axis[i].acceleration);
         const double root = sqrt(bend * bend + 4 * curve * allowed);
         if (bend + root > 0)
             found.velocity = smaller(found.velocity, 2 * allowed / (bend + root));
@@ -148,9 +152,9 @@ static break_t look_at_break(const cm1e_path_t *path, const cm1e_path_piece_t *b
     return found;
 }
 
-/** Next to a step, half of the axes' jerk is for the step. */
+/** Next to a step, half of the axes' jerk is for the step; and of their acceleration what a break of the tangent takes. */
 static bool pass_slowly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment, double velocity,
-                        double junction)
+                        double bend_s, double junction)
 {
     const int last = path->element_count - 1;
     cm1e_path_element_t *element = cm1e_path_element(path, last);
@@ -159,12 +163,14 @@ static bool pass_slowly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pat
         return false;
     element->length -= zone;
     element->last_of_tag = false;
+    const cm1e_path_share_t beside = {1 - velocity * bend_s, 1 - STEP_SHARE};
     const struct {
         const cm1e_path_segment_t *of;
-        double skipped, length, share;
-    } parts[3] = {{before, element->skipped + element->length, zone, 1 - STEP_SHARE},
-                  {segment, 0, zone, 1 - STEP_SHARE},
-                  {segment, zone, segment->piece.length - zone, 1}};
+        double skipped, length;
+        const cm1e_path_share_t *share;
+    } parts[3] = {{before, element->skipped + element->length, zone, &beside},
+                  {segment, 0, zone, &beside},
+                  {segment, zone, segment->piece.length - zone, &ALL}};
     for (int i = 0; i < 3; i++) {
         cm1e_path_element_t *part = push(path, &parts[i].of->piece, parts[i].skipped, parts[i].length,
                                          &parts[i].of->command, parts[i].share);
@@ -183,7 +189,7 @@ static bool pass_slowly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pat
 
 static void stop_between(cm1e_path_t *path, cm1e_path_segment_t *segment)
 {
-    push(path, &segment->piece, 0, segment->piece.length, &segment->command, 1);
+    push(path, &segment->piece, 0, segment->piece.length, &segment->command, &ALL);
     (void)cm1e_path_plan(path, path->element_count - 1);
 }
 
@@ -192,7 +198,7 @@ static void pass_exactly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pa
     const double junction = blended(segment->command.blend, before->command.limits.velocity,
                                     segment->command.limits.velocity);
     const int last = path->element_count - 1;
-    cm1e_path_element_t *element = push(path, &segment->piece, 0, segment->piece.length, &segment->command, 1);
+    cm1e_path_element_t *element = push(path, &segment->piece, 0, segment->piece.length, &segment->command, &ALL);
     const double most = smaller(cm1e_path_element(path, last)->highest, element->highest);
     const break_t found = look_at_break(path, &before->piece, &segment->piece, most);
     if (!found.corner && found.even) {
@@ -204,7 +210,8 @@ static void pass_exactly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pa
             return;
     }
     pop_last(path, 1);
-    if (!found.corner && !found.even && pass_slowly(path, before, segment, smaller(most, found.velocity), junction))
+    if (!found.corner && !found.even && pass_slowly(path, before, segment, smaller(most, found.velocity), found.bend_s,
+                                                  junction))
         return;
     stop_between(path, segment);
 }
@@ -282,12 +289,12 @@ static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_
     element->length = larger(0, element->length - reach);
     cm1e_path_command_t command = segment->command;
     command.limits.velocity = junction;
-    cm1e_path_element_t *curve = push(path, &segment->transition, 0, segment->transition.length, &command, 1);
+    cm1e_path_element_t *curve = push(path, &segment->transition, 0, segment->transition.length, &command, &ALL);
     curve->last_of_tag = false;
     set_entry(path, last + 1, smaller(curve->highest, element->highest), junction);
     const double slow = curve->length / smaller(curve->highest, junction);
     const double rest = segment->piece.length - reach;
-    cm1e_path_element_t *main = push(path, &segment->piece, reach, rest, &segment->command, 1);
+    cm1e_path_element_t *main = push(path, &segment->piece, reach, rest, &segment->command, &ALL);
     set_entry(path, last + 2, smaller(curve->highest, main->highest), junction);
     const bool worth = slow <= least_time(&saved, reach) + least_time(main, reach); /* or a stop is faster */
     for (int i = 0; worth && i < 3; i++) {

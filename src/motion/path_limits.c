@@ -32,17 +32,17 @@ typedef struct {
     bend_t bend[BENDS_MAX];
 } bends_t;
 
-static void add(bends_t *bends, const cm1e_path_axis_t *axis, double share, const bend_t *sizes)
+static void add(bends_t *bends, const cm1e_path_axis_t *axis, const cm1e_path_share_t *share, const bend_t *sizes)
 {
-    const double jerk = axis->jerk * share;
+    const double acceleration = axis->acceleration * share->acceleration, jerk = axis->jerk * share->jerk;
     if (sizes->first > 0) {
         bends->straight.velocity = smaller(bends->straight.velocity, axis->velocity / sizes->first);
-        bends->straight.acceleration = smaller(bends->straight.acceleration, axis->acceleration / sizes->first);
+        bends->straight.acceleration = smaller(bends->straight.acceleration, acceleration / sizes->first);
         bends->straight.jerk = smaller(bends->straight.jerk, jerk / sizes->first);
     }
     if (sizes->second > 0 || sizes->third > 0) {
         bends->bend[bends->count] = *sizes;
-        bends->bend[bends->count].acceleration = axis->acceleration;
+        bends->bend[bends->count].acceleration = acceleration;
         bends->bend[bends->count++].jerk = jerk;
     }
 }
@@ -57,7 +57,8 @@ static int steps_over(const cm1e_path_piece_t *curve)
     return (int)smaller(larger(steps, STEPS_LEAST), STEPS_MOST);
 }
 
-static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path_config_t *config, double share)
+static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path_config_t *config,
+                 const cm1e_path_share_t *share)
 {
     bends->straight = (cm1e_motion_limits_t){INFINITY, INFINITY, INFINITY, INFINITY};
     bends->round = piece->kind == CM1E_PATH_ARC;
@@ -172,11 +173,12 @@ static cm1e_motion_limits_t choose(const bends_t *bends, double length, const cm
 }
 
 void cm1e_path_allow(cm1e_path_allowance_t *allowance, const cm1e_path_piece_t *piece,
-                     const cm1e_path_config_t *config, double jerk_share, const cm1e_motion_limits_t *wanted)
+                     const cm1e_path_config_t *config, const cm1e_path_share_t *share,
+                     const cm1e_motion_limits_t *wanted)
 {
     static const cm1e_motion_limits_t all = {INFINITY, INFINITY, INFINITY, INFINITY};
     bends_t bends;
-    look(&bends, piece, config, jerk_share);
+    look(&bends, piece, config, share);
     allowance->most = choose(&bends, piece->length, &all);
     allowance->limits = choose(&bends, piece->length, wanted);
     allowance->highest = larger(allowance->limits.velocity, velocity_with(&bends, bends.velocity,

@@ -60,8 +60,14 @@ typedef struct cm1e_path_allowance {
     cm1e_motion_limits_t most;   /**< limits for the shortest time */
 } cm1e_path_allowance_t;
 
-/** `jerk_share` is the share of the jerk limits of the axes. Any value of `wanted` may be INFINITY. */
+/** Which part of the limits of the axes there is for the motion along a piece. */
+typedef struct cm1e_path_share {
+    double acceleration, jerk;
+} cm1e_path_share_t;
+
+/** Any value of `wanted` may be INFINITY. */
 void cm1e_path_allow(cm1e_path_allowance_t *allowance, const cm1e_path_piece_t *piece,
-                     const cm1e_path_config_t *config, double jerk_share, const cm1e_motion_limits_t *wanted);
+                     const cm1e_path_config_t *config, const cm1e_path_share_t *share,
+                     const cm1e_motion_limits_t *wanted);
 
 #endif
