@@ -171,13 +171,11 @@ bool cm1e_path_make_centre_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
     return true;
 }
 
-static void line_or_arc_at(const cm1e_path_piece_t *piece, int axes, double length, cm1e_path_point_t *point)
+/** At `l` from an end (0: the beginning) of a line or an arc; the position counts from there. */
+static void line_or_arc_from(const cm1e_path_piece_t *piece, int axes, int end, double l, cm1e_path_point_t *point)
 {
-    double l;
-    const int end = cm1e_path_nearer_end(piece, length, &l);
-    const double *origin = end ? piece->to : piece->from;
     for (int i = 0; i < axes; i++) {
-        point->position[i] = origin[i] + piece->direction[i] * l;
+        point->position[i] = piece->direction[i] * l;
         point->tangent[i] = piece->direction[i];
         point->curvature[i] = 0;
     }
@@ -191,6 +189,16 @@ static void line_or_arc_at(const cm1e_path_piece_t *piece, int axes, double leng
         point->tangent[i] = v * c - u * s;
         point->curvature[i] = -(u * c + v * s) / piece->radius;
     }
+}
+
+static void line_or_arc_at(const cm1e_path_piece_t *piece, int axes, double length, cm1e_path_point_t *point)
+{
+    double l;
+    const int end = cm1e_path_nearer_end(piece, length, &l);
+    const double *origin = end ? piece->to : piece->from;
+    line_or_arc_from(piece, axes, end, l, point);
+    for (int i = 0; i < axes; i++)
+        point->position[i] += origin[i];
 }
 
 /* ---- curves ------------------------------------------------------------------------------------------------------ */
@@ -247,8 +255,8 @@ void cm1e_path_make_curve(cm1e_path_piece_t *piece, const cm1e_path_frame_t *fra
                           double leave, const cm1e_path_piece_t *after, double enter)
 {
     cm1e_path_point_t a, b;
-    cm1e_path_point_at(before, frame->axes, before->length - leave, &a);
-    cm1e_path_point_at(after, frame->axes, enter, &b);
+    line_or_arc_from(before, frame->axes, 1, -leave, &a);
+    line_or_arc_from(after, frame->axes, 0, enter, &b);
     double cosine = 0;
     for (int i = 0; i < before->measured; i++)
         cosine += a.tangent[i] * b.tangent[i];
@@ -262,7 +270,7 @@ void cm1e_path_make_curve(cm1e_path_piece_t *piece, const cm1e_path_frame_t *fra
         const double p2 = p0 + second * out + 1.25 * first * first * leave * leave * a.curvature[i];
         const double p5 = b.position[i], p4 = p5 - first * in;
         const double p3 = p5 - second * in + 1.25 * first * first * enter * enter * b.curvature[i];
-        piece->power[0][i] = p0;
+        piece->power[0][i] = before->to[i] + p0; /* the others have its shape however far away it is */
         piece->power[1][i] = 5 * (p1 - p0);
         piece->power[2][i] = 10 * ((p0 - p1) + (p2 - p1));
         piece->power[3][i] = 10 * ((p3 - p0) - 3 * (p2 - p1));

@@ -105,6 +105,7 @@ static inline void step_path(void)
         const double way = (v + driven.before.velocity[i]) / 2 * dt, p = driven.now.position[i];
         CHECK_PATH(fabs(p - driven.before.position[i] - way) <= axis->jerk * dt * dt * dt + 1e-13 * fabs(p));
         CHECK_PATH(fabs(v) <= axis->velocity * (1 + 1e-6));
+        CHECK_PATH(fabs(v - driven.before.velocity[i]) / dt <= axis->acceleration * (1 + 1e-6));
         CHECK_PATH(fabs(a) <= axis->acceleration * (1 + 1e-6));
         CHECK_PATH(jerk <= axis->jerk * (1 + 1e-6) + 1e-9 * axis->acceleration / dt);
         check_bounds(i, v, a, jerk);

@@ -228,6 +228,26 @@ static void test_many_short_segments_keep_the_velocity(void)
     TEST_ASSERT_TRUE(driven.time_s < 10.3);
 }
 
+/** Targets that should be equal may differ by rounding: a line of one unit in the last place, and back. */
+static void test_a_line_of_rounding_is_no_corner_without_room(void)
+{
+    const double at[] = {0.3, 1000.3, -91832.378705665717};
+    const double ways[][2] = {{0, 0}, {-50, 0}, {-50, 80}, {3, 80}};
+    for (size_t k = 0; k < sizeof at / sizeof *at * 8; k++) {
+        const cm1e_path_config_t config = plain_config(2, 2, 1000, 2000, 1e5);
+        const double x = at[k / 8], *way = ways[k / 2 % 4], start[CM1E_PATH_AXES] = {x - 30};
+        const cm1e_path_junction_t junction = k % 2 ? CM1E_PATH_CORNER_DISTANCE : CM1E_PATH_CORNER_DEVIATION;
+        begin_path(&config, start);
+        memcpy(driven.now.position, start, sizeof start);
+        line((double[]){x, 0}, 100, CM1E_PATH_STOP, 0);
+        line((double[]){nextafter(x, INFINITY), 0}, 100, junction, 1);
+        line((double[]){nextafter(nextafter(x, INFINITY), INFINITY), 0}, 100, junction, 1);
+        line((double[]){x + way[0], way[1]}, 100, junction, 1);
+        (void)run_path();
+        TEST_ASSERT_EQUAL_DOUBLE(way[1], driven.now.position[1]);
+    }
+}
+
 static void test_override_slows_pauses_and_goes_on(void)
 {
     const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
@@ -364,6 +384,7 @@ int main(void)
     RUN_TEST(test_a_line_into_an_arc_is_passed_without_a_stop);
     RUN_TEST(test_the_velocity_at_a_junction_is_that_of_its_mode);
     RUN_TEST(test_many_short_segments_keep_the_velocity);
+    RUN_TEST(test_a_line_of_rounding_is_no_corner_without_room);
     RUN_TEST(test_override_slows_pauses_and_goes_on);
     RUN_TEST(test_absurdly_slow_commands_do_not_jump);
     RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
