@@ -344,6 +344,8 @@ bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns);
 void cm1e_sdo_queue_serve(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
 
+/** Chooses the marker of the next frame (input_marker.c). */
+void cm1e_bus_choose_marker(cm1e_bus_t *bus);
 /** Marks the place of the inputs of slaves in a frame: a slave that takes part in the cycle overwrites all of it. The
  *  marker is made of the inputs that came last, so that no inputs are like it for long, whatever they are. */
 void cm1e_bus_mark_inputs(const cm1e_bus_t *bus, uint8_t *place, uint32_t input_offset, size_t bytes);
