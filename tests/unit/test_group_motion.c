@@ -235,32 +235,6 @@ static void test_exactly_along_both_it_stops_where_the_direction_breaks_only(voi
 }
 
 /* Figure 12 of Part 1, on a path that goes straight on: the velocity with which the end of the first line is passed. */
-/* A break of the direction too small to stop for steps the velocity of an axis. Where the axis brakes as hard as it may,
- * both together are more than it may. */
-static void test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit(void)
-{
-    for (int i = 0; i < 8; i++)
-        for (double rest = 0.15; rest < 1.0; rest *= 1.5) {
-            const double bend = 1e-5 * pow(1.8, i);
-            group_end();
-            group_begin(2);
-            for (int n = 0; n < 2; n++) /* it takes the break for jerk: the guard of the axis judges, and group_done() */
-                axes_bench.witness[n].strictness = AXES_UNWATCHED;
-            cm1e_group_command_t c = line_to(3.0, 3.0, 0.0);
-            (void)group_command(&c);
-            c = line_to(3.0 + rest * cos(0.785398163 + bend), 3.0 + rest * sin(0.785398163 + bend), 0.0);
-            c.buffer_mode = mcBlendingHigh;
-            const cm1e_command_id_t id = group_command(&c);
-            double slowest = INFINITY;
-            while (group_at(0) < 2.99)
-                axes_cycles(1);
-            for (; group_at(0) < 3.01; axes_cycles(1))
-                slowest = fmin(slowest, group->sample.path_velocity);
-            TEST_ASSERT_TRUE(slowest > 1.0);
-            group_done(id);
-        }
-}
-
 static void test_the_buffer_mode_chooses_the_velocity_between_two_lines(void)
 {
     static const MC_BUFFER_MODE modes[] = {mcBlendingLow, mcBlendingPrevious, mcBlendingNext, mcBlendingHigh};
@@ -691,7 +665,6 @@ int main(void)
     RUN_TEST(test_buffered_lines_come_to_rest_between);
     RUN_TEST(test_transitions_do_not_stop_and_keep_their_tolerance);
     RUN_TEST(test_exactly_along_both_it_stops_where_the_direction_breaks_only);
-    RUN_TEST(test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit);
     RUN_TEST(test_the_buffer_mode_chooses_the_velocity_between_two_lines);
     RUN_TEST(test_aborting_it_leaves_the_path_at_rest_only);
     RUN_TEST(test_what_is_refused_in_motion_changes_nothing);

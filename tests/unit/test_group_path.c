@@ -1,0 +1,48 @@
+/* What a group promises of every path: the limits of its axes, the geometry and the braking that were commanded, also where
+ * they are hard to keep. */
+#include <math.h>
+
+#include "unity.h"
+
+#include "../support/group_bench.h"
+
+void setUp(void) { group_begin(3); }
+void tearDown(void) { group_end(); }
+
+static cm1e_group_command_t line_to(double x, double y, double velocity)
+{
+    return (cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_ABSOLUTE, .position = {x, y}, .velocity = velocity};
+}
+
+/* A break of the direction too small to stop for steps the velocity of an axis. Where the axis brakes as hard as it may,
+ * both together are more than it may. */
+static void test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit(void)
+{
+    for (int i = 0; i < 8; i++)
+        for (double rest = 0.15; rest < 1.0; rest *= 1.5) {
+            const double bend = 1e-5 * pow(1.8, i);
+            group_end();
+            group_begin(2);
+            for (int n = 0; n < 2; n++) /* it takes the break for jerk: the guard of the axis judges, and group_done() */
+                axes_bench.witness[n].strictness = AXES_UNWATCHED;
+            cm1e_group_command_t c = line_to(3.0, 3.0, 0.0);
+            (void)group_command(&c);
+            c = line_to(3.0 + rest * cos(0.785398163 + bend), 3.0 + rest * sin(0.785398163 + bend), 0.0);
+            c.buffer_mode = mcBlendingHigh;
+            const cm1e_command_id_t id = group_command(&c);
+            double slowest = INFINITY;
+            while (group_at(0) < 2.99)
+                axes_cycles(1);
+            for (; group_at(0) < 3.01; axes_cycles(1))
+                slowest = fmin(slowest, group->sample.path_velocity);
+            TEST_ASSERT_TRUE(slowest > 1.0);
+            group_done(id);
+        }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit);
+    return UNITY_END();
+}
