@@ -226,8 +226,9 @@ cm1e_error_t cm1e_path_append_arc_border(cm1e_path_t *path, const double *border
 /** Appends an arc around `centre`, in the plane of beginning, centre and end. The end must be as far from the centre as
  *  the beginning, to within 1e-6 of the radius; both ends are kept exactly. An end equal to the beginning in space (to
  *  within 1e-9 of the radius) is a full circle. If the three points lie on a line (half and full circles), the plane is
- *  the one parallel to X and Y, provided that the centre is as high as the beginning; otherwise the arc is refused, and
- *  an arc by border must be used. */
+ *  the one parallel to X and Y, provided that all three are equally high. If they are not, and lie within 0.02 rad of a
+ *  line, an arc of more than a quarter is refused, because a small error of an end would turn its plane; an arc by border
+ *  must be used. */
 cm1e_error_t cm1e_path_append_arc_centre(cm1e_path_t *path, const double *centre, const double *end,
                                          cm1e_path_way_t way, const cm1e_path_command_t *command,
                                          cm1e_path_problem_t *problem);

@@ -16,6 +16,13 @@ static const double OUT_OF_ROUND = 1e-6;
 /** Ends that are closer than this fraction of the radius count as equal. */
 static const double FULL_CIRCLE = 1e-9;
 
+/** Heights that differ by less than this fraction of the radius are equal. */
+static const double LEVEL = 1e-9;
+
+/** Radii within this angle (rad) are on a line, or so near to one that an error of an end turns the plane of a long arc
+ *  by too much. */
+static const double ON_A_LINE = 1e-9, NEARLY_ON_A_LINE = 0.02;
+
 enum { X, Y, Z };
 
 typedef struct {
@@ -124,15 +131,29 @@ bool cm1e_path_make_border_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
     return true;
 }
 
+static bool is_level(vector_t first, vector_t second, double radius)
+{
+    return fabs(first.x[Z]) <= LEVEL * radius && fabs(second.x[Z]) <= LEVEL * radius;
+}
+
+/** Whether a small error of an end could turn the plane of a half or a full circle, and all of the circle with it. */
+static bool plane_may_turn(vector_t first, vector_t second, double radius, double angle)
+{
+    return angle > PI / 2 && norm(cross(first, second)) <= NEARLY_ON_A_LINE * radius * radius &&
+           !is_level(first, second, radius);
+}
+
 /** The normal of the plane, which defines the sense of rotation. Returns false if there is no plane. */
 static bool find_normal(vector_t first, vector_t second, double radius, vector_t *normal)
 {
     *normal = cross(first, second);
     const double size = norm(*normal);
-    if (size <= 1e-9 * radius * radius) {
+    if (size <= NEARLY_ON_A_LINE * radius * radius && is_level(first, second, radius)) {
         *normal = (vector_t){{0, 0, 1}};
-        return fabs(first.x[Z]) <= 1e-9 * radius && fabs(second.x[Z]) <= 1e-9 * radius;
+        return true;
     }
+    if (size <= ON_A_LINE * radius * radius)
+        return false;
     *normal = scaled(1 / size, *normal);
     for (int i = Z; i >= X; i--)
         if (fabs(normal->x[i]) > 1e-9) {
@@ -162,6 +183,8 @@ bool cm1e_path_make_centre_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
     } else if (angle <= 0) {
         angle += 2 * PI;
     }
+    if (plane_may_turn(first, second, radius, angle))
+        return false;
     const vector_t u[2] = {scaled(1 / radius, first), scaled(1 / norm(second), second)};
     const vector_t v[2] = {cross(normal, u[0]), cross(normal, u[1])};
     set_arc(piece, frame, radius, angle, u, v);

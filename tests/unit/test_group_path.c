@@ -40,9 +40,30 @@ static void test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit(void)
         }
 }
 
+static void test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis(void)
+{
+    cm1e_group_command_t c = line_to(2.0, 0.0, 0.0);
+    c.position[2] = -2e-5;
+    group_done(group_command(&c));
+    c = (cm1e_group_command_t){.kind = CM1E_GROUP_CIRCULAR_ABSOLUTE, .circ_mode = mcCenter, .position = {-2.0}};
+    group_refused(&c, CM1E_ERROR_GROUP_PATH);
+    group_told("needs begin, centre and end at the same Z");
+    c.kind = CM1E_GROUP_CIRCULAR_RELATIVE;
+    c.position[0] = -4.0;
+    c.auxiliary[0] = -2.0;
+    const cm1e_command_id_t id = group_command(&c);
+    while (group_state_of(id) == CM1E_COMMAND_ACTIVE) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, -2e-5, group_at(2));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0, hypot(group_at(0), group_at(1)));
+    }
+    group_done(id);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit);
+    RUN_TEST(test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis);
     return UNITY_END();
 }

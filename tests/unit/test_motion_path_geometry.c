@@ -148,6 +148,35 @@ static void test_the_way_round_a_centre(void)
     TEST_ASSERT_FALSE(cm1e_path_make_centre_arc(&arc, &FRAME, upright, high, CM1E_PATH_CLOCKWISE, upright));
 }
 
+/** A third axis that is a count beside must not turn a half or a full circle upright. */
+static void test_a_half_or_full_circle_keeps_its_height(void)
+{
+    static const double ends[][3] = {{-10, 0}, {-10, 1e-7}, {-9.99995, 0.01}, {-9.99995, -0.01}, {10, 0}, {10, 1e-7},
+                                     {9.99995, -0.01}};
+    const double centre[3] = {0, 0, 5};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        for (double off = 1e-8; off < 0.05; off *= 3)
+            for (int way = 0; way < 4; way++) {
+                const double start[CM1E_PATH_AXES] = {10, 0, 5 + (way & 1 ? off : 0)};
+                const double end[CM1E_PATH_AXES] = {ends[i][0], ends[i][1], 5 - (way & 1 ? 0 : off)};
+                double lowest, highest;
+                cm1e_path_piece_t arc;
+                if (!cm1e_path_make_centre_arc(&arc, &FRAME, start, centre, (cm1e_path_way_t)(way / 2), end))
+                    continue;
+                cm1e_path_extent(&arc, &FRAME, 2, &lowest, &highest);
+                TEST_ASSERT_DOUBLE_WITHIN(2 * off, 5, lowest);
+                TEST_ASSERT_DOUBLE_WITHIN(2 * off, 5, highest);
+            }
+    const double start[CM1E_PATH_AXES] = {10, 0, 5}, half[CM1E_PATH_AXES] = {-10, 0, 5};
+    cm1e_path_piece_t arc;
+    TEST_ASSERT_TRUE(cm1e_path_make_centre_arc(&arc, &FRAME, start, centre, CM1E_PATH_CLOCKWISE, half));
+    TEST_ASSERT_TRUE(cm1e_path_make_centre_arc(&arc, &FRAME, start, centre, CM1E_PATH_CLOCKWISE, start));
+    /* An arc in an upright plane that is short in comparison with its radius is well defined. */
+    const double small[CM1E_PATH_AXES] = {10 * cos(1e-4), 0, 5 + 10 * sin(1e-4)};
+    TEST_ASSERT_TRUE(cm1e_path_make_centre_arc(&arc, &FRAME, start, centre, CM1E_PATH_CLOCKWISE, small));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1e-3, arc.length);
+}
+
 static void test_the_extent_of_an_arc_is_that_of_its_points(void)
 {
     for (int i = 0; i < TRIALS; i++) {
@@ -184,6 +213,7 @@ int main(void)
     RUN_TEST(test_a_curve_meets_both_pieces_with_tangent_and_curvature);
     RUN_TEST(test_arcs_are_round_however_far_their_centre_is);
     RUN_TEST(test_the_way_round_a_centre);
+    RUN_TEST(test_a_half_or_full_circle_keeps_its_height);
     RUN_TEST(test_the_extent_of_an_arc_is_that_of_its_points);
     return UNITY_END();
 }
