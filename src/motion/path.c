@@ -379,9 +379,10 @@ static void largest_derivatives(const cm1e_path_piece_t *piece, int axis, double
                                 double *third)
 {
     const bool round = piece->kind == CM1E_PATH_ARC && axis < piece->measured;
-    *tangent = round ? larger(hypot(piece->u[0][axis], piece->v[0][axis]), hypot(piece->u[1][axis], piece->v[1][axis]))
-                     : fabs(piece->direction[axis]);
-    *curvature = round ? *tangent / piece->radius : 0;
+    const double across =
+        round ? larger(hypot(piece->u[0][axis], piece->v[0][axis]), hypot(piece->u[1][axis], piece->v[1][axis])) : 0;
+    *tangent = across + fabs(piece->direction[axis]);
+    *curvature = round ? across / piece->radius : 0;
     *third = round ? *curvature / piece->radius : 0;
 }
 

@@ -224,7 +224,7 @@ cm1e_error_t cm1e_path_append_line(cm1e_path_t *path, const double *end, const c
 cm1e_error_t cm1e_path_append_arc_border(cm1e_path_t *path, const double *border, const double *end,
                                          const cm1e_path_command_t *command, cm1e_path_problem_t *problem);
 /** Appends an arc around `centre`, in the plane of beginning, centre and end. The end must be as far from the centre as
- *  the beginning, to within 1e-6 of the radius; both ends are kept exactly. An end equal to the beginning in space (to
+ *  the beginning, to within 1e-6 of the radius and 1e-3 of the length; both ends are kept exactly. An end equal to the beginning in space (to
  *  within 1e-9 of the radius) is a full circle. If the three points lie on a line (half and full circles), the plane is
  *  the one parallel to X and Y, provided that all three are equally high. If they are not, and lie within 0.02 rad of a
  *  line, an arc of more than a quarter is refused, because a small error of an end would turn its plane; an arc by border

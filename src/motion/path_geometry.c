@@ -13,6 +13,9 @@ static const double STRAIGHT = 1e-10;
 /** Tolerance of the distances of both ends from the centre, as a fraction of the radius. */
 static const double OUT_OF_ROUND = 1e-6;
 
+/** ... and as a fraction of the length of the arc, along which the difference is distributed. */
+static const double SHORT_OUT_OF_ROUND = 1e-3;
+
 /** Ends that are closer than this fraction of the radius count as equal. */
 static const double FULL_CIRCLE = 1e-9;
 
@@ -183,7 +186,8 @@ bool cm1e_path_make_centre_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
     } else if (angle <= 0) {
         angle += 2 * PI;
     }
-    if (plane_may_turn(first, second, radius, angle))
+    if (plane_may_turn(first, second, radius, angle) ||
+        fabs(norm(second) - radius) > SHORT_OUT_OF_ROUND * radius * angle)
         return false;
     const vector_t u[2] = {scaled(1 / radius, first), scaled(1 / norm(second), second)};
     const vector_t v[2] = {cross(normal, u[0]), cross(normal, u[1])};
@@ -209,7 +213,7 @@ static void line_or_arc_from(const cm1e_path_piece_t *piece, int axes, int end, 
         const double u = piece->u[end][i], v = piece->v[end][i];
         /* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): measured is at most axes */
         point->position[i] += piece->radius * (v * s - 2 * u * s2 * s2);
-        point->tangent[i] = v * c - u * s;
+        point->tangent[i] += v * c - u * s;
         point->curvature[i] = -(u * c + v * s) / piece->radius;
     }
 }

@@ -76,10 +76,10 @@ static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path
     } else {
         for (int i = 0; i < config->axes; i++) {
             const bool bent = bends->round && i < piece->measured;
-            const double first = bent ? hypot(piece->u[0][i], piece->v[0][i]) : fabs(piece->direction[i]);
+            const double round = bent ? hypot(piece->u[0][i], piece->v[0][i]) : 0;
             const double curvature = bent ? 1 / piece->radius : 0;
             add(bends, &config->axis[i], share,
-                &(bend_t){first, first * curvature, first * curvature * curvature, 0, 0});
+                &(bend_t){round + fabs(piece->direction[i]), round * curvature, round * curvature * curvature, 0, 0});
         }
     }
     bends->straight.deceleration = bends->straight.acceleration;

@@ -148,6 +148,39 @@ static void test_the_way_round_a_centre(void)
     TEST_ASSERT_FALSE(cm1e_path_make_centre_arc(&arc, &FRAME, upright, high, CM1E_PATH_CLOCKWISE, upright));
 }
 
+/** What its end is out of round is distributed along an arc, so it must be little in comparison with its length. */
+static void test_an_arc_is_round_by_its_own_length(void)
+{
+    int arcs = 0;
+    for (int i = 0; i < TRIALS; i++) {
+        const double radius = random_decade(0.1, 1e4), angle = random_decade(1e-9, 6), out = random_decade(1e-9, 1e-6);
+        const double far = radius * (1 + (i % 2 ? out : -out)), centre[3] = {0};
+        const double start[CM1E_PATH_AXES] = {radius};
+        const double end[CM1E_PATH_AXES] = {far * cos(angle), far * sin(angle)};
+        cm1e_path_piece_t arc;
+        if (!cm1e_path_make_centre_arc(&arc, &FRAME, start, centre, CM1E_PATH_COUNTER_CLOCKWISE, end)) {
+            TEST_ASSERT_TRUE(out > 0.5e-3 * angle || out > 0.99e-6);
+            continue;
+        }
+        cm1e_path_point_t before, after;
+        arcs++;
+        for (int k = 1; k < 20; k++) {
+            const double l = arc.length * k / 20, h = arc.length * 1e-3;
+            cm1e_path_point_t here;
+            cm1e_path_point_at(&arc, FRAME.axes, l - h, &before);
+            cm1e_path_point_at(&arc, FRAME.axes, l, &here);
+            cm1e_path_point_at(&arc, FRAME.axes, l + h, &after);
+            const double way = hypot(after.position[0] - before.position[0], after.position[1] - before.position[1]);
+            const double rounding = 1e-15 * radius / h;
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5 + rounding, 1, way / (2 * h));
+            for (int axis = 0; axis < 2; axis++)
+                TEST_ASSERT_DOUBLE_WITHIN(1e-5 + rounding, (after.position[axis] - before.position[axis]) / (2 * h),
+                                          here.tangent[axis]);
+        }
+    }
+    TEST_ASSERT_GREATER_THAN(TRIALS / 4, arcs);
+}
+
 /** A third axis that is a count beside must not turn a half or a full circle upright. */
 static void test_a_half_or_full_circle_keeps_its_height(void)
 {
@@ -213,6 +246,7 @@ int main(void)
     RUN_TEST(test_a_curve_meets_both_pieces_with_tangent_and_curvature);
     RUN_TEST(test_arcs_are_round_however_far_their_centre_is);
     RUN_TEST(test_the_way_round_a_centre);
+    RUN_TEST(test_an_arc_is_round_by_its_own_length);
     RUN_TEST(test_a_half_or_full_circle_keeps_its_height);
     RUN_TEST(test_the_extent_of_an_arc_is_that_of_its_points);
     return UNITY_END();
