@@ -309,7 +309,7 @@ void cm1e_path_pause(cm1e_path_t *path)
         return;
     }
     path->stopping = false; /* a stop that is wanted is planned in the next step */
-    (void)cm1e_path_plan(path, path->element_count);
+    (void)cm1e_path_plan(path, 0); /* the override may be another one since */
 }
 
 /* ---- a cycle ----------------------------------------------------------------------------------------------------- */
@@ -344,6 +344,7 @@ static void pop_passed(cm1e_path_t *path, cm1e_path_sample_t *sample)
 static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     const double over_s = path->time_s - path->profile.duration_s;
+    const bool other_pace = path->stopping; /* the override may be another one since */
     path->course++;
     path->along = (cm1e_motion_state_t){path->profile.end.position, path->profile.end.velocity, 0};
     if (path->stopping) {
@@ -368,7 +369,7 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
         path->stop_wanted = path->cut = false;
         return false;
     }
-    if (!cm1e_path_plan(path, path->element_count))
+    if (!cm1e_path_plan(path, other_pace ? 0 : path->element_count))
         cm1e_path_keep_going(path);
     path->time_s = over_s;
     return true;

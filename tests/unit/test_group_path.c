@@ -60,10 +60,42 @@ static void test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis(void)
     group_done(id);
 }
 
+/* Over corners that are not stopped at, where the velocity was planned before the group stood. */
+static void test_an_override_after_0_acts_at_all_corners(void)
+{
+    static const double then[] = {0.2, 0.7, 1.0};
+    for (size_t i = 0; i < sizeof then / sizeof then[0]; i++)
+        for (int soon = 0; soon < 2; soon++) {
+            group_end();
+            group_begin(2);
+            cm1e_group_command_t c = line_to(10.0, 0.0, 5.0);
+            (void)group_command(&c);
+            c = line_to(10.0, 10.0, 5.0);
+            c.buffer_mode = mcBlendingLow;
+            c.transition = mcTMCornerDistance;
+            c.transition_parameter = 3.0;
+            (void)group_command(&c);
+            c.position[0] = 20.0;
+            const cm1e_command_id_t id = group_command(&c);
+            axes_cycles(500);
+            cm1e_group_set_override(group, 0.0);
+            axes_cycles(soon ? 5 : 1000); /* soon: it does not stand yet */
+            cm1e_group_set_override(group, then[i]);
+            if (soon)
+                axes_cycles(1000);
+            double fastest = 0.0;
+            for (; group_state_of(id) == CM1E_COMMAND_BUFFERED; axes_cycles(1))
+                fastest = fmax(fastest, group->sample.path_velocity);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5.0 * then[i], fastest);
+            group_done(id);
+        }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit);
     RUN_TEST(test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis);
+    RUN_TEST(test_an_override_after_0_acts_at_all_corners);
     return UNITY_END();
 }
