@@ -28,9 +28,9 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
     path->config = *config;
     path->course++;
     cm1e_path_look_anew(path);
-    path->override = 1;
+    path->override = path->next_override = 1;
     path->first_segment = path->segment_count = path->first_element = path->element_count = 0;
-    path->cut = path->stop_wanted = path->stopping = false;
+    path->cut = path->last_stop = path->stop_wanted = path->stopping = false;
     path->along = (cm1e_motion_state_t){0, 0, 0};
     path->begin = path->time_s = 0;
     path->slow = (cm1e_slow_time_t){0, 0};
@@ -223,19 +223,29 @@ static bool is_at_rest(const cm1e_path_t *path)
     return path->element_count == 0 || (path->stopping && path->time_s >= path->profile.duration_s);
 }
 
-/** Cancels a stop. If no continuation can be planned any more, the stop is completed first. */
+/** Cancels a stop, but not the last one. If no continuation can be planned any more, the stop is completed first. */
 static void try_to_go_on(cm1e_path_t *path)
 {
-    if (!must_stop(path) && path->stopping && !is_at_rest(path)) /* at rest, the next step goes on */
+    if (!must_stop(path) && path->stopping && !path->last_stop && !is_at_rest(path)) /* at rest, the next step goes on */
         cm1e_path_change_pace(path);
+}
+
+/** At rest: the override that was commanded meanwhile acts. */
+static void end_last_stop(cm1e_path_t *path)
+{
+    path->last_stop = false;
+    path->override = path->next_override;
 }
 
 void cm1e_path_override(cm1e_path_t *path, double factor)
 {
-    if (!(factor >= 0) || factor == path->override)
+    if (!(factor >= 0) || factor == path->next_override)
         return;
     cm1e_path_look_anew(path);
-    path->override = factor > 0 ? smaller(larger(factor, LEAST), LARGEST) : 0;
+    path->next_override = factor > 0 ? smaller(larger(factor, LEAST), LARGEST) : 0;
+    if (path->last_stop)
+        return;
+    path->override = path->next_override;
     if (path->element_count == 0 || is_at_rest(path))
         return;
     if (factor == 0 && !path->stopping) {
@@ -279,6 +289,7 @@ static void end_here(cm1e_path_t *path)
         path->end[i] = point.position[i];
     path->element_count = path->segment_count = 0;
     path->stop_wanted = path->stopping = false;
+    end_last_stop(path);
 }
 
 void cm1e_path_clear(cm1e_path_t *path)
@@ -294,6 +305,7 @@ void cm1e_path_clear(cm1e_path_t *path)
         cm1e_path_stop(path, 0, 0);
     cm1e_path_cut(path);
     path->cut = true; /* also where the stop ends at the end of a segment */
+    path->last_stop = true;
     path->stop_wanted = false;
 }
 
@@ -309,6 +321,7 @@ void cm1e_path_pause(cm1e_path_t *path)
         return;
     }
     path->stopping = false; /* a stop that is wanted is planned in the next step */
+    end_last_stop(path);
     (void)cm1e_path_plan(path, 0); /* the override may be another one since */
 }
 
@@ -344,7 +357,7 @@ static void pop_passed(cm1e_path_t *path, cm1e_path_sample_t *sample)
 static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     const double over_s = path->time_s - path->profile.duration_s;
-    const bool other_pace = path->stopping; /* the override may be another one since */
+    const bool other_pace = path->stopping || path->last_stop; /* the override may be another one since */
     path->course++;
     path->along = (cm1e_motion_state_t){path->profile.end.position, path->profile.end.velocity, 0};
     if (path->stopping) {
@@ -352,6 +365,7 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
         while (path->element_count > 0 && cm1e_path_here(path) >= cm1e_path_element(path, 0)->length - slack)
             pop(path, sample);
         path->time_s = path->profile.duration_s;
+        end_last_stop(path);
         if (path->element_count > 0 && must_stop(path))
             return false;
         path->stopping = false;
@@ -362,6 +376,8 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
         for (int i = 0; i < count; i++)
             pop(path, sample);
         path->along.position = 0;
+        if (path->element_count == 0 || cm1e_path_element(path, 0)->passed == 0)
+            end_last_stop(path);
     }
     path->begin = 0;
     if (path->element_count == 0) {

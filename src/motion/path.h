@@ -182,12 +182,14 @@ enum { CM1E_PATH_ELEMENTS = 3 * CM1E_PATH_SEGMENTS };
 typedef struct cm1e_path {
     cm1e_path_config_t config;
     double end[CM1E_PATH_AXES];     /**< of everything */
-    double override;
+    double override;                /**< the one that acts */
+    double next_override;           /**< the commanded one; another one only during the last stop */
     int first_segment, segment_count;
     cm1e_path_segment_t segment[CM1E_PATH_SEGMENTS]; /**< a ring */
     int first_element, element_count;
     cm1e_path_element_t element[CM1E_PATH_ELEMENTS]; /**< ring; the first is the present one */
     bool cut;                       /**< the end is the end of a stop: no segment goes on there */
+    bool last_stop;                 /**< cleared: it comes to rest at the end of what is left, and nothing hinders that */
     bool stop_wanted;
     bool stopping;                  /**< the profile is a stop without a given end position */
     cm1e_motion_limits_t stop;      /**< deceleration and jerk of it */
@@ -241,13 +243,13 @@ void cm1e_path_end(const cm1e_path_t *path, double *position);
 double cm1e_path_left(const cm1e_path_t *path);
 
 /** Sets the factor (>= 0) of the velocities of commands; the limits of the axes still apply. 0: the path comes to rest
- *  and waits. */
+ *  and waits. After cm1e_path_clear() it acts when the path has come to rest. */
 void cm1e_path_override(cm1e_path_t *path, double factor);
 /** Stops along the path, as soon as `deceleration` and `jerk` allow (0 selects as much as the axes allow), but not
  *  later than planned. The state is CM1E_PATH_STOPPING, then CM1E_PATH_STOPPED (CM1E_PATH_IDLE at the end of the path).
  *  The remaining segments wait. */
 void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk);
-/** Continues with the remaining segments, also while it still stops. */
+/** Continues with the remaining segments, also while it still stops; after cm1e_path_clear() when it has come to rest. */
 void cm1e_path_go_on(cm1e_path_t *path);
 /** Drops the segments that are no longer needed. During a stop these are the segments behind the point of rest; that
  *  point becomes the end of the path (cm1e_path_end()), and segments appended later begin there. At rest all segments

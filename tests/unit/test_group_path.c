@@ -91,11 +91,47 @@ static void test_an_override_after_0_acts_at_all_corners(void)
         }
 }
 
+/* Whatever the override does meanwhile, and whatever is to follow. */
+static void test_the_group_brakes_with_what_it_was_told(void)
+{
+    static const double overrides[] = {1.0, 0.9, 0.1, 0.0};
+    static const cm1e_group_command_t stops[] = {
+        {.kind = CM1E_GROUP_STOP, .deceleration = 1.0},
+        {.kind = CM1E_GROUP_HALT, .deceleration = 1.0},
+        {.kind = CM1E_GROUP_LINEAR_ABSOLUTE, .position = {0.0, 5.0}, .velocity = 5.0, .deceleration = 1.0},
+        {.kind = CM1E_GROUP_LINEAR_RELATIVE, .position = {-5.0, 5.0}, .velocity = 5.0, .deceleration = 1.0},
+    };
+    for (size_t i = 0; i < sizeof stops / sizeof stops[0]; i++)
+        for (size_t k = 0; k < sizeof overrides / sizeof overrides[0]; k++) {
+            group_end();
+            group_begin(2);
+            (void)group_line(100.0, 0.0, 5.0, mcAborting);
+            axes_cycles(2000);
+            const double from = group_at(0);
+            const cm1e_command_id_t id = group_command(&stops[i]);
+            double before = group->sample.path_velocity;
+            for (int n = 0; n < 4990; n++) {
+                axes_cycles(1);
+                if (n == 3000)
+                    cm1e_group_set_override(group, overrides[k]);
+                TEST_ASSERT_TRUE(group->sample.path_velocity <= before);
+                if (n > 5)
+                    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1e-3, before - group->sample.path_velocity);
+                before = group->sample.path_velocity;
+            }
+            axes_cycles(15);
+            TEST_ASSERT_DOUBLE_WITHIN(0.01, 12.5, group_at(0) - from);
+            cm1e_group_set_override(group, 1.0);
+            group_done(id);
+        }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit);
     RUN_TEST(test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis);
     RUN_TEST(test_an_override_after_0_acts_at_all_corners);
+    RUN_TEST(test_the_group_brakes_with_what_it_was_told);
     return UNITY_END();
 }
