@@ -92,11 +92,12 @@ CM1E_API cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Does all four steps: scan, identify, configure, operate. @rt init */
 CM1E_API cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Brings the slaves to Safe-Operational, then to Init. The drives must be disabled before. It never fails: it does
- *  what is still possible. In a task of a scheduler it is refused, like cm1e_bus_close(); the run then ends in order,
- *  with an error. @rt init */
+ *  what is still possible. In a task of a scheduler, and in any other thread while a scheduler runs, it is refused, like
+ *  cm1e_bus_close(); the run then ends in order, with an error. @rt init */
 CM1E_API void cm1e_bus_stop(cm1e_bus_t *bus);
 /** Stops the bus if necessary, closes the interface, and frees the bus. NULL is allowed. Returns CM1E_ERROR_IO if the
- *  bus is closed but not every frame arrived in the pcap file, CM1E_ERROR_STATE if it is refused in a task. @rt init */
+ *  bus is closed but not every frame arrived in the pcap file, CM1E_ERROR_STATE if it is refused, see cm1e_bus_stop().
+ *  @rt init */
 CM1E_API cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus);
 
 /** Receives the frame(s) sent in the last cycle. CM1E_OK: all inputs are fresh. CM1E_ERROR_BUS_LOST: all inputs are
@@ -119,7 +120,8 @@ typedef struct cm1e_slave_port {
 enum { CM1E_PORTS = 4 };
 
 /** Reads the counters of all ports of a slave, after cm1e_bus_scan() and while no cycle runs. Returns
- *  CM1E_ERROR_INVALID_ARGUMENT if there is no such slave, CM1E_ERROR_TIMEOUT if it does not answer. @rt block */
+ *  CM1E_ERROR_INVALID_ARGUMENT if there is no such slave, CM1E_ERROR_TIMEOUT if it does not answer, CM1E_ERROR_STATE
+ *  while a scheduler runs. @rt block */
 CM1E_API cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_port_t ports[CM1E_PORTS],
                                           cm1e_diag_t *diag);
 
@@ -157,7 +159,7 @@ CM1E_API cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo);
 CM1E_API cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo);
 /** Reads an object and waits for the answer, before the cycle runs (the caller owns the bus). `*size` is the size of
  *  the buffer, afterwards the number of bytes read. In a task of a scheduler it returns CM1E_ERROR_STATE, like every
- *  function that waits; use cm1e_sdo_submit() there. @rt block */
+ *  function that waits, and in any other thread while a scheduler runs; use cm1e_sdo_submit() there. @rt block */
 CM1E_API cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, void *data,
                                     size_t *size, cm1e_diag_t *diag);
 /** Writes an object and waits for the answer; conditions as for cm1e_sdo_read(). @rt block */

@@ -122,7 +122,8 @@ CM1E_API AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *schedule
  *  skipped, never executed later. A lost bus does not end the run: the axes are in ErrorStop, programs see it, and
  *  slaves that come back can be reset. Errors:
  *  CM1E_ERROR_STATE: the scheduler ran before; the bus was stopped or started again since it was made; or a task called
- *  cm1e_scheduler_destroy(), cm1e_bus_close() or cm1e_bus_stop(), which was refused and ended the run.
+ *  cm1e_scheduler_destroy(), cm1e_bus_close() or cm1e_bus_stop(), or another thread one of the last two, which was
+ *  refused and ended the run.
  *  CM1E_ERROR_PERMISSION: real time is required and not permitted; no cycle was run.
  *  CM1E_ERROR_BUS_STATE and other errors of a start: a slave left Operational before the first cycle and does not come
  *  back; no cycle was run.

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "bus/kept.h"
 #include "config/copy.h"
 #include "config/interface.h"
 #include "core/in_task.h"
@@ -87,7 +88,7 @@ cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus)
 {
     if (!bus)
         return CM1E_OK;
-    if (cm1e_in_task_note("cm1e_bus_close()"))
+    if (cm1e_in_task_note("cm1e_bus_close()") || cm1e_bus_refuse_end(bus, "cm1e_bus_close()"))
         return CM1E_ERROR_STATE;
     cm1e_bus_stop(bus);
     cm1e_soem_destroy(bus->soem);

@@ -167,7 +167,8 @@ typedef struct cm1e_errands {
     cm1e_errand_t *errand;                   /**< atomic; NULL: none */
     bool sent;                               /**< CoE has the next turn of that slave */
     cm1e_foe_t *file;                        /**< atomic; NULL: none */
-    uint32_t driven;                         /**< atomic; a scheduler makes the cycles: who waits for a file does not */
+    const void *driver;                      /**< atomic; the thread whose scheduler makes the cycles; NULL: none does */
+    const char *refused;                     /**< atomic; what another thread has called meanwhile to end the bus */
 } cm1e_errands_t;
 
 /** Who took no part in the last cycle that came back. */

@@ -110,6 +110,38 @@ void cm1e_bus_kept_lead_alone(const cm1e_bus_t *bus)
 
 void cm1e_bus_keep_none(bool none) { none_here = none; }
 
-void cm1e_bus_drive(cm1e_bus_t *bus, bool on) { __atomic_store_n(&bus->errands.driven, on, __ATOMIC_SEQ_CST); }
+/** Its address is another one in each thread. */
+static _Thread_local char here;
 
-bool cm1e_bus_is_driven(const cm1e_bus_t *bus) { return __atomic_load_n(&bus->errands.driven, __ATOMIC_SEQ_CST); }
+void cm1e_bus_drive(cm1e_bus_t *bus, bool on)
+{
+    __atomic_store_n(&bus->errands.refused, NULL, __ATOMIC_RELAXED);
+    __atomic_store_n(&bus->errands.driver, on ? &here : NULL, __ATOMIC_SEQ_CST);
+}
+
+static const void *driver_of(const cm1e_bus_t *bus) { return __atomic_load_n(&bus->errands.driver, __ATOMIC_SEQ_CST); }
+
+bool cm1e_bus_is_driven(const cm1e_bus_t *bus) { return driver_of(bus) != NULL; }
+
+bool cm1e_bus_refuse_end(cm1e_bus_t *bus, const char *function)
+{
+    const void *driver = driver_of(bus);
+    if (!driver || driver == &here)
+        return false;
+    __atomic_store_n(&bus->errands.refused, function, __ATOMIC_RELAXED);
+    return true;
+}
+
+const char *cm1e_bus_refused_end(const cm1e_bus_t *bus)
+{
+    return __atomic_load_n(&bus->errands.refused, __ATOMIC_RELAXED);
+}
+
+cm1e_error_t cm1e_bus_refuse_driven(const cm1e_bus_t *bus, const char *function, const char *instead,
+                                    cm1e_diag_t *diag)
+{
+    if (!bus || !cm1e_bus_is_driven(bus))
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s is refused while a scheduler runs the bus: it would send frames "
+                         "beside the cycle.%s%s", function, instead[0] ? " " : "", instead);
+}

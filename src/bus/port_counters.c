@@ -1,5 +1,6 @@
 /* What the ports of a slave controller have counted since its power-on (ETG.1000.4, 6.2). */
 #include "bus/bus_internal.h"
+#include "bus/kept.h"
 #include "core/bytes.h"
 #include "core/in_task.h"
 
@@ -20,6 +21,10 @@ cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_
     uint8_t status[2] = {0}, errors[RECEIVE_ERROR_BYTES] = {0}, lost[CM1E_PORTS] = {0};
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_read_ports()", "", diag);
+    const cm1e_error_t driven = cm1e_bus_refuse_driven(bus, "cm1e_bus_read_ports()", "cm1e_bus_port_faults() has what the "
+                                                       "ports have counted since Operational.", diag);
+    if (driven != CM1E_OK)
+        return driven;
     if (!cm1e_bus_slave(bus, position))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u.", position);
     if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status) ||

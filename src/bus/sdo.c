@@ -1,4 +1,5 @@
 #include "bus/bus_internal.h"
+#include "bus/kept.h"
 #include "core/in_task.h"
 
 /* Transfers that block until the slave has answered. */
@@ -7,6 +8,11 @@
 
 static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
 {
+    const cm1e_error_t driven =
+        cm1e_bus_refuse_driven(bus, sdo->write ? "cm1e_sdo_write()" : "cm1e_sdo_read()",
+                               "From another thread: cm1e_sdo_submit(), then cm1e_sdo_state() until it has ended.", diag);
+    if (driven != CM1E_OK)
+        return driven;
     if (!bus || bus->phase < BUS_SCANNED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before SDO transfers.");
     cm1e_bus_enter(bus);

@@ -177,6 +177,16 @@ static void run_tasks(cm1e_scheduler_t *s)
     cm1e_scheduler_stop(s);
 }
 
+/** Another thread called a function that would end a bus under the cycle: the run ends in order instead, too. */
+static void look_for_refused(cm1e_scheduler_t *s)
+{
+    for (uint32_t i = 0; i < s->member_count && !s->refused; i++) {
+        s->refused = cm1e_bus_refused_end(s->members[i].bus);
+        if (s->refused)
+            cm1e_scheduler_stop(s);
+    }
+}
+
 /** The plan follows the reference clock of one bus, and what was planned before moves with it. */
 static void follow_clock(cm1e_scheduler_t *s)
 {
@@ -198,6 +208,7 @@ static void scan(cm1e_scheduler_t *s)
     set_outputs(s);
     send_all(s);
     follow_clock(s);
+    look_for_refused(s);
 }
 
 static void count_overrun(cm1e_scheduler_t *s)
@@ -298,8 +309,9 @@ static cm1e_error_t shut_down(cm1e_scheduler_t *s, cm1e_diag_t *diag)
         cycle(s);
     if (s->shut_down && s->refused)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
-                             "%s was called in a task, where it is refused, because it frees or stops what the cycle "
-                             "uses. The run was ended in order instead; use cm1e_scheduler_stop() in a task.",
+                             "%s was called in a task or in another thread, where it is refused, because it frees or "
+                             "stops what the cycle uses. The run was ended in order instead; use cm1e_scheduler_stop() "
+                             "there.",
                              s->refused);
     if (s->shut_down && s->ended)
         return cm1e_diag_set(diag, CM1E_ERROR_PROGRAM, 0,

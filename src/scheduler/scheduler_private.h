@@ -49,7 +49,8 @@ struct cm1e_scheduler {
     atomic_bool stop;      /**< a stop was requested */
     bool run;              /**< cm1e_scheduler_run() was called */
     bool shutting_down;    /**< programs no longer run */
-    const char *refused;   /**< function that a task called and that would have freed what the cycle uses; NULL: none */
+    const char *refused;   /**< function that a task, or another thread, called and that would have freed what the cycle
+                                uses; NULL: none */
     bool shut_down;        /**< every drive is disabled or offline */
     int64_t start_ns;      /**< of cycle 0 */
     int64_t number;        /**< number of this cycle; skipped cycles count */
