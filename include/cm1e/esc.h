@@ -38,7 +38,7 @@ typedef struct cm1e_al_answer {
 
 /** Acknowledges an error that the slave shows, then requests a state as it is: without the states between, and also one
  *  that does not exist (1 ... 15). A refusal is no error: `*answer` has it. Returns CM1E_ERROR_TIMEOUT if the slave
- *  neither goes nor refuses within `timeout_ns`; `*answer` then has its present state. @rt block */
+ *  neither goes nor refuses within `timeout_ns`, which is above 0; `*answer` then has its present state. @rt block */
 CM1E_API cm1e_error_t cm1e_esc_request_state(cm1e_bus_t *bus, uint16_t position, uint8_t state, int64_t timeout_ns,
                                              cm1e_al_answer_t *answer, cm1e_diag_t *diag);
 

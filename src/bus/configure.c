@@ -241,6 +241,8 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_configure()", "", diag);
+    if (!bus)
+        return cm1e_bus_missing("cm1e_bus_configure()", diag);
     cm1e_error_t error = cm1e_bus_refuse_attached(bus, "Configuring the slaves", diag);
     if (error != CM1E_OK)
         return error;

@@ -7,6 +7,8 @@
 #include "core/in_task.h"
 
 enum { HIGHEST_STATE = 15 };
+/** Some centuries: a time limit that can be added to every time. */
+#define LONGEST_NS (INT64_MAX / 4)
 
 static cm1e_error_t silent(uint16_t position, uint16_t address, cm1e_diag_t *diag)
 {
@@ -50,10 +52,13 @@ static cm1e_error_t read_attached(cm1e_bus_t *bus, uint16_t position, uint16_t a
     return read_remote(bus, position, address, data, size, diag);
 }
 
-static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const char *function, cm1e_diag_t *diag)
+static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const void *data, const char *function,
+                          cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse(function, "", diag);
+    if (!data)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%s needs a place for the data.", function);
     if (!bus || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s needs an open bus that does not operate.", function);
     const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, function, diag);
@@ -81,9 +86,9 @@ static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_command_t command, uint16_t p
 cm1e_error_t cm1e_esc_read(cm1e_bus_t *bus, uint16_t position, uint16_t address, void *data, uint16_t size,
                            cm1e_diag_t *diag)
 {
-    if (bus && bus->remote && !cm1e_in_task())
+    if (bus && bus->remote && data && !cm1e_in_task())
         return read_attached(bus, position, address, data, size, diag);
-    const cm1e_error_t error = check(bus, position, "cm1e_esc_read()", diag);
+    const cm1e_error_t error = check(bus, position, data, "cm1e_esc_read()", diag);
     if (error != CM1E_OK)
         return error;
     memset(data, 0, size);
@@ -94,7 +99,7 @@ cm1e_error_t cm1e_esc_write(cm1e_bus_t *bus, uint16_t position, uint16_t address
                             cm1e_diag_t *diag)
 {
     uint8_t copy[CM1E_ESC_BYTES];
-    const cm1e_error_t error = check(bus, position, "cm1e_esc_write()", diag);
+    const cm1e_error_t error = check(bus, position, data, "cm1e_esc_write()", diag);
     if (error != CM1E_OK)
         return error;
     if (position == 0)
@@ -106,14 +111,17 @@ cm1e_error_t cm1e_esc_write(cm1e_bus_t *bus, uint16_t position, uint16_t address
 cm1e_error_t cm1e_esc_request_state(cm1e_bus_t *bus, uint16_t position, uint8_t state, int64_t timeout_ns,
                                     cm1e_al_answer_t *answer, cm1e_diag_t *diag)
 {
-    const cm1e_error_t error = check(bus, position, "cm1e_esc_request_state()", diag);
+    const cm1e_error_t error = check(bus, position, answer, "cm1e_esc_request_state()", diag);
     if (error != CM1E_OK)
         return error;
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (!slave || state < 1 || state > HIGHEST_STATE)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "State %u of slave %u; expected 1 ... %d of one "
                              "slave.", state, position, HIGHEST_STATE);
-    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + timeout_ns;
+    if (timeout_ns <= 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The time limit for a state is %lld ns; expected is "
+                             "more than 0.", (long long)timeout_ns);
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + (timeout_ns < LONGEST_NS ? timeout_ns : LONGEST_NS);
     cm1e_al_request(&slave->al, state, deadline_ns);
     cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
     *answer = (cm1e_al_answer_t){.state = slave->al.state, .code = slave->al.code};

@@ -136,7 +136,7 @@ static cm1e_error_t execute(cm1e_bus_t *bus, uint16_t position, const transfer_t
 {
     static const cm1e_foe_options_t defaults;
     cm1e_foe_t foe = {.bus = bus, .position = position, .diag = diag};
-    if (!transfer->name || (!transfer->from && !transfer->to))
+    if (!transfer->name || (!transfer->from && !transfer->to) || !transfer->size)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%s needs a name and a buffer.", function);
     cm1e_copy_sized(&foe.options, sizeof foe.options, options ? options : &defaults,
                     options ? options_size : sizeof defaults);

@@ -18,6 +18,8 @@ enum { FOE_READ = 1, FOE_WRITE, FOE_DATA, FOE_ACK, FOE_ERROR, FOE_BUSY };
 enum { FOE_HEADER = 6, AGAIN_LIMIT = 3 };
 enum { FOE_ERROR_UNDEFINED = 0x8000, FOE_ERROR_DISK_FULL = 0x8003, FOE_ERROR_PACKET = 0x8005 };
 #define BUSY_PAUSE_NS INT64_C(20000000)
+/** Some centuries: a time limit that can be added to every time. */
+#define LONGEST_NS (INT64_MAX / 4)
 /** ns; for a last message, which has no answer. */
 #define FAREWELL_NS INT64_C(200000000)
 
@@ -115,6 +117,8 @@ void cm1e_foe_begin(cm1e_foe_t *foe, int64_t now_ns)
     foe->fault = (cm1e_foe_fault_t){.kind = FOE_GOOD};
     if (foe->options.answer_ns <= 0)
         foe->options.answer_ns = CM1E_FOE_ANSWER_NS;
+    if (foe->options.answer_ns > LONGEST_NS)
+        foe->options.answer_ns = LONGEST_NS;
     foe->busy_until_ns = now_ns + foe->options.answer_ns;
     const size_t name = strlen(foe->name);
     if (name == 0 || name > cm1e_foe_room(foe->mailbox))

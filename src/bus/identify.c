@@ -265,6 +265,8 @@ cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_identify()", "", diag);
+    if (!bus)
+        return cm1e_bus_missing("cm1e_bus_identify()", diag);
     if (bus->phase < BUS_SCANNED || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before identifying the slaves.");
     cm1e_bus_set_phase(bus, BUS_SCANNED);

@@ -53,6 +53,8 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_operate()", "", diag);
+    if (!bus)
+        return cm1e_bus_missing("cm1e_bus_operate()", diag);
     if (bus->phase != BUS_CONFIGURED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Configure the slaves before bringing them to Operational.");
     cm1e_bus_enter(bus);
@@ -103,6 +105,8 @@ cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_start()", "", diag);
+    if (!bus)
+        return cm1e_bus_missing("cm1e_bus_start()", diag);
     cm1e_error_t error = cm1e_bus_scan(bus, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_identify(bus, diag);

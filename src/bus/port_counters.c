@@ -27,6 +27,8 @@ cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_
         return driven;
     if (!cm1e_bus_slave(bus, position))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u.", position);
+    if (!ports)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_read_ports() needs a place for the ports.");
     if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status) ||
         !cm1e_bus_read_registers(bus, position, REG_RECEIVE_ERRORS, errors, sizeof errors) ||
         !cm1e_bus_read_registers(bus, position, REG_LOST_LINKS, lost, sizeof lost))

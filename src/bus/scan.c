@@ -166,6 +166,8 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_scan()", "", diag);
+    if (!bus)
+        return cm1e_bus_missing("cm1e_bus_scan()", diag);
     if (bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is in operation: stop it before scanning.");
     cm1e_bus_enter(bus);

@@ -151,7 +151,7 @@ cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *i
     if (bus && bus->remote && size && image)
         return read_remote(bus, position, image, size, diag);
     if (!size || (!image && *size > 0))
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sii_read_device() needs a buffer, its size.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sii_read_device() needs a buffer and its size.");
     cm1e_error_t error = begin(&session, bus, position, diag);
     if (error != CM1E_OK)
         return error;

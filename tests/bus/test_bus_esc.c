@@ -56,6 +56,14 @@ START_TEST(what_cannot_be_meant_is_refused_in_words)
     ck_assert_int_eq(cm1e_esc_write(bus, 0, 0, value, 2, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_int_eq(cm1e_esc_request_state(bus, 1, 0, 1, &answer, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_int_eq(cm1e_esc_request_state(bus, 0, 1, 1, &answer, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    for (int64_t none = -1; none <= 0; none++) {
+        ck_assert_int_eq(cm1e_esc_request_state(bus, 1, 2, none, &answer, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+        ck_assert_ptr_nonnull(strstr(diag.text, "The time limit for a state is"));
+    }
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 1, CM1E_AL_INIT, INT64_MAX, &answer, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_esc_request_state(bus, 1, CM1E_AL_INIT, 1, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_esc_read(bus, 1, 0, NULL, 2, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_esc_write(bus, 1, 0, NULL, 2, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_int_eq(cm1e_esc_read(bus, 1, 0, value, 2, &diag), CM1E_ERROR_STATE);
     cm1e_bus_close(bus);

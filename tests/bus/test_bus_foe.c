@@ -49,8 +49,10 @@ START_TEST(files_of_every_size_around_a_packet)
 {
     cm1e_bus_t *bus = scanned();
     const size_t p = packet(bus), sizes[] = {0, 1, p - 1, p, p + 1, 2 * p, 5 * p - 1, 20 * p, 12345, FILE_MAX};
+    const cm1e_foe_options_t no_hurry = {.answer_ns = INT64_MAX};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         write_and_read(bus, sizes[i], NULL);
+    write_and_read(bus, 100, &no_hurry);
     cm1e_bus_close(bus);
 }
 END_TEST

@@ -241,6 +241,7 @@ START_TEST(a_transfer_without_a_name_a_buffer_or_a_running_bus_is_refused)
     cm1e_foe_t foe = {.position = 1, .writing = true, .name = "f", .from = written, .size = 10};
     ck_assert_int_eq(cm1e_foe_read(bus, 1, NULL, got, &size, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_str_eq(diag.text, "cm1e_foe_read() needs a name and a buffer.");
+    ck_assert_int_eq(cm1e_foe_read(bus, 1, "f", got, NULL, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_int_eq(cm1e_foe_write(bus, 1, "f", NULL, 10, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_str_eq(diag.text, "cm1e_foe_write() needs a name and a buffer.");
     ck_assert_int_eq(cm1e_foe_submit(bus, &foe, &diag), CM1E_ERROR_STATE);

@@ -1,6 +1,8 @@
 /* From the wire to Operational: scan, identify, configure, operate, stop. */
 #include "bus/bus_internal.h"
 #include "bus_support.h"
+#include "cm1e/bridge.h"
+#include "cm1e/sdo_info.h"
 #include "device/devices.h"
 
 static const char *const firmwares[] = {"1.2.0", "1.3.0", "1.3.2", "1.3.3", "1.3.4", "1.3.5"};
@@ -252,6 +254,30 @@ START_TEST(stop_asks_for_init_when_no_slave_is_in_operational)
 }
 END_TEST
 
+static void refused(cm1e_error_t error, const char *function)
+{
+    ck_assert_int_eq(error, CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_msg(strncmp(diag.text, function, strlen(function)) == 0 && strstr(diag.text, "needs a "), "%s", diag.text);
+}
+
+START_TEST(functions_without_a_bus_or_a_place_for_their_result_are_refused)
+{
+    refused(cm1e_bus_scan(NULL, &diag), "cm1e_bus_scan()");
+    refused(cm1e_bus_identify(NULL, &diag), "cm1e_bus_identify()");
+    refused(cm1e_bus_configure(NULL, &diag), "cm1e_bus_configure()");
+    refused(cm1e_bus_operate(NULL, &diag), "cm1e_bus_operate()");
+    refused(cm1e_bus_start(NULL, &diag), "cm1e_bus_start()");
+    sim_config(1);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    refused(cm1e_bus_read_ports(bus, 1, NULL, &diag), "cm1e_bus_read_ports()");
+    refused(cm1e_sdo_info_object(bus, 1, 0x6041, NULL, &diag), "cm1e_sdo_info_object()");
+    refused(cm1e_sdo_info_entry(bus, 1, 0x6041, 0, NULL, &diag), "cm1e_sdo_info_entry()");
+    refused(cm1e_bridge_read(bus, 1, NULL, &diag), "cm1e_bridge_read()");
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(steps_out_of_order_are_refused)
 {
     sim_config(1);
@@ -469,6 +495,7 @@ int main(void)
     TCase *tests = tcase_create("start");
     tcase_add_loop_test(tests, scan_finds_every_slave_from_1_to_16, 1, 17);
     tcase_add_loop_test(tests, every_slave_is_seen_in_operational_at_once, 1, 9);
+    tcase_add_test(tests, functions_without_a_bus_or_a_place_for_their_result_are_refused);
     tcase_add_test(tests, every_cycle_of_a_start_asks_for_a_state);
     tcase_add_loop_test(tests, start_resolves_every_object_in_every_order_firmware_and_mapping, 0,
                         2 * FIRMWARES * MAPPINGS);
