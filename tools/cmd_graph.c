@@ -60,7 +60,7 @@ static int describe(const graph_t *graph, uint32_t i, char lines[LINES][LINE_BYT
 {
     char state[48];
     const cm1e_slave_info_t *slave = cm1e_bus_slave(graph->bus, i + 1);
-    const int axis = find_axis_at(graph->config, slave, 0);
+    const int axis = find_axis_at(graph->bus, graph->config, slave, 0);
     const char *name = slave->name[0] ? slave->name : "without a name";
     int n = 0;
     snprintf(lines[n++], LINE_BYTES, "%u: %s", slave->position, axis >= 0 ? graph->config->axes[axis].name : name);

@@ -415,7 +415,7 @@ static int find_motor(motor_t *motor, const cm1e_bus_config_t *config, const cha
     const bool has_connector = sscanf(where, "%u.%u%c", &slave, &channel, &trail) == 2;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(motor->bus) && !has_connector; i++)
         for (uint8_t c = 1; c <= CM1E_BRIDGE_AXES; c++) {
-            const int axis = find_axis_at(config, cm1e_bus_slave(motor->bus, i), c);
+            const int axis = find_axis_at(motor->bus, config, cm1e_bus_slave(motor->bus, i), c);
             if (axis < 0 || strcmp(config->axes[axis].name, where) != 0)
                 continue;
             motor->position = (uint16_t)i;

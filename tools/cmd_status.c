@@ -72,7 +72,7 @@ static bool show_drive(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const c
                        cm1e_diag_t *diag)
 {
     drive_status_t drive;
-    const int number = find_axis_at(config, slave, 0);
+    const int number = find_axis_at(bus, config, slave, 0);
     const cm1e_axis_config_t *axis = number < 0 ? NULL : &config->axes[number];
     const char *name = axis ? axis->name : "";
     const bool readable = read_drive(bus, slave->position, &drive, diag);
@@ -101,9 +101,9 @@ static bool show_bridge(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const 
     bridge_status_t bridge = {0};
     const bool readable = read_bridge(bus, slave->position, &bridge, diag);
     if (all)
-        json_array_append_new(all, bridge_status_as_json(config, slave, &bridge));
+        json_array_append_new(all, bridge_status_as_json(bus, config, slave, &bridge));
     else
-        print_bridge(config, slave, &bridge);
+        print_bridge(bus, config, slave, &bridge);
     return readable;
 }
 

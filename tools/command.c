@@ -8,6 +8,7 @@
 
 #include "choose_bus.h"
 #include "cm1e/bridge.h"
+#include "config/places.h"
 #include "core/near.h"
 #include "core/text.h"
 #include "device/devices.h"
@@ -298,16 +299,13 @@ int find_axis(const cm1e_bus_config_t *config, const char *word)
     return -1;
 }
 
-int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, uint8_t channel)
+int find_axis_at(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, uint8_t channel)
 {
-    const uint32_t addresses[] = {[CM1E_ADDRESS_POSITION] = slave->position, [CM1E_ADDRESS_ALIAS] = slave->alias,
-                                  [CM1E_ADDRESS_EXPLICIT_ID] = slave->explicit_id};
-    for (uint32_t i = 0; i < config->axis_count; i++) {
-        const cm1e_axis_config_t *axis = &config->axes[i];
-        const uint32_t address = cm1e_axis_address(config, i);
-        if (cm1e_axis_has_motor(axis) && axis->channel == channel && addresses[axis->address_kind] == address)
+    const cm1e_places_t places = {config, bus, cm1e_bus_slave};
+    const uint16_t place = cm1e_place_of(&places, slave);
+    for (uint32_t i = 0; i < config->axis_count; i++)
+        if (config->axes[i].channel == channel && cm1e_place_is_of_axis(&places, i, slave, place))
             return (int)i;
-    }
     return -1;
 }
 
@@ -341,7 +339,7 @@ int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cha
     const uint32_t count = cm1e_bus_slave_count(bus);
     long long number;
     for (uint32_t i = 1; i <= count; i++) {
-        const int axis = find_axis_at(config, cm1e_bus_slave(bus, i), 0);
+        const int axis = find_axis_at(bus, config, cm1e_bus_slave(bus, i), 0);
         if (axis >= 0 && strcmp(config->axes[axis].name, word) == 0) {
             *position = (uint16_t)i;
             return EXIT_OK;

@@ -125,7 +125,7 @@ void tell_simulated(const cm1e_bus_config_t *config);
 int find_axis(const cm1e_bus_config_t *config, const char *word);
 
 /** The axis of the configuration at a slave, and behind a bridge at a connector (1 ... 4; else 0); -1: none. */
-int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, uint8_t channel);
+int find_axis_at(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, uint8_t channel);
 
 /** A whole decimal or 0x number within [minimum, maximum]; false and a complaint that names `what` otherwise. */
 bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value);

@@ -102,9 +102,10 @@ static const char *cure_of(const cm1e_bridge_channel_t *channel)
     return "";
 }
 
-static const char *axis_name(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, unsigned channel)
+static const char *axis_name(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
+                             unsigned channel)
 {
-    const int axis = find_axis_at(config, slave, (uint8_t)channel);
+    const int axis = find_axis_at(bus, config, slave, (uint8_t)channel);
     return axis >= 0 ? config->axes[axis].name : "";
 }
 
@@ -202,7 +203,8 @@ static void print_motor(unsigned id, const char *axis, const cm1e_bridge_channel
                (unsigned)channel->configured_module.value, (unsigned)channel->detected_module.value);
 }
 
-void print_bridge(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, const bridge_status_t *status)
+void print_bridge(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
+                  const bridge_status_t *status)
 {
     char state[48], text[120];
     printf("slave %u: %s, bridge %s, firmware %s, %s\n", slave->position, slave->name, model_name(&status->info),
@@ -214,7 +216,7 @@ void print_bridge(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slav
                value->known && numbers[i].unit[0] ? " " : "", value->known ? numbers[i].unit : "");
     }
     for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
-        print_motor(i + 1, axis_name(config, slave, i + 1), &status->info.channels[i], &status->motors[i]);
+        print_motor(i + 1, axis_name(bus, config, slave, i + 1), &status->info.channels[i], &status->motors[i]);
 }
 
 /* ---- as JSON ---------------------------------------------------------------------------------------------------- */
@@ -256,7 +258,7 @@ static json_t *motor_as_json(unsigned id, const char *axis, const cm1e_bridge_ch
     return object;
 }
 
-json_t *bridge_status_as_json(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
+json_t *bridge_status_as_json(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
                               const bridge_status_t *status)
 {
     json_t *object = json_pack("{s:i, s:s, s:s, s:s}", "position", slave->position, "name", slave->name, "firmware",
@@ -265,7 +267,7 @@ json_t *bridge_status_as_json(const cm1e_bus_config_t *config, const cm1e_slave_
         json_object_set_new(object, numbers[i].key, as_json(number(&status->info, i)));
     json_t *motors = json_array();
     for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
-        json_array_append_new(motors, motor_as_json(i + 1, axis_name(config, slave, i + 1), &status->info.channels[i],
+        json_array_append_new(motors, motor_as_json(i + 1, axis_name(bus, config, slave, i + 1), &status->info.channels[i],
                                                     &status->motors[i]));
     json_object_set_new(object, "motors", motors);
     return object;

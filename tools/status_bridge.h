@@ -21,8 +21,9 @@ typedef struct bridge_status {
 /** Returns false if the bridge does not answer, or the statusword of a motor cannot be read. */
 bool read_bridge(cm1e_bus_t *bus, uint16_t position, bridge_status_t *status, cm1e_diag_t *diag);
 /** `config` names the axes. */
-void print_bridge(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, const bridge_status_t *status);
-json_t *bridge_status_as_json(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
+void print_bridge(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
+                  const bridge_status_t *status);
+json_t *bridge_status_as_json(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
                               const bridge_status_t *status);
 
 #endif

@@ -36,6 +36,35 @@ def alone():
     expect(all(text in told.stdout for text in ABSENT) and "does not answer" not in told.stdout, "doctor", told)
 
 
+WIRE = """axes:
+  - {name: first, alias: 7, firmware: 1.2.0}
+  - {name: second, position: 2, firmware: 1.3.5}
+"""
+IN_FRONT = """bus: {interface: "sim:wire.yaml"}
+axes:
+  - {name: Y, position: 1}                       # the first while the lift is not there
+  - {name: lift, alias: 7, optional: true}
+"""
+
+
+def in_front(folder):
+    """An axis is its own motor where an optional one is before it on the wire: its position counts without that."""
+    for name, text in (("wire.yaml", WIRE), ("bus.yaml", IN_FRONT)):
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+    for axis, firmware in (("Y", "1.3.5"), ("lift", "1.2.0")):
+        told = run("params", "backup", axis, f"{axis}.yaml", "-b", "bus.yaml", cwd=folder)
+        expect(told.returncode == 0, f"params of {axis}", told)
+        with open(os.path.join(folder, f"{axis}.yaml"), encoding="utf-8") as file:
+            text = file.read()
+        expect(firmware in text, f"the parameters of {axis} are those of another motor", text[:400])
+    told = run("status", "-b", "bus.yaml", cwd=folder)
+    expect("slave 1, axis lift: CM1-E, firmware 1.2.0" in told.stdout and
+           "slave 2, axis Y: CM1-E, firmware 1.3.5" in told.stdout, "status with an optional motor in front", told)
+    told = run("graph", "-b", "bus.yaml", cwd=folder)
+    expect("1: lift" in told.stdout and "2: Y" in told.stdout, "graph with an optional motor in front", told)
+
+
 def attached(folder):
     """The others move; the absent ones are told by the program."""
     bus_file = os.path.join(folder, "bus.yaml")
@@ -59,6 +88,7 @@ def attached(folder):
 
 alone()
 with tempfile.TemporaryDirectory() as temporary:
+    in_front(temporary)
     attached(temporary)
 for fault in faults:
     print(fault)

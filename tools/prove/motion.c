@@ -70,7 +70,7 @@ static bool add_axes(const prove_t *prove, cm1e_bus_config_t *config)
 static int axis_of(const prove_t *prove, const cm1e_bus_config_t *config)
 {
     for (uint8_t channel = 0; channel <= prove->device->channels; channel++) {
-        const int axis = find_axis_at(config, prove->slave, channel);
+        const int axis = find_axis_at(prove->bus, config, prove->slave, channel);
         if (axis >= 0)
             return axis;
     }

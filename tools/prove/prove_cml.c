@@ -15,7 +15,7 @@ enum { K_FIRST = 21, K_PROVED = 42, STATUS_QUERY = 99, SWITCH_READS = 40,
 static unsigned connector_of(const prove_t *prove)
 {
     for (uint8_t channel = 1; channel <= CM1E_BRIDGE_AXES; channel++)
-        if (find_axis_at(prove->config, prove->slave, channel) >= 0)
+        if (find_axis_at(prove->bus, prove->config, prove->slave, channel) >= 0)
             return channel;
     return 1;
 }
