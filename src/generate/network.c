@@ -4,10 +4,10 @@
 
 #include "cm1e/esc.h"
 #include "config/clock_pulses.h"
+#include "config/places.h"
 #include "description/describe.h"
 #include "core/in_task.h"
 #include "device/devices.h"
-#include "device/place.h"
 #include "generate/eni_slave.h"
 #include "generate/file.h"
 #include "generate/live.h"
@@ -41,45 +41,35 @@ static bool is_in_tables(const cm1e_slave_info_t *slave)
     return device->recognised == CM1E_BY_IDENTITY || (slave->vendor_id && slave->product_code && slave->revision);
 }
 
-static uint16_t address_of(const cm1e_slave_info_t *slave, cm1e_address_kind_t kind)
-{
-    return kind == CM1E_ADDRESS_ALIAS ? slave->alias : kind == CM1E_ADDRESS_EXPLICIT_ID ? slave->explicit_id
-                                                                                        : slave->position;
-}
+/* What the configuration has at a slave of the network. */
+typedef struct known {
+    const cm1e_axis_config_t *axis;   /* the axis, or the first behind it; NULL: none */
+    const cm1e_slave_config_t *slave; /* of the list of slaves; NULL: none */
+    char name[CM1E_SLAVE_NAME];       /* of all its axes */
+} known_t;
 
-/* The configured axis that this slave is, or the first behind it; NULL: none. `name`: of all of them. */
-static const cm1e_axis_config_t *axis_of(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
-                                         char name[CM1E_SLAVE_NAME])
+static void recognise(known_t *known, const cm1e_bus_t *bus, const cm1e_slave_info_t *slave)
 {
-    const cm1e_axis_config_t *first = NULL;
-    name[0] = 0;
+    const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
+    const cm1e_places_t places = {config, bus, cm1e_bus_slave};
+    const uint16_t place = cm1e_place_of(&places, slave);
     for (uint32_t i = 0; i < config->axis_count; i++) {
-        const cm1e_axis_config_t *axis = &config->axes[i];
-        const uint16_t address = address_of(slave, axis->address_kind);
-        if (!cm1e_axis_has_motor(axis) || axis->address != address || address == 0)
+        if (!cm1e_place_is_of_axis(&places, i, slave, place))
             continue;
-        first = first ? first : axis;
-        cm1e_slave_name_add(name, axis);
+        known->axis = known->axis ? known->axis : &config->axes[i];
+        cm1e_slave_name_add(known->name, &config->axes[i]);
     }
-    return first;
-}
-
-static const cm1e_slave_config_t *slave_config_of(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave)
-{
-    for (uint32_t i = 0; i < config->slave_count; i++) {
-        const cm1e_slave_config_t *one = &config->slaves[i];
-        if (one->address == address_of(slave, one->address_kind) && one->address != 0)
-            return one;
-    }
-    return NULL;
+    for (uint32_t i = 0; i < config->slave_count && !known->axis && !known->slave; i++)
+        if (cm1e_place_is_of_slave(&places, &config->slaves[i], slave, place))
+            known->slave = &config->slaves[i];
 }
 
 /* The alias by which the configuration finds a slave, for the master to look for it too; 0: none. */
-static uint16_t alias_of(const cm1e_axis_config_t *axis, const cm1e_slave_config_t *other)
+static uint16_t alias_of(const known_t *known)
 {
-    if (axis && axis->address_kind == CM1E_ADDRESS_ALIAS)
-        return axis->address;
-    return other && other->address_kind == CM1E_ADDRESS_ALIAS ? other->address : 0;
+    if (known->axis && known->axis->address_kind == CM1E_ADDRESS_ALIAS)
+        return known->axis->address;
+    return known->slave && known->slave->address_kind == CM1E_ADDRESS_ALIAS ? known->slave->address : 0;
 }
 
 /* The mode that a configuration names, by the EEPROM of the slave. */
@@ -102,19 +92,16 @@ static cm1e_error_t take_mode(cm1e_eni_slave_t *slave, const cm1e_dc_config_t *s
 }
 
 /* Whether its clock is used, and which pulses it gets: as the bus does it. */
-static cm1e_error_t take_clock(cm1e_eni_slave_t *made, cm1e_bus_t *bus, const cm1e_slave_info_t *slave,
-                               cm1e_diag_t *diag)
+static cm1e_error_t take_clock(cm1e_eni_slave_t *made, cm1e_bus_t *bus, uint16_t position,
+                               const known_t *known, cm1e_diag_t *diag)
 {
     enum { FEATURES = 0x0008, FEATURE_CLOCKS = 0x04 };
     const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
-    char name[CM1E_SLAVE_NAME];
     uint8_t features[2] = {0};
     if (!cm1e_config_uses_clocks(config))
         return CM1E_OK;
-    const cm1e_error_t error = cm1e_esc_read(bus, slave->position, FEATURES, features, sizeof features, diag);
-    const cm1e_axis_config_t *axis = axis_of(config, slave, name);
-    const cm1e_slave_config_t *other = axis ? NULL : slave_config_of(config, slave);
-    const cm1e_dc_config_t *stated = axis ? &axis->dc : other ? &other->dc : NULL;
+    const cm1e_error_t error = cm1e_esc_read(bus, position, FEATURES, features, sizeof features, diag);
+    const cm1e_dc_config_t *stated = known->axis ? &known->axis->dc : known->slave ? &known->slave->dc : NULL;
     made->has_clock = features[0] & FEATURE_CLOCKS;
     if (error != CM1E_OK || !stated || !made->has_clock)
         return error;
@@ -208,37 +195,37 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
     cm1e_description_file_t described = {0};
     cm1e_findings_t *findings = cm1e_findings_create();
     cm1e_eni_slave_t *slaves = calloc(count, sizeof *slaves);
-    cm1e_error_t error = findings && slaves ? CM1E_OK
-                                            : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    known_t *known = calloc(count, sizeof *known);
+    cm1e_error_t error = findings && slaves && known
+                             ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
     for (uint32_t position = 1; error == CM1E_OK && position <= count; position++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);
-        char name[CM1E_SLAVE_NAME];
-        const cm1e_axis_config_t *axis = axis_of(cm1e_bus_configuration(bus), slave, name);
-        error = describe_slave(&described, bus, slave, axis ? axis->mapping : mapping, findings, diag);
-        const cm1e_slave_config_t *other = axis ? NULL : slave_config_of(cm1e_bus_configuration(bus), slave);
-        if (error == CM1E_OK && other)
-            error = cm1e_eni_configure_slave(&described, other, diag);
-        if (error == CM1E_OK && axis)
-            error = configure_drive(&described, axis, diag);
-        slaves[position - 1].alias = alias_of(axis, other);
-        if (error == CM1E_OK)
-            slaves[position - 1].name =
-                other ? cm1e_arena_text(&described.arena, other->name)
-                : axis ? cm1e_arena_text(&described.arena, name)
-                     : cm1e_arena_format(&described.arena, "%s %u", slave->name[0] ? slave->name : "Slave",
-                                         (unsigned)position);
+        known_t *one = &known[position - 1];
+        recognise(one, bus, slave);
+        error = describe_slave(&described, bus, slave, one->axis ? one->axis->mapping : mapping, findings, diag);
+        if (error == CM1E_OK && one->slave)
+            error = cm1e_eni_configure_slave(&described, one->slave, diag);
+        if (error == CM1E_OK && one->axis)
+            error = configure_drive(&described, one->axis, diag);
+        slaves[position - 1].alias = alias_of(one);
+        slaves[position - 1].name = one->slave ? one->slave->name
+                                    : one->axis ? one->name
+                                                : cm1e_arena_format(&described.arena, "%s %u",
+                                                                    slave->name[0] ? slave->name : "Slave",
+                                                                    (unsigned)position);
     }
     if (error == CM1E_OK && described.arena.failed)
         error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
     /* Set at the end, because the list of devices moves while it grows. */
     for (uint32_t i = 0; error == CM1E_OK && i < count; i++) {
         slaves[i].device = &described.devices.at[i];
-        error = take_clock(&slaves[i], bus, cm1e_bus_slave(bus, i + 1), diag);
+        error = take_clock(&slaves[i], bus, (uint16_t)(i + 1), &known[i], diag);
     }
     if (error == CM1E_OK)
         error = cm1e_file_of_eni(file, slaves, count, cm1e_bus_configuration(bus)->cycle_time_ns, diag);
     cm1e_description_file_free(&described);
     cm1e_findings_free(findings);
+    free(known);
     free(slaves);
     return error;
 }

@@ -231,6 +231,59 @@ START_TEST(the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive)
 }
 END_TEST
 
+static cm1e_slave_config_t *add_slave(cm1e_bus_config_t *to, const char *name, cm1e_address_kind_t kind,
+                                      uint16_t address, uint8_t outputs)
+{
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(to, name);
+    slave->address_kind = kind;
+    slave->address = address;
+    slave->vendor = 0x2;
+    slave->product = 0x1000u + outputs;
+    slave->sim.kind = outputs ? CM1E_SIM_SLAVE_DIGITAL : CM1E_SIM_SLAVE_COUPLER;
+    slave->sim.outputs = outputs;
+    return slave;
+}
+
+/* On the wire: an optional motor, a motor, a group of two slaves, a motor. A position of the configuration counts without
+ * the optional ones, and that of a member of a group counts in the group. */
+START_TEST(the_eni_of_a_scan_knows_the_others_beside_optional_slaves)
+{
+    static const char *const names[] = {"lift", "Y", "changer", "fingers", "Z"};
+    static cm1e_bus_config_t wire;
+    cm1e_bus_config_init(&wire, "sim", 3);
+    wire.axes[0].address_kind = CM1E_ADDRESS_ALIAS;
+    wire.axes[0].address = 7;
+    wire.axes[1].address = 2;
+    wire.axes[2].address = 5;
+    add_slave(&wire, "a", CM1E_ADDRESS_ALIAS, 4711, 0);
+    add_slave(&wire, "b", CM1E_ADDRESS_POSITION, 4, 3);
+    sim_config(3);
+    const uint16_t addresses[] = {7, 1, 2};
+    for (int i = 0; i < 3; i++) {
+        config.axes[i].address_kind = i ? CM1E_ADDRESS_POSITION : CM1E_ADDRESS_ALIAS;
+        config.axes[i].address = addresses[i];
+        config.axes[i].optional = i == 0;
+        snprintf(config.axes[i].name, sizeof config.axes[i].name, "%s", i == 0 ? "lift" : i == 1 ? "Y" : "Z");
+    }
+    snprintf(add_slave(&config, "changer", CM1E_ADDRESS_ALIAS, 4711, 0)->hot_connect, CM1E_NAME_LENGTH, "gripper");
+    snprintf(add_slave(&config, "fingers", CM1E_ADDRESS_POSITION, 2, 3)->hot_connect, CM1E_NAME_LENGTH, "gripper");
+    cm1e_bus_t *bus = open_bus_on(&wire);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_file_t file = {0};
+    ck_assert_msg(cm1e_generate_eni_of_bus(&file, bus, CM1E_MAPPING_DYNAMIC, &diag) == CM1E_OK, "%s", diag.text);
+    const char *at = (const char *)file.bytes;
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        char element[40];
+        snprintf(element, sizeof element, "<Slave>\n      <Info>\n        <Name>%s</Name>", names[i]);
+        at = strstr(at, element);
+        ck_assert_msg(at != NULL, "slave %zu is not %s", i + 1, names[i]);
+    }
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 /* Devices with a sync manager that carries nothing: one has inputs only, one outputs only. */
 START_TEST(the_eni_of_a_scan_of_terminals_differs_in_nothing)
 {
@@ -613,6 +666,7 @@ int main(void)
     tcase_add_test(equal, the_eni_of_a_scan_is_that_of_the_configuration_of_motors_with_aliases);
     tcase_add_test(equal, the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive);
     tcase_add_test(equal, the_eni_of_a_scan_of_terminals_differs_in_nothing);
+    tcase_add_test(equal, the_eni_of_a_scan_knows_the_others_beside_optional_slaves);
     tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
     tcase_add_test(equal, a_modular_file_differs_in_nothing);
     tcase_add_test(equal, a_lost_frame_changes_no_finding);
