@@ -67,20 +67,20 @@ class Command:
         if not self._ended:
             try:
                 self._bus._wait_for(self.block, timeout)
+                self._finish()
             except BaseException as error:
                 self._break_off(error)
                 raise
-            self._finish()
         return self._result()
 
     def __await__(self) -> Generator[Any, None, Command]:
         if not self._ended:
             try:
                 yield from self._bus._watch(self.block).__await__()
+                self._finish()
             except BaseException as error:
                 self._break_off(error)
                 raise
-            self._finish()
         return self._result()
 
     def stop(self) -> None:

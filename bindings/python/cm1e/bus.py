@@ -34,7 +34,7 @@ def bus_of_callback() -> Optional[Bus]:
     return _callback_bus.get()
 
 
-def _end(session: Any, process: int, kept: list[Any]) -> None:
+def _end(session: Any, process: int, kept: dict[int, Any]) -> None:
     """Ends a bus whose object is gone, and at the end of the interpreter: axes ramp down and are disabled. A forked
     child has the memory of the bus, and not its thread."""
     if os.getpid() == process:
@@ -64,7 +64,7 @@ def _listed(what: str, given: Any, kind: Any, right: str) -> list[Any]:
 
 class Bus(Devices):
     """A network of motors. As a context manager it starts, and at the end of the block, whatever ends it, stops the axes
-    in order and disables them. So does the end of the interpreter, and the loss of the last reference.
+    in order and disables them. So does the end of the interpreter, and the garbage collector when the last reference is lost.
 
     `source` is a bus file. Without it, `axes` is a number of simulated axes, or a list of their settings by the names of
     cm1e_axis_config_t. `interface`, `virtual_time`, `cycle_time` (s), `control` and `pcap` are used instead of what the
@@ -92,7 +92,7 @@ class Bus(Devices):
         self._others = tuple(Network(self, n + 1, one) for n, one in enumerate(others))
         self._axis_names = [name for one in (config, *others) for name in one.axis_names()]
         self._process = os.getpid()
-        self._kept: list[Any] = []
+        self._kept: dict[int, Any] = {}
         self._callbacks: list[Callback] = []
         self._stops: list[Block] = []
         self._unwaited: list[Command] = []
@@ -257,10 +257,20 @@ class Bus(Devices):
                 raise errors.StateError(f"{block._type} is attached already.", lib.CM1E_ERROR_STATE)
             self._check_started()
             self._check_own(block)
-            self._kept.append(block._c)
-            self._kept.append((block._data, block._offsets, block._memory))
-            self._do(lib.cm1e_py_block_add, block._c)
+            self._kept[id(block._c)] = (block._c, block._data, block._offsets, block._memory)
             block._bus = self
+            try:
+                self._do(lib.cm1e_py_block_add, block._c)
+            except errors.Error as error:
+                block._bus = None
+                self._forget(block)
+                if error.code == lib.CM1E_ERROR_FULL:
+                    raise errors.StateError(f"{block._type} is not attached: {lib.CM1E_PY_BLOCKS} blocks are. Detach those that "
+                                            "are not needed.", error.code) from None
+                raise
+            except BaseException:  # Ctrl-C, before or behind that: now it is added in either case
+                lib.cm1e_py_block_add(self._session, block._c)
+                raise
 
     def detach(self, *blocks: Block) -> None:
         """Ends that. A motion that such a block began goes on."""
@@ -268,8 +278,11 @@ class Bus(Devices):
             if block._bus is self:
                 self._do(lib.cm1e_py_block_remove, block._c)
                 block._bus = None
-                at = next(i for i, kept in enumerate(self._kept) if kept is block._c)
-                del self._kept[at:at + 2]
+                self._forget(block)
+
+    def _forget(self, block: Block) -> None:
+        """C does not use the memory of this block any more."""
+        self._kept.pop(id(block._c), None)
 
     def execute(self, block: Block, reference: Optional[AXIS_REF | AXES_GROUP_REF] = None, *, wait: bool = True,
                 timeout: Optional[float] = None) -> Command:
@@ -282,12 +295,19 @@ class Bus(Devices):
         for earlier in [command for command in self._unwaited if command.done]:
             self._unwaited.remove(earlier)
             earlier._finish()
-        block.Execute = True
-        self.attach(block)
+        if block._bus is not None:
+            raise errors.StateError(f"{block._type} is attached already.", lib.CM1E_ERROR_STATE)
         command = Command(self, block, reference)
-        if wait:
-            return command.wait(timeout)
-        self._unwaited.append(command)
+        block.Execute = True
+        try:
+            self.attach(block)
+            if wait:
+                return command.wait(timeout)
+            self._unwaited.append(command)
+        except BaseException as error:
+            if block._bus is self:  # it was broken off before somebody waited for it
+                command._break_off(error)
+            raise
         return command
 
     def _check_started(self) -> None:
@@ -320,23 +340,23 @@ class Bus(Devices):
             raise failed
 
     def _release(self, block: Block) -> None:
-        """The last call of a block, with its input off."""
+        """The last call of a block, with its input off. What it showed at its end stays readable."""
         if self._closed or block._bus is not self:
             return
-        block._bus = None
-        outputs = ffi.new(block._c_type + " *")
-        copies = ffi.new("cm1e_py_copy_t[1]", [{"to": outputs, "from": block._data, "size": ffi.sizeof(block._c_type)}])
-        lib.cm1e_py_transfer(self._session, copies, 1, ffi.NULL)
-        off = ffi.new("BOOL *", 0)
-        name = "Execute" if "Execute" in block._members else "Enable"
-        copies[0] = {"to": ffi.addressof(block._data, name), "from": off, "size": 1}
-        lib.cm1e_py_transfer(self._session, copies, 1, ffi.NULL)
-        lib.cm1e_py_block_call(self._session, block._c)
-        block._bus = self
-        self.detach(block)
-        ffi.memmove(block._data, outputs, ffi.sizeof(block._c_type))  # what it showed at its end stays readable
+        try:
+            self._end_calls(block)
+        except BaseException:  # Ctrl-C within it, perhaps before C was called
+            self._end_calls(block)
+            raise
         if isinstance(block, (fb.MC_Stop, fb.MC_GroupStop)) and self.virtual_time and self.running:
             self._advance(1, None)  # the axis leaves Stopping in this cycle
+
+    def _end_calls(self, block: Block) -> None:
+        size, name = ffi.sizeof(block._c_type), "Execute" if "Execute" in block._members else "Enable"
+        lib.cm1e_py_block_release(self._session, block._c, ffi.new("char[]", size), size,
+                                  ffi.offsetof(block._c_type, name))
+        block._bus = None
+        self._forget(block)
 
     def _stop_moving(self, reference: AXIS_REF | AXES_GROUP_REF) -> None:
         """Ramps down whatever moves, and waits for it, at most 10 s; also within a callback or an exception."""
@@ -346,16 +366,17 @@ class Bus(Devices):
             fb.MC_GroupStop(AxesGroup=reference, Execute=True)
         if isinstance(reference, Axis) and reference.state in (AxisState.DISABLED, AxisState.ERROR_STOP):
             return
-        self.attach(stop)
         if _callback_bus.get() is not None:
+            self.attach(stop)
             self._stops.append(stop)
-        else:
-            callbacks, self._callbacks = self._callbacks, []
-            try:
-                self._wait_for(stop, 10.0)
-            finally:
-                self._callbacks = callbacks
-                self._release(stop)
+            return
+        callbacks, self._callbacks = self._callbacks, []
+        try:
+            self.attach(stop)
+            self._wait_for(stop, 10.0)
+        finally:
+            self._callbacks = callbacks
+            self._release(stop)
 
     # ---- time --------------------------------------------------------------------------------------------------------
 

@@ -10,7 +10,7 @@
 
 #include "py_session.h"
 
-enum { PY_BLOCKS = 512, PY_GROUPS = 32, PY_TRACED = 64 };
+enum { PY_GROUPS = 32, PY_TRACED = 64 };
 
 /** What the owner is asked to do: act(session, argument), whose result comes back. */
 typedef struct py_job {
@@ -48,7 +48,7 @@ struct cm1e_py_session {
     _Atomic(py_job_t *) job;
     cm1e_error_t result;             /**< of the run */
     cm1e_diag_t diag;
-    cm1e_py_block_t *blocks[PY_BLOCKS]; /**< the owner's own, like all below */
+    cm1e_py_block_t *blocks[CM1E_PY_BLOCKS]; /**< the owner's own, like all below */
     uint32_t block_count;
     AXES_GROUP_REF_t groups[PY_GROUPS];
     uint32_t group_count;

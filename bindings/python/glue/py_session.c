@@ -199,7 +199,7 @@ static cm1e_error_t add_block(cm1e_py_session_t *s, void *block)
         return CM1E_ERROR_STATE;
     if (place_of(s, block) < s->block_count)
         return CM1E_OK;
-    if (s->block_count == PY_BLOCKS)
+    if (s->block_count == CM1E_PY_BLOCKS)
         return CM1E_ERROR_FULL;
     s->blocks[s->block_count++] = block;
     return CM1E_OK;
@@ -262,6 +262,29 @@ static cm1e_error_t call_block(cm1e_py_session_t *s, void *argument)
 cm1e_error_t cm1e_py_block_call(cm1e_py_session_t *session, cm1e_py_block_t *block)
 {
     return py_owner_do(session, call_block, block);
+}
+
+typedef struct release {
+    cm1e_py_block_t *block;
+    void *saved;
+    size_t size, input;
+} release_t;
+
+/** One job: what breaks the waiting off in Python cannot come between its steps. */
+static cm1e_error_t release_block(cm1e_py_session_t *s, void *argument)
+{
+    const release_t *release = argument;
+    memcpy(release->saved, release->block->fb, release->size);
+    ((BOOL *)release->block->fb)[release->input] = FALSE;
+    (void)call_block(s, release->block);
+    memcpy(release->block->fb, release->saved, release->size);
+    return remove_block(s, release->block);
+}
+
+cm1e_error_t cm1e_py_block_release(cm1e_py_session_t *session, cm1e_py_block_t *block, void *saved, size_t size,
+                                   size_t input)
+{
+    return py_owner_do(session, release_block, &(release_t){block, saved, size, input});
 }
 
 /* ---- axes, groups ------------------------------------------------------------------------------------------------ */

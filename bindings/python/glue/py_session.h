@@ -68,10 +68,16 @@ typedef struct cm1e_py_copy {
 
 /** The function of a block type, "MC_Power"; NULL: there is none. */
 void (*cm1e_py_call_of(const char *type))(void *fb);
-/** Lets the cycle call a block in every cycle from now on, behind those before. CM1E_ERROR_FULL: 512 are called. */
+enum { CM1E_PY_BLOCKS = 512 };
+/** Lets the cycle call a block in every cycle from now on, behind those before. CM1E_ERROR_FULL: CM1E_PY_BLOCKS are
+ *  called. */
 cm1e_error_t cm1e_py_block_add(cm1e_py_session_t *session, cm1e_py_block_t *block);
 /** Ends that. A block that is not called is no error. */
 cm1e_error_t cm1e_py_block_remove(cm1e_py_session_t *session, cm1e_py_block_t *block);
+/** Ends that with a last call, for which its BOOL at `input` (Execute or Enable) is FALSE. Then the block, which has `size`
+ *  bytes, is as it was before that call; `saved` has room for it. */
+cm1e_error_t cm1e_py_block_release(cm1e_py_session_t *session, cm1e_py_block_t *block, void *saved, size_t size,
+                                   size_t input);
 /** Copies between two calls of blocks; `block` may be NULL, otherwise it is not ended until its next call. */
 cm1e_error_t cm1e_py_transfer(cm1e_py_session_t *session, const cm1e_py_copy_t *copies, size_t count,
                               cm1e_py_block_t *block);

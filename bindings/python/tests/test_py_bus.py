@@ -2,6 +2,7 @@
 import asyncio
 import gc
 import os
+import sys
 
 import numpy
 import pytest
@@ -341,3 +342,68 @@ def test_fork_leaves_the_bus_to_the_parent(bus):
         os._exit(status)
     assert os.waitpid(child, 0)[1] == 0
     bus["X"].move_relative(1, 20)
+
+
+def interrupt_at(line, act):
+    """Acts, with a Ctrl-C at that line of the package's code. Whether it came before the end."""
+    left, code = [line], os.path.dirname(cm1e.__file__)
+
+    def look(frame, event, _):
+        if os.path.dirname(frame.f_code.co_filename) != code:
+            return None
+        left[0] -= event == "line"
+        if left[0] == 0 and event == "line":
+            sys.settrace(None)
+            raise KeyboardInterrupt
+        return look
+    sys.settrace(look)
+    try:
+        act()
+    except KeyboardInterrupt:
+        return True
+    finally:
+        sys.settrace(None)
+    return False
+
+
+@pytest.mark.parametrize("what", ["motion", "halt", "stop"])
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # in a generator that is closed
+def test_ctrl_c_at_any_line_leaves_nothing_that_moves(bus, what):
+    x = bus["X"]
+    act = {"motion": lambda: x.move_relative(2, 1), "halt": x.halt, "stop": x.stop}[what]
+    line, interrupted = 0, True
+    while interrupted:
+        line += 1
+        if what != "motion":
+            x.move_velocity(2)
+        interrupted = interrupt_at(line, act)
+        bus.advance(0.2)
+        if what == "motion" and interrupted:
+            assert x.state == cm1e.AxisState.STANDSTILL, line
+        x.halt()  # the axis takes commands
+        x.move_absolute(0, 20)
+    assert line > 100
+    assert len(bus._kept) < 20  # some interrupts come where only memory is given back
+
+
+def test_execute_of_an_attached_block_begins_nothing(bus):
+    x = bus["X"]
+    move = cm1e.blocks.MC_MoveRelative(Axis=x, Distance=1, Velocity=5)
+    bus.attach(move)
+    with pytest.raises(cm1e.StateError, match="attached already"):
+        x.execute(move)
+    bus.advance(0.5)
+    assert not move.Execute and x.state == cm1e.AxisState.STANDSTILL and abs(x.position) < 0.01
+
+
+def test_too_many_blocks_are_refused_in_words(bus):
+    blocks = [cm1e.blocks.TON() for _ in range(600)]
+    with pytest.raises(cm1e.StateError, match="TON is not attached: 512 blocks are. Detach"):
+        bus.attach(*blocks)
+    kept = len(bus._kept)
+    for _ in range(3):
+        with pytest.raises(cm1e.StateError):
+            bus.attach(cm1e.blocks.TON())
+    assert len(bus._kept) == kept == 512
+    bus.detach(*blocks)
+    bus["X"].move_relative(0.1, 5)
