@@ -56,9 +56,9 @@ def _wrong(member: Member, expected: str, value: object) -> TypeError:
 
 
 def _number(member: Member, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        if not hasattr(value, "__float__") or isinstance(value, (bool, str)):  # NumPy's numbers
-            raise _wrong(member, "a number", value)
+    kind = getattr(getattr(value, "dtype", None), "kind", "f")  # of NumPy: its bool and its complex numbers have a float too
+    if isinstance(value, bool) or kind not in "fiu" or not hasattr(value, "__float__"):
+        raise _wrong(member, "a number", value)
     result = float(value)
     if math.isnan(result):
         raise ValueError(f"{member.name}: expected a number, not {value!r}")

@@ -23,6 +23,8 @@ def _assign(data: Any, where: str, values: Mapping[str, object]) -> None:
             _assign(getattr(data, name), f"{where}.{name}", value)
         elif isinstance(value, str):
             raw = value.encode()
+            if b"\0" in raw:
+                raise errors.ConfigError(f"{where}.{name}: {value!r} has a character 0 in it.", lib.CM1E_ERROR_CONFIG)
             if fields[name].type.kind != "array":
                 raise errors.ConfigError(f"{where}.{name}: {value!r} is a text; a number belongs there.",
                                          lib.CM1E_ERROR_CONFIG)
@@ -49,14 +51,14 @@ class Config:
         """So many axes with defaults, or axes with these members of cm1e_axis_config_t."""
         if isinstance(axes, int) and axes < 0:
             raise errors.ConfigError(f"{axes} axes: a bus has 0 or more.", lib.CM1E_ERROR_CONFIG)
-        counted = [{} for _ in range(axes)] if isinstance(axes, int) else axes
-        listed: list[Mapping[str, object]] = list(counted) if isinstance(counted, Iterable) else []
-        if not isinstance(counted, Iterable) or not all(isinstance(one, Mapping) for one in listed):
+        listed: list[Mapping[str, object]] = list(axes) if isinstance(axes, Iterable) else []
+        if not isinstance(axes, (int, Iterable)) or not all(isinstance(one, Mapping) for one in listed):
             raise TypeError(f"axes is {axes!r}; expected a number of axes, or a list of their settings, as "
                             "[{'name': 'X', 'counts_per_unit': 1000}]")
+        count = axes if isinstance(axes, int) else len(listed)
         data = ffi.new("cm1e_bus_config_t *")
-        code = lib.cm1e_bus_config_init(data, ffi.NULL, len(listed))
-        errors.check(code, None, f"{len(listed)} axes are more than a bus has." if code == lib.CM1E_ERROR_CONFIG else "")
+        code = lib.cm1e_bus_config_init(data, ffi.NULL, min(count, 0xFFFFFFFF))
+        errors.check(code, None, f"{count} axes are more than a bus has." if code == lib.CM1E_ERROR_CONFIG else "")
         result = cls(data)
         for index, values in enumerate(listed):
             _assign(data.axes[index], f"axes[{index}]", values)

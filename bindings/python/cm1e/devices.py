@@ -166,6 +166,9 @@ class Devices:
 
     def simulated_motor(self, slave: int) -> SimulatedMotor:
         """The true values behind a simulated motor."""
+        found = self.slaves
+        if found:
+            self._check_slave(slave, found)
         probe = ffi.new("cm1e_sim_probe_t *")
         self._do(lib.cm1e_py_probe, slave, probe)
         return motor_of(probe)

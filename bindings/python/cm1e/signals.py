@@ -62,6 +62,8 @@ class Signal:
         errors.check(error)
 
     def _number(self, value: object, kind: str) -> Any:
+        if self._data.type == lib.CM1E_IO_BOOL and type(value).__name__ in ("bool_", "bool"):  # also NumPy's
+            return bool(value)
         if not hasattr(value, kind):
             raise TypeError(f"{self.name} is of type {self.type}; {value!r} is not")
         return value

@@ -4,6 +4,7 @@ import threading
 from datetime import timedelta
 from enum import IntEnum
 
+import numpy
 import pytest
 
 import cm1e
@@ -52,7 +53,8 @@ def test_wrong_types_are_exceptions(kind):
     for member in kind._members.values():
         if member.section == "output":
             continue
-        for wrong in (object(), "1" if member.kind != "str" else 1, [object()], None, b"x", 1 + 1j):
+        for wrong in (object(), "1" if member.kind != "str" else 1, [object()], None, b"x", 1 + 1j, numpy.complex128(1),
+                      1.0 if member.kind == "bool" else numpy.bool_(True)):
             with pytest.raises((TypeError, ValueError)):
                 setattr(item, member.name, wrong)
     with pytest.raises(AttributeError, match=kind.__name__):

@@ -310,6 +310,9 @@ def test_wrong_arguments_are_told(bus):
                               (lambda: bus.cycles(-1), ValueError, "-1 cycles cannot pass"),
                               (lambda: bus.sdo_read(9, 0x6064), cm1e.NotFoundError, "There is no slave 9; the network has 2."),
                               (lambda: bus.sdo_write(0, 0x6081, 0, b"1234"), cm1e.NotFoundError, "There is no slave 0"),
+                              (lambda: bus.simulated_motor(3), cm1e.NotFoundError, "There is no slave 3; the network has 2."),
+                              (lambda: bus.simulated_motor(0), cm1e.NotFoundError, "There is no slave 0"),
+                              (lambda: cm1e.Bus(axes=[{"name": "X\0Y"}]), cm1e.ConfigError, "a character 0"),
                               (lambda: bus.sdo_write(1, 0x6064, 0, 5), TypeError, "the value is 5; expected bytes"),
                               (lambda: bus["X"].read_parameter(999), cm1e.AxisError, "X has no parameter 999;"),
                               (lambda: bus["X"].write_parameter(999, 1), cm1e.AxisError, "X has no parameter 999;")):

@@ -27,7 +27,8 @@ def test_bus_of_a_text():
 
 
 @pytest.mark.parametrize("options, said", [
-    ({"axes": 600}, "600 axes are more"), ({"axes": -3}, "-3 axes: a bus has 0 or more"),
+    ({"axes": 600}, "600 axes are more"), ({"axes": 10**12}, "1000000000000 axes are more"),
+    ({"axes": -3}, "-3 axes: a bus has 0 or more"),
     ({"axes": [{"name": "X" * 40}]}, "too long: at most 31 bytes"),
     ({"axes": [{"counts_per_unit": "a"}]}, "counts_per_unit: 'a' is a text; a number belongs there"),
     ({"axes": [{"address": 70000}]}, "address: 70000 does not belong there"),

@@ -1,4 +1,5 @@
 """Signals of slaves without a motor, by name."""
+import numpy
 import pytest
 
 import cm1e
@@ -21,9 +22,10 @@ def bus():
 def test_output_is_seen_at_the_input_wired_to_it(bus):
     lamp, button = bus.io["box.output 2"], bus.io["box.input 2"]
     assert button.value is False and lamp.output and not button.output
-    lamp.value = True
-    bus.cycles(3)
-    assert button.value is True and lamp.value is True
+    for lit in (True, numpy.bool_(False), numpy.bool_(True)):
+        lamp.value = lit
+        bus.cycles(3)
+        assert button.value is bool(lit) and lamp.value is bool(lit)
     assert button.quality == "good" and bus.io["box.input 1"].value is False
 
 
