@@ -104,8 +104,9 @@ static json_t *plain_number(const char *word)
     const uint64_t whole = strtoull(digits, &end, hexadecimal ? 16 : 10);
     if (digits[0] >= '0' && digits[0] <= '9' && !*end && errno == 0)
         return whole_number(whole, negative);
+    const bool decimal = word[strspn(word, "+-.0123456789eE")] == '\0'; /* strtod() knows other forms too */
     const double real = strtod(word, &end);
-    return *word && !*end && isfinite(real) ? json_real(real) : NULL; /* JSON knows neither NaN nor infinity */
+    return *word && decimal && !*end && isfinite(real) ? json_real(real) : NULL; /* JSON knows neither NaN nor infinity */
 }
 
 /** 16#FF, T#1m5s, D#2024-02-29 for a variable of that kind; NULL and a complaint: it is none. */

@@ -1,5 +1,6 @@
 /* Literals: their text becomes a constant and a type. A number without a type is of T_ANY_INT or T_ANY_REAL, until what
  * it is used for says more. */
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +11,16 @@
 
 #define NS_PER_S INT64_C(1000000000)
 enum { DAY_S = 86400, TEXT_BYTES = 128 };
+
+/** An underscore is between two digits of a number, or two characters of what has a '#'. */
+static bool has_right_underscores(const char *text)
+{
+    int (*const is_right)(int) = strchr(text, '#') ? isalnum : isdigit;
+    for (const char *at = strchr(text, '_'); at; at = strchr(at + 1, '_'))
+        if (at == text || !is_right((unsigned char)at[-1]) || !is_right((unsigned char)at[1]))
+            return false;
+    return true;
+}
 
 /** The text in capitals, without underscores. Too long for any literal: cut, which no literal survives. */
 static void clean(const char *text, char *cleaned)
@@ -217,12 +228,14 @@ expr_t *cm1e_st_literal(st_t *st, place_t place, const char *text)
         cm1e_st_report(st, place, "no literal is longer than %d characters", TEXT_BYTES - 1);
         return wrong(st, place);
     }
+    if (!has_right_underscores(text)) {
+        cm1e_st_report(st, place, "\"%s\" is no literal: an underscore is between two digits, one at a time", text);
+        return wrong(st, place);
+    }
     clean(text, cleaned);
-    if (strcmp(cleaned, "TRUE") == 0 || strcmp(cleaned, "FALSE") == 0)
-        return made(st, place, T_BOOL, (constant_t){.integer = cleaned[0] == 'T'});
-    if (strcmp(cleaned, "BOOL#TRUE") == 0 || strcmp(cleaned, "BOOL#FALSE") == 0)
-        /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): the text has more than 5 characters */
-        return made(st, place, T_BOOL, (constant_t){.integer = cleaned[5] == 'T'});
+    const bool is_true = strcasecmp(text, "TRUE") == 0 || strcasecmp(text, "BOOL#TRUE") == 0;
+    if (is_true || strcasecmp(text, "FALSE") == 0 || strcasecmp(text, "BOOL#FALSE") == 0)
+        return made(st, place, T_BOOL, (constant_t){.integer = is_true});
     if (strcmp(cleaned, "NULL") == 0)
         return made(st, place, T_NULL, (constant_t){0});
     const char *mark = strchr(cleaned, '#');

@@ -151,7 +151,15 @@ def check_literals(run):
                                 ("n=T#5ms", "Main.n is INT, and \"T#5ms\" is TIME", 2), ("wait=16#FF", "is a number", 2),
                                 ("mask=16#1_0000_0000_0000_0000", "at most 64 bits", 2), ("mask=-1", "takes 0 ...", 1),
                                 ("n=3#12", "a base is 2, 8 or 16", 2), ("n=REAL#1.5x", "is no number", 2),
-                                ("text=long", "a text in quotes", 2), ("small=TRUE", "takes -128 ... 127.", 1),
+                                ("text=long", "a text in quotes", 2),
+                                *((f"n={number}", "an underscore is between two digits", 2)
+                                  for number in ("1__0", "_1", "1_", "16#F__F", "16#_F", "16#F_", "INT#1__0", "INT#_1", "1_e1")),
+                                ("goal=1__0.5", "an underscore", 2), ("goal=1_.5", "an underscore", 2),
+                                ("goal=1._5", "an underscore", 2), ("wait=T#1__0s", "an underscore", 2),
+                                ("lamp=TR_UE", "an underscore", 2), ("lamp=BOOL#TR_UE", "is no number", 2),
+                                ("n= 5", "a number, as 12", 2), ("n=5 ", "a number, as 12", 2), ("goal= 5", "a number", 2),
+                                ("goal=0x1p3", "a number, as 12", 2), ("goal=0x1.8", "a number, as 12", 2),
+                                ("goal=infinity", "a number", 2), ("small=TRUE", "takes -128 ... 127.", 1),
                                 ("wait=TRUE", "takes -9223372036854775808", 1), ("mask=BOOL#1", "takes 0 ...", 1), ("copy=yes", "expected TRUE or FALSE", 2)):
         run.var("set", "--allow-write", f"Main.{wrong}", status=status, says=says)
     window = run.force("Main.mode=OFF", "Main.wait=T#3s")
