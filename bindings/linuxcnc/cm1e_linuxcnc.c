@@ -34,8 +34,8 @@ static double number(const char *text, struct argp_state *state)
 {
     char *end;
     const double value = strtod(text, &end);
-    if (end == text || *end || !(value >= 0.0))
-        argp_error(state, "\"%s\" is not a positive number", text);
+    if (end == text || *end || !(value >= 0.0 && value <= 1e9))
+        argp_error(state, "\"%s\" is not a number from 0 to 1e9", text);
     return value;
 }
 

@@ -255,13 +255,28 @@ static cm1e_error_t describe(stream_bus_t *s, cm1e_diag_t *diag)
     return error;
 }
 
+/* With others no axis could ever be enabled, or an axis would be enabled wherever it is. */
+static cm1e_error_t check_options(const stream_options_t *options, cm1e_diag_t *diag)
+{
+    const double delay = options->delay_periods, tolerance = options->tolerance;
+    if (delay != 0.0 && !(delay >= CURVE_LEAST_DELAY && delay <= CURVE_MOST_DELAY))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the delay is %g periods; %d ... %d are right.", delay,
+                             CURVE_LEAST_DELAY, CURVE_MOST_DELAY);
+    if (!(tolerance >= 0.0 && isfinite(tolerance)))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the tolerance is %g; 0 or a finite number above it is right.",
+                             tolerance);
+    return CM1E_OK;
+}
+
 static cm1e_error_t open_bus(stream_bus_t *s, cm1e_diag_t *diag)
 {
     const cm1e_scheduler_config_t scheduler = {.realtime_priority = s->options->realtime_priority,
                                                .cpu = s->options->cpu};
     const cm1e_task_config_t task = {.name = "control", .program = program, .context = s};
     cm1e_bus_config_t config;
-    cm1e_error_t error = cm1e_bus_config_load(&config, s->options->bus_file, diag);
+    cm1e_error_t error = check_options(s->options, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_config_load(&config, s->options->bus_file, diag);
     if (error != CM1E_OK)
         return error;
     if (s->options->interface_name)

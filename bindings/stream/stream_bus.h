@@ -14,7 +14,7 @@
 typedef struct stream_options {
     const char *bus_file;
     const char *interface_name; /**< NULL: that of the bus file */
-    double delay_periods;       /**< periods of the control that the axes are behind it, at least 3; 0 selects 4 */
+    double delay_periods;       /**< periods of the control that the axes are behind it, 3 ... 100; 0 selects 4 */
     double tolerance;           /**< u; so far may the control be from an axis that is enabled; 0: 1,000 counts of it */
     int64_t timeout_ns;         /**< silence of the control that stops all axes; 0 selects 20 ms, or 10 periods */
     int realtime_priority;      /**< as cm1e_scheduler_config_t */

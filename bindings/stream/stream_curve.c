@@ -11,7 +11,7 @@ void curve_init(curve_t *curve, uint32_t axes, double per_cycle, double delay)
 {
     curve->axes = axes;
     curve->per_cycle = per_cycle;
-    curve->delay = fmax(delay, 3.0);
+    curve->delay = delay;
     curve->newest = -1;
     curve->place = 0.0;
     curve->behind = 0.0;

@@ -10,7 +10,8 @@
 
 #include "stream_link.h"
 
-enum { CURVE_SAMPLES = 128 };
+/** The rest of the samples is for positions that come early, and for those around a place. */
+enum { CURVE_SAMPLES = 128, CURVE_LEAST_DELAY = 3, CURVE_MOST_DELAY = 100 };
 
 /** What a step found. */
 typedef enum curve_step {
@@ -29,7 +30,7 @@ typedef struct curve {
     double samples[CURVE_SAMPLES][STREAM_AXES];
 } curve_t;
 
-/** Begins anew. `delay` in periods is at least 3. */
+/** Begins anew. `delay` in periods: CURVE_LEAST_DELAY ... CURVE_MOST_DELAY. */
 void curve_init(curve_t *curve, uint32_t axes, double per_cycle, double delay);
 /** Adds the positions of a period. */
 void curve_add(curve_t *curve, const double *positions);

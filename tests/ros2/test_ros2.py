@@ -16,6 +16,7 @@ import real_time  # noqa: E402
 
 HOME = os.path.join(BUILD, "ros2")
 TRY = os.path.join(HOME, "build", "cm1e_try")
+AGAIN = os.path.join(HOME, "build", "again")
 BUS = os.path.join(SOURCE, "bindings", "linuxcnc", "example", "square.yaml")
 
 
@@ -34,6 +35,12 @@ def build():
     subprocess.run(["cmake", "-S", package, "-B", folder, f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_CXX_FLAGS=-Werror",
                     "-DCMAKE_C_FLAGS=-Werror"], check=True)
     subprocess.run(["cmake", "--build", folder], check=True)
+    libraries = subprocess.run(["pkg-config", "--libs", "cm1e-busfile", "cm1e-sim", "cm1e-control", "cm1e"], check=True,
+                               capture_output=True, text=True, env={
+                                   **os.environ, "PKG_CONFIG_PATH": os.path.join(prefix, "lib", "pkgconfig")}).stdout.split()
+    subprocess.run(["c++", "-std=c++17", "-Wall", "-Wextra", "-Werror", "-I", os.path.join(package, "include"), "-I",
+                    os.path.join(SOURCE, "bindings", "stream"), os.path.join(SOURCE, "tests", "ros2", "again.cpp"), "-o", AGAIN,
+                    "-L", folder, "-lcontrol_bus", *libraries, f"-Wl,-rpath,{os.path.join(prefix, 'lib')}"], check=True)
 
 
 def run(*words):
@@ -62,6 +69,9 @@ def swing():
     done = run("no-such-file.yaml")
     if done.returncode == 0 or "no-such-file.yaml" not in done.stderr:
         faults.append(f"without a bus file: {done}")
+    done = subprocess.run([AGAIN, BUS], capture_output=True, text=True, timeout=120)
+    if done.returncode != 0:
+        faults.append(f"after a fault, and with wrong settings: {done}")
     real_time.end(faults, "three axes were there and back")
 
 

@@ -25,7 +25,13 @@ void say(void * context, const char * sentence)
   (*static_cast<std::function<void(const std::string &)> *>(context))(sentence);
 }
 
-int64_t nanoseconds(double seconds) {return static_cast<int64_t>(std::llround(seconds * 1e9));}
+int64_t nanoseconds(const char * what, double seconds)
+{
+  if (!(seconds >= 0.0 && seconds <= 1e6)) {
+    throw std::runtime_error(std::string("the ") + what + " is " + std::to_string(seconds) + " s; 0 ... 1000000 s are right.");
+  }
+  return static_cast<int64_t>(std::llround(seconds * 1e9));
+}
 
 }  // namespace
 
@@ -36,9 +42,9 @@ ControlBus::ControlBus(const Settings & settings)
   stream_host_config_t config{};
   config.bus_file = settings_.bus_file.c_str();
   config.interface_name = settings_.interface_name.c_str();
-  config.period_ns = nanoseconds(settings_.period_s);
+  config.period_ns = nanoseconds("period", settings_.period_s);
   config.delay_periods = settings_.delay_periods;
-  config.timeout_ns = nanoseconds(settings_.timeout_s);
+  config.timeout_ns = nanoseconds("timeout", settings_.timeout_s);
   config.tolerance = settings_.tolerance;
   config.say = settings_.say ? say : nullptr;
   config.context = &settings_.say;
@@ -131,12 +137,11 @@ bool ControlBus::enable(double seconds)
   // Some periods without torque first: the commands become the positions of the motors, and a fault is acknowledged.
   int periods = 0;
   (void)step_until(false, seconds, [&periods]() {return ++periods > 20;});
-  bool began = false;
-  const bool ended = step_until(true, seconds, [this, &began]() {
-      if (began && has_fault()) {
+  const auto heard = Clock::now() + std::chrono::milliseconds(50);  // the states before that may be older than the command
+  const bool ended = step_until(true, seconds, [this, heard]() {
+      if (has_fault() && Clock::now() > heard) {
         return true;
       }
-      began = true;
       return std::all_of(joints_.begin(), joints_.end(), [](const Joint & joint) {return joint.enabled;});
     });
   for (size_t i = 0; i < joints_.size(); ++i) {

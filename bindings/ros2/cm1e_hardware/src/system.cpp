@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <stdexcept>
 
 #include "hardware_interface/types/hardware_interface_type_values.hpp"
 #include "pluginlib/class_list_macros.hpp"
@@ -30,7 +31,12 @@ std::string text_of(const hardware_interface::HardwareInfo & info, const char * 
 double number_of(const hardware_interface::HardwareInfo & info, const char * name, double otherwise)
 {
   const std::string text = text_of(info, name);
-  return text.empty() ? otherwise : std::stod(text);
+  size_t used = text.size();
+  const double number = text.empty() ? otherwise : std::stod(text, &used);
+  if (used != text.size()) {
+    throw std::invalid_argument(name);
+  }
+  return number;
 }
 
 }  // namespace
