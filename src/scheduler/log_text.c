@@ -47,8 +47,11 @@ static void error_text(const cm1e_axis_t *axis, const char *name, const cm1e_log
 {
     const cm1e_device_error_t *device = event->detail ? cm1e_axis_device_error(axis, (uint16_t)event->detail) : NULL;
     char numbers[64] = "", code[400] = "";
+    /* Of a set-point these are a velocity, an acceleration or a jerk; the text of the axis says which. */
+    const bool of_set_point = event->code == CM1E_ERROR_AXIS_SET_POINT_LIMIT || event->code == CM1E_ERROR_AXIS_COUPLING_LIMIT;
+    const char *unit = of_set_point ? "" : " u";
     if (event->bound != 0.0)
-        snprintf(numbers, sizeof numbers, ": %.6g u, allowed are %.6g u", event->value, event->bound);
+        snprintf(numbers, sizeof numbers, ": %.6g%s, allowed are %.6g%s", event->value, unit, event->bound, unit);
     if (event->detail)
         snprintf(code, sizeof code, " Device error 0x%04X: %s.%s%s%s", event->detail,
                  device ? device->text : "not a code of the manual", device ? " Cure: " : "", device ? device->cure : "",

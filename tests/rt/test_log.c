@@ -144,6 +144,8 @@ START_TEST(test_a_record_is_a_sentence_with_its_numbers)
         {{.kind = CM1E_LOG_ERROR, .axis = 0, .code = CM1E_ERROR_BUS_LOST}, "axis1: "},
         {{.kind = CM1E_LOG_ERROR, .axis = 0, .code = CM1E_ERROR_BUS_LOST, .value = 12.5, .bound = -3.25},
          ": 12.5 u, allowed are -3.25 u."},
+        {{.kind = CM1E_LOG_ERROR, .axis = 0, .code = CM1E_ERROR_AXIS_SET_POINT_LIMIT, .value = 20797.5, .bound = 100},
+         ": 20797.5, allowed are 100."},
         {{.kind = CM1E_LOG_ERROR, .axis = 0, .code = CM1E_ERROR_BUS_LOST, .detail = 0xEEEE},
          " Device error 0xEEEE: not a code of the manual."},
         {{.kind = CM1E_LOG_STRANGER, .axis = -1, .code = (int32_t)0x89ABCDEF, .detail = 3u << 24 | 0x0102,
