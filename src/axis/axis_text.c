@@ -200,6 +200,27 @@ static void refused_by_drive_text(const cm1e_axis_t *axis, char *text, size_t si
              "file.", axis->config->name);
 }
 
+static void refused_direction_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const bool endless = kind_row(axis->commands.refused.kind)->plan == PLAN_VELOCITY;
+    snprintf(text, size, "Axis \"%s\": Direction %d was commanded; %s is right.", axis->config->name,
+             (int)axis->commands.refused.direction,
+             endless ? "1, 3 or 4, or 0, which acts as 1," : "1 ... 4, or 0, which acts as 2,");
+}
+
+/* Which buffer modes are right depends on the command, and on what it would wait for. */
+static void refused_buffer_mode_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const cm1e_axis_command_t *refused = &axis->commands.refused;
+    const command_plan_t plan = kind_row(refused->kind)->plan;
+    const bool blends = plan != PLAN_HOMING_STEP && plan != PLAN_TABLE;
+    const bool unknown = (unsigned)refused->buffer_mode > mcBlendingHigh;
+    const char *right = drive_profiles(axis) ? "0 (mcAborting)" : !blends ? "0 (mcAborting) or 1 (mcBuffered)"
+                        : unknown ? "0 ... 5" : "0 (mcAborting)";
+    snprintf(text, size, "Axis \"%s\", %s: BufferMode %d was commanded; %s is right here.", axis->config->name,
+             cm1e_axis_state_name(axis->state), (int)refused->buffer_mode, right);
+}
+
 /* The sentences for a refused command; the axis itself has no error. */
 static const struct {
     cm1e_error_t error;
@@ -211,6 +232,8 @@ static const struct {
     {CM1E_ERROR_AXIS_SET_POINT_JUMP, cm1e_axis_outside_refused_text},
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
     {CM1E_ERROR_AXIS_TABLE, cm1e_axis_table_refused_text},
+    {CM1E_ERROR_AXIS_DIRECTION, refused_direction_text},
+    {CM1E_ERROR_AXIS_BUFFER_MODE, refused_buffer_mode_text},
 };
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -225,13 +248,13 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
         refused_small_text(axis, text, size);
         return;
     }
+    if (axis->homing_hooks && axis->homing_hooks->refused_text(axis, text, size))
+        return;
     for (size_t i = 0; i < sizeof refusal_texts / sizeof refusal_texts[0]; i++)
         if (refusal_texts[i].error == axis->commands.refusal) {
             refusal_texts[i].text(axis, text, size);
             return;
         }
-    if (axis->homing_hooks && axis->homing_hooks->refused_text(axis, text, size))
-        return;
     if (axis->motor_hooks && axis->motor_hooks->text(axis, axis->commands.refusal, text, size))
         return;
     if (axis->commands.refusal == CM1E_ERROR_UNSUPPORTED && drive_profiles(axis)) {

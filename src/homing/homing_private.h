@@ -77,10 +77,17 @@ typedef struct waiting_step {
     cm1e_homing_step_t step;
 } waiting_step_t;
 
+/** The input for which a step was refused, for the text; its words are constants. */
+typedef struct wrong_input {
+    const char *name, *right;
+    double value;
+} wrong_input_t;
+
 /** Made with the axis. */
 typedef struct homing {
     drive_homing_t drive;
     stepping_t stepping;
+    wrong_input_t wrong_input;
     waiting_homing_t waiting;
     waiting_step_t waiting_steps[STEPS_WAITING];
 } homing_t;
@@ -94,6 +101,15 @@ cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *c
 /** Explains which parameter cm1e_homing_prepare() refused. */
 void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_homing_run(cm1e_axis_t *axis);
+
+/* homing_inputs.c: CM1E_OK, or which input is wrong, for the text */
+static inline bool step_by_switch(cm1e_homing_step_kind_t kind)
+{
+    return kind == CM1E_STEP_ABSOLUTE_SWITCH || kind == CM1E_STEP_LIMIT_SWITCH;
+}
+cm1e_error_t cm1e_homing_step_inputs(const cm1e_axis_t *axis, const cm1e_homing_step_t *step);
+/** Of the reference signal: the motor has no such input. */
+cm1e_error_t cm1e_homing_wrong_signal(const cm1e_axis_t *axis, const cm1e_homing_step_t *step);
 
 /* homing_steps.c */
 /** Checks a step in every state of the axis. */

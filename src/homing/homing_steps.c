@@ -71,32 +71,7 @@ static bool signal_away(const cm1e_axis_t *axis, const cm1e_homing_step_t *step,
 
 /* ---- check ------------------------------------------------------------------------------------------------------- */
 
-static bool usable(double value) { return isfinite(value) && value >= 0.0; }
-
-static bool by_switch(cm1e_homing_step_kind_t kind)
-{
-    return kind == CM1E_STEP_ABSOLUTE_SWITCH || kind == CM1E_STEP_LIMIT_SWITCH;
-}
-
-static bool searches(cm1e_homing_step_kind_t kind) { return by_switch(kind) || kind == CM1E_STEP_BLOCK; }
-
-static bool direction_valid(const cm1e_homing_step_t *step)
-{
-    switch ((int)step->direction) {
-    case 0:
-    case mcPositiveDirection:
-    case mcNegativeDirection: return true;
-    case mcSwitchPositive:
-    case mcSwitchNegative: return step->kind == CM1E_STEP_ABSOLUTE_SWITCH;
-    default: return false;
-    }
-}
-
-static bool mode_valid(const cm1e_homing_step_t *step)
-{
-    const int last = step->kind == CM1E_STEP_LIMIT_SWITCH ? mcFallingEdge : mcEdgeSwitchNegative;
-    return !by_switch(step->kind) || ((int)step->mode >= mcOn && (int)step->mode <= last);
-}
+static bool searches(cm1e_homing_step_kind_t kind) { return step_by_switch(kind) || kind == CM1E_STEP_BLOCK; }
 
 static double search_direction(const cm1e_homing_step_t *step)
 {
@@ -115,13 +90,13 @@ static cm1e_error_t check_signal(const cm1e_axis_t *axis, const cm1e_homing_step
     const bool torque = step->torque_limit > 0.0;
     const int input = input_of(axis, step, search_direction(step));
     if ((torque && axis->drive.image.in_torque.bytes == 0) ||
-        (by_switch(step->kind) && !cm1e_axis_sees_input(axis, input)))
+        (step_by_switch(step->kind) && !cm1e_axis_sees_input(axis, input)))
         return CM1E_ERROR_PDO_MAPPING;
     for (double way = -1.0; way <= 1.0; way += 2.0)
         if (signal_away(axis, step, search_direction(step), way))
             return CM1E_ERROR_AXIS_SIGNAL_AWAY;
     if (step->kind == CM1E_STEP_ABSOLUTE_SWITCH && step->input != 0)
-        return cm1e_axis_check_input(axis, step->input) != CM1E_OK ? CM1E_ERROR_AXIS_STEP_INPUT : CM1E_OK;
+        return cm1e_axis_check_input(axis, step->input) == CM1E_OK ? CM1E_OK : cm1e_homing_wrong_signal(axis, step);
     if (step->kind == CM1E_STEP_LIMIT_SWITCH)
         return cm1e_axis_has_switch(axis, limit_switch(search_direction(step))) ? CM1E_OK
                                                                                 : CM1E_ERROR_AXIS_STEP_SWITCH;
@@ -143,15 +118,11 @@ cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_s
         return CM1E_OK;
     if (cm1e_drive_is_virtual(&axis->drive)) /* a virtual axis has neither switches nor torque */
         return CM1E_ERROR_AXIS_VIRTUAL;
-    if (!direction_valid(step))
-        return CM1E_ERROR_AXIS_DIRECTION;
-    if (!mode_valid(step) || step->input < 0 || !usable(step->torque_limit) ||
-        !usable(step->distance_limit) || !usable(step->detection_velocity) || step->time_limit_ns < 0 ||
-        step->detection_ns < 0)
-        return CM1E_ERROR_AXIS_STEP_INPUT;
     const from_t from = from_set(axis);
     cm1e_motion_limits_t unused;
-    const cm1e_error_t error = check_signal(axis, step);
+    cm1e_error_t error = cm1e_homing_step_inputs(axis, step);
+    if (error == CM1E_OK)
+        error = check_signal(axis, step);
     return error != CM1E_OK ? error : cm1e_axis_limits_of(axis, &from, move, &unused);
 }
 
@@ -552,7 +523,7 @@ static bool over_a_limit(cm1e_axis_t *axis)
         error = CM1E_ERROR_AXIS_STEP_TIME;
     else if (s->step.distance_limit > 0.0 && s->travel >= s->step.distance_limit)
         error = CM1E_ERROR_AXIS_STEP_DISTANCE;
-    else if (by_switch(s->step.kind) && s->step.torque_limit > 0.0 && axis->drive.feedback.fresh &&
+    else if (step_by_switch(s->step.kind) && s->step.torque_limit > 0.0 && axis->drive.feedback.fresh &&
              fabs(torque_percent(axis)) > s->step.torque_limit)
         error = CM1E_ERROR_AXIS_STEP_TORQUE;
     if (error != CM1E_OK)
@@ -564,7 +535,7 @@ static void search(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
     s->travel += fabs(axis->setpoint.velocity) * axis->cycle_s;
-    const bool by_input = by_switch(s->step.kind);
+    const bool by_input = step_by_switch(s->step.kind);
     const bool look = axis->drive.feedback.fresh &&
                       (!by_input || cm1e_axis_input_fresh(axis, input_of(axis, &s->step, s->search)));
     if (look && by_input && look_at_switch(axis))

@@ -84,8 +84,23 @@ bool cm1e_homing_not_finished_text(const cm1e_axis_t *axis, char *text, size_t s
     return true;
 }
 
+/* An input of a step of Part 5. */
+static bool wrong_input_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const wrong_input_t *wrong = &axis->homing->wrong_input;
+    const bool direction = axis->commands.refusal == CM1E_ERROR_AXIS_DIRECTION;
+    if (axis->commands.refused.kind != CM1E_COMMAND_HOMING_STEP ||
+        !(direction || axis->commands.refusal == CM1E_ERROR_AXIS_STEP_INPUT))
+        return false;
+    snprintf(text, size, "Axis \"%s\": the homing step was not started: %s is %.9g; %s.", axis->config->name,
+             wrong->name, wrong->value, wrong->right);
+    return true;
+}
+
 bool cm1e_homing_refused_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    if (wrong_input_text(axis, text, size))
+        return true;
     if (axis->commands.refusal == CM1E_ERROR_AXIS_SIGNAL_AWAY) {
         away_text(axis, 0, text, size);
         return true;

@@ -101,6 +101,47 @@ START_TEST(test_inputs_act_at_the_edge_alone)
 }
 END_TEST
 
+/* ---- wrong values ------------------------------------------------------------------------------------------------ */
+
+/** That need no other axis, cam or table. */
+static bool stands_alone(const block_t *type)
+{
+    return type->rules && member_of(type, "Execute") && !type->rules->unchanged && !member_of(type, "Master") &&
+           !member_of(type, "Master1") && type->rules[CM1E_AXIS_STANDSTILL].refusal == CM1E_OK;
+}
+
+/** Whatever is refused for its value, is told with its value. */
+static void expect_told(const block_t *type, const block_member_t *member, double value, const char *told)
+{
+    char text[512];
+    snprintf(judged.scene, sizeof judged.scene, "%s: %s is %s", type->name, member->name, told);
+    into(CM1E_AXIS_STANDSTILL, &mover);
+    make(&subject, type->name);
+    put(&subject, member->name, value);
+    trigger(&subject, true);
+    cycle();
+    if (!subject.now.error || subject.now.error_id == cm1e_error_id(CM1E_ERROR_UNSUPPORTED))
+        return;
+    cm1e_axis_error_text(judged.reference, text, sizeof text);
+    MUST(strstr(text, told), "0x%04X: %s", subject.now.error_id, text);
+}
+
+START_TEST(test_a_refused_value_is_in_the_text)
+{
+    int checked = 0;
+    FOR_EACH_BLOCK(type) {
+        for (size_t i = 0; i < type->member_count && stands_alone(type); i++) {
+            const block_member_t *member = &type->members[i];
+            if (member->section != BLOCK_INPUT || (member->type != BLOCK_LREAL && member->type != BLOCK_ENUM))
+                continue;
+            expect_told(type, member, member->type == BLOCK_ENUM ? 77 : NAN, member->type == BLOCK_ENUM ? "77" : "nan");
+            checked++;
+        }
+    }
+    ck_assert_int_ge(checked, 60);
+}
+END_TEST
+
 /* ---- ContinuousUpdate -------------------------------------------------------------------------------------------- */
 
 static void change_later(int n)
@@ -246,6 +287,7 @@ int main(void)
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 60);
     tcase_add_test(all, test_inputs_act_at_the_edge_alone);
+    tcase_add_test(all, test_a_refused_value_is_in_the_text);
     tcase_add_test(all, test_continuous_update_acts_while_it_is_true);
     tcase_add_test(all, test_nonsense_under_continuous_update_changes_nothing);
     tcase_add_test(all, test_instance_serves_one_axis_after_the_other);

@@ -68,38 +68,46 @@ static void test_wrong_inputs_are_refused_and_change_nothing(void)
         cm1e_homing_step_t step;
         double velocity, position;
         cm1e_error_t error;
+        const char *named; /**< in the text */
     } wrong[] = {
-        {{.mode = (MC_SWITCH_MODE)6}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.kind = CM1E_STEP_LIMIT_SWITCH, .mode = mcEdgeSwitchPositive}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.direction = mcShortestWay}, 1.0, 0.0, CM1E_ERROR_AXIS_DIRECTION},
-        {{.direction = (MC_HOME_DIRECTION)8}, 1.0, 0.0, CM1E_ERROR_AXIS_DIRECTION},
-        {{.kind = CM1E_STEP_BLOCK, .direction = mcSwitchPositive}, 1.0, 0.0, CM1E_ERROR_AXIS_DIRECTION},
-        {{.kind = CM1E_STEP_LIMIT_SWITCH, .direction = mcSwitchNegative}, 1.0, 0.0, CM1E_ERROR_AXIS_DIRECTION},
-        {{.input = 5}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.input = -1}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.torque_limit = -1.0}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.torque_limit = NAN}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.distance_limit = -1.0}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.distance_limit = INFINITY}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.time_limit_ns = -1}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.kind = CM1E_STEP_BLOCK, .detection_velocity = -1.0}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{.kind = CM1E_STEP_BLOCK, .detection_ns = -1}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT},
-        {{0}, 0.0, 0.0, CM1E_ERROR_AXIS_VELOCITY_RANGE},
-        {{0}, -1.0, 0.0, CM1E_ERROR_AXIS_VELOCITY_RANGE},
-        {{0}, 1000.0, 0.0, CM1E_ERROR_AXIS_VELOCITY_RANGE},
-        {{0}, NAN, 0.0, CM1E_ERROR_AXIS_VELOCITY_RANGE},
-        {{0}, 1.0, INFINITY, CM1E_ERROR_AXIS_POSITION_RANGE},
-        {{0}, 1.0, 1e300, CM1E_ERROR_AXIS_POSITION_RANGE},
-        {{.kind = CM1E_STEP_DIRECT}, 0.0, NAN, CM1E_ERROR_AXIS_POSITION_RANGE},
-        {{.kind = CM1E_STEP_DIRECT}, 0.0, -INFINITY, CM1E_ERROR_AXIS_POSITION_RANGE},
-        {{.kind = CM1E_STEP_FINISH}, 1.0, NAN, CM1E_ERROR_AXIS_POSITION_RANGE},
-        {{.kind = CM1E_STEP_FINISH}, 1.0, 0.1, CM1E_ERROR_AXIS_STATE}, /* there is no homing to finish */
-        {{.kind = (cm1e_homing_step_kind_t)5}, 1.0, 0.0, CM1E_ERROR_INVALID_ARGUMENT},
+        {{.mode = (MC_SWITCH_MODE)6}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT, ": SwitchMode is 6; 0 ... 5"},
+        {{.kind = CM1E_STEP_LIMIT_SWITCH, .mode = mcEdgeSwitchPositive}, 1.0, 0.0,
+         CM1E_ERROR_AXIS_STEP_INPUT, "LimitSwitchMode is 4; 0 ... 3"},
+        {{.direction = mcShortestWay}, 1.0, 0.0, CM1E_ERROR_AXIS_DIRECTION, "Direction is 2; 1, 3, 5 or 7"},
+        {{.direction = (MC_HOME_DIRECTION)8}, 1.0, 0.0, CM1E_ERROR_AXIS_DIRECTION, "Direction is 8"},
+        {{.kind = CM1E_STEP_BLOCK, .direction = mcSwitchPositive}, 1.0, 0.0,
+         CM1E_ERROR_AXIS_DIRECTION, "Direction is 5; 1 or 3"},
+        {{.kind = CM1E_STEP_LIMIT_SWITCH, .direction = mcSwitchNegative}, 1.0, 0.0,
+         CM1E_ERROR_AXIS_DIRECTION, "Direction is 7; 1 or 3"},
+        {{.input = 5}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT, "InputNumber is 5"},
+        {{.input = -1}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT, "InputNumber is -1"},
+        {{.torque_limit = -1.0}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT, "TorqueLimit is -1"},
+        {{.torque_limit = NAN}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT, "TorqueLimit is nan"},
+        {{.distance_limit = -1.0}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT, "DistanceLimit is -1"},
+        {{.distance_limit = INFINITY}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT, "DistanceLimit is inf"},
+        {{.time_limit_ns = -1}, 1.0, 0.0, CM1E_ERROR_AXIS_STEP_INPUT, "TimeLimit in ms is -1e-06"},
+        {{.kind = CM1E_STEP_BLOCK, .detection_velocity = -1.0}, 1.0, 0.0,
+         CM1E_ERROR_AXIS_STEP_INPUT, "DetectionVelocityLimit is -1"},
+        {{.kind = CM1E_STEP_BLOCK, .detection_ns = -1}, 1.0, 0.0,
+         CM1E_ERROR_AXIS_STEP_INPUT, "DetectionVelocityTime in ms is"},
+        {{0}, 0.0, 0.0, CM1E_ERROR_AXIS_VELOCITY_RANGE, NULL},
+        {{0}, -1.0, 0.0, CM1E_ERROR_AXIS_VELOCITY_RANGE, NULL},
+        {{0}, 1000.0, 0.0, CM1E_ERROR_AXIS_VELOCITY_RANGE, NULL},
+        {{0}, NAN, 0.0, CM1E_ERROR_AXIS_VELOCITY_RANGE, NULL},
+        {{0}, 1.0, INFINITY, CM1E_ERROR_AXIS_POSITION_RANGE, NULL},
+        {{0}, 1.0, 1e300, CM1E_ERROR_AXIS_POSITION_RANGE, NULL},
+        {{.kind = CM1E_STEP_DIRECT}, 0.0, NAN, CM1E_ERROR_AXIS_POSITION_RANGE, NULL},
+        {{.kind = CM1E_STEP_DIRECT}, 0.0, -INFINITY, CM1E_ERROR_AXIS_POSITION_RANGE, NULL},
+        {{.kind = CM1E_STEP_FINISH}, 1.0, NAN, CM1E_ERROR_AXIS_POSITION_RANGE, NULL},
+        {{.kind = CM1E_STEP_FINISH}, 1.0, 0.1, CM1E_ERROR_AXIS_STATE, NULL}, /* there is no homing to finish */
+        {{.kind = (cm1e_homing_step_kind_t)5}, 1.0, 0.0, CM1E_ERROR_INVALID_ARGUMENT, NULL},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         step = wrong[i].step;
         TEST_ASSERT_EQUAL_STRING(cm1e_strerror(wrong[i].error),
                                  cm1e_strerror(refusal(wrong[i].velocity, wrong[i].position)));
+        if (wrong[i].named)
+            bench_told(wrong[i].named);
     }
     const cm1e_axis_command_t none = {.kind = CM1E_COMMAND_HOMING_STEP, .velocity = 1.0};
     cm1e_command_id_t id;
