@@ -245,7 +245,7 @@ void cm1e_homing_run(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
     home->next = home->place = 0;
-    home->submitted = home->away = home->unstoppable = false;
+    home->submitted = home->away = home->unstoppable = home->late = false;
     home->refused = CM1E_OK;
     home->goal = HOME_GOAL_DONE;
     home->deadline_ns = axis->now_ns + home->timeout_ns;
@@ -320,6 +320,7 @@ static bool too_late(cm1e_axis_t *axis)
 {
     if (axis->now_ns < axis->homing->drive.deadline_ns)
         return false;
+    axis->homing->drive.late = true;
     refuse(axis, CM1E_ERROR_TIMEOUT);
     return true;
 }

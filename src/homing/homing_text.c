@@ -33,6 +33,12 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
 {
     const cm1e_sdo_t *sdo = &axis->homing->drive.sdo;
     const int value = (int)axis->homing->drive.raw[axis->homing->drive.next];
+    char reason[160];
+    if (axis->homing->drive.late)
+        snprintf(reason, sizeof reason, "the time of the homing was over (homing.timeout_s, %.6g s)",
+                 (double)axis->homing->drive.timeout_ns * 1e-9);
+    else
+        snprintf(reason, sizeof reason, "%s", cm1e_strerror(axis->homing->drive.refused));
     if (axis->homing->drive.refused == CM1E_ERROR_AXIS_HOMING_PARAMETER)
         cm1e_homing_wrong_text(axis, text, size);
     else if (axis->homing->drive.refused == CM1E_ERROR_AXIS_NOT_AT_REST)
@@ -41,8 +47,7 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
                  cm1e_strerror(axis->homing->drive.refused));
     else if (!sdo->write)
         snprintf(text, size, "Axis \"%s\": homing was not started: object 0x%04X:%02X, which tells the unit of the "
-                 "offset, could not be read: %s.", axis->config->name, sdo->index, sdo->subindex,
-                 cm1e_strerror(axis->homing->drive.refused));
+                 "offset, could not be read: %s.", axis->config->name, sdo->index, sdo->subindex, reason);
     else if (axis->homing->drive.refused == CM1E_ERROR_SDO_ABORT)
         snprintf(text, size,
                  "Axis \"%s\": homing was not started: the drive refused %d for object 0x%04X:%02X with SDO abort code "
@@ -51,7 +56,7 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
                  cm1e_sdo_abort_text(sdo->abort_code));
     else
         snprintf(text, size, "Axis \"%s\": homing was not started: object 0x%04X:%02X could not be written: %s.",
-                 axis->config->name, sdo->index, sdo->subindex, cm1e_strerror(axis->homing->drive.refused));
+                 axis->config->name, sdo->index, sdo->subindex, reason);
 }
 
 /* Which switches the step needs that are on other slaves. */

@@ -199,6 +199,7 @@ static void test_parameters_that_find_no_way_to_the_device_time_out(void)
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, cm1e_axis_command_status(axis, id).error);
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
         bench_told("0x607C");
+        bench_told("the time of the homing was over (homing.timeout_s, 0.2 s)");
         cm1e_command_id_t again; /* the buffer of a transfer under way is not touched */
         const cm1e_homing_config_t config = {.method = -1};
         TEST_ASSERT_EQUAL_INT(stuck_transfer ? CM1E_ERROR_BUSY : CM1E_OK,
