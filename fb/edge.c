@@ -147,7 +147,8 @@ fb_outputs_t cm1e_fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, 
     case FB_STEP_START:
         fb->command = 0;
         fb->continuous_update = continuous_update ? TRUE : FALSE;
-        cm1e_fb_started(fb, refusal != CM1E_OK ? refusal : cm1e_axis_start(axis, command, &fb->command));
+        cm1e_fb_started(fb, refusal != CM1E_OK ? cm1e_axis_refuse(axis, command, refusal)
+                                               : cm1e_axis_start(axis, command, &fb->command));
         status = cm1e_axis_command_status(axis, fb->command);
         fb->active = status.state == CM1E_COMMAND_ACTIVE;
         break;

@@ -60,6 +60,7 @@ typedef struct cm1e_homing_step {
     MC_HOME_DIRECTION direction;    /**< 0 acts as mcPositiveDirection */
     MC_SWITCH_MODE mode;
     int input;                      /**< ABSOLUTE_SWITCH: 1 ... 4; 0: the configured home switch */
+    bool of_another_axis;           /**< ABSOLUTE_SWITCH: the input is one of another axis, which is refused */
     double torque_limit;            /**< % of rated torque; 0: none. BLOCK: it shows the stop; 0: the lag does */
     double distance_limit;          /**< u, of the whole step; 0: none */
     int64_t time_limit_ns;          /**< 0: the timeout of the configured homing */
@@ -179,6 +180,9 @@ void cm1e_axis_meet(cm1e_axis_t *const *axes, uint32_t count);
 /** Starts a command, or refuses it; then *id is 0 and nothing has changed. CM1E_ERROR_UNSUPPORTED: the profiles of a
  *  drive (`motion: drive`) cannot do it. @rt cycle */
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+/** A block refuses a command by itself: remembered for the text in place of an earlier refusal. Returns `error`.
+ *  @rt cycle */
+cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error);
 /** ContinuousUpdate (2.4.6): gives the present inputs of a command. Unchanged inputs cost one comparison. Relative
  *  values count from the begin of the command, and the buffer mode stays. A refused update changes nothing: the motion
  *  goes on with the last accepted inputs, and the block shows the error. After the end of the command nothing happens.

@@ -65,6 +65,12 @@ void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     axis->not_set.error = CM1E_OK;
 }
 
+cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error)
+{
+    cm1e_axis_remember_refusal(axis, command, error);
+    return error;
+}
+
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what)
 {
     if (what.error == CM1E_OK && axis->not_set.what != what.what)

@@ -9,7 +9,7 @@ static bool usable(double value) { return isfinite(value) && value >= 0.0; }
 static cm1e_error_t wrong(const cm1e_axis_t *axis, cm1e_error_t error, const char *name, double value,
                           const char *right)
 {
-    axis->homing->wrong_input = (wrong_input_t){name, right, value};
+    axis->homing->wrong_input = (wrong_input_t){name, right, true, value};
     return error;
 }
 
@@ -57,6 +57,11 @@ cm1e_error_t cm1e_homing_step_inputs(const cm1e_axis_t *axis, const cm1e_homing_
     if (!mode_valid(step))
         return wrong(axis, CM1E_ERROR_AXIS_STEP_INPUT, absolute ? "SwitchMode" : "LimitSwitchMode", (int)step->mode,
                      absolute ? "0 ... 5 is right" : "0 ... 3 is right");
+    if (step->of_another_axis) {
+        axis->homing->wrong_input = (wrong_input_t){.name = "ReferenceSignal.Axis is another axis",
+                                                    .right = "the Axis of the block is right, or none"};
+        return CM1E_ERROR_AXIS_STEP_INPUT;
+    }
     if (step->input < 0)
         return cm1e_homing_wrong_signal(axis, step);
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)

@@ -81,6 +81,7 @@ typedef struct waiting_step {
 /** The input for which a step was refused, for the text; its words are constants. */
 typedef struct wrong_input {
     const char *name, *right;
+    bool valued;        /**< else `name` says what is wrong */
     double value;
 } wrong_input_t;
 

@@ -97,8 +97,12 @@ static bool wrong_input_text(const cm1e_axis_t *axis, char *text, size_t size)
     if (axis->commands.refused.kind != CM1E_COMMAND_HOMING_STEP ||
         !(direction || axis->commands.refusal == CM1E_ERROR_AXIS_STEP_INPUT))
         return false;
-    snprintf(text, size, "Axis \"%s\": the homing step was not started: %s is %.9g; %s.", axis->config->name,
-             wrong->name, wrong->value, wrong->right);
+    const char *const name = axis->config->name;
+    if (wrong->valued)
+        snprintf(text, size, "Axis \"%s\": the homing step was not started: %s is %.9g; %s.", name, wrong->name,
+                 wrong->value, wrong->right);
+    else
+        snprintf(text, size, "Axis \"%s\": the homing step was not started: %s; %s.", name, wrong->name, wrong->right);
     return true;
 }
 

@@ -62,6 +62,12 @@ static void fake_keep(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
     axis->command.coupling = NULL;
 }
 
+cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error)
+{
+    (void)axis;
+    (void)command;
+    return error;
+}
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     static cm1e_command_id_t next_id;

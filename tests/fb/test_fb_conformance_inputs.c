@@ -142,6 +142,26 @@ START_TEST(test_a_refused_value_is_in_the_text)
 }
 END_TEST
 
+/** A block that refuses by itself leaves no text of an earlier refusal. */
+START_TEST(test_the_text_is_of_the_last_refusal)
+{
+    char text[512];
+    snprintf(judged.scene, sizeof judged.scene, "a refusal after another one");
+    into(CM1E_AXIS_STANDSTILL, &mover);
+    make(&mover, "MC_MoveVelocity");
+    put(&mover, "Velocity", NAN);
+    trigger(&mover, true);
+    cycle();
+    cm1e_axis_error_text(judged.reference, text, sizeof text);
+    MUST(strstr(text, "nan"), "%s", text);
+    make(&subject, "MC_TorqueControl");
+    trigger(&subject, true);
+    cycle();
+    cm1e_axis_error_text(judged.reference, text, sizeof text);
+    MUST(subject.now.error && strstr(text, cm1e_strerror(CM1E_ERROR_AXIS_NO_TORQUE_MODE)), "%s", text);
+}
+END_TEST
+
 /* ---- ContinuousUpdate -------------------------------------------------------------------------------------------- */
 
 static void change_later(int n)
@@ -288,6 +308,7 @@ int main(void)
     tcase_set_timeout(all, 60);
     tcase_add_test(all, test_inputs_act_at_the_edge_alone);
     tcase_add_test(all, test_a_refused_value_is_in_the_text);
+    tcase_add_test(all, test_the_text_is_of_the_last_refusal);
     tcase_add_test(all, test_continuous_update_acts_while_it_is_true);
     tcase_add_test(all, test_nonsense_under_continuous_update_changes_nothing);
     tcase_add_test(all, test_instance_serves_one_axis_after_the_other);

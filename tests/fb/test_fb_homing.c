@@ -216,6 +216,7 @@ START_TEST(test_home_direct_and_what_the_motor_cannot)
         TYPE(&fb);                                                                                                   \
         ck_assert_msg(fb.Error && !fb.Done && !fb.Busy && !fb.CommandAborted, #TYPE);                                \
         ck_assert_int_eq(fb.ErrorID, cm1e_error_id(ERROR));                                                          \
+        ck_assert_msg(strstr(text(), cm1e_strerror(ERROR)) != NULL, "%s", text());                                   \
         fb.Execute = FALSE;                                                                                          \
         TYPE(&fb);                                                                                                   \
         ck_assert_msg(!fb.Error && fb.ErrorID == 0, #TYPE);                                                          \
@@ -239,6 +240,7 @@ START_TEST(test_signal_of_another_axis_is_refused)
                                   .ReferenceSignal.Axis.Handle = (UINT)(reference.Handle + 1)};
     MC_StepAbsoluteSwitch(&fb);
     ck_assert(fb.Error && fb.ErrorID == cm1e_error_id(CM1E_ERROR_AXIS_STEP_INPUT));
+    ck_assert_ptr_nonnull(strstr(text(), "ReferenceSignal.Axis is another axis"));
     close_segment();
 }
 END_TEST
