@@ -128,7 +128,7 @@ static void take_sample(recording_t *recording, const char *digits, double *valu
         recording->full = true;
 }
 
-/** A gap is marked where it is: behind what was in the ring when it was full. */
+/** A gap is marked where it is: a reply ends before it. */
 static void note_gap(recording_t *recording, uint64_t lost)
 {
     if (lost > recording->lost)

@@ -10,17 +10,24 @@ enum { RING_BYTES = 1 << 24, LEAST_SAMPLES = 16, DATA_BYTES = 1 << 20, DIGITS = 
 
 /* ---- the ring --------------------------------------------------------------------------------------------------- */
 
+static uint32_t stride(const recorder_t *recorder) { return recorder->words + 1; }
+
+static uint64_t *sample_at(const recorder_t *recorder, uint64_t number)
+{
+    return recorder->ring + number % recorder->room * stride(recorder);
+}
+
 cm1e_error_t cm1e_recorder_init(recorder_t *recorder, const cm1e_scheduler_t *scheduler, uint32_t every,
                                 int64_t cycle_ns, cm1e_diag_t *diag)
 {
     recorder->timing = &cm1e_scheduler_trace(scheduler)->timing;
     recorder->every = every;
     recorder->words = recorder->trace.column_count + 1;
-    const int64_t wanted = RING_NS / (cycle_ns * every), most = RING_BYTES / (int64_t)(recorder->words * 8);
+    const int64_t wanted = RING_NS / (cycle_ns * every), most = RING_BYTES / (int64_t)(stride(recorder) * 8);
     recorder->room = (uint32_t)(wanted < most ? wanted : most);
     if (recorder->room < LEAST_SAMPLES)
         recorder->room = LEAST_SAMPLES;
-    const size_t bytes = (size_t)recorder->room * recorder->words * sizeof *recorder->ring;
+    const size_t bytes = (size_t)recorder->room * stride(recorder) * sizeof *recorder->ring;
     recorder->ring = malloc(bytes);
     if (!recorder->ring)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for a recording.");
@@ -68,15 +75,16 @@ static void record(recorder_t *recorder, const view_t *view)
     recorder->until_next = recorder->every - 1;
     const uint64_t written = atomic_load_explicit(&recorder->written, memory_order_relaxed);
     if (written - atomic_load_explicit(&recorder->read, memory_order_acquire) == recorder->room) {
-        atomic_fetch_add_explicit(&recorder->lost, 1, memory_order_relaxed);
+        atomic_fetch_add_explicit(&recorder->lost, 1, memory_order_release);
         return;
     }
     const int64_t time_ns = cm1e_scheduler_time_ns(view->scheduler);
-    uint64_t *sample = recorder->ring + written % recorder->room * recorder->words;
+    uint64_t *sample = sample_at(recorder, written);
     recorder->trace.timing = *recorder->timing;
     cm1e_trace_record(&recorder->trace, view->axes, time_ns);
     sample[0] = (uint64_t)time_ns;
     memcpy(sample + 1, recorder->trace.values, recorder->trace.column_count * sizeof *recorder->trace.values);
+    sample[recorder->words] = atomic_load_explicit(&recorder->lost, memory_order_relaxed);
     atomic_store_explicit(&recorder->written, written + 1, memory_order_release);
 }
 
@@ -125,19 +133,34 @@ static char *print_sample(char *at, const uint64_t *sample, uint32_t words)
     return at;
 }
 
+/** How many of `ready` samples are in a row with what the client has, at most `most`. */
+static uint64_t count_to_gap(const recorder_t *recorder, uint64_t read, uint64_t ready, uint64_t most)
+{
+    uint64_t count = 0;
+    while (count < ready && count < most && sample_at(recorder, read + count)[recorder->words] == recorder->told)
+        count++;
+    return count;
+}
+
 json_t *cm1e_recorder_take(recorder_t *recorder)
 {
+    /* In this order: what was lost by then was lost behind all that is ready, or is counted in one of these. */
+    const uint64_t lost = atomic_load_explicit(&recorder->lost, memory_order_acquire);
     const uint64_t read = atomic_load_explicit(&recorder->read, memory_order_relaxed);
     const uint64_t ready = atomic_load_explicit(&recorder->written, memory_order_acquire) - read;
-    const uint64_t most = DATA_BYTES / (DIGITS * recorder->words) + 1, count = ready < most ? ready : most;
+    const uint64_t most = DATA_BYTES / (DIGITS * recorder->words) + 1;
+    const uint64_t count = count_to_gap(recorder, read, ready, most);
+    const uint64_t up_to_end = count == ready ? lost : count < most ? sample_at(recorder, read + count)[recorder->words]
+                                                                    : recorder->told;
     char *text = malloc((size_t)count * recorder->words * DIGITS + 1), *at = text;
     for (uint64_t i = 0; text && i < count; i++)
-        at = print_sample(at, recorder->ring + (read + i) % recorder->room * recorder->words, recorder->words);
-    json_t *told = text ? json_pack("{s:I, s:I, s:s#}", "samples", (json_int_t)count, "lost",
-                                    (json_int_t)atomic_load_explicit(&recorder->lost, memory_order_relaxed), "data",
-                                    text, (int)(at - text)) : NULL;
+        at = print_sample(at, sample_at(recorder, read + i), recorder->words);
+    json_t *told = text ? json_pack("{s:I, s:I, s:s#}", "samples", (json_int_t)count, "lost", (json_int_t)up_to_end,
+                                    "data", text, (int)(at - text)) : NULL;
     free(text);
-    if (told)
+    if (told) {
+        recorder->told = up_to_end;
         atomic_store_explicit(&recorder->read, read + count, memory_order_release);
+    }
     return told;
 }

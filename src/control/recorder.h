@@ -18,8 +18,9 @@ typedef struct recorder {
     const trace_timing_t *timing;
     uint32_t every, until_next;
     uint32_t words, room;      /**< of a sample: its time and its values; of the ring: samples */
-    uint64_t *ring;            /**< [room][words]: time in ns, then doubles */
+    uint64_t *ring;            /**< [room][words + 1]: time in ns, then doubles, then how many were lost before it */
     _Atomic uint64_t written, read, lost; /**< samples */
+    uint64_t told;             /**< lost, as told to the client */
     atomic_bool ending, ended;
 } recorder_t;
 
@@ -37,7 +38,8 @@ void cm1e_recorder_cycle(view_t *view);
 
 /** What is recorded: {"cycle_ns", "every", "axes", "columns"}. */
 json_t *cm1e_recorder_show(const recorder_t *recorder, int64_t cycle_ns);
-/** The samples since the last call, at most as many as fit into a reply: {"samples", "lost", "data"}. */
+/** The samples since the last call, at most as many as fit into a reply, and none behind a gap: {"samples", "lost",
+ *  "data"}. `lost` are those of the time up to the end of these samples, so a gap is where it grows. */
 json_t *cm1e_recorder_take(recorder_t *recorder);
 
 #endif

@@ -7,6 +7,7 @@ test_trace.py BIN-DIRECTORY
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -76,9 +77,11 @@ def check_gaps_are_counted():
     missing = times[-1] - times[0] + 1 - len(times)
     expect(child.returncode == 0 and "samples were lost" in err and told["lost"] > 500, "a gap", out + err)
     expect(told["lost"] <= missing <= told["lost"] + 100, "lost samples are counted", (told, missing))  # and overruns
-    expect(max(b - a for a, b in zip(times, times[1:])) >= told["lost"] // 2, "the gap is one", told)
+    gap, before = max((b - a, a) for a, b in zip(times, times[1:]))
+    expect(gap >= told["lost"] // 2, "the gap is one", told)
     with open(path_of("gap.html"), encoding="utf-8") as file:
-        expect('"text": "samples were lost"' in file.read(), "the gap is marked")
+        marks = re.findall(r'{"t": ([0-9.]+), "text": "samples were lost"}', file.read())
+    expect(before in [round(1e3 * float(mark)) for mark in marks], "the gap is marked where it is", (before, marks))
 
 
 def check_many_and_gone():
