@@ -25,7 +25,8 @@ typedef enum cm1e_log_kind {
                                    was found and what is allowed, 0: the error has none */
     CM1E_LOG_COMMAND,         /**< of an axis: a command became the active one; value: its position, bound: its
                                    velocity, 0: it has none */
-    CM1E_LOG_OVERRUN,         /**< code: so many cycles since the last such record, detail: the total (32 bits) */
+    CM1E_LOG_OVERRUN,         /**< code: so many cycles since the last such record, detail: the total of the run
+                                   (32 bits) */
     CM1E_LOG_LOST_FRAMES,     /**< as OVERRUN */
     CM1E_LOG_WORKING_COUNTER, /**< as OVERRUN: cycles with a wrong working counter */
     CM1E_LOG_UNSENT_FRAMES,   /**< as OVERRUN: frames that the network interface did not take */
@@ -54,7 +55,8 @@ typedef enum cm1e_log_kind {
     CM1E_LOG_KIND_COUNT,
 } cm1e_log_kind_t;
 
-/** A record. Of counters there is at most one in 100 ms, so that a lost bus does not push out everything else. */
+/** A record. Of counters there is at most one in 100 ms, so that a lost bus does not push out everything else; what is
+ *  left then is told at the end of the run. */
 typedef struct cm1e_log_event {
     uint64_t number;          /**< counts from 1 without gaps */
     int64_t time_ns;          /**< since 1970 (UTC); on virtual time since its beginning */

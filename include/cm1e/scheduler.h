@@ -63,7 +63,7 @@ typedef struct cm1e_distribution {
 typedef struct cm1e_scheduler_statistics_t {
     cm1e_distribution_t cycle_time, wake_up_latency, execution_time;
     uint64_t cycles, overruns;   /**< overruns: cycles whose work ended after the start of the next one */
-    cm1e_bus_counters_t bus;
+    cm1e_bus_counters_t bus;     /**< of this run; cm1e_bus_counters() has those of the bus since it was opened */
     bool realtime;               /**< true: SCHED_FIFO and locked memory are in force */
     char advice[512];            /**< what to do about a missing privilege; "": none is missing */
     char control_socket[112];    /**< path at which other programs can watch this run (docs/CONTROL.md); "": none */

@@ -200,6 +200,14 @@ void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t r
     told->ring_quiet_until_ns = run_ns + QUIET_NS;
 }
 
+void cm1e_log_wait_no_longer(log_t *log)
+{
+    for (int i = 0; i < CM1E_LOG_COUNTERS; i++)
+        log->counters[i].quiet_until_ns = INT64_MIN;
+    for (int i = 0; i < CM1E_MAX_BUSES; i++)
+        log->slaves[i].ports_quiet_until_ns = log->slaves[i].ring_quiet_until_ns = INT64_MIN;
+}
+
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost)

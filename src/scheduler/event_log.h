@@ -61,6 +61,8 @@ void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t 
 void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 /** The slaves of a bus that came or went since the last call, and the strangers. @rt cycle */
 void cm1e_log_presence(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
+/** The run has ended: what these tell of next does not wait until the last record of its kind is old. @rt cycle */
+void cm1e_log_wait_no_longer(log_t *log);
 /** A variable of the program was released (0), forced (1) or written (2) from outside. `column`: of the trace;
  *  `rest`: what `value` lacks of 64 bits. @rt cycle */
 void cm1e_log_variable(log_t *log, int what, uint32_t column, double value, double rest, int64_t run_ns);

@@ -45,7 +45,7 @@ struct cm1e_scheduler {
     log_t log;
     void *windows[CM1E_MAX_BUSES][CM1E_WINDOWS]; /**< of this run, by bus and kind; NULL: it has none */
     statistics_t statistics;
-    cm1e_bus_counters_t counters; /**< of all buses together, after this cycle */
+    cm1e_bus_counters_t counters, counters_before; /**< of all buses together: of this run, after this cycle; before it */
     atomic_bool stop;      /**< a stop was requested */
     bool run;              /**< cm1e_scheduler_run() was called */
     bool shutting_down;    /**< programs no longer run */

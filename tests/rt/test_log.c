@@ -120,6 +120,55 @@ START_TEST(test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away)
 }
 END_TEST
 
+/* ---- whose the numbers are --------------------------------------------------------------------------------------- */
+
+/** Loses a frame and, while no further record of the counter may follow, four more; 20 ms before the end. */
+static void lose_late(void *context)
+{
+    const machine_t *machine = context;
+    char answer[100];
+    const int64_t now = cm1e_scheduler_time_ns(machine->scheduler);
+    if (now == 180 * MS || now == 184 * MS)
+        cm1e_bus_simulate(machine->bus, now == 180 * MS ? "lose 1" : "lose 4", answer, sizeof answer);
+}
+
+static uint32_t told_lost(const cm1e_scheduler_t *scheduler)
+{
+    uint32_t told = 0;
+    const size_t n = cm1e_log_read(scheduler, 0, events, CM1E_LOG_EVENTS, NULL);
+    for (size_t i = 0; i < n; i++)
+        if (events[i].kind == CM1E_LOG_LOST_FRAMES) {
+            told += (uint32_t)events[i].code;
+            ck_assert_uint_eq(events[i].detail, told);
+        }
+    ck_assert_int_eq(events[n - 1].kind, CM1E_LOG_RUN);
+    return told;
+}
+
+START_TEST(test_a_run_tells_all_that_it_lost_and_nothing_of_the_run_before)
+{
+    machine_t machine = {.axis_count = 1};
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_diag_t diag = {0};
+    machine_open(&machine);
+    machine_add(&machine, "", 0, 0, lose_late, &machine);
+    machine_run(&machine, 200 * MS);
+    const uint64_t lost = cm1e_bus_counters(machine.bus)->lost_frames;
+    ck_assert_uint_ge(lost, 3);
+    ck_assert_uint_eq(told_lost(machine.scheduler), lost);
+    cm1e_scheduler_destroy(machine.scheduler);
+    ck_assert_msg(cm1e_bus_start(machine.bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_scheduler_create(&machine.scheduler, machine.bus, NULL, &diag) == CM1E_OK, "%s", diag.text);
+    machine_run(&machine, 200 * MS);
+    ck_assert_uint_eq(told_lost(machine.scheduler), 0);
+    cm1e_scheduler_statistics(machine.scheduler, &statistics);
+    ck_assert_uint_eq(statistics.bus.lost_frames, 0);
+    ck_assert_uint_eq(statistics.bus.cycles, statistics.cycles);
+    ck_assert_uint_eq(cm1e_bus_counters(machine.bus)->lost_frames, lost);
+    machine_close(&machine);
+}
+END_TEST
+
 /* ---- a redundant ring -------------------------------------------------------------------------------------------- */
 
 /** A cable is broken for 300 ms; another one for a cycle only. */
@@ -290,6 +339,7 @@ int main(void)
     Suite *suite = suite_create("log");
     TCase *tcase = tcase_create("log");
     tcase_add_test(tcase, test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away);
+    tcase_add_test(tcase, test_a_run_tells_all_that_it_lost_and_nothing_of_the_run_before);
     tcase_add_test(tcase, test_a_record_is_a_sentence_with_its_numbers);
     tcase_add_test(tcase, test_a_ring_that_breaks_is_told_with_its_place);
     tcase_add_test(tcase, test_a_reader_goes_on_where_it_was);
