@@ -32,7 +32,8 @@ static bool can_be_shown(uint32_t character)
     const bool control = character < 0x20 || (character >= 0x7F && character < 0xA0);
     const bool line = character == 0x2028 || character == 0x2029;
     const bool turns = (character >= 0x202A && character <= 0x202E) || (character >= 0x2066 && character <= 0x2069);
-    return !control && !line && !turns;
+    const bool no_character = (character & 0xFFFE) == 0xFFFE; /* XML has none of them */
+    return !control && !line && !turns && !no_character;
 }
 
 void cm1e_text_clean(char *text)

@@ -8,7 +8,8 @@
 #include <stddef.h>
 
 /** Replaces by "?" everything that could act on a terminal or is not UTF-8: control characters (C0, DEL, C1),
- *  incomplete characters, and marks that change the direction of writing. The text never gets longer. */
+ *  incomplete characters, code points that are no characters (U+FFFE), and marks that change the direction of writing.
+ *  The text never gets longer. */
 void cm1e_text_clean(char *text);
 
 /** Copies a text of a device, up to its end or a zero, as clean UTF-8 with a final zero. Text that is not UTF-8 is read

@@ -7,6 +7,7 @@
 
 #include "cm1e/plot.h"
 #include "core/in_task.h"
+#include "core/text.h"
 #include "plot/plot_files.h"
 
 /* ---- layout, in pixels ----------------------------------------------------------------------------------------- */
@@ -85,15 +86,19 @@ static double value_of(const plot_t *plot, uint32_t n, uint32_t axis, uint32_t c
     return cm1e_trace_sample(plot->trace, n)[axis * TRACE_AXIS_COLUMNS + column];
 }
 
+/** Bytes that are not UTF-8 would make the whole file unreadable: they become "?". */
 static void print_escaped(FILE *file, const char *text, size_t bytes)
 {
-    for (const char *c = text; c < text + bytes; c++)
+    char clean[1024];
+    snprintf(clean, sizeof clean, "%.*s", (int)bytes, text);
+    cm1e_text_clean(clean);
+    for (const char *c = clean; *c; c++)
         switch (*c) {
         case '&': fputs("&amp;", file); break;
         case '<': fputs("&lt;", file); break;
         case '>': fputs("&gt;", file); break;
         case '"': fputs("&quot;", file); break;
-        default: fputc((unsigned char)*c < ' ' ? ' ' : *c, file);
+        default: fputc(*c, file);
         }
 }
 

@@ -128,7 +128,7 @@ static void test_svg_of_few_and_many_axes_is_well_formed_and_below_half_a_megaby
 
 static void test_svg_shows_the_marks_of_its_time(void)
 {
-    static const char *const names[] = {"<first> & oldest", "in time", "also in time"};
+    static const char *const names[] = {"<first> & oldest", "gr\xFC\xDF", "no \xEF\xBF\xBE character"};
     trace_t trace = make_trace(2, 100);
     size_t size;
     for (uint32_t n = 0; n < 300; n++) /* 200 ms ... 299 ms are kept */
@@ -141,6 +141,8 @@ static void test_svg_shows_the_marks_of_its_time(void)
     check_well_formed(svg);
     TEST_ASSERT_EQUAL(2 * 3, count(svg, "class=\"mark\""));
     TEST_ASSERT_EQUAL(2, count(svg, ">&lt;first&gt; &amp; oldest<"));
+    TEST_ASSERT_EQUAL(2, count(svg, ">gr\?\?<")); /* what is not UTF-8, or no character of XML, is no file for a reader */
+    TEST_ASSERT_EQUAL(2, count(svg, ">no ? character<"));
     TEST_ASSERT_EQUAL(0, count(svg, ">too "));
     free(svg);
     for (int i = 0; i < TRACE_MARKS; i++) /* the ring goes round */
