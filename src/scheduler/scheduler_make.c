@@ -7,6 +7,7 @@
 #include "assembly/assembly.h"
 #include "core/in_task.h"
 #include "core/sized.h"
+#include "core/text.h"
 #include "scheduler/realtime.h"
 #include "scheduler/scheduler_private.h"
 #include "scheduler/signals.h"
@@ -199,6 +200,14 @@ cm1e_error_t cm1e_scheduler_add_task_sized(cm1e_scheduler_t *scheduler, const cm
 
 /* ---- what the trace records beside the axes ---------------------------------------------------------------------- */
 
+static bool is_clean(const char *text)
+{
+    char clean[CM1E_TRACE_NAME_BYTES];
+    snprintf(clean, sizeof clean, "%s", text);
+    cm1e_text_clean(clean);
+    return strcmp(clean, text) == 0;
+}
+
 cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const char *name, const char *unit,
                                            cm1e_trace_type_t type, const void *variable, cm1e_diag_t *diag)
 {
@@ -210,6 +219,9 @@ cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const ch
                              sizeof column.unit - 1);
     snprintf(column.name, sizeof column.name, "%s", name ? name : "");
     snprintf(column.unit, sizeof column.unit, "%s", unit ? unit : "");
+    if (!is_clean(column.name) || !is_clean(column.unit))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The name and the unit of a signal are expected to be "
+                             "UTF-8 without control characters, so that programs can read the files of the trace.");
     return cm1e_trace_add(&scheduler->trace, &column, diag);
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/output.h"
+#include "core/text.h"
 #include "scheduler/trace_recorder.h"
 
 /* ---- CSV ------------------------------------------------------------------------------------------------------- */
@@ -47,15 +48,15 @@ void cm1e_trace_print_csv(const trace_t *trace, FILE *file)
 
 /* ---- NumPy ----------------------------------------------------------------------------------------------------- */
 
-/** A text of a Python literal. */
-static void print_python_text(FILE *file, const char *text)
+/** The name of a column as a text of a Python literal, in UTF-8 whatever it is. */
+static void print_python_name(FILE *file, const trace_column_t *column)
 {
+    char name[sizeof column->name];
+    snprintf(name, sizeof name, "%s", column->name);
+    cm1e_text_clean(name);
     fputc('\'', file);
-    for (const char *c = text; *c; c++)
-        if (*c == '\'' || *c == '\\')
-            fprintf(file, "\\%c", *c);
-        else
-            fputc((unsigned char)*c < ' ' ? ' ' : *c, file);
+    for (const char *c = name; *c; c++)
+        fprintf(file, *c == '\'' || *c == '\\' ? "\\%c" : "%c", *c);
     fputc('\'', file);
 }
 
@@ -64,7 +65,7 @@ static void print_npy_dtype(const trace_t *trace, FILE *file)
     fputs("{'descr': [('time', '<f8')", file);
     for (uint32_t i = 0; i < trace->column_count; i++) {
         fputs(", (", file);
-        print_python_text(file, trace->columns[i].name);
+        print_python_name(file, &trace->columns[i]);
         fputs(", '<f8')", file);
     }
     fprintf(file, "], 'fortran_order': False, 'shape': (%u,), }", trace->used);

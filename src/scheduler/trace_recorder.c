@@ -110,7 +110,7 @@ static cm1e_error_t check_column(const trace_t *trace, const trace_column_t *col
     if (!column->name[0] || !column->value || (unsigned)column->type > CM1E_TRACE_LREAL)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
                              "A signal of the trace needs a name, a type and a variable.");
-    if (find_column(trace, column->name) < trace->column_count)
+    if (strcmp(column->name, "time") == 0 || find_column(trace, column->name) < trace->column_count)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The trace has a signal \"%s\" already.",
                              column->name);
     if (trace->variables == CM1E_TRACE_VARIABLES)

@@ -172,6 +172,11 @@ START_TEST(test_signals_that_cannot_be_are_refused_in_words)
     expect(cm1e_scheduler_trace_variable(machine.scheduler, "flag", "0123456789abcdef", CM1E_TRACE_BOOL, &plc.v.flag,
                                          &diag), CM1E_ERROR_INVALID_ARGUMENT, "15");
     expect(add("overruns", CM1E_TRACE_BOOL, &plc.v.flag), CM1E_ERROR_INVALID_ARGUMENT, "\"overruns\" already");
+    expect(add("time", CM1E_TRACE_BOOL, &plc.v.flag), CM1E_ERROR_INVALID_ARGUMENT, "\"time\" already");
+    expect(add("a\tb", CM1E_TRACE_BOOL, &plc.v.flag), CM1E_ERROR_INVALID_ARGUMENT, "UTF-8");
+    expect(add("gr\xFC\xDF", CM1E_TRACE_BOOL, &plc.v.flag), CM1E_ERROR_INVALID_ARGUMENT, "UTF-8");
+    expect(cm1e_scheduler_trace_variable(machine.scheduler, "flag", "\xB5m", CM1E_TRACE_BOOL, &plc.v.flag, &diag),
+           CM1E_ERROR_INVALID_ARGUMENT, "UTF-8");
     for (int i = 0; i < CM1E_TRACE_VARIABLES; i++) {
         snprintf(name, sizeof name, "flag %d", i);
         expect(add(name, CM1E_TRACE_BOOL, &plc.v.flag), CM1E_OK, "");
