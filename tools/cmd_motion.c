@@ -384,6 +384,8 @@ static bool keep_traces(cm1e_scheduler_t *scheduler, void *context)
     for (int i = 0; i < TRACE_FILES; i++)
         if (options->files[i] && writers[i](scheduler, options->files[i], &diag) != CM1E_OK)
             kept = fail(&diag) == EXIT_OK;
+    if (kept && wants_trace(options))
+        tell_missing_cycles(scheduler, TRACE_SAMPLES);
     return kept;
 }
 

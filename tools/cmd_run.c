@@ -90,6 +90,11 @@ const struct argp argp_run = {
     "program while it runs, as an index outside an array, ends the run: the axes ramp down, and are disabled.",
     children, NULL, NULL};
 
+static bool is_traced(const run_options_t *options)
+{
+    return options->files[0] || options->files[1] || options->files[2];
+}
+
 static cm1e_error_t write_files(const cm1e_scheduler_t *scheduler, const run_options_t *options, cm1e_diag_t *diag)
 {
     /* cppcheck-suppress uninitvar ; they are the three functions */
@@ -139,6 +144,8 @@ static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const
     const bool written = write_files(scheduler, options, &diag) == CM1E_OK;
     if (!written)
         fail(&diag);
+    else if (is_traced(options))
+        tell_missing_cycles(scheduler, SAMPLES);
     if (failed || text[0] || !written)
         return EXIT_FAILED;
     tell_end(scheduler, options, config);
@@ -151,7 +158,7 @@ static int run_program(st_loaded_t *loaded, cm1e_bus_t *bus, const run_options_t
     loaded->path_count = options->path_count;
     cm1e_diag_t diag = {0};
     cm1e_scheduler_t *scheduler = NULL;
-    const bool traced = options->files[0] || options->files[1] || options->files[2];
+    const bool traced = is_traced(options);
     const cm1e_scheduler_config_t config = {.trace_capacity = traced ? SAMPLES : 0};
     cm1e_error_t error = cm1e_scheduler_create(&scheduler, bus, &config, &diag);
     if (error == CM1E_OK)

@@ -39,3 +39,12 @@ int check_trace_files(const char *const *files, int count)
         status = check_file(options[i], files[i]);
     return status;
 }
+
+void tell_missing_cycles(const cm1e_scheduler_t *scheduler, uint32_t kept)
+{
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(scheduler, &statistics);
+    if (statistics.cycles > kept)
+        complain("the files have the last %u of %llu cycles. For a longer time record beside the run: cm1e trace --every N",
+                 (unsigned)kept, (unsigned long long)statistics.cycles);
+}

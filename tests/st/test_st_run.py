@@ -71,6 +71,13 @@ def check_faults():
     run("loop.so", "-s", "3", "--loop-limit", "100", status=1, says="more than 100 times")
 
 
+def check_files_that_miss_cycles():
+    for seconds, misses in (("1", False), ("121", True)):
+        text = run(build("longer", PASSED), "-s", seconds, "--csv", "longer.csv").stderr
+        if ("the files have the last 120000 of 12" in text) != misses or len(trace("longer.csv")) > 120000:
+            faults.append(f"{seconds} s, what the files miss: {text}")
+
+
 def check_what_build_leaves_alone():
     """Devices, sources, and files of others beside the program; a link stays a link."""
     build("kept", "PROGRAM Main END_PROGRAM")
@@ -250,6 +257,7 @@ with tempfile.TemporaryDirectory() as folder:
     with open("bus.yaml", "w", encoding="ascii") as file:
         file.write(BUS)
     check_faults()
+    check_files_that_miss_cycles()
     check_what_build_leaves_alone()
     check_names()
     check_without_bus_file()
