@@ -28,7 +28,7 @@ static void print_value(FILE *file, const trace_column_t *column, double value)
     if (column->kind == TRACE_KIND_STATE)
         fprintf(file, ",%s", cm1e_axis_state_name((cm1e_axis_state_t)value));
     else
-        fprintf(file, column->type == CM1E_TRACE_LREAL ? ",%.9g" : ",%.17g", value);
+        fprintf(file, column->type == CM1E_TRACE_LREAL ? ",%.15g" : ",%.17g", value);
 }
 
 void cm1e_trace_print_csv(const trace_t *trace, FILE *file)
