@@ -90,7 +90,8 @@ typedef struct cm1e_trace_trigger {
 
 /** Sets the trigger. The trace records from the start of the run; when the trigger comes, it records
  *  trace_capacity - samples_before samples more, the one of the trigger included, and then no more. The trigger is a
- *  mark of the trace. Only the first one counts. Without one the trace has the last cycles of the run. Errors:
+ *  mark of the trace. Only the first one counts. It looks at samples: with a trace_every of n what comes and goes
+ *  between two of them does not trigger. Without one the trace has the last cycles of the run. Errors:
  *  CM1E_ERROR_STATE: the scheduler has run, or its trace_capacity is 0.
  *  CM1E_ERROR_INVALID_ARGUMENT: no such kind or signal (register it before), `level` is not a number, or samples_before
  *  is not less than trace_capacity. @rt init */

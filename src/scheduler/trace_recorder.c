@@ -173,7 +173,7 @@ cm1e_error_t cm1e_trace_set_trigger(trace_t *trace, const cm1e_trace_trigger_t *
 static bool comes(const trace_trigger_t *trigger, double value)
 {
     switch (trigger->kind) {
-    case CM1E_TRACE_ON_ERROR_STOP: return value > trigger->before;
+    case CM1E_TRACE_ON_ERROR_STOP: return value > 0 && !isnan(trigger->before);
     case CM1E_TRACE_ON_RISING: return trigger->before < trigger->level && value >= trigger->level;
     case CM1E_TRACE_ON_FALLING: return trigger->before > trigger->level && value <= trigger->level;
     case CM1E_TRACE_ON_CHANGE: return !isnan(trigger->before) && value != trigger->before;
@@ -181,15 +181,18 @@ static bool comes(const trace_trigger_t *trigger, double value)
     }
 }
 
-/** For CM1E_TRACE_ON_ERROR_STOP the number of axes in ErrorStop. */
-static double watched_value(const trace_t *trace, const double *sample)
+/** For CM1E_TRACE_ON_ERROR_STOP the number of axes that have entered it since the last sample. */
+static double watched_value(trace_t *trace, const double *sample)
 {
     if (trace->trigger.kind != CM1E_TRACE_ON_ERROR_STOP)
         return sample[trace->trigger.column];
-    double stopped = 0;
-    for (uint32_t i = 0; i < trace->axes; i++)
-        stopped += (cm1e_axis_state_t)sample[i * TRACE_AXIS_COLUMNS + TRACE_STATE] == CM1E_AXIS_ERROR_STOP;
-    return stopped;
+    double entered = 0;
+    for (uint32_t i = 0; i < trace->axes; i++) {
+        const bool stopped = (cm1e_axis_state_t)sample[i * TRACE_AXIS_COLUMNS + TRACE_STATE] == CM1E_AXIS_ERROR_STOP;
+        entered += stopped && !trace->trigger.stopped[i];
+        trace->trigger.stopped[i] = stopped;
+    }
+    return entered;
 }
 
 static void watch(trace_t *trace, const double *sample, int64_t time_ns)

@@ -62,7 +62,8 @@ typedef struct trace_timing {
 typedef struct trace_trigger {
     cm1e_trace_trigger_kind_t kind;
     uint32_t column;
-    double level, before;     /**< `before`: value of the last cycle */
+    double level, before;     /**< `before`: value of the last sample; NAN: there was none */
+    bool stopped[CM1E_MAX_AXES]; /**< axes that were in ErrorStop in the last sample */
     uint32_t samples_before;
     bool seen;                /**< it came */
     uint32_t left;            /**< samples to record from then on */

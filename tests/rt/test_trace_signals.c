@@ -440,6 +440,25 @@ START_TEST(test_an_axis_in_error_stop_ends_the_recording)
 }
 END_TEST
 
+START_TEST(test_an_axis_that_enters_error_stop_as_another_one_leaves_it_ends_the_recording)
+{
+    static const char *const names[] = {"A", "B"};
+    static double sample[100];
+    trace_t trace;
+    ck_assert_int_eq(cm1e_trace_init(&trace, names, 2, 4, 1, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_trace_set_trigger(&trace, &(cm1e_trace_trigger_t){.kind = CM1E_TRACE_ON_ERROR_STOP}, &diag),
+                     CM1E_OK);
+    ck_assert_int_eq(cm1e_trace_begin(&trace, &diag), CM1E_OK);
+    for (int n = 0; n < 3; n++) { /* A is in it from the beginning */
+        sample[TRACE_STATE] = n < 2 ? CM1E_AXIS_ERROR_STOP : CM1E_AXIS_STANDSTILL;
+        sample[TRACE_AXIS_COLUMNS + TRACE_STATE] = n < 2 ? CM1E_AXIS_STANDSTILL : CM1E_AXIS_ERROR_STOP;
+        ck_assert(cm1e_trace_take(&trace, sample, n * MS));
+        ck_assert_int_eq(trace.trigger.seen, n == 2);
+    }
+    cm1e_trace_free(&trace);
+}
+END_TEST
+
 START_TEST(test_triggers_that_cannot_be_are_refused)
 {
     static const struct {
@@ -516,6 +535,7 @@ int main(void)
     tcase_add_test(tests, test_the_cycle_itself_is_recorded);
     tcase_add_test(tests, test_triggers_keep_what_a_search_in_the_whole_signal_says);
     tcase_add_test(tests, test_an_axis_in_error_stop_ends_the_recording);
+    tcase_add_test(tests, test_an_axis_that_enters_error_stop_as_another_one_leaves_it_ends_the_recording);
     tcase_add_test(tests, test_triggers_that_cannot_be_are_refused);
     tcase_add_test(tests, test_a_numpy_file_has_a_header_that_fits_and_every_value);
     suite_add_tcase(suite, tests);
