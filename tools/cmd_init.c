@@ -232,13 +232,26 @@ static bool has_motors(const init_t *init)
     return false;
 }
 
+/** A text of YAML, in quotes where it would be read as something else without: the name of a file may be any. */
+static void print_scalar(FILE *file, const char *text)
+{
+    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:-";
+    const size_t length = strlen(text);
+    if (strspn(text, plain) == length && strcspn(text, "./,:-") > 0 && text[length - 1] != ':') {
+        fputs(text, file);
+        return;
+    }
+    fputc('"', file);
+    for (const char *c = text; *c; c++)
+        fprintf(file, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
+    fputc('"', file);
+}
+
 static void print_network(init_t *init, const char *interface_name)
 {
-    fprintf(init->file,
-            "bus:\n"
-            "  interface: %s\n"
-            "  # cycle_time_us: 1000   # 200, 250, 500 or 1000; with a bridge 1000\n",
-            interface_name);
+    fprintf(init->file, "bus:\n  interface: ");
+    print_scalar(init->file, interface_name);
+    fprintf(init->file, "\n  # cycle_time_us: 1000   # 200, 250, 500 or 1000; with a bridge 1000\n");
     init->listed = false;
     init->motors |= has_motors(init);
     if (has_motors(init))
@@ -281,8 +294,10 @@ static void print_entry(FILE *file, unsigned number, const char *text)
 static void print_file(FILE *file, const init_options_t *options, char *const networks[])
 {
     fprintf(file, options->networks > 1 ? "# The networks on " : "# The network on ");
-    for (unsigned i = 0; i < options->networks; i++)
-        fprintf(file, "%s%s", i ? ", " : "", options->interfaces[i]);
+    for (unsigned i = 0; i < options->networks; i++) {
+        fputs(i ? ", " : "", file);
+        print_scalar(file, options->interfaces[i]);
+    }
     fprintf(file, ", written by `cm1e init`. docs/BUS-FILE.md explains every key.\n"
             "# A comment has a fact, or a key with an example.\n%s", options->networks > 1 ? "buses:\n" : networks[0]);
     for (unsigned i = 0; i < options->networks && options->networks > 1; i++)

@@ -213,6 +213,14 @@ def check_several(folder):
         expect(refused.returncode in (2, 64) and ("twice" in refused.stderr or "at most 4" in refused.stderr), refused)
 
 
+def check_names_of_files(folder):
+    """The interface of the file is the one that was named, whatever YAML makes of its letters."""
+    for name in ("a # b", "c: d", 'e "f', "g\\h"):
+        _, path, _ = init(folder, name, "axes: [{name: X}]\n")
+        scanned = run("scan", "-b", path)
+        expect(scanned.returncode == 0 and "CM1-E" in scanned.stdout, f"{name}: {scanned}")
+
+
 def check_refusals(folder):
     for words in (["init"], ["init", "-i", ""], ["init", "-i", "sim", "-o", ""], ["init", "-i", "sim", "more"]):
         done = run(*words)
@@ -226,4 +234,4 @@ def in_a_folder(check):
 
 real_time.together(*(lambda check=check: in_a_folder(check) for check in (
     check_motors, check_bridge, check_servo, check_slaves, check_without_motor, check_pdos, check_overwriting,
-    check_several, check_modules, check_refusals)))
+    check_several, check_modules, check_names_of_files, check_refusals)))
