@@ -33,12 +33,13 @@ typedef enum cm1e_log_kind {
     CM1E_LOG_OTHER_MASTER,    /**< as OVERRUN: frames of another master */
     CM1E_LOG_SYNC_LOST,       /**< as OVERRUN: clocks that left the reference clock, or that reference was lost */
     CM1E_LOG_EMERGENCY,       /**< of a slave, whether it has an axis or not; code: the error code, detail: its
-                                   position, and 65536 times the error register; value: its five bytes as a number, the
+                                   position, 65536 times the error register, and 16777216 times the number of its bus
+                                   (0 = first); value: its five bytes as a number, the
                                    first is the lowest */
     CM1E_LOG_PORT,            /**< faults that a port of a slave has counted; code: so many since the last such record,
-                                   detail: the position of the slave, 65536 times the port, and 16777216 times the kind
-                                   of fault: 0 damaged frames, 1 receive errors, 2 frames damaged before, 3 lost
-                                   links */
+                                   detail: the position of the slave, 65536 times the port, 1048576 times the number of
+                                   its bus, and 16777216 times the kind of fault: 0 damaged frames, 1 receive errors, 2
+                                   frames damaged before, 3 lost links */
     CM1E_LOG_RING,            /**< of a redundant ring; code 1: it is broken, 0: it is whole again; detail: the number
                                    of the bus times 16777216; value: the last slave that the first interface reaches,
                                    bound: the first one of the second interface; both 0: not known */
@@ -48,8 +49,9 @@ typedef enum cm1e_log_kind {
                                    detail: its place on the wire and 16777216 times the number of the bus, value: its
                                    vendor, bound: 65536 times its explicit device ID, and its alias */
     CM1E_LOG_VARIABLE,        /**< a variable of the program was released (code 0), forced (1) or written (2) from
-                                   outside; detail: the number of its signal in the trace, value: that value; of 64 bits
-                                   that of the upper 53, and bound: what the lower 11 add to it */
+                                   outside; detail: its number among all of the program (0 = first, as `from` of
+                                   `variables` counts: docs/CONTROL.md), value: that value; of 64 bits that of the upper
+                                   53, and bound: what the lower 11 add to it */
     CM1E_LOG_TASK,            /**< a task did not return in time and was ended; code: its place among the tasks in the
                                    order in which they run (0 = first), value: the time that it had, in ms */
     CM1E_LOG_KIND_COUNT,

@@ -39,9 +39,9 @@ void cm1e_log_run(log_t *log, bool begins, int64_t run_ns)
     write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_RUN, .axis = -1, .code = begins}, run_ns);
 }
 
-void cm1e_log_variable(log_t *log, int what, uint32_t column, double value, double rest, int64_t run_ns)
+void cm1e_log_variable(log_t *log, int what, uint32_t row, double value, double rest, int64_t run_ns)
 {
-    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_VARIABLE, .axis = -1, .code = what, .detail = column,
+    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_VARIABLE, .axis = -1, .code = what, .detail = row,
                                         .value = value, .bound = rest}, run_ns);
 }
 

@@ -63,9 +63,9 @@ void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t r
 void cm1e_log_presence(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 /** The run has ended: what these tell of next does not wait until the last record of its kind is old. @rt cycle */
 void cm1e_log_wait_no_longer(log_t *log);
-/** A variable of the program was released (0), forced (1) or written (2) from outside. `column`: of the trace;
- *  `rest`: what `value` lacks of 64 bits. @rt cycle */
-void cm1e_log_variable(log_t *log, int what, uint32_t column, double value, double rest, int64_t run_ns);
+/** A variable of the program was released (0), forced (1) or written (2) from outside. `row`: of the table
+ *  (variables.h); `rest`: what `value` lacks of 64 bits. @rt cycle */
+void cm1e_log_variable(log_t *log, int what, uint32_t row, double value, double rest, int64_t run_ns);
 /** A task, the first one is 0, did not return within its limit. @rt cycle */
 void cm1e_log_task(log_t *log, uint32_t task, int64_t limit_ns, int64_t run_ns);
 size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost);

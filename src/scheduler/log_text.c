@@ -63,9 +63,9 @@ static void command_text(const char *name, const cm1e_log_event_t *event, char *
 {
     char position[40] = "", velocity[40] = "";
     if (event->value != 0.0)
-        snprintf(position, sizeof position, ", position %.6g u", event->value);
+        snprintf(position, sizeof position, ", position %.10g u", event->value);
     if (event->bound != 0.0)
-        snprintf(velocity, sizeof velocity, ", velocity %.6g u/s", event->bound);
+        snprintf(velocity, sizeof velocity, ", velocity %.10g u/s", event->bound);
     snprintf(text, size, "%s: %s%s%s", name, cm1e_command_name((cm1e_command_kind_t)event->code), position, velocity);
 }
 
@@ -80,7 +80,7 @@ static void emergency_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event,
 
 static void ring_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char *text, size_t size)
 {
-    const cm1e_bus_ring_t ring = {.used = true, .broken = true, .placed = event->bound > 0.0,
+    const cm1e_bus_ring_t ring = {.used = true, .broken = true, .placed = bus && event->bound > 0.0,
                                   .behind = (uint16_t)event->value, .before = (uint16_t)event->bound};
     if (event->code && !ring.placed)
         snprintf(text, size, "The ring was broken for a moment, too short to see where: look for a loose plug.");

@@ -204,6 +204,9 @@ START_TEST(test_a_record_is_a_sentence_with_its_numbers)
         {{.kind = CM1E_LOG_STRANGER, .axis = -1, .code = (int32_t)0x89ABCDEF, .detail = 3u << 24 | 0x0102,
           .value = 0xFEDCBA98}, "0x89ABCDEF"},
         {{.kind = CM1E_LOG_RUN, .axis = -1}, "the run ended"},
+        {{.kind = CM1E_LOG_COMMAND, .axis = 0, .code = CM1E_COMMAND_MOVE_ABSOLUTE, .value = -1234567.25,
+          .bound = 2500000.5}, "MC_MoveAbsolute, position -1234567.25 u, velocity 2500000.5 u/s"},
+        {{.kind = CM1E_LOG_RING, .axis = -1, .code = 1, .detail = 3u << 24, .value = 1, .bound = 2}, "ring was broken"},
     };
     char text[20] = "unchanged";
     machine_t machine = {.axis_count = 1};
