@@ -3,6 +3,9 @@
  * The scheduler runs the cycle: receive -> inputs -> programs -> axes -> outputs -> send, on a real-time thread or on
  * virtual time. IEC 61131-3 tasks (interval, priority) run their programs in it, highest priority first, never in
  * parallel. The thread that owns the bus makes and runs the scheduler.
+ *
+ * Without a scheduler (NULL), and where something else that a function needs is NULL, it does nothing and returns
+ * CM1E_ERROR_INVALID_ARGUMENT, an empty reference or 0.
  */
 #ifndef CM1E_SCHEDULER_H
 #define CM1E_SCHEDULER_H

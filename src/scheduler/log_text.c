@@ -139,12 +139,14 @@ static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_even
 void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
 {
     uint32_t count;
-    cm1e_axis_t *const *axes = cm1e_scheduler_axes(scheduler, &count);
-    const bool of_axis = event->axis >= 0 && (uint32_t)event->axis < count;
-    const char *name = of_axis ? cm1e_axis_configuration(axes[event->axis])->name : "";
     if (!text || size == 0)
         return;
     text[0] = 0;
+    if (!scheduler || !event)
+        return;
+    cm1e_axis_t *const *axes = cm1e_scheduler_axes(scheduler, &count);
+    const bool of_axis = event->axis >= 0 && (uint32_t)event->axis < count;
+    const char *name = of_axis ? cm1e_axis_configuration(axes[event->axis])->name : "";
     if (event->kind == CM1E_LOG_RUN)
         snprintf(text, size, event->code ? "the run began" : "the run ended");
     else if (event->kind >= CM1E_LOG_OVERRUN && event->kind <= CM1E_LOG_SYNC_LOST)

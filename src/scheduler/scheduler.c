@@ -82,7 +82,11 @@ bool cm1e_scheduler_is_virtual(const cm1e_scheduler_t *scheduler)
 size_t cm1e_log_read(const cm1e_scheduler_t *scheduler, uint64_t after, cm1e_log_event_t *events, size_t room,
                      uint64_t *lost)
 {
-    return cm1e_log_copy(&scheduler->log, after, events, room, lost);
+    if (scheduler && (events || room == 0))
+        return cm1e_log_copy(&scheduler->log, after, events, room, lost);
+    if (lost)
+        *lost = 0;
+    return 0;
 }
 
 /* ---- the cycle ------------------------------------------------------------------------------------------------- */
@@ -415,6 +419,8 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_run()", "", diag);
+    if (!scheduler)
+        return cm1e_scheduler_missing(diag);
     if (duration_ns < 0)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The duration of the run is negative; expected 0 "
                              "(no end) or above.");
@@ -443,28 +449,35 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
 
 void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler)
 {
-    atomic_store_explicit(&scheduler->stop, true, memory_order_relaxed);
+    if (scheduler)
+        atomic_store_explicit(&scheduler->stop, true, memory_order_relaxed);
 }
 
-void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler) { cm1e_signals_attach(scheduler); }
+void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler)
+{
+    if (scheduler) /* else the signals would do nothing any more */
+        cm1e_signals_attach(scheduler);
+}
 
 int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler)
 {
-    return scheduler->number * scheduler->cycle_time_ns;
+    return scheduler ? scheduler->number * scheduler->cycle_time_ns : 0;
 }
 
 void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text)
 {
-    if (text)
+    if (scheduler && text)
         cm1e_trace_mark(&scheduler->trace, text, cm1e_scheduler_time_ns(scheduler));
 }
 
 void cm1e_scheduler_statistics_sized(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics,
                                      size_t size)
 {
-    cm1e_scheduler_statistics_t copy;
-    cm1e_statistics_read(&scheduler->statistics, &copy);
-    cm1e_copy_sized(statistics, size, &copy, sizeof copy);
+    cm1e_scheduler_statistics_t copy = {0};
+    if (scheduler)
+        cm1e_statistics_read(&scheduler->statistics, &copy);
+    if (statistics)
+        cm1e_copy_sized(statistics, size, &copy, sizeof copy);
 }
 
 cm1e_error_t cm1e_scheduler_check_path(const char *path, cm1e_diag_t *diag)
@@ -478,17 +491,20 @@ cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const c
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_write_csv()", "", diag);
-    return cm1e_trace_write_csv(&scheduler->trace, path, diag);
+    return cm1e_trace_write_csv(cm1e_scheduler_trace(scheduler), path, diag);
 }
 
 cm1e_error_t cm1e_scheduler_write_npy(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_write_npy()", "", diag);
-    return cm1e_trace_write_npy(&scheduler->trace, path, diag);
+    return cm1e_trace_write_npy(cm1e_scheduler_trace(scheduler), path, diag);
 }
 
-const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return &scheduler->trace; }
+const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler)
+{
+    return scheduler ? &scheduler->trace : NULL;
+}
 
 forcing_t *cm1e_scheduler_forcing(cm1e_scheduler_t *s) { return &s->forcing; }
 

@@ -14,6 +14,11 @@
 
 #define DEFAULT_STOP_TIMEOUT_NS INT64_C(10000000000)
 
+cm1e_error_t cm1e_scheduler_missing(cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler is missing.");
+}
+
 cm1e_error_t cm1e_scheduler_check_operation(const member_t *member, cm1e_diag_t *diag)
 {
     const uint32_t present = cm1e_bus_operation(member->bus);
@@ -83,9 +88,12 @@ static cm1e_error_t make_trace(cm1e_scheduler_t *s, cm1e_diag_t *diag)
 cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus,
                                          const cm1e_scheduler_config_t *config, size_t size, cm1e_diag_t *diag)
 {
-    *scheduler = NULL;
+    if (scheduler)
+        *scheduler = NULL;
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_create()", "", diag);
+    if (!scheduler)
+        return cm1e_scheduler_missing(diag);
     if (!bus)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler needs a bus.");
     cm1e_scheduler_t *s = calloc(1, sizeof *s);
@@ -192,6 +200,10 @@ cm1e_error_t cm1e_scheduler_add_task_sized(cm1e_scheduler_t *scheduler, const cm
                                            cm1e_diag_t *diag)
 {
     cm1e_task_config_t own;
+    if (!scheduler)
+        return cm1e_scheduler_missing(diag);
+    if (!task)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A task is missing.");
     cm1e_copy_sized(&own, sizeof own, task, size);
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Tasks are added before the scheduler runs.");
@@ -213,6 +225,8 @@ cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const ch
 {
     trace_column_t column = {.type = type, .value = variable};
     column.kind = type == CM1E_TRACE_BOOL ? TRACE_KIND_FLAG : TRACE_KIND_NUMBER;
+    if (!scheduler)
+        return cm1e_scheduler_missing(diag);
     if ((name && strlen(name) >= sizeof column.name) || (unit && strlen(unit) >= sizeof column.unit))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
                              "The name of a signal has at most %zu bytes, and its unit %zu.", sizeof column.name - 1,
@@ -238,7 +252,7 @@ static cm1e_error_t trace_object_of(cm1e_scheduler_t *s, uint32_t axis, uint16_t
 cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t axis, uint16_t index, uint8_t subindex,
                                          cm1e_diag_t *diag)
 {
-    for (uint32_t i = 0; i < scheduler->axis_count; i++)
+    for (uint32_t i = 0; scheduler && i < scheduler->axis_count; i++)
         if (axis.Handle != 0 && cm1e_axis_reference(scheduler->axes[i]).Handle == axis.Handle)
             return trace_object_of(scheduler, i, index, subindex, diag);
     return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The axis does not belong to this scheduler.");
@@ -247,6 +261,8 @@ cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t
 cm1e_error_t cm1e_scheduler_trace_trigger(cm1e_scheduler_t *scheduler, const cm1e_trace_trigger_t *trigger,
                                           cm1e_diag_t *diag)
 {
+    if (!scheduler)
+        return cm1e_scheduler_missing(diag);
     if (!trigger)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A trigger is missing.");
     return cm1e_trace_set_trigger(&scheduler->trace, trigger, diag);
@@ -254,12 +270,12 @@ cm1e_error_t cm1e_scheduler_trace_trigger(cm1e_scheduler_t *scheduler, const cm1
 
 AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index)
 {
-    return index < scheduler->axis_count ? cm1e_axis_reference(scheduler->axes[index]) : (AXIS_REF_t){0};
+    return scheduler && index < scheduler->axis_count ? cm1e_axis_reference(scheduler->axes[index]) : (AXIS_REF_t){0};
 }
 
 AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const char *name)
 {
-    for (uint32_t i = 0; i < scheduler->axis_count; i++) {
+    for (uint32_t i = 0; scheduler && name && i < scheduler->axis_count; i++) {
         const AXIS_REF_t reference = cm1e_axis_reference(scheduler->axes[i]);
         if (strcmp(cm1e_axis_name(reference), name) == 0)
             return reference;

@@ -58,6 +58,8 @@ struct cm1e_scheduler {
     int64_t sent_ns;       /**< time of the outputs of the last cycle */
 };
 
+/** The error of a function that got no scheduler. */
+cm1e_error_t cm1e_scheduler_missing(cm1e_diag_t *diag);
 /** Without this check the cycles of a stopped bus would pass without a frame and without an error. The cycles of a
  *  restarted bus would write to the old place of the process data. */
 cm1e_error_t cm1e_scheduler_check_operation(const member_t *member, cm1e_diag_t *diag);

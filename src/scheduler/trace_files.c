@@ -127,6 +127,8 @@ cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,
                                    void (*print)(const trace_t *trace, FILE *file), cm1e_diag_t *diag)
 {
     cm1e_output_t output;
+    if (!trace)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler is missing.");
     if (trace->capacity == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Nothing was recorded: the scheduler's trace_capacity is 0.");
     const cm1e_error_t error = cm1e_output_open(&output, path, diag);

@@ -123,7 +123,7 @@ CM1E_GUEST_API const double *cm1e_trace_sample(const trace_t *trace, uint32_t n)
 /** Mark n, 0 = oldest. */
 CM1E_GUEST_API const trace_mark_t *cm1e_trace_mark_at(const trace_t *trace, uint32_t n);
 
-/** The trace of a scheduler. It lives as long as the scheduler. @rt init */
+/** The trace of a scheduler, NULL of none. It lives as long as the scheduler. @rt init */
 CM1E_GUEST_API const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler);
 
 cm1e_error_t cm1e_trace_write_csv(const trace_t *trace, const char *path, cm1e_diag_t *diag); /**< @rt block */

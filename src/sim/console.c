@@ -526,11 +526,14 @@ bool cm1e_sim_segment_news(cm1e_sim_segment_t *segment, char *text, size_t size)
 cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size)
 {
     static const char continued[] = "...";
-    call_t call = {.segment = segment, .answer = answer, .size = size};
-    if (size > 0)
+    char nowhere[1];
+    call_t call = {.segment = segment, .answer = answer ? answer : nowhere, .size = answer ? size : 0};
+    if (call.size > 0)
         answer[0] = '\0';
+    if (!segment || !line)
+        return REFUSE(&call, "a segment or a line is missing");
     const cm1e_error_t error = run_line(&call, line);
-    if (call.cut && size >= sizeof continued)
+    if (call.cut && call.size >= sizeof continued)
         memcpy(answer + size - sizeof continued, continued, sizeof continued);
     return error;
 }

@@ -246,6 +246,10 @@ static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config
 cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     place_t places[CM1E_MAX_SLAVES] = {{0}};
+    if (!config) {
+        cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A configuration is missing.");
+        return NULL;
+    }
     if (config->axis_count > CM1E_MAX_AXES) {
         cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "%u axes: a bus has %d at most", config->axis_count, CM1E_MAX_AXES);
         return NULL;
