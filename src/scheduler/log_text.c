@@ -136,6 +136,43 @@ static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_even
         snprintf(text, size, "%s was %s %s from outside", name, event->code == 1 ? "forced to" : "set to", value);
 }
 
+/** The bus of a record that is about one; NULL: the scheduler does not have it. */
+static const cm1e_bus_t *bus_of(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event)
+{
+    return cm1e_scheduler_bus_at(scheduler, event->kind == CM1E_LOG_PORT ? event->detail >> 20 & 0x0F : event->detail >> 24);
+}
+
+/** Which of several buses, because each has a "slave 1". Returns the bytes written. */
+static size_t print_bus(const cm1e_scheduler_t *scheduler, const cm1e_bus_t *bus, char *text, size_t size)
+{
+    if (!bus || !cm1e_scheduler_bus_at(scheduler, 1))
+        return 0;
+    const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
+    const int bytes = snprintf(text, size, "network %s: ", config->name[0] ? config->name : config->interface_name);
+    return (size_t)bytes < size ? (size_t)bytes : size - 1;
+}
+
+static void bus_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char *text, size_t size)
+{
+    const uint16_t position = (uint16_t)event->detail;
+    if (event->kind == CM1E_LOG_EMERGENCY)
+        emergency_text(bus, event, text, size);
+    else if (event->kind == CM1E_LOG_SLAVE)
+        cm1e_presence_sentence(bus, position, (cm1e_presence_t)event->code, text, size);
+    else if (event->kind == CM1E_LOG_STRANGER)
+        stranger_text(event, text, size);
+    else if (event->kind == CM1E_LOG_PORT)
+        cm1e_port_sentence(bus, position, event->detail >> 16 & 0x0F, (cm1e_port_fault_t)(event->detail >> 24),
+                           (uint32_t)event->code, text, size);
+    else
+        ring_text(bus, event, text, size);
+}
+
+static bool is_of_bus(cm1e_log_kind_t kind)
+{
+    return kind >= CM1E_LOG_EMERGENCY && kind <= CM1E_LOG_STRANGER;
+}
+
 void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
 {
     uint32_t count;
@@ -152,25 +189,16 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
     else if (event->kind >= CM1E_LOG_OVERRUN && event->kind <= CM1E_LOG_SYNC_LOST)
         snprintf(text, size, "%s: %" PRId32 " (%" PRIu32 " since the start)", counter_texts[event->kind], event->code,
                  event->detail);
-    else if (event->kind == CM1E_LOG_EMERGENCY)
-        emergency_text(cm1e_scheduler_bus_at(scheduler, event->detail >> 24), event, text, size);
-    else if (event->kind == CM1E_LOG_SLAVE)
-        cm1e_presence_sentence(cm1e_scheduler_bus_at(scheduler, event->detail >> 24), (uint16_t)event->detail,
-                               (cm1e_presence_t)event->code, text, size);
-    else if (event->kind == CM1E_LOG_STRANGER)
-        stranger_text(event, text, size);
     else if (event->kind == CM1E_LOG_VARIABLE)
         variable_text(scheduler, event, text, size);
     else if (event->kind == CM1E_LOG_TASK)
         snprintf(text, size, "task \"%s\" did not return within %g ms and was ended; all axes were stopped",
                  cm1e_scheduler_task_name(scheduler, (uint32_t)event->code), event->value);
-    else if (event->kind == CM1E_LOG_PORT)
-        cm1e_port_sentence(cm1e_scheduler_bus_at(scheduler, event->detail >> 20 & 0x0F), (uint16_t)event->detail,
-                           event->detail >> 16 & 0x0F, (cm1e_port_fault_t)(event->detail >> 24), (uint32_t)event->code,
-                           text, size);
-    else if (event->kind == CM1E_LOG_RING)
-        ring_text(cm1e_scheduler_bus_at(scheduler, event->detail >> 24), event, text, size);
-    else if (of_axis && event->kind == CM1E_LOG_STATE)
+    else if (is_of_bus(event->kind)) {
+        const cm1e_bus_t *bus = bus_of(scheduler, event);
+        const size_t used = print_bus(scheduler, bus, text, size);
+        bus_text(bus, event, text + used, size - used);
+    } else if (of_axis && event->kind == CM1E_LOG_STATE)
         snprintf(text, size, "%s: %s (was %s)", name, cm1e_axis_state_name((cm1e_axis_state_t)event->code),
                  cm1e_axis_state_name((cm1e_axis_state_t)event->detail));
     else if (of_axis && event->kind == CM1E_LOG_ERROR)

@@ -5,7 +5,9 @@
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "cm1e/log.h"
 #include "cm1e/sim.h"
 #include "cm1e/trace.h"
 #include "scheduler/trace_recorder.h"
@@ -408,6 +410,28 @@ START_TEST(test_behind_a_stop_no_axis_goes_back_to_the_path)
 }
 END_TEST
 
+/** Each bus has a slave 1. */
+START_TEST(test_the_event_log_says_on_which_bus_it_was)
+{
+    static const cm1e_log_event_t events[] = {
+        {.kind = CM1E_LOG_PORT, .axis = -1, .code = 1, .detail = 1u << 20 | 1},
+        {.kind = CM1E_LOG_RING, .axis = -1, .code = 0, .detail = 1u << 24},
+        {.kind = CM1E_LOG_EMERGENCY, .axis = -1, .code = 0x8110, .detail = 1u << 24 | 1},
+        {.kind = CM1E_LOG_SLAVE, .axis = -1, .code = 0, .detail = 1},
+        {.kind = CM1E_LOG_STRANGER, .axis = -1, .code = 0x1234, .detail = 1u << 24 | 3},
+    };
+    char text[512];
+    start_both();
+    for (size_t i = 0; i < sizeof events / sizeof events[0]; i++) {
+        cm1e_log_text(scheduler, &events[i], text, sizeof text);
+        ck_assert_msg(strncmp(text, "network sim: ", 13) == 0 && strlen(text) > 20, "%s", text);
+        cm1e_log_text(scheduler, &events[i], text, 10);
+        ck_assert_str_eq(text, "network s");
+    }
+    close_all();
+}
+END_TEST
+
 START_TEST(test_a_lost_bus_stops_the_whole_group)
 {
     run_group(100000, 0, 1000);
@@ -431,6 +455,7 @@ int main(void)
     tcase_add_test(all, test_what_cannot_run_together_is_refused);
     tcase_add_test(all, test_buses_come_before_the_signals_of_the_trace);
     tcase_add_test(all, test_four_buses_and_no_more);
+    tcase_add_test(all, test_the_event_log_says_on_which_bus_it_was);
     tcase_add_loop_test(all, test_a_group_across_buses_makes_up_what_one_of_them_loses, 0, 3);
     tcase_add_test(all, test_behind_a_stop_no_axis_goes_back_to_the_path);
     tcase_add_test(all, test_a_lost_bus_stops_the_whole_group);
