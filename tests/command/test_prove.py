@@ -235,7 +235,14 @@ def check_refusals(folder):
                        ('{"cm1e_profile": 1, "entries": [{"entry": "6084"}]}', "0x6084:00"),
                        ('{"cm1e_profile": 1, "entries": [{"entry": "0x6084", "typ": 3}]}', "typ: expected"),
                        ('{"cm1e_profile": 1, "entries": [{"entry": "0x6084", "type": 3}]}', "together"),
+                       ('{"cm1e_profile": 1, "entries": [{"entry": "0x-1"}]}', "0x6084:00"),
+                       ('{"cm1e_profile": 1, "entries": [{"entry": "0x6084", "name": "%s"}]}' % (64 * "n"), "63 bytes"),
                        ('{"cm1e_profile": 1, "codes": {"abort": {}}}', "aborts"),
+                       ('{"cm1e_profile": 1, "codes": ["0x0011"]}', "aborts"),
+                       ('{"cm1e_profile": 1, "codes": {"aborts": ["0x06070012"]}}', "pairs"),
+                       ('{"cm1e_profile": 1, "codes": {"errors": {"0x4502": "0x70000"}}}', "0x0011"),
+                       ('{"cm1e_profile": 1, "codes": {"al_status": {"0x0011": "-1"}}}', "0x0011"),
+                       ('{"cm1e_profile": 1, "codes": {"aborts": {"0x106070012": "0x0"}}}', "0x06090031"),
                        ('{"cm1e_profile": 1, "sii": "4G"}', "hexadecimal"),
                        ('{"cm1e_profile": 1, "sii": "44"}', "bytes")):
         done = prove("-b", SIM, "--profile", write(os.path.join(folder, "bad.json"), text))

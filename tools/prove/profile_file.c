@@ -26,22 +26,34 @@ static bool wrong(const reader_t *reader, const char *where, const char *expecte
     return false;
 }
 
+/** Up to `most` hexadecimal digits, and nothing else; `*rest` is what is behind them. false: there are none. */
+static bool parse_digits(const char *text, size_t most, uint32_t *value, const char **rest)
+{
+    const size_t digits = strspn(text, "0123456789abcdefABCDEF");
+    *value = (uint32_t)strtoul(text, NULL, 16);
+    *rest = text + digits;
+    return digits > 0 && digits <= most;
+}
+
 /** "0x6084:00", "0x6084" */
 static bool parse_name(const char *name, uint16_t *index, uint8_t *subindex)
 {
-    unsigned first, second = 0;
-    int used = 0;
-    if (!name || sscanf(name, "0x%4x%n", &first, &used) != 1)
+    uint32_t first, second = 0;
+    const char *rest;
+    if (!name || strncmp(name, "0x", 2) != 0 || !parse_digits(name + 2, 4, &first, &rest))
         return false;
-    if (name[used] == ':') {
-        int more = 0;
-        if (sscanf(name + used, ":%2x%n", &second, &more) != 1)
-            return false;
-        used += more;
-    }
+    if (*rest == ':' && !parse_digits(rest + 1, 2, &second, &rest))
+        return false;
     *index = (uint16_t)first;
     *subindex = (uint8_t)second;
-    return name[used] == '\0';
+    return *rest == '\0';
+}
+
+/** A code as "0x0011" (of 4 digits) or "0x06090031" (of 8), or fewer. */
+static bool parse_code(const char *text, size_t most, uint32_t *code)
+{
+    const char *rest;
+    return strncmp(text, "0x", 2) == 0 && parse_digits(text + 2, most, code, &rest) && *rest == '\0';
 }
 
 static cm1e_sim_profile_entry_t *add_entry(reader_t *reader, const char *name)
@@ -69,8 +81,8 @@ static bool take_number(const reader_t *reader, const json_t *object, const char
 static bool take_text(const reader_t *reader, const json_t *object, const char *key, char text[64])
 {
     const json_t *value = json_object_get(object, key);
-    if (value && !json_is_string(value))
-        return wrong(reader, key, "a text");
+    if (value && (!json_is_string(value) || json_string_length(value) >= 64))
+        return wrong(reader, key, "a text of up to 63 bytes");
     snprintf(text, 64, "%s", value ? json_string_value(value) : "");
     return true;
 }
@@ -150,13 +162,14 @@ static bool take_missing(reader_t *reader, const json_t *missing)
 static bool take_code(reader_t *reader, cm1e_sim_code_kind_t kind, const char *ours, const json_t *theirs)
 {
     const char *text = json_string_value(theirs);
-    char *end[2];
-    if (!text || reader->profile.code_count == CODES_MAX)
-        return wrong(reader, ours, "a code as \"0x06090031\"");
-    cm1e_sim_profile_code_t *code = &reader->codes[reader->profile.code_count++];
-    *code = (cm1e_sim_profile_code_t){.kind = kind, .ours = (uint32_t)strtoul(ours, &end[0], 16),
-                                      .theirs = (uint32_t)strtoul(text, &end[1], 16)};
-    return (*end[0] == '\0' && *end[1] == '\0') || wrong(reader, ours, "two codes as \"0x06090031\"");
+    cm1e_sim_profile_code_t code = {.kind = kind};
+    const size_t most = kind == CM1E_SIM_CODE_ABORT ? 8 : 4;
+    if (!text || !parse_code(ours, most, &code.ours) || !parse_code(text, most, &code.theirs))
+        return wrong(reader, ours, most == 8 ? "two codes as \"0x06090031\"" : "two codes as \"0x0011\"");
+    if (reader->profile.code_count == CODES_MAX)
+        return wrong(reader, ours, "fewer codes");
+    reader->codes[reader->profile.code_count++] = code;
+    return true;
 }
 
 static bool take_codes(reader_t *reader, json_t *codes)
@@ -164,12 +177,16 @@ static bool take_codes(reader_t *reader, json_t *codes)
     static const char *const kinds[] = {"aborts", "al_status", "errors"};
     const char *name, *ours;
     json_t *group, *theirs;
+    if (codes && !json_is_object(codes))
+        return wrong(reader, "codes", "aborts, al_status or errors");
     json_object_foreach(codes, name, group) {
         size_t kind = 0;
         while (kind < sizeof kinds / sizeof kinds[0] && strcmp(kinds[kind], name) != 0)
             kind++;
         if (kind == sizeof kinds / sizeof kinds[0])
             return wrong(reader, name, "aborts, al_status or errors");
+        if (!json_is_object(group))
+            return wrong(reader, name, "pairs of codes");
         json_object_foreach(group, ours, theirs)
             if (!take_code(reader, (cm1e_sim_code_kind_t)kind, ours, theirs))
                 return false;
