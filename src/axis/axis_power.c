@@ -317,5 +317,5 @@ bool cm1e_axis_shut_down(cm1e_axis_t *axis)
         return false;
     cm1e_axis_outputs_off(axis); /* not earlier: a brake on an output must not act on a moving load */
     const bool gone = axis->now_ns - axis->power.free_ns >= gone_after_ns;
-    return axis->drive.feedback.state != OPERATION_ENABLED || (gone && !axis->drive.feedback.online);
+    return !cm1e_drive_shows_torque(&axis->drive) || (gone && !axis->drive.feedback.online);
 }

@@ -183,8 +183,7 @@ static bool wants_torque(const cm1e_drive_t *drive)
         return false;
     if (drive->fault.error != CM1E_OK)
         return drive_fault_allows_ramp(drive->fault.error) && drive->feedback.enabled;
-    if (!drive->torque.asked && (drive->feedback.state == OPERATION_ENABLED ||
-                                 drive->now_ns < drive->waits.torque_from_ns))
+    if (!drive->torque.asked && (cm1e_drive_shows_torque(drive) || drive->now_ns < drive->waits.torque_from_ns))
         return false;
     /* A jump of the position on the way to torque: it would be a target. The way begins anew. */
     if (!drive->torque.was_enabled && drive->actual.distrusted > 0)

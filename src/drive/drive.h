@@ -64,6 +64,11 @@ static inline bool cm1e_drive_waits(const cm1e_drive_t *drive)
 {
     return drive->position != 0 && !drive->watch.absent && !cm1e_drive_operational(drive);
 }
+/** Whether the drive shows a state in which its motor has torque, also one that nobody commanded. @rt cycle */
+static inline bool cm1e_drive_shows_torque(const cm1e_drive_t *drive)
+{
+    return drive->feedback.state == OPERATION_ENABLED || drive->feedback.state == QUICK_STOP_ACTIVE;
+}
 /** Whether there is no device: the axis is virtual, or an encoder. @rt any */
 static inline bool cm1e_drive_is_virtual(const cm1e_drive_t *drive) { return drive->position == 0; }
 /** The index on the wire of an object that has `index` for the first axis of the device. Objects of the device itself

@@ -343,6 +343,54 @@ START_TEST(a_quick_stop_of_the_drive_itself_ends_its_ramp_and_then_has_no_torque
 }
 END_TEST
 
+/** At 30 revolutions a second the drive begins a quick stop by itself, and will stay in it. */
+static void begin_quick_stop(void)
+{
+    const int16_t stays = 6;
+    describe_other(0);
+    config.axes[0].sim.no_stops = true;
+    open_segment();
+    ck_assert(cm1e_sdo_write(bus, 1, OBJ_605A_QUICK_STOP_OPTION, 0, &stays, 2, &diag) == CM1E_OK);
+    enable();
+    command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 300});
+    cycles(600);
+    cm1e_sim_cia402_of(cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1))->state = QUICK_STOP_ACTIVE;
+    cycles(5);
+    ck_assert_int_eq(info().state, CM1E_AXIS_ERROR_STOP);
+}
+
+START_TEST(an_axis_that_is_enabled_again_within_a_quick_stop_of_its_drive_waits_for_its_end)
+{
+    begin_quick_stop();
+    reset_axis();
+    double slowest = INFINITY;
+    bool off = false;
+    for (int n = 0; n < 1000 && info().state != CM1E_AXIS_STANDSTILL; n++) {
+        power(true);
+        cycles(1);
+        slowest = fmin(slowest, fabs(probe().velocity_counts_per_s));
+        off |= !probe().torque_on;
+        ck_assert_msg(!off || slowest < COUNTS, "torque off at %.0f counts/s", slowest);
+    }
+    ck_assert_int_eq(info().state, CM1E_AXIS_STANDSTILL);
+    ck_assert(off && probe().torque_on);
+    close_segment();
+}
+END_TEST
+
+START_TEST(the_end_of_a_run_waits_for_the_quick_stop_of_a_drive)
+{
+    begin_quick_stop();
+    int n = 0;
+    while (!cm1e_axis_shut_down(axis) && ++n < 2000)
+        cycles(1);
+    ck_assert_int_lt(n, 2000);
+    ck_assert(!probe().torque_on);
+    ck_assert_double_lt(fabs(probe().velocity_counts_per_s), COUNTS);
+    close_segment();
+}
+END_TEST
+
 START_TEST(a_cause_that_stays_is_there_after_the_reset)
 {
     begin(0);
@@ -551,6 +599,8 @@ int main(void)
     tcase_add_test(tests, a_method_that_the_drive_lacks_fails_and_a_stop_ends_a_homing);
     tcase_add_loop_test(tests, a_fault_in_a_move_ends_it_and_a_reset_clears_it, 0, 4);
     tcase_add_loop_test(tests, a_quick_stop_of_the_drive_itself_ends_its_ramp_and_then_has_no_torque, 0, 2);
+    tcase_add_test(tests, an_axis_that_is_enabled_again_within_a_quick_stop_of_its_drive_waits_for_its_end);
+    tcase_add_test(tests, the_end_of_a_run_waits_for_the_quick_stop_of_a_drive);
     tcase_add_test(tests, a_cause_that_stays_is_there_after_the_reset);
     tcase_add_loop_test(tests, wherever_the_power_goes_the_axis_ends_in_a_known_state, 0, 4);
     tcase_add_test(tests, the_status_of_touch_probes_has_the_bits_of_the_standard);
