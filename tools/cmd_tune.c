@@ -149,7 +149,21 @@ static tune_limits_t limits_of(const tune_options_t *options, const cm1e_axis_co
     return limits;
 }
 
-static bool plan(tune_run_t *run)
+/** Sines that are longer than the record could not be measured after the motor has made them. */
+static bool fits_record(const tune_run_t *run, double cycle_s)
+{
+    double time_s = 0;
+    for (uint32_t i = 0; i < run->part_count; i++)
+        time_s += TUNE_PERIODS / run->parts[i].frequency + 2 * PAUSE_S;
+    const double most_s = TUNE_SAMPLES_MAX * cycle_s;
+    if (time_s <= most_s)
+        return true;
+    complain("the sines would take %.4g s, and %.4g s are recorded at most: take a higher frequency or fewer steps",
+             time_s, most_s);
+    return false;
+}
+
+static bool plan(tune_run_t *run, double cycle_s)
 {
     const tune_options_t *options = run->options;
     const tune_limits_t limits = limits_of(options, run->config);
@@ -170,7 +184,7 @@ static bool plan(tune_run_t *run)
                  SMALLEST_AMPLITUDE_COUNTS);
         return false;
     }
-    return true;
+    return !waves || fits_record(run, cycle_s);
 }
 
 /* ---- in the cycle ------------------------------------------------------------------------------------------------ */
@@ -643,15 +657,15 @@ int command_tune(int argc, char **argv)
     settings->table_profiles = true;
     if (settings->max_velocity == 0 || settings->max_velocity > options.limits.velocity)
         settings->max_velocity = options.limits.velocity; /* nothing is faster, whatever happens */
+    const double cycle_s = (double)(config.cycle_time_ns ? config.cycle_time_ns : 1000000) * 1e-9;
     for (int i = 0; i < 2; i++) {
         runs[i].options = &options;
         runs[i].axis_number = (uint32_t)axis;
         runs[i].config = settings;
-        if (!plan(&runs[i]))
+        if (!plan(&runs[i], cycle_s))
             /* NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): the command ends here */
             return EXIT_WRONG_USE;
     }
-    const int64_t cycle_ns = config.cycle_time_ns ? config.cycle_time_ns : 1000000;
     /* NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): the command ends here */
-    return make_records(runs, (double)cycle_ns * 1e-9) ? run_both(runs, &config) : EXIT_FAILED;
+    return make_records(runs, cycle_s) ? run_both(runs, &config) : EXIT_FAILED;
 }

@@ -105,6 +105,9 @@ def limits(bench):
     refused("10 ... 100", "--max-travel", "1", "--max-velocity", "5", "--set", "K47=7")
     high = bench.tune("sine", "--max-travel", "1", "--max-velocity", "5", "--frequency", "200")
     wire.check(high.returncode != 0 and "allow an amplitude of" in high.stderr, f"{high}")
+    for low in ("0.01", "1e-300"):
+        low = bench.tune("sine", "--max-travel", "1", "--max-velocity", "5", "--frequency", low)
+        wire.check(low.returncode != 0 and "200 s are recorded at most" in low.stderr, f"{low}")
     for more in ("limits: {jerk: 20000}", "unit: {modulo_range: 0.02}"):
         pushed = subprocess.Popen(bench.segment.command([bench.cm1e, "tune", "step", "X", "-b", bench.bus_file(more),
                                                          "--max-travel", "0.012", "--max-velocity", "0.03"]),
