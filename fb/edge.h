@@ -122,9 +122,10 @@ typedef struct cm1e_fb_reading {
 fb_reading_t cm1e_fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing);
 
 /** Administrative commands are not queued in this version (2.4.2). */
-static inline cm1e_error_t fb_refuse_execution_mode(MC_EXECUTION_MODE mode)
+static inline cm1e_error_t fb_refuse_execution_mode(cm1e_axis_t *axis, MC_EXECUTION_MODE mode)
 {
-    return mode == mcImmediately ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
+    return mode == mcImmediately ? CM1E_OK : cm1e_axis_refuse_input(axis, CM1E_ERROR_UNSUPPORTED, "ExecutionMode",
+                                                                    (int)mode, "0 (mcImmediately)");
 }
 
 #endif

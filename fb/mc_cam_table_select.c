@@ -5,7 +5,7 @@
 static cm1e_error_t take(MC_CamTableSelect_t *fb, cm1e_axis_t *slave)
 {
     fb->CamTableID = 0;
-    const cm1e_error_t error = fb_refuse_execution_mode(fb->ExecutionMode);
+    const cm1e_error_t error = fb_refuse_execution_mode(slave, fb->ExecutionMode);
     if (error != CM1E_OK)
         return error;
     return fb->CamTable ? cm1e_axis_cam_select(slave, fb->CamTable, fb->Periodic, fb->MasterAbsolute, fb->SlaveAbsolute,

@@ -15,13 +15,14 @@ typedef struct jog {
     bool held;
 } jog_t;
 
-static cm1e_error_t choose(const MC_Jog_t *fb, const cm1e_axis_measures_t *measures, jog_t *jog)
+static cm1e_error_t choose(const MC_Jog_t *fb, cm1e_axis_t *axis, const cm1e_axis_measures_t *measures, jog_t *jog)
 {
     *jog = (jog_t){.velocity = fb->Velocity, .acceleration = fb->Acceleration, .deceleration = fb->Deceleration,
                    .jerk = fb->Jerk};
     const bool standard = fb->Mode == MC_JOGMODE_STANDARD_SLOW || fb->Mode == MC_JOGMODE_STANDARD_FAST;
     if (!standard && !(fb->Velocity > 0.0)) /* the axis would take a negative velocity as the other direction */
-        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
+        return cm1e_axis_refuse_input(axis, CM1E_ERROR_AXIS_VELOCITY_RANGE, "MC_Jog: Velocity", fb->Velocity,
+                                      "a velocity above 0");
     switch ((int)fb->Mode) {
     case MC_JOGMODE_STANDARD_SLOW:
     case MC_JOGMODE_STANDARD_FAST:
@@ -33,9 +34,11 @@ static cm1e_error_t choose(const MC_Jog_t *fb, const cm1e_axis_measures_t *measu
         return CM1E_OK;
     case MC_JOGMODE_INCHING:
     case MC_JOGMODE_INCHING_MODULO:
-        return isfinite(fb->Position) && fb->Position > 0.0 ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+        return isfinite(fb->Position) && fb->Position > 0.0
+                   ? CM1E_OK : cm1e_axis_refuse_input(axis, CM1E_ERROR_AXIS_POSITION_RANGE, "MC_Jog: Position",
+                                                      fb->Position, "a step above 0");
     default:
-        return CM1E_ERROR_INVALID_ARGUMENT;
+        return cm1e_axis_refuse_input(axis, CM1E_ERROR_INVALID_ARGUMENT, "MC_Jog: Mode", (int)fb->Mode, "0 ... 4");
     }
 }
 
@@ -73,7 +76,7 @@ static cm1e_error_t start(MC_Jog_t *fb, cm1e_axis_t *axis)
     const cm1e_axis_measures_t measures = cm1e_axis_measures(axis);
     cm1e_axis_info_t info;
     jog_t jog;
-    const cm1e_error_t error = choose(fb, &measures, &jog);
+    const cm1e_error_t error = choose(fb, axis, &measures, &jog);
     fb->Private.common.command = 0;
     fb->Private.stopping = FALSE;
     if (error != CM1E_OK)
@@ -85,7 +88,8 @@ static cm1e_error_t start(MC_Jog_t *fb, cm1e_axis_t *axis)
     const double distance = jog.held ? 0.0 : sign * step(fb, info.set_position, sign);
     if (!jog.held && !(distance > 0.0 && isfinite(distance))) /* the multiple equals the present position within the
                                                                * precision of numbers */
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
+        return cm1e_axis_refuse_input(axis, CM1E_ERROR_AXIS_POSITION_RANGE, "MC_Jog: Position", fb->Position,
+                                      "a step that changes the present position");
     fb->Private.held = jog.held;
     fb->Private.deceleration = jog.deceleration;
     fb->Private.jerk = jog.jerk;

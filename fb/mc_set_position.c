@@ -6,7 +6,7 @@ void MC_SetPosition(MC_SetPosition_t *fb)
     cm1e_error_t error;
     switch (cm1e_fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
     case FB_STEP_START:
-        error = fb_refuse_execution_mode(fb->ExecutionMode);
+        error = fb_refuse_execution_mode(axis, fb->ExecutionMode);
         cm1e_fb_started(&fb->Private, error != CM1E_OK ? error
                                                        : cm1e_axis_set_position(axis, fb->Position, fb->Relative));
         break;

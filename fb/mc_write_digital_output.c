@@ -8,7 +8,7 @@ static int number_of(const MC_WriteDigitalOutput_t *fb)
 
 static cm1e_error_t write_output(const MC_WriteDigitalOutput_t *fb, cm1e_axis_t *axis)
 {
-    const cm1e_error_t error = fb_refuse_execution_mode(fb->ExecutionMode);
+    const cm1e_error_t error = fb_refuse_execution_mode(axis, fb->ExecutionMode);
     return error != CM1E_OK ? error : cm1e_axis_write_output(axis, number_of(fb), fb->Value != FALSE);
 }
 

@@ -59,7 +59,8 @@ static cm1e_error_t start(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, 
 {
     fb->command = 0;
     if (boolean && !cm1e_axis_parameter_is_bool(number))
-        return CM1E_ERROR_AXIS_PARAMETER;
+        return cm1e_axis_refuse_input(axis, CM1E_ERROR_AXIS_PARAMETER, "MC_WriteBoolParameter: ParameterNumber", number,
+                                      "4, 5, 6 or 1804");
     if (!cm1e_axis_parameter_is_object(number))
         return cm1e_axis_write_parameter(axis, number, value);
     return cm1e_axis_object_start(axis, number, true, value, &fb->command);
@@ -81,9 +82,10 @@ fb_outputs_t cm1e_fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *re
                                      bool boolean, LREAL value, MC_EXECUTION_MODE mode)
 {
     cm1e_axis_t *axis = NULL;
-    const cm1e_error_t error = fb_refuse_execution_mode(mode);
+    cm1e_error_t error;
     switch (cm1e_fb_execute(fb, reference, execute, &axis)) {
     case FB_STEP_START:
+        error = fb_refuse_execution_mode(axis, mode);
         cm1e_fb_started(fb, error != CM1E_OK ? error : start(fb, axis, number, boolean, value));
         break;
     case FB_STEP_POLL:

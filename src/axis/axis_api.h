@@ -183,6 +183,10 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
 /** A block refuses a command by itself: remembered for the text in place of an earlier refusal. Returns `error`.
  *  @rt cycle */
 cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error);
+/** A block refuses one of its inputs, as "MC_Jog: Mode", for its value; `right` says which are allowed. Both are constants.
+ *  Returns `error`. @rt cycle */
+cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const char *input, double value,
+                                    const char *right);
 /** ContinuousUpdate (2.4.6): gives the present inputs of a command. Unchanged inputs cost one comparison. Relative
  *  values count from the begin of the command, and the buffer mode stays. A refused update changes nothing: the motion
  *  goes on with the last accepted inputs, and the block shows the error. After the end of the command nothing happens.

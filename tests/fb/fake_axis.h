@@ -62,6 +62,15 @@ static void fake_keep(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
     axis->command.coupling = NULL;
 }
 
+cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const char *input, double value,
+                                    const char *right)
+{
+    (void)axis;
+    (void)input;
+    (void)value;
+    (void)right;
+    return error;
+}
 cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error)
 {
     (void)axis;

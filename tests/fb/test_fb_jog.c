@@ -457,13 +457,14 @@ START_TEST(test_a_step_ends_also_when_the_block_is_not_called)
 }
 END_TEST
 
-static void expect_refused(cm1e_error_t error)
+static void expect_refused(cm1e_error_t error, const char *told)
 {
     const double from = at();
     press(TRUE, FALSE);
     scan();
     ck_assert_msg(jog.Error && jog.ErrorID == cm1e_error_id(error), "0x%04X, not 0x%04X", jog.ErrorID,
                   cm1e_error_id(error));
+    ck_assert_msg(strstr(text(), told) != NULL, "%s", text());
     scans(50);
     ck_assert(jog.Error);
     ck_assert_double_eq(at(), from);
@@ -480,35 +481,35 @@ START_TEST(test_what_cannot_be_is_refused_and_moves_nothing)
     jog.Mode = MC_JOGMODE_CONTINOUS;
     for (int i = 0; i < 5; i++) {
         jog.Velocity = no_velocity[i];
-        expect_refused(CM1E_ERROR_AXIS_VELOCITY_RANGE);
+        expect_refused(CM1E_ERROR_AXIS_VELOCITY_RANGE, "elocity");
     }
     jog.Velocity = 5.0;
     jog.Acceleration = -1.0;
-    expect_refused(CM1E_ERROR_AXIS_DYNAMICS_RANGE);
+    expect_refused(CM1E_ERROR_AXIS_DYNAMICS_RANGE, "acceleration -1");
     jog.Acceleration = 0.0;
     for (int i = 0; i < 4; i++) {
         jog.Mode = i % 2 ? MC_JOGMODE_INCHING : MC_JOGMODE_INCHING_MODULO;
         jog.Position = no_step[i];
-        expect_refused(CM1E_ERROR_AXIS_POSITION_RANGE);
+        expect_refused(CM1E_ERROR_AXIS_POSITION_RANGE, "MC_Jog: Position is");
     }
     jog.Mode = MC_JOGMODE_INCHING;
     jog.Position = 1e300;
-    expect_refused(CM1E_ERROR_AXIS_POSITION_RANGE);
+    expect_refused(CM1E_ERROR_AXIS_POSITION_RANGE, "1e+300");
     jog.Mode = (E_JogMode)7;
-    expect_refused(CM1E_ERROR_INVALID_ARGUMENT);
+    expect_refused(CM1E_ERROR_INVALID_ARGUMENT, "MC_Jog: Mode is 7; 0 ... 4 is right");
     jog.Mode = (E_JogMode)-1;
-    expect_refused(CM1E_ERROR_INVALID_ARGUMENT);
+    expect_refused(CM1E_ERROR_INVALID_ARGUMENT, "MC_Jog: Mode is -1");
     jog.Mode = MC_JOGMODE_STANDARD_SLOW;
     jog.Axis = &nothing;
-    expect_refused(CM1E_ERROR_FB_AXIS_REF);
+    expect_refused(CM1E_ERROR_FB_AXIS_REF, ""); /* of no axis */
     jog.Axis = NULL;
-    expect_refused(CM1E_ERROR_FB_AXIS_REF);
+    expect_refused(CM1E_ERROR_FB_AXIS_REF, ""); /* of no axis */
     jog.Axis = &reference;
     ck_assert_int_eq(cm1e_axis_power(axis, &owner, true, false, true), CM1E_OK);
-    expect_refused(CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+    expect_refused(CM1E_ERROR_AXIS_DIRECTION_DISABLED, "direction");
     power(false);
     scans(100);
-    expect_refused(CM1E_ERROR_AXIS_NOT_POWERED);
+    expect_refused(CM1E_ERROR_AXIS_NOT_POWERED, "MC_Power");
     close_segment();
 }
 END_TEST

@@ -257,6 +257,7 @@ START_TEST(position_is_set_at_the_edge)
     set.Execute = TRUE;
     scan();
     ck_assert_uint_eq(set.ErrorID, id(CM1E_ERROR_UNSUPPORTED));
+    ck_assert_msg(strstr(text(), "ExecutionMode is 1; 0 (mcImmediately) is right") != NULL, "%s", text());
     set.Execute = FALSE;
     scan();
     set.ExecutionMode = mcImmediately;
