@@ -8,6 +8,7 @@
 
 #include "choose_bus.h"
 #include "cm1e/bridge.h"
+#include "config/interface.h"
 #include "config/places.h"
 #include "core/near.h"
 #include "core/text.h"
@@ -105,6 +106,21 @@ static bool copy_word(char *field, size_t size, const char *word, const char *wh
     return true;
 }
 
+/** A bus file of the simulated segment is refused like the one of the network, before anything is opened. */
+static bool segment_is_good(const char *interface_name)
+{
+    static const char prefix[] = CM1E_SIM_FILE_PREFIX;
+    cm1e_bus_config_t segment = {0};
+    cm1e_diag_t diag = {0};
+    if (strncmp(interface_name, prefix, sizeof prefix - 1) != 0)
+        return true;
+    const cm1e_error_t error = cm1e_bus_config_load(&segment, interface_name + sizeof prefix - 1, &diag);
+    if (error != CM1E_OK)
+        (void)fail(&diag);
+    cm1e_bus_config_free(&segment);
+    return error == CM1E_OK;
+}
+
 bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config)
 {
     if (!options->interface_name && !options->bus_file) {
@@ -117,6 +133,8 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
         return false;
     if (options->interface_name && !copy_word(config->interface_name, sizeof config->interface_name,
                                               options->interface_name, "the interface name"))
+        return false;
+    if (!segment_is_good(config->interface_name))
         return false;
     return !options->pcap_file
            || copy_word(config->pcap_file, sizeof config->pcap_file, options->pcap_file, "the name of the pcap file");

@@ -531,7 +531,7 @@ WRONG = [
     (["scan", "-i", "no-such-interface"], FAILED, "no-such-interface"),
     (["scan", "-b", "no-such-file.yaml"], WRONG_USE, "no-such-file.yaml"),
     (["scan", "-i", "x" * 100], WRONG_USE, "too long"),
-    (["scan", "-i", "sim:no-such-file.yaml"], FAILED, "no-such-file.yaml"),
+    (["scan", "-i", "sim:no-such-file.yaml"], WRONG_USE, "no-such-file.yaml"),
     (["sdo", "-i", "sim", "read"], WRONG_USE, "read POSITION"),
     (["sdo", "-i", "sim", "list"], WRONG_USE, "read POSITION"),
     (["sdo", "-i", "sim", "list", "2"], FAILED, "no slave 2"),

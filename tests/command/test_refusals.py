@@ -74,7 +74,9 @@ NUMBERS = [
     (["sdo", "-i", "sim", "read", "1", "0x1018:256"], "sub-index"),
 ]
 NAMES = [
-    (["scan", "-i", "sim:"], "bus file behind the colon"), (["scan", "-i", ""], "-i"), (["status", "-i", ""], "-i"), (["move", "-i", "", "--by", "1"], "-i"),
+    (["scan", "-i", "sim:"], "bus file behind the colon"), (["scan", "-i", "sim:nowhere.yaml"], "nowhere.yaml: cannot be"),
+    (MOVE[:2] + ["sim:nowhere.yaml", "--by", "1"], "nowhere.yaml: cannot be"), (["scan", "-i", ""], "-i"),
+    (["status", "-i", ""], "-i"), (["move", "-i", "", "--by", "1"], "-i"),
     (["sim", "-i", ""], "-i"), (["scan", "-b", ""], "-b"), (["scan", "-i", "sim", "--pcap", ""], "--pcap"),
     (MOVE + ["--by", "1", "--csv", ""], "--csv"), (MOVE + ["--by", "1", "--svg", ""], "--svg"),
     (MOVE + ["--by", "1", "--svg", "x", "--csv", "x"], "same file"),
