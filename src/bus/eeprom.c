@@ -6,7 +6,7 @@
 #include "core/bytes.h"
 #include "core/clock.h"
 
-enum { EEPROM_TRIES = 3, REGISTER_TRIES = 3 };
+enum { EEPROM_TRIES = 3, REGISTER_TRIES = 3, LEAST_LOOKS = 20 };
 #define READ_TIMEOUT_NS INT64_C(20000000)
 /** A memory chip takes 10 ms at most; a processor that emulates one may have to erase a page of its flash. */
 #define WRITE_TIMEOUT_NS INT64_C(500000000)
@@ -38,14 +38,15 @@ static bool write_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data
 }
 
 /** Waits until the interface is idle; one datagram reads the status and the words of the last command. false: the slave
- *  is lost, or the interface stays busy. */
+ *  is lost, or the interface stays busy. A time that passed while this process stood still says nothing of the slave, so
+ *  it is looked at often, too. */
 static bool wait_idle(cm1e_eeprom_t *eeprom, int64_t timeout_ns, uint16_t *status)
 {
     cm1e_clock_t *clock = cm1e_clock_current();
     const int64_t deadline_ns = cm1e_clock_now(clock) + timeout_ns;
     uint8_t bytes[EEPROM_GROUP_AT + sizeof eeprom->group];
     eeprom->ready = false;
-    for (;;) {
+    for (int looks = 1;; looks++) {
         if (!read_register(eeprom, REG_EEPROM_CONTROL, bytes, sizeof bytes))
             return false;
         *status = cm1e_get_u16(bytes);
@@ -53,7 +54,7 @@ static bool wait_idle(cm1e_eeprom_t *eeprom, int64_t timeout_ns, uint16_t *statu
         eeprom->ready = !(*status & (EEPROM_BUSY | EEPROM_ERRORS));
         if (!(*status & EEPROM_BUSY))
             return true;
-        if (cm1e_clock_now(clock) >= deadline_ns)
+        if (looks >= LEAST_LOOKS && cm1e_clock_now(clock) >= deadline_ns)
             return false;
         pause_for(EEPROM_PAUSE_NS);
     }

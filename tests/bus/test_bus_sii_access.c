@@ -375,6 +375,30 @@ START_TEST(an_interface_that_stays_busy_ends_in_an_error_soon)
 }
 END_TEST
 
+/** Every 50th look finds the interface busy, and then this process stands still for longer than any memory chip takes. */
+static cm1e_tap_verdict_t stand_still(void *context, cm1e_tap_frame_t *frame)
+{
+    static unsigned looks;
+    cm1e_bus_t *bus = context;
+    const bool looked = frame->direction == CM1E_TAP_RECEIVED && frame->length >= 30 &&
+                        cm1e_get_u16(frame->bytes + 20) == 0x0502 && frame->bytes[16] == COMMAND_FPRD;
+    if (looked && ++looks % 50 == 0) {
+        frame->bytes[27] |= 0x80;
+        cm1e_clock_sleep_until(cm1e_bus_clock(bus), now_of(bus) + 30000000);
+    }
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(a_process_that_stands_still_takes_no_eeprom_for_one_that_stays_busy)
+{
+    cm1e_bus_t *bus = with_images();
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), stand_still, bus);
+    check_read(bus, 1);
+    ck_assert_msg(write_image(bus, &plain) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** What happens to frame number `at` of its direction. */
 typedef struct strike {
     enum { LOSE_THERE, LOSE_BACK, TWICE, LATE, NOT_COUNTED, STRIKES } kind;
@@ -510,6 +534,7 @@ int main(void)
     TCase *faults = tcase_create("faults");
     tcase_add_test(faults, an_eeprom_that_keeps_nothing_is_told_from_its_first_word);
     tcase_add_test(faults, an_interface_that_stays_busy_ends_in_an_error_soon);
+    tcase_add_test(faults, a_process_that_stands_still_takes_no_eeprom_for_one_that_stays_busy);
     tcase_add_loop_test(faults, one_disturbed_frame_never_leaves_a_wrong_word_unnoticed, 0, STRIKES);
     tcase_add_test(faults, a_slave_that_goes_at_any_word_comes_back_by_its_backup);
     tcase_add_test(faults, an_sii_that_no_scan_gets_past_is_written_anew);
