@@ -107,20 +107,28 @@ static void make_sdos(maker_t *maker, cm1e_eni_mailbox_t *mailbox, const cm1e_de
     }
 }
 
+/* The mailbox of a direction: that of its sync manager, with the length of the words 0x18 to 0x1B of an EEPROM where that
+ * states none. No length: there is none. */
+static cm1e_eni_mailbox_area_t mailbox_area(const cm1e_description_t *described, cm1e_sync_manager_use_t use)
+{
+    const cm1e_described_eeprom_t *eeprom = &described->eeprom;
+    const uint16_t length = use == CM1E_SM_MAILBOX_OUT ? eeprom->mailbox_out_length : eeprom->mailbox_in_length;
+    for (size_t n = 0; n < described->sync_managers.count; n++) {
+        const cm1e_described_sync_manager_t *manager = &described->sync_managers.at[n];
+        if (manager->use == use)
+            return (cm1e_eni_mailbox_area_t){manager->start, manager->length > 0 ? manager->length : length};
+    }
+    return (cm1e_eni_mailbox_area_t){0};
+}
+
 static void make_mailbox(maker_t *maker, cm1e_eni_device_t *device, const cm1e_description_t *described)
 {
     cm1e_eni_mailbox_t *mailbox = &device->mailbox;
     const cm1e_mailbox_protocols_t *protocols = &described->mailbox;
     mailbox->poll_ms = CM1E_ENI_NOT_GIVEN;
     mailbox->status_bit = CM1E_ENI_NOT_GIVEN;
-    for (size_t n = 0; n < described->sync_managers.count; n++) {
-        const cm1e_described_sync_manager_t *manager = &described->sync_managers.at[n];
-        const cm1e_eni_mailbox_area_t area = {manager->start, manager->length};
-        if (manager->use == CM1E_SM_MAILBOX_OUT)
-            mailbox->send = area;
-        else if (manager->use == CM1E_SM_MAILBOX_IN)
-            mailbox->receive = area;
-    }
+    mailbox->send = mailbox_area(described, CM1E_SM_MAILBOX_OUT);
+    mailbox->receive = mailbox_area(described, CM1E_SM_MAILBOX_IN);
     mailbox->present = mailbox->send.length > 0 && mailbox->receive.length > 0;
     if (!mailbox->present)
         return;
@@ -375,6 +383,18 @@ static cm1e_error_t check_size(maker_t *maker, const cm1e_eni_slave_t *slave)
     return CM1E_OK;
 }
 
+/* Without its mailbox in the file a slave that has one stays in Init, and its start-up commands would be lost. */
+static cm1e_error_t check_mailbox(maker_t *maker, const cm1e_eni_slave_t *slave)
+{
+    const cm1e_mailbox_protocols_t *mailbox = &slave->device->mailbox;
+    const bool needed = mailbox->aoe || mailbox->eoe || mailbox->coe || mailbox->foe || mailbox->soe || mailbox->voe;
+    if (needed && (mailbox_area(slave->device, CM1E_SM_MAILBOX_OUT).length == 0 ||
+                   mailbox_area(slave->device, CM1E_SM_MAILBOX_IN).length == 0))
+        return wrong(maker, slave, "it has a mailbox, and its description does not state the size of it in both "
+                                   "directions (DefaultSize of an ESI)");
+    return CM1E_OK;
+}
+
 static cm1e_error_t check_slaves(maker_t *maker, const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns)
 {
     if (count == 0 || count > CM1E_MAX_SLAVES)
@@ -388,7 +408,9 @@ static cm1e_error_t check_slaves(maker_t *maker, const cm1e_eni_slave_t *slaves,
         for (size_t j = 0; j < i; j++)
             if (strcmp(slaves[i].name, slaves[j].name) == 0)
                 return wrong(maker, &slaves[i], "this name is there twice; the variables could not be told apart");
-        const cm1e_error_t error = check_size(maker, &slaves[i]);
+        cm1e_error_t error = check_size(maker, &slaves[i]);
+        if (error == CM1E_OK)
+            error = check_mailbox(maker, &slaves[i]);
         if (error != CM1E_OK)
             return error;
     }

@@ -373,6 +373,30 @@ START_TEST(test_an_eni_of_the_bus_file_is_that_of_a_scan)
 }
 END_TEST
 
+/* Its start-up commands would be lost with the mailbox. */
+START_TEST(test_an_eni_needs_the_size_of_a_mailbox)
+{
+#define MAILBOX(SIZE) "<Sm " SIZE "StartAddress='#x1000' ControlByte='#x26' Enable='1'>MBoxOut</Sm><Sm " SIZE             \
+                      "StartAddress='#x1080' ControlByte='#x22' Enable='1'>MBoxIn</Sm>"
+    static const char *const files[] = {
+        FILE_OF(DEVICE(000A0002, 1, "Sized", MAILBOX("DefaultSize='128' ") COE(COMMANDS), "", "")),
+        FILE_OF(DEVICE(000A0002, 1, "Unsized", MAILBOX("") COE(COMMANDS), "", "")),
+        FILE_OF(DEVICE(000A0002, 1, "None", COE(COMMANDS), "", ""))};
+    for (int i = 0; i < 3; i++) {
+        cm1e_file_t file;
+        ck_assert_msg(load(files[i], "product: 0x000A0002,") == CM1E_OK, "%s", diag.text);
+        strcpy(config.interface_name, "eth1");
+        config.virtual_time = false;
+        const cm1e_generate_options_t options = {.format = CM1E_FILE_ENI, .network = &config};
+        ck_assert_int_eq(cm1e_generate(&file, &options, &diag), i == 0 ? CM1E_OK : CM1E_ERROR_CONFIG);
+        ck_assert_msg(i == 0 || strstr(diag.text, "ai: it has a mailbox, and its description does not state the size"),
+                      "%s", diag.text);
+        ck_assert_msg(i != 0 || count_of(&file, "<Ccs>1</Ccs>") == 2, "the start-up commands");
+        cm1e_file_free(&file);
+    }
+}
+END_TEST
+
 START_TEST(test_an_eni_takes_the_esi)
 {
     cm1e_file_t file;
@@ -412,6 +436,7 @@ int main(void)
     tcase_add_test(tests, test_an_absent_slave_has_its_signals_from_the_file);
     tcase_add_test(tests, test_start_up_commands_with_complete_access);
     tcase_add_test(tests, test_an_eni_of_the_bus_file_is_that_of_a_scan);
+    tcase_add_test(tests, test_an_eni_needs_the_size_of_a_mailbox);
     tcase_add_test(tests, test_an_eni_takes_the_esi);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
