@@ -249,7 +249,7 @@ static void check_words(const generate_options_t *options, struct argp_state *st
         argp_error(state, "the format is missing: esi, ec-extend, sii or eni");
     if (!options->file || !options->file[0])
         argp_error(state, "the output is missing: -o FILE, or -o - for standard output");
-    if (options->program && strcmp(options->program, options->file) == 0)
+    if (options->program && same_file(options->program, options->file))
         argp_error(state, "-o and --program name the same file, \"%s\": each needs its own", options->file);
     if (options->common.json)
         argp_error(state, "generate prints nothing but the file: leave out --json");

@@ -212,7 +212,7 @@ static int build(st_t *st, const st_options_t *options)
         name_beside(options->sources[0], ".so", output, sizeof output);
     if (!may_write(output, options) || (options->c_file && !may_write(options->c_file, options)))
         return EXIT_FAILED;
-    if (options->c_file && strcmp(options->c_file, output) == 0) {
+    if (options->c_file && same_file(options->c_file, output)) {
         complain("--c and -o name the same file, %s: the program would replace its C", output);
         return EXIT_FAILED;
     }

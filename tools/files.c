@@ -1,6 +1,7 @@
 #include "files.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,6 +73,28 @@ bool read_input(const char *path, input_t *input)
     if (!standard)
         fclose(file);
     return good;
+}
+
+/** The path without links and dots; the last name need not exist. */
+static bool resolve(const char *path, char resolved[PATH_MAX])
+{
+    char folder[PATH_MAX], place[PATH_MAX];
+    if (realpath(path, resolved))
+        return true;
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const int length = slash ? (int)(slash - path) + 1 : 1;
+    if (snprintf(folder, sizeof folder, "%.*s", length, slash ? path : ".") >= PATH_MAX || !realpath(folder, place))
+        return false;
+    return snprintf(resolved, PATH_MAX, "%s/%s", place, name) < PATH_MAX;
+}
+
+bool same_file(const char *left, const char *right)
+{
+    char of_left[PATH_MAX], of_right[PATH_MAX];
+    if (strcmp(left, right) == 0)
+        return true;
+    return strcmp(left, "-") != 0 && strcmp(right, "-") != 0 && resolve(left, of_left) && resolve(right, of_right) &&
+           strcmp(of_left, of_right) == 0;
 }
 
 bool may_overwrite(const char *path, bool force)

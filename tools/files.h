@@ -29,6 +29,9 @@ bool read_input(const char *path, input_t *input);
  *  an incomplete file. False and a complaint: it cannot be written. */
 bool write_output(const char *path, const void *bytes, size_t size);
 
+/** Both names lead to one file, also one that does not exist yet. */
+bool same_file(const char *left, const char *right);
+
 /** The file may be written: `force`, or there is none of this name; false and a complaint: it would be written over. */
 bool may_overwrite(const char *path, bool force);
 

@@ -4,6 +4,7 @@
 
 #include "cm1e/trace.h"
 #include "command.h"
+#include "files.h"
 
 static const char *const options[TRACE_FILES] = {"--csv", "--svg", "--html", "--npy"};
 
@@ -15,7 +16,7 @@ int need_trace_files(struct argp_state *state, const char *const *files, int cou
         if (files[i] && !files[i][0])
             argp_error(state, "%s needs the name of a file", options[i]);
         for (int k = 0; k < i && files[i]; k++)
-            if (files[k] && strcmp(files[i], files[k]) == 0)
+            if (files[k] && same_file(files[i], files[k]))
                 argp_error(state, "%s and %s write the same file", options[k], options[i]);
     }
     return wanted;

@@ -74,12 +74,15 @@ NUMBERS = [
     (["sdo", "-i", "sim", "read", "1", "0x1018:256"], "sub-index"),
 ]
 NAMES = [
-    (["scan", "-i", "sim:"], "bus file behind the colon"), (["scan", "-i", "sim:nowhere.yaml"], "nowhere.yaml: cannot be"),
+    (["scan", "-i", "sim:"], "bus file behind the colon"),
+    (["scan", "-i", "sim:nowhere.yaml"], "nowhere.yaml: cannot be"),
     (MOVE[:2] + ["sim:nowhere.yaml", "--by", "1"], "nowhere.yaml: cannot be"), (["scan", "-i", ""], "-i"),
     (["status", "-i", ""], "-i"), (["move", "-i", "", "--by", "1"], "-i"),
     (["sim", "-i", ""], "-i"), (["scan", "-b", ""], "-b"), (["scan", "-i", "sim", "--pcap", ""], "--pcap"),
     (MOVE + ["--by", "1", "--csv", ""], "--csv"), (MOVE + ["--by", "1", "--svg", ""], "--svg"),
     (MOVE + ["--by", "1", "--svg", "x", "--csv", "x"], "same file"),
+    (MOVE + ["--by", "1", "--svg", "x", "--csv", "./x"], "same file"),
+    (["generate", "ec-extend", "-o", "x.txt", "--program", os.path.join(os.getcwd(), "x.txt")], "same file"),
     (["run", "x.so", "-i", "sim", "--html", "x", "--csv", "x"], "--csv and --html write the same file"),
     (["trace", "-i", "sim", "--svg", "x", "--npy", "x"], "--svg and --npy write the same file"),
     (MOVE + ["--by", "1", "--csv", "-"], "--csv: standard output has the result"),
