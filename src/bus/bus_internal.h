@@ -173,7 +173,8 @@ typedef struct cm1e_errands {
 
 /** Who took no part in the last cycle that came back. */
 typedef struct cm1e_silence {
-    uint8_t marker;                          /**< of the frame that was sent last: cm1e_bus_mark_inputs() */
+    uint8_t *markers[2];                     /**< by which the marker of each input byte differs from the last inputs */
+    unsigned turn;                           /**< which of both the frame has that was sent last */
     bool found;                              /**< its slaves were looked at */
     bool any;                                /**< a slave that counts did not take part */
     bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
@@ -347,12 +348,19 @@ bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns);
 void cm1e_sdo_queue_serve(cm1e_bus_t *bus, int64_t now_ns);
 void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
 
-/** Chooses the marker of the next frame (input_marker.c). */
-void cm1e_bus_choose_marker(cm1e_bus_t *bus);
 /** Marks the place of the inputs of slaves in a frame: a slave that takes part in the cycle overwrites all of it. The
  *  marker is made of the inputs that came last, so that no inputs are like it for long, whatever they are. */
 void cm1e_bus_mark_inputs(const cm1e_bus_t *bus, uint8_t *place, uint32_t input_offset, size_t bytes);
-/** Whether a slave left its inputs in the frame that came back as they were sent: it took no part (cycle.c). */
+/** Fills in the markers, when the places of all inputs are known. Bits that a slave is not mapped to stay 0. */
+void cm1e_bus_make_markers(cm1e_bus_t *bus);
+/** Inputs that change may be like their marker in one cycle, if they are few. Others never are. */
+enum { CM1E_UNMISTAKABLE_BYTES = 4 };
+static inline bool cm1e_bus_is_unmistakable(const cm1e_bus_slave_t *slave)
+{
+    return slave->placement.input_bytes >= CM1E_UNMISTAKABLE_BYTES;
+}
+/** Whether a slave left its inputs in the frame that came back as they were sent: it took no part, or it has few inputs
+ *  and the working counter has to tell (cycle.c). */
 bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave);
 /** Notes of each slave whether it is silent, once in a cycle. */
 void cm1e_bus_find_silence(cm1e_bus_t *bus);

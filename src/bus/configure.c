@@ -105,6 +105,9 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
     free(bus->inputs);
     free(bus->safe.values);
     free(bus->safe.mask);
+    free(bus->silence.markers[0]);
+    free(bus->silence.markers[1]);
+    bus->silence.markers[0] = bus->silence.markers[1] = NULL;
     for (uint32_t i = 0; i < bus->slave_room; i++) {
         free(bus->slaves[i].signals);
         bus->slaves[i].signals = NULL;
@@ -124,11 +127,13 @@ static bool make_image(cm1e_bus_t *bus, size_t room)
     bus->sent = calloc(1, room + 1);
     bus->outputs = calloc(1, room + 1);
     bus->inputs = calloc(1, room + 1);
+    bus->silence.markers[0] = calloc(1, room + 1);
+    bus->silence.markers[1] = calloc(1, room + 1);
     bus->safe.values = calloc(1, room + 1);
     bus->safe.mask = calloc(1, room + 1);
     bus->safe.claimed = calloc(1, room + 1);
     return bus->image && bus->sent && bus->outputs && bus->inputs && bus->safe.values && bus->safe.mask &&
-           bus->safe.claimed;
+           bus->safe.claimed && bus->silence.markers[0] && bus->silence.markers[1];
 }
 
 static void take_placements(cm1e_bus_t *bus)
@@ -158,6 +163,7 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
                              CM1E_PROCESS_FRAMES_MAX);
     bus->layout.present = ++bus->layout.made;
     take_placements(bus);
+    cm1e_bus_make_markers(bus);
     if (bus->config.overlap) {
         const cm1e_error_t error = cm1e_overlap_map(bus, diag);
         if (error != CM1E_OK)

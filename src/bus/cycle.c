@@ -4,11 +4,13 @@
 
 bool cm1e_bus_is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
-    const uint8_t *came = bus->image + slave->placement.wire_input, *last = bus->inputs + slave->placement.input_offset;
+    const uint32_t offset = slave->placement.input_offset;
+    const uint8_t *came = bus->image + slave->placement.wire_input, *last = bus->inputs + offset;
+    const uint8_t *marker = bus->silence.markers[bus->silence.turn] + offset;
     if (bus->overlap.used)
         return cm1e_overlap_is_echo(bus, slave);
     for (unsigned i = 0; i < slave->placement.input_bytes; i++)
-        if ((came[i] ^ last[i]) != bus->silence.marker)
+        if ((came[i] ^ last[i]) != marker[i])
             return false;
     return slave->placement.input_bytes > 0;
 }
@@ -27,20 +29,36 @@ void cm1e_bus_find_silence(cm1e_bus_t *bus)
     }
 }
 
+/** Whether some of the slaves that may be missing explain what is missing in the working counter: `inputs` of them count
+ *  1, `both` count 3, and `takers` of the others may take no outputs, which counts 2. */
+static bool is_explained(int missing, int inputs, int both, int takers)
+{
+    for (int n = 0; n <= both; n++) {
+        const int left = missing - 3 * n, most = 2 * (takers + both - n);
+        const int least = left > most ? left - most : 0, first = least + (left - least) % 2;
+        if (left >= 0 && first <= inputs && first <= left)
+            return true;
+    }
+    return false;
+}
+
 /** Returns true if the silent slaves explain the working counter: 3 less for each of them (or its own share), 2 less for
- *  each slave that took no outputs. */
+ *  each slave that took no outputs. Any number of those with few inputs may only seem to be silent. */
 static bool silence_explains(const cm1e_bus_t *bus, int working_counter)
 {
-    int missing = bus->expected_working_counter - working_counter, takers = 0;
+    int missing = bus->expected_working_counter - working_counter, takers = 0, may_be[2] = {0, 0};
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (!slave->hot.counted)
             continue;
         const bool silent = slave->silent_cycles > 0, takes = slave->placement.output_bytes > 0;
-        missing -= silent ? 1 + 2 * takes : 0;
+        if (silent && !cm1e_bus_is_unmistakable(slave))
+            may_be[takes]++;
+        else
+            missing -= silent ? 1 + 2 * takes : 0;
         takers += takes && !silent;
     }
-    return missing >= 0 && missing % 2 == 0 && missing <= 2 * takers;
+    return is_explained(missing, may_be[0], may_be[1], takers);
 }
 
 /** A cycle with a wrong working counter: the inputs of the slaves that took part are valid, if the others can be
@@ -134,7 +152,7 @@ static void mute_recovering(cm1e_bus_t *bus)
 
 static void fill_image(cm1e_bus_t *bus)
 {
-    cm1e_bus_choose_marker(bus);
+    bus->silence.turn = !bus->silence.turn;
     if (bus->overlap.used) {
         cm1e_overlap_fill(bus);
         mute_recovering(bus);

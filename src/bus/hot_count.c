@@ -25,18 +25,41 @@ void cm1e_hot_count_begin(cm1e_bus_t *bus)
     }
 }
 
-/** Those whose inputs show that they have left are taken out. Without inputs nothing shows it: the supervision does. */
-static void take_out(cm1e_bus_t *bus)
+/** A slave that is not counted may take part all the same: it is on its way to Operational, or was refused there. */
+static bool may_take_part(const cm1e_bus_slave_t *slave)
 {
-    for (uint32_t i = 0; i < bus->slave_count; i++) {
-        cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (!slave->hot.optional || !slave->hot.counted || !(slave->silent_cycles > 0 || slave->watch.lost))
-            continue;
-        slave->hot.counted = false;
-        slave->hot.out_since = bus->counters.cycles;
-        bus->expected_working_counter -= takes(slave) + gives(slave);
-        cm1e_hot_note(bus, slave);
-    }
+    return !slave->hot.counted && !(slave->hot.planned && slave->hot.bound == 0);
+}
+
+/** What is missing in the working counter for those that are counted, as far as inputs show who else takes part. */
+static int missing_of(const cm1e_bus_t *bus, int working_counter)
+{
+    int missing = bus->expected_working_counter - working_counter;
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        missing += may_take_part(&bus->slaves[i]) && gives(&bus->slaves[i]) && bus->slaves[i].silent_cycles == 0;
+    return missing;
+}
+
+static void take_out_one(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
+{
+    slave->hot.counted = false;
+    slave->hot.out_since = bus->counters.cycles;
+    bus->expected_working_counter -= takes(slave) + gives(slave);
+    cm1e_hot_note(bus, slave);
+}
+
+/** Those whose inputs show that they have left are taken out. Without inputs nothing shows it: the supervision does. A few
+ *  inputs may be like their marker by chance, so these have left only if something is missing without them. */
+static void take_out(cm1e_bus_t *bus, int working_counter)
+{
+    for (int few = 0; few < 2; few++)
+        for (uint32_t i = 0; i < bus->slave_count; i++) {
+            cm1e_bus_slave_t *slave = &bus->slaves[i];
+            const bool silent = slave->silent_cycles > 0 && (few || cm1e_bus_is_unmistakable(slave));
+            if (slave->hot.optional && slave->hot.counted && (silent || slave->watch.lost) &&
+                (!few || missing_of(bus, working_counter) > 0))
+                take_out_one(bus, slave);
+        }
 }
 
 /** Those that take part again are counted, as far as the working counter shows it. */
@@ -55,13 +78,19 @@ static void take_in(cm1e_bus_t *bus, int working_counter)
 }
 
 /** A slave that is always there, and whose inputs show that it took no part: whatever else counts does not make up for
- *  it. Optional ones have been taken out before. */
-static bool misses_one(const cm1e_bus_t *bus)
+ *  it. Optional ones have been taken out before. With few inputs one slave alone would make an odd number missing, so an
+ *  even one needs two. */
+static bool misses_one(const cm1e_bus_t *bus, int missing)
 {
-    for (uint32_t i = 0; i < bus->slave_count; i++)
-        if (bus->slaves[i].hot.counted && bus->slaves[i].silent_cycles > 0)
+    unsigned few = 0;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const bool silent = slave->hot.counted && slave->silent_cycles > 0;
+        if (silent && cm1e_bus_is_unmistakable(slave))
             return true;
-    return false;
+        few += silent;
+    }
+    return few >= 2 && missing > 0;
 }
 
 /** Slaves that are not counted may take part or not: on their way to Operational first the inputs count, then the
@@ -71,20 +100,19 @@ static bool misses_one(const cm1e_bus_t *bus)
  *  is wrong. */
 static bool explains(cm1e_bus_t *bus, int working_counter)
 {
-    int more = working_counter - bus->expected_working_counter, most = 0, least = 0;
+    const int more = -missing_of(bus, working_counter);
+    int most = 0, least = 0, unseen = 0;
     unsigned asked = 0;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         const bool optional = slave->hot.optional && slave->hot.counted;
-        if (!slave->hot.counted && !(slave->hot.planned && slave->hot.bound == 0)) {
-            more -= gives(slave) && slave->silent_cycles == 0;
-            most += takes(slave);
-        }
+        most += may_take_part(slave) ? takes(slave) : 0;
+        unseen += may_take_part(slave) && gives(slave) && slave->silent_cycles > 0 && !cm1e_bus_is_unmistakable(slave);
         least -= optional ? takes(slave) : 0;
         asked += optional && takes(slave);
     }
     bus->search.in_doubt = false;
-    if (misses_one(bus) || more % 2 != 0 || more > most || more < least)
+    if (misses_one(bus, -more) || (more % 2 != 0 && unseen == 0) || more > most + unseen || more < least)
         return false;
     bus->search.doubt = more < 0 ? bus->search.doubt + 1 : 0;
     if (bus->search.doubt > ASKED_TIMES * asked + ON_THE_WAY)
@@ -93,8 +121,8 @@ static bool explains(cm1e_bus_t *bus, int working_counter)
     return true;
 }
 
-/** Whether one of those that are counted takes no part, although the working counter is the expected one: another one that
- *  comes back makes up for it. */
+/** Whether one of those that are counted may take no part, although the working counter is the expected one: another one
+ *  that comes back may make up for it. */
 static bool hides_one(const cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
@@ -115,7 +143,7 @@ bool cm1e_hot_judge(cm1e_bus_t *bus, int working_counter)
         return same;
     }
     cm1e_bus_find_silence(bus);
-    take_out(bus);
+    take_out(bus, working_counter);
     take_in(bus, working_counter);
     return explains(bus, working_counter);
 }

@@ -84,7 +84,8 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
 static void lose_silent(cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++)
-        if (bus->slaves[i].hot.optional && !bus->slaves[i].hot.away && bus->slaves[i].silent_cycles > 0)
+        if (bus->slaves[i].hot.optional && !bus->slaves[i].hot.away && !bus->slaves[i].hot.counted &&
+            bus->slaves[i].silent_cycles > 0)
             cm1e_supervision_lose(bus, &bus->slaves[i]);
 }
 

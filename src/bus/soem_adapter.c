@@ -189,6 +189,7 @@ void cm1e_soem_placement(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_
         placement->input_offset = (uint32_t)(slave->inputs - soem->image) - group->Obytes;
     placement->output_bytes = bytes_of(slave->Obits);
     placement->input_bytes = bytes_of(slave->Ibits);
+    placement->last_input_bits = slave->Ibits % 8 ? (uint8_t)((1u << slave->Ibits % 8) - 1) : 0xFF;
     for (int i = 0; i < 4; i++)
         memcpy(placement->sync_managers[i], &slave->SM[i], SYNC_MANAGER_BYTES);
     placement->fmmu_count = slave->FMMUunused < EC_MAXFMMU ? slave->FMMUunused : EC_MAXFMMU;

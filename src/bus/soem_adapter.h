@@ -43,6 +43,7 @@ typedef struct cm1e_slave_placement {
     uint32_t output_offset, input_offset; /**< from the beginning of the outputs and of the inputs */
     uint32_t wire_output, wire_input;     /**< in the image of the frames */
     uint16_t output_bytes, input_bytes;
+    uint8_t last_input_bits; /**< of the last byte of the inputs: those that the slave is mapped to */
     uint8_t sync_managers[4][SYNC_MANAGER_BYTES];
     unsigned fmmu_count;
     uint8_t fmmus[4][FMMU_BYTES];
