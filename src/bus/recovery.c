@@ -31,6 +31,7 @@ static void enter(cm1e_bus_slave_t *slave, cm1e_recovery_step_t step, int64_t no
 {
     slave->recovery.step = step;
     slave->recovery.entered = false;
+    slave->recovery.unanswered = 0;
     slave->recovery.deadline_ns = now_ns + (step == RECOVERY_PAUSE ? PAUSE_NS : actions[step].time_ns);
 }
 
@@ -670,11 +671,28 @@ bool cm1e_recovery_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return actions[recovery->step].next(slave, d, now_ns);
 }
 
+/** Whether the slave has lost its power again: its controller answers every question for a register at once, while the time
+ *  of a step is that of its processor, up to 10 s. A mailbox does not answer while it is full. */
+static bool is_gone(cm1e_recovery_t *recovery, const cm1e_datagram_t *d)
+{
+    enum { UNANSWERED_LIMIT = 10, REGISTERS_END = 0x1000 };
+    if (d->working_counter > 0)
+        recovery->unanswered = 0;
+    else if (d->working_counter == 0 && d->offset < REGISTERS_END)
+        recovery->unanswered++;
+    return recovery->step > RECOVERY_LOOK && recovery->step != RECOVERY_RELEASE &&
+           recovery->unanswered >= UNANSWERED_LIMIT;
+}
+
 void cm1e_recovery_result(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
     const cm1e_recovery_step_t step = slave->recovery.step;
     if (step <= RECOVERY_PAUSE)
         return;
+    if (is_gone(&slave->recovery, d)) {
+        fail(slave, now_ns);
+        return;
+    }
     /* The sub-machines handle losses themselves; a register without an answer is read again until the deadline. */
     const bool machine = actions[step].result == result_al || actions[step].result == result_coe;
     if (machine || d->working_counter == (d->command == COMMAND_APRW ? 3 : 1))

@@ -50,6 +50,7 @@ typedef struct cm1e_recovery {
     bool entered;            /**< the sub-machine of this step has been started */
     bool address_given;      /**< in this attempt */
     int64_t deadline_ns;     /**< of the step; in RECOVERY_PAUSE: its end */
+    unsigned unanswered;     /**< questions for registers in a row, while frames come back */
     uint32_t attempts, successes; /**< only grow */
     cm1e_recovery_step_t failed_at; /**< of the last attempt; RECOVERY_IDLE: it did not fail */
     cm1e_sdo_t sdo;

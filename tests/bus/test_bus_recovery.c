@@ -191,6 +191,7 @@ START_TEST(recovery_survives_lost_frames)
 }
 END_TEST
 
+/** Soon, too: it is not waited for a state of a slave that has no power. */
 START_TEST(power_cycle_at_every_moment_of_a_recovery_ends_in_operational)
 {
     sim_config(2);
@@ -204,7 +205,7 @@ START_TEST(power_cycle_at_every_moment_of_a_recovery_ends_in_operational)
     strike(bus, "power-cycle 2 10");
     for (int n = 0; n < 60; n++)
         cycle(bus);
-    ck_assert_uint_gt(cycles_until_recovered(bus, 5000), 0);
+    ck_assert_uint_gt(cycles_until_recovered(bus, 1600), 0);
     check_all_run(bus);
     cm1e_bus_close(bus);
 }
