@@ -328,11 +328,12 @@ static double velocity_at(const cm1e_profile_t *profile, double position)
     return state.velocity;
 }
 
-/** Whether a stop over so many elements keeps what they allow. */
+/** Whether a stop over so many elements keeps what they allow. An acceleration under way has to come to 0 first. */
 static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e_motion_state_t *start, int count,
                        double length, const cm1e_path_run_t *run)
 {
-    if (!keeps(stop, start, length, larger(run->limits.velocity, start->velocity)))
+    const double eased_to = smaller(eased(start, run->limits.jerk), run->highest);
+    if (!keeps(stop, start, length, larger(run->limits.velocity, larger(start->velocity, eased_to))))
         return false;
     double begin = run->length, slowest, fastest;
     velocities(stop, &slowest, &fastest);
@@ -346,7 +347,9 @@ static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e
     return true;
 }
 
-static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
+/** `shortest`: with the limits of the axes for the shortest stop, where the motion is within them. An acceleration under
+ *  way ends later with them where their jerk is smaller, and may then reach a higher velocity than it may. */
+static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, bool shortest, cm1e_profile_t *stop,
                       const cm1e_motion_state_t *start)
 {
     const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
@@ -354,7 +357,7 @@ static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, cm1e_
     double length = 0;
     for (int i = 0; i < path->element_count; i++) {
         const cm1e_path_element_t *element = cm1e_path_element(path, i);
-        const bool quick = larger(start->velocity, eased(start, jerk)) <= element->most.velocity &&
+        const bool quick = shortest && larger(start->velocity, eased(start, jerk)) <= element->most.velocity &&
                            fabs(start->acceleration) <= element->most.acceleration;
         const cm1e_motion_limits_t *most = quick ? &element->most : &element->limits;
         if (i >= run.count && element->passed == 0)
@@ -377,10 +380,13 @@ bool cm1e_path_plan_stop(cm1e_path_t *path)
     const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
     const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
     const double deceleration = path->stop.deceleration, jerk = path->stop.jerk;
+    const double more_deceleration = larger(deceleration, run.limits.deceleration), more_jerk = larger(jerk, run.limits.jerk);
     cm1e_profile_t stop;
-    if (!find_stop(path, deceleration, jerk, &stop, &start) &&
-        !find_stop(path, deceleration, larger(jerk, run.limits.jerk), &stop, &start) &&
-        !find_stop(path, larger(deceleration, run.limits.deceleration), larger(jerk, run.limits.jerk), &stop, &start))
+    bool found = false;
+    for (int i = 0; i < 6 && !found; i++)
+        found = find_stop(path, i < 4 ? deceleration : more_deceleration, i < 2 ? jerk : more_jerk, i % 2 == 0, &stop,
+                          &start);
+    if (!found)
         return false;
     follow(path, &stop, &start);
     path->stopping = true;

@@ -126,6 +126,35 @@ static void test_the_group_brakes_with_what_it_was_told(void)
         }
 }
 
+/* Whenever it is asked for. It may take five times as long as the axes would need on a line: a bend takes most of their
+ * limits. */
+static void test_a_stop_begins_at_once_also_while_it_gets_faster(void)
+{
+    static const cm1e_group_command_t ways[] = {
+        {.kind = CM1E_GROUP_CIRCULAR_ABSOLUTE, .circ_mode = mcCenter, .auxiliary = {3.0}, .velocity = 5.0},
+        {.kind = CM1E_GROUP_LINEAR_ABSOLUTE, .position = {20.0, 20.0}, .velocity = 5.0},
+    };
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++)
+        for (int overrides = 0; overrides < 2; overrides++)
+            for (int at = 1; at < 200; at += 3) {
+                group_end();
+                group_begin(2);
+                (void)group_command(&ways[i]);
+                axes_cycles(at);
+                if (overrides)
+                    cm1e_group_set_override(group, 0.2);
+                const double v = group->sample.path_velocity, fastest = fmin(v + 2.5, 5.0 * (1.0 + 1e-9));
+                const cm1e_command_id_t id = group_stop();
+                int cycles = 0;
+                for (; group->sample.path_velocity > 0.0 || cycles < 2; cycles++) {
+                    axes_cycles(1);
+                    TEST_ASSERT_TRUE(group->sample.path_velocity <= fastest);
+                    TEST_ASSERT_TRUE(cycles < 5 * (fastest / 100.0 + 100.0 / 2000.0) * 1000.0);
+                }
+                group_done(id);
+            }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -133,5 +162,6 @@ int main(void)
     RUN_TEST(test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis);
     RUN_TEST(test_an_override_after_0_acts_at_all_corners);
     RUN_TEST(test_the_group_brakes_with_what_it_was_told);
+    RUN_TEST(test_a_stop_begins_at_once_also_while_it_gets_faster);
     return UNITY_END();
 }
