@@ -375,18 +375,29 @@ static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, bool 
     return false;
 }
 
+/** The sooner one of both ways to stop. */
+static bool find_soonest(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
+                         const cm1e_motion_state_t *start)
+{
+    cm1e_profile_t other;
+    const bool found = find_stop(path, deceleration, jerk, true, stop, start);
+    if (find_stop(path, deceleration, jerk, false, &other, start) && (!found || other.duration_s < stop->duration_s))
+        *stop = other;
+    else if (!found)
+        return false;
+    return true;
+}
+
 bool cm1e_path_plan_stop(cm1e_path_t *path)
 {
     const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
     const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
     const double deceleration = path->stop.deceleration, jerk = path->stop.jerk;
-    const double more_deceleration = larger(deceleration, run.limits.deceleration), more_jerk = larger(jerk, run.limits.jerk);
+    const double more_jerk = larger(jerk, run.limits.jerk);
     cm1e_profile_t stop;
-    bool found = false;
-    for (int i = 0; i < 6 && !found; i++)
-        found = find_stop(path, i < 4 ? deceleration : more_deceleration, i < 2 ? jerk : more_jerk, i % 2 == 0, &stop,
-                          &start);
-    if (!found)
+    if (!find_soonest(path, deceleration, jerk, &stop, &start) &&
+        !find_soonest(path, deceleration, more_jerk, &stop, &start) &&
+        !find_soonest(path, larger(deceleration, run.limits.deceleration), more_jerk, &stop, &start))
         return false;
     follow(path, &stop, &start);
     path->stopping = true;

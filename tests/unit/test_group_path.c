@@ -155,6 +155,28 @@ static void test_a_stop_begins_at_once_also_while_it_gets_faster(void)
             }
 }
 
+/* A wide bend takes little of the limits of its axes, so a stop there is not much longer than on a line. */
+static void test_a_stop_in_a_wide_bend_is_nearly_as_short_as_on_a_line(void)
+{
+    for (double radius = 3.0; radius < 300.0; radius *= 2.0)
+        for (double v = 1.0; v < 6.0; v *= 1.5) {
+            group_end();
+            group_begin(2);
+            (void)group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_CIRCULAR_ABSOLUTE, .circ_mode = mcCenter,
+                                                        .auxiliary = {radius}, .velocity = v});
+            while (group->sample.path_velocity < v)
+                axes_cycles(1);
+            axes_cycles(2);
+            const cm1e_command_id_t id = group_stop();
+            int cycles = 0;
+            for (; group->sample.path_velocity > 0.0; cycles++)
+                axes_cycles(1);
+            const double on_a_line_s = v > 5.0 ? v / 100.0 + 100.0 / 2000.0 : 2.0 * sqrt(v / 2000.0);
+            TEST_ASSERT_TRUE(cycles < 1.35 * on_a_line_s * 1000.0);
+            group_done(id);
+        }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -163,5 +185,6 @@ int main(void)
     RUN_TEST(test_an_override_after_0_acts_at_all_corners);
     RUN_TEST(test_the_group_brakes_with_what_it_was_told);
     RUN_TEST(test_a_stop_begins_at_once_also_while_it_gets_faster);
+    RUN_TEST(test_a_stop_in_a_wide_bend_is_nearly_as_short_as_on_a_line);
     return UNITY_END();
 }
