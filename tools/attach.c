@@ -203,3 +203,8 @@ void complain_of_control(const cm1e_scheduler_t *scheduler)
     if (statistics.control_advice[0])
         complain("%s", statistics.control_advice);
 }
+
+bool has_no_socket(const cm1e_scheduler_statistics_t *statistics)
+{
+    return statistics->cycles > 0 && !statistics->control_socket[0];
+}

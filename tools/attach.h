@@ -65,5 +65,7 @@ bool attached_signalled(void);
 
 /** Says why nobody could attach to a run that was to have a control socket; it is no failure of the run. */
 void complain_of_control(const cm1e_scheduler_t *scheduler);
+/** Whether this run will have no control socket; complain_of_control() says why. */
+bool has_no_socket(const cm1e_scheduler_statistics_t *statistics);
 
 #endif

@@ -228,15 +228,14 @@ static void do_nothing(void *context) { (void)context; }
 
 static void prepare(cm1e_scheduler_t *scheduler, void *context) { ((alone_t *)context)->scheduler = scheduler; }
 
-static int report(void *context) { return ((alone_t *)context)->status; }
-
-/** Connects as soon as the run has its socket. */
-static bool connect_to_own(const alone_t *alone, cm1e_diag_t *diag)
+static int report(void *context)
 {
-    cm1e_scheduler_statistics_t statistics;
-    cm1e_scheduler_statistics(alone->scheduler, &statistics);
-    return statistics.cycles > 0 &&
-           cm1e_control_connect(&monitor.control, statistics.control_socket, NULL, diag) == CM1E_OK;
+    const alone_t *alone = context;
+    if (alone->options->common.json && !monitor.quit) {
+        complain("nothing was shown: the run ended before");
+        return EXIT_FAILED;
+    }
+    return alone->status;
 }
 
 static void end_run(alone_t *alone, int status)
@@ -244,6 +243,17 @@ static void end_run(alone_t *alone, int status)
     alone->status = status;
     monitor.quit = true;
     cm1e_scheduler_stop(alone->scheduler);
+}
+
+/** Connects as soon as the run has its socket. A run without one is ended. */
+static bool connect_to_own(alone_t *alone, cm1e_diag_t *diag)
+{
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(alone->scheduler, &statistics);
+    if (has_no_socket(&statistics))
+        end_run(alone, EXIT_FAILED);
+    return statistics.cycles > 0 &&
+           cm1e_control_connect(&monitor.control, statistics.control_socket, NULL, diag) == CM1E_OK;
 }
 
 static void watch(void *context, bool last)

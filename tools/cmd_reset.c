@@ -119,8 +119,10 @@ static int report(void *context)
             tell_reset(a, p->simulated);
         else if (a->reset.Error)
             complain_of_axis(cm1e_axis_name(a->axis), cm1e_strerror(cm1e_error_from_id(a->reset.ErrorID)), why);
-        else
+        else if (a->had_error)
             complain("%s: the error is still there. %s", cm1e_axis_name(a->axis), why);
+        else
+            complain("%s: the command was ended before it knew whether there is an error", cm1e_axis_name(a->axis));
     }
     if (p->common.json)
         print_json(all);

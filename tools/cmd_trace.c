@@ -331,9 +331,13 @@ static void prepare(cm1e_scheduler_t *scheduler, void *context) { ((alone_t *)co
 static int end_alone(void *context)
 {
     alone_t *alone = context;
-    if (alone->status == EXIT_OK && alone->recording.told)
+    if (alone->status == EXIT_OK && !alone->recording.told) {
+        complain("nothing was recorded: the run ended before");
+        alone->status = EXIT_FAILED;
+    } else if (alone->status == EXIT_OK) {
         alone->status = alone->options->list ? list(&alone->recording, alone->options)
                                              : report(&alone->recording, alone->options);
+    }
     recording_free(&alone->recording);
     return alone->status;
 }
@@ -358,6 +362,8 @@ static void watch(void *context, bool last)
     if (!alone->control) {
         cm1e_scheduler_statistics_t statistics;
         cm1e_scheduler_statistics(alone->scheduler, &statistics);
+        if (has_no_socket(&statistics))
+            end_run(alone);
         if (statistics.cycles == 0 ||
             cm1e_control_connect(&alone->control, statistics.control_socket, NULL, &diag) != CM1E_OK)
             return;

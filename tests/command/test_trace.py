@@ -181,6 +181,23 @@ def check_alone():
     expect(told.returncode == 0 and "axis1 torque [%]" in told.stdout, "--list, alone", told)
 
 
+def check_nothing_to_record():
+    """A run that nobody can attach to, or that a signal ends in its first moments: no file, and no status 0."""
+    nowhere = {**ENVIRONMENT, "CM1E_RUNTIME_DIR": "/proc/none"}
+    for words in (("trace", "--for", "0.5", "--csv", path_of("none.csv")), ("trace", "--list"), ("monitor", "--json")):
+        told = subprocess.run([CM1E, *words, "-i", "sim"], env=nowhere, capture_output=True, text=True, timeout=20)
+        expect(told.returncode == 1 and "No control socket" in told.stderr, f"{words} without a socket", told)
+    for words in (("trace", "--for", "5", "--csv", path_of("none.csv")), ("monitor", "--json"), ("reset",)):
+        for ms in range(20, 60, 4):
+            child = subprocess.Popen([CM1E, *words, "-i", "sim"], env=ENVIRONMENT, stdout=subprocess.PIPE,
+                                     stderr=subprocess.PIPE, text=True)
+            time.sleep(ms / 1000)
+            child.send_signal(signal.SIGINT)
+            out, err = child.communicate(timeout=20)
+            expect(child.returncode != 0 or out, f"{words}, interrupted after {ms} ms", (child.returncode, out, err))
+            expect("still there" not in err, "an error that there is not", err)
+
+
 def check_who_watches_has_real_time():
     """In virtual time nobody could attach, and a run until a key would take no time."""
     bench.write("virtual.yaml", "bus: {interface: sim, virtual_time: true}\naxes: [{}]\n")
@@ -195,4 +212,4 @@ def check_who_watches_has_real_time():
 if __name__ == "__main__":
     bench.write("bus.yaml", BUS)
     bench.run(check_gaps_are_counted, check_same_samples, check_many_and_gone, check_triggers, check_variables,
-              check_end_of_program, check_alone, check_who_watches_has_real_time)
+              check_end_of_program, check_alone, check_nothing_to_record, check_who_watches_has_real_time)
