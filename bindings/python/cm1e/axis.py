@@ -161,7 +161,7 @@ class Axis(AXIS_REF):
         """Switches the power stage on, and waits for it."""
         if self._power is None:
             self._power = fb.MC_Power(Axis=self, EnablePositive=True, EnableNegative=True)
-            self.bus.attach(self._power)
+            self.bus._attach(self._power)
         self._power.Enable = True
         try:
             self.bus._wait_for(self._power, timeout)

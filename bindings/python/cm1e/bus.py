@@ -253,24 +253,27 @@ class Bus(Devices):
         for block in blocks:
             if not isinstance(block, Block):
                 raise TypeError(f"expected a function block, not {block!r}")
-            if block._bus is not None:
-                raise errors.StateError(f"{block._type} is attached already.", lib.CM1E_ERROR_STATE)
-            self._check_started()
-            self._check_own(block)
-            self._kept[id(block._c)] = (block._c, block._data, block._offsets, block._memory)
-            block._bus = self
-            try:
-                self._do(lib.cm1e_py_block_add, block._c)
-            except errors.Error as error:
-                block._bus = None
-                self._forget(block)
-                if error.code == lib.CM1E_ERROR_FULL:
-                    raise errors.StateError(f"{block._type} is not attached: {lib.CM1E_PY_BLOCKS} blocks are. Detach those that "
-                                            "are not needed.", error.code) from None
-                raise
-            except BaseException:  # Ctrl-C, before or behind that: now it is added in either case
-                lib.cm1e_py_block_add(self._session, block._c)
-                raise
+            if len(self._kept) >= lib.CM1E_PY_BLOCKS:  # the other places are for commands: an axis can always be stopped
+                raise errors.StateError(f"{block._type} is not attached: {lib.CM1E_PY_BLOCKS} blocks are. Detach those that "
+                                        "are not needed.", lib.CM1E_ERROR_FULL)
+            self._attach(block)
+
+    def _attach(self, block: Block) -> None:
+        if block._bus is not None:
+            raise errors.StateError(f"{block._type} is attached already.", lib.CM1E_ERROR_STATE)
+        self._check_started()
+        self._check_own(block)
+        self._kept[id(block._c)] = (block._c, block._data, block._offsets, block._memory)
+        block._bus = self
+        try:
+            self._do(lib.cm1e_py_block_add, block._c)
+        except errors.Error:
+            block._bus = None
+            self._forget(block)
+            raise
+        except BaseException:  # Ctrl-C, before or behind that: now it is added in either case
+            lib.cm1e_py_block_add(self._session, block._c)
+            raise
 
     def detach(self, *blocks: Block) -> None:
         """Ends that. A motion that such a block began goes on."""
@@ -300,7 +303,7 @@ class Bus(Devices):
         command = Command(self, block, reference)
         block.Execute = True
         try:
-            self.attach(block)
+            self._attach(block)
             if wait:
                 return command.wait(timeout)
             self._unwaited.append(command)
@@ -367,12 +370,12 @@ class Bus(Devices):
         if isinstance(reference, Axis) and reference.state in (AxisState.DISABLED, AxisState.ERROR_STOP):
             return
         if _callback_bus.get() is not None:
-            self.attach(stop)
+            self._attach(stop)
             self._stops.append(stop)
             return
         callbacks, self._callbacks = self._callbacks, []
         try:
-            self.attach(stop)
+            self._attach(stop)
             self._wait_for(stop, 10.0)
         finally:
             self._callbacks = callbacks

@@ -48,7 +48,7 @@ struct cm1e_py_session {
     _Atomic(py_job_t *) job;
     cm1e_error_t result;             /**< of the run */
     cm1e_diag_t diag;
-    cm1e_py_block_t *blocks[CM1E_PY_BLOCKS]; /**< the owner's own, like all below */
+    cm1e_py_block_t *blocks[CM1E_PY_BLOCKS + CM1E_PY_COMMANDS]; /**< the owner's own, like all below */
     uint32_t block_count;
     AXES_GROUP_REF_t groups[PY_GROUPS];
     uint32_t group_count;

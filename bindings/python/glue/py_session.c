@@ -199,7 +199,7 @@ static cm1e_error_t add_block(cm1e_py_session_t *s, void *block)
         return CM1E_ERROR_STATE;
     if (place_of(s, block) < s->block_count)
         return CM1E_OK;
-    if (s->block_count == CM1E_PY_BLOCKS)
+    if (s->block_count == CM1E_PY_BLOCKS + CM1E_PY_COMMANDS)
         return CM1E_ERROR_FULL;
     s->blocks[s->block_count++] = block;
     return CM1E_OK;

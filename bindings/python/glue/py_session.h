@@ -68,9 +68,10 @@ typedef struct cm1e_py_copy {
 
 /** The function of a block type, "MC_Power"; NULL: there is none. */
 void (*cm1e_py_call_of(const char *type))(void *fb);
-enum { CM1E_PY_BLOCKS = 512 };
-/** Lets the cycle call a block in every cycle from now on, behind those before. CM1E_ERROR_FULL: CM1E_PY_BLOCKS are
- *  called. */
+/** Blocks that a program attaches, and those beside them that execute commands. */
+enum { CM1E_PY_BLOCKS = 512, CM1E_PY_COMMANDS = 1024 };
+/** Lets the cycle call a block in every cycle from now on, behind those before. CM1E_ERROR_FULL: there is no room for more
+ *  than CM1E_PY_BLOCKS + CM1E_PY_COMMANDS. */
 cm1e_error_t cm1e_py_block_add(cm1e_py_session_t *session, cm1e_py_block_t *block);
 /** Ends that. A block that is not called is no error. */
 cm1e_error_t cm1e_py_block_remove(cm1e_py_session_t *session, cm1e_py_block_t *block);

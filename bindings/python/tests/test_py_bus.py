@@ -408,5 +408,9 @@ def test_too_many_blocks_are_refused_in_words(bus):
         with pytest.raises(cm1e.StateError):
             bus.attach(cm1e.blocks.TON())
     assert len(bus._kept) == kept == 512
+    x = bus["X"]
+    x.move_velocity(1)  # commands have room of their own, above all those that stop
+    x.stop()
+    x.disable()
     bus.detach(*blocks)
-    bus["X"].move_relative(0.1, 5)
+    bus.attach(cm1e.blocks.TON())
