@@ -6,6 +6,7 @@
 #include "attach.h"
 #include "cm1e/plot.h"
 #include "command.h"
+#include "scheduler/scheduler_window.h"
 #include "service_notify.h"
 #include "st_loaded.h"
 #include "trace_file.h"
@@ -113,7 +114,7 @@ static void tell_end(const cm1e_scheduler_t *scheduler, const run_options_t *opt
     cm1e_scheduler_statistics_t statistics;
     cm1e_scheduler_statistics(scheduler, &statistics);
     const double ran = (double)cm1e_scheduler_time_ns(scheduler) * 1e-9;
-    const bool over = options->seconds > 0 && ran >= options->seconds;
+    const bool over = cm1e_scheduler_ran_its_time(scheduler); /* the ramp of a run that a signal ended may last longer */
     if (options->common.json) {
         print_json(json_pack("{s:o, s:b, s:f, s:I, s:I, s:s}", "program", text_as_json(options->program), "simulated",
                              is_simulated(config), "seconds", ran, "cycles", (json_int_t)statistics.cycles, "overruns",

@@ -74,6 +74,8 @@ const char *cm1e_scheduler_task_name(const cm1e_scheduler_t *scheduler, uint32_t
 
 bool cm1e_scheduler_is_ending(const cm1e_scheduler_t *scheduler) { return scheduler->shutting_down; }
 
+bool cm1e_scheduler_ran_its_time(const cm1e_scheduler_t *scheduler) { return scheduler->ran_its_time; }
+
 bool cm1e_scheduler_is_virtual(const cm1e_scheduler_t *scheduler)
 {
     return scheduler->clock != cm1e_clock_monotonic();
@@ -403,6 +405,7 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
         cm1e_log_run(&s->log, true, 0);
         while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
             cycle(s);
+        s->ran_its_time = duration_ns > 0 && cm1e_scheduler_time_ns(s) >= duration_ns;
         error = shut_down(s, diag);
         log_end(s);
     }

@@ -49,6 +49,7 @@ struct cm1e_scheduler {
     atomic_bool stop;      /**< a stop was requested */
     bool run;              /**< cm1e_scheduler_run() was called */
     bool shutting_down;    /**< programs no longer run */
+    bool ran_its_time;     /**< they ran for the whole duration */
     const char *refused;   /**< function that a task, or another thread, called and that would have freed what the cycle
                                 uses; NULL: none */
     bool shut_down;        /**< every drive is disabled or offline */

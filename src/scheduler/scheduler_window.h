@@ -47,6 +47,8 @@ CM1E_GUEST_API cm1e_bus_t *cm1e_scheduler_bus_at(const cm1e_scheduler_t *schedul
 CM1E_GUEST_API const char *cm1e_scheduler_task_name(const cm1e_scheduler_t *scheduler, uint32_t index);
 /** The programs do not run any more, and the axes are shut down. @rt cycle */
 CM1E_GUEST_API bool cm1e_scheduler_is_ending(const cm1e_scheduler_t *scheduler);
+/** After a run: its programs ran for the whole duration; false: it had none, or something ended it before. */
+CM1E_GUEST_API bool cm1e_scheduler_ran_its_time(const cm1e_scheduler_t *scheduler);
 /** Time passes only in the cycle. @rt any */
 CM1E_GUEST_API bool cm1e_scheduler_is_virtual(const cm1e_scheduler_t *scheduler);
 

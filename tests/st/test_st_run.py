@@ -10,6 +10,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 
 BIN, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 MACHINE = os.path.join(SOURCE, "examples", "machine.yaml")
@@ -207,6 +208,15 @@ def check_end():
     told = run(program, "-s", "1", "--json", status=1, says="the index 10 is outside 1..9")
     if "the index 10 is outside 1..9" not in json.loads(told.stdout)["error"]:
         faults.append(f"a fault as JSON: {told.stdout}")
+    with open("slow.yaml", "w", encoding="ascii") as file: # the ramp at the end lasts 2.5 s, beyond the time of the run
+        file.write("bus: {interface: sim}\naxes: [{name: X, limits: {deceleration: 8}, sim: {no_stops: true}}]\n")
+    with subprocess.Popen([os.path.join(BIN, "cm1e"), "run", build("turns", MOVE.format("")), "-b", "slow.yaml", "-s", "3", "--json"],
+                          stdout=subprocess.PIPE, text=True) as child:
+        time.sleep(1.7)
+        child.terminate()
+        row = json.loads(child.communicate(timeout=30)[0])
+    if row["seconds"] < 3 or row["end"] != "signal":
+        faults.append(f"a run that a signal ended: {row}")
 
 
 def check_retain():
