@@ -128,6 +128,7 @@ CM1E_API AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *schedule
  *  cm1e_scheduler_destroy(), cm1e_bus_close() or cm1e_bus_stop(), or another thread one of the last two, which was
  *  refused and ended the run.
  *  CM1E_ERROR_PERMISSION: real time is required and not permitted; no cycle was run.
+ *  CM1E_ERROR_NO_MEMORY: for the trace, or for the watch over the tasks; no cycle was run.
  *  CM1E_ERROR_BUS_STATE and other errors of a start: a slave left Operational before the first cycle and does not come
  *  back; no cycle was run.
  *  CM1E_ERROR_TIMEOUT: an axis was not disabled within the stop timeout.
@@ -136,7 +137,8 @@ CM1E_API AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *schedule
  *  brake, while the cycle goes on. Other tasks are called on; without any the run ends in order. This is judged in real
  *  time only, not on virtual time. A signal ends the call, SIGRTMAX - 3, which the program must not use meanwhile. What
  *  the call held (locks, memory) stays as it is: end the process after the run.
- *  After cycles were run, and where an error came before the first one, the bus is stopped. @rt init */
+ *  After cycles were run, and where an error came before the first one, the bus is stopped. A call that is refused
+ *  (CM1E_ERROR_STATE, or CM1E_ERROR_INVALID_ARGUMENT: a negative duration) leaves it as it is. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Ends the run in order. Any thread, program or signal handler may call it. @rt any */
 CM1E_API void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);

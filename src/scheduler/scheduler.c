@@ -393,8 +393,10 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     realtime_t realtime = {0};
     cm1e_clock_team_begin(&s->clocks);
     drive_buses(s, true);
+    cm1e_error_t error = cm1e_trace_begin(&s->trace, diag);
     open_windows(s);
-    cm1e_error_t error = watch_tasks(s, diag);
+    if (error == CM1E_OK)
+        error = watch_tasks(s, diag);
     if (error == CM1E_OK)
         error = take_real_time(s, &realtime, diag);
     for (uint32_t i = 0; i < s->member_count && error == CM1E_OK; i++)
@@ -435,9 +437,6 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
         if (other_operation != CM1E_OK)
             return other_operation;
     }
-    const cm1e_error_t no_memory = cm1e_trace_begin(&scheduler->trace, diag);
-    if (no_memory != CM1E_OK)
-        return no_memory;
     scheduler->run = true;
     cm1e_clock_t *clock_before = cm1e_clock_current();
     cm1e_clock_make_current(scheduler->clock); /* this thread may differ from the one that opened the bus */

@@ -4,6 +4,8 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "cm1e/iec.h"
@@ -542,6 +544,34 @@ START_TEST(test_stop_timeout_that_is_too_short_is_told)
 }
 END_TEST
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { MEMORY_CAN_BE_LIMITED = false };
+#else
+enum { MEMORY_CAN_BE_LIMITED = true };
+#endif
+
+START_TEST(test_without_memory_for_the_trace_no_cycle_is_run_and_the_bus_is_stopped)
+{
+    machine_t machine = {.axis_count = 1, .config = {.trace_capacity = 20 * 1000 * 1000}};
+    cm1e_diag_t diag = {0};
+    char answer[200];
+    struct rlimit before, small;
+    if (!MEMORY_CAN_BE_LIMITED)
+        return;
+    machine_open(&machine);
+    ck_assert_int_eq(getrlimit(RLIMIT_AS, &before), 0);
+    small = (struct rlimit){1 << 30, before.rlim_max};
+    ck_assert_int_eq(setrlimit(RLIMIT_AS, &small), 0);
+    const cm1e_error_t error = cm1e_scheduler_run(machine.scheduler, 10 * MS, &diag);
+    ck_assert_int_eq(setrlimit(RLIMIT_AS, &before), 0);
+    ck_assert_msg(error == CM1E_ERROR_NO_MEMORY && strstr(diag.text, "No memory for a trace"), "%d %s", error, diag.text);
+    ck_assert_int_eq(cm1e_scheduler_time_ns(machine.scheduler), 0);
+    cm1e_bus_simulate(machine.bus, "status 1", answer, sizeof answer);
+    ck_assert_msg(strstr(answer, "INIT") != NULL, "%s", answer);
+    machine_close(&machine);
+}
+END_TEST
+
 /** A program that did not look at the error of cm1e_scheduler_create() gets words, and no crash. */
 START_TEST(test_nothing_is_done_where_something_is_missing)
 {
@@ -682,6 +712,7 @@ int main(void)
     tcase_add_test(all, test_an_older_program_has_shorter_structs);
     tcase_add_test(all, test_scheduler_of_an_earlier_operation_is_refused);
     tcase_add_test(all, test_stop_timeout_that_is_too_short_is_told);
+    tcase_add_test(all, test_without_memory_for_the_trace_no_cycle_is_run_and_the_bus_is_stopped);
     tcase_add_test(all, test_nothing_is_done_where_something_is_missing);
     tcase_add_test(all, test_longest_stop_timeout_is_no_short_one);
     tcase_add_loop_test(all, test_a_late_first_cycle_finds_the_slaves_in_operational, 0, 12);
