@@ -45,8 +45,8 @@ enum {
  *  attach do (`cm1e trace`), and see the variable too. `name` and `unit` are copied; unit "" or NULL: it has none.
  *  Errors:
  *  CM1E_ERROR_STATE: the scheduler has run.
- *  CM1E_ERROR_INVALID_ARGUMENT: no name, a name that is too long or is a signal already ("time" is one in every file), a
- *  name or unit that is not UTF-8 without control characters, no variable, or no such type.
+ *  CM1E_ERROR_INVALID_ARGUMENT: no name, a name that is too long or is a signal already ("time" is one in every file),
+ *  a name or unit that is not UTF-8 without control characters, no variable, or no such type.
  *  CM1E_ERROR_NO_MEMORY: more than CM1E_TRACE_VARIABLES. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const char *name, const char *unit,
                                                     cm1e_trace_type_t type, const void *variable, cm1e_diag_t *diag);
