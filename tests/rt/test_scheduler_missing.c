@@ -9,6 +9,8 @@
 #include "cm1e/trace.h"
 #include "machine.h"
 
+#define MS INT64_C(1000000)
+
 static void nothing(void *context) { (void)context; }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
