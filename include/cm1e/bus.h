@@ -92,8 +92,8 @@ CM1E_API cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Does all four steps: scan, identify, configure, operate. @rt init */
 CM1E_API cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Brings the slaves to Safe-Operational, then to Init. The drives must be disabled before. It never fails: it does
- *  what is still possible. In a task of a scheduler, and in any other thread while a scheduler runs, it is refused, like
- *  cm1e_bus_close(); the run then ends in order, with an error. @rt init */
+ *  what is still possible. In a task of a scheduler, and in any other thread while a scheduler runs, it is refused,
+ *  like cm1e_bus_close(); the run then ends in order, with an error. @rt init */
 CM1E_API void cm1e_bus_stop(cm1e_bus_t *bus);
 /** Stops the bus if necessary, closes the interface, and frees the bus. NULL is allowed. Returns CM1E_ERROR_IO if the
  *  bus is closed but not every frame arrived in the pcap file, CM1E_ERROR_STATE if it is refused, see cm1e_bus_stop().

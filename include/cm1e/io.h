@@ -49,8 +49,8 @@ typedef struct cm1e_io_info {
 } cm1e_io_info_t;
 
 /** A signal, found. The caller owns it; its members are the library's. It is valid until the next cm1e_bus_scan() or
- *  cm1e_bus_close(): find it again after a new start of the bus. One of an optional drive that was found before the drive
- *  came is valid until the drive comes with other process data than was planned: find it again then. */
+ *  cm1e_bus_close(): find it again after a new start of the bus. One of an optional drive that was found before the
+ *  drive came is valid until it comes with other process data than was planned: find it again then. */
 typedef struct cm1e_io {
     cm1e_bus_t *bus;
     uint32_t layout, byte; /**< number of the process image and of the slave's part; place in it */

@@ -36,11 +36,6 @@ static cm1e_error_t copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_bus_missing(const char *function, cm1e_diag_t *diag)
-{
-    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%s needs a bus.", function);
-}
-
 cm1e_error_t cm1e_bus_make(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     cm1e_bus_t *made = calloc(1, sizeof *made);

@@ -235,7 +235,10 @@ struct cm1e_bus {
 };
 
 /** Refuses a function that was called without a bus. */
-cm1e_error_t cm1e_bus_missing(const char *function, cm1e_diag_t *diag);
+static inline cm1e_error_t cm1e_bus_missing(const char *function, cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%s needs a bus.", function);
+}
 /** A bus with its configuration and no network yet. */
 cm1e_error_t cm1e_bus_make(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
 /** Memory for the slaves that answer, and for all of the configuration that may come later. Slaves that are known are

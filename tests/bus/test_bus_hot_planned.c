@@ -2,6 +2,7 @@
  * it is missing, the start is refused in words, and with the slave plugged in it succeeds. */
 #include "bus_support.h"
 #include "cm1e/hot_connect.h"
+#include "cm1e/io.h"
 #include "sim/segment.h"
 
 enum { ALIAS = 4711, TOOL = 2 };
@@ -172,6 +173,43 @@ START_TEST(a_slave_that_does_not_answer_is_named)
 }
 END_TEST
 
+/** A motor may come with another order of its objects than was planned. A handle of the planned place does not show what
+ *  is there instead. */
+START_TEST(signals_of_a_motor_that_comes_are_found_where_it_has_them)
+{
+    static const char *const names[] = {"2.0x6041:00", "2.0x6064:00", "2.0x60FD:00", "2.0x607A:00"};
+    enum { NAMES = sizeof names / sizeof names[0], COMES = 4000 };
+    sim_config(2);
+    config.axes[1].address_kind = CM1E_ADDRESS_ALIAS;
+    config.axes[1].address = ALIAS;
+    config.axes[1].optional = config.axes[1].sim_absent = true;
+    cm1e_bus_t *bus = start_bus();
+    cm1e_io_t before[NAMES], after;
+    unsigned invalid = 0, n = 0;
+    for (int i = 0; i < NAMES; i++)
+        ck_assert_msg(cm1e_io_find(bus, names[i], &before[i], &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_io_quality(&before[0]), CM1E_IO_OFFLINE);
+    simulate(bus, "attach 2");
+    for (; cm1e_bus_presence(bus, 2) != CM1E_PRESENCE_THERE && n < COMES; n++) {
+        cycles(bus, 1);
+        if (cm1e_bus_presence(bus, 2) == CM1E_PRESENCE_WAITS)
+            ck_assert_int_eq(cm1e_bus_recover(bus, 2, &diag), CM1E_OK);
+    }
+    ck_assert_uint_lt(n, COMES);
+    cycles(bus, 5);
+    for (int i = 0; i < NAMES; i++) {
+        ck_assert_msg(cm1e_io_find(bus, names[i], &after, &diag) == CM1E_OK, "%s", diag.text);
+        ck_assert_int_eq(cm1e_io_quality(&after), CM1E_IO_GOOD);
+        const bool valid = cm1e_io_quality(&before[i]) == CM1E_IO_GOOD;
+        ck_assert_int_eq(cm1e_io_integer(&before[i]), valid ? cm1e_io_integer(&after) : 0);
+        ck_assert(valid || cm1e_io_quality(&before[i]) == CM1E_IO_INVALID);
+        invalid += !valid;
+    }
+    ck_assert_uint_eq(invalid, tested_order() == CM1E_PDO_ORDER_UG_7_2 ? NAMES : 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_planned");
@@ -181,6 +219,7 @@ int main(void)
     tcase_add_test(tests, a_slave_that_does_not_answer_is_named);
     tcase_add_test(tests, more_slaves_than_a_bus_may_have_are_refused_in_words);
     tcase_add_test(tests, a_slave_elsewhere_is_not_the_member_of_an_absent_group);
+    tcase_add_test(tests, signals_of_a_motor_that_comes_are_found_where_it_has_them);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
