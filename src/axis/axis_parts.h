@@ -333,7 +333,7 @@ typedef enum not_set_what {
     NOT_SET_PROBE,         /**< a touch probe at input `number` */
     NOT_SET_CAM,           /**< MC_CamTableSelect; see cams_t */
     NOT_SET_CAM_SWITCH,    /**< MC_DigitalCamSwitch: the input of switch `number` that is `value` */
-    NOT_SET_INPUT,         /**< the input of a block that is `value`; see `names` */
+    NOT_SET_INPUT,         /**< the input of a block that is `value`; see `name` and `right` */
     NOT_FINISHED,          /**< a command of the kind `number` was accepted and ended with the error */
 } not_set_what_t;
 
@@ -341,12 +341,15 @@ typedef enum not_set_what {
 typedef struct not_set {
     cm1e_error_t error; /**< CM1E_OK: it was set */
     not_set_what_t what;
-    int number;
+    union {
+        int number;
+        const char *name;    /**< of an input */
+    };
     double value;
     union {
         uint32_t abort_code; /**< of a parameter */
         uint32_t input;      /**< of a switch: cm1e_cam_switch_input_t */
-        const char *names[2]; /**< of a block: the input, and which values are right */
+        const char *right;   /**< of an input: which values are right */
     };
 } not_set_t;
 

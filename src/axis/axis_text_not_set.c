@@ -76,8 +76,8 @@ static void cam_switch_text(const cm1e_axis_t *axis, char *text, size_t size)
 cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const char *input, double value,
                                     const char *right)
 {
-    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_INPUT, .value = value,
-                                                 .names = {input, right}});
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_INPUT, .name = input, .value = value,
+                                                 .right = right});
     return error;
 }
 
@@ -103,8 +103,8 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
     } else if (refused->what == NOT_SET_CAM) {
         axis->coupling_hooks->cam_text(axis, text, size);
     } else if (refused->what == NOT_SET_INPUT) {
-        snprintf(text, size, "Axis \"%s\": %s is %.9g; %s is right.", name, refused->names[0], refused->value,
-                 refused->names[1]);
+        snprintf(text, size, "Axis \"%s\": %s is %.9g; %s is right.", name, refused->name, refused->value,
+                 refused->right);
     } else if (refused->what == NOT_SET_CAM_SWITCH) {
         cam_switch_text(axis, text, size);
     } else if (cm1e_axis_parameter_is_object(refused->number)) {

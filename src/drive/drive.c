@@ -12,7 +12,7 @@ static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
 /* A controlword shows in the statusword some cycles later. After the torque was taken away, it is not requested again
  * for this time. Otherwise the answer to the old command would look like a loss of the new torque. */
 static const int64_t torque_pause_ns = 20 * MS_IN_NS;
-/* At the latest then a quick stop that the drive has begun by itself is ended. */
+/* At the latest then, after the torque was taken away, a quick stop that the drive has begun by itself is ended. */
 static const int64_t quick_stop_ns = 10000 * MS_IN_NS;
 /* Of the velocity that the motor may have: below this part a quick stop counts as over. */
 enum { QUICK_STOP_PART = 100 };
@@ -217,28 +217,22 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
 
 /* A drive that is in Quick stop active by itself brakes, and may stay in that state under torque (0x605A). Shutdown does
  * not lead out of it, but Disable voltage does (CiA 402, transition 12). It waits until the ramp of the drive is over. */
-static bool ends_quick_stop(cm1e_drive_t *drive)
+static bool ends_quick_stop(const cm1e_drive_t *drive)
 {
-    int64_t *since = &drive->waits.quick_stop_ns;
-    if (drive->feedback.state != QUICK_STOP_ACTIVE) {
-        *since = 0;
-        return false;
-    }
-    *since = *since ? *since : drive->now_ns;
     const int64_t slow = drive->range.velocity_possible / QUICK_STOP_PART;
-    return llabs((int64_t)drive->feedback.velocity) <= slow || drive->now_ns - *since >= quick_stop_ns;
+    return drive->feedback.state == QUICK_STOP_ACTIVE && (llabs((int64_t)drive->feedback.velocity) <= slow ||
+                                                          drive->now_ns >= drive->waits.torque_from_ns + quick_stop_ns);
 }
 
 /* During a switch to a mode with other words, the present words are meaningless. */
-static uint16_t no_torque_word(cm1e_drive_t *drive)
+static uint16_t no_torque_word(const cm1e_drive_t *drive)
 {
     const cm1e_device_words_t *words = drive->mode.words;
-    const bool ends = ends_quick_stop(drive);
     if (words != drive->mode.wanted->words)
         return 0;
     if (words->commands)
         return cm1e_drive_cmd_word(drive);
-    return ends ? cm1e_fsa_commands[COMMAND_DISABLE_VOLTAGE].controlword : words->no_torque;
+    return ends_quick_stop(drive) ? cm1e_fsa_commands[COMMAND_DISABLE_VOLTAGE].controlword : words->no_torque;
 }
 
 /* Sends one command per cycle, chosen from the state that the drive shows (UG 6.1.2, BR 6.1.2). */

@@ -176,7 +176,6 @@ typedef struct cm1e_drive_torque {
 typedef struct cm1e_drive_waits {
     int64_t enable_deadline_ns, torque_from_ns;
     int64_t blocked_ns;             /**< since when torque is requested in a mode that has none */
-    int64_t quick_stop_ns;          /**< since when the drive is seen in Quick stop active; 0: it is not */
 } cm1e_drive_waits_t;
 
 /** A fault reset. Written by drive_private.h and drive_reset.c. */
