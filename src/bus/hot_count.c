@@ -40,6 +40,18 @@ static int missing_of(const cm1e_bus_t *bus, int working_counter)
     return missing;
 }
 
+/** What those count together that seem to be silent by a few inputs. */
+static int share_of_few(const cm1e_bus_t *bus)
+{
+    int share = 0;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->hot.counted && slave->silent_cycles > 0 && !cm1e_bus_is_unmistakable(slave))
+            share += takes(slave) + gives(slave);
+    }
+    return share;
+}
+
 static void take_out_one(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
     slave->hot.counted = false;
@@ -49,17 +61,20 @@ static void take_out_one(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 }
 
 /** Those whose inputs show that they have left are taken out. Without inputs nothing shows it: the supervision does. A few
- *  inputs may be like their marker by chance, so these have left only if something is missing without them. */
+ *  inputs may be like their marker by chance, so these have left only if all that seem to be silent by a few inputs are
+ *  missing without them. */
 static void take_out(cm1e_bus_t *bus, int working_counter)
 {
-    for (int few = 0; few < 2; few++)
+    for (int few = 0; few < 2; few++) {
+        if (few && share_of_few(bus) > missing_of(bus, working_counter))
+            return;
         for (uint32_t i = 0; i < bus->slave_count; i++) {
             cm1e_bus_slave_t *slave = &bus->slaves[i];
             const bool silent = slave->silent_cycles > 0 && (few || cm1e_bus_is_unmistakable(slave));
-            if (slave->hot.optional && slave->hot.counted && (silent || slave->watch.lost) &&
-                (!few || missing_of(bus, working_counter) > 0))
+            if (slave->hot.optional && slave->hot.counted && (silent || slave->watch.lost))
                 take_out_one(bus, slave);
         }
+    }
 }
 
 /** Those that take part again are counted, as far as the working counter shows it. */
@@ -78,9 +93,9 @@ static void take_in(cm1e_bus_t *bus, int working_counter)
 }
 
 /** A slave that is always there, and whose inputs show that it took no part: whatever else counts does not make up for
- *  it. Optional ones have been taken out before. With few inputs one slave alone would make an odd number missing, so an
- *  even one needs two. */
-static bool misses_one(const cm1e_bus_t *bus, int missing)
+ *  it. Optional ones have been taken out before. With few inputs one slave makes an odd number missing, and an even one
+ *  needs two; `unseen` may make up for one without showing it, and `most` for two. */
+static bool misses_one(const cm1e_bus_t *bus, int missing, int unseen, int most)
 {
     unsigned few = 0;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
@@ -90,7 +105,7 @@ static bool misses_one(const cm1e_bus_t *bus, int missing)
             return true;
         few += silent;
     }
-    return few >= 2 && missing > 0;
+    return (few >= 1 && (unseen > 0 || (missing > 0 && missing % 2))) || (few >= 2 && (missing > 0 || most > 0));
 }
 
 /** Slaves that are not counted may take part or not: on their way to Operational first the inputs count, then the
@@ -107,12 +122,14 @@ static bool explains(cm1e_bus_t *bus, int working_counter)
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         const bool optional = slave->hot.optional && slave->hot.counted;
         most += may_take_part(slave) ? takes(slave) : 0;
-        unseen += may_take_part(slave) && gives(slave) && slave->silent_cycles > 0 && !cm1e_bus_is_unmistakable(slave);
+        unseen += may_take_part(slave) && !slave->hot.away && gives(slave) && slave->silent_cycles > 0 &&
+                  !cm1e_bus_is_unmistakable(slave);
         least -= optional ? takes(slave) : 0;
         asked += optional && takes(slave);
     }
     bus->search.in_doubt = false;
-    if (misses_one(bus, -more) || (more % 2 != 0 && unseen == 0) || more > most + unseen || more < least)
+    if (misses_one(bus, -more, unseen, most) || (more % 2 != 0 && (more < 0 || unseen == 0)) || more > most + unseen ||
+        more < least)
         return false;
     bus->search.doubt = more < 0 ? bus->search.doubt + 1 : 0;
     if (bus->search.doubt > ASKED_TIMES * asked + ON_THE_WAY)

@@ -311,6 +311,40 @@ START_TEST(every_value_of_the_inputs_is_a_value)
 }
 END_TEST
 
+static void add_optional(const char *name, uint16_t alias, uint8_t inputs, uint8_t outputs)
+{
+    cm1e_slave_config_t *slave = add_digital(name, alias, inputs, outputs);
+    slave->address_kind = CM1E_ADDRESS_ALIAS;
+    slave->vendor = 0x000004D8;
+    slave->product = 0x00001235;
+    slave->optional = true;
+}
+
+/** Two inputs lose their power for a moment, beside an optional slave with outputs, which may stop to take them, and another one with few
+ *  inputs that has left: no cycle takes what is in the place of the inputs then for their value. */
+START_TEST(few_inputs_that_are_gone_have_no_value)
+{
+    sim_config(1);
+    config.axes[0].address = MOTOR;
+    add_digital("switches", 1, 2, 0)->recover = CM1E_RECOVER_NEVER;
+    add_optional("lamp", 4711, 4, 4);
+    add_optional("tool", 4712, 2, 0);
+    cm1e_bus_t *bus = start_bus();
+    const cm1e_io_t input = find(bus, "switches.input 1"), neighbour = find(bus, "switches.input 2");
+    cycles(bus, 50);
+    simulate(bus, "detach 4");
+    for (unsigned n = 0; n < 50 + (unsigned)_i; n++) /* an even and an odd number, for both markers */
+        cycle(bus);
+    simulate(bus, "power-cycle 1 5"); /* it is in Init then, where it has no inputs */
+    for (unsigned n = 0; n < 100; n++) {
+        cycle(bus);
+        ck_assert_msg(!cm1e_io_bool(&input) && !cm1e_io_bool(&neighbour), "cycle %u", n);
+        ck_assert_msg(n < 2 || cm1e_io_quality(&input) != CM1E_IO_GOOD, "cycle %u", n);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(handle_ends_with_the_start_of_the_bus_that_it_was_found_in)
 {
     cm1e_bus_t *bus = start_with(CM1E_SIM_IO_MODULE);
@@ -342,6 +376,7 @@ int main(void)
     tcase_add_test(tests, slave_that_is_away_says_so_and_comes_back_with_its_outputs);
     tcase_add_test(tests, outputs_of_the_neighbours_of_a_lost_terminal_stay);
     tcase_add_test(tests, lost_frame_makes_inputs_stale_for_a_cycle);
+    tcase_add_loop_test(tests, few_inputs_that_are_gone_have_no_value, 0, 2);
     tcase_add_loop_test(tests, every_value_of_the_inputs_is_a_value, 0, NETWORKS * WIDTHS);
     tcase_add_test(tests, handle_ends_with_the_start_of_the_bus_that_it_was_found_in);
     suite_add_tcase(suite, tests);
