@@ -67,12 +67,13 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
 }
 
 /** Whether the device has to give its address back. A device that is not the expected one must not keep the address:
- *  the expected one, plugged in elsewhere, would answer at the same address. An optional slave is searched for again in
- *  any case. */
+ *  the expected one, plugged in elsewhere, would answer at the same address. Where places move, a device may have got the
+ *  address of another one, and fail before it can be identified. An optional slave is searched for again in any case. */
 static bool must_release(const cm1e_bus_slave_t *slave)
 {
     const cm1e_recovery_t *recovery = &slave->recovery;
-    const cm1e_recovery_step_t first = recovery->address_given ? RECOVERY_ADDRESS : RECOVERY_ID;
+    const cm1e_recovery_step_t known = slave->hot.moves ? RECOVERY_INIT : RECOVERY_ID;
+    const cm1e_recovery_step_t first = recovery->address_given ? RECOVERY_ADDRESS : known;
     if (slave->hot.optional && recovery->step >= RECOVERY_EEPROM && recovery->step < RECOVERY_RELEASE)
         return true;
     return recovery->step >= first && recovery->step <= RECOVERY_VERSION;
@@ -687,12 +688,10 @@ static bool is_gone(cm1e_recovery_t *recovery, const cm1e_datagram_t *d)
 void cm1e_recovery_result(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
     const cm1e_recovery_step_t step = slave->recovery.step;
-    if (step <= RECOVERY_PAUSE)
-        return;
-    if (is_gone(&slave->recovery, d)) {
+    if (step > RECOVERY_PAUSE && is_gone(&slave->recovery, d))
         fail(slave, now_ns);
+    if (step <= RECOVERY_PAUSE || slave->recovery.step != step)
         return;
-    }
     /* The sub-machines handle losses themselves; a register without an answer is read again until the deadline. */
     const bool machine = actions[step].result == result_al || actions[step].result == result_coe;
     if (machine || d->working_counter == (d->command == COMMAND_APRW ? 3 : 1))

@@ -345,6 +345,36 @@ START_TEST(few_inputs_that_are_gone_have_no_value)
 }
 END_TEST
 
+/** Where places move, a device may have got the address of another one. It gives it back, although it fails before it can
+ *  be identified: the other one has no mailbox. */
+START_TEST(a_device_with_the_address_of_another_one_gives_it_back)
+{
+    enum { ANALOG = 3, COMES = 5000 };
+    sim_config(1);
+    config.axes[0].address = MOTOR;
+    add_digital("switches", 1, 8, 0);
+    add_digital("levels", ANALOG, 2, 0)->sim.kind = CM1E_SIM_SLAVE_ANALOG;
+    add_optional("lamp", 4711, 4, 4);
+    config.slaves[2].sim_absent = true;
+    cm1e_bus_t *bus = start_bus();
+    uint8_t *first = register_memory_of(bus, 1), *other = register_memory_of(bus, ANALOG);
+    const uint8_t station[2] = {first[0x10], first[0x11]};
+    simulate(bus, "power-cycle 1 20");
+    simulate(bus, "power-cycle 3 20");
+    for (unsigned n = 0; n < 25; n++)
+        cycle(bus);
+    memcpy(other + 0x10, station, sizeof station);
+    for (unsigned n = 0; n < COMES; n++) {
+        cycle(bus);
+        if (cm1e_bus_slave_watch(bus, MOTOR).al_state != CM1E_AL_OP)
+            cm1e_bus_request_recovery(bus, MOTOR);
+    }
+    cycles(bus, 100);
+    ck_assert_int_eq(memcmp(first + 0x10, station, sizeof station), 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(handle_ends_with_the_start_of_the_bus_that_it_was_found_in)
 {
     cm1e_bus_t *bus = start_with(CM1E_SIM_IO_MODULE);
@@ -377,6 +407,7 @@ int main(void)
     tcase_add_test(tests, outputs_of_the_neighbours_of_a_lost_terminal_stay);
     tcase_add_test(tests, lost_frame_makes_inputs_stale_for_a_cycle);
     tcase_add_loop_test(tests, few_inputs_that_are_gone_have_no_value, 0, 2);
+    tcase_add_test(tests, a_device_with_the_address_of_another_one_gives_it_back);
     tcase_add_loop_test(tests, every_value_of_the_inputs_is_a_value, 0, NETWORKS * WIDTHS);
     tcase_add_test(tests, handle_ends_with_the_start_of_the_bus_that_it_was_found_in);
     suite_add_tcase(suite, tests);
