@@ -79,8 +79,8 @@ enum { CM1E_LOG_EVENTS = 1024 };
 CM1E_API size_t cm1e_log_read(const cm1e_scheduler_t *scheduler, uint64_t after, cm1e_log_event_t *events, size_t room,
                               uint64_t *lost);
 /** Writes a record as a sentence, without its time: 'X: ErrorStop (was DiscreteMotion)'. Of several buses it names
- *  the one that a record is about: 'network left: Slave 1 ...'. A buffer that is too small gets the beginning. 512 bytes
- *  are enough for every text. @rt block */
+ *  the one that a record is about: 'network left: Slave 1 ...'. A buffer that is too small gets the beginning. 512
+ *  bytes are enough for every text. @rt block */
 CM1E_API void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size);
 /** Name of a kind: "state", "error" ... Never NULL. @rt any */
 CM1E_API const char *cm1e_log_kind_name(cm1e_log_kind_t kind);
