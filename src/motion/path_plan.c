@@ -395,8 +395,10 @@ bool cm1e_path_plan_stop(cm1e_path_t *path)
     const double deceleration = path->stop.deceleration, jerk = path->stop.jerk;
     const double more_jerk = larger(jerk, run.limits.jerk);
     cm1e_profile_t stop;
-    if (!find_soonest(path, deceleration, jerk, &stop, &start) &&
-        !find_soonest(path, deceleration, more_jerk, &stop, &start) &&
+    const bool as_told = find_soonest(path, deceleration, jerk, &stop, &start);
+    if (!as_told && path->stopping) /* the one under way is over sooner, as what is left has its length */
+        return true;
+    if (!as_told && !find_soonest(path, deceleration, more_jerk, &stop, &start) &&
         !find_soonest(path, larger(deceleration, run.limits.deceleration), more_jerk, &stop, &start))
         return false;
     follow(path, &stop, &start);

@@ -126,6 +126,36 @@ static void test_the_group_brakes_with_what_it_was_told(void)
         }
 }
 
+/* A stop that is told again, as by MC_GroupStop behind MC_GroupHalt or for a command that waits behind the halt. */
+static void test_a_stop_that_is_told_again_brakes_on(void)
+{
+    static const double decelerations[] = {0.3, 0.7, 1.0, 3.0};
+    for (size_t i = 0; i < sizeof decelerations / sizeof decelerations[0]; i++)
+        for (int again = 0; again < 3; again++)
+            for (double less = 1.0; less > 0.3; less /= 2.0) {
+                const double deceleration = decelerations[i];
+                group_end();
+                group_begin(2);
+                (void)group_line(1000.0, 300.0, 5.0, mcAborting);
+                axes_cycles(1000);
+                const cm1e_group_command_t halt = {.kind = CM1E_GROUP_HALT, .deceleration = deceleration};
+                (void)group_command(&halt);
+                double before = group->sample.path_velocity;
+                for (int n = 0; group->sample.path_velocity > 0.0 && n < 1000 + 5000.0 / deceleration; n++) {
+                    axes_cycles(1);
+                    const double braked = before - group->sample.path_velocity;
+                    TEST_ASSERT_TRUE(braked >= 0.0 && braked <= deceleration * 1.01e-3);
+                    before = group->sample.path_velocity;
+                    if (n != 300)
+                        continue;
+                    const cm1e_group_command_t stop = {.kind = again == 1 ? CM1E_GROUP_HALT : CM1E_GROUP_STOP,
+                                                       .deceleration = less * deceleration};
+                    (void)(again ? group_command(&stop) : group_line(0.0, 0.0, 5.0, mcBuffered));
+                }
+                TEST_ASSERT_EQUAL_DOUBLE(0.0, before);
+            }
+}
+
 /* Whenever it is asked for. It may take five times as long as the axes would need on a line: a bend takes most of their
  * limits. */
 static void test_a_stop_begins_at_once_also_while_it_gets_faster(void)
@@ -184,6 +214,7 @@ int main(void)
     RUN_TEST(test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis);
     RUN_TEST(test_an_override_after_0_acts_at_all_corners);
     RUN_TEST(test_the_group_brakes_with_what_it_was_told);
+    RUN_TEST(test_a_stop_that_is_told_again_brakes_on);
     RUN_TEST(test_a_stop_begins_at_once_also_while_it_gets_faster);
     RUN_TEST(test_a_stop_in_a_wide_bend_is_nearly_as_short_as_on_a_line);
     return UNITY_END();
