@@ -43,6 +43,8 @@ static void acknowledge(stream_axis_t *axis, const stream_wish_t *wish, const cm
     if (enable || reset) {
         axis->notice.reason = STREAM_NO_REASON;
         axis->clear.Execute = info->state == CM1E_AXIS_ERROR_STOP;
+        if (axis->clear.Execute)
+            axis->homing.Execute = FALSE; /* the fault has ended it, even if it is of this cycle */
     }
     axis->clear.Axis = &axis->reference;
     MC_Reset(&axis->clear);
@@ -62,7 +64,7 @@ static bool has_fault(const stream_axis_t *axis, const cm1e_axis_info_t *info)
 /* A fault ends it also while it waits for torque: after a reset nothing may move without a new edge. */
 static bool ends_homing(stream_axis_t *axis, const stream_wish_t *wish, const cm1e_axis_info_t *info)
 {
-    const bool error = info->state == CM1E_AXIS_ERROR_STOP;
+    const bool error = info->state == CM1E_AXIS_ERROR_STOP && !axis->clear.Busy; /* or asked for with the reset */
     if (error && !axis->homing.Busy) /* else MC_Home tells its error */
         stop_for(axis, STREAM_NOT_HOMED, 0);
     return error || axis->notice.reason || wish->enable || wish->stop || !wish->alive;

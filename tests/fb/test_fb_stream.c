@@ -326,6 +326,29 @@ START_TEST(test_a_homing_that_a_fault_has_ended_does_not_begin_after_the_reset)
 }
 END_TEST
 
+/* As soon as there is no fault flag, also while the reset is under way. */
+START_TEST(test_a_homing_may_be_asked_for_with_the_reset)
+{
+    char words[2000];
+    for (int later = 0; later < 80; later += 3) {
+        begin();
+        simulate("error 1 0x2310");
+        scans(50);
+        ck_assert(has(STREAM_FAULT));
+        wish.reset = true;
+        scans(later);
+        ck_assert(later == 0 || !has(STREAM_FAULT));
+        wish.home = true;
+        scan();
+        for (int n = 0; n < 20000 && !has(STREAM_HOMED | STREAM_FAULT); n++)
+            scan();
+        stream_notice_text(&stream.notice, "x", words, sizeof words);
+        ck_assert_msg(has(STREAM_HOMED), "%d cycles later: %s", later, words);
+        close_segment();
+    }
+}
+END_TEST
+
 START_TEST(test_an_emergency_stop_ends_a_homing)
 {
     begin();
@@ -393,6 +416,7 @@ int main(void)
     tcase_add_test(tcase, test_a_homing_ends_with_the_control_and_with_machine_on);
     tcase_add_test(tcase, test_a_homing_that_fails_is_a_fault);
     tcase_add_test(tcase, test_a_homing_that_a_fault_has_ended_does_not_begin_after_the_reset);
+    tcase_add_test(tcase, test_a_homing_may_be_asked_for_with_the_reset);
     tcase_add_test(tcase, test_an_emergency_stop_ends_a_homing);
     tcase_add_test(tcase, test_an_enabled_axis_is_not_homed);
     tcase_add_test(tcase, test_the_output_of_the_motor_follows);
