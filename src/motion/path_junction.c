@@ -305,7 +305,7 @@ static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_
             main->joined = false;
     }
     pop_last(path, 2);
-    *element = saved;
+    element->length = saved.length; /* what was known of the way stays that of this try: the next plan finds it changed */
     return false;
 }
 

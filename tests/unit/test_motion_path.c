@@ -1,4 +1,5 @@
 /* Paths: what a user sees of one, by examples. */
+#include "motion/path_private.h"
 #include "path_check.h"
 
 void setUp(void) {}
@@ -248,6 +249,38 @@ static void test_a_line_of_rounding_is_no_corner_without_room(void)
     }
 }
 
+/** What is known of the way ahead is what the elements are now. */
+static void check_look_ahead(void)
+{
+    static cm1e_path_t anew;
+    cm1e_path_copy(&anew, &driven.path);
+    const int first = cm1e_path_run(&anew, 0, anew.element_count).count;
+    (void)cm1e_path_plan(&anew, 0);
+    for (int i = first; i < anew.element_count; i++) {
+        const cm1e_path_element_t *is = cm1e_path_element(&driven.path, i), *right = cm1e_path_element(&anew, i);
+        CHECK_PATH(is->entry == right->entry && is->hard_entry == right->hard_entry);
+    }
+}
+
+/** A transition that comes too late for the velocity of the path is tried with ever shorter ways, then given up. */
+static void test_a_transition_that_is_given_up_leaves_the_way_ahead_as_it_was(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 2000, 1e5);
+    for (double n = 0.5; n < 20; n *= 1.3)
+        for (int at = 150;; at++) {
+            begin_path(&config, (double[CM1E_PATH_AXES]){0});
+            line((double[]){50, 0}, 0, CM1E_PATH_STOP, 0);
+            line((double[]){50 + n, n / 20}, 0, CM1E_PATH_CORNER_DISTANCE, 1);
+            for (int i = 0; i < at; i++)
+                step_path();
+            if (driven.now.active != 1)
+                break;
+            line((double[]){50 + n, n}, 0, CM1E_PATH_CORNER_DISTANCE, 5);
+            check_look_ahead();
+            (void)run_path();
+        }
+}
+
 static void test_override_slows_pauses_and_goes_on(void)
 {
     const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
@@ -385,6 +418,7 @@ int main(void)
     RUN_TEST(test_the_velocity_at_a_junction_is_that_of_its_mode);
     RUN_TEST(test_many_short_segments_keep_the_velocity);
     RUN_TEST(test_a_line_of_rounding_is_no_corner_without_room);
+    RUN_TEST(test_a_transition_that_is_given_up_leaves_the_way_ahead_as_it_was);
     RUN_TEST(test_override_slows_pauses_and_goes_on);
     RUN_TEST(test_absurdly_slow_commands_do_not_jump);
     RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
