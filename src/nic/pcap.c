@@ -102,7 +102,9 @@ cm1e_error_t cm1e_pcap_close(pcap_file_t *pcap)
 {
     if (!pcap)
         return CM1E_OK;
-    const bool whole = fclose(pcap->file) == 0 && !pcap->failed;
+    const bool arrived = fflush(pcap->file) == 0;
+    flock(fileno(pcap->file), LOCK_UN); /* a child that was forked meanwhile has the file open too, and the lock with it */
+    const bool whole = fclose(pcap->file) == 0 && arrived && !pcap->failed;
     free(pcap);
     return whole ? CM1E_OK : CM1E_ERROR_IO;
 }

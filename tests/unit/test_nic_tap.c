@@ -1,8 +1,10 @@
 /* The tap: every verdict on a fake wire, injected frames, the pcap file byte by byte, the frame queue, opening. */
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -330,6 +332,25 @@ static void test_a_pcap_file_has_one_writer(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_close(second));
 }
 
+/* A child that was forked meanwhile, as by a program that starts another one, has the file open too. */
+static void test_a_pcap_file_that_is_closed_is_free_whoever_was_forked(void)
+{
+    const char *path = CM1E_TEST_OUTPUT "/test_nic_tap_fork.pcap";
+    pcap_file_t *file;
+    cm1e_diag_t diag = {0};
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_open(&file, path, NULL));
+    const pid_t child = fork();
+    if (child == 0)
+        for (;;)
+            pause();
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_close(file));
+    const cm1e_error_t error = cm1e_pcap_open(&file, path, &diag);
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, error, diag.text);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_close(file));
+}
+
 static void test_a_pcap_file_that_cannot_be_written_is_diagnosed(void)
 {
     cm1e_diag_t diag = {0};
@@ -368,6 +389,7 @@ int main(void)
     RUN_TEST(test_the_frame_queue_sorts_by_time_and_keeps_the_order_of_equals);
     RUN_TEST(test_the_pcap_file_holds_every_frame_after_the_tap);
     RUN_TEST(test_a_pcap_file_has_one_writer);
+    RUN_TEST(test_a_pcap_file_that_is_closed_is_free_whoever_was_forked);
     RUN_TEST(test_a_pcap_file_that_cannot_be_written_is_diagnosed);
     RUN_TEST(test_closing_leaves_no_virtual_clock_behind);
     return UNITY_END();
