@@ -106,7 +106,7 @@ class Attached:
 
     def __init__(self, target: Target = None, timeout: float = 5.0) -> None:
         self._path, pid = _path_of(target)
-        self._asking = threading.Lock()
+        self._asking, self._under_way = threading.RLock(), False
         self._socket: Optional[socket.socket] = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._socket.settimeout(timeout)
         try:
@@ -164,9 +164,14 @@ class Attached:
             connection = self._socket
             if connection is None:
                 errors.closed("The connection")
+            if self._under_way:  # waiting for it would never end
+                raise errors.StateError("This thread waits for another request: what a signal calls cannot ask on the same "
+                                        "connection.", lib.CM1E_ERROR_STATE)
             try:
+                self._under_way = True
                 connection.sendall(struct.pack(">I", len(data)) + data)
                 reply = json.loads(self._read(connection, struct.unpack(">I", self._read(connection, 4))[0]))
+                self._under_way = False
             except TimeoutError:
                 self.close()  # its reply, if it comes, would be taken for that of the next request
                 raise errors.WaitTimeout("The program does not answer.", lib.CM1E_ERROR_TIMEOUT) from None

@@ -119,6 +119,27 @@ def test_reply_of_a_request_that_is_broken_off_is_not_taken_for_that_of_the_next
         program.ask("next")
 
 
+def test_function_of_a_signal_is_refused_within_a_request(echo):
+    refused = []
+
+    def act(*_):
+        try:
+            program.ask("stop")
+        except cm1e.StateError as error:
+            refused.append(str(error))
+    before = signal.signal(signal.SIGUSR1, act)
+    try:
+        program, main = cm1e.attach(echo), threading.main_thread().ident
+        timer = threading.Timer(0.1, lambda: signal.pthread_kill(main, signal.SIGUSR1))
+        timer.start()
+        assert program.ask("slow") == "slow"
+        timer.join()
+        assert len(refused) == 1 and "This thread waits for another request" in refused[0]
+        assert program.ask("next") == "next"
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+
+
 def test_threads_that_share_a_connection_get_their_own_replies(echo):
     wrong = []
     with cm1e.attach(echo) as program:
