@@ -181,8 +181,9 @@ static void send_safe_outputs(cm1e_bus_t *bus)
 
 void cm1e_bus_stop(cm1e_bus_t *bus)
 {
-    if (!bus || bus->phase < BUS_OPEN || !bus->soem || cm1e_in_task_note("cm1e_bus_stop()") ||
-        cm1e_bus_refuse_end(bus, "cm1e_bus_stop()"))
+    /* Whose bus it is comes first: the thread that drives it changes all the rest. */
+    if (!bus || cm1e_in_task_note("cm1e_bus_stop()") || cm1e_bus_refuse_end(bus, "cm1e_bus_stop()") ||
+        bus->phase < BUS_OPEN || !bus->soem)
         return;
     cm1e_bus_unkeep(bus);
     cm1e_bus_kept_lead_alone(bus);

@@ -3,6 +3,7 @@
  * free it. It is refused in words, no frame is lost, and the motor stops with its ramp.
  */
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "cm1e/sdo_info.h"
@@ -15,7 +16,7 @@ static machine_t machine;
 static cm1e_diag_t diag;
 static MC_Power_t power;
 static MC_MoveVelocity_t turn;
-static volatile bool turns;
+static atomic_bool turns;
 
 static void program(void *context)
 {
