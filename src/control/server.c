@@ -335,7 +335,9 @@ static cm1e_error_t find_path(server_t *server, const char *directory, cm1e_diag
 {
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     server->listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    for (int n = 0; server->listener >= 0 && n < CM1E_SOCKETS_OF_PROCESS; n++) {
+    if (server->listener < 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "A control socket cannot be made: %s.", strerror(errno));
+    for (int n = 0; n < CM1E_SOCKETS_OF_PROCESS; n++) {
         char taken[CM1E_SOCKET_PATH];
         int other = n;
         const cm1e_error_t error = cm1e_runtime_socket(server->path, directory, n, diag);
@@ -345,14 +347,16 @@ static cm1e_error_t find_path(server_t *server, const char *directory, cm1e_diag
             continue; /* of another scheduler of this program */
         unlink(server->path); /* left behind by a process that had this number */
         memcpy(address.sun_path, server->path, sizeof address.sun_path);
-        if (bind(server->listener, (const struct sockaddr *)&address, sizeof address) != 0)
-            break;
-        if (chmod(server->path, 0600) == 0 && listen(server->listener, QUEUE) == 0)
+        if (bind(server->listener, (const struct sockaddr *)&address, sizeof address) == 0 &&
+            chmod(server->path, 0600) == 0 && listen(server->listener, QUEUE) == 0)
             return CM1E_OK;
-        break;
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The control socket %s cannot be made: %s.", server->path,
+                             strerror(errno));
     }
-    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The control socket %s cannot be made: %s.", server->path,
-                         strerror(errno));
+    close(server->listener); /* the path is that of another scheduler */
+    server->listener = -1;
+    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "This program has %d control sockets already, as many as there can be.",
+                         CM1E_SOCKETS_OF_PROCESS);
 }
 
 static cm1e_error_t listen_at(server_t *server, const char *directory, cm1e_diag_t *diag)

@@ -11,6 +11,7 @@
 #include "cm1e/control.h"
 #include "cm1e/scheduler.h"
 #include "cm1e/sim.h"
+#include "control/runtime_dir.h"
 #include "control/server.h"
 
 enum { THREADS = 8, TIMES = 60, PATH = 112 };
@@ -86,6 +87,20 @@ static void run(void *(*program)(void *))
 static void test_those_that_begin_together_have_different_sockets(void) { run(begin_together); }
 static void test_one_that_ends_leaves_those_of_others_alone(void) { run(begin_while_others_end); }
 
+/* One more than there are numbers for is refused, and takes the socket of nobody. */
+static void test_one_too_many_is_refused_and_removes_no_socket(void)
+{
+    cm1e_control_server_t *servers[CM1E_SOCKETS_OF_PROCESS], *more;
+    char last[PATH], none[PATH];
+    for (int i = 0; i < CM1E_SOCKETS_OF_PROCESS; i++)
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_control_server_start(&servers[i], scheduler, 0, last, PATH, NULL));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_IO, cm1e_control_server_start(&more, scheduler, 0, none, PATH, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "has 16 control sockets already"), diag.text);
+    TEST_ASSERT_TRUE(is_served(last));
+    for (int i = 0; i < CM1E_SOCKETS_OF_PROCESS; i++)
+        cm1e_control_server_stop(servers[i]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -99,6 +114,7 @@ int main(void)
     }
     RUN_TEST(test_those_that_begin_together_have_different_sockets);
     RUN_TEST(test_one_that_ends_leaves_those_of_others_alone);
+    RUN_TEST(test_one_too_many_is_refused_and_removes_no_socket);
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(bus);
     rmdir(directory);
