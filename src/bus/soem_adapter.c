@@ -154,6 +154,7 @@ bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, unsigned most_frames, size
     if (room > most_frames * cm1e_soem_frame_room())
         return false;
     soem->image = image;
+    soem->port.logical = image;
     const int used = ecx_config_map_group_aligned(&soem->context, image, 0);
     *output_bytes = group->Obytes;
     *input_bytes = group->Ibytes;

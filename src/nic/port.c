@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/bytes.h"
 #include "core/clock.h"
 #include "nic/frame.h"
 #include "nic/nic_private.h"
@@ -206,8 +207,19 @@ static int send_frame(ecx_portt *port, uint8 idx, bool again)
     return sent ? port->txbuflength[idx] : -1;
 }
 
+/** SOEM puts zeros into an LRD. Slaves overwrite what they give, so what the image has there shows who gave nothing. */
+static void fill_logical_read(ecx_portt *port, uint8 idx)
+{
+    enum { COMMAND_LRD = 10, ADDRESS = 2, LENGTH = 6, LENGTH_MASK = 0x07FF };
+    uint8_t *datagram = port->txbuf[idx] + FRAME_HEADER;
+    if (port->logical && can_send(port, idx) && datagram[0] == COMMAND_LRD)
+        memcpy(datagram + DATAGRAM_HEADER, port->logical + cm1e_get_u32(datagram + ADDRESS),
+               cm1e_get_u16(datagram + LENGTH) & LENGTH_MASK);
+}
+
 int ecx_outframe_red(ecx_portt *port, uint8 idx)
 {
+    fill_logical_read(port, idx);
     if (cm1e_rider_waits(port) && can_send(port, idx))
         cm1e_rider_board(port, idx);
     return send_frame(port, idx, false);

@@ -63,6 +63,24 @@ START_TEST(a_motor_alone_keeps_its_address_while_the_tool_is_away)
 }
 END_TEST
 
+/** Beside a controller that cannot do LRW, inputs are read by an LRD: it shows too that the tool has left, at once. */
+START_TEST(a_tool_leaves_a_network_without_lrw)
+{
+    make_optional(&sim_config(3)->axes[2], ID);
+    cm1e_bus_t *bus = open_bus();
+    forget_lrw(bus, 1);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cycles(bus, SETTLE);
+    cm1e_sim_segment_detach(segment_of(bus), 3, false);
+    cycle(bus); /* the frame that is on its way when the plug is pulled */
+    for (int n = 0; n < AWAY; n++)
+        ck_assert_int_eq(cycle(bus), CM1E_OK);
+    cm1e_sim_segment_attach(segment_of(bus), 3);
+    ck_assert(comes(bus, 3));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** The tool is all that the network has. Without it no frame comes back. */
 START_TEST(a_tool_alone_comes_back)
 {
@@ -303,6 +321,7 @@ int main(void)
     TCase *tests = tcase_create("alone");
     tcase_set_timeout(tests, 60);
     tcase_add_test(tests, a_motor_alone_keeps_its_address_while_the_tool_is_away);
+    tcase_add_test(tests, a_tool_leaves_a_network_without_lrw);
     tcase_add_test(tests, a_tool_alone_comes_back);
     tcase_add_test(tests, the_second_of_two_tools_goes_on_when_the_first_one_leaves);
     tcase_add_test(tests, a_tool_that_comes_at_the_place_of_a_stranger_is_found_at_once);

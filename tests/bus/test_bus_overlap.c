@@ -1,7 +1,6 @@
 /* Overlapped process data: whatever happens to frames and slaves, the inputs are those that a bus with places of their
  * own would take, cycle by cycle. And what an overlapped frame alone can go wrong in. */
 #include "bus_support.h"
-#include "description/sii_image.h"
 #include "effort.h"
 #include "sim/esc_chip.h"
 
@@ -344,24 +343,12 @@ END_TEST
 
 /* ---- what is refused ---------------------------------------------------------------------------------------------- */
 
-/** As the SII says that has bit 1 in the flags of its category General. */
-static void forget_lrw(cm1e_sim_slave_t *slave)
-{
-    enum { GENERAL = 30, AT_FLAGS = 11, NO_LRW = 2 };
-    cm1e_sii_category_t category = {0};
-    size_t at = CM1E_SII_HEADER_BYTES;
-    while (cm1e_sii_category_at(&category, slave->sii, slave->sii_size, at) && category.type != GENERAL)
-        at = category.start + category.bytes;
-    ck_assert_uint_eq(category.type, GENERAL);
-    slave->sii[category.start + AT_FLAGS] |= NO_LRW;
-}
-
 START_TEST(slave_that_does_not_know_lrw_is_refused)
 {
     sim_config(1);
     config.overlap = true;
     cm1e_bus_t *bus = open_bus();
-    forget_lrw(cm1e_sim_segment_slave(segment_of(bus), 1));
+    forget_lrw(bus, 1);
     ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_ERROR_CONFIG);
     ck_assert_msg(strstr(diag.text, "overlap") && strstr(diag.text, "one datagram"), "%s", diag.text);
     cm1e_bus_close(bus);

@@ -1,5 +1,6 @@
 #include "bus_support.h"
 
+#include "description/sii_image.h"
 #include "nic/frame.h"
 #include "sim/esc_chip.h"
 
@@ -47,6 +48,18 @@ uint8_t *register_memory_of(cm1e_bus_t *bus, uint32_t position)
 uint8_t *sii_memory_of(cm1e_bus_t *bus, uint32_t position)
 {
     return cm1e_sim_segment_slave(segment_of(bus), position)->sii;
+}
+
+void forget_lrw(cm1e_bus_t *bus, uint32_t position)
+{
+    enum { GENERAL = 30, AT_FLAGS = 11, NO_LRW = 2 };
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment_of(bus), position);
+    cm1e_sii_category_t category = {0};
+    size_t at = CM1E_SII_HEADER_BYTES;
+    while (cm1e_sii_category_at(&category, slave->sii, slave->sii_size, at) && category.type != GENERAL)
+        at = category.start + category.bytes;
+    ck_assert_uint_eq(category.type, GENERAL);
+    slave->sii[category.start + AT_FLAGS] |= NO_LRW;
 }
 
 cm1e_bus_t *open_bus_on(const cm1e_bus_config_t *segment_config)

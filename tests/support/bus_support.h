@@ -38,6 +38,8 @@ cm1e_sim_segment_t *segment_of(cm1e_bus_t *bus);
 /** Registers and SII of a simulated slave, for tests that do not see its struct. */
 uint8_t *register_memory_of(cm1e_bus_t *bus, uint32_t position);
 uint8_t *sii_memory_of(cm1e_bus_t *bus, uint32_t position);
+/** Lets the SII of a slave say that its controller cannot do LRW. */
+void forget_lrw(cm1e_bus_t *bus, uint32_t position);
 
 /** A bus whose segment was made from `segment_config`, while the bus expects `config`. */
 cm1e_bus_t *open_bus_on(const cm1e_bus_config_t *segment_config);

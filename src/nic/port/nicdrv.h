@@ -71,6 +71,7 @@ typedef struct ecx_port {
     ecx_redportt *redport;
 
     struct cm1e_nic *nic;
+    const uint8_t *logical;     /**< the process image from logical address 0 on, which an LRD carries; NULL: zeros */
     cm1e_port_counters_t counters;
 
     /* private */
