@@ -242,11 +242,12 @@ static cm1e_bus_t *start_switches(int network, uint8_t width)
     sim_config(1);
     config.axes[0].address = MOTOR;
     config.overlap = network == 3;
-    cm1e_slave_config_t *optional = add_digital("switches", 1, width, 0);
+    add_digital("switches", 1, width, 0);
     add_digital("valves", 3, 0, 4);
     if (network == 0)
-        optional = add_digital("lamp", 4711, 4, 4);
+        add_digital("lamp", 4711, 4, 4);
     if (network < 2) {
+        cm1e_slave_config_t *optional = &config.slaves[network == 0 ? 2 : 0]; /* not before: the list moves as it grows */
         optional->address = 4711;
         optional->address_kind = CM1E_ADDRESS_ALIAS;
         optional->vendor = 0x000004D8;
