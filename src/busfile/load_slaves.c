@@ -1,6 +1,5 @@
 /* The slaves of a bus file: texts that name objects, PDOs and values become numbers. */
 #include <errno.h>
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -164,10 +163,8 @@ static bool take_real(const char *text, bool is_narrow, double *value)
     *value = strtod(text, &end);
     if (end == text || *end != '\0' || strpbrk(text, "xXnN"))
         return false;
-    if (!isfinite(*value) || (is_narrow && fabs(*value) > (double)FLT_MAX))
-        return false;
-    const double kept = is_narrow ? (double)(float)*value : *value;
-    return kept != 0 || (*value == 0 && errno == 0);
+    const double kept = is_narrow ? (double)(float)*value : *value; /* as it is written */
+    return isfinite(kept) && (kept != 0 || (*value == 0 && errno == 0));
 }
 
 /* The bits of a value of this type; false: it is none. */

@@ -36,6 +36,8 @@ static const char everything[] =
     "      - {object: 0xF800, type: UDINT, value: 0xFFFFFFFF, before: safe_op}\n"
     "      - {object: 0x8000:01, type: BOOL, value: true}\n"
     "      - {object: 0x8000:02, type: ULINT, value: 18446744073709551615}\n"
+    "      - {object: 0x8000:03, type: REAL, value: -3.4028235e38}\n"
+    "      - {object: 0x8000:04, type: REAL, value: 1e-45}\n"
     "    mapping:\n"
     "      - {pdo: 0x1A00, entries: [0x6000:11/16, gap/7, 0x6000:01/1]}\n"
     "      - {pdo: 0x1600, entries: [0x7000:11/255]}\n"
@@ -87,10 +89,13 @@ static void test_sdos_have_the_bits_of_their_values(void)
         {.index = 0xF800, .subindex = 0, .bytes = 4, .value = 0xFFFFFFFF},
         {.index = 0x8000, .subindex = 1, .bytes = 1, .value = 1},
         {.index = 0x8000, .subindex = 2, .bytes = 8, .value = UINT64_MAX},
+        {.index = 0x8000, .subindex = 3, .bytes = 4, .value = 0xFF7FFFFF}, /* the largest and the smallest REAL */
+        {.index = 0x8000, .subindex = 4, .bytes = 4, .value = 1},
     };
+    enum { EXPECTED = sizeof expected / sizeof expected[0] };
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(everything), diag.text);
-    TEST_ASSERT_EQUAL(5, config.slaves[0].sdo_count);
-    for (int i = 0; i < 5; i++) {
+    TEST_ASSERT_EQUAL(EXPECTED, config.slaves[0].sdo_count);
+    for (int i = 0; i < EXPECTED; i++) {
         const cm1e_sdo_config_t *sdo = &config.slaves[0].sdos[i];
         const uint64_t mask = sdo->bytes == 8 ? UINT64_MAX : (UINT64_C(1) << 8 * sdo->bytes) - 1;
         TEST_ASSERT_EQUAL_HEX16(expected[i].index, sdo->index);
