@@ -134,7 +134,7 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
     if (options->interface_name && !copy_word(config->interface_name, sizeof config->interface_name,
                                               options->interface_name, "the interface name"))
         return false;
-    if (!segment_is_good(config->interface_name))
+    if (!options->attach && !segment_is_good(config->interface_name)) /* the program has its own, from its folder */
         return false;
     return !options->pcap_file
            || copy_word(config->pcap_file, sizeof config->pcap_file, options->pcap_file, "the name of the pcap file");

@@ -108,6 +108,11 @@ def check_attached():
         expect(told.returncode == 1 and "up to 0x08FF" in told.stderr, "registers that reading changes", told)
         told = run("graph", "--attach", pid)
         expect("s2 -> s3" in told.stdout and "Operational" in told.stdout, "graph attached", told)
+        elsewhere = os.path.join(FOLDER, "elsewhere.yaml")  # of a segment that was made beside the program
+        with open(elsewhere, "w", encoding="utf-8") as file:
+            file.write('bus: {interface: "sim:not-here.yaml"}\naxes: [{name: Q}]\n')
+        told = run("states", "-b", elsewhere, "--attach", pid)
+        expect(told.stdout.count("Operational") == 3, "attached, with a bus file whose segment is not here", told)
         for words in (("states", "1", "init"), ("reg", "write", "1", "0x120", "1", "--allow-write")):
             told = run(*words, "--attach", pid)
             expect(told.returncode == 2 and "--attach" in told.stderr, f"{words}", told)
