@@ -40,13 +40,13 @@ static int missing_of(const cm1e_bus_t *bus, int working_counter)
     return missing;
 }
 
-/** What those count together that seem to be silent by a few inputs. */
-static int share_of_few(const cm1e_bus_t *bus)
+/** What those count together that seem to be silent. */
+static int share_of_silent(const cm1e_bus_t *bus)
 {
     int share = 0;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (slave->hot.counted && slave->silent_cycles > 0 && !cm1e_bus_is_unmistakable(slave))
+        if (slave->hot.counted && slave->silent_cycles > 0)
             share += takes(slave) + gives(slave);
     }
     return share;
@@ -61,12 +61,12 @@ static void take_out_one(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 }
 
 /** Those whose inputs show that they have left are taken out. Without inputs nothing shows it: the supervision does. A few
- *  inputs may be like their marker by chance, so these have left only if all that seem to be silent by a few inputs are
- *  missing without them. */
+ *  inputs may be like their marker by chance, so these have left only if as much is missing as all count that seem to be
+ *  silent, also those that are always there. */
 static void take_out(cm1e_bus_t *bus, int working_counter)
 {
     for (int few = 0; few < 2; few++) {
-        if (few && share_of_few(bus) > missing_of(bus, working_counter))
+        if (few && share_of_silent(bus) > missing_of(bus, working_counter))
             return;
         for (uint32_t i = 0; i < bus->slave_count; i++) {
             cm1e_bus_slave_t *slave = &bus->slaves[i];

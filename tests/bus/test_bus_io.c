@@ -1,6 +1,7 @@
 /* Signals of any slave: found by name, object and place; read and written in the cycle; what they tell while the slave
  * is away. The simulated terminals have each input wired to the output of its number. */
 #include "bus_support.h"
+#include "cm1e/hot_connect.h"
 #include "cm1e/io.h"
 #include "sim/esc_chip.h"
 
@@ -376,6 +377,71 @@ START_TEST(a_device_with_the_address_of_another_one_gives_it_back)
 }
 END_TEST
 
+/** A motor, a terminal that is always needed, and two optional ones: the first is there. */
+static cm1e_bus_t *start_beside_optional(uint8_t inputs, cm1e_io_t *io)
+{
+    sim_config(1);
+    config.axes[0].address = 1;
+    add_digital("switches", 2, inputs, 0);
+    add_optional("lamp 1", 4711, 4, 4);
+    add_optional("lamp 2", 4712, 4, 4);
+    config.slaves[2].sim_absent = true;
+    cm1e_bus_t *bus = start_bus();
+    ck_assert_uint_eq(find_switches(bus, inputs, io), 2);
+    cycles(bus, 50);
+    return bus;
+}
+
+/** Also while an optional one comes, whose few inputs may be there or not: at each of these moments. */
+START_TEST(few_inputs_of_a_slave_that_is_gone_are_not_good)
+{
+    bool comes = false;
+    for (unsigned moment = 160; moment < 280; moment += 4) {
+        cm1e_io_t io;
+        cm1e_bus_t *bus = start_beside_optional(widths[_i], &io);
+        simulate(bus, "attach 4");
+        for (unsigned n = 0; n < moment; n++)
+            ck_assert(cycle(bus) == CM1E_OK || widths[_i] == 1); /* one bit that stays is like every second marker */
+        comes |= cm1e_bus_presence(bus, 4) == CM1E_PRESENCE_COMING;
+        simulate(bus, "detach 2");
+        cycle(bus); /* the frame that is on its way */
+        for (int n = 0; n < 30; n++) {
+            ck_assert_int_eq(cycle(bus), CM1E_ERROR_BUS_WORKING_COUNTER);
+            ck_assert_msg(cm1e_io_quality(&io) != CM1E_IO_GOOD, "moment %u: %d", moment, (int)cm1e_io_integer(&io));
+        }
+        cm1e_bus_close(bus);
+    }
+    ck_assert(comes);
+}
+END_TEST
+
+/** Whoever is away makes the working counter wrong, and not those whose few inputs change. */
+START_TEST(an_optional_slave_stays_while_another_one_is_away)
+{
+    char line[32];
+    cm1e_io_t io, lamp;
+    cm1e_bus_t *bus = start_beside_optional(4, &io);
+    ck_assert_int_eq(cm1e_io_find_bits(bus, 3, false, 0, 4, CM1E_IO_USINT, &lamp, &diag), CM1E_OK);
+    snprintf(line, sizeof line, "detach %d", _i + 1);
+    simulate(bus, line);
+    cycle(bus); /* the frame that is on its way */
+    unsigned random = 1;
+    for (int n = 0; n < 300; n++) {
+        random = random * 1103515245u + 12345u;
+        for (int bit = 0; bit < 4; bit++) {
+            snprintf(line, sizeof line, "input 3 %d %s", bit + 1, random >> (16 + bit) & 1 ? "on" : "off");
+            simulate(bus, line);
+        }
+        for (int i = 0; i < 4 + n % 3; i++) {
+            ck_assert_int_eq(cycle(bus), CM1E_ERROR_BUS_WORKING_COUNTER);
+            ck_assert_int_eq(cm1e_bus_presence(bus, 3), CM1E_PRESENCE_THERE);
+        }
+        ck_assert_int_eq(cm1e_io_integer(&lamp), random >> 16 & 15);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(handle_ends_with_the_start_of_the_bus_that_it_was_found_in)
 {
     cm1e_bus_t *bus = start_with(CM1E_SIM_IO_MODULE);
@@ -410,6 +476,8 @@ int main(void)
     tcase_add_loop_test(tests, few_inputs_that_are_gone_have_no_value, 0, 2);
     tcase_add_test(tests, a_device_with_the_address_of_another_one_gives_it_back);
     tcase_add_loop_test(tests, every_value_of_the_inputs_is_a_value, 0, NETWORKS * WIDTHS);
+    tcase_add_loop_test(tests, few_inputs_of_a_slave_that_is_gone_are_not_good, 0, WIDTHS);
+    tcase_add_loop_test(tests, an_optional_slave_stays_while_another_one_is_away, 0, 2);
     tcase_add_test(tests, handle_ends_with_the_start_of_the_bus_that_it_was_found_in);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
