@@ -222,12 +222,13 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
 
 static const override_t no_override = {1.0, 1.0, 1.0};
 
-/* The braking before may be harder than the jerk of a stop can end before the axis stands: it would turn round. The jerk
- * becomes the one with which velocity and braking end together, or the maximum, which a superimposed motion shares. */
+/* The braking before may be harder than the jerk of a stop can end before the axis stands: it would turn round. Where that
+ * direction is disabled, the jerk becomes the one with which velocity and braking end together, or the maximum, which a
+ * superimposed motion shares. Elsewhere it stays as it was told: slaves may need it. */
 static void keep_direction(const cm1e_axis_t *axis, const from_t *from, const move_t *move, cm1e_motion_limits_t *limits)
 {
     const double v = from->velocity, a = from->acceleration;
-    if (v * a < 0.0 && kind_row(move->kind)->is_stop && !from->shared)
+    if (v * a < 0.0 && !cm1e_axis_direction_enabled(axis, a) && kind_row(move->kind)->is_stop && !from->shared)
         limits->jerk = larger(limits->jerk, smaller(a * a / (2.0 * fabs(v)), axis->limits.maximum.jerk));
 }
 

@@ -367,7 +367,7 @@ static void test_a_running_table_keeps_its_path_within_the_limits(void)
 }
 
 /* A stop with a small jerk, at every moment of the braking and of the acceleration of a move: where the maximum jerk is
- * enough, the axis does not turn round, and so does not move in a disabled direction. */
+ * enough, the axis does not turn round where that direction is disabled. */
 static void test_a_stop_with_a_small_jerk_does_not_turn_round(void)
 {
     static const cm1e_command_kind_t stops[] = {CM1E_COMMAND_HALT, CM1E_COMMAND_STOP};
@@ -376,10 +376,10 @@ static void test_a_stop_with_a_small_jerk_does_not_turn_round(void)
             for (int at = 1;; at++) {
                 axes_begin(1);
                 const cm1e_command_id_t move = axes_move_to(A, sign * 1.5, 10.0);
+                (sign > 0.0 ? axes_bench.negative : axes_bench.positive)[A] = false;
                 axes_cycles(at);
                 if (axes_status(A, move).state != CM1E_COMMAND_ACTIVE)
                     break;
-                (sign > 0.0 ? axes_bench.negative : axes_bench.positive)[A] = false;
                 const double deceleration = axis()->limits.maximum.deceleration, jerk = axis()->limits.maximum.jerk;
                 axes_command(A, &(cm1e_axis_command_t){.kind = stops[kind], .deceleration = deceleration, .jerk = jerk / 200.0});
                 for (double last = place(), n = 0; n < WAITS && axis()->setpoint.velocity != 0.0; n++, last = place()) {
