@@ -211,8 +211,10 @@ static int send_frame(ecx_portt *port, uint8 idx, bool again)
 static void fill_logical_read(ecx_portt *port, uint8 idx)
 {
     enum { COMMAND_LRD = 10, ADDRESS = 2, LENGTH = 6, LENGTH_MASK = 0x07FF };
+    if (!port->logical || !can_send(port, idx))
+        return;
     uint8_t *datagram = port->txbuf[idx] + FRAME_HEADER;
-    if (port->logical && can_send(port, idx) && datagram[0] == COMMAND_LRD)
+    if (datagram[0] == COMMAND_LRD)
         memcpy(datagram + DATAGRAM_HEADER, port->logical + cm1e_get_u32(datagram + ADDRESS),
                cm1e_get_u16(datagram + LENGTH) & LENGTH_MASK);
 }
