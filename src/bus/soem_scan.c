@@ -291,6 +291,7 @@ int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
     uint16 type;
     *position = 0;
     soem->slave_count = 0;
+    soem->port.logical = NULL; /* the image of the last start is gone */
     memset(soem->slaves, 0, sizeof soem->slaves);
     memset(soem->groups, 0, sizeof soem->groups);
     cm1e_soem_forget_siis(soem);
