@@ -2,7 +2,9 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <linux/ethtool.h>
 #include <linux/if_packet.h>
+#include <linux/sockios.h>
 #include <net/ethernet.h>
 #include <net/if.h>
 #include <net/if_arp.h>
@@ -58,17 +60,27 @@ static cm1e_error_t check_interface(int fd, const char *name, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+/* The driver knows at once that the link is lost. The flags follow up to a second later, but do so for a link that comes,
+ * too: the kernel sends nothing before. */
+static bool says_no_link(int fd, const char *interface_name)
+{
+    struct ethtool_value link = {.cmd = ETHTOOL_GLINK};
+    struct ifreq request = {.ifr_data = (void *)&link};
+    memcpy(request.ifr_name, interface_name, cm1e_interface_length(interface_name));
+    if (ioctl(fd, SIOCETHTOOL, &request) == 0 && link.data == 0)
+        return true;
+    return ioctl(fd, SIOCGIFFLAGS, &request) == 0 && !(request.ifr_flags & IFF_RUNNING);
+}
+
 bool cm1e_nic_lacks_link(const char *interface_name)
 {
-    struct ifreq request = {0};
-    if (cm1e_interface_length(interface_name) >= sizeof request.ifr_name)
+    if (cm1e_interface_length(interface_name) >= IFNAMSIZ)
         return false;
-    memcpy(request.ifr_name, interface_name, cm1e_interface_length(interface_name));
     const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const bool asked = fd >= 0 && ioctl(fd, SIOCGIFFLAGS, &request) == 0;
+    const bool lacks = fd >= 0 && says_no_link(fd, interface_name);
     if (fd >= 0)
         close(fd);
-    return asked && !(request.ifr_flags & IFF_RUNNING);
+    return lacks;
 }
 
 static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)

@@ -144,16 +144,10 @@ static cm1e_error_t check_queues(const cm1e_xdp_socket_t *x, const char *name, c
                          name, count, name, word, name);
 }
 
-static bool has_link(const cm1e_xdp_socket_t *x, const char *name)
-{
-    struct ethtool_value link = {.cmd = ETHTOOL_GLINK};
-    return (question(x->holder.fd, name, SIOCETHTOOL, &link) != 0 || link.data) && !cm1e_nic_lacks_link(name);
-}
-
 /* Some drivers begin anew with a program at them, and their link with them. */
-static void wait_for_link(const cm1e_xdp_socket_t *x, const char *name)
+static void wait_for_link(const char *name)
 {
-    for (int i = 0; i < LINK_TRIES && !has_link(x, name); i++)
+    for (int i = 0; i < LINK_TRIES && cm1e_nic_lacks_link(name); i++)
         usleep(PAUSE_US);
 }
 
@@ -271,7 +265,7 @@ cm1e_error_t cm1e_xdp_socket_open(cm1e_xdp_socket_t **made, const char *interfac
         cm1e_xdp_socket_close(x);
         return error;
     }
-    wait_for_link(x, interface_name);
+    wait_for_link(interface_name);
     *made = x;
     return CM1E_OK;
 }
