@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Installs the library into fresh prefixes, once as static and once as shared library, takes the C program out of
-README.md, builds it as a stranger's project with find_package(cm1e), and by hand with pkg-config, and runs it on the
-simulated segment. Beside it, programs that define names which the library's sources might use (own_names.c), or that
-link libpcap before and after the library (with_libpcap.c); and a program for network interfaces only, which holds no
-simulator, also where pkg-config finds neither libcyaml nor libxml2. A program that is linked by hand registers the
-simulator itself.
+"""Installs the library into a fresh prefix, as the kind that the build makes, and with full effort into a second one as
+the other kind (static, shared). Takes the C program out of README.md, builds it as a stranger's project with
+find_package(cm1e), and by hand with pkg-config, and runs it on the simulated segment. Beside it, programs that define
+names which the library's sources might use (own_names.c), or that link libpcap before and after the library
+(with_libpcap.c); and a program for network interfaces only, which holds no simulator, also where pkg-config finds
+neither libcyaml nor libxml2. A program that is linked by hand registers the simulator itself.
 
 test_install.py BUILD-DIRECTORY SOURCE-DIRECTORY
 """
@@ -53,9 +53,13 @@ def configured(build, variable):
         return re.search(rf"^{variable}:\w+=(.*)$", file.read(), re.MULTILINE)[1]
 
 
+def is_shared(build):
+    return configured(build, "BUILD_SHARED_LIBS") in ("ON", "1", "TRUE")
+
+
 def install(build, kind, prefix):
     """The kind that the build is configured for as a user installs it, the other one by its component."""
-    if (kind == "shared") == (configured(build, "BUILD_SHARED_LIBS") in ("ON", "1", "TRUE")):
+    if (kind == "shared") == is_shared(build):
         run("cmake", "--install", build, "--prefix", prefix)
     else:
         for component in ("Unspecified", kind):
@@ -184,7 +188,8 @@ def check_registered_by_hand(source, libraries):
 
 
 def main(build, source):
-    for kind in ("static", "shared"):
+    kinds = ("shared", "static") if is_shared(build) else ("static", "shared")
+    for kind in kinds if os.environ.get("CM1E_TEST_EFFORT") == "full" else kinds[:1]:
         with tempfile.TemporaryDirectory() as folder:
             print(f"{kind}:")
             program = program_of_readme(source, folder)
