@@ -157,7 +157,8 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the process image.");
     /* Overlapped process data take at least half of the bytes. */
     const unsigned most_frames = CM1E_PROCESS_FRAMES_MAX * (bus->config.overlap ? 2 : 1);
-    if (!cm1e_soem_map(bus->soem, bus->image, most_frames, &bus->output_bytes, &bus->input_bytes))
+    if (!cm1e_soem_map(bus->soem, (uint16_t)bus->scanned, bus->image, most_frames, &bus->output_bytes,
+                       &bus->input_bytes))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                              "The process data of all slaves (%zu bytes) needs more than %d frames a cycle.", room,
                              CM1E_PROCESS_FRAMES_MAX);

@@ -147,7 +147,8 @@ size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem)
 
 size_t cm1e_soem_frame_room(void) { return EC_MAXLRWDATA - EC_FIRSTDCDATAGRAM; }
 
-bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, unsigned most_frames, size_t *output_bytes, size_t *input_bytes)
+bool cm1e_soem_map(cm1e_soem_t *soem, uint16_t present, uint8_t *image, unsigned most_frames, size_t *output_bytes,
+                   size_t *input_bytes)
 {
     ec_groupt *group = &soem->groups[0];
     const size_t room = cm1e_soem_image_bytes(soem);
@@ -155,7 +156,9 @@ bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, unsigned most_frames, size
         return false;
     soem->image = image;
     soem->port.logical = image;
+    soem->port.absent_from = (uint16_t)(EC_NODEOFFSET + present + 1);
     const int used = ecx_config_map_group_aligned(&soem->context, image, 0);
+    soem->port.absent_from = 0;
     *output_bytes = group->Obytes;
     *input_bytes = group->Ibytes;
     group->hasdc = FALSE; /* until cm1e_soem_use_clocks() */

@@ -87,9 +87,10 @@ bool cm1e_soem_set_process_data_by_pdos(cm1e_soem_t *soem, uint16_t position, ui
 size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem);
 /** Bytes of process data that every frame has room for. */
 size_t cm1e_soem_frame_room(void);
-/** Maps into `image`, programs sync managers and FMMUs: first all outputs, then all inputs. False: it does not fit into
- *  so many frames. */
-bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, unsigned most_frames, size_t *output_bytes, size_t *input_bytes);
+/** Maps into `image`, programs sync managers and FMMUs: first all outputs, then all inputs. `present`: the slaves behind so
+ *  many are absent. False: it does not fit into so many frames. */
+bool cm1e_soem_map(cm1e_soem_t *soem, uint16_t present, uint8_t *image, unsigned most_frames, size_t *output_bytes,
+                   size_t *input_bytes);
 /** The SII of a slave says that it does not know LRW. */
 bool cm1e_soem_refuses_lrw(const cm1e_soem_t *soem, uint16_t position);
 /** After cm1e_soem_map(): the image is sent in frames of these sizes, and comes back in its place. So many slaves take

@@ -319,6 +319,7 @@ void cm1e_soem_set_count(cm1e_soem_t *soem, uint16_t count)
         memset(&soem->slaves[position], 0, sizeof soem->slaves[position]);
         memset(&soem->siis[position], 0, sizeof soem->siis[position]);
         soem->slaves[position].configadr = (uint16)(EC_NODEOFFSET + position);
+        soem->slaves[position].eep_pdi = 1; /* SOEM need not offer its EEPROM */
     }
     soem->slave_count = count;
 }

@@ -379,10 +379,28 @@ int ecx_waitinframe(ecx_portt *port, uint8 idx, int timeout)
     return wait_until(port, idx, deadline_after(port, timeout));
 }
 
+/** Puts the answer in the place of a slave that is absent, if SOEM asks for its AL status. */
+static bool answer_for_absent(ecx_portt *port, uint8 idx)
+{
+    enum { COMMAND_FPRD = 4, ADDRESS = 2, OFFSET = 4, AL_STATUS = 0x0130, PRE_OPERATIONAL = 2 };
+    if (!port->absent_from || !can_send(port, idx))
+        return false;
+    const uint8_t *datagram = port->txbuf[idx] + FRAME_HEADER;
+    if (datagram[0] != COMMAND_FPRD || cm1e_get_u16(datagram + ADDRESS) < port->absent_from ||
+        cm1e_get_u16(datagram + OFFSET) != AL_STATUS)
+        return false;
+    memcpy(port->rxbuf[idx], port->txbuf[idx] + ETHERNET_HEADER, (size_t)port->txbuflength[idx] - ETHERNET_HEADER);
+    port->rxbuf[idx][FRAME_HEADER - ETHERNET_HEADER + DATAGRAM_HEADER] = PRE_OPERATIONAL;
+    port->slots[idx].state = EC_BUF_COMPLETE;
+    return true;
+}
+
 int ecx_srconfirm(ecx_portt *port, uint8 idx, int timeout)
 {
     if (!port->nic)
         return EC_NOFRAME;
+    if (answer_for_absent(port, idx))
+        return 1;
     const int64_t end = deadline_after(port, timeout);
     int wkc;
     int64_t now = cm1e_clock_now(port->nic->link.clock);

@@ -128,10 +128,14 @@ static cm1e_bus_t *open_machine(kind_t kind, bool there)
     return bus;
 }
 
+static int64_t start_ns; /* how long the last start took */
+
 static cm1e_bus_t *start_machine(kind_t kind, bool there)
 {
     cm1e_bus_t *bus = open_machine(kind, there);
+    start_ns = -cm1e_clock_now(cm1e_bus_clock(bus));
     const cm1e_error_t error = cm1e_bus_start(bus, &diag);
+    start_ns += cm1e_clock_now(cm1e_bus_clock(bus));
     ck_assert_msg(error == CM1E_OK, "kind %d: %s: %s", kind, cm1e_strerror(error), diag.text);
     return bus;
 }
@@ -183,6 +187,15 @@ static unsigned state_of(cm1e_bus_t *bus, uint32_t place)
 {
     return cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), place));
 }
+
+START_TEST(start_takes_no_longer_without_the_tool)
+{
+    cm1e_bus_close(start_machine((kind_t)_i, true));
+    const int64_t with_ns = start_ns;
+    cm1e_bus_close(start_machine((kind_t)_i, false));
+    ck_assert_int_le(start_ns, with_ns + 1000000); /* frames, but no wait */
+}
+END_TEST
 
 START_TEST(absent_at_the_start_then_comes_goes_and_comes_back)
 {
@@ -662,6 +675,7 @@ int main(void)
     Suite *suite = suite_create("bus_hot_connect");
     TCase *tests = tcase_create("hot_connect");
     tcase_set_timeout(tests, 60);
+    tcase_add_loop_test(tests, start_takes_no_longer_without_the_tool, 0, KINDS);
     tcase_add_loop_test(tests, absent_at_the_start_then_comes_goes_and_comes_back, 0, KINDS);
     tcase_add_loop_test(tests, there_at_the_start_goes_and_comes_back, 0, KINDS);
     tcase_add_loop_test(tests, leaving_at_every_moment_of_coming, 0, 2 * KINDS);
