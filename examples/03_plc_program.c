@@ -357,7 +357,7 @@ static cm1e_error_t describe(cm1e_bus_config_t *config, const options_t *options
         return error;
     if (options->interface_name)
         snprintf(config->interface_name, sizeof config->interface_name, "%s", options->interface_name);
-    config->virtual_time = options->virtual_time;
+    config->virtual_time = config->virtual_time || options->virtual_time;
     for (uint32_t i = 0; i < config->axis_count && i < MAX_UNITS; i++)
         if (config->axes[i].homing.method == 0)
             return cm1e_diag_set(why, CM1E_ERROR_CONFIG, 0, "Axis %u has no homing.method in the bus file.", i + 1);

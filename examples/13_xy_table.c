@@ -240,7 +240,6 @@ int main(int argc, char **argv)
     static const struct argp argp = {options, option, "[CSV FILE]", "An XY table that goes along an outline.", children,
                                      NULL, NULL};
     cm1e_diag_t why = {0};
-    example.interface_name = "sim";
     example.axis_count = AXES;
     example.describe_network = describe_network;
     argp_parse(&argp, argc, argv, 0, NULL, NULL);

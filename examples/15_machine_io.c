@@ -163,7 +163,6 @@ int main(int argc, char **argv)
     static const struct argp argp = {options, option, NULL, "Valves and a light curtain beside an axis.", children, NULL,
                                      NULL};
     cm1e_diag_t why = {0};
-    example.interface_name = "sim";
     argp_parse(&argp, argc, argv, 0, NULL, NULL);
     feed.Position = end;
     rest = feed;

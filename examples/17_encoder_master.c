@@ -101,7 +101,6 @@ int main(int argc, char **argv)
     static const struct argp argp = {options, option, NULL, "A feeder that follows the encoder of a belt.", children,
                                      NULL, NULL};
     cm1e_diag_t why = {0};
-    example.interface_name = "sim";
     argp_parse(&argp, argc, argv, 0, NULL, NULL);
     cm1e_error_t error = example_open(&example, &why);
     if (error == CM1E_OK) {

@@ -24,7 +24,8 @@ static cm1e_error_t (*const example_writers[EXAMPLE_FILES])(const cm1e_scheduler
 };
 
 typedef struct example {
-    const char *interface_name, *files[EXAMPLE_FILES]; /**< NULL: not wanted */
+    const char *interface_name;                 /**< NULL: that of the bus file, or sim */
+    const char *files[EXAMPLE_FILES];           /**< NULL: not wanted */
     bool virtual_time;
     void (*describe)(cm1e_axis_config_t *axis); /**< what is special about the axis; NULL: nothing */
     uint32_t axis_count;                        /**< 0: 1 */
@@ -57,7 +58,8 @@ static inline error_t example_option(int key, char *argument, struct argp_state 
 
 /** A program with options of its own has these as its argp's child, and &example as what they fill in. */
 static const struct argp_option example_option_list[] = {
-    {"interface", 'i', "NAME", 0, "network interface (the motor turns!); default: sim, the simulated segment", 0},
+    {"interface", 'i', "NAME", 0, "network interface (the motor turns!); default: that of the bus file, or sim, the "
+     "simulated segment", 0},
     {"virtual-time", EXAMPLE_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
     {"csv", EXAMPLE_CSV, "FILE", 0, "write the trace as CSV", 0},
     {"svg", EXAMPLE_SVG, "FILE", 0, "write the trace as a plot", 0},
@@ -68,7 +70,6 @@ static const struct argp_option example_option_list[] = {
 static inline void example_options(example_t *e, int argc, char **argv, const char *purpose)
 {
     const struct argp argp = {example_option_list, example_option, NULL, purpose, NULL, NULL, NULL};
-    e->interface_name = "sim";
     argp_parse(&argp, argc, argv, 0, NULL, e);
 }
 
@@ -79,10 +80,11 @@ static inline cm1e_error_t example_open_bus(example_t *e, cm1e_diag_t *why)
                                      : cm1e_bus_config_init(&config, NULL, e->axis_count > 0 ? e->axis_count : 1);
     if (error != CM1E_OK)
         return e->bus_file ? error : cm1e_diag_set(why, error, 0, "%s", cm1e_strerror(error));
-    snprintf(config.interface_name, sizeof config.interface_name, "%s", e->interface_name);
+    if (e->interface_name)
+        snprintf(config.interface_name, sizeof config.interface_name, "%s", e->interface_name);
     if (e->describe_network)
         e->describe_network(&config);
-    config.virtual_time = e->virtual_time;
+    config.virtual_time = config.virtual_time || e->virtual_time;
     if (e->describe)
         e->describe(&config.axes[0]);
     error = cm1e_bus_open(&e->bus, &config, why);

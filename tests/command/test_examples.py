@@ -346,6 +346,19 @@ def check_xy_table():
         expect(done.returncode == 1 and told in done.stderr, f"{name}: {text!r}: {done.returncode} {done.stderr}")
 
 
+def check_bus_file_is_followed(name, bus_file):
+    """Its interface and its virtual time count; an interface of the command line counts before."""
+    path = os.path.join(os.path.dirname(__file__), "..", "..", "examples", bus_file)
+    changed = os.path.join(OUTPUT, f"followed_{name}.yaml")
+    for new, words, told in (("interface: cm1e-none", [], '"cm1e-none"'),
+                             ("interface: cm1e-none", ["-i", "sim", "--virtual-time"], ""),
+                             ("virtual_time: true", ["-i", "cm1e-none"], "virtual_time is on with the interface cm1e-none")):
+        with open(path, encoding="utf-8") as file, open(changed, "w", encoding="utf-8") as other:
+            other.write(file.read().replace("interface: sim", new, 1))
+        done = subprocess.run([os.path.join(BIN, name), "-b", changed, *words], capture_output=True, text=True, timeout=60)
+        expect((done.returncode == 0) == (not told) and told in done.stderr, f"{name} with {new}, {words}: {done}")
+
+
 def check_machine_io():
     """The curtain stops the axis within its deceleration, and the cam switches where it says, to a cycle."""
     name = "15_machine_io"
@@ -484,6 +497,9 @@ def check_traces():
     check_xy_table()
     check_machine_io()
     check_encoder_master()
+    for name, bus_file in (("03_plc_program", "three_axes.yaml"), ("15_machine_io", "machine.yaml"),
+                           ("17_encoder_master", "belt.yaml")):
+        check_bus_file_is_followed(name, bus_file)
     check_touch_probe()
     check_homing_steps()
     check_jog_panel()
