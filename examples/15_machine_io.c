@@ -159,7 +159,8 @@ int main(int argc, char **argv)
 {
     static const struct argp common = {example_option_list, example_option, NULL, NULL, NULL, NULL, NULL};
     static const struct argp_child children[] = {{&common, 0, NULL, 0}, {0}};
-    static const struct argp_option options[] = {{"bus", 'b', "FILE", 0, "another bus file with these signals", 0}, {0}};
+    static const struct argp_option options[] = {
+        {"bus", 'b', "FILE", 0, "another bus file with these signals; its interface is the default", 0}, {0}};
     static const struct argp argp = {options, option, NULL, "Valves and a light curtain beside an axis.", children, NULL,
                                      NULL};
     cm1e_diag_t why = {0};

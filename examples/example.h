@@ -58,8 +58,7 @@ static inline error_t example_option(int key, char *argument, struct argp_state 
 
 /** A program with options of its own has these as its argp's child, and &example as what they fill in. */
 static const struct argp_option example_option_list[] = {
-    {"interface", 'i', "NAME", 0, "network interface (the motor turns!); default: that of the bus file, or sim, the "
-     "simulated segment", 0},
+    {"interface", 'i', "NAME", 0, "network interface (the motor turns!); default: sim, the simulated segment", 0},
     {"virtual-time", EXAMPLE_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
     {"csv", EXAMPLE_CSV, "FILE", 0, "write the trace as CSV", 0},
     {"svg", EXAMPLE_SVG, "FILE", 0, "write the trace as a plot", 0},
