@@ -94,6 +94,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END:
         if (!options->interface_name)
             argp_error(state, "the network interface is missing: -i INTERFACE");
+        if (strcmp(options->interface_name, "sim") == 0)
+            argp_error(state, "\"sim\" is a network within the program that uses it (cm1e scan -i sim); cm1e sim serves one "
+                       "on a network interface");
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }

@@ -218,13 +218,13 @@ static bool is_away(const cm1e_bus_t *bus, const cm1e_slave_info_t *slave)
     return presence == CM1E_PRESENCE_ABSENT || presence == CM1E_PRESENCE_REFUSED;
 }
 
-/** Which slaves of the bus file are absent is known when the others are identified. What is wrong with them is not the
- *  business of this command. */
+/** Which slaves of the bus file are absent is known when the others are identified. A network that is not as the file says
+ *  is shown all the same. */
 static void identify(cm1e_bus_t *bus, const cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag;
-    if (config->axis_count + config->slave_count > 0)
-        (void)cm1e_bus_identify(bus, &diag);
+    if (config->axis_count + config->slave_count > 0 && cm1e_bus_identify(bus, &diag) != CM1E_OK)
+        complain("the network is not as the bus file says: %s", diag.text);
 }
 
 /** An absent slave has nothing to be read; of another one that takes no part it is told below its lines. */
@@ -268,7 +268,8 @@ static void show_strangers(const cm1e_bus_t *bus, json_t *all)
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
                                  "Shows state, error, measurements and the last emergencies of every drive, and which "
-                                 "slaves are not motors. Where a program runs the network, it is asked; else the "
+                                 "slaves are not motors. Of a network that is not as the bus file says, it tells "
+                                 "what differs. Where a program runs the network, it is asked; else the "
                                  "network is brought to Pre-Operational.",
                                  children, NULL, NULL};
 

@@ -46,6 +46,7 @@ def wrong_interface(segment, cm1e):
     for command in (["scan", "-i", IF], MOVE):
         must_tell(segment, "no right", [*NOBODY, cm1e, *command], 1, "CAP_NET_RAW", "sudo setcap cap_net_raw", cm1e)
     must_tell(segment, "no Ethernet", [cm1e, "scan", "-i", "lo"], 1, "is not Ethernet")
+    must_tell(segment, "served sim", [cm1e, "sim", "-i", "sim"], 2, "on a network interface")
 
 
 def no_link(segment, cm1e):
@@ -87,6 +88,8 @@ def bus_file(segment, cm1e):
         with open(path, "w", encoding="utf-8") as file:
             file.write(BUS_FILE.replace(old, new, 1) if old else BUS_FILE)
         must_tell(segment, name, [cm1e, "move", "-b", path, axis, "--by", "1"], status, *words)
+        if name in ("wrong firmware", "wrong position"):
+            must_tell(segment, name, [cm1e, "status", "-b", path], 0, "slave 1", "not as the bus file says", *words)
     must_tell(segment, "no file", [cm1e, "move", "-b", "nowhere.yaml", "X", "--by", "1"], 2, "nowhere.yaml", "No such file")
 
 
