@@ -1,3 +1,5 @@
+#include <stdio.h>
+
 #include "bus/bus_internal.h"
 #include "bus/kept.h"
 #include "core/bytes.h"
@@ -25,12 +27,26 @@ static void exchange_once(cm1e_bus_t *bus, bool at_once)
     bus->next_cycle_ns = cm1e_clock_now(bus->clock);
 }
 
+static cm1e_error_t nothing_comes_back(const cm1e_bus_t *bus, uint64_t late, cm1e_error_t error, cm1e_diag_t *diag)
+{
+    char other[CM1E_OTHER_MASTER_LENGTH], how[200] = "";
+    if (error == CM1E_ERROR_BUS_LOST && late > 0)
+        snprintf(how, sizeof how, " %llu of them came back after the %lld us of frame_timeout_us: look for what delays "
+                 "them, or make that time longer, at most a cycle.", (unsigned long long)late,
+                 (long long)(bus->config.frame_timeout_ns / US_IN_NS));
+    return cm1e_diag_set(diag, error == CM1E_OK ? CM1E_ERROR_TIMEOUT : error, 0,
+                         "The process data does not come back as it must after configuration (working counter %d "
+                         "expected): %s.%s%s", bus->expected_working_counter, cm1e_strerror(error), how,
+                         cm1e_bus_other_master(bus, other));
+}
+
 /** Exchanges until the process data comes back. Whether all slaves count is asked in Operational only: a slave may keep
  *  its outputs closed until then (ETG.1000.4: sync manager deactivated by the device), and they do not count. */
 static cm1e_error_t exchange(cm1e_bus_t *bus, bool operational, cm1e_diag_t *diag)
 {
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + EXCHANGE_NS;
     const bool at_once = !operational && !bus->dc.used; /* nobody looks at the time between two frames yet */
+    const uint64_t late = bus->counters.late_frames;
     unsigned good = 0;
     while (good < EXCHANGES) {
         const uint64_t before = bus->counters.cycles;
@@ -40,11 +56,7 @@ static cm1e_error_t exchange(cm1e_bus_t *bus, bool operational, cm1e_diag_t *dia
             good = error == CM1E_OK || (!operational && error == CM1E_ERROR_BUS_WORKING_COUNTER) ? good + 1 : 0;
         if (cm1e_clock_now(bus->clock) < deadline_ns)
             continue;
-        char other[CM1E_OTHER_MASTER_LENGTH];
-        return cm1e_diag_set(diag, error == CM1E_OK ? CM1E_ERROR_TIMEOUT : error, 0,
-                             "The process data does not come back as it must after configuration (working counter %d "
-                             "expected): %s.%s", bus->expected_working_counter, cm1e_strerror(error),
-                             cm1e_bus_other_master(bus, other));
+        return nothing_comes_back(bus, bus->counters.late_frames - late, error, diag);
     }
     return CM1E_OK;
 }

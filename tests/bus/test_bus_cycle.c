@@ -379,6 +379,21 @@ START_TEST(questions_ride_with_the_process_data)
 }
 END_TEST
 
+/** A start without process data tells those that come back too late from those that do not come back. */
+START_TEST(start_tells_late_frames_from_lost_ones)
+{
+    const bool late = _i == 1;
+    sim_config(2)->frame_timeout_ns = 300000;
+    cm1e_bus_t *bus = open_bus();
+    fault_t fault = {0, UINT32_MAX, late ? DELAY : LOSE, 800000, 0};
+    set_fault(bus, &fault);
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_ERROR_BUS_LOST);
+    ck_assert_msg((strstr(diag.text, "of them came back after the 300 us of frame_timeout_us") != NULL) == late, "%s",
+                  diag.text);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_cycle");
@@ -392,6 +407,7 @@ int main(void)
     tcase_add_test(tests, supervision_has_one_question_on_its_way);
     tcase_add_test(tests, questions_ride_with_the_process_data);
     tcase_add_test(tests, silence_of_the_application_is_bounded);
+    tcase_add_loop_test(tests, start_tells_late_frames_from_lost_ones, 0, 2);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
