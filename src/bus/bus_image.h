@@ -36,6 +36,12 @@ typedef struct cm1e_slave_watch {
     bool fresh;  /**< its own inputs are those of this cycle, even if the working counter is wrong */
 } cm1e_slave_watch_t;
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position);
+/** A slave that takes no part in the cycle, though it is not optional and absent, by what the supervision has seen: its
+ *  position; 0: none. @rt cycle */
+uint16_t cm1e_bus_missing_slave(const cm1e_bus_t *bus);
+enum { CM1E_LABEL_LENGTH = 224 }; /**< four names of axes */
+/** 'slave 2 ("axis2", CM1-E)'; "slave 9" if there is none. @rt any */
+const char *cm1e_bus_slave_label(const cm1e_bus_t *bus, uint16_t position, char label[CM1E_LABEL_LENGTH]);
 /** How often the supervision has seen its AL status. @rt cycle */
 uint32_t cm1e_bus_slave_looks(const cm1e_bus_t *bus, uint16_t position);
 /** Whether this cycle is a good one, and cm1e_bus_slave_watch() would give what it gave before (`seen`) of a slave that

@@ -68,6 +68,15 @@ const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *
     return label;
 }
 
+const char *cm1e_bus_slave_label(const cm1e_bus_t *bus, uint16_t position, char label[CM1E_LABEL_LENGTH])
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    if (slave)
+        return cm1e_bus_label(bus, slave, label);
+    snprintf(label, CM1E_LABEL_LENGTH, "slave %u", position);
+    return label;
+}
+
 const char *cm1e_bus_slave_name(const cm1e_bus_t *bus, uint32_t position)
 {
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);

@@ -26,7 +26,6 @@
 enum {
     CM1E_SDO_WAITING_MAX = 64,     /**< transfers that may wait (a power of two) */
     CM1E_DATAGRAMS_PER_CYCLE = 4,  /**< at most, beside the process data and one of supervision */
-    CM1E_LABEL_LENGTH = 224,       /**< four names of axes */
     CM1E_KIND_LENGTH = 48,
     CM1E_CHANNELS = 1 + CM1E_BRIDGE_AXES, /**< 0: the slave itself is the motor; 1 ... 4: connectors of a bridge */
 };
@@ -120,6 +119,7 @@ typedef struct cm1e_supervised {
     bool asks;                               /**< it is to be sent in this cycle */
     bool sent;
     uint32_t place;                          /**< of the slave whose AL status was asked for last */
+    uint16_t missing;                        /**< position of the last one that was seen to take no part; 0: none yet */
     cm1e_port_turn_t ports;
 } cm1e_supervised_t;
 

@@ -121,6 +121,12 @@ void cm1e_supervision_forget(cm1e_bus_t *bus)
     bus->supervised.sent = false;
 }
 
+static bool takes_no_part(const cm1e_bus_slave_t *slave)
+{
+    const cm1e_slave_watch_t *watch = &slave->watch;
+    return !watch->absent && (watch->lost || (watch->al_state != CM1E_AL_OP && watch->al_state != CM1E_AL_NONE));
+}
+
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_datagram_t *d = &bus->supervised.datagram;
@@ -157,8 +163,16 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
     } else if (d->working_counter == 0 && ++slave->unanswered >= UNANSWERED_LIMIT) {
         cm1e_supervision_lose(bus, slave);
     }
+    if (takes_no_part(slave))
+        bus->supervised.missing = slave->info.position;
     recover_unasked(bus, slave);
     cm1e_hot_note(bus, slave);
+}
+
+uint16_t cm1e_bus_missing_slave(const cm1e_bus_t *bus)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, bus->supervised.missing);
+    return slave && takes_no_part(slave) ? slave->info.position : 0;
 }
 
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position)

@@ -16,6 +16,10 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
     /* Adds details that arrive after the first sign: the code of the device, and what the supervision found. */
     if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
         fault->device_code = drive->feedback.error_code;
+    if (fault->error == CM1E_ERROR_BUS_WORKING_COUNTER && fault->missing == 0) {
+        const uint16_t missing = cm1e_bus_missing_slave(drive->bus);
+        fault->missing = missing != drive->position ? missing : 0;
+    }
     fault->slave_lost |= drive->watch.lost;
     fault->slave_absent |= drive->watch.lost || drive->watch.silent;
     /* While the working counter stays wrong, nothing shows that the slave hears again. */

@@ -69,6 +69,7 @@ typedef struct cm1e_drive_fault {
     bool slave_absent;                /**< the slave took no part in the cycle, then or later */
     uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error */
     bool motor_status_known;        /**< `motor_status` is valid */
+    uint16_t missing;               /**< position of another slave that took no part in the cycle, then or later; 0: none */
 } cm1e_drive_fault_t;
 
 typedef struct cm1e_drive_encoder {

@@ -31,8 +31,7 @@ typedef struct advice {
 static const advice_t advices[] = {
     {CM1E_ERROR_BUS_LOST, "No frame came back for several cycles. Check cable, network interface and the load of this "
                           "machine"},
-    {CM1E_ERROR_BUS_WORKING_COUNTER, "A slave did not take part in the cycle. Look for a slave without power, a loose "
-                                     "cable, or one that left Operational"},
+    {CM1E_ERROR_BUS_WORKING_COUNTER, "Look for a slave without power, a loose cable, or one that left Operational"},
     {CM1E_ERROR_BUS_STATE, "The slave left Operational. Remove what the AL status code names"},
     {CM1E_ERROR_AXIS_OFFLINE, "Check its power and its cables"},
     {CM1E_ERROR_DRIVE_POWER, "Motor power (24 V, statusword bit 4) is missing: check supply, fuse and emergency stop"},
@@ -131,6 +130,9 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
         if (device)
             say(&w, " Cure: %s.", device->cure);
     }
+    char label[CM1E_LABEL_LENGTH];
+    if (fault->missing)
+        say(&w, " It is %s.", cm1e_bus_slave_label(drive->bus, fault->missing, label));
     if (fault->slave_lost)
         say(&w, " This slave does not answer at its address.");
     else if (fault->al_state)

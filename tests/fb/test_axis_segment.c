@@ -336,6 +336,24 @@ START_TEST(test_slave_unplugged_and_back_is_brought_to_operational_by_reset)
 }
 END_TEST
 
+/* The error of an axis whose own slave is well names the one that is missing: without power, unplugged, or in Init. */
+START_TEST(test_error_of_an_axis_names_the_slave_that_takes_no_part)
+{
+    static const char *const ways[] = {"power-cycle 2 60000", "unplug 2", "power-cycle 2 5"};
+    describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
+    describe_up_to(3);
+    open_segment();
+    enable();
+    simulate(ways[_i]);
+    cycles(100);
+    ck_assert_int_eq(info().state, CM1E_AXIS_ERROR_STOP);
+    const bool both = _i == 1; /* the last slave is behind the cable */
+    ck_assert_msg(strstr(text(), "It is slave 2 (") || (both && strstr(text(), "It is slave 3 (")), "%s", text());
+    ck_assert_ptr_null(strstr(text(), "This slave does not answer"));
+    close_segment();
+}
+END_TEST
+
 /* The frames come back some cycles before the supervision sees that the slave has left Operational meanwhile. A reset that
  * ended then was followed by another error. */
 START_TEST(test_reset_around_the_moment_of_the_cable_ends_when_the_slave_is_operational)
@@ -475,6 +493,7 @@ int main(void)
     tcase_add_test(cases, test_overloaded_axis_says_that_it_does_not_follow);
     tcase_add_test(cases, test_motor_power_lost_and_back);
     tcase_add_test(cases, test_slave_unplugged_and_back_is_brought_to_operational_by_reset);
+    tcase_add_loop_test(cases, test_error_of_an_axis_names_the_slave_that_takes_no_part, 0, 3);
     tcase_add_loop_test(cases, test_reset_around_the_moment_of_the_cable_ends_when_the_slave_is_operational, 0, 5);
     tcase_add_loop_test(cases, test_reset_brings_back_the_slave_of_an_axis_that_was_disabled, 0, 3);
     tcase_add_loop_test(cases, test_random_commands_move_the_motor_as_the_set_point_says, 0, 12);

@@ -257,6 +257,13 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
 {
     return fake_slave(bus, position)->watch;
 }
+uint16_t cm1e_bus_missing_slave(const cm1e_bus_t *bus) { return bus->missing; }
+const char *cm1e_bus_slave_label(const cm1e_bus_t *bus, uint16_t position, char label[CM1E_LABEL_LENGTH])
+{
+    (void)bus;
+    snprintf(label, CM1E_LABEL_LENGTH, "slave %u", position);
+    return label;
+}
 uint32_t cm1e_bus_slave_looks(const cm1e_bus_t *bus, uint16_t position)
 {
     return ++fake_slave(bus, position)->looks;

@@ -36,6 +36,7 @@ struct cm1e_bus {
     cm1e_slave_info_t info;
     cm1e_bus_counters_t counters;
     uint32_t looks;
+    uint16_t missing;            /**< cm1e_bus_missing_slave() */
     unsigned recoveries;
 
     /* the device */
