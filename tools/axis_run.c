@@ -39,14 +39,13 @@ static void tell_timing(const cm1e_bus_config_t *config)
              "the longest time between cycles %.0f us, at a cycle time of %.0f us", (unsigned long long)s->cycles,
              (unsigned long long)s->overruns, (unsigned long long)s->bus.lost_frames,
              in_us(s->wake_up_latency.maximum_ns), in_us(s->cycle_time.maximum_ns), in_us(cycle_ns));
-    if (s->bus.lost_frames > 0 && s->overruns == 0)
+    if (s->bus.lost_frames > s->overruns) /* more than a machine that was late can have lost */
         complain("advice: look at cables and connectors, at other programs on the interface, and at the settings of "
                  "the network card (docs/REALTIME.md)");
-    else if (s->advice[0])
-        complain("advice: %s", s->advice);
-    else
-        complain("advice: give the machine a real-time kernel, or the cycle a processor of its own "
-                 "(docs/REALTIME.md)");
+    if (s->overruns == 0 && s->bus.lost_frames > 0)
+        return;
+    complain("advice: %s", s->advice[0] ? s->advice : "give the machine a real-time kernel, or the cycle a processor of "
+                                                      "its own (docs/REALTIME.md)");
 }
 
 /* ---- progress ---------------------------------------------------------------------------------------------------- */

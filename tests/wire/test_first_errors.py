@@ -76,6 +76,17 @@ def motor(segment, cm1e):
     must_tell(segment, "ready again", [cm1e, *move], 0, "move done")
 
 
+def frames_lost(segment, cm1e):
+    """More than the cycles that ran over: it is the network, whatever the machine did besides."""
+    running = subprocess.Popen(segment.command([cm1e, "move", "-b", segment.bus_file(), "X", "--speed", "1", "--for", "60"]),
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    wire.wait_for(lambda: segment.run([cm1e, "status", "--attach", str(running.pid)]).returncode == 0, 20, "no run")
+    segment.console("lose 2000")
+    told = running.communicate(timeout=60)[1]
+    print(f"frames lost: {told.strip()}")
+    wire.check(running.returncode == 1 and "frames are lost" in told and "advice: look at cables" in told, told)
+
+
 def bus_file(segment, cm1e):
     path = os.path.join(segment.folder, "machine.yaml")
     cases = [("wrong key", "velocity: 10", "velocty: 10", "X", 2, 'did you mean', "machine.yaml:6:"),
@@ -99,6 +110,7 @@ def main():
         wrong_interface(segment, cm1e)
         no_link(segment, cm1e)
         motor(segment, cm1e)
+        frames_lost(segment, cm1e)
         bus_file(segment, cm1e)
 
 
