@@ -123,11 +123,11 @@ typedef struct cm1e_supervised {
     cm1e_port_turn_t ports;
 } cm1e_supervised_t;
 
-/** Transfers handed in by any thread, the cycle's own included: each takes a place with `head` and fills it; the bus
- *  empties it and writes the rest. */
+/** Transfers handed in by any thread, the cycle's own included: each fills a place; the bus empties it and writes the
+ *  rest. */
 typedef struct cm1e_sdo_queue {
-    cm1e_sdo_t *ring[CM1E_SDO_WAITING_MAX];
-    uint32_t head, tail;                     /**< head: atomic; head - tail: not yet taken over */
+    uintptr_t ring[CM1E_SDO_WAITING_MAX];    /**< atomic; what they hold: sdo_queue.c */
+    uint32_t head, tail;                     /**< head: atomic, the place that is filled next; tail: emptied next */
     uint32_t waiting;                        /**< atomic: submitted and not begun */
     cm1e_sdo_t *list[CM1E_SDO_WAITING_MAX];  /**< taken over, in order */
     unsigned listed;

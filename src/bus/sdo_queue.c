@@ -15,14 +15,42 @@ static cm1e_error_t check(const cm1e_bus_t *bus, const cm1e_sdo_t *sdo)
     return slave->facts.coe ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
 }
 
-/** Marks a place of the ring whose transfer ended before the bus took it over. */
-static cm1e_sdo_t ended;
+/* A place of the ring has an odd number where it is filled: the address of the transfer, plus 1. It has an even one where
+ * it is free: the round in which it will be filled next, times 2. One exchange puts a transfer in, if the place is free
+ * and it is its turn, so no thread ever holds a place that it has not filled; one that stands still in between holds back
+ * nobody. The round keeps a thread that stood still for long from filling the place out of turn. Zeros are an empty ring.
+ * The counter `head` follows: who finds its place filled moves it on, also for the thread that filled it (Tsigas and
+ * Zhang 2001, "A simple, fast and scalable non-blocking concurrent FIFO queue"). */
 
-/** Ends a transfer that waits in a place of the ring. Returns false if another thread took it. The place stays
- *  occupied. */
-static bool end_in_ring(cm1e_sdo_t **place, cm1e_sdo_t *sdo, cm1e_error_t error)
+static uintptr_t filled_with(const cm1e_sdo_t *sdo) { return (uintptr_t)sdo + 1; }
+static cm1e_sdo_t *transfer_in(uintptr_t content) { return (cm1e_sdo_t *)(content - 1); }
+static bool is_free(uintptr_t content) { return content % 2 == 0; }
+
+/** What a place holds that is free for the transfer number `n`. */
+static uintptr_t free_for(uint32_t n) { return (uintptr_t)(n / CM1E_SDO_WAITING_MAX) * 2; }
+
+static uintptr_t *place_of(cm1e_sdo_queue_t *queue, uint32_t n) { return &queue->ring[n % CM1E_SDO_WAITING_MAX]; }
+
+/** Puts a transfer into the next free place. There is one: `waiting` is at most as many as there are. */
+static uintptr_t *put_in(cm1e_sdo_queue_t *queue, const cm1e_sdo_t *sdo)
 {
-    if (!__atomic_compare_exchange_n(place, &sdo, &ended, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+    for (;;) {
+        uint32_t n = __atomic_load_n(&queue->head, __ATOMIC_SEQ_CST);
+        uintptr_t *place = place_of(queue, n), content = free_for(n);
+        const bool mine = __atomic_compare_exchange_n(place, &content, filled_with(sdo), false, __ATOMIC_SEQ_CST,
+                                                      __ATOMIC_SEQ_CST);
+        __atomic_compare_exchange_n(&queue->head, &n, n + 1, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST);
+        if (mine)
+            return place;
+    }
+}
+
+/** Ends a transfer that waits in a place of the ring. Returns false if another thread took it. The place stays filled,
+ *  with no transfer. */
+static bool end_in_ring(uintptr_t *place, cm1e_sdo_t *sdo, cm1e_error_t error)
+{
+    uintptr_t content = filled_with(sdo);
+    if (!__atomic_compare_exchange_n(place, &content, filled_with(NULL), false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
         return false;
     cm1e_sdo_finish(sdo, error, 0);
     return true;
@@ -47,9 +75,7 @@ cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
     sdo->error = CM1E_OK;
     sdo->abort_code = 0;
     __atomic_store_n(&sdo->state, CM1E_SDO_BUSY, __ATOMIC_RELAXED);
-    cm1e_sdo_t **place =
-        &queue->ring[__atomic_fetch_add(&queue->head, 1, __ATOMIC_RELAXED) % CM1E_SDO_WAITING_MAX];
-    __atomic_store_n(place, sdo, __ATOMIC_SEQ_CST); /* free: `waiting` is at most as many as there are */
+    uintptr_t *place = put_in(queue, sdo);
     /* A bus that stopped after the check may have emptied its queue without this transfer. Either the bus sees the
      * transfer, or this thread sees the phase of the bus. */
     const bool stopped = __atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST) < BUS_SCANNED;
@@ -59,14 +85,16 @@ cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
 /** Takes over what was handed in. Never overflows: `waiting` counts ring and list together. */
 static void take_over(cm1e_sdo_queue_t *queue)
 {
-    for (cm1e_sdo_t *sdo; queue->listed < CM1E_SDO_WAITING_MAX; queue->tail++) {
-        sdo = __atomic_exchange_n(&queue->ring[queue->tail % CM1E_SDO_WAITING_MAX], NULL, __ATOMIC_SEQ_CST);
-        if (!sdo) /* empty, or its thread is about to fill it */
+    for (; queue->listed < CM1E_SDO_WAITING_MAX; queue->tail++) {
+        uintptr_t *place = place_of(queue, queue->tail);
+        if (is_free(__atomic_load_n(place, __ATOMIC_SEQ_CST)))
             return;
-        if (sdo == &ended)
-            __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
+        const uintptr_t content =
+            __atomic_exchange_n(place, free_for(queue->tail + CM1E_SDO_WAITING_MAX), __ATOMIC_SEQ_CST);
+        if (transfer_in(content))
+            queue->list[queue->listed++] = transfer_in(content);
         else
-            queue->list[queue->listed++] = sdo;
+            __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
     }
 }
 
@@ -121,10 +149,4 @@ void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error)
         __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
     }
     queue->listed = 0;
-    /* There may be filled places behind one that its thread has not filled yet. */
-    for (unsigned i = 0; i < CM1E_SDO_WAITING_MAX; i++) {
-        cm1e_sdo_t *sdo = __atomic_load_n(&queue->ring[i], __ATOMIC_SEQ_CST);
-        if (sdo && sdo != &ended)
-            end_in_ring(&queue->ring[i], sdo, error);
-    }
 }

@@ -1,5 +1,7 @@
 /* SDO transfers with the simulated CM1-E: every object, before and in the cycle, many at once, from another thread. */
 #include <pthread.h>
+#include <signal.h>
+#include <ucontext.h>
 
 #include "bus/bus_internal.h"
 #include "bus_support.h"
@@ -404,28 +406,119 @@ START_TEST(transfer_submitted_while_the_bus_stops_ends)
 }
 END_TEST
 
-/** A thread that has taken a place and not filled it yet must not hide what others put behind it. */
-START_TEST(transfer_behind_an_unfilled_place_ends_when_the_bus_stops)
+#ifdef __x86_64__ /* single steps by a flag of the processor */
+
+/** A thread that is stopped within cm1e_sdo_submit(), behind its instruction number `at`: what others do meanwhile, and
+ *  what the bus does, is done there by the handler of the trap. */
+static struct {
+    cm1e_bus_t *bus;
+    long at, step;
+    volatile bool over;                 /**< the function has returned before */
+    bool stopped, bus_stops, finished;
+    cm1e_sdo_t other;
+} still;
+
+enum { FLAG_SINGLE_STEP = 0x100 };
+
+static void begin_steps(int number, siginfo_t *info, void *context)
 {
+    (void)number, (void)info;
+    ((ucontext_t *)context)->uc_mcontext.gregs[REG_EFL] |= FLAG_SINGLE_STEP;
+}
+
+static void others_go_on(void)
+{
+    still.stopped = true;
+    if (cm1e_sdo_submit(still.bus, &still.other) != CM1E_OK)
+        return;
+    if (still.bus_stops) {
+        cm1e_bus_set_phase(still.bus, BUS_OPEN);
+        cm1e_sdo_queue_cancel(still.bus, CM1E_ERROR_CANCELLED);
+    }
+    for (int n = 0; n < 2000 && cm1e_sdo_state(&still.other) == CM1E_SDO_BUSY; n++)
+        cycle(still.bus);
+    still.finished = cm1e_sdo_state(&still.other) == (still.bus_stops ? CM1E_SDO_ERROR : CM1E_SDO_DONE);
+}
+
+static void on_step(int number, siginfo_t *info, void *context)
+{
+    (void)number, (void)info;
+    if (!still.over && still.step++ < still.at)
+        return;
+    ((ucontext_t *)context)->uc_mcontext.gregs[REG_EFL] &= ~(greg_t)FLAG_SINGLE_STEP;
+    if (!still.over)
+        others_go_on();
+}
+
+/** At each of its instructions, so also between two of them that belong together. Returns how many there were. */
+static long stop_at_each_instruction(bool bus_stops)
+{
+    uint8_t data[4], others_data[4];
+    struct sigaction begin = {.sa_sigaction = begin_steps, .sa_flags = SA_SIGINFO};
+    struct sigaction step = {.sa_sigaction = on_step, .sa_flags = SA_SIGINFO};
+    sigaction(SIGUSR1, &begin, NULL);
+    sigaction(SIGTRAP, &step, NULL);
+    sim_config(1);
+    still.bus = start_bus();
+    still.bus_stops = bus_stops;
+    for (still.at = 0, still.stopped = true; still.stopped; still.at++) {
+        cm1e_sdo_t sdo = {.position = 1, .index = 0x1018, .subindex = 2, .data = data, .size = sizeof data};
+        still.other = sdo;
+        still.other.data = others_data;
+        still.step = 0;
+        still.stopped = still.finished = still.over = false;
+        raise(SIGUSR1);
+        const cm1e_error_t error = cm1e_sdo_submit(still.bus, &sdo);
+        still.over = true;
+        ck_assert_msg(!still.stopped || still.finished, "instruction %ld holds back a transfer behind it", still.at);
+        if (bus_stops && still.stopped) {
+            ck_assert_msg(cm1e_sdo_state(&sdo) == CM1E_SDO_ERROR, "busy for ever at instruction %ld", still.at);
+            cm1e_bus_set_phase(still.bus, BUS_OPERATING);
+            cm1e_sdo_queue_cancel(still.bus, CM1E_ERROR_CANCELLED);
+        } else {
+            ck_assert_int_eq(error, CM1E_OK);
+            finish_sdo(still.bus, &sdo);
+            ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+        }
+        ck_assert_uint_eq(still.bus->queue.waiting, 0); /* no place is lost */
+    }
+    cm1e_bus_close(still.bus);
+    return still.at;
+}
+
+START_TEST(thread_that_stands_still_in_a_submit_holds_back_nobody)
+{
+    ck_assert_int_gt(stop_at_each_instruction(false), 50);
+}
+END_TEST
+
+START_TEST(thread_that_stands_still_in_a_submit_while_the_bus_stops_leaves_nothing_busy)
+{
+    ck_assert_int_gt(stop_at_each_instruction(true), 50);
+}
+END_TEST
+
+#endif
+
+START_TEST(order_of_transfers_is_that_of_their_submits_round_after_round)
+{
+    enum { EACH = 5 };
     sim_config(1);
     cm1e_bus_t *bus = start_bus();
-    uint8_t data[4];
-    cm1e_sdo_t sdo = {.position = 1, .index = 0x1018, .subindex = 2, .data = data, .size = sizeof data}, slow = sdo;
-    const uint32_t place = bus->queue.head++;
-    bus->queue.waiting++;
-    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
-    cm1e_bus_stop(bus);
-    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_ERROR);
-    ck_assert_int_eq(sdo.error, CM1E_ERROR_CANCELLED);
-    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
-    slow.state = CM1E_SDO_BUSY;
-    bus->queue.ring[place % CM1E_SDO_WAITING_MAX] = &slow;
-    finish_sdo(bus, &slow);
-    ck_assert_int_eq(cm1e_sdo_state(&slow), CM1E_SDO_DONE);
-    sdo = (cm1e_sdo_t){.position = 1, .index = 0x1018, .subindex = 2, .data = data, .size = sizeof data};
-    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
-    finish_sdo(bus, &sdo);
-    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+    uint8_t data[EACH][4];
+    for (int round = 0; round < 100; round++) {
+        cm1e_sdo_t sdos[EACH];
+        for (int i = 0; i < EACH; i++) {
+            sdos[i] = (cm1e_sdo_t){.position = 1, .index = 0x1018, .subindex = 2, .data = data[i], .size = 4};
+            ck_assert_int_eq(cm1e_sdo_submit(bus, &sdos[i]), CM1E_OK);
+        }
+        for (int i = 0; i < EACH; i++) {
+            finish_sdo(bus, &sdos[i]);
+            ck_assert_int_eq(cm1e_sdo_state(&sdos[i]), CM1E_SDO_DONE);
+            for (int later = i + 1; later < EACH; later++)
+                ck_assert_int_eq(cm1e_sdo_state(&sdos[later]), CM1E_SDO_BUSY);
+        }
+    }
     ck_assert_uint_eq(bus->queue.waiting, 0);
     cm1e_bus_close(bus);
 }
@@ -465,7 +558,11 @@ int main(void)
     tcase_add_test(tests, another_thread_submits_while_the_cycle_runs);
     tcase_add_test(tests, texts_exist_for_every_code);
     tcase_add_test(tests, transfer_submitted_while_the_bus_stops_ends);
-    tcase_add_test(tests, transfer_behind_an_unfilled_place_ends_when_the_bus_stops);
+#ifdef __x86_64__
+    tcase_add_test(tests, thread_that_stands_still_in_a_submit_holds_back_nobody);
+    tcase_add_test(tests, thread_that_stands_still_in_a_submit_while_the_bus_stops_leaves_nothing_busy);
+#endif
+    tcase_add_test(tests, order_of_transfers_is_that_of_their_submits_round_after_round);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
