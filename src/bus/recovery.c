@@ -32,6 +32,7 @@ static void enter(cm1e_bus_slave_t *slave, cm1e_recovery_step_t step, int64_t no
     slave->recovery.step = step;
     slave->recovery.entered = false;
     slave->recovery.unanswered = 0;
+    slave->recovery.doubts = false;
     slave->recovery.deadline_ns = now_ns + (step == RECOVERY_PAUSE ? PAUSE_NS : actions[step].time_ns);
 }
 
@@ -427,24 +428,6 @@ static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return check_identity(slave, d, now_ns, OF_SERIAL_NUMBER, slave->info.serial_number);
 }
 
-/** Whether its objects are those of the expected device. A device that comes for the first time is compared with the
- *  configuration; one that has come back is compared with what it was. */
-static bool is_recognised(cm1e_bus_slave_t *slave)
-{
-    const cm1e_recognition_t *job = &slave->recognition;
-    cm1e_device_model_t model;
-    if (slave->info.device->recognised == CM1E_BY_PROFILE)
-        return (job->device_type & 0xFFFF) == slave->info.device->profile;
-    if (!slave->hot.planned)
-        return job->recognised && memcmp(&job->facts, &slave->bridge, sizeof job->facts) == 0;
-    if (!job->recognised || !cm1e_recognise_model(&job->facts, &model) || model != slave->info.model)
-        return false;
-    slave->bridge = job->facts;
-    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
-        slave->info.motors[i] = (uint8_t)job->facts.motors[i];
-    return true;
-}
-
 /** Begins the next transfer of a step. Without one it returns false: the step is over, and the recovery goes on if all
  *  was `good`. */
 static bool begin_or_end(cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo, bool good, int64_t now_ns)
@@ -475,37 +458,15 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_recognise_next(job, now_ns);
-        if (!begin_or_end(slave, sdo, sdo || is_recognised(slave), now_ns))
+        if (!begin_or_end(slave, sdo, sdo || cm1e_recovery_is_recognised(slave), now_ns))
             return false;
     }
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
 
-/** Whether the firmware of a device makes a difference. */
-static bool has_firmware(const cm1e_bus_slave_t *slave) { return slave->info.device && slave->info.device->firmware; }
-
-/** Takes the firmware of a motor that comes for the first time, because its units depend on it. One that has come back
- *  may be another motor with the same address: its firmware has to behave as before. */
-static bool takes_version(cm1e_bus_slave_t *slave)
-{
-    const cm1e_axis_config_t *axis = slave->hot.axis;
-    const size_t longest = sizeof slave->info.software_version - 1;
-    const size_t size = slave->version_sdo.size < longest ? slave->version_sdo.size : longest;
-    slave->version[slave->version_sdo.error == CM1E_OK ? size : 0] = '\0';
-    for (char *c = slave->version; *c; c++)
-        *c = *c >= ' ' && *c <= '~' ? *c : '?';
-    if (!slave->hot.planned)
-        return slave->info.device->firmware(slave->version) == slave->firmware;
-    memcpy(slave->info.software_version, slave->version, longest);
-    if (has_firmware(slave))
-        slave->firmware = slave->info.device->firmware(slave->info.software_version);
-    const char *shown = slave->info.software_version + (slave->info.software_version[0] == 'V');
-    return !axis || !axis->firmware[0] || strcmp(axis->firmware, shown) == 0;
-}
-
 static bool next_version(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
-    if (!slave->facts.coe || !(slave->hot.planned || has_firmware(slave))) {
+    if (!slave->facts.coe || !(slave->hot.planned || cm1e_recovery_has_firmware(slave))) {
         advance(slave, now_ns);
         return false;
     }
@@ -520,7 +481,7 @@ static bool next_version(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     if (cm1e_coe_next(&slave->coe, d, now_ns))
         return true;
     if (cm1e_coe_idle(&slave->coe)) {
-        if (takes_version(slave))
+        if (cm1e_recovery_takes_version(slave))
             advance(slave, now_ns);
         else
             fail(slave, now_ns);
@@ -564,26 +525,6 @@ static bool next_setup_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
     return run_setup(slave, d, now_ns, true);
 }
 
-/** Takes the mapping. A slave that comes for the first time may have any layout that fits into its room and has the
- *  signals of the configuration. */
-static bool takes_mapping(cm1e_bus_slave_t *slave)
-{
-    const cm1e_mapping_job_t *job = &slave->mapping;
-    const bool motors = cm1e_bus_has_motors(slave);
-    for (int direction = 0; direction < 2; direction++) {
-        const bool free = slave->hot.planned && (motors || !slave->hot.stated[direction]);
-        if (!free && !cm1e_mapping_equal(&job->mapped[direction], &slave->mapped[direction]))
-            return false;
-    }
-    if (!slave->hot.planned)
-        return true;
-    for (int direction = 0; direction < 2; direction++)
-        slave->hot.relaid += motors && !cm1e_mapping_equal(&job->mapped[direction], &slave->mapped[direction]);
-    slave->by_pdos = !motors && job->unknown < 2;
-    memcpy(slave->mapped, job->mapped, sizeof slave->mapped);
-    return true;
-}
-
 /** Assigns the PDOs again; the layout must not change, because the image of the running bus is fixed. */
 static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
@@ -607,7 +548,7 @@ static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
         if (sdo) {
             cm1e_coe_begin(&slave->coe, sdo, now_ns);
         } else {
-            if (job->error == CM1E_OK && takes_mapping(slave))
+            if (job->error == CM1E_OK && cm1e_recovery_takes_mapping(slave))
                 advance(slave, now_ns);
             else
                 fail(slave, now_ns);
@@ -669,14 +610,20 @@ bool cm1e_recovery_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
         fail(slave, now_ns);
         return false;
     }
+    if (recovery->doubts) {
+        cm1e_datagram_set(d, COMMAND_FPRD, slave->facts.station, REG_AL_STATUS, 2);
+        return true;
+    }
     return actions[recovery->step].next(slave, d, now_ns);
 }
 
 /** Whether the slave has lost its power again: its controller answers every question for a register at once, while the time
- *  of a step is that of its processor, up to 10 s. A mailbox does not answer while it is full. */
+ *  of a step is that of its processor, up to 10 s. A mailbox does not answer while it is full: then the controller is
+ *  asked for a register. */
 static bool is_gone(cm1e_recovery_t *recovery, const cm1e_datagram_t *d)
 {
     enum { UNANSWERED_LIMIT = 10, REGISTERS_END = 0x1000 };
+    recovery->doubts = d->working_counter == 0 && d->offset >= REGISTERS_END;
     if (d->working_counter > 0)
         recovery->unanswered = 0;
     else if (d->working_counter == 0 && d->offset < REGISTERS_END)
@@ -688,9 +635,10 @@ static bool is_gone(cm1e_recovery_t *recovery, const cm1e_datagram_t *d)
 void cm1e_recovery_result(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
     const cm1e_recovery_step_t step = slave->recovery.step;
+    const bool doubted = slave->recovery.doubts;
     if (step > RECOVERY_PAUSE && is_gone(&slave->recovery, d))
         fail(slave, now_ns);
-    if (step <= RECOVERY_PAUSE || slave->recovery.step != step)
+    if (step <= RECOVERY_PAUSE || slave->recovery.step != step || doubted)
         return;
     /* The sub-machines handle losses themselves; a register without an answer is read again until the deadline. */
     const bool machine = actions[step].result == result_al || actions[step].result == result_coe;

@@ -51,6 +51,7 @@ typedef struct cm1e_recovery {
     bool address_given;      /**< in this attempt */
     int64_t deadline_ns;     /**< of the step; in RECOVERY_PAUSE: its end */
     unsigned unanswered;     /**< questions for registers in a row, while frames come back */
+    bool doubts;             /**< a mailbox took nothing: the next question is one for a register */
     uint32_t attempts, successes; /**< only grow */
     cm1e_recovery_step_t failed_at; /**< of the last attempt; RECOVERY_IDLE: it did not fail */
     cm1e_sdo_t sdo;
@@ -68,6 +69,12 @@ void cm1e_recovery_cancel(struct cm1e_bus_slave *slave);
 /** Fills the datagram to be sent next; false: none in this cycle. */
 bool cm1e_recovery_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns);
 void cm1e_recovery_result(struct cm1e_bus_slave *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
+
+/* recovery_device.c */
+bool cm1e_recovery_is_recognised(struct cm1e_bus_slave *slave);
+bool cm1e_recovery_has_firmware(const struct cm1e_bus_slave *slave);
+bool cm1e_recovery_takes_version(struct cm1e_bus_slave *slave);
+bool cm1e_recovery_takes_mapping(struct cm1e_bus_slave *slave);
 
 /* recovery_text.c */
 /** What an attempt that fails at this step says of a slave that answers. */
