@@ -52,6 +52,8 @@ cm1e_error_t cm1e_axis_read(AXIS_REF_t reference, cm1e_axis_info_t *info)
     const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
     if (!axis)
         return CM1E_ERROR_FB_AXIS_REF;
+    if (!info)
+        return CM1E_ERROR_INVALID_ARGUMENT;
     cm1e_axis_get(axis, info);
     return CM1E_OK;
 }

@@ -85,6 +85,8 @@ cm1e_error_t cm1e_bridge_read(cm1e_bus_t *bus, uint16_t position, cm1e_bridge_in
         return cm1e_in_task_refuse("cm1e_bridge_read()", "", diag);
     if (!info)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bridge_read() needs a place for the values.");
+    if (!bus)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bridge_read() needs a bus.");
     memset(info, 0, sizeof *info);
     info->position = position;
     const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);

@@ -24,8 +24,18 @@ uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis)
     return bus && axis < bus->config.axis_count ? bus->axis_position[axis] : 0;
 }
 
-const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus) { return &bus->counters; }
-const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus) { return &bus->config; }
+const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus)
+{
+    static const cm1e_bus_counters_t none;
+    return bus ? &bus->counters : &none;
+}
+
+const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus)
+{
+    static const cm1e_bus_config_t none;
+    return bus ? &bus->config : &none;
+}
+
 uint32_t cm1e_bus_operation(const cm1e_bus_t *bus) { return bus->phase == BUS_OPERATING ? bus->operations : 0; }
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus) { return bus->clock; }
 struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus) { return bus->nic; }

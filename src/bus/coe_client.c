@@ -34,7 +34,7 @@ enum { INFO_HEADER = 6, INFO_ERROR = 7, INFO_OPCODE = 0x7F, INFO_INCOMPLETE = 0x
 
 cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo)
 {
-    return (cm1e_sdo_state_t)__atomic_load_n(&sdo->state, __ATOMIC_ACQUIRE);
+    return sdo ? (cm1e_sdo_state_t)__atomic_load_n(&sdo->state, __ATOMIC_ACQUIRE) : CM1E_SDO_IDLE;
 }
 
 void cm1e_sdo_finish(cm1e_sdo_t *sdo, cm1e_error_t error, uint32_t abort_code)

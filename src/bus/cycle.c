@@ -105,6 +105,8 @@ static cm1e_error_t judge(cm1e_bus_t *bus, int working_counter)
 
 cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
 {
+    if (!bus)
+        return CM1E_ERROR_INVALID_ARGUMENT;
     if (!bus->in_flight)
         return CM1E_ERROR_STATE;
     cm1e_clock_make_current(bus->clock);
@@ -167,7 +169,7 @@ static void fill_image(cm1e_bus_t *bus)
 
 void cm1e_bus_send(cm1e_bus_t *bus)
 {
-    if (!bus->exchanging)
+    if (!bus || !bus->exchanging)
         return;
     const int64_t now_ns = cm1e_bus_enter(bus);
     if (bus->in_flight) /* never two frames: the old one is given up */
@@ -187,5 +189,7 @@ void cm1e_bus_send(cm1e_bus_t *bus)
 
 cm1e_error_t cm1e_bus_health(const cm1e_bus_t *bus)
 {
+    if (!bus)
+        return CM1E_ERROR_INVALID_ARGUMENT;
     return bus->bad_cycles >= bus->config.lost_cycles_limit ? bus->last_error : CM1E_OK;
 }

@@ -5,8 +5,8 @@
 void cm1e_bus_clocks_sized(const cm1e_bus_t *bus, cm1e_bus_clocks_t *clocks, size_t size)
 {
     cm1e_bus_clocks_t all = {0};
-    const cm1e_dc_t *dc = &bus->dc;
-    if (dc->used)
+    const cm1e_dc_t *dc = bus ? &bus->dc : NULL;
+    if (dc && dc->used)
         all = (cm1e_bus_clocks_t){
             .used = true, .reference = dc->reference, .reference_ns = dc->reference_ns,
             .rate_ppm = dc->pace.cycle_ns ? dc->pace.rate_ns / (double)dc->pace.cycle_ns * 1e6 : 0,
@@ -33,6 +33,6 @@ void cm1e_bus_follow_clock(cm1e_bus_t *bus, const cm1e_bus_t *leader) { bus->dc.
 void cm1e_bus_slave_clock_sized(const cm1e_bus_t *bus, uint16_t position, cm1e_slave_clock_t *clock, size_t size)
 {
     static const cm1e_slave_clock_t none;
-    const bool known = bus->dc.used && position >= 1 && position <= bus->slave_count;
+    const bool known = bus && bus->dc.used && position >= 1 && position <= bus->slave_count;
     cm1e_copy_sized(clock, size, known ? &bus->dc.slaves[position - 1].clock : &none, sizeof none);
 }

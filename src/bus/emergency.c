@@ -56,9 +56,12 @@ void cm1e_emergency_text(const cm1e_bus_t *bus, uint16_t position, const cm1e_em
                          size_t size)
 {
     char bits[CM1E_ERROR_REGISTER_TEXT], data[40];
-    const cm1e_device_error_t *error = known(cm1e_bus_at(bus, position), emergency->code);
     if (!text || size == 0)
         return;
+    text[0] = '\0';
+    if (!emergency)
+        return;
+    const cm1e_device_error_t *error = known(cm1e_bus_at(bus, position), emergency->code);
     data_text(emergency, data);
     cm1e_error_register_text(emergency->error_register, bits, sizeof bits);
     if (emergency->code == 0)

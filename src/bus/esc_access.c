@@ -59,7 +59,9 @@ static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, const void *data, 
         return cm1e_in_task_refuse(function, "", diag);
     if (!data)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%s needs a place for the data.", function);
-    if (!bus || bus->phase >= BUS_OPERATING)
+    if (!bus)
+        return cm1e_bus_missing(function, diag);
+    if (bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s needs an open bus that does not operate.", function);
     const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, function, diag);
     if (attached != CM1E_OK)

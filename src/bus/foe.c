@@ -15,11 +15,13 @@ static cm1e_error_t check(cm1e_bus_t *bus, uint16_t position, bool bootstrap, co
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse(function, "", diag);
-    const int phase = bus ? __atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST) : 0;
-    if (bus && cm1e_bus_is_driven(bus) && !bootstrap)
+    if (!bus)
+        return cm1e_bus_missing(function, diag);
+    const int phase = __atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST);
+    if (cm1e_bus_is_driven(bus) && !bootstrap)
         return CM1E_OK; /* cm1e_foe_submit() looks at the rest */
     const bool operates = phase == BUS_OPERATING;
-    if (!bus || phase < BUS_SCANNED || (phase > BUS_SCANNED && bootstrap) || (bus->exchanging && !operates))
+    if (phase < BUS_SCANNED || (phase > BUS_SCANNED && bootstrap) || (bus->exchanging && !operates))
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s needs a scanned bus%s.", function,
                              bootstrap ? " that does not operate, for Bootstrap" : "");
     const cm1e_error_t attached = bootstrap ? cm1e_bus_refuse_attached(bus, function, diag) : CM1E_OK;

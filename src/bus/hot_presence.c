@@ -141,8 +141,9 @@ void cm1e_presence_sentence(const cm1e_bus_t *bus, uint32_t position, cm1e_prese
 void cm1e_bus_presence_text(const cm1e_bus_t *bus, uint32_t position, char *text, size_t size)
 {
     const cm1e_presence_t presence = cm1e_bus_presence(bus, position);
-    if (size)
-        text[0] = '\0';
+    if (!text || size == 0)
+        return;
+    text[0] = '\0';
     if (bus && bus->remote && bus->remote_texts && position >= 1 && position <= bus->slave_count)
         snprintf(text, size, "%s", bus->remote_texts[position - 1]);
     else if (presence != CM1E_PRESENCE_THERE)
@@ -151,6 +152,11 @@ void cm1e_bus_presence_text(const cm1e_bus_t *bus, uint32_t position, char *text
 
 void cm1e_stranger_text(const cm1e_stranger_t *stranger, char *text, size_t size)
 {
+    if (!text || size == 0)
+        return;
+    text[0] = '\0';
+    if (!stranger)
+        return;
     if (stranger->vendor_id == 0)
         snprintf(text, size, "A device at place %u of the wire was refused: its EEPROM cannot be read.",
                  stranger->place);
@@ -163,6 +169,8 @@ void cm1e_stranger_text(const cm1e_stranger_t *stranger, char *text, size_t size
 cm1e_error_t cm1e_bus_recover(cm1e_bus_t *bus, uint32_t position, cm1e_diag_t *diag)
 {
     char text[CM1E_PRESENCE_TEXT];
+    if (!bus)
+        return cm1e_bus_missing("cm1e_bus_recover()", diag);
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (!slave)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u.", (unsigned)position);
@@ -176,11 +184,14 @@ cm1e_error_t cm1e_bus_recover(cm1e_bus_t *bus, uint32_t position, cm1e_diag_t *d
 
 size_t cm1e_bus_strangers(const cm1e_bus_t *bus, cm1e_stranger_t *strangers, size_t room)
 {
-    const uint32_t count = bus ? __atomic_load_n(&bus->search.stranger_count, __ATOMIC_ACQUIRE) : 0;
+    const uint32_t count = bus && strangers ? __atomic_load_n(&bus->search.stranger_count, __ATOMIC_ACQUIRE) : 0;
     const uint32_t copied = count < room ? count : (uint32_t)room;
     for (uint32_t i = 0; i < copied; i++)
         strangers[i] = bus->search.strangers[i];
     return copied;
 }
 
-uint64_t cm1e_bus_presence_news(const cm1e_bus_t *bus) { return __atomic_load_n(&bus->search.news, __ATOMIC_RELAXED); }
+uint64_t cm1e_bus_presence_news(const cm1e_bus_t *bus)
+{
+    return bus ? __atomic_load_n(&bus->search.news, __ATOMIC_RELAXED) : 0;
+}

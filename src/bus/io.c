@@ -20,10 +20,17 @@ static cm1e_error_t check_ready(const cm1e_bus_t *bus, cm1e_diag_t *diag)
     const cm1e_error_t attached = bus ? cm1e_bus_refuse_attached(bus, "Access to process data", diag) : CM1E_OK;
     if (attached != CM1E_OK)
         return attached;
-    if (!bus || !bus->layout.present)
+    if (!bus)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "To find a signal needs a bus.");
+    if (!bus->layout.present)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Signals are known from cm1e_bus_configure() on: configure or "
                              "start the bus first.");
     return CM1E_OK;
+}
+
+static cm1e_error_t no_place(cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A signal that is found needs a place, a cm1e_io_t.");
 }
 
 static cm1e_error_t no_slave(const cm1e_bus_t *bus, uint32_t position, cm1e_diag_t *diag)
@@ -80,12 +87,14 @@ static cm1e_error_t claim(const cm1e_io_t *io, cm1e_error_t error)
 cm1e_error_t cm1e_io_find_bits(cm1e_bus_t *bus, uint16_t position, bool output, uint32_t bit_offset, uint16_t bits,
                                cm1e_io_type_t type, cm1e_io_t *io, cm1e_diag_t *diag)
 {
-    return claim(io, find_bits(bus, position, output, bit_offset, bits, type, io, diag));
+    return io ? claim(io, find_bits(bus, position, output, bit_offset, bits, type, io, diag)) : no_place(diag);
 }
 
 cm1e_error_t cm1e_io_find_object(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, bool output,
                                  cm1e_io_t *io, cm1e_diag_t *diag)
 {
+    if (!io)
+        return no_place(diag);
     *io = (cm1e_io_t){0};
     const cm1e_error_t error = check_ready(bus, diag);
     if (error != CM1E_OK)
@@ -174,7 +183,7 @@ static cm1e_error_t find_word(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, co
 
 cm1e_error_t cm1e_io_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io, cm1e_diag_t *diag)
 {
-    return claim(io, cm1e_io_guest_find(bus, name, io, diag));
+    return io ? claim(io, cm1e_io_guest_find(bus, name, io, diag)) : no_place(diag);
 }
 
 cm1e_error_t cm1e_io_guest_find(cm1e_bus_t *bus, const char *name, cm1e_io_t *io, cm1e_diag_t *diag)
@@ -243,7 +252,7 @@ const char *cm1e_io_quality_name(cm1e_io_quality_t quality)
 
 static bool is_valid(const cm1e_io_t *io)
 {
-    return io->bus && io->layout != 0 && io->layout == layout_of(io->bus, io->position);
+    return io && io->bus && io->layout != 0 && io->layout == layout_of(io->bus, io->position);
 }
 
 cm1e_io_quality_t cm1e_io_quality(const cm1e_io_t *io)
@@ -290,6 +299,8 @@ static void put_bits(const cm1e_io_t *io, uint64_t value)
 
 int64_t cm1e_io_integer(const cm1e_io_t *io)
 {
+    if (!io)
+        return 0;
     const uint64_t value = bits_of(io);
     if (cm1e_io_types[io->type].is_real) {
         const double real = cm1e_io_real(io);
@@ -302,6 +313,8 @@ int64_t cm1e_io_integer(const cm1e_io_t *io)
 
 double cm1e_io_real(const cm1e_io_t *io)
 {
+    if (!io)
+        return 0.0;
     const uint64_t value = bits_of(io);
     double real = (double)value;
     if (io->type == CM1E_IO_REAL) {
@@ -319,13 +332,13 @@ double cm1e_io_real(const cm1e_io_t *io)
 
 bool cm1e_io_bool(const cm1e_io_t *io)
 {
-    return cm1e_io_types[io->type].is_real ? cm1e_io_real(io) != 0.0 : bits_of(io) != 0;
+    return io && (cm1e_io_types[io->type].is_real ? cm1e_io_real(io) != 0.0 : bits_of(io) != 0);
 }
 
 size_t cm1e_io_bytes(const cm1e_io_t *io, void *bytes, size_t size)
 {
-    const size_t count = (io->bits + 7u) / 8u;
-    if (!is_valid(io) || count > size)
+    const size_t count = io ? (io->bits + 7u) / 8u : 0;
+    if (!is_valid(io) || !bytes || count > size)
         return 0;
     for (size_t i = 0; i < count; i++) {
         const unsigned left = io->bits - 8u * (unsigned)i;
@@ -339,6 +352,8 @@ size_t cm1e_io_bytes(const cm1e_io_t *io, void *bytes, size_t size)
 
 static cm1e_error_t check_output(const cm1e_io_t *io)
 {
+    if (!io)
+        return CM1E_ERROR_INVALID_ARGUMENT;
     if (!is_valid(io))
         return CM1E_ERROR_STATE;
     if (!io->output || cm1e_bus_has_motors(&io->bus->slaves[io->position - 1]))
@@ -394,7 +409,7 @@ cm1e_error_t cm1e_io_set_bytes(const cm1e_io_t *io, const void *bytes, size_t si
     const cm1e_error_t error = check_output(io);
     if (error != CM1E_OK)
         return error;
-    if (size != (io->bits + 7u) / 8u)
+    if (!bytes || size != (io->bits + 7u) / 8u)
         return CM1E_ERROR_INVALID_ARGUMENT;
     for (size_t i = 0; i < size; i++) {
         const unsigned left = io->bits - 8u * (unsigned)i;

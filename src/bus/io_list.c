@@ -201,7 +201,8 @@ bool cm1e_io_next(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_io_
 
 bool cm1e_io_at(const cm1e_bus_t *bus, uint32_t n, cm1e_io_info_t *info)
 {
-    for (uint32_t position = 1; bus && bus->layout.present && position <= bus->slave_count; position++) {
+    for (uint32_t position = 1; bus && info && bus->layout.present && position <= bus->slave_count;
+         position++) {
         *info = (cm1e_io_info_t){0};
         while (cm1e_io_next(bus, cm1e_bus_at(bus, position), info))
             if (n-- == 0)

@@ -69,9 +69,11 @@ static void say_axis(cm1e_bus_t *bus, const cm1e_axis_config_t *axis, const cm1e
 bool cm1e_io_use(cm1e_bus_t *bus, const cm1e_io_info_t *info, char *text, size_t size)
 {
     use_text_t use = {.text = text, .size = size};
+    if (!text)
+        use.size = size = 0;
     if (size)
         text[0] = '\0';
-    for (uint32_t i = 0; i < bus->config.axis_count; i++)
+    for (uint32_t i = 0; bus && info && i < bus->config.axis_count; i++)
         say_axis(bus, &bus->config.axes[i], info, &use);
     return use.used > 0;
 }

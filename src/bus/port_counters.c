@@ -21,6 +21,8 @@ cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_
     uint8_t status[2] = {0}, errors[RECEIVE_ERROR_BYTES] = {0}, lost[CM1E_PORTS] = {0};
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_read_ports()", "", diag);
+    if (!bus)
+        return cm1e_bus_missing("cm1e_bus_read_ports()", diag);
     const cm1e_error_t driven = cm1e_bus_refuse_driven(bus, "cm1e_bus_read_ports()", "cm1e_bus_port_faults() has what the "
                                                        "ports have counted since Operational.", diag);
     if (driven != CM1E_OK)

@@ -60,7 +60,8 @@ void cm1e_ring_watch_begin(cm1e_bus_t *bus)
 
 void cm1e_bus_ring_sized(const cm1e_bus_t *bus, cm1e_bus_ring_t *ring, size_t size)
 {
-    cm1e_copy_sized(ring, size, &bus->ring.ring, sizeof bus->ring.ring);
+    static const cm1e_bus_ring_t none;
+    cm1e_copy_sized(ring, size, bus ? &bus->ring.ring : &none, sizeof none);
 }
 
 /** Names a slave, or the interface at an end of the ring. */
@@ -78,12 +79,15 @@ static void name_end(const cm1e_bus_t *bus, uint32_t position, char *text, size_
 void cm1e_bus_ring_text(const cm1e_bus_t *bus, const cm1e_bus_ring_t *ring, char *text, size_t size)
 {
     char behind[CM1E_LABEL_LENGTH], before[CM1E_LABEL_LENGTH], missing[96] = "";
-    const uint32_t away = ring->before - ring->behind - 1u;
-    if (!ring->used || !ring->broken || !ring->placed) {
-        snprintf(text, size, "%s", !ring->used ? "There is no second interface, so no ring."
+    if (!text)
+        return;
+    const bool used = ring && ring->used;
+    if (!used || !ring->broken || !ring->placed) {
+        snprintf(text, size, "%s", !used ? "There is no second interface, so no ring."
                  : !ring->broken ? "The ring is whole." : "The ring is broken; it is not known yet where.");
         return;
     }
+    const uint32_t away = ring->before - ring->behind - 1u;
     name_end(bus, ring->behind, behind, sizeof behind);
     name_end(bus, ring->before, before, sizeof before);
     if (away == 1)

@@ -8,12 +8,14 @@
 
 static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
 {
+    if (!bus)
+        return cm1e_bus_missing(sdo->write ? "cm1e_sdo_write()" : "cm1e_sdo_read()", diag);
     const cm1e_error_t driven =
         cm1e_bus_refuse_driven(bus, sdo->write ? "cm1e_sdo_write()" : "cm1e_sdo_read()",
                                "From another thread: cm1e_sdo_submit(), then cm1e_sdo_state() until it has ended.", diag);
     if (driven != CM1E_OK)
         return driven;
-    if (!bus || bus->phase < BUS_SCANNED)
+    if (bus->phase < BUS_SCANNED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before SDO transfers.");
     cm1e_bus_enter(bus);
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, sdo->position);
@@ -54,6 +56,8 @@ cm1e_error_t cm1e_sdo_write(cm1e_bus_t *bus, uint16_t position, uint16_t index, 
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_sdo_write()", INSTEAD, diag);
+    if (!data && size > 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sdo_write() needs the bytes to write.");
     union { /* a write transfer only reads the data */
         const void *in;
         void *out;

@@ -48,10 +48,12 @@ static cm1e_error_t ask_remote(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, c
 
 static cm1e_error_t ask(cm1e_bus_t *bus, uint16_t position, cm1e_info_request_t *request, cm1e_diag_t *diag)
 {
+    if (!bus)
+        return cm1e_bus_missing("SDO information", diag);
     const cm1e_error_t driven = cm1e_bus_refuse_driven(bus, "SDO information", "", diag);
     if (driven != CM1E_OK)
         return driven;
-    if (!bus || bus->phase < BUS_SCANNED)
+    if (bus->phase < BUS_SCANNED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before reading SDO information.");
     cm1e_bus_enter(bus);
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);

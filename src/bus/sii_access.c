@@ -48,7 +48,9 @@ static cm1e_error_t diagnose_eeprom(const session_t *session, const char *what, 
 
 static cm1e_error_t begin(session_t *session, cm1e_bus_t *bus, uint16_t position, cm1e_diag_t *diag)
 {
-    if (!bus || bus->phase < BUS_OPEN || bus->phase >= BUS_OPERATING)
+    if (!bus)
+        return cm1e_bus_missing("The SII of a slave", diag);
+    if (bus->phase < BUS_OPEN || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The SII of a slave needs an open bus that does not operate.");
     const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, "Writing the SII of a slave", diag);
     if (attached != CM1E_OK)
@@ -188,7 +190,9 @@ static bool checksum_good(const uint8_t *image)
 static cm1e_error_t check_image(const uint8_t *image, size_t size, const cm1e_sii_write_options_t *options,
                                 cm1e_diag_t *diag)
 {
-    if (!image || size < 2 * WORD_CATEGORIES || size % 2 || size > CM1E_SII_IMAGE_MAX)
+    if (!image)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sii_write_device() needs an image.");
+    if (size < 2 * WORD_CATEGORIES || size % 2 || size > CM1E_SII_IMAGE_MAX)
         return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "%zu bytes are not an SII image, which has whole words and at "
                              "least 128 bytes.", size);
     cm1e_sii_t sii;
@@ -373,6 +377,8 @@ cm1e_error_t cm1e_sii_write_device_sized(cm1e_bus_t *bus, uint16_t position, con
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_sii_write_device()", "", diag);
+    if (!bus)
+        return cm1e_bus_missing("cm1e_sii_write_device()", diag);
     cm1e_sii_write_options_t own = {0};
     session_t session;
     if (options)

@@ -61,7 +61,11 @@ cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_topology()", "", diag);
-    if (!bus || bus->phase < BUS_SCANNED || bus->phase >= BUS_OPERATING)
+    if (!bus)
+        return cm1e_bus_missing("cm1e_bus_topology()", diag);
+    if (!places && room > 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_topology() needs room for the places.");
+    if (bus->phase < BUS_SCANNED || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "cm1e_bus_topology() needs a scanned bus whose cycle does not "
                              "run.");
     cm1e_bus_enter(bus);
@@ -87,7 +91,9 @@ static const char *port_alone(int port) { return port == 0 ? " (IN)" : port == 1
 
 void cm1e_cable_text(const cm1e_slave_place_t *place, uint16_t position, int port, char *text, size_t size)
 {
-    const bool valid = port >= 0 && port < CM1E_PORTS;
+    const bool valid = place && port >= 0 && port < CM1E_PORTS;
+    if (!text)
+        return;
     if (!valid || !place->known)
         snprintf(text, size, "at port %d%s of slave %u", port, port_alone(port), position);
     else if (port == place->entry_port && place->parent == 0)

@@ -80,6 +80,8 @@ cm1e_error_t cm1e_config_copy(cm1e_bus_config_t *to, const cm1e_bus_config_t *fr
 cm1e_error_t cm1e_bus_config_init_sized(cm1e_bus_config_t *config, size_t size, size_t axis_size,
                                         const char *interface_name, uint32_t axis_count)
 {
+    if (!config)
+        return CM1E_ERROR_INVALID_ARGUMENT;
     memset(config, 0, size);
     config->size = size;
     config->axis_size = axis_size;
@@ -97,6 +99,8 @@ cm1e_error_t cm1e_bus_config_init_sized(cm1e_bus_config_t *config, size_t size, 
 
 cm1e_axis_config_t *cm1e_bus_config_add_axis(cm1e_bus_config_t *config, const char *name)
 {
+    if (!config)
+        return NULL;
     const uint32_t index = config->axis_count;
     const size_t size = size_of_axis(config);
     if (index >= CM1E_MAX_AXES || (index > 0 && !config->axes))
@@ -117,6 +121,8 @@ cm1e_axis_config_t *cm1e_bus_config_add_axis(cm1e_bus_config_t *config, const ch
 
 cm1e_slave_config_t *cm1e_bus_config_add_slave_sized(cm1e_bus_config_t *config, size_t slave_size, const char *name)
 {
+    if (!config)
+        return NULL;
     const uint32_t index = slaves_of(config);
     if (!has_slaves(size_of(config)) || index >= CM1E_MAX_SLAVES || (index > 0 && !config->slaves))
         return NULL;
@@ -140,6 +146,9 @@ cm1e_slave_config_t *cm1e_bus_config_add_slave_sized(cm1e_bus_config_t *config, 
 cm1e_error_t cm1e_bus_config_size_slaves(cm1e_bus_config_t *config, size_t slave_size, cm1e_diag_t *diag)
 {
     void *slaves = NULL;
+    if (!config)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_bus_config_size_slaves() needs a configuration.");
     if (slaves_of(config) == 0 || size_of_slave(config) == slave_size)
         return CM1E_OK;
     if (!copy_rows(&slaves, slave_size, config->slaves, size_of_slave(config), config->slave_count)) {
@@ -170,6 +179,8 @@ void cm1e_bus_config_free(cm1e_bus_config_t *config)
 
 cm1e_error_t cm1e_bus_config_check(const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
+    if (!config)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_config_check() needs a configuration.");
     cm1e_config_problem_t problem = {0};
     /* With these counts alone if it cannot be copied. */
     cm1e_bus_config_t own = {.axis_count = config->axis_count, .slave_count = slaves_of(config)};

@@ -321,5 +321,8 @@ static const cm1e_bus_remote_t through_control = {scan, transfer, run_errand, tr
 cm1e_error_t cm1e_bus_open_attached(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_control_t *control,
                                     cm1e_diag_t *diag)
 {
+    if (!bus || !config || !control)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_open_attached() needs a place for the bus, "
+                             "a configuration and a connection.");
     return cm1e_bus_open_remote(bus, config, &through_control, control, diag);
 }

@@ -136,6 +136,9 @@ cm1e_error_t cm1e_control_call(cm1e_control_t *control, json_t *request, json_t 
 cm1e_error_t cm1e_control_ask(cm1e_control_t *control, const char *request, char **reply, cm1e_diag_t *diag)
 {
     json_error_t wrong;
+    if (!control || !request || !reply)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_control_ask() needs a connection, a request "
+                             "and a place for the reply.");
     json_t *asked = json_loads(request, JSON_REJECT_DUPLICATES, &wrong), *told = NULL;
     *reply = NULL;
     if (!json_is_object(asked)) {
@@ -279,6 +282,9 @@ static cm1e_error_t connect_to_owner(cm1e_control_t **control, const char *inter
 cm1e_error_t cm1e_control_connect(cm1e_control_t **control, const char *target, const char *interface_name,
                                   cm1e_diag_t *diag)
 {
+    if (!control || (!target && !interface_name))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_control_connect() needs a place for the "
+                             "connection, and a target or a network interface.");
     *control = NULL;
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_control_connect()", "", diag);

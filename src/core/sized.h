@@ -9,9 +9,11 @@
 #include <stddef.h>
 #include <string.h>
 
-/** Copies what both sides have; what `from` lacks is zero. */
+/** Copies what both sides have; what `from` lacks is zero. Nothing is copied to NULL. */
 static inline void cm1e_copy_sized(void *to, size_t to_size, const void *from, size_t from_size)
 {
+    if (!to)
+        return;
     memset(to, 0, to_size);
     memcpy(to, from, to_size < from_size ? to_size : from_size);
 }

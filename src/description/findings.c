@@ -29,12 +29,12 @@ void cm1e_findings_free(cm1e_findings_t *findings)
 
 size_t cm1e_findings_count(const cm1e_findings_t *findings)
 {
-    return findings->list.count;
+    return findings ? findings->list.count : 0;
 }
 
 const cm1e_finding_t *cm1e_findings_at(const cm1e_findings_t *findings, size_t n)
 {
-    return n < findings->list.count ? &findings->list.at[n] : NULL;
+    return findings && n < findings->list.count ? &findings->list.at[n] : NULL;
 }
 
 static bool is_known(const cm1e_findings_t *findings, const char *rule, cm1e_place_t place, const char *text)

@@ -60,6 +60,8 @@ static size_t append(char *text, size_t size, size_t length, const char *word)
 
 const char *cm1e_bridge_status_text(cm1e_bridge_motor_t motor, uint32_t status, char *text, size_t size)
 {
+    if (!text)
+        size = 0;
     size_t length = status ? 0 : append(text, size, 0, "running");
     uint32_t rest = status;
     for (int i = 0; i < ROWS; i++)

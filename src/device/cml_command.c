@@ -110,10 +110,10 @@ cm1e_cml_command_t cm1e_cml_next(const char **text)
 cm1e_cml_kind_t cm1e_cml_kind(const char *text)
 {
     cm1e_cml_kind_t strongest = CM1E_CML_QUERY;
-    do {
+    while (text) {
         const cm1e_cml_command_t command = cm1e_cml_next(&text);
         strongest = command.kind > strongest ? command.kind : strongest;
-    } while (text);
+    }
     return strongest;
 }
 
@@ -127,7 +127,7 @@ static bool is_cut(const char *begin, const char *end)
 
 const char *cm1e_cml_check(const char *text, unsigned id)
 {
-    const size_t size = strnlen(text, CM1E_CML_BYTES + 1);
+    const size_t size = text ? strnlen(text, CM1E_CML_BYTES + 1) : 0;
     if (size == 0)
         return "is empty";
     if (size > CM1E_CML_BYTES)
@@ -194,6 +194,8 @@ static bool begins_as_known(const char *at, size_t size)
 
 cm1e_error_t cm1e_cml_parse(cm1e_cml_answer_t *answer, const void *bytes, size_t size)
 {
+    if (!answer || (!bytes && size > 0))
+        return CM1E_ERROR_INVALID_ARGUMENT;
     const char *at = bytes;
     size_t length = 0, whole;
     *answer = (cm1e_cml_answer_t){.what = CM1E_CML_NOTHING};

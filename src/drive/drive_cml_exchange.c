@@ -221,6 +221,8 @@ cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, c
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_cml_exchange()", INSTEAD, diag);
     uint32_t ticket;
+    if (!exchange)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_cml_exchange() needs an exchange.");
     exchange->count = exchange->lost = exchange->strays = 0;
     if (!bus)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_cml_exchange() needs a bus.");

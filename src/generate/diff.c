@@ -202,6 +202,11 @@ static cm1e_error_t diff(cm1e_findings_t *findings, const void *bytes, size_t si
 cm1e_error_t cm1e_diff_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_bus_t *bus,
                             uint16_t position, cm1e_diag_t *diag)
 {
+    if (!findings || (!bytes && size > 0))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_diff_file() needs a place for the findings, "
+                             "and the bytes of a file.");
+    if (!bus)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_diff_file() needs a bus.");
     *findings = NULL;
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_diff_file()", "", diag);

@@ -22,6 +22,8 @@ static const cm1e_device_options_t one_cm1e = {0};
 
 void cm1e_file_free(cm1e_file_t *file)
 {
+    if (!file)
+        return;
     free(file->bytes);
     *file = (cm1e_file_t){0};
 }

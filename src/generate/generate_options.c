@@ -17,6 +17,8 @@ cm1e_error_t cm1e_generate_with(cm1e_generator_t *generator, cm1e_file_t *file, 
 {
     cm1e_generate_options_t own;
     cm1e_device_options_t *devices = NULL;
+    if (!file || !options)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A file that is written needs a place and options.");
     *file = (cm1e_file_t){0};
     cm1e_copy_sized(&own, sizeof own, options, size);
     if (own.devices && own.device_count > 0 && device_size != sizeof *devices) {

@@ -187,6 +187,9 @@ static cm1e_error_t configure_drive(cm1e_description_file_t *file, const cm1e_ax
 cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag)
 {
     const uint32_t count = cm1e_bus_slave_count(bus);
+    if (!file || !bus)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_generate_eni_of_bus() needs a place for the file, and a bus.");
     *file = (cm1e_file_t){0};
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_generate_eni_of_bus()", "", diag);

@@ -90,7 +90,7 @@ static cm1e_file_format_t recognise_utf16(const void *bytes, size_t size)
 
 cm1e_file_format_t cm1e_file_recognise(const void *bytes, size_t size)
 {
-    if (size == 0) /* `bytes` may be NULL then */
+    if (!bytes || size == 0)
         return CM1E_FILE_UNKNOWN;
     if (looks_like_sii(bytes, size))
         return CM1E_FILE_SII;
@@ -143,6 +143,9 @@ static cm1e_error_t check_eni(cm1e_findings_t *findings, const void *bytes, size
 
 cm1e_error_t cm1e_check_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_diag_t *diag)
 {
+    if (!findings || (!bytes && size > 0))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_check_file() needs a place for the findings, "
+                             "and the bytes of a file.");
     const cm1e_file_format_t format = cm1e_file_recognise(bytes, size);
     *findings = NULL;
     if (format == CM1E_FILE_UNKNOWN)
@@ -181,6 +184,9 @@ static cm1e_error_t rewrite_eni(cm1e_file_t *file, const void *bytes, size_t siz
 cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t size, cm1e_file_format_t format,
                                 size_t device, cm1e_diag_t *diag)
 {
+    if (!file || (!bytes && size > 0))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_generate_from() needs a place for the file, "
+                             "and the bytes of another one.");
     const cm1e_file_format_t found = cm1e_file_recognise(bytes, size);
     *file = (cm1e_file_t){0};
     if (found == CM1E_FILE_UNKNOWN)

@@ -259,6 +259,8 @@ cm1e_error_t cm1e_group_read(AXES_GROUP_REF_t reference, cm1e_group_info_t *info
     cm1e_group_t *group = cm1e_group_from_reference(&reference);
     if (!group)
         return CM1E_ERROR_GROUP_REF;
+    if (!info)
+        return CM1E_ERROR_INVALID_ARGUMENT;
     cm1e_group_get(group, info);
     return CM1E_OK;
 }

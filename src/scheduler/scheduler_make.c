@@ -252,7 +252,9 @@ static cm1e_error_t trace_object_of(cm1e_scheduler_t *s, uint32_t axis, uint16_t
 cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t axis, uint16_t index, uint8_t subindex,
                                          cm1e_diag_t *diag)
 {
-    for (uint32_t i = 0; scheduler && i < scheduler->axis_count; i++)
+    if (!scheduler)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler is missing.");
+    for (uint32_t i = 0; i < scheduler->axis_count; i++)
         if (axis.Handle != 0 && cm1e_axis_reference(scheduler->axes[i]).Handle == axis.Handle)
             return trace_object_of(scheduler, i, index, subindex, diag);
     return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The axis does not belong to this scheduler.");

@@ -114,6 +114,9 @@ static cm1e_error_t take_image(const boot_t *boot, const uint8_t *image, size_t 
 cm1e_error_t cm1e_sim_segment_boot(cm1e_sim_segment_t *segment, uint32_t position, const uint8_t *image, size_t size,
                                    cm1e_diag_t *diag)
 {
+    if (!segment || !image)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_sim_segment_boot() needs a segment and an image.");
     boot_t boot = {.position = position, .slave = cm1e_sim_segment_slave(segment, position), .diag = diag};
     if (!boot.slave)
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0,

@@ -514,7 +514,7 @@ static cm1e_error_t run_line(call_t *call, const char *line)
 
 bool cm1e_sim_segment_news(cm1e_sim_segment_t *segment, char *text, size_t size)
 {
-    const uint32_t position = cm1e_sim_segment_fallen_back(segment);
+    const uint32_t position = segment && text ? cm1e_sim_segment_fallen_back(segment) : 0;
     if (position == 0)
         return false;
     call_t call = {.segment = segment, .answer = text, .size = size};

@@ -40,6 +40,9 @@ static bool take_sii(cm1e_sim_slave_t *slave, const cm1e_sim_profile_t *profile)
 cm1e_error_t cm1e_sim_segment_play(cm1e_sim_segment_t *segment, uint32_t position, const cm1e_sim_profile_t *profile,
                                    cm1e_diag_t *diag)
 {
+    if (!segment || !profile)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_sim_segment_play() needs a segment and a profile.");
     cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment, position);
     if (!slave)
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "there is a profile for the simulated slave %u; the "

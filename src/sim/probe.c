@@ -114,6 +114,8 @@ void cm1e_sim_probe_reset(cm1e_sim_segment_t *segment, uint32_t position)
 void cm1e_sim_segment_clock(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_clock_t *result)
 {
     const cm1e_sim_slave_t *slave = segment ? cm1e_sim_segment_slave(segment, position) : NULL;
+    if (!result)
+        return;
     *result = (cm1e_sim_clock_t){0};
     if (slave && cm1e_sim_esc_present(slave))
         cm1e_sim_esc_clock(slave, result);

@@ -89,7 +89,7 @@ void cm1e_sim_segment_destroy(cm1e_sim_segment_t *segment)
     free(segment);
 }
 
-uint32_t cm1e_sim_segment_slave_count(const cm1e_sim_segment_t *segment) { return segment->count; }
+uint32_t cm1e_sim_segment_slave_count(const cm1e_sim_segment_t *segment) { return segment ? segment->count : 0; }
 
 cm1e_sim_slave_t *cm1e_sim_segment_slave(cm1e_sim_segment_t *segment, uint32_t position)
 {
@@ -109,13 +109,15 @@ uint32_t cm1e_sim_segment_fallen_back(cm1e_sim_segment_t *segment)
 
 void cm1e_sim_segment_close_ring(cm1e_sim_segment_t *segment)
 {
+    if (!segment)
+        return;
     segment->ring = true;
     segment->topology_changed = true;
 }
 
 void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool cut)
 {
-    if (position < 1 || position > segment->count + 1)
+    if (!segment || position < 1 || position > segment->count + 1)
         return;
     segment->places[position].cut = cut;
     segment->topology_changed = true;
@@ -299,6 +301,8 @@ static void update_topology(cm1e_sim_segment_t *segment)
 
 void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns)
 {
+    if (!segment)
+        return;
     if (now_ns > segment->now_ns)
         segment->now_ns = now_ns;
     for (uint32_t i = 0; i < segment->count; i++)
@@ -310,7 +314,7 @@ void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns)
 int64_t cm1e_sim_segment_due(const cm1e_sim_segment_t *segment)
 {
     int64_t first = ESC_NEVER;
-    for (uint32_t i = 0; i < segment->count; i++) {
+    for (uint32_t i = 0; segment && i < segment->count; i++) {
         const int64_t due = cm1e_sim_esc_due(segment->slaves[i]);
         first = due < first ? due : first;
     }
@@ -382,6 +386,8 @@ static void pass_slaves(cm1e_sim_segment_t *segment, const struct route *route, 
 int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_t *frame, size_t length, int64_t now_ns)
 {
     cm1e_sim_segment_advance(segment, now_ns);
+    if (!segment || !frame)
+        return CM1E_SIM_PORT_LOST;
     if (entry_port != CM1E_SIM_PORT_PRIMARY && entry_port != CM1E_SIM_PORT_SECONDARY)
         return CM1E_SIM_PORT_LOST;
     const struct route route = segment->routes[entry_port];
@@ -409,6 +415,8 @@ int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_
 void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fault_t kind, uint32_t count,
                                       int64_t delay_ns)
 {
+    if (!segment)
+        return;
     segment->fault = kind;
     segment->fault_count = count;
     segment->fault_delay_ns = delay_ns;
@@ -416,11 +424,12 @@ void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fa
 
 cm1e_frame_fault_t cm1e_sim_segment_next_frame_fault(cm1e_sim_segment_t *segment, int64_t *delay_ns)
 {
-    *delay_ns = 0;
-    if (segment->fault_count == 0)
+    if (delay_ns)
+        *delay_ns = 0;
+    if (!segment || segment->fault_count == 0)
         return CM1E_FRAME_OK;
     segment->fault_count--;
-    if (segment->fault == CM1E_FRAME_DELAY)
+    if (segment->fault == CM1E_FRAME_DELAY && delay_ns)
         *delay_ns = segment->fault_delay_ns;
     return segment->fault;
 }

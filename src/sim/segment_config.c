@@ -218,7 +218,7 @@ static cm1e_sim_slave_t *make(made_t *made)
 
 static cm1e_error_t add_made(cm1e_sim_segment_t *segment, cm1e_sim_slave_t *slave)
 {
-    const cm1e_error_t error = cm1e_sim_segment_add(segment, slave);
+    const cm1e_error_t error = segment ? cm1e_sim_segment_add(segment, slave) : CM1E_ERROR_INVALID_ARGUMENT;
     if (error != CM1E_OK)
         cm1e_sim_slave_destroy(slave);
     return error;

@@ -309,6 +309,11 @@ static void serve_ends(server_t *server, const struct pollfd fds[WAITED], int64_
 
 void cm1e_sim_server_run(cm1e_sim_server_t *server, const cm1e_sim_streams_t *console, const volatile int *stop)
 {
+    static const cm1e_sim_streams_t nowhere = {-1, -1, -1};
+    if (!server || !stop)
+        return;
+    if (!console)
+        console = &nowhere;
     struct pollfd fds[WAITED] = {{.fd = -1, .events = POLLIN}, {.fd = -1, .events = POLLIN},
                                  [CONSOLE] = {.fd = console->lines, .events = POLLIN}};
     const scheduling_t before = ask_for_realtime();
@@ -376,6 +381,9 @@ static cm1e_error_t open_ends(cm1e_sim_server_t *server, const char *const names
 static cm1e_error_t open_server(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment, const char *const names[],
                                 int count, cm1e_diag_t *diag)
 {
+    if (!server || !segment || !names[0] || !names[count - 1])
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A simulated segment on a network interface needs a "
+                             "place for its server, a segment and the name of each interface.");
     cm1e_sim_server_t *made = calloc(1, sizeof *made);
     *server = NULL;
     if (!made)

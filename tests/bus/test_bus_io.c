@@ -123,7 +123,7 @@ START_TEST(wrong_names_are_told_what_there_is)
     cm1e_bus_t *bus = start_with(CM1E_SIM_IO_TERMINAL);
     cm1e_io_t io;
     ck_assert_int_eq(cm1e_io_find(bus, NULL, &io, &diag), CM1E_ERROR_INVALID_ARGUMENT);
-    ck_assert_int_eq(cm1e_io_find(NULL, "1.input 1", &io, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_io_find(NULL, "1.input 1", &io, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_int_eq(cm1e_io_quality(&io), CM1E_IO_INVALID);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         ck_assert_int_eq(cm1e_io_find(bus, cases[i].name, &io, &diag), cases[i].error);

@@ -80,7 +80,7 @@ START_TEST(a_buffer_too_small_is_told_the_size)
     size = 0;
     ck_assert_int_eq(cm1e_sii_read_device(bus, 1, NULL, &size, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_int_eq(cm1e_sii_read_device(bus, 1, after, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
-    ck_assert_int_eq(cm1e_sii_read_device(NULL, 1, after, &size, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_sii_read_device(NULL, 1, after, &size, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     for (uint16_t position = 0; position <= 2; position += 2) {
         ck_assert_int_eq(cm1e_sii_read_device(bus, position, after, &size, &diag), CM1E_ERROR_INVALID_ARGUMENT);
         ck_assert_ptr_nonnull(strstr(diag.text, "no slave"));
@@ -307,7 +307,7 @@ START_TEST(sizes_that_no_image_has_are_refused)
         ck_assert_int_eq(cm1e_sii_write_device(bus, 1, large, sizes[i], NULL, &diag), CM1E_ERROR_FILE);
         check_unchanged(bus);
     }
-    ck_assert_int_eq(cm1e_sii_write_device(bus, 1, NULL, 2048, NULL, &diag), CM1E_ERROR_FILE);
+    ck_assert_int_eq(cm1e_sii_write_device(bus, 1, NULL, 2048, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     cm1e_bus_close(bus);
 }
 END_TEST
