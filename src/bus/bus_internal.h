@@ -175,6 +175,7 @@ typedef struct cm1e_errands {
 typedef struct cm1e_silence {
     uint8_t *markers[2];                     /**< by which the marker of each input byte differs from the last inputs */
     unsigned turn;                           /**< which of both the frame has that was sent last */
+    bool single_bits;                        /**< a slave has one bit of inputs and no more */
     bool found;                              /**< its slaves were looked at */
     bool any;                                /**< a slave that counts did not take part */
     bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
@@ -354,6 +355,8 @@ void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
 /** Marks the place of the inputs of slaves in a frame: a slave that takes part in the cycle overwrites all of it. The
  *  marker is made of the inputs that came last, so that no inputs are like it for long, whatever they are. */
 void cm1e_bus_mark_inputs(const cm1e_bus_t *bus, uint8_t *place, uint32_t input_offset, size_t bytes);
+/** The markers of the next frame are the other ones. */
+void cm1e_bus_turn_markers(cm1e_bus_t *bus);
 /** Fills in the markers, when the places of all inputs are known. Bits that a slave is not mapped to stay 0. */
 void cm1e_bus_make_markers(cm1e_bus_t *bus);
 /** Inputs that change may be like their marker in one cycle, if they are few. Others never are. */

@@ -154,7 +154,7 @@ static void mute_recovering(cm1e_bus_t *bus)
 
 static void fill_image(cm1e_bus_t *bus)
 {
-    bus->silence.turn = !bus->silence.turn;
+    cm1e_bus_turn_markers(bus);
     if (bus->overlap.used) {
         cm1e_overlap_fill(bus);
         mute_recovering(bus);
