@@ -35,7 +35,8 @@ typedef enum cm1e_log_kind {
     CM1E_LOG_EMERGENCY,       /**< of a slave, whether it has an axis or not; code: the error code, detail: its
                                    position, 65536 times the error register, and 16777216 times the number of its bus
                                    (0 = first); value: its five bytes as a number, the
-                                   first is the lowest */
+                                   first is the lowest; bound: so many of this slave since its last record were left
+                                   out */
     CM1E_LOG_PORT,            /**< faults that a port of a slave has counted; code: so many since the last such record,
                                    detail: the position of the slave, 65536 times the port, 1048576 times the number of
                                    its bus, and 16777216 times the kind of fault: 0 damaged frames, 1 receive errors, 2
@@ -58,7 +59,8 @@ typedef enum cm1e_log_kind {
 } cm1e_log_kind_t;
 
 /** A record. Of counters there is at most one in 100 ms, so that a lost bus does not push out everything else; what is
- *  left then is told at the end of the run. */
+ *  left then is told at the end of the run. So is the last emergency of a slave that sends many: eight are told one by
+ *  one, then the newest one in each second, with the number of those that were left out. */
 typedef struct cm1e_log_event {
     uint64_t number;          /**< counts from 1 without gaps */
     int64_t time_ns;          /**< since 1970 (UTC); on virtual time since its beginning */

@@ -6,6 +6,9 @@
 
 /** Between two records of one counter. */
 #define QUIET_NS INT64_C(100000000)
+/** So many emergencies of a slave are told one by one, then one in this time. */
+enum { EMERGENCY_BURST = 8 };
+#define EMERGENCY_PACE_NS INT64_C(1000000000)
 /** Between two looks at the ports: one damaged cable is counted by every slave behind it. */
 #define PORTS_QUIET_NS INT64_C(1000000000)
 
@@ -91,33 +94,62 @@ void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64
     look_at_counter(log, CM1E_LOG_SYNC_LOST, sync_losses, run_ns);
 }
 
-static void write_emergency(log_t *log, uint32_t number, uint32_t position, const cm1e_emergency_t *emergency, int64_t run_ns)
+static void write_emergency(log_t *log, uint32_t number, uint32_t position, const cm1e_emergency_t *emergency,
+                            uint64_t left_out, int64_t run_ns)
 {
     uint64_t bytes = 0;
     for (size_t i = sizeof emergency->data; i-- > 0;)
         bytes = bytes << 8 | emergency->data[i];
     write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_EMERGENCY, .axis = -1, .code = emergency->code,
                                         .detail = number << 24 | (uint32_t)emergency->error_register << 16 | position,
-                                        .value = (double)bytes}, run_ns);
+                                        .value = (double)bytes, .bound = (double)left_out}, run_ns);
+}
+
+/** How many records a slave may have now; at the end of the run one at least. */
+static size_t records_left(const log_slaves_t *slaves, uint32_t slave, int64_t run_ns)
+{
+    const int64_t most_ns = EMERGENCY_BURST * EMERGENCY_PACE_NS, ahead_ns = slaves->paid_until_ns[slave] - run_ns;
+    const int64_t left_ns = ahead_ns > 0 ? most_ns - ahead_ns : most_ns;
+    return left_ns >= EMERGENCY_PACE_NS ? (size_t)(left_ns / EMERGENCY_PACE_NS) : slaves->due_ns == INT64_MIN;
+}
+
+/** The newest ones of a slave, as many as it may have, and the number of those before them. */
+static void tell_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, uint32_t slave, int64_t run_ns)
+{
+    log_slaves_t *slaves = &log->slaves[number];
+    cm1e_emergency_t news[CM1E_EMERGENCIES];
+    uint64_t lost = 0;
+    const size_t count = cm1e_bus_emergency(bus, (uint16_t)(slave + 1), slaves->told[slave], news, CM1E_EMERGENCIES,
+                                            &lost);
+    const size_t left = records_left(slaves, slave, run_ns), first = count > left ? count - left : 0;
+    if (count == 0)
+        return;
+    if (left == 0) {
+        const int64_t due_ns = slaves->paid_until_ns[slave] - (EMERGENCY_BURST - 1) * EMERGENCY_PACE_NS;
+        slaves->due_ns = due_ns < slaves->due_ns ? due_ns : slaves->due_ns;
+        return;
+    }
+    if (slaves->paid_until_ns[slave] < run_ns)
+        slaves->paid_until_ns[slave] = run_ns;
+    for (size_t n = first; n < count; n++)
+        write_emergency(log, number, slave + 1, &news[n], n == first ? lost + first : 0, run_ns);
+    slaves->paid_until_ns[slave] += (int64_t)(count - first) * EMERGENCY_PACE_NS;
+    slaves->told[slave] = news[count - 1].number;
 }
 
 void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
 {
-    cm1e_emergency_t news[CM1E_EMERGENCIES];
     log_slaves_t *slaves = &log->slaves[number];
-    if (slaves->emergencies == cm1e_bus_emergencies(bus))
+    if (slaves->emergencies == cm1e_bus_emergencies(bus) && run_ns < slaves->due_ns)
         return;
     slaves->emergencies = cm1e_bus_emergencies(bus);
     if (slaves->operation != cm1e_bus_operation(bus)) /* after another scan they count from 1 again */
         memset(slaves->told, 0, sizeof slaves->told);
     slaves->operation = cm1e_bus_operation(bus);
-    for (uint32_t i = 0; i < cm1e_bus_slave_count(bus); i++) {
-        const size_t count = cm1e_bus_emergency(bus, (uint16_t)(i + 1), slaves->told[i], news, CM1E_EMERGENCIES, NULL);
-        for (size_t n = 0; n < count; n++)
-            write_emergency(log, number, i + 1, &news[n], run_ns);
-        if (count > 0)
-            slaves->told[i] = news[count - 1].number;
-    }
+    if (slaves->due_ns != INT64_MIN)
+        slaves->due_ns = INT64_MAX;
+    for (uint32_t i = 0; i < cm1e_bus_slave_count(bus); i++)
+        tell_emergencies(log, bus, number, i, run_ns);
 }
 
 static void look_at_port(log_t *log, const cm1e_bus_t *bus, uint32_t number, uint32_t position, unsigned port,
@@ -204,8 +236,10 @@ void cm1e_log_wait_no_longer(log_t *log)
 {
     for (int i = 0; i < CM1E_LOG_COUNTERS; i++)
         log->counters[i].quiet_until_ns = INT64_MIN;
-    for (int i = 0; i < CM1E_MAX_BUSES; i++)
+    for (int i = 0; i < CM1E_MAX_BUSES; i++) {
+        log->slaves[i].due_ns = INT64_MIN;
         log->slaves[i].ports_quiet_until_ns = log->slaves[i].ring_quiet_until_ns = INT64_MIN;
+    }
 }
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */

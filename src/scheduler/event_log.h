@@ -25,6 +25,9 @@ typedef struct log_slaves {
     uint64_t emergencies;       /**< of all slaves */
     uint32_t operation;         /**< of the bus, in which they were counted */
     uint64_t told[CM1E_MAX_SLAVES];
+    int64_t paid_until_ns[CM1E_MAX_SLAVES]; /**< each record of a slave moves it on by a pace */
+    int64_t due_ns;             /**< when those that wait for a record of their slave are looked at; INT64_MIN: the run
+                                     has ended */
     uint64_t presence_news;     /**< of all slaves, told */
     uint8_t presence[CM1E_MAX_SLAVES];
     cm1e_stranger_t strangers[CM1E_STRANGERS];

@@ -1,6 +1,7 @@
 /* Records of the event log as sentences. */
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "bus/emergency_ring.h"
 #include "bus/port_watch.h"
@@ -76,6 +77,9 @@ static void emergency_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event,
     for (size_t i = 0; i < sizeof emergency.data; i++)
         emergency.data[i] = (uint8_t)(bytes >> 8 * i);
     cm1e_emergency_sentence(bus, (uint16_t)event->detail, &emergency, text, size);
+    const size_t used = strlen(text);
+    if (event->bound > 0.0)
+        snprintf(text + used, size - used, " %.0f more since its last record are not shown.", event->bound);
 }
 
 static void ring_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char *text, size_t size)

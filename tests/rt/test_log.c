@@ -120,6 +120,54 @@ START_TEST(test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away)
 }
 END_TEST
 
+/* ---- a slave that sends many ------------------------------------------------------------------------------------- */
+
+enum { FLOOD_BEGINS_MS = 500, FLOOD_MS = 3000 };
+static uint64_t flooded;
+
+static void flood(void *context)
+{
+    machine_t *machine = context;
+    char line[40], answer[100];
+    const int64_t ms = cm1e_scheduler_time_ns(machine->scheduler) / MS;
+    if (ms < FLOOD_BEGINS_MS || ms >= FLOOD_BEGINS_MS + FLOOD_MS)
+        return;
+    snprintf(line, sizeof line, "emergency 2 %d 80", 9000 + (int)(ms - FLOOD_BEGINS_MS) % 100);
+    flooded += cm1e_bus_simulate(machine->bus, line, answer, sizeof answer) == CM1E_OK;
+}
+
+/** It does not push out what others have to tell. All are counted, and the last one is told. */
+START_TEST(test_a_flood_of_emergencies_of_one_slave_takes_few_records)
+{
+    machine_t machine = {.axis_count = 2};
+    machine_open(&machine);
+    machine_add(&machine, "", 0, 0, flood, &machine);
+    const int64_t goes_on_ms = _i == 0 ? FLOOD_MS / 2 : FLOOD_MS + 3000; /* it ends in the flood, or behind it */
+    machine_run(&machine, (FLOOD_BEGINS_MS + goes_on_ms) * MS);
+    const size_t n = cm1e_log_read(machine.scheduler, 0, events, CM1E_LOG_EVENTS, NULL);
+    cm1e_emergency_t newest[CM1E_EMERGENCIES];
+    const size_t kept = cm1e_bus_emergency(machine.bus, 2, 0, newest, CM1E_EMERGENCIES, NULL);
+    ck_assert_uint_eq(kept, CM1E_EMERGENCIES);
+    uint64_t told = 0, records = 0;
+    const cm1e_log_event_t *last = NULL;
+    for (size_t i = 0; i < n; i++)
+        if (events[i].kind == CM1E_LOG_EMERGENCY) {
+            ck_assert_uint_eq(events[i].detail & 0xFFFF, 2);
+            told += 1 + (uint64_t)events[i].bound;
+            records++;
+            last = &events[i];
+        }
+    ck_assert_uint_gt(told, 100);
+    ck_assert_uint_eq(told, newest[kept - 1].number);
+    ck_assert_uint_le(records, 8 + FLOOD_MS / 1000 + 2);
+    ck_assert(last && last->code == newest[kept - 1].code);
+    if (last->bound > 0.0)
+        expect_text(machine.scheduler, last, " more since its last record are not shown.");
+    ck_assert_uint_ge(flooded, told);
+    machine_close(&machine);
+}
+END_TEST
+
 /* ---- whose the numbers are --------------------------------------------------------------------------------------- */
 
 /** Loses a frame and, while no further record of the counter may follow, four more; 20 ms before the end. */
@@ -342,6 +390,7 @@ int main(void)
     Suite *suite = suite_create("log");
     TCase *tcase = tcase_create("log");
     tcase_add_test(tcase, test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away);
+    tcase_add_loop_test(tcase, test_a_flood_of_emergencies_of_one_slave_takes_few_records, 0, 2);
     tcase_add_test(tcase, test_a_run_tells_all_that_it_lost_and_nothing_of_the_run_before);
     tcase_add_test(tcase, test_a_record_is_a_sentence_with_its_numbers);
     tcase_add_test(tcase, test_a_ring_that_breaks_is_told_with_its_place);
