@@ -27,11 +27,12 @@ typedef enum cm1e_log_kind {
                                    velocity, 0: it has none */
     CM1E_LOG_OVERRUN,         /**< code: so many cycles since the last such record, detail: the total of the run
                                    (32 bits) */
-    CM1E_LOG_LOST_FRAMES,     /**< as OVERRUN */
-    CM1E_LOG_WORKING_COUNTER, /**< as OVERRUN: cycles with a wrong working counter */
-    CM1E_LOG_UNSENT_FRAMES,   /**< as OVERRUN: frames that the network interface did not take */
-    CM1E_LOG_OTHER_MASTER,    /**< as OVERRUN: frames of another master */
-    CM1E_LOG_SYNC_LOST,       /**< as OVERRUN: clocks that left the reference clock, or that reference was lost */
+    CM1E_LOG_LOST_FRAMES,     /**< of a bus, as OVERRUN; value: the number of the bus (0 = first) */
+    CM1E_LOG_WORKING_COUNTER, /**< as LOST_FRAMES: cycles with a wrong working counter */
+    CM1E_LOG_UNSENT_FRAMES,   /**< as LOST_FRAMES: frames that the network interface did not take */
+    CM1E_LOG_OTHER_MASTER,    /**< as LOST_FRAMES: frames of another master */
+    CM1E_LOG_SYNC_LOST,       /**< as OVERRUN, of all buses together: clocks that left the reference clock, or that
+                                   reference was lost */
     CM1E_LOG_EMERGENCY,       /**< of a slave, whether it has an axis or not; code: the error code, detail: its
                                    position, 65536 times the error register, and 16777216 times the number of its bus
                                    (0 = first); value: its five bytes as a number, the

@@ -71,27 +71,33 @@ static void look_at_axis(log_t *log, const cm1e_axis_t *axis, uint32_t index, in
     *seen = now;
 }
 
-static void look_at_counter(log_t *log, cm1e_log_kind_t kind, uint64_t total, int64_t run_ns)
+static void look_at_counter(log_t *log, log_counters_t counters, cm1e_log_kind_t kind, uint64_t total, uint32_t number,
+                            int64_t run_ns)
 {
-    log_counter_t *counter = &log->counters[kind - CM1E_LOG_OVERRUN];
+    log_counter_t *counter = &counters[kind - CM1E_LOG_OVERRUN];
     if (total == counter->told || run_ns < counter->quiet_until_ns)
         return;
     write_event(log, (cm1e_log_event_t){.kind = kind, .axis = -1, .code = (int32_t)(total - counter->told),
-                                        .detail = (uint32_t)total}, run_ns);
+                                        .detail = (uint32_t)total, .value = number}, run_ns);
     *counter = (log_counter_t){.told = total, .quiet_until_ns = run_ns + QUIET_NS};
 }
 
 void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
-                   const cm1e_bus_counters_t *bus, uint64_t sync_losses, int64_t run_ns)
+                   uint64_t sync_losses, int64_t run_ns)
 {
     for (uint32_t i = 0; i < count; i++)
         look_at_axis(log, axes[i], i, run_ns);
-    look_at_counter(log, CM1E_LOG_OVERRUN, overruns, run_ns);
-    look_at_counter(log, CM1E_LOG_LOST_FRAMES, bus->lost_frames, run_ns);
-    look_at_counter(log, CM1E_LOG_WORKING_COUNTER, bus->working_counter_errors, run_ns);
-    look_at_counter(log, CM1E_LOG_UNSENT_FRAMES, bus->unsent_frames, run_ns);
-    look_at_counter(log, CM1E_LOG_OTHER_MASTER, bus->foreign_frames, run_ns);
-    look_at_counter(log, CM1E_LOG_SYNC_LOST, sync_losses, run_ns);
+    look_at_counter(log, log->counters, CM1E_LOG_OVERRUN, overruns, 0, run_ns);
+    look_at_counter(log, log->counters, CM1E_LOG_SYNC_LOST, sync_losses, 0, run_ns);
+}
+
+void cm1e_log_bus(log_t *log, const cm1e_bus_counters_t *bus, uint32_t number, int64_t run_ns)
+{
+    log_counter_t *counters = log->slaves[number].counters;
+    look_at_counter(log, counters, CM1E_LOG_LOST_FRAMES, bus->lost_frames, number, run_ns);
+    look_at_counter(log, counters, CM1E_LOG_WORKING_COUNTER, bus->working_counter_errors, number, run_ns);
+    look_at_counter(log, counters, CM1E_LOG_UNSENT_FRAMES, bus->unsent_frames, number, run_ns);
+    look_at_counter(log, counters, CM1E_LOG_OTHER_MASTER, bus->foreign_frames, number, run_ns);
 }
 
 static void write_emergency(log_t *log, uint32_t number, uint32_t position, const cm1e_emergency_t *emergency,
@@ -232,11 +238,17 @@ void cm1e_log_ring(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t r
     told->ring_quiet_until_ns = run_ns + QUIET_NS;
 }
 
-void cm1e_log_wait_no_longer(log_t *log)
+static void wait_no_longer(log_counters_t counters)
 {
     for (int i = 0; i < CM1E_LOG_COUNTERS; i++)
-        log->counters[i].quiet_until_ns = INT64_MIN;
+        counters[i].quiet_until_ns = INT64_MIN;
+}
+
+void cm1e_log_wait_no_longer(log_t *log)
+{
+    wait_no_longer(log->counters);
     for (int i = 0; i < CM1E_MAX_BUSES; i++) {
+        wait_no_longer(log->slaves[i].counters);
         log->slaves[i].due_ns = INT64_MIN;
         log->slaves[i].ports_quiet_until_ns = log->slaves[i].ring_quiet_until_ns = INT64_MIN;
     }

@@ -19,9 +19,11 @@ typedef struct log_counter {
     int64_t quiet_until_ns;
 } log_counter_t;
 enum { CM1E_LOG_COUNTERS = CM1E_LOG_SYNC_LOST + 1 - CM1E_LOG_OVERRUN };
+typedef log_counter_t log_counters_t[CM1E_LOG_COUNTERS];
 
-/** What was told of the slaves of a bus. */
+/** What was told of a bus and its slaves. */
 typedef struct log_slaves {
+    log_counters_t counters;
     uint64_t emergencies;       /**< of all slaves */
     uint32_t operation;         /**< of the bus, in which they were counted */
     uint64_t told[CM1E_MAX_SLAVES];
@@ -44,7 +46,7 @@ typedef struct log {
     uint64_t *ring;             /**< core/history.h */
     const cm1e_clock_t *clock;
     cm1e_axis_news_t seen[CM1E_MAX_AXES];
-    log_counter_t counters[CM1E_LOG_COUNTERS];
+    log_counters_t counters;    /**< of no bus alone */
     log_slaves_t slaves[CM1E_MAX_BUSES];
 } log_t;
 
@@ -55,7 +57,9 @@ void cm1e_log_free(log_t *log);
 void cm1e_log_run(log_t *log, bool begins, int64_t run_ns);
 /** Called in every cycle, after its work. @rt cycle */
 void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
-                   const cm1e_bus_counters_t *bus, uint64_t sync_losses, int64_t run_ns);
+                   uint64_t sync_losses, int64_t run_ns);
+/** What a bus has counted in this run. `number`: of the bus, below CM1E_MAX_BUSES. @rt cycle */
+void cm1e_log_bus(log_t *log, const cm1e_bus_counters_t *bus, uint32_t number, int64_t run_ns);
 /** The emergencies of a bus that came since the last call. `number`: of the bus, below CM1E_MAX_BUSES. @rt cycle */
 void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 /** What the ports of its slaves have counted since the last call. @rt cycle */

@@ -140,10 +140,19 @@ static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_even
         snprintf(text, size, "%s was %s %s from outside", name, event->code == 1 ? "forced to" : "set to", value);
 }
 
+static bool is_counter(cm1e_log_kind_t kind) { return kind >= CM1E_LOG_OVERRUN && kind <= CM1E_LOG_SYNC_LOST; }
+
+static bool is_counter_of_bus(cm1e_log_kind_t kind)
+{
+    return kind > CM1E_LOG_OVERRUN && kind < CM1E_LOG_SYNC_LOST;
+}
+
 /** The bus of a record that is about one; NULL: the scheduler does not have it. */
 static const cm1e_bus_t *bus_of(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event)
 {
-    return cm1e_scheduler_bus_at(scheduler, event->kind == CM1E_LOG_PORT ? event->detail >> 20 & 0x0F : event->detail >> 24);
+    const uint32_t number = is_counter_of_bus(event->kind)  ? (uint32_t)event->value
+                            : event->kind == CM1E_LOG_PORT ? event->detail >> 20 & 0x0F : event->detail >> 24;
+    return cm1e_scheduler_bus_at(scheduler, number);
 }
 
 /** Which of several buses, because each has a "slave 1". Returns the bytes written. */
@@ -190,10 +199,12 @@ void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *ev
     const char *name = of_axis ? cm1e_axis_configuration(axes[event->axis])->name : "";
     if (event->kind == CM1E_LOG_RUN)
         snprintf(text, size, event->code ? "the run began" : "the run ended");
-    else if (event->kind >= CM1E_LOG_OVERRUN && event->kind <= CM1E_LOG_SYNC_LOST)
-        snprintf(text, size, "%s: %" PRId32 " (%" PRIu32 " since the start)", counter_texts[event->kind], event->code,
-                 event->detail);
-    else if (event->kind == CM1E_LOG_VARIABLE)
+    else if (is_counter(event->kind)) {
+        const cm1e_bus_t *bus = is_counter_of_bus(event->kind) ? bus_of(scheduler, event) : NULL;
+        const size_t used = print_bus(scheduler, bus, text, size);
+        snprintf(text + used, size - used, "%s: %" PRId32 " (%" PRIu32 " since the start)", counter_texts[event->kind],
+                 event->code, event->detail);
+    } else if (event->kind == CM1E_LOG_VARIABLE)
         variable_text(scheduler, event, text, size);
     else if (event->kind == CM1E_LOG_TASK)
         snprintf(text, size, "task \"%s\" did not return within %g ms and was ended; all axes were stopped",

@@ -256,43 +256,45 @@ static void end_cycle(cm1e_scheduler_t *s)
     s->number = (end_ns - s->start_ns + s->cycle_time_ns - 1) / s->cycle_time_ns;
 }
 
-/** Of all buses together, since they were opened. */
-static cm1e_bus_counters_t counted(const cm1e_scheduler_t *s)
+/** What a bus counted before, in its start and in other runs, is not of this run. */
+static void count_bus(member_t *member)
 {
-    cm1e_bus_counters_t sum = *cm1e_bus_counters(s->members[0].bus);
-    for (uint32_t i = 1; i < s->member_count; i++) {
-        const cm1e_bus_counters_t *more = cm1e_bus_counters(s->members[i].bus);
-        sum.lost_frames += more->lost_frames;
-        sum.working_counter_errors += more->working_counter_errors;
-        sum.late_frames += more->late_frames;
-        sum.foreign_frames += more->foreign_frames;
-        sum.unsent_frames += more->unsent_frames;
-        sum.mailbox_retries += more->mailbox_retries;
-    }
-    return sum;
+    const cm1e_bus_counters_t *now = cm1e_bus_counters(member->bus), *before = &member->counters_before;
+    member->counters = (cm1e_bus_counters_t){
+        .cycles = now->cycles - before->cycles,
+        .lost_frames = now->lost_frames - before->lost_frames,
+        .working_counter_errors = now->working_counter_errors - before->working_counter_errors,
+        .late_frames = now->late_frames - before->late_frames,
+        .foreign_frames = now->foreign_frames - before->foreign_frames,
+        .unsent_frames = now->unsent_frames - before->unsent_frames,
+        .mailbox_retries = now->mailbox_retries - before->mailbox_retries,
+    };
 }
 
-/** What the buses counted before, in their starts and in other runs, is not of this run. */
+/** Of each bus, and of all together. */
 static void count(cm1e_scheduler_t *s)
 {
-    const cm1e_bus_counters_t now = counted(s), *before = &s->counters_before;
-    s->counters = (cm1e_bus_counters_t){
-        .cycles = now.cycles - before->cycles,
-        .lost_frames = now.lost_frames - before->lost_frames,
-        .working_counter_errors = now.working_counter_errors - before->working_counter_errors,
-        .late_frames = now.late_frames - before->late_frames,
-        .foreign_frames = now.foreign_frames - before->foreign_frames,
-        .unsent_frames = now.unsent_frames - before->unsent_frames,
-        .mailbox_retries = now.mailbox_retries - before->mailbox_retries,
-    };
+    count_bus(&s->members[0]);
+    s->counters = s->members[0].counters;
+    for (uint32_t i = 1; i < s->member_count; i++) {
+        const cm1e_bus_counters_t *more = &s->members[i].counters;
+        count_bus(&s->members[i]);
+        s->counters.lost_frames += more->lost_frames;
+        s->counters.working_counter_errors += more->working_counter_errors;
+        s->counters.late_frames += more->late_frames;
+        s->counters.foreign_frames += more->foreign_frames;
+        s->counters.unsent_frames += more->unsent_frames;
+        s->counters.mailbox_retries += more->mailbox_retries;
+    }
 }
 
 static void log_news(cm1e_scheduler_t *s, uint64_t sync_losses)
 {
     const uint64_t overruns = atomic_load_explicit(&s->statistics.overruns, memory_order_relaxed);
     const int64_t now_ns = cm1e_scheduler_time_ns(s);
-    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, &s->counters, sync_losses, now_ns);
+    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, sync_losses, now_ns);
     for (uint32_t i = 0; i < s->member_count; i++) {
+        cm1e_log_bus(&s->log, &s->members[i].counters, i, now_ns);
         cm1e_log_emergencies(&s->log, s->members[i].bus, i, now_ns);
         cm1e_log_ports(&s->log, s->members[i].bus, i, now_ns);
         cm1e_log_ring(&s->log, s->members[i].bus, i, now_ns);
@@ -403,7 +405,8 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
         error = cm1e_bus_resume(s->members[i].bus, diag);
     if (error == CM1E_OK) {
         s->start_ns = s->sent_ns = cm1e_bus_next_start(clock_team_leader(&s->clocks), cm1e_clock_now(s->clock));
-        s->counters_before = counted(s);
+        for (uint32_t i = 0; i < s->member_count; i++)
+            s->members[i].counters_before = *cm1e_bus_counters(s->members[i].bus);
         cm1e_log_run(&s->log, true, 0);
         while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
             cycle(s);

@@ -419,6 +419,7 @@ START_TEST(test_the_event_log_says_on_which_bus_it_was)
         {.kind = CM1E_LOG_EMERGENCY, .axis = -1, .code = 0x8110, .detail = 1u << 24 | 1},
         {.kind = CM1E_LOG_SLAVE, .axis = -1, .code = 0, .detail = 1},
         {.kind = CM1E_LOG_STRANGER, .axis = -1, .code = 0x1234, .detail = 1u << 24 | 3},
+        {.kind = CM1E_LOG_LOST_FRAMES, .axis = -1, .code = 1, .detail = 1, .value = 1},
     };
     char text[512];
     start_both();
@@ -432,9 +433,22 @@ START_TEST(test_the_event_log_says_on_which_bus_it_was)
 }
 END_TEST
 
+/** The records say which bus it was that lost frames, with the numbers of that bus. */
 START_TEST(test_a_lost_bus_stops_the_whole_group)
 {
+    cm1e_log_event_t records[64];
     run_group(100000, 0, 1000);
+    const size_t count = cm1e_log_read(scheduler, 0, records, 64, NULL);
+    uint64_t told[BUSES] = {0};
+    for (size_t i = 0; i < count; i++)
+        if (records[i].kind == CM1E_LOG_LOST_FRAMES) {
+            ck_assert(records[i].value == A || records[i].value == B);
+            told[(int)records[i].value] += (uint64_t)records[i].code;
+            ck_assert_uint_eq(records[i].detail, told[(int)records[i].value]);
+        }
+    ck_assert_uint_eq(told[A], cm1e_bus_counters(buses[A])->lost_frames);
+    ck_assert_uint_eq(told[B], cm1e_bus_counters(buses[B])->lost_frames);
+    ck_assert(told[A] > 0 || told[B] > 0);
     ck_assert(grouped.info.state == CM1E_GROUP_ERROR_STOP && grouped.info.error == CM1E_ERROR_GROUP_AXIS);
     ck_assert_msg(grouped.seen[A].state == CM1E_AXIS_STANDSTILL && grouped.seen[A].powered, "%s", text_of(A));
     ck_assert_msg(grouped.seen[B].state == CM1E_AXIS_ERROR_STOP, "%s", text_of(B));
