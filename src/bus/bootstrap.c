@@ -62,6 +62,10 @@ static cm1e_error_t lost(const cm1e_bootstrap_t *bootstrap)
 
 static cm1e_error_t refused(const cm1e_bootstrap_t *bootstrap, uint8_t target, unsigned code)
 {
+    if (code == 0)
+        return cm1e_diag_set(bootstrap->diag, CM1E_ERROR_BUS_STATE, code,
+                             "Slave %u refuses %s and gives no reason: its AL status code is 0.", bootstrap->position,
+                             cm1e_al_state_text(target));
     return cm1e_diag_set(bootstrap->diag, CM1E_ERROR_BUS_STATE, code, "Slave %u refuses %s: AL status 0x%04X, %s.",
                          bootstrap->position, cm1e_al_state_text(target), code, cm1e_al_status_text((uint16_t)code));
 }

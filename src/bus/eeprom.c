@@ -30,11 +30,11 @@ static bool read_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data,
     return !eeprom->lost;
 }
 
-/** Writes a register once. A busy interface accepts no request, so a request that was accepted must not be repeated. */
+/** Writes a register once. A busy interface accepts no request, so a request that was accepted must not be repeated, and
+ *  one that was not says nothing of the slave: the next look at the interface does. */
 static bool write_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
 {
-    eeprom->lost = cm1e_soem_transfer(eeprom->soem, COMMAND_FPWR, eeprom->station, offset, data, size) != 1;
-    return !eeprom->lost;
+    return cm1e_soem_transfer(eeprom->soem, COMMAND_FPWR, eeprom->station, offset, data, size) == 1;
 }
 
 /** Waits until the interface is idle; one datagram reads the status and the words of the last command. false: the slave
@@ -157,7 +157,8 @@ bool cm1e_eeprom_take(cm1e_eeprom_t *eeprom)
     config = CONFIG_FORCE; /* ends also an access that the processor never ended */
     const bool forced = write_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config);
     config = CONFIG_MASTER;
-    return forced && write_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config);
+    eeprom->lost = !forced || !write_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config);
+    return !eeprom->lost;
 }
 
 void cm1e_eeprom_give_back(cm1e_eeprom_t *eeprom)

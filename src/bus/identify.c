@@ -136,7 +136,18 @@ static cm1e_error_t check_motor(const cm1e_bus_t *bus, const cm1e_axis_config_t 
 /** The version without a leading V. */
 static const char *plain_version(const char *version) { return version + (*version == 'V' || *version == 'v'); }
 
-static cm1e_error_t check_firmware(const cm1e_bus_t *bus, const cm1e_axis_config_t *axis,
+/** What to do about an object that could not be read. */
+static const char *cure_of_unread(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_error_t error)
+{
+    uint8_t status[2];
+    if (error == CM1E_ERROR_BUS_MAILBOX)
+        return "It answers, but not as CoE says: switch it off and on";
+    if (cm1e_bus_read_registers(bus, slave->info.position, REG_AL_STATUS, status, sizeof status))
+        return "It answers, but its mailbox does not: switch it off and on";
+    return "Check its power and the cables up to it";
+}
+
+static cm1e_error_t check_firmware(cm1e_bus_t *bus, const cm1e_axis_config_t *axis,
                                    const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
     char problem[256];
@@ -145,8 +156,8 @@ static cm1e_error_t check_firmware(const cm1e_bus_t *bus, const cm1e_axis_config
     const cm1e_error_t unread = slave->info.software_version[0] ? CM1E_OK : slave->version_sdo.error;
     if (unread != CM1E_OK && unread != CM1E_ERROR_SDO_ABORT)
         snprintf(problem, sizeof problem, "Axis \"%s\" (slave %u): the configuration expects firmware %s, and that of "
-                 "the device (object 0x100A) could not be read: %s. Check its power and the cables up to it.", axis->name,
-                 slave->info.position, axis->firmware, cm1e_strerror(unread));
+                 "the device (object 0x100A) could not be read: %s. %s.", axis->name, slave->info.position,
+                 axis->firmware, cm1e_strerror(unread), cure_of_unread(bus, slave, unread));
     else
         snprintf(problem, sizeof problem,
                  "Axis \"%s\" (slave %u): the configuration expects firmware %s, the device reports \"%s\" (object "

@@ -144,6 +144,10 @@ static cm1e_error_t diagnose_scan(const cm1e_bus_t *bus, int result, uint16_t po
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_LOST, 0,
                              "Slave %u on %s stopped answering during the scan: check its power and the cables up to "
                              "it.", position, name);
+    if (result == SCAN_NO_ADDRESS)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_LOST, 0,
+                             "Slave %u on %s answers, but not at the station address that it was given: another device "
+                             "may answer there too, or its controller is damaged.", position, name);
     return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0,
                          "The SII (EEPROM) of slave %u on %s %s. Write it anew, or take the slave off the bus.",
                          position, name,

@@ -87,10 +87,11 @@ static void take_group(cm1e_sii_fetch_t *fetch, const uint8_t *group, unsigned b
     go_on(fetch);
 }
 
+/** Between two tries the slave has told its status, so it is not lost: its interface refuses, as a busy one does. */
 static void try_again(cm1e_sii_fetch_t *fetch, cm1e_fetch_step_t step)
 {
     if (++fetch->tries >= GROUP_TRIES)
-        fail(fetch, fetch->silent > 0);
+        fail(fetch, false);
     else
         fetch->step = step;
 }

@@ -56,10 +56,11 @@ void cm1e_soem_destroy(cm1e_soem_t *soem);
 /** Finds the slaves, brings them to Init with default settings, gives them station addresses and reads their SII.
  *  SOEM's own scan is not used, because a bad SII or a silent slave can block it. Returns the number of slaves; 0:
  *  none; SCAN_TOO_MANY: more than CM1E_MAX_SLAVES. With the slave in `*position`: SCAN_LOST: it stopped answering,
- *  SCAN_SII_UNREADABLE: its EEPROM does not answer, SCAN_SII_DAMAGED: its categories are invalid, SCAN_NO_MEMORY: no
+ *  SCAN_NO_ADDRESS: it answers, but not at the station address that it was given, SCAN_SII_UNREADABLE: its EEPROM does not answer, SCAN_SII_DAMAGED: its categories are invalid, SCAN_NO_MEMORY: no
  *  memory to read it. */
 enum {
     SCAN_TOO_MANY = -1, SCAN_LOST = -2, SCAN_SII_UNREADABLE = -3, SCAN_SII_DAMAGED = -4, SCAN_NO_MEMORY = -5,
+    SCAN_NO_ADDRESS = -6,
 };
 int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position);
 /** Gives one slave its station address without a scan, and removes those of all others. 0: no slave answers there. */

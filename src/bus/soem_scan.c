@@ -302,8 +302,11 @@ int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
         return SCAN_TOO_MANY;
     set_defaults(soem);
     *position = take_addresses(soem, (uint16_t)count);
-    if (*position)
-        return SCAN_LOST;
+    if (*position) {
+        const uint16_t place = (uint16_t)(1 - *position);
+        return ecx_APRD(&soem->port, place, ECT_REG_TYPE, sizeof type, &type, EC_TIMEOUTRET3) > 0 ? SCAN_NO_ADDRESS
+                                                                                               : SCAN_LOST;
+    }
     const int error = read_siis(soem, (uint16_t)count, position);
     if (error)
         return error;

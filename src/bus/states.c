@@ -49,6 +49,10 @@ cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *sl
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, 0,
                              "%s does not answer when asked to go to %s: check its power and its cable.%s",
                              label, target, other);
+    if (al->state & AL_ERROR_FLAG && al->code == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code,
+                             "%s refuses %s, is in %s, and gives no reason: its AL status code is 0.%s%s", label, target,
+                             cm1e_al_state_text(al->state), both, other);
     if (al->state & AL_ERROR_FLAG)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code,
                              "%s refuses %s and is in %s: AL status 0x%04X, %s.%s%s", label, target,

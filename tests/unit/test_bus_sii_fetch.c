@@ -11,6 +11,7 @@ static const int64_t ms = 1000000, us = 1000;
 
 static cm1e_sii_fetch_t fetch;
 static int64_t now_ns;
+static bool refuses;       /* its interface accepts no request */
 static int stand_still_at; /* number of the exchange before which the master stands still; -1: never */
 
 void setUp(void)
@@ -19,6 +20,7 @@ void setUp(void)
     fetch.station = STATION;
     now_ns = 5 * ms;
     stand_still_at = -1;
+    refuses = false;
 }
 
 void tearDown(void) {}
@@ -26,7 +28,7 @@ void tearDown(void) {}
 /* A memory that is busy until a time, and then has the same byte everywhere. */
 static void answer(cm1e_datagram_t *d, int64_t busy_until_ns)
 {
-    d->working_counter = 1;
+    d->working_counter = refuses && d->command != COMMAND_FPRD ? 0 : 1;
     if (d->command != COMMAND_FPRD)
         return;
     memset(d->data, 0x5A, d->length);
@@ -90,6 +92,14 @@ static void test_a_slow_master_gives_up_too(void)
     TEST_ASSERT_TRUE(fetch.failed && !fetch.lost);
 }
 
+/* It answers: that its interface refuses says nothing of its power. */
+static void test_a_slave_that_refuses_requests_is_not_lost(void)
+{
+    refuses = true;
+    fetch_words(50 * us, 0);
+    TEST_ASSERT_TRUE(fetch.failed && !fetch.lost);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -98,5 +108,6 @@ int main(void)
     RUN_TEST(test_a_master_that_stands_still_does_not_give_up);
     RUN_TEST(test_a_master_that_stood_still_once_looks_again);
     RUN_TEST(test_a_slow_master_gives_up_too);
+    RUN_TEST(test_a_slave_that_refuses_requests_is_not_lost);
     return UNITY_END();
 }
