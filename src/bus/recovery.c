@@ -238,10 +238,13 @@ static void result_look(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64
     const uint16_t status = cm1e_get_u16(d->data), state = status & AL_STATE_MASK;
     const bool above = state == CM1E_AL_SAFE_OP || state == CM1E_AL_OP;
     const bool configured = above && slave->recovery.failed_at != RECOVERY_OP;
-    if (status == CM1E_AL_OP)
+    if (status == CM1E_AL_OP) {
         succeed(slave, status, 0); /* the slave was never away */
-    else
-        enter(slave, configured ? RECOVERY_OP : RECOVERY_EEPROM, now_ns);
+        return;
+    }
+    if (!configured) /* its mailbox begins anew: a transfer need not wait for that to end */
+        cm1e_coe_cancel(&slave->coe, CM1E_ERROR_BUS_LOST);
+    enter(slave, configured ? RECOVERY_OP : RECOVERY_EEPROM, now_ns);
 }
 
 static bool next_eeprom(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)

@@ -178,6 +178,7 @@ START_TEST(nonsense_in_operation_concerns_its_slave_only)
                           "%s: slave %d", lie.range->name, position);
         }
     }
+    ck_assert_int_ne(cm1e_sdo_state(&sdo), CM1E_SDO_BUSY);
     lie.on = false;
     int n = 0;
     for (; n < COMES_BACK_CYCLES && (n < 10 || cm1e_bus_slave_watch(bus, liar).al_state != CM1E_AL_OP); n++) {
