@@ -46,7 +46,8 @@ typedef enum cm1e_log_kind {
                                    of the bus times 16777216; value: the last slave that the first interface reaches,
                                    bound: the first one of the second interface; both 0: not known */
     CM1E_LOG_SLAVE,           /**< a slave came, went, waits or was refused; code: the new cm1e_presence_t, detail: its
-                                   position, and 16777216 times the number of its bus */
+                                   position, and 16777216 times the number of its bus; bound: so many changes since
+                                   its last record were left out */
     CM1E_LOG_STRANGER,        /**< a device that is none of the configured slaves was refused; code: its product code,
                                    detail: its place on the wire and 16777216 times the number of the bus, value: its
                                    vendor, bound: 65536 times its explicit device ID, and its alias */
@@ -60,8 +61,9 @@ typedef enum cm1e_log_kind {
 } cm1e_log_kind_t;
 
 /** A record. Of counters there is at most one in 100 ms, so that a lost bus does not push out everything else; what is
- *  left then is told at the end of the run. So is the last emergency of a slave that sends many: eight are told one by
- *  one, then the newest one in each second, with the number of those that were left out. */
+ *  left then is told at the end of the run. So it is with a slave that sends many emergencies, or that comes and goes:
+ *  eight of each are told one by one, then the newest one in each second, with the number of those that were left
+ *  out. */
 typedef struct cm1e_log_event {
     uint64_t number;          /**< counts from 1 without gaps */
     int64_t time_ns;          /**< since 1970 (UTC); on virtual time since its beginning */

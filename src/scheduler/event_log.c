@@ -6,9 +6,9 @@
 
 /** Between two records of one counter. */
 #define QUIET_NS INT64_C(100000000)
-/** So many emergencies of a slave are told one by one, then one in this time. */
-enum { EMERGENCY_BURST = 8 };
-#define EMERGENCY_PACE_NS INT64_C(1000000000)
+/** So many records of one kind about one slave are written one by one, then one in this time. */
+enum { BURST = 8 };
+#define PACE_NS INT64_C(1000000000)
 /** Between two looks at the ports: one damaged cable is counted by every slave behind it. */
 #define PORTS_QUIET_NS INT64_C(1000000000)
 
@@ -111,12 +111,21 @@ static void write_emergency(log_t *log, uint32_t number, uint32_t position, cons
                                         .value = (double)bytes, .bound = (double)left_out}, run_ns);
 }
 
-/** How many records a slave may have now; at the end of the run one at least. */
-static size_t records_left(const log_slaves_t *slaves, uint32_t slave, int64_t run_ns)
+/** How many records there may be now; at the end of the run one at least. Where there may be none, the time from which on
+ *  there may be one is noted. */
+static size_t records_left(const log_slaves_t *slaves, const log_pace_t *pace, int64_t run_ns, int64_t *due_ns)
 {
-    const int64_t most_ns = EMERGENCY_BURST * EMERGENCY_PACE_NS, ahead_ns = slaves->paid_until_ns[slave] - run_ns;
-    const int64_t left_ns = ahead_ns > 0 ? most_ns - ahead_ns : most_ns;
-    return left_ns >= EMERGENCY_PACE_NS ? (size_t)(left_ns / EMERGENCY_PACE_NS) : slaves->due_ns == INT64_MIN;
+    const int64_t most_ns = BURST * PACE_NS, ahead_ns = pace->paid_until_ns - run_ns;
+    const int64_t left_ns = ahead_ns > 0 ? most_ns - ahead_ns : most_ns, next_ns = run_ns + PACE_NS - left_ns;
+    if (left_ns >= PACE_NS)
+        return (size_t)(left_ns / PACE_NS);
+    *due_ns = next_ns < *due_ns ? next_ns : *due_ns;
+    return slaves->ended;
+}
+
+static void note_records(log_pace_t *pace, size_t count, int64_t run_ns)
+{
+    pace->paid_until_ns = (pace->paid_until_ns > run_ns ? pace->paid_until_ns : run_ns) + (int64_t)count * PACE_NS;
 }
 
 /** The newest ones of a slave, as many as it may have, and the number of those before them. */
@@ -127,33 +136,28 @@ static void tell_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number,
     uint64_t lost = 0;
     const size_t count = cm1e_bus_emergency(bus, (uint16_t)(slave + 1), slaves->told[slave], news, CM1E_EMERGENCIES,
                                             &lost);
-    const size_t left = records_left(slaves, slave, run_ns), first = count > left ? count - left : 0;
-    if (count == 0)
+    log_pace_t *pace = &slaves->emergency_pace[slave];
+    const size_t left = count > 0 ? records_left(slaves, pace, run_ns, &slaves->emergencies_due_ns) : 0;
+    const size_t first = count > left ? count - left : 0;
+    if (left == 0)
         return;
-    if (left == 0) {
-        const int64_t due_ns = slaves->paid_until_ns[slave] - (EMERGENCY_BURST - 1) * EMERGENCY_PACE_NS;
-        slaves->due_ns = due_ns < slaves->due_ns ? due_ns : slaves->due_ns;
-        return;
-    }
-    if (slaves->paid_until_ns[slave] < run_ns)
-        slaves->paid_until_ns[slave] = run_ns;
     for (size_t n = first; n < count; n++)
         write_emergency(log, number, slave + 1, &news[n], n == first ? lost + first : 0, run_ns);
-    slaves->paid_until_ns[slave] += (int64_t)(count - first) * EMERGENCY_PACE_NS;
+    note_records(pace, count - first, run_ns);
     slaves->told[slave] = news[count - 1].number;
 }
 
 void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
 {
     log_slaves_t *slaves = &log->slaves[number];
-    if (slaves->emergencies == cm1e_bus_emergencies(bus) && run_ns < slaves->due_ns)
+    if (slaves->emergencies == cm1e_bus_emergencies(bus) && run_ns < slaves->emergencies_due_ns &&
+        !slaves->ended)
         return;
     slaves->emergencies = cm1e_bus_emergencies(bus);
     if (slaves->operation != cm1e_bus_operation(bus)) /* after another scan they count from 1 again */
         memset(slaves->told, 0, sizeof slaves->told);
     slaves->operation = cm1e_bus_operation(bus);
-    if (slaves->due_ns != INT64_MIN)
-        slaves->due_ns = INT64_MAX;
+    slaves->emergencies_due_ns = INT64_MAX;
     for (uint32_t i = 0; i < cm1e_bus_slave_count(bus); i++)
         tell_emergencies(log, bus, number, i, run_ns);
 }
@@ -183,38 +187,64 @@ void cm1e_log_ports(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t 
             look_at_port(log, bus, number, position, port, run_ns);
 }
 
+static bool was_told(const log_slaves_t *slaves, const cm1e_stranger_t *stranger)
+{
+    for (size_t n = 0; n < slaves->stranger_count; n++)
+        if (memcmp(&slaves->strangers[n], stranger, sizeof *stranger) == 0)
+            return true;
+    return false;
+}
+
+/** One that comes and goes has to wait, and is told if it is there then. */
 static void look_at_strangers(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
 {
     log_slaves_t *slaves = &log->slaves[number];
-    cm1e_stranger_t now[CM1E_STRANGERS];
+    cm1e_stranger_t now[CM1E_STRANGERS], told[CM1E_STRANGERS];
     const size_t count = cm1e_bus_strangers(bus, now, CM1E_STRANGERS);
+    size_t told_count = 0;
     for (size_t i = 0; i < count; i++) {
-        bool told = false;
-        for (size_t n = 0; n < slaves->stranger_count; n++)
-            told = told || memcmp(&slaves->strangers[n], &now[i], sizeof now[i]) == 0;
-        if (!told)
-            write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_STRANGER, .axis = -1,
-                                                .code = (int32_t)now[i].product_code,
-                                                .detail = number << 24 | now[i].place, .value = now[i].vendor_id,
-                                                .bound = 65536.0 * now[i].explicit_id + now[i].alias}, run_ns);
+        const bool is_new = !was_told(slaves, &now[i]);
+        if (is_new && records_left(slaves, &slaves->stranger_pace, run_ns, &slaves->presence_due_ns) == 0)
+            continue;
+        told[told_count++] = now[i];
+        if (!is_new)
+            continue;
+        write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_STRANGER, .axis = -1,
+                                            .code = (int32_t)now[i].product_code,
+                                            .detail = number << 24 | now[i].place, .value = now[i].vendor_id,
+                                            .bound = 65536.0 * now[i].explicit_id + now[i].alias}, run_ns);
+        note_records(&slaves->stranger_pace, 1, run_ns);
     }
-    memcpy(slaves->strangers, now, count * sizeof *now);
-    slaves->stranger_count = count;
+    memcpy(slaves->strangers, told, told_count * sizeof *told);
+    slaves->stranger_count = told_count;
+}
+
+static void look_at_presence(log_t *log, const cm1e_bus_t *bus, uint32_t number, uint32_t slave, int64_t run_ns)
+{
+    log_slaves_t *slaves = &log->slaves[number];
+    const uint8_t now = (uint8_t)cm1e_bus_presence(bus, slave + 1);
+    slaves->changes[slave] += now != slaves->presence_seen[slave];
+    slaves->presence_seen[slave] = now;
+    if (now == slaves->presence[slave] ||
+        records_left(slaves, &slaves->presence_pace[slave], run_ns, &slaves->presence_due_ns) == 0)
+        return;
+    const uint32_t left_out = slaves->changes[slave] > 0 ? slaves->changes[slave] - 1 : 0;
+    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_SLAVE, .axis = -1, .code = (int32_t)now,
+                                        .detail = number << 24 | (slave + 1), .bound = left_out}, run_ns);
+    note_records(&slaves->presence_pace[slave], 1, run_ns);
+    slaves->presence[slave] = now;
+    slaves->changes[slave] = 0;
 }
 
 void cm1e_log_presence(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
 {
     log_slaves_t *slaves = &log->slaves[number];
-    if (slaves->presence_news == cm1e_bus_presence_news(bus))
+    if (slaves->presence_news == cm1e_bus_presence_news(bus) && run_ns < slaves->presence_due_ns && !slaves->ended)
         return;
     slaves->presence_news = cm1e_bus_presence_news(bus);
-    for (uint32_t i = 0; i < cm1e_bus_slave_count(bus); i++) {
-        const cm1e_presence_t now = cm1e_bus_presence(bus, i + 1);
-        if (slaves->presence[i] != (uint8_t)now)
-            write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_SLAVE, .axis = -1, .code = (int32_t)now,
-                                                .detail = number << 24 | (i + 1)}, run_ns);
-        slaves->presence[i] = (uint8_t)now;
-    }
+    slaves->presence_due_ns = INT64_MAX;
+    for (uint32_t i = 0; i < cm1e_bus_slave_count(bus); i++)
+        look_at_presence(log, bus, number, i, run_ns);
     look_at_strangers(log, bus, number, run_ns);
 }
 
@@ -249,7 +279,7 @@ void cm1e_log_wait_no_longer(log_t *log)
     wait_no_longer(log->counters);
     for (int i = 0; i < CM1E_MAX_BUSES; i++) {
         wait_no_longer(log->slaves[i].counters);
-        log->slaves[i].due_ns = INT64_MIN;
+        log->slaves[i].ended = true;
         log->slaves[i].ports_quiet_until_ns = log->slaves[i].ring_quiet_until_ns = INT64_MIN;
     }
 }

@@ -21,19 +21,28 @@ typedef struct log_counter {
 enum { CM1E_LOG_COUNTERS = CM1E_LOG_SYNC_LOST + 1 - CM1E_LOG_OVERRUN };
 typedef log_counter_t log_counters_t[CM1E_LOG_COUNTERS];
 
+/** Of records of one kind about one slave: each of them moves it on. */
+typedef struct log_pace {
+    int64_t paid_until_ns;
+} log_pace_t;
+
 /** What was told of a bus and its slaves. */
 typedef struct log_slaves {
     log_counters_t counters;
     uint64_t emergencies;       /**< of all slaves */
     uint32_t operation;         /**< of the bus, in which they were counted */
     uint64_t told[CM1E_MAX_SLAVES];
-    int64_t paid_until_ns[CM1E_MAX_SLAVES]; /**< each record of a slave moves it on by a pace */
-    int64_t due_ns;             /**< when those that wait for a record of their slave are looked at; INT64_MIN: the run
-                                     has ended */
+    log_pace_t emergency_pace[CM1E_MAX_SLAVES];
+    int64_t emergencies_due_ns; /**< when those that wait for a record of their slave are looked at */
     uint64_t presence_news;     /**< of all slaves, told */
-    uint8_t presence[CM1E_MAX_SLAVES];
+    uint8_t presence[CM1E_MAX_SLAVES], presence_seen[CM1E_MAX_SLAVES]; /**< told; in the last cycle */
+    uint32_t changes[CM1E_MAX_SLAVES]; /**< of it, since the last record */
+    log_pace_t presence_pace[CM1E_MAX_SLAVES];
+    int64_t presence_due_ns;
     cm1e_stranger_t strangers[CM1E_STRANGERS];
     size_t stranger_count;
+    log_pace_t stranger_pace;
+    bool ended;                 /**< the run: nothing waits any more */
     uint64_t port_news;         /**< faults of all ports, told */
     int64_t ports_quiet_until_ns;
     bool ring_broken;           /**< told */
