@@ -182,15 +182,6 @@ cm1e_error_t cm1e_bus_recover(cm1e_bus_t *bus, uint32_t position, cm1e_diag_t *d
     return CM1E_OK;
 }
 
-size_t cm1e_bus_strangers(const cm1e_bus_t *bus, cm1e_stranger_t *strangers, size_t room)
-{
-    const uint32_t count = bus && strangers ? __atomic_load_n(&bus->search.stranger_count, __ATOMIC_ACQUIRE) : 0;
-    const uint32_t copied = count < room ? count : (uint32_t)room;
-    for (uint32_t i = 0; i < copied; i++)
-        strangers[i] = bus->search.strangers[i];
-    return copied;
-}
-
 uint64_t cm1e_bus_presence_news(const cm1e_bus_t *bus)
 {
     return bus ? __atomic_load_n(&bus->search.news, __ATOMIC_RELAXED) : 0;

@@ -53,12 +53,21 @@ static void tell_news(cm1e_bus_t *bus) { __atomic_store_n(&bus->search.news, bus
 
 /* ---- strangers --------------------------------------------------------------------------------------------------- */
 
-static bool is_known_stranger(const cm1e_search_t *search, uint16_t place)
+static uint32_t all_strangers(const cm1e_search_t *search, cm1e_stranger_t strangers[CM1E_STRANGERS])
 {
-    for (uint32_t i = 0; i < search->stranger_count; i++)
-        if (search->strangers[i].place == place)
-            return true;
-    return false;
+    const uint32_t count = cm1e_strangers_count(&search->strangers);
+    for (uint32_t i = 0; i < count; i++)
+        strangers[i] = cm1e_strangers_at(&search->strangers, i);
+    return count;
+}
+
+/** Which of them is at this place; their number: none. */
+static uint32_t stranger_at(const cm1e_search_t *search, uint16_t place)
+{
+    uint32_t at = 0;
+    while (at < cm1e_strangers_count(&search->strangers) && cm1e_strangers_at(&search->strangers, at).place != place)
+        at++;
+    return at;
 }
 
 static void keep_stranger(cm1e_bus_t *bus)
@@ -66,21 +75,16 @@ static void keep_stranger(cm1e_bus_t *bus)
     static const cm1e_scouted_t nothing;
     cm1e_search_t *search = &bus->search;
     const cm1e_scouted_t *found = search->scout.good ? &search->scout.found : &nothing;
-    const cm1e_stranger_t stranger = {
+    cm1e_stranger_t strangers[CM1E_STRANGERS];
+    const uint32_t count = all_strangers(search, strangers), at = stranger_at(search, search->place);
+    if (at == CM1E_STRANGERS)
+        return;
+    strangers[at] = (cm1e_stranger_t){
         .place = search->place, .alias = search->alias, .explicit_id = search->al.explicit_id,
         .vendor_id = found->vendor_id, .product_code = found->product_code, .revision = found->revision,
         .serial_number = found->serial_number};
-    uint32_t at = 0;
-    while (at < search->stranger_count && search->strangers[at].place != stranger.place)
-        at++;
-    if (at == CM1E_STRANGERS)
-        return;
-    const bool same = at < search->stranger_count && memcmp(&search->strangers[at], &stranger, sizeof stranger) == 0;
-    search->strangers[at] = stranger;
     search->seen_strangers |= 1u << at;
-    if (at == search->stranger_count)
-        __atomic_store_n(&search->stranger_count, at + 1, __ATOMIC_RELEASE);
-    if (!same)
+    if (cm1e_strangers_set(&search->strangers, strangers, at == count ? count + 1 : count))
         tell_news(bus);
 }
 
@@ -88,14 +92,14 @@ static void keep_stranger(cm1e_bus_t *bus)
 static void forget_strangers(cm1e_bus_t *bus)
 {
     cm1e_search_t *search = &bus->search;
+    cm1e_stranger_t strangers[CM1E_STRANGERS];
+    const uint32_t count = all_strangers(search, strangers);
     uint32_t kept = 0;
-    for (uint32_t i = 0; i < search->stranger_count; i++)
+    for (uint32_t i = 0; i < count; i++)
         if (search->seen_strangers >> i & 1)
-            search->strangers[kept++] = search->strangers[i];
-    if (kept != search->stranger_count) {
-        __atomic_store_n(&search->stranger_count, kept, __ATOMIC_RELEASE);
+            strangers[kept++] = strangers[i];
+    if (cm1e_strangers_set(&search->strangers, strangers, kept))
         tell_news(bus);
-    }
 }
 
 /** Of the devices that were refused, too. */
@@ -363,7 +367,7 @@ static void take_count(cm1e_bus_t *bus, int working_counter, int64_t now_ns)
     cm1e_search_t *search = &bus->search;
     const uint16_t count = working_counter > CM1E_MAX_SLAVES ? CM1E_MAX_SLAVES : (uint16_t)working_counter;
     const bool changed = count != search->count;
-    const bool due = now_ns >= search->walk_ns && (any_missing(bus) || search->stranger_count);
+    const bool due = now_ns >= search->walk_ns && (any_missing(bus) || cm1e_strangers_count(&search->strangers) > 0);
     search->count = count;
     if (!changed && !due) {
         pause_search(search, now_ns);
@@ -420,10 +424,9 @@ static void take_device(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
     search->alias = cm1e_get_u16(d->data + 2);
     if (take_known(bus, now_ns))
         return;
-    if (search->station == 0 && !search->again && is_known_stranger(search, search->place)) {
-        for (uint32_t i = 0; i < search->stranger_count; i++)
-            if (search->strangers[i].place == search->place)
-                search->seen_strangers |= 1u << i;
+    const uint32_t known = stranger_at(search, search->place);
+    if (search->station == 0 && !search->again && known < cm1e_strangers_count(&search->strangers)) {
+        search->seen_strangers |= 1u << known;
         next_place(bus, now_ns);
         return;
     }

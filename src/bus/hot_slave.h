@@ -64,6 +64,14 @@ typedef enum cm1e_search_step {
     SEARCH_RELEASE,          /**< it is a stranger: the address is taken back */
 } cm1e_search_step_t;
 
+/** The devices on the wire that are none of the slaves. The thread that owns the bus writes, any thread reads. */
+enum { CM1E_STRANGER_WORDS = sizeof(cm1e_stranger_t) / sizeof(uint64_t) };
+typedef struct cm1e_stranger_list {
+    uint32_t version;        /**< atomic; odd: it is being written */
+    uint32_t count;          /**< atomic */
+    uint64_t words[CM1E_STRANGERS][CM1E_STRANGER_WORDS]; /**< atomic */
+} cm1e_stranger_list_t;
+
 /** The search of a bus. */
 typedef struct cm1e_search {
     bool used;               /**< there are optional slaves */
@@ -89,10 +97,16 @@ typedef struct cm1e_search {
     cm1e_al_machine_t al;
     cm1e_bus_slave_t *candidate;
     uint64_t news;           /**< atomic */
-    uint32_t stranger_count; /**< atomic */
+    cm1e_stranger_list_t strangers;
     uint32_t seen_strangers; /**< bits: still there in this walk */
-    cm1e_stranger_t strangers[CM1E_STRANGERS];
 } cm1e_search_t;
+
+/* strangers.c */
+uint32_t cm1e_strangers_count(const cm1e_stranger_list_t *list);
+/** For the thread that owns the bus. */
+cm1e_stranger_t cm1e_strangers_at(const cm1e_stranger_list_t *list, uint32_t place);
+/** Replaces the list, where it is another one. Returns whether it is. */
+bool cm1e_strangers_set(cm1e_stranger_list_t *list, const cm1e_stranger_t *strangers, uint32_t count);
 
 /** The station address of a device while it is identified; not one that SOEM or another master gives. */
 enum { CM1E_SEARCH_STATION = 0x2FFE };

@@ -42,8 +42,7 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (error == CM1E_OK)
         error = cm1e_bus_make_room(bus, count, diag);
     bus->ring.ring = network.ring;
-    bus->search.stranger_count = network.stranger_count;
-    memcpy(bus->search.strangers, network.strangers, sizeof network.strangers);
+    cm1e_strangers_set(&bus->search.strangers, network.strangers, network.stranger_count);
     free(bus->remote_texts);
     bus->remote_texts = calloc(CM1E_MAX_SLAVES, sizeof *bus->remote_texts);
     for (uint32_t i = 0; i < count && error == CM1E_OK; i++) {
