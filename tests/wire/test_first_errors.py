@@ -81,10 +81,11 @@ def frames_lost(segment, cm1e):
     running = subprocess.Popen(segment.command([cm1e, "move", "-b", segment.bus_file(), "X", "--speed", "1", "--for", "60"]),
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     wire.wait_for(lambda: segment.run([cm1e, "status", "--attach", str(running.pid)]).returncode == 0, 20, "no run")
-    segment.console("lose 2000")
+    segment.console("lose 300")
     told = running.communicate(timeout=60)[1]
     print(f"frames lost: {told.strip()}")
     wire.check(running.returncode == 1 and "frames are lost" in told and "advice: look at cables" in told, told)
+    wire.wait_for(lambda: segment.run([cm1e, "scan", "-i", IF]).returncode == 0, 20, "frames are lost for ever")
 
 
 def bus_file(segment, cm1e):
