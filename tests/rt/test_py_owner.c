@@ -5,6 +5,7 @@
  * nobody hangs; ThreadSanitizer, that nothing is used without order.
  */
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,7 @@
 #include "py_session.h"
 #include "quick_check.h"
 
-enum { THREADS = 6, ROUNDS = 4 };
+enum { THREADS = 7, ROUNDS = 4 };
 
 static cm1e_py_session_t *session;
 static cm1e_diag_t diag;
@@ -103,8 +104,16 @@ static cm1e_error_t use_time(void)
     return cm1e_py_time(session, &time_ns);
 }
 
+static cm1e_error_t use_text(void)
+{
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    int64_t time_ns;
+    cm1e_py_error_text(session, axes[0], (AXES_GROUP_REF_t){0}, text, sizeof text);
+    return cm1e_py_time(session, &time_ns);
+}
+
 typedef cm1e_error_t (*use_t)(void);
-static const use_t uses[THREADS] = {use_axes, use_log, use_block, use_sdo, use_statistics, use_time};
+static const use_t uses[THREADS] = {use_axes, use_log, use_block, use_sdo, use_statistics, use_time, use_text};
 
 static void *go_on(void *use)
 {
@@ -161,6 +170,46 @@ START_TEST(test_a_grant_is_kept_to_the_cycle_and_ends_with_a_block)
 }
 END_TEST
 
+/* ---- beside a cycle ------------------------------------------------------------------------------------------------ */
+
+static atomic_bool within;
+
+/** A cycle that lasts. */
+static void call_slowly(void *fb)
+{
+    const struct timespec while_it_does = {.tv_nsec = 20000000};
+    (void)fb;
+    atomic_store(&within, true);
+    nanosleep(&while_it_does, NULL);
+    atomic_store(&within, false);
+}
+
+static void *advance_one(void *unused)
+{
+    uint64_t advanced;
+    (void)unused;
+    return (void *)(intptr_t)cm1e_py_advance(session, 1, NULL, &advanced);
+}
+
+/** Within a cycle an axis may be changing what its text tells. */
+START_TEST(test_the_text_of_an_error_is_read_between_two_cycles)
+{
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    cm1e_py_block_t slow = {.call = call_slowly};
+    pthread_t thread;
+    begin(true);
+    ck_assert_int_eq(cm1e_py_block_add(session, &slow), CM1E_OK);
+    ck_assert_int_eq(pthread_create(&thread, NULL, advance_one, NULL), 0);
+    while (!atomic_load(&within))
+        nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+    cm1e_py_error_text(session, axes[0], (AXES_GROUP_REF_t){0}, text, sizeof text);
+    ck_assert_msg(!atomic_load(&within), "the text was read within a cycle");
+    pthread_join(thread, NULL);
+    ck_assert_int_eq(cm1e_py_close(session, &diag), CM1E_OK);
+    cm1e_py_free(session);
+}
+END_TEST
+
 START_TEST(test_a_session_that_cannot_be_opened_leaves_nothing)
 {
     cm1e_bus_config_t config;
@@ -179,6 +228,7 @@ int main(void)
     TCase *cases = tcase_create("py_owner");
     tcase_add_loop_test(cases, test_threads_use_a_session_until_it_is_closed, 0, ROUNDS);
     tcase_add_test(cases, test_a_grant_is_kept_to_the_cycle_and_ends_with_a_block);
+    tcase_add_test(cases, test_the_text_of_an_error_is_read_between_two_cycles);
     tcase_add_test(cases, test_a_session_that_cannot_be_opened_leaves_nothing);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);

@@ -350,13 +350,25 @@ cm1e_error_t cm1e_py_group_read(cm1e_py_session_t *session, AXES_GROUP_REF_t gro
     return py_owner_do(session, read_group, &(call_t){.in = &group, .out = info});
 }
 
-void cm1e_py_error_text(cm1e_py_session_t *s, AXIS_REF_t axis, AXES_GROUP_REF_t group, char *text, size_t size)
+typedef struct error_text {
+    AXIS_REF_t axis;
+    AXES_GROUP_REF_t group;
+    char *text;
+    size_t size;
+} error_text_t;
+
+static cm1e_error_t read_error_text(cm1e_py_session_t *s, void *argument)
+{
+    const error_text_t *wanted = argument;
+    if (s->scheduler && wanted->axis.Handle != 0)
+        cm1e_axis_error_text(wanted->axis, wanted->text, wanted->size);
+    else if (s->scheduler && wanted->group.Handle != 0)
+        cm1e_group_error_text(wanted->group, wanted->text, wanted->size);
+    return CM1E_OK;
+}
+
+void cm1e_py_error_text(cm1e_py_session_t *session, AXIS_REF_t axis, AXES_GROUP_REF_t group, char *text, size_t size)
 {
     text[0] = '\0';
-    pthread_mutex_lock(&s->mutex);
-    if (s->scheduler && axis.Handle != 0)
-        cm1e_axis_error_text(axis, text, size);
-    else if (s->scheduler && group.Handle != 0)
-        cm1e_group_error_text(group, text, size);
-    pthread_mutex_unlock(&s->mutex);
+    (void)py_owner_do(session, read_error_text, &(error_text_t){axis, group, text, size});
 }

@@ -99,7 +99,8 @@ cm1e_error_t cm1e_py_axes(cm1e_py_session_t *session, AXIS_REF_t *references, cm
 /** Makes an axes group, before the run. It lives as long as the bus. */
 cm1e_error_t cm1e_py_group(cm1e_py_session_t *session, AXES_GROUP_REF_t *group, const char *name, cm1e_diag_t *diag);
 cm1e_error_t cm1e_py_group_read(cm1e_py_session_t *session, AXES_GROUP_REF_t group, cm1e_group_info_t *info);
-/** As cm1e_axis_error_text() and cm1e_group_error_text(); "" after the bus was closed. */
+/** As cm1e_axis_error_text() and cm1e_group_error_text(), between two cycles; "" after the bus was closed. In real time
+ *  the cycle needs some microseconds for it. */
 void cm1e_py_error_text(cm1e_py_session_t *session, AXIS_REF_t axis, AXES_GROUP_REF_t group, char *text, size_t size);
 
 /** Lists signal `n` (0 = first) of all slaves; CM1E_ERROR_NOT_FOUND: there are not so many. */
