@@ -93,6 +93,7 @@ class Bus(Devices):
         self._axis_names = [name for one in (config, *others) for name in one.axis_names()]
         self._process = os.getpid()
         self._kept: dict[int, Any] = {}
+        self._attached: set[int] = set()  # of those: what attach() has brought, no command
         self._callbacks: list[Callback] = []
         self._stops: list[Block] = []
         self._unwaited: list[Command] = []
@@ -253,10 +254,11 @@ class Bus(Devices):
         for block in blocks:
             if not isinstance(block, Block):
                 raise TypeError(f"expected a function block, not {block!r}")
-            if len(self._kept) >= lib.CM1E_PY_BLOCKS:  # the other places are for commands: an axis can always be stopped
+            if len(self._attached) >= lib.CM1E_PY_BLOCKS:  # the other places are for commands: an axis can always be stopped
                 raise errors.StateError(f"{block._type} is not attached: {lib.CM1E_PY_BLOCKS} blocks are. Detach those that "
                                         "are not needed.", lib.CM1E_ERROR_FULL)
             self._attach(block)
+            self._attached.add(id(block._c))
 
     def _attach(self, block: Block) -> None:
         if block._bus is not None:
@@ -286,6 +288,7 @@ class Bus(Devices):
     def _forget(self, block: Block) -> None:
         """C does not use the memory of this block any more."""
         self._kept.pop(id(block._c), None)
+        self._attached.discard(id(block._c))
 
     def execute(self, block: Block, reference: Optional[AXIS_REF | AXES_GROUP_REF] = None, *, wait: bool = True,
                 timeout: Optional[float] = None) -> Command:

@@ -407,10 +407,24 @@ def test_too_many_blocks_are_refused_in_words(bus):
     for _ in range(3):
         with pytest.raises(cm1e.StateError):
             bus.attach(cm1e.blocks.TON())
-    assert len(bus._kept) == kept == 512
+    assert len(bus._kept) == kept and len(bus._attached) == 512
     x = bus["X"]
     x.move_velocity(1)  # commands have room of their own, above all those that stop
     x.stop()
     x.disable()
     bus.detach(*blocks)
     bus.attach(cm1e.blocks.TON())
+
+
+def test_commands_under_way_take_no_places_of_attached_blocks(bus):
+    x = bus["X"]
+    x.enable()
+    moves = [x.execute(cm1e.blocks.MC_MoveRelative(Axis=x, Distance=0.001, Velocity=1), wait=False)
+             for _ in range(20)]
+    blocks = [cm1e.blocks.TON() for _ in range(512)]
+    bus.attach(*blocks)
+    with pytest.raises(cm1e.StateError, match="512 blocks are"):
+        bus.attach(cm1e.blocks.TON())
+    bus.detach(blocks[0])
+    bus.attach(cm1e.blocks.TON())
+    assert len(moves) == 20
