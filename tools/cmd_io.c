@@ -22,6 +22,7 @@ typedef struct io_program {
     cm1e_scheduler_t *scheduler;
     cm1e_bus_t *bus;
     bool ended, refused;
+    bool wrong;                /**< refused because of a word of the user */
     cm1e_io_t *signals;
     cm1e_io_info_t *infos;
     char (*values)[IO_SIGNAL_NAME];
@@ -83,13 +84,13 @@ static void find_writes(io_program_t *p)
         cm1e_diag_t diag = {0};
         io_write_t *write = &p->options.writes[i];
         io_name(write, name);
-        p->refused = cm1e_io_find(p->bus, name, &write->io, &diag) != CM1E_OK;
+        p->refused = p->wrong = cm1e_io_find(p->bus, name, &write->io, &diag) != CM1E_OK;
         if (p->refused)
             fail(&diag);
         else if ((p->refused = is_driven(p, &write->io, use)))
             complain("%s belongs to an axis (%s): its blocks write it, MC_WriteDigitalOutput or MC_DigitalCamSwitch",
                      name, use);
-        else if ((p->refused = cm1e_io_set_real(&write->io, write->value) != CM1E_OK)) {
+        else if ((p->refused = p->wrong = cm1e_io_set_real(&write->io, write->value) != CM1E_OK)) {
             cm1e_io_say_refusal(&write->io, write->value, use, sizeof use);
             complain("%s cannot be written with %s: %s", name, write->equals + 1, use);
         }
@@ -215,7 +216,7 @@ static int report(void *context)
 {
     io_program_t *p = context;
     if (p->refused)
-        return EXIT_FAILED;
+        return p->wrong ? EXIT_WRONG_USE : EXIT_FAILED;
     if (!p->ended) {
         complain("interrupted");
         return EXIT_FAILED;

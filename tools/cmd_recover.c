@@ -126,7 +126,7 @@ static int recover(const recover_options_t *options, cm1e_control_t *control)
     const int64_t begin_ns = cm1e_clock_now(cm1e_clock_monotonic());
     const int position = ask_for(options, control, &diag);
     if (position <= 0)
-        return position < 0 ? EXIT_WRONG_USE : fail(&diag);
+        return position < 0 ? EXIT_WRONG_USE : fail_at_once(&diag);
     cm1e_presence_t presence;
     while ((presence = look(control, position, text, sizeof text, &diag)) != CM1E_PRESENCE_THERE) {
         if (presence == CM1E_PRESENCE_COUNT)

@@ -225,7 +225,7 @@ static int begin(recording_t *recording, trace_server_t **server, const trace_op
     recording->kept = is_only_live(options) ? LIVE_SAMPLES : 0;
     if (!recording_begin(recording, control, options->every, objects, paths_as_json(options), &options->trigger,
                          &diag))
-        return fail(&diag);
+        return fail_at_once(&diag);
     return begin_live(server, recording, options);
 }
 

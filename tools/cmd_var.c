@@ -148,7 +148,7 @@ static int show(const var_options_t *options, cm1e_control_t *control)
     for (size_t i = 0; i < json_array_size(all); i++)
         if (is_wanted(options, text_of(json_array_get(all, i), "name")))
             json_array_append(chosen, json_array_get(all, i));
-    const bool good = refuse_unknown(options, all);
+    const bool good = refuse_unknown(options, all), some = json_array_size(chosen) > 0;
     for (size_t i = 0; i < json_array_size(chosen) && !options->common.json; i++)
         print_row(json_array_get(chosen, i));
     if (json_array_size(all) == 0 && !options->common.json)
@@ -157,7 +157,7 @@ static int show(const var_options_t *options, cm1e_control_t *control)
         print_json(json_incref(chosen));
     json_decref(chosen);
     json_decref(all);
-    return good ? EXIT_OK : EXIT_FAILED;
+    return good ? EXIT_OK : some ? EXIT_FAILED : EXIT_WRONG_USE;
 }
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
@@ -185,6 +185,9 @@ static bool take_values(var_options_t *options, cm1e_control_t *control, cm1e_di
     return good;
 }
 
+/** After a change that failed: the exit status. The connection ends, and with it what this command has forced. */
+static int fail_of(int done, const cm1e_diag_t *diag) { return done == 0 ? fail_at_once(diag) : fail(diag); }
+
 /** Writes, forces or releases one; false: `diag` says why. */
 static bool change(const var_options_t *options, cm1e_control_t *control, int i, cm1e_diag_t *diag)
 {
@@ -196,15 +199,15 @@ static bool change(const var_options_t *options, cm1e_control_t *control, int i,
     return done != NULL;
 }
 
-static bool change_all(const var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
+/** Returns how many were changed; less than all: `diag` says why. */
+static int change_all(const var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
 {
-    bool good = true;
-    for (int i = 0; i < options->count && good; i++) {
-        good = change(options, control, i, diag);
-        if (!good && i > 0 && strcmp(options->word, "set") == 0)
-            complain("the first %d of %d variables were written, the others were not", i, options->count);
-    }
-    return good;
+    int done = 0;
+    while (done < options->count && change(options, control, done, diag))
+        done++;
+    if (done < options->count && done > 0 && strcmp(options->word, "set") == 0)
+        complain("the first %d of %d variables were written, the others were not", done, options->count);
+    return done;
 }
 
 /** Renews what is forced. What somebody else has released is left out from then on; false: `diag` says what is wrong. */
@@ -231,13 +234,13 @@ static int force(var_options_t *options, cm1e_control_t *control)
 {
     cm1e_diag_t diag = {0};
     const int64_t begin_ns = cm1e_clock_now(cm1e_clock_monotonic());
-    bool good = change_all(options, control, &diag), ended = !good;
-    if (good) {
-        fprintf(stderr, "%d variable%s forced; %s\n", options->count, options->count == 1 ? " is" : "s are",
-                options->seconds > 0 ? "the program has them again afterwards" : "Ctrl-C gives them back to the program");
-        fflush(stderr);
-    }
-    const int forced = options->count;
+    const int done = change_all(options, control, &diag), forced = options->count;
+    if (done < forced)
+        return fail_of(done, &diag);
+    fprintf(stderr, "%d variable%s forced; %s\n", forced, forced == 1 ? " is" : "s are",
+            options->seconds > 0 ? "the program has them again afterwards" : "Ctrl-C gives them back to the program");
+    fflush(stderr);
+    bool good = true, ended = false;
     while (good && !ended && !attached_signalled()) {
         usleep(PAUSE_US);
         good = renew_all(options, control, &diag);
@@ -257,10 +260,11 @@ static int act(var_options_t *options, cm1e_control_t *control)
         return show(options, control);
     attached_catch_signals();
     if (!take_values(options, control, &diag))
-        return diag.text[0] ? fail(&diag) : EXIT_WRONG_USE;
+        return diag.text[0] ? fail_at_once(&diag) : EXIT_WRONG_USE;
     if (strcmp(options->word, "force") == 0)
         return force(options, control);
-    return change_all(options, control, &diag) ? EXIT_OK : fail(&diag);
+    const int done = change_all(options, control, &diag);
+    return done == options->count ? EXIT_OK : fail_of(done, &diag);
 }
 
 int command_var(int argc, char **argv)

@@ -95,6 +95,17 @@ int fail(const cm1e_diag_t *diag)
     return EXIT_FAILED;
 }
 
+int fail_at_once(const cm1e_diag_t *diag)
+{
+    (void)fail(diag);
+    switch (diag->error) {
+    case CM1E_ERROR_INVALID_ARGUMENT:
+    case CM1E_ERROR_NOT_FOUND:
+    case CM1E_ERROR_PDO_MAPPING: return EXIT_WRONG_USE; /* PDO_MAPPING: an object that no cycle has */
+    default: return EXIT_FAILED;
+    }
+}
+
 /** Copies a word into a configuration field; false where it does not fit. */
 static bool copy_word(char *field, size_t size, const char *word, const char *what)
 {

@@ -157,6 +157,9 @@ enum { MAX_WORDS = 32 };
 
 /** Prints "cm1e <command>: <text of diag>" on standard error and returns EXIT_FAILED. */
 int fail(const cm1e_diag_t *diag);
+/** The same, but returns EXIT_WRONG_USE for a word or number that the user gave. For what is refused before anything was
+ *  done. */
+int fail_at_once(const cm1e_diag_t *diag);
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /** Writes what is wrong with an axis, each thing once. `what` is the text of the error, `details` are the sentences about

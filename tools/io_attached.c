@@ -118,8 +118,8 @@ static int list(const io_options_t *options, cm1e_control_t *control)
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/** Sets all outputs, or renews them; `check`: only asks whether they may be written at all. */
-static bool set_all(const io_options_t *options, cm1e_control_t *control, bool check, cm1e_diag_t *diag)
+/** Sets all outputs, or renews them; `check`: only asks whether they may be written at all. `*set` counts them. */
+static bool set_all(const io_options_t *options, cm1e_control_t *control, bool check, long *set, cm1e_diag_t *diag)
 {
     bool good = true;
     for (int i = 0; i < options->write_count && good; i++) {
@@ -130,6 +130,7 @@ static bool set_all(const io_options_t *options, cm1e_control_t *control, bool c
                                                       text_as_json(name), "value", value, "keep_ms", KEEP_MS),
                                    "output", diag);
         good = done != NULL;
+        *set += good && !check;
         json_decref(done);
     }
     return good;
@@ -140,15 +141,16 @@ static int write_for_a_while(const io_options_t *options, cm1e_control_t *contro
 {
     cm1e_diag_t diag = {0};
     const int64_t begin_ns = cm1e_clock_now(cm1e_clock_monotonic());
-    bool good = set_all(options, control, true, &diag);
+    long set = 0;
+    bool good = set_all(options, control, true, &set, &diag);
     while (good && !attached_signalled()) {
-        good = set_all(options, control, false, &diag);
+        good = set_all(options, control, false, &set, &diag);
         if ((double)(cm1e_clock_now(cm1e_clock_monotonic()) - begin_ns) * 1e-9 >= options->seconds)
             break;
         usleep(PAUSE_US);
     }
     if (!good)
-        return fail(&diag);
+        return set == 0 ? fail_at_once(&diag) : fail(&diag);
     if (attached_signalled())
         complain("interrupted");
     return attached_signalled() ? EXIT_FAILED : EXIT_OK;

@@ -8,7 +8,8 @@
 const exit_status_t exit_statuses[] = {
     {EXIT_OK, "done"},
     {EXIT_FAILED, "not done, or not completely: the text on standard error says what failed, and what to do"},
-    {EXIT_WRONG_USE, "refused, nothing was done: wrong options, numbers, names or bus file"},
+    {EXIT_WRONG_USE, "refused, nothing was done: wrong options, numbers, names or bus file, also where a running program "
+                     "refuses them"},
     {0, NULL},
 };
 

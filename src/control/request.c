@@ -319,7 +319,8 @@ static json_t *end_output(const control_request_t *request)
 {
     char text[240];
     const char *refusal = cm1e_output_refusal(&request->output, text, sizeof text);
-    return refusal ? cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, refusal)
+    const bool wrong = request->output.refusal == OUTPUT_BY_BUS; /* an input, or no value of its type */
+    return refusal ? cm1e_request_refuse(request->id, wrong ? CM1E_ERROR_INVALID_ARGUMENT : CM1E_ERROR_STATE, 0, refusal)
                    : accept(request, "output", json_null());
 }
 

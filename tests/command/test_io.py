@@ -80,7 +80,7 @@ def main(folder):
                         (["1.0x6040:00=15", "--allow-output", "--for", "1"], "belongs to a motor"),
                         (["2.nothing=1", "--allow-output", "--for", "1"], "no signal \"nothing\"")):
         told = io(*words)
-        expect(told.returncode != 0 and said in told.stderr, f"{words}", told)
+        expect(told.returncode == 2 and said in told.stderr, f"{words}", told)
 
 
 # ---- beside a running program ---------------------------------------------------------------------------------------
@@ -140,7 +140,7 @@ def attached(folder):
                             (["1.0x6040:00=15"], "belongs to a motor"), (["2.nothing=1"], "no signal \"nothing\""),
                             (["2.outputs=3", "9.outputs=1"], "names no slave")):
             told = io(*words, "--allow-output", "--for", "1")
-            expect(told.returncode == 1 and said in told.stderr, f"attached {words}", told)
+            expect(told.returncode == 2 and said in told.stderr, f"attached {words}", told)
         check_ends(io)
     with running(folder, "observe", *turn) as io:
         told = io("2.outputs=5", "--allow-output", "--for", "1")

@@ -106,20 +106,20 @@ class Run:
 def check_values(run):
     expect(set(run.rows()) >= {"Main.n", "Main.goal", "Main.seen"}, "list", run.rows().keys())
     expect("3" in run.var("get", "main.goal"), "get")
-    run.var("get", "Main.goat", status=1, says='did you mean "Main.goal"')
+    run.var("get", "Main.goat", status=2, says='did you mean "Main.goal"')
     run.var("set", "--allow-write", "Main.goal=-1.5", "Main.big=-9007199254740993")
     expect(run.value("goal") == -1.5 and run.value("big") == -9007199254740993, "set", run.rows())
     run.var("set", "Main.goal=1", status=2, says="--allow-write")
-    run.var("set", "--allow-write", "Main.nothing=1", status=1, says="no variable")
+    run.var("set", "--allow-write", "Main.nothing=1", status=2, says="no variable")
     for wrong, says in (("Main.n=32768", "Main.n (INT) takes -32768 ... 32767."), ("Main.n=1.5", "takes -32768 ... 32767."),
                         ("Main.copy=2", "Main.copy (BOOL) takes TRUE or FALSE."), ("Main.small=-129", "takes -128 ... 127."),
                         ("Main.r=1e39", "Main.r (REAL) takes a finite number up to 3.402823e+38."),
                         ("Main.most=18446744073709551616", "Main.most (ULINT) takes 0 ... 18446744073709551615."),
                         ("Main.least=9223372036854775808", "takes -9223372036854775808 ... 9223372036854775807."),
                         ("Main.part=101", "Main.part (INT (0..100)) takes 0 ... 100.")):
-        run.var("set", "--allow-write", wrong, status=1, says=says)
+        run.var("set", "--allow-write", wrong, status=2, says=says)
     run.var("set", "--allow-write", "Main.n=x", status=2, says="no value")
-    run.var("set", "--allow-write", "Main.goat=1", status=1, says='did you mean "Main.goal"')
+    run.var("set", "--allow-write", "Main.goat=1", status=2, says='did you mean "Main.goal"')
 
 
 def check_literals(run):
@@ -142,14 +142,14 @@ def check_literals(run):
     expect((row["enumerator"], row["value"], row["declared"], row["type"]) == ("FAST", 3, "E_Mode", "INT"), "an enumeration", row)
     expect("E_Mode     FAST" in run.var("get", "Main.mode"), "an enumerator is shown", run.var("get", "Main.mode"))
     expect("enumerator" not in run.rows()["Main.n"], "a number has no enumerator")
-    for wrong, says, status in (("mode=77", "Main.mode (E_Mode) takes OFF, SLOW, FAST.", 1), ("mode=FATS", "takes OFF, SLOW, FAST.", 1),
-                                ("mode=Point.FAST", "takes OFF", 1), ("mode=", "the name of an enumerator", 2),
+    for wrong, says, status in (("mode=77", "Main.mode (E_Mode) takes OFF, SLOW, FAST.", 2), ("mode=FATS", "takes OFF, SLOW, FAST.", 2),
+                                ("mode=Point.FAST", "takes OFF", 2), ("mode=", "the name of an enumerator", 2),
                                 ("wait=T#1", "right is for instance T#1h30m", 2), ("wait=1m5s", "a time as T#1m5s", 2),
-                                (f"clock={24 * hour}", "Main.clock (TOD) takes 0 ... 86399999999999 ns.", 1),
-                                ("clock=-1", "takes 0 ... 86399999999999 ns.", 1),
+                                (f"clock={24 * hour}", "Main.clock (TOD) takes 0 ... 86399999999999 ns.", 2),
+                                ("clock=-1", "takes 0 ... 86399999999999 ns.", 2),
                                 ("wait=D#2024-01-01", "Main.wait is TIME, and \"D#2024-01-01\" is DATE", 2),
                                 ("n=T#5ms", "Main.n is INT, and \"T#5ms\" is TIME", 2), ("wait=16#FF", "is a number", 2),
-                                ("mask=16#1_0000_0000_0000_0000", "at most 64 bits", 2), ("mask=-1", "takes 0 ...", 1),
+                                ("mask=16#1_0000_0000_0000_0000", "at most 64 bits", 2), ("mask=-1", "takes 0 ...", 2),
                                 ("n=3#12", "a base is 2, 8 or 16", 2), ("n=REAL#1.5x", "is no number", 2),
                                 ("text=long", "a text in quotes", 2),
                                 *((f"n={number}", "an underscore is between two digits", 2)
@@ -159,8 +159,8 @@ def check_literals(run):
                                 ("lamp=TR_UE", "an underscore", 2), ("lamp=BOOL#TR_UE", "is no number", 2),
                                 ("n= 5", "a number, as 12", 2), ("n=5 ", "a number, as 12", 2), ("goal= 5", "a number", 2),
                                 ("goal=0x1p3", "a number, as 12", 2), ("goal=0x1.8", "a number, as 12", 2),
-                                ("goal=infinity", "a number", 2), ("small=TRUE", "takes -128 ... 127.", 1),
-                                ("wait=TRUE", "takes -9223372036854775808", 1), ("mask=BOOL#1", "takes 0 ...", 1), ("copy=yes", "expected TRUE or FALSE", 2)):
+                                ("goal=infinity", "a number", 2), ("small=TRUE", "takes -128 ... 127.", 2),
+                                ("wait=TRUE", "takes -9223372036854775808", 2), ("mask=BOOL#1", "takes 0 ...", 2), ("copy=yes", "expected TRUE or FALSE", 2)):
         run.var("set", "--allow-write", f"Main.{wrong}", status=status, says=says)
     window = run.force("Main.mode=OFF", "Main.wait=T#3s")
     expect(run.value("mode") == -1 and run.value("wait") == 3 * 10**9, "literals are forced", run.rows()["Main.mode"])
@@ -217,9 +217,9 @@ def check_all(run):
     expect(run.value("small") == 7, "what was written before a refusal", run.value("small"))
     run.var("set", "--allow-write", "Main.wide='\U0001f600\u20ac'")
     expect(run.value("wide") == "\U0001f600\u20ac", "a wide text is written", run.rows()["Main.wide"])
-    for wrong, says, status in (("Main.text='longer!'", "Main.text (STRING[6]) takes a text of at most 6 bytes.", 1),
-                                ("Main.wide='12345'", "at most 4 characters of 16 bits", 1),
-                                ("Main.wide='123\U0001f600'", "takes", 1), ("Main.text=5", "a text in quotes", 2),
+    for wrong, says, status in (("Main.text='longer!'", "Main.text (STRING[6]) takes a text of at most 6 bytes.", 2),
+                                ("Main.wide='12345'", "at most 4 characters of 16 bits", 2),
+                                ("Main.wide='123\U0001f600'", "takes", 2), ("Main.text=5", "a text in quotes", 2),
                                 ("Main.n='5'", "a number, as 12", 2)):
         run.var("set", "--allow-write", wrong, status=status, says=says)
 
@@ -233,8 +233,8 @@ def check_trace(run):
     expect(len([name for name in columns(0, "") if name.startswith("Main.")]) == 128, "the first variables are recorded")
     chosen = columns(0, "", "--variable", "main.n", "--variable", "Main.table[2,-100]")
     expect(chosen[-2:] == ["Main.n", "Main.table[2,-100].here"], "chosen variables are recorded", chosen)
-    columns(1, "no variable", "--variable", "Main.tabl")
-    columns(1, "is a text", "--variable", "Main.text")
+    columns(2, "no variable", "--variable", "Main.tabl")
+    columns(2, "is a text", "--variable", "Main.text")
     columns(1, "256 variables", "--variable", "Main.table")
 
 
