@@ -112,8 +112,8 @@ void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, const forced_t *who)
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
     forced_t *row = find(p.forcing, who->variable), *taken = find_taken(&p, who);
     if (taken)
-        taken->taken = false; /* its owner has let go of it */
-    if (!row)
+        taken->taken = false; /* its owner has let go of it, and does not mean what somebody else forces meanwhile */
+    if (!row || taken)
         return;
     release(&p, row);
     row->taken = !is_of(row, who);

@@ -42,7 +42,8 @@ CM1E_GUEST_API void cm1e_scheduler_apply_forced(cm1e_scheduler_t *scheduler);
 /** Forces a variable, or renews that. An owner whose variable another one has released is refused, until it has let go of
  *  it: has released it too, or has not asked for it for the time of `until_ns`. */
 CM1E_GUEST_API forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_t *forced);
-/** Whoever forces it, it is the program's again. `who` has the variable, and the owner that releases it. */
+/** Whoever forces it, it is the program's again. `who` has the variable, and the owner that releases it. One whose variable
+ *  another one has released only lets go of it: what a third one forces meanwhile stays. */
 CM1E_GUEST_API void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, const forced_t *who);
 /** Ends what this client forces. */
 CM1E_GUEST_API void cm1e_scheduler_release_all(cm1e_scheduler_t *scheduler, const void *owner, uint32_t client);

@@ -182,10 +182,16 @@ static void force_what_was_released(void *context)
     case 26: /* who released it may force it, and whoever did not have it */
         ck_assert_int_eq(force(variable, 6, &there), FORCING_DONE);
         ck_assert_int_eq(force(variable, 5, &here), FORCING_TAKEN);
-        release(variable, &there);
         break;
-    case 27: /* the owner lets go of it by a release */
+    case 27: /* the owner lets go of it by a release, which does not end what another one forces meanwhile */
         release(variable, &here);
+        ck_assert_uint_eq(count_forced(), 2);
+        ck_assert_int_eq(force(variable, 6, &there), FORCING_DONE);
+        ck_assert_int_eq(force(variable, 5, &here), FORCING_HELD);
+        release(variable, &here);
+        ck_assert_uint_eq(count_forced(), 1);
+        ck_assert_int_eq(force(variable, 6, &there), FORCING_TAKEN);
+        release(variable, &there);
         ck_assert_int_eq(force(variable, 5, &here), FORCING_DONE);
         release(variable, &there);
         break;
