@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "attach.h"
 #include "files.h"
 #include "prove/prove.h"
 
@@ -131,13 +132,21 @@ static bool is_chosen(const prove_t *prove, const point_t *point)
     return chosen && (!point->kind || strcmp(point->kind, prove->device->kind) == 0);
 }
 
+bool prove_is_told_to_end(prove_t *prove)
+{
+    prove->interrupted |= attached_signalled();
+    return prove->interrupted;
+}
+
 static void look_at(prove_t *prove, const point_t *point)
 {
     const char *verdict = "not tried";
     prove->compared = 0;
     prove->note[0] = '\0';
     prove->differences = json_array();
-    if (is_allowed(prove, point)) {
+    if (prove_is_told_to_end(prove)) {
+        prove_note(prove, "the program was told to end, or the device is gone");
+    } else if (is_allowed(prove, point)) {
         point->look(prove, point);
         verdict = json_array_size(prove->differences) > 0 ? "differs" : prove->compared > 0 ? "agrees" : "unknown";
     } else {
@@ -205,6 +214,7 @@ static int prove_device(prove_t *prove)
     prove->results = json_array();
     prove->profile_codes = json_object();
     prove_read_all(prove);
+    attached_catch_signals(); /* from here on something may have to be written back */
     for (size_t n = 0; prove_point(n); n++) {
         const point_t *point = prove_point(n);
         if (is_chosen(prove, point))

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 """`cm1e init` and `cm1e prove` on a wire: a simulator that plays a profile with a planted difference, the watchdog of the
-motor, and what is refused: an interface that is in use, a network that another master has left in Operational.
+motor, and what is refused: an interface that is in use, a network that another master has left in Operational. Ctrl-C
+within the writes leaves the motor with the values that it had.
 
 test_prove.py CM1E
 """
 import json
 import os
+import random
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import wire  # noqa: E402
@@ -64,6 +67,35 @@ def look_at_wrong_unit(segment, cm1e, folder):
     wire.check("acceleration by positions (0x6083)" in json.dumps(point), f"a wrong unit: {point}")
 
 
+def settings(segment, cm1e):
+    done = segment.run([cm1e, "params", "list", "-i", wire.MASTER_INTERFACE, "1", "--json"])
+    return {row["name"]: row["value"] for row in json.loads(done.stdout)}
+
+
+def interrupt(segment, cm1e):
+    """Frames that are late stretch the time between the write of a bound and the one that takes it back."""
+    def timed(*points):
+        begin = time.monotonic()
+        segment.run([cm1e, "prove", "-i", wire.MASTER_INTERFACE, "--allow-writes", *points])
+        return time.monotonic() - begin
+
+    segment.console("delay 1000000 300")
+    before = settings(segment, cm1e)
+    reading_s = timed("--point", "id.vendor")
+    writing_s = timed("--point", "write.too-*") - reading_s
+    ended = 0
+    for _ in range(10):
+        process = subprocess.Popen(segment.command([cm1e, "prove", "-i", wire.MASTER_INTERFACE, "--json", "--allow-writes",
+                                                    "--point", "write.too-*"]), stdout=subprocess.PIPE, text=True)
+        time.sleep(reading_s + writing_s * random.random())
+        process.send_signal(random.choice((signal.SIGINT, signal.SIGTERM, signal.SIGHUP)))
+        out = process.communicate(timeout=20)[0]
+        ended += process.returncode == 1 and "told to end" in out
+    wire.check(settings(segment, cm1e) == before, f"settings are left changed: {settings(segment, cm1e)}, before {before}")
+    wire.check(ended > 0, "no run was broken off within its writes")
+    segment.console("delay 1 0")
+
+
 def running_move(segment, cm1e, bus_file):
     move = subprocess.Popen(segment.command([cm1e, "move", "-b", bus_file, "1", "--speed", "0.5", "--for", "20"]),
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -95,6 +127,7 @@ def main():
         with wire.segment(cm1e, "--profile", planted) as segment:
             look(segment, cm1e, folder)
             look_at_wrong_unit(segment, cm1e, folder)
+            interrupt(segment, cm1e)
         with wire.segment(cm1e, old) as segment:
             refuse(segment, cm1e)
 

@@ -206,8 +206,9 @@ static bool run_program(motion_t *m, uint32_t number, cm1e_diag_t *diag)
     m->reset = (MC_Reset_t){.Axis = &m->axis};
     m->home = (MC_Home_t){.Axis = &m->axis};
     cm1e_scheduler_stop_on_signals(m->scheduler);
+    /* A signal from before this line ends no scheduler. */
     const bool good = cm1e_scheduler_add_task(m->scheduler, &task, diag) == CM1E_OK
-                      && cm1e_scheduler_run(m->scheduler, 0, diag) == CM1E_OK;
+                      && (prove_is_told_to_end(m->prove) || cm1e_scheduler_run(m->scheduler, 0, diag) == CM1E_OK);
     if (m->failed)
         cm1e_axis_error_text(m->axis, m->error, sizeof m->error);
     cm1e_scheduler_destroy(m->scheduler);
@@ -234,8 +235,8 @@ void look_motion(prove_t *prove, const point_t *point)
     motion_t motion = {.prove = prove, .point = point};
     cm1e_bus_config_t config = {0};
     uint32_t number;
-    if (prove->interrupted || prove->cannot_move) {
-        prove_note(prove, prove->interrupted ? "the program was told to end" : "move.enable has to agree first");
+    if (prove->cannot_move) {
+        prove_note(prove, "move.enable has to agree first");
         return;
     }
     if (point->row == MOVE_WATCHDOG && prove->config->virtual_time) {

@@ -75,7 +75,8 @@ struct prove {
     uint8_t sii[SEEN_SII];
     size_t sii_size;
 
-    bool interrupted, cannot_move; /**< no further motion */
+    bool interrupted;          /**< nothing further is tried */
+    bool cannot_move;          /**< no further motion */
 
     json_t *results;           /**< array */
     json_t *profile_codes;     /**< object: what the device answers in place of a code of ours */
@@ -112,6 +113,9 @@ bool prove_is_at_rest(prove_t *prove);
 bool prove_scan(prove_t *prove);
 /** Opens and scans; a simulated segment plays the profile of the options. False after a complaint. */
 bool prove_open(prove_t *prove);
+/** Ctrl-C and the like end the run behind what is under way, so that nothing is left as it was only tried; so does a device
+ *  that is gone. */
+bool prove_is_told_to_end(prove_t *prove);
 /** Makes a simulated segment play the profile of the options, if there is one. */
 bool prove_play(const prove_options_t *options, cm1e_bus_t *bus);
 

@@ -82,6 +82,25 @@ static bool read_setting(const setting_t *setting, int64_t *value)
     return true;
 }
 
+/** After this answer to a write the setting may have the new value. */
+static bool may_be_new(uint32_t code) { return code == 0 || code == UINT32_MAX; }
+
+/** Writes back what was there before something else was, or may have been. A device that keeps what was tried must not go
+ *  unseen. */
+static void write_back(const setting_t *setting, bool changed)
+{
+    char thing[48], found[32] = "no answer";
+    const uint32_t code = changed ? write_setting(setting, setting->before) : 0;
+    if (code == 0)
+        return;
+    if (code != UINT32_MAX)
+        snprintf(found, sizeof found, "abort 0x%08X", (unsigned)code);
+    snprintf(thing, sizeof thing, "%s = %lld, as before", setting->name, (long long)setting->before);
+    prove_compare(setting->prove, thing, "taken", found);
+    complain("%s could not be written back (%s): it was %lld, and may have another value now", setting->name, found,
+             (long long)setting->before);
+}
+
 static void look_at_same(const setting_t *setting)
 {
     char found[32] = "taken";
@@ -112,8 +131,9 @@ static void look_at_bound(const setting_t *setting, bool high)
     else /* another reason, of this object only */
         prove_compare_number(setting->prove, thing, expected, found, 8);
     snprintf(thing, sizeof thing, "%s = %lld", setting->name, (long long)bound);
-    prove_compare_number(setting->prove, thing, 0, write_setting(setting, bound), 8);
-    write_setting(setting, setting->before);
+    const uint32_t taken = write_setting(setting, bound);
+    prove_compare_number(setting->prove, thing, 0, taken, 8);
+    write_back(setting, may_be_new(taken) || may_be_new(found));
 }
 
 static void look_at_steps(const setting_t *setting)
@@ -123,14 +143,15 @@ static void look_at_steps(const setting_t *setting)
     if (entry->round_to <= 1)
         return;
     const int64_t value = entry->minimum + 4 * (int64_t)entry->round_to + entry->round_to / 2 + 1;
-    if (write_setting(setting, value) == 0 && read_setting(setting, &kept)) {
+    const uint32_t taken = write_setting(setting, value);
+    if (taken == 0 && read_setting(setting, &kept)) {
         char thing[40];
         snprintf(thing, sizeof thing, "%s = %lld", setting->name, (long long)value);
         prove_compare_number(setting->prove, thing, cm1e_entry_round(entry, value), kept, 0);
     } else {
         prove_note(setting->prove, "%s cannot be written", setting->name);
     }
-    write_setting(setting, setting->before);
+    write_back(setting, may_be_new(taken));
 }
 
 /** Settings of which the guide does not say that they are kept without power. Of the K parameters of the motor itself
@@ -143,7 +164,7 @@ static bool may_be_written(const cm1e_entry_t *entry)
 
 void look_write(prove_t *prove, const point_t *point)
 {
-    for (size_t i = 0; i < prove->entry_count; i++) {
+    for (size_t i = 0; i < prove->entry_count && !prove_is_told_to_end(prove); i++) {
         const cm1e_entry_t *entry = prove->entries[i].ours;
         setting_t setting = {.prove = prove, .entry = entry};
         if (!entry || !may_be_written(entry) || prove->entries[i].error != CM1E_OK
