@@ -354,6 +354,11 @@ static void add_interface(init_options_t *options, const char *name, struct argp
     for (unsigned i = 0; i < options->networks && !simulated; i++)
         if (strcmp(options->interfaces[i], name) == 0)
             argp_error(state, "-i %s is there twice", name);
+    json_t *text = json_string(name); /* NULL: it is not UTF-8 */
+    if (!text)
+        argp_error(state, "the name of the network is not UTF-8, and a bus file can have no other: give the file of the "
+                   "simulated network another name");
+    json_decref(text);
     if (options->networks == CM1E_MAX_BUSES)
         argp_error(state, "a program has at most %d networks", CM1E_MAX_BUSES);
     options->interfaces[options->networks++] = name;

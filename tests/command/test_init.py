@@ -219,6 +219,11 @@ def check_names_of_files(folder):
         _, path, _ = init(folder, name, "axes: [{name: X}]\n")
         scanned = run("scan", "-b", path)
         expect(scanned.returncode == 0 and "CM1-E" in scanned.stdout, f"{name}: {scanned}")
+    strange, path = os.path.join(os.fsencode(folder), b"\xff.yaml"), os.path.join(folder, "of_strange.yaml")
+    with open(strange, "w", encoding="utf-8") as file:
+        file.write("axes: [{name: X}]\n")
+    done = run("init", "-i", b"sim:" + strange, "-o", path)
+    expect(done.returncode == 2 and "not UTF-8" in done.stderr and not os.path.exists(path), f"not UTF-8: {done}")
 
 
 def check_refusals(folder):
