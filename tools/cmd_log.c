@@ -55,7 +55,7 @@ static void print_event(const json_t *event)
 
 /** How far the log has been shown. */
 typedef struct progress {
-    json_int_t last;
+    json_int_t last, lost; /**< lost: those that were overwritten before they could be shown */
     bool more, ended; /**< ended: the run has */
 } progress_t;
 
@@ -76,6 +76,7 @@ static cm1e_error_t show_more(cm1e_control_t *control, json_t *all, progress_t *
         const json_int_t lost = json_integer_value(json_object_get(told, "lost"));
         size_t i;
         json_t *event;
+        progress->lost += lost;
         if (lost > 0 && !all)
             printf("... %" JSON_INTEGER_FORMAT " earlier records are no longer there\n", lost);
         json_array_foreach (events, i, event) {
@@ -124,6 +125,6 @@ int command_log(int argc, char **argv)
     }
     cm1e_control_close(control);
     if (all)
-        print_json(all);
+        print_json(json_pack("{s:I, s:o}", "lost", progress.lost, "events", all));
     return error == CM1E_OK || (options.follow && has_ended(error)) ? EXIT_OK : fail(&diag);
 }

@@ -288,7 +288,7 @@ def check_commands():
         log = program.attached("log")
         expect("MC_MoveVelocity, velocity 0.5 u/s" in log.stdout and log.returncode == 0, "log", log)
         as_json = json.loads(program.attached("log", "--json").stdout)
-        expect(as_json[0]["text"] == "the run began", "log --json", as_json[:1])
+        expect(as_json["lost"] == 0 and as_json["events"][0]["text"] == "the run began", "log --json", as_json)
         for words, why in ((("sii", "write", "1", bus_file, "--backup", os.path.join(FOLDER, "backup")), "no access to it"),
                            (("firmware", "update", CM1E, "-p", "1", "--yes"), "for Init and Bootstrap"),
                            (("tune", "step", "X", "--max-travel", "0.1", "--max-velocity", "1"),

@@ -277,6 +277,17 @@ def check_forced(run):
         expect(text in log, f"the log says \"{text}\"", log)
 
 
+def check_log_that_is_full(run):
+    """What the log has no room for any more is counted, also for programs that read it."""
+    with Client(os.path.join("run", f"cm1e-{run.process.pid}-0.sock")) as program:
+        for n in range(1100):
+            program.ask("variable", name="Main.goal", value=n)
+    log = json.loads(subprocess.run([CM1E, "log", "--json", "--attach", str(run.process.pid)], capture_output=True, text=True,
+                                    timeout=30).stdout)
+    expect(log["lost"] > 0 and log["events"][0]["number"] == log["lost"] + 1, "lost records", (log["lost"], log["events"][:1]))
+    expect("was set to 1099" in log["events"][-1]["text"], "the last record", log["events"][-1])
+
+
 def check_consent(run):
     expect(run.value("goal") == 3, "who may look sees values")
     run.var("set", "--allow-write", "Main.goal=1", status=1, says="control: maintain")
@@ -297,7 +308,8 @@ with tempfile.TemporaryDirectory() as folder:
     built = subprocess.run([CM1E, "st", "build", "force.st"], capture_output=True, text=True, timeout=60)
     if built.returncode:
         sys.exit(built.stderr)
-    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_all, check_exact, check_values, check_literals, check_trace, check_forced))):
+    for bus, checks in (("observe.yaml", (check_consent,)), ("maintain.yaml", (check_all, check_exact, check_values, check_literals, check_trace, check_forced,
+                                                                             check_log_that_is_full))):
         program = Run(bus)
         for check in checks:
             check(program)
