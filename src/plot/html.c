@@ -88,10 +88,12 @@ static bool is_real(const trace_column_t *column)
     return column->type == CM1E_TRACE_LREAL || column->type == CM1E_TRACE_REAL;
 }
 
-/** Four bytes are enough for a difference of which 7 digits are kept, and for one that is kept exactly. */
+/** Four bytes are enough for a difference that they keep exactly, and for a value of an axis: 7 digits of its difference.
+ *  Variables of the program are kept exactly. */
 static bool needs_eight_bytes(const trace_t *trace, uint32_t column, double base)
 {
-    if (trace->columns[column].kind == TRACE_KIND_NUMBER && is_real(&trace->columns[column]))
+    if (trace->columns[column].kind == TRACE_KIND_NUMBER && is_real(&trace->columns[column]) &&
+        !cm1e_trace_is_variable(trace, column))
         return false;
     for (uint32_t n = 0; n < trace->used; n++) {
         const double difference = value_of(trace, n, column) - base;
@@ -103,7 +105,9 @@ static bool needs_eight_bytes(const trace_t *trace, uint32_t column, double base
 
 static void print_values(const trace_t *trace, uint32_t column, FILE *file)
 {
-    const double first = trace->used ? value_of(trace, 0, column) : 0, base = isfinite(first) ? first : 0;
+    const double first = trace->used ? value_of(trace, 0, column) : 0;
+    const bool single = trace->columns[column].type == CM1E_TRACE_REAL; /* which has four bytes itself */
+    const double base = isfinite(first) && !single ? first : 0;
     const bool wide = needs_eight_bytes(trace, column, base);
     base64_t base64 = {.file = file};
     fprintf(file, ", \"bytes\": %d, \"base\": %.17g, \"data\": \"", wide ? 8 : 4, base);
@@ -131,8 +135,9 @@ static void print_columns(const trace_t *trace, bool with_values, FILE *file)
         print_text(file, column->name);
         fputs(", \"unit\": ", file);
         print_text(file, column->unit);
-        fprintf(file, ", \"kind\": \"%s\", \"integer\": %s, \"program\": %s", kinds[column->kind],
-                is_real(column) ? "false" : "true", i + trace->variables >= trace->column_count ? "true" : "false");
+        fprintf(file, ", \"kind\": \"%s\", \"integer\": %s, \"program\": %s, \"single\": %s", kinds[column->kind],
+                is_real(column) ? "false" : "true", cm1e_trace_is_variable(trace, i) ? "true" : "false",
+                column->type == CM1E_TRACE_REAL ? "true" : "false");
         if (with_values)
             print_values(trace, i, file);
         else

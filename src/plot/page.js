@@ -54,7 +54,18 @@
       return trace.states[value] ? trace.states[value].name : String(value);
     if (column.kind === "error")
       return value === 0 ? "none" : trace.errors[value] || String(value);
-    return numberText(value);
+    return column.program && !column.integer ? exactText(column, value) : numberText(value);
+  }
+
+  /* A variable of the program, with as few digits as name its value and no other of its type. */
+  function exactText(column, value) {
+    let text = String(value);
+    for (let digits = 6; column.single && Number.isFinite(value) && digits <= 9; digits++) {
+      text = String(Number(value.toPrecision(digits)));
+      if (Math.fround(Number(text)) === value)
+        break;
+    }
+    return text;
   }
 
   function numberText(value) {

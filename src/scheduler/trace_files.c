@@ -23,9 +23,22 @@ static void print_quoted(FILE *file, const trace_column_t *column)
     fputc('"', file);
 }
 
-static void print_value(FILE *file, const trace_column_t *column, double value)
+/** A variable of the program, in digits that give this value back. */
+static void print_exact(FILE *file, double value)
 {
-    if (column->kind == TRACE_KIND_STATE)
+    char text[40];
+    snprintf(text, sizeof text, "%.15g", value);
+    if (strtod(text, NULL) == value)
+        fprintf(file, ",%s", text);
+    else
+        fprintf(file, ",%.17g", value);
+}
+
+static void print_value(FILE *file, const trace_column_t *column, double value, bool is_variable)
+{
+    if (is_variable && column->type == CM1E_TRACE_LREAL)
+        print_exact(file, value);
+    else if (column->kind == TRACE_KIND_STATE)
         fprintf(file, ",%s", cm1e_axis_state_name((cm1e_axis_state_t)value));
     else
         fprintf(file, column->type == CM1E_TRACE_LREAL ? ",%.15g" : ",%.17g", value);
@@ -41,7 +54,7 @@ void cm1e_trace_print_csv(const trace_t *trace, FILE *file)
         const double *sample = cm1e_trace_sample(trace, n);
         fprintf(file, "%.6f", (double)cm1e_trace_time_ns(trace, n) * 1e-9);
         for (uint32_t i = 0; i < trace->column_count; i++)
-            print_value(file, &trace->columns[i], sample[i]);
+            print_value(file, &trace->columns[i], sample[i], cm1e_trace_is_variable(trace, i));
         fputc('\n', file);
     }
 }

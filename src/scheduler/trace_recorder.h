@@ -117,6 +117,12 @@ double *cm1e_trace_next_sample(trace_t *trace, int64_t time_ns);
 /** Keeps the last TRACE_MARKS marks; `text` must outlive the trace. @rt cycle */
 void cm1e_trace_mark(trace_t *trace, const char *text, int64_t time_ns);
 
+/** The column has a variable of the program, or an object; those of axes and timing come before. */
+static inline bool cm1e_trace_is_variable(const trace_t *trace, uint32_t column)
+{
+    return column + trace->variables >= trace->column_count;
+}
+
 /** Sample n, 0 = oldest: its time, and its values by column. */
 CM1E_GUEST_API int64_t cm1e_trace_time_ns(const trace_t *trace, uint32_t n);
 CM1E_GUEST_API const double *cm1e_trace_sample(const trace_t *trace, uint32_t n);

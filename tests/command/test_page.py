@@ -162,6 +162,51 @@ def check_values(shown, head, rows):
            f"between cursors: {shown['cursors']}")
 
 
+EXACT = """PROGRAM Main
+VAR n : UDINT; big : LREAL := 123456789.125; single : REAL := 0.1; sum : LREAL := 0.1; END_VAR
+n := n + 1;
+IF n = 100 THEN big := 123456789.25; END_IF
+sum := 0.1 + 0.2;
+END_PROGRAM
+"""
+
+
+def check_variables():
+    """Variables of a program are shown with all digits of their type, and written so."""
+    source, page, table = (os.path.join(OUTPUT, f"exact.{ending}") for ending in ("st", "html", "csv"))
+    bus = os.path.join(OUTPUT, "exact.yaml")
+    with open(source, "w", encoding="utf-8") as file:
+        file.write(EXACT)
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {interface: sim, virtual_time: true}\naxes: [{name: X, position: 1}]\n")
+    cm1e = os.path.join(BIN, "cm1e")
+    subprocess.run([cm1e, "st", "build", source, "-o", source + ".so"], check=True)
+    subprocess.run([cm1e, "run", source + ".so", "-b", bus, "--seconds", "1", "--html", page, "--csv", table], check=True,
+                   stdout=subprocess.DEVNULL)
+    with open(page, encoding="utf-8") as file:
+        text = file.read()
+    driver = """<script>document.dispatchEvent(new KeyboardEvent("keydown", {key: "0"}));
+const charts = [...document.querySelectorAll(".chart")];
+const canvas = charts[0].querySelectorAll("canvas")[1], box = canvas.getBoundingClientRect();
+canvas.dispatchEvent(new MouseEvent("mousemove", {bubbles: true, view: window, clientX: box.left + box.width * 0.7,
+                                                  clientY: box.top + box.height / 2}));
+const shown = {};
+for (const row of document.querySelectorAll("#values tr"))
+  if (row.cells.length > 1) shown[row.cells[0].textContent.trim()] = row.cells[1].textContent;
+const told = document.createElement("pre");
+told.id = "result"; told.textContent = JSON.stringify(shown); document.body.append(told);</script>"""
+    driven = page.replace(".html", "_driven.html")
+    with open(driven, "w", encoding="utf-8") as file:
+        file.write(text.replace("</body>", driver + "</body>"))
+    dom = in_browser(driven, "--dump-dom")
+    shown = json.loads(html.unescape(re.search(r'<pre id="result">(.*?)</pre>', dom, re.DOTALL).group(1)))
+    wanted = {"Main.big": "123456789.25", "Main.single": "0.1", "Main.sum": "0.30000000000000004"}
+    expect({name: shown.get(name) for name in wanted} == wanted, f"variables on the page: {shown}")
+    with open(table, newline="", encoding="utf-8") as file:
+        last = list(csv.DictReader(file))[-1]
+    expect(last["Main.big"] == "123456789.25" and last["Main.sum"] == "0.30000000000000004", f"variables in CSV: {last}")
+
+
 def check_page():
     page, head, rows = run_example()
     shown = drive(page, "X actual position [u]", "X state")
@@ -194,6 +239,7 @@ def main():
         print("SKIPPED: there is no Chromium here")
         sys.exit(SKIP)
     check_page()
+    check_variables()
 
 
 main()
