@@ -169,13 +169,14 @@ static void destroy(void *app)
     free(app);
 }
 
-static bool play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns)
+static cm1e_error_t play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns, cm1e_diag_t *diag)
 {
     cm1e_sim_bridge_t *bridge = app;
-    if (!cm1e_sim_store_play(&bridge->store, profile))
-        return false;
+    const cm1e_error_t error = cm1e_sim_store_play(&bridge->store, profile, diag);
+    if (error != CM1E_OK)
+        return error;
     power_on(bridge, now_ns);
-    return true;
+    return CM1E_OK;
 }
 
 const cm1e_sim_app_ops_t cm1e_sim_bridge_ops = {

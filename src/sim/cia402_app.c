@@ -369,14 +369,15 @@ static uint32_t file_read(void *app, const char *name, uint32_t password, size_t
     return cm1e_sim_files_read(&((cm1e_sim_cia402_t *)app)->files, name, offset, data, size);
 }
 
-static bool play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns)
+static cm1e_error_t play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns, cm1e_diag_t *diag)
 {
     cm1e_sim_cia402_t *drive = app;
-    if (!cm1e_sim_store_play(&drive->store, profile))
-        return false;
+    const cm1e_error_t error = cm1e_sim_store_play(&drive->store, profile, diag);
+    if (error != CM1E_OK)
+        return error;
     find_places(drive);
     power_on(drive, now_ns);
-    return true;
+    return CM1E_OK;
 }
 
 static const cm1e_sim_app_ops_t ops = {

@@ -151,7 +151,7 @@ static void destroy(void *app)
 }
 
 /* The firmware is the one that the profile tells. */
-static bool play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns)
+static cm1e_error_t play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns, cm1e_diag_t *diag)
 {
     cm1e_sim_cm1e_t *drive = app;
     cm1e_sim_store_t store = {0};
@@ -161,16 +161,18 @@ static bool play(void *app, const cm1e_sim_profile_t *profile, int64_t now_ns)
             firmware = cm1e_firmware_from_version(profile->entries[i].text);
     if (!firmware)
         firmware = drive->firmware;
-    if (!cm1e_sim_store_create(&store, &cm1e_device_cm1e, firmware->firmware)
-        || !cm1e_sim_store_play(&store, profile)) {
+    const cm1e_error_t error = cm1e_sim_store_create(&store, &cm1e_device_cm1e, firmware->firmware)
+                                   ? cm1e_sim_store_play(&store, profile, diag)
+                                   : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    if (error != CM1E_OK) {
         cm1e_sim_store_destroy(&store);
-        return false;
+        return error;
     }
     cm1e_sim_store_destroy(&drive->store);
     drive->store = store;
     drive->firmware = firmware;
     cm1e_sim_cm1e_power_on(drive, now_ns);
-    return true;
+    return CM1E_OK;
 }
 
 #define COMMON_OPS                                                                                                  \

@@ -56,9 +56,14 @@ cm1e_error_t cm1e_sim_segment_play(cm1e_sim_segment_t *segment, uint32_t positio
     if (slave->profile.entries)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "the simulated slave %u plays a profile already",
                              (unsigned)position);
-    if (!copy_profile(&slave->profile, profile) || !take_sii(slave, profile)
-        || !slave->ops->play(slave->app, &slave->profile, slave->now_ns))
+    if (!copy_profile(&slave->profile, profile) || !take_sii(slave, profile))
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    const cm1e_error_t error = slave->ops->play(slave->app, &slave->profile, slave->now_ns, diag);
+    if (error != CM1E_OK) {
+        cm1e_sim_profile_free(&slave->profile);
+        slave->profile = (cm1e_sim_profile_t){0};
+        return error;
+    }
     cm1e_sim_cm1e_t *drive = cm1e_sim_cm1e_of(slave);
     if (drive)
         slave->ops = cm1e_sim_cm1e_ops(drive); /* by its firmware */

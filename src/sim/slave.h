@@ -90,8 +90,8 @@ typedef struct cm1e_sim_app_ops {
     /** Back to power-on state. */
     void (*power_on)(void *app, int64_t now_ns);
     void (*destroy)(void *app);
-    /** Takes over the dictionary of a profile and powers on. false: no memory. NULL: it cannot. */
-    bool (*play)(void *app, const struct cm1e_sim_profile *profile, int64_t now_ns);
+    /** Takes over the dictionary of a profile and powers on; after an error nothing has changed. NULL: it cannot. */
+    cm1e_error_t (*play)(void *app, const struct cm1e_sim_profile *profile, int64_t now_ns, cm1e_diag_t *diag);
     /** It runs by SYNC0 where the master activates that (esc_sync.c); else by its process data. */
     bool runs_by_sync0;
 } cm1e_sim_app_ops_t;

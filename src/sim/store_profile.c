@@ -137,12 +137,47 @@ static bool make_room(build_t *build)
     return to->objects && to->first_entry && to->values && to->own_objects && to->own_entries;
 }
 
-bool cm1e_sim_store_play(cm1e_sim_store_t *store, const cm1e_sim_profile_t *profile)
+/* The values of a whole number on the wire; false: the entry has none. */
+static bool range_of(const cm1e_entry_t *entry, int64_t *least, int64_t *most)
+{
+    const bool is_signed = cm1e_sim_is_signed(entry->type), is_bool = entry->type == CM1E_TYPE_BOOL;
+    const unsigned bits = is_bool && entry->bits < 8 ? 8 : entry->bits; /* a BOOL comes in a byte */
+    const bool is_whole = is_signed || is_bool || entry->type == CM1E_TYPE_USINT || entry->type == CM1E_TYPE_UINT ||
+                          entry->type == CM1E_TYPE_UDINT;
+    if (!is_whole || bits == 0 || bits > 32)
+        return false;
+    *most = (INT64_C(1) << (bits - is_signed)) - 1;
+    *least = is_signed ? -*most - 1 : 0;
+    return true;
+}
+
+static cm1e_error_t check_numbers(const cm1e_sim_store_t *store, const cm1e_sim_profile_entry_t *told, cm1e_diag_t *diag)
+{
+    const struct {
+        const char *key;
+        bool given;
+        int64_t value;
+    } numbers[] = {{"default", told->has_default, told->default_value}, {"minimum", told->has_minimum, told->minimum},
+                   {"maximum", told->has_maximum, told->maximum}, {"value", told->has_value, told->value}};
+    int64_t least, most;
+    cm1e_sim_cell_t cell;
+    if (told->missing || cm1e_sim_store_find(store, told->index, told->subindex, &cell) != 0 ||
+        !range_of(cell.entry, &least, &most))
+        return CM1E_OK;
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        if (numbers[i].given && (numbers[i].value < least || numbers[i].value > most))
+            return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "the profile gives 0x%04X:%02X the %s %lld, which its type does "
+                                 "not have: %lld ... %lld", told->index, told->subindex, numbers[i].key,
+                                 (long long)numbers[i].value, (long long)least, (long long)most);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_sim_store_play(cm1e_sim_store_t *store, const cm1e_sim_profile_t *profile, cm1e_diag_t *diag)
 {
     build_t build = {.from = store, .profile = profile};
     if (!make_room(&build)) {
         cm1e_sim_store_destroy(&build.to);
-        return false;
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
     }
     size_t n = 0;
     for (uint32_t told = next_index(profile, 0); n < store->object_count || told != UINT32_MAX;) {
@@ -157,9 +192,13 @@ bool cm1e_sim_store_play(cm1e_sim_store_t *store, const cm1e_sim_profile_t *prof
         if (build.to.own_objects[build.to.object_count - 1].index == told)
             told = next_index(profile, told + 1);
     }
-    cm1e_sim_store_destroy(store);
-    *store = build.to;
-    return true;
+    cm1e_error_t error = CM1E_OK;
+    for (size_t i = 0; i < profile->entry_count && error == CM1E_OK; i++)
+        error = check_numbers(&build.to, &profile->entries[i], diag);
+    cm1e_sim_store_destroy(error == CM1E_OK ? store : &build.to);
+    if (error == CM1E_OK)
+        *store = build.to;
+    return error;
 }
 
 void cm1e_sim_store_set_profile_values(cm1e_sim_store_t *store)

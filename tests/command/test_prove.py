@@ -237,6 +237,10 @@ def check_refusals(folder):
                        ('{"cm1e_profile": 1, "entries": [{"entry": "0x6084", "type": 3}]}', "together"),
                        ('{"cm1e_profile": 1, "entries": [{"entry": "0x-1"}]}', "0x6084:00"),
                        ('{"cm1e_profile": 1, "entries": [{"entry": "0x6084", "name": "%s"}]}' % (64 * "n"), "63 bytes"),
+                       ('{"cm1e_profile": 1, "entries": [{"entry": "0x6098", "value": 300}]}', "-128 ... 127"),
+                       ('{"cm1e_profile": 1, "entries": [{"entry": "0x6098", "type": 5, "bits": 8, "access": 63, "default": '
+                        '-1}]}', "the default -1, which its type does not have: 0 ... 255"),
+                       ('{"cm1e_profile": 1, "entries": [{"entry": "0x6084", "maximum": 4294967296}]}', "the maximum"),
                        ('{"cm1e_profile": 1, "codes": {"abort": {}}}', "aborts"),
                        ('{"cm1e_profile": 1, "codes": ["0x0011"]}', "aborts"),
                        ('{"cm1e_profile": 1, "codes": {"aborts": ["0x06070012"]}}', "pairs"),

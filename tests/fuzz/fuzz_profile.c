@@ -114,9 +114,9 @@ void fuzz_seeds(void)
         "\"missing\":[\"0x60FB:09\"],\"codes\":{\"aborts\":{\"0x06070012\":\"0x06070010\"},"
         "\"al_status\":{\"0x0011\":\"0x0001\"},\"errors\":{\"0x4502\":\"0x0000\"}}}",
         "{\"cm1e_profile\":1,\"device\":\"drive\",\"firmware\":\"1\",\"sii\":\"0000\",\"entries\":["
-        "{\"entry\":\"0x6065\",\"default\":7,\"minimum\":-1,\"maximum\":9},"
+        "{\"entry\":\"0x6065\",\"default\":7,\"minimum\":1,\"maximum\":9},"
         "{\"entry\":\"0x1600:01\",\"value\":1614807056},{\"entry\":\"0x1C12:01\",\"default\":5633}]}",
-        "{\"cm1e_profile\":1,\"entries\":[{\"entry\":\"0x6098\",\"value\":254}]}",
+        "{\"cm1e_profile\":1,\"entries\":[{\"entry\":\"0x6098\",\"value\":-2}]}",
         "{\"cm1e_profile\":1,\"entries\":[{\"entry\":\"0x6061\",\"default\":8}],\"codes\":{\"errors\":{"
         "\"0x4502\":\"0x5555\"}}}",
     };

@@ -100,8 +100,8 @@ static void test_odd_profiles_do_no_harm(void)
     const cm1e_sim_profile_entry_t entries[] = {
         {.index = 0x6502, .described = true, .data_type = CM1E_TYPE_UDINT, .bits = 4096, .access = 0xFFFF},
         {.index = 0x5001, .described = true, .data_type = 0x000A, .bits = 65535, .access = 0xFFFF},
-        {.index = 0x1600, .subindex = 0, .has_value = true, .value = INT64_MAX},
-        {.index = 0x1600, .subindex = 1, .has_value = true, .value = INT64_MIN},
+        {.index = 0x1600, .subindex = 0, .has_value = true, .value = UINT8_MAX},
+        {.index = 0x1600, .subindex = 1, .has_value = true, .value = 0},
         {.index = 0x1600, .subindex = 2, .has_value = true, .value = 0x60FE0018},
         {.index = 0x1600, .subindex = 3, .has_value = true, .value = 0xABCD00FF},
         {.index = 0x6084, .has_value = true, .value = 1},
@@ -133,6 +133,28 @@ static void test_a_profile_that_is_all_zero_changes_nothing(void)
     TEST_ASSERT_EQUAL_HEX32(before, after);
 }
 
+/* Numbers that the type of the entry, of the profile or of the tables, does not have; then a good profile is played. */
+static void test_numbers_beyond_their_types_are_refused(void)
+{
+    const cm1e_sim_profile_entry_t rows[] = {
+        {.index = 0x1600, .has_value = true, .value = UINT8_MAX + 1},
+        {.index = 0x6084, .has_default = true, .default_value = -1},
+        {.index = 0x6084, .has_maximum = true, .maximum = INT64_C(1) << 32},
+        {.index = 0x6098, .has_minimum = true, .minimum = INT8_MIN - 1},
+        {.index = 0x5001, .described = true, .data_type = CM1E_TYPE_UINT, .bits = 16, .access = 7, .has_value = true,
+         .value = INT64_MAX},
+    };
+    const cm1e_sim_profile_entry_t good = {.index = 0x6084, .has_value = true, .value = 2000};
+    uint32_t value;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, play(&rows[i], 1));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "which its type does not have"), diag.text);
+    }
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, play(&good, 1), diag.text);
+    TEST_ASSERT_EQUAL_HEX32(0, read(0x6084, 0, &value));
+    TEST_ASSERT_EQUAL_UINT32(2000, value);
+}
+
 static void test_refusals_say_why(void)
 {
     const uint8_t sii[16] = {0};
@@ -160,7 +182,7 @@ static void test_a_drive_by_cia402_plays(void)
         {.index = 0x1600, .subindex = 2, .has_value = true, .value = 0x607A0040}, /* more than an object has */
         {.index = 0x1600, .subindex = 3, .has_value = true, .value = 0xABCD00FF}, /* not there */
         {.index = 0x1600, .subindex = 4, .has_value = true, .value = 0x60600003}, /* less than a byte */
-        {.index = 0x1A00, .subindex = 0, .has_value = true, .value = INT64_MAX},
+        {.index = 0x1A00, .subindex = 0, .has_value = true, .value = UINT8_MAX},
     };
     uint32_t value;
     uint16_t outputs, inputs;
@@ -192,6 +214,7 @@ int main(void)
     RUN_TEST(test_what_the_drive_says_itself_is_not_played);
     RUN_TEST(test_odd_profiles_do_no_harm);
     RUN_TEST(test_a_profile_that_is_all_zero_changes_nothing);
+    RUN_TEST(test_numbers_beyond_their_types_are_refused);
     RUN_TEST(test_refusals_say_why);
     RUN_TEST(test_a_drive_by_cia402_plays);
     return UNITY_END();

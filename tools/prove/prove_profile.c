@@ -32,9 +32,12 @@ static bool is_of_the_moment(const prove_t *prove, const seen_entry_t *entry)
     return false;
 }
 
-static void set_told(json_t *object, const char *key, const cm1e_info_value_t *value, bool is_signed)
+/** So many bytes are a number of this size; what has others is a difference of the report, and no number for the simulator. */
+static bool fits(size_t size, unsigned bits) { return size > 0 && size <= 8 && size <= (bits + 7) / 8; }
+
+static void set_told(json_t *object, const char *key, const cm1e_info_value_t *value, unsigned bits, bool is_signed)
 {
-    if (value->size > 0)
+    if (fits(value->size, bits))
         json_object_set_new(object, key, json_integer(prove_number_of(value->bytes, value->size, is_signed)));
 }
 
@@ -42,6 +45,7 @@ static json_t *entry_as_json(const prove_t *prove, const seen_entry_t *entry)
 {
     char name[16], text[sizeof entry->value + 1];
     const unsigned type = entry->told ? entry->info.data_type : entry->ours ? (unsigned)entry->ours->type : 0;
+    const unsigned bits = entry->told ? entry->info.bits : entry->ours ? entry->ours->bits : 64u;
     snprintf(name, sizeof name, "0x%04X:%02X", entry->index, entry->subindex);
     json_t *object = json_pack("{s:s}", "entry", name);
     if (entry->told) {
@@ -49,16 +53,16 @@ static json_t *entry_as_json(const prove_t *prove, const seen_entry_t *entry)
         json_object_set_new(object, "type", json_integer(entry->info.data_type));
         json_object_set_new(object, "bits", json_integer(entry->info.bits));
         json_object_set_new(object, "access", json_integer(entry->info.access));
-        set_told(object, "default", &entry->info.default_value, prove_is_signed(type));
-        set_told(object, "minimum", &entry->info.minimum, prove_is_signed(type));
-        set_told(object, "maximum", &entry->info.maximum, prove_is_signed(type));
+        set_told(object, "default", &entry->info.default_value, bits, prove_is_signed(type));
+        set_told(object, "minimum", &entry->info.minimum, bits, prove_is_signed(type));
+        set_told(object, "maximum", &entry->info.maximum, bits, prove_is_signed(type));
     }
     if (entry->error != CM1E_OK || is_of_the_moment(prove, entry))
         return object;
     cm1e_text_of_device(text, sizeof text, entry->value, entry->size);
     if (type == CM1E_TYPE_STRING)
         json_object_set_new(object, "text", text_as_json(text));
-    else if (entry->size <= 8)
+    else if (fits(entry->size, bits))
         json_object_set_new(object, "value", json_integer(prove_number_of(entry->value, entry->size,
                                                                           prove_is_signed(type))));
     return object;
