@@ -1,6 +1,9 @@
 /* ControlBus without ROS: an axis that was stopped by a fault is enabled again, also where the period of the control is
- * below the cycle of the bus; settings that cannot be meant are refused in words.
+ * below the cycle of the bus; a bus that stands still is told within 50 ms; settings that cannot be meant are refused in words.
  *   again BUS-FILE */
+#include <dlfcn.h>
+
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -52,6 +55,48 @@ static void enable_again(const char * bus_file, double period_s)
   }
 }
 
+/* The sleep of the cycle, in place of that of the C library: it can be made to last. */
+static std::atomic<bool> hold{false};
+static const auto main_thread = std::this_thread::get_id();
+
+extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec * until, timespec * rest)
+{
+  using function = int (*)(clockid_t, int, const timespec *, timespec *);
+  static const auto real = reinterpret_cast<function>(dlsym(RTLD_NEXT, "clock_nanosleep"));
+  while (hold && std::this_thread::get_id() != main_thread) {
+    const timespec moment{0, 1000000};
+    real(CLOCK_MONOTONIC, 0, &moment, nullptr);
+  }
+  return real(clock, flags, until, rest);
+}
+
+static void stands_still(const char * bus_file)
+{
+  using Clock = std::chrono::steady_clock;
+  ControlBus bus(settings_of(bus_file, 0.001));
+  expect(bus.enable(5.0), "not enabled");
+  auto read_for = [&bus](int periods) {
+      bool good = true;
+      for (int i = 0; i < periods && good; ++i) {
+        good = bus.read();
+        bus.write(true);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      return good;
+    };
+  expect(read_for(200) && bus.why()[0] == '\0', std::string("a bus that runs: ") + bus.why());
+  const auto begin = Clock::now();
+  hold = true;
+  const bool good = read_for(500);
+  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  hold = false;
+  expect(!good && std::string(bus.why()).find("stands still") != std::string::npos, std::string("a bus that stands still: ") +
+    bus.why());
+  expect(seconds > 0.05 && seconds < 0.4, "told after " + std::to_string(seconds) + " s");
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  expect(bus.read(), "a bus that goes on is read again");
+}
+
 static void refused(ControlBus::Settings settings, const std::string & says)
 {
   try {
@@ -66,6 +111,7 @@ int main(int, char ** argv)
 {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   enable_again(argv[1], 0.0003);
+  stands_still(argv[1]);
   for (const double delay : {1.0, 2.9, -4.0, 101.0, 1e9, infinite, std::nan("")}) {
     auto settings = settings_of(argv[1], 0.001);
     settings.delay_periods = delay;

@@ -13,6 +13,13 @@ namespace
 {
 
 using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds least_stale{50};  // as in the component for LinuxCNC
+constexpr int stale_periods = 3;
+
+Clock::duration duration_of(double period_s)
+{
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s > 0.0 ? period_s : 1e-3));
+}
 
 std::string lower(std::string text)
 {
@@ -74,7 +81,14 @@ Joint * ControlBus::find(const std::string & name)
 
 bool ControlBus::read()
 {
+  const auto now = Clock::now();
+  const auto period = duration_of(settings_.period_s);
+  // A pause of the control itself, or of the whole machine, counts as one period: the bus could not give anything in it.
+  age_ += std::min<Clock::duration>(now - looked_, period);
+  looked_ = now;
   if (stream_host_read(host_.get(), &state_)) {
+    age_ = age_.zero();
+    heard_ = true;
     for (size_t i = 0; i < joints_.size(); ++i) {
       const stream_axis_state_t & axis = state_.axes[i];
       Joint & joint = joints_[i];
@@ -87,7 +101,10 @@ bool ControlBus::read()
       joint.error = axis.error;
     }
   }
-  return stream_host_runs(host_.get());
+  why_ = !stream_host_runs(host_.get()) ? "the bus does not run any more" :
+    heard_ && age_ >= std::max<Clock::duration>(least_stale, stale_periods * period) ?
+    "the bus stands still: it gives no states any more" : "";
+  return why_[0] == '\0';
 }
 
 void ControlBus::write(bool enable)
@@ -116,8 +133,7 @@ bool ControlBus::has_fault() const
 
 bool ControlBus::step_until(bool enable, double seconds, const std::function<bool()> & done)
 {
-  const auto period = std::chrono::duration_cast<Clock::duration>(
-    std::chrono::duration<double>(settings_.period_s > 0.0 ? settings_.period_s : 1e-3));
+  const auto period = duration_of(settings_.period_s);
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   for (auto next = Clock::now(); next < end; next += period) {
     if (!read()) {

@@ -154,7 +154,11 @@ Cm1eSystem::CallbackReturn Cm1eSystem::on_deactivate(const rclcpp_lifecycle::Sta
 
 return_type Cm1eSystem::read(const rclcpp::Time &, const rclcpp::Duration &)
 {
-  if (!bus_ || !bus_->read()) {
+  if (!bus_) {
+    return return_type::ERROR;
+  }
+  if (!bus_->read()) {
+    RCLCPP_ERROR(get_logger(), "%s", bus_->why());
     return return_type::ERROR;
   }
   for (const Names & names : names_) {

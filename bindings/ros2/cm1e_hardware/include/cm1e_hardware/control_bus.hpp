@@ -6,6 +6,7 @@
 #ifndef CM1E_HARDWARE__CONTROL_BUS_HPP_
 #define CM1E_HARDWARE__CONTROL_BUS_HPP_
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -56,8 +57,12 @@ public:
   std::vector<Joint> & joints() {return joints_;}
   /** The joint with this name, without regard to upper and lower case; NULL: there is none. */
   Joint * find(const std::string & name);
-  /** Takes over the newest state of all joints. False: the bus does not run any more. */
+  /** Takes over the newest state of all joints. False: the bus does not run any more, or stands still: since its first
+   *  state it has given none for 50 ms, or 3 periods of the control where these are longer. The positions are old then, and
+   *  why() says which of the two it is. */
   bool read();
+  /** Why read() has returned false; "" before. */
+  const char * why() const {return why_;}
   /** Commands all joints for this period: all enabled, or none. */
   void write(bool enable);
   /** Calls read() and write() in the period of the control until all joints are enabled, each where it stands; then
@@ -75,6 +80,10 @@ private:
   std::vector<Joint> joints_;
   stream_command_t command_{};
   stream_state_t state_{};
+  std::chrono::steady_clock::time_point looked_{};  ///< of the last read()
+  std::chrono::nanoseconds age_{0};                 ///< of the newest state
+  bool heard_ = false;                              ///< there was one
+  const char * why_ = "";
   struct Close
   {
     void operator()(stream_host_t * host) const {stream_host_close(host);}
