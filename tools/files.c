@@ -12,7 +12,7 @@
 #include "core/output.h"
 
 /* More than any reader accepts, so that the readers report their own limits. */
-enum { INPUT_LIMIT = 64 << 20, PIECE = 65536 };
+enum { INPUT_LIMIT = 64 << 20, PIECE = 65536, LINKS_MAX = 40 };
 
 error_t parse_file_word(int key, char *arg, struct argp_state *state, const char **file)
 {
@@ -75,17 +75,32 @@ bool read_input(const char *path, input_t *input)
     return good;
 }
 
-/** The path without links and dots; the last name need not exist. */
-static bool resolve(const char *path, char resolved[PATH_MAX])
+/** The path without links and dots up to its last name, which need not exist. */
+static bool resolve_folder(const char *path, char resolved[PATH_MAX])
 {
     char folder[PATH_MAX], place[PATH_MAX];
-    if (realpath(path, resolved))
-        return true;
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     const int length = slash ? (int)(slash - path) + 1 : 1;
     if (snprintf(folder, sizeof folder, "%.*s", length, slash ? path : ".") >= PATH_MAX || !realpath(folder, place))
         return false;
     return snprintf(resolved, PATH_MAX, "%s/%s", place, name) < PATH_MAX;
+}
+
+/** The path without links and dots. Where nothing is there yet, a link leads to where it will be. */
+static bool resolve(const char *path, char resolved[PATH_MAX])
+{
+    char target[PATH_MAX], next[PATH_MAX];
+    if (realpath(path, resolved))
+        return true;
+    bool good = resolve_folder(path, resolved);
+    ssize_t length;
+    for (int links = 0; good && links < LINKS_MAX && (length = readlink(resolved, target, sizeof target - 1)) > 0; links++) {
+        target[length] = '\0';
+        *strrchr(resolved, '/') = '\0'; /* a link counts from its folder */
+        const int size = snprintf(next, sizeof next, target[0] == '/' ? "%.0s%s" : "%s/%s", resolved, target);
+        good = size < PATH_MAX && resolve_folder(next, resolved);
+    }
+    return good;
 }
 
 bool same_file(const char *left, const char *right)

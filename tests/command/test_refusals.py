@@ -146,6 +146,12 @@ def check_files_before_the_move(folder):
     moved = run("cm1e", *MOVE, "--by", "0.1", "--csv", os.path.join(inside, "trace.csv"))
     with open(victim, encoding="utf-8") as file:
         expect(moved.returncode == 0 and file.read() == "of somebody else", "a link named FILE.part", moved)
+    target, link, second = (os.path.join(inside, name) for name in ("new.svg", "link.svg", "second.svg"))
+    os.symlink("new.svg", link)  # the file is not there yet
+    os.symlink(link, second)
+    for words in (("--csv", target, "--svg", link), ("--csv", second, "--svg", target)):
+        moved = run("cm1e", *MOVE, "--by", "0.1", *words)
+        expect(moved.returncode == WRONG_USE and not os.path.exists(target), f"a link to the other file: {words}", moved)
 
 
 def check_json_of_failures(folder):
