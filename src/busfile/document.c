@@ -1,22 +1,13 @@
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "busfile/busfile.h"
+#include "core/regular_file.h"
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
-
-static cm1e_error_t os_error(cm1e_config_problem_t *problem, int number)
-{
-    snprintf(problem->text, sizeof problem->text, "cannot be read: %s", strerror(number));
-    return number == ENOENT || number == ENOTDIR ? CM1E_ERROR_NOT_FOUND
-           : number == EACCES || number == EPERM ? CM1E_ERROR_PERMISSION
-                                                 : CM1E_ERROR_IO;
-}
 
 static cm1e_error_t read_all(int file, uint8_t *bytes, size_t *size, cm1e_config_problem_t *problem)
 {
@@ -28,7 +19,7 @@ static cm1e_error_t read_all(int file, uint8_t *bytes, size_t *size, cm1e_config
         if (n > 0)
             *size += (size_t)n;
         else if (errno != EINTR)
-            return os_error(problem, errno);
+            return cm1e_regular_file_error(errno, problem->text, sizeof problem->text);
     }
     snprintf(problem->text, sizeof problem->text, "is larger than %d bytes; expected a bus file",
              CM1E_BUSFILE_MAX_SIZE);
@@ -37,19 +28,12 @@ static cm1e_error_t read_all(int file, uint8_t *bytes, size_t *size, cm1e_config
 
 cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, cm1e_config_problem_t *problem)
 {
-    /* Without O_NONBLOCK, opening a FIFO nobody writes to would wait for ever. */
-    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0)
-        return os_error(problem, errno);
-    cm1e_error_t error = CM1E_OK;
-    struct stat status;
+    int file;
+    cm1e_error_t error = cm1e_regular_file_open(path, &file, problem->text, sizeof problem->text);
     *bytes = NULL;
-    if (fstat(file, &status) != 0) {
-        error = os_error(problem, errno);
-    } else if (!S_ISREG(status.st_mode)) {
-        snprintf(problem->text, sizeof problem->text, "is not a regular file");
-        error = CM1E_ERROR_IO;
-    } else if ((*bytes = malloc(CM1E_BUSFILE_MAX_SIZE + 1)) == NULL) {
+    if (error != CM1E_OK)
+        return error;
+    if ((*bytes = malloc(CM1E_BUSFILE_MAX_SIZE + 1)) == NULL) {
         snprintf(problem->text, sizeof problem->text, "cannot be read: out of memory");
         error = CM1E_ERROR_NO_MEMORY;
     } else {

@@ -1,8 +1,8 @@
 /**
  * @file output.h
  * Writes a file so that no reader sees it incomplete: it is made beside its place under a unique name, and renamed when
- * it is complete. An existing file keeps its rights, and a link to it stays a link; a link that leads to
- * nothing is replaced. A device or a pipe is written directly.
+ * it is complete. An existing file keeps its rights, and a link to it stays a link; a link that leads to nothing is
+ * replaced. A device or a pipe is written directly.
  */
 #ifndef CM1E_CORE_OUTPUT_H
 #define CM1E_CORE_OUTPUT_H

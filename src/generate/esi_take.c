@@ -1,17 +1,15 @@
 #include "generate/esi_take.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "config/clock_pulses.h"
 #include "config/esi_reader.h"
 #include "config/io_types.h"
+#include "core/regular_file.h"
 #include "description/expand.h"
 #include "generate/esi.h"
 
@@ -414,21 +412,20 @@ cm1e_error_t cm1e_esi_take(cm1e_slave_config_t *slave, const void *bytes, size_t
     return error;
 }
 
-/** Only a regular file: opening a FIFO that nobody writes to would wait for ever. NULL: `diag` says why. */
+/** NULL: `diag` says why. */
 static FILE *open_file(const char *path, cm1e_diag_t *diag)
 {
-    struct stat about;
-    const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    FILE *file = NULL;
-    if (descriptor < 0 || fstat(descriptor, &about) != 0)
-        cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "cannot be read: %s", strerror(errno));
-    else if (!S_ISREG(about.st_mode))
-        cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "is %s; expected the file of an ESI",
-                      S_ISDIR(about.st_mode) ? "a folder" : "not a regular file");
-    else if (!(file = fdopen(descriptor, "rb")))
+    int descriptor;
+    char why[200];
+    if (cm1e_regular_file_open(path, &descriptor, why, sizeof why) != CM1E_OK) {
+        cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s; expected the file of an ESI", why);
+        return NULL;
+    }
+    FILE *file = fdopen(descriptor, "rb");
+    if (!file) {
         cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "cannot be read: out of memory");
-    if (!file && descriptor >= 0)
         close(descriptor);
+    }
     return file;
 }
 
