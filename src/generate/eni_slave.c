@@ -9,7 +9,8 @@
 #include "generate/esi_take.h"
 
 enum { FIRST_TXPDO = 0x1A00, FIRST_RXPDO = 0x1600, END_OF_PDOS = 0x1C00, FIRST_ASSIGNMENT = 0x1C10 };
-enum { COUNT_BYTES = 1, PDO_BYTES = 2, ENTRY_BYTES = 4 };
+enum { COUNT_BYTES = 1, PDO_BYTES = 2, ENTRY_BYTES = 4, MODE_BYTES = 1, SYNC_TYPE_BYTES = 2 };
+enum { CONFIGURED_MODULES = 0xF030, SYNC_TYPE = 1, CSP = 8, CSV = 9 }; /* modes of CiA 402 */
 
 static cm1e_error_t wrong(const cm1e_slave_config_t *slave, cm1e_diag_t *diag, const char *what)
 {
@@ -227,6 +228,24 @@ static void command_mapping(writer_t *to, const cm1e_slave_config_t *slave)
     }
 }
 
+/** A simulated device has no dictionary here, and takes them. */
+static bool takes_modules(const cm1e_description_t *device, const cm1e_slave_config_t *slave)
+{
+    const bool is_simulated = device->objects.count == 0 && slave->sim.kind == CM1E_SIM_SLAVE_MODULAR;
+    return slave->module_count > 0 && (is_simulated || (cm1e_eni_is_writable(device, CONFIGURED_MODULES, 0) &&
+                                                        cm1e_eni_is_writable(device, CONFIGURED_MODULES, 1)));
+}
+
+static void command_modules(writer_t *to, const cm1e_description_t *device, const cm1e_slave_config_t *slave)
+{
+    if (!takes_modules(device, slave))
+        return;
+    command(to, CONFIGURED_MODULES, 0, 0, COUNT_BYTES, false);
+    for (unsigned i = 0; i < slave->module_count; i++)
+        command(to, CONFIGURED_MODULES, i + 1, slave->modules[i], ENTRY_BYTES, false);
+    command(to, CONFIGURED_MODULES, 0, slave->module_count, COUNT_BYTES, false);
+}
+
 /** That of the sync manager of the direction. */
 static uint16_t assignment_of(const cm1e_description_t *device, bool transmit)
 {
@@ -257,7 +276,8 @@ static bool is_replaced(const cm1e_description_t *device, const cm1e_slave_confi
     const bool of_pdos = own->index >= FIRST_RXPDO && own->index < END_OF_PDOS && slave->entry_count > 0;
     const bool outputs = own->index == assignment_of(device, false) && slave->outputs_pdo_count;
     const bool inputs = own->index == assignment_of(device, true) && slave->inputs_pdo_count;
-    if (slave->esi[0] || of_pdos || outputs || inputs)
+    const bool modules = own->index == CONFIGURED_MODULES && takes_modules(device, slave);
+    if (slave->esi[0] || of_pdos || outputs || inputs || modules)
         return true;
     for (unsigned i = 0; i < slave->sdo_count; i++)
         if (slave->sdos[i].index == own->index && slave->sdos[i].subindex == own->subindex)
@@ -273,6 +293,7 @@ static void write_commands(cm1e_arena_t *arena, cm1e_description_t *device, cons
         if (!is_replaced(device, slave, &device->init_commands.at[i]))
             *(cm1e_init_command_t *)CM1E_APPEND(arena, &to.list) = device->init_commands.at[i];
     command_sdos(&to, slave, false);
+    command_modules(&to, device, slave);
     command_assignment(&to, device, slave, true);
     command_mapping(&to, slave);
     command_assignment(&to, device, slave, false);
@@ -285,7 +306,8 @@ cm1e_error_t cm1e_eni_configure_slave(cm1e_description_file_t *file, const cm1e_
 {
     cm1e_arena_t *arena = &file->arena;
     cm1e_description_t *device = &file->devices.at[file->devices.count - 1];
-    const bool writes = slave->sdo_count || slave->entry_count || slave->outputs_pdo_count || slave->inputs_pdo_count;
+    const bool writes = slave->sdo_count || slave->entry_count || slave->outputs_pdo_count || slave->inputs_pdo_count ||
+                        takes_modules(device, slave);
     if (writes && !device->mailbox.coe)
         return wrong(slave, diag, "the bus file writes objects into it, and it has no mailbox with CoE");
     map_anew(arena, device, slave);
@@ -295,4 +317,48 @@ cm1e_error_t cm1e_eni_configure_slave(cm1e_description_file_t *file, const cm1e_
     name_all(arena, device, slave);
     write_commands(arena, device, slave);
     return CM1E_OK;
+}
+
+/* ---- what goes with the configuration ---------------------------------------------------------------------------- */
+
+bool cm1e_eni_is_writable(const cm1e_description_t *device, unsigned index, unsigned subindex)
+{
+    const cm1e_described_entry_t *entry = cm1e_description_entry(device, (uint16_t)index, (uint8_t)subindex);
+    return entry && (entry->access & CM1E_ACCESS_WRITE);
+}
+
+void cm1e_eni_synchronise(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave, bool inputs,
+                          unsigned type)
+{
+    const unsigned index = OBJ_1C32_SM_OUTPUT_PARAMETER + inputs;
+    writer_t to = {.arena = arena, .list = device->init_commands};
+    bool is_stated = false;
+    for (unsigned i = 0; slave && i < slave->sdo_count; i++)
+        is_stated |= slave->sdos[i].index == index && slave->sdos[i].subindex == SYNC_TYPE;
+    if (is_stated || type == 0 || !cm1e_eni_is_writable(device, index, SYNC_TYPE))
+        return;
+    command(&to, index, SYNC_TYPE, type, SYNC_TYPE_BYTES, false)->comment = "synchronisation type";
+    device->init_commands = to.list;
+}
+
+static bool has_output(const cm1e_description_t *device, unsigned index)
+{
+    for (size_t i = 0; i < device->pdos.count; i++) {
+        const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        for (size_t e = 0; !pdo->transmit && pdo->sync_manager != CM1E_NO_SYNC_MANAGER && e < pdo->entries.count; e++)
+            if (pdo->entries.at[e].index == index)
+                return true;
+    }
+    return false;
+}
+
+void cm1e_eni_start_mode(cm1e_arena_t *arena, cm1e_description_t *device)
+{
+    const unsigned index = OBJ_6060_MODES_OF_OPERATION;
+    writer_t to = {.arena = arena, .list = device->init_commands};
+    if (has_output(device, index) || !cm1e_eni_is_writable(device, index, 0))
+        return;
+    const bool by_position = has_output(device, OBJ_607A_TARGET_POSITION);
+    command(&to, index, 0, by_position ? CSP : CSV, MODE_BYTES, false)->comment = "mode of operation";
+    device->init_commands = to.list;
 }

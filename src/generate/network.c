@@ -178,10 +178,28 @@ static cm1e_error_t configure_drive(cm1e_description_file_t *file, const cm1e_ax
 {
     cm1e_slave_config_t slave = {.outputs_pdos = {axis->outputs_pdo}, .outputs_pdo_count = 1,
                                  .inputs_pdos = {axis->inputs_pdo}, .inputs_pdo_count = 1};
-    if (!axis->outputs_pdo)
-        return CM1E_OK;
     snprintf(slave.name, sizeof slave.name, "%s", axis->name);
-    return cm1e_eni_configure_slave(file, &slave, diag);
+    const cm1e_error_t error = axis->outputs_pdo ? cm1e_eni_configure_slave(file, &slave, diag) : CM1E_OK;
+    if (error == CM1E_OK)
+        cm1e_eni_start_mode(&file->arena, &file->devices.at[file->devices.count - 1]);
+    return error;
+}
+
+/* What 0x1C32:01 and 0x1C33:01 get for its pulses, as the bus does it: of SYNC1 only what the slave says that it can. */
+static void synchronise(cm1e_arena_t *arena, cm1e_description_t *device, cm1e_bus_t *bus, uint16_t position,
+                        const cm1e_eni_slave_t *slave, const known_t *known)
+{
+    enum { SUPPORTED = 4, BY_SYNC0 = 2, BY_SYNC1 = 3, CAN_SYNC0 = 0x04, CAN_SYNC1 = 0x08 }; /* ETG.1020 */
+    for (int inputs = 0; inputs < 2 && slave->pulses.sync0_us != 0 && device->mailbox.coe; inputs++) {
+        uint8_t can[2] = {CAN_SYNC0, 0};
+        size_t size = sizeof can;
+        if (slave->pulses.sync1_us != 0 &&
+            cm1e_sdo_read(bus, position, (uint16_t)(OBJ_1C32_SM_OUTPUT_PARAMETER + inputs), SUPPORTED, can, &size, NULL) !=
+                CM1E_OK)
+            continue;
+        cm1e_eni_synchronise(arena, device, known->slave, inputs != 0,
+                             can[0] & CAN_SYNC1 ? BY_SYNC1 : can[0] & CAN_SYNC0 ? BY_SYNC0 : 0);
+    }
 }
 
 cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag)
@@ -208,7 +226,7 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
         error = describe_slave(&described, bus, slave, one->axis ? one->axis->mapping : mapping, findings, diag);
         if (error == CM1E_OK && one->slave)
             error = cm1e_eni_configure_slave(&described, one->slave, diag);
-        if (error == CM1E_OK && one->axis)
+        if (error == CM1E_OK && one->axis && cm1e_device_configured(one->axis)->motor_stated)
             error = configure_drive(&described, one->axis, diag);
         slaves[position - 1].alias = alias_of(one);
         slaves[position - 1].name = one->slave ? one->slave->name
@@ -223,6 +241,8 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
     for (uint32_t i = 0; error == CM1E_OK && i < count; i++) {
         slaves[i].device = &described.devices.at[i];
         error = take_clock(&slaves[i], bus, (uint16_t)(i + 1), &known[i], diag);
+        if (error == CM1E_OK && (known[i].slave || !is_in_tables(cm1e_bus_slave(bus, i + 1))))
+            synchronise(&described.arena, &described.devices.at[i], bus, (uint16_t)(i + 1), &slaves[i], &known[i]);
     }
     if (error == CM1E_OK)
         error = cm1e_file_of_eni(file, slaves, count, cm1e_bus_configuration(bus)->cycle_time_ns, diag);

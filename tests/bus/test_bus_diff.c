@@ -226,6 +226,7 @@ START_TEST(the_eni_of_a_scan_has_the_pdos_that_the_bus_file_names_for_a_drive)
     ck_assert(!contains(&file, "<Pdo>5632</Pdo>") && !contains(&file, "<Pdo>6656</Pdo>"));
     ck_assert(contains(&file, "<Data>0116</Data>") && contains(&file, "<Data>011A</Data>")); /* assigned by SDO */
     ck_assert(contains(&file, "<DataLength>12</DataLength>")); /* of the LRW: the inputs are longer */
+    ck_assert(contains(&file, "<Index>24672</Index>")); /* 0x6060, which 0x1601 does not have */
     cm1e_file_free(&file);
     cm1e_bus_close(bus);
 }

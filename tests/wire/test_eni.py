@@ -11,6 +11,7 @@ import contextlib
 import os
 import sys
 import tempfile
+from xml.etree import ElementTree
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -176,6 +177,27 @@ def without_lrw(cm1e):
             succeeds(segment, path, move(axis), "bus file, a motor without LRW between two")
 
 
+def start_up_of_the_bus(cm1e):
+    """What this library writes into a modular device, for a clock, and into a drive without a mode in its process data."""
+    text = ("bus: {distributed_clocks: true}\n"
+            "axes:\n  - {name: s, position: 1, device: cia402, drive: {counts_per_revolution: 131072, max_speed_rpm: 3000, "
+            "outputs_pdo: 0x1601, inputs_pdo: 0x1A01}}\n"
+            "slaves:\n  - {name: island, position: 2, modules: [0x00000205, 0x00000105], sim: {device: modular}}\n"
+            "  - {name: level, position: 3, sim: {device: analog, inputs: 2}, dc: {sync0_us: 1000}}\n"
+            "  - {name: flow, position: 4, sim: {device: analog, inputs: 1}, dc: {sync0_us: 1000, sync1_us: 250}}\n")
+    with segment_of(cm1e, text) as segment:
+        path = generate(segment, cm1e, "-b", segment.slaves, "-i", wire.MASTER_INTERFACE)
+        written = {slave.findtext("Info/Name"): [
+            (int(command.findtext("Index")), int(command.findtext("SubIndex")), command.findtext("Data"))
+            for command in slave.findall("Mailbox/CoE/InitCmds/InitCmd")] for slave in ElementTree.parse(path).iter("Slave")}
+        expected = {"s": [(0x6060, 0, "08")], "island": [(0xF030, 0, "00"), (0xF030, 1, "05020000"), (0xF030, 2, "05010000"),
+                                                        (0xF030, 0, "02")],
+                    "level": [(0x1C32, 1, "0200"), (0x1C33, 1, "0200")], "flow": [(0x1C32, 1, "0300"), (0x1C33, 1, "0300")]}
+        for name, commands in expected.items():
+            wire.check([one for one in written[name] if one in commands] == commands, f"{name}: {written[name]}")
+        succeeds(segment, path, START + "def play(master): start(master); print('4 slaves')", "scan, start-up of the bus file")
+
+
 def runs(cm1e, path, *programs):
     with segment_of(cm1e, NETWORKS[os.path.basename(path)]) as segment:
         for program in programs:
@@ -210,6 +232,7 @@ if __name__ == "__main__":
         lambda: from_a_scan(command),
         lambda: beside_device_emulation(command),
         lambda: without_lrw(command),
+        lambda: start_up_of_the_bus(command),
         lambda: is_refused(command, one, "<Data>02204144</Data>", "<Data>03204144</Data>", "check product code"),
         lambda: is_refused(command, one, "<Cnt>3</Cnt>", "<Cnt>2</Cnt>", "working counter 3, not 2"),
         lambda: is_refused(command, one, "<Data>00110D0064000100</Data>", "<Data>00110E0064000100</Data>", "SAFEOP"))
