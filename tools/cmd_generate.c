@@ -275,7 +275,8 @@ static void check_words(const generate_options_t *options, struct argp_state *st
 static const struct argp_option table[] = {
     {"output", 'o', "FILE", 0, "Output file; - is standard output", 1},
     {"from", KEY_FROM, "FILE", 0,
-     "Convert FILE: to its own format, or from ESI to SII and back", 1},
+     "Convert FILE: to its own format, or from ESI to SII and back. Elements of an XML file that the new one does not have, "
+     "such as pictures, are named", 1},
     {"number", KEY_NUMBER, "N", 0, "With --from: the device of the ESI for which the SII is written; 1 = first", 1},
     {"layout", KEY_LAYOUT, "flat|mdp", 0, "ESI: how it is laid out; default flat", 2},
     {"program", KEY_PROGRAM, "FILE", 0, "ec-extend: also write a TrioBASIC start program", 2},

@@ -111,7 +111,8 @@ CM1E_API cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bu
                                                cm1e_diag_t *diag);
 
 /** Reads a file of any format and writes it in `format`: its own format, or ESI from SII and SII from ESI. `device` is
- *  the device of the ESI for which the SII is written, 0 = first. A file that cm1e_generate() wrote keeps its bytes.
+ *  the device of the ESI for which the SII is written, 0 = first. A file that cm1e_generate() wrote keeps its bytes;
+ *  `warning` names elements of another one that the new file of the same format does not have, such as pictures.
  *  Returns CM1E_ERROR_NOT_FOUND if the ESI has no such device, CM1E_ERROR_FILE if the file cannot be read (`diag` says
  *  where), CM1E_ERROR_UNSUPPORTED if `format` needs data that the file does not have. @rt init */
 CM1E_API cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t size, cm1e_file_format_t format,

@@ -9,6 +9,7 @@
 #include "generate/eni.h"
 #include "generate/esi.h"
 #include "generate/file.h"
+#include "generate/left_out.h"
 #include "generate/xml_read.h"
 
 static const struct {
@@ -181,16 +182,9 @@ static cm1e_error_t rewrite_eni(cm1e_file_t *file, const void *bytes, size_t siz
     return error;
 }
 
-cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t size, cm1e_file_format_t format,
-                                size_t device, cm1e_diag_t *diag)
+static cm1e_error_t write_anew(cm1e_file_t *file, const void *bytes, size_t size, cm1e_file_format_t found,
+                               cm1e_file_format_t format, size_t device, cm1e_diag_t *diag)
 {
-    if (!file || (!bytes && size > 0))
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_generate_from() needs a place for the file, "
-                             "and the bytes of another one.");
-    const cm1e_file_format_t found = cm1e_file_recognise(bytes, size);
-    *file = (cm1e_file_t){0};
-    if (found == CM1E_FILE_UNKNOWN)
-        return cm1e_file_not_recognised(diag);
     const bool described = (found == CM1E_FILE_ESI || found == CM1E_FILE_SII);
     if (found == format && found == CM1E_FILE_EC_EXTEND)
         return rewrite_ec_extend(file, bytes, size, diag);
@@ -214,5 +208,21 @@ cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t siz
         if (format == CM1E_FILE_ESI || i == device)
             cm1e_file_warn_of_eeprom(file, &content.devices.at[i]);
     cm1e_description_file_free(&content);
+    return error;
+}
+
+cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t size, cm1e_file_format_t format,
+                                size_t device, cm1e_diag_t *diag)
+{
+    if (!file || (!bytes && size > 0))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_generate_from() needs a place for the file, "
+                             "and the bytes of another one.");
+    const cm1e_file_format_t found = cm1e_file_recognise(bytes, size);
+    *file = (cm1e_file_t){0};
+    if (found == CM1E_FILE_UNKNOWN)
+        return cm1e_file_not_recognised(diag);
+    const cm1e_error_t error = write_anew(file, bytes, size, found, format, device, diag);
+    if (error == CM1E_OK && found == format && formats[found].root)
+        cm1e_warn_of_left_out(file, bytes, size);
     return error;
 }

@@ -293,6 +293,30 @@ static void test_axes_in_any_order_stand_in_the_eni_in_the_order_of_the_wire(voi
     assert_same_bytes();
 }
 
+/* What only its maker knows of, and pictures, are not taken over. The names stand behind the other warning. */
+static void test_what_a_file_loses_is_named(void)
+{
+    static const char own[] = "<Own Foo=\"1\"><Part>1</Part></Own><ImageData16x14>424D</ImageData16x14>", end[] = "</Device>";
+    static char text[1 << 20];
+    generate(&file, &(cm1e_generate_options_t){.format = CM1E_FILE_ESI});
+    const char *place = strstr((const char *)file.bytes, end);
+    const int before = (int)(place - (const char *)file.bytes);
+    const int size = snprintf(text, sizeof text, "%.*s%s%s", before, (const char *)file.bytes, own, place);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_generate_from(&again, file.bytes, file.size, CM1E_FILE_ESI, 0, &diag));
+    TEST_ASSERT_NULL(strstr(again.warning, "does not have"));
+    cm1e_file_free(&again);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_generate_from(&again, text, (size_t)size, CM1E_FILE_ESI, 0, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(again.warning, "the new file does not have Device/Own, Device/ImageData16x14"),
+                                 again.warning);
+    cm1e_file_free(&again);
+    char *at = text + before;
+    for (int n = 0; n < 700; n++)
+        at += sprintf(at, "<LongNameOfAnElementWithNumber%d/>", n);
+    strcpy(at, place);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_generate_from(&again, text, strlen(text), CM1E_FILE_ESI, 0, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(again.warning, " and 5"), again.warning);
+}
+
 static void test_unknown_files_are_refused(void)
 {
     cm1e_findings_t *findings = NULL;
@@ -324,6 +348,7 @@ int main(void)
     RUN_TEST(test_alias_and_serial_number_belong_to_an_sii);
     RUN_TEST(test_eni_needs_a_network_whose_places_are_known);
     RUN_TEST(test_axes_in_any_order_stand_in_the_eni_in_the_order_of_the_wire);
+    RUN_TEST(test_what_a_file_loses_is_named);
     RUN_TEST(test_unknown_files_are_refused);
     return UNITY_END();
 }
