@@ -1,5 +1,6 @@
 /* Implicit conversions, which never lose anything, and what can be assigned to. */
 #include <string.h>
+#include <strings.h>
 
 #include "st/st_parsing.h"
 #include "st/st_standard.h"
@@ -36,8 +37,19 @@ static bool is_constant_enumerator(const expr_t *expr, type_kind_t to)
     return expr->type->kind == T_ENUM && cm1e_st_is_fixed(expr) && to > T_BOOL && to <= T_LREAL;
 }
 
+const char *cm1e_st_hidden_enumerator(const type_t *type, const expr_t *expr, char *text, size_t size)
+{
+    text[0] = '\0';
+    for (const var_t *one = type->kind == T_ENUM && expr->kind == E_NAME ? type->members : NULL; one; one = one->next)
+        if (strcasecmp(one->name, expr->name) == 0)
+            snprintf(text, size, "; \"%.60s\" is the variable here, the enumerator is %.60s#%.60s", expr->name, type->name,
+                     one->name);
+    return text;
+}
+
 static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *what)
 {
+    char hidden[240];
     const type_kind_t from = expr->type->kind, to = type->kind;
     if ((from == T_ANY_INT && to <= T_LREAL && expr->value.known) || is_constant_enumerator(expr, to))
         cm1e_st_report(st, expr->place, "%s%lld is not a value of %s, which \"%s\" is", expr->value.huge ? "(as LINT) " : "",
@@ -49,9 +61,10 @@ static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *wh
                        "change its meaning; %s_TO_%s(...) converts it", what, cm1e_st_type_name(type),
                        cm1e_st_type_name(expr->type), plain_name(expr->type), plain_name(type));
     else if (to == T_ENUM && from != T_ENUM)
-        cm1e_st_report(st, expr->place, "\"%s\" is %s, and takes its enumerators, for instance %s%s", what,
+        cm1e_st_report(st, expr->place, "\"%s\" is %s, and takes its enumerators, for instance %s%s%s", what,
                        cm1e_st_type_name(type), type->members ? type->members->name : "none", cm1e_st_is_integer(from) ?
-                       "; an integer may be none of them: choose one by CASE" : "");
+                       "; an integer may be none of them: choose one by CASE" : "",
+                       cm1e_st_hidden_enumerator(type, expr, hidden, sizeof hidden));
     else if (from == T_ENUM && to > T_BOOL && to <= T_LREAL)
         cm1e_st_report(st, expr->place, "\"%s\" is %s, and %s has values of %s, which could be lost or change their meaning: "
                        "TO_%s(...) converts them", what, cm1e_st_type_name(type), cm1e_st_type_name(expr->type),

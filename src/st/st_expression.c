@@ -314,8 +314,12 @@ static void wrong_operands(st_t *st, expr_t *expr)
         hint = "; bits are no number: convert them, as in WORD_TO_UINT(...)";
     else if (expr->op <= OP_AND_THEN || expr->op == OP_NOT)
         hint = "; it is for BOOL, BYTE, WORD, DWORD and LWORD";
-    if (expr->b)
-        cm1e_st_report(st, expr->place, "%s %s %s is not defined%s", a, op, b, hint);
+    if (expr->b) {
+        char left[240], right[240];
+        cm1e_st_report(st, expr->place, "%s %s %s is not defined%s%s%s", a, op, b, hint,
+                       cm1e_st_hidden_enumerator(expr->a->type, expr->b, right, sizeof right),
+                       cm1e_st_hidden_enumerator(expr->b->type, expr->a, left, sizeof left));
+    }
     else
         cm1e_st_report(st, expr->place, "%s %s is not defined%s", op, a, hint);
     set_wrong(st, expr);

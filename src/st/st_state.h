@@ -135,6 +135,9 @@ void cm1e_st_check_expression(st_t *st, expr_t *expr);
 static inline void cm1e_st_expression(st_t *st, expr_t *expr) { st->checker->expression(st, expr); }
 /** The expression as a value of this type: converted, if that is lossless; else reported. */
 expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what);
+/** Says that an expression is a variable, and how the enumerator of the same name is written, where it has the name of an
+ *  enumerator of the type; else "". Names have no case. */
+const char *cm1e_st_hidden_enumerator(const type_t *type, const expr_t *expr, char *text, size_t size);
 /** A literal without a type gets the one it has if nothing else says so. */
 expr_t *cm1e_st_settle(st_t *st, expr_t *expr);
 expr_t *cm1e_st_convert_node(st_t *st, expr_t *expr, type_t *type);
