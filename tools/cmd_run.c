@@ -1,9 +1,14 @@
 /** cm1e run: runs a program that `cm1e st build` has translated from Structured Text. */
 #include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 #include "attach.h"
+#include "cm1e/log.h"
 #include "cm1e/plot.h"
 #include "command.h"
 #include "scheduler/scheduler_window.h"
@@ -87,7 +92,8 @@ const struct argp argp_run = {
     table, parse, "PROGRAM.so",
     "Runs a program that `cm1e st build` has translated, on the network of the bus file. A variable of type AXIS_REF is "
     "the axis of its name. \"-i sim\" without a bus file simulates a machine with the axes of the program, whose units are "
-    "revolutions. Meanwhile `cm1e monitor`, `cm1e trace` and `cm1e log` show axes and variables. An error of the "
+    "revolutions. Meanwhile `cm1e monitor`, `cm1e trace` and `cm1e log` show axes and variables; errors of axes are told "
+    "when they occur. An error of the "
     "program while it runs, as an index outside an array, ends the run: the axes ramp down, and are disabled.",
     children, NULL, NULL};
 
@@ -107,6 +113,72 @@ static cm1e_error_t write_files(const cm1e_scheduler_t *scheduler, const run_opt
             error = writers[i](scheduler, options->files[i], diag);
     return error;
 }
+
+/* ---- errors of axes, while the program runs ---------------------------------------------------------------------- */
+
+/** A program that resets its axes at once could fill a disk. */
+enum { TOLD_MAX = 100, LOOK_NS = 100000000 };
+
+typedef struct teller {
+    const cm1e_scheduler_t *scheduler;
+    atomic_bool end;
+    pthread_t thread;
+    bool started;
+} teller_t;
+
+/** Tells the errors behind the record `after`, and returns the last one that was looked at. */
+static uint64_t tell_errors(const cm1e_scheduler_t *scheduler, uint64_t after, unsigned *told)
+{
+    cm1e_log_event_t events[16];
+    size_t count;
+    while ((count = cm1e_log_read(scheduler, after, events, sizeof events / sizeof events[0], NULL)) > 0) {
+        for (size_t i = 0; i < count; i++) {
+            char text[512];
+            if (events[i].kind != CM1E_LOG_ERROR || *told > TOLD_MAX)
+                continue;
+            cm1e_log_text(scheduler, &events[i], text, sizeof text);
+            fprintf(stderr, "%s: %s\n", program_invocation_name,
+                    (*told)++ < TOLD_MAX ? text : "further errors of axes are not told here: `cm1e log` shows them");
+        }
+        after = events[count - 1].number;
+    }
+    return after;
+}
+
+static void *tell(void *argument)
+{
+    teller_t *teller = argument;
+    const struct timespec pause = {.tv_nsec = LOOK_NS};
+    uint64_t after = 0;
+    unsigned told = 0;
+    for (bool end = false; !end;) {
+        end = atomic_load(&teller->end);
+        after = tell_errors(teller->scheduler, after, &told);
+        if (!end)
+            nanosleep(&pause, NULL);
+    }
+    return NULL;
+}
+
+/** Before the run, so that its thread does not have the priority of the cycle. */
+static void begin_telling(teller_t *teller, const cm1e_scheduler_t *scheduler)
+{
+    sigset_t all, before;
+    teller->scheduler = scheduler;
+    sigfillset(&all); /* signals are for the thread that runs the cycle */
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    teller->started = pthread_create(&teller->thread, NULL, tell, teller) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+static void end_telling(teller_t *teller)
+{
+    atomic_store(&teller->end, true);
+    if (teller->started)
+        pthread_join(teller->thread, NULL);
+}
+
+/* ---- the run ----------------------------------------------------------------------------------------------------- */
 
 /** A good end in words: how long, and what ended it. */
 static void tell_end(const cm1e_scheduler_t *scheduler, const run_options_t *options, const cm1e_bus_config_t *config)
@@ -132,9 +204,12 @@ static int run_scheduler(st_loaded_t *loaded, cm1e_scheduler_t *scheduler, const
     char text[400];
     cm1e_diag_t diag = {0};
     cm1e_scheduler_stop_on_signals(scheduler);
+    teller_t teller = {.started = false};
+    begin_telling(&teller, scheduler);
     service_notify("READY=1\nSTATUS=in operation");
     const cm1e_error_t ran = cm1e_scheduler_run(scheduler, (int64_t)(options->seconds * 1e9), &diag);
     service_notify("STOPPING=1");
+    end_telling(&teller);
     const bool failed = ran != CM1E_OK;
     if (failed)
         fail(&diag);

@@ -219,6 +219,21 @@ def check_end():
         faults.append(f"a run that a signal ended: {row}")
 
 
+def check_errors_of_axes():
+    """What an axis says when it fails is told, although the program goes on; not without end."""
+    stop = BUS.replace(", sim: {no_stops: true}", "")
+    with open("stop.yaml", "w", encoding="ascii") as file:
+        file.write(stop)
+    program = build("stops", MOVE.format(";"))
+    told = run(program, "-s", "5", bus="stop.yaml", says="cm1e run: X: the position lag is above its limit")
+    if told.stderr.count("position lag") != 1:
+        faults.append(f"an error is told once: {told.stderr}")
+    again = MOVE.replace("VAR power", "VAR reset : MC_Reset; power").format("reset(Axis := X, Execute := NOT reset.Busy AND NOT reset.Done);")
+    told = run(build("again", again), "-s", "300", bus="stop.yaml", says="further errors of axes are not told here")
+    if told.stderr.count("cm1e run: X: ") != 100:
+        faults.append(f"{told.stderr.count('cm1e run: X: ')} errors are told")
+
+
 def check_retain():
     build("retain", RETAIN)
     for expected in (6, 7, 8):
@@ -273,6 +288,7 @@ with tempfile.TemporaryDirectory() as folder:
     check_without_bus_file()
     check_located()
     check_end()
+    check_errors_of_axes()
     check_retain()
     check_twincat()
 if faults:
