@@ -136,6 +136,8 @@ static void print_dot_slave(FILE *file, const graph_t *graph, uint32_t i)
         fprintf(file, "  s%u -> s%u [style=dotted, color=red];\n", i, slave->position);
     else if (is_from_second(graph, i))
         fprintf(file, "  master -> s1 [style=dotted, color=red];\n");
+    else if (!place->known && i > 0)
+        fprintf(file, "  s%u -> s%u [style=dotted, color=red];\n", i, slave->position);
     else if (place->parent)
         fprintf(file, "  s%u -> s%u [taillabel=\"%u\", headlabel=\"%u\"];\n", place->parent, slave->position,
                 place->parent_port, place->entry_port);

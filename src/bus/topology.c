@@ -72,14 +72,21 @@ cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size
     return cm1e_bus_read_topology(bus, places, room, diag);
 }
 
+/** The slaves of a program that runs may have gone since it began. No frame passes those, so the others are wired without
+ *  them. */
 cm1e_error_t cm1e_bus_read_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag)
 {
     walk_t walk = {.count = 0};
+    uint32_t gone = 0;
     for (uint16_t position = 1; position <= bus->scanned && position <= room; position++) {
         uint8_t status[2] = {0};
-        if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status))
-            return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer when its ports are read.",
-                                 position);
+        if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status)) {
+            if (!bus->remote || ++gone == bus->scanned)
+                return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer when its ports are read.",
+                                     position);
+            places[position - 1] = (cm1e_slave_place_t){0};
+            continue;
+        }
         take_ports(&places[position - 1], cm1e_get_u16(status));
         connect_slave(&walk, places, position);
     }

@@ -6,6 +6,7 @@ test_graph.py CM1E
 """
 import itertools
 import os
+import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree
@@ -22,6 +23,16 @@ slaves:
 """
 LONG = '"feed of the long conveyor belt"'
 RING = f"axes:\n  - {{name: {LONG}, position: 1}}\n  - {{name: Y, position: 2}}\n  - {{name: Z, position: 3}}\n"
+
+
+LINE = """\
+axes:
+  - {name: X, position: 1}
+  - {name: Y, position: 2}
+  - {name: Z, position: 3}
+slaves:
+  - {name: out, position: 4, sim: {device: digital, outputs: 4}}
+"""
 
 
 class Picture:
@@ -102,6 +113,23 @@ def ring(bench):
         bench.segment.console(f"replug {cable}")
 
 
+def lost(bench):
+    """Beside a program that runs: what does not answer any more is drawn as such, with the others where they are."""
+    program = subprocess.Popen(bench.segment.command([bench.cm1e, "trace", "-b", bench.path, "--for", "60", "--csv", os.devnull]),
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        wire.wait_for(lambda: bench.segment.run([bench.cm1e, "log", "-b", bench.path]).returncode == 0, 10, "nothing runs")
+        bench.segment.console("unplug 3")
+        picture = bench.picture("slaves behind a cable that is out")
+        wire.check(picture.broken == [False, False, True, True] and picture.red_boxes == 2 and len(picture.boxes) == 5,
+                   f"lost slaves: {picture.broken}, {picture.red_boxes}")
+        dot = bench.dot()
+        wire.check("s1 -> s2 [taillabel" in dot and "s2 -> s3 [style=dotted, color=red]" in dot, dot)
+    finally:
+        program.kill()
+        program.wait()
+
+
 def main(cm1e):
     def on_a_segment(check, text, bus, **more):
         with tempfile.TemporaryDirectory() as folder:
@@ -112,6 +140,7 @@ def main(cm1e):
                 check(Bench(cm1e, segment, folder, text, bus))
 
     wire.together(lambda: on_a_segment(tree, TREE, "cycle_time_us: 1000"),
+                  lambda: on_a_segment(lost, LINE, "lost_cycles_limit: 50"),
                   lambda: on_a_segment(ring, RING, f"second_interface: {wire.MASTER_SECOND}", ring=True))
 
 
