@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """docs/FIRST-HOUR.md as a beginner does it: every line with "$" is run in an empty folder, and what the page shows under
-it is in the output, in that order. The project that `cm1e new` makes does not overwrite anything.
+it is in the output, in that order. So are such lines of docs/COMMAND.md. The project that `cm1e new` makes does not overwrite anything.
 
 test_first_hour.py BIN-DIRECTORY SOURCE-DIRECTORY
 """
@@ -36,11 +36,11 @@ def run(command, folder):
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60).stdout
 
 
-def check_page(folder):
-    with open(os.path.join(SOURCE, "docs/FIRST-HOUR.md"), encoding="utf-8") as file:
+def check_page(folder, name, least):
+    with open(os.path.join(SOURCE, name), encoding="utf-8") as file:
         page = steps(file.read())
-    if len(page) < 10:
-        faults.append(f"docs/FIRST-HOUR.md: only {len(page)} commands can be read")
+    if len(page) < least:
+        faults.append(f"{name}: only {len(page)} commands can be read")
     for command, lines in page:
         output = run(command, folder)
         at = 0
@@ -50,8 +50,6 @@ def check_page(folder):
                 faults.append(f"$ {command}\nthe page shows \"{line}\", the output is\n{output}")
                 break
             at = found
-    for name in ("move.svg", "lift.svg"):
-        xml.etree.ElementTree.parse(os.path.join(folder, name))
     return len(page)
 
 
@@ -79,7 +77,10 @@ def check_new(folder):
 def main():
     real_time.run_above_others()
     with tempfile.TemporaryDirectory() as folder:
-        count = check_page(folder)
+        count = check_page(folder, "docs/FIRST-HOUR.md", 10)
+        for name in ("move.svg", "lift.svg"):
+            xml.etree.ElementTree.parse(os.path.join(folder, name))
+        check_page(folder, "docs/COMMAND.md", 2)
         check_new(folder)
     real_time.end(faults, f"docs/FIRST-HOUR.md: {count} commands do what the page shows")
 
