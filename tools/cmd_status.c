@@ -265,12 +265,40 @@ static void show_strangers(const cm1e_bus_t *bus, json_t *all)
     }
 }
 
+/* ---- errors of axes, of a program that runs ---------------------------------------------------------------------- */
+
+/** An axis may have an error that its drive knows nothing of: a coupling that asked for too much, a lost slave elsewhere. */
+static void show_axis_errors(const common_options_t *options, const cm1e_bus_config_t *config, json_t *all)
+{
+    cm1e_control_t *control;
+    cm1e_diag_t diag = {0};
+    if (connect_network(options, config, &control, &diag) != CM1E_OK)
+        return; /* no program runs, or it has gone meanwhile */
+    json_t *axes = ask_program(control, json_pack("{s:s}", "request", "axes"), "axes", &diag), *axis;
+    size_t i;
+    json_array_foreach (axes, i, axis) {
+        const char *text = json_string_value(json_object_get(axis, "text"));
+        const json_int_t position = json_integer_value(json_object_get(axis, "slave"));
+        if (!json_is_object(json_object_get(axis, "error")) || !text)
+            continue;
+        if (!all)
+            printf("%s\n", text);
+        json_t *slave = position > 0 ? json_array_get(all, (size_t)position - 1) : NULL;
+        json_t *errors = json_object_get(slave, "axis_errors");
+        if (slave && !errors) /* of a bridge each motor may have one */
+            json_object_set_new(slave, "axis_errors", errors = json_array());
+        json_array_append_new(errors, json_string(text));
+    }
+    json_decref(axes);
+    cm1e_control_close(control);
+}
+
 static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
                                  "Shows state, error, measurements and the last emergencies of every drive, and which "
                                  "slaves are not motors. Of a network that is not as the bus file says, it tells "
-                                 "what differs. Where a program runs the network, it is asked; else the "
-                                 "network is brought to Pre-Operational.",
+                                 "what differs. Where a program runs the network, it is asked, for errors of its axes "
+                                 "too; else the network is brought to Pre-Operational.",
                                  children, NULL, NULL};
 
 static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
@@ -299,6 +327,7 @@ static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *co
     }
     show_strangers(bus, all);
     show_ring(bus, all);
+    show_axis_errors(options, config, all);
     if (all)
         print_json(all);
     else

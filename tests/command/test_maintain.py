@@ -277,6 +277,9 @@ def check_emergencies(client, attached):
     as_json = json.loads(attached("status", "--json").stdout)
     expect([len(s["emergencies"]) for s in as_json] == [0, 1, 0] and as_json[Y - 1]["emergencies"][0]["code"] ==
            told["code"], "status --json", as_json)
+    error = axis(client, Y)["text"]
+    expect(error != "" and error in shown.stdout and [s.get("axis_errors") for s in as_json] == [None, [error], None],
+           "status has the error of the axis", (error, shown.stdout))
     events = [e for e in client.ask("log")["log"]["events"] if e["kind"] == "emergency"]
     expect([e["code"] for e in events] == [told["code"]] and words in events[0]["text"] and
            events[0]["text"].startswith('Slave 2 ("Y", '), "the event log", events)
