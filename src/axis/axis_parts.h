@@ -155,6 +155,7 @@ typedef struct power {
     cm1e_error_t reset_error;
     int64_t free_ns;                /**< since when no torque is commanded */
     int64_t brake_until_ns;         /**< until then the torque stays at least, to brake */
+    int64_t held_ns;                /**< since when the set-point rests and the torque is to go; 0: it does not */
     uint64_t settled;               /**< what the owner shows while the power stage is on and it has nothing to do; 0: it
                                          has, or may have */
 } power_t;

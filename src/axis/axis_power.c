@@ -5,6 +5,9 @@
  * (note 2). The motor is ramped down with the axis's deceleration, and loses its torque only then; until then
  * MC_Power.Status is TRUE. ErrorStop ramps down without a limit of jerk and ends without torque too. So MC_Reset leads
  * to Disabled (note 3), and from there to Standstill if MC_Power.Enable is TRUE.
+ *
+ * The end of a ramp is the end of its set-points. A heavy load that a pause has let swing still turns the motor then, and
+ * only the torque can stop it. So the torque stays until the motor rests too, or for two seconds if it never does.
  */
 #include <math.h>
 
@@ -17,6 +20,7 @@
 #include "axis/axis_handle.h"
 #include "axis/axis_lead.h"
 #include "axis/axis_limits.h"
+#include "axis/axis_pause.h"
 #include "axis/axis_position.h"
 #include "axis/axis_pursuit.h"
 #include "axis/axis_setpoint.h"
@@ -27,6 +31,11 @@
 /* At the end of a run, the time after which an offline drive counts as gone. */
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
 static const int64_t brake_ns = 20 * MS_IN_NS;
+/* A motor that its emergency deceleration brings to rest in this time is about to rest: it follows its set-point. */
+static const double rests_in_s = 3e-3;
+static const double rest_counts = 50.0; /* tolerance, in counts of a CM1-E */
+/* A motor that does not come to rest by then is turned by something else than its ramp. */
+static const int64_t longest_swing_ns = 2000 * MS_IN_NS;
 
 /* Stops the motion, by our ramp or, during a homing, by the drive. Without torque there is nothing to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
@@ -234,16 +243,46 @@ static void take_over(cm1e_axis_t *axis)
     cm1e_axis_go(axis, ON_POWER_ON);
 }
 
+static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b_ns; }
+
+/* The set-point is at rest. The torque stays for a moment after the motor turned last: where a swinging load turns round,
+ * it is slow too, but away from the set-point. A motor that something holds away from there rests all the same. */
+static void wait_for_rest(cm1e_axis_t *axis)
+{
+    power_t *power = &axis->power;
+    const bool first = power->held_ns == 0;
+    if (first)
+        power->held_ns = axis->now_ns;
+    if (!axis->drive.feedback.fresh || axis->now_ns - power->held_ns >= longest_swing_ns)
+        return;
+    const double braked = axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s;
+    const double slow = braked + CM1E_AXIS_VELOCITY_NOISE; /* counts/s */
+    const double away = fabs(cm1e_position_minus(axis_actual(axis), axis->setpoint.position)); /* counts */
+    const bool turns = fabs(axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) > slow;
+    if (turns || (first && away > slow * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts)))
+        power->brake_until_ns = later(power->brake_until_ns, axis->now_ns + brake_ns);
+}
+
+/* Whether the torque may go: a ramp has ended, its last set-point was sent, and the motor rests. */
+static bool ramp_is_over(cm1e_axis_t *axis)
+{
+    if (!cm1e_drive_is_virtual(&axis->drive))
+        wait_for_rest(axis);
+    return axis->now_ns >= axis->power.brake_until_ns && cm1e_axis_backlash_at_rest(axis) &&
+           (!axis->power.shutting_down || cm1e_axis_outputs_off_first(axis));
+}
+
 void cm1e_axis_power_step(cm1e_axis_t *axis)
 {
     const bool acting = axis_acts(axis);
     const bool wanted = cm1e_axis_wants_enable(axis) && !axis->power.letting_go;
-    const bool still = axis_free(axis) || axis_holds(axis);
+    const bool still = axis_free(axis) || axis_holds(axis), leaves = axis_holds(axis) && !wanted;
+    if (!leaves)
+        axis->power.held_ns = 0;
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
-    else if (axis_holds(axis) && !wanted && axis->now_ns >= axis->power.brake_until_ns &&
-             cm1e_axis_backlash_at_rest(axis) && (!axis->power.shutting_down || cm1e_axis_outputs_off_first(axis)))
-        cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point was sent */
+    else if (leaves && ramp_is_over(axis))
+        cm1e_axis_become_free(axis);
     else if (!axis_free(axis) && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque was lost during a ramp */
 }

@@ -1,4 +1,5 @@
 /* A motor that does not follow, and a bus that goes: ErrorStop, the ramp, and how long the torque stays. */
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -306,6 +307,61 @@ static void test_a_slave_that_was_away_is_no_longer_homed(void)
     TEST_ASSERT_FALSE(bench_info().homed);
 }
 
+/* ---- a motor that turns behind the end of its ramp --------------------------------------------------------------- */
+
+static int swings; /* cycles that are left */
+
+/** To and fro around the target: amplitude 600 counts, at most 60,000 counts/s. */
+static void swing(cm1e_bus_t *motor)
+{
+    if (swings <= 0)
+        return;
+    swings--;
+    const double phase = 0.1 * swings;
+    motor->position = motor->target_position + (int32_t)(600.0 * cos(phase));
+    motor->velocity_raw = (int32_t)(60000.0 * sin(phase));
+}
+
+/** At rest, 0.1 u beside the target. */
+static void hang(cm1e_bus_t *motor)
+{
+    motor->position = motor->target_position - 5000;
+    motor->velocity_raw = 0;
+}
+
+/** Ends the power, or fails, with a motor that turns for so long. Milliseconds until the torque goes. */
+static int torque_behind(void (*world)(cm1e_bus_t *motor), int cycles, bool by_error)
+{
+    bench_start();
+    bench_enable();
+    bench_cycles(50);
+    bus.world = world;
+    swings = cycles;
+    if (by_error)
+        cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
+    else
+        bench_power(false);
+    int lasted = 0;
+    while (bus.state == OPERATION_ENABLED && lasted < 5000) {
+        bench_cycles(1);
+        lasted++;
+    }
+    bus.world = NULL;
+    return lasted;
+}
+
+/** Whatever way the torque ends: it brakes a load that swings, and goes when the motor rests, or after two seconds. */
+static void test_torque_stays_while_the_motor_turns_for_two_seconds_at_most(void)
+{
+    for (int by_error = 0; by_error < 2; by_error++) {
+        TEST_ASSERT_INT_WITHIN(3, 3, torque_behind(NULL, 0, by_error));
+        for (int cycles = 30; cycles <= 900; cycles += 29) /* it ends in any phase */
+            TEST_ASSERT_INT_WITHIN(18, cycles + 12, torque_behind(swing, cycles, by_error));
+        TEST_ASSERT_INT_WITHIN(15, 2010, torque_behind(swing, INT_MAX, by_error));
+        TEST_ASSERT_INT_WITHIN(3, 22, torque_behind(hang, 0, by_error));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -320,6 +376,7 @@ int main(void)
     RUN_TEST(test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is);
     RUN_TEST(test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit);
     RUN_TEST(test_motor_ahead_after_a_pause_is_judged_by_the_speed_that_it_had);
+    RUN_TEST(test_torque_stays_while_the_motor_turns_for_two_seconds_at_most);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
     RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
     return UNITY_END();
