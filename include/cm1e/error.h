@@ -56,6 +56,7 @@ extern "C" {
     X(ERROR_DRIVE_MODE_LOST, -45, "the drive left the commanded mode of operation")                                 \
     X(ERROR_DRIVE_RESET_TIMEOUT, -46, "the fault did not clear")                                                    \
     X(ERROR_DRIVE_POSITION, -47, "the drive shows positions that its motor cannot have reached")                    \
+    X(ERROR_DRIVE_KEEPS_TORQUE, -48, "the drive keeps its torque although it was told to have none")                \
     X(ERROR_CML_STRING, -50, "the string cannot be sent to this motor: empty, too long, cut off, or for another one") \
     X(ERROR_CML_MOTION, -51, "the CML string may move the motor or change its power, and that is not allowed")      \
     X(ERROR_CML_TIMEOUT, -52, "no answer to the CML string came in time")                                           \

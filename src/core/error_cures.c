@@ -43,6 +43,7 @@ static const struct {
     {CM1E_ERROR_DRIVE_MODE_LOST, "look for another master or an SDO that writes 0x6060; then MC_Reset"},
     {CM1E_ERROR_DRIVE_RESET_TIMEOUT, "remove the cause of the fault first: cm1e status shows it; then repeat MC_Reset"},
     {CM1E_ERROR_DRIVE_POSITION, "check counts_per_revolution and the motor in the bus file; look for a defect encoder"},
+    {CM1E_ERROR_DRIVE_KEEPS_TORQUE, "cut the motor power; look for another controller of the drive; then MC_Reset"},
     {CM1E_ERROR_CML_STRING, "send at most 64 bytes, without line ends, for the motor of this axis"},
     {CM1E_ERROR_CML_MOTION, "set AllowMotion (cm1e cml --allow-motion) if the motor may move"},
     {CM1E_ERROR_CML_TIMEOUT, "give a longer Timeout; check the serial line between bridge and motor"},

@@ -14,6 +14,8 @@ static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
 static const int64_t torque_pause_ns = 20 * MS_IN_NS;
 /* At the latest then, after the torque was taken away, a quick stop that the drive has begun by itself is ended. */
 static const int64_t quick_stop_ns = 10000 * MS_IN_NS;
+/* So long it may show torque after that. */
+static const int64_t disable_timeout_ns = 2000 * MS_IN_NS;
 /* Of the velocity that the motor may have: below this part a quick stop counts as over. */
 enum { QUICK_STOP_PART = 100 };
 
@@ -177,6 +179,30 @@ static void refuse_torque(cm1e_drive_t *drive)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_TIMEOUT);
 }
 
+/* Whether the drive may still be on a ramp of its own, which ends with its torque. */
+static bool brakes_by_itself(const cm1e_drive_t *drive)
+{
+    const int64_t slow = drive->range.velocity_possible / QUICK_STOP_PART;
+    return llabs((int64_t)drive->feedback.velocity) > slow && drive->now_ns < drive->waits.torque_from_ns + quick_stop_ns;
+}
+
+/* Nobody waits for ever for a drive that does not obey: that its motor has torque is an error, also while power is off. */
+static void watch_torque(cm1e_drive_t *drive)
+{
+    cm1e_drive_waits_t *waits = &drive->waits;
+    const cm1e_drive_feedback_t *f = &drive->feedback;
+    const bool shown = cm1e_drive_shows_torque(drive) && !f->motor_free;
+    waits->gives_up = drive->torque.asked || (waits->gives_up && (shown || !f->online));
+    const bool told = !drive->torque.asked && drive->reset.phase == RESET_IDLE && drive->mode.takes_torque;
+    const bool kept = told && f->online && shown && (drive->command.enable || waits->gives_up);
+    if (!kept || brakes_by_itself(drive))
+        waits->kept_ns = 0;
+    else if (waits->kept_ns == 0)
+        waits->kept_ns = drive->now_ns;
+    else if (drive->now_ns - waits->kept_ns >= disable_timeout_ns)
+        cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_KEEPS_TORQUE);
+}
+
 static bool wants_torque(const cm1e_drive_t *drive)
 {
     if (!drive->command.enable || !drive->actual.seen || drive->reset.phase != RESET_IDLE || !drive->mode.takes_torque)
@@ -219,9 +245,7 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
  * not lead out of it, but Disable voltage does (CiA 402, transition 12). It waits until the ramp of the drive is over. */
 static bool ends_quick_stop(const cm1e_drive_t *drive)
 {
-    const int64_t slow = drive->range.velocity_possible / QUICK_STOP_PART;
-    return drive->feedback.state == QUICK_STOP_ACTIVE && (llabs((int64_t)drive->feedback.velocity) <= slow ||
-                                                          drive->now_ns >= drive->waits.torque_from_ns + quick_stop_ns);
+    return drive->feedback.state == QUICK_STOP_ACTIVE && !brakes_by_itself(drive);
 }
 
 /* During a switch to a mode with other words, the present words are meaningless. */
@@ -320,6 +344,7 @@ void cm1e_drive_write(cm1e_drive_t *drive)
 
     if (!drive->torque.asked)
         refuse_torque(drive);
+    watch_torque(drive);
     const bool torque = wants_torque(drive);
     if (torque && !drive->torque.asked)
         drive->waits.enable_deadline_ns = drive->now_ns + enable_timeout_ns;

@@ -20,6 +20,7 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
         const uint16_t missing = cm1e_bus_missing_slave(drive->bus);
         fault->missing = missing != drive->position ? missing : 0;
     }
+    fault->keeps_torque |= error == CM1E_ERROR_DRIVE_KEEPS_TORQUE;
     fault->slave_lost |= drive->watch.lost;
     fault->slave_absent |= drive->watch.lost || drive->watch.silent;
     /* While the working counter stays wrong, nothing shows that the slave hears again. */

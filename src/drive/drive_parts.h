@@ -65,11 +65,12 @@ typedef struct cm1e_drive_fault {
     uint16_t statusword;
     int8_t mode_commanded, mode_shown;
     uint16_t al_state, al_status_code;
-    bool slave_lost;                /**< the slave did not answer at its address, then or later */
-    bool slave_absent;                /**< the slave took no part in the cycle, then or later */
-    uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error */
-    bool motor_status_known;        /**< `motor_status` is valid */
     uint16_t missing;               /**< position of another slave that took no part in the cycle, then or later; 0: none */
+    uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error */
+    bool motor_status_known : 1;    /**< `motor_status` is valid */
+    bool slave_lost : 1;            /**< the slave did not answer at its address, then or later */
+    bool slave_absent : 1;          /**< the slave took no part in the cycle, then or later */
+    bool keeps_torque : 1;          /**< the drive did not obey when it was told to have none, then or later */
 } cm1e_drive_fault_t;
 
 typedef struct cm1e_drive_encoder {
@@ -177,6 +178,8 @@ typedef struct cm1e_drive_torque {
 typedef struct cm1e_drive_waits {
     int64_t enable_deadline_ns, torque_from_ns;
     int64_t blocked_ns;             /**< since when torque is requested in a mode that has none */
+    int64_t kept_ns;                /**< since when it shows torque that it was told to give up, and does not brake; 0: no */
+    bool gives_up;                  /**< it was given torque, and has not shown since then that it has none */
 } cm1e_drive_waits_t;
 
 /** A fault reset. Written by drive_private.h and drive_reset.c. */

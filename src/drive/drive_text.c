@@ -46,6 +46,10 @@ static const advice_t advices[] = {
                                 "since the last good one. The set-points were ramped down without that position. Check "
                                 "the motor's encoder, what else writes to the drive (homing, position preset), and its "
                                 "PDO mapping"},
+    {CM1E_ERROR_DRIVE_KEEPS_TORQUE, "The drive stayed in the state named here, in which its motor has torque, although it "
+                                    "was told to have none (controlword Shutdown, or Disable voltage in a quick stop). Cut "
+                                    "its motor power before somebody reaches into the machine. Check whether another tool "
+                                    "controls it, and whether it is defect"},
     {CM1E_ERROR_AXIS_POSITION_RANGE, "The actual position, or a target, is beyond what the resolution of the motor "
                                      "(K37) allows"},
     {CM1E_ERROR_DRIVE_RESET_TIMEOUT, "The fault came back or stayed. Remove its cause, or switch the drive off and on"},
@@ -149,6 +153,8 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
     if (fault->motor_status_known)
         say_status(&w, drive);
     say_words(&w, drive);
+    if (fault->keeps_torque && fault->error != CM1E_ERROR_DRIVE_KEEPS_TORQUE)
+        say(&w, ". Its motor still has torque, although the drive was told to have none: cut its motor power");
     const char *more = further(drive);
     if (fault->error == CM1E_ERROR_AXIS_OFFLINE && drive->watch.absent) {
         say(&w, ". The slave is optional and absent. Plug it in, then reset the axis with MC_Reset.");

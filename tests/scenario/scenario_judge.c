@@ -417,7 +417,7 @@ static bool is_groundless(const run_t *run, const machine_axis_t *axis)
     const cm1e_error_t error = axis->info.error;
     const bool of_bus = (error <= CM1E_ERROR_BUS_NO_SLAVES && error >= CM1E_ERROR_INTERFACE_IN_USE) ||
                         error == CM1E_ERROR_BUS_CLOCKS || error == CM1E_ERROR_AXIS_OFFLINE;
-    const bool of_drive = error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_POSITION &&
+    const bool of_drive = error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_KEEPS_TORQUE &&
                           axis->spec->stops == 0; /* a motor that presses against its stop is overloaded */
     return (of_bus || of_drive) && run->phase == PHASE_PROGRAM && !fault_explains(run, axis, of_bus);
 }

@@ -257,6 +257,71 @@ static void test_enable_lost(void)
     }
 }
 
+/** A drive that does not obey when its torque is taken away. `wanted`: it is wanted again later. */
+static void keep_torque(cm1e_fsa_state_t state, bool wanted)
+{
+    start(CM1E_FIRMWARE_1_3_5);
+    enable();
+    drive.command.enable = false;
+    bus.frozen = true;
+    cycles(2);
+    bus.state = state;
+    cycles(30);
+    drive.command.enable = wanted;
+}
+
+/** Nobody waits for ever, whether the torque is wanted again or not. What the drive does by itself has its time. */
+static void test_a_drive_that_keeps_its_torque_is_told(void)
+{
+    static const cm1e_fsa_state_t states[] = {OPERATION_ENABLED, QUICK_STOP_ACTIVE};
+    for (int i = 0; i < 4; i++) {
+        keep_torque(states[i / 2], i % 2);
+        cycles(1900);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
+        cycles(150);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_KEEPS_TORQUE, drive.fault.error);
+        assert_no_torque_commanded();
+        assert_text_has(i / 2 ? "Quick stop active" : "Operation enabled");
+        assert_text_has("Cut its motor power");
+        drive.command.enable = false;
+        TEST_ASSERT_TRUE(reset(3000));
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
+        cycles(2100); /* it is told again */
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_KEEPS_TORQUE, drive.fault.error);
+        bus.frozen = false;
+        TEST_ASSERT_TRUE(reset(3000));
+        cycles(2100);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
+        enable();
+    }
+}
+
+static void brake_slowly(cm1e_bus_t *motor) { motor->velocity_raw = 1000000; }
+
+/** A drive on a ramp of its own has ten seconds. */
+static void test_a_drive_that_still_brakes_keeps_its_torque_for_ten_seconds_more(void)
+{
+    keep_torque(QUICK_STOP_ACTIVE, true);
+    bus.world = brake_slowly;
+    cycles(9900);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
+    cycles(2200);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_KEEPS_TORQUE, drive.fault.error);
+}
+
+/** Another cause came first: the text has both. */
+static void test_torque_that_stays_behind_another_fault_is_in_the_text(void)
+{
+    start(CM1E_FIRMWARE_1_3_5);
+    enable();
+    bus.frozen = true;
+    bus.state = QUICK_STOP_ACTIVE;
+    cycles(2100);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_ENABLE_LOST, drive.fault.error);
+    assert_text_has("quick stop by itself");
+    assert_text_has("still has torque");
+}
+
 static void test_mode_lost(void)
 {
     enable();
@@ -575,7 +640,7 @@ static void test_longest_text_fits_the_size_that_is_promised(void)
             drive.fault = (cm1e_drive_fault_t){.error = (cm1e_error_t)error,
                                                .device_code = cm1e_device_errors[i].code, .statusword = 0xFFFF,
                                                .mode_commanded = 8, .mode_shown = -100, .al_state = 0x14,
-                                               .al_status_code = 0x001B};
+                                               .al_status_code = 0x001B, .keeps_torque = true};
             cm1e_drive_fault_text(&drive, text, sizeof text);
             longest = strlen(text) > longest ? strlen(text) : longest;
             TEST_ASSERT_EQUAL_STRING("reset the axis with MC_Reset.", strstr(text, "reset the axis"));
@@ -599,6 +664,9 @@ int main(void)
     RUN_TEST(test_motor_power_coming_late_still_enables);
     RUN_TEST(test_enable_timeout);
     RUN_TEST(test_enable_lost);
+    RUN_TEST(test_a_drive_that_keeps_its_torque_is_told);
+    RUN_TEST(test_a_drive_that_still_brakes_keeps_its_torque_for_ten_seconds_more);
+    RUN_TEST(test_torque_that_stays_behind_another_fault_is_in_the_text);
     RUN_TEST(test_mode_lost);
     RUN_TEST(test_mode_timeout_while_enabled_and_while_enabling);
     RUN_TEST(test_slave_lost_or_out_of_operational);
