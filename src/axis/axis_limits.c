@@ -11,6 +11,9 @@
 static const double tolerance_counts = 0.01;
 static const double relative_tolerance = 1e-9;
 
+/* Counts/s, counts/s2, counts/s3: nothing useful is so slow, and the way of a stop may be farther than counts go. */
+static const double least_counts = 1e-2;
+
 /* Counts of a CM1-E: 100 revolutions/s2, 2000 revolutions/s3, half a revolution. */
 static const double default_acceleration_counts = 5e6;
 static const double default_jerk_counts = 1e8;
@@ -153,6 +156,51 @@ void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, c
     keep_below_maximum_velocity(from, axis->limits.maximum.velocity, axis->limits.system.velocity,
                                 axis->limits.maximum.jerk, limits);
 }
+
+/* ---- too small --------------------------------------------------------------------------------------------------- */
+
+bool cm1e_axis_find_small(const move_t *move, const cm1e_motion_limits_t *maximum, const override_t *factors,
+                          double scale, small_input_t *found)
+{
+    const command_kind_t *kind = kind_row(move->kind);
+    const double velocity_factor = factors->velocity > 0.0 ? factors->velocity : 1.0; /* 0: a pause */
+    const struct {
+        const char *name, *unit;
+        bool used;
+        double value, maximum, factor;
+        cm1e_error_t error;
+    } inputs[] = {
+        {"Velocity", "u/s", kind->has_velocity, move->velocity, 0.0, velocity_factor, CM1E_ERROR_AXIS_VELOCITY_RANGE},
+        {"Acceleration", "u/s2", !kind->is_stop, move->acceleration, maximum->acceleration, factors->acceleration,
+         CM1E_ERROR_AXIS_DYNAMICS_RANGE},
+        {"Deceleration", "u/s2", true, move->deceleration, maximum->deceleration, factors->acceleration,
+         CM1E_ERROR_AXIS_DYNAMICS_RANGE},
+        {"Jerk", "u/s3", true, move->jerk, maximum->jerk, factors->jerk, CM1E_ERROR_AXIS_DYNAMICS_RANGE},
+    };
+    for (size_t i = 0; i < sizeof inputs / sizeof inputs[0]; i++) {
+        const bool given = inputs[i].value != 0.0;
+        const double value = given ? inputs[i].value : inputs[i].maximum, least = least_counts / fabs(scale);
+        const double factor = kind->has_override ? inputs[i].factor : 1.0;
+        if (!inputs[i].used || value == 0.0 || !(fabs(value) * factor < least))
+            continue;
+        *found = (small_input_t){inputs[i].name, inputs[i].unit, value, least, factor, !given, inputs[i].error};
+        return true;
+    }
+    return false;
+}
+
+bool cm1e_axis_has_small(const cm1e_axis_t *axis, const move_t *move, small_input_t *found)
+{
+    return cm1e_axis_find_small(move, &axis->limits.maximum, &axis->override, axis->position.scale, found);
+}
+
+cm1e_error_t cm1e_axis_cannot_plan(const cm1e_axis_t *axis, const move_t *move, cm1e_error_t otherwise)
+{
+    small_input_t found;
+    return cm1e_axis_has_small(axis, move, &found) ? found.error : otherwise;
+}
+
+/* ---- of a command ------------------------------------------------------------------------------------------------ */
 
 /* The dynamics that a command asks for, checked against the maximum values of the axis. */
 static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm1e_motion_limits_t *limits)

@@ -25,6 +25,22 @@ cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed
 double cm1e_axis_velocity_beside(const cm1e_axis_t *axis);
 /** For the planning of one motion: the maximum values become these, and these become what they were. */
 void cm1e_axis_exchange_maximum(cm1e_axis_t *axis, cm1e_motion_limits_t *most);
+/** An input of a command with which no profile can be computed, because it is too small. */
+typedef struct small_input {
+    const char *name, *unit;
+    double value, least;  /**< u and s: as it was commanded, or the maximum; what can be computed with */
+    double factor;        /**< of MC_SetOverride */
+    bool is_maximum;      /**< it was 0, which selects the maximum of the axis */
+    cm1e_error_t error;   /**< under which it is refused */
+} small_input_t;
+/** false: the inputs of the command are large enough for any motion. `maximum`: what they are without a value;
+ *  `scale`: counts per u. */
+bool cm1e_axis_find_small(const move_t *move, const cm1e_motion_limits_t *maximum, const override_t *factors,
+                          double scale, small_input_t *found);
+/** cm1e_axis_find_small() for a motion of this axis. */
+bool cm1e_axis_has_small(const cm1e_axis_t *axis, const move_t *move, small_input_t *found);
+/** The error of a command that cannot be planned: that of the input that is too small, or else this one. */
+cm1e_error_t cm1e_axis_cannot_plan(const cm1e_axis_t *axis, const move_t *move, cm1e_error_t otherwise);
 /** Whether a target is inside the software limits, or not farther outside than the begin of the way. A superimposed
  *  motion of `from` is included. */
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target);

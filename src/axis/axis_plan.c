@@ -22,8 +22,9 @@ static cm1e_error_t stopping_way(const cm1e_axis_t *axis, const from_t *from, co
     cm1e_profile_t stop;
     const cm1e_motion_state_t start = start_of(from);
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    if (error == CM1E_OK && cm1e_profile_to_velocity(&stop, &start, 0.0, &limits) != CM1E_OK)
-        error = CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* too small to compute with */
+    if (error == CM1E_OK && (cm1e_profile_to_velocity(&stop, &start, 0.0, &limits) != CM1E_OK ||
+                             !cm1e_axis_can_count(axis, stop.end.position)))
+        error = cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
     *way = error != CM1E_OK ? 0.0 : stop.end.position;
     return error;
 }
@@ -117,7 +118,7 @@ static cm1e_error_t plan_to_target(const cm1e_axis_t *axis, const from_t *from, 
         return error;
     const cm1e_motion_state_t start = start_of(from);
     if (cm1e_profile_to_state(profile, &start, distance, move->exit_velocity, &limits) != CM1E_OK)
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
+        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_POSITION_RANGE);
     return cm1e_axis_limits_check(axis, from, profile);
 }
 
@@ -168,7 +169,7 @@ static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const from_t *from, m
         return error;
     const cm1e_motion_state_t start = start_of(from);
     if (cm1e_profile_to_velocity(profile, &start, copysign(limits.velocity, velocity), &limits) != CM1E_OK)
-        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
+        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_VELOCITY_RANGE);
     return check_endless(axis, from, profile);
 }
 
@@ -194,7 +195,7 @@ static cm1e_error_t plan_through_target(const cm1e_axis_t *axis, const from_t *f
     const double end = larger(-left, smaller(move->exit_velocity, left)), cruise = limits.velocity;
     limits.velocity = larger(cruise, fabs(end));
     if (cm1e_profile_to_velocity(profile, &start, end, &limits) != CM1E_OK)
-        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
+        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_VELOCITY_RANGE);
     const double needed = profile->end.position;
     if (end > 0.0 ? distance > 0.0 && needed >= distance : end < 0.0 && distance < 0.0 && needed <= distance)
         move->passing = true;
@@ -202,7 +203,7 @@ static cm1e_error_t plan_through_target(const cm1e_axis_t *axis, const from_t *f
         return check_endless(axis, from, profile);
     limits.velocity = cruise;
     if (cm1e_profile_to_state(profile, &start, distance, end, &limits) != CM1E_OK)
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
+        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_POSITION_RANGE);
     if (!cm1e_axis_direction_enabled(axis, end))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     return cm1e_axis_limits_check(axis, from, profile);

@@ -337,8 +337,8 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     /* A motion that replaces another one gets the share of that one. */
     const cm1e_motion_limits_t share = replaces ? on_top->share : alone ? axis->limits.maximum
                                        : share_of(axis, &limits);
-    if (!can_go_on_as(axis, move, alone, &share))
-        return CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* the values are too small, perhaps by MC_SetOverride */
+    if (!can_go_on_as(axis, move, alone, &share)) /* the values are too small, perhaps by MC_SetOverride */
+        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
     if (axis_holds(axis))
         stand_as_base(axis);
     if (on_top->id)
@@ -364,7 +364,7 @@ static cm1e_error_t halt(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_
     if (error != CM1E_OK)
         return error;
     if (on_top->moving && !can_go_on_as(axis, move, on_top->alone, &on_top->share))
-        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
     *id = cm1e_axis_next_id(axis);
     if (!on_top->id) {
         cm1e_axis_record(axis, *id, CM1E_COMMAND_DONE, CM1E_OK); /* there is no superimposed motion */
@@ -407,7 +407,7 @@ cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t i
     superimposed_t next = *on_top;
     next.move = inputs;
     if (!plan(axis, &next))
-        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+        return cm1e_axis_cannot_plan(axis, &inputs, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
     *on_top = next;
     return CM1E_OK;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "axis/axis_text.h"
+#include "axis/axis_commands.h"
 #include "axis/axis_device.h"
 #include "axis/axis_guard.h"
 #include "axis/axis_in_position.h"
@@ -119,28 +120,29 @@ static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t si
              axis->limits.maximum.jerk);
 }
 
-/* Whether the values are so small that no profile can be computed. No useful motion is so slow. */
-static bool too_small(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
+void cm1e_axis_small_text(const cm1e_axis_t *axis, const small_input_t *small, char *text, size_t size)
 {
-    static const double least_counts = 1e-6;
-    const double factor = axis->override.acceleration, jerk_factor = axis->override.jerk;
-    const double numbers[] = {command->velocity, factor * command->acceleration, factor * command->deceleration,
-                              jerk_factor * command->jerk, factor * axis->limits.maximum.acceleration,
-                              jerk_factor * axis->limits.maximum.jerk};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        if (numbers[i] != 0.0 && fabs(numbers[i] * axis->position.scale) < least_counts)
-            return true;
-    return false;
+    char factor[64] = "", commanded[96];
+    if (small->factor != 1.0)
+        snprintf(factor, sizeof factor, " and the factor %.6g of MC_SetOverride", small->factor);
+    if (small->is_maximum)
+        snprintf(commanded, sizeof commanded, "%s 0 was commanded, which selects the maximum of %.6g %s,", small->name,
+                 small->value, small->unit);
+    else
+        snprintf(commanded, sizeof commanded, "%s %.6g was commanded", small->name, small->value);
+    snprintf(text, size, "Axis \"%s\": %s%s%s too small to compute with; %sfrom %.6g %s on is right.", axis->config->name,
+             commanded, factor, factor[0] ? ": together they are" : ", which is",
+             small->is_maximum || small->error == CM1E_ERROR_AXIS_VELOCITY_RANGE ? "" : "0 (the maximum), or ", small->least / small->factor, small->unit);
 }
 
-static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
+static bool refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const cm1e_axis_command_t *refused = &axis->commands.refused;
-    snprintf(text, size,
-             "Axis \"%s\": velocity %.6g, acceleration %.6g, deceleration %.6g, jerk %.6g were commanded; one of them "
-             "is too small to compute with, after the factors %.6g (acceleration) and %.6g (jerk) of MC_SetOverride.",
-             axis->config->name, refused->velocity, refused->acceleration, refused->deceleration, refused->jerk,
-             axis->override.acceleration, axis->override.jerk);
+    small_input_t small;
+    const move_t move = cm1e_axis_move_of(&axis->commands.refused);
+    if (!cm1e_axis_has_small(axis, &move, &small) || small.error != axis->commands.refusal)
+        return false;
+    cm1e_axis_small_text(axis, &small, text, size);
+    return true;
 }
 
 /* Explains a refused superimposed motion: the position of the base, and its target if that is known. */
@@ -238,16 +240,10 @@ static const struct {
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const bool by_numbers = axis->commands.refusal == CM1E_ERROR_AXIS_VELOCITY_RANGE ||
-                            axis->commands.refusal == CM1E_ERROR_AXIS_DYNAMICS_RANGE ||
-                            axis->commands.refusal == CM1E_ERROR_AXIS_POSITION_RANGE;
     if (coupling_text(axis, axis->commands.refusal, true, text, size))
         return;
-    if (by_numbers && kind_row(axis->commands.refused.kind)->plan != PLAN_TABLE &&
-        too_small(axis, &axis->commands.refused)) {
-        refused_small_text(axis, text, size);
+    if (kind_row(axis->commands.refused.kind)->plan != PLAN_TABLE && refused_small_text(axis, text, size))
         return;
-    }
     if (axis->homing_hooks && axis->homing_hooks->refused_text(axis, text, size))
         return;
     for (size_t i = 0; i < sizeof refusal_texts / sizeof refusal_texts[0]; i++)

@@ -5,7 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_TEXT_H
 #define CM1E_AXIS_AXIS_TEXT_H
 
-#include "axis/axis_parts.h"
+#include "axis/axis_limits.h"
 
 /** Remembers the last refusal for the text. A success clears only a refusal of the same kind. */
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
@@ -14,6 +14,7 @@ void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);      /* axis_text_not_set.c */
 /** "SLAVE.SIGNAL" of an input or output on another slave; "": it is none of these. */
 const char *cm1e_axis_wired_name(const cm1e_axis_t *axis, int number, bool output); /* axis_text_not_set.c */
+void cm1e_axis_small_text(const cm1e_axis_t *axis, const small_input_t *small, char *text, size_t size); /* axis_text.c */
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size); /* axis_text.c */
 
 #endif

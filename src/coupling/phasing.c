@@ -12,6 +12,7 @@
 #include "axis/axis_commands.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "axis/axis_text.h"
 #include "coupling/coupling_private.h"
 
 static const double same_moment = 1e-6; /* cycles */
@@ -57,6 +58,14 @@ static cm1e_error_t limits_of(const cm1e_axis_t *axis, const move_t *move, cm1e_
     return CM1E_OK;
 }
 
+/* In u of the master. */
+static bool has_small(const cm1e_axis_t *axis, const move_t *move, small_input_t *found)
+{
+    static const override_t none = {1.0, 1.0, 1.0};
+    const cm1e_motion_limits_t most = most_of(axis);
+    return cm1e_axis_find_small(move, &most, &none, axis->coupling->now->links[0].master->position.scale, found);
+}
+
 static cm1e_error_t check(const cm1e_axis_t *axis, const move_t *move)
 {
     const cm1e_axis_t *master = axis->coupling->now->links[0].master;
@@ -93,8 +102,9 @@ static cm1e_error_t plan(const cm1e_axis_t *axis, const move_t *move, double *or
     const cm1e_error_t error = limits_of(axis, move, &limits);
     if (error != CM1E_OK)
         return error;
+    small_input_t small;
     if (cm1e_profile_to_position(profile, &c->phase, *origin + move->position, &limits) != CM1E_OK)
-        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+        return has_small(axis, move, &small) ? small.error : CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     return fits_beside_master(axis, profile) ? CM1E_OK : CM1E_ERROR_AXIS_VELOCITY_RANGE;
 }
 
@@ -274,6 +284,12 @@ bool cm1e_phasing_text(const cm1e_axis_t *axis, char *text, size_t size)
         return false;
     const link_t *link = &axis->coupling->now->links[0];
     const cm1e_motion_limits_t most = most_of(axis);
+    const move_t move = cm1e_axis_move_of(refused);
+    small_input_t small;
+    if (has_small(axis, &move, &small) && small.error == axis->commands.refusal) {
+        cm1e_axis_small_text(axis, &small, text, size);
+        return true;
+    }
     snprintf(text, size, "Axis \"%s\": a phase shift of %.6g with velocity %.6g, acceleration %.6g, deceleration %.6g, "
              "jerk %.6g was commanded, in u of the master. The shift must be finite. The velocity must be above 0, and "
              "with that of the master (%.6g now) not above %.6g u/s. The others must be 0 (half of what the axis can "

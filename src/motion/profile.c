@@ -98,7 +98,7 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
     if (isnan(end->position))
         profile->end.position = start->position + sign * position;
     const double missing = profile->end.position - start->position - sign * position;
-    const double noise = 16 * DBL_EPSILON * (fabs(start->position) + fabs(profile->end.position));
+    const double noise = 16 * DBL_EPSILON * (fabs(start->position) + fabs(profile->end.position)) + DBL_MIN;
     if (!isfinite(time))
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (fabs(missing) < MISSED * fabs(position) + noise) /* it is shorter than the whole way, and known already */

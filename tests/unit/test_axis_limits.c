@@ -272,27 +272,71 @@ static void test_refused_numbers_are_told_as_they_are_judged(void)
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &wrong[i], &id));
         bench_told("was commanded; above 0, up to");
     }
-    static const cm1e_axis_command_t small[] = {
-        {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1e-300},
-        {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1.0, .acceleration = 1e-300},
-        {.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = 1.0, .velocity = 1.0, .jerk = 1e-300},
-        {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0, .acceleration = 1e-300},
+}
+
+/** The input that is too small to compute with is named, in every kind of motion, and what can be computed with. */
+static void test_inputs_of_next_to_nothing_are_named(void)
+{
+    static const struct {
+        cm1e_axis_command_t command;
+        cm1e_error_t error;
+        const char *told;
+    } small[] = {
+        {{.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1e-300}, CM1E_ERROR_AXIS_VELOCITY_RANGE,
+         "Velocity 1e-300 was commanded, which is too small to compute with; from 2e-07 u/s on is right"},
+        {{.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 5e-324}, CM1E_ERROR_AXIS_VELOCITY_RANGE,
+         "Velocity 4.94066e-324 was commanded"},
+        {{.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1.0, .acceleration = 1e-300},
+         CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+         "Acceleration 1e-300 was commanded, which is too small to compute with; 0 (the maximum), or from 2e-07 u/s2 on"},
+        {{.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1.0, .deceleration = 1e-310},
+         CM1E_ERROR_AXIS_DYNAMICS_RANGE, "Deceleration 1e-310 was commanded"},
+        {{.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = 1.0, .velocity = 1.0, .jerk = 1e-300},
+         CM1E_ERROR_AXIS_DYNAMICS_RANGE, "Jerk 1e-300 was commanded"},
+        {{.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = -1e-300}, CM1E_ERROR_AXIS_VELOCITY_RANGE,
+         "Velocity -1e-300 was commanded"},
+        {{.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0, .acceleration = 1e-300}, CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+         "Acceleration 1e-300 was commanded"},
+        {{.kind = CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, .position = 1.0, .velocity = 1.0, .deceleration = 1e-300},
+         CM1E_ERROR_AXIS_DYNAMICS_RANGE, "Deceleration 1e-300 was commanded"},
+        {{.kind = CM1E_COMMAND_HALT, .jerk = 1e-300}, CM1E_ERROR_AXIS_DYNAMICS_RANGE, "Jerk 1e-300 was commanded"},
     };
-    for (size_t i = 0; i < sizeof small / sizeof small[0]; i++) {
-        TEST_ASSERT_NOT_EQUAL_INT(CM1E_OK, cm1e_axis_start(axis, &small[i], &id));
-        bench_told("too small to compute with");
+    for (int modulo = 0; modulo < 2; modulo++) {
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.config.axes[0].modulo_range = modulo ? 360.0 : 0.0;
+        bench_create();
+        bench_enable();
+        for (size_t i = 0; i < sizeof small / sizeof small[0]; i++) {
+            TEST_ASSERT_EQUAL_INT(small[i].error, bench_try_command(&small[i].command));
+            bench_told(small[i].told);
+        }
+        bench_end();
     }
-    bench_end();
+}
+
+/** The stop before a position on a modulo axis is so long that it has no end: the deceleration is told, not the position. */
+static void test_a_stop_without_an_end_names_its_deceleration(void)
+{
     fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
     bus.config.axes[0].modulo_range = 360.0;
     bench_create();
     bench_enable();
-    for (int deceleration = 0; deceleration < 2; deceleration++) {
-        const cm1e_axis_command_t slow = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1.0,
-                                          .acceleration = deceleration ? 0.0 : 1e-300,
-                                          .deceleration = deceleration ? 1e-300 : 0.0};
-        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &slow, &id));
-        bench_told("too small to compute with");
+    bench_move_velocity(5.0);
+    bench_cycles(500);
+    const cm1e_axis_command_t slow = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 5.0,
+                                      .deceleration = 1e-10};
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, bench_try_command(&slow));
+    bench_told("Deceleration 1e-10 was commanded");
+}
+
+/** A distance of next to nothing is none. */
+static void test_a_distance_of_next_to_nothing_is_none(void)
+{
+    bench_enable();
+    for (int e = -323; e < -290; e++) {
+        const cm1e_command_id_t id = bench_move_by(pow(10.0, e), 1.0);
+        bench_wait(id, 5);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
     }
 }
 
@@ -482,6 +526,9 @@ int main(void)
     RUN_TEST(test_motion_in_a_disabled_direction_is_refused);
     RUN_TEST(test_a_distance_in_a_disabled_direction_is_refused_also_behind_a_velocity);
     RUN_TEST(test_refused_numbers_are_told_as_they_are_judged);
+    RUN_TEST(test_inputs_of_next_to_nothing_are_named);
+    RUN_TEST(test_a_stop_without_an_end_names_its_deceleration);
+    RUN_TEST(test_a_distance_of_next_to_nothing_is_none);
     RUN_TEST(test_direction_disabled_while_running_stops_the_motion);
     RUN_TEST(test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped);
     RUN_TEST(test_a_direction_that_a_motion_does_not_need_may_be_disabled);

@@ -455,7 +455,8 @@ static void test_an_override_that_leaves_nothing_refuses_it_in_standstill(void)
     const cm1e_axis_command_t c = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 1.0, .velocity = 1.0};
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, 0.75, 1e-300, 0.8));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &c, &id));
-    bench_told("too small to compute with, after the factors 1e-300 (acceleration) and 0.8 (jerk) of MC_SetOverride");
+    bench_told("Acceleration 0 was commanded, which selects the maximum of");
+    bench_told("and the factor 1e-300 of MC_SetOverride: together they are too small to compute with");
     watch_cycles(10);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, axis->state);
 }
@@ -469,6 +470,7 @@ static void test_dynamics_of_next_to_nothing_are_refused_and_change_nothing(void
         {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 2.0, .velocity = 5.0, .acceleration = 1e-300},
         {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 2.0, .velocity = 1e-300},
     };
+    static const char *const told[] = {"Deceleration 1e-300", "Jerk 1e-300", "Acceleration 1e-300", "Velocity 1e-300"};
     for (int i = 0; i < 4; i++)
         for (int moves = 0; moves < 2; moves++) {
             setUp();
@@ -477,11 +479,12 @@ static void test_dynamics_of_next_to_nothing_are_refused_and_change_nothing(void
             const cm1e_command_id_t first = superimpose(4.0, 5.0);
             watch_cycles(300);
             cm1e_command_id_t id = 1;
-            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &commands[i], &id));
+            const cm1e_error_t expected = i == 3 ? CM1E_ERROR_AXIS_VELOCITY_RANGE : CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+            TEST_ASSERT_EQUAL_INT(expected, cm1e_axis_start(axis, &commands[i], &id));
             TEST_ASSERT_EQUAL_UINT32(0, id);
-            bench_told("one of them is too small to compute with");
+            bench_told(told[i]);
             if (commands[i].kind == CM1E_COMMAND_MOVE_SUPERIMPOSED)
-                TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_update(axis, first, &commands[i]));
+                TEST_ASSERT_EQUAL_INT(expected, cm1e_axis_update(axis, first, &commands[i]));
             wait_for(first, CM1E_COMMAND_DONE);
             TEST_ASSERT_DOUBLE_WITHIN(1e-12, 4.0, covered(first));
             if (moves)
