@@ -124,20 +124,6 @@ static bool was_looked_ahead(const cm1e_axis_t *axis, const from_t *from)
 
 void cm1e_axis_maximum_lowered(cm1e_axis_t *axis) { axis->commands.lowered = true; }
 
-/* The velocity of the begin was planned with larger maxima than the application allows now: the command needs them. */
-static cm1e_error_t plan_with_system_limits(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
-{
-    cm1e_motion_limits_t most = axis->limits.system;
-    most.velocity = axis->limits.maximum.velocity;
-    move->exit_velocity = cm1e_axis_exit_velocity(axis, from, move); /* by the present ones */
-    cm1e_axis_exchange_maximum(axis, &most);
-    cm1e_error_t error = cm1e_axis_plan_to_exit(axis, from, move, profile);
-    if (cm1e_axis_goes_wrong(axis, from, move, profile, error)) /* it cannot become so slow on its way */
-        error = cm1e_axis_plan(axis, from, move, true, profile);
-    cm1e_axis_exchange_maximum(axis, &most);
-    return error;
-}
-
 cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t *from, double offset_s)
 {
     cm1e_profile_t profile;
@@ -152,7 +138,7 @@ cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t 
     const bool lowered = axis->commands.lowered && was_looked_ahead(axis, from) &&
                          cm1e_axis_goes_wrong(axis, from, move, &profile, error);
     if (lowered)
-        error = plan_with_system_limits(axis, from, move, &profile);
+        error = cm1e_axis_plan_as_before(axis, from, move, &profile);
     if (error == CM1E_OK)
         cm1e_axis_take(axis, move, from, &profile, offset_s);
     axis->commands.lowered = axis->commands.lowered || lowered;

@@ -130,6 +130,8 @@ cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis);
 bool cm1e_axis_replan_if(cm1e_axis_t *axis);
 /** Like cm1e_axis_replan(), with other inputs. They are in force if the plan is not refused. */
 cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *move);
+/** Like cm1e_axis_replan(), after the set-point has changed by a step, so that the present profile is of no use. */
+cm1e_error_t cm1e_axis_replan_anew(cm1e_axis_t *axis);
 
 /* axis_record.c */
 bool cm1e_axis_same_way(const move_t *a, const move_t *b);

@@ -121,8 +121,8 @@ void cm1e_axis_steps_init(cm1e_axis_t *axis)
     command->velocity_step = whole_counts((acceleration * scale + axis->backlash.acceleration) * axis->cycle_s);
 }
 
-/* Chooses a dynamic value. 0 selects the maximum. A larger value is limited for a stop, and else refused. */
-static bool choose(double asked, double maximum, bool stopping, double *value)
+/* Chooses a dynamic value. 0 selects the maximum. A larger value is limited, or else refused. */
+static bool choose(double asked, double maximum, bool limited, double *value)
 {
     *value = asked == 0.0 ? maximum : asked;
     if (!isfinite(asked) || asked < 0.0)
@@ -130,7 +130,7 @@ static bool choose(double asked, double maximum, bool stopping, double *value)
     if (*value <= maximum * (1.0 + relative_tolerance))
         return true;
     *value = maximum;
-    return stopping;
+    return limited;
 }
 
 /* Keeps an acceleration under way from overshooting the maximum velocity. With a smaller jerk than before, the
@@ -207,18 +207,18 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const command_kind_t *kind = kind_row(move->kind);
-    const bool stopping = kind->is_stop;
-    const double acceleration = stopping ? 0.0 : move->acceleration;
-    if (!choose(acceleration, most->acceleration, stopping, &limits->acceleration) ||
-        !choose(move->deceleration, most->deceleration, stopping, &limits->deceleration) ||
-        !choose(move->jerk, most->jerk, stopping, &limits->jerk))
+    const bool limited = kind->is_stop || move->accepted;
+    const double acceleration = kind->is_stop ? 0.0 : move->acceleration;
+    if (!choose(acceleration, most->acceleration, limited, &limits->acceleration) ||
+        !choose(move->deceleration, most->deceleration, limited, &limits->deceleration) ||
+        !choose(move->jerk, most->jerk, limited, &limits->jerk))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     limits->velocity = most->velocity;
     if (!kind->has_velocity)
         return CM1E_OK;
     /* Only the velocity of MC_MoveVelocity may be negative; its sign is a direction (3.10). */
     const double speed = kind->plan == PLAN_VELOCITY ? fabs(move->velocity) : move->velocity;
-    const double largest = most->velocity * (1.0 + relative_tolerance);
+    const double largest = move->accepted ? INFINITY : most->velocity * (1.0 + relative_tolerance);
     if (!(speed > 0.0) || !(speed <= largest) || !(fabs(move->end_velocity) <= largest))
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     limits->velocity = smaller(speed, most->velocity);

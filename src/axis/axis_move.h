@@ -26,6 +26,7 @@ typedef struct move {
     uint8_t kind, buffer_mode, direction; /**< cm1e_command_kind_t, MC_BUFFER_MODE, MC_DIRECTION */
     bool passing : 1;       /**< MOVE_CONTINUOUS_*: it has passed its position; only its end velocity is left */
     bool paused : 1;        /**< an override of velocity 0: it brakes to standstill and waits */
+    bool accepted : 1;      /**< it is under way: a maximum that was lowered since does not refuse it, but limits it */
     double position, velocity, end_velocity, acceleration, deceleration, jerk;
     double shift;           /**< u; how far MC_SetPosition has moved the coordinates since the position was given */
     position_t origin;      /**< the position from which a relative one counts */

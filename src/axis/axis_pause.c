@@ -66,9 +66,8 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
         return end_table(axis);
     if (!axis->commands.active || axis->commands.kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);
-    const move_t move = axis->commands.move;
     return axis->commands.kind == CM1E_COMMAND_HOMING_STEP ? axis->homing_hooks->step_anew(axis)
-                                                           : cm1e_axis_replan_as(axis, &move);
+                                                           : cm1e_axis_replan_anew(axis);
 }
 
 static void profile_anew(cm1e_axis_t *axis)

@@ -370,6 +370,20 @@ cm1e_error_t cm1e_axis_plan(cm1e_axis_t *axis, const from_t *from, move_t *move,
     return error;
 }
 
+/* The velocity of the begin was planned with larger maxima than the application allows now: the command needs them. */
+cm1e_error_t cm1e_axis_plan_as_before(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    cm1e_motion_limits_t most = axis->limits.system;
+    most.velocity = axis->limits.maximum.velocity;
+    move->exit_velocity = cm1e_axis_exit_velocity(axis, from, move); /* by the present ones */
+    cm1e_axis_exchange_maximum(axis, &most);
+    cm1e_error_t error = cm1e_axis_plan_to_exit(axis, from, move, profile);
+    if (cm1e_axis_goes_wrong(axis, from, move, profile, error)) /* it cannot become so slow on its way */
+        error = cm1e_axis_plan(axis, from, move, true, profile);
+    cm1e_axis_exchange_maximum(axis, &most);
+    return error;
+}
+
 position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  const cm1e_profile_t *profile)
 {

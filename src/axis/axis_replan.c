@@ -36,6 +36,21 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
     return error;
 }
 
+/* What was accepted goes on within what the application allows now, but for the braking that it needs to reach its target. */
+cm1e_error_t cm1e_axis_replan_anew(cm1e_axis_t *axis)
+{
+    move_t move = axis->commands.move;
+    cm1e_profile_t profile;
+    const from_t from = from_base(axis);
+    move.accepted = true;
+    cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
+    if (axis->commands.lowered && cm1e_axis_goes_wrong(axis, &from, &move, &profile, error))
+        error = cm1e_axis_plan_as_before(axis, &from, &move, &profile);
+    if (error == CM1E_OK)
+        go_on_as(axis, &from, &move, &profile);
+    return error;
+}
+
 bool cm1e_axis_can_replan(const cm1e_axis_t *axis)
 {
     return axis->commands.active && axis_on_profile(axis) && axis->commands.kind != CM1E_COMMAND_STOP &&
@@ -57,6 +72,7 @@ static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
     move_t move = axis->commands.move;
     cm1e_profile_t profile;
     const from_t from = from_base(axis);
+    move.accepted = !axis->setpoint.paused;
     const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
     *done = error == CM1E_OK && ((move.paused && turns_round(axis)) || !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile)));
     if (*done)

@@ -1,6 +1,8 @@
 /* Software limits, and directions that MC_Power enables: what is refused, and how a motion is braked before them. */
 #include <math.h>
 
+#include "axis/axis_pause.h" /* first, as the bench has a global `axis` */
+
 #include "../support/axis_bench.h"
 #include "axis/axis_limits.h"
 #include "axis/axis_parameters.h"
@@ -510,6 +512,69 @@ static void test_an_acceleration_near_the_maximum_ends_at_the_maximum(void)
     }
 }
 
+/* A move of each kind at 20 u/s, and the application then allows less than it was told. */
+static cm1e_command_id_t lowered_in_a_move(int number, cm1e_command_kind_t kind)
+{
+    static const double allowed[] = {[CM1E_PARAMETER_MAX_VELOCITY_APPL] = 5.0, [CM1E_PARAMETER_MAX_ACCELERATION_APPL] = 10.0,
+                                     [CM1E_PARAMETER_MAX_DECELERATION_APPL] = 10.0, [CM1E_PARAMETER_MAX_JERK_APPL] = 100.0};
+    bench_start();
+    bench_enable();
+    const cm1e_command_id_t id = bench_start_command(&(cm1e_axis_command_t){
+        .kind = kind, .position = 200.0, .velocity = 20.0, .end_velocity = 20.0, .acceleration = 50.0, .deceleration = 50.0,
+        .jerk = 1000.0});
+    bench_cycles(1000);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, number, allowed[number]));
+    bench_cycles(50);
+    TEST_ASSERT_EQUAL_DOUBLE(20.0, bench_info().set_velocity); /* a motion that runs is not changed */
+    return id;
+}
+
+static const int appl[] = {CM1E_PARAMETER_MAX_VELOCITY_APPL, CM1E_PARAMETER_MAX_ACCELERATION_APPL,
+                           CM1E_PARAMETER_MAX_DECELERATION_APPL, CM1E_PARAMETER_MAX_JERK_APPL};
+static const cm1e_command_kind_t moves[] = {CM1E_COMMAND_MOVE_VELOCITY, CM1E_COMMAND_MOVE_RELATIVE,
+                                            CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE};
+
+/** It was accepted: a pause of the host, and frames that were lost, are no reason to refuse it afterwards. */
+static void test_a_maximum_that_was_lowered_is_no_error_of_a_motion_that_begins_anew(void)
+{
+    for (int n = 0; n < 4 * 3 * 2; n++) {
+        const int number = appl[n / 6];
+        const cm1e_command_id_t id = lowered_in_a_move(number, moves[n / 2 % 3]);
+        if (n % 2) {
+            bench_inputs();
+            cm1e_axis_after_pause(axis, 10000000);
+            bench_outputs();
+        } else {
+            received = CM1E_ERROR_BUS_LOST;
+            bench_cycles(4);
+            received = CM1E_OK;
+        }
+        bench_cycles(4000);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(id));
+        TEST_ASSERT_EQUAL_DOUBLE(number == CM1E_PARAMETER_MAX_VELOCITY_APPL ? 5.0 : 20.0, bench_info().set_velocity);
+        bench_end();
+    }
+    bench_start();
+}
+
+/** A VelFactor acts on a motion that runs, also if that was told more than is allowed now; 0 stops it. */
+static void test_an_override_acts_on_a_motion_that_has_more_than_is_allowed_now(void)
+{
+    for (int n = 0; n < 4 * 3 * 2; n++) {
+        const int number = appl[n / 6];
+        const double factor = n % 2 ? 0.0 : 0.5;
+        const cm1e_command_id_t id = lowered_in_a_move(number, moves[n / 2 % 3]);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, factor, 1.0, 1.0));
+        bench_cycles(2500);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(id));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, factor * (number == CM1E_PARAMETER_MAX_VELOCITY_APPL ? 5.0 : 20.0),
+                                  bench_info().set_velocity);
+        bench_end();
+    }
+    bench_start();
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -537,5 +602,7 @@ int main(void)
     RUN_TEST(test_a_smaller_jerk_keeps_the_maximum_of_the_application);
     RUN_TEST(test_a_maximum_lowered_too_far_does_not_raise_the_jerk);
     RUN_TEST(test_an_acceleration_near_the_maximum_ends_at_the_maximum);
+    RUN_TEST(test_a_maximum_that_was_lowered_is_no_error_of_a_motion_that_begins_anew);
+    RUN_TEST(test_an_override_acts_on_a_motion_that_has_more_than_is_allowed_now);
     return UNITY_END();
 }
