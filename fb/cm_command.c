@@ -11,7 +11,8 @@ static cm1e_error_t start(CM_Command_t *fb, cm1e_axis_t *axis)
 {
     uint32_t ticket = 0;
     const cm1e_error_t error = (unsigned)fb->Command > cmOriginSearchAbort
-                                   ? CM1E_ERROR_INVALID_ARGUMENT
+                                   ? cm1e_axis_refuse_input(axis, CM1E_ERROR_INVALID_ARGUMENT, "CM_Command: Command",
+                                                            (int)fb->Command, "0 ... 4")
                                    : cm1e_axis_motor_command(axis, commands[fb->Command], fb->Timeout, &ticket);
     fb->Private.command = ticket;
     return error;

@@ -10,7 +10,8 @@ static cm1e_error_t start(CM_SetMode_t *fb, cm1e_axis_t *axis)
 {
     uint32_t ticket = 0;
     const cm1e_error_t error = (unsigned)fb->Mode > cmCPIO
-                                   ? CM1E_ERROR_INVALID_ARGUMENT
+                                   ? cm1e_axis_refuse_input(axis, CM1E_ERROR_INVALID_ARGUMENT, "CM_SetMode: Mode",
+                                                            (int)fb->Mode, "0 ... 3")
                                    : cm1e_axis_set_mode(axis, modes[fb->Mode], fb->Insist != FALSE, &ticket);
     fb->Private.command = ticket;
     return error;

@@ -346,12 +346,22 @@ static void outputs_off(MC_DigitalCamSwitch_t *fb)
     fb->Private.output = fb->Private.written = 0;
 }
 
+static cm1e_error_t refuse_input(const MC_DigitalCamSwitch_t *fb, const char *input, int value, const char *right)
+{
+    const cm1e_error_t error = CM1E_ERROR_INVALID_ARGUMENT;
+    return cm1e_axis_refuse_level(cm1e_fb_axis(&fb->Private.common), error, input, value, right,
+                                  fb->ErrorID != cm1e_error_id(error));
+}
+
 static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, TIME called)
 {
     look_t look;
     DWORD tracks;
-    if (!fb->Outputs || (fb->ValueSource != mcSetValue && fb->ValueSource != mcActualValue))
-        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (!fb->Outputs)
+        return refuse_input(fb, "MC_DigitalCamSwitch: Outputs", 0, "a variable of the type MC_OUTPUT_REF");
+    if (fb->ValueSource != mcSetValue && fb->ValueSource != mcActualValue)
+        return refuse_input(fb, "MC_DigitalCamSwitch: ValueSource", (int)fb->ValueSource,
+                            "0 (mcSetValue) or 1 (mcActualValue)");
     if (!look_at(fb, axis, &look)) {
         if (fb->Private.running && look.now - fb->Private.seen <= unseen_ns)
             return write_output(fb, fb->Outputs->Values, fb_lease_ns(look.now, called));

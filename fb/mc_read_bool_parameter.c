@@ -2,7 +2,7 @@
 
 void MC_ReadBoolParameter(MC_ReadBoolParameter_t *fb)
 {
-    fb_parameter_t shown = {.valid = fb->Valid, .value = fb->Value};
+    fb_parameter_t shown = {.valid = fb->Valid, .error_id = fb->ErrorID, .value = fb->Value};
     cm1e_fb_read_parameter(&fb->Private, fb->Axis, fb->Enable, fb->ParameterNumber, true, &shown);
     FB_SHOW_READING(fb, shown);
     fb->Value = shown.value != 0.0;

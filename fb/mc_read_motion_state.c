@@ -57,7 +57,10 @@ void MC_ReadMotionState(MC_ReadMotionState_t *fb)
     if (axis) {
         cm1e_axis_get(axis, &info);
         if ((unsigned)fb->Source > mcCommandedValue)
-            error = CM1E_ERROR_INVALID_ARGUMENT;
+            error = cm1e_axis_refuse_level(cm1e_fb_axis(&p->common), CM1E_ERROR_INVALID_ARGUMENT,
+                                           "MC_ReadMotionState: Source", (int)fb->Source,
+                                           "0 (mcSetValue), 1 (mcActualValue) or 2 (mcCommandedValue)",
+                                           fb->ErrorID != cm1e_error_id(CM1E_ERROR_INVALID_ARGUMENT));
         else if (fb->Source == mcActualValue && !info.online)
             error = CM1E_ERROR_AXIS_OFFLINE;
     }

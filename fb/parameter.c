@@ -20,15 +20,24 @@ static cm1e_error_t read_object(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT nu
     return error != CM1E_OK ? error : refused == CM1E_ERROR_FULL ? CM1E_OK : refused;
 }
 
+static cm1e_error_t refuse_number(cm1e_axis_t *axis, INT number, bool boolean, const fb_parameter_t *shown)
+{
+    const cm1e_error_t error = CM1E_ERROR_AXIS_PARAMETER;
+    return cm1e_axis_refuse_level(axis, error,
+                                  boolean ? "MC_ReadBoolParameter: ParameterNumber" : "MC_ReadParameter: ParameterNumber",
+                                  number, boolean ? "4, 5, 6, 1800 or 1804" : CM1E_PARAMETER_NUMBERS,
+                                  shown->error_id != cm1e_error_id(error));
+}
+
 static cm1e_error_t read(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, bool boolean, fb_parameter_t *shown)
 {
     if (boolean && !cm1e_axis_parameter_is_bool(number))
-        return CM1E_ERROR_AXIS_PARAMETER;
+        return refuse_number(axis, number, true, shown);
     if (cm1e_axis_parameter_is_object(number))
         return read_object(fb, axis, number, shown);
     const cm1e_error_t error = cm1e_axis_read_parameter(axis, number, &shown->value);
     shown->valid = error == CM1E_OK;
-    return error;
+    return error == CM1E_ERROR_AXIS_PARAMETER ? refuse_number(axis, number, false, shown) : error;
 }
 
 void cm1e_fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, INT number, bool boolean,

@@ -9,13 +9,14 @@
 #include "axis/axis_parameters.h"
 #include "edge.h"
 
-/** Outputs of a reading block; on entry `valid` and `value` are those of the call before. */
+/** Outputs of a reading block; on entry `valid`, `error_id` and `value` are those of the call before. */
 typedef struct fb_parameter {
     BOOL valid, busy, error;
     WORD error_id;
     LREAL value;
 } fb_parameter_t;
 
+/** `boolean`: the block accepts only parameters of type BOOL. */
 void cm1e_fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, INT number, bool boolean,
                             fb_parameter_t *shown);
 

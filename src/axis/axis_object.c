@@ -134,7 +134,9 @@ cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, d
     *ticket = 0;
     const cm1e_error_t error = check(axis, number, write, value);
     if (error != CM1E_OK) {
-        if (error != CM1E_ERROR_FULL)
+        /* A block that reads asks in every call: what it is told again does not hide a later refusal. */
+        const bool told = !write && axis->not_set.what == NOT_SET_PARAMETER && axis->not_set.number == number;
+        if (error != CM1E_ERROR_FULL && !told)
             cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = number, .value = value});
         return error;
     }
@@ -246,7 +248,8 @@ void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size)
     if (!entry && row_of(refused->number))
         lacking_text(axis, row_of(refused->number), text, size);
     else if (!entry)
-        snprintf(text, size, "Axis \"%s\": parameter %d: %s.", name, refused->number, cm1e_strerror(refused->error));
+        snprintf(text, size, "Axis \"%s\": parameter %d: %s. Right is %s.", name, refused->number,
+                 cm1e_strerror(refused->error), CM1E_PARAMETER_NUMBERS);
     else if (refused->error == CM1E_ERROR_SDO_ABORT)
         snprintf(text, size, "Axis \"%s\": parameter %d, object 0x%04X:%02X \"%s\": the drive refused with SDO abort "
                  "code 0x%08X (%s).", name, refused->number, entry->index, entry->subindex, entry->name,

@@ -256,7 +256,8 @@ void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size)
     const char *name = axis->config->name;
     int length;
     if (!row(refused->number)) {
-        snprintf(text, size, "Axis \"%s\": parameter %d: %s.", name, refused->number, cm1e_strerror(refused->error));
+        snprintf(text, size, "Axis \"%s\": parameter %d: %s. Right is %s.", name, refused->number,
+                 cm1e_strerror(refused->error), CM1E_PARAMETER_NUMBERS);
     } else if (refused->error == CM1E_ERROR_AXIS_PARAMETER_RANGE) {
         length = snprintf(text, size, "Axis \"%s\": parameter %d, %s: ", name, refused->number,
                           row(refused->number)->name);

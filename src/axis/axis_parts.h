@@ -332,6 +332,8 @@ typedef enum not_set_what {
     NOT_SET_OVERRIDE,      /**< MC_SetOverride; see override_refused */
     NOT_SET_OUTPUT,        /**< digital output `number` */
     NOT_SET_PROBE,         /**< a touch probe at input `number` */
+    NOT_READ_INPUT,        /**< digital input `number` */
+    NOT_READ_OUTPUT,       /**< digital output `number` */
     NOT_SET_CAM,           /**< MC_CamTableSelect; see cams_t */
     NOT_SET_CAM_SWITCH,    /**< MC_DigitalCamSwitch: the input of switch `number` that is `value` */
     NOT_SET_INPUT,         /**< the input of a block that is `value`; see `name` and `right` */

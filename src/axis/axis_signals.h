@@ -38,6 +38,8 @@ cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns);
 /** The commanded value of an output. @rt cycle */
 cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value);
+/** Like cm1e_axis_refuse_level(), for the number of an input or output that cannot be read. @rt cycle */
+void cm1e_axis_refuse_signal(cm1e_axis_t *axis, cm1e_error_t error, bool output, int number, bool begins);
 /** Inputs of MC_DigitalCamSwitch that have a range. */
 typedef enum cm1e_cam_switch_input {
     CM1E_CAM_SWITCH_COUNT = 0, CM1E_CAM_SWITCH_TRACK, CM1E_CAM_SWITCH_FIRST_ON, CM1E_CAM_SWITCH_LAST_ON,

@@ -132,7 +132,8 @@ void cm1e_axis_small_text(const cm1e_axis_t *axis, const small_input_t *small, c
         snprintf(commanded, sizeof commanded, "%s %.6g was commanded", small->name, small->value);
     snprintf(text, size, "Axis \"%s\": %s%s%s too small to compute with; %sfrom %.6g %s on is right.", axis->config->name,
              commanded, factor, factor[0] ? ": together they are" : ", which is",
-             small->is_maximum || small->error == CM1E_ERROR_AXIS_VELOCITY_RANGE ? "" : "0 (the maximum), or ", small->least / small->factor, small->unit);
+             small->is_maximum || small->error == CM1E_ERROR_AXIS_VELOCITY_RANGE ? "" : "0 (the maximum), or ",
+             small->least / small->factor, small->unit);
 }
 
 static bool refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)

@@ -13,14 +13,42 @@ const char *cm1e_axis_wired_name(const cm1e_axis_t *axis, int number, bool outpu
     return n < 0 || n >= count ? "" : output ? wiring->outputs[n] : wiring->inputs[n];
 }
 
+/* The numbers of the signals that the axis has: " Right is 1 ... 6, 11 ... 12 (on other slaves)." */
+static void numbers_text(const cm1e_axis_t *axis, bool output, char *text, size_t size)
+{
+    enum { BITS = 16 };
+    const cm1e_wiring_config_t *wiring = &axis->config->wiring;
+    const cm1e_drive_t *drive = &axis->drive;
+    const int wired = output ? wiring->output_count : wiring->input_count;
+    const unsigned all = cm1e_drive_is_virtual(drive) ? 0
+                         : output ? drive->kind->signals.outputs : drive->kind->signals.inputs;
+    size_t used = 0;
+    text[0] = '\0';
+    for (int first = 0, last; first < BITS; first = last + 1) {
+        for (last = first; last < BITS && all >> last & 1; last++) {}
+        if (last > first && used < size)
+            used += (size_t)snprintf(text + used, size - used, last > first + 1 ? "%s%d ... %d" : "%s%d",
+                                     used ? ", " : " Right is ", first + 1, last);
+    }
+    if (wired > 0 && used < size)
+        used += (size_t)snprintf(text + used, size - used, "%s%d ... %d (on other slaves)", used ? ", " : " Right is ",
+                                 CM1E_WIRED_FIRST, CM1E_WIRED_FIRST + wired - 1);
+    if (used < size)
+        snprintf(text + used, size - used, used ? "." : " This axis has none.");
+}
+
 /* Names a signal by its number, and one of another slave also by its name. */
 static void signal_text(const cm1e_axis_t *axis, const char *before, const char *behind, char *text, size_t size)
 {
     const not_set_t *refused = &axis->not_set;
-    const char *wired = cm1e_axis_wired_name(axis, refused->number, refused->what == NOT_SET_OUTPUT);
-    snprintf(text, size, "Axis \"%s\": %s %d%s%s%s%s: %s.%s", axis->config->name, before, refused->number,
-             wired[0] ? " (" : "", wired, wired[0] ? ")" : "", behind, cm1e_strerror(refused->error),
-             cm1e_axis_signals_advice(axis, refused->error));
+    const bool output = refused->what == NOT_SET_OUTPUT || refused->what == NOT_READ_OUTPUT;
+    const char *wired = cm1e_axis_wired_name(axis, refused->number, output);
+    const char *advice = cm1e_axis_signals_advice(axis, refused->error);
+    char numbers[96] = "";
+    if (refused->error == CM1E_ERROR_AXIS_SIGNAL && !advice[0])
+        numbers_text(axis, output, numbers, sizeof numbers);
+    snprintf(text, size, "Axis \"%s\": %s %d%s%s%s%s: %s.%s%s", axis->config->name, before, refused->number,
+             wired[0] ? " (" : "", wired, wired[0] ? ")" : "", behind, cm1e_strerror(refused->error), advice, numbers);
 }
 
 static void override_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -81,6 +109,22 @@ cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const
     return error;
 }
 
+cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const char *input, int value, const char *right,
+                                    bool begins)
+{
+    const not_set_t *last = &axis->not_set;
+    const bool another = last->error != CM1E_OK && last->what == NOT_SET_INPUT && last->name == input && last->value != value;
+    return begins || another ? cm1e_axis_refuse_input(axis, error, input, value, right) : error;
+}
+
+void cm1e_axis_refuse_signal(cm1e_axis_t *axis, cm1e_error_t error, bool output, int number, bool begins)
+{
+    const not_set_what_t what = output ? NOT_READ_OUTPUT : NOT_READ_INPUT;
+    const not_set_t *last = &axis->not_set;
+    if (begins || (last->error != CM1E_OK && last->what == what && last->number != number))
+        cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = what, .number = number});
+}
+
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const not_set_t *refused = &axis->not_set;
@@ -94,6 +138,9 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
                  cm1e_strerror(refused->error));
     } else if (refused->what == NOT_SET_OUTPUT) {
         signal_text(axis, "digital output", " was not written", text, size);
+    } else if (refused->what == NOT_READ_INPUT || refused->what == NOT_READ_OUTPUT) {
+        signal_text(axis, refused->what == NOT_READ_OUTPUT ? "digital output" : "digital input", " was not read", text,
+                    size);
     } else if (refused->what == NOT_SET_PROBE && refused->error == CM1E_ERROR_AXIS_POSITION_RANGE) {
         snprintf(text, size, "Axis \"%s\": the window of the touch probe at input %d is none: FirstPosition and LastPosition "
                  "are inside the range of the axis, and on a linear axis FirstPosition is not above LastPosition.", name,

@@ -71,6 +71,12 @@ cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const
     (void)right;
     return error;
 }
+cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const char *input, int value, const char *right,
+                                    bool begins)
+{
+    (void)begins;
+    return cm1e_axis_refuse_input(axis, error, input, value, right);
+}
 cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error)
 {
     (void)axis;

@@ -24,6 +24,68 @@ static void switch_input(int number, const char *to)
 
 static WORD id(cm1e_error_t error) { return cm1e_error_id(error); }
 
+static void told(const char *words)
+{
+    char text[512];
+    cm1e_axis_error_text(reference, text, sizeof text);
+    ck_assert_msg(strstr(text, words) != NULL, "\"%s\" is not in: %s", words, text);
+}
+
+/** What is wrong with a number that a block reads in every call is told once, so that a later refusal is told too. */
+START_TEST(test_a_number_that_is_wrong_is_told_with_those_that_are_right)
+{
+    begin();
+    MC_INPUT_REF input = {.Axis = reference};
+    MC_OUTPUT_REF output = {.Axis = reference};
+    MC_ReadDigitalInput_t reads = {.Input = &input, .Enable = TRUE, .InputNumber = 77};
+    MC_ReadDigitalInput(&reads);
+    told("digital input 77 was not read");
+    told("Right is 1 ... 4.");
+    reads.InputNumber = -3;
+    MC_ReadDigitalInput(&reads);
+    told("digital input -3 was not read");
+    MC_Stop_t stop = {.Axis = &reference, .Execute = TRUE, .Deceleration = -1.0};
+    MC_Stop(&stop); /* in Disabled */
+    MC_ReadDigitalInput(&reads);
+    told("Disabled");
+    MC_ReadDigitalOutput_t shows = {.Output = &output, .Enable = TRUE, .OutputNumber = 5};
+    MC_ReadDigitalOutput(&shows);
+    told("digital output 5 was not read");
+    told("Right is 1.");
+    MC_WriteDigitalOutput_t writes = {.Output = &output, .Execute = TRUE, .OutputNumber = 3};
+    MC_WriteDigitalOutput(&writes);
+    told("digital output 3 was not written");
+    told("Right is 1.");
+    MC_DigitalCamSwitch_t cams = {.Axis = &reference, .Outputs = &output, .Enable = TRUE};
+    cams.ValueSource = (MC_SOURCE)2;
+    MC_DigitalCamSwitch(&cams);
+    ck_assert(cams.Error && cams.ErrorID == id(CM1E_ERROR_INVALID_ARGUMENT));
+    told("MC_DigitalCamSwitch: ValueSource is 2; 0 (mcSetValue) or 1 (mcActualValue) is right");
+    cams.Outputs = NULL;
+    cams.Enable = FALSE;
+    MC_DigitalCamSwitch(&cams);
+    cams.Enable = TRUE;
+    MC_DigitalCamSwitch(&cams);
+    told("MC_DigitalCamSwitch: Outputs is 0");
+    MC_ReadMotionState_t state = {.Axis = &reference, .Enable = TRUE, .Source = (MC_SOURCE)-1};
+    MC_ReadMotionState(&state);
+    told("MC_ReadMotionState: Source is -1; 0 (mcSetValue)");
+    MC_ReadParameter_t reader = {.Axis = &reference, .Enable = TRUE, .ParameterNumber = 99};
+    MC_ReadParameter(&reader);
+    told("MC_ReadParameter: ParameterNumber is 99; 1 ... 17, 1800 ... 1804, or");
+    MC_ReadBoolParameter_t bool_reader = {.Axis = &reference, .Enable = TRUE, .ParameterNumber = 9};
+    MC_ReadBoolParameter(&bool_reader);
+    told("MC_ReadBoolParameter: ParameterNumber is 9; 4, 5, 6, 1800 or 1804 is right");
+    MC_ReadParameter(&reader);
+    told("MC_ReadBoolParameter");
+    MC_WriteParameter_t writer = {.Axis = &reference, .Execute = TRUE, .ParameterNumber = 1999};
+    MC_WriteParameter(&writer);
+    told("parameter 1999");
+    told("Right is 1 ... 17");
+    close_segment();
+}
+END_TEST
+
 /* ---- inputs and outputs ------------------------------------------------------------------------------------------ */
 
 START_TEST(test_read_digital_input)
@@ -522,6 +584,7 @@ int main(void)
 {
     Suite *suite = suite_create("signals");
     TCase *tcase = tcase_create("signals");
+    tcase_add_test(tcase, test_a_number_that_is_wrong_is_told_with_those_that_are_right);
     tcase_add_test(tcase, test_read_digital_input);
     tcase_add_test(tcase, test_write_and_read_digital_output);
     tcase_add_test(tcase, test_output_stays_off_after_its_motor_was_away);
