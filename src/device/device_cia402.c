@@ -47,7 +47,7 @@ static const cm1e_device_homing_t homing = {
     .first_method = -128, .last_method = 37, .first_by_switch = -128, .last_by_switch = 37, .halts = true,
     .offset_by_axis = true, .place = "",
     .objects = {HOMING_OBJECTS_OF_CIA402},
-    .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_RETURN},
+    .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_SETTLE, HOME_RETURN},
 };
 
 static const cm1e_device_drive_t drive = {

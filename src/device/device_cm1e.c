@@ -45,7 +45,7 @@ static const cm1e_device_homing_t homing = {
         HOMING_OBJECTS_OF_CIA402,
         [CM1E_HOMING_TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, 1.0, NULL},
     },
-    .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_RETURN},
+    .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_SETTLE, HOME_RETURN},
 };
 
 static const cm1e_device_drive_t drive = {

@@ -245,7 +245,7 @@ void cm1e_homing_run(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
     home->next = home->place = 0;
-    home->submitted = home->away = home->unstoppable = home->late = false;
+    home->submitted = home->away = home->unstoppable = home->unsettled = home->late = false;
     home->refused = CM1E_OK;
     home->goal = HOME_GOAL_DONE;
     home->deadline_ns = axis->now_ns + home->timeout_ns;
@@ -463,14 +463,16 @@ static void step_run(cm1e_axis_t *axis)
         timed_out(axis);
 }
 
-/* Waits for standstill. Behind a bridge the end of the homing and the position come over the serial line of the motor,
- * and not always in one cycle. */
+/* Waits for standstill. A drive may say too early that it has homed, and while the mode is switched the target rests: it
+ * would be far behind a motor that still turns. Behind a bridge the end of the homing and the position come over the serial
+ * line of the motor, and not always in one cycle. */
 static void step_settle(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
+    axis->homing->drive.unsettled = axis->now_ns - axis->homing->drive.step_ns >= rest_timeout_ns;
     if (stands(axis))
         next_step(axis);
-    else if (axis->now_ns - axis->homing->drive.step_ns >= rest_timeout_ns)
+    else if (axis->homing->drive.unsettled)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
 }
 

@@ -26,6 +26,7 @@ typedef struct drive_homing {
     bool submitted;
     bool away;             /**< the drive is not in the axis's own mode */
     bool unstoppable;      /**< the motor did not stop in time; for the text */
+    bool unsettled;        /**< it did not come to rest after the end of the homing; for the text */
     bool late;             /**< the time of the homing was over before the parameters were written; for the text */
     uint8_t data[4];
     standstill_t standstill;

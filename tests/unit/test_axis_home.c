@@ -1,4 +1,5 @@
 /* MC_Home: parameters over SDO, the bits of UG 6.2.4, the way back without a jump, and everything that goes wrong. */
+#include <limits.h>
 #include <math.h>
 
 #include "../support/axis_bench.h"
@@ -408,6 +409,7 @@ static void test_every_pattern_of_the_bits_while_running(void)
             assert_homing_error(id, CM1E_ERROR_AXIS_HOMING_FAILED);
             break;
         case 3:
+            bench_cycles(60); /* the motor has to stand */
             TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
             break;
         default:
@@ -416,6 +418,65 @@ static void test_every_pattern_of_the_bits_while_running(void)
             break;
         }
     }
+}
+
+static int turns_for; /* cycles */
+
+/* It says that the homing is completed, and turns on. */
+static void device_lies(cm1e_bus_t *b)
+{
+    if (b->mode != CM1E_MODE_HM || !(b->controlword & CONTROLWORD_HOMING_START || homing_started))
+        return;
+    start_edges += !homing_started;
+    homing_started = true;
+    show(0, 1, 1);
+    if (turns_for-- > 0)
+        turn(100);
+}
+
+/** A drive that says too early that it has homed: the mode is switched when its motor is at rest, whatever comes meanwhile.
+ *  A target that is held during the switch would else be far behind the motor. */
+static void test_homing_that_ends_while_the_motor_turns_keeps_its_mode_until_that_rests(void)
+{
+    for (int ended = 0; ended < 4; ended++)
+        for (int n = 1; n < 40; n += 3) {
+            start_bench();
+            bus.homing = device_lies;
+            turns_for = 200;
+            const cm1e_command_id_t id = home(0.0, &(cm1e_homing_config_t){.method = -1});
+            cycles_until_step(HOME_RUN);
+            bench_cycles(n);
+            if (ended == 1)
+                bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP});
+            else if (ended == 2)
+                bench_power(false);
+            else if (ended == 3)
+                cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
+            while (turns_for > 0 && bus.state == OPERATION_ENABLED) {
+                bench_cycles(1);
+                TEST_ASSERT_EQUAL_INT8(CM1E_MODE_HM, bus.mode);
+            }
+            TEST_ASSERT_TRUE(turns_for <= 0);
+            bench_cycles(300);
+            TEST_ASSERT_EQUAL_INT8(CM1E_MODE_CSP, bus.mode);
+            if (ended == 0)
+                TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+        }
+}
+
+/** It never rests: the homing has failed. */
+static void test_homing_that_ends_while_the_motor_turns_for_ever_has_failed(void)
+{
+    start_bench();
+    bus.homing = device_lies;
+    turns_for = INT_MAX;
+    const cm1e_command_id_t id = home(0.0, &(cm1e_homing_config_t){.method = -1});
+    cycles_until_step(HOME_RUN);
+    bench_cycles(1100);
+    bench_told("although its motor still turned");
+    turns_for = 0;
+    bench_cycles(200);
+    assert_homing_error(id, CM1E_ERROR_AXIS_HOMING_FAILED);
 }
 
 static void test_stop_at_every_cycle_of_homing(void)
@@ -581,6 +642,8 @@ int main(void)
     RUN_TEST(test_homing_that_never_begins);
     RUN_TEST(test_homing_without_end_times_out);
     RUN_TEST(test_every_pattern_of_the_bits_while_running);
+    RUN_TEST(test_homing_that_ends_while_the_motor_turns_keeps_its_mode_until_that_rests);
+    RUN_TEST(test_homing_that_ends_while_the_motor_turns_for_ever_has_failed);
     RUN_TEST(test_stop_at_every_cycle_of_homing);
     RUN_TEST(test_power_off_at_every_cycle_of_homing);
     RUN_TEST(test_fault_at_every_cycle_of_homing);
