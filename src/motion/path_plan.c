@@ -8,10 +8,7 @@
 #include "core/extreme.h"
 #include "motion/path_private.h"
 
-enum { SLOWEST_STEPS = 16, FIND_STEPS = 60, WIDER_MOST = 6 };
-
-/** A distance that is longer by this fraction counts as equal. */
-static const double AS_LONG = 1e-9;
+enum { SLOWEST_STEPS = 16, WIDER_MOST = 6 };
 
 static double factor(const cm1e_path_t *path) { return path->override > 0 ? path->override : 1; }
 
@@ -66,7 +63,7 @@ static double enter(const cm1e_path_run_t *run, double exit, const cm1e_path_run
     const cm1e_path_run_t wide = together(run, next);
     const double limit = smaller(most, commanded ? wide.limits.velocity : wide.highest);
     const double entry = smaller(limit, cm1e_profile_entry_velocity(wide.length, limit, wide_exit, &wide.limits));
-    if (!(entry > alone * (1 + AS_LONG)))
+    if (!(entry > alone * (1 + CM1E_PATH_AS_LONG)))
         return alone;
     *braking = wide;
     return entry;
@@ -124,7 +121,7 @@ static void look_ahead(cm1e_path_t *path, int first, int changed)
 
 /* ---- one run ----------------------------------------------------------------------------------------------------- */
 
-static void velocities(const cm1e_profile_t *profile, double *lowest, double *highest)
+void cm1e_path_velocities(const cm1e_profile_t *profile, double *lowest, double *highest)
 {
     *lowest = *highest = profile->end.velocity;
     for (int i = 0; i < profile->segment_count; i++) {
@@ -138,26 +135,20 @@ static void velocities(const cm1e_profile_t *profile, double *lowest, double *hi
     }
 }
 
-/** Whether it goes ahead only, not beyond its end and not too fast. */
-static bool keeps(const cm1e_profile_t *profile, const cm1e_motion_state_t *start, double end, double highest)
+bool cm1e_path_keeps(const cm1e_profile_t *profile, const cm1e_motion_state_t *start, double end, double highest)
 {
     double low, high, slowest, fastest;
     cm1e_profile_extent(profile, &low, &high);
-    velocities(profile, &slowest, &fastest);
-    const double slack = AS_LONG * (end - start->position);
-    return high <= end + slack && slowest >= -AS_LONG * highest && fastest <= highest * (1 + AS_LONG);
-}
-
-static double eased(const cm1e_motion_state_t *start, double jerk)
-{
-    return start->velocity + start->acceleration * (fabs(start->acceleration) / jerk) / 2;
+    cm1e_path_velocities(profile, &slowest, &fastest);
+    const double slack = CM1E_PATH_AS_LONG * (end - start->position);
+    return high <= end + slack && slowest >= -CM1E_PATH_AS_LONG * highest && fastest <= highest * (1 + CM1E_PATH_AS_LONG);
 }
 
 static bool plan_to(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double exit,
                     double highest)
 {
     return cm1e_profile_to_state(profile, start, run->length, exit, &run->limits) == CM1E_OK &&
-           keeps(profile, start, run->length, highest);
+           cm1e_path_keeps(profile, start, run->length, highest);
 }
 
 /** From a state on the run to its end, to leave it with `soft`, or as near to that as can be, but not beyond `hard`.
@@ -165,7 +156,7 @@ static bool plan_to(cm1e_profile_t *profile, const cm1e_motion_state_t *start, c
 static bool plan_run(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double soft,
                      double hard, bool faster)
 {
-    const double ease = eased(start, run->limits.jerk), commanded = larger(run->limits.velocity, soft);
+    const double ease = cm1e_path_eased(start, run->limits.jerk), commanded = larger(run->limits.velocity, soft);
     const double highest = larger(larger(commanded, start->velocity), faster ? smaller(ease, run->highest) : 0);
     const double exit = cm1e_profile_passing_velocity(start, run->length, soft, &run->limits);
     if (plan_to(profile, start, run, exit, highest))
@@ -201,7 +192,7 @@ static void exits(cm1e_path_t *path, int first, const cm1e_path_run_t *run, doub
     }
 }
 
-static void follow(cm1e_path_t *path, const cm1e_profile_t *profile, const cm1e_motion_state_t *start)
+void cm1e_path_follow(cm1e_path_t *path, const cm1e_profile_t *profile, const cm1e_motion_state_t *start)
 {
     path->profile = *profile;
     path->time_s = 0;
@@ -216,7 +207,7 @@ static bool plan_wide(cm1e_path_t *path, const cm1e_motion_state_t *start, const
                       double velocity, cm1e_profile_t *profile)
 {
     const double a = start->acceleration;
-    if (larger(start->velocity, eased(start, wide->limits.jerk)) > velocity || a > wide->limits.acceleration ||
+    if (larger(start->velocity, cm1e_path_eased(start, wide->limits.jerk)) > velocity || a > wide->limits.acceleration ||
         -a > wide->limits.deceleration)
         return false;
     double soft, hard;
@@ -253,7 +244,7 @@ static bool widen(cm1e_path_t *path, const cm1e_motion_state_t *start, cm1e_path
                 break;
         }
         if (planned && wider.duration_s > (profile->duration_s + time_over(path, run->count, &next->braking,
-                                                                           profile->end.velocity)) * (1 + AS_LONG))
+                                                                           profile->end.velocity)) * (1 + CM1E_PATH_AS_LONG))
             break;
         *profile = wider;
         *run = wide;
@@ -273,7 +264,7 @@ static bool plan_anew(cm1e_path_t *path, const cm1e_path_run_t *on, double soft,
         return false;
     for (int i = 1; i < run.count; i++)
         cm1e_path_element(path, i)->joined = true;
-    follow(path, &profile, &start);
+    cm1e_path_follow(path, &profile, &start);
     path->stopping = false;
     return true;
 }
@@ -287,8 +278,8 @@ bool cm1e_path_plan(cm1e_path_t *path, int changed)
     double soft, hard;
     exits(path, 0, &run, &soft, &hard);
     return plan_anew(path, &run, soft, hard, false) ||
-           (fabs(path->profile.end.position - path->begin - run.length) <= AS_LONG * run.length &&
-            path->profile.end.velocity <= hard * (1 + AS_LONG));
+           (fabs(path->profile.end.position - path->begin - run.length) <= CM1E_PATH_AS_LONG * run.length &&
+            path->profile.end.velocity <= hard * (1 + CM1E_PATH_AS_LONG));
 }
 
 void cm1e_path_keep_going(cm1e_path_t *path)
@@ -299,7 +290,7 @@ void cm1e_path_keep_going(cm1e_path_t *path)
     cm1e_profile_t profile;
     exits(path, 0, &run, &soft, &hard);
     if (cm1e_profile_to_state(&profile, &start, run.length, smaller(hard, start.velocity), &run.limits) == CM1E_OK)
-        follow(path, &profile, &start);
+        cm1e_path_follow(path, &profile, &start);
 }
 
 void cm1e_path_change_pace(cm1e_path_t *path)
@@ -311,100 +302,7 @@ void cm1e_path_change_pace(cm1e_path_t *path)
     (void)plan_anew(path, &run, soft, hard, true);
 }
 
-/* ---- stopping ---------------------------------------------------------------------------------------------------- */
-
-static double velocity_at(const cm1e_profile_t *profile, double position)
-{
-    double low = 0, high = profile->duration_s;
-    cm1e_motion_state_t state = profile->end;
-    for (int i = 0; i < FIND_STEPS; i++) {
-        const double middle = (low + high) / 2;
-        cm1e_profile_sample(profile, middle, &state);
-        if (state.position < position)
-            low = middle;
-        else
-            high = middle;
-    }
-    return state.velocity;
-}
-
-/** Whether a stop over so many elements keeps what they allow. An acceleration under way has to come to 0 first. */
-static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e_motion_state_t *start, int count,
-                       double length, const cm1e_path_run_t *run)
-{
-    const double eased_to = smaller(eased(start, run->limits.jerk), run->highest);
-    if (!keeps(stop, start, length, larger(run->limits.velocity, larger(start->velocity, eased_to))))
-        return false;
-    double begin = run->length, slowest, fastest;
-    velocities(stop, &slowest, &fastest);
-    for (int i = run->count; i < count; i++) {
-        const cm1e_path_element_t *element = cm1e_path_element(path, i);
-        const double most = start->acceleration > 0 ? fastest : velocity_at(stop, begin); /* it may yet get faster */
-        if (most > smaller(element->highest, element->passed) * (1 + 1e-9))
-            return false;
-        begin += element->length;
-    }
-    return true;
-}
-
-/** `shortest`: with the limits of the axes for the shortest stop, where the motion is within them. An acceleration under
- *  way ends later with them where their jerk is smaller, and may then reach a higher velocity than it may. */
-static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, bool shortest, cm1e_profile_t *stop,
-                      const cm1e_motion_state_t *start)
-{
-    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
-    cm1e_motion_limits_t limits = {run.highest, run.limits.acceleration, deceleration, jerk};
-    double length = 0;
-    for (int i = 0; i < path->element_count; i++) {
-        const cm1e_path_element_t *element = cm1e_path_element(path, i);
-        const bool quick = shortest && larger(start->velocity, eased(start, jerk)) <= element->most.velocity &&
-                           fabs(start->acceleration) <= element->most.acceleration;
-        const cm1e_motion_limits_t *most = quick ? &element->most : &element->limits;
-        if (i >= run.count && element->passed == 0)
-            return false;
-        limits.velocity = smaller(limits.velocity, element->highest);
-        limits.acceleration = smaller(limits.acceleration, most->acceleration);
-        limits.deceleration = smaller(limits.deceleration, most->deceleration);
-        limits.jerk = smaller(limits.jerk, most->jerk);
-        length += element->length;
-        if (cm1e_profile_to_velocity(stop, start, 0, &limits) != CM1E_OK)
-            return false;
-        if (stop->end.position <= length)
-            return stop_keeps(path, stop, start, i + 1, length, &run);
-    }
-    return false;
-}
-
-/** The sooner one of both ways to stop. */
-static bool find_soonest(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
-                         const cm1e_motion_state_t *start)
-{
-    cm1e_profile_t other;
-    const bool found = find_stop(path, deceleration, jerk, true, stop, start);
-    if (find_stop(path, deceleration, jerk, false, &other, start) && (!found || other.duration_s < stop->duration_s))
-        *stop = other;
-    else if (!found)
-        return false;
-    return true;
-}
-
-bool cm1e_path_plan_stop(cm1e_path_t *path)
-{
-    const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
-    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
-    const double deceleration = path->stop.deceleration, jerk = path->stop.jerk;
-    const double more_jerk = larger(jerk, run.limits.jerk);
-    cm1e_profile_t stop;
-    const bool as_told = find_soonest(path, deceleration, jerk, &stop, &start);
-    if (!as_told && path->stopping) /* the one under way is over sooner, as what is left has its length */
-        return true;
-    if (!as_told && !find_soonest(path, deceleration, more_jerk, &stop, &start) &&
-        !find_soonest(path, larger(deceleration, run.limits.deceleration), more_jerk, &stop, &start))
-        return false;
-    follow(path, &stop, &start);
-    path->stopping = true;
-    return true;
-}
+/* ---- cutting off ------------------------------------------------------------------------------------------------- */
 
 static void cut_at(cm1e_path_t *path, double position)
 {
@@ -442,7 +340,7 @@ void cm1e_path_cut(cm1e_path_t *path)
         cm1e_profile_t profile;
         if (cm1e_profile_to_velocity(&profile, &start, 0, &run.limits) == CM1E_OK &&
             profile.end.position <= run.length) {
-            cut_at(path, begin + profile.end.position * (1 + AS_LONG));
+            cut_at(path, begin + profile.end.position * (1 + CM1E_PATH_AS_LONG));
             break;
         }
         double soft, hard;

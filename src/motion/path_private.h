@@ -26,6 +26,22 @@ static inline double cm1e_path_here(const cm1e_path_t *path)
     return path->element_count ? path->along.position - path->begin : 0;
 }
 
+/** A distance that is longer by this fraction counts as equal. */
+#define CM1E_PATH_AS_LONG 1e-9
+
+/** The velocity when the acceleration has come to 0. */
+static inline double cm1e_path_eased(const cm1e_motion_state_t *start, double jerk)
+{
+    return start->velocity + start->acceleration * (fabs(start->acceleration) / jerk) / 2;
+}
+
+/** The smallest and the largest velocity of a profile. */
+void cm1e_path_velocities(const cm1e_profile_t *profile, double *lowest, double *highest);
+/** Whether it goes ahead only, not beyond its end and not too fast. */
+bool cm1e_path_keeps(const cm1e_profile_t *profile, const cm1e_motion_state_t *start, double end, double highest);
+/** That is the motion from now on; `start` counts from the beginning of the first element. */
+void cm1e_path_follow(cm1e_path_t *path, const cm1e_profile_t *profile, const cm1e_motion_state_t *start);
+
 /** Appends a segment behind the previous one (NULL: none), as its command says, and plans. */
 void cm1e_path_join(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment);
 

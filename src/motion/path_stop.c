@@ -1,0 +1,128 @@
+/* Stops along the path: as soon as the deceleration and jerk that were told allow, within what the axes allow on every
+ * element that the stop leads over. */
+#include <math.h>
+
+#include "core/extreme.h"
+#include "motion/path_private.h"
+
+enum { FIND_STEPS = 60 };
+
+/** A way of a stop is found to this fraction of it. */
+static const double AS_NEAR = 1e-13;
+
+/** After how long a motion of constant jerk, which never turns round, has gone that way within `most_s`: Newton's method
+ *  between two times of which the way is between. */
+static double time_of(const cm1e_motion_state_t *start, double jerk, double most_s, double way)
+{
+    double low = 0, high = most_s, t = most_s / 2;
+    for (int i = 0; i < FIND_STEPS && high > low; i++) {
+        const double a = start->acceleration, v = start->velocity;
+        const double missing = t * (v + t * (a / 2 + t * (jerk / 6))) - way, speed = v + t * (a + t * (jerk / 2));
+        if (fabs(missing) <= AS_NEAR * way)
+            break;
+        if (missing < 0)
+            low = t;
+        else
+            high = t;
+        const double next = t - missing / speed;
+        t = next > low && next < high ? next : (low + high) / 2;
+    }
+    return t;
+}
+
+/** The velocity at a position that is not before those of the segments before `*segment`. */
+static double velocity_at(const cm1e_profile_t *profile, double position, int *segment)
+{
+    while (*segment + 1 < profile->segment_count && profile->segments[*segment + 1].start.position <= position)
+        ++*segment;
+    const cm1e_profile_segment_t *at = &profile->segments[*segment];
+    const bool last = *segment + 1 == profile->segment_count;
+    const double most_s = (last ? profile->duration_s : at[1].start_s) - at->start_s;
+    const double t = time_of(&at->start, at->jerk, most_s, position - at->start.position);
+    return at->start.velocity + t * (at->start.acceleration + t * (at->jerk / 2));
+}
+
+/** Whether a stop over so many elements keeps what they allow. An acceleration under way has to come to 0 first. */
+static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e_motion_state_t *start, int count,
+                       double length, const cm1e_path_run_t *run)
+{
+    const double eased_to = smaller(cm1e_path_eased(start, run->limits.jerk), run->highest);
+    if (!cm1e_path_keeps(stop, start, length, larger(run->limits.velocity, larger(start->velocity, eased_to))))
+        return false;
+    double begin = run->length, slowest, fastest;
+    int segment = 0;
+    cm1e_path_velocities(stop, &slowest, &fastest);
+    for (int i = run->count; i < count; i++) {
+        const cm1e_path_element_t *element = cm1e_path_element(path, i);
+        const double most = smaller(element->highest, element->passed) * (1 + 1e-9);
+        /* With an acceleration it may yet get faster. */
+        if (fastest > most && (start->acceleration > 0 || velocity_at(stop, begin, &segment) > most))
+            return false;
+        begin += element->length;
+    }
+    return true;
+}
+
+/** `shortest`: with the limits of the axes for the shortest stop, where the motion is within them. An acceleration under
+ *  way ends later with them where their jerk is smaller, and may then reach a higher velocity than it may. Lower limits
+ *  make no stop shorter: one that ends behind an element is planned again only when the elements reach its end. */
+static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, bool shortest, cm1e_profile_t *stop,
+                      const cm1e_motion_state_t *start)
+{
+    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+    cm1e_motion_limits_t limits = {run.highest, run.limits.acceleration, deceleration, jerk};
+    double length = 0, at_least = 0;
+    for (int i = 0; i < path->element_count; i++) {
+        const cm1e_path_element_t *element = cm1e_path_element(path, i);
+        const bool quick = shortest && larger(start->velocity, cm1e_path_eased(start, jerk)) <= element->most.velocity &&
+                           fabs(start->acceleration) <= element->most.acceleration;
+        const cm1e_motion_limits_t *most = quick ? &element->most : &element->limits;
+        if (i >= run.count && element->passed == 0)
+            return false;
+        limits.velocity = smaller(limits.velocity, element->highest);
+        limits.acceleration = smaller(limits.acceleration, most->acceleration);
+        limits.deceleration = smaller(limits.deceleration, most->deceleration);
+        limits.jerk = smaller(limits.jerk, most->jerk);
+        length += element->length;
+        if (at_least > length)
+            continue;
+        if (cm1e_profile_to_velocity(stop, start, 0, &limits) != CM1E_OK)
+            return false;
+        if (stop->end.position <= length)
+            return stop_keeps(path, stop, start, i + 1, length, &run);
+        if (-start->acceleration <= limits.deceleration)
+            at_least = stop->end.position;
+    }
+    return false;
+}
+
+/** The sooner one of both ways to stop. */
+static bool find_soonest(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
+                         const cm1e_motion_state_t *start)
+{
+    cm1e_profile_t other;
+    const bool found = find_stop(path, deceleration, jerk, true, stop, start);
+    if (find_stop(path, deceleration, jerk, false, &other, start) && (!found || other.duration_s < stop->duration_s))
+        *stop = other;
+    else if (!found)
+        return false;
+    return true;
+}
+
+bool cm1e_path_plan_stop(cm1e_path_t *path)
+{
+    const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
+    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+    const double deceleration = path->stop.deceleration, jerk = path->stop.jerk;
+    const double more_jerk = larger(jerk, run.limits.jerk);
+    cm1e_profile_t stop;
+    const bool as_told = find_soonest(path, deceleration, jerk, &stop, &start);
+    if (!as_told && path->stopping) /* the one under way is over sooner, as what is left has its length */
+        return true;
+    if (!as_told && !find_soonest(path, deceleration, more_jerk, &stop, &start) &&
+        !find_soonest(path, larger(deceleration, run.limits.deceleration), more_jerk, &stop, &start))
+        return false;
+    cm1e_path_follow(path, &stop, &start);
+    path->stopping = true;
+    return true;
+}
