@@ -152,6 +152,18 @@ typedef struct cm1e_path_run {
     double highest;              /**< velocity that the axes allow on all elements */
 } cm1e_path_run_t;
 
+enum { CM1E_PATH_LEVELS = 8, CM1E_PATH_BRAKES = 2 };
+
+/** What the axes leave for braking in a bend, which is more at a lower velocity: at most at the velocity of a level
+ *  (cm1e_path_level()), a share of the deceleration and the jerk that they allow without the bend. Less deceleration
+ *  (cm1e_path_part()) leaves more jerk. */
+typedef struct cm1e_path_brake {
+    double velocity;              /**< of the highest level: the bend alone takes all that the axes have */
+    double deceleration, jerk;    /**< without the bend */
+    double share[CM1E_PATH_LEVELS]; /**< of the deceleration */
+    double jerk_share[CM1E_PATH_BRAKES][CM1E_PATH_LEVELS];
+} cm1e_path_brake_t;
+
 /** An element: a part of the path with its own limits. It is a segment without its transitions, a transition, or the
  *  part next to a step of the curvature. */
 typedef struct cm1e_path_element {
@@ -164,7 +176,7 @@ typedef struct cm1e_path_element {
     double skipped, length;       /**< part of the piece: its beginning and its length */
     cm1e_motion_limits_t limits;  /**< limits of the command; except for the velocity reduced to what the axes allow */
     double highest;               /**< velocity that the axes allow with these limits */
-    cm1e_motion_limits_t most;    /**< limits of the axes for a stop */
+    cm1e_path_brake_t brake;
     double passed;                /**< maximum velocity at its beginning */
     double junction;              /**< velocity that the command requests there, at an override of 1 */
     double entry, hard_entry;     /**< look-ahead velocities at the beginning of a run: within all limits, and within

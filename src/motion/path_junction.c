@@ -45,12 +45,12 @@ static cm1e_path_element_t *push(cm1e_path_t *path, const cm1e_path_piece_t *pie
     cm1e_path_element_t *element = cm1e_path_element(path, path->element_count++);
     *element = (cm1e_path_element_t){.piece = piece, .tag = command->tag, .last_of_tag = true, .skipped = skipped,
                                      .length = length};
-    cm1e_path_allowance_t allowance = {{1, 1, 1, 1}, 1, {1, 1, 1, 1}};
+    cm1e_path_allowance_t allowance = {{1, 1, 1, 1}, 1, {.velocity = 1, .deceleration = 1, .jerk = 1}};
     if (piece->length > 0)
         cm1e_path_allow(&allowance, piece, &path->config, share, &command->limits);
     element->limits = allowance.limits;
     element->highest = allowance.highest;
-    element->most = allowance.most;
+    element->brake = allowance.brake;
     return element;
 }
 

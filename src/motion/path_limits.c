@@ -2,7 +2,7 @@
  * motion along the path, the axis has the velocity q' v, the acceleration q'' v2 + q' a and the jerk q''' v3 + 3 q'' v
  * a + q' j. For a line q'' and q''' are 0, and the limits follow directly. In a bend the terms share the limits of the
  * axis: more acceleration along the path leaves less velocity. The share with the shortest time over the piece is
- * chosen. */
+ * chosen. A stop gets slower, so the share for it is known at several velocities. */
 #include <math.h>
 
 #include "core/extreme.h"
@@ -172,14 +172,76 @@ static cm1e_motion_limits_t choose(const bends_t *bends, double length, const cm
     return best;
 }
 
+/* ---- braking ----------------------------------------------------------------------------------------------------- */
+
+/** Which part of the straight deceleration and jerk is left, of at most `share`, beside what the bend takes at that
+ *  velocity. Where the terms of a circle add up across, the root of a quadratic. An axis that does not move along the
+ *  path takes part in nothing that is shared: 0 / 0 is no number, and smaller() then takes the other one. */
+static double share_of(const bends_t *bends, const bend_t *bend, double velocity, double share)
+{
+    const double square = velocity * velocity, across = bend->second * square, turned = bend->third * square * velocity;
+    const double along = bend->first * bends->straight.acceleration, limit = bend->acceleration;
+    const bool jerk = !isinf(bends->straight.jerk);
+    const double pushed = jerk ? bend->first * bends->straight.jerk : 0;
+    const double swung = 3 * bend->second * velocity * bends->straight.acceleration;
+    if (!bends->round) {
+        if (across + along * share > limit)
+            share = smaller(share, larger(0, limit - across) / along);
+        return jerk && turned + (pushed + swung) * share > bend->jerk
+                   ? smaller(share, larger(0, bend->jerk - turned) / (pushed + swung)) : share;
+    }
+    const double left = sqrt(larger(0, (limit - across) * (limit + across)));
+    share = along * share > left ? left / along : share;
+    if (!jerk || hypot(turned + pushed * share, swung * share) <= bend->jerk)
+        return share;
+    const double whole = larger(0, (bend->jerk - turned) * (bend->jerk + turned)), mixed = pushed * turned;
+    return smaller(share, whole / (mixed + sqrt(mixed * mixed + (pushed * pushed + swung * swung) * whole)));
+}
+
+/** Which part of the straight jerk is left, of at most `share`, beside that deceleration. */
+static double jerk_beside(const bends_t *bends, const bend_t *bend, double velocity, double deceleration, double share)
+{
+    const double turned = bend->third * velocity * velocity * velocity, pushed = bend->first * bends->straight.jerk;
+    const double swung = 3 * bend->second * velocity * deceleration, most = bend->jerk;
+    if (bends->round)
+        return smaller(share, larger(0, sqrt(larger(0, (most - swung) * (most + swung))) - turned) / pushed);
+    return pushed > 0 && turned + swung + pushed * share > most ? larger(0, most - turned - swung) / pushed : share;
+}
+
+static void brake_at_level(cm1e_path_brake_t *brake, const bends_t *bends, int level)
+{
+    const double velocity = cm1e_path_level(brake, level);
+    double share = 1, jerk[CM1E_PATH_BRAKES];
+    for (int i = 0; i < bends->count && share > 0; i++)
+        share = share_of(bends, &bends->bend[i], velocity, share);
+    for (int w = 0; w < CM1E_PATH_BRAKES; w++)
+        jerk[w] = 1;
+    const bool no_jerk = isinf(bends->straight.jerk);
+    for (int i = 0; i < bends->count && share > 0 && !no_jerk; i++)
+        for (int w = 0; w < CM1E_PATH_BRAKES; w++)
+            jerk[w] = jerk_beside(bends, &bends->bend[i], velocity,
+                                  cm1e_path_part(w) * share * bends->straight.acceleration, jerk[w]);
+    brake->share[level] = share * (1 - ROUNDING);
+    for (int w = 0; w < CM1E_PATH_BRAKES; w++)
+        brake->jerk_share[w][level] = jerk[w] * (1 - ROUNDING);
+}
+
+static void brake(cm1e_path_brake_t *brake, const bends_t *bends)
+{
+    brake->velocity = bends->velocity;
+    brake->deceleration = bends->straight.acceleration;
+    brake->jerk = bends->straight.jerk;
+    for (int k = 0; k < CM1E_PATH_LEVELS; k++)
+        brake_at_level(brake, bends, k);
+}
+
 void cm1e_path_allow(cm1e_path_allowance_t *allowance, const cm1e_path_piece_t *piece,
                      const cm1e_path_config_t *config, const cm1e_path_share_t *share,
                      const cm1e_motion_limits_t *wanted)
 {
-    static const cm1e_motion_limits_t all = {INFINITY, INFINITY, INFINITY, INFINITY};
     bends_t bends;
     look(&bends, piece, config, share);
-    allowance->most = choose(&bends, piece->length, &all);
+    brake(&allowance->brake, &bends);
     allowance->limits = choose(&bends, piece->length, wanted);
     allowance->highest = larger(allowance->limits.velocity, velocity_with(&bends, bends.velocity,
                                                                         strongest(&allowance->limits),

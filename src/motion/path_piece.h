@@ -57,8 +57,22 @@ void cm1e_path_curve_derivatives(const cm1e_path_piece_t *curve, int axes, doubl
 typedef struct cm1e_path_allowance {
     cm1e_motion_limits_t limits; /**< the requested limits, except for the velocity */
     double highest;              /**< velocity with these limits */
-    cm1e_motion_limits_t most;   /**< limits for the shortest time */
+    cm1e_path_brake_t brake;     /**< for the soonest stop */
 } cm1e_path_allowance_t;
+
+/** The velocity of a level of a brake. Near the highest one the share falls faster, so they are closer together. */
+static inline double cm1e_path_level(const cm1e_path_brake_t *brake, int level)
+{
+    static const double parts[CM1E_PATH_LEVELS] = {1, 0.96, 0.9, 0.83, 0.74, 0.63, 0.48, 0.3};
+    return parts[level] * brake->velocity;
+}
+
+/** The deceleration of a brake in parts of the share of its level. */
+static inline double cm1e_path_part(int brake)
+{
+    static const double parts[CM1E_PATH_BRAKES] = {1, 0.6};
+    return parts[brake];
+}
 
 /** Which part of the limits of the axes there is for the motion along a piece. */
 typedef struct cm1e_path_share {

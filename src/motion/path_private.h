@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "motion/path_piece.h"
+#include "motion/pieces.h"
 
 static inline cm1e_path_element_t *cm1e_path_element(cm1e_path_t *path, int index)
 {
@@ -35,6 +36,11 @@ static inline double cm1e_path_eased(const cm1e_motion_state_t *start, double je
     return start->velocity + start->acceleration * (fabs(start->acceleration) / jerk) / 2;
 }
 
+/** After how long a motion of constant jerk, which never turns round, has gone that way within `most_s`. */
+double cm1e_path_time_of(const cm1e_motion_state_t *start, double jerk, double most_s, double way);
+/** Plans the soonest stop with at most these limits; `*end`: the length of the elements that it leads over. */
+bool cm1e_path_brake_in_stages(cm1e_path_t *path, double deceleration, double jerk, const cm1e_motion_state_t *start,
+                               cm1e_profile_t *stop, double *end);
 /** The smallest and the largest velocity of a profile. */
 void cm1e_path_velocities(const cm1e_profile_t *profile, double *lowest, double *highest);
 /** Whether it goes ahead only, not beyond its end and not too fast. */

@@ -10,9 +10,11 @@ enum { FIND_STEPS = 60 };
 /** A way of a stop is found to this fraction of it. */
 static const double AS_NEAR = 1e-13;
 
-/** After how long a motion of constant jerk, which never turns round, has gone that way within `most_s`: Newton's method
- *  between two times of which the way is between. */
-static double time_of(const cm1e_motion_state_t *start, double jerk, double most_s, double way)
+/** How much longer than without a limit of jerk a stop may last that need not be sooner. */
+static const double NEARLY_SOONEST = 1.02;
+
+/* Newton's method between two times of which the way is between. */
+double cm1e_path_time_of(const cm1e_motion_state_t *start, double jerk, double most_s, double way)
 {
     double low = 0, high = most_s, t = most_s / 2;
     for (int i = 0; i < FIND_STEPS && high > low; i++) {
@@ -38,16 +40,23 @@ static double velocity_at(const cm1e_profile_t *profile, double position, int *s
     const cm1e_profile_segment_t *at = &profile->segments[*segment];
     const bool last = *segment + 1 == profile->segment_count;
     const double most_s = (last ? profile->duration_s : at[1].start_s) - at->start_s;
-    const double t = time_of(&at->start, at->jerk, most_s, position - at->start.position);
+    const double t = cm1e_path_time_of(&at->start, at->jerk, most_s, position - at->start.position);
     return at->start.velocity + t * (at->start.acceleration + t * (at->jerk / 2));
 }
 
-/** Whether a stop over so many elements keeps what they allow. An acceleration under way has to come to 0 first. */
+/** Whether it is not faster than the motion under way has to be. An acceleration under way has to come to 0 first. */
+static bool is_slow_enough(const cm1e_profile_t *stop, const cm1e_motion_state_t *start, double length,
+                           const cm1e_path_run_t *run)
+{
+    const double eased_to = smaller(cm1e_path_eased(start, run->limits.jerk), run->highest);
+    return cm1e_path_keeps(stop, start, length, larger(run->limits.velocity, larger(start->velocity, eased_to)));
+}
+
+/** Whether a stop over so many elements keeps what they allow. */
 static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e_motion_state_t *start, int count,
                        double length, const cm1e_path_run_t *run)
 {
-    const double eased_to = smaller(cm1e_path_eased(start, run->limits.jerk), run->highest);
-    if (!cm1e_path_keeps(stop, start, length, larger(run->limits.velocity, larger(start->velocity, eased_to))))
+    if (!is_slow_enough(stop, start, length, run))
         return false;
     double begin = run->length, slowest, fastest;
     int segment = 0;
@@ -63,46 +72,49 @@ static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e
     return true;
 }
 
-/** `shortest`: with the limits of the axes for the shortest stop, where the motion is within them. An acceleration under
- *  way ends later with them where their jerk is smaller, and may then reach a higher velocity than it may. Lower limits
- *  make no stop shorter: one that ends behind an element is planned again only when the elements reach its end. */
-static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, bool shortest, cm1e_profile_t *stop,
-                      const cm1e_motion_state_t *start)
+/** In one go, with the lowest of the limits of the motion itself. Lower limits make no stop shorter: one that ends
+ *  behind an element is planned again only when the elements reach its end. `as_told`: it brakes as hard as it may. */
+static bool find_even_stop(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
+                           const cm1e_motion_state_t *start, const cm1e_path_run_t *run, bool *as_told)
 {
-    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
-    cm1e_motion_limits_t limits = {run.highest, run.limits.acceleration, deceleration, jerk};
+    cm1e_motion_limits_t limits = {run->highest, run->limits.acceleration, deceleration, jerk};
     double length = 0, at_least = 0;
+    *as_told = false;
     for (int i = 0; i < path->element_count; i++) {
         const cm1e_path_element_t *element = cm1e_path_element(path, i);
-        const bool quick = shortest && larger(start->velocity, cm1e_path_eased(start, jerk)) <= element->most.velocity &&
-                           fabs(start->acceleration) <= element->most.acceleration;
-        const cm1e_motion_limits_t *most = quick ? &element->most : &element->limits;
-        if (i >= run.count && element->passed == 0)
+        if (i >= run->count && element->passed == 0)
             return false;
         limits.velocity = smaller(limits.velocity, element->highest);
-        limits.acceleration = smaller(limits.acceleration, most->acceleration);
-        limits.deceleration = smaller(limits.deceleration, most->deceleration);
-        limits.jerk = smaller(limits.jerk, most->jerk);
+        limits.acceleration = smaller(limits.acceleration, element->limits.acceleration);
+        limits.deceleration = smaller(limits.deceleration, element->limits.deceleration);
+        limits.jerk = smaller(limits.jerk, element->limits.jerk);
         length += element->length;
         if (at_least > length)
             continue;
         if (cm1e_profile_to_velocity(stop, start, 0, &limits) != CM1E_OK)
             return false;
+        *as_told = limits.deceleration == deceleration && limits.jerk == jerk;
         if (stop->end.position <= length)
-            return stop_keeps(path, stop, start, i + 1, length, &run);
+            return stop_keeps(path, stop, start, i + 1, length, run);
         if (-start->acceleration <= limits.deceleration)
             at_least = stop->end.position;
     }
     return false;
 }
 
-/** The sooner one of both ways to stop. */
+/** In one go, or in stages where this is over sooner: not where it brakes as hard as told nearly all the time. */
 static bool find_soonest(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
                          const cm1e_motion_state_t *start)
 {
+    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
     cm1e_profile_t other;
-    const bool found = find_stop(path, deceleration, jerk, true, stop, start);
-    if (find_stop(path, deceleration, jerk, false, &other, start) && (!found || other.duration_s < stop->duration_s))
+    double end;
+    bool as_told;
+    const bool found = find_even_stop(path, deceleration, jerk, stop, start, &run, &as_told);
+    if (as_told || (found && stop->duration_s * deceleration <= NEARLY_SOONEST * start->velocity))
+        return found;
+    if (cm1e_path_brake_in_stages(path, deceleration, jerk, start, &other, &end) &&
+        (!found || other.duration_s < stop->duration_s) && is_slow_enough(&other, start, end, &run))
         *stop = other;
     else if (!found)
         return false;

@@ -59,6 +59,10 @@ static inline cm1e_motion_state_t cm1e_piece_state(const cm1e_piece_t *piece, do
     };
 }
 
+/** Makes a profile to standstill out of pieces that lead there from the start. */
+cm1e_error_t cm1e_pieces_to_standstill(cm1e_profile_t *profile, const cm1e_motion_state_t *start,
+                                       const cm1e_pieces_t *pieces, const cm1e_motion_limits_t *limits);
+
 /** Whether the numbers are such that doubles can hold the motion. */
 bool cm1e_motion_is_number(double value);
 bool cm1e_motion_is_valid(const cm1e_motion_state_t *start, const cm1e_motion_limits_t *limits);

@@ -426,3 +426,10 @@ cm1e_error_t cm1e_profile_to_velocity(cm1e_profile_t *profile, const cm1e_motion
     const cm1e_motion_state_t end = {NAN, velocity, 0}; /* without a target position */
     return build(profile, start, &pieces, 1, &end, limits);
 }
+
+cm1e_error_t cm1e_pieces_to_standstill(cm1e_profile_t *profile, const cm1e_motion_state_t *start,
+                                       const cm1e_pieces_t *pieces, const cm1e_motion_limits_t *limits)
+{
+    const cm1e_motion_state_t end = {NAN, 0, 0};
+    return build(profile, start, pieces, 1, &end, limits);
+}

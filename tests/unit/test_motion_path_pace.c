@@ -98,6 +98,71 @@ static void test_a_piece_with_other_limits_costs_what_it_must(void)
     TEST_ASSERT_TRUE(time[2] <= time[0] + 10 / 150.0 - 10 / 200.0 + 2 * 0.1 * 25 / 200 + 0.005);
 }
 
+/** Until it is at rest. */
+static double stopped_after(void)
+{
+    const double start = driven.time_s;
+    cm1e_path_stop(&driven.path, 0, 0);
+    do
+        step_path();
+    while (driven.now.phase == CM1E_PATH_STOPPING);
+    return driven.time_s - start;
+}
+
+/** On a circle without a limit of jerk the deceleration may be sqrt(A2 - (v2 / r)2) at every velocity. */
+static void test_a_stop_on_a_circle_brakes_harder_the_slower_it_is(void)
+{
+    enum { PARTS_OF_STOP = 2000 };
+    for (double radius = 0.3; radius < 50; radius *= 1.7) {
+        const cm1e_path_config_t config = plain_config(2, 2, 500, 1000, INFINITY);
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        const cm1e_path_command_t command = command_of(0, 0, 0, CM1E_PATH_STOP, 0);
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_arc_centre(&driven.path, (double[]){radius, 0}, (double[]){0, 0},
+                                                               CM1E_PATH_CLOCKWISE, &command, NULL));
+        double v = 0;
+        do {
+            v = driven.now.path_velocity;
+            step_path();
+        } while (driven.now.path_velocity > v);
+        double soonest_s = 0;
+        for (int i = 0; i < PARTS_OF_STOP; i++) {
+            const double u = v * (i + 0.5) / PARTS_OF_STOP, across = u * u / radius / 1000;
+            soonest_s += v / PARTS_OF_STOP / 1000 / sqrt(1 - across * across);
+        }
+        const double time_s = stopped_after();
+        CHECK_PATH(time_s >= soonest_s - 1e-9);
+        CHECK_PATH(time_s <= soonest_s * 1.12 + 2 * config.cycle_s);
+    }
+}
+
+/** At all moments of paths with many bends, with the time that the weakest axis would need on a line. */
+static void test_stops_in_bends_take_little_longer_than_on_a_line(void)
+{
+    static driven_t moment;
+    double stops_s = 0, lines_s = 0;
+    for (int i = 0; i < PATHS; i++) {
+        cm1e_path_config_t config = plain_config(3, 3, 500, 3000, 60000);
+        config.axis[1].acceleration = 1500;
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        append_outline(0.5, 4, 1.8, i % 2, 0);
+        do {
+            for (int k = 0; k < 7 && driven.now.phase == CM1E_PATH_MOVING; k++)
+                step_path();
+            moment = driven;
+            const cm1e_motion_state_t start = {0, driven.now.path_velocity, driven.now.path_acceleration};
+            cm1e_profile_t line;
+            TEST_ASSERT_EQUAL(CM1E_OK, cm1e_profile_to_velocity(
+                                           &line, &start, 0, &(cm1e_motion_limits_t){500, 1500, 1500, 60000}));
+            stops_s += stopped_after();
+            lines_s += line.duration_s;
+            driven = moment;
+            step_path();
+        } while (driven.now.phase == CM1E_PATH_MOVING);
+    }
+    printf("stops in bends take %.3f times as long as on a line\n", stops_s / lines_s);
+    TEST_ASSERT_TRUE(stops_s <= 1.15 * lines_s);
+}
+
 int main(void)
 {
     seed_random();
@@ -107,5 +172,7 @@ int main(void)
     RUN_TEST(test_short_lines_that_hardly_turn);
     RUN_TEST(test_lines_and_arcs);
     RUN_TEST(test_a_piece_with_other_limits_costs_what_it_must);
+    RUN_TEST(test_a_stop_on_a_circle_brakes_harder_the_slower_it_is);
+    RUN_TEST(test_stops_in_bends_take_little_longer_than_on_a_line);
     return UNITY_END();
 }
