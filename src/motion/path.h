@@ -257,9 +257,11 @@ double cm1e_path_left(const cm1e_path_t *path);
 /** Sets the factor (>= 0) of the velocities of commands; the limits of the axes still apply. 0: the path comes to rest
  *  and waits. After cm1e_path_clear() it acts when the path has come to rest. */
 void cm1e_path_override(cm1e_path_t *path, double factor);
-/** Stops along the path, as soon as `deceleration` and `jerk` allow (0 selects as much as the axes allow), but not
- *  later than planned; a stop under way stays where the path is cut off at its end and these would need longer. The state is
- *  CM1E_PATH_STOPPING, then CM1E_PATH_STOPPED (CM1E_PATH_IDLE at the end of the path). The remaining segments wait. */
+/** Stops along the path, as soon as `deceleration` and `jerk` allow (0 selects as much as the axes allow). Where the way
+ *  that is left is too short for these, or the next corner too near, it stops as gently as fits; where not even the limits
+ *  of the commands fit before a corner, it begins as soon as they do. A stop under way stays where the path is cut off at
+ *  its end and these would need longer. The state is CM1E_PATH_STOPPING, then CM1E_PATH_STOPPED (CM1E_PATH_IDLE at the
+ *  end of the path). The remaining segments wait. */
 void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk);
 /** Continues with the remaining segments, also while it still stops; after cm1e_path_clear() when it has come to rest. */
 void cm1e_path_go_on(cm1e_path_t *path);

@@ -5,7 +5,7 @@
 #include "core/extreme.h"
 #include "motion/path_private.h"
 
-enum { FIND_STEPS = 60 };
+enum { FIND_STEPS = 60, GENTLE_STEPS = 6 };
 
 /** A way of a stop is found to this fraction of it. */
 static const double AS_NEAR = 1e-13;
@@ -121,18 +121,45 @@ static bool find_soonest(cm1e_path_t *path, double deceleration, double jerk, cm
     return true;
 }
 
+/** Of the limits between two, as far from the first one, by their logarithm. */
+static double between(double gentle, double hard, double part)
+{
+    return hard > gentle ? gentle * pow(hard / gentle, part) : gentle;
+}
+
+/** As gentle as fits, where what was told does not fit into the way that is left: between that, or what the way needs at
+ *  least, and the limits of the motion itself. */
+static bool find_gentlest(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
+                          const cm1e_motion_state_t *start)
+{
+    const cm1e_motion_limits_t most = cm1e_path_run(path, 0, path->element_count).limits;
+    if (!find_soonest(path, larger(deceleration, most.deceleration), larger(jerk, most.jerk), stop, start))
+        return false;
+    deceleration = larger(deceleration, start->velocity * start->velocity / 2 / cm1e_path_left(path));
+    double low = 0, high = 1;
+    for (int i = 0; i < GENTLE_STEPS; i++) {
+        const double middle = (low + high) / 2;
+        cm1e_profile_t gentler;
+        if (find_soonest(path, between(deceleration, most.deceleration, middle), between(jerk, most.jerk, middle), &gentler,
+                         start)) {
+            *stop = gentler;
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    return true;
+}
+
 bool cm1e_path_plan_stop(cm1e_path_t *path)
 {
     const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
-    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
     const double deceleration = path->stop.deceleration, jerk = path->stop.jerk;
-    const double more_jerk = larger(jerk, run.limits.jerk);
     cm1e_profile_t stop;
     const bool as_told = find_soonest(path, deceleration, jerk, &stop, &start);
     if (!as_told && path->stopping) /* the one under way is over sooner, as what is left has its length */
         return true;
-    if (!as_told && !find_soonest(path, deceleration, more_jerk, &stop, &start) &&
-        !find_soonest(path, larger(deceleration, run.limits.deceleration), more_jerk, &stop, &start))
+    if (!as_told && !find_gentlest(path, deceleration, jerk, &stop, &start))
         return false;
     cm1e_path_follow(path, &stop, &start);
     path->stopping = true;

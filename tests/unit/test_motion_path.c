@@ -403,6 +403,31 @@ static void test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners(vo
     }
 }
 
+/** With a deceleration that does not fit into what is left of the path: not with that of the command at once. */
+static void test_a_stop_too_gentle_for_the_way_is_as_gentle_as_fits(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
+    for (int corner = 0; corner < 2; corner++)
+        for (double left = 2; left < 60; left *= 1.3) {
+            begin_path(&config, ORIGIN);
+            line((double[]){100, 0}, 100, CM1E_PATH_STOP, 0);
+            if (corner)
+                line((double[]){100, 100}, 100, CM1E_PATH_STOP, 0);
+            while (driven.now.position[0] < 100 - left)
+                step_path();
+            const double v = driven.now.path_velocity;
+            cm1e_path_stop(&driven.path, 1, 0);
+            double most = 0;
+            do {
+                step_path();
+                most = fmax(most, -driven.now.path_acceleration);
+            } while (driven.now.phase == CM1E_PATH_STOPPING);
+            TEST_ASSERT_DOUBLE_WITHIN(0.06 * left, 100, driven.now.position[0]);
+            TEST_ASSERT_TRUE(most <= 1.3 * v * v / 2 / left);
+            TEST_ASSERT_EQUAL_DOUBLE(0, driven.now.position[1]);
+        }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -424,5 +449,6 @@ int main(void)
     RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
     RUN_TEST(test_a_path_that_was_cut_off_ends_there_also_after_a_pause);
     RUN_TEST(test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners);
+    RUN_TEST(test_a_stop_too_gentle_for_the_way_is_as_gentle_as_fits);
     return UNITY_END();
 }
