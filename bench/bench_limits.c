@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "blocks_cm1e.h"
+#include "motion/path.h"
 
 enum { CYCLES = 100, WARM = 60, STARTS = 31 };
 
@@ -131,6 +132,39 @@ static void begin_counting(void)
     told("begin", 1, blocks_heap_bytes());
 }
 
+/* The stop of a path that is as long as one can be, of short segments of which none is like the one before. */
+static cm1e_path_t long_path;
+
+static void stop_long_path(unsigned axes, unsigned cycles)
+{
+    (void)axes, (void)cycles;
+    cm1e_path_stop(&long_path, 0, 0);
+}
+
+static void measure_stop(void)
+{
+    static const blocks_subject_t subject = {.run = stop_long_path};
+    const double origin[2] = {0};
+    cm1e_path_config_t config = {.axes = 2, .space = 2, .cycle_s = 1e-3};
+    for (int i = 0; i < 2; i++)
+        config.axis[i] = (cm1e_path_axis_t){BLOCKS_VELOCITY, BLOCKS_ACCELERATION, BLOCKS_JERK, -INFINITY, INFINITY};
+    if (cm1e_path_begin(&long_path, &config, origin) != CM1E_OK)
+        fail("no path");
+    for (unsigned i = 0; cm1e_path_room(&long_path) > 0; i++) {
+        const double end[2] = {1.0 * (i + 1), i % 2 ? 0.0 : 0.3};
+        const cm1e_path_command_t command = {.limits = {30 + i % 7, 0, 0, 0}, .blend = CM1E_PATH_BLEND_LOW, .tag = i + 1,
+                                             .junction = CM1E_PATH_CORNER_DEVIATION, .parameter = 0.05};
+        if (cm1e_path_append_line(&long_path, end, &command, NULL) != CM1E_OK)
+            fail("a line was refused");
+    }
+    cm1e_path_sample_t sample;
+    for (int i = 0; i < 60; i++)
+        cm1e_path_step(&long_path, &sample);
+    const size_t before = blocks_heap_bytes();
+    measured_run(&subject, 1, 1);
+    told("stop-path", 1, before);
+}
+
 /* Whole cycles of both buses with all axes at rest under torque, simulated motors included: a count for each cycle. */
 static void measure_cycle(void)
 {
@@ -177,6 +211,8 @@ int main(int argc, char **argv)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         if (!only || !strcmp(only, rows[i].name))
             measure(rows[i].name, rows[i].subject, rows[i].work, rows[i].axes);
+    if (!only || !strcmp(only, "stop-path"))
+        measure_stop();
     if (!only)
         measure_starts(&blocks_cm1e, BLOCKS_SET);
     for (size_t i = 0; i < sizeof starts / sizeof starts[0]; i++)
