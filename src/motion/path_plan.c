@@ -8,7 +8,10 @@
 #include "core/extreme.h"
 #include "motion/path_private.h"
 
-enum { SLOWEST_STEPS = 16, WIDER_MOST = 6 };
+enum { SLOWEST_STEPS = 16, WIDER_MOST = 6, MORE_TRIES = 40 };
+
+/** By which part limits are exceeded at least where there is no plan within them: no more than by rounding. */
+static const double LEAST_MORE = 1e-8;
 
 static double factor(const cm1e_path_t *path) { return path->override > 0 ? path->override : 1; }
 
@@ -287,10 +290,19 @@ void cm1e_path_keep_going(cm1e_path_t *path)
     const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
     const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
     double soft, hard;
-    cm1e_profile_t profile;
     exits(path, 0, &run, &soft, &hard);
-    if (cm1e_profile_to_state(&profile, &start, run.length, smaller(hard, start.velocity), &run.limits) == CM1E_OK)
-        cm1e_path_follow(path, &profile, &start);
+    double more = LEAST_MORE;
+    for (int i = 0; i < MORE_TRIES; i++, more *= 3) {
+        cm1e_path_run_t harder = run;
+        cm1e_profile_t profile;
+        harder.limits.acceleration *= 1 + more;
+        harder.limits.deceleration *= 1 + more;
+        harder.limits.jerk *= (1 + more) * (1 + more);
+        if (plan_run(&profile, &start, &harder, soft, hard, false)) {
+            cm1e_path_follow(path, &profile, &start);
+            return;
+        }
+    }
 }
 
 void cm1e_path_change_pace(cm1e_path_t *path)

@@ -54,7 +54,8 @@ void cm1e_path_join(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_se
 /** Looks ahead and plans the run again from here, after elements from `changed` on have changed. Returns false if that
  *  is not possible; the present motion is then unchanged, but does not follow from a plan. */
 bool cm1e_path_plan(cm1e_path_t *path, int changed);
-/** Used if rounding leaves no plan within all limits: continues the velocity without a step. */
+/** Used if rounding leaves no plan within all limits: the one that exceeds them least, and like any other keeps to the
+ *  path, goes ahead only and does not run over its end. */
 void cm1e_path_keep_going(cm1e_path_t *path);
 /** Plans the continuation with another override, or from within a stop, if possible. */
 void cm1e_path_change_pace(cm1e_path_t *path);

@@ -333,11 +333,53 @@ static void test_paths_that_are_stopped_slowed_and_cut(void)
     }
 }
 
+/** No plan is known that begins a run faster than it may be begun, but for rounding. Should there be one, the path is kept
+ *  all the same: never back, never past its end, and with the limits of the axes as far as that is possible. */
+static void test_a_run_that_is_begun_too_fast_is_braked_in_on_the_path(void)
+{
+    for (int k = 0; k < PATHS; k++) {
+        const cm1e_path_config_t config = random_config();
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        memset(shape, 0, sizeof shape);
+        shape_count = 0;
+        while (shape_count < SEGMENTS_MAX)
+            append_random();
+        const double excess = random_decade(1e-10, 0.3);
+        bool excessive = false;
+        cm1e_path_t *path = &driven.path;
+        step_path();
+        for (long i = samples_at_most(); i > 0 && driven.now.phase != CM1E_PATH_IDLE; i--) {
+            if (path->time_s + config.cycle_s >= path->profile.duration_s && path->profile.end.velocity > 0 && one_in(2)) {
+                path->profile.end.velocity *= 1 + excess;
+                excessive = true;
+            }
+            if (!excessive) {
+                step_path();
+            } else {
+                driven.before = driven.now;
+                cm1e_path_step(path, &driven.now);
+            }
+            check_sample();
+            CHECK_PATH(driven.now.path_velocity >= -1e-6);
+            for (int n = 0; n < axes; n++) {
+                const cm1e_path_axis_t *axis = &config.axis[n];
+                const double way = fabs(driven.now.position[n] - driven.before.position[n]);
+                CHECK_PATH(way <= axis->velocity * config.cycle_s * 1.5 + 1e-12);
+                CHECK_PATH(excess > 1e-8 || fabs(driven.now.acceleration[n]) <= axis->acceleration * (1 + 1e-4));
+            }
+        }
+        CHECK_PATH(driven.now.phase == CM1E_PATH_IDLE);
+        for (int i = 0; i < axes; i++)
+            TEST_ASSERT_EQUAL_DOUBLE(shape[SEGMENTS_MAX - 1].to[i], driven.now.position[i]);
+    }
+}
+
 static void run_tests(void)
 {
     RUN_TEST(test_paths_that_are_appended_at_once);
     RUN_TEST(test_paths_that_are_appended_on_the_way);
     RUN_TEST(test_paths_that_are_stopped_slowed_and_cut);
+    RUN_TEST(test_a_run_that_is_begun_too_fast_is_braked_in_on_the_path);
 }
 
 int main(void)
