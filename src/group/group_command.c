@@ -95,24 +95,20 @@ static cm1e_error_t resolve(cm1e_group_t *group, const cm1e_group_command_t *com
     return CM1E_OK;
 }
 
-/* MC_Power may permit one direction only. On a circle the axes in its plane move in both directions. */
-static cm1e_error_t check_directions(cm1e_group_t *group, const cm1e_group_command_t *command, const double *target)
+/* MC_Power may permit one direction only. */
+static void bar_directions(const cm1e_group_t *group, cm1e_path_command_t *way)
 {
-    double end[CM1E_PATH_AXES];
-    cm1e_path_end(&group->path, end);
     for (int i = 0; i < group->axes; i++) {
         const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        const bool both = is_circle(command->kind) && i < CM1E_PATH_SPACE;
-        const bool positive = both || target[i] > end[i], negative = both || target[i] < end[i];
-        if (axis && ((positive && !cm1e_axis_may_go(axis, true)) || (negative && !cm1e_axis_may_go(axis, false))))
-            return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_AXIS_DIRECTION_DISABLED,
-                                                              .ident = group->ident[i]});
+        way->not_up |= axis && !cm1e_axis_may_go(axis, true) ? 1u << i : 0;
+        way->not_down |= axis && !cm1e_axis_may_go(axis, false) ? 1u << i : 0;
     }
-    return CM1E_OK;
 }
 
 static cm1e_error_t refuse_path(cm1e_group_t *group, cm1e_error_t error, const cm1e_path_problem_t *problem)
 {
+    if (problem->refusal == CM1E_PATH_WRONG_WAY)
+        return cm1e_group_refuse(group, (group_refusal_t){.error = error, .ident = group->ident[problem->axis]});
     group_refusal_t refusal = {.error = error == CM1E_ERROR_FULL ? CM1E_ERROR_FULL : CM1E_ERROR_GROUP_PATH,
                                .path = problem->refusal, .value = problem->position};
     if (problem->refusal == CM1E_PATH_OUT_OF_BOUNDS) {
@@ -144,13 +140,12 @@ static cm1e_error_t append(cm1e_group_t *group, const cm1e_group_command_t *comm
                            bool follows, cm1e_command_id_t id)
 {
     double target[CM1E_PATH_AXES], auxiliary[CM1E_PATH_AXES];
-    const cm1e_path_command_t way = path_command(command, follows, id);
+    cm1e_path_command_t way = path_command(command, follows, id);
     cm1e_path_problem_t problem = {.refusal = CM1E_PATH_FINE};
     cm1e_error_t error = resolve(group, command, origin, target, auxiliary);
-    if (error == CM1E_OK)
-        error = check_directions(group, command, target);
     if (error != CM1E_OK)
         return error;
+    bar_directions(group, &way);
     if (!is_circle(command->kind))
         error = cm1e_path_append_line(&group->path, target, &way, &problem);
     else if (command->circ_mode == mcBorder)

@@ -12,6 +12,9 @@ static const double LARGEST = 1e15;
 /** Minimum as a fraction of what the axes can do. A slower command would last longer than a number can represent. */
 static const double LEAST = 1e-12;
 
+/** An arc that moves an axis by less than this part of its length, or of the position, does not move it. */
+static const double STILL = 1e-12;
+
 static bool is_limit(double value) { return value >= 0; } /* also infinite */
 
 cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config, const double *position)
@@ -88,6 +91,7 @@ static cm1e_error_t refuse(cm1e_path_problem_t *problem, cm1e_path_refusal_t ref
     case CM1E_PATH_FINE: return CM1E_OK;
     case CM1E_PATH_FULL: return CM1E_ERROR_FULL;
     case CM1E_PATH_OUT_OF_BOUNDS: return CM1E_ERROR_AXIS_POSITION_RANGE;
+    case CM1E_PATH_WRONG_WAY: return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     default: return CM1E_ERROR_INVALID_ARGUMENT;
     }
 }
@@ -108,6 +112,17 @@ static cm1e_path_refusal_t check(const cm1e_path_t *path, const double *end, con
     return transition && !(command->parameter > 0) ? CM1E_PATH_NO_TRANSITION : CM1E_PATH_FINE;
 }
 
+/** Whether an axis would move in a direction in which it must not: a line goes one way, an arc beyond one of its ends
+ *  both. What an arc adds by rounding is no motion. */
+static bool goes_wrong_way(const cm1e_path_command_t *command, int axis, double from, double low, double high, double to,
+                           double length)
+{
+    const double rounding = STILL * (fabs(from) + length);
+    const bool beyond = smaller(from, to) - low > rounding || high - larger(from, to) > rounding;
+    return ((command->not_up & 1u << axis) != 0 && (to > from || beyond)) ||
+           ((command->not_down & 1u << axis) != 0 && (to < from || beyond));
+}
+
 /** The ring has a place for the next segment; its contents count only when the segment is accepted. */
 static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *command, cm1e_path_problem_t *problem)
 {
@@ -121,6 +136,8 @@ static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *comman
             return refuse(problem, CM1E_PATH_OUT_OF_BOUNDS, i, low);
         if (high > larger(axis->highest, path->end[i]))
             return refuse(problem, CM1E_PATH_OUT_OF_BOUNDS, i, high);
+        if (goes_wrong_way(command, i, path->end[i], low, high, segment->piece.to[i], segment->piece.length))
+            return refuse(problem, CM1E_PATH_WRONG_WAY, i, segment->piece.to[i]);
     }
     const cm1e_motion_limits_t *wanted = &command->limits, least = least_limits(path);
     segment->command = *command;

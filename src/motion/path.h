@@ -73,6 +73,7 @@ typedef struct cm1e_path_command {
     cm1e_path_junction_t junction;
     cm1e_path_blend_t blend;
     double parameter;            /**< u, > 0; for the two kinds of transition */
+    unsigned not_up, not_down;   /**< bits of the axes that must not move in the positive or negative direction */
     uint32_t tag;                /**< number given by the owner, not 0 */
 } cm1e_path_command_t;
 
@@ -88,6 +89,7 @@ typedef enum cm1e_path_refusal {
     CM1E_PATH_NO_ARC,      /**< fewer than two space axes, points that coincide or lie on a line, centre not in the
                                 middle */
     CM1E_PATH_OUT_OF_BOUNDS, /**< `axis` would reach `position` (an arc may bulge over a bound between its ends) */
+    CM1E_PATH_WRONG_WAY,     /**< `axis` would move in a direction in which it must not */
     CM1E_PATH_NO_TRANSITION, /**< the parameter of a transition is not positive */
 } cm1e_path_refusal_t;
 
@@ -227,8 +229,8 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
  *  that there are. */
 void cm1e_path_copy(cm1e_path_t *copy, const cm1e_path_t *path);
 
-/** Appends a straight line to `end` (all axes). Returns CM1E_ERROR_FULL, CM1E_ERROR_INVALID_ARGUMENT or
- *  CM1E_ERROR_AXIS_POSITION_RANGE with the reason in `problem` (may be NULL), and then nothing has changed. A line of
+/** Appends a straight line to `end` (all axes). Returns CM1E_ERROR_FULL, CM1E_ERROR_INVALID_ARGUMENT,
+ *  CM1E_ERROR_AXIS_DIRECTION_DISABLED or CM1E_ERROR_AXIS_POSITION_RANGE with the reason in `problem` (may be NULL), and then nothing has changed. A line of
  *  no length is a segment too; it is done at once when it becomes active. During a stop, or while the path is stopped,
  *  it waits behind the remaining segments. */
 cm1e_error_t cm1e_path_append_line(cm1e_path_t *path, const double *end, const cm1e_path_command_t *command,

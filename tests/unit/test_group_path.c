@@ -60,6 +60,33 @@ static void test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis(void)
     group_done(id);
 }
 
+/* An axis needs the directions in which the arc moves it: none where it lies across, one where it does not turn back. */
+static void test_an_arc_needs_only_the_directions_in_which_it_moves_an_axis(void)
+{
+    axes_bench.positive[2] = false;
+    axes_bench.negative[0] = axes_bench.positive[1] = false;
+    axes_cycles(2);
+    const cm1e_group_command_t quarter = {.kind = CM1E_GROUP_CIRCULAR_RELATIVE, .circ_mode = mcCenter,
+                                          .path_choice = mcClockwise, .position = {1.0, -1.0}, .auxiliary = {0.0, -1.0}};
+    cm1e_command_id_t id = group_command(&quarter);
+    while (group_state_of(id) == CM1E_COMMAND_ACTIVE) {
+        axes_cycles(1);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, group_at(2));
+    }
+    group_done(id);
+    cm1e_group_command_t c = quarter; /* round to the other side: X goes on, Y turns back */
+    c.position[0] = 0.0;
+    c.position[1] = -2.0;
+    group_refused(&c, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+    c = (cm1e_group_command_t){.kind = CM1E_GROUP_CIRCULAR_RELATIVE, .circ_mode = mcBorder, .auxiliary = {0.5, -0.5, 0.4},
+                               .position = {1.0, -1.0, 0.0}}; /* Z goes up and down */
+    group_refused(&c, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+    axes_bench.positive[2] = true;
+    axes_cycles(2);
+    id = group_command(&c);
+    group_done(id);
+}
+
 /* Over corners that are not stopped at, where the velocity was planned before the group stood. */
 static void test_an_override_after_0_acts_at_all_corners(void)
 {
@@ -211,6 +238,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_nearly_straight_on_an_axis_that_brakes_keeps_its_limit);
+    RUN_TEST(test_an_arc_needs_only_the_directions_in_which_it_moves_an_axis);
     RUN_TEST(test_a_half_circle_is_not_turned_by_a_count_of_the_third_axis);
     RUN_TEST(test_an_override_after_0_acts_at_all_corners);
     RUN_TEST(test_the_group_brakes_with_what_it_was_told);
