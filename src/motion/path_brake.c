@@ -9,13 +9,35 @@
 #include "motion/path_private.h"
 
 /** A stage is of at most two pieces, the last one of three. */
-enum { BEFORE_LAST = CM1E_PIECES_MAX - 3 - 2, TRIES_MOST = 8 };
+enum { BEFORE_LAST = CM1E_PIECES_MAX - 3 - 2, TRIES_MOST = 8, FIND_STEPS = 60 };
 
 /** A stage begins where what is left would last this much longer without it. */
 static const double WORTH = 1.08;
 
+/** A way of a stop is found to this fraction of it. */
+static const double AS_NEAR = 1e-13;
+
 /** What is allowed, to within rounding. */
 static const double ROUNDING = 1e-9;
+
+/* Newton's method between two times of which the way is between. */
+double cm1e_path_time_of(const cm1e_motion_state_t *start, double jerk, double most_s, double way)
+{
+    double low = 0, high = most_s, t = most_s / 2;
+    for (int i = 0; i < FIND_STEPS && high > low; i++) {
+        const double a = start->acceleration, v = start->velocity;
+        const double missing = t * (v + t * (a / 2 + t * (jerk / 6))) - way, speed = v + t * (a + t * (jerk / 2));
+        if (fabs(missing) <= AS_NEAR * way)
+            break;
+        if (missing < 0)
+            low = t;
+        else
+            high = t;
+        const double next = t - missing / speed;
+        t = next > low && next < high ? next : (low + high) / 2;
+    }
+    return t;
+}
 
 typedef struct {
     double deceleration, jerk;

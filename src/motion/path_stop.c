@@ -5,32 +5,10 @@
 #include "core/extreme.h"
 #include "motion/path_private.h"
 
-enum { FIND_STEPS = 60, GENTLE_STEPS = 6 };
-
-/** A way of a stop is found to this fraction of it. */
-static const double AS_NEAR = 1e-13;
+enum { GENTLE_STEPS = 6 };
 
 /** How much longer than without a limit of jerk a stop may last that need not be sooner. */
 static const double NEARLY_SOONEST = 1.02;
-
-/* Newton's method between two times of which the way is between. */
-double cm1e_path_time_of(const cm1e_motion_state_t *start, double jerk, double most_s, double way)
-{
-    double low = 0, high = most_s, t = most_s / 2;
-    for (int i = 0; i < FIND_STEPS && high > low; i++) {
-        const double a = start->acceleration, v = start->velocity;
-        const double missing = t * (v + t * (a / 2 + t * (jerk / 6))) - way, speed = v + t * (a + t * (jerk / 2));
-        if (fabs(missing) <= AS_NEAR * way)
-            break;
-        if (missing < 0)
-            low = t;
-        else
-            high = t;
-        const double next = t - missing / speed;
-        t = next > low && next < high ? next : (low + high) / 2;
-    }
-    return t;
-}
 
 /** The velocity at a position that is not before those of the segments before `*segment`. */
 static double velocity_at(const cm1e_profile_t *profile, double position, int *segment)
@@ -135,7 +113,10 @@ static bool find_gentlest(cm1e_path_t *path, double deceleration, double jerk, c
     const cm1e_motion_limits_t most = cm1e_path_run(path, 0, path->element_count).limits;
     if (!find_soonest(path, larger(deceleration, most.deceleration), larger(jerk, most.jerk), stop, start))
         return false;
-    deceleration = larger(deceleration, start->velocity * start->velocity / 2 / cm1e_path_left(path));
+    double left = -start->position;
+    for (int i = 0; i < path->element_count; i++)
+        left += cm1e_path_element(path, i)->length;
+    deceleration = larger(deceleration, start->velocity * start->velocity / 2 / left);
     double low = 0, high = 1;
     for (int i = 0; i < GENTLE_STEPS; i++) {
         const double middle = (low + high) / 2;
