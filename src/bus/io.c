@@ -389,12 +389,12 @@ cm1e_error_t cm1e_io_set_real(const cm1e_io_t *io, double value)
     const cm1e_error_t error = check_output(io);
     if (error != CM1E_OK)
         return error;
-    if (!cm1e_io_types[io->type].is_real) {
-        const bool fits = value == floor(value) && fabs(value) < 0x1p63;
-        return fits ? cm1e_io_set_integer(io, (int64_t)value) : CM1E_ERROR_INVALID_ARGUMENT;
-    }
     if (!cm1e_io_fits((cm1e_io_type_t)io->type, io->bits, value))
         return CM1E_ERROR_INVALID_ARGUMENT;
+    if (!cm1e_io_types[io->type].is_real) {
+        put_bits(io, value < 0 ? (uint64_t)(int64_t)value : (uint64_t)value);
+        return CM1E_OK;
+    }
     const float narrow = (float)value;
     uint32_t word;
     uint64_t wide;

@@ -15,12 +15,19 @@ void setUp(void) {}
 void tearDown(void) {}
 
 enum { IMAGE = 40, TRIES = 200000 };
-static uint8_t outputs[IMAGE], claimed[IMAGE];
-static cm1e_bus_slave_t slave = {.info = {.position = 1}, .placement = {.output_bytes = IMAGE}};
+static uint8_t outputs[IMAGE], inputs[IMAGE], claimed[IMAGE], safe[IMAGE];
+static cm1e_bus_slave_t slave = {.info = {.position = 1}, .placement = {.output_bytes = IMAGE, .input_bytes = 2}};
 static cm1e_bus_t bus = {
-    .slaves = &slave, .slave_count = 1, .layout = {1, 1}, .outputs = outputs, .safe.claimed = claimed,
-    .phase = BUS_OPERATING,
+    .slaves = &slave, .slave_count = 1, .layout = {1, 1}, .outputs = outputs, .inputs = inputs, .safe.claimed = claimed,
+    .safe.values = safe, .phase = BUS_OPERATING,
 };
+
+static cm1e_io_t output_at(uint32_t place, uint16_t bits, cm1e_io_type_t type)
+{
+    cm1e_io_t io;
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_io_find_bits(&bus, 1, true, place, bits, type, &io, &diag), diag.text);
+    return io;
+}
 
 /** A signal that was found belongs to the program with all of its bits, and no other bit does. */
 static void test_what_is_found_is_claimed_bit_by_bit(void)
@@ -122,10 +129,198 @@ static void test_bytes_of_any_length_lie_anywhere(void)
     }
 }
 
+/** Both ends of the range of each type and number of bits, and the numbers beside them, as a whole number and as a real
+ *  one. */
+static void test_an_output_takes_the_whole_range_of_its_type_and_no_more(void)
+{
+    for (int type = CM1E_IO_BOOL; type <= CM1E_IO_ULINT; type++) {
+        const cm1e_io_type_row_t *row = &cm1e_io_types[type];
+        for (uint16_t bits = type == CM1E_IO_BOOL ? 1 : 2; bits <= row->bits; bits++) {
+            const cm1e_io_t io = output_at(3, bits, (cm1e_io_type_t)type);
+            const int magnitude = bits - row->is_signed;
+            const double least = row->is_signed ? -ldexp(1, magnitude) : 0, end = ldexp(1, magnitude);
+            const int64_t most = magnitude >= 63 ? INT64_MAX : (INT64_C(1) << magnitude) - 1;
+            TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_set_integer(&io, most));
+            TEST_ASSERT_EQUAL_INT64(most, cm1e_io_integer(&io));
+            if (magnitude < 63)
+                TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_integer(&io, most + 1));
+            TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_set_integer(&io, (int64_t)least));
+            TEST_ASSERT_EQUAL_INT64((int64_t)least, cm1e_io_integer(&io));
+            if (least > -0x1p63)
+                TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_integer(&io, (int64_t)least - 1));
+            const double wrong[] = {end, nextafter(least, -INFINITY), 0.5, -1e300, 1e300, NAN, INFINITY, -INFINITY};
+            for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
+                TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_real(&io, wrong[i]));
+            TEST_ASSERT_EQUAL_INT64((int64_t)least, cm1e_io_integer(&io));
+            const double right[] = {least, end <= 0x1p53 ? end - 1 : nextafter(end, 0), end / 2, 0, 1};
+            for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
+                if (right[i] >= end)
+                    continue;
+                TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_set_real(&io, right[i]));
+                TEST_ASSERT_TRUE(cm1e_io_real(&io) == right[i]);
+                TEST_ASSERT_EQUAL(right[i] != 0, cm1e_io_bool(&io));
+            }
+        }
+    }
+}
+
+static void test_a_real_is_read_as_a_whole_number_and_written_as_one(void)
+{
+    static const struct {
+        double value;
+        int64_t whole;
+    } rows[] = {{2.9, 2}, {-2.9, -2}, {0.25, 0}, {0x1p62, INT64_C(1) << 62}, {0x1p63, INT64_MAX}, {1e300, INT64_MAX},
+                {-0x1p63, INT64_MIN}, {-0x1.8p63, INT64_MIN}, {-0x1p62, -(INT64_C(1) << 62)}};
+    const cm1e_io_t wide = output_at(5, 64, CM1E_IO_LREAL), narrow = output_at(80, 32, CM1E_IO_REAL);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_set_real(&wide, rows[i].value));
+        TEST_ASSERT_EQUAL_INT64(rows[i].whole, cm1e_io_integer(&wide));
+        TEST_ASSERT_TRUE(cm1e_io_bool(&wide));
+    }
+    static const uint8_t not_a_number[8] = {0, 0, 0, 0, 0, 0, 0xF8, 0x7F};
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_set_bytes(&wide, not_a_number, 8));
+    TEST_ASSERT_EQUAL_INT64(0, cm1e_io_integer(&wide));
+    TEST_ASSERT_TRUE(isnan(cm1e_io_real(&wide)));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_set_integer(&narrow, -7));
+    TEST_ASSERT_TRUE(cm1e_io_real(&narrow) == -7.0);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_set_bool(&narrow, false));
+    TEST_ASSERT_FALSE(cm1e_io_bool(&narrow));
+    TEST_ASSERT_EQUAL_UINT(4, cm1e_io_bytes(&narrow, inputs, sizeof inputs));
+}
+
+static void test_what_no_signal_has_is_refused(void)
+{
+    static const struct {
+        uint32_t place;
+        uint16_t bits;
+        int type;
+        bool output;
+        const char *text;
+    } rows[] = {
+        {0, 0, CM1E_IO_UINT, true, "A signal of type UINT has not 0 bits."},
+        {0, 17, CM1E_IO_UINT, true, "A signal of type UINT has not 17 bits."},
+        {0, 2, CM1E_IO_BOOL, true, "A signal of type BOOL has not 2 bits."},
+        {0, 31, CM1E_IO_REAL, true, "A signal of type REAL has not 31 bits."},
+        {0, 63, CM1E_IO_LREAL, true, "A signal of type LREAL has not 63 bits."},
+        {0, 1, CM1E_IO_TYPE_COUNT, true, "A signal of type ? has not 1 bits."},
+        {0, 1, -1, true, "A signal of type ? has not 1 bits."},
+        {8 * IMAGE, 1, CM1E_IO_BOOL, true, "Slave 1 has 320 bits of outputs: bits 320 ... 320 are not among them."},
+        {8 * IMAGE - 7, 8, CM1E_IO_USINT, true, "Slave 1 has 320 bits of outputs: bits 313 ... 320 are not among them."},
+        {9, 8, CM1E_IO_USINT, false, "Slave 1 has 16 bits of inputs: bits 9 ... 16 are not among them."},
+    };
+    cm1e_io_t io;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        TEST_ASSERT_NOT_EQUAL(CM1E_OK, cm1e_io_find_bits(&bus, 1, rows[i].output, rows[i].place, rows[i].bits,
+                                                         (cm1e_io_type_t)rows[i].type, &io, &diag));
+        TEST_ASSERT_EQUAL_STRING(rows[i].text, diag.text);
+        TEST_ASSERT_EQUAL(CM1E_IO_INVALID, cm1e_io_quality(&io));
+    }
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_find_bits(&bus, 1, true, 8 * IMAGE - 8, 8, CM1E_IO_USINT, &io, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_NOT_FOUND, cm1e_io_find_bits(&bus, 2, true, 0, 1, CM1E_IO_BOOL, &io, &diag));
+    TEST_ASSERT_EQUAL_STRING("There is no slave 2: the network has 1.", diag.text);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_NOT_FOUND, cm1e_io_find_object(&bus, 2, 0x7000, 1, true, &io, &diag));
+    TEST_ASSERT_EQUAL_STRING("There is no slave 2: the network has 1.", diag.text);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, cm1e_io_find_object(NULL, 1, 0x7000, 1, true, &io, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, cm1e_io_find_bits(NULL, 1, true, 0, 1, CM1E_IO_BOOL, &io, &diag));
+}
+
+/** An input is where the inputs of its slave are, and nobody writes it. */
+static void test_an_input_is_read_and_not_written(void)
+{
+    cm1e_io_t io;
+    memset(inputs, 0, sizeof inputs);
+    memset(outputs, 0xFF, sizeof outputs);
+    slave.placement.input_offset = 3;
+    inputs[4] = 0x50;
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_io_find_bits(&bus, 1, false, 12, 3, CM1E_IO_SINT, &io, &diag));
+    TEST_ASSERT_EQUAL_INT64(-3, cm1e_io_integer(&io));
+    TEST_ASSERT_TRUE(cm1e_io_bool(&io) && cm1e_io_real(&io) == -3.0);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_integer(&io, 0));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_real(&io, 0));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_bytes(&io, inputs, 1));
+    TEST_ASSERT_FALSE(cm1e_io_is_claimed(&io));
+    cm1e_io_guest_release(&io); /* nothing to give back */
+    TEST_ASSERT_EQUAL_HEX8(0x50, inputs[4]);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, outputs[4]);
+    slave.placement.input_offset = 0;
+}
+
+/** An output that is released has its safe value, with all of its bits, and no other bit has. */
+static void test_what_is_released_is_safe_bit_by_bit(void)
+{
+    for (int n = 0; n < TRIES / 100; n++) {
+        const uint16_t bits = (uint16_t)(1 + pick(64));
+        const uint32_t place = (uint32_t)pick(8 * IMAGE - bits + 1);
+        uint8_t before[IMAGE];
+        for (unsigned i = 0; i < IMAGE; i++) {
+            before[i] = outputs[i] = (uint8_t)chance();
+            safe[i] = (uint8_t)chance();
+        }
+        const cm1e_io_t io = output_at(place, bits, CM1E_IO_ULINT);
+        cm1e_io_guest_release(&io);
+        for (uint32_t bit = 0; bit < 8 * IMAGE; bit++) {
+            const uint8_t *from = bit >= place && bit < place + bits ? safe : before;
+            TEST_ASSERT_FALSE((from[bit / 8] ^ outputs[bit / 8]) >> bit % 8 & 1);
+        }
+    }
+}
+
+/** Each of these alone says how far a value can be trusted. */
+static void test_the_quality_is_that_of_bus_and_slave(void)
+{
+    static const char *const names[] = {"good", "stale", "offline", "invalid", "?", "?"};
+    for (int quality = 0; quality < 6; quality++)
+        TEST_ASSERT_EQUAL_STRING(names[quality], cm1e_io_quality_name((cm1e_io_quality_t)(quality < 5 ? quality : -1)));
+    bus.config.lost_cycles_limit = 3;
+    slave.hot.counted = true;
+    const cm1e_io_t io = output_at(0, 1, CM1E_IO_BOOL);
+    const cm1e_bus_slave_t good = slave;
+    TEST_ASSERT_EQUAL(CM1E_IO_GOOD, cm1e_io_quality(&io)); /* before the first look of the supervision */
+    slave.watch.al_state = CM1E_AL_OP;
+    TEST_ASSERT_EQUAL(CM1E_IO_GOOD, cm1e_io_quality(&io));
+    slave.watch.al_state = CM1E_AL_SAFE_OP;
+    TEST_ASSERT_EQUAL(CM1E_IO_OFFLINE, cm1e_io_quality(&io));
+    slave.watch = (cm1e_slave_watch_t){.lost = true};
+    TEST_ASSERT_EQUAL(CM1E_IO_OFFLINE, cm1e_io_quality(&io));
+    slave = good;
+    for (slave.silent_cycles = 1; slave.silent_cycles < 5; slave.silent_cycles++) {
+        bus.last_error = CM1E_ERROR_BUS_WORKING_COUNTER;
+        TEST_ASSERT_EQUAL(slave.silent_cycles < 3 ? CM1E_IO_STALE : CM1E_IO_OFFLINE, cm1e_io_quality(&io));
+    }
+    slave = good;
+    bus.silence.partly_fresh = true; /* the slave took part, another one did not */
+    TEST_ASSERT_EQUAL(CM1E_IO_GOOD, cm1e_io_quality(&io));
+    bus.silence.partly_fresh = false;
+    bus.last_error = CM1E_ERROR_BUS_LOST;
+    for (bus.bad_cycles = 1; bus.bad_cycles < 5; bus.bad_cycles++)
+        TEST_ASSERT_EQUAL(bus.bad_cycles < 3 ? CM1E_IO_STALE : CM1E_IO_OFFLINE, cm1e_io_quality(&io));
+    bus.bad_cycles = 0;
+    bus.last_error = CM1E_OK;
+    bus.phase = BUS_CONFIGURED;
+    TEST_ASSERT_EQUAL(CM1E_IO_OFFLINE, cm1e_io_quality(&io));
+    bus.phase = BUS_OPERATING;
+    TEST_ASSERT_EQUAL(CM1E_IO_GOOD, cm1e_io_quality(&io));
+    slave.hot.relaid++; /* it came with other process data than was planned */
+    TEST_ASSERT_EQUAL(CM1E_IO_INVALID, cm1e_io_quality(&io));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, cm1e_io_set_integer(&io, 1));
+    slave.hot.relaid--;
+    bus.layout.present++; /* of the next start */
+    TEST_ASSERT_EQUAL(CM1E_IO_INVALID, cm1e_io_quality(&io));
+    bus.layout.present = 0;
+    TEST_ASSERT_EQUAL(CM1E_IO_INVALID, cm1e_io_quality(&io));
+    bus.layout.present = 1;
+}
+
 int main(void)
 {
     chance_seed(1);
     UNITY_BEGIN();
+    RUN_TEST(test_an_output_takes_the_whole_range_of_its_type_and_no_more);
+    RUN_TEST(test_a_real_is_read_as_a_whole_number_and_written_as_one);
+    RUN_TEST(test_what_no_signal_has_is_refused);
+    RUN_TEST(test_an_input_is_read_and_not_written);
+    RUN_TEST(test_what_is_released_is_safe_bit_by_bit);
+    RUN_TEST(test_the_quality_is_that_of_bus_and_slave);
     RUN_TEST(test_what_is_found_is_claimed_bit_by_bit);
     RUN_TEST(test_every_value_of_every_type_lies_anywhere);
     RUN_TEST(test_a_real_output_takes_finite_numbers_of_its_type);
