@@ -208,13 +208,11 @@ static bool may_go_on(cm1e_mapping_job_t *job)
     if (no_more_rows(job)) {
         memset(job->data, 0, sizeof job->data);
         job->entries = job->entry;
-        job->sdo.size = 4;
         return true;
     }
     if (job->any && job->step == MAPPING_READ_COUNT && job->sdo.error == CM1E_ERROR_SDO_ABORT) {
         job->unknown++;
         job->data[0] = 0;
-        job->sdo.size = 1;
         return true;
     }
     if (!job->sdo.write || job->sdo.error != CM1E_ERROR_SDO_ABORT)
