@@ -8,7 +8,7 @@
 
 static cm1e_slave_config_t config;
 static cm1e_setup_job_t job;
-static bool by_sync0;
+static bool by_sync0, swapped;
 
 void setUp(void)
 {
@@ -21,7 +21,7 @@ void setUp(void)
         .sdo_count = 3,
     };
 }
-void tearDown(void) { by_sync0 = false; }
+void tearDown(void) { by_sync0 = swapped = false; }
 
 typedef struct transfer {
     bool write;
@@ -67,7 +67,7 @@ typedef enum harm { NOTHING = 0, REFUSED, OTHER_VALUE } harm_t;
 static int run(bool before_op, const transfer_t *expected, int harmed, harm_t harm)
 {
     int count = 0;
-    cm1e_setup_begin(&job, 3, &config, by_sync0, before_op, false);
+    cm1e_setup_begin(&job, 3, &config, by_sync0, before_op, swapped);
     for (cm1e_sdo_t *sdo; (sdo = cm1e_setup_next(&job)) != NULL; count++) {
         if (answers_excludes(sdo)) {
             count--;
@@ -178,9 +178,116 @@ static void test_synchronisation_by_sync0_is_written_where_the_slave_lets_it(voi
     TEST_ASSERT_EQUAL(3, run(false, stated, 0, NOTHING));
 }
 
+/** Of a modular device: what it has detected is compared; what it is to have is written where it lets it be. */
+static void test_modules_are_compared_and_written(void)
+{
+    static const transfer_t expected[] = {
+        {false, 0xF050, 0, 1, 2}, {false, 0xF050, 1, 4, 0x00219800}, {false, 0xF050, 2, 4, 0x80000029},
+        {true, 0xF030, 0, 1, 0}, {false, 0xF030, 0, 1, 0}, {true, 0xF030, 1, 4, 0x00219800},
+        {false, 0xF030, 1, 4, 0x00219800}, {true, 0xF030, 2, 4, 0x80000029}, {false, 0xF030, 2, 4, 0x80000029},
+        {true, 0xF030, 0, 1, 2}, {false, 0xF030, 0, 1, 2}, {true, 0x1C12, 0, 1, 0}, {true, 0x1C12, 1, 2, 0x1601},
+        {true, 0x1C12, 0, 1, 1}, {false, 0x1C12, 1, 2, 0x1601}, {false, 0x1C12, 0, 1, 1},
+    };
+    enum { ALL = sizeof expected / sizeof expected[0], OF_MODULES = 11 };
+    config = (cm1e_slave_config_t){.modules = {0x00219800, 0x80000029}, .module_count = 2, .outputs_pdos = {0x1601},
+                                   .outputs_pdo_count = 1};
+    TEST_ASSERT_TRUE(cm1e_setup_is_needed(&config, false, false));
+    TEST_ASSERT_EQUAL(ALL, run(false, expected, 0, NOTHING));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+    for (int i = 0; i < OF_MODULES; i++) {
+        transfer_t without[ALL];
+        if (expected[i].write) { /* its check is left out */
+            memcpy(without, expected, (size_t)(i + 1) * sizeof *expected);
+            memcpy(without + i + 1, expected + i + 2, (size_t)(ALL - i - 2) * sizeof *expected);
+            TEST_ASSERT_EQUAL(ALL - 1, run(false, without, i, REFUSED));
+            TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+            continue;
+        }
+        TEST_ASSERT_EQUAL(i + 1, run(false, expected, i, REFUSED));
+        TEST_ASSERT_EQUAL(CM1E_ERROR_SDO_ABORT, job.error);
+        TEST_ASSERT_EQUAL(i + 1, run(false, expected, i, OTHER_VALUE));
+        TEST_ASSERT_TRUE(job.differs);
+        TEST_ASSERT_EQUAL_HEX64(expected[i].value, job.expected);
+    }
+}
+
+/** Where the inputs are on sync manager 2, its object assigns them. */
+static void test_a_swapped_slave_has_its_assignments_swapped(void)
+{
+    static const transfer_t expected[] = {
+        {true, 0x1C13, 0, 1, 0}, {true, 0x1C12, 0, 1, 0}, {true, 0x1C13, 1, 2, 0x1601}, {true, 0x1C13, 0, 1, 1},
+        {true, 0x1C12, 1, 2, 0x1A03}, {true, 0x1C12, 2, 2, 0x1A00}, {true, 0x1C12, 0, 1, 2},
+        {false, 0x1C13, 1, 2, 0x1601}, {false, 0x1C13, 0, 1, 1}, {false, 0x1C12, 1, 2, 0x1A03},
+        {false, 0x1C12, 2, 2, 0x1A00}, {false, 0x1C12, 0, 1, 2},
+    };
+    config.entry_count = config.sdo_count = 0;
+    swapped = true;
+    TEST_ASSERT_EQUAL(sizeof expected / sizeof expected[0], run(false, expected, 0, NOTHING));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+}
+
+/** A value of more than eight bytes lies in the data of the configuration. */
+static void test_long_values_are_written_from_where_they_lie(void)
+{
+    config = (cm1e_slave_config_t){.sdo_count = 2,
+                                   .sdos = {{.index = 0x8000, .size = 20, .value = 30, .complete_access = true},
+                                            {.index = 0x8001, .subindex = 3, .bytes = 1, .value = 7}}};
+    cm1e_setup_begin(&job, 3, &config, CM1E_SETUP_NO_PULSES, false, false);
+    cm1e_sdo_t *sdo = cm1e_setup_next(&job);
+    TEST_ASSERT_NOT_NULL(sdo);
+    TEST_ASSERT_TRUE(sdo->write && sdo->complete_access && sdo->data == config.sdo_data + 30);
+    TEST_ASSERT_EQUAL(20, sdo->size);
+    sdo->state = CM1E_SDO_DONE;
+    sdo = cm1e_setup_next(&job);
+    TEST_ASSERT_NOT_NULL(sdo);
+    TEST_ASSERT_TRUE(sdo->write && !sdo->complete_access && sdo->size == 1 && *(uint8_t *)sdo->data == 7);
+    sdo->state = CM1E_SDO_DONE;
+    TEST_ASSERT_NULL(cm1e_setup_next(&job));
+    TEST_ASSERT_EQUAL(CM1E_OK, job.error);
+}
+
+/** Each PDO of a direction that has several tells which others it excludes, of either direction. It may have no such
+ *  object, and one that tells of itself says nothing. */
+static void test_each_pdo_is_asked_which_others_it_excludes(void)
+{
+    enum { PDOS = 4, NOBODY = PDOS, HAS_NO_OBJECT, NO_ANSWER, ANSWERS };
+    static const uint16_t pdos[PDOS + 1] = {0x1600, 0x1603, 0x1A00, 0x1A05, 0x1A09};
+    config = (cm1e_slave_config_t){.outputs_pdos = {pdos[0], pdos[1]}, .inputs_pdos = {pdos[2], pdos[3]},
+                                   .outputs_pdo_count = 2, .inputs_pdo_count = 2};
+    for (int n = 0; n < PDOS * ANSWERS; n++) {
+        const int asked = n / ANSWERS, answer = n % ANSWERS;
+        cm1e_setup_begin(&job, 3, &config, CM1E_SETUP_NO_PULSES, false, false);
+        for (int i = 0; i <= asked; i++) {
+            cm1e_sdo_t *sdo = cm1e_setup_next(&job);
+            TEST_ASSERT_TRUE(sdo && !sdo->write && sdo->index == pdos[i] - 0x200 && sdo->subindex == 6);
+            const int told = i == asked ? answer : NOBODY;
+            cm1e_put_u16(sdo->data, pdos[NOBODY]);
+            cm1e_put_u16((uint8_t *)sdo->data + 2, pdos[told <= NOBODY ? told : NOBODY]);
+            sdo->size = 4;
+            sdo->error = told == HAS_NO_OBJECT ? CM1E_ERROR_SDO_ABORT
+                         : told == NO_ANSWER   ? CM1E_ERROR_TIMEOUT : CM1E_OK;
+            sdo->state = sdo->error == CM1E_OK ? CM1E_SDO_DONE : CM1E_SDO_ERROR;
+        }
+        const cm1e_sdo_t *next = cm1e_setup_next(&job);
+        const bool excludes = answer < PDOS && answer != asked;
+        TEST_ASSERT_EQUAL(excludes || answer == NO_ANSWER, next == NULL);
+        TEST_ASSERT_EQUAL(excludes              ? CM1E_ERROR_PDO_MAPPING
+                          : answer == NO_ANSWER ? CM1E_ERROR_TIMEOUT : CM1E_OK, job.error);
+        TEST_ASSERT_EQUAL_HEX16(excludes ? pdos[answer] : 0, job.excluded);
+        if (excludes)
+            TEST_ASSERT_EQUAL_HEX16(pdos[asked], job.pdo);
+        else if (next && asked == PDOS - 1) /* all were asked, and writing begins */
+            TEST_ASSERT_TRUE(next->write && next->index == 0x1C12 && next->subindex == 0);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_each_pdo_is_asked_which_others_it_excludes);
+    RUN_TEST(test_modules_are_compared_and_written);
+    RUN_TEST(test_a_swapped_slave_has_its_assignments_swapped);
+    RUN_TEST(test_long_values_are_written_from_where_they_lie);
     RUN_TEST(test_all_is_written_in_order_and_pdos_are_read_back);
     RUN_TEST(test_every_refusal_ends_the_job_there);
     RUN_TEST(test_every_other_value_is_noticed);
