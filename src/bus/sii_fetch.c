@@ -59,7 +59,7 @@ bool cm1e_sii_fetch_next(cm1e_sii_fetch_t *fetch, cm1e_datagram_t *d, int64_t no
         return false;
     switch (fetch->step) {
     case FETCH_IDLE:
-        return false;
+        break;
     case FETCH_READY:
     case FETCH_TAKE:
         cm1e_datagram_set(d, COMMAND_FPRD, station, REG_EEPROM_CONTROL, EEPROM_GROUP_AT + GROUP_BYTES_MAX);

@@ -41,7 +41,7 @@ bool cm1e_scout_next(cm1e_scout_t *scout, cm1e_datagram_t *d, int64_t now_ns)
         end(scout, false);
     switch (scout->step) {
     case SCOUT_IDLE:
-        return false;
+        break;
     case SCOUT_FORCE:
     case SCOUT_OWN:
         cm1e_datagram_set(d, COMMAND_FPWR, station, REG_EEPROM_CONFIG, 1);
