@@ -224,10 +224,12 @@ static void decide(cm1e_bus_t *bus, int64_t now_ns)
 static void put_mailbox(uint8_t *sync_manager, uint16_t start, uint16_t length, uint8_t control)
 {
     memset(sync_manager, 0, SYNC_MANAGER_BYTES);
+    if (length == 0)
+        return; /* it has no mailbox */
     cm1e_put_u16(sync_manager, start);
     cm1e_put_u16(sync_manager + 2, length);
     sync_manager[4] = control;
-    sync_manager[6] = length > 0;
+    sync_manager[6] = 1;
 }
 
 /** SM0 and SM1. */

@@ -315,6 +315,26 @@ START_TEST(a_run_begins_whether_the_tool_has_left_or_not)
 }
 END_TEST
 
+/* Frames to slaves that are not there take some time, but nobody waits for them. */
+START_TEST(start_does_not_wait_for_absent_slaves)
+{
+    int64_t took_ns[2];
+    for (int absent = 0; absent < 2; absent++) {
+        cm1e_bus_config_t *to = sim_config(4);
+        for (uint32_t i = 1; i < 4; i++) {
+            make_optional(&to->axes[i], (uint16_t)(ID + i));
+            to->axes[i].sim_absent = absent;
+        }
+        cm1e_bus_t *bus = open_bus();
+        const int64_t began_ns = cm1e_clock_now(cm1e_bus_clock(bus));
+        ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+        took_ns[absent] = cm1e_clock_now(cm1e_bus_clock(bus)) - began_ns;
+        cm1e_bus_close(bus);
+    }
+    ck_assert_int_le(took_ns[1], took_ns[0] + 1000000);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_hot_alone");
@@ -331,6 +351,7 @@ int main(void)
     tcase_add_test(tests, a_tool_that_is_pulled_while_it_is_identified_comes_back_at_once);
     tcase_add_test(tests, two_tools_come_whenever_the_first_one_loses_its_power);
     tcase_add_loop_test(tests, a_run_begins_whether_the_tool_has_left_or_not, 0, 3);
+    tcase_add_test(tests, start_does_not_wait_for_absent_slaves);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

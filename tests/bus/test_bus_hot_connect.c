@@ -6,6 +6,7 @@
 #include "effort.h"
 #include "sim/esc_chip.h"
 #include "sim/segment.h"
+#include "slave_settings.h"
 
 /** On the wire: a motor, the optional slave or the group, inputs and outputs, a motor. */
 enum { FIRST = 1, TOOL = 2, MEMBER = 3, ABSENT = 4 /* position of the first that is planned: behind the others */ };
@@ -128,14 +129,10 @@ static cm1e_bus_t *open_machine(kind_t kind, bool there)
     return bus;
 }
 
-static int64_t start_ns; /* how long the last start took */
-
 static cm1e_bus_t *start_machine(kind_t kind, bool there)
 {
     cm1e_bus_t *bus = open_machine(kind, there);
-    start_ns = -cm1e_clock_now(cm1e_bus_clock(bus));
     const cm1e_error_t error = cm1e_bus_start(bus, &diag);
-    start_ns += cm1e_clock_now(cm1e_bus_clock(bus));
     ck_assert_msg(error == CM1E_OK, "kind %d: %s: %s", kind, cm1e_strerror(error), diag.text);
     return bus;
 }
@@ -188,19 +185,29 @@ static unsigned state_of(cm1e_bus_t *bus, uint32_t place)
     return cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), place));
 }
 
-START_TEST(start_takes_no_longer_without_the_tool)
+/** The settings of the tool are as `before`. */
+static void expect_settings_of_tool(cm1e_bus_t *bus, kind_t kind, const slave_settings_t *before, bool elsewhere)
 {
-    cm1e_bus_close(start_machine((kind_t)_i, true));
-    const int64_t with_ns = start_ns;
-    cm1e_bus_close(start_machine((kind_t)_i, false));
-    ck_assert_int_le(start_ns, with_ns + 1000000); /* frames, but no wait */
+    for (unsigned i = 0; i < slaves_of(kind); i++) {
+        const slave_settings_t now = slave_settings_of(bus, TOOL + i);
+        expect_settings(&now, &before[i], elsewhere, TOOL + i);
+    }
 }
-END_TEST
+
+static void take_settings_of_tool(cm1e_bus_t *bus, kind_t kind, slave_settings_t *settings)
+{
+    for (unsigned i = 0; i < slaves_of(kind); i++)
+        settings[i] = slave_settings_of(bus, TOOL + i);
+}
 
 START_TEST(absent_at_the_start_then_comes_goes_and_comes_back)
 {
     const kind_t kind = (kind_t)_i;
-    cm1e_bus_t *bus = start_machine(kind, false);
+    slave_settings_t there[2];
+    cm1e_bus_t *bus = start_machine(kind, true);
+    take_settings_of_tool(bus, kind, there);
+    cm1e_bus_close(bus);
+    bus = start_machine(kind, false);
     const uint16_t position = position_of(bus, false);
     ck_assert_uint_eq(cm1e_bus_slave_count(bus), 3 + slaves_of(kind));
     for (int n = 0; n < 200; n++)
@@ -213,6 +220,7 @@ START_TEST(absent_at_the_start_then_comes_goes_and_comes_back)
         ck_assert_uint_eq(cm1e_bus_slave(bus, position)->al_state, CM1E_AL_OP);
         for (unsigned i = 0; i < slaves_of(kind); i++)
             ck_assert_uint_eq(state_of(bus, TOOL + i), CM1E_AL_OP);
+        expect_settings_of_tool(bus, kind, there, true);
         for (int n = 0; n < 100; n++)
             good_cycle(bus);
         detach(bus, kind);
@@ -231,6 +239,8 @@ START_TEST(there_at_the_start_goes_and_comes_back)
     const kind_t kind = (kind_t)_i;
     cm1e_bus_t *bus = start_machine(kind, true);
     const uint16_t position = position_of(bus, true);
+    slave_settings_t before[2];
+    take_settings_of_tool(bus, kind, before);
     ck_assert(is_there(bus, position, slaves_of(kind)));
     for (int n = 0; n < 100; n++)
         good_cycle(bus);
@@ -240,6 +250,7 @@ START_TEST(there_at_the_start_goes_and_comes_back)
         good_cycle(bus);
     attach(bus, kind);
     ck_assert_msg(cycles_until_there(bus, position, kind, COMES) > 0, "kind %d: %s", kind, how(bus, position));
+    expect_settings_of_tool(bus, kind, before, false);
     for (int n = 0; n < 100; n++)
         good_cycle(bus);
     cm1e_bus_close(bus);
@@ -675,7 +686,6 @@ int main(void)
     Suite *suite = suite_create("bus_hot_connect");
     TCase *tests = tcase_create("hot_connect");
     tcase_set_timeout(tests, 60);
-    tcase_add_loop_test(tests, start_takes_no_longer_without_the_tool, 0, KINDS);
     tcase_add_loop_test(tests, absent_at_the_start_then_comes_goes_and_comes_back, 0, KINDS);
     tcase_add_loop_test(tests, there_at_the_start_goes_and_comes_back, 0, KINDS);
     tcase_add_loop_test(tests, leaving_at_every_moment_of_coming, 0, 2 * KINDS);

@@ -5,6 +5,7 @@
 #include "cm1e/clocks.h"
 #include "cm1e/io.h"
 #include "effort.h"
+#include "slave_settings.h"
 
 enum { TERMINALS = 8, ANALOG_OUT = 10, ANALOG_IN, MOTOR, DRIVE, BRIDGE, BACK = 6000, SETTLE = 6 };
 
@@ -149,7 +150,8 @@ START_TEST(start_with_a_frame_lost_at_every_moment)
 }
 END_TEST
 
-/** Slaves in front of it go on in every cycle; it and those behind it come back, and all works as before. */
+/** Slaves in front of it go on in every cycle; it and those behind it come back, all works as before, and every register is
+ *  set as it was. */
 START_TEST(every_slave_goes_away_and_comes_back)
 {
     const unsigned position = (unsigned)_i;
@@ -157,6 +159,9 @@ START_TEST(every_slave_goes_away_and_comes_back)
     machine(true);
     cm1e_bus_t *bus = start_bus();
     expect_works(bus, 0x5A);
+    slave_settings_t before[BRIDGE + 1];
+    for (unsigned at = 1; at <= BRIDGE; at++)
+        before[at] = slave_settings_of(bus, at);
     snprintf(line, sizeof line, "power-cycle %u 50", position);
     simulate(bus, line);
     for (unsigned n = 0; n < BACK; n++) {
@@ -172,6 +177,10 @@ START_TEST(every_slave_goes_away_and_comes_back)
         }
     }
     expect_works(bus, 0xA5);
+    for (unsigned at = 1; at <= BRIDGE; at++) {
+        const slave_settings_t after = slave_settings_of(bus, at);
+        expect_settings(&after, &before[at], false, at);
+    }
     cm1e_bus_close(bus);
 }
 END_TEST
