@@ -68,7 +68,7 @@ bool cm1e_al_next(cm1e_al_machine_t *machine, cm1e_datagram_t *d, int64_t now_ns
     }
     switch (machine->step) {
     case AL_IDLE:
-        return false;
+        break;
     case AL_LOOK:
     case AL_ACKNOWLEDGED:
     case AL_WAIT:

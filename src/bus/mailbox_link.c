@@ -77,7 +77,7 @@ bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *d)
 {
     switch (mailbox->state) {
     case MAILBOX_IDLE:
-        return false;
+        break;
     case MAILBOX_WRITE:
         /* The whole mailbox is written: its last byte is what makes it full. */
         cm1e_datagram_set(d, COMMAND_FPWR, mailbox->station, mailbox->out_start, mailbox->out_length);
@@ -146,15 +146,15 @@ static bool after_read(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
     }
     enter(mailbox, MAILBOX_POLL);
     const uint8_t counter = d->data[5] >> 4 & 7;
-    const bool same = counter && counter == mailbox->received_counter;
+    const bool same = counter && counter == mailbox->received_counter, suspected = mailbox->suspects > 0;
+    mailbox->suspects -= suspected;
     /* A repetition: the lost frame had not reached the slave, or the answer was repeated twice. A slave that gives
      * every answer the same number is not judged by the number. */
-    if (same && (mailbox->counting == COUNTING || (mailbox->counting == COUNTING_UNKNOWN && mailbox->suspects > 0)))
+    if (same && (mailbox->counting == COUNTING || (mailbox->counting == COUNTING_UNKNOWN && suspected)))
         return false;
     if (mailbox->counting == COUNTING_UNKNOWN && mailbox->received_counter)
         mailbox->counting = same ? NOT_COUNTING : COUNTING;
     mailbox->received_counter = counter;
-    mailbox->suspects -= mailbox->suspects > 0;
     return true;
 }
 

@@ -16,7 +16,9 @@ static int64_t time_ns; /* of the last datagram */
 
 void setUp(void)
 {
-    machine = (cm1e_al_machine_t){.station = STATION};
+    memset(&machine, 0xFF, sizeof machine); /* a request forgets all that was before */
+    machine.station = STATION;
+    cm1e_al_cancel(&machine);
     time_ns = 0;
 }
 void tearDown(void) {}
@@ -29,6 +31,8 @@ static void answered(unsigned offset, unsigned status, unsigned code)
     TEST_ASSERT_TRUE(cm1e_al_next(&machine, &datagram, time_ns));
     TEST_ASSERT_EQUAL_HEX16(STATION, datagram.address);
     TEST_ASSERT_EQUAL_HEX16(offset, datagram.offset);
+    TEST_ASSERT_EQUAL(offset == REG_AL_STATUS ? 6 : 2, datagram.length);
+    TEST_ASSERT_EQUAL(offset == REG_AL_STATUS ? COMMAND_FPRD : COMMAND_FPWR, datagram.command);
     if (offset == REG_AL_STATUS) {
         cm1e_put_u16(datagram.data, (uint16_t)status);
         cm1e_put_u16(datagram.data + 4, (uint16_t)code);
@@ -135,9 +139,70 @@ static void test_a_slave_without_an_explicit_id_has_none(void)
     ended_with(CM1E_OK);
 }
 
+/* A slave with a processor may take a while to see an acknowledgement: it gets a millisecond, and ten looks, both. */
+static void test_the_next_acknowledgement_comes_after_ten_looks_and_a_millisecond(void)
+{
+    for (int round = 0; round < 2; round++) {
+        const int64_t pace_ns = round ? 300000 : 20000;
+        const int looks = round ? 10 : 50;
+        cm1e_al_request(&machine, CM1E_AL_OP, DEADLINE_NS);
+        answered(REG_AL_STATUS, CM1E_AL_SAFE_OP | CM1E_AL_ERROR, 0x1B);
+        answered(REG_AL_CONTROL, CM1E_AL_SAFE_OP | AL_ERROR_FLAG, 0);
+        for (int look = 1; look <= looks; look++) {
+            time_ns += pace_ns - ROUND_TRIP_NS;
+            answered(REG_AL_STATUS, CM1E_AL_SAFE_OP | CM1E_AL_ERROR, 0x1B);
+        }
+        answered(REG_AL_CONTROL, CM1E_AL_SAFE_OP, 0);
+        cm1e_al_cancel(&machine);
+        ended_with(CM1E_ERROR_CANCELLED);
+        time_ns = 0;
+    }
+    cm1e_al_request(&machine, CM1E_AL_INIT, DEADLINE_NS); /* which needs no configuration, so it is requested at once */
+    answered(REG_AL_STATUS, CM1E_AL_SAFE_OP | CM1E_AL_ERROR, 0x1B);
+    answered(REG_AL_CONTROL, CM1E_AL_INIT | AL_ERROR_FLAG, 0);
+}
+
+/* Five datagrams in a row, whatever it answered before. */
+static void test_a_slave_is_silent_that_never_answers_or_does_not_any_more(void)
+{
+    cm1e_al_request(&machine, CM1E_AL_OP, DEADLINE_NS);
+    TEST_ASSERT_TRUE(cm1e_al_is_silent(&machine));
+    TEST_ASSERT_EQUAL_HEX16(0, machine.state);
+    TEST_ASSERT_EQUAL_HEX16(0, machine.code);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, machine.error);
+    answered(REG_AL_STATUS, CM1E_AL_PRE_OP, 0);
+    for (int round = 0; round < 2; round++) {
+        answered(round ? REG_AL_STATUS : REG_AL_CONTROL, round ? CM1E_AL_PRE_OP : CM1E_AL_OP, 0);
+        for (int n = 1; n < 8; n++) {
+            TEST_ASSERT_EQUAL(n > 5, cm1e_al_is_silent(&machine));
+            lost(time_ns);
+        }
+    }
+    cm1e_al_read_id(&machine, DEADLINE_NS);
+    TEST_ASSERT_TRUE(cm1e_al_is_silent(&machine));
+    TEST_ASSERT_EQUAL_UINT16(0, machine.explicit_id);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, machine.error);
+}
+
+static void test_states_have_names(void)
+{
+    static const struct {
+        unsigned state;
+        const char *text;
+    } rows[] = {{0, "no state"}, {1, "INIT"}, {2, "PRE-OP"}, {3, "BOOT"}, {4, "SAFE-OP"}, {8, "OP"}, {0x10, "no state + ERROR"},
+                {0x11, "INIT + ERROR"}, {0x12, "PRE-OP + ERROR"}, {0x13, "BOOT + ERROR"}, {0x14, "SAFE-OP + ERROR"},
+                {0x18, "OP + ERROR"}, {5, "an unknown state"}, {7, "an unknown state"}, {9, "an unknown state"},
+                {15, "an unknown state"}, {0x16, "an unknown state"}, {0x1F, "an unknown state"}, {0x28, "OP"}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        TEST_ASSERT_EQUAL_STRING(rows[i].text, cm1e_al_state_text((uint16_t)rows[i].state));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_the_next_acknowledgement_comes_after_ten_looks_and_a_millisecond);
+    RUN_TEST(test_a_slave_is_silent_that_never_answers_or_does_not_any_more);
+    RUN_TEST(test_states_have_names);
     RUN_TEST(test_a_slave_is_brought_to_a_state);
     RUN_TEST(test_an_old_error_is_acknowledged_with_the_bit_and_without_it_in_turn);
     RUN_TEST(test_at_the_deadline_it_matters_whether_the_slave_ever_answered);

@@ -497,6 +497,30 @@ static void test_names_are_cut_and_printable(void)
     TEST_ASSERT_EQUAL_CHAR('?', info.name[2]);
     for (size_t size = 0; size < 6; size++)
         TEST_ASSERT_FALSE(cm1e_info_take_object(&info, answer, size));
+    static const uint8_t object[] = {0x18, 0x10, 0x23, 0x01, 4, 9, 'I', 'd'};
+    for (size_t size = 6; size <= sizeof object; size++) {
+        TEST_ASSERT_TRUE(cm1e_info_take_object(&info, object, size));
+        TEST_ASSERT_EQUAL_HEX16(0x1018, info.index);
+        TEST_ASSERT_EQUAL_HEX16(0x0123, info.data_type);
+        TEST_ASSERT_EQUAL_UINT(4, info.highest_subindex);
+        TEST_ASSERT_EQUAL_UINT(9, info.code);
+        TEST_ASSERT_EQUAL_size_t(size - 6, strlen(info.name));
+    }
+}
+
+/** The widest value that is kept, and one that fills the answer to its end. */
+static void test_values_up_to_eight_bytes_are_kept(void)
+{
+    uint8_t answer[10 + 9] = {0x64, 0x60, 0, INFO_VALUE_DEFAULT, 0x15, 0, 0, 0, 7, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+    cm1e_entry_info_t info;
+    for (unsigned bytes = 1; bytes <= 9; bytes++) {
+        answer[6] = (uint8_t)(8 * bytes);
+        TEST_ASSERT_TRUE(cm1e_info_take_entry(&info, answer, 10 + bytes));
+        TEST_ASSERT_EQUAL_UINT(bytes <= 8 ? bytes : 0, info.default_value.size);
+        if (bytes <= 8)
+            TEST_ASSERT_EQUAL_HEX8_ARRAY(answer + 10, info.default_value.bytes, bytes);
+        TEST_ASSERT_FALSE(cm1e_info_take_entry(&info, answer, 10 + bytes - 1));
+    }
 }
 
 static void test_a_list_has_whole_indexes_and_fits(void)
@@ -506,7 +530,10 @@ static void test_a_list_has_whole_indexes_and_fits(void)
     const uint8_t answer[] = {1, 0, 0x00, 0x10, 0x18, 0x10};
     TEST_ASSERT_TRUE(cm1e_info_take_list(indexes, 2, &count, answer, 6));
     TEST_ASSERT_EQUAL_size_t(2, count);
+    TEST_ASSERT_EQUAL_HEX16(0x1000, indexes[0]);
     TEST_ASSERT_EQUAL_HEX16(0x1018, indexes[1]);
+    TEST_ASSERT_TRUE(cm1e_info_take_list(indexes, 0, &count, answer, 2)); /* none */
+    TEST_ASSERT_EQUAL_size_t(0, count);
     TEST_ASSERT_FALSE(cm1e_info_take_list(indexes, 1, &count, answer, 6));
     TEST_ASSERT_FALSE(cm1e_info_take_list(indexes, 4, &count, answer, 5));
     TEST_ASSERT_FALSE(cm1e_info_take_list(indexes, 4, &count, answer, 0));
@@ -528,6 +555,7 @@ int main(void)
     RUN_TEST(test_late_fragments_of_a_given_up_list_are_not_taken_for_the_next);
     RUN_TEST(test_random_answers_end_in_bounded_time_within_the_room);
     RUN_TEST(test_an_entry_is_taken_apart_by_what_the_answer_says_it_holds);
+    RUN_TEST(test_values_up_to_eight_bytes_are_kept);
     RUN_TEST(test_names_are_cut_and_printable);
     RUN_TEST(test_names_that_are_not_ascii_are_those_of_the_esi);
     RUN_TEST(test_a_list_has_whole_indexes_and_fits);
