@@ -69,12 +69,11 @@ static const char *other_kind_text(const cm1e_bus_slave_t *slave, const cm1e_dev
     return text;
 }
 
-/** Writes what the axis expects and which other kind of device was found; "": the kind is right. */
+/** Writes what the axis expects and which other kind of device was found. `text` stays "" if the kind is right. */
 static void wrong_kind(const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave, char *text, size_t size)
 {
     char why[112], kind[CM1E_KIND_LENGTH];
     const unsigned position = slave->info.position;
-    text[0] = 0;
     const cm1e_device_t *expected = cm1e_device_configured(axis), *found = slave->info.device;
     if (cm1e_device_same_kind(expected, found))
         return;
@@ -95,7 +94,7 @@ static void wrong_kind(const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *s
 static cm1e_error_t check_kind(const cm1e_bus_t *bus, const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave,
                                cm1e_diag_t *diag)
 {
-    char where[32], wrong[288], problem[400];
+    char where[32], wrong[288] = "", problem[400];
     wrong_kind(axis, slave, wrong, sizeof wrong);
     if (!wrong[0])
         return CM1E_OK;

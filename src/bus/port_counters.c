@@ -18,7 +18,7 @@ enum {
 cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_port_t ports[CM1E_PORTS],
                                  cm1e_diag_t *diag)
 {
-    uint8_t status[2] = {0}, errors[RECEIVE_ERROR_BYTES] = {0}, lost[CM1E_PORTS] = {0};
+    uint8_t status[2], errors[RECEIVE_ERROR_BYTES], lost[CM1E_PORTS];
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_read_ports()", "", diag);
     if (!bus)

@@ -332,6 +332,19 @@ START_TEST(an_errand_that_cannot_be_done_is_refused)
                                  .size = rows[i].size};
         ck_assert_msg(cm1e_errand_submit(bus, &errand) == rows[i].error, "row %zu", i);
     }
+    finish(bus);
+    ck_assert_int_eq(errand.error, CM1E_OK);
+    for (size_t size = 1; size <= CM1E_ERRAND_BYTES; size += CM1E_ERRAND_BYTES - 1) { /* the smallest and the largest */
+        errand = (cm1e_errand_t){.kind = ERRAND_REGISTERS, .position = SLAVES, .place = 0x0010, .size = size};
+        memset(errand.data, 0xEE, sizeof errand.data);
+        ck_assert_int_eq(cm1e_errand_submit(bus, &errand), CM1E_OK);
+        finish(bus);
+        ck_assert_int_eq(errand.error, CM1E_OK);
+        ck_assert_mem_eq(errand.data, register_memory_of(bus, SLAVES) + 0x0010, size);
+        ck_assert(size == CM1E_ERRAND_BYTES || errand.data[size] == 0xEE);
+    }
+    errand = (cm1e_errand_t){.kind = ERRAND_SII, .position = SLAVES, .place = CM1E_SII_VENDOR / 2, .size = 2};
+    ck_assert_int_eq(cm1e_errand_submit(bus, &errand), CM1E_OK);
     cm1e_errand_t second = {.kind = ERRAND_SII, .position = 1, .size = 2};
     ck_assert_int_eq(cm1e_errand_submit(bus, &second), CM1E_ERROR_BUSY);
     finish(bus);

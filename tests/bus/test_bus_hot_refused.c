@@ -341,6 +341,22 @@ START_TEST(a_second_device_with_the_same_address_is_a_stranger)
     }
     ck_assert_uint_eq(cm1e_bus_strangers(bus, &stranger, 1), 1);
     ck_assert(stranger.place == WRONG && stranger.alias == ALIAS);
+    char text[CM1E_PRESENCE_TEXT], wanted[CM1E_PRESENCE_TEXT];
+    cm1e_stranger_text(&stranger, text, sizeof text);
+    snprintf(wanted, sizeof wanted, "A device at place %u of the wire was refused: vendor 0x%08X, product 0x%08X, alias %u, "
+             "explicit device ID 0 are not those of a slave that is missing.", WRONG, stranger.vendor_id,
+             stranger.product_code, ALIAS);
+    ck_assert_str_eq(text, wanted);
+    ck_assert_uint_eq(cm1e_bus_strangers(bus, &stranger, 0), 0);
+    const uint64_t news = cm1e_bus_presence_news(bus);
+    for (int n = 0; n < REFUSED_CYCLES; n++) /* it is identified again and again, which is no news */
+        good_cycle(bus);
+    ck_assert_uint_eq(cm1e_bus_presence_news(bus), news);
+    detach(bus, WRONG);
+    for (int n = 0; n < GONE; n++)
+        good_cycle(bus);
+    ck_assert_uint_eq(cm1e_bus_strangers(bus, &stranger, 1), 0);
+    ck_assert_uint_gt(cm1e_bus_presence_news(bus), news);
     cm1e_bus_close(bus);
     cm1e_bus_config_free(&wire);
 }

@@ -124,6 +124,28 @@ START_TEST(identity)
 }
 END_TEST
 
+/** Another text in place of the version that a slave tells. */
+static cm1e_tap_verdict_t spoil_version(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    for (size_t at = 0; frame->direction == CM1E_TAP_RECEIVED && at + 5 <= frame->length; at++)
+        if (memcmp(frame->bytes + at, "1.3.4", 5) == 0)
+            memcpy(frame->bytes + at, " ~\x7F\x1F\x80", 5);
+    return CM1E_TAP_PASS;
+}
+
+/** What could act on a terminal is shown as "?". */
+START_TEST(software_version_has_plain_characters)
+{
+    static const identity_case_t c = {"a version", {{MOTOR, 0, 0, "1.3.4"}}, 0, {{0}}, CM1E_OK, {0}, {0}};
+    cm1e_bus_t *bus = bus_of_case(&c);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), spoil_version, NULL);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(strstr(cm1e_bus_slave(bus, 1)->software_version, " ~???"), "%s", cm1e_bus_slave(bus, 1)->software_version);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- slaves beside the axes -------------------------------------------------------------------------------------- */
 
 /** On the wire: a motor with alias 3, a device with alias 4, and a third one. The configuration names the motor, and slaves
@@ -169,6 +191,7 @@ int main(void)
     Suite *suite = suite_create("bus_identity");
     TCase *tests = tcase_create("identity");
     tcase_add_loop_test(tests, identity, 0, sizeof cases / sizeof cases[0]);
+    tcase_add_test(tests, software_version_has_plain_characters);
     tcase_add_loop_test(tests, identity_of_slaves, 0, sizeof slave_cases / sizeof slave_cases[0]);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

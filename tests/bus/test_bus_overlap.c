@@ -355,6 +355,44 @@ START_TEST(slave_that_does_not_know_lrw_is_refused)
 }
 END_TEST
 
+/** The slave of this station address does not take what is written into its FMMUs. */
+static cm1e_tap_verdict_t refuse_fmmus(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { FPWR = 5, FMMU0 = 0x0600, FRAME_HEADER_BYTES = 16 };
+    const uint16_t station = *(const uint16_t *)context;
+    size_t at = FRAME_HEADER_BYTES;
+    for (bool more = frame->direction == CM1E_TAP_RECEIVED; more && at + 12 <= frame->length;) {
+        uint8_t *header = frame->bytes + at;
+        const unsigned length = cm1e_get_u16(header + 6);
+        if (header[0] == FPWR && cm1e_get_u16(header + 2) == station && cm1e_get_u16(header + 4) == FMMU0 &&
+            (length & 0x7FF) > 16)
+            cm1e_put_u16(header + 10 + (length & 0x7FF), 0);
+        more = length & 0x8000;
+        at += 12 + (length & 0x7FF);
+    }
+    return CM1E_TAP_PASS;
+}
+
+/** The slave is named, the first one and the last one too; the next start succeeds. */
+START_TEST(slave_that_does_not_take_its_places_is_named)
+{
+    char wanted[40];
+    describe(true, CM1E_SIM_IO_TERMINAL);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK);
+    const uint8_t *memory = register_memory_of(bus, (uint32_t)_i);
+    uint16_t station = cm1e_get_u16(memory + 0x0010);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_fmmus, &station);
+    ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_ERROR_BUS_WORKING_COUNTER);
+    snprintf(wanted, sizeof wanted, "Slave %d (", _i);
+    ck_assert_msg(strstr(diag.text, wanted) && strstr(diag.text, "does not accept the places of its process data"), "%s",
+                  diag.text);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_overlap");
@@ -367,6 +405,7 @@ int main(void)
     tcase_add_loop_test(tests, slave_that_comes_back_has_its_places_again, 1, SLAVES + 1);
     tcase_add_test(tests, clocks_ride_beside_overlapped_process_data);
     tcase_add_test(tests, slave_that_does_not_know_lrw_is_refused);
+    tcase_add_loop_test(tests, slave_that_does_not_take_its_places_is_named, 1, SLAVES + 1);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
