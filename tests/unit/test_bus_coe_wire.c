@@ -1,5 +1,5 @@
-/* The CoE client, message by message (ETG.1000.6): what each request and each abort is on the wire, to the byte, what ends
- * a transfer, and when its time is over. */
+/* The CoE client, message by message (ETG.1000.6): what each request and each abort is on the wire, to the byte; what
+ * ends a transfer, and when its time is over. */
 #include <string.h>
 
 #include "bus/coe_client.h"
@@ -354,6 +354,63 @@ static void test_a_mailbox_error_ends_a_transfer_with_its_detail(void)
     }
 }
 
+/** What has ended a transfer stays its result, although the abort does not arrive in time; the next one owes it. */
+static void test_a_transfer_that_failed_does_not_become_one_that_took_too_long(void)
+{
+    for (int begun = 0; begun < 2; begun++) {
+        cm1e_datagram_t d;
+        begin_phase(UPLOAD);
+        answer(0x60, 0, NULL, 0);
+        for (int n = 0; n < 20 && client.phase != COE_ABORT; n++)
+            step();
+        cm1e_coe_cancel(&client, CM1E_ERROR_TIMEOUT);
+        expect_end(CM1E_ERROR_BUS_MAILBOX, 0);
+        begin(false, 4, false);
+        if (begun == 0)
+            continue;
+        while (cm1e_coe_next(&client, &d, now_ns)) { /* this one has not begun before the abort was delivered */
+            d.working_counter = DATAGRAM_LOST;
+            const uint32_t lost = client.lost_frames;
+            cm1e_coe_result(&client, &d, now_ns);
+            TEST_ASSERT_EQUAL_UINT32(lost + 1, client.lost_frames);
+            now_ns += 1000000;
+        }
+        expect_end(CM1E_ERROR_TIMEOUT, 0);
+    }
+}
+
+/** After a transfer that was given up: its abort, which a slave may refuse, then a question that every slave answers,
+ *  each time another one, and not the one given up. All that comes before its answer is of before. */
+static void test_a_transfer_that_was_given_up_is_over_before_the_next_begins(void)
+{
+    static const uint8_t fences[][3] = {{0x18, 0x10, 0}, {0x18, 0x10, 1}, {0x18, 0x10, 2}, {0x18, 0x10, 3},
+                                        {0x00, 0x10, 0}};
+    unsigned sent = begin_phase(UPLOAD);
+    for (unsigned n = 0; n < 7; n++) {
+        cm1e_coe_cancel(&client, CM1E_ERROR_CANCELLED);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_CANCELLED, sdo.error);
+        begin(false, 4, false);
+        expect_abort(++sent, 0x08000000);
+        if (n % 2) {
+            message(MAILBOX_TYPE_ERROR, (const uint8_t[]){1, 0, 7, 0}, 4); /* refuses the abort */
+            answer(0x43, 0xBAD, NULL, 0);                                  /* the late answer */
+        }
+        run_until_request(++sent);
+        const uint8_t *fence = fences[n % 5];
+        expect_asked((const uint8_t[10]){0, 0x20, 0x40, fence[0], fence[1], fence[2]}, 10);
+        take_all();
+        TEST_ASSERT_FALSE(cm1e_coe_idle(&client));
+        const bool abort = n % 3 == 0; /* which is an answer, too */
+        message(MAILBOX_TYPE_COE, (const uint8_t[10]){0, abort ? 0x20 : 0x30, abort ? 0x80 : 0x43, fence[0], fence[1],
+                                                      fence[2]}, 10);
+        run_until_request(++sent);
+        TEST_ASSERT_EQUAL_HEX16(INDEX, cm1e_get_u16(asked + 6 + 3));
+    }
+    answer(0x43, 1, NULL, 0);
+    take_all();
+    expect_end(CM1E_OK, 0);
+}
+
 /* ---- time -------------------------------------------------------------------------------------------------------- */
 
 static void test_a_transfer_ends_when_its_time_is_over(void)
@@ -509,6 +566,8 @@ int main(void)
     RUN_TEST(test_a_refusal_ends_a_transfer_with_its_code);
     RUN_TEST(test_other_messages_are_passed_over);
     RUN_TEST(test_a_mailbox_error_ends_a_transfer_with_its_detail);
+    RUN_TEST(test_a_transfer_that_failed_does_not_become_one_that_took_too_long);
+    RUN_TEST(test_a_transfer_that_was_given_up_is_over_before_the_next_begins);
     RUN_TEST(test_a_transfer_ends_when_its_time_is_over);
     RUN_TEST(test_information_has_three_seconds);
     RUN_TEST(test_listening_takes_four_messages_at_most);

@@ -142,6 +142,144 @@ static void test_inputs_of_two_sync_managers_are_one_behind_the_other(void)
     TEST_ASSERT_EQUAL_UINT32(16, sii.signals->at[1].bit_offset);
 }
 
+/* PDOs of all kinds: what each entry is called, where it is, and which type it has. */
+enum { NO_NAME = 0, INPUTS = 1, STATUS = 2, VALUE = 3, NOTHING = 4 };
+static const char names[] = "\004\006Inputs\006Status\005Value\000";
+
+static const struct {
+    bool input;
+    uint8_t sync_manager, name;
+    struct {
+        uint16_t index;
+        uint8_t subindex, name, type, bits;
+    } entries[4];
+} pdos[] = {
+    {true, 3, INPUTS, {{0x6000, 1, STATUS, 0x01, 1}, {0, 0, NO_NAME, 0, 3}, {0x6000, 2, NO_NAME, 0x05, 8}}},
+    {true, 0, NO_NAME, {{0x6010, 1, VALUE, 0x02, 8}, {0x6010, 2, NO_NAME, 0x03, 16}}}, /* in front of the others */
+    {true, 7, NOTHING, {{0x6020, 1, VALUE, 0x04, 32}, {0x6020, 2, NOTHING, 0x08, 32}}},
+    {true, 8, INPUTS, {{0x6030, 1, VALUE, 0x05, 8}}}, /* sync managers that there are not */
+    {true, 0xFF, INPUTS, {{0x6031, 1, VALUE, 0x05, 8}}},
+    {true, 3, STATUS, {{0x6040, 0, VALUE, 0x11, 64}, {0x6041, 0, VALUE, 0x15, 64}, {0x6042, 0, VALUE, 0x03, 8}}},
+    {false, 2, INPUTS, {{0x7000, 1, STATUS, 0x06, 16}, {0, 7, NO_NAME, 0, 16}, {0x7000, 3, STATUS, 0x07, 32}}},
+    {false, 0, INPUTS, {{0x7010, 1, STATUS, 0x05, 5}}},
+};
+static const struct {
+    uint16_t index;
+    uint8_t subindex;
+    uint16_t bits;
+    uint32_t bit_offset;
+    cm1e_io_type_t type;
+    const char *name;
+} signals[] = {
+    {0x6000, 1, 1, 24, CM1E_IO_BOOL, "Inputs Status"}, {0x6000, 2, 8, 28, CM1E_IO_USINT, "Inputs"},
+    {0x6010, 1, 8, 0, CM1E_IO_SINT, "Value"}, {0x6010, 2, 16, 8, CM1E_IO_INT, ""},
+    {0x6020, 1, 32, 24 + 152, CM1E_IO_DINT, "Value"}, {0x6020, 2, 32, 24 + 184, CM1E_IO_REAL, ""},
+    {0x6040, 0, 64, 36, CM1E_IO_LREAL, "Status Value"}, {0x6041, 0, 64, 100, CM1E_IO_LINT, "Status Value"},
+    {0x6042, 0, 8, 164, CM1E_IO_USINT, "Status Value"}, /* an INT has not 8 bits */
+    {0x7000, 1, 16, 8, CM1E_IO_UINT, "Inputs Status"}, {0x7000, 3, 32, 40, CM1E_IO_UDINT, "Inputs Status"},
+    {0x7010, 1, 5, 0, CM1E_IO_USINT, "Inputs Status"},
+};
+
+static void put_pdos(bool input)
+{
+    uint8_t bytes[8 * 40] = {0};
+    size_t used = 0;
+    for (size_t i = 0; i < sizeof pdos / sizeof pdos[0]; i++) {
+        if (pdos[i].input != input)
+            continue;
+        uint8_t *pdo = bytes + used;
+        cm1e_put_u16(pdo, (uint16_t)((input ? 0x1A00 : 0x1600) + i));
+        pdo[3] = pdos[i].sync_manager;
+        pdo[5] = pdos[i].name;
+        for (used += 8; pdo[2] < 4 && pdos[i].entries[pdo[2]].bits; used += 8) {
+            uint8_t *entry = bytes + used;
+            cm1e_put_u16(entry, pdos[i].entries[pdo[2]].index);
+            entry[2] = pdos[i].entries[pdo[2]].subindex;
+            entry[3] = pdos[i].entries[pdo[2]].name;
+            entry[4] = pdos[i].entries[pdo[2]].type;
+            entry[5] = pdos[i].entries[pdo[2]].bits;
+            pdo[2]++;
+        }
+    }
+    put_category(input ? 50 : 51, bytes, (uint16_t)(used / 2));
+}
+
+static void test_every_signal_has_its_place_its_name_and_its_type(void)
+{
+    static const uint32_t bits[2][8] = {{5, 0, 64}, {24, 0, 0, 12 + 136, 0, 0, 0, 64}};
+    put_category(10, names, sizeof names / 2);
+    put_pdos(true);
+    put_pdos(false);
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_NOT_NULL(sii.signals);
+    TEST_ASSERT_EQUAL_UINT32(sizeof signals / sizeof signals[0], sii.signals->count);
+    for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
+        const cm1e_sii_signal_t *signal = &sii.signals->at[i];
+        TEST_ASSERT_EQUAL_HEX16(signals[i].index, signal->index);
+        TEST_ASSERT_EQUAL_UINT8(signals[i].subindex, signal->subindex);
+        TEST_ASSERT_EQUAL_UINT16(signals[i].bits, signal->bits);
+        TEST_ASSERT_EQUAL_UINT32(signals[i].bit_offset, signal->bit_offset);
+        TEST_ASSERT_EQUAL_INT(signals[i].type, signal->type);
+        TEST_ASSERT_EQUAL_STRING(signals[i].name, signal->name);
+        TEST_ASSERT_EQUAL_INT(signals[i].index < 0x7000, signal->input);
+    }
+    for (int direction = 0; direction < 2; direction++)
+        TEST_ASSERT_EQUAL_UINT32_ARRAY(bits[direction], sii.bits[direction], 8);
+}
+
+/* The modes of a clock, with their names, in a whole and in a brief reading. More than there is room for are not kept. */
+static void test_modes_of_the_clock_are_those_of_category_60(void)
+{
+    for (unsigned n = 0; n < 2 * 4; n++) {
+        static const unsigned counts[] = {1, 2, CM1E_SII_DC_MODES, CM1E_SII_DC_MODES + 2};
+        const unsigned count = counts[n / 2];
+        uint8_t bytes[24 * (CM1E_SII_DC_MODES + 2)] = {0};
+        setUp();
+        brief = n % 2;
+        for (unsigned i = 0; i < count; i++) {
+            uint8_t *mode = bytes + 24 * i;
+            cm1e_put_u32(mode, 1000000 + i); /* cycle and shift of SYNC0, shift of SYNC1 */
+            cm1e_put_u32(mode + 4, 2000 + i);
+            cm1e_put_u32(mode + 8, 3000 + i);
+            cm1e_put_u16(mode + 12, (uint16_t)(2 + i)); /* factor of SYNC1 */
+            cm1e_put_u16(mode + 14, (uint16_t)(0x0700 + i));
+            cm1e_put_u16(mode + 16, (uint16_t)(5 + i));
+            mode[18] = (uint8_t)(1 + i % 3);
+        }
+        put_category(60, bytes, (uint16_t)(12 * count));
+        put_category(10, names, sizeof names / 2);
+        TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+        TEST_ASSERT_EQUAL_UINT(count < CM1E_SII_DC_MODES ? count : CM1E_SII_DC_MODES, sii.dc_mode_count);
+        for (unsigned i = 0; i < sii.dc_mode_count; i++) {
+            static const char *const called[] = {"Inputs", "Status", "Value"};
+            TEST_ASSERT_EQUAL_STRING(called[i % 3], sii.dc_modes[i].name);
+            TEST_ASSERT_EQUAL_HEX16(0x0700 + i, sii.dc_modes[i].facts.assign_activate);
+            TEST_ASSERT_EQUAL_INT(1000000 + i, sii.dc_modes[i].facts.sync0_cycle_ns);
+            TEST_ASSERT_EQUAL_INT(2000 + i, sii.dc_modes[i].facts.sync0_shift_ns);
+            TEST_ASSERT_EQUAL_INT(3000 + i, sii.dc_modes[i].facts.sync1_shift_ns);
+            TEST_ASSERT_EQUAL_INT(2 + i, sii.dc_modes[i].facts.sync1_factor);
+            TEST_ASSERT_EQUAL_INT(5 + i, sii.dc_modes[i].facts.sync0_factor);
+        }
+    }
+}
+
+/* The largest SII ends at word 0x2000; a category that ends there may be the last one. */
+static void test_categories_may_reach_up_to_the_largest_sii(void)
+{
+    static uint8_t bytes[0x4000];
+    for (unsigned more = 0; more < 3; more++) {
+        setUp();
+        put_category(30 + 100, bytes, (uint16_t)(0x2000 + more - (end / 2 + 2)));
+        TEST_ASSERT_EQUAL_INT(more ? SII_DAMAGED : SII_OK, parse());
+    }
+    for (unsigned count = 62; count < 66; count++) { /* with the end mark 64 */
+        setUp();
+        for (unsigned n = 0; n < count; n++)
+            put_category(130, bytes, 1);
+        TEST_ASSERT_EQUAL_INT(count < 64 ? SII_OK : SII_DAMAGED, parse());
+    }
+}
+
 static void test_read_that_fails_anywhere_is_reported(void)
 {
     put_good_categories();
@@ -315,6 +453,9 @@ int main(void)
     RUN_TEST(test_good_image_gives_everything);
     RUN_TEST(test_padding_is_no_signal_and_keeps_its_place);
     RUN_TEST(test_inputs_of_two_sync_managers_are_one_behind_the_other);
+    RUN_TEST(test_every_signal_has_its_place_its_name_and_its_type);
+    RUN_TEST(test_modes_of_the_clock_are_those_of_category_60);
+    RUN_TEST(test_categories_may_reach_up_to_the_largest_sii);
     RUN_TEST(test_read_that_fails_anywhere_is_reported);
     RUN_TEST(test_no_categories_at_all_is_a_slave_without_name);
     RUN_TEST(test_names_are_cut_and_cleaned);
