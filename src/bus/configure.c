@@ -97,43 +97,40 @@ static cm1e_error_t set_process_data(cm1e_bus_t *bus, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+/** All that has a byte for each byte of the image. */
+enum { IMAGE_PARTS = 9 };
+
+static uint8_t **image_part(cm1e_bus_t *bus, int part)
+{
+    uint8_t **const parts[IMAGE_PARTS] = {&bus->image, &bus->sent, &bus->outputs, &bus->inputs, &bus->silence.markers[0],
+                                          &bus->silence.markers[1], &bus->safe.values, &bus->safe.mask,
+                                          &bus->safe.claimed};
+    return parts[part];
+}
+
 void cm1e_bus_free_image(cm1e_bus_t *bus)
 {
-    free(bus->image);
-    free(bus->sent);
-    free(bus->outputs);
-    free(bus->inputs);
-    free(bus->safe.values);
-    free(bus->safe.mask);
-    free(bus->silence.markers[0]);
-    free(bus->silence.markers[1]);
-    bus->silence.markers[0] = bus->silence.markers[1] = NULL;
+    for (int part = 0; part < IMAGE_PARTS; part++) {
+        free(*image_part(bus, part));
+        *image_part(bus, part) = NULL;
+    }
     for (uint32_t i = 0; i < bus->slave_room; i++) {
         free(bus->slaves[i].signals);
         bus->slaves[i].signals = NULL;
     }
-    bus->safe.values = bus->safe.mask = NULL;
-    free(bus->safe.claimed);
-    bus->safe.claimed = NULL;
-    bus->image = bus->sent = bus->outputs = bus->inputs = NULL;
     bus->output_bytes = bus->input_bytes = 0;
     bus->layout.present = 0;
 }
 
 static bool make_image(cm1e_bus_t *bus, size_t room)
 {
+    bool made = true;
     cm1e_bus_free_image(bus);
-    bus->image = calloc(1, room + 1);
-    bus->sent = calloc(1, room + 1);
-    bus->outputs = calloc(1, room + 1);
-    bus->inputs = calloc(1, room + 1);
-    bus->silence.markers[0] = calloc(1, room + 1);
-    bus->silence.markers[1] = calloc(1, room + 1);
-    bus->safe.values = calloc(1, room + 1);
-    bus->safe.mask = calloc(1, room + 1);
-    bus->safe.claimed = calloc(1, room + 1);
-    return bus->image && bus->sent && bus->outputs && bus->inputs && bus->safe.values && bus->safe.mask &&
-           bus->safe.claimed && bus->silence.markers[0] && bus->silence.markers[1];
+    for (int part = 0; part < IMAGE_PARTS; part++) {
+        *image_part(bus, part) = calloc(1, room + 1);
+        made = made && *image_part(bus, part);
+    }
+    return made;
 }
 
 static void take_placements(cm1e_bus_t *bus)

@@ -325,6 +325,11 @@ START_TEST(an_errand_that_cannot_be_done_is_refused)
     cm1e_bus_t *bus = open_bus();
     errand = (cm1e_errand_t){.kind = ERRAND_SII, .position = 1, .size = 2};
     ck_assert_int_eq(cm1e_errand_submit(bus, &errand), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_errand_submit(bus, &errand), CM1E_OK);
+    cm1e_bus_stop(bus);
+    ck_assert(cm1e_errand_done(&errand));
+    ck_assert_int_eq(errand.error, CM1E_ERROR_CANCELLED);
     cm1e_bus_close(bus);
     bus = operating();
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

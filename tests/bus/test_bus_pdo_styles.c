@@ -1,6 +1,8 @@
 /* Process data as makers arrange them: inputs on sync manager 2 and outputs on 3, padding inside of PDOs and behind
  * their last entry, counters of an encoder terminal, devices with modules. */
 #include "bus_support.h"
+#include "description/sii_image.h"
+#include "sim/esc_chip.h"
 #include "cm1e/hot_connect.h"
 #include "cm1e/io.h"
 #include "sim/segment.h"
@@ -301,6 +303,75 @@ START_TEST(modules_are_configured_again_after_the_slave_was_away)
 }
 END_TEST
 
+/** Where the SII has the place of a sync manager. */
+static uint8_t *sync_manager_of_sii(cm1e_bus_t *bus, uint32_t position, unsigned number)
+{
+    enum { SYNC_MANAGERS = 41 };
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment_of(bus), position);
+    cm1e_sii_category_t category = {0};
+    size_t at = CM1E_SII_HEADER_BYTES;
+    while (cm1e_sii_category_at(&category, slave->sii, slave->sii_size, at) && category.type != SYNC_MANAGERS)
+        at = category.start + category.bytes;
+    ck_assert_uint_eq(category.type, SYNC_MANAGERS);
+    return slave->sii + category.start + 8 * (size_t)number;
+}
+
+static cm1e_error_t configure(cm1e_bus_t *bus)
+{
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return cm1e_bus_configure(bus, &diag);
+}
+
+/** Three buffers each, within the memory of the controller, and not in one another. */
+START_TEST(process_data_have_their_room_in_the_controller)
+{
+    static const struct {
+        int outputs, inputs; /* bytes beyond the last place that is right: of the outputs before the inputs, ... */
+        unsigned kind;
+    } rows[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 0, 2}, {1, 0, 2}, {0, 0, 3}, {0, 1, 3}};
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    const unsigned outputs = cm1e_bus_slave(bus, 1)->output_bytes, inputs = cm1e_bus_slave(bus, 1)->input_bytes;
+    cm1e_bus_close(bus);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const unsigned places[4][2] = {{0x1400u - 3 * outputs, 0x1400}, {0x1400, 0x1400u - 3 * inputs},
+                                       {0x10000u - 3 * outputs, 0x1400}, {0x1400, 0x10000u - 3 * inputs}};
+        const bool right = rows[i].outputs == 0 && rows[i].inputs == 0;
+        bus = open_bus();
+        cm1e_put_u16(sync_manager_of_sii(bus, 1, 2), (uint16_t)(places[rows[i].kind][0] + (unsigned)rows[i].outputs));
+        cm1e_put_u16(sync_manager_of_sii(bus, 1, 3), (uint16_t)(places[rows[i].kind][1] + (unsigned)rows[i].inputs));
+        const cm1e_error_t error = configure(bus);
+        ck_assert_msg((error != CM1E_ERROR_PDO_MAPPING) == right, "row %zu: %s", i, diag.text);
+        if (!right)
+            ck_assert_str_eq(diag.text, "The process data of slave 1 (\"axis1\", CM1-E) does not fit its sync managers: "
+                                        "its SII is damaged.");
+        ck_assert(right || diag.foreign_code == 0);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
+/** Process data on a sync manager that there is not. */
+START_TEST(a_sync_manager_without_a_place_carries_nothing)
+{
+    for (unsigned number = 0; number < 2; number++) {
+        for (unsigned kind = 0; kind < 2; kind++) { /* without a mailbox; with CoE, where the PDOs are asked of it */
+            sim_config(0);
+            cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "terminal");
+            slave->address = 1;
+            slave->sim.kind = kind ? CM1E_SIM_SLAVE_ANALOG : CM1E_SIM_SLAVE_DIGITAL;
+            slave->sim.inputs = slave->sim.outputs = 4;
+            cm1e_bus_t *bus = open_bus();
+            ck_assert_msg(configure(bus) == CM1E_OK, "%s", diag.text);
+            cm1e_put_u16(sync_manager_of_sii(bus, 1, number + (kind ? 2 : 0)), 0);
+            ck_assert_int_eq(configure(bus), CM1E_ERROR_PDO_MAPPING);
+            ck_assert_msg(strstr(diag.text, kind ? "assign fewer PDOs." : "its SII is damaged."), "%s", diag.text);
+            cm1e_bus_close(bus);
+        }
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("PDO styles");
@@ -315,6 +386,8 @@ int main(void)
     tcase_add_test(tests, another_module_is_told_with_its_slot);
     tcase_add_test(tests, wrong_configured_list_is_refused_by_the_device);
     tcase_add_test(tests, modules_are_configured_again_after_the_slave_was_away);
+    tcase_add_test(tests, process_data_have_their_room_in_the_controller);
+    tcase_add_test(tests, a_sync_manager_without_a_place_carries_nothing);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

@@ -382,6 +382,37 @@ START_TEST(outputs_are_safe_before_the_program_and_after_it)
 }
 END_TEST
 
+/** Each bit of several bytes has its own safe value, or keeps its value; the neighbours' are not touched. */
+START_TEST(every_bit_has_its_own_safe_value)
+{
+    static const uint8_t safe[3] = {0xB2, 0x4D, 0xF0}, held[3] = {0x0F, 0xAA, 0x3C}, written[3] = {0x69, 0xD3, 0x95};
+    cm1e_io_t bytes[3];
+    sim_config(0);
+    for (unsigned i = 0; i < 3; i++) {
+        add("valves", i + 1, CM1E_SIM_SLAVE_DIGITAL, 0, 8)->name[0] = (char)('a' + i);
+        for (unsigned bit = 0; bit < 8; bit++) {
+            char name[16];
+            snprintf(name, sizeof name, "bit %u", bit);
+            cm1e_signal_config_t *signal = name_bits(i + 1, name, true, bit, 1);
+            signal->hold = held[i] >> bit & 1;
+            signal->safe = signal->hold ? 0 : safe[i] >> bit & 1;
+        }
+    }
+    cm1e_bus_t *bus = start_bus();
+    for (unsigned i = 0; i < 3; i++) {
+        ck_assert_int_eq(cm1e_io_find_bits(bus, (uint16_t)(i + 1), true, 0, 8, CM1E_IO_USINT, &bytes[i], &diag), CM1E_OK);
+        ck_assert_int_eq(cm1e_io_integer(&bytes[i]), safe[i] & ~held[i]);
+        ck_assert_int_eq(cm1e_io_set_integer(&bytes[i], written[i]), CM1E_OK);
+    }
+    cycles(bus, SETTLE);
+    cm1e_bus_release_outputs(bus);
+    cycles(bus, SETTLE);
+    for (unsigned i = 0; i < 3; i++)
+        ck_assert_int_eq(cm1e_io_integer(&bytes[i]), (safe[i] & ~held[i]) | (written[i] & held[i]));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(outputs_are_safe_after_the_bus_was_lost)
 {
     machine();
@@ -485,6 +516,7 @@ int main(void)
     tcase_add_test(tests, what_a_slave_refuses_is_told);
     tcase_add_test(tests, a_slave_that_tells_its_pdos_slowly_ends_the_start);
     tcase_add_test(tests, outputs_are_safe_before_the_program_and_after_it);
+    tcase_add_test(tests, every_bit_has_its_own_safe_value);
     tcase_add_test(tests, outputs_are_safe_after_the_bus_was_lost);
     tcase_add_test(tests, outputs_of_a_slave_that_was_away_are_safe_and_those_of_others_stay);
     tcase_add_test(tests, console_holds_an_input_until_it_is_wired_again);

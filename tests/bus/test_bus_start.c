@@ -489,6 +489,70 @@ START_TEST(scan_takes_no_notice_of_addresses_of_an_earlier_one)
 }
 END_TEST
 
+/** What a register of one slave does not take is written as if nobody had answered. */
+typedef struct refusal {
+    uint16_t station, offset;
+} refusal_t;
+
+static cm1e_tap_verdict_t refuse_write(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { FPWR = 5, FRAME_HEADER_BYTES = 16, DATAGRAM_BYTES = 12 };
+    const refusal_t *refusal = context;
+    size_t at = FRAME_HEADER_BYTES;
+    for (bool more = frame->direction == CM1E_TAP_RECEIVED; more && at + DATAGRAM_BYTES <= frame->length;) {
+        uint8_t *header = frame->bytes + at;
+        const unsigned length = cm1e_get_u16(header + 6);
+        if (header[0] == FPWR && cm1e_get_u16(header + 2) == refusal->station &&
+            cm1e_get_u16(header + 4) == refusal->offset)
+            cm1e_put_u16(header + 10 + (length & 0x7FF), 0);
+        more = length & 0x8000;
+        at += DATAGRAM_BYTES + (length & 0x7FF);
+    }
+    return CM1E_TAP_PASS;
+}
+
+/** A motor might go on for ever when frames stay away; another device may have none. */
+START_TEST(a_motor_that_does_not_take_its_watchdog_is_named)
+{
+    static const uint16_t offsets[] = {0x0400, 0x0420};
+    for (int n = 0; n < 2 * 4; n++) {
+        char wanted[40];
+        sim_config(3);
+        config.sim_gaps = CM1E_SIM_IO_TERMINAL;
+        config.axes[0].address = 1;
+        config.axes[1].address = 3; /* a terminal between them */
+        config.axes[2].address = 4;
+        refusal_t refusal = {.offset = offsets[n % 2]};
+        cm1e_bus_t *bus = open_bus();
+        ck_assert(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK);
+        refusal.station = bus->slaves[n / 2].facts.station;
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_write, &refusal);
+        ck_assert_int_eq(cm1e_bus_configure(bus, &diag), n / 2 == 1 ? CM1E_OK : CM1E_ERROR_BUS_WORKING_COUNTER);
+        snprintf(wanted, sizeof wanted, "Slave %d (", n / 2 + 1);
+        ck_assert_msg(n / 2 == 1 || (strstr(diag.text, wanted) && strstr(diag.text, "the time of its watchdog")), "%s",
+                      diag.text);
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
+/** Of 100 Mbit/s Ethernet, and of the slaves on the way. */
+START_TEST(time_on_the_wire_is_that_of_bytes_frames_and_slaves)
+{
+    for (uint32_t axes = 1; axes <= 60; axes += 59) {
+        sim_config(axes);
+        cm1e_bus_t *bus = start_bus();
+        size_t bytes = 0;
+        for (uint32_t position = 1; position <= axes; position++)
+            bytes += cm1e_bus_slave(bus, position)->input_bytes + cm1e_bus_slave(bus, position)->output_bytes;
+        const int64_t frames = axes == 1 ? 1 : 2;
+        ck_assert_int_eq(cm1e_bus_wire_ns(bus), ((int64_t)bytes + frames * 52) * 80 + (int64_t)axes * 1200);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_start");
@@ -510,6 +574,8 @@ int main(void)
     tcase_add_test(tests, no_slaves_is_an_error_that_names_the_interface);
     tcase_add_test(tests, io_module_between_the_axes_is_mapped_by_its_sii);
     tcase_add_loop_test(tests, scan_takes_no_notice_of_addresses_of_an_earlier_one, 0, 6);
+    tcase_add_test(tests, a_motor_that_does_not_take_its_watchdog_is_named);
+    tcase_add_test(tests, time_on_the_wire_is_that_of_bytes_frames_and_slaves);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
