@@ -109,6 +109,55 @@ START_TEST(a_clock_that_is_away_does_not_take_over)
 }
 END_TEST
 
+/** The reference gives no time in so many frames of each period. */
+typedef struct quiet_reference {
+    unsigned quiet, period, frames;
+    bool asked;
+    uint8_t sent[8];
+} quiet_reference_t;
+
+static cm1e_tap_verdict_t quieten(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { FRMW = 14 };
+    quiet_reference_t *quiet = context;
+    datagram_t d = {.more = true};
+    size_t at = FRAME_HEADER;
+    for (unsigned n = 0; d.more && cm1e_frame_datagram(frame->bytes, frame->length, &at, &d); n++) {
+        if (d.header[0] != FRMW || cm1e_get_u16(d.header + 4) != 0x0910)
+            continue;
+        if (frame->direction == CM1E_TAP_SENT) {
+            memcpy(quiet->sent, d.header + 10, 8);
+            quiet->asked = true;
+        } else if (quiet->asked && quiet->frames++ % quiet->period < quiet->quiet) {
+            memcpy(frame->bytes + (d.header - frame->bytes) + 10, quiet->sent, 8);
+        }
+    }
+    return CM1E_TAP_PASS;
+}
+
+/** A few frames without its time are disturbances, however often they come; three in a row are one that is away. */
+START_TEST(a_reference_that_is_silent_in_three_frames_in_a_row_is_away)
+{
+    for (unsigned quiet = 1; quiet <= 3; quiet++) {
+        describe(1000);
+        cm1e_bus_t *bus = start_drifting(0, 0, 0);
+        quiet_reference_t reference = {.quiet = quiet, .period = quiet + 1};
+        run(bus, 100);
+        const uint16_t before = clocks_of(bus).reference;
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), quieten, &reference);
+        run(bus, quiet < 3 ? 50 : 5);
+        ck_assert_uint_ge(reference.frames, quiet < 3 ? 49 : 4);
+        ck_assert_msg((clocks_of(bus).reference == before) == (quiet < 3), "%u of %u: %u", quiet, quiet + 1,
+                      clocks_of(bus).reference);
+        ck_assert_uint_eq(clock_of(bus, before).losses, quiet == 3);
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+        run(bus, 500);
+        ck_assert(!clock_of(bus, clocks_of(bus).reference).lost);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
 /** It kept its power and its address, so it still gives the time: nothing of its clock is set anew but its pulses. */
 START_TEST(a_reference_that_falls_back_to_init_stays_the_reference)
 {
@@ -176,6 +225,7 @@ int main(void)
     tcase_add_test(tests, a_clock_that_is_away_does_not_take_over);
     tcase_add_test(tests, a_reference_that_falls_back_to_init_stays_the_reference);
     tcase_add_loop_test(tests, a_reference_that_is_asked_for_while_it_is_off_does_not_take_the_others_along, 0, 12);
+    tcase_add_test(tests, a_reference_that_is_silent_in_three_frames_in_a_row_is_away);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

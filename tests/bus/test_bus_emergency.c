@@ -117,7 +117,10 @@ START_TEST(the_last_ones_are_kept)
     ck_assert_uint_eq(all[0].number, 7);
     ck_assert_uint_eq(lost, 0);
     ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, CM1E_EMERGENCIES + 5, all, 3, &lost), 0);
+    lost = 7;
     ck_assert_uint_eq(cm1e_bus_emergency(bus, 9, 0, all, 3, &lost), 0);
+    ck_assert_uint_eq(lost, 0);
+    ck_assert_uint_eq(cm1e_bus_emergency(bus, 9, 0, all, 3, NULL), 0);
     cm1e_bus_close(bus);
 }
 END_TEST

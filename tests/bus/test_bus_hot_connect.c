@@ -185,27 +185,12 @@ static unsigned state_of(cm1e_bus_t *bus, uint32_t place)
     return cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), place));
 }
 
-/** The settings of the tool are as `before`. */
-static void expect_settings_of_tool(cm1e_bus_t *bus, kind_t kind, const slave_settings_t *before, bool elsewhere)
-{
-    for (unsigned i = 0; i < slaves_of(kind); i++) {
-        const slave_settings_t now = slave_settings_of(bus, TOOL + i);
-        expect_settings(&now, &before[i], elsewhere, TOOL + i);
-    }
-}
-
-static void take_settings_of_tool(cm1e_bus_t *bus, kind_t kind, slave_settings_t *settings)
-{
-    for (unsigned i = 0; i < slaves_of(kind); i++)
-        settings[i] = slave_settings_of(bus, TOOL + i);
-}
-
 START_TEST(absent_at_the_start_then_comes_goes_and_comes_back)
 {
     const kind_t kind = (kind_t)_i;
     slave_settings_t there[2];
     cm1e_bus_t *bus = start_machine(kind, true);
-    take_settings_of_tool(bus, kind, there);
+    take_settings(bus, TOOL, slaves_of(kind), there);
     cm1e_bus_close(bus);
     bus = start_machine(kind, false);
     const uint16_t position = position_of(bus, false);
@@ -220,7 +205,7 @@ START_TEST(absent_at_the_start_then_comes_goes_and_comes_back)
         ck_assert_uint_eq(cm1e_bus_slave(bus, position)->al_state, CM1E_AL_OP);
         for (unsigned i = 0; i < slaves_of(kind); i++)
             ck_assert_uint_eq(state_of(bus, TOOL + i), CM1E_AL_OP);
-        expect_settings_of_tool(bus, kind, there, true);
+        expect_settings(bus, TOOL, slaves_of(kind), there, true);
         for (int n = 0; n < 100; n++)
             good_cycle(bus);
         detach(bus, kind);
@@ -240,7 +225,7 @@ START_TEST(there_at_the_start_goes_and_comes_back)
     cm1e_bus_t *bus = start_machine(kind, true);
     const uint16_t position = position_of(bus, true);
     slave_settings_t before[2];
-    take_settings_of_tool(bus, kind, before);
+    take_settings(bus, TOOL, slaves_of(kind), before);
     ck_assert(is_there(bus, position, slaves_of(kind)));
     for (int n = 0; n < 100; n++)
         good_cycle(bus);
@@ -250,7 +235,7 @@ START_TEST(there_at_the_start_goes_and_comes_back)
         good_cycle(bus);
     attach(bus, kind);
     ck_assert_msg(cycles_until_there(bus, position, kind, COMES) > 0, "kind %d: %s", kind, how(bus, position));
-    expect_settings_of_tool(bus, kind, before, false);
+    expect_settings(bus, TOOL, slaves_of(kind), before, false);
     for (int n = 0; n < 100; n++)
         good_cycle(bus);
     cm1e_bus_close(bus);

@@ -61,6 +61,8 @@ static const identity_case_t cases[] = {
      {"axis1", "axis2", "slave 1"}},
     {"an extra motor", {{MOTOR}, {MOTOR}, {MOTOR}}, 2, {{POSITION, 1}, {POSITION, 2}}, WRONG, {0},
      {"Slave 3", "extra", "Found 3 slaves"}},
+    {"an extra motor at the beginning", {{MOTOR}, {MOTOR, 1}, {MOTOR, 2}}, 2, {{ALIAS, 1}, {ALIAS, 2}}, WRONG, {0},
+     {"Slave 1", "extra", "Found 3 slaves"}},
     {"an extra motor in the middle", {{MOTOR, 1}, {MOTOR}, {MOTOR, 2}}, 2, {{ALIAS, 1}, {ALIAS, 2}}, WRONG, {0},
      {"Slave 2", "extra", "Found 3 slaves"}},
     {"firmware as expected", {{MOTOR, 0, 0, "1.3.4"}}, 1, {{POSITION, 1, "1.3.4"}}, CM1E_OK, {1}, {0}},
@@ -141,7 +143,8 @@ START_TEST(software_version_has_plain_characters)
     cm1e_bus_t *bus = bus_of_case(&c);
     cm1e_nic_set_tap(cm1e_bus_nic(bus), spoil_version, NULL);
     ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
-    ck_assert_msg(strstr(cm1e_bus_slave(bus, 1)->software_version, " ~???"), "%s", cm1e_bus_slave(bus, 1)->software_version);
+    const char *version = cm1e_bus_slave(bus, 1)->software_version;
+    ck_assert_msg(strstr(version, " ~???"), "%s", version);
     cm1e_bus_close(bus);
 }
 END_TEST

@@ -159,9 +159,8 @@ START_TEST(every_slave_goes_away_and_comes_back)
     machine(true);
     cm1e_bus_t *bus = start_bus();
     expect_works(bus, 0x5A);
-    slave_settings_t before[BRIDGE + 1];
-    for (unsigned at = 1; at <= BRIDGE; at++)
-        before[at] = slave_settings_of(bus, at);
+    slave_settings_t before[BRIDGE];
+    take_settings(bus, 1, BRIDGE, before);
     snprintf(line, sizeof line, "power-cycle %u 50", position);
     simulate(bus, line);
     for (unsigned n = 0; n < BACK; n++) {
@@ -177,10 +176,7 @@ START_TEST(every_slave_goes_away_and_comes_back)
         }
     }
     expect_works(bus, 0xA5);
-    for (unsigned at = 1; at <= BRIDGE; at++) {
-        const slave_settings_t after = slave_settings_of(bus, at);
-        expect_settings(&after, &before[at], false, at);
-    }
+    expect_settings(bus, 1, BRIDGE, before, false);
     cm1e_bus_close(bus);
 }
 END_TEST

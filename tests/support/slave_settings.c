@@ -18,7 +18,7 @@ static bool is_setting(uint16_t offset, bool elsewhere)
     return !elsewhere || offset >= STATION + 2;
 }
 
-slave_settings_t slave_settings_of(cm1e_bus_t *bus, uint32_t place)
+static slave_settings_t settings_of(cm1e_bus_t *bus, uint32_t place)
 {
     const uint8_t *memory = register_memory_of(bus, place);
     slave_settings_t settings = {.size = 0};
@@ -28,7 +28,7 @@ slave_settings_t slave_settings_of(cm1e_bus_t *bus, uint32_t place)
     return settings;
 }
 
-void expect_settings(const slave_settings_t *now, const slave_settings_t *before, bool elsewhere, uint32_t place)
+static void compare(const slave_settings_t *now, const slave_settings_t *before, bool elsewhere, uint32_t place)
 {
     size_t at = 0;
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++)
@@ -41,4 +41,18 @@ void expect_settings(const slave_settings_t *now, const slave_settings_t *before
                               "slave %u: register 0x%04X is %02X, before %02X", place, offset, now->bytes[at],
                               before->bytes[at]);
         }
+}
+
+void take_settings(cm1e_bus_t *bus, uint32_t place, unsigned count, slave_settings_t *settings)
+{
+    for (unsigned i = 0; i < count; i++)
+        settings[i] = settings_of(bus, place + i);
+}
+
+void expect_settings(cm1e_bus_t *bus, uint32_t place, unsigned count, const slave_settings_t *before, bool elsewhere)
+{
+    for (unsigned i = 0; i < count; i++) {
+        const slave_settings_t now = settings_of(bus, place + i);
+        compare(&now, &before[i], elsewhere, place + i);
+    }
 }

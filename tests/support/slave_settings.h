@@ -13,9 +13,10 @@ typedef struct slave_settings {
     size_t size;
 } slave_settings_t;
 
-/** Addresses, watchdogs, who has the EEPROM, FMMUs, sync managers, filters and pulses of the clock. */
-slave_settings_t slave_settings_of(cm1e_bus_t *bus, uint32_t place);
-/** `elsewhere`: station address and places in the process image may be others. */
-void expect_settings(const slave_settings_t *now, const slave_settings_t *before, bool elsewhere, uint32_t place);
+/** Of `count` slaves from `place` on the wire on: addresses, watchdogs, who has the EEPROM, FMMUs, sync managers, filters
+ *  and pulses of the clock. */
+void take_settings(cm1e_bus_t *bus, uint32_t place, unsigned count, slave_settings_t *settings);
+/** They are as before. `elsewhere`: station addresses and places in the process image may be others. */
+void expect_settings(cm1e_bus_t *bus, uint32_t place, unsigned count, const slave_settings_t *before, bool elsewhere);
 
 #endif

@@ -35,6 +35,29 @@ static int64_t cycle(void)
     return later;
 }
 
+/* What is left out is at most half a nanosecond, and comes later. */
+static void test_whole_nanoseconds_lose_nothing(void)
+{
+    double wanted_ns = 0, given_ns = 0;
+    pace.rate_ns = 0.3;
+    for (int i = 1; i < 1000; i++) {
+        wanted_ns += 0.3;
+        given_ns += (double)cm1e_dc_pace_coast(&pace);
+        TEST_ASSERT_TRUE(fabs(wanted_ns - given_ns) <= 0.5 + 1e-6);
+    }
+}
+
+static void test_the_phase_is_that_of_the_nearest_raster(void)
+{
+    static const int64_t rows[][3] = {
+        {0, 1000, 0}, {1, 1000, 1}, {499, 1000, 499}, {500, 1000, 500}, {501, 1000, -499}, {999, 1000, -1},
+        {1000, 1000, 0}, {7400, 1000, 400}, {7600, 1000, -400}, {-1, 1000, -1}, {-500, 1000, -500}, {-501, 1000, 499},
+        {-999, 1000, 1}, {-7600, 1000, 400}, {2, 5, 2}, {3, 5, -2}, {-2, 5, -2}, {-3, 5, 2},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        TEST_ASSERT_EQUAL_INT64(rows[i][2], cm1e_dc_phase(rows[i][0], rows[i][1]));
+}
+
 static void run(unsigned n)
 {
     for (unsigned i = 0; i < n; i++)
@@ -128,6 +151,8 @@ static void test_a_new_beginning_keeps_the_rate_of_the_same_cycle_time(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_whole_nanoseconds_lose_nothing);
+    RUN_TEST(test_the_phase_is_that_of_the_nearest_raster);
     RUN_TEST(test_every_phase_is_reached_from_every_other);
     RUN_TEST(test_no_cycle_is_much_longer_or_shorter);
     RUN_TEST(test_it_never_learns_more_than_a_crystal_can_differ);

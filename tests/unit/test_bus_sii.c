@@ -48,7 +48,7 @@ void setUp(void)
     cm1e_put_u32(image + 0x18, 0x20020103);
     cm1e_put_u32(image + 0x1C, 12345);
     cm1e_put_u32(image + 0x30, 0x00801000);
-    cm1e_put_u32(image + 0x34, 0x00801080);
+    cm1e_put_u32(image + 0x34, 0x00901080);
     cm1e_put_u32(image + 0x38, 0x0004);
 }
 void tearDown(void) { cm1e_sii_free(&sii); }
@@ -88,7 +88,8 @@ static void test_good_image_gives_everything(void)
     TEST_ASSERT_EQUAL_HEX16(0x1000, sii.mailbox_out_start);
     TEST_ASSERT_EQUAL_HEX16(0x80, sii.mailbox_out_length);
     TEST_ASSERT_EQUAL_HEX16(0x1080, sii.mailbox_in_start);
-    TEST_ASSERT_TRUE(sii.coe);
+    TEST_ASSERT_EQUAL_HEX16(0x90, sii.mailbox_in_length);
+    TEST_ASSERT_TRUE(sii.coe && !sii.foe);
     TEST_ASSERT_EQUAL_STRING("name", sii.name);
     TEST_ASSERT_TRUE(sii.complete_access);
     TEST_ASSERT_NOT_NULL(sii.signals); /* 0x1A01 has no sync manager */
@@ -103,6 +104,9 @@ static void test_good_image_gives_everything(void)
     TEST_ASSERT_EQUAL_UINT8(4, sii.sync_manager_count);
     TEST_ASSERT_EQUAL_HEX16(0x1400, sii.sync_managers[3].start);
     TEST_ASSERT_EQUAL_UINT16(21, sii.sync_managers[3].length);
+    TEST_ASSERT_EQUAL_HEX16(0x1000, sii.sync_managers[0].start);
+    TEST_ASSERT_EQUAL_UINT8(1, sii.sync_managers[0].enable);
+    TEST_ASSERT_EQUAL_UINT8(4, sii.sync_managers[3].use);
     TEST_ASSERT_EQUAL_HEX8(0x64, sii.sync_managers[2].control);
     TEST_ASSERT_EQUAL_UINT32(16, sii.bits[0][2]);
     TEST_ASSERT_EQUAL_UINT32(48, sii.bits[1][3]);
@@ -301,7 +305,7 @@ static void test_no_categories_at_all_is_a_slave_without_name(void)
     TEST_ASSERT_EQUAL_UINT8(0, sii.sync_manager_count);
     cm1e_put_u16(image + 0x38, 0x0008); /* FoE alone */
     TEST_ASSERT_EQUAL_INT(SII_OK, parse());
-    TEST_ASSERT_FALSE(sii.coe);
+    TEST_ASSERT_TRUE(!sii.coe && sii.foe);
 }
 
 static void test_names_are_cut_and_cleaned(void)
