@@ -1,5 +1,6 @@
 /* Signals of any slave: found by name, object and place; read and written in the cycle; what they tell while the slave
  * is away. The simulated terminals have each input wired to the output of its number. */
+#include "bus/io_guest.h"
 #include "bus_support.h"
 #include "cm1e/hot_connect.h"
 #include "cm1e/io.h"
@@ -86,6 +87,42 @@ START_TEST(signals_are_listed_with_name_object_and_type)
     ck_assert_uint_eq(info.index, 0x6010);
     ck_assert_int_eq(info.type, CM1E_IO_BOOL);
     ck_assert_uint_eq(info.bit_offset, 1);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Guests see the same signals in the same order, and the handle of each is of its place. */
+START_TEST(guests_see_the_same_signals)
+{
+    cm1e_bus_t *bus = open_with(CM1E_SIM_IO_TERMINAL);
+    cm1e_io_info_t info = {0}, listed;
+    ck_assert(!cm1e_io_guest_next(bus, &info)); /* nothing is known yet */
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    info = (cm1e_io_info_t){0};
+    uint32_t n = 0;
+    for (; cm1e_io_guest_next(bus, &info); n++) {
+        cm1e_io_t io;
+        ck_assert(cm1e_io_at(bus, n, &listed));
+        ck_assert(info.position == listed.position && info.number == listed.number && info.output == listed.output);
+        ck_assert_int_eq(cm1e_io_guest_take(bus, &info, &io, &diag), CM1E_OK);
+        ck_assert(io.position == info.position && io.bits == info.bits && io.shift == info.bit_offset % 8);
+    }
+    ck_assert_uint_eq(n, cm1e_io_count(bus));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A slave that no other has the name of is found by it, at any place. */
+START_TEST(the_name_of_the_only_terminal_is_its_own)
+{
+    sim_config(2);
+    config.sim_gaps = CM1E_SIM_IO_TERMINAL;
+    config.axes[0].address = (uint16_t)(_i == 1 ? 2 : 1);
+    config.axes[1].address = (uint16_t)(_i == 2 ? 3 : 2 + (_i == 1));
+    cm1e_bus_t *bus = start_bus();
+    ck_assert_uint_eq(cm1e_bus_slave_count(bus), 3);
+    const cm1e_io_t output = find(bus, "digital TERMINAL 4+4.output 2");
+    ck_assert_uint_eq(output.position, _i);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -468,6 +505,8 @@ int main(void)
     tcase_set_timeout(tests, 120);
     tcase_add_test(tests, each_bit_of_a_terminal_is_its_own);
     tcase_add_test(tests, signals_are_listed_with_name_object_and_type);
+    tcase_add_test(tests, guests_see_the_same_signals);
+    tcase_add_loop_test(tests, the_name_of_the_only_terminal_is_its_own, 1, 3);
     tcase_add_test(tests, signals_of_a_motor_are_read_and_never_written);
     tcase_add_test(tests, wrong_names_are_told_what_there_is);
     tcase_add_test(tests, slave_that_is_away_says_so_and_comes_back_with_its_outputs);

@@ -219,6 +219,23 @@ static void test_an_upload_in_segments_is_put_together(void)
     }
 }
 
+/** One that fits into the first answer needs no segment. */
+static void test_an_upload_in_one_message_ends_with_it(void)
+{
+    for (uint32_t size = 0; size <= ROOM; size++) {
+        setUp();
+        begin(false, sizeof data, false);
+        run_until_request(1);
+        answer(0x41, size, "0123456789abcdef", ROOM);
+        take_all();
+        expect_end(CM1E_OK, 0);
+        TEST_ASSERT_EQUAL(size, sdo.size);
+        TEST_ASSERT_EQUAL_INT(0, memcmp("0123456789abcdef", data, size));
+        TEST_ASSERT_EQUAL_HEX8(0x81 + size, data[size]);
+        TEST_ASSERT_EQUAL(1, requests);
+    }
+}
+
 /** What a slave that does not say how many bytes are valid means: as many as were asked for, four at most. */
 static void test_expedited_answers_give_their_bytes(void)
 {
@@ -463,6 +480,23 @@ static void test_information_has_three_seconds(void)
     expect_asked((const uint8_t[]){0, 0x80, 3, 0, 0, 0, INDEX & 0xFF, INDEX >> 8}, 8);
 }
 
+/** An answer of information may fill its room to the last byte. */
+static void test_information_fits_or_is_refused(void)
+{
+    for (size_t room = 9; room <= 11; room++) {
+        setUp();
+        cm1e_info_request_t info = {.kind = INFO_OBJECT, .index = INDEX, .answer = data, .size = room};
+        cm1e_coe_begin_info(&client, &info, now_ns);
+        run_until_request(1);
+        static const uint8_t body[] = {0, 0x80, 4, 0, 0, 0, INDEX & 0xFF, INDEX >> 8, 7, 0, 1, 7, 'n', 'a', 'm', 'e'};
+        message(MAILBOX_TYPE_COE, body, sizeof body);
+        take_all();
+        TEST_ASSERT_TRUE(info.done);
+        TEST_ASSERT_EQUAL_INT(room < 10 ? CM1E_ERROR_INVALID_ARGUMENT : CM1E_OK, info.error);
+        TEST_ASSERT_EQUAL(room < 10 ? 0 : 10, info.size);
+    }
+}
+
 /* ---- a look without a question ----------------------------------------------------------------------------------- */
 
 static void put_emergency(uint16_t code)
@@ -561,6 +595,7 @@ int main(void)
     RUN_TEST(test_requests_are_those_of_the_standard);
     RUN_TEST(test_segments_are_those_of_the_standard);
     RUN_TEST(test_an_upload_in_segments_is_put_together);
+    RUN_TEST(test_an_upload_in_one_message_ends_with_it);
     RUN_TEST(test_expedited_answers_give_their_bytes);
     RUN_TEST(test_wrong_answers_are_aborted_with_their_code);
     RUN_TEST(test_a_refusal_ends_a_transfer_with_its_code);
@@ -570,6 +605,7 @@ int main(void)
     RUN_TEST(test_a_transfer_that_was_given_up_is_over_before_the_next_begins);
     RUN_TEST(test_a_transfer_ends_when_its_time_is_over);
     RUN_TEST(test_information_has_three_seconds);
+    RUN_TEST(test_information_fits_or_is_refused);
     RUN_TEST(test_listening_takes_four_messages_at_most);
     RUN_TEST(test_an_emergency_that_others_found_is_taken);
     RUN_TEST(test_a_mailbox_has_room_for_an_sdo_message);

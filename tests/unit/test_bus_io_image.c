@@ -124,6 +124,9 @@ static void test_bytes_of_any_length_lie_anywhere(void)
         TEST_ASSERT_EQUAL_UINT(size, cm1e_io_bytes(&io, read, sizeof read));
         TEST_ASSERT_EQUAL_MEMORY(written, read, size);
         TEST_ASSERT_EQUAL_UINT(0, cm1e_io_bytes(&io, read, size - 1));
+        memset(read, 0, sizeof read);
+        TEST_ASSERT_EQUAL_UINT(size, cm1e_io_bytes(&io, read, size));
+        TEST_ASSERT_EQUAL_MEMORY(written, read, size);
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_bytes(&io, written, size + 1));
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_set_integer(&io, 0));
     }
