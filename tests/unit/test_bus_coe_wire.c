@@ -415,6 +415,8 @@ static void test_a_transfer_that_was_given_up_is_over_before_the_next_begins(voi
         run_until_request(++sent);
         const uint8_t *fence = fences[n % 5];
         expect_asked((const uint8_t[10]){0, 0x20, 0x40, fence[0], fence[1], fence[2]}, 10);
+        if (n % 2 == 0) /* the refusal of the abort comes late */
+            message(MAILBOX_TYPE_ERROR, (const uint8_t[]){1, 0, 7, 0}, 4);
         take_all();
         TEST_ASSERT_FALSE(cm1e_coe_idle(&client));
         const bool abort = n % 3 == 0; /* which is an answer, too */
@@ -426,6 +428,19 @@ static void test_a_transfer_that_was_given_up_is_over_before_the_next_begins(voi
     answer(0x43, 1, NULL, 0);
     take_all();
     expect_end(CM1E_OK, 0);
+    begin(false, 4, false); /* and now there is nothing to wait for */
+    run_until_request(++sent);
+    TEST_ASSERT_EQUAL_HEX16(INDEX, cm1e_get_u16(asked + 6 + 3));
+    cm1e_coe_cancel(&client, CM1E_ERROR_CANCELLED);
+    begin(false, 4, false);
+    expect_abort(++sent, 0x08000000);
+    run_until_request(++sent);
+    for (int n = 0; n < 2; n++) { /* an abort is refused once; the second refusal is that of the question */
+        TEST_ASSERT_FALSE(cm1e_coe_idle(&client));
+        message(MAILBOX_TYPE_ERROR, (const uint8_t[]){1, 0, 7, 0}, 4);
+        take_all();
+    }
+    expect_end(CM1E_ERROR_BUS_MAILBOX, 0);
 }
 
 /* ---- time -------------------------------------------------------------------------------------------------------- */

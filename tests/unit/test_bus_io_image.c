@@ -314,6 +314,60 @@ static void test_the_quality_is_that_of_bus_and_slave(void)
     bus.layout.present = 1;
 }
 
+/** A slave that is out counts as lost after the tolerated cycles, if nothing else is known of it. */
+static void test_a_slave_that_is_out_is_lost_after_the_tolerated_cycles(void)
+{
+    bus.config.lost_cycles_limit = 3;
+    bus.counters.cycles = 100;
+    for (unsigned state = CM1E_AL_NONE; state <= CM1E_AL_OP; state++) {
+        for (unsigned since = 95; since <= 100; since++) {
+            for (int counted = 0; counted < 2; counted++) {
+                slave.hot = (cm1e_hot_t){.counted = counted, .out_since = since, .bound = 7};
+                slave.watch = (cm1e_slave_watch_t){.al_state = (uint16_t)state};
+                const cm1e_slave_watch_t watch = cm1e_bus_slave_watch(&bus, 1);
+                const bool lost = !counted && since <= 97 && (state == CM1E_AL_NONE || state == CM1E_AL_OP);
+                TEST_ASSERT_EQUAL(lost, watch.lost);
+                TEST_ASSERT_TRUE(watch.out == !counted && watch.fresh == counted && !watch.silent && watch.bound == 7);
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(cm1e_bus_slave_watch(&bus, 2).lost);
+    slave.hot = (cm1e_hot_t){.counted = true};
+    slave.watch = (cm1e_slave_watch_t){.al_state = 0};
+}
+
+/** Nothing has changed since it was seen: each of these is a change. */
+static void test_a_slave_goes_on_only_as_it_was_seen(void)
+{
+    enum { CHANGES = 14 };
+    for (int change = 0; change <= CHANGES; change++) {
+        bus.config.lost_cycles_limit = 3;
+        bus.last_error = CM1E_OK;
+        slave.silent_cycles = 2;
+        slave.hot = (cm1e_hot_t){.counted = true, .bound = 5};
+        slave.watch = (cm1e_slave_watch_t){.al_state = CM1E_AL_OP, .al_status_code = 9};
+        cm1e_slave_watch_t seen = {.al_state = CM1E_AL_OP, .al_status_code = 9, .fresh = true, .bound = 5};
+        bus.last_error = change == 1 ? CM1E_ERROR_BUS_LOST : CM1E_OK;
+        slave.hot.counted = change != 2;
+        slave.hot.bound += change == 3;
+        slave.silent_cycles += change == 4;
+        slave.watch.al_state ^= change == 5 ? 4 : 0;
+        slave.watch.al_status_code += change == 6;
+        slave.watch.lost = change == 7;
+        seen.lost = change == 8;
+        seen.silent = change == 9;
+        seen.out = change == 10;
+        seen.fresh = change != 11;
+        slave.watch.absent = change == 12;
+        seen.absent = change == 13;
+        TEST_ASSERT_EQUAL(change == 0 || change == CHANGES, cm1e_bus_slave_goes_on(&bus, 1, &seen));
+        TEST_ASSERT_FALSE(cm1e_bus_slave_goes_on(&bus, 2, &seen));
+    }
+    slave.silent_cycles = 0;
+    slave.hot = (cm1e_hot_t){.counted = true};
+    slave.watch = (cm1e_slave_watch_t){.al_state = 0};
+}
+
 int main(void)
 {
     chance_seed(1);
@@ -324,6 +378,8 @@ int main(void)
     RUN_TEST(test_an_input_is_read_and_not_written);
     RUN_TEST(test_what_is_released_is_safe_bit_by_bit);
     RUN_TEST(test_the_quality_is_that_of_bus_and_slave);
+    RUN_TEST(test_a_slave_that_is_out_is_lost_after_the_tolerated_cycles);
+    RUN_TEST(test_a_slave_goes_on_only_as_it_was_seen);
     RUN_TEST(test_what_is_found_is_claimed_bit_by_bit);
     RUN_TEST(test_every_value_of_every_type_lies_anywhere);
     RUN_TEST(test_a_real_output_takes_finite_numbers_of_its_type);
