@@ -147,6 +147,39 @@ START_TEST(a_slave_elsewhere_is_not_the_member_of_an_absent_group)
 }
 END_TEST
 
+/** There is nobody in front of its head. */
+START_TEST(a_group_that_is_the_first_on_the_wire_comes_back)
+{
+    enum { FIRST = 1, SECOND = 2 };
+    describe_group(&config, false);
+    describe_group(&wire, true);
+    config.axes[0].address = 1; /* optional slaves do not count */
+    wire.axes[0].address = 3;
+    wire.slaves[1].address = SECOND;
+    wire.slave_count = 2;
+    cm1e_bus_t *bus = open_bus_on(&wire);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, FIRST), "tool");
+    ck_assert_str_eq(cm1e_bus_slave_name(bus, SECOND), "fingers");
+    cycles(bus, 50);
+    for (int round = 0; round < 2; round++) {
+        for (uint32_t position = FIRST; position <= SECOND; position++)
+            cm1e_sim_segment_detach(segment_of(bus), position, false);
+        for (int n = 0; n < 300; n++)
+            cycle(bus);
+        ck_assert_int_eq(cm1e_bus_presence(bus, SECOND), CM1E_PRESENCE_ABSENT);
+        for (uint32_t position = FIRST; position <= SECOND; position++)
+            cm1e_sim_segment_attach(segment_of(bus), position);
+        for (int n = 0; n < 4000 && cm1e_bus_presence(bus, SECOND) != CM1E_PRESENCE_THERE; n++)
+            cycle(bus);
+        ck_assert_int_eq(cm1e_bus_presence(bus, FIRST), CM1E_PRESENCE_THERE);
+        ck_assert_int_eq(cm1e_bus_presence(bus, SECOND), CM1E_PRESENCE_THERE);
+    }
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 /** Of a slave that is not optional, and of one that there is not. */
 START_TEST(a_slave_that_does_not_answer_is_named)
 {
@@ -218,6 +251,7 @@ int main(void)
     tcase_add_loop_test(tests, what_is_not_known_of_an_absent_slave_is_said, 0, sizeof cases / sizeof cases[0]);
     tcase_add_test(tests, a_slave_that_does_not_answer_is_named);
     tcase_add_test(tests, more_slaves_than_a_bus_may_have_are_refused_in_words);
+    tcase_add_test(tests, a_group_that_is_the_first_on_the_wire_comes_back);
     tcase_add_test(tests, a_slave_elsewhere_is_not_the_member_of_an_absent_group);
     tcase_add_test(tests, signals_of_a_motor_that_comes_are_found_where_it_has_them);
     suite_add_tcase(suite, tests);
