@@ -140,11 +140,18 @@ static const cm1e_sii_t *same_kind_before(const cm1e_soem_t *soem, uint16_t posi
     return NULL;
 }
 
+/** What the header says stays: the serial number, and the mailbox. */
 static void copy_categories(cm1e_sii_t *to, const cm1e_sii_t *from)
 {
-    const uint32_t serial_number = to->serial_number;
+    const cm1e_sii_t header = *to;
     *to = *from;
-    to->serial_number = serial_number;
+    to->serial_number = header.serial_number;
+    to->mailbox_out_start = header.mailbox_out_start;
+    to->mailbox_out_length = header.mailbox_out_length;
+    to->mailbox_in_start = header.mailbox_in_start;
+    to->mailbox_in_length = header.mailbox_in_length;
+    to->coe = header.coe;
+    to->foe = header.foe;
 }
 
 /* ---- the SII of all slaves at once ------------------------------------------------------------------------------- */

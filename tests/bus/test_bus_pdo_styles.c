@@ -372,6 +372,31 @@ START_TEST(a_sync_manager_without_a_place_carries_nothing)
 }
 END_TEST
 
+/** What devices of one kind share is read once; each has its own mailbox, and what it is for. */
+START_TEST(mailboxes_of_two_devices_of_one_kind_are_their_own)
+{
+    static const uint16_t own[4] = {0x1010, 112, 0x1090, 96}; /* out, in: start and length */
+    uint16_t before[4];
+    sim_config(0);
+    for (unsigned i = 1; i <= 2; i++)
+        add(i == 1 ? "first" : "second", (uint16_t)i, CM1E_SIM_SLAVE_ANALOG, 2, 2);
+    cm1e_bus_t *bus = open_bus();
+    for (unsigned n = 0; n < 4; n++) {
+        before[n] = cm1e_get_u16(sii_memory_of(bus, 1) + CM1E_SII_MAILBOX + 2 * n);
+        cm1e_put_u16(sii_memory_of(bus, 2) + CM1E_SII_MAILBOX + 2 * n, own[n]);
+    }
+    cm1e_put_u16(sii_memory_of(bus, 2) + CM1E_SII_PROTOCOLS, 0x0008); /* FoE alone */
+    (void)cm1e_bus_scan(bus, &diag); /* the simulated device has another mailbox, and may refuse this one */
+    for (unsigned n = 0; n < 4; n++) {
+        const size_t at = 0x0800 + 8 * (n / 2) + 2 * (n % 2);
+        ck_assert_uint_eq(cm1e_get_u16(register_memory_of(bus, 1) + at), before[n]);
+        ck_assert_uint_eq(cm1e_get_u16(register_memory_of(bus, 2) + at), own[n]);
+    }
+    ck_assert(cm1e_bus_slave_has_coe(bus, 1) && !cm1e_bus_slave_has_coe(bus, 2));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("PDO styles");
@@ -386,6 +411,7 @@ int main(void)
     tcase_add_test(tests, another_module_is_told_with_its_slot);
     tcase_add_test(tests, wrong_configured_list_is_refused_by_the_device);
     tcase_add_test(tests, modules_are_configured_again_after_the_slave_was_away);
+    tcase_add_test(tests, mailboxes_of_two_devices_of_one_kind_are_their_own);
     tcase_add_test(tests, process_data_have_their_room_in_the_controller);
     tcase_add_test(tests, a_sync_manager_without_a_place_carries_nothing);
     suite_add_tcase(suite, tests);
