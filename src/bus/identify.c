@@ -30,7 +30,6 @@ uint32_t cm1e_bus_address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t 
 static const char *found_text(const cm1e_bus_t *bus, char *text, size_t size)
 {
     size_t used = 0;
-    text[0] = 0;
     for (uint32_t i = 0; i < bus->slave_count && used + 1 < size; i++) {
         const cm1e_slave_info_t *info = &bus->slaves[i].info;
         char kind[CM1E_KIND_LENGTH];
@@ -44,7 +43,7 @@ static const char *found_text(const cm1e_bus_t *bus, char *text, size_t size)
 
 cm1e_error_t cm1e_bus_identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, const char *problem)
 {
-    char found[300];
+    char found[300] = "";
     return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "%s Found %u slave%s: %s.", problem, bus->slave_count,
                          bus->slave_count == 1 ? "" : "s", found_text(bus, found, sizeof found));
 }
