@@ -601,8 +601,6 @@ static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
 bool cm1e_recovery_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_recovery_t *recovery = &slave->recovery;
-    if (recovery->step == RECOVERY_IDLE)
-        return false;
     if (recovery->step == RECOVERY_PAUSE) {
         if (now_ns < recovery->deadline_ns)
             return false;

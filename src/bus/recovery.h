@@ -66,7 +66,7 @@ void cm1e_recovery_begin(cm1e_bus_t *bus, struct cm1e_bus_slave *slave);
 /** Begins with the configuration of a slave that the search has just identified. */
 void cm1e_recovery_begin_found(cm1e_bus_t *bus, struct cm1e_bus_slave *slave, int64_t now_ns);
 void cm1e_recovery_cancel(struct cm1e_bus_slave *slave);
-/** Fills the datagram to be sent next; false: none in this cycle. */
+/** Fills the datagram to be sent next; false: none in this cycle. The recovery must not be idle. */
 bool cm1e_recovery_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns);
 void cm1e_recovery_result(struct cm1e_bus_slave *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
 

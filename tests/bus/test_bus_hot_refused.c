@@ -362,6 +362,30 @@ START_TEST(a_second_device_with_the_same_address_is_a_stranger)
 }
 END_TEST
 
+static cm1e_tap_verdict_t count_requests_for_id(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { FPWR = 5, AL_CONTROL = 0x0120, REQUEST_ID = 0x20, HEADER_AT = 16 };
+    const uint8_t *header = frame->bytes + HEADER_AT;
+    if (frame->direction == CM1E_TAP_SENT && header[0] == FPWR && cm1e_get_u16(header + 4) == AL_CONTROL)
+        *(unsigned *)context += (header[10] & REQUEST_ID) != 0;
+    return CM1E_TAP_PASS;
+}
+
+/** Where all are found by their alias nobody is asked for an explicit device ID, which would cost time. */
+START_TEST(a_device_that_is_known_by_its_alias_is_not_asked_for_its_id)
+{
+    unsigned requests = 0;
+    cm1e_bus_t *bus = start_without_tool(0);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), count_requests_for_id, &requests);
+    attach(bus, RIGHT);
+    expect_there(bus, RIGHT);
+    ck_assert_uint_eq(requests, 0);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&wire);
+}
+END_TEST
+
 /** Its EEPROM answers too slowly. When it is mended, the device is known. */
 START_TEST(a_device_whose_eeprom_cannot_be_read_is_named_and_may_be_mended)
 {
@@ -395,6 +419,7 @@ int main(void)
     tcase_add_loop_test(tests, the_wrong_device_is_refused_until_the_right_one_comes, 0, CASES);
     tcase_add_test(tests, more_strangers_than_are_kept_keep_nobody_out);
     tcase_add_test(tests, a_second_device_with_the_same_address_is_a_stranger);
+    tcase_add_test(tests, a_device_that_is_known_by_its_alias_is_not_asked_for_its_id);
     tcase_add_test(tests, a_device_whose_eeprom_cannot_be_read_is_named_and_may_be_mended);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
