@@ -489,6 +489,27 @@ START_TEST(scan_takes_no_notice_of_addresses_of_an_earlier_one)
 }
 END_TEST
 
+/** Ports that are held closed, an alias that is an address, pulses, process data. */
+START_TEST(a_scan_clears_what_another_master_left)
+{
+    static const struct {
+        uint16_t offset, bytes;
+    } left[] = {{0x0101, 1}, {0x0103, 1}, {0x0981, 1}, {0x0600, 64}, {0x0816, 1}, {0x081E, 1}};
+    sim_config(2);
+    cm1e_bus_t *bus = open_bus();
+    for (uint32_t position = 1; position <= 2; position++)
+        for (size_t i = 0; i < sizeof left / sizeof left[0]; i++)
+            memset(register_memory_of(bus, position) + left[i].offset, 1, left[i].bytes);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    for (uint32_t position = 1; position <= 2; position++)
+        for (size_t i = 0; i < sizeof left / sizeof left[0]; i++)
+            for (uint16_t n = 0; n < left[i].bytes; n++)
+                ck_assert_msg(register_memory_of(bus, position)[left[i].offset + n] == 0, "slave %u: register 0x%04X",
+                              position, left[i].offset + n);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** What a register of one slave does not take is written as if nobody had answered. */
 typedef struct refusal {
     uint16_t station, offset;
@@ -574,6 +595,7 @@ int main(void)
     tcase_add_test(tests, no_slaves_is_an_error_that_names_the_interface);
     tcase_add_test(tests, io_module_between_the_axes_is_mapped_by_its_sii);
     tcase_add_loop_test(tests, scan_takes_no_notice_of_addresses_of_an_earlier_one, 0, 6);
+    tcase_add_test(tests, a_scan_clears_what_another_master_left);
     tcase_add_test(tests, a_motor_that_does_not_take_its_watchdog_is_named);
     tcase_add_test(tests, time_on_the_wire_is_that_of_bytes_frames_and_slaves);
     suite_add_tcase(suite, tests);
