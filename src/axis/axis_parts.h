@@ -148,14 +148,15 @@ typedef struct power {
     bool claimed;                   /**< the program has called MC_Power: nobody else enables (axis_guest.h) */
     bool enable, enable_positive, enable_negative;
     bool energized;                 /**< the axis has taken over the enabled drive */
-    bool shutting_down;
-    bool letting_go;                /**< the torque goes first, also if power is wanted again by now */
-    bool reset_sent;
-    cm1e_command_state_t reset_state;
+    bool shutting_down : 1;
+    bool letting_go : 1;            /**< the torque goes first, also if power is wanted again by now */
+    bool reset_sent : 1;
+    bool held : 1;                  /**< the set-point rests and the torque is to go, since `held_us` */
+    uint8_t reset_state;            /**< cm1e_command_state_t */
     cm1e_error_t reset_error;
+    uint32_t held_us;               /**< the lower bits of the time */
     int64_t free_ns;                /**< since when no torque is commanded */
     int64_t brake_until_ns;         /**< until then the torque stays at least, to brake */
-    int64_t held_ns;                /**< since when the set-point rests and the torque is to go; 0: it does not */
     uint64_t settled;               /**< what the owner shows while the power stage is on and it has nothing to do; 0: it
                                          has, or may have */
 } power_t;
@@ -395,7 +396,6 @@ struct cm1e_axis {
     not_set_t not_set;
     belongs_t belongs;
     struct followed *followed;      /**< data of coupling_hooks about its slaves */
-    struct homing *homing;          /**< data of homing_hooks */
     const axis_events_t *events;    /**< how a motion reports its end and its failure */
     /* in every cycle */
     signals_t signals;
@@ -431,6 +431,7 @@ struct cm1e_axis {
     outside_t outside;
     set_aside_t set_aside;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */
+    struct homing *homing;          /**< data of homing_hooks */
     struct cool_muscle *muscle;     /**< data of motor_hooks */
 };
 

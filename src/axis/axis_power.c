@@ -35,7 +35,7 @@ static const int64_t brake_ns = 20 * MS_IN_NS;
 static const double rests_in_s = 3e-3;
 static const double rest_counts = 50.0; /* tolerance, in counts of a CM1-E */
 /* A motor that does not come to rest by then is turned by something else than its ramp. */
-static const int64_t longest_swing_ns = 2000 * MS_IN_NS;
+static const uint32_t longest_swing_us = 2000000;
 
 /* Stops the motion, by our ramp or, during a homing, by the drive. Without torque there is nothing to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
@@ -250,10 +250,12 @@ static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b
 static void wait_for_rest(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;
-    const bool first = power->held_ns == 0;
+    const uint32_t now_us = (uint32_t)(axis->now_ns / US_IN_NS);
+    const bool first = !power->held;
     if (first)
-        power->held_ns = axis->now_ns;
-    if (!axis->drive.feedback.fresh || axis->now_ns - power->held_ns >= longest_swing_ns)
+        power->held_us = now_us;
+    power->held = true;
+    if (!axis->drive.feedback.fresh || now_us - power->held_us >= longest_swing_us)
         return;
     const double braked = axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s;
     const double slow = braked + CM1E_AXIS_VELOCITY_NOISE; /* counts/s */
@@ -278,7 +280,7 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     const bool wanted = cm1e_axis_wants_enable(axis) && !axis->power.letting_go;
     const bool still = axis_free(axis) || axis_holds(axis), leaves = axis_holds(axis) && !wanted;
     if (!leaves)
-        axis->power.held_ns = 0;
+        axis->power.held = false;
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
     else if (leaves && ramp_is_over(axis))

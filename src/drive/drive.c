@@ -192,9 +192,10 @@ static void watch_torque(cm1e_drive_t *drive)
     cm1e_drive_waits_t *waits = &drive->waits;
     const cm1e_drive_feedback_t *f = &drive->feedback;
     const bool shown = cm1e_drive_shows_torque(drive) && !f->motor_free;
-    waits->gives_up = drive->torque.asked || (waits->gives_up && (shown || !f->online));
-    const bool told = !drive->torque.asked && drive->reset.phase == RESET_IDLE && drive->mode.takes_torque;
-    const bool kept = told && f->online && shown && (drive->command.enable || waits->gives_up);
+    cm1e_drive_torque_t *torque = &drive->torque;
+    torque->gives_up = torque->asked || (torque->gives_up && (shown || !f->online));
+    const bool told = !torque->asked && drive->reset.phase == RESET_IDLE && drive->mode.takes_torque;
+    const bool kept = told && f->online && shown && (drive->command.enable || torque->gives_up);
     if (!kept || brakes_by_itself(drive))
         waits->kept_ns = 0;
     else if (waits->kept_ns == 0)

@@ -171,7 +171,8 @@ typedef struct cm1e_drive_change {
 typedef struct cm1e_drive_torque {
     bool asked;                     /**< by the last write */
     bool was_enabled;               /**< Operation enabled was seen since torque was requested */
-    bool confirmed;                 /**< the commanded mode was shown in Operation enabled */
+    bool confirmed : 1;             /**< the commanded mode was shown in Operation enabled */
+    bool gives_up : 1;              /**< it was given torque, and has not shown since then that it has none */
 } cm1e_drive_torque_t;
 
 /** Times on the way to torque. Written by drive.c. */
@@ -179,7 +180,6 @@ typedef struct cm1e_drive_waits {
     int64_t enable_deadline_ns, torque_from_ns;
     int64_t blocked_ns;             /**< since when torque is requested in a mode that has none */
     int64_t kept_ns;                /**< since when it shows torque that it was told to give up, and does not brake; 0: no */
-    bool gives_up;                  /**< it was given torque, and has not shown since then that it has none */
 } cm1e_drive_waits_t;
 
 /** A fault reset. Written by drive_private.h and drive_reset.c. */
