@@ -151,10 +151,11 @@ typedef struct power {
     bool shutting_down : 1;
     bool letting_go : 1;            /**< the torque goes first, also if power is wanted again by now */
     bool reset_sent : 1;
-    bool held : 1;                  /**< the set-point rests and the torque is to go, since `held_us` */
-    uint8_t reset_state;            /**< cm1e_command_state_t */
+    bool held : 1;                  /**< the set-point rests and the torque is to go, since `held_ms` */
+    uint8_t reset_state : 4;        /**< cm1e_command_state_t */
+    uint16_t held_ms;               /**< the lower bits of the time */
     cm1e_error_t reset_error;
-    uint32_t held_us;               /**< the lower bits of the time */
+    float swing;                    /**< counts/s; how fast the motor was then, or came back to the set-point since */
     int64_t free_ns;                /**< since when no torque is commanded */
     int64_t brake_until_ns;         /**< until then the torque stays at least, to brake */
     uint64_t settled;               /**< what the owner shows while the power stage is on and it has nothing to do; 0: it

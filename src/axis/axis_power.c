@@ -7,7 +7,8 @@
  * to Disabled (note 3), and from there to Standstill if MC_Power.Enable is TRUE.
  *
  * The end of a ramp is the end of its set-points. A heavy load that a pause has let swing still turns the motor then, and
- * only the torque can stop it. So the torque stays until the motor rests too, or for two seconds if it never does.
+ * only the torque can stop it. So the torque stays until the motor rests too, or for two seconds if it never does. It does
+ * not stay for a motor that runs away.
  */
 #include <math.h>
 
@@ -35,7 +36,7 @@ static const int64_t brake_ns = 20 * MS_IN_NS;
 static const double rests_in_s = 3e-3;
 static const double rest_counts = 50.0; /* tolerance, in counts of a CM1-E */
 /* A motor that does not come to rest by then is turned by something else than its ramp. */
-static const uint32_t longest_swing_us = 2000000;
+static const uint16_t longest_swing_ms = 2000;
 
 /* Stops the motion, by our ramp or, during a homing, by the drive. Without torque there is nothing to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
@@ -245,23 +246,41 @@ static void take_over(cm1e_axis_t *axis)
 
 static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b_ns; }
 
+/* Whether the motor is not brought back by its servo: it is farther from the set-point than its lag may be, or it gets
+ * faster on its way there than it ever came back, or was at first. A load that swings does neither. `away`: counts; `slow`:
+ * tolerance. */
+static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double slow)
+{
+    const double speed = fabs(velocity);
+    const bool goes_away = away * velocity > 0.0;
+    if (!goes_away)
+        axis->power.swing = fmaxf(axis->power.swing, (float)speed);
+    return (goes_away && speed > axis->power.swing + slow) ||
+           fabs(away) > axis->limits.max_lag * fabs(axis->position.scale);
+}
+
 /* The set-point is at rest. The torque stays for a moment after the motor turned last: where a swinging load turns round,
- * it is slow too, but away from the set-point. A motor that something holds away from there rests all the same. */
+ * it is slow too, but away from the set-point. A motor that something holds away from there rests all the same. One that
+ * runs away is let go: its torque may be what drives it. */
 static void wait_for_rest(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;
-    const uint32_t now_us = (uint32_t)(axis->now_ns / US_IN_NS);
+    const double velocity = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis); /* counts/s */
+    const uint16_t now_ms = (uint16_t)(axis->now_ns / MS_IN_NS);
     const bool first = !power->held;
-    if (first)
-        power->held_us = now_us;
+    if (first) {
+        power->held_ms = now_ms;
+        power->swing = (float)fabs(velocity);
+    }
     power->held = true;
-    if (!axis->drive.feedback.fresh || now_us - power->held_us >= longest_swing_us)
+    if (!axis->drive.feedback.fresh || (uint16_t)(now_ms - power->held_ms) >= longest_swing_ms)
         return;
     const double braked = axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s;
     const double slow = braked + CM1E_AXIS_VELOCITY_NOISE; /* counts/s */
-    const double away = fabs(cm1e_position_minus(axis_actual(axis), axis->setpoint.position)); /* counts */
-    const bool turns = fabs(axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) > slow;
-    if (turns || (first && away > slow * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts)))
+    const double away = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
+    if (runs_away(axis, away, velocity, slow))
+        power->held_ms = (uint16_t)(now_ms - longest_swing_ms);
+    else if (fabs(velocity) > slow || (first && fabs(away) > slow * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts)))
         power->brake_until_ns = later(power->brake_until_ns, axis->now_ns + brake_ns);
 }
 

@@ -6,6 +6,7 @@
 #include "axis/axis_pause.h" /* first, as the bench has a global `axis` */
 
 #include "../support/axis_bench.h"
+#include "axis/axis_parameters.h"
 
 void setUp(void) { bench_start(); }
 void tearDown(void) { bench_end(); }
@@ -362,6 +363,48 @@ static void test_torque_stays_while_the_motor_turns_for_two_seconds_at_most(void
     }
 }
 
+/** It turns away from its target, by itself. */
+static double run_velocity, run_acceleration, run_position; /* counts and ms */
+
+static void run_away(cm1e_bus_t *motor)
+{
+    run_velocity += run_acceleration;
+    run_position += run_velocity;
+    motor->position = (int32_t)run_position;
+    motor->velocity_raw = (int32_t)(1000.0 * run_velocity);
+}
+
+/** A motor that runs away, getting faster or as fast as it can, is let go: also where nobody monitors its lag. It had 20 ms
+ *  to brake, or the way of a lag. */
+static void test_a_motor_that_runs_away_loses_its_torque(void)
+{
+    for (int n = 0; n < 16; n++) {
+        const bool by_error = n & 1, steady = n & 2, back = n & 4;
+        bench_start();
+        bench_enable();
+        bench_cycles(50);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING, n >= 8));
+        bus.blocked = true;
+        bus.world = run_away;
+        run_velocity = (back ? -1.0 : 1.0) * (steady ? 400.0 : 22.0);
+        run_acceleration = steady ? 0.0 : back ? -0.5 : 0.5;
+        run_position = bus.position;
+        const int32_t from = bus.position;
+        bench_cycles(1);
+        if (by_error)
+            cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
+        else
+            bench_power(false);
+        int lasted = 0;
+        while (bus.state == OPERATION_ENABLED && lasted < 5000) {
+            bench_cycles(1);
+            lasted++;
+        }
+        TEST_ASSERT_LESS_THAN_INT_MESSAGE(steady ? 160 : 80, lasted, by_error ? "error" : "power");
+        TEST_ASSERT_LESS_THAN_INT(steady ? 64000 : 4500, abs(bus.position - from));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -371,12 +414,15 @@ int main(void)
     RUN_TEST(test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again);
     RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
     RUN_TEST(test_a_silence_slows_an_axis_only_near_its_maximum_velocity);
+    RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
+    RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
     RUN_TEST(test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is);
     RUN_TEST(test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit);
     RUN_TEST(test_motor_ahead_after_a_pause_is_judged_by_the_speed_that_it_had);
     RUN_TEST(test_torque_stays_while_the_motor_turns_for_two_seconds_at_most);
+    RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
     RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
     return UNITY_END();
