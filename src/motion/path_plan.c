@@ -285,24 +285,46 @@ bool cm1e_path_plan(cm1e_path_t *path, int changed)
             path->profile.end.velocity <= hard * (1 + CM1E_PATH_AS_LONG));
 }
 
+static cm1e_path_run_t harder(const cm1e_path_run_t *run, double more)
+{
+    cm1e_path_run_t harder = *run;
+    harder.highest *= 1 + more;
+    harder.limits.acceleration *= 1 + more;
+    harder.limits.deceleration *= 1 + more;
+    harder.limits.jerk *= (1 + more) * (1 + more);
+    return harder;
+}
+
+static bool keep_going_with(cm1e_path_t *path, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, bool alone)
+{
+    cm1e_profile_t profile;
+    double soft, hard;
+    exits(path, 0, run, &soft, &hard);
+    if (!(alone ? plan_run(&profile, start, run, soft, hard, false) : plan_wide(path, start, run, run->highest, &profile)))
+        return false;
+    for (int i = 1; i < run->count; i++)
+        cm1e_path_element(path, i)->joined = true;
+    cm1e_path_follow(path, &profile, start);
+    return true;
+}
+
+/* The run may have been entered with a velocity that it can only come down from over more than itself. */
 void cm1e_path_keep_going(cm1e_path_t *path)
 {
-    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+    const cm1e_path_run_t alone = cm1e_path_run(path, 0, path->element_count);
     const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
-    double soft, hard;
-    exits(path, 0, &run, &soft, &hard);
+    const cm1e_path_element_t *first = cm1e_path_element(path, 0);
+    const bool over_more = (first->braking.count > alone.count || first->hard_braking.count > alone.count) &&
+                           alone.count < path->element_count && cm1e_path_element(path, alone.count)->passed > 0;
+    const cm1e_path_element_t *next = cm1e_path_element(path, over_more ? alone.count : 0);
+    const cm1e_path_run_t runs[] = {alone, together(&alone, &next->braking), together(&alone, &next->hard_braking)};
     double more = LEAST_MORE;
-    for (int i = 0; i < MORE_TRIES; i++, more *= 3) {
-        cm1e_path_run_t harder = run;
-        cm1e_profile_t profile;
-        harder.limits.acceleration *= 1 + more;
-        harder.limits.deceleration *= 1 + more;
-        harder.limits.jerk *= (1 + more) * (1 + more);
-        if (plan_run(&profile, &start, &harder, soft, hard, false)) {
-            cm1e_path_follow(path, &profile, &start);
-            return;
+    for (int i = 0; i < MORE_TRIES; i++, more *= 3)
+        for (int k = 0; k < (over_more ? 3 : 1); k++) {
+            const cm1e_path_run_t run = harder(&runs[k], more);
+            if (keep_going_with(path, &start, &run, k == 0))
+                return;
         }
-    }
 }
 
 void cm1e_path_change_pace(cm1e_path_t *path)

@@ -333,18 +333,16 @@ static void test_paths_that_are_stopped_slowed_and_cut(void)
     }
 }
 
-/** No plan is known that begins a run faster than it may be begun, but for rounding. Should there be one, the path is kept
- *  all the same: never back, never past its end, and with the limits of the axes as far as that is possible. */
-static void test_a_run_that_is_begun_too_fast_is_braked_in_on_the_path(void)
+static void begin_too_fast(int paths)
 {
-    for (int k = 0; k < PATHS; k++) {
+    for (int k = 0; k < paths; k++) {
         const cm1e_path_config_t config = random_config();
         begin_path(&config, (double[CM1E_PATH_AXES]){0});
         memset(shape, 0, sizeof shape);
         shape_count = 0;
         while (shape_count < SEGMENTS_MAX)
             append_random();
-        const double excess = random_decade(1e-10, 0.3);
+        const double excess = one_in(2) ? random_decade(1e-10, 1e-8) : random_decade(1e-8, 0.3);
         bool excessive = false;
         cm1e_path_t *path = &driven.path;
         step_path();
@@ -374,12 +372,24 @@ static void test_a_run_that_is_begun_too_fast_is_braked_in_on_the_path(void)
     }
 }
 
+/** No plan is known that begins a run faster than it may be begun, but for rounding. Should there be one, the path is kept
+ *  all the same: never back, never past its end, and with the limits of the axes as far as that is possible. */
+static void test_a_run_that_is_begun_too_fast_is_braked_in_on_the_path(void) { begin_too_fast(PATHS); }
+
+/** Some can only come down from their velocity over more than themselves. */
+static void test_a_run_that_is_begun_too_fast_is_braked_in_over_more_than_one(void)
+{
+    random_state = 345;
+    begin_too_fast(1);
+}
+
 static void run_tests(void)
 {
     RUN_TEST(test_paths_that_are_appended_at_once);
     RUN_TEST(test_paths_that_are_appended_on_the_way);
     RUN_TEST(test_paths_that_are_stopped_slowed_and_cut);
     RUN_TEST(test_a_run_that_is_begun_too_fast_is_braked_in_on_the_path);
+    RUN_TEST(test_a_run_that_is_begun_too_fast_is_braked_in_over_more_than_one);
 }
 
 int main(void)
