@@ -469,10 +469,11 @@ static void step_run(cm1e_axis_t *axis)
 static void step_settle(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
-    axis->homing->drive.unsettled = axis->now_ns - axis->homing->drive.step_ns >= rest_timeout_ns;
-    if (stands(axis))
+    const bool failed = axis->drive.feedback.online && meanings[bits(axis)] == FAILED;
+    axis->homing->drive.unsettled = !failed && axis->now_ns - axis->homing->drive.step_ns >= rest_timeout_ns;
+    if (!failed && stands(axis))
         next_step(axis);
-    else if (axis->homing->drive.unsettled)
+    else if (failed || axis->homing->drive.unsettled)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
 }
 

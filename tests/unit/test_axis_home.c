@@ -479,6 +479,27 @@ static void test_homing_that_ends_while_the_motor_turns_for_ever_has_failed(void
     assert_homing_error(id, CM1E_ERROR_AXIS_HOMING_FAILED);
 }
 
+/* It says that the homing is completed, and takes that back. */
+static void device_fails_late(cm1e_bus_t *b)
+{
+    device_lies(b);
+    if (b->mode == CM1E_MODE_HM && homing_started && turns_for <= 80)
+        show(1, 0, 0);
+}
+
+/** An error of the drive counts until its motor is at rest. */
+static void test_homing_that_fails_behind_its_end_has_failed(void)
+{
+    start_bench();
+    bus.homing = device_fails_late;
+    turns_for = 100;
+    const cm1e_command_id_t id = home(0.0, &(cm1e_homing_config_t){.method = -1});
+    cycles_until_step(HOME_RUN);
+    bench_cycles(400);
+    assert_homing_error(id, CM1E_ERROR_AXIS_HOMING_FAILED);
+    TEST_ASSERT_FALSE(bench_info().homed);
+}
+
 static void test_stop_at_every_cycle_of_homing(void)
 {
     for (int n = 0; n < 400; n += n < 30 ? 1 : 7) {
@@ -644,6 +665,7 @@ int main(void)
     RUN_TEST(test_every_pattern_of_the_bits_while_running);
     RUN_TEST(test_homing_that_ends_while_the_motor_turns_keeps_its_mode_until_that_rests);
     RUN_TEST(test_homing_that_ends_while_the_motor_turns_for_ever_has_failed);
+    RUN_TEST(test_homing_that_fails_behind_its_end_has_failed);
     RUN_TEST(test_stop_at_every_cycle_of_homing);
     RUN_TEST(test_power_off_at_every_cycle_of_homing);
     RUN_TEST(test_fault_at_every_cycle_of_homing);
