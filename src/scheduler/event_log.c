@@ -219,21 +219,20 @@ static void look_at_strangers(log_t *log, const cm1e_bus_t *bus, uint32_t number
     slaves->stranger_count = told_count;
 }
 
+/** A slave that is again as it was told last has changed all the same. */
 static void look_at_presence(log_t *log, const cm1e_bus_t *bus, uint32_t number, uint32_t slave, int64_t run_ns)
 {
     log_slaves_t *slaves = &log->slaves[number];
     const uint8_t now = (uint8_t)cm1e_bus_presence(bus, slave + 1);
-    slaves->changes[slave] += now != slaves->presence_seen[slave];
-    slaves->presence_seen[slave] = now;
-    if (now == slaves->presence[slave] ||
-        records_left(slaves, &slaves->presence_pace[slave], run_ns, &slaves->presence_due_ns) == 0)
-        return;
-    const uint32_t left_out = slaves->changes[slave] > 0 ? slaves->changes[slave] - 1 : 0;
-    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_SLAVE, .axis = -1, .code = (int32_t)now,
-                                        .detail = number << 24 | (slave + 1), .bound = left_out}, run_ns);
-    note_records(&slaves->presence_pace[slave], 1, run_ns);
+    uint32_t *changes = &slaves->changes[slave];
+    *changes += now != slaves->presence[slave];
     slaves->presence[slave] = now;
-    slaves->changes[slave] = 0;
+    if (*changes == 0 || records_left(slaves, &slaves->presence_pace[slave], run_ns, &slaves->presence_due_ns) == 0)
+        return;
+    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_SLAVE, .axis = -1, .code = (int32_t)now,
+                                        .detail = number << 24 | (slave + 1), .bound = *changes - 1}, run_ns);
+    note_records(&slaves->presence_pace[slave], 1, run_ns);
+    *changes = 0;
 }
 
 void cm1e_log_presence(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)

@@ -35,7 +35,7 @@ typedef struct log_slaves {
     log_pace_t emergency_pace[CM1E_MAX_SLAVES];
     int64_t emergencies_due_ns; /**< when those that wait for a record of their slave are looked at */
     uint64_t presence_news;     /**< of all slaves, told */
-    uint8_t presence[CM1E_MAX_SLAVES], presence_seen[CM1E_MAX_SLAVES]; /**< told; in the last cycle */
+    uint8_t presence[CM1E_MAX_SLAVES];
     uint32_t changes[CM1E_MAX_SLAVES]; /**< of it, since the last record */
     log_pace_t presence_pace[CM1E_MAX_SLAVES];
     int64_t presence_due_ns;

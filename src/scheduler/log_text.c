@@ -70,12 +70,13 @@ static void command_text(const char *name, const cm1e_log_event_t *event, char *
     snprintf(text, size, "%s: %s%s%s", name, cm1e_command_name((cm1e_command_kind_t)event->code), position, velocity);
 }
 
-/** How many were left out since the last record of the slave. */
-static void add_left_out(const cm1e_log_event_t *event, const char *what, char *text, size_t size)
+/** How many were left out since the last record of the slave: `one` of them, or `many`. */
+static void add_left_out(const cm1e_log_event_t *event, const char *one, const char *many, char *text, size_t size)
 {
     const size_t used = strlen(text);
     if (event->bound > 0.0)
-        snprintf(text + used, size - used, " %.0f more%s since its last record are not shown.", event->bound, what);
+        snprintf(text + used, size - used, " %.0f more%s since its last record %s not shown.", event->bound,
+                 event->bound == 1.0 ? one : many, event->bound == 1.0 ? "is" : "are");
 }
 
 static void emergency_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char *text, size_t size)
@@ -85,7 +86,7 @@ static void emergency_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event,
     for (size_t i = 0; i < sizeof emergency.data; i++)
         emergency.data[i] = (uint8_t)(bytes >> 8 * i);
     cm1e_emergency_sentence(bus, (uint16_t)event->detail, &emergency, text, size);
-    add_left_out(event, "", text, size);
+    add_left_out(event, "", "", text, size);
 }
 
 static void ring_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char *text, size_t size)
@@ -178,7 +179,7 @@ static void bus_text(const cm1e_bus_t *bus, const cm1e_log_event_t *event, char 
         emergency_text(bus, event, text, size);
     else if (event->kind == CM1E_LOG_SLAVE) {
         cm1e_presence_sentence(bus, position, (cm1e_presence_t)event->code, text, size);
-        add_left_out(event, " changes", text, size);
+        add_left_out(event, " change", " changes", text, size);
     } else if (event->kind == CM1E_LOG_STRANGER)
         stranger_text(event, text, size);
     else if (event->kind == CM1E_LOG_PORT)
