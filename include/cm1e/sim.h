@@ -105,7 +105,8 @@ typedef struct cm1e_sim_profile {
 /** Before the first frame: slave `position` (1 = first), a CM1-E, a bridge or a drive by CiA 402, behaves as the
  *  device of a profile, which is copied. The mappings of a CM1-E and of a drive by CiA 402 are those of its mapping
  *  objects. CM1E_ERROR_UNSUPPORTED: the slave is another device. CM1E_ERROR_STATE: it plays one already.
- *  CM1E_ERROR_FILE: the image is too short. @rt init */
+ *  CM1E_ERROR_FILE: the image is too short, or the type of an entry does not have a number of the profile. After an
+ *  error nothing has changed. @rt init */
 CM1E_API cm1e_error_t cm1e_sim_segment_play(cm1e_sim_segment_t *segment, uint32_t position,
                                             const cm1e_sim_profile_t *profile, cm1e_diag_t *diag);
 /** @rt any */

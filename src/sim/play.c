@@ -24,19 +24,6 @@ static bool copy_profile(cm1e_sim_profile_t *to, const cm1e_sim_profile_t *from)
     return to->entries && to->codes;
 }
 
-static bool take_sii(cm1e_sim_slave_t *slave, const cm1e_sim_profile_t *profile)
-{
-    if (!profile->sii)
-        return true;
-    uint8_t *copy = copy_of(profile->sii, profile->sii_size, 1);
-    if (!copy)
-        return false;
-    free(slave->sii);
-    slave->sii = copy;
-    slave->sii_size = profile->sii_size;
-    return true;
-}
-
 cm1e_error_t cm1e_sim_segment_play(cm1e_sim_segment_t *segment, uint32_t position, const cm1e_sim_profile_t *profile,
                                    cm1e_diag_t *diag)
 {
@@ -56,13 +43,20 @@ cm1e_error_t cm1e_sim_segment_play(cm1e_sim_segment_t *segment, uint32_t positio
     if (slave->profile.entries)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "the simulated slave %u plays a profile already",
                              (unsigned)position);
-    if (!copy_profile(&slave->profile, profile) || !take_sii(slave, profile))
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    const cm1e_error_t error = slave->ops->play(slave->app, &slave->profile, slave->now_ns, diag);
+    uint8_t *sii = profile->sii ? copy_of(profile->sii, profile->sii_size, 1) : NULL;
+    const bool copied = copy_profile(&slave->profile, profile) && (sii || !profile->sii);
+    const cm1e_error_t error = copied ? slave->ops->play(slave->app, &slave->profile, slave->now_ns, diag)
+                                      : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
     if (error != CM1E_OK) {
+        free(sii);
         cm1e_sim_profile_free(&slave->profile);
         slave->profile = (cm1e_sim_profile_t){0};
         return error;
+    }
+    if (sii) {
+        free(slave->sii);
+        slave->sii = sii;
+        slave->sii_size = profile->sii_size;
     }
     cm1e_sim_cm1e_t *drive = cm1e_sim_cm1e_of(slave);
     if (drive)

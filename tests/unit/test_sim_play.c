@@ -133,7 +133,8 @@ static void test_a_profile_that_is_all_zero_changes_nothing(void)
     TEST_ASSERT_EQUAL_HEX32(before, after);
 }
 
-/* Numbers that the type of the entry, of the profile or of the tables, does not have; then a good profile is played. */
+/* Numbers that the type of the entry, of the profile or of the tables, does not have; nothing of such a profile is taken,
+ * its EEPROM neither. Then a good profile is played. */
 static void test_numbers_beyond_their_types_are_refused(void)
 {
     const cm1e_sim_profile_entry_t rows[] = {
@@ -146,9 +147,12 @@ static void test_numbers_beyond_their_types_are_refused(void)
     };
     const cm1e_sim_profile_entry_t good = {.index = 0x6084, .has_value = true, .value = 2000};
     uint32_t value;
+    const uint8_t other[512] = {0}, *const before = slave()->sii;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, play(&rows[i], 1));
+        const cm1e_sim_profile_t profile = {.entries = &rows[i], .entry_count = 1, .sii = other, .sii_size = sizeof other};
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, cm1e_sim_segment_play(segment, 2, &profile, &diag));
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "which its type does not have"), diag.text);
+        TEST_ASSERT_EQUAL_PTR(before, slave()->sii);
     }
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, play(&good, 1), diag.text);
     TEST_ASSERT_EQUAL_HEX32(0, read(0x6084, 0, &value));
