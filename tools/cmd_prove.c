@@ -1,6 +1,7 @@
 /** cm1e prove: the acceptance of a real device: every point of a table is compared with our tables. */
 #include <errno.h>
 #include <fnmatch.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -207,6 +208,16 @@ static int write_results(const prove_t *prove)
     return good && agrees && !prove->interrupted ? EXIT_OK : EXIT_FAILED;
 }
 
+/** Behind nohup a terminal that is closed ends nothing. */
+static void catch_signals(void)
+{
+    struct sigaction before;
+    sigaction(SIGHUP, NULL, &before);
+    attached_catch_signals();
+    if (before.sa_handler == SIG_IGN)
+        sigaction(SIGHUP, &before, NULL);
+}
+
 static int prove_device(prove_t *prove)
 {
     if (!prove_open(prove) || !choose(prove))
@@ -214,7 +225,7 @@ static int prove_device(prove_t *prove)
     prove->results = json_array();
     prove->profile_codes = json_object();
     prove_read_all(prove);
-    attached_catch_signals(); /* from here on something may have to be written back */
+    catch_signals(); /* from here on something may have to be written back */
     for (size_t n = 0; prove_point(n); n++) {
         const point_t *point = prove_point(n);
         if (is_chosen(prove, point))

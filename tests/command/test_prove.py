@@ -224,6 +224,17 @@ def check_interruption():
     expect(notes["move.csp"] == "the run was interrupted" and "told to end" in notes["move.pp"], f"{notes}")
 
 
+def check_nohup():
+    """A terminal that is closed ends nothing where its signal is ignored, as nohup does."""
+    program = subprocess.Popen([CM1E, "prove", "-i", "sim", "--json", "--allow-writes"], stdout=subprocess.PIPE, text=True,
+                               preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+    while program.poll() is None:
+        program.send_signal(signal.SIGHUP)
+        time.sleep(0.05)
+    out = program.communicate()[0]
+    expect(program.returncode == 0 and "told to end" not in out, f"nohup: {program.returncode}")
+
+
 def check_refusals(folder):
     for words, said in ((["-i", "sim", "--allow-motion"], "needs limits"),
                         (["-i", "sim", "--max-travel", "1"], "for --allow-motion"),
@@ -269,6 +280,6 @@ def in_a_folder(check):
 with tempfile.TemporaryDirectory() as work:
     # No point but the clock of the controller needs real time.
     SIM = write(os.path.join(work, "virtual.yaml"), VIRTUAL + "axes: [{position: 1}]\n")
-    real_time.together(check_interruption, *(lambda check=check: in_a_folder(check) for check in (
+    real_time.together(check_interruption, check_nohup, *(lambda check=check: in_a_folder(check) for check in (
         check_motion, check_planted, check_agreement, check_eeprom_and_damage, check_bridge, check_cia402,
         check_refusals)))
