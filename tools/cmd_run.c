@@ -1,5 +1,6 @@
 /** cm1e run: runs a program that `cm1e st build` has translated from Structured Text. */
 #include <errno.h>
+#include <inttypes.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -126,12 +127,15 @@ typedef struct teller {
     bool started;
 } teller_t;
 
-/** Tells the errors behind the record `after`, and returns the last one that was looked at. */
-static uint64_t tell_errors(const cm1e_scheduler_t *scheduler, uint64_t after, unsigned *told)
+/** Tells the errors behind the record `after`, and returns the last one that was looked at. `*missed` counts those that
+ *  were overwritten before. */
+static uint64_t tell_errors(const cm1e_scheduler_t *scheduler, uint64_t after, unsigned *told, uint64_t *missed)
 {
     cm1e_log_event_t events[16];
     size_t count;
-    while ((count = cm1e_log_read(scheduler, after, events, sizeof events / sizeof events[0], NULL)) > 0) {
+    uint64_t lost = 0;
+    while ((count = cm1e_log_read(scheduler, after, events, sizeof events / sizeof events[0], &lost)) > 0) {
+        *missed += lost;
         for (size_t i = 0; i < count; i++) {
             char text[512];
             if (events[i].kind != CM1E_LOG_ERROR || *told > TOLD_MAX)
@@ -149,14 +153,17 @@ static void *tell(void *argument)
 {
     teller_t *teller = argument;
     const struct timespec pause = {.tv_nsec = LOOK_NS};
-    uint64_t after = 0;
+    uint64_t after = 0, missed = 0;
     unsigned told = 0;
     for (bool end = false; !end;) {
         end = atomic_load(&teller->end);
-        after = tell_errors(teller->scheduler, after, &told);
+        after = tell_errors(teller->scheduler, after, &told, &missed);
         if (!end)
             nanosleep(&pause, NULL);
     }
+    if (missed > 0 && told <= TOLD_MAX) /* on virtual time a moment has many cycles */
+        complain("%" PRIu64 " records of the event log were overwritten before they were looked at: errors of axes among "
+                 "them are not told", missed);
     return NULL;
 }
 

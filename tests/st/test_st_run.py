@@ -234,6 +234,17 @@ def check_errors_of_axes():
         faults.append(f"{told.stderr.count('cm1e run: X: ')} errors are told")
 
 
+    # So many commands that the log is overwritten before anybody looks at it, also on a slow machine
+    names = ("X", "Y", "Z", "U")
+    busy = "VAR_GLOBAL {} : AXIS_REF; END_VAR PROGRAM Main VAR go : BOOL; {} END_VAR\n{}go := p{}.Status AND NOT go;\nEND_PROGRAM\n".format(
+        ", ".join(names), " ".join(f"p{n} : MC_Power; m{n} : MC_MoveRelative;" for n in names),
+        "".join(f"p{n}(Axis := {n}, Enable := TRUE, EnablePositive := TRUE, EnableNegative := TRUE);\n"
+                f"m{n}(Axis := {n}, Execute := go, Distance := 0.0001, Velocity := 5);\n" for n in names), names[-1])
+    with open("busy.yaml", "w", encoding="ascii") as file:
+        file.write("bus: {interface: sim}\naxes:\n" + "".join(f"  - {{name: {n}, sim: {{no_stops: true}}}}\n" for n in names))
+    run(build("busy", busy), "-s", "100", bus="busy.yaml", says="records of the event log were overwritten before they were looked at")
+
+
 def check_retain():
     build("retain", RETAIN)
     for expected in (6, 7, 8):
