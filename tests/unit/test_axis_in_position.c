@@ -474,7 +474,7 @@ static void test_a_backlash_is_taken_up_before(void)
 
 static int homing_cycle;
 
-/* UG 6.2.4: in progress, attained, completed; then the shaft goes on creeping. */
+/* UG 6.2.4: in progress, attained, completed; then the motor rests. */
 static void homing(cm1e_bus_t *b)
 {
     if (!(b->controlword & CONTROLWORD_HOMING_START))
@@ -498,9 +498,9 @@ static void test_homing_waits_for_the_motor_too(void)
                 .kind = CM1E_COMMAND_HOME, .homing = &config, .position = 3.0});
             while (bus.mode != CM1E_MODE_HM || homing_cycle < 120)
                 bench_cycles(1);
-            off = there ? 0 : 200;
             while (bench_state_of(id) == CM1E_COMMAND_ACTIVE && bus.mode != CM1E_MODE_CSP)
                 bench_cycles(1);
+            off = there ? 0 : 200;
             int cycles = 0;
             for (; bench_state_of(id) == CM1E_COMMAND_ACTIVE && cycles < 3000; cycles++) {
                 TEST_ASSERT_EQUAL_INT(CM1E_AXIS_HOMING, bench_info().state);

@@ -223,8 +223,8 @@ static void test_what_no_signal_has_is_refused(void)
     TEST_ASSERT_EQUAL_STRING("There is no slave 2: the network has 1.", diag.text);
     TEST_ASSERT_EQUAL(CM1E_ERROR_NOT_FOUND, cm1e_io_find_object(&bus, 2, 0x7000, 1, true, &io, &diag));
     TEST_ASSERT_EQUAL_STRING("There is no slave 2: the network has 1.", diag.text);
-    TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, cm1e_io_find_object(NULL, 1, 0x7000, 1, true, &io, &diag));
-    TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, cm1e_io_find_bits(NULL, 1, true, 0, 1, CM1E_IO_BOOL, &io, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_find_object(NULL, 1, 0x7000, 1, true, &io, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_io_find_bits(NULL, 1, true, 0, 1, CM1E_IO_BOOL, &io, &diag));
 }
 
 /** An input is where the inputs of its slave are, and nobody writes it. */
