@@ -191,7 +191,8 @@ static void assign_right(void)
 {
     for (int direction = 0; direction < 2; direction++) {
         device.count[direction] = bridge.count;
-        memcpy(device.pdos[direction], bridge.pdos[direction], sizeof device.pdos[direction]);
+        memset(device.pdos[direction], 0, sizeof device.pdos[direction]);
+        memcpy(device.pdos[direction], bridge.pdos[direction], sizeof bridge.pdos[direction]);
     }
 }
 
