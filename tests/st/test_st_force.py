@@ -57,7 +57,7 @@ def expect(condition, what, told=""):
 
 class Run:
     def __init__(self, bus):
-        self.process = subprocess.Popen([CM1E, "run", "force.so", "-b", bus, "-s", "30"], stdout=subprocess.PIPE,
+        self.process = subprocess.Popen([CM1E, "run", "force.so", "-b", bus, "-s", "600"], stdout=subprocess.PIPE,
                                         stderr=subprocess.STDOUT, text=True)
         end = time.monotonic() + 20
         while not any(name.startswith(f"cm1e-{self.process.pid}-") for name in os.listdir("run")):
