@@ -265,7 +265,8 @@ static bool is_enabled(run_t *run, machine_axis_t *axis)
 }
 
 /** Inwards, as the configuration and the axis's own coordinates say; 0: a homing in steps or MC_SetPosition has put it
- *  outside its software limits, and the way back leads into a hard stop. */
+ *  outside its software limits, and the way back leads into a hard stop; or next to a limit, and the way from the stop
+ *  would leave it. */
 static double test_distance(const machine_axis_t *axis)
 {
     const double position = axis->info.actual_position * axis->spec->counts_per_unit;
@@ -275,7 +276,10 @@ static double test_distance(const machine_axis_t *axis)
     const bool by_limits = limited && fabs(shaft) < NEAR_STOP;
     const bool outside = limited && (position > axis->spec->limit_positive || position < axis->spec->limit_negative);
     const double by = (by_limits || outside ? position > middle : shaft > 0) ? -TEST_COUNTS : TEST_COUNTS;
-    return outside && axis->spec->stops != 0 && fabs(shaft + by) > STOP_COUNTS ? 0 : by;
+    const double target = position + by;
+    const bool leaves = limited && !outside &&
+                        (target > axis->spec->limit_positive || target < axis->spec->limit_negative);
+    return leaves || (outside && axis->spec->stops != 0 && fabs(shaft + by) > STOP_COUNTS) ? 0 : by;
 }
 
 static bool is_moved(run_t *run, machine_axis_t *axis)
