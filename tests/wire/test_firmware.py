@@ -72,6 +72,8 @@ def disturbed(bench):
     bench.good(bench.image("1.3.4"), "1.3.5", "1.3.4")
     process = subprocess.Popen(bench.segment.command(bench.command(bench.image("1.3.5", 150000))), stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
+    # Before its first frame the faults would gather, and a scan repeats a broadcast three times only.
+    wire.wait_for(lambda: process.poll() is not None or "BOOT" in bench.segment.console("status 1"), 10, "no Bootstrap")
     faults = 0
     while process.poll() is None:
         faults += 1
