@@ -330,14 +330,9 @@ static void hang(cm1e_bus_t *motor)
     motor->velocity_raw = 0;
 }
 
-/** Ends the power, or fails, with a motor that turns for so long. Milliseconds until the torque goes. */
-static int torque_behind(void (*world)(cm1e_bus_t *motor), int cycles, bool by_error)
+/** Ends the power, or fails: milliseconds until the torque goes. */
+static int torque_lasts(bool by_error)
 {
-    bench_start();
-    bench_enable();
-    bench_cycles(50);
-    bus.world = world;
-    swings = cycles;
     if (by_error)
         cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
     else
@@ -347,6 +342,18 @@ static int torque_behind(void (*world)(cm1e_bus_t *motor), int cycles, bool by_e
         bench_cycles(1);
         lasted++;
     }
+    return lasted;
+}
+
+/** Ends the power, or fails, with a motor that turns for so long. Milliseconds until the torque goes. */
+static int torque_behind(void (*world)(cm1e_bus_t *motor), int cycles, bool by_error)
+{
+    bench_start();
+    bench_enable();
+    bench_cycles(50);
+    bus.world = world;
+    swings = cycles;
+    const int lasted = torque_lasts(by_error);
     bus.world = NULL;
     return lasted;
 }
@@ -391,15 +398,7 @@ static void test_a_motor_that_runs_away_loses_its_torque(void)
         run_position = bus.position;
         const int32_t from = bus.position;
         bench_cycles(1);
-        if (by_error)
-            cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
-        else
-            bench_power(false);
-        int lasted = 0;
-        while (bus.state == OPERATION_ENABLED && lasted < 5000) {
-            bench_cycles(1);
-            lasted++;
-        }
+        const int lasted = torque_lasts(by_error);
         TEST_ASSERT_LESS_THAN_INT_MESSAGE(steady ? 160 : 80, lasted, by_error ? "error" : "power");
         TEST_ASSERT_LESS_THAN_INT(steady ? 64000 : 4500, abs(bus.position - from));
     }
