@@ -144,18 +144,48 @@ cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *fr
     return CM1E_OK;
 }
 
-/* Checks an endless motion: its direction must be permitted, and it must be able to brake before a limit. */
+bool cm1e_axis_directions_allow(const cm1e_axis_t *axis, const cm1e_profile_t *profile, const cm1e_profile_t *brake)
+{
+    const double tolerance = axis->limits.tolerance;
+    return (axis->power.enable_positive ||
+            cm1e_profile_way_back(profile, -1.0) <= cm1e_profile_way_back(brake, -1.0) + tolerance) &&
+           (axis->power.enable_negative ||
+            cm1e_profile_way_back(profile, 1.0) <= cm1e_profile_way_back(brake, 1.0) + tolerance);
+}
+
+/* Whether the directions permit a profile. */
+static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+{
+    cm1e_profile_t brake;
+    if (axis->power.enable_positive && axis->power.enable_negative)
+        return true;
+    return cm1e_axis_plan_stop(axis, from, &axis->limits.maximum, &brake) == CM1E_OK &&
+           cm1e_axis_directions_allow(axis, profile, &brake);
+}
+
+/* Whether an endless motion first goes over the limit that lies behind it: what is left of a braking may need more jerk than
+ * there is now, to end before the axis stands. */
+static bool swings_out(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+{
+    double lowest, highest;
+    cm1e_profile_extent(profile, &lowest, &highest);
+    return profile->end.velocity > 0.0 ? !cm1e_axis_limits_contain_way(axis, from, lowest, 0.0)
+                                       : !cm1e_axis_limits_contain_way(axis, from, 0.0, highest);
+}
+
+/* Checks an endless motion: the directions of its way must be permitted, and it must be able to brake before a limit. */
 static cm1e_error_t check_endless(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     const double velocity = profile->end.velocity, now = cm1e_axis_line(axis, from->position);
-    if (!cm1e_axis_direction_enabled(axis, velocity))
+    if (!cm1e_axis_direction_enabled(axis, velocity) || !directions_allow(axis, from, profile))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     const limits_t *most = &axis->limits;
     if (most->software_limits && (velocity > 0.0 ? now >= most->upper : velocity < 0.0 && now <= most->lower))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     cm1e_motion_state_t next;
     cm1e_profile_sample(profile, axis->cycle_s, &next);
-    return cm1e_axis_limits_can_stop(axis, now, next) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    const bool inside = cm1e_axis_limits_can_stop(axis, now, next) && !swings_out(axis, from, profile);
+    return inside ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
 static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
@@ -223,14 +253,10 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
 
 static const override_t no_override = {1.0, 1.0, 1.0};
 
-/* The braking before may be harder than the jerk of a stop can end before the axis stands: it would turn round. Where that
- * direction is disabled, the jerk becomes the one with which velocity and braking end together, or the maximum, which a
- * superimposed motion shares. Elsewhere it stays as it was told: slaves may need it. */
-static void keep_direction(const cm1e_axis_t *axis, const from_t *from, const move_t *move, cm1e_motion_limits_t *limits)
+void cm1e_axis_keep_direction(const cm1e_axis_t *axis, double v, double a, double most_jerk, cm1e_motion_limits_t *limits)
 {
-    const double v = from->velocity, a = from->acceleration;
-    if (v * a < 0.0 && !cm1e_axis_direction_enabled(axis, a) && kind_row(move->kind)->is_stop && !from->shared)
-        limits->jerk = larger(limits->jerk, smaller(a * a / (2.0 * fabs(v)), axis->limits.maximum.jerk));
+    if (v * a < 0.0 && !cm1e_axis_direction_enabled(axis, a))
+        limits->jerk = larger(limits->jerk, smaller(a * a / (2.0 * fabs(v)), most_jerk));
 }
 
 /* Plans a stop by a command, with the override as far as the stop then keeps the software limits. */
@@ -241,7 +267,8 @@ static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
     if (error != CM1E_OK)
         return error;
-    keep_direction(axis, from, move, &limits);
+    if (kind_row(move->kind)->is_stop && !from->shared)
+        cm1e_axis_keep_direction(axis, from->velocity, from->acceleration, axis->limits.maximum.jerk, &limits);
     /* The other numbers are the axis's own, so the inputs are too small to compute with. */
     if (cm1e_profile_to_velocity(profile, &start, 0.0, &limits) != CM1E_OK)
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
@@ -392,22 +419,6 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
         return move->target;
     /* A ramp that takes longer than the axis can count ends nowhere, and is left for another motion. */
     return cm1e_position_towards(from->position, profile->end.position * axis->position.scale);
-}
-
-/* Whether the directions permit a profile. In a disabled direction only the braking under way is permitted, and no way
- * back to a target that is too near. */
-static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
-{
-    const double tolerance = axis->limits.tolerance;
-    cm1e_profile_t brake;
-    if (axis->power.enable_positive && axis->power.enable_negative)
-        return true;
-    if (cm1e_axis_plan_stop(axis, from, &axis->limits.maximum, &brake) != CM1E_OK)
-        return false;
-    return (axis->power.enable_positive ||
-            cm1e_profile_way_back(profile, -1.0) <= cm1e_profile_way_back(&brake, -1.0) + tolerance) &&
-           (axis->power.enable_negative ||
-            cm1e_profile_way_back(profile, 1.0) <= cm1e_profile_way_back(&brake, 1.0) + tolerance);
 }
 
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)

@@ -46,8 +46,11 @@ static bool plan_with(const cm1e_axis_t *axis, const override_t *override, super
     const double target = on_top->move.position;
     const bool stops = on_top->paused || on_top->move.kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
     on_top_plan_t made = {.start = on_top->now, .target = stops ? NAN : target};
-    if (cm1e_axis_limits_on_top(axis, on_top, override, &made.limits) != CM1E_OK ||
-        make_profile(&made, profile) != CM1E_OK)
+    if (cm1e_axis_limits_on_top(axis, on_top, override, &made.limits) != CM1E_OK)
+        return false;
+    if (stops)
+        cm1e_axis_keep_direction(axis, on_top->now.velocity, on_top->now.acceleration, on_top->share.jerk, &made.limits);
+    if (make_profile(&made, profile) != CM1E_OK)
         return false;
     made.duration_s = profile->duration_s;
     made.end = profile->end.position;
@@ -317,13 +320,26 @@ static void stand_as_base(cm1e_axis_t *axis)
     cm1e_axis_set_stands(axis, true);
 }
 
+/* Whether a plan goes no farther in a disabled direction than the braking under way. */
+static bool directions_allow(const cm1e_axis_t *axis, const superimposed_t *on_top)
+{
+    const on_top_plan_t stop = {.start = on_top->now, .target = NAN, .limits = on_top->share};
+    cm1e_profile_t profile, brake;
+    return (axis->power.enable_positive && axis->power.enable_negative) ||
+           (make_profile(&on_top->plan, &profile) == CM1E_OK && make_profile(&stop, &brake) == CM1E_OK &&
+            cm1e_axis_directions_allow(axis, &profile, &brake));
+}
+
 /* Whether the superimposed motion can go on as `move` from its present state. This is tested before anything changes,
  * because the present motion cannot end at once. */
-static bool can_go_on_as(const cm1e_axis_t *axis, const move_t *move, bool alone, const cm1e_motion_limits_t *share)
+static cm1e_error_t check_going_on(const cm1e_axis_t *axis, const move_t *move, bool alone, const cm1e_motion_limits_t *share)
 {
     superimposed_t trial = {.move = *move, .alone = alone, .share = *share, .now = axis->superimposed.now};
     trial.now.position = 0.0;
-    return plan(axis, &trial);
+    if (!plan(axis, &trial)) /* the values are too small, perhaps by MC_SetOverride */
+        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
+    const bool halts = move->kind == CM1E_COMMAND_HALT_SUPERIMPOSED; /* none is refused */
+    return halts || directions_allow(axis, &trial) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
 }
 
 static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_t *id)
@@ -331,14 +347,15 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     superimposed_t *on_top = &axis->superimposed;
     const bool replaces = on_top->id && on_top->moving, alone = axis_holds(axis) || (replaces && on_top->alone);
     cm1e_motion_limits_t limits;
-    const cm1e_error_t error = check(axis, move, alone, on_top->id != 0, &limits);
+    cm1e_error_t error = check(axis, move, alone, on_top->id != 0, &limits);
     if (error != CM1E_OK)
         return error;
     /* A motion that replaces another one gets the share of that one. */
     const cm1e_motion_limits_t share = replaces ? on_top->share : alone ? axis->limits.maximum
                                        : share_of(axis, &limits);
-    if (!can_go_on_as(axis, move, alone, &share)) /* the values are too small, perhaps by MC_SetOverride */
-        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
+    error = check_going_on(axis, move, alone, &share);
+    if (error != CM1E_OK)
+        return error;
     if (axis_holds(axis))
         stand_as_base(axis);
     if (on_top->id)
@@ -360,11 +377,11 @@ static cm1e_error_t halt(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_
     superimposed_t *on_top = &axis->superimposed;
     const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
     cm1e_motion_limits_t limits;
-    const cm1e_error_t error = cm1e_axis_limits_of(axis, &rest, move, &limits);
+    cm1e_error_t error = cm1e_axis_limits_of(axis, &rest, move, &limits);
+    if (error == CM1E_OK && on_top->moving)
+        error = check_going_on(axis, move, on_top->alone, &on_top->share);
     if (error != CM1E_OK)
         return error;
-    if (on_top->moving && !can_go_on_as(axis, move, on_top->alone, &on_top->share))
-        return cm1e_axis_cannot_plan(axis, move, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
     *id = cm1e_axis_next_id(axis);
     if (!on_top->id) {
         cm1e_axis_record(axis, *id, CM1E_COMMAND_DONE, CM1E_OK); /* there is no superimposed motion */
@@ -408,6 +425,8 @@ cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t i
     next.move = inputs;
     if (!plan(axis, &next))
         return cm1e_axis_cannot_plan(axis, &inputs, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
+    if (!directions_allow(axis, &next))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     *on_top = next;
     return CM1E_OK;
 }

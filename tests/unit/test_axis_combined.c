@@ -391,6 +391,56 @@ static void test_a_stop_with_a_small_jerk_does_not_turn_round(void)
             }
 }
 
+/* What takes over from a braking with a small jerk, at every moment: it does not lead through standstill into a disabled
+ * direction, or beyond a software limit behind the axis. It is refused there, but a halt is not. */
+static void test_a_small_jerk_leads_into_no_disabled_direction(void)
+{
+    static const struct {
+        cm1e_command_kind_t kind;
+        double position, velocity, end_velocity;
+        cm1e_error_t refusal;
+    } commands[] = {
+        {CM1E_COMMAND_MOVE_VELOCITY, 0.0, 10.0, 0.0, CM1E_ERROR_AXIS_DIRECTION_DISABLED},
+        {CM1E_COMMAND_MOVE_VELOCITY, 0.0, 10.0, 0.0, CM1E_ERROR_AXIS_POSITION_RANGE},
+        {CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, 3.0, 10.0, 5.0, CM1E_ERROR_AXIS_DIRECTION_DISABLED},
+        {CM1E_COMMAND_MOVE_SUPERIMPOSED, 0.3, 5.0, 0.0, CM1E_ERROR_AXIS_DIRECTION_DISABLED},
+        {CM1E_COMMAND_HALT_SUPERIMPOSED, 0.0, 0.0, 0.0, CM1E_OK},
+    };
+    for (int i = 0; i < 5; i++) {
+        const bool superimposed = kind_row(commands[i].kind)->plan == PLAN_ON_TOP;
+        const bool limited = commands[i].refusal == CM1E_ERROR_AXIS_POSITION_RANGE;
+        int refused = 0;
+        for (int at = 1;; at += sweep_stride(1, 7)) {
+            if (limited)
+                make_within(-1.0, 1000.0);
+            else
+                axes_begin(1);
+            axes_bench.negative[A] = limited;
+            const cm1e_command_id_t move = axes_move_to(A, 1.5, 10.0);
+            if (superimposed)
+                on_top(0.5, 5.0);
+            axes_cycles(at);
+            if (axes_status(A, move).state != CM1E_COMMAND_ACTIVE)
+                break;
+            cm1e_command_id_t id;
+            const cm1e_error_t error = cm1e_axis_start(axis(), &(cm1e_axis_command_t){
+                .kind = commands[i].kind, .position = commands[i].position, .velocity = commands[i].velocity,
+                .end_velocity = commands[i].end_velocity, .jerk = axis()->limits.maximum.jerk / 200.0}, &id);
+            AXES_MUST(error == CM1E_OK || error == commands[i].refusal, "command %d in cycle %d: %s", i, at, axes_text(A));
+            refused += error != CM1E_OK;
+            for (double last = place(), n = 0; n < 2500; n++, last = place()) {
+                axes_cycles(1);
+                if (!limited)
+                    AXES_MUST(place() - last >= -1e-9, "command %d in cycle %d: back by %g u", i, at, last - place());
+            }
+            AXES_MUST(axes_state(A) != CM1E_AXIS_ERROR_STOP, "command %d in cycle %d: %s", i, at, axes_text(A));
+            axes_end();
+        }
+        TEST_ASSERT_EQUAL_INT(commands[i].refusal != CM1E_OK, refused > 0);
+        axes_end();
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -408,5 +458,6 @@ int main(void)
     RUN_TEST(test_a_deceleration_lowered_before_a_junction_leads_beyond_no_target);
     RUN_TEST(test_a_running_table_keeps_its_path_within_the_limits);
     RUN_TEST(test_a_stop_with_a_small_jerk_does_not_turn_round);
+    RUN_TEST(test_a_small_jerk_leads_into_no_disabled_direction);
     return UNITY_END();
 }
