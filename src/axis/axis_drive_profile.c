@@ -26,6 +26,7 @@
 static const int64_t parameter_timeout_ns = 5000 * MS_IN_NS;
 static const int64_t acknowledge_timeout_ns = 500 * MS_IN_NS;
 static const int64_t stale_ns = 10 * MS_IN_NS; /* "target reached" may so long be of the velocity before, which was 0 */
+static const int64_t rest_ns = 10 * MS_IN_NS;
 static const int32_t there_counts = 50;
 /* Between the cycle that sees the motor and the drive that brakes it; s. */
 static const double halt_latency_s = 0.005;
@@ -245,6 +246,15 @@ static bool there(const cm1e_axis_t *axis)
     return llabs((int64_t)axis->position.raw - axis->set_aside.driving->target) <= there_counts;
 }
 
+/* Whether the motor is at its target and rests. A drive may say too early that it has reached it; then the switch to the mode
+ * of the axis would stop a motor that turns. */
+static bool rests_there(cm1e_axis_t *axis)
+{
+    standstill_t *standstill = &axis->set_aside.driving->standstill;
+    (void)cm1e_axis_is_at_standstill(axis, standstill); /* keeps since when */
+    return there(axis) && axis->now_ns - standstill->since_ns >= rest_ns;
+}
+
 static void arrived(cm1e_axis_t *axis)
 {
     cm1e_axis_put_position(axis, axis->commands.move.target);
@@ -255,12 +265,13 @@ static void arrived(cm1e_axis_t *axis)
 static void step_go(cm1e_axis_t *axis)
 {
     const driving_t *d = axis->set_aside.driving;
+    const bool rests = rests_there(axis);
     cm1e_axis_set_to_actual(axis);
     if (axis->drive.feedback.bit12 && axis->drive.target.set_point == d->target)
         enter(axis, DRIVE_MOVE);
     else if (axis->now_ns - d->step_ns < acknowledge_timeout_ns)
         return;
-    else if (there(axis))
+    else if (rests)
         arrived(axis);
     else
         cm1e_axis_fail(axis, CM1E_ERROR_TIMEOUT, 0.0, 0.0);
@@ -291,6 +302,7 @@ static void step_move(cm1e_axis_t *axis)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
     const driving_t *d = axis->set_aside.driving;
+    const bool rests = !d->velocity_mode && rests_there(axis);
     cm1e_axis_set_to_actual(axis);
     if (!f->online)
         return;
@@ -301,7 +313,7 @@ static void step_move(cm1e_axis_t *axis)
                            f->velocity / axis->position.scale > 0.0 ? axis->limits.upper : axis->limits.lower);
     } else if (f->bit13) {
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, ((double)d->target - axis->position.raw) / axis->position.scale, 0.0);
-    } else if (f->target_reached && there(axis)) {
+    } else if (f->target_reached && rests) {
         arrived(axis);
     }
 }

@@ -516,6 +516,44 @@ static void test_homing_waits_for_the_motor_too(void)
         }
 }
 
+/* ---- motions by the drive ---------------------------------------------------------------------------------------- */
+
+static int swings_left; /* cycles */
+
+/* A drive that says "target reached" from the beginning, and whose motor passes the target and swings around it. */
+static void drive_lies(cm1e_bus_t *b)
+{
+    if (b->state != OPERATION_ENABLED || b->mode != CM1E_MODE_PP)
+        return;
+    const bool announced = b->controlword & CONTROLWORD_NEW_SET_POINT;
+    b->mode_status = (uint16_t)(STATUSWORD_TARGET_REACHED | (announced ? STATUSWORD_SET_POINT_ACKNOWLEDGE : 0));
+    const int32_t way = b->target_position + (int32_t)lround(300.0 * sin(0.1 * swings_left)) - b->position;
+    b->position += way > 100 ? 100 : way < -100 ? -100 : way;
+    swings_left -= swings_left > 0;
+}
+
+/* The mode of the axis, whose target is that of the motion, takes over from a motor at rest only. */
+static void test_a_motor_that_turns_is_not_at_the_target_of_its_drive(void)
+{
+    for (int swings = 100; swings < 400; swings += 7) {
+        bench_end();
+        fake_bus_init(&bus, CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.config.axes[0].motion = CM1E_MOTION_DRIVE;
+        bus.world = drive_lies;
+        swings_left = swings;
+        bench_create();
+        bench_enable();
+        const cm1e_command_id_t id = bench_move_by(0.1, 10.0);
+        for (int n = 0; n < 1000 && bench_state_of(id) == CM1E_COMMAND_ACTIVE; n++) {
+            bench_cycles(1);
+            TEST_ASSERT_TRUE_MESSAGE(swings_left == 0 || swings_left == swings || bus.mode == CM1E_MODE_PP,
+                                     "the mode is switched while the motor turns");
+        }
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+        TEST_ASSERT_EQUAL_INT(CM1E_MODE_CSP, bus.mode);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -543,5 +581,6 @@ int main(void)
     RUN_TEST(test_the_lag_is_watched_meanwhile);
     RUN_TEST(test_a_backlash_is_taken_up_before);
     RUN_TEST(test_homing_waits_for_the_motor_too);
+    RUN_TEST(test_a_motor_that_turns_is_not_at_the_target_of_its_drive);
     return UNITY_END();
 }
