@@ -121,6 +121,14 @@ typedef struct cm1e_fb_reading {
 /** Sets the outputs; `axis` is the result of cm1e_fb_enable(). */
 fb_reading_t cm1e_fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing);
 
+/** For a block whose inputs are judged in every call, before it shows its error: one that is over need not be told any more. */
+static inline void fb_reads_right(const cm1e_fb_private_t *fb, WORD shown, BOOL error)
+{
+    cm1e_axis_t *axis = shown && !error ? cm1e_fb_axis(fb) : NULL;
+    if (axis)
+        cm1e_axis_reads_right(axis);
+}
+
 /** Administrative commands are not queued in this version (2.4.2). */
 static inline cm1e_error_t fb_refuse_execution_mode(cm1e_axis_t *axis, MC_EXECUTION_MODE mode)
 {

@@ -386,6 +386,7 @@ void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb)
         outputs_off(fb);
         forget(p);
     }
+    fb_reads_right(&p->common, fb->ErrorID, out.error);
     fb->InOperation = out.valid;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -11,6 +11,7 @@ void MC_ReadDigitalInput(MC_ReadDigitalInput_t *fb)
         cm1e_axis_refuse_signal(cm1e_fb_axis(&fb->Private), error, false, number, fb->ErrorID != cm1e_error_id(error));
     fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, error == CM1E_ERROR_BUSY ? CM1E_OK : error);
     out.valid = out.valid && error == CM1E_OK; /* behind a bridge it comes some cycles later */
+    fb_reads_right(&fb->Private, fb->ErrorID, out.error);
     FB_SHOW_READING(fb, out);
     fb->Value = out.valid && value;
 }

@@ -10,6 +10,7 @@ void MC_ReadDigitalOutput(MC_ReadDigitalOutput_t *fb)
     if (error == CM1E_ERROR_AXIS_SIGNAL || error == CM1E_ERROR_PDO_MAPPING)
         cm1e_axis_refuse_signal(cm1e_fb_axis(&fb->Private), error, true, number, fb->ErrorID != cm1e_error_id(error));
     const fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, error);
+    fb_reads_right(&fb->Private, fb->ErrorID, out.error);
     FB_SHOW_READING(fb, out);
     fb->Value = out.valid && value;
 }

@@ -70,5 +70,6 @@ void MC_ReadMotionState(MC_ReadMotionState_t *fb)
     else if (out.valid)
         show_set(fb, &info);
     p->measuring = out.valid && fb->Source == mcActualValue;
+    fb_reads_right(&p->common, fb->ErrorID, out.error);
     FB_SHOW_READING(fb, out);
 }

@@ -14,7 +14,8 @@ static cm1e_error_t read_object(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT nu
     if (shown->valid)
         shown->value = value;
     DWORD ticket;
-    const cm1e_error_t refused = cm1e_axis_object_start(axis, number, false, 0.0, &ticket);
+    const cm1e_error_t refused = shown->error_id ? cm1e_axis_object_read_again(axis, number, &ticket)
+                                                 : cm1e_axis_object_start(axis, number, false, 0.0, &ticket);
     if (refused == CM1E_OK)
         fb->command = ticket; /* the queue is full: try again in the next call */
     return error != CM1E_OK ? error : refused == CM1E_ERROR_FULL ? CM1E_OK : refused;
@@ -57,6 +58,7 @@ void cm1e_fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, 
     const fb_outputs_t out = cm1e_fb_outputs(fb);
     shown->busy = out.busy;
     shown->error = out.error || error != CM1E_OK;
+    fb_reads_right(fb, shown->error_id, shown->error);
     shown->error_id = error != CM1E_OK ? cm1e_error_id(error) : out.error_id;
     if (shown->error)
         shown->valid = FALSE;

@@ -188,9 +188,12 @@ cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *comm
 cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const char *input, double value,
                                     const char *right);
 /** cm1e_axis_refuse_input() of a block that is called with the same input in every cycle: it is remembered when the error
- *  `begins`, and for another value, so that it does not hide the text of a later refusal. Returns `error`. @rt cycle */
+ *  `begins`, for another value, and where nothing else is to be told, so that it does not hide the text of a later refusal.
+ *  Returns `error`. @rt cycle */
 cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const char *input, int value, const char *right,
                                     bool begins);
+/** A block that is called in every cycle is refused no longer: forgets what the text has of such a block. @rt cycle */
+void cm1e_axis_reads_right(cm1e_axis_t *axis);
 /** ContinuousUpdate (2.4.6): gives the present inputs of a command. Unchanged inputs cost one comparison. Relative
  *  values count from the begin of the command, and the buffer mode stays. A refused update changes nothing: the motion
  *  goes on with the last accepted inputs, and the block shows the error. After the end of the command nothing happens.

@@ -129,23 +129,42 @@ static cm1e_error_t check(const cm1e_axis_t *axis, int number, bool write, doubl
     return (uint16_t)(axis->objects.next - axis->objects.head) < OBJECT_REQUESTS - 1 ? CM1E_OK : CM1E_ERROR_FULL;
 }
 
-cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, double value, uint32_t *ticket)
+/* A block that reads asks in every call: what it is told again does not hide a later refusal. */
+static void remember(cm1e_axis_t *axis, const object_request_t *request, not_set_t what)
+{
+    what.value = request->value;
+    if (request->write)
+        cm1e_axis_remember_not_set(axis, what);
+    else
+        cm1e_axis_remember_repeated(axis, what, !request->again);
+}
+
+static cm1e_error_t start(cm1e_axis_t *axis, int number, object_request_t request, uint32_t *ticket)
 {
     *ticket = 0;
-    const cm1e_error_t error = check(axis, number, write, value);
+    const cm1e_error_t error = check(axis, number, request.write, request.value);
     if (error != CM1E_OK) {
-        /* A block that reads asks in every call: what it is told again does not hide a later refusal. */
-        const bool told = !write && axis->not_set.what == NOT_SET_PARAMETER && axis->not_set.number == number;
-        if (error != CM1E_ERROR_FULL && !told)
-            cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = number, .value = value});
+        if (error != CM1E_ERROR_FULL)
+            remember(axis, &request, (not_set_t){.error = error, .number = number});
         return error;
     }
     const uint16_t sequence = axis->objects.next++;
     *ticket = (uint32_t)number << 16 | sequence;
-    *request_of(axis, sequence) = (object_request_t){.ticket = *ticket, .state = CM1E_COMMAND_BUFFERED, .write = write,
-                                                     .value = value};
+    request.ticket = *ticket;
+    request.state = CM1E_COMMAND_BUFFERED;
+    *request_of(axis, sequence) = request;
     cm1e_axis_set_extra(axis, EXTRA_OBJECTS, true);
     return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, double value, uint32_t *ticket)
+{
+    return start(axis, number, (object_request_t){.write = write, .value = value}, ticket);
+}
+
+cm1e_error_t cm1e_axis_object_read_again(cm1e_axis_t *axis, int number, uint32_t *ticket)
+{
+    return start(axis, number, (object_request_t){.again = true}, ticket);
 }
 
 cm1e_command_state_t cm1e_axis_object_state(const cm1e_axis_t *axis, uint32_t ticket, double *value,
@@ -174,8 +193,8 @@ static void finish(cm1e_axis_t *axis, object_request_t *request, cm1e_error_t er
     objects->head++;
     cm1e_axis_set_extra(axis, EXTRA_OBJECTS, objects->head != objects->next);
     if (error != CM1E_OK)
-        cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = cm1e_axis_object_number(request->ticket),
-                                                     .value = request->value, .abort_code = objects->sdo.abort_code});
+        remember(axis, request, (not_set_t){.error = error, .number = cm1e_axis_object_number(request->ticket),
+                                            .abort_code = objects->sdo.abort_code});
 }
 
 static void submit(cm1e_axis_t *axis, object_request_t *request, const cm1e_entry_t *entry)

@@ -71,6 +71,8 @@ const cm1e_axis_objects_t *cm1e_axis_object_table(size_t *count);
  *  CM1E_ERROR_UNSUPPORTED: the drive, its firmware or the motor behind a bridge does not have the object. _PARAMETER,
  *  _READ_ONLY (also while the object is process data) and _RANGE as above. @rt cycle */
 cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, double value, uint32_t *ticket);
+/** The same read, of a block whose last one was refused. @rt cycle */
+cm1e_error_t cm1e_axis_object_read_again(cm1e_axis_t *axis, int number, uint32_t *ticket);
 /** The state of a request: BUFFERED or ACTIVE, DONE with the value, or ERROR. UNKNOWN: there were 7 or more later
  *  requests. @rt cycle */
 cm1e_command_state_t cm1e_axis_object_state(const cm1e_axis_t *axis, uint32_t ticket, double *value,

@@ -274,7 +274,8 @@ typedef struct object_request {
     uint32_t ticket; /**< number << 16 | sequence; 0: none */
     int16_t error;   /**< cm1e_error_t */
     uint8_t state;   /**< cm1e_command_state_t */
-    bool write;
+    bool write : 1;
+    bool again : 1;  /**< it was asked for before, and refused */
     double value;
 } object_request_t;
 
@@ -345,7 +346,8 @@ typedef enum not_set_what {
 /** The last refusal that was not the start of a command, for the text. Written by axis_text.h and axis_record.c. */
 typedef struct not_set {
     cm1e_error_t error; /**< CM1E_OK: it was set */
-    not_set_what_t what;
+    uint8_t what;       /**< not_set_what_t */
+    bool repeated;      /**< by a block that is refused in every call */
     union {
         int number;
         const char *name;    /**< of an input */

@@ -80,6 +80,20 @@ void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what)
         axis->commands.refusal = CM1E_OK;
 }
 
+void cm1e_axis_remember_repeated(cm1e_axis_t *axis, not_set_t what, bool begins)
+{
+    what.repeated = true;
+    if (begins || (axis->not_set.error == CM1E_OK && axis->commands.refusal == CM1E_OK))
+        cm1e_axis_remember_not_set(axis, what);
+}
+
+/* Those that are still refused tell it again. */
+void cm1e_axis_reads_right(cm1e_axis_t *axis)
+{
+    if (axis->not_set.repeated)
+        cm1e_axis_forget_not_set(axis);
+}
+
 void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_error_t error)
 {
     if (error != CM1E_OK && error != CM1E_ERROR_AXIS_ERROR_STOP)

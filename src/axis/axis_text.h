@@ -9,6 +9,9 @@
 
 /** Remembers the last refusal for the text. A success clears only a refusal of the same kind. */
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
+/** cm1e_axis_remember_not_set() for a block that is refused in every call: when that `begins`, and again if nothing else is
+ *  there to be told. So it hides no later refusal, and is not hidden by one that is over. */
+void cm1e_axis_remember_repeated(cm1e_axis_t *axis, not_set_t what, bool begins);   /* axis_record.c */
 static inline void cm1e_axis_forget_not_set(cm1e_axis_t *axis) { axis->not_set.error = CM1E_OK; }
 void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);      /* axis_text_not_set.c */

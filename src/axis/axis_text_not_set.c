@@ -114,15 +114,17 @@ cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const
 {
     const not_set_t *last = &axis->not_set;
     const bool another = last->error != CM1E_OK && last->what == NOT_SET_INPUT && last->name == input && last->value != value;
-    return begins || another ? cm1e_axis_refuse_input(axis, error, input, value, right) : error;
+    cm1e_axis_remember_repeated(axis, (not_set_t){.error = error, .what = NOT_SET_INPUT, .name = input, .value = value,
+                                                  .right = right}, begins || another);
+    return error;
 }
 
 void cm1e_axis_refuse_signal(cm1e_axis_t *axis, cm1e_error_t error, bool output, int number, bool begins)
 {
     const not_set_what_t what = output ? NOT_READ_OUTPUT : NOT_READ_INPUT;
     const not_set_t *last = &axis->not_set;
-    if (begins || (last->error != CM1E_OK && last->what == what && last->number != number))
-        cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = what, .number = number});
+    const bool another = last->error != CM1E_OK && last->what == what && last->number != number;
+    cm1e_axis_remember_repeated(axis, (not_set_t){.error = error, .what = what, .number = number}, begins || another);
 }
 
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)

@@ -86,6 +86,36 @@ START_TEST(test_a_number_that_is_wrong_is_told_with_those_that_are_right)
 }
 END_TEST
 
+/** Of two blocks with wrong numbers one is told, however often both are called; when that is right, or off, the other one. */
+START_TEST(test_a_wrong_number_is_told_when_another_one_is_right)
+{
+    for (int off = 0; off < 2; off++)
+        for (int first = 0; first < 2; first++)
+            for (int object = 0; object < 2; object++) {
+                begin();
+                MC_INPUT_REF input = {.Axis = reference};
+                MC_ReadDigitalInput_t reads = {.Input = &input, .Enable = TRUE, .InputNumber = 77};
+                MC_ReadParameter_t reader = {.Axis = &reference, .Enable = TRUE, .ParameterNumber = object ? 1199 : 99};
+                const char *const words[] = {"digital input 77", object ? "parameter 1199" : "ParameterNumber is 99"};
+                for (int n = 0; n < 30; n++) {
+                    if (n == 10 && first)
+                        off ? (void)(reads.Enable = FALSE) : (void)(reads.InputNumber = 1);
+                    if (n == 10 && !first)
+                        off ? (void)(reader.Enable = FALSE) : (void)(reader.ParameterNumber = 1);
+                    MC_ReadDigitalInput(&reads);
+                    MC_ReadParameter(&reader);
+                    cycles(1);
+                    if (n < 10)
+                        told(words[1]);
+                    else if (n > 10)
+                        told(words[first]);
+                }
+                ck_assert(reads.Error == !first && reader.Error == first);
+                close_segment();
+            }
+}
+END_TEST
+
 /* ---- inputs and outputs ------------------------------------------------------------------------------------------ */
 
 START_TEST(test_read_digital_input)
@@ -585,6 +615,7 @@ int main(void)
     Suite *suite = suite_create("signals");
     TCase *tcase = tcase_create("signals");
     tcase_add_test(tcase, test_a_number_that_is_wrong_is_told_with_those_that_are_right);
+    tcase_add_test(tcase, test_a_wrong_number_is_told_when_another_one_is_right);
     tcase_add_test(tcase, test_read_digital_input);
     tcase_add_test(tcase, test_write_and_read_digital_output);
     tcase_add_test(tcase, test_output_stays_off_after_its_motor_was_away);
