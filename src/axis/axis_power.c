@@ -36,7 +36,7 @@ static const int64_t brake_ns = 20 * MS_IN_NS;
 static const double rests_in_s = 3e-3;
 static const double rest_counts = 50.0; /* tolerance, in counts of a CM1-E */
 /* A motor that does not come to rest by then is turned by something else than its ramp. */
-static const uint16_t longest_swing_ms = 2000;
+static const uint16_t longest_swing_ms = CM1E_AXIS_LONGEST_SWING_MS;
 
 /* Stops the motion, by our ramp or, during a homing, by the drive. Without torque there is nothing to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
@@ -292,6 +292,8 @@ static bool ramp_is_over(cm1e_axis_t *axis)
     return axis->now_ns >= axis->power.brake_until_ns && cm1e_axis_backlash_at_rest(axis) &&
            (!axis->power.shutting_down || cm1e_axis_outputs_off_first(axis));
 }
+
+bool cm1e_axis_swings(const cm1e_axis_t *axis) { return axis->power.held && axis_holds(axis); }
 
 void cm1e_axis_power_step(cm1e_axis_t *axis)
 {

@@ -2,6 +2,7 @@
 
 #include "bus/kept.h"
 #include "cm1e/scan_time.h"
+#include "core/clock.h"
 #include "core/in_task.h"
 #include "core/output.h"
 #include "core/sized.h"
@@ -340,11 +341,32 @@ static void cycle(cm1e_scheduler_t *s)
 
 static bool stop_asked(const cm1e_scheduler_t *s) { return atomic_load_explicit(&s->stop, memory_order_relaxed); }
 
+static bool any_swings(const cm1e_scheduler_t *s)
+{
+    for (uint32_t i = 0; i < s->axis_count; i++)
+        if (cm1e_axis_swings(s->axes[i]))
+            return true;
+    return false;
+}
+
+/* Whether the stop may go on, `time_ns` after its begin. The stop timeout is for the ramps: behind them a motor that a load
+ * still turns keeps its torque until it rests, and a drive gets the time to take it off. */
+static bool may_go_on(const cm1e_scheduler_t *s, int64_t time_ns, int64_t *swing_ns)
+{
+    static const int64_t longest_ns = CM1E_AXIS_LONGEST_SWING_MS * MS_IN_NS, least_off_ns = 100 * MS_IN_NS;
+    const int64_t ten_ns = 10 * s->cycle_time_ns, off_ns = ten_ns > least_off_ns ? ten_ns : least_off_ns;
+    const int64_t over_ns = time_ns - s->config.stop_timeout_ns;
+    if (any_swings(s))
+        *swing_ns = time_ns;
+    return over_ns <= 0 || (over_ns <= longest_ns + off_ns && time_ns - *swing_ns <= off_ns);
+}
+
 static cm1e_error_t shut_down(cm1e_scheduler_t *s, cm1e_diag_t *diag)
 {
     const int64_t begin_ns = cm1e_scheduler_time_ns(s);
+    int64_t swing_ns = INT64_MIN / 2; /* never */
     s->shutting_down = true;
-    while (!s->shut_down && cm1e_scheduler_time_ns(s) - begin_ns <= s->config.stop_timeout_ns)
+    while (!s->shut_down && may_go_on(s, cm1e_scheduler_time_ns(s) - begin_ns, &swing_ns))
         cycle(s);
     if (s->shut_down && s->refused)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,

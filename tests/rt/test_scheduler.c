@@ -539,6 +539,25 @@ START_TEST(test_stop_timeout_that_is_too_short_is_told)
 }
 END_TEST
 
+/** A heavy load swings behind the end of the ramp, longer than the timeout: the torque stays until it rests, and the run has
+ *  no error. */
+START_TEST(test_stop_timeout_ends_no_torque_that_a_load_needs)
+{
+    for (int64_t timeout_ns = 40 * MS; timeout_ns <= 220 * MS; timeout_ns += 20 * MS) {
+        machine_t machine = {.axis_count = 1, .load_inertia = 0.01, .config = {.stop_timeout_ns = timeout_ns}};
+        machine_open(&machine);
+        mover_t mover = make_mover(&machine, 300 * MS);
+        mover.turn.Acceleration = 0; /* the most that there is: the load swings */
+        machine_add(&machine, "", 0, 0, moving_program, &mover);
+        cm1e_diag_t diag = {0};
+        ck_assert_msg(cm1e_scheduler_run(machine.scheduler, 0, &diag) == CM1E_OK, "%s", diag.text);
+        ck_assert_int_gt(cm1e_scheduler_time_ns(machine.scheduler), 300 * MS + 200 * MS);
+        expect_all_at_rest(&machine);
+        machine_close(&machine);
+    }
+}
+END_TEST
+
 START_TEST(test_longest_stop_timeout_is_no_short_one)
 {
     machine_t machine = {.axis_count = 1, .config = {.stop_timeout_ns = INT64_MAX}};
@@ -629,6 +648,7 @@ int main(void)
     tcase_add_test(all, test_an_older_program_has_shorter_structs);
     tcase_add_test(all, test_scheduler_of_an_earlier_operation_is_refused);
     tcase_add_test(all, test_stop_timeout_that_is_too_short_is_told);
+    tcase_add_test(all, test_stop_timeout_ends_no_torque_that_a_load_needs);
     tcase_add_test(all, test_longest_stop_timeout_is_no_short_one);
     tcase_add_loop_test(all, test_a_late_first_cycle_finds_the_slaves_in_operational, 0, 12);
     tcase_add_test(all, test_a_late_first_cycle_without_a_slave_is_an_error_in_words);

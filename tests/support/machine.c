@@ -9,8 +9,10 @@ void machine_open(machine_t *machine)
         config.axes[i] = (cm1e_axis_config_t){.address = 1, .channel = (uint8_t)(i + 1), .motor = "CM1", .k37 = 10,
                                               .k37_stated = true};
     }
-    for (uint32_t i = 0; i < machine->axis_count && !machine->bridged; i++)
+    for (uint32_t i = 0; i < machine->axis_count && !machine->bridged; i++) {
         config.axes[i].mapping = machine->mapping;
+        config.axes[i].sim.load_inertia = machine->load_inertia;
+    }
     for (uint32_t i = 0; i < machine->axis_count; i++)
         if (machine->types[i] != CM1E_AXIS_MOTOR)
             config.axes[i] = (cm1e_axis_config_t){.type = machine->types[i], .counts_per_unit = 1000};
