@@ -1,13 +1,18 @@
 #!/usr/bin/env python3
 """scripts/mutate: which defects it can plant in a source, and that it leaves comments, texts and the lines alone;
-which tests it runs for a line, and its table; that no entry of its list of equivalent defects is old.
+which tests it runs for a line, and its table; that no entry of its list of equivalent defects is old; that a program
+with a defect, which may wait for ever, ends with the script, however that ends.
 
     test_mutate.py <source folder>
 """
 import importlib.machinery
 import importlib.util
 import re
+import signal
+import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 
 SOURCE = '''#define MOST 7
@@ -30,12 +35,62 @@ WANTED = {
 }
 
 
+WAITS = """#!/bin/sh
+echo $$ >"$0.pids.new"
+mv "$0.pids.new" "$0.pids"
+exec sleep 1000
+"""
+
+
+def runs(pid):
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
+    except OSError:
+        return False
+    return state != "Z" # nobody may be there to wait for it
+
+
+def until(condition, what):
+    deadline = time.monotonic() + 30
+    while not condition():
+        assert time.monotonic() < deadline, what
+        time.sleep(0.02)
+
+
+def check_ends_with_the_script(number):
+    """Starts this file anew, as a script that runs a program which waits for ever, and ends that."""
+    with tempfile.TemporaryDirectory() as folder:
+        program, pids = Path(folder) / "waits", Path(folder) / "waits.pids"
+        (Path(folder) / "tests").mkdir()
+        program.write_text(WAITS)
+        program.chmod(0o755)
+        script = subprocess.Popen([sys.executable, __file__, sys.argv[1], folder], stderr=subprocess.DEVNULL)
+        until(pids.exists, "the program began")
+        pid = int(pids.read_text())
+        assert runs(pid)
+        script.send_signal(number)
+        script.wait(30)
+        until(lambda: not runs(pid), f"the program ended after signal {number}")
+
+
+def run_one(mutate, folder):
+    mutate.BUILD = Path(folder)
+    mutate.arguments = lambda: mutate.argparse.Namespace(sources=[])
+    mutate.places = lambda sources: mutate.run_test(mutate.BUILD / "waits", 1000, mutate.BUILD)
+    mutate.main()
+
+
 def main():
     path = str(Path(sys.argv[1]) / "scripts/mutate")
     loader = importlib.machinery.SourceFileLoader("mutate", path)
     sys.dont_write_bytecode = True
     mutate = importlib.util.module_from_spec(importlib.util.spec_from_loader("mutate", loader))
     loader.exec_module(mutate)
+    if len(sys.argv) > 2:
+        run_one(mutate, sys.argv[2])
+        return
+    for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        check_ends_with_the_script(number)
     found = list(mutate.defects("a.c", SOURCE))
     assert {(SOURCE[begin:end], new) for _, begin, end, new in found} == WANTED, found
     assert found == list(mutate.defects("a.c", SOURCE))
