@@ -178,6 +178,25 @@ int attach_if_running(const common_options_t *options, cm1e_bus_config_t *config
     return error == CM1E_OK || (error == CM1E_ERROR_NOT_FOUND && !options->attach) ? EXIT_OK : fail(&diag);
 }
 
+void lost_by_network(const json_t *statistics, char *text, size_t size)
+{
+    const json_t *networks = json_object_get(statistics, "networks"), *network;
+    size_t i, at = 0;
+    text[0] = '\0';
+    if (json_array_size(networks) < 2)
+        return;
+    json_array_foreach (networks, i, network) {
+        const char *name = json_string_value(json_object_get(network, "network"));
+        const char *interface = json_string_value(json_object_get(network, "interface"));
+        const json_int_t lost = json_integer_value(json_object_get(network, "lost_frames"));
+        if (lost > 0 && at < size)
+            at += (size_t)snprintf(text + at, size - at, "%s%s %lld", at ? ", " : " (",
+                                   name && name[0] ? name : interface ? interface : "?", (long long)lost);
+    }
+    if (at > 0 && at < size)
+        snprintf(text + at, size - at, ")");
+}
+
 static volatile sig_atomic_t signalled;
 
 static void on_signal(int number)

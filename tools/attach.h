@@ -52,6 +52,10 @@ int attach_if_running(const common_options_t *options, cm1e_bus_config_t *config
  *  refuses or is gone, `diag` says why. */
 json_t *ask_program(cm1e_control_t *control, json_t *request, const char *member, cm1e_diag_t *diag);
 
+/** Which of several networks lost how many frames, by the program's `statistics`: " (left 3, right 1)"; "": it has one
+ *  network, or lost none. */
+void lost_by_network(const json_t *statistics, char *text, size_t size);
+
 /** Which of the program's `axes` a word means, by name, else by number: counted from 1; 0: none. As find_axis(). */
 size_t axis_of_program(const json_t *axes, const char *word);
 

@@ -8,6 +8,7 @@
 #include <term.h>
 #include <unistd.h>
 
+#include "attach.h"
 #include "command.h"
 #include "monitor.h"
 
@@ -257,8 +258,10 @@ static void draw_program(const monitor_t *m)
              us_of(s, "cycle_time", "maximum_ns"), us_of(s, "wake_up_latency", "mean_ns"),
              us_of(s, "wake_up_latency", "maximum_ns"));
     mvaddnstr(1, 0, line, COLS - 1);
-    snprintf(line, sizeof line, "lost frames %lld  overruns %lld  working counter errors %lld  cycles %lld",
-             (long long)count_of(bus, "lost_frames"), (long long)count_of(s, "overruns"),
+    char networks[128];
+    lost_by_network(s, networks, sizeof networks);
+    snprintf(line, sizeof line, "lost frames %lld%s  overruns %lld  working counter errors %lld  cycles %lld",
+             (long long)count_of(bus, "lost_frames"), networks, (long long)count_of(s, "overruns"),
              (long long)count_of(bus, "working_counter_errors"), (long long)count_of(s, "cycles"));
     attron(COLOR_PAIR(trouble ? BAD : GOOD));
     mvaddnstr(2, 0, line, COLS - 1);

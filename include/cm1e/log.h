@@ -31,8 +31,7 @@ typedef enum cm1e_log_kind {
     CM1E_LOG_WORKING_COUNTER, /**< as LOST_FRAMES: cycles with a wrong working counter */
     CM1E_LOG_UNSENT_FRAMES,   /**< as LOST_FRAMES: frames that the network interface did not take */
     CM1E_LOG_OTHER_MASTER,    /**< as LOST_FRAMES: frames of another master */
-    CM1E_LOG_SYNC_LOST,       /**< as OVERRUN, of all buses together: clocks that left the reference clock, or that
-                                   reference was lost */
+    CM1E_LOG_SYNC_LOST,       /**< as LOST_FRAMES: clocks that left the reference clock, or that reference was lost */
     CM1E_LOG_EMERGENCY,       /**< of a slave, whether it has an axis or not; code: the error code, detail: its
                                    position, 65536 times the error register, and 16777216 times the number of its bus
                                    (0 = first); value: its five bytes as a number, the

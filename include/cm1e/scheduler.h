@@ -67,13 +67,15 @@ typedef struct cm1e_distribution {
 typedef struct cm1e_scheduler_statistics_t {
     cm1e_distribution_t cycle_time, wake_up_latency, execution_time;
     uint64_t cycles, overruns;   /**< overruns: cycles whose work ended after the start of the next one */
-    cm1e_bus_counters_t bus;     /**< of this run; cm1e_bus_counters() has those of the bus since it was opened */
+    cm1e_bus_counters_t bus;     /**< of this run, of all buses together, but its cycles are those of the first one;
+                                      cm1e_bus_counters() has those of a bus since it was opened */
     bool realtime;               /**< true: SCHED_FIFO and locked memory are in force */
     char advice[512];            /**< what to do about a missing privilege; "": none is missing */
     char control_socket[112];    /**< path at which other programs can watch this run (docs/CONTROL.md); "": none */
     char control_advice[400];    /**< why there is none although it is configured, and the cure; "": there is one, or
                                       none is wanted */
-    cm1e_bus_clocks_t clocks;    /**< distributed clocks, where they are used */
+    cm1e_bus_clocks_t clocks;    /**< distributed clocks, where they are used: of the bus that leads the others, but the
+                                      losses are those of all; cm1e_bus_clocks() has those of a bus */
 } cm1e_scheduler_statistics_t;
 
 /* The structs of this header may grow at their ends in later versions. The functions ..._sized() are told the size that

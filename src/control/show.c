@@ -243,24 +243,48 @@ static json_t *clocks_of(const cm1e_bus_clocks_t *clocks)
                      (json_int_t)clocks->sync_losses);
 }
 
+static json_t *counters_of(const cm1e_bus_counters_t *counters)
+{
+    json_t *bus = json_object();
+    json_object_set_new(bus, "cycles", number(counters->cycles));
+    json_object_set_new(bus, "lost_frames", number(counters->lost_frames));
+    json_object_set_new(bus, "working_counter_errors", number(counters->working_counter_errors));
+    json_object_set_new(bus, "late_frames", number(counters->late_frames));
+    json_object_set_new(bus, "unsent_frames", number(counters->unsent_frames));
+    json_object_set_new(bus, "foreign_frames", number(counters->foreign_frames));
+    json_object_set_new(bus, "mailbox_retries", number(counters->mailbox_retries));
+    return bus;
+}
+
+static json_t *networks_of(const cm1e_scheduler_t *scheduler)
+{
+    json_t *networks = json_array();
+    const cm1e_bus_t *bus;
+    for (uint32_t i = 0; (bus = cm1e_scheduler_bus_at(scheduler, i)); i++) {
+        cm1e_bus_counters_t counters;
+        const uint64_t sync_losses = cm1e_scheduler_counted(scheduler, i, &counters);
+        const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
+        json_t *network = counters_of(&counters);
+        json_object_set_new(network, "network", cm1e_show_text(config->name));
+        json_object_set_new(network, "interface", cm1e_show_text(config->interface_name));
+        json_object_set_new(network, "sync_losses", number(sync_losses));
+        json_array_append_new(networks, network);
+    }
+    return networks;
+}
+
 json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler)
 {
     cm1e_scheduler_statistics_t s;
     cm1e_scheduler_statistics(scheduler, &s);
-    json_t *bus = json_object(), *shown = json_object();
-    json_object_set_new(bus, "cycles", number(s.bus.cycles));
-    json_object_set_new(bus, "lost_frames", number(s.bus.lost_frames));
-    json_object_set_new(bus, "working_counter_errors", number(s.bus.working_counter_errors));
-    json_object_set_new(bus, "late_frames", number(s.bus.late_frames));
-    json_object_set_new(bus, "unsent_frames", number(s.bus.unsent_frames));
-    json_object_set_new(bus, "foreign_frames", number(s.bus.foreign_frames));
-    json_object_set_new(bus, "mailbox_retries", number(s.bus.mailbox_retries));
+    json_t *shown = json_object();
     json_object_set_new(shown, "cycles", number(s.cycles));
     json_object_set_new(shown, "overruns", number(s.overruns));
     json_object_set_new(shown, "cycle_time", distribution(&s.cycle_time));
     json_object_set_new(shown, "wake_up_latency", distribution(&s.wake_up_latency));
     json_object_set_new(shown, "execution_time", distribution(&s.execution_time));
-    json_object_set_new(shown, "bus", bus);
+    json_object_set_new(shown, "bus", counters_of(&s.bus));
+    json_object_set_new(shown, "networks", networks_of(scheduler));
     if (s.clocks.used)
         json_object_set_new(shown, "clocks", clocks_of(&s.clocks));
     json_object_set_new(shown, "realtime", json_boolean(s.realtime));

@@ -35,15 +35,3 @@ int64_t cm1e_clock_team_pace(clock_team_t *team)
     }
     return later_ns;
 }
-
-void cm1e_clock_team_look(const clock_team_t *team, cm1e_bus_clocks_t *clocks)
-{
-    cm1e_bus_clocks_t other;
-    cm1e_bus_clocks(clock_team_leader(team), clocks);
-    for (uint32_t i = 0; i < team->count; i++) {
-        if (i == team->leader)
-            continue;
-        cm1e_bus_clocks(team->buses[i], &other);
-        clocks->sync_losses += other.sync_losses;
-    }
-}

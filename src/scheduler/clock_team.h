@@ -27,7 +27,5 @@ void cm1e_clock_team_begin(clock_team_t *team);
 /** What the next cycle begins later, in ns. What the cycles of the other buses would be corrected by is left out.
  *  @rt cycle */
 int64_t cm1e_clock_team_pace(clock_team_t *team);
-/** The clocks of the leader, with the losses of all. @rt cycle */
-void cm1e_clock_team_look(const clock_team_t *team, cm1e_bus_clocks_t *clocks);
 
 #endif

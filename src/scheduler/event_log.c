@@ -82,22 +82,21 @@ static void look_at_counter(log_t *log, log_counters_t counters, cm1e_log_kind_t
     *counter = (log_counter_t){.told = total, .quiet_until_ns = run_ns + QUIET_NS};
 }
 
-void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
-                   uint64_t sync_losses, int64_t run_ns)
+void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns, int64_t run_ns)
 {
     for (uint32_t i = 0; i < count; i++)
         look_at_axis(log, axes[i], i, run_ns);
     look_at_counter(log, log->counters, CM1E_LOG_OVERRUN, overruns, 0, run_ns);
-    look_at_counter(log, log->counters, CM1E_LOG_SYNC_LOST, sync_losses, 0, run_ns);
 }
 
-void cm1e_log_bus(log_t *log, const cm1e_bus_counters_t *bus, uint32_t number, int64_t run_ns)
+void cm1e_log_bus(log_t *log, const cm1e_bus_counters_t *bus, uint64_t sync_losses, uint32_t number, int64_t run_ns)
 {
     log_counter_t *counters = log->slaves[number].counters;
     look_at_counter(log, counters, CM1E_LOG_LOST_FRAMES, bus->lost_frames, number, run_ns);
     look_at_counter(log, counters, CM1E_LOG_WORKING_COUNTER, bus->working_counter_errors, number, run_ns);
     look_at_counter(log, counters, CM1E_LOG_UNSENT_FRAMES, bus->unsent_frames, number, run_ns);
     look_at_counter(log, counters, CM1E_LOG_OTHER_MASTER, bus->foreign_frames, number, run_ns);
+    look_at_counter(log, counters, CM1E_LOG_SYNC_LOST, sync_losses, number, run_ns);
 }
 
 static void write_emergency(log_t *log, uint32_t number, uint32_t position, const cm1e_emergency_t *emergency,

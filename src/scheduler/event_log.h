@@ -65,10 +65,9 @@ void cm1e_log_free(log_t *log);
 /** @rt cycle */
 void cm1e_log_run(log_t *log, bool begins, int64_t run_ns);
 /** Called in every cycle, after its work. @rt cycle */
-void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
-                   uint64_t sync_losses, int64_t run_ns);
+void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns, int64_t run_ns);
 /** What a bus has counted in this run. `number`: of the bus, below CM1E_MAX_BUSES. @rt cycle */
-void cm1e_log_bus(log_t *log, const cm1e_bus_counters_t *bus, uint32_t number, int64_t run_ns);
+void cm1e_log_bus(log_t *log, const cm1e_bus_counters_t *bus, uint64_t sync_losses, uint32_t number, int64_t run_ns);
 /** The emergencies of a bus that came since the last call. `number`: of the bus, below CM1E_MAX_BUSES. @rt cycle */
 void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns);
 /** What the ports of its slaves have counted since the last call. @rt cycle */

@@ -151,7 +151,7 @@ static bool is_counter(cm1e_log_kind_t kind) { return kind >= CM1E_LOG_OVERRUN &
 
 static bool is_counter_of_bus(cm1e_log_kind_t kind)
 {
-    return kind > CM1E_LOG_OVERRUN && kind < CM1E_LOG_SYNC_LOST;
+    return is_counter(kind) && kind != CM1E_LOG_OVERRUN;
 }
 
 /** The bus of a record that is about one; NULL: the scheduler does not have it. */

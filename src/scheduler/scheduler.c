@@ -68,6 +68,11 @@ cm1e_bus_t *cm1e_scheduler_bus_at(const cm1e_scheduler_t *scheduler, uint32_t in
     return index < scheduler->member_count ? scheduler->members[index].bus : NULL;
 }
 
+uint64_t cm1e_scheduler_counted(const cm1e_scheduler_t *scheduler, uint32_t bus, cm1e_bus_counters_t *counters)
+{
+    return cm1e_statistics_read_bus(&scheduler->statistics, bus, counters);
+}
+
 const char *cm1e_scheduler_task_name(const cm1e_scheduler_t *scheduler, uint32_t index)
 {
     return index < scheduler->tasks.count ? scheduler->tasks.tasks[index].name : "";
@@ -247,7 +252,8 @@ static void end_cycle(cm1e_scheduler_t *s)
 {
     const int64_t end_ns = cm1e_clock_now(s->clock);
     cm1e_distribution_add(&s->statistics.execution_time, end_ns - s->begin_ns);
-    cm1e_statistics_note_bus(&s->statistics, &s->counters);
+    for (uint32_t i = 0; i < s->member_count; i++)
+        cm1e_statistics_note_bus(&s->statistics, i, &s->members[i].counters, s->members[i].sync_losses);
     s->trace.timing.execution_time_us = (double)(end_ns - s->begin_ns) * 1e-3;
     atomic_fetch_add_explicit(&s->statistics.cycles, 1, memory_order_relaxed);
     s->number++;
@@ -272,30 +278,24 @@ static void count_bus(member_t *member)
     };
 }
 
-/** Of each bus, and of all together. */
-static void count(cm1e_scheduler_t *s)
+static void look_at_clocks(cm1e_scheduler_t *s)
 {
-    count_bus(&s->members[0]);
-    s->counters = s->members[0].counters;
-    for (uint32_t i = 1; i < s->member_count; i++) {
-        const cm1e_bus_counters_t *more = &s->members[i].counters;
-        count_bus(&s->members[i]);
-        s->counters.lost_frames += more->lost_frames;
-        s->counters.working_counter_errors += more->working_counter_errors;
-        s->counters.late_frames += more->late_frames;
-        s->counters.foreign_frames += more->foreign_frames;
-        s->counters.unsent_frames += more->unsent_frames;
-        s->counters.mailbox_retries += more->mailbox_retries;
+    cm1e_bus_clocks_t clocks;
+    for (uint32_t i = 0; i < s->member_count; i++) {
+        cm1e_bus_clocks(s->members[i].bus, &clocks);
+        s->members[i].sync_losses = clocks.sync_losses;
+        if (s->members[i].bus == clock_team_leader(&s->clocks))
+            cm1e_statistics_note_clocks(&s->statistics, &clocks);
     }
 }
 
-static void log_news(cm1e_scheduler_t *s, uint64_t sync_losses)
+static void log_news(cm1e_scheduler_t *s)
 {
     const uint64_t overruns = atomic_load_explicit(&s->statistics.overruns, memory_order_relaxed);
     const int64_t now_ns = cm1e_scheduler_time_ns(s);
-    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, sync_losses, now_ns);
+    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, now_ns);
     for (uint32_t i = 0; i < s->member_count; i++) {
-        cm1e_log_bus(&s->log, &s->members[i].counters, i, now_ns);
+        cm1e_log_bus(&s->log, &s->members[i].counters, s->members[i].sync_losses, i, now_ns);
         cm1e_log_emergencies(&s->log, s->members[i].bus, i, now_ns);
         cm1e_log_ports(&s->log, s->members[i].bus, i, now_ns);
         cm1e_log_ring(&s->log, s->members[i].bus, i, now_ns);
@@ -306,13 +306,14 @@ static void log_news(cm1e_scheduler_t *s, uint64_t sync_losses)
 /** What others see of a cycle. */
 static void show(cm1e_scheduler_t *s)
 {
-    cm1e_bus_clocks_t clocks;
-    cm1e_clock_team_look(&s->clocks, &clocks);
-    cm1e_statistics_note_clocks(&s->statistics, &clocks);
-    count(s);
-    s->trace.timing.lost_frames = s->counters.lost_frames;
+    look_at_clocks(s);
+    s->trace.timing.lost_frames = 0;
+    for (uint32_t i = 0; i < s->member_count; i++) {
+        count_bus(&s->members[i]);
+        s->trace.timing.lost_frames += s->members[i].counters.lost_frames;
+    }
     cm1e_trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
-    log_news(s, clocks.sync_losses);
+    log_news(s);
     for (uint32_t bus = 0; bus < s->member_count; bus++)
         for (int i = 0; i < CM1E_WINDOWS; i++)
             if (s->windows[bus][i])
@@ -322,10 +323,9 @@ static void show(cm1e_scheduler_t *s)
 /** What waited for the next record of its kind, and the end. */
 static void log_end(cm1e_scheduler_t *s)
 {
-    cm1e_bus_clocks_t clocks;
-    cm1e_clock_team_look(&s->clocks, &clocks);
+    look_at_clocks(s);
     cm1e_log_wait_no_longer(&s->log);
-    log_news(s, clocks.sync_losses);
+    log_news(s);
     cm1e_log_run(&s->log, false, cm1e_scheduler_time_ns(s));
 }
 

@@ -26,6 +26,7 @@ typedef struct member {
     uint32_t first, end;    /**< its axes: axes[first] ... axes[end - 1] */
     cm1e_error_t received;  /**< in this cycle */
     cm1e_bus_counters_t counters, counters_before; /**< of this run, after this cycle; before it */
+    uint64_t sync_losses;   /**< after this cycle */
 } member_t;
 
 struct cm1e_scheduler {
@@ -46,7 +47,6 @@ struct cm1e_scheduler {
     log_t log;
     void *windows[CM1E_MAX_BUSES][CM1E_WINDOWS]; /**< of this run, by bus and kind; NULL: it has none */
     statistics_t statistics;
-    cm1e_bus_counters_t counters; /**< of all buses together, of this run, after this cycle */
     atomic_bool stop;      /**< a stop was requested */
     bool run;              /**< cm1e_scheduler_run() was called */
     bool shutting_down;    /**< programs no longer run */

@@ -40,15 +40,18 @@ void cm1e_distribution_add(distribution_t *distribution, int64_t time_ns)
     }
 }
 
-void cm1e_statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters)
+void cm1e_statistics_note_bus(statistics_t *statistics, uint32_t number, const cm1e_bus_counters_t *counters,
+                              uint64_t sync_losses)
 {
-    WRITE(statistics->bus_cycles, counters->cycles);
-    WRITE(statistics->lost_frames, counters->lost_frames);
-    WRITE(statistics->working_counter_errors, counters->working_counter_errors);
-    WRITE(statistics->late_frames, counters->late_frames);
-    WRITE(statistics->foreign_frames, counters->foreign_frames);
-    WRITE(statistics->unsent_frames, counters->unsent_frames);
-    WRITE(statistics->mailbox_retries, counters->mailbox_retries);
+    bus_numbers_t *numbers = &statistics->buses[number];
+    WRITE(numbers->cycles, counters->cycles);
+    WRITE(numbers->lost_frames, counters->lost_frames);
+    WRITE(numbers->working_counter_errors, counters->working_counter_errors);
+    WRITE(numbers->late_frames, counters->late_frames);
+    WRITE(numbers->foreign_frames, counters->foreign_frames);
+    WRITE(numbers->unsent_frames, counters->unsent_frames);
+    WRITE(numbers->mailbox_retries, counters->mailbox_retries);
+    WRITE(numbers->sync_losses, sync_losses);
 }
 
 void cm1e_statistics_note_clocks(statistics_t *statistics, const cm1e_bus_clocks_t *clocks)
@@ -62,7 +65,6 @@ void cm1e_statistics_note_clocks(statistics_t *statistics, const cm1e_bus_clocks
     WRITE(statistics->phase_error_ns, clocks->phase_error_ns);
     WRITE(statistics->phase_mean_ns, (int64_t)clocks->phase_mean_ns);
     WRITE(statistics->phase_maximum_ns, clocks->phase_maximum_ns);
-    WRITE(statistics->sync_losses, clocks->sync_losses);
 }
 
 static cm1e_bus_clocks_t read_clocks(const statistics_t *statistics)
@@ -75,7 +77,6 @@ static cm1e_bus_clocks_t read_clocks(const statistics_t *statistics)
         .phase_error_ns = READ(statistics->phase_error_ns),
         .phase_mean_ns = (double)READ(statistics->phase_mean_ns),
         .phase_maximum_ns = READ(statistics->phase_maximum_ns),
-        .sync_losses = READ(statistics->sync_losses),
     };
 }
 
@@ -106,6 +107,36 @@ void cm1e_distribution_read(const distribution_t *distribution, cm1e_distributio
         ;
 }
 
+uint64_t cm1e_statistics_read_bus(const statistics_t *statistics, uint32_t number, cm1e_bus_counters_t *copy)
+{
+    const bus_numbers_t *numbers = &statistics->buses[number];
+    *copy = (cm1e_bus_counters_t){
+        .cycles = READ(numbers->cycles),
+        .lost_frames = READ(numbers->lost_frames),
+        .working_counter_errors = READ(numbers->working_counter_errors),
+        .late_frames = READ(numbers->late_frames),
+        .foreign_frames = READ(numbers->foreign_frames),
+        .unsent_frames = READ(numbers->unsent_frames),
+        .mailbox_retries = READ(numbers->mailbox_retries),
+    };
+    return READ(numbers->sync_losses);
+}
+
+static void read_all_buses(const statistics_t *statistics, cm1e_bus_counters_t *all, uint64_t *sync_losses)
+{
+    *sync_losses = cm1e_statistics_read_bus(statistics, 0, all);
+    for (uint32_t number = 1; number < CM1E_MAX_BUSES; number++) {
+        cm1e_bus_counters_t more;
+        *sync_losses += cm1e_statistics_read_bus(statistics, number, &more);
+        all->lost_frames += more.lost_frames;
+        all->working_counter_errors += more.working_counter_errors;
+        all->late_frames += more.late_frames;
+        all->foreign_frames += more.foreign_frames;
+        all->unsent_frames += more.unsent_frames;
+        all->mailbox_retries += more.mailbox_retries;
+    }
+}
+
 void cm1e_statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy)
 {
     *copy = (cm1e_scheduler_statistics_t){0};
@@ -114,16 +145,8 @@ void cm1e_statistics_read(const statistics_t *statistics, cm1e_scheduler_statist
     cm1e_distribution_read(&statistics->execution_time, &copy->execution_time);
     copy->cycles = READ(statistics->cycles);
     copy->overruns = READ(statistics->overruns);
-    copy->bus = (cm1e_bus_counters_t){
-        .cycles = READ(statistics->bus_cycles),
-        .lost_frames = READ(statistics->lost_frames),
-        .working_counter_errors = READ(statistics->working_counter_errors),
-        .late_frames = READ(statistics->late_frames),
-        .foreign_frames = READ(statistics->foreign_frames),
-        .unsent_frames = READ(statistics->unsent_frames),
-        .mailbox_retries = READ(statistics->mailbox_retries),
-    };
     copy->clocks = read_clocks(statistics);
+    read_all_buses(statistics, &copy->bus, &copy->clocks.sync_losses);
     if (atomic_load_explicit(&statistics->ready, memory_order_acquire)) {
         copy->realtime = READ(statistics->realtime);
         memcpy(copy->advice, statistics->advice, sizeof copy->advice);

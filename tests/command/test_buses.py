@@ -8,6 +8,8 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
+import time
 
 BIN = os.path.join(os.path.abspath(sys.argv[1]), "bin")
 FILE = os.path.join(sys.argv[2], "examples", "two_buses.yaml")
@@ -53,6 +55,23 @@ expect(nowhere.returncode == WRONG_USE and "--network" in nowhere.stderr, nowher
 example = subprocess.run([os.path.join(BIN, "16_two_networks"), os.path.join(sys.argv[2], "examples", "bridge.yaml")],
                          capture_output=True, text=True, timeout=60)
 expect(example.returncode != 0 and "one network" in example.stderr, example)
+
+# A program on two networks tells of each what it counted, at the socket of either.
+with tempfile.TemporaryDirectory() as folder:
+    environment = {**os.environ, "CM1E_RUNTIME_DIR": folder}
+    words = [os.path.join(BIN, "16_two_networks"), FILE]
+    with subprocess.Popen(words, env=environment, stdout=subprocess.DEVNULL) as program:
+        end = time.monotonic() + 20
+        while len(os.listdir(folder)) < 2 and time.monotonic() < end:
+            time.sleep(0.02)
+        words = [os.path.join(BIN, "cm1e"), "monitor", "--json", "--attach", str(program.pid), "--network", "right"]
+        shown = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=60)
+        told = json.loads(shown.stdout).get("statistics", {})
+        networks = told.get("networks", [])
+        expect([(one["network"], one["interface"]) for one in networks] == [("left", "sim"), ("right", "sim")] and
+               all(one["cycles"] > 0 and one["sync_losses"] == 0 for one in networks), shown)
+        expect(abs(sum(one["lost_frames"] for one in networks) - told["bus"]["lost_frames"]) <= 100, shown)
+        program.terminate()
 
 for fault in faults:
     print(fault)

@@ -379,7 +379,7 @@ END_TEST
 static void write_many(log_t *ring, uint64_t count)
 {
     for (uint64_t i = 1; i <= count; i++) /* one record each: 200 ms lie between them */
-        cm1e_log_look(ring, NULL, 0, i, 0, (int64_t)i * 200 * MS);
+        cm1e_log_look(ring, NULL, 0, i, (int64_t)i * 200 * MS);
 }
 
 START_TEST(test_a_full_ring_keeps_the_newest_and_counts_the_others)

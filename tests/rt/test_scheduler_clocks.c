@@ -7,6 +7,7 @@
 #include "cm1e/log.h"
 #include "cm1e/sim.h"
 #include "machine.h"
+#include "scheduler/scheduler_window.h"
 
 enum { AXES = 2, MS = 1000000 };
 
@@ -182,6 +183,7 @@ typedef struct pair {
     cm1e_bus_t *buses[BUSES];
     cm1e_scheduler_t *scheduler;
     int64_t cycle, silent_from, silent_to; /* cycles in which the first bus gets no frame */
+    int64_t stepped;                       /* cycle in which the second bus loses five frames and a clock; 0: none */
     int64_t lossy_from, lossy_to;          /* cycles in which the second bus loses frames now and then */
     double worst_ns;                       /* of the reference clocks against each other */
     double settled_ns, phase_ns;           /* the same after 5 s; then the largest mean phase of the second bus */
@@ -198,6 +200,7 @@ static cm1e_bus_t *start_one(const char *name, const char *reference, const char
     char answer[200];
     ck_assert(cm1e_bus_config_init(&config, "sim", AXES) == CM1E_OK);
     config.virtual_time = true;
+    snprintf(config.name, sizeof config.name, "%s", name);
     for (int i = 0; i < AXES; i++)
         snprintf(config.axes[i].name, sizeof config.axes[i].name, "%s%d", name, i + 1);
     strcpy(config.axes[1].device, "cia402");
@@ -241,6 +244,10 @@ static void watch_clocks(void *context)
         cm1e_bus_simulate(p->buses[FIRST], "replug 1", answer, sizeof answer);
     if (p->cycle >= p->lossy_from && p->cycle < p->lossy_to && p->cycle % 97 == 0)
         cm1e_bus_simulate(p->buses[SECOND], p->cycle % 2 ? "lose 2" : "lose 5", answer, sizeof answer);
+    if (p->stepped > 0 && p->cycle == p->stepped) {
+        cm1e_bus_simulate(p->buses[SECOND], "lose 5", answer, sizeof answer);
+        cm1e_bus_simulate(p->buses[SECOND], "clock 2 step 3000", answer, sizeof answer);
+    }
     const bool settled = p->cycle > 5000;
     if (p->cycle++ % 50 == 0) {
         const double apart_ns = fabs(ahead_ns(p));
@@ -330,6 +337,38 @@ START_TEST(test_the_second_bus_follows_although_it_loses_frames)
 }
 END_TEST
 
+/** A clock of the bus that leads none is lost: the record and the numbers are of that bus. */
+START_TEST(test_a_clock_that_is_lost_is_told_of_its_own_bus)
+{
+    pair_t p;
+    start_pair(&p);
+    p.stepped = 6000;
+    run_pair(&p, FIRST, 8);
+    static cm1e_log_event_t events[CM1E_LOG_EVENTS];
+    const size_t count = cm1e_log_read(p.scheduler, 0, events, CM1E_LOG_EVENTS, NULL);
+    unsigned told = 0;
+    for (size_t i = 0; i < count; i++) {
+        char text[512];
+        if (events[i].kind != CM1E_LOG_SYNC_LOST)
+            continue;
+        cm1e_log_text(p.scheduler, &events[i], text, sizeof text);
+        ck_assert_msg(events[i].value == SECOND && strstr(text, "network B") == text, "%s", text);
+        told += (unsigned)events[i].code;
+    }
+    cm1e_bus_counters_t counters;
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(p.scheduler, &statistics);
+    ck_assert_uint_eq(told, 1);
+    ck_assert_uint_eq(cm1e_scheduler_counted(p.scheduler, FIRST, &counters), 0);
+    ck_assert_uint_eq(counters.lost_frames, 0);
+    ck_assert_uint_eq(cm1e_scheduler_counted(p.scheduler, SECOND, &counters), 1);
+    ck_assert_uint_gt(counters.lost_frames, 0);
+    ck_assert_uint_eq(statistics.bus.lost_frames, counters.lost_frames);
+    ck_assert_uint_eq(statistics.clocks.sync_losses, 1);
+    close_pair(&p);
+}
+END_TEST
+
 START_TEST(test_clocks_that_follow_no_common_one_are_refused)
 {
     pair_t p;
@@ -376,6 +415,7 @@ int main(void)
     tcase_add_loop_test(all, test_the_clocks_of_a_second_bus_follow_those_of_the_first, 0, BUSES);
     tcase_add_test(all, test_the_second_bus_keeps_the_time_of_a_first_one_that_is_silent);
     tcase_add_test(all, test_the_second_bus_follows_although_it_loses_frames);
+    tcase_add_test(all, test_a_clock_that_is_lost_is_told_of_its_own_bus);
     tcase_add_test(all, test_clocks_that_follow_no_common_one_are_refused);
     tcase_add_test(all, test_the_lead_goes_over_when_a_bus_stops);
     suite_add_tcase(suite, all);

@@ -210,10 +210,12 @@ static void look_at_run(doctor_t *doctor, const json_t *statistics)
     const json_t *bus = json_object_get(statistics, "bus");
     const json_int_t overruns = number(statistics, "overruns"), lost = number(bus, "lost_frames"),
                      foreign = number(bus, "foreign_frames");
+    char networks[128];
+    lost_by_network(statistics, networks, sizeof networks);
     finding_t *finding =
         doctor_find(doctor, overruns || lost ? FINDING_PROBLEM : FINDING_GOOD, group, "cycles of the program",
-                    "%lld, %lld of them too long, %lld lost frames", (long long)number(statistics, "cycles"),
-                    (long long)overruns, (long long)lost);
+                    "%lld, %lld of them too long, %lld lost frames%s", (long long)number(statistics, "cycles"),
+                    (long long)overruns, (long long)lost, networks);
     if (overruns || lost)
         doctor_advise(finding, "A cycle without an answer holds the set-points of all axes.",
                       "See the findings on machine and interface, and on the connections below.", "%s", "");
