@@ -334,7 +334,7 @@ static json_t *recover(control_request_t *request, control_run_t *run, const jso
 
 static json_t *variables(control_request_t *request, control_run_t *run, const json_t *message)
 {
-    char text[300];
+    char text[500];
     json_int_t from;
     uint32_t row = 0;
     const json_t *only = json_object_get(message, "name");
@@ -357,7 +357,7 @@ static json_t *variables(control_request_t *request, control_run_t *run, const j
 
 static json_t *variable(control_request_t *request, control_run_t *run, const json_t *message)
 {
-    char text[400];
+    char text[600];
     cm1e_error_t error = CM1E_OK;
     json_t *refused = check_consent(request, run, "Writing or forcing a variable");
     request->variable.forced.client = request->client;

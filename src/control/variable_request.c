@@ -124,7 +124,7 @@ bool cm1e_variable_named(const view_t *view, const char *name, uint32_t *row, ch
     *row = cm1e_variables_find(variables, name);
     for (uint32_t i = 0; i < variables->count && *row == variables->count; i++)
         cm1e_near_look(&near, variables->rows[i].name);
-    snprintf(text, size, "The program has no variable \"%.100s\"%.120s", name, cm1e_near_text(&near, meant, sizeof meant));
+    snprintf(text, size, "The program has no variable \"%.200s\"%s", name, cm1e_near_text(&near, meant, sizeof meant));
     return *row < variables->count;
 }
 

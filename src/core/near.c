@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum { WORD_BYTES = 64, NEAR_PART = 3, PREFIX_BYTES = 2 };
 
@@ -32,15 +33,27 @@ size_t cm1e_edit_distance(const char *a, const char *b)
     return last[columns];
 }
 
+/** Bytes of the parts, each with its point, that both paths begin with. */
+static size_t common_parts(const char *a, const char *b)
+{
+    size_t parts = 0;
+    for (size_t i = 0; a[i] && lower(a[i]) == lower(b[i]); i++)
+        if (a[i] == '.')
+            parts = i + 1;
+    return parts;
+}
+
 void cm1e_near_look(cm1e_near_t *near, const char *candidate)
 {
-    const size_t length = strlen(near->word);
+    const size_t parts = common_parts(near->word, candidate);
+    const char *word = near->word + parts, *other = candidate + parts;
+    const size_t length = strlen(word);
     const size_t allowed = length / NEAR_PART > 1 ? length / NEAR_PART : 1;
-    size_t distance = cm1e_edit_distance(near->word, candidate);
-    if (length >= PREFIX_BYTES && strncasecmp(near->word, candidate, length) == 0)
+    size_t distance = cm1e_edit_distance(word, other);
+    if (length >= PREFIX_BYTES && strncasecmp(word, other, length) == 0)
         distance = least(distance, allowed);
     /* A word of which no letter is kept is not near. */
-    if (distance > allowed || distance >= length || (near->nearest && distance >= near->distance))
+    if (distance > allowed || distance >= parts + length || (near->nearest && distance >= near->distance))
         return;
     near->nearest = candidate;
     near->distance = distance;
@@ -48,7 +61,8 @@ void cm1e_near_look(cm1e_near_t *near, const char *candidate)
 
 const char *cm1e_near_text(const cm1e_near_t *near, char *text, size_t size)
 {
-    snprintf(text, size, "%s%.60s%s", near->nearest ? "; did you mean \"" : "", near->nearest ? near->nearest : "",
-             near->nearest ? "\"?" : "");
+    const int length = near->nearest ? snprintf(text, size, "; did you mean \"%s\"?", near->nearest) : 0;
+    if (length <= 0 || (size_t)length >= size)
+        text[0] = '\0';
     return text;
 }

@@ -89,10 +89,13 @@ static void setting(st_t *st, task_t *task, arg_t *arg)
 
 static task_t *find_task(st_t *st, const instance_t *instance)
 {
-    for (task_t *task = st->tree.tasks; task; task = task->next)
+    cm1e_near_t near = {.word = instance->task_name};
+    for (task_t *task = st->tree.tasks; task; task = task->next) {
         if (strcasecmp(task->name, instance->task_name) == 0)
             return task;
-    cm1e_st_report(st, instance->place, "there is no task \"%s\"", instance->task_name);
+        cm1e_near_look(&near, task->name);
+    }
+    cm1e_st_report(st, instance->place, "there is no task \"%s\"%s", instance->task_name, cm1e_st_meant(st, &near));
     return NULL;
 }
 
@@ -102,8 +105,10 @@ static void instance_args(st_t *st, instance_t *instance)
     for (arg_t *arg = instance->args; arg; arg = arg->next) {
         var_t *var = arg->name ? cm1e_st_map_get(instance->unit->names, arg->name) : NULL;
         if (!var || var->section != (arg->output ? V_OUTPUT : V_INPUT) || !arg->value) {
-            cm1e_st_report(st, arg->place, "the program \"%s\" has no %s \"%s\"", instance->unit->name,
-                           arg->output ? "output" : "input", arg->name ? arg->name : "?");
+            cm1e_st_report(st, arg->place, "the program \"%s\" has no %s \"%s\"%s", instance->unit->name,
+                           arg->output ? "output" : "input", arg->name ? arg->name : "?",
+                           cm1e_st_meant_var(st, arg->name ? arg->name : "", instance->unit->vars,
+                                             1u << (arg->output ? V_OUTPUT : V_INPUT)));
             continue;
         }
         arg->parameter = var;
@@ -117,11 +122,26 @@ static void instance_args(st_t *st, instance_t *instance)
     }
 }
 
+static void look_at_program(const char *name, void *value, void *context)
+{
+    const unit_t *unit = value;
+    if (unit->kind == U_PROGRAM)
+        cm1e_near_look(context, name);
+}
+
+static const char *meant_program(st_t *st, const char *word)
+{
+    cm1e_near_t near = {.word = word};
+    cm1e_st_map_each(st->units, look_at_program, &near);
+    return cm1e_st_meant(st, &near);
+}
+
 static void check_instance(st_t *st, instance_t *instance)
 {
     unit_t *unit = cm1e_st_map_get(st->units, instance->program_name);
     if (!unit || unit->kind != U_PROGRAM) {
-        cm1e_st_report(st, instance->place, "there is no program \"%s\"", instance->program_name);
+        cm1e_st_report(st, instance->place, "there is no program \"%s\"%s", instance->program_name,
+                       meant_program(st, instance->program_name));
         return;
     }
     instance->unit = unit;

@@ -129,7 +129,8 @@ static void check_external(st_t *st, var_t *var)
     var->type = cm1e_st_resolve(st, var->type);
     var->global = cm1e_st_map_get(st->globals, var->name);
     if (!var->global) {
-        cm1e_st_report(st, var->place, "there is no global variable \"%s\" (VAR_GLOBAL)", var->name);
+        cm1e_st_report(st, var->place, "there is no global variable \"%s\" (VAR_GLOBAL)%s", var->name,
+                       cm1e_st_meant_name(st, var->name, st->globals));
         return;
     }
     var->global->type = cm1e_st_resolve(st, var->global->type);

@@ -76,6 +76,13 @@ static void name(st_t *st, expr_t *expr)
     }
 }
 
+static void look_at_enumeration(const char *name, void *value, void *context)
+{
+    const type_t *type = value;
+    if (type->kind == T_ENUM)
+        cm1e_near_look(context, name);
+}
+
 /** TYPE#NAME, and TYPE.NAME as in TwinCAT. */
 static void enumerator_of(st_t *st, expr_t *expr, const char *type_name)
 {
@@ -83,7 +90,9 @@ static void enumerator_of(st_t *st, expr_t *expr, const char *type_name)
     type_t *type = cm1e_st_lookup(st, st->types, expr->scope, expr->place, type_name);
     type = type ? cm1e_st_resolve(st, type) : NULL;
     if (!type || type->kind != T_ENUM) {
-        cm1e_st_report(st, expr->place, "there is no enumeration \"%s\"", type_name);
+        cm1e_near_t near = {.word = type_name};
+        cm1e_st_map_each(st->types, look_at_enumeration, &near);
+        cm1e_st_report(st, expr->place, "there is no enumeration \"%s\"%s", type_name, cm1e_st_meant(st, &near));
         set_wrong(st, expr);
         return;
     }
@@ -127,7 +136,7 @@ static void unknown_member(st_t *st, expr_t *expr, const type_t *type)
     char text[CM1E_NEAR_TEXT_BYTES];
     cm1e_near_t near = {.word = expr->name};
     for (const var_t *other = type->members; other; other = other->next)
-        if (other->section != V_LOCAL && other->section != V_TEMP)
+        if (expr->a->kind == E_THIS || (other->section != V_LOCAL && other->section != V_TEMP))
             cm1e_near_look(&near, other->name);
     cm1e_st_report(st, expr->place, "%s has no \"%s\"%s", type->name, expr->name,
                    cm1e_near_text(&near, text, sizeof text));
@@ -163,6 +172,20 @@ static bool of_program(st_t *st, expr_t *expr)
     return true;
 }
 
+/** MAIN.x where that program has no such variable. */
+static bool unknown_in_program(st_t *st, expr_t *expr)
+{
+    const unit_t *unit = !expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name)
+        ? program_named(st, expr->a->name) : NULL;
+    if (!unit || unit->kind != U_PROGRAM)
+        return false;
+    cm1e_st_report(st, expr->place, "the program \"%s\" has no variable \"%s\" that others could reach%s", unit->name,
+                   expr->name, cm1e_st_meant_var(st, expr->name, unit->vars,
+                                                 ~(1u << V_TEMP | 1u << V_EXTERNAL | 1u << V_IN_OUT)));
+    set_wrong(st, expr);
+    return true;
+}
+
 static void member(st_t *st, expr_t *expr)
 {
     if (of_program(st, expr))
@@ -176,6 +199,8 @@ static void member(st_t *st, expr_t *expr)
         return;
     }
     if (cm1e_st_view(st, expr) || cm1e_st_read_property(st, expr))
+        return;
+    if (unknown_in_program(st, expr))
         return;
     if (!expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name) &&
         !cm1e_st_map_get(st->enumerators, expr->a->name) &&

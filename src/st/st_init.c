@@ -49,6 +49,18 @@ static const var_t *parameter_named(const unit_t *unit, const char *name)
     return NULL;
 }
 
+static const char *meant_parameter(st_t *st, const unit_t *unit, const char *name)
+{
+    cm1e_near_t near = {.word = name};
+    for (; unit; unit = unit->object.base) {
+        const unit_t *method = cm1e_st_init_method(unit);
+        for (const var_t *var = method ? method->vars : NULL; var; var = var->next)
+            if (var->section == V_INPUT && !is_standard(var))
+                cm1e_near_look(&near, var->name);
+    }
+    return cm1e_st_meant(st, &near);
+}
+
 static const arg_t *given(const var_t *instance, const char *name)
 {
     for (const arg_t *arg = instance->init_args; arg; arg = arg->next)
@@ -65,8 +77,8 @@ void cm1e_st_check_init_args(st_t *st, var_t *var)
         if (parameter)
             arg->value = cm1e_st_initialiser(st, arg->value, cm1e_st_resolve(st, parameter->type), arg->name);
         else
-            cm1e_st_report(st, arg->place, "%s has no FB_Init with an input \"%s\"; initial values of inputs stand behind :=",
-                           cm1e_st_type_name(var->type), arg->name);
+            cm1e_st_report(st, arg->place, "%s has no FB_Init with an input \"%s\"%s; initial values of inputs stand behind :=",
+                           cm1e_st_type_name(var->type), arg->name, meant_parameter(st, unit, arg->name));
     }
     for (const unit_t *at = unit; at && var->section != V_IN_OUT; at = at->object.base) {
         const unit_t *method = cm1e_st_init_method(at);

@@ -15,13 +15,29 @@ const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owne
 
 /* ---- links ------------------------------------------------------------------------------------------------------- */
 
+typedef struct wanted {
+    cm1e_near_t near;
+    const unit_t *asks;
+    unit_kind_t kind;
+} wanted_t;
+
+static void look_at_unit(const char *name, void *value, void *context)
+{
+    const unit_t *unit = value;
+    wanted_t *wanted = context;
+    if (unit != wanted->asks && unit->kind == wanted->kind && !unit->external)
+        cm1e_near_look(&wanted->near, name);
+}
+
 static unit_t *named_unit(st_t *st, const unit_t *unit, const char *name, unit_kind_t kind, const char *what)
 {
     unit_t *found = cm1e_st_lookup(st, st->units, unit->scope, unit->place, name);
     if (found && found->kind == kind && !found->external)
         return found;
-    cm1e_st_report(st, unit->place, "there is no %s \"%s\" that \"%s\" could %s", what, name, unit->name,
-                   kind == U_INTERFACE && unit->kind == U_BLOCK ? "implement" : "extend");
+    wanted_t wanted = {.near = {.word = name}, .asks = unit, .kind = kind};
+    cm1e_st_map_each(st->units, look_at_unit, &wanted);
+    cm1e_st_report(st, unit->place, "there is no %s \"%s\" that \"%s\" could %s%s", what, name, unit->name,
+                   kind == U_INTERFACE && unit->kind == U_BLOCK ? "implement" : "extend", cm1e_st_meant(st, &wanted.near));
     return NULL;
 }
 

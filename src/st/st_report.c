@@ -36,6 +36,34 @@ void cm1e_st_report(st_t *st, place_t place, const char *format, ...)
     st->errors[at] = error;
 }
 
+const char *cm1e_st_meant(st_t *st, const cm1e_near_t *near)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    return cm1e_st_format(st->arena, "%s", cm1e_near_text(near, text, sizeof text));
+}
+
+const char *cm1e_st_meant_var(st_t *st, const char *word, const var_t *vars, unsigned sections)
+{
+    cm1e_near_t near = {.word = word};
+    for (; vars; vars = vars->next)
+        if (sections >> vars->section & 1)
+            cm1e_near_look(&near, vars->name);
+    return cm1e_st_meant(st, &near);
+}
+
+static void look_at(const char *name, void *value, void *context)
+{
+    (void)value;
+    cm1e_near_look(context, name);
+}
+
+const char *cm1e_st_meant_name(st_t *st, const char *word, const map_t *map)
+{
+    cm1e_near_t near = {.word = word};
+    cm1e_st_map_each(map, look_at, &near);
+    return cm1e_st_meant(st, &near);
+}
+
 unsigned cm1e_st_errors(const st_t *st) { return st->error_count; }
 unsigned cm1e_st_suppressed(const st_t *st) { return st->suppressed; }
 st_error_t cm1e_st_error(const st_t *st, unsigned n) { return st->errors[n]; }

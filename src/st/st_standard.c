@@ -254,6 +254,20 @@ static const char *input_name(st_t *st, const standard_t *standard, int number)
     return cm1e_st_format(st->arena, "%.*s%d", length - 1, at, at[length - 1] - '0' + number);
 }
 
+/** The name is that of an input; reports another one. */
+static bool is_input(st_t *st, const expr_t *call, const arg_t *arg)
+{
+    cm1e_near_t near = {.word = arg->name};
+    for (int i = 0; i < call->standard->most; i++) {
+        const char *name = input_name(st, call->standard, i);
+        if (strcasecmp(arg->name, name) == 0)
+            return true;
+        cm1e_near_look(&near, name);
+    }
+    cm1e_st_report(st, arg->place, "%s has no input \"%s\"%s", call->standard->name, arg->name, cm1e_st_meant(st, &near));
+    return false;
+}
+
 /** Named arguments of a standard function come into the order of its inputs. There are as many as it takes. */
 static bool order_args(st_t *st, expr_t *call, int count)
 {
@@ -263,6 +277,9 @@ static bool order_args(st_t *st, expr_t *call, int count)
                        call->standard->name);
         return false;
     }
+    for (arg_t *arg = call->args; arg; arg = arg->next)
+        if (arg->name && !is_input(st, call, arg))
+            return false;
     for (int i = 0; i < count; i++) {
         const char *name = input_name(st, call->standard, i);
         arg_t *found = NULL;

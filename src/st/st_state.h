@@ -5,6 +5,7 @@
 #ifndef CM1E_ST_STATE_H
 #define CM1E_ST_STATE_H
 
+#include "core/near.h"
 #include "st/st.h"
 #include "st/st_memory.h"
 #include "st/st_tree.h"
@@ -64,6 +65,13 @@ struct st {
 
 /** Reports an error; at most one for each line, ST_ERRORS in all. */
 void cm1e_st_report(st_t *st, place_t place, const char *format, ...) CM1E_PRINTF(3, 4);
+
+/* st_report.c: for the end of an error, "; did you mean "x"?", or "" if no name is near. */
+const char *cm1e_st_meant(st_t *st, const cm1e_near_t *near);
+/** The variables of a list that are in one of these sections (bits 1 << section_t). */
+const char *cm1e_st_meant_var(st_t *st, const char *word, const var_t *vars, unsigned sections);
+/** The names of a map. */
+const char *cm1e_st_meant_name(st_t *st, const char *word, const map_t *map);
 
 /* st_parser.y */
 void cm1e_st_parse(st_t *st);

@@ -1,4 +1,5 @@
 /* How far words are from each other, and which one was meant. */
+#include <stdio.h>
 #include <string.h>
 
 #include "core/near.h"
@@ -63,12 +64,35 @@ static void test_texts_name_what_was_meant_or_nothing(void)
     TEST_ASSERT_EQUAL_STRING("; did you mean \"scan\"?", cm1e_near_text(&near, text, sizeof text));
 }
 
+/** Of paths the parts that are right do not count: a wrong last part is near its own kind only, however long the path. */
+static void test_paths_are_compared_behind_the_parts_that_are_right(void)
+{
+    static const char path[] = "Main.a_cell_with_a_long_name.another_part_of_the_machine[2].power.";
+    char word[120], wrong[120], near_one[120], text[CM1E_NEAR_TEXT_BYTES], longest[300];
+    snprintf(word, sizeof word, "%sStatsu", path);
+    snprintf(wrong, sizeof wrong, "%sEnable", path);
+    snprintf(near_one, sizeof near_one, "%sStatus", path);
+    cm1e_near_t near = {.word = word};
+    cm1e_near_look(&near, wrong);
+    TEST_ASSERT_NULL(near.nearest);
+    cm1e_near_look(&near, near_one);
+    TEST_ASSERT_EQUAL_STRING(near_one, near.nearest);
+    TEST_ASSERT_NOT_NULL(strstr(cm1e_near_text(&near, text, sizeof text), near_one));
+    cm1e_near_t other = {.word = "Mian.goal"};
+    cm1e_near_look(&other, "Main.goal");
+    TEST_ASSERT_EQUAL_STRING("Main.goal", other.nearest);
+    memset(longest, 'x', sizeof longest - 1);
+    longest[sizeof longest - 1] = '\0';
+    TEST_ASSERT_EQUAL_STRING("", cm1e_near_text(&(cm1e_near_t){.word = "x", .nearest = longest}, text, sizeof text));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_distances_are_those_of_damerau_and_levenshtein);
     RUN_TEST(test_long_words_are_bounded);
     RUN_TEST(test_the_nearest_word_is_what_was_meant);
+    RUN_TEST(test_paths_are_compared_behind_the_parts_that_are_right);
     RUN_TEST(test_texts_name_what_was_meant_or_nothing);
     return UNITY_END();
 }
