@@ -26,7 +26,7 @@ static const struct argp_option table[] = {{"json", 'j', NULL, 0, "Write JSON", 
 const struct argp argp_check = {table, parse, "FILE",
                                  "Checks an ESI, EC_EXTEND, SII or ENI file from any source for errors that a "
                                  "schema does not find (docs/CHECK-RULES.md). Exit status 0: no finding, or "
-                                 "warnings only; 1: errors, or the file cannot be read.", NULL, NULL, NULL};
+                                 "warnings only; 1: errors, or a file of no known format; 2: it cannot be read.", NULL, NULL, NULL};
 
 int command_check(int argc, char **argv)
 {
@@ -35,7 +35,7 @@ int command_check(int argc, char **argv)
         return EXIT_WRONG_USE;
     input_t input;
     if (!read_input(options.file, &input))
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     cm1e_findings_t *findings = NULL;
     cm1e_diag_t diag = {0};
     const cm1e_file_format_t format = cm1e_file_recognise(input.bytes, input.size);

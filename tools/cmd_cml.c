@@ -87,43 +87,42 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 /* ---- to whom ----------------------------------------------------------------------------------------------------- */
 
-static bool choose_axis(session_t *session, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+/** Returns the exit status, as choose_slave(). */
+static int choose_axis(session_t *session, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     const int axis = find_axis(config, session->options->axis_word);
     if (axis < 0)
-        return false;
+        return EXIT_WRONG_USE;
     session->channel = config->axes[axis].channel;
     if (session->channel == 0) {
         complain("axis \"%s\" is a CM1-E, which has no CML; only motors behind a bridge have it",
                  session->options->axis_word);
-        return false;
+        return EXIT_WRONG_USE;
     }
-    if (cm1e_bus_identify(session->bus, diag) != CM1E_OK) {
-        fail(diag);
-        return false;
-    }
+    if (cm1e_bus_identify(session->bus, diag) != CM1E_OK)
+        return fail(diag);
     session->slave = cm1e_bus_axis_position(session->bus, (uint32_t)axis);
-    return true;
+    return EXIT_OK;
 }
 
 static bool takes_cml(const cm1e_slave_info_t *slave) { return slave->device && slave->device->channels > 0; }
 
 /* The only bridge, if none is named. */
-static bool choose_slave(session_t *session)
+static int choose_slave(session_t *session)
 {
     unsigned bridges = 0;
     session->channel = (unsigned)session->options->channel;
     session->slave = (uint16_t)session->options->slave;
     if (session->slave)
-        return true;
+        return EXIT_OK;
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(session->bus); position++)
         if (takes_cml(cm1e_bus_slave(session->bus, position)) && bridges++ == 0)
             session->slave = (uint16_t)position;
     if (bridges == 1)
-        return true;
+        return EXIT_OK;
     complain(bridges ? "there are %u bridges: choose one with --slave or --axis" : "there is no EtherCAT Cool MUSCLE "
              "Bridge; only motors behind one have CML", bridges);
-    return false;
+    return bridges ? EXIT_WRONG_USE : EXIT_FAILED;
 }
 
 /* The connector that the first command with a connector names; 0: none. */
@@ -194,6 +193,14 @@ static bool refused_here(cm1e_error_t error)
            error == CM1E_ERROR_CML_STRING || error == CM1E_ERROR_CML_MOTION;
 }
 
+static bool has_sent(const session_t *session)
+{
+    bool any = false;
+    for (int i = 0; i < CM1E_BRIDGE_AXES; i++)
+        any = any || session->used[i];
+    return any;
+}
+
 /* The beginning of the input, safe for a terminal. */
 static const char *show(const char *text, char shown[CM1E_CML_BYTES + 1])
 {
@@ -234,7 +241,10 @@ static int send_string(session_t *session, const char *text, json_t *results)
         complain("%s Use --allow-motion to send it.", diag.text);
     else if (error != CM1E_OK)
         fail(&diag);
-    return error != CM1E_OK ? EXIT_FAILED : EXIT_OK;
+    if (error == CM1E_OK)
+        return EXIT_OK;
+    const bool is_there = cm1e_bus_slave(session->bus, session->slave) != NULL;
+    return refused_here(error) && is_there && !has_sent(session) ? EXIT_WRONG_USE : EXIT_FAILED;
 }
 
 /* ---- all strings ------------------------------------------------------------------------------------------------- */
@@ -307,8 +317,9 @@ static int leave(session_t *session)
 
 static int run_session(session_t *session, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
-    if (!(session->options->axis_word ? choose_axis(session, config, diag) : choose_slave(session)))
-        return EXIT_FAILED;
+    const int chosen = session->options->axis_word ? choose_axis(session, config, diag) : choose_slave(session);
+    if (chosen != EXIT_OK)
+        return chosen;
     const int sent = session->options->count > 0 ? send_arguments(session) : send_lines(session);
     const int left = leave(session);
     return sent != EXIT_OK ? sent : left;

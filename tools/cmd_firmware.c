@@ -296,7 +296,7 @@ int command_firmware(int argc, char **argv)
     if (parse_options(&argp_firmware, argc, argv, &options))
         return EXIT_WRONG_USE;
     if (!read_input(options.file, &image))
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     const int status = open_and_update(&options, &image);
     free(image.bytes);
     return status;

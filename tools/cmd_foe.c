@@ -39,6 +39,7 @@ static void check_words(const foe_options_t *options, struct argp_state *state)
 {
     if (options->word_count != WORDS)
         argp_error(state, "expected: read POSITION|AXIS FILE, or write POSITION|AXIS FILE");
+    need_name(state, "the file", options->words[2]);
     if (is_writing(options) && !options->allow)
         argp_error(state, "writing a file changes the slave, and no backup is possible: --allow-write");
     if (!options->name && strcmp(options->words[2], "-") == 0)
@@ -120,7 +121,7 @@ static int write_file(cm1e_bus_t *bus, uint16_t position, const foe_options_t *o
     cm1e_diag_t diag = {0};
     input_t file;
     if (!read_input(options->words[2], &file))
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     int status = EXIT_OK;
     if (cm1e_foe_write(bus, position, name_of(options), file.bytes, file.size, transfer, &diag) != CM1E_OK)
         status = fail(&diag);

@@ -338,6 +338,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     for (int i = 0; i < RESTRICTED; i++)
         if (restricted[i].key == key)
             options->given |= 1u << i;
+    if (key == KEY_FROM || key == KEY_PROGRAM)
+        need_name(state, key == KEY_FROM ? "--from" : "--program", arg);
     const error_t result = parse_file(key, arg, options);
     if (result != ARGP_ERR_UNKNOWN)
         return result;
@@ -355,7 +357,7 @@ static cm1e_error_t generate_from_file(cm1e_file_t *file, const generate_options
 {
     input_t input;
     if (!read_input(options->from, &input))
-        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s", "");
+        return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "%s", "");
     const cm1e_error_t error =
         cm1e_generate_from(file, input.bytes, input.size, options->what.format, options->number, diag);
     free(input.bytes);
@@ -385,12 +387,13 @@ static cm1e_error_t generate_network(cm1e_file_t *file, generate_options_t *opti
     return error;
 }
 
-/* EXIT_WRONG_USE if the options contradict each other, but not for the contents of a file. */
+/* EXIT_WRONG_USE if the options contradict each other or a file cannot be read, but not for the contents of a file. */
 static int refuse(const generate_options_t *options, cm1e_error_t error, const cm1e_diag_t *diag)
 {
     if (diag->text[0])
         fail(diag);
-    return error == CM1E_ERROR_CONFIG && !options->from ? EXIT_WRONG_USE : EXIT_FAILED;
+    return (error == CM1E_ERROR_CONFIG && !options->from) || (error == CM1E_ERROR_NOT_FOUND && options->from)
+        ? EXIT_WRONG_USE : EXIT_FAILED;
 }
 
 /* Writes both files, or none if one of them is refused. */

@@ -34,7 +34,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     graph_options_t *options = state->input;
     switch (key) {
     case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
-    case KEY_SVG: options->svg = arg; return 0;
+    case KEY_SVG:
+        need_name(state, "--svg", arg);
+        options->svg = arg;
+        return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
 }

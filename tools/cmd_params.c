@@ -64,7 +64,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "more than %d words", MAX_NAMES);
         options->words[options->word_count++] = arg;
         return 0;
-    case ARGP_KEY_END: check_words(options, state); return 0;
+    case ARGP_KEY_END:
+        check_words(options, state);
+        if (options->action >= BACKUP)
+            need_name(state, "the file", options->words[0]);
+        return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -303,7 +307,7 @@ static int change(motor_t *motor, const params_options_t *options, params_t *par
     if (options->dry_run || (params->count == 0 && !json))
         return complete;
     if (!options->allow_motion && !no_motion(params))
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     if (params->count > 0 && !confirmed(options, params->count))
         return EXIT_FAILED;
     const int status = write_all(motor, params, json);

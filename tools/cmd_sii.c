@@ -34,7 +34,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     sii_options_t *options = state->input;
     switch (key) {
     case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
-    case KEY_BACKUP: options->backup = arg; return 0;
+    case KEY_BACKUP:
+        need_name(state, "--backup", arg);
+        options->backup = arg;
+        return 0;
     case KEY_FORCE_CHECKSUM: options->write.force_checksum = true; return 0;
     case KEY_FORCE_IDENTITY: options->write.force_identity = true; return 0;
     case KEY_FORCE_CONFIGURATION: options->write.force_configuration = true; return 0;
@@ -49,6 +52,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END:
         if (!is_verb(options, "read", 3) && !is_verb(options, "write", 3) && !is_verb(options, "decode", 2))
             argp_error(state, "expected: read POSITION FILE, write POSITION FILE, or decode FILE|POSITION");
+        need_name(state, "the file", options->words[options->word_count - 1]);
         if (is_verb(options, "write", 3) && !options->backup)
             argp_error(state, "writing needs a backup of the present contents of the slave: --backup FILE");
         return 0;
@@ -120,7 +124,7 @@ static int run_write(cm1e_bus_t *bus, const sii_options_t *options, uint16_t pos
     cm1e_diag_t diag = {0};
     input_t image, present;
     if (!read_input(options->words[2], &image))
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     int status = EXIT_FAILED;
     if (read_device(bus, position, &present, &diag)) {
         status = write_and_tell(bus, options, position, &image, &present);
@@ -203,7 +207,7 @@ int command_sii(int argc, char **argv)
         return run_on_bus(&options);
     input_t image;
     if (!read_input(options.words[1], &image))
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     int status = EXIT_FAILED;
     if (cm1e_file_recognise(image.bytes, image.size) == CM1E_FILE_SII)
         status = decode(&image, options.common.json);

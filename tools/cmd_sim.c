@@ -135,6 +135,17 @@ static bool add_extras(cm1e_sim_segment_t *segment, const sim_options_t *options
     return true;
 }
 
+static bool can_read(const char *const *files, uint32_t count)
+{
+    bool good = true;
+    for (uint32_t i = 0; i < count && good; i++) {
+        input_t input;
+        good = read_input(files[i], &input);
+        free(input.bytes);
+    }
+    return good;
+}
+
 /* The nth file is the SII of the nth slave. */
 static bool boot(cm1e_sim_segment_t *segment, const sim_options_t *options)
 {
@@ -225,7 +236,8 @@ int command_sim(int argc, char **argv)
         return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;
-    if (!describe(&options, &config))
+    if (!can_read(options.sii, options.sii_count) || !can_read(options.profiles, options.profile_count) ||
+        !describe(&options, &config))
         return EXIT_WRONG_USE;
     cm1e_diag_t diag = {0};
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create(&config, &diag);

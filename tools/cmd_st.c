@@ -30,8 +30,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case 'o':
     case KEY_C:
-        if (!arg[0])
-            argp_error(state, "the file needs a name; it is empty");
+        need_name(state, "the file", arg);
         *(key == 'o' ? &options->output : &options->c_file) = arg;
         return 0;
     case KEY_JSON: options->json = want_json(); return 0;
@@ -46,7 +45,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "at most %d sources", SOURCES);
         return 0;
     case ARGP_KEY_END:
-        if (!options->word || choose_word("the first word", options->word, "check|build") < 0)
+        if (!options->word || choose_word("action", options->word, "check|build") < 0)
             argp_error(state, "what is to be done? check or build");
         if (options->source_count == 0)
             argp_error(state, "which program? Name its sources, for instance machine.st");
@@ -211,10 +210,10 @@ static int build(st_t *st, const st_options_t *options)
     else
         name_beside(options->sources[0], ".so", output, sizeof output);
     if (!may_write(output, options) || (options->c_file && !may_write(options->c_file, options)))
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     if (options->c_file && same_file(options->c_file, output)) {
         complain("--c and -o name the same file, %s: the program would replace its C", output);
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     }
     const char *target = realpath(output, place) ? place : output; /* a link stays a link */
     snprintf(folder, sizeof folder, "%s.XXXXXX", target);
@@ -241,8 +240,10 @@ int command_st(int argc, char **argv)
     int status = EXIT_OK;
     cm1e_st_list_most(st, (uint64_t)options.variables);
     for (int i = 0; i < options.source_count && status == EXIT_OK; i++)
-        if (cm1e_st_add_file(st, options.sources[i], &diag) != CM1E_OK)
-            status = fail(&diag);
+        if (cm1e_st_add_file(st, options.sources[i], &diag) != CM1E_OK) {
+            (void)fail(&diag);
+            status = EXIT_WRONG_USE;
+        }
     if (status == EXIT_OK && !cm1e_st_check(st))
         status = EXIT_FAILED;
     if (status == EXIT_OK && strcmp(options.word, "build") == 0)

@@ -10,6 +10,7 @@
 #include "attach.h"
 #include "axis_run.h"
 #include "params.h"
+#include "trace_file.h"
 #include "tune.h"
 #include "tune_page.h"
 
@@ -111,7 +112,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_STEPS: return parse_number(arg, "the number of steps", 2, TUNE_PARTS_MAX, &options->steps) ? 0 : EINVAL;
     case KEY_WINDOW: return parse_positive(arg, "the window", &options->window) ? 0 : EINVAL;
     case KEY_KEEP: options->keep = true; return 0;
-    case KEY_HTML: options->html = arg; return 0;
+    case KEY_HTML:
+        need_name(state, "--html", arg);
+        options->html = arg;
+        return 0;
     case KEY_SET:
         if (options->setting_count == SETTINGS_MAX)
             argp_error(state, "more than %d settings", SETTINGS_MAX);
@@ -644,6 +648,10 @@ int command_tune(int argc, char **argv)
     tune_options_t options = {.kind = -1, .frequency = 1, .to = 10, .steps = 8};
     if (parse_options(&argp_tune, argc, argv, &options))
         return EXIT_WRONG_USE;
+    const char *const files[TRACE_FILES] = {[TRACE_HTML] = options.html};
+    const int writable = check_trace_files(files, TRACE_FILES); /* before anything moves */
+    if (writable != EXIT_OK)
+        return writable;
     const int alone = check_alone(&options.common, &config);
     if (alone != EXIT_OK)
         return alone;

@@ -30,7 +30,7 @@ static bool writes(const var_options_t *options)
 
 static void check(const var_options_t *options, struct argp_state *state)
 {
-    if (!options->word || choose_word("the first word", options->word, "list|get|set|force|release") < 0)
+    if (!options->word || choose_word("action", options->word, "list|get|set|force|release") < 0)
         argp_error(state, "what is to be done? list, get, set, force or release");
     if (options->count == 0 && strcmp(options->word, "list") != 0)
         argp_error(state, "which variable? `cm1e var list` shows them");

@@ -86,6 +86,9 @@ bool visit_options(const struct argp *argp, option_visitor_t visit, void *contex
 /** The number of `word` in "flat|mdp"; -1 and a complaint, with the word that may have been meant: it is none. */
 int choose_word(const char *what, const char *word, const char *words);
 
+/** For a parser of options: an empty name of a file is refused. `what`: "--svg", "the file". */
+void need_name(struct argp_state *state, const char *what, const char *word);
+
 /** Options that most subcommands take: a child parser to be listed in a subcommand's argp. */
 typedef struct common_options {
     const char *interface_name; /**< -i */

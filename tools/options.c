@@ -8,8 +8,8 @@
 const exit_status_t exit_statuses[] = {
     {EXIT_OK, "done"},
     {EXIT_FAILED, "not done, or not completely: the text on standard error says what failed, and what to do"},
-    {EXIT_WRONG_USE, "refused, nothing was done: wrong options, numbers, names or bus file, also where a running program "
-                     "refuses them"},
+    {EXIT_WRONG_USE, "refused, nothing was done: wrong options, numbers, names or bus file, a file that cannot be read, "
+                     "also where a running program refuses them"},
     {0, NULL},
 };
 
@@ -99,6 +99,12 @@ int parse_options(const struct argp *argp, int argc, char **argv, void *options)
     return argp_parse(argp, argc, argv, 0, NULL, options);
 }
 
+void need_name(struct argp_state *state, const char *what, const char *word)
+{
+    if (!word[0])
+        argp_error(state, "%s needs a name; it is empty", what);
+}
+
 /* ---- words ------------------------------------------------------------------------------------------------------- */
 
 int choose_word(const char *what, const char *word, const char *words)
@@ -119,6 +125,7 @@ int choose_word(const char *what, const char *word, const char *words)
                  one);
         at += bytes + (at[bytes] == '|');
     }
-    complain("there is no %s \"%s\"; there are %s%s", what, word, list, cm1e_near_text(&near, text, sizeof text));
+    complain("there is no %s \"%s\"; there %s %s%s", what, word, number > 1 ? "are" : "is only", list,
+             cm1e_near_text(&near, text, sizeof text));
     return -1;
 }

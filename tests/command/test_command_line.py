@@ -316,15 +316,16 @@ def check_cml(folder):
     late = cml("--timeout", "0.05", "?1234.1")
     expect(late.returncode == FAILED and "within 50 ms" in late.stderr, "cml without an answer", late)
     for words, status, word in (
-            (["?99"], WRONG_USE, "--channel"), (["?99.9"], FAILED, "1 ... 4"), (["-a", "solo", "?99"], FAILED, "CM1-E"),
-            (["-a", "left", "?99.3"], FAILED, "another motor"), (["--slave", "1", "?99.1"], FAILED, "no EtherCAT Cool"),
+            (["?99"], WRONG_USE, "--channel"), (["?99.9"], WRONG_USE, "1 ... 4"), (["-a", "solo", "?99"], WRONG_USE, "CM1-E"),
+            (["-a", "left", "?99.3"], WRONG_USE, "another motor"), (["--slave", "1", "?99.1"], WRONG_USE, "no EtherCAT Cool"),
             (["--slave", "9", "?99.1"], FAILED, "no slave 9"),
             (["-a", "left", "--slave", "2", "?99"], WRONG_USE, "--axis"),
-            (["-a", "left", ""], FAILED, "is empty"), (["-a", "left", "K53="], FAILED, "cut off"),
-            (["-a", "left", "K53\r\n"], FAILED, "CR or LF"), (["-a", "left", "?" * 65], FAILED, "64 bytes"),
-            (["hello\x1b.1"], WRONG_USE, "hello?.1"), (["-a", "left", "\x1b[2J"], FAILED, "printable"), (["(.1"], FAILED, "--allow-motion"),
-            (["K37.1=30"], FAILED, "--allow-motion"), (["--channel", "5", "?99"], WRONG_USE, "1 ... 4"),
-            (["--timeout", "0", "?99.1"], WRONG_USE, "above 0"), (["-a", "middle", "?99"], FAILED, "no axis")):
+            (["-a", "left", ""], WRONG_USE, "is empty"), (["-a", "left", "K53="], WRONG_USE, "cut off"),
+            (["-a", "left", "K53\r\n"], WRONG_USE, "CR or LF"), (["-a", "left", "?" * 65], WRONG_USE, "64 bytes"),
+            (["hello\x1b.1"], WRONG_USE, "hello?.1"), (["-a", "left", "\x1b[2J"], WRONG_USE, "printable"),
+            (["(.1"], WRONG_USE, "--allow-motion"),
+            (["K37.1=30"], WRONG_USE, "--allow-motion"), (["--channel", "5", "?99"], WRONG_USE, "1 ... 4"),
+            (["--timeout", "0", "?99.1"], WRONG_USE, "above 0"), (["-a", "middle", "?99"], WRONG_USE, "no axis")):
         refused = cml(*words)
         expect(refused.returncode == status and word in refused.stderr and refused.stdout == "" and
                "\x1b" not in refused.stderr, f"cml {words}: \"{word}\"", refused)
@@ -572,8 +573,8 @@ WRONG = [
     (["sii", "-i", "sim", "write", "1", "x"], WRONG_USE, "--backup"),
     (["sii", "-i", "sim", "write", "1", f"{SOURCE}/README.md", "--backup", "/no/such/folder/x"], FAILED, "backup"),
     (["sii", "read", "1", "x"], WRONG_USE, "-i"),
-    (["sii", "decode", "no-such-file"], FAILED, "no-such-file"),
-    (["sim", "-i", "lo", "--sii", "no-such-file"], FAILED, "no-such-file"),
+    (["sii", "decode", "no-such-file"], WRONG_USE, "no-such-file"),
+    (["sim", "-i", "lo", "--sii", "no-such-file"], WRONG_USE, "no-such-file"),
     (["sim", "-i", "lo", "--sii", f"{SOURCE}/README.md"], FAILED, "is damaged at byte 0x000E"),
     (["sii", "decode", f"{SOURCE}/README.md"], FAILED, ""),
     (["diff", "-i", "sim"], WRONG_USE, "which file"),
@@ -607,7 +608,7 @@ WRONG = [
     (["generate", "ec-extend", "-o", "x", "--program", "x"], WRONG_USE, "same file"),
     (["generate", "ec-extend", "-o", "never", "--mapping", "csv", "--program", "y"], WRONG_USE, "dynamic or csp"),
     (["generate", "sii", "-o", "x", "--number", "2", "--from", f"{SOURCE}/tests/golden/esi-cm1e-1.3.5-flat.xml"],
-     FAILED, "no device 2"),
+     WRONG_USE, "no device 2"),
     (["generate", "eni", "-o", "x"], WRONG_USE, "network"),
     (["generate", "eni", "-o", "x", "-b", f"{SOURCE}/examples/three_axes.yaml", "--mapping", "csp"], WRONG_USE,
      "bus file"),
@@ -615,12 +616,12 @@ WRONG = [
     (["generate", "eni", "-o", "x", "-i", "sim", "--device", "eb01"], WRONG_USE, "network"),
     (["generate", "eni", "-o", "x", "-b", f"{SOURCE}/examples/three_axes.yaml", "--vendor", "1"], WRONG_USE,
      "identity of its bridges"),
-    (["generate", "esi", "-o", "x", "--from", "/no/such/file"], FAILED, "/no/such/file"),
+    (["generate", "esi", "-o", "x", "--from", "/no/such/file"], WRONG_USE, "/no/such/file"),
     (["generate", "esi", "-o", "x", "--from", f"{SOURCE}/README.md"], FAILED, "no file of a known format"),
     (["check"], WRONG_USE, "which file"),
     (["check", "a", "b"], WRONG_USE, "one file"),
-    (["check", "/no/such/file"], FAILED, "/no/such/file"),
-    (["check", SOURCE], FAILED, "folder"),
+    (["check", "/no/such/file"], WRONG_USE, "/no/such/file"),
+    (["check", SOURCE], WRONG_USE, "folder"),
     (["check", f"{SOURCE}/README.md"], FAILED, "EtherCATInfo"),
     (["generate", "sii", "-o", "/no/such/folder/x"], FAILED, "/no/such/folder"),
     (["generate", "sii", "-o", "x", "--firmware", "9.9"], WRONG_USE, "1.3.5"),

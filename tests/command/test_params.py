@@ -181,7 +181,7 @@ def check_bridge(folder):
     expect(result.returncode == 0 and "K42                      100 -> 200 100 pulses/s" in result.stdout and
            "2 values written to slave 1, connector 1" in result.stdout, "set behind a bridge", result)
     result = run("set", "-b", bus, "X", "K53=7", "K26=1")
-    expect(result.returncode == FAILED and "nothing was written" in result.stderr and "--allow-motion" in result.stderr,
+    expect(result.returncode == WRONG_USE and "nothing was written" in result.stderr and "--allow-motion" in result.stderr,
            "what may move", result)
     result = run("set", "-b", bus, "X", "K26=1", "--allow-motion")
     expect(result.returncode == 0 and "1 value written" in result.stdout, "what may move, allowed", result)

@@ -161,9 +161,9 @@ def check_json_of_failures(folder):
         file.write(bytes(2000))
     for words, status, says in ((["scan", "-i", "nosuch"], FAILED, 'no network interface "nosuch"'),
                                 (["params", "get", "-i", "sim", "1", "K4711"], WRONG_USE, 'no parameter "K4711"'),
-                                (["run", "nosuch.so", "-i", "sim"], FAILED, "cannot be loaded"),
-                                (["st", "check", "nosuch.st"], FAILED, "nosuch.st"),
-                                (["check", "nosuch.esi"], FAILED, "nosuch.esi"),
+                                (["run", "nosuch.so", "-i", "sim"], WRONG_USE, "cannot be loaded"),
+                                (["st", "check", "nosuch.st"], WRONG_USE, "nosuch.st"),
+                                (["check", "nosuch.esi"], WRONG_USE, "nosuch.esi"),
                                 (["firmware", "update", path, "-i", "sim", "-p", "1"], FAILED,
                                  "nothing was written: this needs --yes")):
         failed = run("cm1e", *words, "--json")
