@@ -114,11 +114,21 @@ def main():
     at = [SOURCE.count("\n", 0, defect[1]) + 1 for defect in found
           if mutate.is_at(defect, SOURCE, [range(7, 8), range(10, 11)])]
     assert set(at) == {7, 10}, at
+    line = "    x = 1 + 1 + y;\n"
+    text = SOURCE + line
+    equals = [mutate.among_equals(defect, text) for defect in mutate.defects("a.c", text) if defect[1] >= len(SOURCE)]
+    assert sorted(equals) == [(1, 1), (1, 2), (1, 2), (2, 2), (2, 2)], equals # the statement, two sums, two numbers
+    mutate.EQUIVALENT["a.c", line.strip(), "1", "2", 2] = "a number that nobody reads"
+    ones = [defect for defect in mutate.defects("a.c", text) if text[defect[1]:defect[2]] == "1" and
+            defect[1] >= len(SOURCE)]
+    assert [mutate.is_equivalent(defect, text) for defect in ones] == [False, True]
+    assert [' "1" number 1 -> "2" in: ' in mutate.shown(defect, text) for defect in ones] == [True, False]
+    del mutate.EQUIVALENT["a.c", line.strip(), "1", "2", 2]
     for known in mutate.EQUIVALENT: # each is a defect that its source still has
         text = (Path(sys.argv[1]) / known[0]).read_text()
-        planted = ((known[0], text[text.rfind("\n", 0, begin) + 1:].split("\n", 1)[0].strip(), text[begin:end], new)
-                   for _, begin, end, new in mutate.defects(known[0], text))
-        assert known in planted, known
+        assert any(mutate.whole_line(defect, text).strip() == known[1] and text[defect[1]:defect[2]] == known[2] and
+                   defect[3] == known[3] and mutate.among_equals(defect, text)[0] in (known[4:] or range(1, 99))
+                   for defect in mutate.defects(known[0], text)), known
     print(f"{len(found)} defects in {SOURCE.count(chr(10))} lines")
 
 
