@@ -22,7 +22,7 @@ enum { DC_ACTIVATE = 0x01, DC_SYNC0 = 0x02, DC_SYNC1 = 0x04 };
 typedef struct cm1e_dc_slave {
     cm1e_slave_clock_t clock;
     uint8_t beyond;       /**< number of looks in a row that found the clock beyond its tolerance */
-    bool seen;            /**< looked at since Operational was prepared */
+    bool seen;            /**< looked at since the clocks were set up: only the cycle looks */
     uint8_t control;      /**< register 0x0980: who has the unit for SYNC and latch */
     uint8_t step;         /**< step of the recovery of the clock (dc_recovery.c) */
     int64_t deadline_ns;

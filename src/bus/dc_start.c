@@ -15,8 +15,6 @@ void cm1e_dc_begin(cm1e_bus_t *bus)
     if (bus->next_cycle_ns < cm1e_clock_now(bus->clock))
         bus->next_cycle_ns += bus->config.cycle_time_ns;
     cm1e_clock_sleep_until(bus->clock, bus->next_cycle_ns);
-    for (uint32_t i = 0; i < bus->slave_count; i++)
-        dc->slaves[i].seen = false;
 }
 
 /** A slave whose clock is beyond its tolerance; NULL: there is none. */
