@@ -17,6 +17,7 @@ static struct program {
     uint16_t kbit;        /* word 0x3E of every SII */
     size_t info_bytes;    /* of a description */
     unsigned errands, closed;
+    size_t bytes; /* of all errands */
     const char *kind;
     cm1e_device_model_t model;
 } program;
@@ -54,6 +55,7 @@ static cm1e_error_t run_errand(void *state, cm1e_errand_t *errand, cm1e_diag_t *
     if (fails && program.error != CM1E_OK)
         return refused(told);
     errand->error = fails ? program.outcome : CM1E_OK;
+    program.bytes += errand->size;
     for (size_t i = 0; i < errand->size; i++)
         errand->data[i] = (uint8_t)(errand->place + i);
     if (errand->kind == ERRAND_SII && errand->place == 0)
@@ -186,13 +188,14 @@ END_TEST
 
 /* ---- registers -------------------------------------------------------------------------------------------------- */
 
-/** In pieces of CM1E_ERRAND_BYTES, each of which may fail. */
+/** In pieces of CM1E_ERRAND_BYTES, each of which may fail: all that was asked for, and nothing behind it. */
 START_TEST(registers_say_whether_the_slave_or_the_program_does_not_answer)
 {
     cm1e_bus_t *bus = scanned();
     uint8_t data[300];
     ck_assert_int_eq(cm1e_esc_read(bus, 1, 0x0100, data, sizeof data, &diag), CM1E_OK);
     ck_assert_uint_eq(program.errands, 3);
+    ck_assert_uint_eq(program.bytes, sizeof data);
     for (size_t i = 0; i < sizeof data; i++)
         ck_assert_uint_eq(data[i], (uint8_t)(0x0100 + i));
     for (unsigned at = 1; at <= 3; at++) {
