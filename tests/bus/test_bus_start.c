@@ -103,6 +103,41 @@ static void check_direction(cm1e_bus_t *bus, uint16_t position, const cm1e_axis_
 }
 
 /** Both orders, every firmware, every mapping; three axes with different mappings, so that places differ. */
+/** Frames have the numbers of their buffers, which take turns: one of the last two comes again only if it is sent again. */
+static cm1e_tap_verdict_t see_number(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { NUMBER = 17 };
+    int *numbers = context;
+    if (frame->direction != CM1E_TAP_SENT || frame->length <= NUMBER)
+        return CM1E_TAP_PASS;
+    ck_assert_int_ne(frame->bytes[NUMBER], numbers[0]);
+    ck_assert_int_ne(frame->bytes[NUMBER], numbers[1]);
+    numbers[1] = numbers[0];
+    numbers[0] = frame->bytes[NUMBER];
+    return CM1E_TAP_PASS;
+}
+
+/** A frame that is waited for in vain takes 2 ms: one of them would show. */
+START_TEST(a_start_sends_no_frame_twice_and_waits_for_none_in_vain)
+{
+    const int64_t scan_ns = 5000000, configure_ns = 8300000;
+    int numbers[] = {-1, -1};
+    sim_config((uint32_t)_i);
+    cm1e_bus_t *bus = open_bus();
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), see_number, numbers);
+    const int64_t begin_ns = now_of(bus);
+    ck_assert(cm1e_bus_scan(bus, &diag) == CM1E_OK && cm1e_bus_identify(bus, &diag) == CM1E_OK);
+    const int64_t scanned_ns = now_of(bus);
+    ck_assert_int_lt(scanned_ns - begin_ns, scan_ns);
+    ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_OK);
+    ck_assert_int_lt(now_of(bus) - scanned_ns, configure_ns);
+    ck_assert_int_eq(cm1e_bus_operate(bus, &diag), CM1E_OK);
+    cycles(bus, 100);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(start_resolves_every_object_in_every_order_firmware_and_mapping)
 {
     sim_config(3);
@@ -582,6 +617,7 @@ int main(void)
     tcase_add_loop_test(tests, every_slave_is_seen_in_operational_at_once, 1, 9);
     tcase_add_test(tests, functions_without_a_bus_or_a_place_for_their_result_are_refused);
     tcase_add_test(tests, every_cycle_of_a_start_asks_for_a_state);
+    tcase_add_loop_test(tests, a_start_sends_no_frame_twice_and_waits_for_none_in_vain, 1, 4);
     tcase_add_loop_test(tests, start_resolves_every_object_in_every_order_firmware_and_mapping, 0,
                         2 * FIRMWARES * MAPPINGS);
     tcase_add_loop_test(tests, large_bus_runs_in_several_frames, 0, 4);
