@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "control/show.h"
 
@@ -46,9 +47,17 @@ static const char *take_motion(maintain_order_t *order, const json_t *message)
     return NULL;
 }
 
-const char *cm1e_maintain_take(control_request_t *request, const control_run_t *run, maintain_what_t what,
-                               const json_t *message)
+static maintain_what_t what_of(const control_request_t *request)
 {
+    maintain_what_t what = MAINTAIN_ENABLE;
+    while (what < MAINTAIN_KEEP && strcmp(rows[what].name, request->name) != 0)
+        what++;
+    return what;
+}
+
+const char *cm1e_maintain_take(control_request_t *request, const control_run_t *run, const json_t *message)
+{
+    const maintain_what_t what = what_of(request);
     const json_t *axis = json_object_get(message, "axis");
     const json_int_t number = json_integer_value(axis);
     request->maintain = (maintain_order_t){.order.decide = cm1e_maintain_decide, .what = what,

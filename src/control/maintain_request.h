@@ -7,10 +7,9 @@
 
 #include "control/request.h"
 
-/** Takes the members of a message; NULL: the order is complete, and waits for the cycle. Else the sentence that says
- *  what is wrong with it. */
-const char *cm1e_maintain_take(control_request_t *request, const control_run_t *run, maintain_what_t what,
-                               const json_t *message);
+/** Takes the members of the message of a request that has its name already; NULL: the order is complete, and waits for
+ *  the cycle. Else the sentence that says what is wrong with it. */
+const char *cm1e_maintain_take(control_request_t *request, const control_run_t *run, const json_t *message);
 /** The reply to an order that is decided. */
 json_t *cm1e_maintain_reply(const control_request_t *request, const control_run_t *run);
 

@@ -48,10 +48,9 @@ static json_t *hello(control_request_t *request, control_run_t *run, const json_
     return accept(request, "hello", told);
 }
 
-static json_t *want(control_request_t *request, const char *name, json_t *(*show)(const view_t *view))
+static json_t *want(control_request_t *request, json_t *(*show)(const view_t *view))
 {
     request->state = REQUEST_SNAPSHOT;
-    request->name = name;
     request->show = show;
     request->wanted = false;
     return NULL;
@@ -60,13 +59,13 @@ static json_t *want(control_request_t *request, const char *name, json_t *(*show
 static json_t *axes(control_request_t *request, control_run_t *run, const json_t *message)
 {
     (void)run, (void)message;
-    return want(request, "axes", cm1e_show_axes);
+    return want(request, cm1e_show_axes);
 }
 
 static json_t *slaves(control_request_t *request, control_run_t *run, const json_t *message)
 {
     (void)run, (void)message;
-    return want(request, "slaves", cm1e_show_slaves);
+    return want(request, cm1e_show_slaves);
 }
 
 static json_t *statistics(control_request_t *request, control_run_t *run, const json_t *message)
@@ -134,22 +133,10 @@ static json_t *sdo_read(control_request_t *request, control_run_t *run, const js
     return submitted(request, cm1e_sdo_submit(run->view.bus, &request->sdo));
 }
 
-/** NULL: this client may do more than look. */
-static json_t *check_consent(const control_request_t *request, const control_run_t *run, const char *what)
-{
-    char text[160];
-    if (run->control == CM1E_CONTROL_MAINTAIN || (run->serves_own && request->pid == (int)getpid()))
-        return NULL;
-    snprintf(text, sizeof text, "The program lets others look only (control: observe). %s needs `control: maintain` in "
-             "its bus file.", what);
-    return cm1e_request_refuse(request->id, CM1E_ERROR_PERMISSION, 0, text);
-}
-
 static json_t *sdo_write(control_request_t *request, control_run_t *run, const json_t *message)
 {
-    json_t *refused = check_consent(request, run, "Writing");
-    if (!refused)
-        refused = take_object(request, message);
+    (void)run;
+    json_t *refused = take_object(request, message);
     if (refused)
         return refused;
     if (!cm1e_take_bytes(message, "data", request->data, SDO_MAX, &request->sdo.size))
@@ -160,18 +147,6 @@ static json_t *sdo_write(control_request_t *request, control_run_t *run, const j
     request->wanted = false;
     return NULL;
 }
-
-/* ---- files ------------------------------------------------------------------------------------------------------ */
-
-#define FILE_REQUEST(name)                                                                                            \
-    static json_t *name(control_request_t *request, control_run_t *run, const json_t *message)                        \
-    {                                                                                                                 \
-        json_t *refused = check_consent(request, run, "Transferring a file");                                         \
-        return refused ? refused : cm1e_##name(request, run, message);                                                \
-    }
-FILE_REQUEST(file_data)
-FILE_REQUEST(file_begin)
-FILE_REQUEST(file_look)
 
 /* ---- errands ---------------------------------------------------------------------------------------------------- */
 
@@ -251,29 +226,15 @@ static json_t *sdo_info(control_request_t *request, control_run_t *run, const js
 
 /* ---- motion ----------------------------------------------------------------------------------------------------- */
 
-static json_t *maintain(control_request_t *request, control_run_t *run, const json_t *message, maintain_what_t what)
+static json_t *maintain(control_request_t *request, control_run_t *run, const json_t *message)
 {
-    json_t *refused = check_consent(request, run, "To move, enable or reset an axis");
-    const char *bad = refused ? NULL : cm1e_maintain_take(request, run, what, message);
-    if (refused || bad)
-        return refused ? refused : wrong(request, bad);
+    const char *bad = cm1e_maintain_take(request, run, message);
+    if (bad)
+        return wrong(request, bad);
     request->state = REQUEST_MAINTAIN;
     request->wanted = false;
     return NULL;
 }
-
-#define MAINTAIN(name, WHAT)                                                                                          \
-    static json_t *name(control_request_t *request, control_run_t *run, const json_t *message)                        \
-    {                                                                                                                 \
-        return maintain(request, run, message, MAINTAIN_##WHAT);                                                      \
-    }
-MAINTAIN(enable, ENABLE)
-MAINTAIN(disable, DISABLE)
-MAINTAIN(jog, JOG)
-MAINTAIN(home, HOME)
-MAINTAIN(stop, STOP)
-MAINTAIN(reset, RESET)
-MAINTAIN(keep, KEEP)
 
 /* ---- signals ----------------------------------------------------------------------------------------------------- */
 
@@ -303,13 +264,10 @@ static json_t *output(control_request_t *request, control_run_t *run, const json
 {
     cm1e_diag_t diag = {0};
     cm1e_error_t error = CM1E_OK;
-    json_t *refused = check_consent(request, run, "Writing an output");
     request->output.client = request->client;
-    const char *bad = refused ? NULL
-                              : cm1e_output_take(&request->output, &run->view, message, &error, diag.text,
-                                                 sizeof diag.text);
-    if (refused || bad)
-        return refused ? refused : cm1e_request_refuse(request->id, error, 0, bad);
+    const char *bad = cm1e_output_take(&request->output, &run->view, message, &error, diag.text, sizeof diag.text);
+    if (bad)
+        return cm1e_request_refuse(request->id, error, 0, bad);
     request->state = REQUEST_OUTPUT;
     request->wanted = false;
     return NULL;
@@ -322,12 +280,6 @@ static json_t *end_output(const control_request_t *request)
     const bool wrong = request->output.refusal == OUTPUT_BY_BUS; /* an input, or no value of its type */
     return refusal ? cm1e_request_refuse(request->id, wrong ? CM1E_ERROR_INVALID_ARGUMENT : CM1E_ERROR_STATE, 0, refusal)
                    : accept(request, "output", json_null());
-}
-
-static json_t *recover(control_request_t *request, control_run_t *run, const json_t *message)
-{
-    json_t *refused = check_consent(request, run, "Bringing back a slave");
-    return refused ? refused : cm1e_recover_slave(request, run, message);
 }
 
 /* ---- variables --------------------------------------------------------------------------------------------------- */
@@ -359,12 +311,10 @@ static json_t *variable(control_request_t *request, control_run_t *run, const js
 {
     char text[600];
     cm1e_error_t error = CM1E_OK;
-    json_t *refused = check_consent(request, run, "Writing or forcing a variable");
     request->variable.forced.client = request->client;
-    const char *bad = refused ? NULL
-                              : cm1e_variable_take(&request->variable, &run->view, message, &error, text, sizeof text);
-    if (refused || bad)
-        return refused ? refused : cm1e_request_refuse(request->id, error, 0, bad);
+    const char *bad = cm1e_variable_take(&request->variable, &run->view, message, &error, text, sizeof text);
+    if (bad)
+        return cm1e_request_refuse(request->id, error, 0, bad);
     request->state = REQUEST_VARIABLE;
     request->wanted = false;
     return NULL;
@@ -385,18 +335,57 @@ static json_t *end_variable(const control_request_t *request, const control_run_
                    : accept(request, "variable", json_null());
 }
 
+/* ---- the table --------------------------------------------------------------------------------------------------- */
+
+#define MAINTAINING "To move, enable or reset an axis"
+#define WITH_FILE "Transferring a file"
+
 static const struct {
     const char *name;
     json_t *(*begin)(control_request_t *request, control_run_t *run, const json_t *message);
+    const char *needs_consent; /**< it does more than look: the beginning of the sentence that refuses it */
 } requests[] = {
-    {"hello", hello},   {"axes", axes},         {"slaves", slaves},       {"statistics", statistics},
-    {"log", event_log}, {"sdo_read", sdo_read}, {"sdo_write", sdo_write}, {"sdo_info", sdo_info},
-    {"sii_read", sii_read}, {"registers", registers}, {"enable", enable}, {"disable", disable}, {"jog", jog},
-    {"home", home},     {"stop", stop},         {"reset", reset},         {"keep", keep},
-    {"record", cm1e_record_begin}, {"samples", cm1e_record_samples}, {"io", io}, {"output", output},
-    {"file_data", file_data}, {"file_begin", file_begin}, {"file", file_look}, {"recover", recover},
-    {"variables", variables}, {"variable", variable},
+    {"hello", hello, NULL},
+    {"axes", axes, NULL},
+    {"slaves", slaves, NULL},
+    {"statistics", statistics, NULL},
+    {"log", event_log, NULL},
+    {"sdo_read", sdo_read, NULL},
+    {"sdo_write", sdo_write, "Writing"},
+    {"sdo_info", sdo_info, NULL},
+    {"sii_read", sii_read, NULL},
+    {"registers", registers, NULL},
+    {"enable", maintain, MAINTAINING},
+    {"disable", maintain, MAINTAINING},
+    {"jog", maintain, MAINTAINING},
+    {"home", maintain, MAINTAINING},
+    {"stop", maintain, MAINTAINING},
+    {"reset", maintain, MAINTAINING},
+    {"keep", maintain, MAINTAINING},
+    {"record", cm1e_record_begin, NULL},
+    {"samples", cm1e_record_samples, NULL},
+    {"io", io, NULL},
+    {"output", output, "Writing an output"},
+    {"file_data", cm1e_file_data, WITH_FILE},
+    {"file_begin", cm1e_file_begin, WITH_FILE},
+    {"file", cm1e_file_look, WITH_FILE},
+    {"recover", cm1e_recover_slave, "Bringing back a slave"},
+    {"variables", variables, NULL},
+    {"variable", variable, "Writing or forcing a variable"},
 };
+
+static bool may_do_more(const control_request_t *request, const control_run_t *run)
+{
+    return run->control == CM1E_CONTROL_MAINTAIN || (run->serves_own && request->pid == (int)getpid());
+}
+
+static json_t *refuse_consent(const control_request_t *request, const char *what)
+{
+    char text[160];
+    snprintf(text, sizeof text, "The program lets others look only (control: observe). %s needs `control: maintain` in "
+             "its bus file.", what);
+    return cm1e_request_refuse(request->id, CM1E_ERROR_PERMISSION, 0, text);
+}
 
 static json_t *unknown(const control_request_t *request)
 {
@@ -415,9 +404,14 @@ json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const
     if (!cm1e_take_number(message, "protocol", 1, CM1E_CONTROL_PROTOCOL, CM1E_CONTROL_PROTOCOL, &protocol))
         return cm1e_request_refuse(request->id, CM1E_ERROR_UNSUPPORTED, 0,
                                    "This program speaks version 1 of the protocol only.");
-    for (size_t i = 0; name && i < sizeof requests / sizeof *requests; i++)
-        if (strcmp(requests[i].name, name) == 0)
-            return requests[i].begin(request, run, message);
+    for (size_t i = 0; name && i < sizeof requests / sizeof *requests; i++) {
+        if (strcmp(requests[i].name, name) != 0)
+            continue;
+        request->name = requests[i].name;
+        if (requests[i].needs_consent && !may_do_more(request, run))
+            return refuse_consent(request, requests[i].needs_consent);
+        return requests[i].begin(request, run, message);
+    }
     return unknown(request);
 }
 

@@ -43,11 +43,11 @@ typedef struct control_request {
     request_state_t state;
     uint32_t client;           /**< whose it is: its place, and its process */
     int pid;
+    const char *name;          /**< of the request */
     json_t *id;                /**< what the client calls it; NULL: nothing */
     bool wanted;               /**< a snapshot was wanted after this request came, or the cycle has its order */
     uint32_t snapshot;         /**< SNAPSHOT: the number of the first one that counts */
     json_t *(*show)(const view_t *view); /**< SNAPSHOT: what of it */
-    const char *name;          /**< SNAPSHOT: the name under which it is sent */
     int64_t begun_ns;
     cm1e_sdo_t sdo;
     uint8_t *data;             /**< of the transfer */
