@@ -60,7 +60,7 @@ json_t *cm1e_show_bytes(const uint8_t *bytes, size_t length)
 
 /* ---- replies ---------------------------------------------------------------------------------------------------- */
 
-json_t *cm1e_request_with_id(json_t *reply, json_t *id)
+static json_t *with_id(json_t *reply, json_t *id)
 {
     if (id)
         json_object_set(reply, "id", id);
@@ -71,12 +71,12 @@ json_t *cm1e_request_refuse(json_t *id, cm1e_error_t error, uint32_t foreign_cod
 {
     json_t *reply = json_pack("{s:b, s:{s:i, s:I, s:o}}", "ok", 0, "error", "code", (int)error, "foreign_code",
                               (json_int_t)foreign_code, "text", cm1e_show_text(text));
-    return cm1e_request_with_id(reply, id);
+    return with_id(reply, id);
 }
 
 json_t *cm1e_request_accept(json_t *id, const char *name, json_t *value)
 {
     if (!value)
         return cm1e_request_refuse(id, CM1E_ERROR_NO_MEMORY, 0, "No memory for the reply.");
-    return cm1e_request_with_id(json_pack("{s:b, s:o}", "ok", 1, name, value), id);
+    return with_id(json_pack("{s:b, s:o}", "ok", 1, name, value), id);
 }

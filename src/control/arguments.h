@@ -25,6 +25,5 @@ json_t *cm1e_show_bytes(const uint8_t *bytes, size_t length);
 /** Replies. `id` is what the client calls its request; NULL: nothing. The value is taken over; NULL: no memory. */
 json_t *cm1e_request_accept(json_t *id, const char *name, json_t *value);
 json_t *cm1e_request_refuse(json_t *id, cm1e_error_t error, uint32_t foreign_code, const char *text);
-json_t *cm1e_request_with_id(json_t *reply, json_t *id);
 
 #endif

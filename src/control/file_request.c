@@ -151,10 +151,7 @@ json_t *cm1e_file_begin(control_request_t *request, control_run_t *run, const js
     if (!file->foe.writing)
         return handed_in(request, file, cm1e_foe_submit(run->view.bus, &file->foe, NULL));
     request->file = file;
-    request->write = (view_write_t){.order.decide = cm1e_view_decide_write, .file = &file->foe};
-    request->state = REQUEST_WRITE;
-    request->wanted = false;
-    return NULL;
+    return cm1e_request_write(request, (view_write_t){.file = &file->foe});
 }
 
 json_t *cm1e_file_decided(const control_request_t *request)

@@ -137,11 +137,11 @@ static json_t *refuse(const control_request_t *request, const char *name)
     return cm1e_request_refuse(request->id, error, 0, text);
 }
 
-json_t *cm1e_maintain_reply(const control_request_t *request, const control_run_t *run)
+json_t *cm1e_maintain_reply(control_request_t *request, control_run_t *run)
 {
     const maintain_order_t *order = &request->maintain;
     if (order->refusal)
         return refuse(request, cm1e_axis_configuration(run->view.axes[order->axis])->name);
-    return json_pack("{s:b, s:o}", "ok", 1, rows[order->what].name,
-                     order->what == MAINTAIN_KEEP ? json_integer(order->kept) : json_null());
+    return cm1e_request_accept(request->id, request->name,
+                               order->what == MAINTAIN_KEEP ? json_integer(order->kept) : json_null());
 }

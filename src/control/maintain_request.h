@@ -11,6 +11,6 @@
  *  the cycle. Else the sentence that says what is wrong with it. */
 const char *cm1e_maintain_take(control_request_t *request, const control_run_t *run, const json_t *message);
 /** The reply to an order that is decided. */
-json_t *cm1e_maintain_reply(const control_request_t *request, const control_run_t *run);
+json_t *cm1e_maintain_reply(control_request_t *request, control_run_t *run);
 
 #endif

@@ -15,14 +15,6 @@ static json_t *refuse(const control_request_t *request, cm1e_error_t error, cons
     return cm1e_request_refuse(request->id, error, 0, text);
 }
 
-static json_t *accept(const control_request_t *request, const char *name, json_t *value)
-{
-    json_t *reply = json_pack("{s:b, s:o}", "ok", 1, name, value);
-    if (request->id)
-        json_object_set(reply, "id", request->id);
-    return reply;
-}
-
 /** The variables and objects that the program records itself. */
 static cm1e_error_t add_own(recorder_t *recorder, const cm1e_scheduler_t *scheduler, cm1e_diag_t *diag)
 {
@@ -134,7 +126,7 @@ json_t *cm1e_record_begin(control_request_t *request, control_run_t *run, const 
     }
     json_t *told = cm1e_recorder_show(recorder, cm1e_bus_configuration(run->view.bus)->cycle_time_ns);
     cm1e_recorder_begin(&run->view, request->client, recorder);
-    return accept(request, "record", told);
+    return cm1e_request_accept(request->id, "record", told);
 }
 
 json_t *cm1e_record_samples(control_request_t *request, control_run_t *run, const json_t *message)
@@ -143,6 +135,5 @@ json_t *cm1e_record_samples(control_request_t *request, control_run_t *run, cons
     recorder_t *recorder = run->view.recorders[request->client];
     if (!recorder)
         return refuse(request, CM1E_ERROR_STATE, "This connection records nothing: send \"record\" before.");
-    json_t *told = cm1e_recorder_take(recorder);
-    return told ? accept(request, "samples", told) : refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for samples.");
+    return cm1e_request_accept(request->id, "samples", cm1e_recorder_take(recorder));
 }

@@ -29,6 +29,17 @@ static json_t *wrong(const control_request_t *request, const char *text)
     return cm1e_request_refuse(request->id, CM1E_ERROR_INVALID_ARGUMENT, 0, text);
 }
 
+/** The request waits until the cycle has decided on its order. */
+static json_t *give_order(control_request_t *request, view_order_t *order,
+                          json_t *(*decided)(control_request_t *request, control_run_t *run))
+{
+    request->state = REQUEST_ORDER;
+    request->order = order;
+    request->decided = decided;
+    request->wanted = false;
+    return NULL;
+}
+
 /* ---- the requests ----------------------------------------------------------------------------------------------- */
 
 static json_t *hello(control_request_t *request, control_run_t *run, const json_t *message)
@@ -142,10 +153,7 @@ static json_t *sdo_write(control_request_t *request, control_run_t *run, const j
     if (!cm1e_take_bytes(message, "data", request->data, SDO_MAX, &request->sdo.size))
         return wrong(request, "\"data\" is expected to be the bytes to write as hexadecimal digits, as on the wire.");
     request->sdo.write = true;
-    request->write = (view_write_t){.order.decide = cm1e_view_decide_write, .sdo = &request->sdo};
-    request->state = REQUEST_WRITE;
-    request->wanted = false;
-    return NULL;
+    return cm1e_request_write(request, (view_write_t){.sdo = &request->sdo});
 }
 
 /* ---- errands ---------------------------------------------------------------------------------------------------- */
@@ -229,35 +237,43 @@ static json_t *sdo_info(control_request_t *request, control_run_t *run, const js
 static json_t *maintain(control_request_t *request, control_run_t *run, const json_t *message)
 {
     const char *bad = cm1e_maintain_take(request, run, message);
-    if (bad)
-        return wrong(request, bad);
-    request->state = REQUEST_MAINTAIN;
-    request->wanted = false;
-    return NULL;
+    return bad ? wrong(request, bad) : give_order(request, &request->maintain.order, cm1e_maintain_reply);
 }
 
 /* ---- signals ----------------------------------------------------------------------------------------------------- */
+
+static json_t *continue_io(control_request_t *request, control_run_t *run);
+
+/** The cycle reads some signals at a time; without a next one the list is complete. */
+static json_t *next_io(control_request_t *request, control_run_t *run)
+{
+    return cm1e_io_list_next(request->io, &run->view)
+               ? give_order(request, &request->io->values.order, continue_io)
+               : accept(request, "io", json_incref(request->io->told));
+}
+
+static json_t *continue_io(control_request_t *request, control_run_t *run)
+{
+    cm1e_io_list_take(request->io, &run->view);
+    return next_io(request, run);
+}
 
 static json_t *io(control_request_t *request, control_run_t *run, const json_t *message)
 {
     (void)message;
     request->io = cm1e_io_list_begin();
-    if (!request->io)
-        return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
-    if (!cm1e_io_list_next(request->io, &run->view))
-        return accept(request, "io", json_incref(request->io->told));
-    request->state = REQUEST_IO;
-    request->wanted = false;
-    return NULL;
+    return request->io ? next_io(request, run)
+                       : cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
 }
 
-/** The cycle has read some; NULL: there are more. */
-static json_t *continue_io(control_request_t *request, control_run_t *run)
+static json_t *end_output(control_request_t *request, control_run_t *run)
 {
-    cm1e_io_list_take(request->io, &run->view);
-    request->wanted = false;
-    return cm1e_io_list_next(request->io, &run->view) ? NULL
-                                                      : accept(request, "io", json_incref(request->io->told));
+    (void)run;
+    char text[240];
+    const char *refusal = cm1e_output_refusal(&request->output, text, sizeof text);
+    const bool wrong = request->output.refusal == OUTPUT_BY_BUS; /* an input, or no value of its type */
+    return refusal ? cm1e_request_refuse(request->id, wrong ? CM1E_ERROR_INVALID_ARGUMENT : CM1E_ERROR_STATE, 0, refusal)
+                   : accept(request, "output", json_null());
 }
 
 static json_t *output(control_request_t *request, control_run_t *run, const json_t *message)
@@ -266,23 +282,26 @@ static json_t *output(control_request_t *request, control_run_t *run, const json
     cm1e_error_t error = CM1E_OK;
     request->output.client = request->client;
     const char *bad = cm1e_output_take(&request->output, &run->view, message, &error, diag.text, sizeof diag.text);
-    if (bad)
-        return cm1e_request_refuse(request->id, error, 0, bad);
-    request->state = REQUEST_OUTPUT;
-    request->wanted = false;
-    return NULL;
-}
-
-static json_t *end_output(const control_request_t *request)
-{
-    char text[240];
-    const char *refusal = cm1e_output_refusal(&request->output, text, sizeof text);
-    const bool wrong = request->output.refusal == OUTPUT_BY_BUS; /* an input, or no value of its type */
-    return refusal ? cm1e_request_refuse(request->id, wrong ? CM1E_ERROR_INVALID_ARGUMENT : CM1E_ERROR_STATE, 0, refusal)
-                   : accept(request, "output", json_null());
+    return bad ? cm1e_request_refuse(request->id, error, 0, bad)
+               : give_order(request, &request->output.order, end_output);
 }
 
 /* ---- variables --------------------------------------------------------------------------------------------------- */
+
+static json_t *end_variable(control_request_t *request, control_run_t *run)
+{
+    if (request->variable.values) {
+        json_t *reply = accept(request, "variables", cm1e_variables_show(&request->variable, &run->view));
+        const uint32_t next = cm1e_variables_next(&request->variable, &run->view);
+        if (next > 0)
+            json_object_set_new(reply, "next", json_integer(next));
+        return reply;
+    }
+    const bool taken = request->variable.result == FORCING_TAKEN;
+    const char *refusal = cm1e_variable_refusal(&request->variable);
+    return refusal ? cm1e_request_refuse(request->id, taken ? CM1E_ERROR_CANCELLED : CM1E_ERROR_STATE, 0, refusal)
+                   : accept(request, "variable", json_null());
+}
 
 static json_t *variables(control_request_t *request, control_run_t *run, const json_t *message)
 {
@@ -302,9 +321,7 @@ static json_t *variables(control_request_t *request, control_run_t *run, const j
     if (!cm1e_variables_begin(&request->variable, &run->view, name ? row : (uint32_t)from, name ? 1 : VARIABLES_OF_REPLY,
                               json_is_true(json_object_get(message, "forced"))))
         return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
-    request->state = REQUEST_VARIABLE;
-    request->wanted = false;
-    return NULL;
+    return give_order(request, &request->variable.order, end_variable);
 }
 
 static json_t *variable(control_request_t *request, control_run_t *run, const json_t *message)
@@ -313,26 +330,8 @@ static json_t *variable(control_request_t *request, control_run_t *run, const js
     cm1e_error_t error = CM1E_OK;
     request->variable.forced.client = request->client;
     const char *bad = cm1e_variable_take(&request->variable, &run->view, message, &error, text, sizeof text);
-    if (bad)
-        return cm1e_request_refuse(request->id, error, 0, bad);
-    request->state = REQUEST_VARIABLE;
-    request->wanted = false;
-    return NULL;
-}
-
-static json_t *end_variable(const control_request_t *request, const control_run_t *run)
-{
-    if (request->variable.values) {
-        json_t *reply = accept(request, "variables", cm1e_variables_show(&request->variable, &run->view));
-        const uint32_t next = cm1e_variables_next(&request->variable, &run->view);
-        if (next > 0)
-            json_object_set_new(reply, "next", json_integer(next));
-        return reply;
-    }
-    const bool taken = request->variable.result == FORCING_TAKEN;
-    const char *refusal = cm1e_variable_refusal(&request->variable);
-    return refusal ? cm1e_request_refuse(request->id, taken ? CM1E_ERROR_CANCELLED : CM1E_ERROR_STATE, 0, refusal)
-                   : accept(request, "variable", json_null());
+    return bad ? cm1e_request_refuse(request->id, error, 0, bad)
+               : give_order(request, &request->variable.order, end_variable);
 }
 
 /* ---- the table --------------------------------------------------------------------------------------------------- */
@@ -452,26 +451,14 @@ static json_t *continue_snapshot(control_request_t *request, control_run_t *run)
     return reply;
 }
 
-/** The order of a request that the cycle decides on; NULL: it is none. */
-static view_order_t *order_of(control_request_t *request)
+/** Hands it over as soon as no other one waits. */
+static json_t *continue_order(control_request_t *request, control_run_t *run)
 {
-    return request->state == REQUEST_WRITE      ? &request->write.order
-           : request->state == REQUEST_MAINTAIN ? &request->maintain.order
-           : request->state == REQUEST_IO       ? &request->io->values.order
-           : request->state == REQUEST_OUTPUT   ? &request->output.order
-           : request->state == REQUEST_VARIABLE ? &request->variable.order
-                                                : NULL;
-}
-
-/** Hands it over as soon as no other one waits. true: it is decided. */
-static bool continue_order(control_request_t *request, control_run_t *run)
-{
-    view_order_t *order = order_of(request);
     if (!request->wanted) {
-        request->wanted = cm1e_view_submit(&run->view, order);
-        return false;
+        request->wanted = cm1e_view_submit(&run->view, request->order);
+        return NULL;
     }
-    return atomic_load_explicit(&order->decided, memory_order_acquire);
+    return atomic_load_explicit(&request->order->decided, memory_order_acquire) ? request->decided(request, run) : NULL;
 }
 
 static json_t *end_write(control_request_t *request, control_run_t *run)
@@ -483,15 +470,21 @@ static json_t *end_write(control_request_t *request, control_run_t *run)
     snprintf(text, sizeof text, "Axis \"%s\" is commanded by the program: nothing is written to slave %u until it "
              "is at standstill without a command.", cm1e_axis_configuration(run->view.axes[write->commanded])->name,
              write->file ? (unsigned)write->file->position : (unsigned)request->sdo.position);
-    request->state = REQUEST_NONE;
     return cm1e_request_refuse(request->id, write->result, 0, text);
+}
+
+json_t *cm1e_request_write(control_request_t *request, view_write_t write)
+{
+    request->write = write;
+    request->write.order.decide = cm1e_view_decide_write;
+    return give_order(request, &request->write.order, end_write);
 }
 
 /** true: the cycle cannot have it any more. */
 static bool give_up(control_request_t *request, control_run_t *run)
 {
-    if (order_of(request) && request->wanted)
-        return cm1e_view_withdraw(&run->view, order_of(request));
+    if (request->state == REQUEST_ORDER && request->wanted)
+        return cm1e_view_withdraw(&run->view, request->order);
     return !cm1e_request_must_end(request);
 }
 
@@ -502,16 +495,8 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
         reply = continue_snapshot(request, run);
     else if (request->state == REQUEST_ERRAND)
         reply = continue_errand(request, run);
-    else if (request->state == REQUEST_WRITE && continue_order(request, run))
-        reply = end_write(request, run);
-    else if (request->state == REQUEST_MAINTAIN && continue_order(request, run))
-        reply = cm1e_request_with_id(cm1e_maintain_reply(request, run), request->id);
-    else if (request->state == REQUEST_IO && continue_order(request, run))
-        reply = continue_io(request, run);
-    else if (request->state == REQUEST_OUTPUT && continue_order(request, run))
-        reply = end_output(request);
-    else if (request->state == REQUEST_VARIABLE && continue_order(request, run))
-        reply = end_variable(request, run);
+    else if (request->state == REQUEST_ORDER)
+        reply = continue_order(request, run);
     if (request->state == REQUEST_SDO && !reply && cm1e_sdo_state(&request->sdo) != CM1E_SDO_BUSY)
         reply = end_transfer(request);
     if (!reply && (stopping || now_ns - request->begun_ns > PATIENCE_NS) && give_up(request, run))
@@ -523,10 +508,8 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
 
 bool cm1e_request_must_end(const control_request_t *request)
 {
-    const bool may_be_taken = request->state == REQUEST_WRITE || request->state == REQUEST_MAINTAIN ||
-                              request->state == REQUEST_ERRAND || request->state == REQUEST_IO ||
-                              request->state == REQUEST_OUTPUT || request->state == REQUEST_VARIABLE;
-    return request->state == REQUEST_SDO || (request->wanted && may_be_taken);
+    return request->state == REQUEST_SDO ||
+           (request->wanted && (request->state == REQUEST_ORDER || request->state == REQUEST_ERRAND));
 }
 
 void cm1e_request_clear(control_request_t *request)

@@ -29,17 +29,14 @@ typedef struct control_run {
 typedef enum request_state {
     REQUEST_NONE = 0, /**< the client is not waiting */
     REQUEST_SNAPSHOT,
-    REQUEST_WRITE,    /**< until the cycle has decided on it */
-    REQUEST_MAINTAIN, /**< the same */
-    REQUEST_IO,       /**< until the cycle has read some signals */
-    REQUEST_OUTPUT,   /**< until it has set one */
-    REQUEST_VARIABLE, /**< until it has read the variables of the program, or changed one */
+    REQUEST_ORDER,    /**< until the cycle has decided on it */
     REQUEST_SDO,
     REQUEST_ERRAND,
 } request_state_t;
 
 /** The request of one client that is being worked on. */
-typedef struct control_request {
+typedef struct control_request control_request_t;
+struct control_request {
     request_state_t state;
     uint32_t client;           /**< whose it is: its place, and its process */
     int pid;
@@ -48,22 +45,26 @@ typedef struct control_request {
     bool wanted;               /**< a snapshot was wanted after this request came, or the cycle has its order */
     uint32_t snapshot;         /**< SNAPSHOT: the number of the first one that counts */
     json_t *(*show)(const view_t *view); /**< SNAPSHOT: what of it */
+    view_order_t *order;       /**< ORDER: what the cycle is to do, a part of one of those below */
+    json_t *(*decided)(control_request_t *request, control_run_t *run); /**< ORDER: the reply; NULL: it goes on */
     int64_t begun_ns;
     cm1e_sdo_t sdo;
     uint8_t *data;             /**< of the transfer */
     view_write_t write;
-    control_file_t *file; /**< WRITE: what is written is a file; NULL: an object */
+    control_file_t *file;      /**< that is written; NULL: it is an object */
     cm1e_errand_t errand;
     maintain_order_t maintain;
-    io_list_t *io;             /**< IO */
+    io_list_t *io;
     output_order_t output;
     variable_order_t variable;
-} control_request_t;
+};
 
 /** Begins a request. Returns its reply, or NULL if it goes on: cm1e_request_continue(). */
 json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const json_t *message, int64_t now_ns);
 /** Returns the reply when there is one. `stopping`: the cycle does not run any more. */
 json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, int64_t now_ns, bool stopping);
+/** The cycle decides whether the write begins. Returns NULL: the request goes on. */
+json_t *cm1e_request_write(control_request_t *request, view_write_t write);
 /** A transfer is still on its way: the request must live until it has ended. */
 bool cm1e_request_must_end(const control_request_t *request);
 /** Frees what belongs to a request, which may be used again. */

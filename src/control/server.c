@@ -175,7 +175,7 @@ static void serve_client(server_t *server, client_t *client, short events)
  *  that stop or move an axis come before those that look. */
 static int rank(const client_t *client)
 {
-    return client->request.wanted ? 0 : client->request.state == REQUEST_MAINTAIN ? 1 : 2;
+    return client->request.wanted ? 0 : client->request.order == &client->request.maintain.order ? 1 : 2;
 }
 
 /** Of this rank the one that waits longest, of those that `done` has no bit of; NULL: there is none. */
