@@ -23,6 +23,8 @@ typedef struct cm1e_recovery_action {
     bool (*next)(cm1e_bus_slave_t *slave, cm1e_datagram_t *datagram, int64_t now_ns);
     /** Called when the datagram is back with working counter 1. */
     void (*result)(cm1e_bus_slave_t *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
+    uint8_t what; /**< the state that is requested, or the sub-index that is read */
+    bool (*needed)(const cm1e_bus_slave_t *slave); /**< else the step is left out, which costs no cycle; NULL: always */
 } cm1e_recovery_action_t;
 
 static const cm1e_recovery_action_t actions[RECOVERY_STEPS];
@@ -47,24 +49,17 @@ static void succeed(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_stat
     slave->recovery.successes++;
 }
 
-/** Most slaves have nothing written, which costs no cycle then. */
-static cm1e_recovery_step_t step_behind(const cm1e_bus_slave_t *slave, cm1e_recovery_step_t step)
-{
-    const cm1e_recovery_step_t next = (cm1e_recovery_step_t)(step + 1);
-    const bool setup = next == RECOVERY_SETUP || next == RECOVERY_SETUP_OP;
-    const bool needed = setup && cm1e_setup_is_needed(cm1e_bus_setup_of(slave), cm1e_bus_setup_pulses(slave),
-                                                      next == RECOVERY_SETUP_OP);
-    return setup && !needed ? step_behind(slave, next) : next;
-}
-
 static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
-    cm1e_recovery_t *recovery = &slave->recovery;
-    if (recovery->step != RECOVERY_OP) {
-        enter(slave, step_behind(slave, recovery->step), now_ns);
+    cm1e_recovery_step_t step = slave->recovery.step;
+    if (step == RECOVERY_OP) {
+        succeed(slave, slave->al.state, slave->al.code);
         return;
     }
-    succeed(slave, slave->al.state, slave->al.code);
+    do
+        step++;
+    while (actions[step].needed && !actions[step].needed(slave));
+    enter(slave, step, now_ns);
 }
 
 /** Whether the device has to give its address back. A device that is not the expected one must not keep the address:
@@ -110,6 +105,24 @@ static void fail(cm1e_bus_slave_t *slave, int64_t now_ns)
         enter(slave, releases ? RECOVERY_RELEASE : RECOVERY_PAUSE, now_ns);
 }
 
+/** A sub-machine has ended: the recovery goes on if all was `good`. Returns false: nothing is to be sent. */
+static bool end_step(cm1e_bus_slave_t *slave, bool good, int64_t now_ns)
+{
+    if (good)
+        advance(slave, now_ns);
+    else
+        fail(slave, now_ns);
+    return false;
+}
+
+/** Whether the sub-machine of a step has still to be started. */
+static bool begins(cm1e_bus_slave_t *slave)
+{
+    const bool first = !slave->recovery.entered;
+    slave->recovery.entered = true;
+    return first;
+}
+
 void cm1e_recovery_begin(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
     if (!cm1e_recovery_idle(&slave->recovery))
@@ -135,6 +148,21 @@ void cm1e_recovery_cancel(cm1e_bus_slave_t *slave)
 }
 
 /* ---- registers ------------------------------------------------------------------------------------------------- */
+
+static bool write_registers(const cm1e_bus_slave_t *slave, cm1e_datagram_t *d, uint16_t offset, const void *data,
+                            size_t bytes)
+{
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, offset, (uint16_t)bytes);
+    memcpy(d->data, data, bytes);
+    return true;
+}
+
+static bool write_register(const cm1e_bus_slave_t *slave, cm1e_datagram_t *d, uint16_t offset, uint16_t value)
+{
+    uint8_t data[2];
+    cm1e_put_u16(data, value);
+    return write_registers(slave, d, offset, data, sizeof data);
+}
 
 /** The address by the place on the wire, which moves when optional slaves before it come and go. */
 static uint16_t by_place(const cm1e_bus_slave_t *slave) { return (uint16_t)(1 - slave->hot.place); }
@@ -185,9 +213,7 @@ static bool next_return(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
 {
     (void)now_ns;
     slave->recovery.address_given = false;
-    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_STATION_ADDRESS, 2);
-    memcpy(d->data, slave->recovery.data, 2);
-    return true;
+    return write_registers(slave, d, REG_STATION_ADDRESS, slave->recovery.data, 2);
 }
 
 static void result_return(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
@@ -202,9 +228,8 @@ static bool next_release(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
 {
     (void)now_ns;
     if (slave->hot.moves)
-        cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_STATION_ADDRESS, 2);
-    else
-        cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
+        return write_register(slave, d, REG_STATION_ADDRESS, 0);
+    cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
     cm1e_put_u16(d->data, 0);
     return true;
 }
@@ -250,72 +275,56 @@ static void result_look(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64
 static bool next_eeprom(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
-    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_EEPROM_CONFIG, 1);
-    d->data[0] = 1;
-    return true;
+    return write_registers(slave, d, REG_EEPROM_CONFIG, &(uint8_t){1}, 1);
 }
 
 /** A request to repeat an answer, sent before the slave lost its power, activates an empty SM1 if it comes after that. */
 static bool next_clear(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
+    static const uint8_t inactive[4 * SYNC_MANAGER_BYTES];
     (void)now_ns;
-    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_SM0, 4 * SYNC_MANAGER_BYTES);
-    memset(d->data, 0, 4 * SYNC_MANAGER_BYTES);
-    return true;
+    return write_registers(slave, d, REG_SM0, inactive, sizeof inactive);
 }
 
 static bool next_mailbox(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
-    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_SM0, 2 * SYNC_MANAGER_BYTES);
-    memcpy(d->data, slave->placement.sync_managers[0], 2 * SYNC_MANAGER_BYTES);
     cm1e_coe_reset(&slave->coe, CM1E_ERROR_BUS_LOST);
-    return true;
+    return write_registers(slave, d, REG_SM0, slave->placement.sync_managers[0], 2 * SYNC_MANAGER_BYTES);
 }
 
 static bool next_process_data(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
-    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_SM2, 2 * SYNC_MANAGER_BYTES);
-    memcpy(d->data, slave->placement.sync_managers[2], 2 * SYNC_MANAGER_BYTES);
-    return true;
+    return write_registers(slave, d, REG_SM2, slave->placement.sync_managers[2], 2 * SYNC_MANAGER_BYTES);
 }
+
+static bool has_fmmus(const cm1e_bus_slave_t *slave) { return slave->placement.fmmu_count > 0; }
 
 static bool next_fmmus(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
-    const cm1e_slave_placement_t *placement = &slave->placement;
-    if (placement->fmmu_count == 0) {
-        advance(slave, now_ns);
-        return false;
-    }
-    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_FMMU0, (uint16_t)(placement->fmmu_count * FMMU_BYTES));
-    memcpy(d->data, placement->fmmus, placement->fmmu_count * FMMU_BYTES);
-    return true;
+    (void)now_ns;
+    return write_registers(slave, d, REG_FMMU0, slave->placement.fmmus, slave->placement.fmmu_count * FMMU_BYTES);
 }
 
 static bool next_watchdog_divider(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
-    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_WATCHDOG_DIVIDER, 2);
-    cm1e_put_u16(d->data, CM1E_WATCHDOG_DIVIDER);
-    return true;
+    return write_register(slave, d, REG_WATCHDOG_DIVIDER, CM1E_WATCHDOG_DIVIDER);
 }
 
 static bool next_watchdog(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
-    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_WATCHDOG_PROCESS_DATA, 2);
-    cm1e_put_u16(d->data, cm1e_bus_watchdog(slave));
-    return true;
+    return write_register(slave, d, REG_WATCHDOG_PROCESS_DATA, cm1e_bus_watchdog(slave));
 }
 
 /** Sets the clock. One that was far off comes nearer by a step with every frame. */
 static bool next_clock(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     bool is_set;
-    if (!slave->recovery.entered)
+    if (begins(slave))
         cm1e_dc_recover_begin(slave);
-    slave->recovery.entered = true;
     const bool sends = cm1e_dc_recover_next(slave, d, now_ns, &is_set);
     if (is_set)
         advance(slave, now_ns);
@@ -324,51 +333,25 @@ static bool next_clock(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_
 
 /* ---- states ---------------------------------------------------------------------------------------------------- */
 
-static bool run_al(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, uint8_t target)
+static bool next_state(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
-    cm1e_recovery_t *recovery = &slave->recovery;
-    if (!recovery->entered) {
-        recovery->entered = true;
-        if (target)
-            cm1e_al_request(&slave->al, target, recovery->deadline_ns);
-        else
-            cm1e_al_read_id(&slave->al, recovery->deadline_ns);
-    }
+    if (begins(slave))
+        cm1e_al_request(&slave->al, actions[slave->recovery.step].what, slave->recovery.deadline_ns);
     if (cm1e_al_next(&slave->al, d, now_ns))
         return true;
-    if (cm1e_al_idle(&slave->al)) {
-        const bool wrong_id = !target && slave->al.explicit_id != slave->info.explicit_id;
-        if (slave->al.error != CM1E_OK || wrong_id)
-            fail(slave, now_ns);
-        else
-            advance(slave, now_ns);
-    }
-    return false;
+    return cm1e_al_idle(&slave->al) && end_step(slave, slave->al.error == CM1E_OK, now_ns);
 }
 
-static bool next_init(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
-{
-    return run_al(slave, d, now_ns, CM1E_AL_INIT);
-}
-static bool next_pre_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
-{
-    return run_al(slave, d, now_ns, CM1E_AL_PRE_OP);
-}
-static bool next_safe_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
-{
-    return run_al(slave, d, now_ns, CM1E_AL_SAFE_OP);
-}
-static bool next_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
-{
-    return run_al(slave, d, now_ns, CM1E_AL_OP);
-}
+static bool has_id(const cm1e_bus_slave_t *slave) { return slave->info.explicit_id != 0; }
+
 static bool next_id(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
-    if (slave->info.explicit_id == 0) {
-        advance(slave, now_ns);
-        return false;
-    }
-    return run_al(slave, d, now_ns, 0);
+    if (begins(slave))
+        cm1e_al_read_id(&slave->al, slave->recovery.deadline_ns);
+    if (cm1e_al_next(&slave->al, d, now_ns))
+        return true;
+    const bool good = slave->al.error == CM1E_OK && slave->al.explicit_id == slave->info.explicit_id;
+    return cm1e_al_idle(&slave->al) && end_step(slave, good, now_ns);
 }
 
 static void result_al(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
@@ -378,19 +361,19 @@ static void result_al(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t
 
 /* ---- mailbox --------------------------------------------------------------------------------------------------- */
 
-enum { OF_SERIAL_NUMBER = 4 };
+enum { OF_VENDOR = 1, OF_PRODUCT = 2, OF_SERIAL_NUMBER = 4 };
+
+static bool has_coe(const cm1e_bus_slave_t *slave) { return slave->facts.coe; }
+static bool has_serial(const cm1e_bus_slave_t *slave) { return has_coe(slave) && slave->info.serial_number != 0; }
 
 /** Reads one sub-index of the identity object and compares it with what the scan found in the SII. */
-static bool check_identity(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, uint8_t subindex,
-                           uint32_t expected)
+static bool next_identity(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_recovery_t *recovery = &slave->recovery;
-    if (!slave->facts.coe) {
-        advance(slave, now_ns);
-        return false;
-    }
-    if (!recovery->entered) {
-        recovery->entered = true;
+    const uint8_t subindex = actions[recovery->step].what;
+    const uint32_t expected[] = {[OF_VENDOR] = slave->info.vendor_id, [OF_PRODUCT] = slave->info.product_code,
+                                 [OF_SERIAL_NUMBER] = slave->info.serial_number};
+    if (begins(slave)) {
         recovery->sdo = (cm1e_sdo_t){.position = slave->info.position, .index = OBJ_1018_IDENTITY,
                                      .subindex = subindex, .data = recovery->data, .size = sizeof recovery->data,
                                      .timeout_ns = SDO_STEP_NS, .state = CM1E_SDO_BUSY};
@@ -398,50 +381,32 @@ static bool check_identity(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t 
     }
     if (cm1e_coe_next(&slave->coe, d, now_ns))
         return true;
-    if (cm1e_coe_idle(&slave->coe)) {
-        const bool read = recovery->sdo.error == CM1E_OK && recovery->sdo.size == 4;
-        const uint32_t value = read ? cm1e_get_u32(recovery->data) : 0;
-        /* A device that does not have the sub-index, or a serial number of 0 there (UG 7.1.6: the default) and another one
-         * in its EEPROM, leaves it unchecked. */
-        const bool absent = recovery->sdo.error == CM1E_ERROR_SDO_ABORT ||
-                            (read && value == 0 && subindex == OF_SERIAL_NUMBER);
-        const bool same = read && value == expected;
-        if (absent || same)
-            advance(slave, now_ns);
-        else
-            fail(slave, now_ns);
-    }
-    return false;
-}
-
-static bool next_vendor(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
-{
-    return check_identity(slave, d, now_ns, 1, slave->info.vendor_id);
-}
-static bool next_product(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
-{
-    return check_identity(slave, d, now_ns, 2, slave->info.product_code);
-}
-static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
-{
-    if (slave->info.serial_number == 0) {
-        advance(slave, now_ns);
+    if (!cm1e_coe_idle(&slave->coe))
         return false;
-    }
-    return check_identity(slave, d, now_ns, OF_SERIAL_NUMBER, slave->info.serial_number);
+    const bool read = recovery->sdo.error == CM1E_OK && recovery->sdo.size == 4;
+    const uint32_t value = read ? cm1e_get_u32(recovery->data) : 0;
+    /* A device that does not have the sub-index, or a serial number of 0 there (UG 7.1.6: the default) and another one
+     * in its EEPROM, leaves it unchecked. */
+    const bool absent = recovery->sdo.error == CM1E_ERROR_SDO_ABORT ||
+                        (read && value == 0 && subindex == OF_SERIAL_NUMBER);
+    return end_step(slave, absent || (read && value == expected[subindex]), now_ns);
 }
 
 /** Begins the next transfer of a step. Without one it returns false: the step is over, and the recovery goes on if all
  *  was `good`. */
 static bool begin_or_end(cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo, bool good, int64_t now_ns)
 {
-    if (sdo)
-        cm1e_coe_begin(&slave->coe, sdo, now_ns);
-    else if (good)
-        advance(slave, now_ns);
-    else
-        fail(slave, now_ns);
-    return sdo != NULL;
+    if (!sdo)
+        return end_step(slave, good, now_ns);
+    cm1e_coe_begin(&slave->coe, sdo, now_ns);
+    return true;
+}
+
+static bool has_kind(const cm1e_bus_slave_t *slave)
+{
+    const cm1e_device_t *device = slave->info.device;
+    return device && (device->recognised == CM1E_BY_OBJECTS ||
+                      (device->recognised == CM1E_BY_PROFILE && slave->hot.planned));
 }
 
 /** Reads the objects that tell the kind of the device: the identity of a bridge does not tell its motors, and that of a
@@ -449,16 +414,8 @@ static bool begin_or_end(cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo, bool good, in
 static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_recognition_t *job = &slave->recognition;
-    const cm1e_device_t *device = slave->info.device;
-    const bool drive = device && device->recognised == CM1E_BY_PROFILE && slave->hot.planned;
-    if (!device || (device->recognised != CM1E_BY_OBJECTS && !drive)) {
-        advance(slave, now_ns);
-        return false;
-    }
-    if (!slave->recovery.entered) {
-        slave->recovery.entered = true;
+    if (begins(slave))
         cm1e_recognise_begin(job, slave->info.position, slave->recovery.deadline_ns);
-    }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_recognise_next(job, now_ns);
         if (!begin_or_end(slave, sdo, sdo || cm1e_recovery_is_recognised(slave), now_ns))
@@ -467,14 +424,14 @@ static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
 
+static bool has_version(const cm1e_bus_slave_t *slave)
+{
+    return slave->facts.coe && (slave->hot.planned || cm1e_recovery_has_firmware(slave));
+}
+
 static bool next_version(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
-    if (!slave->facts.coe || !(slave->hot.planned || cm1e_recovery_has_firmware(slave))) {
-        advance(slave, now_ns);
-        return false;
-    }
-    if (!slave->recovery.entered) {
-        slave->recovery.entered = true;
+    if (begins(slave)) {
         memset(slave->version, 0, sizeof slave->version);
         slave->version_sdo = (cm1e_sdo_t){.position = slave->info.position, .index = OBJ_100A_SOFTWARE_VERSION,
                                           .data = slave->version, .size = sizeof slave->version - 1,
@@ -483,34 +440,35 @@ static bool next_version(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     }
     if (cm1e_coe_next(&slave->coe, d, now_ns))
         return true;
-    if (cm1e_coe_idle(&slave->coe)) {
-        if (cm1e_recovery_takes_version(slave))
-            advance(slave, now_ns);
-        else
-            fail(slave, now_ns);
-    }
-    return false;
+    return cm1e_coe_idle(&slave->coe) && end_step(slave, cm1e_recovery_takes_version(slave), now_ns);
 }
+
+static bool is_planned(const cm1e_bus_slave_t *slave) { return slave->hot.planned; }
 
 /** Places the process data. A slave without a PDO mapping that can be read has the process data of its SII. */
 static bool next_place(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)d;
-    if (!slave->hot.planned || cm1e_hot_place(slave))
-        advance(slave, now_ns);
-    else
-        fail(slave, now_ns);
-    return false;
+    return end_step(slave, cm1e_hot_place(slave), now_ns);
 }
 
-static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, bool before_op)
+/** Most slaves have nothing written. */
+static bool has_setup(const cm1e_bus_slave_t *slave)
+{
+    return cm1e_setup_is_needed(cm1e_bus_setup_of(slave), cm1e_bus_setup_pulses(slave), false);
+}
+
+static bool has_setup_op(const cm1e_bus_slave_t *slave)
+{
+    return cm1e_setup_is_needed(cm1e_bus_setup_of(slave), cm1e_bus_setup_pulses(slave), true);
+}
+
+static bool next_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_setup_job_t *job = &slave->setup;
-    if (!slave->recovery.entered) {
-        slave->recovery.entered = true;
-        cm1e_setup_begin(job, slave->info.position, cm1e_bus_setup_of(slave), cm1e_bus_setup_pulses(slave), before_op,
-                         slave->facts.swapped);
-    }
+    if (begins(slave))
+        cm1e_setup_begin(job, slave->info.position, cm1e_bus_setup_of(slave), cm1e_bus_setup_pulses(slave),
+                         slave->recovery.step == RECOVERY_SETUP_OP, slave->facts.swapped);
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_setup_next(job);
         if (!begin_or_end(slave, sdo, job->error == CM1E_OK, now_ns))
@@ -519,13 +477,9 @@ static bool run_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
 
-static bool next_setup(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+static bool has_mapping(const cm1e_bus_slave_t *slave)
 {
-    return run_setup(slave, d, now_ns, false);
-}
-static bool next_setup_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
-{
-    return run_setup(slave, d, now_ns, true);
+    return cm1e_bus_has_motors(slave) || slave->by_pdos || (slave->hot.planned && slave->facts.coe);
 }
 
 /** Assigns the PDOs again; the layout must not change, because the image of the running bus is fixed. */
@@ -533,12 +487,7 @@ static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
 {
     cm1e_mapping_job_t *job = &slave->mapping;
     const bool motors = cm1e_bus_has_motors(slave);
-    if (!motors && !slave->by_pdos && !(slave->hot.planned && slave->facts.coe)) {
-        advance(slave, now_ns);
-        return false;
-    }
-    if (!slave->recovery.entered) {
-        slave->recovery.entered = true;
+    if (begins(slave)) {
         const cm1e_pdo_choice_t choice = slave->hot.planned && motors ? slave->info.device->pdos(slave->hot.axis)
                                                                       : job->choice;
         if (motors)
@@ -548,15 +497,8 @@ static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_mapping_next(job);
-        if (sdo) {
-            cm1e_coe_begin(&slave->coe, sdo, now_ns);
-        } else {
-            if (job->error == CM1E_OK && cm1e_recovery_takes_mapping(slave))
-                advance(slave, now_ns);
-            else
-                fail(slave, now_ns);
+        if (!begin_or_end(slave, sdo, !sdo && job->error == CM1E_OK && cm1e_recovery_takes_mapping(slave), now_ns))
             return false;
-        }
     }
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
@@ -574,27 +516,27 @@ static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_RETURN] = {STEP_NS, next_return, result_return},
     [RECOVERY_LOOK] = {STEP_NS, next_look, result_look},
     [RECOVERY_EEPROM] = {STEP_NS, next_eeprom, result_next_step},
-    [RECOVERY_INIT] = {CM1E_STATE_TIMEOUT_NS, next_init, result_al},
+    [RECOVERY_INIT] = {CM1E_STATE_TIMEOUT_NS, next_state, result_al, .what = CM1E_AL_INIT},
     [RECOVERY_CLEAR] = {STEP_NS, next_clear, result_next_step},
     [RECOVERY_MAILBOX] = {STEP_NS, next_mailbox, result_next_step},
-    [RECOVERY_PRE_OP] = {CM1E_STATE_TIMEOUT_NS, next_pre_op, result_al},
-    [RECOVERY_ID] = {STEP_NS, next_id, result_al},
-    [RECOVERY_VENDOR] = {SDO_STEP_NS, next_vendor, result_coe},
-    [RECOVERY_PRODUCT] = {SDO_STEP_NS, next_product, result_coe},
-    [RECOVERY_SERIAL] = {SDO_STEP_NS, next_serial, result_coe},
-    [RECOVERY_OBJECTS] = {OBJECTS_STEP_NS, next_objects, result_coe},
-    [RECOVERY_VERSION] = {SDO_STEP_NS, next_version, result_coe},
-    [RECOVERY_SETUP] = {MAPPING_STEP_NS, next_setup, result_coe},
-    [RECOVERY_MAPPING] = {MAPPING_STEP_NS, next_mapping, result_coe},
-    [RECOVERY_PLACE] = {STEP_NS, next_place, result_next_step},
+    [RECOVERY_PRE_OP] = {CM1E_STATE_TIMEOUT_NS, next_state, result_al, .what = CM1E_AL_PRE_OP},
+    [RECOVERY_ID] = {STEP_NS, next_id, result_al, .needed = has_id},
+    [RECOVERY_VENDOR] = {SDO_STEP_NS, next_identity, result_coe, .what = OF_VENDOR, .needed = has_coe},
+    [RECOVERY_PRODUCT] = {SDO_STEP_NS, next_identity, result_coe, .what = OF_PRODUCT, .needed = has_coe},
+    [RECOVERY_SERIAL] = {SDO_STEP_NS, next_identity, result_coe, .what = OF_SERIAL_NUMBER, .needed = has_serial},
+    [RECOVERY_OBJECTS] = {OBJECTS_STEP_NS, next_objects, result_coe, .needed = has_kind},
+    [RECOVERY_VERSION] = {SDO_STEP_NS, next_version, result_coe, .needed = has_version},
+    [RECOVERY_SETUP] = {MAPPING_STEP_NS, next_setup, result_coe, .needed = has_setup},
+    [RECOVERY_MAPPING] = {MAPPING_STEP_NS, next_mapping, result_coe, .needed = has_mapping},
+    [RECOVERY_PLACE] = {STEP_NS, next_place, result_next_step, .needed = is_planned},
     [RECOVERY_PROCESS_DATA] = {STEP_NS, next_process_data, result_next_step},
-    [RECOVERY_FMMUS] = {STEP_NS, next_fmmus, result_next_step},
+    [RECOVERY_FMMUS] = {STEP_NS, next_fmmus, result_next_step, .needed = has_fmmus},
     [RECOVERY_WATCHDOG_DIVIDER] = {STEP_NS, next_watchdog_divider, result_next_step},
     [RECOVERY_WATCHDOG] = {STEP_NS, next_watchdog, result_next_step},
     [RECOVERY_CLOCK] = {CLOCK_STEP_NS, next_clock, cm1e_dc_recovered},
-    [RECOVERY_SAFE_OP] = {CM1E_STATE_TIMEOUT_NS, next_safe_op, result_al},
-    [RECOVERY_SETUP_OP] = {MAPPING_STEP_NS, next_setup_op, result_coe},
-    [RECOVERY_OP] = {CM1E_STATE_TIMEOUT_NS, next_op, result_al},
+    [RECOVERY_SAFE_OP] = {CM1E_STATE_TIMEOUT_NS, next_state, result_al, .what = CM1E_AL_SAFE_OP},
+    [RECOVERY_SETUP_OP] = {MAPPING_STEP_NS, next_setup, result_coe, .needed = has_setup_op},
+    [RECOVERY_OP] = {CM1E_STATE_TIMEOUT_NS, next_state, result_al, .what = CM1E_AL_OP},
     [RECOVERY_RELEASE] = {RELEASE_NS, next_release, result_release},
 };
 
