@@ -24,17 +24,40 @@ enum { APRW_WORKING_COUNTER = 3, DOUBLES_IN_A_ROW = 3 };
 enum { UNANSWERED_LIMIT = 10 };
 enum { PROTOCOL_COE = 0x04, PROTOCOL_FOE = 0x08, MAILBOX_OUT_CONTROL = 0x26, MAILBOX_IN_CONTROL = 0x22 };
 
+/** A step is one datagram, which is repeated until it is answered, or a machine of several: then `bytes` is 0. */
+typedef struct search_action {
+    int64_t time_ns;
+    cm1e_command_t command;
+    uint16_t offset, bytes;
+    cm1e_search_step_t then; /**< the step after an answer, if that does not depend on it */
+} search_action_t;
+
+static const search_action_t actions[] = {
+    [SEARCH_COUNT] = {ANSWER_NS, COMMAND_BRD, 0, 1},
+    [SEARCH_WALK] = {ANSWER_NS, COMMAND_APRD, REG_STATION_ADDRESS, 4},
+    [SEARCH_ADDRESS] = {ANSWER_NS, COMMAND_APRW, REG_STATION_ADDRESS, 2},
+    [SEARCH_RETURN] = {ANSWER_NS, COMMAND_FPWR, REG_STATION_ADDRESS, 2},
+    [SEARCH_ALIAS] = {ANSWER_NS, COMMAND_FPRD, REG_STATION_ALIAS, 2},
+    [SEARCH_CLEAR] = {ANSWER_NS, COMMAND_FPWR, REG_FMMU0, 4 * FMMU_BYTES, .then = SEARCH_INIT},
+    [SEARCH_INIT] = {.time_ns = INIT_NS},
+    [SEARCH_SCOUT] = {.time_ns = SCOUT_NS},
+    [SEARCH_ID] = {.time_ns = ID_NS + INIT_NS},
+    [SEARCH_OFFER] = {ANSWER_NS, COMMAND_FPWR, REG_EEPROM_CONFIG, 1, .then = SEARCH_MAILBOX},
+    [SEARCH_MAILBOX] = {ANSWER_NS, COMMAND_FPWR, REG_SM0, 2 * SYNC_MANAGER_BYTES, .then = SEARCH_PRE_OP},
+    [SEARCH_PRE_OP] = {.time_ns = CM1E_STATE_TIMEOUT_NS},
+    [SEARCH_LATE_ID] = {.time_ns = ID_NS + INIT_NS},
+    [SEARCH_BACK] = {.time_ns = INIT_NS},
+    [SEARCH_GIVE] = {ANSWER_NS, COMMAND_FPWR, REG_STATION_ADDRESS, 2},
+    [SEARCH_RELEASE] = {ANSWER_NS, COMMAND_FPWR, REG_STATION_ADDRESS, 2},
+};
+
+static bool is_machine(cm1e_search_step_t step) { return step != SEARCH_PAUSE && actions[step].bytes == 0; }
+
 static void enter(cm1e_search_t *search, cm1e_search_step_t step, int64_t now_ns)
 {
-    static const int64_t times_ns[] = {
-        [SEARCH_INIT] = INIT_NS, [SEARCH_SCOUT] = SCOUT_NS, [SEARCH_ID] = ID_NS + INIT_NS,
-        [SEARCH_PRE_OP] = CM1E_STATE_TIMEOUT_NS, [SEARCH_LATE_ID] = ID_NS + INIT_NS, [SEARCH_BACK] = INIT_NS,
-        [SEARCH_RELEASE] = ANSWER_NS,
-    };
-    const int64_t time_ns = (size_t)step < sizeof times_ns / sizeof times_ns[0] ? times_ns[step] : 0;
     search->step = step;
     search->entered = false;
-    search->deadline_ns = now_ns + (time_ns ? time_ns : ANSWER_NS);
+    search->deadline_ns = now_ns + actions[step].time_ns;
 }
 
 static uint16_t by_place(uint16_t place) { return (uint16_t)(1 - place); }
@@ -461,49 +484,29 @@ static void take_address(cm1e_search_t *search, const cm1e_datagram_t *d, int64_
 
 /* ---- one datagram at a time -------------------------------------------------------------------------------------- */
 
-static bool fill(cm1e_search_t *search, cm1e_datagram_t *d)
+static uint16_t address_of(const cm1e_search_t *search, cm1e_command_t command)
 {
-    switch (search->step) {
-    case SEARCH_COUNT:
-        cm1e_datagram_set(d, COMMAND_BRD, 0, 0, 1);
-        return true;
-    case SEARCH_WALK:
-        cm1e_datagram_set(d, COMMAND_APRD, by_place(search->place), REG_STATION_ADDRESS, 4);
-        return true;
-    case SEARCH_ADDRESS:
-        cm1e_datagram_set(d, COMMAND_APRW, by_place(search->place), REG_STATION_ADDRESS, 2);
+    if (command == COMMAND_BRD)
+        return 0;
+    return command == COMMAND_APRD || command == COMMAND_APRW ? by_place(search->place) : CM1E_SEARCH_STATION;
+}
+
+/** The datagram of a step. Zeros are written where nothing else is put in. */
+static void fill(const cm1e_search_t *search, cm1e_datagram_t *d)
+{
+    const search_action_t *action = &actions[search->step];
+    cm1e_datagram_set(d, action->command, address_of(search, action->command), action->offset, action->bytes);
+    memset(d->data, 0, action->bytes);
+    if (search->step == SEARCH_ADDRESS)
         cm1e_put_u16(d->data, CM1E_SEARCH_STATION);
-        return true;
-    case SEARCH_RETURN:
-        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_STATION_ADDRESS, 2);
+    else if (search->step == SEARCH_RETURN)
         cm1e_put_u16(d->data, search->returned);
-        return true;
-    case SEARCH_ALIAS:
-        cm1e_datagram_set(d, COMMAND_FPRD, CM1E_SEARCH_STATION, REG_STATION_ALIAS, 2);
-        return true;
-    case SEARCH_CLEAR:
-        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_FMMU0, 4 * FMMU_BYTES);
-        memset(d->data, 0, 4 * FMMU_BYTES);
-        return true;
-    case SEARCH_OFFER:
-        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_EEPROM_CONFIG, 1);
+    else if (search->step == SEARCH_OFFER)
         d->data[0] = 1;
-        return true;
-    case SEARCH_MAILBOX:
-        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_SM0, 2 * SYNC_MANAGER_BYTES);
+    else if (search->step == SEARCH_MAILBOX)
         put_mailboxes(d->data, &search->scout.found);
-        return true;
-    case SEARCH_GIVE:
-        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_STATION_ADDRESS, 2);
+    else if (search->step == SEARCH_GIVE)
         cm1e_put_u16(d->data, search->candidate->facts.station);
-        return true;
-    case SEARCH_RELEASE:
-        cm1e_datagram_set(d, COMMAND_FPWR, CM1E_SEARCH_STATION, REG_STATION_ADDRESS, 2);
-        cm1e_put_u16(d->data, 0);
-        return true;
-    default:
-        return false;
-    }
 }
 
 /** ETG.1020 leaves open in which states a device tells its ID; all that do tell it in Pre-Operational. */
@@ -562,12 +565,6 @@ static bool run_machine(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
     return false;
 }
 
-static bool is_machine(cm1e_search_step_t step)
-{
-    return step == SEARCH_SCOUT || step == SEARCH_INIT || step == SEARCH_ID || step == SEARCH_PRE_OP ||
-           step == SEARCH_LATE_ID || step == SEARCH_BACK;
-}
-
 /** A machine of several datagrams repeats a question until its own deadline, which is long: the one of the SII is 5 s. */
 static bool is_gone(cm1e_search_t *search, const cm1e_datagram_t *d)
 {
@@ -596,12 +593,35 @@ bool cm1e_search_next(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
         return false;
     if (search->step == SEARCH_PAUSE)
         enter(search, SEARCH_COUNT, now_ns);
-    const bool machine = is_machine(search->step);
-    if (!machine && now_ns >= search->deadline_ns) { /* it is gone */
+    if (is_machine(search->step))
+        return run_machine(bus, d, now_ns);
+    if (now_ns >= search->deadline_ns) { /* it is gone */
         give_up(search, now_ns);
         return false;
     }
-    return machine ? run_machine(bus, d, now_ns) : fill(search, d);
+    fill(search, d);
+    return true;
+}
+
+/** The device has answered. */
+static void take_answer(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_search_t *search = &bus->search;
+    switch (search->step) {
+    case SEARCH_WALK: take_device(bus, d, now_ns); break;
+    case SEARCH_ADDRESS: take_address(search, d, now_ns); break;
+    case SEARCH_RETURN: walk_again(search, now_ns); break;
+    case SEARCH_ALIAS:
+        search->alias = cm1e_get_u16(d->data);
+        enter(search, SEARCH_CLEAR, now_ns);
+        break;
+    case SEARCH_GIVE:
+        welcome(bus, search->candidate, now_ns);
+        next_place(bus, now_ns);
+        break;
+    case SEARCH_RELEASE: next_place(bus, now_ns); break;
+    default: enter(search, actions[search->step].then, now_ns); break;
+    }
 }
 
 void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_ns)
@@ -609,50 +629,15 @@ void cm1e_search_result(cm1e_bus_t *bus, const cm1e_datagram_t *d, int64_t now_n
     cm1e_search_t *search = &bus->search;
     if (is_gone(search, d)) {
         give_up(search, now_ns);
-        return;
-    }
-    if (search->step == SEARCH_SCOUT)
+    } else if (search->step == SEARCH_SCOUT) {
         cm1e_scout_result(&search->scout, d);
-    else if (is_machine(search->step))
+    } else if (is_machine(search->step)) {
         cm1e_al_result(&search->al, d, now_ns);
-    if (search->step == SEARCH_COUNT) {
+    } else if (search->step == SEARCH_COUNT) {
         if (d->working_counter >= 0)
             take_count(bus, d->working_counter, now_ns);
-        return; /* a count of 1 is not the answer to the first question of the walk that begins now */
-    }
-    if (d->working_counter == APRW_WORKING_COUNTER && search->step == SEARCH_ADDRESS)
-        take_address(search, d, now_ns);
-    const bool of_several = search->step == SEARCH_RELEASE && d->working_counter > 1;
-    if (d->working_counter != 1 && !of_several)
-        return; /* repeated until the deadline */
-    switch (search->step) {
-    case SEARCH_WALK:
-        take_device(bus, d, now_ns);
-        break;
-    case SEARCH_RETURN:
-        walk_again(search, now_ns);
-        break;
-    case SEARCH_ALIAS:
-        search->alias = cm1e_get_u16(d->data);
-        enter(search, SEARCH_CLEAR, now_ns);
-        break;
-    case SEARCH_CLEAR:
-        enter(search, SEARCH_INIT, now_ns);
-        break;
-    case SEARCH_OFFER:
-        enter(search, SEARCH_MAILBOX, now_ns);
-        break;
-    case SEARCH_MAILBOX:
-        enter(search, SEARCH_PRE_OP, now_ns);
-        break;
-    case SEARCH_GIVE:
-        welcome(bus, search->candidate, now_ns);
-        next_place(bus, now_ns);
-        break;
-    case SEARCH_RELEASE:
-        next_place(bus, now_ns);
-        break;
-    default:
-        break;
-    }
+    } else if (d->working_counter == (search->step == SEARCH_ADDRESS ? APRW_WORKING_COUNTER : 1) ||
+               (search->step == SEARCH_RELEASE && d->working_counter > 1)) { /* there were several */
+        take_answer(bus, d, now_ns);
+    } /* else it is repeated until the deadline */
 }
