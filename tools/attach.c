@@ -26,7 +26,8 @@ static error_t parse_attach(int key, char *arg, struct argp_state *state)
     return 0;
 }
 
-const struct argp attach_argp = {option_table, parse_attach, NULL, NULL, NULL, NULL, NULL};
+static const struct argp attach_argp = {option_table, parse_attach, NULL, NULL, NULL, NULL, NULL};
+const struct argp_child attach_children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 
 bool load_network(const common_options_t *options, cm1e_bus_config_t *config)
 {

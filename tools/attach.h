@@ -10,8 +10,8 @@
 #include "cm1e/scheduler.h"
 #include "command.h"
 
-/** Child parser with the option --attach, for options->attach; its input is a common_options_t. */
-extern const struct argp attach_argp;
+/** The common options, and --attach for options->attach. */
+extern const struct argp_child attach_children[];
 
 /** As load_configuration(); with --attach neither -i nor -b is needed. */
 bool load_network(const common_options_t *options, cm1e_bus_config_t *config);

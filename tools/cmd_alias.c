@@ -21,7 +21,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     alias_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_BACKUP: options->backup = arg; return 0;
     case ARGP_KEY_ARG:
         if (!options->where) {
@@ -98,13 +98,12 @@ static int show_or_write(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const
 static const struct argp_option table[] = {
     {"backup", KEY_BACKUP, "FILE", 0, "File for the present EEPROM of the slave; it must not exist", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_alias = {
     table, parse, "POSITION|AXIS [ALIAS]",
     "Shows or writes the alias of a slave, by which a bus file can address it wherever it is wired (`alias:`). 0 is "
     "none. "
     "Only the alias and its checksum change in the EEPROM, and are read back. The slave uses the alias from its next "
-    "power-on.", children, NULL, NULL};
+    "power-on.", common_children, NULL, NULL};
 
 int command_alias(int argc, char **argv)
 {

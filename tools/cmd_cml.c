@@ -65,7 +65,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     cml_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case 'a': options->axis_word = arg; return 0;
     case KEY_SLAVE: return parse_count(arg, "the position of the slave", CM1E_MAX_SLAVES, &options->slave);
     case KEY_CHANNEL: return parse_count(arg, "the connector", CM1E_BRIDGE_AXES, &options->channel);
@@ -348,7 +348,6 @@ static const struct argp_option table[] = {
     {"allow-motion", KEY_ALLOW, NULL, 0, "Also send strings that may move the motor or change its power", 0},
     {"stay", KEY_STAY, NULL, 0, "Leave the motor in CML mode, with its torque", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_cml = {
     table, parse, "[STRING...]",
     "Sends strings in CML, the language of the Cool Muscle motors, to a motor behind an EtherCAT Cool MUSCLE "
@@ -356,7 +355,7 @@ const struct argp argp_cml = {
     "of standard input.\vQueries (?90.1, ?96.1, ?99.1, K37.1), parameters (K53.1=100; the motor keeps them when "
     "its power is off) and outputs (O2.1, F2.1) are sent unchanged. All other strings may move the motor: they "
     "need --allow-motion, and at the end the motor is freed. No other master may use the bridge meanwhile.",
-    children, NULL, NULL};
+    common_children, NULL, NULL};
 
 int command_cml(int argc, char **argv)
 {

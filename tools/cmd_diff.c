@@ -18,7 +18,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     diff_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case 'p': return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
     case ARGP_KEY_ARG:
     case ARGP_KEY_END: return parse_file_word(key, arg, state, &options->file);
@@ -81,12 +81,11 @@ static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *in
 static const struct argp_option table[] = {
     {"position", 'p', "POSITION", 0, "Compare only this slave; default: every slave that the file "
                                      "describes", 0}, {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_diff = {
     table, parse, "FILE",
     "Compares an ESI, EC_EXTEND, SII or ENI file with live devices: identity, EEPROM, mailbox, sync managers, PDO "
     "mapping and assignment, dictionary (docs/CHECK-RULES.md). Exit status 0: no difference, or warnings only; 1: "
-    "differences; 2: not compared.", children, NULL, NULL};
+    "differences; 2: not compared.", attach_children, NULL, NULL};
 
 int command_diff(int argc, char **argv)
 {

@@ -22,7 +22,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     doctor_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_FIX: options->fix = true; return 0;
     case KEY_ROOT: options->root = arg; return 0;
     case KEY_SECONDS:
@@ -119,7 +119,6 @@ static const struct argp_option option_list[] = {
     {"seconds", KEY_SECONDS, "S", 0, "Measure the wake-up latency for so long (default 2; 0: not at all)", 0},
     {0},
 };
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_doctor = {
     option_list,
     parse,
@@ -128,7 +127,7 @@ const struct argp argp_doctor = {
     "what to do. Nothing is changed, and no motor moves. The slaves go to Init and back to Pre-Operational, so the "
     "interface must not be in use; if a program of this library has it, that program is asked, and no slave changes "
     "its state. Exit status 1: there is a problem.",
-    children,
+    attach_children,
     NULL,
     NULL,
 };

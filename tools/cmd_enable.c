@@ -29,10 +29,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     enable_program_t *p = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &p->common;
-        state->child_inputs[1] = &p->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &p->common);
     case KEY_FOR: return parse_seconds(arg, LONGEST_S, &p->seconds) ? 0 : EINVAL;
     case ARGP_KEY_ARG: return parse_axis_word(arg, state, &p->axis_word);
     default: return ARGP_ERR_UNKNOWN;
@@ -132,12 +129,12 @@ static int report(void *context)
 static const struct argp_option table[] = {
     {"for", KEY_FOR, "SECONDS", 0, "End after this time instead of at a key", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_enable = {
     table, parse, "[AXIS]",
     "Enables one axis (name or number, default 1): the motor gets torque and holds its position, until a key is "
     "pressed or "
-    "the time of --for is over. It never moves by itself. Without a terminal it needs --for.", children, NULL, NULL};
+    "the time of --for is over. It never moves by itself. Without a terminal it needs --for.",
+    attach_children, NULL, NULL};
 
 int command_enable(int argc, char **argv)
 {

@@ -50,10 +50,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     firmware_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &options->common;
-        state->child_inputs[1] = &options->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case 'a': options->axis = arg; return 0;
     case 'p': return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
     case KEY_NAME: options->name = arg; return 0;
@@ -265,12 +262,11 @@ static const struct argp_option table[] = {
     {"other-device", KEY_OTHER_DEVICE, NULL, 0, "Allow a slave that is no CM1-E", 0},
     {"yes", KEY_YES, NULL, 0, "Do not ask", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_firmware = {
     table, parse, "update FILE",
     "Writes a new firmware into a motor (UG 4.3, 10): FoE in the state Bootstrap, then Init and Pre-Operational, and "
     "the version is read back. The file comes from the maker. Refused while a motor is enabled or a program has the "
-    "network. If it breaks off, the command says what the motor has, and what to do.", children, NULL, NULL};
+    "network. If it breaks off, the command says what the motor has, and what to do.", attach_children, NULL, NULL};
 
 static int open_and_update(const firmware_options_t *options, const input_t *image)
 {

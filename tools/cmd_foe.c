@@ -50,7 +50,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     foe_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_NAME: options->name = arg; return 0;
     case KEY_PASSWORD: return parse_number(arg, "the password", 0, 0xFFFFFFFF, &options->password) ? 0 : EINVAL;
     case KEY_MAXIMUM: return parse_number(arg, "the maximum", 1, MAXIMUM_LARGEST, &options->maximum) ? 0 : EINVAL;
@@ -166,13 +166,12 @@ static const struct argp_option table[] = {
     {"maximum", KEY_MAXIMUM, "BYTES", 0, "Most bytes that are read; default: 16777216", 0},
     {"allow-write", KEY_ALLOW, NULL, 0, "Write: what the file does in the slave is in its manual", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_foe = {
     table, parse, "read|write POSITION|AXIS FILE",
     "Reads a file of a slave into FILE, or writes FILE into it (FoE), in Pre-Operational or, with --bootstrap, in "
     "Bootstrap. FILE may be -, with --name. Where a program runs the network with `control: maintain`, it transfers "
     "the file beside its cycle; Bootstrap needs the network for itself. For the firmware of a CM1-E use "
-    "`cm1e firmware update`.", children, NULL, NULL};
+    "`cm1e firmware update`.", attach_children, NULL, NULL};
 
 int command_foe(int argc, char **argv)
 {

@@ -324,7 +324,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     int format;
     check_once(key, options, state);
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case ARGP_KEY_ARG:
         if (options->what.format != CM1E_FILE_UNKNOWN)
             argp_error(state, "one format at a time; \"%s\" is too many", arg);

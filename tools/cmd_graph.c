@@ -33,7 +33,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     graph_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_SVG:
         need_name(state, "--svg", arg);
         options->svg = arg;
@@ -361,12 +361,11 @@ static int show_network(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const 
 static const struct argp_option table[] = {
     {"svg", KEY_SVG, "FILE", 0, "Write a picture; -: to standard output", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_graph = {
     table, parse, NULL,
     "Shows how the slaves are wired, with the states of their ports: as DOT of Graphviz, or as a picture with --svg. A "
     "port with a link that is closed (\"loop\") sends frames back: what is behind it is not reached. Where a program "
-    "runs the network, it is asked.", children, NULL, NULL};
+    "runs the network, it is asked.", attach_children, NULL, NULL};
 
 int command_graph(int argc, char **argv)
 {

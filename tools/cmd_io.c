@@ -46,10 +46,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     io_options_t *p = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &p->common;
-        state->child_inputs[1] = &p->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &p->common);
     case KEY_ALLOW: p->allow = true; return 0;
     case KEY_ALL: p->all = true; return 0;
     case KEY_FOR: return parse_seconds(arg, LONGEST_S, &p->seconds) ? 0 : EINVAL;
@@ -240,14 +237,13 @@ static const struct argp_option table[] = {
     {"all", KEY_ALL, NULL, 0, "Also list the process data of motors", 0},
     {"for", KEY_FOR, "SECONDS", 0, "How long the outputs have their values; they are 0 afterwards", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_io = {
     table, parse, "[NAME=VALUE...]",
     "Lists the digital inputs and outputs of the motors, with the switches that the bus file names, and the inputs and "
     "outputs of all other slaves with name, type and value. With NAME=VALUE, as \"2.Output 1=1\", it writes outputs of "
     "slaves without a motor. It brings the slaves to Operational; no motor gets torque. Where a program runs "
     "the network, it attaches to it: it writes only outputs that the program does not use, with control: maintain.",
-    children, NULL, NULL};
+    attach_children, NULL, NULL};
 
 int command_io(int argc, char **argv)
 {

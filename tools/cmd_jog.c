@@ -40,10 +40,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     jog_program_t *p = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &p->common;
-        state->child_inputs[1] = &p->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &p->common);
     case 'v': return parse_positive(arg, "the velocity", &p->velocity) ? 0 : EINVAL;
     case 'a': return parse_positive(arg, "the acceleration", &p->acceleration) ? 0 : EINVAL;
     case KEY_DEAD_MAN:
@@ -166,7 +163,6 @@ static const struct argp_option table[] = {
     {"dead-man", KEY_DEAD_MAN, "SECONDS", 0, "The motor stops when the key has not repeated for so long, 0.05 ... 1; "
                                              "default 0.2", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_jog = {
     table, parse, "[AXIS]",
     "Enables one axis (name or number, default 1) and moves it while an arrow key is held: right or up in positive "
@@ -175,7 +171,7 @@ const struct argp argp_jog = {
     "--dead-man. A "
     "terminal pauses between a key and its first repetition, so a motion begins with a short step. It needs a "
     "terminal.",
-    children, NULL, NULL};
+    attach_children, NULL, NULL};
 
 int command_jog(int argc, char **argv)
 {

@@ -33,7 +33,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     led_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_FOR: return parse_seconds(arg, LONGEST_S, &options->seconds) ? 0 : EINVAL;
     case KEY_FLASH: options->flash = true; return 0;
     case KEY_BRIGHTNESS: return parse_number(arg, "the brightness", 0, 16, &options->brightness) ? 0 : EINVAL;
@@ -136,12 +136,11 @@ static const struct argp_option table[] = {
     {"flash", KEY_FLASH, NULL, 0, "Flash in the colour", 0},
     {"brightness", KEY_BRIGHTNESS, "N", 0, "0 (off) ... 16; the motor keeps it when its power is off", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_led = {
     table, parse, "POSITION|AXIS [" COLOURS "]",
     "Finds a motor by its status LED: without a colour it flashes white for 10 s, and is then as before. With a "
     "colour it "
-    "stays so; `off` is dark, `motor` gives the LED back to the motor. No motor moves.", children, NULL, NULL};
+    "stays so; `off` is dark, `motor` gives the LED back to the motor. No motor moves.", common_children, NULL, NULL};
 
 int command_led(int argc, char **argv)
 {

@@ -26,10 +26,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     log_options_t *options = state->input;
     (void)arg;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &options->common;
-        state->child_inputs[1] = &options->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case 'f': options->follow = true; return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -96,11 +93,10 @@ static cm1e_error_t show_more(cm1e_control_t *control, json_t *all, progress_t *
 /** true: the program has ended, which ends --follow in order. */
 static bool has_ended(cm1e_error_t error) { return error == CM1E_ERROR_IO; }
 
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_log = {option_table, parse, NULL,
                               "Shows the event log of the program that runs the network: states, errors, commands, "
                               "overruns, lost frames. Errors stay in it when they are reset.",
-                              children, NULL, NULL};
+                              attach_children, NULL, NULL};
 
 int command_log(int argc, char **argv)
 {

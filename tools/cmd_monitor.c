@@ -297,10 +297,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     monitor_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &options->common;
-        state->child_inputs[1] = &options->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case 'v': return parse_positive(arg, "the velocity", &options->velocity) ? 0 : EINVAL;
     case 'a': return parse_positive(arg, "the acceleration", &options->acceleration) ? 0 : EINVAL;
     case ARGP_KEY_ARG: argp_error(state, "monitor shows all axes; \"%s\" is too many", arg); return EINVAL;
@@ -312,7 +309,6 @@ static const struct argp_option table[] = {
     {"velocity", 'v', "VELOCITY", 0, "Units/s of a jog; default 0.5", 0},
     {"acceleration", 'a', "ACCELERATION", 0, "Units/s2 of a jog, also for stopping; default: the axis's maximum", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_monitor = {
     table, parse, NULL,
     "Shows all axes on the terminal: state, position, velocity, lag and torque with bars within their limits, errors "
@@ -324,7 +320,7 @@ const struct argp argp_monitor = {
     "keys act with `control: maintain` in its bus file only, and on axes that it does not command. A motor moves while "
     "a key repeats, and stops 0.25 s after the last repetition; without the terminal or the connection it stops and "
     "loses its torque. Bars are empty where there is no limit.",
-    children, NULL, NULL};
+    attach_children, NULL, NULL};
 
 int command_monitor(int argc, char **argv)
 {

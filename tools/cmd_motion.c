@@ -110,7 +110,7 @@ static error_t parse_any(int key, char *arg, struct argp_state *state)
 {
     motion_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_RESET: options->reset = true; return 0;
     case KEY_CSV:
     case KEY_SVG:
@@ -467,11 +467,10 @@ static const struct argp_option move_table[] = {
     {"jerk", KEY_JERK, "JERK", 0, "Units/s3; default: the axis's maximum", 0},
     OPTIONS_OF_BOTH,
     {0}};
-static const struct argp_child move_children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_move = {move_table, parse_move, "[AXIS]",
                                  "Enables one axis (name or number, default 1), moves it, disables it. The command "
                                  "is done when the motor is in position (in_position of the bus file). Without a "
-                                 "bus file the unit is one revolution.", move_children, NULL, NULL};
+                                 "bus file the unit is one revolution.", common_children, NULL, NULL};
 
 int command_move(int argc, char **argv)
 {
@@ -493,12 +492,11 @@ static const struct argp_option home_table[] = {
     {"for", KEY_FOR, "SECONDS", 0, "Maximum time; default 60", 0},
     OPTIONS_OF_BOTH,
     {0}};
-static const struct argp_child home_children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_home = {home_table, parse_home, "[AXIS]",
                                  "Enables one axis (name or number, default 1), homes it, disables it. Values that "
                                  "are not given are those of the bus file; with --method they are the defaults of "
                                  "the motor.",
-                                 home_children, NULL, NULL};
+                                 common_children, NULL, NULL};
 
 int command_home(int argc, char **argv)
 {

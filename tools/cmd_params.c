@@ -45,7 +45,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     params_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_YES: options->yes = true; return 0;
     case KEY_DRY_RUN: options->dry_run = true; return 0;
     case KEY_ALLOW: options->allow_motion = true; return 0;
@@ -473,7 +473,6 @@ static const struct argp_option table[] = {
     {"other-firmware", KEY_OTHER_FIRMWARE, NULL, 0, "restore: allow a file of another firmware", 0},
     {"force", KEY_FORCE, NULL, 0, "backup: write over a file that exists", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_params = {
     table, parse,
     "list POSITION|AXIS [NAME...]\nget POSITION|AXIS NAME...\nset POSITION|AXIS NAME=VALUE...\n"
@@ -484,7 +483,7 @@ const struct argp argp_params = {
     "checks "
     "device, firmware and every range before it writes, shows what will change, reads back each value, and says what "
     "was written if it breaks off. If a program has the network, its motors are read through it; set and restore need "
-    "`control: maintain` in its bus file and an axis that it does not command.", children, NULL, NULL};
+    "`control: maintain` in its bus file and an axis that it does not command.", attach_children, NULL, NULL};
 
 static int act(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {

@@ -16,7 +16,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     prove_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_LIST: options->list = true; return 0;
     case KEY_WRITES: options->allow_writes = true; return 0;
     case KEY_DEAD_ENDS: options->allow_dead_ends = true; return 0;
@@ -253,14 +253,13 @@ static const struct argp_option table[] = {
     {"max-travel", KEY_TRAVEL, "REV", 0, "With --allow-motion: revolutions of the motor to either side", 0},
     {"profile", KEY_PROFILE, "FILE", 0, "With -i sim: the simulated motor behaves as this device", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_prove = {
     table, parse, "[POSITION]",
     "Compares a device with what this program knows of its kind: identity, EEPROM, the whole dictionary, mappings, "
     "registers, EtherCAT states, and requests that must be refused. Each point is told as agrees, differs or unknown, "
     "with the clause of the guide. Without --allow-motion nothing is enabled, and nothing is written that is kept or "
     "could move the motor. The network must not be in use: its slaves go to Init and to Operational and back. Exit "
-    "status 1: a point differs.", children, NULL, NULL};
+    "status 1: a point differs.", common_children, NULL, NULL};
 
 int command_prove(int argc, char **argv)
 {

@@ -24,9 +24,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     recover_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = state->child_inputs[1] = &options->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_FOR: return parse_seconds(arg, LONGEST_S, &options->seconds) ? 0 : EINVAL;
     case ARGP_KEY_ARG:
         if (options->where)
@@ -143,13 +141,12 @@ static int recover(const recover_options_t *options, cm1e_control_t *control)
 
 static const struct argp_option table[] = {
     {"for", KEY_FOR, "SECONDS", 0, "Wait so long until the slave takes part; default 10", 0}, {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_recover = {
     table, parse, "[POSITION|NAME]",
     "Asks the program that runs the network to bring a slave back to Operational that answers and waits for being "
     "asked (`recover: ask`): by its position, its name in the bus file, or the name of its axis. Without one it lists "
     "the slaves that take no part, and why. The program's bus file needs `control: maintain`. No motor gets torque: "
-    "its axis needs a reset and power afterwards.", children, NULL, NULL};
+    "its axis needs a reset and power afterwards.", attach_children, NULL, NULL};
 
 int command_recover(int argc, char **argv)
 {

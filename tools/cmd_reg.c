@@ -65,7 +65,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     reg_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_ALLOW: options->allow = true; return 0;
     case KEY_SIZE: return parse_number(arg, "the size", 1, 4, &options->size) ? 0 : EINVAL;
     case ARGP_KEY_ARG:
@@ -154,12 +154,12 @@ static const struct argp_option table[] = {
     {"size", KEY_SIZE, "BYTES", 0, "Bytes to write, 1 to 4; default: 2", 0},
     {"allow-write", KEY_ALLOW, NULL, 0, "Write: a wrong register stops a slave or the network", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_reg = {
     table, parse, "read POSITION|AXIS ADDRESS [BYTES]\nwrite POSITION|AXIS ADDRESS VALUE",
     "Shows registers of a slave controller, or writes one and shows what it is then. The bytes are in the order of the "
     "wire. Where a program runs the network, it is asked, for registers below 0x0900; else the network is brought to "
-    "Pre-Operational, which sets counters of errors to 0. Writing needs the network for itself.", children, NULL, NULL};
+    "Pre-Operational, which sets counters of errors to 0. Writing needs the network for itself.",
+    attach_children, NULL, NULL};
 
 int command_reg(int argc, char **argv)
 {

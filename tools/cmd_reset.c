@@ -31,10 +31,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     reset_program_t *p = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &p->common;
-        state->child_inputs[1] = &p->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &p->common);
     case ARGP_KEY_ARG:
         if (p->axis_word)
             argp_error(state, "one axis, or none for all; \"%s\" is too many", arg);
@@ -131,13 +128,12 @@ static int report(void *context)
     return status;
 }
 
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_reset = {
     NULL, parse, "[AXIS]",
     "Resets the error of one axis (name or number), or of all axes, and says what it was. The cause must be gone: "
     "`cm1e "
     "status` shows it, `cm1e explain CODE` explains it. No motor moves or gets torque; if a "
-    "program runs the network, that decides on the torque.", children, NULL, NULL};
+    "program runs the network, that decides on the torque.", attach_children, NULL, NULL};
 
 int command_reset(int argc, char **argv)
 {

@@ -39,7 +39,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     run_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case 's': return parse_seconds(arg, 86400, &options->seconds) ? 0 : EINVAL;
     case KEY_RETAIN:
         if (!arg[0])
@@ -88,7 +88,6 @@ static const struct argp_option table[] = {
     {"html", KEY_HTML, "FILE", 0, "Write it as a page for a browser", 0},
     {0},
 };
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_run = {
     table, parse, "PROGRAM.so",
     "Runs a program that `cm1e st build` has translated, on the network of the bus file. A variable of type AXIS_REF is "
@@ -96,7 +95,7 @@ const struct argp argp_run = {
     "revolutions. Meanwhile `cm1e monitor`, `cm1e trace` and `cm1e log` show axes and variables; errors of axes are told "
     "when they occur. An error of the "
     "program while it runs, as an index outside an array, ends the run: the axes ramp down, and are disabled.",
-    children, NULL, NULL};
+    common_children, NULL, NULL};
 
 static bool is_traced(const run_options_t *options)
 {

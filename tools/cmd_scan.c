@@ -20,7 +20,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     (void)arg;
     scan_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_PDOS: options->pdos = true; return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -142,10 +142,9 @@ static void print_table(cm1e_bus_t *bus, bool pdos)
     }
 }
 
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 static const struct argp_option table[] = {
     {"pdos", KEY_PDOS, NULL, 0, "Show the process data of each slave, as it has them assigned now", 0}, {0}};
-const struct argp argp_scan = {table, parse, NULL, "Lists the slaves of a network.", children, NULL, NULL};
+const struct argp argp_scan = {table, parse, NULL, "Lists the slaves of a network.", attach_children, NULL, NULL};
 
 static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {

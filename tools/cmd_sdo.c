@@ -40,9 +40,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     sdo_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = state->child_inputs[1] = &options->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_TYPE: options->type_name = arg; return 0;
     case KEY_VALUES: options->values = true; return 0;
     case ARGP_KEY_ARG:
@@ -201,12 +199,11 @@ static const struct argp_option table[] = {
     {"type", KEY_TYPE, TYPES, 0, "The type of the object; default: as the device tables say", 0},
     {"values", KEY_VALUES, NULL, 0, "list: also show the present values of the objects", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_sdo = {
     table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
     "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x60F6:1B` (index and sub-index are hexadecimal), "
     "or lists the dictionary of the slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
-    children, NULL, NULL};
+    attach_children, NULL, NULL};
 
 static int act(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *options, uint16_t position)
 {

@@ -33,7 +33,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     sii_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_BACKUP:
         need_name(state, "--backup", arg);
         options->backup = arg;
@@ -190,13 +190,12 @@ static const struct argp_option table[] = {
     {"own-alias-and-serial", KEY_OWN, NULL, 0,
      "write: also write alias and serial number of the image; by default those of the slave stay", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_sii = {
     table, parse, "read POSITION FILE\nwrite POSITION FILE --backup FILE\ndecode FILE|POSITION",
     "Reads, writes or shows the SII, the EEPROM with the identity of a slave. Writing changes only the words that "
     "differ, reads all data back, and names the word at which it stopped. To undo it, write the backup with `cm1e "
     "sii write`.",
-    children, NULL, NULL};
+    attach_children, NULL, NULL};
 
 int command_sii(int argc, char **argv)
 {

@@ -19,7 +19,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     states_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case ARGP_KEY_ARG:
         if (!options->where) {
             options->where = arg;
@@ -90,12 +90,11 @@ static int request(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void 
     return EXIT_FAILED;
 }
 
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_states = {
     NULL, parse, "[POSITION|AXIS [init|preop|safeop|boot]]",
     "Shows the EtherCAT state of every slave or of one, with the reason of an error. Where a program runs the network, "
     "it is asked; else the network is brought to Pre-Operational. With a state, that is requested of the slave as it "
-    "is, for commissioning: the slave may refuse it, and says why.", children, NULL, NULL};
+    "is, for commissioning: the slave may refuse it, and says why.", attach_children, NULL, NULL};
 
 int command_states(int argc, char **argv)
 {

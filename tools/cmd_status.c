@@ -18,11 +18,7 @@
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     (void)arg;
-    if (key == ARGP_KEY_INIT) {
-        state->child_inputs[0] = state->child_inputs[1] = state->input;
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+    return key == ARGP_KEY_INIT ? give_options(state, state->input) : ARGP_ERR_UNKNOWN;
 }
 
 static void print_head(const cm1e_slave_info_t *slave, const char *axis, const char *what)
@@ -293,13 +289,12 @@ static void show_axis_errors(const common_options_t *options, const cm1e_bus_con
     cm1e_control_close(control);
 }
 
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
                                  "Shows state, error, measurements and the last emergencies of every drive, and which "
                                  "slaves are not motors. Of a network that is not as the bus file says, it tells "
                                  "what differs. Where a program runs the network, it is asked, for errors of its axes "
                                  "too; else the network is brought to Pre-Operational.",
-                                 children, NULL, NULL};
+                                 attach_children, NULL, NULL};
 
 static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {

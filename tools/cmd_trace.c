@@ -86,10 +86,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     trace_options_t *options = state->input;
     long long number;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &options->common;
-        state->child_inputs[1] = &options->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_FOR: return parse_seconds(arg, LONGEST_S, &options->seconds) ? 0 : EINVAL;
     case KEY_BEFORE: return parse_seconds(arg, LONGEST_S, &options->before_s) ? 0 : EINVAL;
     case KEY_EVERY:
@@ -139,13 +136,12 @@ static const struct argp_option table[] = {
     {"live", KEY_LIVE, "PORT", OPTION_ARG_OPTIONAL,
      "Show the trace while it is recorded, in a browser on this machine: print the address of a page", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_trace = {
     table, parse, NULL,
     "Records all signals of the program that runs the network: axes, timing, the variables and objects that the "
     "program has named, and objects of --object. Without such a program it runs the network itself, with every motor "
     "without torque.\vNo cycle is left out. If this program is too slow to take them, the samples that are lost are "
-    "counted and said, and the place is marked.", children, NULL, NULL};
+    "counted and said, and the place is marked.", attach_children, NULL, NULL};
 
 /* ---- recording --------------------------------------------------------------------------------------------------- */
 

@@ -99,10 +99,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     tune_options_t *options = state->input;
     parser = state;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &options->common;
-        state->child_inputs[1] = &options->common;
-        return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_TRAVEL: return parse_positive(arg, "the travel", &options->limits.travel) ? 0 : EINVAL;
     case KEY_VELOCITY: return parse_positive(arg, "the velocity", &options->limits.velocity) ? 0 : EINVAL;
     case 'a': return parse_positive(arg, "the acceleration", &options->limits.acceleration) ? 0 : EINVAL;
@@ -562,14 +559,13 @@ static const struct argp_option table[] = {
     {"keep", KEY_KEEP, NULL, 0, "Let the motor keep the values of --set", 0},
     {"html", KEY_HTML, "FILE", 0, "Write both runs as a page for a browser", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_tune = {
     table, parse, "step [AXIS]\nramp [AXIS]\nsine [AXIS]\nchirp [AXIS]",
     "Enables one axis (name or number, default 1), moves it within the limits given, and measures: step: rise time, "
     "overshoot, settling time; ramp: lag at constant velocity; sine, chirp: gain and phase of the actual position "
     "beside the set position. A chirp is a series of sines, each of five periods. The axis ends where it began. Refused "
     "while a program has the network.",
-    children, NULL, NULL};
+    attach_children, NULL, NULL};
 
 static bool make_records(tune_run_t runs[2], double cycle_s)
 {

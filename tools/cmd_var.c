@@ -47,7 +47,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     var_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = state->child_inputs[1] = &options->common; return 0;
+    case ARGP_KEY_INIT: return give_options(state, &options->common);
     case KEY_ALLOW: options->allow = true; return 0;
     case KEY_FOR: return parse_seconds(arg, 1000000, &options->seconds) ? 0 : EINVAL;
     case ARGP_KEY_ARG:
@@ -67,13 +67,13 @@ static const struct argp_option table[] = {
     {"allow-write", KEY_ALLOW, NULL, 0, "Give variables values: the program may move a motor by them", 0},
     {"for", KEY_FOR, "SECONDS", 0, "force: how long (default: until Ctrl-C)", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_var = {
     table, parse, "list [PART-OF-A-NAME...]\nget NAME...\nset NAME=VALUE...\nforce NAME=VALUE...\nrelease NAME...",
     "Variables of a running program in Structured Text (`cm1e run`). A value is written as in the program: TRUE, 12.5, 16#FF, "
     "T#1m5s, the name of an enumerator, a text in quotes. set writes once; force keeps the values, whatever the "
     "program writes, until this command ends. Forced variables are marked, and the event log has who was forced when. "
-    "Both need control: maintain in the bus file of the program. release ends what anybody forces.", children, NULL, NULL};
+    "Both need control: maintain in the bus file of the program. release ends what anybody forces.",
+    attach_children, NULL, NULL};
 
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 

@@ -50,6 +50,14 @@ static error_t parse_common(int key, char *arg, struct argp_state *state)
 }
 
 const struct argp common_argp = {common_option_table, parse_common, NULL, NULL, NULL, NULL, NULL};
+const struct argp_child common_children[] = {{&common_argp, 0, NULL, 0}, {0}};
+
+error_t give_options(struct argp_state *state, common_options_t *options)
+{
+    for (int i = 0; state->root_argp->children[i].argp; i++)
+        state->child_inputs[i] = options;
+    return 0;
+}
 
 void complain(const char *format, ...)
 {

@@ -96,9 +96,12 @@ typedef struct common_options {
     const char *network;        /**< --network: of a bus file with several buses */
     const char *pcap_file;      /**< --pcap */
     bool json;                  /**< --json */
-    const char *attach;         /**< --attach, of commands that have attach_argp (attach.h) */
+    const char *attach;         /**< --attach, of commands that have attach_children (attach.h) */
 } common_options_t;
 extern const struct argp common_argp;
+extern const struct argp_child common_children[]; /**< of a command that opens the network by itself */
+/** At ARGP_KEY_INIT: the children take their options into `options`. Returns 0. */
+error_t give_options(struct argp_state *state, common_options_t *options);
 
 /** Loads the configuration of the options: the bus file, with the interface of -i in place of its own. Without a bus
  *  file no axes are expected. Of several buses it loads the one that is meant (choose_bus.h). After an error it
