@@ -38,7 +38,6 @@ enum { CM1E_CIA402_MAPPINGS = 3 };
 void cm1e_cia402_pdo(cm1e_pdo_t *pdo, unsigned number, bool transmit);
 
 const cm1e_object_t *cm1e_cia402_objects(size_t *count);
-const cm1e_entry_t *cm1e_cia402_entry(uint16_t index, uint8_t subindex);
 /** Error codes of CiA 301 and CiA 402 (0x603F); NULL: not one of theirs. */
 const cm1e_device_error_t *cm1e_cia402_error(uint16_t code);
 

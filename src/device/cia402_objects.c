@@ -121,9 +121,3 @@ const cm1e_object_t *cm1e_cia402_objects(size_t *count)
     *count = COUNT(objects);
     return objects;
 }
-
-const cm1e_entry_t *cm1e_cia402_entry(uint16_t index, uint8_t subindex)
-{
-    const cm1e_object_t *object = cm1e_object_find(objects, COUNT(objects), index);
-    return object ? cm1e_object_entry(object, subindex) : NULL;
-}

@@ -96,17 +96,25 @@ static cm1e_error_t refuse(cm1e_path_problem_t *problem, cm1e_path_refusal_t ref
     }
 }
 
-static cm1e_path_refusal_t check(const cm1e_path_t *path, const double *end, const cm1e_path_command_t *command)
+static bool are_numbers(const double *point, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!(fabs(point[i]) < LARGEST))
+            return false;
+    return true;
+}
+
+/** `point`: what defines an arc beside its end; NULL for a line. */
+static cm1e_path_refusal_t check(const cm1e_path_t *path, const double *point, const double *end,
+                                 const cm1e_path_command_t *command)
 {
     if (path->segment_count == CM1E_PATH_SEGMENTS || path->element_count > CM1E_PATH_ELEMENTS - 3)
         return CM1E_PATH_FULL;
     const cm1e_motion_limits_t *limits = &command->limits;
     if (!is_limit(limits->velocity) || !is_limit(limits->acceleration) || !is_limit(limits->deceleration) ||
-        !is_limit(limits->jerk) || command->tag == 0)
+        !is_limit(limits->jerk) || command->tag == 0 || !are_numbers(end, path->config.axes) ||
+        (point && !are_numbers(point, path->config.space)))
         return CM1E_PATH_NO_NUMBER;
-    for (int i = 0; i < path->config.axes; i++)
-        if (!(fabs(end[i]) < LARGEST))
-            return CM1E_PATH_NO_NUMBER;
     const bool transition = command->junction == CM1E_PATH_CORNER_DISTANCE ||
                             command->junction == CM1E_PATH_CORNER_DEVIATION;
     return transition && !(command->parameter > 0) ? CM1E_PATH_NO_TRANSITION : CM1E_PATH_FINE;
@@ -163,7 +171,7 @@ static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *comman
 cm1e_error_t cm1e_path_append_line(cm1e_path_t *path, const double *end, const cm1e_path_command_t *command,
                                    cm1e_path_problem_t *problem)
 {
-    const cm1e_path_refusal_t refusal = check(path, end, command);
+    const cm1e_path_refusal_t refusal = check(path, NULL, end, command);
     if (refusal)
         return refuse(problem, refusal, 0, 0);
     const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
@@ -171,23 +179,13 @@ cm1e_error_t cm1e_path_append_line(cm1e_path_t *path, const double *end, const c
     return take_in(path, command, problem);
 }
 
-static bool are_numbers(const double *point, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (!(fabs(point[i]) < LARGEST))
-            return false;
-    return true;
-}
-
 cm1e_error_t cm1e_path_append_arc_border(cm1e_path_t *path, const double *border, const double *end,
                                          const cm1e_path_command_t *command, cm1e_path_problem_t *problem)
 {
-    cm1e_path_refusal_t refusal = check(path, end, command);
-    const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
-    if (!refusal && !are_numbers(border, frame.space))
-        refusal = CM1E_PATH_NO_NUMBER;
+    const cm1e_path_refusal_t refusal = check(path, border, end, command);
     if (refusal)
         return refuse(problem, refusal, 0, 0);
+    const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
     cm1e_path_segment_t *segment = segment_at(path, path->segment_count);
     if (!cm1e_path_make_border_arc(&segment->piece, &frame, path->end, border, end))
         return refuse(problem, CM1E_PATH_NO_ARC, 0, 0);
@@ -198,23 +196,14 @@ cm1e_error_t cm1e_path_append_arc_centre(cm1e_path_t *path, const double *centre
                                          cm1e_path_way_t way, const cm1e_path_command_t *command,
                                          cm1e_path_problem_t *problem)
 {
-    cm1e_path_refusal_t refusal = check(path, end, command);
-    const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
-    if (!refusal && !are_numbers(centre, frame.space))
-        refusal = CM1E_PATH_NO_NUMBER;
+    const cm1e_path_refusal_t refusal = check(path, centre, end, command);
     if (refusal)
         return refuse(problem, refusal, 0, 0);
+    const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
     cm1e_path_segment_t *segment = segment_at(path, path->segment_count);
     if (!cm1e_path_make_centre_arc(&segment->piece, &frame, path->end, centre, way, end))
         return refuse(problem, CM1E_PATH_NO_ARC, 0, 0);
     return take_in(path, command, problem);
-}
-
-int cm1e_path_room(const cm1e_path_t *path)
-{
-    const int elements = (CM1E_PATH_ELEMENTS - path->element_count) / 3;
-    const int segments = CM1E_PATH_SEGMENTS - path->segment_count;
-    return elements < segments ? elements : segments;
 }
 
 void cm1e_path_end(const cm1e_path_t *path, double *position)
@@ -370,6 +359,33 @@ static void pop_passed(cm1e_path_t *path, cm1e_path_sample_t *sample)
     }
 }
 
+/** The stop has ended. false: the path stays at rest. */
+static bool end_stop(cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    const double slack = 1e-12 * path->along.position; /* tolerance of an end */
+    while (path->element_count > 0 && cm1e_path_here(path) >= cm1e_path_element(path, 0)->length - slack)
+        pop(path, sample);
+    path->time_s = path->profile.duration_s;
+    end_last_stop(path);
+    if (path->element_count > 0 && must_stop(path))
+        return false;
+    path->stopping = false;
+    if (path->element_count > 0)
+        path->along.position = larger(0, cm1e_path_here(path));
+    return true;
+}
+
+/** The profile has ended, and with it the last element of the run. */
+static void end_run(cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    const int count = cm1e_path_run(path, 0, path->element_count).count;
+    for (int i = 0; i < count; i++)
+        pop(path, sample);
+    path->along.position = 0;
+    if (path->element_count == 0 || cm1e_path_element(path, 0)->passed == 0)
+        end_last_stop(path);
+}
+
 /** What comes after the end of the profile. false: nothing yet. */
 static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
@@ -377,25 +393,10 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
     const bool other_pace = path->stopping || path->last_stop; /* the override may be another one since */
     path->course++;
     path->along = (cm1e_motion_state_t){path->profile.end.position, path->profile.end.velocity, 0};
-    if (path->stopping) {
-        const double slack = 1e-12 * path->along.position; /* tolerance of an end */
-        while (path->element_count > 0 && cm1e_path_here(path) >= cm1e_path_element(path, 0)->length - slack)
-            pop(path, sample);
-        path->time_s = path->profile.duration_s;
-        end_last_stop(path);
-        if (path->element_count > 0 && must_stop(path))
-            return false;
-        path->stopping = false;
-        if (path->element_count > 0)
-            path->along.position = larger(0, cm1e_path_here(path));
-    } else {
-        const int count = cm1e_path_run(path, 0, path->element_count).count;
-        for (int i = 0; i < count; i++)
-            pop(path, sample);
-        path->along.position = 0;
-        if (path->element_count == 0 || cm1e_path_element(path, 0)->passed == 0)
-            end_last_stop(path);
-    }
+    if (!path->stopping)
+        end_run(path, sample);
+    else if (!end_stop(path, sample))
+        return false;
     path->begin = 0;
     if (path->element_count == 0) {
         path->along = (cm1e_motion_state_t){0, 0, 0};
@@ -437,8 +438,8 @@ bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *m
     return isfinite(v);
 }
 
-/* A line has no curvature: 0 is added so that a zero has the sign that it has elsewhere. */
-/* In pairs of axes: an axis behind the last one gets zeros. */
+/* A line has no curvature: 0 is added so that a zero has the sign that it has elsewhere. The axes are computed in pairs:
+ * an axis behind the last one gets zeros. */
 static inline void fill_line(const cm1e_path_piece_t *line, int axes, double length, double v, double a,
                              cm1e_path_sample_t *restrict sample)
 {

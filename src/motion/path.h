@@ -249,8 +249,6 @@ cm1e_error_t cm1e_path_append_arc_centre(cm1e_path_t *path, const double *centre
                                          cm1e_path_way_t way, const cm1e_path_command_t *command,
                                          cm1e_path_problem_t *problem);
 
-/** Number of segments that can be appended now. */
-int cm1e_path_room(const cm1e_path_t *path);
 /** End position of the last appended segment. */
 void cm1e_path_end(const cm1e_path_t *path, double *position);
 /** Length of path from here to its end. */

@@ -105,7 +105,7 @@ static void expect_refused(cm1e_error_t error, const cm1e_path_problem_t *proble
 {
     TEST_ASSERT_EQUAL(expected, error);
     TEST_ASSERT_EQUAL(refusal, problem->refusal);
-    TEST_ASSERT_EQUAL(CM1E_PATH_SEGMENTS, cm1e_path_room(&driven.path));
+    TEST_ASSERT_EQUAL(0, driven.path.segment_count);
 }
 
 static void test_what_makes_no_sense_is_refused(void)
@@ -217,7 +217,7 @@ static void test_many_short_segments_keep_the_velocity(void)
     int appended = 0;
     double at_pace = 0;
     do { /* an outline of chords of 1 mm of a circle of 300 mm, a few at a time */
-        while (appended < 1000 && cm1e_path_room(&driven.path) > 0) {
+        while (appended < 1000 && driven.path.segment_count < CM1E_PATH_SEGMENTS) {
             const double angle = ++appended / 300.0;
             line((double[]){300 * sin(angle), 300 - 300 * cos(angle), 0}, 100, CM1E_PATH_CORNER_DEVIATION, 0.01);
         }
@@ -335,7 +335,7 @@ static void test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there(voi
     double end[2];
     cm1e_path_end(&driven.path, end);
     TEST_ASSERT_TRUE(end[0] > driven.now.position[0] && end[0] < 60);
-    TEST_ASSERT_EQUAL(CM1E_PATH_SEGMENTS - 1, cm1e_path_room(&driven.path));
+    TEST_ASSERT_EQUAL(1, driven.path.segment_count);
     driven.done_tag = 3; /* of the next one */
     line((double[]){0, 50}, 100, CM1E_PATH_EXACT, 0);
     double reached = 0;
