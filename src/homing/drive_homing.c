@@ -35,6 +35,19 @@ enum { OFFSET = CM1E_HOMING_OFFSET, METHOD = CM1E_HOMING_METHOD, SPEED = CM1E_HO
        ACCELERATION = CM1E_HOMING_ACCELERATION, TORQUE = CM1E_HOMING_TORQUE, TIMEOUT };
 static const double longest_timeout_s = 1e6;
 
+/* What the user may state, as the bus file calls it. */
+static const struct {
+    const char *name, *unit;
+    bool has_default; /* which 0 selects */
+} stated[] = {
+    [OFFSET] = {"offset", " u", false},
+    [METHOD] = {"method", "", false},
+    [SPEED] = {"velocity", " u/s", true},
+    [ACCELERATION] = {"acceleration", " u/s2", true},
+    [TORQUE] = {"torque", " %", true},
+    [TIMEOUT] = {"timeout_s", " s", true},
+};
+
 /* The table of the device has all differences between the drives. */
 static const cm1e_device_homing_t *kind_of(const cm1e_axis_t *axis) { return axis->drive.kind->homing; }
 
@@ -96,7 +109,7 @@ static bool parameter(cm1e_axis_t *axis, int which, int method, double value)
     const cm1e_entry_t *entry = range_of(axis, object);
     if (!entry || !isfinite(value) || fabs(value / object.unit) > INT32_MAX)
         return false;
-    const bool by_default = value == 0.0 && which != OFFSET && which != METHOD;
+    const bool by_default = value == 0.0 && stated[which].has_default;
     const double asked = by_default ? default_of(axis, which, &object, entry) : value / object.unit;
     const int64_t rounded = cm1e_entry_round(entry, llround(asked));
     if (rounded < entry->minimum || rounded > entry->maximum)
@@ -114,8 +127,6 @@ static cm1e_error_t wrong(drive_homing_t *home, int which, double value)
 
 void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    static const char *const names[] = {"offset", "method", "velocity", "acceleration", "torque", "timeout_s"};
-    static const char *const units[] = {" u", "", " u/s", " u/s2", " %", " s"};
     const int which = axis->homing->drive.wrong;
     double least = kind_of(axis)->first_method, most = kind_of(axis)->last_method;
     if (which == OFFSET && !k45_is_known(&axis->homing->drive)) {
@@ -134,10 +145,9 @@ void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
         least = (double)entry->minimum * object.unit / counts;
         most = (double)entry->maximum * object.unit / counts;
     }
-    const bool has_default = which == SPEED || which == ACCELERATION || which == TORQUE || which == TIMEOUT;
     snprintf(text, size, "Axis \"%s\": homing was not started: homing.%s is %.6g%s; %.6g ... %.6g%s is right%s.",
-             axis->config->name, names[which], axis->homing->drive.wrong_value, units[which], least, most, units[which],
-             has_default ? ", or 0 for the default" : "");
+             axis->config->name, stated[which].name, axis->homing->drive.wrong_value, stated[which].unit, least, most,
+             stated[which].unit, stated[which].has_default ? ", or 0 for the default" : "");
 }
 
 double cm1e_homing_velocity(const cm1e_axis_t *axis)

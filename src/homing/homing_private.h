@@ -105,11 +105,11 @@ cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *c
 void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_homing_run(cm1e_axis_t *axis);
 
-/* homing_inputs.c: CM1E_OK, or which input is wrong, for the text */
 static inline bool step_by_switch(cm1e_homing_step_kind_t kind)
 {
     return kind == CM1E_STEP_ABSOLUTE_SWITCH || kind == CM1E_STEP_LIMIT_SWITCH;
 }
+/* homing_inputs.c: CM1E_OK, or which input is wrong, for the text */
 cm1e_error_t cm1e_homing_step_inputs(const cm1e_axis_t *axis, const cm1e_homing_step_t *step);
 /** Of the reference signal: the motor has no such input. */
 cm1e_error_t cm1e_homing_wrong_signal(const cm1e_axis_t *axis, const cm1e_homing_step_t *step);

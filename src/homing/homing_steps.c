@@ -42,31 +42,34 @@ static cm1e_axis_switch_t limit_switch(double way)
     return way > 0.0 ? CM1E_SWITCH_LIMIT_POSITIVE : CM1E_SWITCH_LIMIT_NEGATIVE;
 }
 
-/* The level of the switch or input that a step searches for. */
-static bool level_of(const cm1e_axis_t *axis, const stepping_t *s)
+/* A step searches for an input by its number, or for a switch of the configuration. */
+static bool by_number(const cm1e_homing_step_t *step)
 {
-    if (s->step.kind == CM1E_STEP_LIMIT_SWITCH)
-        return cm1e_axis_switch_active(axis, limit_switch(s->search));
-    if (s->step.input == 0)
-        return cm1e_axis_switch_active(axis, CM1E_SWITCH_HOME);
-    return cm1e_axis_input_level(axis, s->step.input);
+    return step->kind != CM1E_STEP_LIMIT_SWITCH && step->input != 0;
 }
 
-/* The input that a step searches for. */
+static cm1e_axis_switch_t switch_of(const cm1e_homing_step_t *step, double way)
+{
+    return step->kind == CM1E_STEP_LIMIT_SWITCH ? limit_switch(way) : CM1E_SWITCH_HOME;
+}
+
+static bool level_of(const cm1e_axis_t *axis, const stepping_t *s)
+{
+    return by_number(&s->step) ? cm1e_axis_input_level(axis, s->step.input)
+                                 : cm1e_axis_switch_active(axis, switch_of(&s->step, s->search));
+}
+
 static int input_of(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, double way)
 {
-    if (step->kind == CM1E_STEP_LIMIT_SWITCH)
-        return cm1e_axis_switch_input(axis, limit_switch(way));
-    return step->input != 0 ? step->input : cm1e_axis_switch_input(axis, CM1E_SWITCH_HOME);
+    return by_number(step) ? step->input : cm1e_axis_switch_input(axis, switch_of(step, way));
 }
 
 /* Whether the slave with the signal of the step, or with the limit switch ahead, is away. Nobody would see the place
  * at which the search has to end. */
 static bool signal_away(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, double search, double way)
 {
-    const bool switches = step->kind == CM1E_STEP_ABSOLUTE_SWITCH || step->kind == CM1E_STEP_LIMIT_SWITCH;
     return cm1e_axis_switch_away(axis, limit_switch(way)) ||
-           (switches && cm1e_axis_input_away(axis, input_of(axis, step, search)));
+           (step_by_switch(step->kind) && cm1e_axis_input_away(axis, input_of(axis, step, search)));
 }
 
 /* ---- check ------------------------------------------------------------------------------------------------------- */
@@ -87,21 +90,18 @@ static bool position_valid(const cm1e_axis_t *axis, double position)
 
 static cm1e_error_t check_signal(const cm1e_axis_t *axis, const cm1e_homing_step_t *step)
 {
-    const bool torque = step->torque_limit > 0.0;
-    const int input = input_of(axis, step, search_direction(step));
-    if ((torque && axis->drive.image.in_torque.bytes == 0) ||
-        (step_by_switch(step->kind) && !cm1e_axis_sees_input(axis, input)))
+    const double search = search_direction(step);
+    const bool by_switch = step_by_switch(step->kind);
+    if ((step->torque_limit > 0.0 && axis->drive.image.in_torque.bytes == 0) ||
+        (by_switch && !cm1e_axis_sees_input(axis, input_of(axis, step, search))))
         return CM1E_ERROR_PDO_MAPPING;
-    for (double way = -1.0; way <= 1.0; way += 2.0)
-        if (signal_away(axis, step, search_direction(step), way))
-            return CM1E_ERROR_AXIS_SIGNAL_AWAY;
-    if (step->kind == CM1E_STEP_ABSOLUTE_SWITCH && step->input != 0)
+    if (signal_away(axis, step, search, -1.0) || signal_away(axis, step, search, 1.0))
+        return CM1E_ERROR_AXIS_SIGNAL_AWAY;
+    if (!by_switch)
+        return CM1E_OK;
+    if (by_number(step))
         return cm1e_axis_check_input(axis, step->input) == CM1E_OK ? CM1E_OK : cm1e_homing_wrong_signal(axis, step);
-    if (step->kind == CM1E_STEP_LIMIT_SWITCH)
-        return cm1e_axis_has_switch(axis, limit_switch(search_direction(step))) ? CM1E_OK
-                                                                                : CM1E_ERROR_AXIS_STEP_SWITCH;
-    const bool home = step->kind == CM1E_STEP_ABSOLUTE_SWITCH && step->input == 0;
-    return home && !cm1e_axis_has_switch(axis, CM1E_SWITCH_HOME) ? CM1E_ERROR_AXIS_STEP_SWITCH : CM1E_OK;
+    return cm1e_axis_has_switch(axis, switch_of(step, search)) ? CM1E_OK : CM1E_ERROR_AXIS_STEP_SWITCH;
 }
 
 cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move)
@@ -639,13 +639,11 @@ cm1e_error_t cm1e_homing_step_anew(cm1e_axis_t *axis)
     const cm1e_motion_state_t now = set_state(axis);
     const double way = cm1e_position_minus(axis->setpoint.target, axis->setpoint.position) / axis->position.scale;
     const double end = axis->setpoint.profile.end.velocity;
-    const from_t from = from_set(axis);
     cm1e_profile_t profile;
     const bool planned = s->finishing ? cm1e_profile_to_position(&profile, &now, way, &s->limits) == CM1E_OK
                                       : cm1e_profile_to_velocity(&profile, &now, end, &s->limits) == CM1E_OK;
     if (!planned)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    cm1e_axis_run(axis, &from, &profile,
-                  cm1e_position_plus(axis->setpoint.position, profile.end.position * axis->position.scale), 0.0);
+    run(axis, &profile);
     return CM1E_OK;
 }
