@@ -21,6 +21,7 @@ void cm1e_st_put_quoted(st_t *st, const char *text);
 /** It is a member of the struct of its block, or a variable of its own. */
 bool cm1e_st_is_stored(const var_t *var);
 bool cm1e_st_needs_initial(const type_t *type);
+bool cm1e_st_begins_with_zero(const type_t *owner, const var_t *var);
 /** The initial value of an enumeration or a subrange without another one: the first. */
 int64_t cm1e_st_default_of(const type_t *type);
 /** An input of a function whose initial value C cannot write within a call: a function of this name gives it. */

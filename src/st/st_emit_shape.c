@@ -14,6 +14,13 @@ int64_t cm1e_st_default_of(const type_t *type)
     return first ? type->initial ? type->initial->value.integer : first->value.integer : 0;
 }
 
+/** An enumeration in a block or a structure of the library begins with 0, as in C, also where no enumerator is 0: then
+ *  the page of the block says what 0 means. Elsewhere it begins with its first enumerator. */
+bool cm1e_st_begins_with_zero(const type_t *owner, const var_t *var)
+{
+    return owner->external && var->type->kind == T_ENUM && !var->initial;
+}
+
 bool cm1e_st_needs_initial(const type_t *type)
 {
     if (type->kind == T_ARRAY)
@@ -25,7 +32,8 @@ bool cm1e_st_needs_initial(const type_t *type)
     if (type->kind == T_BLOCK && (type->unit->object.has_class || cm1e_st_has_init(type->unit)))
         return true;
     for (const var_t *var = type->members; var; var = var->next)
-        if (cm1e_st_is_stored(var) && var->section != V_IN_OUT && (var->initial || cm1e_st_needs_initial(var->type)))
+        if (cm1e_st_is_stored(var) && var->section != V_IN_OUT && !cm1e_st_begins_with_zero(type, var) &&
+            (var->initial || cm1e_st_needs_initial(var->type)))
             return true;
     return false;
 }

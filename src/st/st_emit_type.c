@@ -84,7 +84,7 @@ static void emit_init_function(st_t *st, const type_t *type)
     if (unit && unit->object.has_class)
         cm1e_st_line(st, "self->the_class = %d;\n", unit->object.class_id);
     for (const var_t *var = type->members; var; var = var->next)
-        if (cm1e_st_is_stored(var) && var->section != V_IN_OUT)
+        if (cm1e_st_is_stored(var) && var->section != V_IN_OUT && !cm1e_st_begins_with_zero(type, var))
             cm1e_st_emit_var_initial(st, cm1e_st_format(st->arena, "self->%s", var->c_name), var);
     if (unit && cm1e_st_has_init(unit) && !cm1e_st_init_takes(unit))
         emit_init_calls(st, unit, "self", NULL);

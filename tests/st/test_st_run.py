@@ -185,6 +185,26 @@ def check_twincat():
             faults.append(f"{text}: {result.stderr}")
 
 
+TURN = "VAR_GLOBAL X : AXIS_REF; END_VAR\nPROGRAM Main VAR power : MC_Power := (EnablePositive := TRUE, EnableNegative := TRUE); " \
+       "turn : {}; END_VAR\npower(Axis := X, Enable := TRUE);\n" \
+       "turn(Axis := X, Execute := power.Status, Position := 350, Velocity := 360);\nEND_PROGRAM\n"
+
+
+def check_direction():
+    """A Direction that the program leaves out is 0 (mcShortestWay), as the page of the block and a program in C have it;
+    that of Tc2_MC2's MC_MoveModulo is positive there."""
+    with open("table.yaml", "w", encoding="ascii") as file:
+        file.write("bus: {interface: sim}\naxes:\n  - {name: X, position: 1, sim: {no_stops: true}, unit: "
+                   "{units_per_revolution: 360, modulo_range: 360}}\n")
+    for block, backwards in (("MC_MoveAbsolute", True), ("MC_MoveAbsolute := (Direction := mcPositiveDirection)", False),
+                             ("ARRAY[1..1] OF MC_MoveAbsolute", True), ("MC_MoveModulo", False)):
+        text = TURN.format(block).replace("turn(", "turn[1](" if "ARRAY" in block else "turn(")
+        run(build("turn", text), "-s", "2", "--csv", "turn.csv", bus="table.yaml")
+        rows = [float(row["X set position [u]"]) for row in trace("turn.csv")]
+        if abs(rows[-1] - 350) > 0.01 or backwards != all(at < 1e-6 or at > 349 for at in rows):
+            faults.append(f"{block} turned {'by 350' if backwards else 'back by 10'} u and ended at {rows[-1]}")
+
+
 RETAIN = "VAR_GLOBAL RETAIN parts : DINT := 5; name : STRING[8] := 'ab'; END_VAR PROGRAM Main VAR plain : DINT; END_VAR\n" \
          "IF plain = 0 THEN parts := parts + 1; name := CONCAT(name, 'c'); END_IF plain := plain + 1; END_PROGRAM"
 
@@ -302,5 +322,6 @@ with tempfile.TemporaryDirectory() as folder:
     check_errors_of_axes()
     check_retain()
     check_twincat()
+    check_direction()
 if faults:
     sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
