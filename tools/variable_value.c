@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "command.h"
 #include "st/st.h"
@@ -52,6 +53,53 @@ static void quoted(const char *from, char quote, char *text, size_t size)
     snprintf(text + used, size - used, "%s%c", *from ? "..." : "", quote);
 }
 
+/** The part of a second, without zeros at its end. */
+static void fraction(int64_t ns, char *text, size_t size)
+{
+    size_t length = (size_t)snprintf(text, size, ".%09" PRId64, ns);
+    while (text[length - 1] == '0')
+        length--;
+    text[text[length - 1] == '.' ? length - 1 : length] = 0;
+}
+
+/** T#1m5s: as a program writes it, and as TIME_TO_STRING does. */
+static void duration_text(int64_t value, char *text, size_t size)
+{
+    static const struct { const char *name; uint64_t ns; } units[] = {
+        {"d", UINT64_C(86400000000000)}, {"h", UINT64_C(3600000000000)}, {"m", UINT64_C(60000000000)}, {"s", 1000000000},
+        {"ms", 1000000}, {"us", 1000}, {"ns", 1},
+    };
+    uint64_t left = value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+    size_t used = (size_t)snprintf(text, size, "T#%s%s", value < 0 ? "-" : "", left ? "" : "0ms");
+    for (size_t i = 0; left > 0 && used < size; left %= units[i++].ns)
+        if (left >= units[i].ns)
+            used += (size_t)snprintf(text + used, size - used, "%" PRIu64 "%s", left / units[i].ns, units[i].name);
+}
+
+/** The literal of a time or date. False: there is none, or `declared` is a type of the program, which may be any of
+ *  them. */
+static bool time_literal(const char *declared, int64_t ns, char *text, size_t size)
+{
+    static const int64_t second_ns = 1000000000;
+    char rest[16];
+    if (strcmp(declared, "TIME") == 0) {
+        duration_text(ns, text, size);
+        return true;
+    }
+    const bool day = strcmp(declared, "DATE") == 0, moment = strcmp(declared, "DT") == 0;
+    if (ns < 0 || (!day && !moment && strcmp(declared, "TOD") != 0)) /* no literal is before 1970 */
+        return false;
+    const time_t at = (time_t)(ns / second_ns);
+    struct tm tm;
+    char date[40] = "";
+    if (!gmtime_r(&at, &tm))
+        return false;
+    strftime(date, sizeof date, day ? "%Y-%m-%d" : moment ? "%Y-%m-%d-%H:%M:%S" : "%H:%M:%S", &tm);
+    fraction(ns % second_ns, rest, sizeof rest);
+    snprintf(text, size, "%s#%s%s", day ? "D" : declared, date, day ? "" : rest);
+    return true;
+}
+
 void variable_text(const json_t *row, char *text, size_t size)
 {
     const json_t *value = json_object_get(row, "value");
@@ -65,6 +113,9 @@ void variable_text(const json_t *row, char *text, size_t size)
         snprintf(text, size, "%s", json_number_value(value) != 0 ? "TRUE" : "FALSE");
     else if (json_is_string(value)) /* a ULINT that JSON has no number for */
         snprintf(text, size, "%s", json_string_value(value));
+    else if (json_is_integer(value) && strcmp(unit, "ns") == 0 &&
+             time_literal(text_of(row, "declared"), json_integer_value(value), text, size))
+        return;
     else if (json_is_integer(value))
         snprintf(text, size, "%" JSON_INTEGER_FORMAT "%s%s", json_integer_value(value), *unit ? " " : "", unit);
     else if (json_is_real(value))

@@ -32,6 +32,7 @@ VAR
     wait : TIME := T#20ms;
     day : DATE;
     clock : TOD;
+    stamp : DT;
     mask : LWORD;
     small : SINT;
     lamp AT %QX2.0.2 : BOOL;
@@ -138,6 +139,13 @@ def check_literals(run):
         run.var("set", "--allow-write", f"Main.{word}")
         if name != "copy":  # which the program writes
             expect(run.value(name) == value, word, run.value(name))
+    for literal in ("wait=T#0ms", "wait=T#-2ms", "wait=T#49d17h2m47s295ms", "wait=T#1us1ns", "day=D#2024-02-29",
+                    "clock=TOD#00:00:00", "clock=TOD#23:59:59.05", "stamp=DT#1999-12-31-23:59:59.5",
+                    "stamp=DT#2024-01-02-03:04:00"):
+        name, right = literal.split("=")  # a value is shown as it can be given
+        run.var("set", "--allow-write", f"Main.{literal}")
+        shown = run.var("get", f"Main.{name}").split()
+        expect(right in shown, f"{name} is shown as {right}", shown)
     row = run.rows()["Main.mode"]
     expect((row["enumerator"], row["value"], row["declared"], row["type"]) == ("FAST", 3, "E_Mode", "INT"), "an enumeration", row)
     expect("E_Mode     FAST" in run.var("get", "Main.mode"), "an enumerator is shown", run.var("get", "Main.mode"))
@@ -202,7 +210,7 @@ def check_exact(run):
 def check_all(run):
     """Every variable is seen, more than one reply has; texts are read and written."""
     rows = run.rows()
-    expect(len(rows) == 19 + 400, "all variables", len(rows))
+    expect(len(rows) == 20 + 400, "all variables", len(rows))
     expect(rows["Main.table[1,-100].here"]["value"] == 0, "an element", rows["Main.table[1,-100].here"])
     expect(run.value("table[2,99].here") != 0, "the last element")
     expect(rows["Main.text"]["declared"] == "STRING[6]" and rows["Main.text"]["value"] == "it's", "a text", rows["Main.text"])
