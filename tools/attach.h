@@ -59,8 +59,8 @@ void lost_by_network(const json_t *statistics, char *text, size_t size);
 /** Which of the program's `axes` a word means, by name, else by number: counted from 1; 0: none. As find_axis(). */
 size_t axis_of_program(const json_t *axes, const char *word);
 
-/** Where an axis is found by its name: `config`; with --attach and no bus file the axes of that program, of which only name,
- *  slave, connector and whether there is a motor are known. */
+/** Where an axis is found by its name: `config`; without a bus file the axes of the program that runs the network, if
+ *  there is one, of which only name, slave, connector and whether there is a motor are known. */
 const cm1e_bus_config_t *axes_to_name(const common_options_t *options, const cm1e_bus_config_t *config);
 
 /** Signals that would end this program end what it does at another one in order. */

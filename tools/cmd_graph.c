@@ -21,7 +21,7 @@ typedef struct graph_options {
 /** All that a picture shows. */
 typedef struct graph {
     const cm1e_bus_t *bus;
-    const cm1e_bus_config_t *config;
+    const cm1e_bus_config_t *config, *names; /* names: its axes, of the bus file or of the program that runs */
     uint32_t count;
     cm1e_slave_place_t places[CM1E_MAX_SLAVES];
     const char *second;   /* the interface at the other end of a ring; "": there is none */
@@ -63,10 +63,10 @@ static int describe(const graph_t *graph, uint32_t i, char lines[LINES][LINE_BYT
 {
     char state[48];
     const cm1e_slave_info_t *slave = cm1e_bus_slave(graph->bus, i + 1);
-    const int axis = find_axis_at(graph->bus, graph->config, slave, 0);
+    const int axis = find_axis_at(graph->bus, graph->names, slave, 0);
     const char *name = slave->name[0] ? slave->name : "without a name";
     int n = 0;
-    snprintf(lines[n++], LINE_BYTES, "%u: %s", slave->position, axis >= 0 ? graph->config->axes[axis].name : name);
+    snprintf(lines[n++], LINE_BYTES, "%u: %s", slave->position, axis >= 0 ? graph->names->axes[axis].name : name);
     if (axis >= 0)
         snprintf(lines[n++], LINE_BYTES, "%s", name);
     snprintf(lines[n++], LINE_BYTES, "%s", al_state_name(slave->al_state, state, sizeof state));
@@ -351,9 +351,11 @@ static int show(graph_t *graph, const graph_options_t *options)
 static int show_network(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *options, uint16_t position)
 {
     static graph_t graph;
+    const graph_options_t *graph_options = options;
     cm1e_diag_t diag = {0};
     (void)position;
-    graph = (graph_t){.bus = bus, .config = config, .count = cm1e_bus_slave_count(bus)};
+    graph = (graph_t){.bus = bus, .config = config, .names = axes_to_name(&graph_options->common, config),
+                      .count = cm1e_bus_slave_count(bus)};
     return cm1e_bus_topology(bus, graph.places, CM1E_MAX_SLAVES, &diag) == CM1E_OK ? show(&graph, options)
                                                                                      : fail(&diag);
 }

@@ -29,53 +29,60 @@ static void print_head(const cm1e_slave_info_t *slave, const char *axis, const c
            al_state_name(slave->al_state, state, sizeof state));
 }
 
+/** The axis of a slave, where a bus file or the program that runs the network names it. */
+typedef struct named_axis {
+    const char *name;               /**< "": none has this slave */
+    const cm1e_axis_config_t *axis; /**< of the bus file: its unit is known; NULL: it is not */
+} named_axis_t;
+
 /** The actual position in the unit of the axis, from the zero of the drive; NAN: not known. */
 static double units_of(const cm1e_axis_config_t *axis, const drive_status_t *drive)
 {
+    if (!axis)
+        return NAN;
     const double counts = drive_position(drive);
     const cm1e_unit_t unit = cm1e_unit_of(axis);
     return (axis->invert ? -counts : counts) * unit.units / unit.counts;
 }
 
-static void print_drive(const cm1e_slave_info_t *slave, const drive_status_t *drive, const cm1e_axis_config_t *axis,
-                        const char *name)
+static void print_drive(const cm1e_slave_info_t *slave, const drive_status_t *drive, const named_axis_t *named)
 {
     char text[DRIVE_TEXT_BYTES], firmware[48];
     const char *version = slave->software_version[0] ? slave->software_version : "unknown";
     snprintf(firmware, sizeof firmware, "firmware %s", version);
-    print_head(slave, name, firmware);
+    print_head(slave, named->name, firmware);
     for (int i = 0; i < DRIVE_READINGS; i++) {
         printf("  %-18s %s", drive_label(drive, i), drive_text(drive, i, text, sizeof text));
-        if (axis && i == DRIVE_POSITION && !isnan(units_of(axis, drive)))
-            printf(" = %.6g u", units_of(axis, drive));
+        if (i == DRIVE_POSITION && !isnan(units_of(named->axis, drive)))
+            printf(" = %.6g u", units_of(named->axis, drive));
         putchar('\n');
     }
 }
 
-/** Adds the axis of the bus file: its name, and the position in its unit. */
-static json_t *with_axis(json_t *object, const cm1e_axis_config_t *axis, const char *name, const drive_status_t *drive)
+/** Adds the axis: its name, and the position in its unit. */
+static json_t *with_axis(json_t *object, const named_axis_t *named, const drive_status_t *drive)
 {
-    if (!axis)
+    if (!named->name[0])
         return object;
-    const double position = units_of(axis, drive);
-    json_object_set_new(object, "axis", json_string(name));
+    const double position = units_of(named->axis, drive);
+    json_object_set_new(object, "axis", json_string(named->name));
     json_object_set_new(object, "position_units", isnan(position) ? json_null() : json_real(position));
     return object;
 }
 
 /** Appends to `all`, or prints if that is NULL. Returns false if the statusword cannot be read. */
-static bool show_drive(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, json_t *all,
-                       cm1e_diag_t *diag)
+static bool show_drive(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_bus_config_t *names,
+                       const cm1e_slave_info_t *slave, json_t *all, cm1e_diag_t *diag)
 {
     drive_status_t drive;
-    const int number = find_axis_at(bus, config, slave, 0);
-    const cm1e_axis_config_t *axis = number < 0 ? NULL : &config->axes[number];
-    const char *name = axis ? axis->name : "";
+    const int number = find_axis_at(bus, names, slave, 0);
+    const named_axis_t named = {number < 0 ? "" : names->axes[number].name,
+                                number < 0 || names != config ? NULL : &names->axes[number]};
     const bool readable = read_drive(bus, slave->position, &drive, diag);
     if (all)
-        json_array_append_new(all, with_axis(drive_status_as_json(slave, &drive), axis, name, &drive));
+        json_array_append_new(all, with_axis(drive_status_as_json(slave, &drive), &named, &drive));
     else
-        print_drive(slave, &drive, axis, name);
+        print_drive(slave, &drive, &named);
     return readable;
 }
 
@@ -302,6 +309,7 @@ static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *co
     cm1e_diag_t diag = {0};
     (void)position;
     identify(bus, config);
+    const cm1e_bus_config_t *names = axes_to_name(options, config);
     json_t *all = options->json ? json_array() : NULL;
     bool readable = true;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
@@ -311,9 +319,9 @@ static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *co
             continue;
         }
         if (slave->device && slave->device->channels == 0)
-            readable = show_drive(bus, config, slave, all, &diag) && readable;
+            readable = show_drive(bus, config, names, slave, all, &diag) && readable;
         else if (slave->device)
-            readable = show_bridge(bus, config, slave, all, &diag) && readable;
+            readable = show_bridge(bus, names, slave, all, &diag) && readable;
         else
             show_other(slave, all);
         show_presence(bus, slave, all);

@@ -273,6 +273,10 @@ def check_emergencies(client, attached):
     words = f"emergency 0x{told['code']:04X}, "
     expect(told["text"].startswith(words) and "Cure: " in told["text"], "the text of an emergency", told)
     shown = attached("status")
+    expect("slave 1, axis X: " in shown.stdout and "slave 2, axis Y: " in shown.stdout and " u\n" not in shown.stdout,
+           "status names the axes of the program, whose units it does not know", shown)
+    drawn = attached("graph")
+    expect('"1: X\\n' in drawn.stdout and '"2: Y\\n' in drawn.stdout, "graph names the axes of the program", drawn)
     expect(shown.returncode == 0 and shown.stdout.count("emergency") == 1 and words in shown.stdout, "status", shown)
     as_json = json.loads(attached("status", "--json").stdout)
     expect([len(s["emergencies"]) for s in as_json] == [0, 1, 0] and as_json[Y - 1]["emergencies"][0]["code"] ==
