@@ -356,6 +356,25 @@ static void expectations(const yypcontext_t *context, char *text, size_t size)
             snprintf(text, size, "; is a \";\" missing before it?");
 }
 
+/** The end that is missing, if `found` ends what is around an IF, a loop or a CASE that is open; NULL: it does not. */
+static const char *missing_end(const yypcontext_t *context, yysymbol_kind_t found)
+{
+    yysymbol_kind_t expected[YYNTOKENS];
+    const int count = yypcontext_expected_tokens(context, expected, YYNTOKENS);
+    const bool ends = found == YYSYMBOL_YYEOF || found == YYSYMBOL_UNTIL ||
+                      strncmp(yysymbol_name(found), "END_", 4) == 0;
+    for (int i = 0; i < count && ends; i++)
+        switch (expected[i]) {
+        case YYSYMBOL_END_IF: return "an IF before it has no END_IF";
+        case YYSYMBOL_END_CASE: return "a CASE before it has no END_CASE";
+        case YYSYMBOL_END_FOR: return "a FOR before it has no END_FOR";
+        case YYSYMBOL_END_WHILE: return "a WHILE before it has no END_WHILE";
+        case YYSYMBOL_UNTIL: return "a REPEAT before it has no UNTIL";
+        default: break;
+        }
+    return NULL;
+}
+
 static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing)
 {
     char text[300];
@@ -363,8 +382,16 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
     if (cm1e_st_unsupported(parsing, *yypcontext_location(context)))
         return 0;
     expectations(context, text, sizeof text);
+    const char *missing = missing_end(context, found);
+    if (missing)
+        snprintf(text, sizeof text, "; %s", missing);
     if (strcmp(parsing->last, "=") == 0)
-        snprintf(text, sizeof text, "; a value is assigned by \":=\"");
+        snprintf(text, sizeof text, strcmp(parsing->before, "=") == 0 ? "; values are compared by one \"=\""
+                                                                     : "; a value is assigned by \":=\"");
+    if (strcmp(parsing->last, ":=") == 0)
+        snprintf(text, sizeof text, "; values are compared by \"=\", and an assignment is a statement of its own");
+    if (strcmp(parsing->last, "&") == 0 && strcmp(parsing->before, "&") == 0)
+        snprintf(text, sizeof text, "; AND is a single \"&\"");
     if (strcasecmp(parsing->last, "THEN") == 0)
         snprintf(text, sizeof text, "; THEN is that of IF or ELSIF");
     if (strcasecmp(parsing->before, "ELSEIF") == 0)

@@ -169,10 +169,24 @@ bool cm1e_st_unsupported(parsing_t *parsing, place_t place)
     return false;
 }
 
+/** What a sign of another language is here, with a semicolon before it; "": nothing. */
+static const char *written_here(char character)
+{
+    switch (character) {
+    case '!': return "; \"not equal\" is <>, and a negation is NOT";
+    case '|': return "; that is OR";
+    case '%': return "; a remainder is MOD";
+    case '~': return "; a negation is NOT";
+    case '?': return "; SEL(condition, value if FALSE, value if TRUE) chooses";
+    default: return "";
+    }
+}
+
 void cm1e_st_bad_character(parsing_t *parsing, place_t place, char character)
 {
     if (character > ' ' && character < 0x7F)
-        cm1e_st_report(parsing->st, place, "\"%c\" is not a character of the language here", character);
+        cm1e_st_report(parsing->st, place, "\"%c\" is not a character of the language here%s", character,
+                       written_here(character));
     else
         cm1e_st_report(parsing->st, place, "the byte 0x%02X is not a character of the language; only comments and "
                        "texts have others than those of ASCII", (unsigned char)character);
