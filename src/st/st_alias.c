@@ -1,4 +1,5 @@
-/* Inputs that have another name in TwinCAT's library Tc2_MC2. */
+/* Inputs and outputs that have another name in TwinCAT's library Tc2_MC2, and what programs for TwinCAT and CODESYS look
+ * for in vain. */
 #include <strings.h>
 
 #include "st/st_state.h"
@@ -8,7 +9,23 @@ static const struct { const char *block, *name, *ours, *hint; } aliases[] = {
     {"MC_Power", "Enable_Negative", "EnableNegative", NULL},
     {"MC_Power", "Active", "Status", NULL},
     {"MC_Power", "Busy", "Valid", NULL},
+    {"MC_Power", "bRegulatorOn", NULL, "Enable switches the power on"},
+    {"MC_Power", "bDriveStart", NULL, "EnablePositive and EnableNegative permit motion"},
+    {"MC_Power", "bRegulatorRealState", NULL, "Status is TRUE while the power is on"},
+    {"MC_Power", "bDriveStartRealState", NULL, "Status is TRUE while set-points act"},
+    {"MC_SetPosition", "Mode", "Relative", NULL},
+    {"MC_ReadActualVelocity", "ActualVelocity", "Velocity", NULL},
+    {"MC_ReadStatus", "ConstantVelocity", NULL, "MC_ReadMotionState has it"},
+    {"MC_ReadStatus", "Accelerating", NULL, "MC_ReadMotionState has it"},
+    {"MC_ReadStatus", "Decelerating", NULL, "MC_ReadMotionState has it"},
     {"MC_Home", "HomingMode", NULL, "the bus file says how the axis is homed"},
+    {"AXIS_REF", "nAxisState", NULL, "MC_ReadStatus shows the state"},
+    {"AXIS_REF", "fActPosition", NULL, "NcToPlc.ActPos, or MC_ReadActualPosition"},
+    {"AXIS_REF", "fSetPosition", NULL, "NcToPlc.SetPos"},
+    {"AXIS_REF", "fActVelocity", NULL, "NcToPlc.ActVelo, or MC_ReadActualVelocity"},
+    {"AXIS_REF", "fSetVelocity", NULL, "NcToPlc.SetVelo"},
+    {"AXIS_REF", "bError", NULL, "Status.Error"},
+    {"AXIS_REF", "dwErrorID", NULL, "NcToPlc.ErrorCode, or MC_ReadAxisError"},
     {"AXIS_REF", "NcToPlc", NULL, "some of its members are known, as NcToPlc.ActPos; it is not as a whole"},
     {"AXIS_REF", "PlcToNc", NULL, "command the axis by function blocks"},
     {"AXIS_REF", "Status", NULL, "some of its members are known, as Status.Error; it is not as a whole"},

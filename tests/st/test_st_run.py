@@ -177,7 +177,9 @@ def check_twincat():
     if not 24.9 < fastest <= 25.001:
         faults.append(f"with an Override of 50 % the axis reaches {fastest} u/s")
     for text, says in (("Enable := X.NcToPlc.ActPoss > 3.0", 'did you mean "ActPos"'),
-                       ("Enable := X.Status.ControlLoopClosed", "MC_ReadStatus")):
+                       ("Enable := X.Status.ControlLoopClosed", "MC_ReadStatus"),
+                       ("Enable := X.nAxisState = 3", "MC_ReadStatus shows the state"),
+                       ("bRegulatorOn := TRUE", "Enable switches the power on")):
         with open("refused.st", "w", encoding="ascii") as file:
             file.write(TWINCAT.replace("Enable := TRUE, Enable_Positive", text + ", Enable_Positive"))
         result = cm1e("st", "check", "refused.st")
@@ -188,6 +190,24 @@ def check_twincat():
 TURN = "VAR_GLOBAL X : AXIS_REF; END_VAR\nPROGRAM Main VAR power : MC_Power := (EnablePositive := TRUE, EnableNegative := TRUE); " \
        "turn : {}; END_VAR\npower(Axis := X, Enable := TRUE);\n" \
        "turn(Axis := X, Execute := power.Status, Position := 350, Velocity := 360);\nEND_PROGRAM\n"
+
+
+NAMES = """VAR_GLOBAL X : AXIS_REF; END_VAR
+PROGRAM Main
+VAR set : MC_SetPosition; v : MC_ReadActualVelocity; velocity : LREAL := 9; END_VAR
+set(Axis := X, Execute := TRUE, Position := 4.0, Mode := TRUE);
+v(Axis := X, Enable := TRUE, ActualVelocity => velocity);
+velocity := v.ActualVelocity;
+END_PROGRAM
+"""
+
+
+def check_names():
+    """Inputs and outputs that Tc2_MC2 calls otherwise."""
+    run(build("names", NAMES), "-s", "0.1", "--csv", "names.csv")
+    last = trace("names.csv")[-1]
+    if (last["Main.set.Relative"], last["Main.velocity"], float(last["X actual position [u]"])) != ("1", "0", 4):
+        faults.append(f"names of Tc2_MC2: {last}")
 
 
 def check_direction():
@@ -323,5 +343,6 @@ with tempfile.TemporaryDirectory() as folder:
     check_retain()
     check_twincat()
     check_direction()
+    check_names()
 if faults:
     sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
