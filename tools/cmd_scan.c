@@ -4,6 +4,7 @@
 
 #include "attach.h"
 #include "command.h"
+#include "config/places.h"
 #include "core/text.h"
 #include "device/devices.h"
 #include "pdo_list.h"
@@ -37,6 +38,35 @@ static const char *motor_name(uint8_t motor)
     return motor ? cm1e_bridge_motor_name((cm1e_bridge_motor_t)motor) : "unknown";
 }
 
+/* ---- what the bus file has there --------------------------------------------------------------------------------- */
+
+enum { NAMES_BYTES = 256 };
+
+/** Calls `add` for the name of each axis, or of the slave, that `named` has at this slave. */
+static void for_each_name(const cm1e_bus_t *bus, const cm1e_bus_config_t *named, const cm1e_slave_info_t *slave,
+                          void (*add)(const char *name, void *context), void *context)
+{
+    const cm1e_places_t places = {named, bus, cm1e_bus_slave};
+    const uint16_t place = cm1e_place_of(&places, slave);
+    for (uint32_t i = 0; i < named->axis_count; i++)
+        if (cm1e_place_is_of_axis(&places, i, slave, place))
+            add(named->axes[i].name, context);
+    for (uint32_t i = 0; i < named->slave_count; i++)
+        if (cm1e_place_is_of_slave(&places, &named->slaves[i], slave, place))
+            add(named->slaves[i].name, context);
+}
+
+static void add_text(const char *name, void *context)
+{
+    char *text = context;
+    const size_t used = strlen(text);
+    snprintf(text + used, NAMES_BYTES - used, "%s%s", used ? ", " : "", name);
+}
+
+static void add_json(const char *name, void *context) { json_array_append_new(context, json_string(name)); }
+
+/* ---- as JSON ------------------------------------------------------------------------------------------------------ */
+
 static json_t *bridge_as_json(const cm1e_slave_info_t *slave)
 {
     json_t *motors = json_array();
@@ -45,17 +75,19 @@ static json_t *bridge_as_json(const cm1e_slave_info_t *slave)
     return json_pack("{s:s, s:o}", "model", model_name(slave), "motors", motors);
 }
 
-static json_t *slave_as_json(const cm1e_slave_info_t *slave)
+static json_t *slave_as_json(const cm1e_bus_t *bus, const cm1e_bus_config_t *named, const cm1e_slave_info_t *slave)
 {
     char state[48];
-    return json_pack("{s:i, s:s, s:I, s:I, s:I, s:I, s:i, s:i, s:s, s:b, s:o, s:s}", "position", slave->position,
+    json_t *names = json_array();
+    for_each_name(bus, named, slave, add_json, names);
+    return json_pack("{s:i, s:s, s:I, s:I, s:I, s:I, s:i, s:i, s:s, s:b, s:o, s:s, s:o}", "position", slave->position,
                      "name", slave->name, "vendor_id", (json_int_t)slave->vendor_id, "product_code",
                      (json_int_t)slave->product_code, "revision", (json_int_t)slave->revision, "serial_number",
                      (json_int_t)slave->serial_number, "alias", slave->alias, "explicit_id", slave->explicit_id,
                      "al_state", al_state_name(slave->al_state, state, sizeof state), "is_cm1e",
                      slave->device == &cm1e_device_cm1e, "bridge",
                      slave->device && slave->device->channels ? bridge_as_json(slave) : json_null(), "software_version",
-                     slave->software_version);
+                     slave->software_version, "configured", names);
 }
 
 /** Width of a column: its widest text, but not below a minimum. */
@@ -117,8 +149,9 @@ static json_t *pdos_as_json(cm1e_bus_t *bus, uint16_t position)
 
 /* ---- the table --------------------------------------------------------------------------------------------------- */
 
-static void print_table(cm1e_bus_t *bus, bool pdos)
+static void print_table(cm1e_bus_t *bus, const cm1e_bus_config_t *named, bool pdos)
 {
+    const bool any = named->axis_count + named->slave_count > 0;
     char state[48];
     int name_width = 20, state_width = 18;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
@@ -126,14 +159,17 @@ static void print_table(cm1e_bus_t *bus, bool pdos)
         name_width = wider(name_width, slave->name);
         state_width = wider(state_width, al_state_name(slave->al_state, state, sizeof state));
     }
-    printf("%3s  %-*s %-10s %-10s %-10s %6s %4s  %-*s %s\n", "pos", name_width, "name", "vendor", "product", "revision",
-           "alias", "ID", state_width, "state", "firmware");
+    printf("%3s  %-*s %-10s %-10s %-10s %6s %4s  %-*s %s%s\n", "pos", name_width, "name", "vendor", "product", "revision",
+           "alias", "ID", state_width, "state", "firmware", any ? "   configured" : "");
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
-        printf("%3u  %-*s 0x%08X 0x%08X 0x%08X %6u %4u  %-*s %s\n", slave->position,
+        const char *firmware = slave->software_version[0] ? slave->software_version : "-";
+        char names[NAMES_BYTES] = "";
+        for_each_name(bus, named, slave, add_text, names);
+        printf("%3u  %-*s 0x%08X 0x%08X 0x%08X %6u %4u  %-*s %-*s%s\n", slave->position,
                in_bytes(name_width, slave->name), slave->name, slave->vendor_id, slave->product_code, slave->revision,
                slave->alias, slave->explicit_id, state_width, al_state_name(slave->al_state, state, sizeof state),
-               slave->software_version[0] ? slave->software_version : "-");
+               names[0] ? in_bytes(11, firmware) : 0, firmware, names);
         if (slave->device && slave->device->channels)
             printf("     bridge %s, motors %s, %s, %s, %s\n", model_name(slave), motor_name(slave->motors[0]),
                    motor_name(slave->motors[1]), motor_name(slave->motors[2]), motor_name(slave->motors[3]));
@@ -144,24 +180,29 @@ static void print_table(cm1e_bus_t *bus, bool pdos)
 
 static const struct argp_option table[] = {
     {"pdos", KEY_PDOS, NULL, 0, "Show the process data of each slave, as it has them assigned now", 0}, {0}};
-const struct argp argp_scan = {table, parse, NULL, "Lists the slaves of a network.", attach_children, NULL, NULL};
+const struct argp argp_scan = {
+    table, parse, NULL,
+    "Lists the slaves of a network, and what a bus file, or the program that runs the network, calls them. "
+    "Exit status 1: the network is not as the bus file says.",
+    attach_children, NULL, NULL};
 
 static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
     const scan_options_t *scan = context;
+    const cm1e_bus_config_t *named = axes_to_name(&scan->common, config);
     cm1e_diag_t diag = {0};
     (void)position;
     if (scan->common.json) {
         json_t *slaves = json_array();
         for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
-            json_t *slave = slave_as_json(cm1e_bus_slave(bus, i));
+            json_t *slave = slave_as_json(bus, named, cm1e_bus_slave(bus, i));
             if (scan->pdos)
                 json_object_set_new(slave, "pdos", pdos_as_json(bus, (uint16_t)i));
             json_array_append_new(slaves, slave);
         }
         print_json(slaves);
     } else {
-        print_table(bus, scan->pdos);
+        print_table(bus, named, scan->pdos);
         tell_simulated(config);
     }
     /* A bus file states the expected slaves: compare. */

@@ -59,6 +59,13 @@ def check_good(folder):
            scan)
     bus = run("cm1e", "scan", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml")
     expect(bus.returncode == 0 and bus.stdout.count("CM1-E") == 3, "scan of a bus file", bus)
+    expect([line.split()[-1] for line in bus.stdout.splitlines()[:4]] == ["configured", "X", "Y", "Z"],
+           "scan names the axes of the bus file", bus)
+    machine = f"{SOURCE}/examples/machine.yaml"
+    named = run("cm1e", "scan", "-i", "sim", "-b", machine, "--json")
+    expect([slave["configured"] for slave in json.loads(named.stdout)] ==
+           [[name] for name in ("coupler", "valves", "switches", "pressures", "set-points", "feed")], "scan names slaves",
+           named)
     check_bridge_found(folder)
     status = run("cm1e", "status", "-i", "sim", "--json")
     expect(json.loads(status.stdout)[0]["dc_link_volt"] > 20, "status", status)
