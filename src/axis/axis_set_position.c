@@ -47,6 +47,7 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
 cm1e_error_t cm1e_axis_set_position(cm1e_axis_t *axis, double position, bool relative)
 {
     const cm1e_error_t error = set_position(axis, position, relative);
-    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_POSITION, .value = position});
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_POSITION, .value = position,
+                                                 .number = relative});
     return error;
 }

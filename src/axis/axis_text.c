@@ -78,14 +78,23 @@ static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
              cm1e_strerror(axis->fault.error));
 }
 
+/* Behind "... disabled by MC_Power": the inputs that are FALSE; now, for it may be asked later. */
+static const char *disabled_inputs(const cm1e_axis_t *axis)
+{
+    const bool positive = axis->power.enable_positive, negative = axis->power.enable_negative;
+    return positive && negative ? "" : positive ? ": its EnableNegative is FALSE" : negative ? ": its EnablePositive is FALSE"
+                                     : ": its EnablePositive and EnableNegative are FALSE";
+}
+
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const not_set_t *ended = &axis->not_set;
     if (axis->homing_hooks && axis->homing_hooks->not_finished_text(axis, text, size))
         return;
     if (ended->error != CM1E_ERROR_AXIS_SYNC_WAY || !coupling_text(axis, ended->error, true, text, size))
-        snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s.", axis->config->name,
-                 kind_row((unsigned)ended->number)->name, cm1e_strerror(ended->error));
+        snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s%s.", axis->config->name,
+                 kind_row((unsigned)ended->number)->name, cm1e_strerror(ended->error),
+                 ended->error == CM1E_ERROR_AXIS_DIRECTION_DISABLED ? disabled_inputs(axis) : "");
     if (ended->error == CM1E_ERROR_AXIS_POSITION_RANGE)
         add_counts_limit(axis, text, size);
 }
@@ -166,7 +175,10 @@ static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t si
 {
     const bool limited = axis->limits.negative_enabled || axis->limits.positive_enabled;
     const double position = cm1e_axis_units(axis, axis->setpoint.position);
-    if (axis->position.modulo_range > 0.0)
+    if (!isfinite(axis->commands.refused.position))
+        snprintf(text, size, "Axis \"%s\": a position or distance of %.6g was commanded; a finite number is right.",
+                 axis->config->name, axis->commands.refused.position);
+    else if (axis->position.modulo_range > 0.0)
         snprintf(text, size, "Axis \"%s\": position or distance %.6g was commanded; positions of this modulo axis are "
                  "0 ... below %.6g u.", axis->config->name, axis->commands.refused.position,
                  axis->position.modulo_range);
@@ -211,6 +223,12 @@ static void refused_direction_text(const cm1e_axis_t *axis, char *text, size_t s
              endless ? "1, 3 or 4, or 0, which acts as 1," : "1 ... 4, or 0, which acts as 2,");
 }
 
+static void refused_disabled_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size, "Axis \"%s\", %s: %s%s.", axis->config->name, cm1e_axis_state_name(axis->state),
+             cm1e_strerror(CM1E_ERROR_AXIS_DIRECTION_DISABLED), disabled_inputs(axis));
+}
+
 /* Which buffer modes are right depends on the command, and on what it would wait for. */
 static void refused_buffer_mode_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
@@ -236,6 +254,7 @@ static const struct {
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
     {CM1E_ERROR_AXIS_TABLE, cm1e_axis_table_refused_text},
     {CM1E_ERROR_AXIS_DIRECTION, refused_direction_text},
+    {CM1E_ERROR_AXIS_DIRECTION_DISABLED, refused_disabled_text},
     {CM1E_ERROR_AXIS_BUFFER_MODE, refused_buffer_mode_text},
 };
 

@@ -1,8 +1,10 @@
 /* Sentences about what was not set: parameters, positions, overrides, signals, cams. */
+#include <math.h>
 #include <stdio.h>
 
 #include "axis/axis_device.h"
 #include "axis/axis_parameters.h"
+#include "axis/axis_position.h"
 #include "axis/axis_signals.h"
 #include "axis/axis_text.h"
 
@@ -101,6 +103,30 @@ static void cam_switch_text(const cm1e_axis_t *axis, char *text, size_t size)
              inputs[refused->input].right);
 }
 
+/** MC_SetPosition: which positions are right. */
+static void position_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const not_set_t *refused = &axis->not_set;
+    const limits_t *limits = &axis->limits;
+    const char *name = axis->config->name, *how = refused->number ? "Relative by" : "to";
+    if (refused->error != CM1E_ERROR_AXIS_POSITION_RANGE)
+        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u: %s.", name, how, refused->value,
+                 cm1e_strerror(refused->error));
+    else if (!isfinite(refused->value))
+        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u: a finite number is right.", name, how, refused->value);
+    else if (axis->position.modulo_range > 0.0)
+        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u: positions of this modulo axis are 0 ... below %.6g u.",
+                 name, how, refused->value, axis->position.modulo_range);
+    else if (limits->negative_enabled || limits->positive_enabled)
+        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u would bring the axis, its running motion or one that "
+                 "waits outside the software limits %.6g ... %.6g u.", name, how, refused->value,
+                 limits->negative_enabled ? limits->negative : -INFINITY,
+                 limits->positive_enabled ? limits->positive : INFINITY);
+    else
+        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u: positions are within +-%.6g u.", name, how,
+                 refused->value, cm1e_axis_farthest(axis));
+}
+
 cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const char *input, double value,
                                     const char *right)
 {
@@ -136,8 +162,7 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
     } else if (refused->what == NOT_SET_OVERRIDE) {
         override_text(axis, text, size);
     } else if (refused->what == NOT_SET_POSITION) {
-        snprintf(text, size, "Axis \"%s\": MC_SetPosition to %.6g u: %s.", name, refused->value,
-                 cm1e_strerror(refused->error));
+        position_text(axis, text, size);
     } else if (refused->what == NOT_SET_OUTPUT) {
         signal_text(axis, "digital output", " was not written", text, size);
     } else if (refused->what == NOT_READ_INPUT || refused->what == NOT_READ_OUTPUT) {

@@ -342,6 +342,28 @@ static void test_a_distance_of_next_to_nothing_is_none(void)
     }
 }
 
+/** The text says which input of MC_Power is missing: both are FALSE where a program leaves them out. */
+static void test_direction_that_is_disabled_is_told_with_its_inputs(void)
+{
+    static const struct { bool positive, negative; double target; const char *told; } cases[] = {
+        {false, false, 1.0, ": its EnablePositive and EnableNegative are FALSE."},
+        {false, true, 1.0, ": its EnablePositive is FALSE."}, {true, false, -1.0, ": its EnableNegative is FALSE."},
+    };
+    bench_enable();
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        cm1e_command_id_t id;
+        cm1e_axis_power(axis, &owner, true, cases[i].positive, cases[i].negative);
+        const cm1e_axis_command_t move = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = cases[i].target, .velocity = 1.0};
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED, cm1e_axis_start(axis, &move, &id));
+        bench_told("Standstill: motion in this direction is disabled by MC_Power: its ");
+        bench_told(cases[i].told);
+    }
+    cm1e_command_id_t id;
+    const cm1e_axis_command_t nowhere = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = NAN, .velocity = 1.0};
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_start(axis, &nowhere, &id));
+    bench_told("a position or distance of nan was commanded; a finite number is right.");
+}
+
 static void test_direction_disabled_while_running_stops_the_motion(void)
 {
     bench_enable();
@@ -351,7 +373,8 @@ static void test_direction_disabled_while_running_stops_the_motion(void)
     const cm1e_command_status_t status = cm1e_axis_command_status(axis, id);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, status.state);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED, status.error);
-    bench_told("MC_MoveVelocity, running or waiting, was ended: motion in this direction is disabled");
+    bench_told("MC_MoveVelocity, running or waiting, was ended: motion in this direction is disabled by "
+               "MC_Power: its EnablePositive is FALSE.");
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISCRETE_MOTION, bench_info().state);
     bench_cycles(20);
     const cm1e_command_id_t back = bench_move_by(-3.0, 10.0); /* while it still brakes */
@@ -594,6 +617,7 @@ int main(void)
     RUN_TEST(test_inputs_of_next_to_nothing_are_named);
     RUN_TEST(test_a_stop_without_an_end_names_its_deceleration);
     RUN_TEST(test_a_distance_of_next_to_nothing_is_none);
+    RUN_TEST(test_direction_that_is_disabled_is_told_with_its_inputs);
     RUN_TEST(test_direction_disabled_while_running_stops_the_motion);
     RUN_TEST(test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped);
     RUN_TEST(test_a_direction_that_a_motion_does_not_need_may_be_disabled);

@@ -441,13 +441,15 @@ static void test_set_position_is_refused_where_it_makes_no_sense(void)
             TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, wrong[i], relative));
     char text[300];
     cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "MC_SetPosition to 1e+12"), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "MC_SetPosition Relative by 1e+12 u: positions are within +-"), text);
     set(2, 10);
     set(3, -10);
     set(4, 1);
     set(5, 1);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, 10.1, false));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, -10.1, true));
+    bench_told("Relative by -10.1 u would bring the axis, its running motion or one that waits outside the software limits "
+               "-10 ... 10 u.");
     static const double right[] = {10, -10, 9}; /* the limits themselves too */
     for (int i = 0; i < 3; i++)
         TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_position(axis, right[i], false));
@@ -471,7 +473,7 @@ static void test_the_text_is_of_what_was_refused_last(void)
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &move, &id));
         bench_told("velocity 1e+09 was commanded");
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, NAN, false));
-        bench_told("MC_SetPosition to nan");
+        bench_told("MC_SetPosition to nan u: a finite number is right.");
         TEST_ASSERT_NOT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, 99, 5.0));
         bench_told("parameter 99");
     }
