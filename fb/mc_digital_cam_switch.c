@@ -313,7 +313,8 @@ static WORD bit_of_output(int number)
     return number >= 1 && number <= CM1E_AXIS_OUTPUTS ? (WORD)(0x80u << number) : 0;
 }
 
-static cm1e_error_t write_output(MC_DigitalCamSwitch_t *fb, DWORD tracks, TIME lease)
+/** `number` is that of the last output that it has tried to write; 0: none. */
+static cm1e_error_t write_output(MC_DigitalCamSwitch_t *fb, DWORD tracks, TIME lease, int *number)
 {
     fb->Outputs->Values = tracks;
     if (fb->Outputs->Axis.Handle == 0)
@@ -321,15 +322,18 @@ static cm1e_error_t write_output(MC_DigitalCamSwitch_t *fb, DWORD tracks, TIME l
     cm1e_axis_t *axis = cm1e_axis_from_reference(&fb->Outputs->Axis);
     if (!axis)
         return CM1E_ERROR_FB_AXIS_REF;
-    const int number = fb->Outputs->Number ? fb->Outputs->Number : 1;
-    const DWORD with_output = tracks_with_output(fb, number);
+    const int first = fb->Outputs->Number ? fb->Outputs->Number : 1;
+    const DWORD with_output = tracks_with_output(fb, first);
     cm1e_error_t error = CM1E_OK;
-    fb->Private.output = fb->Outputs->Axis.Handle;
-    for (int i = 0; i < CM1E_CAM_TRACKS && error == CM1E_OK; i++) {
+    for (int i = 0; i < CM1E_CAM_TRACKS; i++) {
         if (!(with_output >> i & 1))
             continue;
-        fb->Private.written |= bit_of_output(number + i);
-        error = cm1e_axis_hold_output(axis, number + i, tracks >> i & 1, lease);
+        *number = first + i;
+        error = cm1e_axis_hold_output(axis, *number, tracks >> i & 1, lease);
+        if (error != CM1E_OK)
+            break;
+        fb->Private.output = fb->Outputs->Axis.Handle;
+        fb->Private.written |= bit_of_output(*number);
     }
     return error;
 }
@@ -353,7 +357,7 @@ static cm1e_error_t refuse_input(const MC_DigitalCamSwitch_t *fb, const char *in
                                   fb->ErrorID != cm1e_error_id(error));
 }
 
-static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, TIME called)
+static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, TIME called, int *number)
 {
     look_t look;
     DWORD tracks;
@@ -364,11 +368,11 @@ static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, 
                             "0 (mcSetValue) or 1 (mcActualValue)");
     if (!look_at(fb, axis, &look)) {
         if (fb->Private.running && look.now - fb->Private.seen <= unseen_ns)
-            return write_output(fb, fb->Outputs->Values, fb_lease_ns(look.now, called));
+            return write_output(fb, fb->Outputs->Values, fb_lease_ns(look.now, called), number);
         return CM1E_ERROR_AXIS_OFFLINE;
     }
     const cm1e_error_t error = evaluate_all(fb, &look, &tracks);
-    return error != CM1E_OK ? error : write_output(fb, tracks, fb_lease_ns(look.now, called));
+    return error != CM1E_OK ? error : write_output(fb, tracks, fb_lease_ns(look.now, called), number);
 }
 
 void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb)
@@ -377,9 +381,10 @@ void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb)
     const cm1e_axis_t *axis = cm1e_fb_enable(&p->common, fb->Axis, fb->Enable);
     const TIME called = p->called;
     cm1e_error_t error = CM1E_OK;
+    int number = 0;
     if (axis) {
         p->called = cm1e_axis_time(axis);
-        error = operate(fb, axis, called);
+        error = operate(fb, axis, called, &number);
     }
     const fb_reading_t out = cm1e_fb_reading(&p->common, axis, error);
     if (!out.valid && (p->running || p->output || error != CM1E_OK)) {
@@ -387,6 +392,9 @@ void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb)
         forget(p);
     }
     fb_reads_right(&p->common, fb->ErrorID, out.error);
+    cm1e_axis_t *written = number != 0 ? cm1e_axis_from_reference(&fb->Outputs->Axis) : NULL;
+    if (written && fb->ErrorID != out.error_id)
+        cm1e_axis_tell_output(written, error, number);
     fb->InOperation = out.valid;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -182,10 +182,7 @@ static cm1e_error_t check_output(const cm1e_axis_t *axis, int number)
 static cm1e_error_t set_wired_output(cm1e_axis_t *axis, int number, bool value, int64_t until_ns)
 {
     const int wired = cm1e_drive_wired_output(&axis->drive, number);
-    const bool set = cm1e_drive_wired_write(&axis->drive, wired, value, until_ns);
-    const cm1e_error_t error = set ? CM1E_OK : CM1E_ERROR_AXIS_SIGNAL_AWAY;
-    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OUTPUT, .number = number});
-    return error;
+    return cm1e_drive_wired_write(&axis->drive, wired, value, until_ns) ? CM1E_OK : CM1E_ERROR_AXIS_SIGNAL_AWAY;
 }
 
 static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_t until_ns)
@@ -197,7 +194,6 @@ static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_
         error = CM1E_ERROR_AXIS_OFFLINE;
     if (error == CM1E_OK)
         error = reachable(axis);
-    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OUTPUT, .number = number});
     if (error != CM1E_OK)
         return error;
     const uint16_t bit = (uint16_t)(1u << (number - 1));
@@ -210,7 +206,14 @@ static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_
 
 cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
 {
-    return set_output(axis, number, value, INT64_MAX);
+    const cm1e_error_t error = set_output(axis, number, value, INT64_MAX);
+    cm1e_axis_tell_output(axis, error, number);
+    return error;
+}
+
+void cm1e_axis_tell_output(cm1e_axis_t *axis, cm1e_error_t error, int number)
+{
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OUTPUT, .number = number});
 }
 
 cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_error_t *error)

@@ -33,9 +33,12 @@ cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value);
  *  names the output. @rt cycle */
 cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_error_t *error);
 /** Like cm1e_axis_write_output(), but the output goes off by itself unless it is written again within `keep_ns`.
- *  CM1E_ERROR_PDO_MAPPING also if it is written by SDO, which is too late for outputs that follow a position. @rt cycle
- *  */
+ *  CM1E_ERROR_PDO_MAPPING also if it is written by SDO, which is too late for outputs that follow a position.
+ *  It does not change the text of the axis. @rt cycle */
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns);
+/** The text of the axis says why this output was not written. A block that holds an output in every cycle calls it when
+ *  the error begins, and with CM1E_OK when it ends, so that no later refusal is hidden. @rt cycle */
+void cm1e_axis_tell_output(cm1e_axis_t *axis, cm1e_error_t error, int number);
 /** The commanded value of an output. @rt cycle */
 cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value);
 /** Like cm1e_axis_refuse_level(), for the number of an input or output that cannot be read. @rt cycle */

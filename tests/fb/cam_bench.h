@@ -23,6 +23,8 @@ static struct {
     int64_t keep_ns;
     unsigned writes;
     cm1e_error_t error;
+    cm1e_error_t told; /* the last one of which the axis was told, and its output */
+    int told_number;
 } output;
 static struct {
     cm1e_cam_switch_input_t input;
@@ -51,6 +53,12 @@ cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, in
     output.keep_ns = keep_ns;
     output.writes++;
     return CM1E_OK;
+}
+void cm1e_axis_tell_output(cm1e_axis_t *axis, cm1e_error_t error, int number)
+{
+    (void)axis;
+    output.told = error;
+    output.told_number = number;
 }
 void cm1e_axis_refuse_cam_switch(cm1e_axis_t *axis, cm1e_cam_switch_input_t input, int number, double value)
 {

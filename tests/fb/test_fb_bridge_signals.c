@@ -574,12 +574,15 @@ START_TEST(test_digital_cam_switch_on_the_output_of_the_motor)
     MC_DigitalCamSwitch_t fb = {.Axis = &references[n], .Switches = &cams, .Outputs = &output, .Enable = TRUE,
                                 .EnableMask = 1, .ValueSource = mcActualValue};
     if (way == BY_SDO) {
-        for (int i = 0; i < 5; i++) {
+        scan(100);
+        write_output(n, 2, TRUE, CM1E_OK);
+        for (int i = 0; i < 100; i++) {
             MC_DigitalCamSwitch(&fb);
             scan(1);
         }
         ck_assert(fb.Error && fb.ErrorID == id(CM1E_ERROR_PDO_MAPPING));
-        ck_assert_int_eq(motor(n)->outputs, 0);
+        ck_assert_int_eq(motor(n)->outputs, 2); /* a refused block changes nothing */
+        told(n, "digital output 2 was not written");
         close_segment();
         return;
     }

@@ -91,8 +91,13 @@ START_TEST(test_an_output_that_cannot_be_written_is_an_error_that_passes)
         output.error = errors[i];
         at(5.0, 0.0);
         expect_error(errors[i]);
+        ck_assert(output.told == errors[i] && output.told_number == 1);
+        output.told = CM1E_ERROR_TIMEOUT;
+        at(5.0, 0.0);
+        ck_assert_int_eq(output.told, CM1E_ERROR_TIMEOUT); /* once */
         output.error = CM1E_OK;
         at(5.0, 0.0);
+        ck_assert_int_eq(output.told, CM1E_OK);
         ck_assert(fb.InOperation && outputs.Values == 1 && output.value);
     }
     outputs.Axis.Handle = 99;
