@@ -3,7 +3,7 @@
 static cm1e_error_t abort_trigger(const MC_AbortTrigger_t *fb, cm1e_axis_t *axis)
 {
     cm1e_axis_trigger_t trigger;
-    const cm1e_error_t error = fb_trigger(fb->TriggerInput, &fb->Private, &trigger);
+    const cm1e_error_t error = fb_trigger(axis, fb->TriggerInput, &fb->Private, &trigger);
     return error != CM1E_OK ? error : cm1e_axis_probe_abort(axis, trigger);
 }
 

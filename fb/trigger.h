@@ -10,14 +10,15 @@
 
 /** NULL selects the rising edge of input 1. An input of another motor is CM1E_ERROR_UNSUPPORTED, because it is sampled
  *  at another moment. */
-static inline cm1e_error_t fb_trigger(const MC_TRIGGER_REF *reference, const cm1e_fb_private_t *fb,
+static inline cm1e_error_t fb_trigger(cm1e_axis_t *axis, const MC_TRIGGER_REF *reference, const cm1e_fb_private_t *fb,
                                       cm1e_axis_trigger_t *trigger)
 {
     *trigger = (cm1e_axis_trigger_t){.input = 1};
     if (!reference)
         return CM1E_OK;
     if (reference->Axis.Handle && reference->Axis.Handle != fb->axis_handle)
-        return CM1E_ERROR_UNSUPPORTED;
+        return cm1e_axis_refuse_input(axis, CM1E_ERROR_UNSUPPORTED, "TriggerInput.Axis, a handle,", reference->Axis.Handle,
+                                      "0, or that of the axis of the block,");
     if (reference->InputNumber)
         trigger->input = reference->InputNumber;
     trigger->falling = reference->FallingEdge != FALSE;

@@ -55,3 +55,8 @@ cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double a
     axis->override_refused = error != CM1E_OK ? asked : axis->override;
     return error;
 }
+
+void cm1e_axis_tell_override(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OVERRIDE});
+}

@@ -178,6 +178,7 @@ cm1e_error_t cm1e_axis_probe_abort(cm1e_axis_t *axis, cm1e_axis_trigger_t trigge
         cm1e_drive_probe_disarm(&axis->drive, trigger.input, trigger.falling);
     if (error == CM1E_OK && probe->state == CM1E_COMMAND_ACTIVE)
         end(axis, probe, CM1E_COMMAND_ABORTED, CM1E_OK);
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_PROBE, .number = trigger.input});
     return error;
 }
 

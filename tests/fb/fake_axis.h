@@ -77,6 +77,11 @@ cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const
     (void)begins;
     return cm1e_axis_refuse_input(axis, error, input, value, right);
 }
+
+void cm1e_axis_reads_right(cm1e_axis_t *axis)
+{
+    (void)axis;
+}
 cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error)
 {
     (void)axis;
@@ -106,6 +111,12 @@ cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double a
     axis->override[1] = acceleration;
     axis->override[2] = jerk;
     return CM1E_OK;
+}
+
+void cm1e_axis_tell_override(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    (void)axis;
+    (void)error;
 }
 
 void cm1e_axis_feed(AXIS_REF_t reference, cm1e_command_id_t id, double position)

@@ -116,6 +116,44 @@ START_TEST(test_a_wrong_number_is_told_when_another_one_is_right)
 }
 END_TEST
 
+/** A block that is refused says why, also where another block was refused in the same way before. */
+START_TEST(test_what_is_refused_is_told_in_words)
+{
+    begin();
+    MC_OUTPUT_REF output = {.Axis = reference, .Number = 5};
+    MC_CAMSWITCH_REF switches = {.NumberOfSwitches = 1, .Switches = {{.TrackNumber = 1, .LastOnPosition = 1.0}}};
+    MC_DigitalCamSwitch_t cams = {.Axis = &reference, .Outputs = &output, .Switches = &switches, .Enable = TRUE,
+                                  .EnableMask = 1};
+    MC_DigitalCamSwitch(&cams);
+    ck_assert(cams.Error && cams.ErrorID == id(CM1E_ERROR_AXIS_SIGNAL));
+    told("digital output 5 was not written");
+    MC_TRIGGER_REF trigger = {.InputNumber = 7};
+    MC_AbortTrigger_t aborts = {.Axis = &reference, .TriggerInput = &trigger, .Execute = TRUE};
+    MC_AbortTrigger(&aborts);
+    ck_assert(aborts.Error && aborts.ErrorID == id(CM1E_ERROR_AXIS_SIGNAL));
+    told("no touch probe at input 7");
+    MC_DigitalCamSwitch(&cams); /* what it said once does not hide what others say */
+    told("no touch probe at input 7");
+    trigger.Axis.Handle = 99;
+    MC_TouchProbe_t probe = {.Axis = &reference, .TriggerInput = &trigger, .Execute = TRUE};
+    MC_TouchProbe(&probe);
+    told("TriggerInput.Axis, a handle, is 99; 0, or that of the axis of the block, is right.");
+    trigger.Axis.Handle = 0;
+    for (int i = 0; i < 2; i++) {
+        MC_SetOverride_t override = {.Axis = &reference, .Enable = TRUE, .VelFactor = -1, .AccFactor = 1, .JerkFactor = 1};
+        MC_SetOverride(&override);
+        ck_assert(override.Error && override.ErrorID == id(CM1E_ERROR_AXIS_OVERRIDE));
+        told("MC_SetOverride to VelFactor -1");
+        aborts.Execute = FALSE;
+        MC_AbortTrigger(&aborts);
+        aborts.Execute = TRUE;
+        MC_AbortTrigger(&aborts);
+        told("no touch probe at input 7");
+    }
+    close_segment();
+}
+END_TEST
+
 /* ---- inputs and outputs ------------------------------------------------------------------------------------------ */
 
 START_TEST(test_read_digital_input)
@@ -616,6 +654,7 @@ int main(void)
     TCase *tcase = tcase_create("signals");
     tcase_add_test(tcase, test_a_number_that_is_wrong_is_told_with_those_that_are_right);
     tcase_add_test(tcase, test_a_wrong_number_is_told_when_another_one_is_right);
+    tcase_add_test(tcase, test_what_is_refused_is_told_in_words);
     tcase_add_test(tcase, test_read_digital_input);
     tcase_add_test(tcase, test_write_and_read_digital_output);
     tcase_add_test(tcase, test_output_stays_off_after_its_motor_was_away);

@@ -120,6 +120,12 @@ static void test_numbers_that_are_no_input_are_refused(void)
         TEST_ASSERT_EQUAL_UINT32(0, id);
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_SIGNAL, cm1e_axis_probe_abort(axis, trigger));
     }
+    /* A refused abort is told by itself, too. */
+    uint32_t id;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_probe(axis, on(1), false, 0.0, 0.0, &id));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_SIGNAL, cm1e_axis_probe_abort(axis, on(7)));
+    bench_told("no touch probe at input 7");
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_probe_abort(axis, on(1)));
     expect(0, CM1E_COMMAND_UNKNOWN);
     expect(12345, CM1E_COMMAND_UNKNOWN);
 }
