@@ -10,6 +10,7 @@
 #include "axis/axis_commands.h"
 #include "axis/axis_guard.h"
 #include "axis/axis_limits.h"
+#include "axis/axis_setpoint.h"
 #include "axis/axis_text.h"
 
 /* Limits are doubles, in which whole counts are exact up to 2^53. */
@@ -189,6 +190,23 @@ static cm1e_error_t write_time(cm1e_axis_t *axis, const parameter_t *parameter, 
     return CM1E_OK;
 }
 
+/* What a slave needs of a maximum now. Its coupling gives way to nothing: with less it would be in ErrorStop in the next cycle.
+ * Other motions were planned, and go on as they are. */
+static double needed(const cm1e_axis_t *axis, int number)
+{
+    const double v = axis->setpoint.velocity, a = axis->setpoint.acceleration, rounding = 1.0 - 1e-9;
+    const bool faster = a * v > 0.0;
+    if (!axis_follows(axis))
+        return 0.0;
+    switch (number) {
+    case CM1E_PARAMETER_MAX_VELOCITY_APPL: /* until the jerk has ended the acceleration */
+        return rounding * (fabs(v) + (faster ? a * a / (2.0 * axis->limits.maximum.jerk) : 0.0));
+    case CM1E_PARAMETER_MAX_ACCELERATION_APPL: return faster ? rounding * fabs(a) : 0.0;
+    case CM1E_PARAMETER_MAX_DECELERATION_APPL: return faster ? 0.0 : rounding * fabs(a);
+    default: return 0.0;
+    }
+}
+
 static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
 {
     const parameter_t *parameter = row(number);
@@ -201,6 +219,8 @@ static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
         return write_number(axis, parameter, value, CM1E_LEAST_LAG_COUNTS,
                             CM1E_LARGEST_LAG_COUNTS / fabs(axis->position.scale));
     case APPLICATION:
+        if (value < needed(axis, number))
+            return CM1E_ERROR_AXIS_PARAMETER_RANGE;
         return write_number(axis, parameter, value, parameter->least_counts * axis->position.count,
                             double_at(axis, parameter->system));
     case IN_POSITION: return write_time(axis, parameter, number, value);
@@ -224,9 +244,14 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
     double least, largest;
     switch (parameter->rule) {
     case APPLICATION:
-        snprintf(text, size, "%.6g was given; %.6g ... %.6g is right, which is %s.", value,
-                 parameter->least_counts * axis->position.count / scale, double_at(axis, parameter->system),
-                 (parameter - 1)->name);
+        least = parameter->least_counts * axis->position.count / scale;
+        largest = double_at(axis, parameter->system);
+        if (value >= least && value <= largest)
+            snprintf(text, size, "%.6g was given, which is less than the axis needed then to follow its master. Let its "
+                     "master be slower before, or end the coupling.", value);
+        else
+            snprintf(text, size, "%.6g was given; %.6g ... %.6g is right, which is %s.", value, least, largest,
+                     (parameter - 1)->name);
         break;
     case LAG:
         snprintf(text, size, "%.6g was given; %.6g ... %.6g u is right.", value, CM1E_LEAST_LAG_COUNTS / scale,

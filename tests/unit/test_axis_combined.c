@@ -441,6 +441,43 @@ static void test_a_small_jerk_leads_into_no_disabled_direction(void)
     }
 }
 
+/* ---- followers --------------------------------------------------------------------------------------------------- */
+
+/* A master up and down: at every moment, no maximum is accepted that is smaller than what the follower has. */
+static void test_a_maximum_below_what_a_follower_has_is_refused(void)
+{
+    static const int numbers[] = {CM1E_PARAMETER_MAX_VELOCITY_APPL, CM1E_PARAMETER_MAX_ACCELERATION_APPL,
+                                  CM1E_PARAMETER_MAX_DECELERATION_APPL};
+    for (int i = 0; i < 3; i++)
+        for (int at = 1; at < 900; at += sweep_stride(7, 49)) {
+            axes_begin(2);
+            const cm1e_command_id_t gear = axes_gear_in(1, 0, 1, 1);
+            axes_move_velocity(0, 5.0);
+            axes_cycles(at);
+            axes_move_velocity(0, 0.5);
+            axes_cycles(20);
+            const double before[] = {axes_axis(1)->limits.maximum.velocity, axes_axis(1)->limits.maximum.acceleration,
+                                     axes_axis(1)->limits.maximum.deceleration};
+            double refused = 0.0, taken = before[i];
+            for (int n = 0; n < 40; n++) {
+                const double value = (refused + taken) / 2.0;
+                const cm1e_error_t error = cm1e_axis_write_parameter(axes_axis(1), numbers[i], value);
+                TEST_ASSERT_TRUE(error == CM1E_OK || error == CM1E_ERROR_AXIS_PARAMETER_RANGE);
+                if (error != CM1E_OK && value > 0.1)
+                    axes_told(1, "needed then to follow its master");
+                *(error == CM1E_OK ? &taken : &refused) = value;
+            }
+            const double v = axes_axis(1)->setpoint.velocity, a = axes_axis(1)->setpoint.acceleration;
+            if (i == 0)
+                axes_cycles(1);
+            else
+                TEST_ASSERT_DOUBLE_WITHIN(1e-6, (a * v > 0.0) == (i == 1) ? fmax(fabs(a), 0.02) : taken, taken);
+            axes_must_be(1, CM1E_AXIS_SYNCHRONIZED_MOTION);
+            TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, axes_status(1, gear).state);
+            axes_end();
+        }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -459,5 +496,6 @@ int main(void)
     RUN_TEST(test_a_running_table_keeps_its_path_within_the_limits);
     RUN_TEST(test_a_stop_with_a_small_jerk_does_not_turn_round);
     RUN_TEST(test_a_small_jerk_leads_into_no_disabled_direction);
+    RUN_TEST(test_a_maximum_below_what_a_follower_has_is_refused);
     return UNITY_END();
 }

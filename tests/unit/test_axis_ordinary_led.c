@@ -212,8 +212,15 @@ static void test_lower_limit_in_the_middle(void)
 {
     begin_course();
     axes_bench.witness[1].strictness = AXES_UNWATCHED;
-    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_write_parameter(axes_axis(1), CM1E_PARAMETER_MAX_VELOCITY_APPL, 4.0));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_AXIS_PARAMETER_RANGE,
+                      cm1e_axis_write_parameter(axes_axis(1), CM1E_PARAMETER_MAX_VELOCITY_APPL, 4.0));
+    const double now = fabs(axes_axis(1)->setpoint.velocity);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_write_parameter(axes_axis(1), CM1E_PARAMETER_MAX_VELOCITY_APPL, now));
     axes_cycles(1);
+    TEST_ASSERT_EQUAL(CM1E_AXIS_SYNCHRONIZED_MOTION, axes_state(1));
+    axes_command(0, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = now + 1.0,
+                                           .direction = mcPositiveDirection});
+    axes_cycles(100);
     TEST_ASSERT_EQUAL(CM1E_AXIS_ERROR_STOP, axes_state(1));
 }
 
