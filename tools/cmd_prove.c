@@ -7,10 +7,28 @@
 #include <string.h>
 
 #include "attach.h"
+#include "core/near.h"
+#include "core/output.h"
 #include "files.h"
 #include "prove/prove.h"
 
 enum { KEY_LIST = 0x800, KEY_WRITES, KEY_MOTION, KEY_VELOCITY, KEY_TRAVEL, KEY_PROFILE, KEY_POINT, KEY_DEAD_ENDS };
+
+static bool names_point(const char *pattern, const point_t *point) { return fnmatch(pattern, point->id, 0) == 0; }
+
+/** A pattern that names no point would prove nothing, with status 0. */
+static void need_point(struct argp_state *state, const char *pattern)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = pattern};
+    bool found = false;
+    for (size_t n = 0; prove_point(n) && !found; n++) {
+        found = names_point(pattern, prove_point(n));
+        cm1e_near_look(&near, prove_point(n)->id);
+    }
+    if (!found)
+        argp_error(state, "there is no point \"%s\"%s (--list shows them)", pattern, cm1e_near_text(&near, text, sizeof text));
+}
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -27,9 +45,13 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_POINT:
         if (options->pattern_count == PROVE_PATTERNS)
             argp_error(state, "%d --point at most", PROVE_PATTERNS);
+        need_point(state, arg);
         options->patterns[options->pattern_count++] = arg;
         return 0;
-    case 'o': options->output = arg; return 0;
+    case 'o':
+        need_name(state, "-o", arg);
+        options->output = arg;
+        return 0;
     case ARGP_KEY_ARG: return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
     case ARGP_KEY_END:
         if (options->allow_motion && (options->max_velocity == 0 || options->max_travel == 0))
@@ -129,8 +151,16 @@ static bool is_chosen(const prove_t *prove, const point_t *point)
     const prove_options_t *options = prove->options;
     bool chosen = options->pattern_count == 0 || (options->allow_motion && strcmp(point->id, "move.enable") == 0);
     for (int i = 0; i < options->pattern_count; i++)
-        chosen |= fnmatch(options->patterns[i], point->id, 0) == 0;
+        chosen |= names_point(options->patterns[i], point);
     return chosen && (!point->kind || strcmp(point->kind, prove->device->kind) == 0);
+}
+
+static bool is_any_chosen(const prove_t *prove)
+{
+    bool any = false;
+    for (size_t n = 0; prove_point(n) && !any; n++)
+        any = is_chosen(prove, prove_point(n));
+    return any;
 }
 
 bool prove_is_told_to_end(prove_t *prove)
@@ -165,14 +195,41 @@ static void look_at(prove_t *prove, const point_t *point)
 
 /* ---- output ------------------------------------------------------------------------------------------------------ */
 
+enum { PATH_BYTES = 4096 };
+
+static bool report_path(const prove_options_t *options, const char *ending, char path[PATH_BYTES])
+{
+    const int length = snprintf(path, PATH_BYTES, "%s%s", options->output, ending);
+    const bool fits = length >= 0 && length < PATH_BYTES;
+    if (!fits)
+        complain("the name of the report is too long");
+    return fits;
+}
+
+/** Before anything is looked at: a report that cannot be written is not to be found out behind an hour. */
+static bool can_report(const prove_options_t *options)
+{
+    static const char *const endings[] = {".md", ".json", ".profile.json"};
+    bool good = true;
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0] && options->output && good; i++) {
+        char path[PATH_BYTES];
+        cm1e_diag_t diag = {0};
+        good = report_path(options, endings[i], path);
+        if (good && cm1e_output_check(path, &diag) != CM1E_OK) {
+            fail(&diag);
+            good = false;
+        }
+    }
+    return good;
+}
+
 static bool write_text(const prove_t *prove, const char *ending, const char *text)
 {
-    char path[4096];
-    const int length = snprintf(path, sizeof path, "%s%s", prove->options->output, ending);
-    if (length < 0 || (size_t)length >= sizeof path || !text) {
-        complain(text ? "the name of the report is too long" : "out of memory");
+    char path[PATH_BYTES];
+    if (!text)
+        complain("out of memory");
+    if (!text || !report_path(prove->options, ending, path))
         return false;
-    }
     if (!write_output(path, text, strlen(text)))
         return false;
     if (!prove->options->common.json)
@@ -222,6 +279,10 @@ static int prove_device(prove_t *prove)
 {
     if (!prove_open(prove) || !choose(prove))
         return EXIT_FAILED;
+    if (!is_any_chosen(prove)) {
+        complain("--point names no point of a %s (--list --json shows of which device each is)", prove->device->kind);
+        return EXIT_WRONG_USE;
+    }
     prove->results = json_array();
     prove->profile_codes = json_object();
     prove_read_all(prove);
@@ -276,6 +337,8 @@ int command_prove(int argc, char **argv)
         complain("--profile is for the simulated segment; on a network interface use `cm1e sim --profile`");
         return EXIT_WRONG_USE;
     }
+    if (!can_report(&options))
+        return EXIT_FAILED;
     prove.options = &options;
     prove.config = &config;
     const int status = prove_device(&prove);
