@@ -21,6 +21,7 @@ static void feed_job(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now
 static bool next_datagram(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     if (!cm1e_recovery_idle(&slave->recovery)) {
+        cm1e_coe_expire(&slave->coe, now_ns); /* a transfer has its own time, also where the recovery lets it wait */
         slave->owner = OWNER_RECOVERY;
         const bool sends = cm1e_recovery_next(slave, &slave->datagram, now_ns);
         cm1e_hot_note(bus, slave);

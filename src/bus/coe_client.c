@@ -603,15 +603,16 @@ static void on_message(cm1e_coe_client_t *client, const uint8_t *message)
 
 /* ---- one datagram at a time ------------------------------------------------------------------------------------ */
 
+void cm1e_coe_expire(cm1e_coe_client_t *client, int64_t now_ns)
+{
+    if (!cm1e_coe_idle(client) && now_ns >= client->deadline_ns)
+        give_up(client, CM1E_ERROR_TIMEOUT);
+}
+
 bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns)
 {
-    if (cm1e_coe_idle(client))
-        return false;
-    if (now_ns >= client->deadline_ns) {
-        give_up(client, CM1E_ERROR_TIMEOUT);
-        return false;
-    }
-    return cm1e_mailbox_next(&client->mailbox, datagram);
+    cm1e_coe_expire(client, now_ns);
+    return !cm1e_coe_idle(client) && cm1e_mailbox_next(&client->mailbox, datagram);
 }
 
 /** After a look that found the mailbox empty, or was lost. */
@@ -635,8 +636,7 @@ void cm1e_coe_result(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram,
         request_fence(client);
     else if (client->phase == COE_LISTEN && has_listened(client, looked))
         finish(client, CM1E_OK, 0);
-    if (!cm1e_coe_idle(client) && now_ns >= client->deadline_ns)
-        give_up(client, CM1E_ERROR_TIMEOUT);
+    cm1e_coe_expire(client, now_ns);
 }
 
 /* ---- a look beside the client ------------------------------------------------------------------------------------ */

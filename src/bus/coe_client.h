@@ -94,6 +94,8 @@ bool cm1e_coe_look(const cm1e_coe_client_t *client, cm1e_datagram_t *datagram);
 bool cm1e_coe_has_mail(const cm1e_datagram_t *datagram);
 /** Takes the messages that it showed; the client must be idle. */
 void cm1e_coe_fetch(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram, int64_t now_ns);
+/** Ends a transfer whose time is over, without another datagram: for cycles in which the client gets none. */
+void cm1e_coe_expire(cm1e_coe_client_t *client, int64_t now_ns);
 /** Fills the datagram to be sent next; false: none. Ends a transfer whose time is over. */
 bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns);
 /** Takes a datagram that is back or lost. */

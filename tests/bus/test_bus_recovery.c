@@ -390,6 +390,47 @@ START_TEST(slave_that_wants_to_be_led_up_from_init_comes_back)
 }
 END_TEST
 
+/** The slave takes the request for Operational and stays in Safe-Operational. */
+static cm1e_tap_verdict_t stay_in_safe_op(void *context, cm1e_tap_frame_t *frame)
+{
+    uint8_t *b = frame->bytes;
+    (void)context;
+    const bool asks = b[16] == 5 && cm1e_get_u16(b + 18) == 0x1002 && cm1e_get_u16(b + 20) == 0x0120;
+    if (frame->direction == CM1E_TAP_SENT && asks && (b[26] & 0x0F) == CM1E_AL_OP)
+        b[26] = (uint8_t)((b[26] & 0xF0) | CM1E_AL_SAFE_OP);
+    return CM1E_TAP_PASS;
+}
+
+/** Its recovery waits for Operational, for 3 s at most, and asks for nothing else meanwhile: a transfer that runs in any
+ *  of its parts has its own time all the same, and the next one works when the slave is back. */
+START_TEST(sdo_keeps_its_time_while_its_slave_stays_in_safe_op)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 20);
+    uint8_t data[4];
+    for (int begun = 0; begun < 6; begun++) {
+        cm1e_sdo_t sdo = {.position = 2, .index = 0x1000, .data = data, .size = 4, .timeout_ns = INT64_C(200000000)};
+        cm1e_sim_slave_fall_back(cm1e_sim_segment_slave(segment_of(bus), 2), CM1E_AL_SAFE_OP, 0x001B);
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), stay_in_safe_op, NULL);
+        ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+        for (int n = 0; n < begun; n++)
+            cycle(bus);
+        cm1e_bus_request_recovery(bus, 2);
+        ck_assert_uint_le(finish_sdo(bus, &sdo), 210);
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+        ck_assert_uint_gt(cycles_until_recovered(bus, 8000), 0);
+        sdo = (cm1e_sdo_t){.position = 2, .index = 0x1000, .data = data, .size = 4};
+        ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+        finish_sdo(bus, &sdo);
+        ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+        ck_assert_uint_eq(cm1e_get_u32(data), 0x00040192);
+        check_all_run(bus);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** Two axes with an I/O module between them, which no axis asks back. */
 static cm1e_bus_t *start_bus_with_io_module(void)
 {
@@ -442,6 +483,7 @@ int main(void)
     tcase_add_test(tests, request_for_a_slave_that_runs_disturbs_nothing);
     tcase_add_test(tests, slave_with_other_switches_is_not_taken_for_the_old_one);
     tcase_add_test(tests, sdo_to_a_lost_slave_ends_and_works_again_after_recovery);
+    tcase_add_test(tests, sdo_keeps_its_time_while_its_slave_stays_in_safe_op);
     tcase_add_test(tests, slave_that_wants_to_be_led_up_from_init_comes_back);
     tcase_add_loop_test(tests, io_module_comes_back_without_being_asked, 0, 3);
     suite_add_tcase(suite, tests);
