@@ -88,16 +88,19 @@ static bool is_real(const trace_column_t *column)
     return column->type == CM1E_TRACE_LREAL || column->type == CM1E_TRACE_REAL;
 }
 
-/** Four bytes are enough for a difference that they keep exactly, and for a value of an axis: 7 digits of its difference.
+/** What a value of an axis may be off: the page shows five decimals. */
+static const double tolerance = 1e-6;
+
+/** Four bytes are enough for a difference that they keep exactly, and for a value of an axis that they keep closely enough.
  *  Variables of the program are kept exactly. */
 static bool needs_eight_bytes(const trace_t *trace, uint32_t column, double base)
 {
-    if (trace->columns[column].kind == TRACE_KIND_NUMBER && is_real(&trace->columns[column]) &&
-        !cm1e_trace_is_variable(trace, column))
-        return false;
+    const bool of_axis = trace->columns[column].kind == TRACE_KIND_NUMBER && is_real(&trace->columns[column]) &&
+                         !cm1e_trace_is_variable(trace, column);
+    const double allowed = of_axis ? tolerance : 0.0;
     for (uint32_t n = 0; n < trace->used; n++) {
         const double difference = value_of(trace, n, column) - base;
-        if ((double)(float)difference != difference)
+        if (!(fabs((double)(float)difference - difference) <= allowed)) /* also of what is no number */
             return true;
     }
     return false;

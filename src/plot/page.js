@@ -72,8 +72,8 @@
     if (!Number.isFinite(value))
       return String(value);
     const size = Math.abs(value);
-    return Number.isInteger(value) && size < 1e9 ? String(value) : size !== 0 && (size < 1e-3 || size >= 1e7)
-      ? value.toExponential(4) : value.toFixed(size < 10 ? 5 : size < 1000 ? 4 : 2);
+    return Number.isInteger(value) && size < 1e9 ? String(value) : size !== 0 && (size < 1e-3 || size >= 1e9)
+      ? value.toExponential(4) : value.toFixed(5);
   }
 
   function timeText(t) {

@@ -4,12 +4,14 @@ without dygraphs in the build.
 
 Usage: test_page.py <folder of the binaries> <output folder> <source folder>
 """
+import base64
 import csv
 import html
 import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 import sys
 
@@ -207,6 +209,38 @@ told.id = "result"; told.textContent = JSON.stringify(shown); document.body.appe
     expect(last["Main.big"] == "123456789.25" and last["Main.sum"] == "0.30000000000000004", f"variables in CSV: {last}")
 
 
+def check_far_away():
+    """An axis that is far from where it began, and slow: each sample of its position is another one on the page, as it is in
+    the table."""
+    page, table, bus = (os.path.join(OUTPUT, f"far.{ending}") for ending in ("html", "csv", "yaml"))
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {interface: sim, virtual_time: true}\naxes: [{name: X, position: 1, "
+                   "sim: {no_stops: true}}]\n")
+    subprocess.run([os.path.join(BIN, "cm1e"), "move", "-b", bus, "X", "--by", "234.56788", "-v", "20", "--html", page, "--csv",
+                    table], check=True, stdout=subprocess.DEVNULL)
+    with open(page, encoding="utf-8") as file:
+        trace = re.search(r'"name": "X actual position"[^}]*"bytes": (\d), "base": ([^,]+), "data": "([^"]*)"', file.read())
+    width, base, data = int(trace.group(1)), float(trace.group(2)), base64.b64decode(trace.group(3))
+    kept = struct.unpack(f"<{len(data) // width}{'d' if width == 8 else 'f'}", data)
+    values = [value if width == 8 else base + value for value in kept]
+    with open(table, newline="", encoding="utf-8") as file:
+        rows = [float(row["X actual position [u]"]) for row in csv.DictReader(file)]
+    worst = max(abs(a - b) for a, b in zip(values, rows))
+    expect(len(values) == len(rows) and rows[-1] > 200 and worst <= 1e-6, f"far away: {worst} u between page and table")
+    driver = """<script>document.dispatchEvent(new KeyboardEvent("keydown", {key: "0"}));
+const far = [...document.querySelectorAll("#values tr")]
+  .filter(row => row.cells.length > 1 && row.cells[0].textContent.trim() === "set position [u]")
+  .map(row => row.cells[6].textContent);
+const told = document.createElement("pre");
+told.id = "result"; told.textContent = JSON.stringify(far); document.body.append(told);</script>"""
+    driven = page.replace(".html", "_driven.html")
+    with open(page, encoding="utf-8") as file, open(driven, "w", encoding="utf-8") as out:
+        out.write(file.read().replace("</body>", driver + "</body>"))
+    dom = in_browser(driven, "--dump-dom")
+    shown = html.unescape(re.search(r'<pre id="result">(.*?)</pre>', dom, re.DOTALL).group(1))
+    expect("234.56788" in shown, f"far away: the page shows {shown}")
+
+
 def check_page():
     page, head, rows = run_example()
     shown = drive(page, "X actual position [u]", "X state")
@@ -240,6 +274,7 @@ def main():
         sys.exit(SKIP)
     check_page()
     check_variables()
+    check_far_away()
 
 
 main()
