@@ -34,6 +34,8 @@ typedef struct axis_spec {
     double motion;                       /**< 1: the drive computes its motions */
     double optional;                     /**< 1: its slave may come and go; it has an explicit device ID */
     double identified;                   /**< 1: its slave is always there, and has an explicit device ID */
+    double modulo;                       /**< its positions run from 0 to below this; 0: linear */
+    double done_waits;                   /**< 1: Done waits until the motor is in position */
 } axis_spec_t;
 
 /** One command: at cycle `at` a block of this axis gets TRUE at Execute (or Enable), for `hold` cycles. */
@@ -48,13 +50,20 @@ typedef struct step {
     double x, y, aux_x, aux_y;           /**< of a path */
     double torque;                       /**< % of rated torque */
     double period, points;               /**< of a table over time, or of positions from outside: ms, number */
+    double again;                        /**< cycles after which Execute is FALSE for one cycle, again and again; 0: never */
+    double update;                       /**< ContinuousUpdate */
+    double change, change_after;         /**< lengths and velocities get this times as large after so many cycles; 0: never */
+    double parameter;                    /**< ParameterNumber */
+    double source;                       /**< MasterValueSource */
+    double transition, corner;           /**< TransitionMode and its parameter */
+    double scaling, start_distance;      /**< of MC_CamIn: SlaveScaling, MasterStartDistance */
 } step_t;
 
 typedef enum fault_kind {
     FAULT_LOSE = 0, FAULT_LOSE_OUT, FAULT_LOSE_BACK, FAULT_CORRUPT, FAULT_DELAY, FAULT_COUNTER, FAULT_STALL,
     FAULT_UNPLUG, FAULT_POWER_CYCLE, FAULT_FALL_BACK, FAULT_MOTOR_POWER, FAULT_ERROR, FAULT_OVER_TORQUE,
     FAULT_TEMPERATURE, FAULT_LOAD, FAULT_JUMP, FAULT_FREEZE, FAULT_RING, FAULT_CLOCK, FAULT_BRIDGE_ERROR,
-    FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_SWAP, FAULT_KINDS
+    FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_SWAP, FAULT_EMERGENCY, FAULT_KINDS
 } fault_kind_t;
 
 /** One fault. What `value` is depends on the kind; see the table in scenario_fault.c. */
@@ -78,6 +87,11 @@ typedef struct scenario {
 /* ---- scenario_random.c ------------------------------------------------------------------------------------------- */
 
 void scenario_make(scenario_t *scenario, uint64_t seed);
+
+/* ---- scenario_varied.c ------------------------------------------------------------------------------------------- */
+
+/** After all draws of scenario_make(): modulo axes, blocks that are triggered again, and much more. */
+void scenario_vary(scenario_t *scenario);
 
 /* ---- scenario_text.c --------------------------------------------------------------------------------------------- */
 

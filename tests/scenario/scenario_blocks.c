@@ -20,7 +20,8 @@ const block_member_t *block_member(const block_t *type, const char *name)
 }
 
 const char *const step_homings[] = {"MC_StepAbsoluteSwitch", "MC_StepLimitSwitch", "MC_StepBlock", "MC_HomeDirect",
-                                    "MC_FinishHoming", NULL};
+                                    "MC_FinishHoming", "MC_HomeAbsolute", "MC_StepReferencePulse",
+                                    "MC_StepReferenceFlyingSwitch", NULL};
 const char *const table_blocks[] = {"MC_PositionProfile", "MC_VelocityProfile", "MC_AccelerationProfile", NULL};
 
 bool program_has(const scenario_t *scenario, int axis, const char *const *blocks)
@@ -37,6 +38,17 @@ bool block_flag(const instance_t *block, const char *name)
     const block_member_t *member = block_member(block->type, name);
     return member && block->memory[member->offset] != 0;
 }
+
+double block_number(const instance_t *block, const char *name)
+{
+    const block_member_t *member = block_member(block->type, name);
+    double value = 0;
+    if (member && member->type == BLOCK_LREAL && member->size == sizeof value)
+        memcpy(&value, block->memory + member->offset, sizeof value);
+    return value;
+}
+
+bool block_is(const instance_t *block, const char *name) { return strcmp(block->type->name, name) == 0; }
 
 void block_point(instance_t *block, const char *name, const void *what)
 {

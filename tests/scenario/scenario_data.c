@@ -45,10 +45,24 @@ static void make_switches(instance_t *block, double unit)
             .CamSwitchMode = i, .Duration = (TIME)(block->step->period * MS_IN_NS)};
 }
 
+/** Another cam than the one of the start. */
+static void make_cam(instance_t *block, double unit)
+{
+    const step_t *step = block->step;
+    const double master = fmax(fabs(step->x), 1000) / unit, slave = step->distance * 0.1 / unit;
+    const MC_CAM_POINT points[3] = {{0}, {.Master = master / 2, .Slave = slave}, {.Master = master}};
+    memcpy(block->cam_points, points, sizeof points);
+    block->cam = (MC_CAM_REF){.Points = block->cam_points, .NumberOfPoints = 3, .Curve = (MC_CAM_CURVE)step->mode};
+    block_point(block, "CamTable", &block->cam);
+    block_put(block, "Periodic", step->value);
+}
+
 void data_prepare(const run_t *run, instance_t *block)
 {
     const machine_axis_t *axis = &run->axes[(int)block->step->axis];
     const char *name = block->type->name;
+    if (block_member(block->type, "CamTable"))
+        make_cam(block, axis->spec->counts_per_unit);
     if (block_member(block->type, "Switches")) {
         make_switches(block, axis->spec->counts_per_unit);
         block->output = (MC_OUTPUT_REF){.Axis = axis->reference, .Number = 1};
@@ -64,10 +78,25 @@ void data_prepare(const run_t *run, instance_t *block)
     block_point(block, "TimeAcceleration", &block->data);
 }
 
+/** The inputs that change while a block is at work: with ContinuousUpdate they act at once, else with the next edge. */
+static void change(const run_t *run, instance_t *block)
+{
+    static const char *const names[] = {"Position", "Distance", "Velocity", "PhaseShift", "VelFactor"};
+    const step_t *step = block->step;
+    if (step->change == 0 || run->cycle != (int)(step->at + step->change_after))
+        return;
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        const block_member_t *member = block_member(block->type, names[i]);
+        if (member && member->section == BLOCK_INPUT)
+            block_put(block, names[i], block_number(block, names[i]) * step->change);
+    }
+}
+
 void data_cycle(const run_t *run, instance_t *block)
 {
     const machine_axis_t *axis = &run->axes[(int)block->step->axis];
     const step_t *step = block->step;
+    change(run, block);
     if (!block->follows)
         return;
     if (run->cycle == (int)step->at)

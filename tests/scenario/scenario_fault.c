@@ -51,6 +51,7 @@ static const fault_row_t rows[FAULT_KINDS] = {
                         true, false, NULL},
     [FAULT_SWAP] = {"power-cycle %p 30;power-cycle %o 30;switches %p %j;switches %o %i",
                     "power-cycle %p 30;power-cycle %o 30;switches %p %i;switches %o %j", THE_NETWORK, 1, true, false, NULL},
+    [FAULT_EMERGENCY] = {NULL, NULL, NOBODY, 0, false, true, NULL},
 };
 
 /* ---- what is done ------------------------------------------------------------------------------------------------ */
@@ -107,9 +108,19 @@ static void begin_fault(run_t *run, const fault_t *fault)
     case FAULT_JUMP:
     case FAULT_FREEZE: wire_lie(axis, true, fault->kind == FAULT_FREEZE, fault->value); break;
     case FAULT_STALL: wire_stall(run, fault->length); break;
+    case FAULT_EMERGENCY: break;
     case FAULT_FALL_BACK: wire_fall_back(run, axis->network, axis->position); break;
     default: order(run, fault, rows[(int)fault->kind].begin); break;
     }
+}
+
+/** An emergency in every cycle, of an error that the drive does not have. Its mailbox may be full, or it may be away. */
+static void flood(run_t *run, const fault_t *fault)
+{
+    const machine_axis_t *axis = &run->axes[(int)fault->axis];
+    char line[ORDER_BYTES], answer[200];
+    snprintf(line, sizeof line, "emergency %u %04X", axis->position, (unsigned)fault->value);
+    cm1e_bus_simulate(run->buses[axis->network], line, answer, sizeof answer);
 }
 
 static void end_fault(run_t *run, const fault_t *fault)
@@ -263,6 +274,8 @@ void fault_cycle(run_t *run)
             replace(run, fault);
             begin_fault(run, fault);
         }
+        if (fault->kind == FAULT_EMERGENCY && run->cycle >= (int)fault->at && run->cycle < (int)end_of(fault))
+            flood(run, fault);
         /* A drive that has no torque, and is given some while it lies of its place, jumps by itself. */
         const bool lies = is_lie(fault);
         const bool ends = run->cycle == (int)end_of(fault) && fault->length > 0;

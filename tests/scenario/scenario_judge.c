@@ -241,8 +241,7 @@ static void judge_speed(run_t *run, machine_axis_t *axis)
                       axis->name, cm1e_axis_state_name(axis->info.state), speed, 100 * over, spec->velocity);
 }
 
-/** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
-static bool was_disturbed(const run_t *run, const witness_t *seen)
+bool was_disturbed(const run_t *run, const witness_t *seen)
 {
     const int lately = cycles_of(run, QUIET_MS);
     return seen->quiet < lately || seen->stalled < lately || seen->rung < lately || seen->jolted < lately;
@@ -363,6 +362,9 @@ static void judge_still(run_t *run, machine_axis_t *axis)
                       cm1e_axis_state_name(axis->info.state), axis->probe.position_counts - seen->rest_at);
 }
 
+/** They switch software limits off. */
+static const char *const limit_switches[] = {"MC_WriteBoolParameter", NULL};
+
 /** In a pause of the host a motor runs on that has a velocity for a target, or a profile of the drive, and the drive may
  *  accelerate by it (docs/SAFETY.md). It has to stop with its own limits from where it is when it hears of that, and has
  *  stopped when it stands or comes back. */
@@ -390,7 +392,7 @@ static void judge_place(run_t *run, machine_axis_t *axis)
     const bool inside = place >= spec->limit_negative && place <= spec->limit_positive;
     axis->seen.coasted = !inside && (axis->seen.coasted || !axis->probe.torque_on);
     if ((spec->limit_negative == 0 && spec->limit_positive == 0) || !axis->seen.kept || axis->seen.shifted ||
-        axis->seen.coasted || is_caught(run, axis) || !axis->probe.torque_on ||
+        program_has(run->scenario, axis->number, limit_switches) || axis->seen.coasted || is_caught(run, axis) || !axis->probe.torque_on ||
         axis->info.state == CM1E_AXIS_ERROR_STOP)
         return;
     const double cycle_s = run->scenario->cycle_us * 1e-6;
@@ -501,45 +503,6 @@ static void judge_power(run_t *run, machine_axis_t *axis)
         scenario_fail(run, "block", "%s is in ErrorStop, and MC_Power does not show it", axis->name);
 }
 
-/* ---- blocks ------------------------------------------------------------------------------------------------------ */
-
-static void judge_outputs(run_t *run, instance_t *block)
-{
-    const bool done = block_flag(block, "Done"), busy = block_flag(block, "Busy");
-    const bool aborted = block_flag(block, "CommandAborted"), error = block_flag(block, "Error");
-    const int shown = done + busy + aborted + error;
-    const bool ended = block->was_busy && !busy;
-    const char *wrong = NULL;
-    if (shown > 1 || (block->triggered && shown != 1))
-        wrong = "not exactly one of them";
-    else if (!block->triggered && !ended && shown != busy)
-        wrong = "a result without Execute";
-    else if (ended && shown != 1)
-        wrong = "an end without a result";
-    else if (block_flag(block, "Active") && !busy && !done)
-        wrong = "Active without Busy";
-    if (wrong)
-        scenario_fail(run, "block", "%s: %s: Execute %d, Done %d, Busy %d, CommandAborted %d, Error %d, Active %d",
-                      block->type->name, wrong, block->triggered, done, busy, aborted, error,
-                      block_flag(block, "Active"));
-    block->was_busy = busy;
-}
-
-void judge_block(run_t *run, instance_t *block)
-{
-    const machine_axis_t *axis = &run->axes[(int)block->step->axis];
-    const block_member_t *member = block_member(block->type, "ErrorID");
-    WORD id;
-    memcpy(&id, block->memory + member->offset, sizeof id);
-    if (block_flag(block, "Error") != (id != 0) || (id != 0 && cm1e_error_from_id(id) == CM1E_ERROR_NOT_FOUND))
-        scenario_fail(run, "block", "%s: Error %d, ErrorID 0x%04X", block->type->name, block_flag(block, "Error"), id);
-    if (block_member(block->type, "Execute"))
-        judge_outputs(run, block);
-    if (axis->info.state == CM1E_AXIS_ERROR_STOP && block_member(block->type, "Active") &&
-        !block_member(block->type, "AxesGroup") && block_flag(block, "Busy"))
-        scenario_fail(run, "block", "%s is Busy although %s is in ErrorStop", block->type->name, axis->name);
-}
-
 /* ---- the log ----------------------------------------------------------------------------------------------------- */
 
 static void judge_event(run_t *run, const cm1e_log_event_t *event)
@@ -631,6 +594,12 @@ void judge_cycle(run_t *run)
         judge_log(run);
 }
 
+/** A distance of a modulo axis counts in the nearer direction. */
+static double apart(const axis_spec_t *spec, double distance)
+{
+    return spec->modulo > 0 ? remainder(distance, spec->modulo) : distance;
+}
+
 /** The last move of all axes. */
 static void judge_test(run_t *run, machine_axis_t *axis)
 {
@@ -642,7 +611,8 @@ static void judge_test(run_t *run, machine_axis_t *axis)
     /* Where nothing made the device forget its position, the coordinates are those of the start. */
     const double place = axis->probe.position_counts * (axis->spec->invert != 0 ? -1 : 1);
     const double shown = axis->info.actual_position * axis->spec->counts_per_unit;
-    if (is_motor(axis) && axis->seen.kept && !axis->seen.shifted && fabs(place - shown) > KEPT_COUNTS)
+    if (is_motor(axis) && axis->seen.kept && !axis->seen.shifted &&
+        fabs(apart(axis->spec, place - shown)) > KEPT_COUNTS)
         scenario_fail(run, "position", "%s is at %.1f counts, and shows %.1f", axis->name, place, shown);
 }
 

@@ -66,6 +66,8 @@ static void describe_axis(const scenario_t *scenario, cm1e_axis_config_t *axis, 
     axis->max_jerk = spec->jerk / unit;
     axis->software_limit_negative = spec->limit_negative / unit;
     axis->software_limit_positive = spec->limit_positive / unit;
+    axis->modulo_range = spec->modulo / unit;
+    axis->in_position_done_waits = spec->done_waits != 0 && spec->kind != AXIS_VIRTUAL;
     axis->coupling_stop = (cm1e_coupling_stop_t)spec->coupling_stop;
     axis->table_profiles = program_has(scenario, machine->number, table_blocks);
     if (spec->kind == AXIS_VIRTUAL)

@@ -18,7 +18,9 @@ enum { FIRST_ID = 40 /* explicit device ID of the first axis */, STRANGER_ID = 9
 typedef struct instance {
     const block_t *type;
     const step_t *step;
-    bool triggered, was_busy, follows;
+    bool triggered, was_busy, was_error, follows;
+    int active;                           /**< cycles in a row with Active */
+    int edge_at;                          /**< cycle of the last edge */
     double from;                          /**< u; where positions from outside begin */
     union {
         MC_TP_REF positions;
@@ -27,6 +29,8 @@ typedef struct instance {
         MC_CAMSWITCH_REF switches;
     } data;
     MC_OUTPUT_REF output;
+    MC_CAM_REF cam;
+    MC_CAM_POINT cam_points[3];
     _Alignas(16) unsigned char memory[BLOCK_ROOM];
 } instance_t;
 
@@ -58,6 +62,8 @@ typedef struct witness {
     int error_at;                         /**< cycle in which it came into ErrorStop */
     cm1e_axis_state_t logged;             /**< last state that the log told */
     int off_cycles;                       /**< without MC_Power.Enable, or in ErrorStop, and still under torque */
+    bool barred;                          /**< its block may have let it go on, or it brakes by itself, in this motion */
+    int alone;                            /**< cycles in a state of motion without a block */
     bool enabled, had_torque;    /**< in the cycle before: the drive was told to have torque; it had it */
 } witness_t;
 
@@ -77,6 +83,9 @@ typedef struct machine_axis {
     double test_from, test_by;            /**< counts; shaft before the last move, and what that is */
     int resets;                           /**< after the program */
     MC_CamTableSelect_t select;
+    MC_CAM_ID cam_id;                     /**< of the cam that was selected last */
+    MC_WriteParameter_t restore;          /**< after the program: the limits of the configuration again */
+    int restored;                         /**< so many of them */
     MC_CAM_REF cam;
     MC_CAM_POINT cam_points[3];
     MC_AddAxisToGroup_t add;
@@ -173,16 +182,23 @@ void judge_begin(run_t *run);
 void judge_look(run_t *run);
 /** After the program. */
 void judge_cycle(run_t *run);
-/** After a call of a block. */
-void judge_block(run_t *run, instance_t *block);
 void judge_end(run_t *run);
 bool at_rest(const machine_axis_t *axis);
+/** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
+bool was_disturbed(const run_t *run, const witness_t *seen);
+
+/* ---- scenario_judge_blocks.c ------------------------------------------------------------------------------------- */
+
+/** After a call of a block. */
+void judge_block(run_t *run, instance_t *block);
+/** After all blocks of a cycle. */
+void judge_blocks(run_t *run);
 
 /* ---- scenario_data.c --------------------------------------------------------------------------------------------- */
 
 /** Tables over time and cam switches, from the numbers of the step. */
 void data_prepare(const run_t *run, instance_t *block);
-/** Position of this cycle for CM_FollowPosition. */
+/** Position of this cycle for CM_FollowPosition; inputs that change. */
 void data_cycle(const run_t *run, instance_t *block);
 
 /* ---- scenario_blocks.c ------------------------------------------------------------------------------------------- */
@@ -196,6 +212,9 @@ const block_t *block_type(const char *name);
 const block_member_t *block_member(const block_t *type, const char *name);
 bool block_flag(const instance_t *block, const char *name);
 void block_put(instance_t *block, const char *name, double value);
+/** Value of an LREAL; 0: it has none of this name. */
+double block_number(const instance_t *block, const char *name);
+bool block_is(const instance_t *block, const char *name);
 void block_point(instance_t *block, const char *name, const void *what);
 
 #endif

@@ -34,7 +34,13 @@ static const input_t inputs[] = {
     PLAIN("VelFactor", factor), PLAIN("Relative", relative), PLAIN("Value", value), PLAIN("Mode", mode),
     PLAIN("StartMode", mode), PLAIN("CircMode", mode), PLAIN("OutputNumber", mode), PLAIN("SwitchMode", mode),
     PLAIN("LimitSwitchMode", mode), PLAIN("TorqueLimit", torque), PLAIN("Torque", torque),
-    LENGTH("SetPosition", position), LENGTH("DistanceLimit", x)};
+    LENGTH("SetPosition", position), LENGTH("DistanceLimit", x), PLAIN("ContinuousUpdate", update),
+    PLAIN("ParameterNumber", parameter), PLAIN("MasterValueSource", source), PLAIN("TransitionMode", transition),
+    LENGTH("TransitionParameter", corner), PLAIN("SlaveScaling", scaling),
+    LENGTH("MasterStartDistance", start_distance)};
+
+/** They change the limits that the configuration has. */
+static const char *const limit_writers[] = {"MC_WriteParameter", "MC_WriteBoolParameter", NULL};
 
 static int cycles_of(const run_t *run, double ms) { return (int)(ms * 1000 / run->scenario->cycle_us); }
 
@@ -64,12 +70,14 @@ static void set_path(const run_t *run, instance_t *block, const step_t *step)
 static void prepare_block(run_t *run, instance_t *block, const step_t *step)
 {
     machine_axis_t *axis = &run->axes[(int)step->axis], *master = &run->axes[(int)step->master];
-    *block = (instance_t){.type = block_type(scenario_blocks[(int)step->block]), .step = step};
+    *block = (instance_t){.type = block_type(scenario_blocks[(int)step->block]), .step = step, .edge_at = -1000};
     for (size_t i = 0; i < sizeof inputs / sizeof inputs[0]; i++) {
         double value;
         memcpy(&value, (const char *)step + inputs[i].offset, sizeof value);
         block_put(block, inputs[i].name, inputs[i].is_length ? value / axis->spec->counts_per_unit : value);
     }
+    if (block_is(block, "MC_WriteParameter")) /* of a limit */
+        block_put(block, "Value", step->position / axis->spec->counts_per_unit);
     block_put(block, "AccFactor", 1);
     block_put(block, "JerkFactor", 1);
     set_path(run, block, step);
@@ -92,6 +100,7 @@ static void prepare_axis(machine_axis_t *axis)
     axis->cam = (MC_CAM_REF){.Points = axis->cam_points, .NumberOfPoints = 3, .Curve = mcCamPolynomial5};
     axis->power = (MC_Power_t){.Axis = &axis->reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
     axis->reset = (MC_Reset_t){.Axis = &axis->reference};
+    axis->restore = (MC_WriteParameter_t){.Axis = &axis->reference};
     axis->test = (MC_MoveRelative_t){.Axis = &axis->reference};
     axis->override = (MC_SetOverride_t){.Axis = &axis->reference, MC_SETOVERRIDE_DEFAULTS};
     axis->select = (MC_CamTableSelect_t){.Slave = &axis->reference, .CamTable = &axis->cam, .Periodic = TRUE};
@@ -120,7 +129,8 @@ void program_prepare(run_t *run)
 static bool is_held(const run_t *run, const step_t *step)
 {
     const double age = run->cycle - step->at;
-    return run->phase == PHASE_PROGRAM && age >= 0 && (step->hold == 0 || age < step->hold);
+    const bool between = step->again >= 2 && age >= step->again && fmod(age, step->again) < 1;
+    return run->phase == PHASE_PROGRAM && age >= 0 && (step->hold == 0 || age < step->hold) && !between;
 }
 
 static bool is_power(const step_t *step) { return strcmp(scenario_blocks[(int)step->block], "MC_Power") == 0; }
@@ -129,11 +139,16 @@ static void call_power(run_t *run, machine_axis_t *axis)
 {
     if (run->phase == PHASE_PROGRAM) {
         axis->power.Enable = run->cycle >= ENABLE_AT;
+        axis->power.EnablePositive = axis->power.EnableNegative = TRUE;
         for (int i = 0; i < run->scenario->step_count; i++) { /* a step of MC_Power takes it away */
             const step_t *step = &run->scenario->steps[i];
-            if (is_power(step) && (int)step->axis == axis->number && is_held(run, step))
-                axis->power.Enable = FALSE;
+            if (!is_power(step) || (int)step->axis != axis->number || !is_held(run, step))
+                continue;
+            BOOL *const taken[] = {&axis->power.Enable, &axis->power.EnablePositive, &axis->power.EnableNegative};
+            *taken[(unsigned)step->mode % 3] = FALSE;
         }
+    } else {
+        axis->power.EnablePositive = axis->power.EnableNegative = TRUE;
     }
     MC_Power(&axis->power);
 }
@@ -143,7 +158,7 @@ static void call_block(run_t *run, instance_t *block)
     const bool held = is_held(run, block->step);
     static const char *const triggers[] = {"Execute", "Enable", "JogForward"};
     if (strcmp(block->type->name, "MC_CamIn") == 0) {
-        const MC_CAM_ID id = run->axes[(int)block->step->axis].select.CamTableID;
+        const MC_CAM_ID id = run->axes[(int)block->step->axis].cam_id;
         memcpy(block->memory + block_member(block->type, "CamTableID")->offset, &id, sizeof id);
     }
     const char *trigger = triggers[2];
@@ -154,11 +169,16 @@ static void call_block(run_t *run, instance_t *block)
         }
     if (strcmp(trigger, "JogForward") == 0 && block->step->direction != 0)
         trigger = "JogBackwards";
+    if (held && !block->triggered)
+        block->edge_at = run->cycle;
     block->triggered = held;
     block_put(block, trigger, held);
     data_cycle(run, block);
     block->type->call(block->memory);
     judge_block(run, block);
+    if (block_member(block->type, "CamTable") && block_flag(block, "Done"))
+        memcpy(&run->axes[(int)block->step->axis].cam_id, block->memory + block_member(block->type, "CamTableID")->offset,
+               sizeof(MC_CAM_ID));
 }
 
 static void call_group(run_t *run)
@@ -179,6 +199,8 @@ void program_cycle(run_t *run)
         machine_axis_t *axis = &run->axes[n];
         axis->select.Execute = run->cycle >= SELECT_AT;
         MC_CamTableSelect(&axis->select);
+        if (axis->cam_id == 0)
+            axis->cam_id = axis->select.CamTableID;
         call_power(run, axis);
     }
     if (run->phase == PHASE_PROGRAM)
@@ -186,6 +208,7 @@ void program_cycle(run_t *run)
     for (int i = 0; i < run->scenario->step_count; i++)
         if (run->cycle >= run->blocks[i].step->at && !is_power(run->blocks[i].step))
             call_block(run, &run->blocks[i]);
+    judge_blocks(run);
 }
 
 /* ---- bringing it back -------------------------------------------------------------------------------------------- */
@@ -229,6 +252,16 @@ static bool is_down(run_t *run, machine_axis_t *axis)
     return (state == CM1E_AXIS_DISABLED || state == CM1E_AXIS_ERROR_STOP) && free && !pushed;
 }
 
+/** A MC_Reset of the program is not over yet: its own edge may have come before the fault was gone. */
+static bool is_being_reset(const run_t *run, const machine_axis_t *axis)
+{
+    for (int i = 0; i < run->scenario->step_count; i++)
+        if ((int)run->blocks[i].step->axis == axis->number && block_is(&run->blocks[i], "MC_Reset") &&
+            block_flag(&run->blocks[i], "Busy"))
+            return true;
+    return false;
+}
+
 /** One edge of MC_Reset, and another one where that failed. Where an axis is Disabled, and its slave has not been seen
  *  to be back, MC_Reset is Done without an effect: then it is asked again from time to time. */
 static bool is_reset(run_t *run, machine_axis_t *axis)
@@ -236,7 +269,7 @@ static bool is_reset(run_t *run, machine_axis_t *axis)
     if (axis->info.state != CM1E_AXIS_ERROR_STOP && axis->info.online) {
         axis->reset.Execute = FALSE;
         MC_Reset(&axis->reset);
-        return axis->info.state == CM1E_AXIS_DISABLED;
+        return axis->info.state == CM1E_AXIS_DISABLED && !is_being_reset(run, axis);
     }
     const bool from_time_to_time = run->cycle % cycles_of(run, AGAIN_MS) == 0;
     const bool absent = axis->spec->optional != 0 && axis->reset.Error; /* as far as the bus knows by now */
@@ -251,8 +284,31 @@ static bool is_reset(run_t *run, machine_axis_t *axis)
     return false;
 }
 
+/** The program may have changed limits: those of the configuration again, one after the other. */
+static bool is_restored(machine_axis_t *axis)
+{
+    const axis_spec_t *spec = axis->spec;
+    const double unit = spec->counts_per_unit, pos = spec->limit_positive / unit, neg = spec->limit_negative / unit;
+    const bool limited = pos != 0 || neg != 0;
+    const struct { INT number; LREAL value; } limits[] = {
+        {4, 0}, {5, 0}, {2, pos}, {3, neg}, {2, pos}, {4, limited}, {5, limited}, {9, spec->velocity / unit},
+        {13, spec->acceleration / unit}, {15, spec->deceleration / unit}, {17, spec->jerk / unit}};
+    MC_WriteParameter_t *block = &axis->restore;
+    const int count = sizeof limits / sizeof limits[0];
+    if (axis->restored >= count)
+        return true;
+    block->Execute = !block->Execute;
+    block->ParameterNumber = limits[axis->restored].number;
+    block->Value = limits[axis->restored].value;
+    MC_WriteParameter(block);
+    axis->restored += block->Execute;
+    return false;
+}
+
 static bool is_enabled(run_t *run, machine_axis_t *axis)
 {
+    if (program_has(run->scenario, axis->number, limit_writers) && !is_restored(axis))
+        return false;
     axis->power.Enable = axis->override.Enable = TRUE;
     MC_SetOverride(&axis->override);
     axis->test_from = axis->probe.position_counts;

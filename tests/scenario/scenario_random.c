@@ -16,6 +16,7 @@ static const uint64_t wide_from = UINT64_C(2000000000); /**< below, none of what
 static const uint64_t swap_from = UINT64_C(3000000000); /**< below, no motors that change places */
 static const uint64_t close_from = UINT64_C(4000000000); /**< below, none of what make_close() adds */
 static const uint64_t ramp_from = UINT64_C(5000000000); /**< below, none of what make_ramp() adds */
+static const uint64_t varied_from = UINT64_C(6000000000); /**< from here on scenario_vary() in its place */
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */
 
@@ -553,7 +554,9 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
         make_swap(scenario);
     if (seed >= close_from)
         make_close(scenario);
-    if (seed >= ramp_from)
+    if (seed >= varied_from)
+        scenario_vary(scenario);
+    else if (seed >= ramp_from)
         make_ramp(scenario);
     qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
     qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);

@@ -115,14 +115,16 @@ static bool simplify(scenario_t *scenario, const outcome_t *failure, unsigned li
     for (int n = 0; n < scenario->axis_count; n++) {
         axis_spec_t *axis = &scenario->axes[n];
         double *const numbers[] = {&axis->network, &axis->firmware, &axis->mapping, &axis->invert, &axis->load_inertia,
-                                   &axis->friction, &axis->coupling_stop, &axis->stops};
+                                   &axis->friction, &axis->coupling_stop, &axis->stops, &axis->modulo,
+                                   &axis->done_waits};
         for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
             simpler = plainer(scenario, failure, limit_s, numbers[i], 0) || simpler;
     }
     for (int i = 0; i < scenario->step_count; i++) {
         step_t *step = &scenario->steps[i];
         double *const numbers[] = {&step->acceleration, &step->deceleration, &step->jerk, &step->buffer, &step->hold,
-                                   &step->direction};
+                                   &step->direction, &step->again, &step->update, &step->change, &step->source,
+                                   &step->transition, &step->scaling, &step->start_distance};
         for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; k++)
             simpler = plainer(scenario, failure, limit_s, numbers[k], 0) || simpler;
     }

@@ -21,7 +21,7 @@ static const char *const mappings[] = {"dynamic", "csp", "csv", "profile", NULL}
 const char *const fault_names[FAULT_KINDS + 1] = {
     "lose", "lose-out", "lose-back", "corrupt", "delay", "counter", "stall", "unplug", "power-cycle", "fall-back",
     "motor-power", "error", "over-torque", "temperature", "load", "jump", "freeze", "ring", "clock", "bridge-error",
-    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", NULL};
+    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", "emergency", NULL};
 
 const char *const scenario_blocks[] = {
     "MC_MoveAbsolute", "MC_MoveRelative", "MC_MoveAdditive", "MC_MoveVelocity", "MC_Halt", "MC_Stop", "MC_Power",
@@ -31,7 +31,10 @@ const char *const scenario_blocks[] = {
     "MC_MoveLinearAbsolute", "MC_MoveLinearRelative", "MC_MoveCircularRelative", "MC_GroupStop", "MC_GroupHalt",
     "MC_GroupReset", "MC_PositionProfile", "MC_VelocityProfile", "MC_AccelerationProfile", "CM_FollowPosition",
     "MC_StepAbsoluteSwitch", "MC_StepLimitSwitch", "MC_StepBlock", "MC_HomeDirect", "MC_FinishHoming",
-    "MC_PhasingAbsolute", "MC_DigitalCamSwitch", "MC_TorqueControl", "MC_AbortTrigger", NULL};
+    "MC_PhasingAbsolute", "MC_DigitalCamSwitch", "MC_TorqueControl", "MC_AbortTrigger",
+    "MC_MoveCircularAbsolute", "MC_GroupSetOverride", "MC_GroupDisable", "MC_GroupEnable", "MC_WriteParameter",
+    "MC_WriteBoolParameter", "MC_CamTableSelect", "MC_HomeAbsolute", "MC_StepReferencePulse",
+    "MC_StepReferenceFlyingSwitch", "MC_AbortPassiveHoming", NULL};
 
 #define NUMBER(type, member) {#member, offsetof(type, member), NULL}
 #define WORD_OF(type, member, words) {#member, offsetof(type, member), words}
@@ -48,7 +51,7 @@ static const field_t axis_fields[] = {
     NUMBER(axis_spec_t, limit_negative), NUMBER(axis_spec_t, limit_positive), NUMBER(axis_spec_t, load_inertia),
     NUMBER(axis_spec_t, friction), NUMBER(axis_spec_t, stops),
     NUMBER(axis_spec_t, coupling_stop), NUMBER(axis_spec_t, motion), NUMBER(axis_spec_t, optional),
-    NUMBER(axis_spec_t, identified), END};
+    NUMBER(axis_spec_t, identified), NUMBER(axis_spec_t, modulo), NUMBER(axis_spec_t, done_waits), END};
 static const field_t step_fields[] = {
     NUMBER(step_t, at), NUMBER(step_t, axis), WORD_OF(step_t, block, scenario_blocks), NUMBER(step_t, master),
     NUMBER(step_t, hold), NUMBER(step_t, position), NUMBER(step_t, distance), NUMBER(step_t, velocity),
@@ -56,7 +59,9 @@ static const field_t step_fields[] = {
     NUMBER(step_t, direction), NUMBER(step_t, end_velocity), NUMBER(step_t, numerator), NUMBER(step_t, denominator),
     NUMBER(step_t, factor), NUMBER(step_t, relative), NUMBER(step_t, value), NUMBER(step_t, mode), NUMBER(step_t, x),
     NUMBER(step_t, y), NUMBER(step_t, aux_x), NUMBER(step_t, aux_y), NUMBER(step_t, torque),
-    NUMBER(step_t, period), NUMBER(step_t, points), END};
+    NUMBER(step_t, period), NUMBER(step_t, points), NUMBER(step_t, again), NUMBER(step_t, update),
+    NUMBER(step_t, change), NUMBER(step_t, change_after), NUMBER(step_t, parameter), NUMBER(step_t, source),
+    NUMBER(step_t, transition), NUMBER(step_t, corner), NUMBER(step_t, scaling), NUMBER(step_t, start_distance), END};
 static const field_t fault_fields[] = {
     NUMBER(fault_t, at), WORD_OF(fault_t, kind, fault_names), NUMBER(fault_t, axis), NUMBER(fault_t, network),
     NUMBER(fault_t, length), NUMBER(fault_t, value), END};

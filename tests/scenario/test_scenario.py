@@ -11,8 +11,8 @@ import tempfile
 from pathlib import Path
 
 PROGRAM = sys.argv[1]
-SEEDS = (1, 2, 7, 11, 1000000002, 2000000006)
-MORE, WIDE, COUNT = 1000000000, 2000000000, 20  # seeds with what scenario_random.c has for seeds from there on
+SEEDS = (1, 2, 7, 11, 1000000002, 2000000006, 6000000003)
+MORE, WIDE, VARIED, COUNT = 1000000000, 2000000000, 6000000000, 20  # seeds with what scenario_random.c has for seeds from there on
 # The judge takes a limit that the machine was not made for as a failure: a way to see that it can fail at all.
 SPOILED = ("run cycles=900 cycle_us=1000 lost_limit=3\n"
            "axis kind=cm1e counts_per_unit=1000 velocity=400000 acceleration=3e6 deceleration=3e6 jerk=1e8\n"
@@ -73,6 +73,16 @@ def check_wide():
         assert word not in run("--seed", WIDE - 1, "--write")[1], word
 
 
+def check_varied():
+    code, said = run("--seed", VARIED, "--count", COUNT)
+    assert code == 0 and f"{COUNT} scenarios from seed {VARIED} on: 0 failed" in said, said
+    text = "".join(run("--seed", VARIED + number, "--write")[1] for number in range(COUNT))
+    for word in (" modulo=", " done_waits=1", " again=", " update=1", " change=", " parameter=", " source=1", " scaling=",
+                 " transition=", "MC_GroupSetOverride", "MC_CamTableSelect", "kind=emergency"):
+        assert word in text, word
+        assert word not in run("--seed", VARIED - 1, "--write")[1], word
+
+
 def check_refusals(folder):
     for text, words in (("axis kind=nonsense\n", "line 1"), ("run cycles=100 cycle_us=1000\n", "needs an axis"),
                         ("nonsense\n", "expected run"), ("run cycles=abc\n", "not one of this name")):
@@ -90,6 +100,7 @@ def main():
         check_refusals(Path(name))
     check_more()
     check_wide()
+    check_varied()
     print("ok")
 
 
