@@ -332,12 +332,45 @@ static bool is_tolerated(const run_t *run, const fault_t *fault)
     return true;
 }
 
+/** What a fault can do to an axis: a fault of one motor stops no other one, a network stops only its own axes, and some
+ *  faults stop nobody by an error of bus or drive. */
+static bool may_stop(const run_t *run, const fault_t *fault, const machine_axis_t *axis, bool of_bus)
+{
+    enum { WATCHDOG_US = 90000 };
+    const machine_axis_t *there = &run->axes[(int)fault->axis];
+    const bool same_slave = there->network == axis->network && there->position == axis->position;
+    switch ((fault_kind_t)fault->kind) {
+    case FAULT_EEPROM:
+    case FAULT_RING:
+    case FAULT_EMERGENCY: return false;
+    case FAULT_STALL: return fault->length * run->scenario->cycle_us >= WATCHDOG_US;
+    case FAULT_DETACH:
+    case FAULT_STRANGER: return there == axis;
+    case FAULT_MOTOR_POWER:
+    case FAULT_ERROR:
+    case FAULT_OVER_TORQUE:
+    case FAULT_TEMPERATURE:
+    case FAULT_BRIDGE_ERROR:
+    case FAULT_BRIDGE_CABLE:
+    case FAULT_SWITCH:
+    case FAULT_LOAD:
+    case FAULT_JUMP:
+    case FAULT_FREEZE: return same_slave && !of_bus;
+    case FAULT_LOSE:
+    case FAULT_LOSE_OUT:
+    case FAULT_LOSE_BACK:
+    case FAULT_CORRUPT:
+    case FAULT_DELAY:
+    case FAULT_COUNTER: return (int)fault->network == axis->network;
+    default: return there->network == axis->network;
+    }
+}
+
 bool fault_explains(const run_t *run, const machine_axis_t *axis, bool of_bus)
 {
     for (int i = 0; i < run->scenario->fault_count; i++) {
         const fault_t *fault = &run->scenario->faults[i];
-        const machine_axis_t *there = &run->axes[(int)fault->axis];
-        if (fault->at <= run->cycle && (!is_absence(fault) || there == axis) && !(of_bus && is_tolerated(run, fault)))
+        if (fault->at <= run->cycle && may_stop(run, fault, axis, of_bus) && !(of_bus && is_tolerated(run, fault)))
             return true;
     }
     return false;

@@ -421,6 +421,9 @@ static bool is_groundless(const run_t *run, const machine_axis_t *axis)
                         error == CM1E_ERROR_BUS_CLOCKS || error == CM1E_ERROR_AXIS_OFFLINE;
     const bool of_drive = error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_KEEPS_TORQUE &&
                           axis->spec->stops == 0; /* a motor that presses against its stop is overloaded */
+    /* Without any fault, a motor that nothing holds follows its set-point. */
+    if (error == CM1E_ERROR_AXIS_LAG && axis->spec->stops == 0 && run->scenario->fault_count == 0)
+        return true;
     return (of_bus || of_drive) && run->phase == PHASE_PROGRAM && !fault_explains(run, axis, of_bus);
 }
 
@@ -470,8 +473,10 @@ static void judge_torque(run_t *run, machine_axis_t *axis)
     seen->off_cycles = !off ? 0 : axis->probe.torque_on && !deaf ? seen->off_cycles + 1 : seen->off_cycles;
     const double ramp_s = spec->velocity / spec->deceleration + spec->acceleration / spec->jerk +
                           spec->deceleration / spec->jerk;
-    if (spec->kind == AXIS_CM1E && axis->info.state != CM1E_AXIS_HOMING && axis->probe.torque_on &&
-        seen->off_cycles > cycles_of(run, 1000 * (ramp_s + 11)))
+    /* Where the drive homes or moves by itself it halts by itself; a motor behind a bridge may hold its place. */
+    const double longest_s = ramp_s + (seen->by_drive || spec->motion != 0 ? 11 : 2.5);
+    if (axis->channel == 0 && axis->info.state != CM1E_AXIS_HOMING && axis->probe.torque_on &&
+        seen->off_cycles > cycles_of(run, 1000 * longest_s))
         scenario_fail(run, "torque", "%s (%s): under torque %d cycles after it was to be switched off", axis->name,
                       cm1e_axis_state_name(axis->info.state), seen->off_cycles);
 }
@@ -525,8 +530,13 @@ static void judge_event(run_t *run, const cm1e_log_event_t *event)
             if (run->axes[i].network == n && place++ == event->axis)
                 axis = &run->axes[i];
     witness_t *seen = &axis->seen;
+    if (event->kind == CM1E_LOG_ERROR && event->code != 0)
+        seen->told = true;
     if (event->kind != CM1E_LOG_STATE)
         return;
+    if (seen->logged == CM1E_AXIS_ERROR_STOP && !seen->told)
+        scenario_fail(run, "log", "%s: the log does not say why it was in ErrorStop", axis->name);
+    seen->told = false;
     if ((cm1e_axis_state_t)event->detail != seen->logged)
         scenario_fail(run, "log", "%s: the log tells of a way out of %s, but it was in %s", axis->name,
                       cm1e_axis_state_name((cm1e_axis_state_t)event->detail), cm1e_axis_state_name(seen->logged));
@@ -619,6 +629,11 @@ static void judge_test(run_t *run, machine_axis_t *axis)
 void judge_end(run_t *run)
 {
     judge_log(run);
-    for (int n = 0; n < run->scenario->axis_count; n++)
+    for (int n = 0; n < run->scenario->axis_count; n++) {
+        const witness_t *seen = &run->axes[n].seen;
+        if (seen->logged != seen->state)
+            scenario_fail(run, "log", "%s is in %s, the log ends with %s", run->axes[n].name,
+                          cm1e_axis_state_name(seen->state), cm1e_axis_state_name(seen->logged));
         judge_test(run, &run->axes[n]);
+    }
 }

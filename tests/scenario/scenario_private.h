@@ -60,7 +60,8 @@ typedef struct witness {
     int stranger_from;                    /**< since this cycle */
     int homing;                           /**< cycles since its drive homed */
     int error_at;                         /**< cycle in which it came into ErrorStop */
-    cm1e_axis_state_t logged;             /**< last state that the log told */
+    cm1e_axis_state_t logged;             /**< last state that the log told, */
+    bool told;                            /**< and an error since */
     int off_cycles;                       /**< without MC_Power.Enable, or in ErrorStop, and still under torque */
     bool barred;                          /**< its block may have let it go on, or it brakes by itself, in this motion */
     int alone;                            /**< cycles in a state of motion without a block */
