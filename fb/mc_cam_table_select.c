@@ -10,7 +10,8 @@ static cm1e_error_t take(MC_CamTableSelect_t *fb, cm1e_axis_t *slave)
         return error;
     return fb->CamTable ? cm1e_axis_cam_select(slave, fb->CamTable, fb->Periodic, fb->MasterAbsolute, fb->SlaveAbsolute,
                                                &fb->CamTableID)
-                        : CM1E_ERROR_AXIS_CAM_TABLE;
+                        : cm1e_axis_refuse_input(slave, CM1E_ERROR_AXIS_CAM_TABLE, "MC_CamTableSelect: CamTable", 0,
+                                                 "a variable of the type MC_CAM_REF");
 }
 
 void MC_CamTableSelect(MC_CamTableSelect_t *fb)

@@ -229,6 +229,18 @@ static void refused_disabled_text(const cm1e_axis_t *axis, char *text, size_t si
              cm1e_strerror(CM1E_ERROR_AXIS_DIRECTION_DISABLED), disabled_inputs(axis));
 }
 
+/* Blocks that begin in Standstill; at standstill it is the end of a homing in steps that lacks a step. */
+static void refused_state_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const char *block = kind_row(axis->commands.refused.kind)->name;
+    if (axis->state == CM1E_AXIS_STANDSTILL)
+        snprintf(text, size, "Axis \"%s\", Standstill: %s was refused: it ends a homing, which begins with another step.",
+                 axis->config->name, block);
+    else
+        snprintf(text, size, "Axis \"%s\", %s: %s was refused: it begins in Standstill. End the motion first, with "
+                 "MC_Halt.", axis->config->name, cm1e_axis_state_name(axis->state), block);
+}
+
 /* Which buffer modes are right depends on the command, and on what it would wait for. */
 static void refused_buffer_mode_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
@@ -255,6 +267,7 @@ static const struct {
     {CM1E_ERROR_AXIS_TABLE, cm1e_axis_table_refused_text},
     {CM1E_ERROR_AXIS_DIRECTION, refused_direction_text},
     {CM1E_ERROR_AXIS_DIRECTION_DISABLED, refused_disabled_text},
+    {CM1E_ERROR_AXIS_STATE, refused_state_text},
     {CM1E_ERROR_AXIS_BUFFER_MODE, refused_buffer_mode_text},
 };
 

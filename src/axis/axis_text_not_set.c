@@ -33,8 +33,9 @@ static void numbers_text(const cm1e_axis_t *axis, bool output, char *text, size_
                                      used ? ", " : " Right is ", first + 1, last);
     }
     if (wired > 0 && used < size)
-        used += (size_t)snprintf(text + used, size - used, "%s%d ... %d (on other slaves)", used ? ", " : " Right is ",
-                                 CM1E_WIRED_FIRST, CM1E_WIRED_FIRST + wired - 1);
+        used += (size_t)snprintf(text + used, size - used,
+                                 wired > 1 ? "%s%d ... %d (on other slaves)" : "%s%d (on another slave)",
+                                 used ? ", " : " Right is ", CM1E_WIRED_FIRST, CM1E_WIRED_FIRST + wired - 1);
     if (used < size)
         snprintf(text + used, size - used, used ? "." : " This axis has none.");
 }

@@ -1,6 +1,7 @@
 /* Sentences about couplings: why a command was refused, and why a coupling was lost. */
 #include <stdio.h>
 
+#include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
@@ -74,12 +75,29 @@ static void refused_coupling_text(const cm1e_axis_t *axis, char *text, size_t si
     cm1e_no_couplings_text(axis, what, text, size);
 }
 
+/* Of MC_GearInPos and MC_CamIn, whose positions are in several inputs; false: of another block. */
+static bool place_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    static const char *const gear = "SlaveSyncPosition, or the way to it,", *const cam = "the cam at this place, or the way to it,";
+    const cm1e_command_kind_t kind = axis->commands.refused.kind;
+    if (kind != CM1E_COMMAND_GEAR_IN_POS && kind != CM1E_COMMAND_CAM_IN)
+        return false;
+    const bool is_cam = kind == CM1E_COMMAND_CAM_IN, limited = axis->limits.software_limits;
+    const double farthest = cm1e_axis_farthest(axis);
+    snprintf(text, size, "Axis \"%s\", at %.6g u: %s: %s would leave %.6g ... %.6g u%s, or an input is no finite number that "
+             "its axis can have.", axis->config->name, cm1e_axis_units(axis, axis->setpoint.position),
+             kind_row(kind)->name, is_cam ? cam : gear, limited ? axis->limits.lower : -farthest,
+             limited ? axis->limits.upper : farthest, limited ? " (software limits)" : "");
+    return true;
+}
+
 static bool refusal_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size)
 {
     switch (error) {
+    case CM1E_ERROR_AXIS_POSITION_RANGE:
+        return place_text(axis, text, size) || cm1e_phasing_text(axis, text, size);
     case CM1E_ERROR_AXIS_VELOCITY_RANGE:
     case CM1E_ERROR_AXIS_DYNAMICS_RANGE:
-    case CM1E_ERROR_AXIS_POSITION_RANGE:
         return cm1e_phasing_text(axis, text, size);
     case CM1E_ERROR_AXIS_NO_COUPLINGS:
         refused_coupling_text(axis, text, size);

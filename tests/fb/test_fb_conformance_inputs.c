@@ -2,6 +2,7 @@
  * When inputs of a block act (PLCopen Part 1 v2.0, 2.4.1, 2.4.6): at the edge alone, or, with ContinuousUpdate, while
  * it is TRUE; nonsense in a running command changes nothing; and one instance may serve one axis after the other.
  */
+#include "axis/axis_parameters.h"
 #include "block_bench.h"
 
 enum { RECORDED = 1500 };
@@ -162,6 +163,81 @@ START_TEST(test_the_text_is_of_the_last_refusal)
 }
 END_TEST
 
+START_TEST(test_a_block_that_begins_in_standstill_says_so)
+{
+    static const struct { cm1e_axis_state_t state; const char *block, *told; } cases[] = {
+        {CM1E_AXIS_CONTINUOUS_MOTION, "MC_Home", "ContinuousMotion: MC_Home was refused: it begins in Standstill."},
+        {CM1E_AXIS_DISCRETE_MOTION, "MC_HomeDirect", "a step of a homing was refused: it begins in Standstill."},
+        {CM1E_AXIS_STANDSTILL, "MC_FinishHoming", "it ends a homing, which begins with another step."},
+    };
+    char text[512];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        snprintf(judged.scene, sizeof judged.scene, "%s", cases[i].block);
+        into(cases[i].state, &mover);
+        make(&subject, cases[i].block);
+        trigger(&subject, true);
+        cycle();
+        cm1e_axis_error_text(judged.reference, text, sizeof text);
+        MUST(subject.now.error_id == cm1e_error_id(CM1E_ERROR_AXIS_STATE) && strstr(text, cases[i].told), "%s", text);
+    }
+}
+END_TEST
+
+/** An Error of the block leaves no text of an earlier refusal. `member` gets `value`; NULL: none does. */
+static void expect_own_text(const block_t *type, const block_member_t *member, double value)
+{
+    static const char *const earlier = "parameter 31999";
+    char text[512];
+    snprintf(judged.scene, sizeof judged.scene, "%s: %s is %g", type->name, member ? member->name : "no input", value);
+    make(&subject, type->name);
+    if (member && member->section == BLOCK_IN_OUT)
+        point_at(&subject, member->name, NULL);
+    else if (member)
+        put(&subject, member->name, value);
+    MUST(cm1e_axis_write_parameter(judged.axis, 31999, 1.0) != CM1E_OK, "there is a parameter 31999");
+    cm1e_axis_error_text(judged.reference, text, sizeof text);
+    MUST(strstr(text, earlier), "%s", text);
+    trigger(&subject, true);
+    subject.view->type->call(subject.memory);
+    WORD id = 0;
+    if (flag(&subject, subject.view->error))
+        memcpy(&id, subject.memory + subject.view->error_id, sizeof id);
+    cm1e_axis_error_text(judged.reference, text, sizeof text);
+    const bool names_no_axis = id == cm1e_error_id(CM1E_ERROR_FB_AXIS_REF);
+    MUST(id == 0 || names_no_axis || (text[0] && !strstr(text, earlier)), "Error 0x%04X, %s", id, text);
+}
+
+static bool takes_nonsense(const block_member_t *member)
+{
+    const bool triggers = strcmp(member->name, "Execute") == 0 || strcmp(member->name, "Enable") == 0;
+    const bool number = member->type != BLOCK_BOOL && member->type != BLOCK_STRUCT && member->type != BLOCK_POINTER &&
+                        member->type != BLOCK_STRING;
+    return !triggers && (member->section == BLOCK_IN_OUT || (member->section == BLOCK_INPUT && number));
+}
+
+START_TEST(test_every_refusal_has_a_text_of_its_own)
+{
+    static const cm1e_axis_state_t states[] = {CM1E_AXIS_DISABLED, CM1E_AXIS_STANDSTILL, CM1E_AXIS_HOMING,
+                                               CM1E_AXIS_CONTINUOUS_MOTION, CM1E_AXIS_STOPPING};
+    static const double values[] = {-1.0, 77.0, NAN, 1e300};
+    FOR_EACH_BLOCK(type) {
+        if (member_of(type, "AxesGroup") || strcmp(type->name, "MC_Power") == 0 || !member_of(type, "ErrorID"))
+            continue;
+        into(states[_i], &mover);
+        expect_own_text(type, NULL, 0.0);
+        for (size_t i = 0; i < type->member_count; i++) {
+            const block_member_t *member = &type->members[i];
+            const int most = member->section == BLOCK_IN_OUT ? 1 : member->type == BLOCK_LREAL ? 4 : 2;
+            const int count = takes_nonsense(member) ? most : 0;
+            for (int v = 0; v < count; v++) {
+                into(states[_i], &mover);
+                expect_own_text(type, member, values[v]);
+            }
+        }
+    }
+}
+END_TEST
+
 /* ---- ContinuousUpdate -------------------------------------------------------------------------------------------- */
 
 static void change_later(int n)
@@ -309,6 +385,8 @@ int main(void)
     tcase_add_test(all, test_inputs_act_at_the_edge_alone);
     tcase_add_test(all, test_a_refused_value_is_in_the_text);
     tcase_add_test(all, test_the_text_is_of_the_last_refusal);
+    tcase_add_test(all, test_a_block_that_begins_in_standstill_says_so);
+    tcase_add_loop_test(all, test_every_refusal_has_a_text_of_its_own, 0, 5);
     tcase_add_test(all, test_continuous_update_acts_while_it_is_true);
     tcase_add_test(all, test_nonsense_under_continuous_update_changes_nothing);
     tcase_add_test(all, test_instance_serves_one_axis_after_the_other);

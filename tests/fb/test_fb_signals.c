@@ -569,6 +569,7 @@ START_TEST(test_triggers_and_windows_that_cannot_be_are_refused)
     fb = (MC_TouchProbe_t){.Axis = &reference, .TriggerInput = &other, .Execute = TRUE};
     MC_TouchProbe(&fb);
     ck_assert(fb.Error && fb.ErrorID == id(CM1E_ERROR_UNSUPPORTED));
+    told("TriggerInput.Axis is 77; the Axis of the block, or a Handle of 0, is right.");
     fb = (MC_TouchProbe_t){.Axis = &reference, .Execute = TRUE, .WindowOnly = TRUE, .FirstPosition = 1.0};
     MC_TouchProbe(&fb);
     ck_assert(fb.Error && fb.ErrorID == id(CM1E_ERROR_AXIS_POSITION_RANGE));

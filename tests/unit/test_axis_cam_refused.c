@@ -231,6 +231,7 @@ static void test_a_cam_that_leaves_the_software_limits_is_refused(void)
     (void)cam_in(&coupling);
     coupling.slave_scaling = 1.01;
     cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
+    axes_told(SLAVE, "MC_CamIn: the cam at this place, or the way to it, would leave -1 ... 1.5 u (software limits)");
     coupling.slave_scaling = -0.7;
     cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
     points[1] = (MC_CAM_POINT){5, 0, 1, 0}; /* from 0 to 0, but not in between */
