@@ -44,7 +44,7 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2, AXIS_LINE_BYTES = 1280 
     X(graph, "show how the slaves are wired", "")                                                                   \
     X(sim, "serve a simulated network on a network interface", "")                                                  \
     X(generate, "write files for other masters", "esi ec-extend sii eni")                                           \
-    X(check, "check a file for other masters, from any source", "")                                                 \
+    X(check, "check a file for other masters, or a bus file", "")                                                   \
     X(diff, "compare a file with the live devices that it describes", "")                                           \
     X(new, "make a project that builds and runs", "")                                                               \
     X(st, "check and build programs in Structured Text", "check build")                                              \

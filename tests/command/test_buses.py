@@ -73,6 +73,21 @@ with tempfile.TemporaryDirectory() as folder:
         expect(abs(sum(one["lost_frames"] for one in networks) - told["bus"]["lost_frames"]) <= 100, shown)
         program.terminate()
 
+# a bus file is checked without its network
+good = run("check", FILE)
+expect(good.returncode == 0 and "bus file, 3 axes, 0 other slaves, no error" in good.stdout, good)
+machine = run("check", os.path.join(sys.argv[2], "examples", "machine.yaml"))
+expect(machine.returncode == 0 and "bus file, 1 axis, 5 other slaves, no error" in machine.stdout, machine)
+with tempfile.TemporaryDirectory() as folder:
+    for name in ("wrong.yaml", "wrong.yml"):
+        wrong = os.path.join(folder, name)
+        with open(wrong, "w", encoding="ascii") as file:
+            file.write("axes:\n  - {name: X, position: 1, velocty: 3}\n")
+        told = run("check", wrong)
+        expect(told.returncode == FAILED and f"{wrong}:2:28: " in told.stderr and "velocty" in told.stderr, told)
+        listed = run("check", "--json", wrong)
+        expect(listed.returncode == FAILED and "velocty" in json.loads(listed.stdout)["findings"][0]["text"], listed)
+
 for fault in faults:
     print(fault)
 sys.exit(1 if faults else 0)
