@@ -54,6 +54,8 @@ static void append(char *text, size_t size, const char *part)
     snprintf(text + length, size - length, "%s", part);
 }
 
+enum { KEYS_BYTES = 380 }; /* all keys of an axis */
+
 static void list_keys(char *text, size_t size, const cyaml_schema_field_t *fields)
 {
     text[0] = '\0';
@@ -211,7 +213,7 @@ static int find_field(const cyaml_schema_field_t *fields, const yaml_node_t *nam
 static bool unknown_key(const compare_t *compare, const yaml_node_t *name, const char *key,
                         const cyaml_schema_field_t *fields)
 {
-    char shown[SHOWN], keys[200], meant[CM1E_NEAR_TEXT_BYTES] = "";
+    char shown[SHOWN], keys[KEYS_BYTES], meant[CM1E_NEAR_TEXT_BYTES] = "";
     list_keys(keys, sizeof keys, fields);
     if (name->type == YAML_SCALAR_NODE) {
         cm1e_near_t near = {.word = (const char *)name->data.scalar.value};
@@ -219,15 +221,16 @@ static bool unknown_key(const compare_t *compare, const yaml_node_t *name, const
             cm1e_near_look(&near, fields[i].key);
         cm1e_near_text(&near, meant, sizeof meant);
     }
-    return wrong(compare, name, "unknown key %s in %s; expected one of: %s%s", found(name, shown), key, keys,
-                 meant);
+    /* What was meant comes first: behind a long path the list of keys may be cut off. */
+    return wrong(compare, name, "unknown key %s in %s%s %sxpected one of: %s", found(name, shown), key,
+                 meant[0] ? meant : ";", meant[0] ? "E" : "e", keys);
 }
 
 static bool compare_mapping(const compare_t *compare, const yaml_node_t *node, const cyaml_schema_value_t *schema,
                             const char *key)
 {
     const cyaml_schema_field_t *fields = schema->mapping.fields;
-    char shown[SHOWN], keys[200];
+    char shown[SHOWN], keys[KEYS_BYTES];
     list_keys(keys, sizeof keys, fields);
     if (node->type != YAML_MAPPING_NODE)
         return wrong(compare, node, "%s is %s; expected a group with the keys: %s", key, found(node, shown), keys);

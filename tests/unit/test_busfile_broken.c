@@ -52,7 +52,9 @@ static const struct {
 } broken[] = {
     /* wrong keys */
     {"axes:\n  - name: X\n    speed: 3\n", "3:5", {"unknown key 'speed' in axes[0]", "one of: name, type, position"}},
-    {"axis:\n  - {}\n", "1:1", {"unknown key 'axis' in the file", "expected one of: bus, axes"}},
+    {"axes:\n  - name: X\n    speed: 3\n", "3:5", {"software_limits", "homing", "sim"}}, /* the whole list */
+    {"axes:\n  - name: X\n    limit: 3\n", "3:5", {"in axes[0]; did you mean \"limits\"? Expected one of: name, type"}},
+    {"axis:\n  - {}\n", "1:1", {"unknown key 'axis' in the file", "did you mean \"axes\"? Expected one of: bus, axes"}},
     {"bus:\n  intreface: sim\naxes: [{}]\n", "2:3", {"'intreface' in bus", "interface, second_interface"}},
     {"axes:\n  - name: X\n    limits:\n      velocity: 1\n      Jerk: 3\n", "5:7", {"'Jerk' in limits", "jerk"}},
     {"axes: [{}, {homing: {methode: -2}}]\n", "1:22", {"'methode' in homing", "method, offset"}},

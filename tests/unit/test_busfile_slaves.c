@@ -166,7 +166,7 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
     static const struct {
         const char *keys, *place, *part;
     } cases[] = {
-        {"option: true", "3:19", "unknown key 'option' in slaves[0]; expected one of: name, position"},
+        {"option: true", "3:19", "unknown key 'option' in slaves[0]; did you mean \"optional\"? Expected one of: name, position"},
         {"optional: true", "3:29", "neither alias nor explicit_id"},
         {"recover: soon", "3:28", "expected one of: never, ask, auto"},
         {"hot_connect: tool, vendor: 0x1, product: 0x2", "3:32", "whose first entry has a position"},
