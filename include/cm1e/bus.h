@@ -1,8 +1,8 @@
 /**
  * @file bus.h
  * One EtherCAT network: open it, scan it, bring it to Operational, exchange its process image, stop it.
- * One thread owns the bus and calls all functions of this header; in operation that is the scheduler's cycle. Other
- * threads reach slaves only through cm1e_sdo_submit().
+ * One thread owns the bus and calls the functions of this header; in operation that is the thread of the scheduler.
+ * Other threads call only those that are marked `@rt any`, and reach slaves through cm1e_sdo_submit().
  */
 #ifndef CM1E_BUS_H
 #define CM1E_BUS_H
@@ -53,7 +53,11 @@ typedef struct cm1e_slave_info {
 
 /** Counters of the cycle; they only grow. */
 typedef struct cm1e_bus_counters_t {
-    uint64_t cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries;
+    uint64_t cycles;
+    uint64_t lost_frames;   /**< frames with process data that did not come back in time */
+    uint64_t working_counter_errors; /**< cycles in which a slave did not take part */
+    uint64_t late_frames;   /**< frames that came back after their time was over; they are not used */
+    uint64_t mailbox_retries; /**< datagrams of mailbox work that were lost and are sent again */
     uint64_t unsent_frames; /**< frames that the network interface did not take: it is down, or its queue is full */
     uint64_t foreign_frames; /**< frames of another master, which sends on the same network without asking for it */
 } cm1e_bus_counters_t;
@@ -103,12 +107,13 @@ CM1E_API cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus);
 /** Receives the frame(s) sent in the last cycle. CM1E_OK: all inputs are fresh. CM1E_ERROR_BUS_LOST: all inputs are
  *  stale. CM1E_ERROR_BUS_WORKING_COUNTER: the inputs of the slaves that did not take part are stale. @rt cycle */
 CM1E_API cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus);
-/** Sends the outputs, and at most one datagram of mailbox work or supervision for each slave that needs it.
- *  @rt cycle */
+/** Sends the outputs and the datagrams of supervision, and at most four datagrams of mailbox work, each for another
+ *  slave. @rt cycle */
 CM1E_API void cm1e_bus_send(cm1e_bus_t *bus);
 /** CM1E_OK, or the last error of the cycle after `lost_cycles_limit` bad cycles in a row: the inputs of the bus are not
  *  valid then. It returns to CM1E_OK by itself with the next good cycle. @rt cycle */
 CM1E_API cm1e_error_t cm1e_bus_health(const cm1e_bus_t *bus);
+
 /** What one port of a slave controller has counted since its power-on; each counter stops at 255 (ETG.1000.4). Port 0
  *  is IN, port 1 OUT; ports 2 and 3 are branches. */
 typedef struct cm1e_slave_port {

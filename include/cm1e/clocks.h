@@ -18,8 +18,8 @@ typedef struct cm1e_bus_clocks_t {
     bool used;                  /**< false: the other members are zero */
     uint16_t reference;         /**< position of the slave whose clock all others follow; 0: none is left */
     int64_t reference_ns;       /**< its system time when the last frame passed it */
-    double rate_ppm;            /**< what the reference clock is slower than the clock of this machine */
-    int64_t phase_error_ns;     /**< of the last frame: what it was late at the reference clock */
+    double rate_ppm;            /**< by how much the reference clock is slower than the clock of this machine */
+    int64_t phase_error_ns;     /**< how late the last frame was at the reference clock */
     double phase_mean_ns;       /**< the same, averaged over some 32 cycles */
     int64_t phase_maximum_ns;   /**< largest absolute value of the mean since Operational */
     uint64_t sync_losses;       /**< times that the clock of a slave, or the reference, was lost; only grows */
@@ -44,7 +44,7 @@ enum { CM1E_CLOCK_TOLERANCE_NS = 1000 };
 
 /** Does the work of cm1e_bus_clocks(), for a program with this size of the struct. @rt cycle */
 CM1E_API void cm1e_bus_clocks_sized(const cm1e_bus_t *bus, cm1e_bus_clocks_t *clocks, size_t size);
-/** @rt cycle */
+/** The clocks of a bus, as its last cycles have shown them. @rt cycle */
 static inline void cm1e_bus_clocks(const cm1e_bus_t *bus, cm1e_bus_clocks_t *clocks)
 {
     cm1e_bus_clocks_sized(bus, clocks, sizeof *clocks);
@@ -52,7 +52,8 @@ static inline void cm1e_bus_clocks(const cm1e_bus_t *bus, cm1e_bus_clocks_t *clo
 /** Does the work of cm1e_bus_slave_clock(), for a program with this size of the struct. @rt cycle */
 CM1E_API void cm1e_bus_slave_clock_sized(const cm1e_bus_t *bus, uint16_t position, cm1e_slave_clock_t *clock,
                                          size_t size);
-/** The clock of the slave at `position`, 1 = first; no such slave, or clocks are not used: zeros. @rt cycle */
+/** The clock of the slave at `position` (1 = first); zeros if there is no such slave, or clocks are not used.
+ *  @rt cycle */
 static inline void cm1e_bus_slave_clock(const cm1e_bus_t *bus, uint16_t position, cm1e_slave_clock_t *clock)
 {
     cm1e_bus_slave_clock_sized(bus, position, clock, sizeof *clock);

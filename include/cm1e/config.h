@@ -82,13 +82,13 @@ typedef struct cm1e_homing_config {
     double timeout_s;    /**< s; 0 selects 60 */
 } cm1e_homing_config_t;
 
-/** The inputs to which switches are wired: IN1 ... IN4 of the motor, or signals of other slaves from
- *  CM1E_WIRED_FIRST on (cm1e_wiring_config_t); 0: none. MC_ReadAxisInfo shows the switches, and the homing steps of the
+/** The inputs to which switches are wired: 1 ... 4 are IN1 ... IN4 of the motor, CM1E_WIRED_FIRST and above are signals
+ *  of other slaves (cm1e_wiring_config_t); 0: none. MC_ReadAxisInfo shows the switches, and the homing steps of the
  *  host use them. They stop nothing by themselves. */
 typedef struct cm1e_input_config {
-    uint8_t limit_positive;         /**< 1 ... 4; reached in the positive direction of the axis */
-    uint8_t limit_negative;         /**< 1 ... 4; reached in the negative direction; not limit_positive */
-    uint8_t home;                   /**< 1 ... 4; may be the input of a limit switch */
+    uint8_t limit_positive;         /**< reached in the positive direction of the axis */
+    uint8_t limit_negative;         /**< reached in the negative direction; not the input of limit_positive */
+    uint8_t home;                   /**< may be the input of a limit switch */
     bool limits_normally_closed;    /**< true: a limit switch is active while its input is off, so a broken wire is
                                          active */
     bool home_normally_closed;      /**< true: the home switch is active while its input is off */
@@ -190,7 +190,9 @@ typedef enum cm1e_recover {
 typedef enum cm1e_control_mode {
     CM1E_CONTROL_OBSERVE = 0,        /**< look: axes, slaves, statistics, log, reading objects */
     CM1E_CONTROL_NONE,               /**< nothing: there is no socket */
-    CM1E_CONTROL_MAINTAIN,           /**< also write to slaves whose axes are not commanded by the program */
+    CM1E_CONTROL_MAINTAIN,           /**< also write: objects and files of slaves whose axes the program does not
+                                          command, outputs that it has not found, its variables; and enable, move and
+                                          reset axes that it does not command */
 } cm1e_control_mode_t;
 
 /** One axis: its address, its motor, its units and limits. */

@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/** So many of each slave are kept. */
+/** Number of emergencies that are kept for each slave, and buffer size that is large enough for every text. */
 enum { CM1E_EMERGENCIES = 16, CM1E_EMERGENCY_TEXT_BYTES = 400 };
 
 /** An emergency as a slave has sent it. */

@@ -1,16 +1,16 @@
 /**
  * @file foe.h
- * Files in a slave (FoE, ETG.1000.6 section 5.8): parameters, logs, firmware. The slave knows a file by its name; what
- * is in it is a matter of its maker. The thread that owns the bus calls these functions after a scan. They wait; every
- * answer and the whole transfer are bounded. A slave that is busy is asked again. A transfer that is given up is told
- * to the slave, so that the next one begins anew.
+ * Files in a slave (FoE, ETG.1000.6 section 5.8): parameters, logs, firmware. The slave knows a file by its name; the
+ * maker of the slave defines what is in it. The thread that owns the bus calls these functions after a scan. They wait;
+ * the time of every answer and of the whole transfer is bounded. A slave that is busy is asked again. If a transfer is
+ * given up, the slave is told, so that the next one begins anew.
  *
  * While the bus operates, the packets go beside the process data, one datagram of the mailbox in a cycle, in turn with
  * the SDO transfers of that slave. Until a scheduler runs, these functions make the cycles. While one runs, any other
  * thread may call them, but no task: they wait until the cycles of the scheduler have transferred the file, and
  * `progress` is called by the thread that waits. One file is on its way at a time for a bus. The end of the run ends
- * it (CM1E_ERROR_CANCELLED); the bus must not be closed before the call has returned. Bootstrap takes a slave out of
- * the process data of all, so it is refused then.
+ * it (CM1E_ERROR_CANCELLED); the bus must not be closed before the call has returned. A transfer in Bootstrap is
+ * refused while the bus operates, because a slave in Bootstrap takes no part in the process data.
  */
 #ifndef CM1E_FOE_H
 #define CM1E_FOE_H
@@ -57,7 +57,7 @@ static inline cm1e_error_t cm1e_foe_read(cm1e_bus_t *bus, uint16_t position, con
 CM1E_API cm1e_error_t cm1e_foe_write_sized(cm1e_bus_t *bus, uint16_t position, const char *name, const void *data,
                                            size_t size, const cm1e_foe_options_t *options, size_t options_size,
                                            cm1e_diag_t *diag);
-/** Writes a file; errors as for cm1e_foe_read(). What the slave has of a file that breaks off is its own matter.
+/** Writes a file; errors as for cm1e_foe_read(). If the transfer breaks off, it depends on the slave what it keeps.
  *  @rt block */
 static inline cm1e_error_t cm1e_foe_write(cm1e_bus_t *bus, uint16_t position, const char *name, const void *data,
                                           size_t size, const cm1e_foe_options_t *options, cm1e_diag_t *diag)

@@ -26,7 +26,7 @@ typedef struct AXES_GROUP_REF {
 
 enum {
     CM1E_GROUP_AXES = 8,     /**< IdentInGroup 1 ... 8 */
-    CM1E_GROUP_COMMANDS = 30 /**< the active and all waiting commands; one more is CM1E_ERROR_FULL */
+    CM1E_GROUP_COMMANDS = 30 /**< maximum number of active and waiting commands; one more gets CM1E_ERROR_FULL */
 };
 
 /** The states of PLCopen Part 4. */
@@ -47,7 +47,8 @@ typedef struct cm1e_group_config {
     char name[64]; /**< name in texts; "" selects "group" */
 } cm1e_group_config_t;
 
-/** The values of a group, all of the same cycle. Lengths along the path are those of its first up to three axes. */
+/** The values of a group, all of the same cycle. Lengths along the path are measured with its first three axes, or with
+ *  all if it has fewer. */
 typedef struct cm1e_group_info {
     cm1e_group_state_t state;
     cm1e_error_t error;              /**< cause of GroupErrorStop; CM1E_OK in any other state */

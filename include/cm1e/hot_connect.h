@@ -16,8 +16,8 @@ extern "C" {
 typedef enum cm1e_presence {
     CM1E_PRESENCE_THERE = 0,  /**< it takes part */
     CM1E_PRESENCE_ABSENT,     /**< it does not answer, or nothing with its address was found */
-    CM1E_PRESENCE_WAITS,      /**< it answers, and waits until somebody asks for it: MC_Reset of an axis of it, or
-                                   cm1e_bus_recover() */
+    CM1E_PRESENCE_WAITS,      /**< it answers, and waits until somebody asks for it: by MC_Reset of one of its axes, or
+                                   by cm1e_bus_recover() */
     CM1E_PRESENCE_COMING,     /**< it is identified, configured and brought to Operational */
     CM1E_PRESENCE_REFUSED,    /**< a device with its address is there, which is not the expected one, or which cannot
                                    be configured */
@@ -39,17 +39,17 @@ typedef struct cm1e_stranger {
 /** Buffer size that is large enough for every text of cm1e_bus_presence_text(). */
 enum { CM1E_PRESENCE_TEXT = 512 };
 
-/** How it stands with a slave. @rt any */
+/** Whether a slave takes part in the cycle, and if not, why. @rt any */
 CM1E_API cm1e_presence_t cm1e_bus_presence(const cm1e_bus_t *bus, uint32_t position);
 /** "there", "absent", "waits" ... Never NULL. @rt any */
 CM1E_API const char *cm1e_presence_name(cm1e_presence_t presence);
-/** How it stands with a slave, as a sentence that says what to do; "" if it takes part. @rt block */
+/** Writes why a slave does not take part, as a sentence that says what to do; "" if it takes part. @rt block */
 CM1E_API void cm1e_bus_presence_text(const cm1e_bus_t *bus, uint32_t position, char *text, size_t size);
 /** Allows the bus to bring back a slave that waits. Motors stay disabled. CM1E_ERROR_INVALID_ARGUMENT: there is no such
- *  slave; CM1E_ERROR_STATE: it does not wait, `diag` says how it stands. @rt any */
+ *  slave; CM1E_ERROR_STATE: it does not wait, `diag` says what it does. @rt any */
 CM1E_API cm1e_error_t cm1e_bus_recover(cm1e_bus_t *bus, uint32_t position, cm1e_diag_t *diag);
-/** Copies the strangers that are on the wire now, at most `room`; returns their number. They are looked for where the
- *  bus has optional slaves. @rt any */
+/** Copies the strangers that are on the wire now, at most `room`; returns their number. A bus looks for them only if it
+ *  has optional slaves. @rt any */
 CM1E_API size_t cm1e_bus_strangers(const cm1e_bus_t *bus, cm1e_stranger_t *strangers, size_t room);
 /** "A device at place 4 of the wire was refused: ...". @rt block */
 CM1E_API void cm1e_stranger_text(const cm1e_stranger_t *stranger, char *text, size_t size);

@@ -12,7 +12,7 @@
  * slave that the bus file lists take their safe values before the program writes them, while the slave or the bus is
  * lost, and after the last program (docs/BUS-FILE.md). Those of another slave keep their values, and are zeros from its
  * return until it is in Operational again. The outputs of a slave with a motor belong to its axis and are not written
- * here. What a slave does when the bus has left Operational, and when frames stay away (watchdog), is its own.
+ * here. The slave itself decides what it does when the bus has left Operational, and when no frames come (watchdog).
  */
 #ifndef CM1E_IO_H
 #define CM1E_IO_H
@@ -31,7 +31,7 @@ extern "C" {
 
 /** "BOOL", "USINT" ...; never NULL. @rt any */
 CM1E_API const char *cm1e_io_type_name(cm1e_io_type_t type);
-/** The unsigned type of so many bits. @rt any */
+/** The unsigned type of a signal with this number of bits. @rt any */
 CM1E_API cm1e_io_type_t cm1e_io_type_of_bits(uint32_t bits);
 
 /** A signal, as it is listed. */
@@ -62,10 +62,10 @@ typedef struct cm1e_io {
 /** How far a value can be trusted. */
 typedef enum cm1e_io_quality {
     CM1E_IO_GOOD = 0, /**< the slave took part in this cycle, and is in Operational */
-    CM1E_IO_STALE,    /**< nothing came from the slave in this cycle: the value is the last one that did */
+    CM1E_IO_STALE,    /**< nothing came from the slave in this cycle: the value is the last one that came */
     CM1E_IO_OFFLINE,  /**< the slave has left Operational, does not answer, or the bus is not in operation */
-    CM1E_IO_INVALID,  /**< the handle is of an earlier start of the bus, or of process data that were planned and are
-                           others, or names nothing */
+    CM1E_IO_INVALID,  /**< the handle names nothing, is of an earlier start of the bus, or was found in planned process
+                           data and the slave has come with other ones */
 } cm1e_io_quality_t;
 
 /** "good", "stale", "offline", "invalid"; never NULL. @rt any */
@@ -73,7 +73,8 @@ CM1E_API const char *cm1e_io_quality_name(cm1e_io_quality_t quality);
 
 /** Number of signals of all slaves, from cm1e_bus_configure() on; 0 before. @rt init */
 CM1E_API uint32_t cm1e_io_count(const cm1e_bus_t *bus);
-/** Signal number `n` (0 = first), by slaves, inputs before outputs. False: there are not so many. @rt init */
+/** Signal number `n` (0 = first), in the order of the slaves, inputs before outputs. False: there is no such signal.
+ *  @rt init */
 CM1E_API bool cm1e_io_at(const cm1e_bus_t *bus, uint32_t n, cm1e_io_info_t *info);
 
 /** Writes how the axes of the configuration use a signal of another slave, as "feed: input 11, home switch"; "" if none
@@ -90,8 +91,8 @@ CM1E_API cm1e_error_t cm1e_io_find(cm1e_bus_t *bus, const char *name, cm1e_io_t 
 /** Finds a signal by its object. @rt init */
 CM1E_API cm1e_error_t cm1e_io_find_object(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex,
                                           bool output, cm1e_io_t *io, cm1e_diag_t *diag);
-/** Finds bits by their place in the process data of a slave, whatever they mean there. `bits`: as the type has; fewer
- *  for integers. Returns CM1E_ERROR_NOT_FOUND if the slave has not so many. @rt init */
+/** Finds bits by their place in the process data of a slave, whatever they mean there. `bits` is the number that the
+ *  type has; an integer may have fewer. Returns CM1E_ERROR_NOT_FOUND if the slave does not have that many. @rt init */
 CM1E_API cm1e_error_t cm1e_io_find_bits(cm1e_bus_t *bus, uint16_t position, bool output, uint32_t bit_offset,
                                         uint16_t bits, cm1e_io_type_t type, cm1e_io_t *io, cm1e_diag_t *diag);
 

@@ -25,44 +25,43 @@ typedef enum cm1e_log_kind {
                                    was found and what is allowed, 0: the error has none */
     CM1E_LOG_COMMAND,         /**< of an axis: a command became the active one; value: its position, bound: its
                                    velocity, 0: it has none */
-    CM1E_LOG_OVERRUN,         /**< code: so many cycles since the last such record, detail: the total of the run
+    CM1E_LOG_OVERRUN,         /**< code: number of cycles since the last such record, detail: the total of the run
                                    (32 bits) */
     CM1E_LOG_LOST_FRAMES,     /**< of a bus, as OVERRUN; value: the number of the bus (0 = first) */
     CM1E_LOG_WORKING_COUNTER, /**< as LOST_FRAMES: cycles with a wrong working counter */
     CM1E_LOG_UNSENT_FRAMES,   /**< as LOST_FRAMES: frames that the network interface did not take */
     CM1E_LOG_OTHER_MASTER,    /**< as LOST_FRAMES: frames of another master */
     CM1E_LOG_SYNC_LOST,       /**< as LOST_FRAMES: clocks that left the reference clock, or that reference was lost */
-    CM1E_LOG_EMERGENCY,       /**< of a slave, whether it has an axis or not; code: the error code, detail: its
-                                   position, 65536 times the error register, and 16777216 times the number of its bus
-                                   (0 = first); value: its five bytes as a number, the
-                                   first is the lowest; bound: so many of this slave since its last record were left
-                                   out */
-    CM1E_LOG_PORT,            /**< faults that a port of a slave has counted; code: so many since the last such record,
-                                   detail: the position of the slave, 65536 times the port, 1048576 times the number of
-                                   its bus, and 16777216 times the kind of fault: 0 damaged frames, 1 receive errors, 2
-                                   frames damaged before, 3 lost links */
+    CM1E_LOG_EMERGENCY,       /**< of a slave, with or without an axis; code: the error code, detail: the position of
+                                   the slave + 65536 times the error register + 16777216 times the number of its bus
+                                   (0 = first); value: the five bytes as a number, the first one is the lowest; bound:
+                                   number of emergencies of this slave that were left out since its last record */
+    CM1E_LOG_PORT,            /**< faults that a port of a slave has counted; code: their number since the last such
+                                   record, detail: the position of the slave + 65536 times the port + 1048576 times the
+                                   number of its bus + 16777216 times the kind of fault: 0 damaged frames, 1 receive
+                                   errors, 2 frames damaged before, 3 lost links */
     CM1E_LOG_RING,            /**< of a redundant ring; code 1: it is broken, 0: it is whole again; detail: the number
                                    of the bus times 16777216; value: the last slave that the first interface reaches,
                                    bound: the first one of the second interface; both 0: not known */
     CM1E_LOG_SLAVE,           /**< a slave came, went, waits or was refused; code: the new cm1e_presence_t, detail: its
-                                   position, and 16777216 times the number of its bus; bound: so many changes since
-                                   its last record were left out */
+                                   position + 16777216 times the number of its bus; bound: number of its changes that
+                                   were left out since its last record */
     CM1E_LOG_STRANGER,        /**< a device that is none of the configured slaves was refused; code: its product code,
-                                   detail: its place on the wire and 16777216 times the number of the bus, value: its
-                                   vendor, bound: 65536 times its explicit device ID, and its alias */
+                                   detail: its place on the wire + 16777216 times the number of the bus, value: its
+                                   vendor, bound: 65536 times its explicit device ID + its alias */
     CM1E_LOG_VARIABLE,        /**< a variable of the program was released (code 0), forced (1) or written (2) from
-                                   outside; detail: its number among all of the program (0 = first, as `from` of
-                                   `variables` counts: docs/CONTROL.md), value: that value; of 64 bits that of the upper
-                                   53, and bound: what the lower 11 add to it */
+                                   outside; detail: its number among all variables of the program (0 = first, as in
+                                   `from` of `variables`: docs/CONTROL.md), value: the value. An integer of 64 bits is
+                                   value + bound: value has its upper 53 bits, bound the lower 11 */
     CM1E_LOG_TASK,            /**< a task did not return in time and was ended; code: its place among the tasks in the
                                    order in which they run (0 = first), value: the time that it had, in ms */
     CM1E_LOG_KIND_COUNT,
 } cm1e_log_kind_t;
 
-/** A record. Of counters there is at most one in 100 ms, so that a lost bus does not push out everything else; what is
- *  left then is told at the end of the run. So it is with a slave that sends many emergencies, or that comes and goes:
- *  eight of each are told one by one, then the newest one in each second, with the number of those that were left
- *  out. */
+/** A record. A counter gets at most one record in 100 ms, so that a lost bus does not push out everything else; what is
+ *  not recorded yet is recorded at the end of the run. A slave that sends many emergencies, or that comes and goes
+ *  often, is limited too: eight of each get a record, then only the newest one in each second, with the number of those
+ *  that were left out. */
 typedef struct cm1e_log_event {
     uint64_t number;          /**< counts from 1 without gaps */
     int64_t time_ns;          /**< since 1970 (UTC); on virtual time since its beginning */
@@ -74,7 +73,7 @@ typedef struct cm1e_log_event {
     uint32_t detail;
 } cm1e_log_event_t;
 
-/** The ring holds the last so many records. */
+/** Number of records that the ring holds: the last ones. */
 enum { CM1E_LOG_EVENTS = 1024 };
 
 /** Copies the records after the one with number `after` (0: all that there are), oldest first, at most `room`. Returns

@@ -63,7 +63,7 @@ typedef struct cm1e_distribution {
     uint64_t histogram[CM1E_HISTOGRAM_BUCKETS];
 } cm1e_distribution_t;
 
-/** What the cycles of a run have taken. */
+/** Statistics of a run: times of its cycles, counters, and whether it has real time and a control socket. */
 typedef struct cm1e_scheduler_statistics_t {
     cm1e_distribution_t cycle_time, wake_up_latency, execution_time;
     uint64_t cycles, overruns;   /**< overruns: cycles whose work ended after the start of the next one */
@@ -145,11 +145,11 @@ CM1E_API AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *schedule
 CM1E_API cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Ends the run in order. Any thread, program or signal handler may call it. @rt any */
 CM1E_API void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
-/** Lets signals stop this scheduler in order, until it is destroyed: SIGINT, SIGTERM, SIGHUP (terminal closed),
- *  SIGQUIT, SIGTSTP (Ctrl-Z), SIGPIPE, SIGXCPU, SIGXFSZ. A second and every further signal changes nothing: the ramp is
- *  not shortened, it is bounded by `stop_timeout_ns`, and only SIGKILL ends it. A signal that the program ignores stays
- *  ignored (SIGHUP under nohup), except SIGINT and SIGTERM. Handlers of the program are replaced, and act again
- *  afterwards. Only one scheduler per process may use it. @rt init */
+/** Lets these signals stop this scheduler in order, until it is destroyed: SIGINT, SIGTERM, SIGHUP (terminal closed),
+ *  SIGQUIT, SIGTSTP (Ctrl-Z), SIGPIPE, SIGXCPU, SIGXFSZ. A second signal changes nothing, nor does any further one: the
+ *  ramp-down is not shortened. It is bounded by `stop_timeout_ns`, and only SIGKILL ends it before. A signal that the
+ *  program ignores stays ignored (SIGHUP under nohup), except SIGINT and SIGTERM. Handlers of the program are replaced,
+ *  and act again afterwards. Only one scheduler per process may use it. @rt init */
 CM1E_API void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler);
 /** Planned time of this cycle since the first one, in ns; it is constant during a scan. @rt cycle */
 CM1E_API int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
@@ -159,8 +159,8 @@ CM1E_API void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text)
 /** Does the work of cm1e_scheduler_statistics(), for a program with this size of the statistics. @rt any */
 CM1E_API void cm1e_scheduler_statistics_sized(const cm1e_scheduler_t *scheduler,
                                               cm1e_scheduler_statistics_t *statistics, size_t size);
-/** Copies the statistics, before, during or after the run, from any thread. Each number is consistent, and so are the
- *  numbers of a distribution among each other; others may be of neighbouring cycles during the run. @rt any */
+/** Copies the statistics, before, during or after the run, from any thread. The numbers of one distribution are all of
+ *  the same cycle; during the run other numbers may be of a cycle before or after it. @rt any */
 static inline void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler,
                                              cm1e_scheduler_statistics_t *statistics)
 {

@@ -121,8 +121,8 @@ CM1E_API void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t positio
 /** One console line ("help" lists them): acts on the segment and writes an answer without trailing newline. Returns
  *  CM1E_OK, or an error whose reason is the answer. @rt cycle */
 CM1E_API cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size);
-/** What happened unasked since it was asked last: a slave fell back to a lower state by itself, and why, without
- *  trailing newline. false: nothing, `text` is not changed. @rt cycle */
+/** Writes what happened by itself since the last call: a slave fell back to a lower state, and why. No trailing
+ *  newline. false: nothing happened, `text` is not changed. @rt cycle */
 CM1E_API bool cm1e_sim_segment_news(cm1e_sim_segment_t *segment, char *text, size_t size);
 
 /* ---- on a network interface (`cm1e sim -i`) ---------------------------------------------------------------------- */
@@ -130,8 +130,8 @@ CM1E_API bool cm1e_sim_segment_news(cm1e_sim_segment_t *segment, char *text, siz
 /** A segment that answers on a network interface. */
 typedef struct cm1e_sim_server cm1e_sim_server_t;
 
-/** File descriptors of a server's console: where it reads lines, and writes answers and what happens unasked; -1:
- *  nowhere. */
+/** File descriptors of a server's console: from which it reads lines, and to which it writes answers and notices of
+ *  what happens by itself; -1: none. */
 typedef struct cm1e_sim_streams {
     int lines, answers, notices;
 } cm1e_sim_streams_t;
@@ -145,7 +145,7 @@ CM1E_API cm1e_error_t cm1e_sim_server_open(cm1e_sim_server_t **server, cm1e_sim_
  *  @rt init */
 CM1E_API cm1e_error_t cm1e_sim_server_open_ring(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment,
                                                 const char *first, const char *second, cm1e_diag_t *diag);
-/** Serves until `*stop` is not 0. An interface that goes down, or away, is said in a notice and waited for.
+/** Serves until `*stop` is not 0. If an interface goes down or vanishes, a notice says so, and the server waits for it.
  *
  *  A frame that came from another simulated segment, where the two face each other, would go round for ever. Slave
  *  controllers break that with the circulating bit, where a port has no link. Here a frame that slaves have processed
@@ -168,8 +168,8 @@ CM1E_API int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_por
                                       int64_t now_ns);
 /** Lets simulated time pass without a frame (watchdogs, mechanics). @rt cycle */
 CM1E_API void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns);
-/** When cm1e_sim_segment_advance() has to be called next, though no frame comes: INT64_MIN: a motor moves, INT64_MAX:
- *  all is at rest. @rt cycle */
+/** The time at which cm1e_sim_segment_advance() has to be called next, even if no frame comes. INT64_MIN: at once, a
+ *  motor moves. INT64_MAX: never, all is at rest. @rt cycle */
 CM1E_API int64_t cm1e_sim_segment_due(const cm1e_sim_segment_t *segment);
 
 /** What the console has set to happen to the next frames. */
@@ -185,8 +185,8 @@ CM1E_API void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e
 
 /* ---- what tests measure behind a drive (NULL-safe; position 1 = first; no motor there: zeros) ------------------- */
 
-/** Rules of the bridge's guide that a master broke. What a real bridge makes of it nobody knows, so a good master
- *  breaks none: tests look at it. */
+/** Rules of the bridge's guide that a master broke. The guide does not say what a bridge does then, so a good master
+ *  breaks none; tests check that. */
 enum cm1e_sim_broken_rule {
     CM1E_SIM_MODE_TOO_SOON = 0x001,   /**< 0x6060 within 5 ms of the last time (BR 6.2.2, note 2) */
     CM1E_SIM_MODE_IN_MOTION = 0x002,  /**< 0x6060 while the motor moved (note 1) */

@@ -65,8 +65,8 @@ CM1E_API cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler,
 /** Records an object in the process data of an axis, as "<axis> 0x6077:00 <name of the object>", in the unit and type
  *  of the device's dictionary. An object that the dictionary does not know is an unsigned integer. Of an optional drive
  *  that is absent the planned process data count until it comes, and then its own; an object that these do not have is
- *  not a number from then on. Errors as above, and CM1E_ERROR_PDO_MAPPING: the object is in neither direction of the
- *  process data. @rt init */
+ *  not a number from then on. Errors as for cm1e_scheduler_trace_variable(), and CM1E_ERROR_PDO_MAPPING: the object is
+ *  in neither direction of the process data. @rt init */
 CM1E_API cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t axis, uint16_t index,
                                                   uint8_t subindex, cm1e_diag_t *diag);
 
@@ -90,8 +90,9 @@ typedef struct cm1e_trace_trigger {
 
 /** Sets the trigger. The trace records from the start of the run; when the trigger comes, it records
  *  trace_capacity - samples_before samples more, the one of the trigger included, and then no more. The trigger is a
- *  mark of the trace. Only the first one counts. It looks at samples: with a trace_every of n what comes and goes
- *  between two of them does not trigger. Without one the trace has the last cycles of the run. Errors:
+ *  mark of the trace. Only its first occurrence counts. It looks at samples: with a trace_every of n, a change that
+ *  comes and goes between two samples does not trigger. If the trigger does not come, the trace has the last cycles of
+ *  the run. Errors:
  *  CM1E_ERROR_STATE: the scheduler has run, or its trace_capacity is 0.
  *  CM1E_ERROR_INVALID_ARGUMENT: no such kind or signal (register it before), `level` is not a number, or samples_before
  *  is not less than trace_capacity. @rt init */
