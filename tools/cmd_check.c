@@ -50,10 +50,7 @@ static int check_bus_file(const char *path, bool json)
         printf("%s: bus file, %u ax%s, %u other slave%s, no error\n", path, axes, axes == 1 ? "is" : "es", slaves,
                slaves == 1 ? "" : "s");
     }
-    const int status = error == CM1E_OK ? EXIT_OK : error == CM1E_ERROR_IO ? EXIT_WRONG_USE : EXIT_FAILED;
-    if (status != EXIT_OK && !json)
-        complain("%s", diag.text);
-    return status;
+    return error == CM1E_OK ? EXIT_OK : json ? EXIT_FAILED : fail(&diag);
 }
 
 static const struct argp_option table[] = {{"json", 'j', NULL, 0, "Write JSON", 0}, {0}};
@@ -69,11 +66,13 @@ int command_check(int argc, char **argv)
     check_options_t options = {0};
     if (parse_options(&argp_check, argc, argv, &options))
         return EXIT_WRONG_USE;
-    if (ends_with(options.file, ".yaml") || ends_with(options.file, ".yml"))
-        return check_bus_file(options.file, options.json);
     input_t input;
     if (!read_input(options.file, &input))
         return EXIT_WRONG_USE;
+    if (ends_with(options.file, ".yaml") || ends_with(options.file, ".yml")) {
+        free(input.bytes);
+        return check_bus_file(options.file, options.json);
+    }
     cm1e_findings_t *findings = NULL;
     cm1e_diag_t diag = {0};
     const cm1e_file_format_t format = cm1e_file_recognise(input.bytes, input.size);
