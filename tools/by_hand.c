@@ -29,12 +29,6 @@ typedef struct other {
 
 static double now_s(void) { return (double)cm1e_clock_now(cm1e_clock_monotonic()) * 1e-9; }
 
-static const char *text_of(const json_t *object, const char *name)
-{
-    const char *text = json_string_value(json_object_get(object, name));
-    return text ? text : "";
-}
-
 static bool is_true(const json_t *object, const char *name) { return json_is_true(json_object_get(object, name)); }
 
 static bool is_in(const other_t *other, const char *state) { return strcmp(text_of(other->axis, "state"), state) == 0; }

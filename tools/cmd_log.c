@@ -32,12 +32,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const char *text_of(const json_t *event, const char *name)
-{
-    const char *text = json_string_value(json_object_get(event, name));
-    return text ? text : "";
-}
-
 static void print_event(const json_t *event)
 {
     char day[32] = "";

@@ -45,12 +45,6 @@ static cm1e_presence_t presence_of(const json_t *slave)
     return (cm1e_presence_t)json_integer_value(json_object_get(slave, "presence"));
 }
 
-static const char *text_of(const json_t *slave)
-{
-    const char *text = json_string_value(json_object_get(slave, "presence_text"));
-    return text ? text : "";
-}
-
 /* ---- those that take no part ------------------------------------------------------------------------------------- */
 
 static int list(const recover_options_t *options, cm1e_control_t *control)
@@ -63,9 +57,10 @@ static int list(const recover_options_t *options, cm1e_control_t *control)
         if (presence == CM1E_PRESENCE_THERE)
             continue;
         if (!options->common.json)
-            printf("%s: %s\n", cm1e_presence_name(presence), text_of(slave));
+            printf("%s: %s\n", cm1e_presence_name(presence), text_of(slave, "presence_text"));
         json_array_append_new(all, json_pack("{s:i, s:s, s:o}", "position", (int)i + 1, "presence",
-                                             cm1e_presence_name(presence), "text", text_as_json(text_of(slave))));
+                                             cm1e_presence_name(presence), "text",
+                                             text_as_json(text_of(slave, "presence_text"))));
     }
     if (options->common.json && slaves)
         print_json(json_incref(all));
@@ -99,7 +94,7 @@ static cm1e_presence_t look(cm1e_control_t *control, int position, char *text, s
     json_t *slaves = slaves_of(control, diag);
     const json_t *slave = json_array_get(slaves, (size_t)position - 1);
     const cm1e_presence_t presence = slaves ? presence_of(slave) : CM1E_PRESENCE_COUNT;
-    snprintf(text, size, "%s", text_of(slave));
+    snprintf(text, size, "%s", text_of(slave, "presence_text"));
     json_decref(slaves);
     return presence;
 }

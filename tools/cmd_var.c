@@ -77,12 +77,6 @@ const struct argp argp_var = {
 
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 
-static const char *text_of(const json_t *object, const char *name)
-{
-    const char *text = json_string_value(json_object_get(object, name));
-    return text ? text : "";
-}
-
 static void print_row(const json_t *row)
 {
     char value[VARIABLE_TEXT_BYTES];

@@ -412,6 +412,12 @@ int run_on_slave(const common_options_t *common, const char *where, slave_action
     return close_bus(bus, common, status);
 }
 
+const char *text_of(const json_t *object, const char *name)
+{
+    const char *text = json_string_value(json_object_get(object, name));
+    return text ? text : "";
+}
+
 json_t *text_as_json(const char *text)
 {
     char *copy = strdup(text ? text : "");

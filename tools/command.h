@@ -176,6 +176,8 @@ void complain_of_axis(const char *name, const char *what, const char *details);
 
 /** A text as JSON, which must be UTF-8; other bytes and control characters become "?". NULL counts as "". */
 json_t *text_as_json(const char *text);
+/** The text that a member of an object has; "" if it has none. */
+const char *text_of(const json_t *object, const char *name);
 
 /** Prints a JSON value on standard output with a final newline, and releases it. */
 void print_json(json_t *value);

@@ -19,12 +19,6 @@ static json_t *ask(cm1e_control_t *control, const char *name, cm1e_diag_t *diag)
     return ask_program(control, json_pack("{s:s}", "request", name), name, diag);
 }
 
-static const char *text_of(const json_t *object, const char *name)
-{
-    const char *text = json_string_value(json_object_get(object, name));
-    return text ? text : "";
-}
-
 static int number_of(const json_t *object, const char *name)
 {
     return (int)json_integer_value(json_object_get(object, name));

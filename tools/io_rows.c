@@ -35,12 +35,6 @@ json_t *io_signal_row(int slave, const char *slave_name, const char *name, const
 
 /* ---- as text ----------------------------------------------------------------------------------------------------- */
 
-static const char *text_of(const json_t *row, const char *name)
-{
-    const char *text = json_string_value(json_object_get(row, name));
-    return text ? text : "";
-}
-
 static void print_axis_row(const json_t *row)
 {
     const json_t *input = json_object_get(row, "input"), *value = json_object_get(row, "value");

@@ -112,12 +112,6 @@ int screen_key(void)
 
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 
-static const char *text_of(const json_t *object, const char *name)
-{
-    const char *text = json_string_value(json_object_get(object, name));
-    return text ? text : "";
-}
-
 /** NAN: it is not known. */
 static double number_of(const json_t *object, const char *name)
 {

@@ -8,12 +8,6 @@
 
 enum { BAD = 2, NAME_SHARE = 2, TEXT_BYTES = 600 }; /* BAD: the pair of colours of monitor_screen.c */
 
-static const char *text_of(const json_t *object, const char *name)
-{
-    const char *text = json_string_value(json_object_get(object, name));
-    return text ? text : "";
-}
-
 void screen_draw_variables(const monitor_t *m, int line, int end)
 {
     const int width = COLS / NAME_SHARE;

@@ -18,11 +18,6 @@ static const char *text_or_empty(const json_t *value)
     return text ? text : "";
 }
 
-static const char *text_of(const json_t *object, const char *name)
-{
-    return text_or_empty(json_object_get(object, name));
-}
-
 /** Columns behind those of the axes and of the timing. */
 static cm1e_error_t add_column(trace_t *trace, const json_t *told, cm1e_diag_t *diag)
 {
@@ -144,7 +139,7 @@ bool recording_take(recording_t *recording, cm1e_control_t *control, cm1e_diag_t
     const size_t length = strlen(data);
     double *values = malloc(digits);
     if (told && (length % digits != 0 || strspn(data, "0123456789abcdef") != length || !values)) {
-        cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The program answered with something that is no samples.");
+        cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The answer of the program has no samples that can be read.");
         json_decref(told);
         told = NULL;
     }

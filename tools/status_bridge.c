@@ -138,7 +138,7 @@ static const cm1e_bridge_value_t *number(const cm1e_bridge_info_t *info, int n)
 /* ---- as text ---------------------------------------------------------------------------------------------------- */
 
 /* "12", or the reason why the value is missing. */
-static const char *text_of(const cm1e_bridge_value_t *value, char *text, size_t size)
+static const char *text_of_value(const cm1e_bridge_value_t *value, char *text, size_t size)
 {
     if (value->known)
         snprintf(text, size, "%" PRIu32, value->value);
@@ -158,11 +158,11 @@ static void print_line(const cm1e_bridge_channel_t *channel)
     if (bits)
         snprintf(baud_rate, sizeof baud_rate, "%" PRIu32 " bit/s", bits);
     else
-        snprintf(baud_rate, sizeof baud_rate, "baud rate %s", text_of(&channel->baud_rate, cycle, sizeof cycle));
+        snprintf(baud_rate, sizeof baud_rate, "baud rate %s", text_of_value(&channel->baud_rate, cycle, sizeof cycle));
     printf("    %-16s %s, every %s ms; sent %s, received %s, receive errors %s\n", "serial line", baud_rate,
-           text_of(&channel->cycle_time_ms, cycle, sizeof cycle), text_of(&channel->sent, sent, sizeof sent),
-           text_of(&channel->received, received, sizeof received),
-           text_of(&channel->receive_errors, errors, sizeof errors));
+           text_of_value(&channel->cycle_time_ms, cycle, sizeof cycle), text_of_value(&channel->sent, sent, sizeof sent),
+           text_of_value(&channel->received, received, sizeof received),
+           text_of_value(&channel->receive_errors, errors, sizeof errors));
 }
 
 static void print_status(const cm1e_bridge_channel_t *channel)
@@ -173,7 +173,7 @@ static void print_status(const cm1e_bridge_channel_t *channel)
         printf("    %-16s 0x%02X %s\n", "status", (unsigned)channel->status.value,
                cm1e_bridge_status_text(motor_of(channel), channel->status.value, text, sizeof text));
     else
-        printf("    %-16s %s\n", "status", text_of(&channel->status, text, sizeof text));
+        printf("    %-16s %s\n", "status", text_of_value(&channel->status, text, sizeof text));
     if (cure[0])
         printf("    %-16s %s\n", "what to do", cure);
 }
@@ -187,16 +187,16 @@ static void print_motor(unsigned id, const char *axis, const cm1e_bridge_channel
         printf("    %-16s %s (0x%04X)%s\n", "state", state_name(motor), (unsigned)motor->statusword.value,
                flags_of(motor));
     else
-        printf("    %-16s %s\n", "state", text_of(&motor->statusword, text, sizeof text));
+        printf("    %-16s %s\n", "state", text_of_value(&motor->statusword, text, sizeof text));
     print_status(channel);
     const bool dead_end = is_in_mode(motor, CM1E_BRIDGE_MODE_CMD) || is_in_mode(motor, CM1E_BRIDGE_MODE_CPIO);
     printf("    %-16s %s%s\n", "mode",
-           motor->mode.known ? mode_name(motor) : text_of(&motor->mode, text, sizeof text),
+           motor->mode.known ? mode_name(motor) : text_of_value(&motor->mode, text, sizeof text),
            dead_end ? ": only power-off leads back to csp" : "");
     if (motor->position.known)
         printf("    %-16s %" PRId32 " counts\n", "position", (int32_t)motor->position.value);
     else
-        printf("    %-16s %s\n", "position", text_of(&motor->position, text, sizeof text));
+        printf("    %-16s %s\n", "position", text_of_value(&motor->position, text, sizeof text));
     print_line(channel);
     if (channel->configured_module.value != channel->detected_module.value)
         printf("    %-16s configured 0x%08X, detected 0x%08X: not the same\n", "module",
@@ -212,7 +212,7 @@ void print_bridge(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const 
            al_state_name(slave->al_state, state, sizeof state));
     for (int i = 0; i < NUMBERS; i++) {
         const cm1e_bridge_value_t *value = number(&status->info, i);
-        printf("  %-18s %s%s%s\n", numbers[i].label, text_of(value, text, sizeof text),
+        printf("  %-18s %s%s%s\n", numbers[i].label, text_of_value(value, text, sizeof text),
                value->known && numbers[i].unit[0] ? " " : "", value->known ? numbers[i].unit : "");
     }
     for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)

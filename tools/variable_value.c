@@ -12,12 +12,6 @@
 
 /* ---- shown ------------------------------------------------------------------------------------------------------- */
 
-static const char *text_of(const json_t *object, const char *name)
-{
-    const char *text = json_string_value(json_object_get(object, name));
-    return text ? text : "";
-}
-
 /** A character of a text as in a program: 'it$'s$N'. What is no character of a terminal becomes its number. */
 static void escaped(char c, char quote, char text[4])
 {

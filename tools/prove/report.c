@@ -45,12 +45,6 @@ json_t *prove_report(const prove_t *prove)
                      device_as_json(prove), "counts", counts_of(prove->results), "points", prove->results);
 }
 
-static const char *text_of(const json_t *object, const char *key)
-{
-    const char *text = json_string_value(json_object_get(object, key));
-    return text ? text : "";
-}
-
 static long long number_of(const json_t *object, const char *key)
 {
     return json_integer_value(json_object_get(object, key));
