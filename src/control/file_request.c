@@ -14,16 +14,6 @@ struct control_file {
     char name[CM1E_FILE_NAME];
 };
 
-static json_t *refuse(const control_request_t *request, cm1e_error_t error, const char *text)
-{
-    return cm1e_request_refuse(request->id, error, 0, text);
-}
-
-static json_t *wrong(const control_request_t *request, const char *text)
-{
-    return refuse(request, CM1E_ERROR_INVALID_ARGUMENT, text);
-}
-
 static bool is_under_way(const control_file_t *file) { return file->handed && !cm1e_foe_done(&file->foe); }
 
 /** The file of this connection; NULL: no memory. */

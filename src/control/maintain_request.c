@@ -104,7 +104,7 @@ static void axis_text(const maintain_order_t *order, const char *name, char *tex
              cm1e_strerror(order->error), advice);
 }
 
-static json_t *refuse(const control_request_t *request, const char *name)
+static json_t *refuse_order(const control_request_t *request, const char *name)
 {
     const maintain_order_t *order = &request->maintain;
     char text[320] = "";
@@ -134,14 +134,14 @@ static json_t *refuse(const control_request_t *request, const char *name)
         break;
     default: snprintf(text, sizeof text, "The program ends, and shuts its axes down."); break;
     }
-    return cm1e_request_refuse(request->id, error, 0, text);
+    return refuse(request, error, text);
 }
 
 json_t *cm1e_maintain_reply(control_request_t *request, control_run_t *run)
 {
     const maintain_order_t *order = &request->maintain;
     if (order->refusal)
-        return refuse(request, cm1e_axis_configuration(run->view.axes[order->axis])->name);
+        return refuse_order(request, cm1e_axis_configuration(run->view.axes[order->axis])->name);
     return cm1e_request_accept(request->id, request->name,
                                order->what == MAINTAIN_KEEP ? json_integer(order->kept) : json_null());
 }

@@ -10,11 +10,6 @@
 
 enum { EVERY_MOST = 10000 };
 
-static json_t *refuse(const control_request_t *request, cm1e_error_t error, const char *text)
-{
-    return cm1e_request_refuse(request->id, error, 0, text);
-}
-
 /** The variables and objects that the program records itself. */
 static cm1e_error_t add_own(recorder_t *recorder, const cm1e_scheduler_t *scheduler, cm1e_diag_t *diag)
 {

@@ -34,10 +34,10 @@ json_t *cm1e_recover_slave(control_request_t *request, control_run_t *run, const
     if (position == 0) {
         snprintf(text, sizeof text, "\"slave\" is expected to be a position, 1 ... %u, or the name of a slave or of an "
                  "axis with a motor, as the program's bus file has it.", (unsigned)run->view.slave_count);
-        return cm1e_request_refuse(request->id, CM1E_ERROR_INVALID_ARGUMENT, 0, text);
+        return wrong(request, text);
     }
     const cm1e_error_t error = cm1e_bus_recover(run->view.bus, position, &diag);
     if (error != CM1E_OK)
-        return cm1e_request_refuse(request->id, error, 0, diag.text);
+        return refuse(request, error, diag.text);
     return cm1e_request_accept(request->id, "recover", json_integer(position));
 }

@@ -24,11 +24,6 @@ static json_t *accept(const control_request_t *request, const char *name, json_t
     return cm1e_request_accept(request->id, name, value);
 }
 
-static json_t *wrong(const control_request_t *request, const char *text)
-{
-    return cm1e_request_refuse(request->id, CM1E_ERROR_INVALID_ARGUMENT, 0, text);
-}
-
 /** The request waits until the cycle has decided on its order. */
 static json_t *give_order(control_request_t *request, view_order_t *order,
                           json_t *(*decided)(control_request_t *request, control_run_t *run))
@@ -109,27 +104,32 @@ static json_t *take_object(control_request_t *request, const json_t *message)
         return wrong(request, "\"complete_access\" is expected to be true or false.");
     request->data = calloc(1, SDO_MAX);
     if (!request->data)
-        return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a transfer.");
+        return refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a transfer.");
     request->sdo = (cm1e_sdo_t){.position = (uint16_t)slave, .index = (uint16_t)index, .subindex = (uint8_t)subindex,
                                 .complete_access = json_is_true(complete), .data = request->data, .size = SDO_MAX,
                                 .timeout_ns = timeout_ms * 1000000};
     return NULL;
 }
 
+static json_t *refused_by_slave(const control_request_t *request, cm1e_error_t error, uint32_t abort_code)
+{
+    return cm1e_request_refuse(request->id, error, abort_code, error == CM1E_ERROR_SDO_ABORT
+                                                                   ? cm1e_sdo_abort_text(abort_code)
+                                                                   : cm1e_strerror(error));
+}
+
 static json_t *end_transfer(control_request_t *request)
 {
     const cm1e_sdo_t *sdo = &request->sdo;
     if (cm1e_sdo_state(sdo) == CM1E_SDO_ERROR)
-        return cm1e_request_refuse(request->id, sdo->error, sdo->abort_code,
-                                   sdo->error == CM1E_ERROR_SDO_ABORT ? cm1e_sdo_abort_text(sdo->abort_code)
-                                                                      : cm1e_strerror(sdo->error));
+        return refused_by_slave(request, sdo->error, sdo->abort_code);
     return accept(request, "data", sdo->write ? json_null() : cm1e_show_bytes(request->data, sdo->size));
 }
 
 static json_t *submitted(control_request_t *request, cm1e_error_t error)
 {
     request->state = REQUEST_SDO;
-    return error == CM1E_OK ? NULL : cm1e_request_refuse(request->id, error, 0, cm1e_strerror(error));
+    return error == CM1E_OK ? NULL : refuse(request, error, cm1e_strerror(error));
 }
 
 static json_t *sdo_read(control_request_t *request, control_run_t *run, const json_t *message)
@@ -165,7 +165,7 @@ static json_t *start_errand(control_request_t *request, control_run_t *run)
     request->wanted = error == CM1E_OK;
     if (error == CM1E_OK || error == CM1E_ERROR_BUSY)
         return NULL;
-    return cm1e_request_refuse(request->id, error, 0, cm1e_strerror(error));
+    return refuse(request, error, cm1e_strerror(error));
 }
 
 static json_t *continue_errand(control_request_t *request, control_run_t *run)
@@ -177,9 +177,7 @@ static json_t *continue_errand(control_request_t *request, control_run_t *run)
     if (!cm1e_errand_done(errand))
         return NULL;
     if (errand->error != CM1E_OK)
-        return cm1e_request_refuse(request->id, errand->error, errand->info.abort_code,
-                                   errand->error == CM1E_ERROR_SDO_ABORT ? cm1e_sdo_abort_text(errand->info.abort_code)
-                                                                         : cm1e_strerror(errand->error));
+        return refused_by_slave(request, errand->error, errand->info.abort_code);
     return accept(request, "data", info ? cm1e_show_bytes(errand->info.answer, errand->info.size)
                                         : cm1e_show_bytes(errand->data, errand->size));
 }
@@ -224,7 +222,7 @@ static json_t *sdo_info(control_request_t *request, control_run_t *run, const js
         return wrong(request, "\"index\" is expected to be 0 ... 65535, \"subindex\" and \"values\" 0 ... 255.");
     request->data = malloc(INFO_MAX);
     if (!request->data)
-        return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a description.");
+        return refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a description.");
     request->errand = (cm1e_errand_t){
         .kind = ERRAND_INFO, .position = (uint16_t)slave,
         .info = {.kind = (cm1e_info_kind_t)kind, .index = (uint16_t)index, .subindex = (uint8_t)subindex,
@@ -263,7 +261,7 @@ static json_t *io(control_request_t *request, control_run_t *run, const json_t *
     (void)message;
     request->io = cm1e_io_list_begin();
     return request->io ? next_io(request, run)
-                       : cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
+                       : refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a list.");
 }
 
 static json_t *end_output(control_request_t *request, control_run_t *run)
@@ -272,7 +270,7 @@ static json_t *end_output(control_request_t *request, control_run_t *run)
     char text[240];
     const char *refusal = cm1e_output_refusal(&request->output, text, sizeof text);
     const bool wrong = request->output.refusal == OUTPUT_BY_BUS; /* an input, or no value of its type */
-    return refusal ? cm1e_request_refuse(request->id, wrong ? CM1E_ERROR_INVALID_ARGUMENT : CM1E_ERROR_STATE, 0, refusal)
+    return refusal ? refuse(request, wrong ? CM1E_ERROR_INVALID_ARGUMENT : CM1E_ERROR_STATE, refusal)
                    : accept(request, "output", json_null());
 }
 
@@ -282,7 +280,7 @@ static json_t *output(control_request_t *request, control_run_t *run, const json
     cm1e_error_t error = CM1E_OK;
     request->output.client = request->client;
     const char *bad = cm1e_output_take(&request->output, &run->view, message, &error, diag.text, sizeof diag.text);
-    return bad ? cm1e_request_refuse(request->id, error, 0, bad)
+    return bad ? refuse(request, error, bad)
                : give_order(request, &request->output.order, end_output);
 }
 
@@ -299,7 +297,7 @@ static json_t *end_variable(control_request_t *request, control_run_t *run)
     }
     const bool taken = request->variable.result == FORCING_TAKEN;
     const char *refusal = cm1e_variable_refusal(&request->variable);
-    return refusal ? cm1e_request_refuse(request->id, taken ? CM1E_ERROR_CANCELLED : CM1E_ERROR_STATE, 0, refusal)
+    return refusal ? refuse(request, taken ? CM1E_ERROR_CANCELLED : CM1E_ERROR_STATE, refusal)
                    : accept(request, "variable", json_null());
 }
 
@@ -317,10 +315,10 @@ static json_t *variables(control_request_t *request, control_run_t *run, const j
     if (name && json_is_true(json_object_get(message, "forced")))
         return wrong(request, "\"name\" and \"forced\" exclude each other.");
     if (name && !cm1e_variable_named(&run->view, name, &row, text, sizeof text))
-        return cm1e_request_refuse(request->id, CM1E_ERROR_NOT_FOUND, 0, text);
+        return refuse(request, CM1E_ERROR_NOT_FOUND, text);
     if (!cm1e_variables_begin(&request->variable, &run->view, name ? row : (uint32_t)from, name ? 1 : VARIABLES_OF_REPLY,
                               json_is_true(json_object_get(message, "forced"))))
-        return cm1e_request_refuse(request->id, CM1E_ERROR_NO_MEMORY, 0, "No memory for a list.");
+        return refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a list.");
     return give_order(request, &request->variable.order, end_variable);
 }
 
@@ -330,7 +328,7 @@ static json_t *variable(control_request_t *request, control_run_t *run, const js
     cm1e_error_t error = CM1E_OK;
     request->variable.forced.client = request->client;
     const char *bad = cm1e_variable_take(&request->variable, &run->view, message, &error, text, sizeof text);
-    return bad ? cm1e_request_refuse(request->id, error, 0, bad)
+    return bad ? refuse(request, error, bad)
                : give_order(request, &request->variable.order, end_variable);
 }
 
@@ -383,7 +381,7 @@ static json_t *refuse_consent(const control_request_t *request, const char *what
     char text[160];
     snprintf(text, sizeof text, "The program lets others look only (control: observe). %s needs `control: maintain` in "
              "its bus file.", what);
-    return cm1e_request_refuse(request->id, CM1E_ERROR_PERMISSION, 0, text);
+    return refuse(request, CM1E_ERROR_PERMISSION, text);
 }
 
 static json_t *unknown(const control_request_t *request)
@@ -401,7 +399,7 @@ json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const
     request->id = json_incref(json_object_get(message, "id"));
     request->begun_ns = now_ns;
     if (!cm1e_take_number(message, "protocol", 1, CM1E_CONTROL_PROTOCOL, CM1E_CONTROL_PROTOCOL, &protocol))
-        return cm1e_request_refuse(request->id, CM1E_ERROR_UNSUPPORTED, 0,
+        return refuse(request, CM1E_ERROR_UNSUPPORTED,
                                    "This program speaks version 1 of the protocol only.");
     for (size_t i = 0; name && i < sizeof requests / sizeof *requests; i++) {
         if (strcmp(requests[i].name, name) != 0)
@@ -419,8 +417,8 @@ json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const
 static json_t *no_cycle(const control_request_t *request, bool stopping)
 {
     if (request->wanted || stopping)
-        return cm1e_request_refuse(request->id, CM1E_ERROR_STATE, 0, "The cycle of the program does not run any more.");
-    return cm1e_request_refuse(request->id, CM1E_ERROR_BUSY, 0, "Other connections ask the program for so much that this "
+        return refuse(request, CM1E_ERROR_STATE, "The cycle of the program does not run any more.");
+    return refuse(request, CM1E_ERROR_BUSY, "Other connections ask the program for so much that this "
                                "request has not had its turn for 2 s.");
 }
 
@@ -470,7 +468,7 @@ static json_t *end_write(control_request_t *request, control_run_t *run)
     snprintf(text, sizeof text, "Axis \"%s\" is commanded by the program: nothing is written to slave %u until it "
              "is at standstill without a command.", cm1e_axis_configuration(run->view.axes[write->commanded])->name,
              write->file ? (unsigned)write->file->position : (unsigned)request->sdo.position);
-    return cm1e_request_refuse(request->id, write->result, 0, text);
+    return refuse(request, write->result, text);
 }
 
 json_t *cm1e_request_write(control_request_t *request, view_write_t write)

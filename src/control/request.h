@@ -59,6 +59,17 @@ struct control_request {
     variable_order_t variable;
 };
 
+/** A reply that refuses it. */
+static inline json_t *refuse(const control_request_t *request, cm1e_error_t error, const char *text)
+{
+    return cm1e_request_refuse(request->id, error, 0, text);
+}
+/** A reply that refuses one of its members. */
+static inline json_t *wrong(const control_request_t *request, const char *text)
+{
+    return refuse(request, CM1E_ERROR_INVALID_ARGUMENT, text);
+}
+
 /** Begins a request. Returns its reply, or NULL if it goes on: cm1e_request_continue(). */
 json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const json_t *message, int64_t now_ns);
 /** Returns the reply when there is one. `stopping`: the cycle does not run any more. */
