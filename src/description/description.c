@@ -67,12 +67,17 @@ const cm1e_described_entry_t *cm1e_description_entry(const cm1e_description_t *d
     return NULL;
 }
 
+cm1e_described_pdo_t *cm1e_pdo_find(const cm1e_pdo_list_t *list, uint16_t index)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (list->at[i].index == index)
+            return &list->at[i];
+    return NULL;
+}
+
 const cm1e_described_pdo_t *cm1e_description_pdo(const cm1e_description_t *device, uint16_t index)
 {
-    for (size_t i = 0; i < device->pdos.count; i++)
-        if (device->pdos.at[i].index == index)
-            return &device->pdos.at[i];
-    return NULL;
+    return cm1e_pdo_find(&device->pdos, index);
 }
 
 const char *cm1e_pdo_kind(const cm1e_described_pdo_t *pdo)

@@ -283,6 +283,7 @@ const cm1e_described_object_t *cm1e_description_object(const cm1e_description_t 
 const cm1e_described_entry_t *cm1e_description_entry(const cm1e_description_t *device, uint16_t index,
                                                      uint8_t subindex);
 const cm1e_described_pdo_t *cm1e_description_pdo(const cm1e_description_t *device, uint16_t index);
+cm1e_described_pdo_t *cm1e_pdo_find(const cm1e_pdo_list_t *list, uint16_t index);
 
 /** "RxPDO" or "TxPDO". @rt any */
 const char *cm1e_pdo_kind(const cm1e_described_pdo_t *pdo);

@@ -40,18 +40,10 @@ bool cm1e_eni_sets(const cm1e_eni_command_t *command, uint16_t first, unsigned s
     return *n < 16;
 }
 
-static const cm1e_described_pdo_t *find_pdo(const cm1e_eni_device_t *device, uint16_t index)
-{
-    for (size_t i = 0; i < device->pdos.count; i++)
-        if (device->pdos.at[i].index == index)
-            return &device->pdos.at[i];
-    return NULL;
-}
-
 bool cm1e_eni_add_pdo_bits(const cm1e_eni_device_t *device, const cm1e_eni_sync_manager_t *manager, uint32_t *bits)
 {
     for (size_t i = 0; i < manager->pdos.count; i++) {
-        const cm1e_described_pdo_t *pdo = find_pdo(device, manager->pdos.at[i]);
+        const cm1e_described_pdo_t *pdo = cm1e_pdo_find(&device->pdos, manager->pdos.at[i]);
         if (!pdo)
             return false;
         *bits += cm1e_pdo_bits(pdo);

@@ -47,14 +47,6 @@ cm1e_error_t cm1e_eni_describe_slave(cm1e_description_file_t *file, const cm1e_s
 
 /* ---- PDOs that are written anew ---------------------------------------------------------------------------------- */
 
-static cm1e_described_pdo_t *pdo_of(cm1e_description_t *device, unsigned index)
-{
-    for (size_t i = 0; i < device->pdos.count; i++)
-        if (device->pdos.at[i].index == index)
-            return &device->pdos.at[i];
-    return NULL;
-}
-
 /** An entry with the name and type that another PDO or the dictionary has for it. */
 static cm1e_described_pdo_entry_t described_entry(const cm1e_description_t *device, const cm1e_pdo_entry_config_t *from)
 {
@@ -85,7 +77,7 @@ static void map_anew(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e
         for (end = first; end < slave->entry_count && slave->entries[end].pdo == index; end++)
             *(cm1e_described_pdo_entry_t *)CM1E_APPEND(arena, &made.entries) =
                 described_entry(device, &slave->entries[end]);
-        cm1e_described_pdo_t *present = pdo_of(device, index);
+        cm1e_described_pdo_t *present = cm1e_pdo_find(&device->pdos, (uint16_t)index);
         if (present)
             made.name = present->name;
         else
@@ -131,7 +123,7 @@ static cm1e_error_t assign(cm1e_arena_t *arena, cm1e_description_t *device, cons
         const uint16_t *pdos = assigned(slave, transmit, &count);
         const int manager = sync_manager_of(device, transmit);
         for (unsigned i = 0; i < count; i++) {
-            const cm1e_described_pdo_t *pdo = pdo_of(device, pdos[i]);
+            const cm1e_described_pdo_t *pdo = cm1e_pdo_find(&device->pdos, pdos[i]);
             if (!pdo || manager == CM1E_NO_SYNC_MANAGER)
                 return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "slave %s: its description has no PDO 0x%04X, or no "
                                      "sync manager for it", slave->name, pdos[i]);
