@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { COMMAND_LINE = 512 };
 
@@ -27,4 +28,13 @@ void cm1e_program_name(char *text, size_t size)
              named ? base_name(word) : "");
     for (char *c = text; *c; c++)
         *c = *c >= ' ' && *c <= '~' ? *c : '?';
+}
+
+void cm1e_program_path(char *path, size_t size)
+{
+    const ssize_t length = readlink("/proc/self/exe", path, size - 1);
+    if (length > 0 && (size_t)length < size - 1)
+        path[length] = '\0';
+    else
+        snprintf(path, size, "<program>");
 }

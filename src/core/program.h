@@ -9,5 +9,7 @@
 
 /** This program with its first word that is no option: "cm1e move", "python3 machine.py". @rt init */
 void cm1e_program_name(char *text, size_t size);
+/** The path of its file, for a command that gives it a right; "<program>" if it is not known or too long. @rt block */
+void cm1e_program_path(char *path, size_t size);
 
 #endif

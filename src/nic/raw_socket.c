@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "config/interface.h"
+#include "core/program.h"
 #include "nic/nic.h"
 
 enum { ETHERTYPE_ETHERCAT = 0x88A4, RECEIVE_BUFFER = 1 << 20, DRAIN_LIMIT = 65536 };
@@ -87,10 +88,8 @@ static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)
 {
     if (why != EPERM && why != EACCES)
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "No packet socket: %s.", strerror(why));
-    char self[160] = "<program>";
-    const ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
-    if (n > 0)
-        self[n] = 0;
+    char self[160];
+    cm1e_program_path(self, sizeof self);
     return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0,
                          "EtherCAT on a network interface needs the privilege CAP_NET_RAW. Start the program with "
                          "sudo, or give it the privilege once: "

@@ -13,6 +13,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "core/program.h"
 #include "nic/frame.h"
 #include "nic/nic.h"
 #include "nic/raw_socket.h"
@@ -58,10 +59,8 @@ static int question(int fd, const char *name, unsigned long what, void *data)
 
 static cm1e_error_t no_right(const char *name, cm1e_diag_t *diag)
 {
-    char self[160] = "<program>";
-    const ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
-    if (n > 0)
-        self[n] = 0;
+    char self[160];
+    cm1e_program_path(self, sizeof self);
     return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0,
                          "AF_XDP on \"%s\" needs the privileges CAP_NET_RAW, CAP_NET_ADMIN and CAP_BPF, in a container those "
                          "of the host. Start the program with sudo, or give them once: sudo setcap cap_net_raw,"

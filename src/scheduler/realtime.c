@@ -13,6 +13,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "core/program.h"
+
 /** Stack that the calls of a cycle may need. It is touched before the run, so that no page fault happens in the
  *  cycle. */
 enum { STACK_TOUCHED = 64 * 1024, PAGE = 4096 };
@@ -83,20 +85,10 @@ static void keep_awake(realtime_t *realtime)
         close(fd);
 }
 
-/** "/path/of/this/program", or a name to be replaced. */
-static void program_path(char *path, size_t size)
-{
-    const ssize_t length = readlink("/proc/self/exe", path, size - 1);
-    if (length > 0 && (size_t)length < size - 1)
-        path[length] = '\0';
-    else
-        snprintf(path, size, "<program>");
-}
-
 static void advise(char *advice, size_t size, bool fifo, bool locked, int priority)
 {
     char path[256];
-    program_path(path, sizeof path);
+    cm1e_program_path(path, sizeof path);
     snprintf(advice, size,
              "Not real time: %s%s%s refused. As root: setcap cap_sys_nice,cap_ipc_lock,cap_net_raw+ep %s; or limits of "
              "the user in /etc/security/limits.conf: rtprio %d, memlock unlimited (ulimit -r -l shows them).",

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include "cm1e/scheduler.h"
+#include "core/program.h"
 #include "doctor/doctor.h"
 
 static const char group[] = "machine";
@@ -148,10 +148,8 @@ static void look_at_privileges(doctor_t *doctor)
     const bool raw = mask >> CAPABILITY_NET_RAW & 1;
     const bool priority = mask >> CAPABILITY_SYS_NICE & 1 || limit_reached(RLIMIT_RTPRIO, 80);
     const bool memory = mask >> CAPABILITY_IPC_LOCK & 1 || limit_reached(RLIMIT_MEMLOCK, RLIM_INFINITY);
-    char program[PATH_MAX] = "PROGRAM";
-    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length > 0)
-        program[length] = '\0';
+    char program[PATH_MAX];
+    cm1e_program_path(program, sizeof program);
     if (raw && priority && memory) {
         doctor_find(doctor, FINDING_GOOD, group, "privileges", "raw sockets, real-time priority, locked memory");
         return;
