@@ -69,6 +69,17 @@ static bool is_transfer(const cm1e_coe_client_t *client)
     return client->phase >= COE_UPLOAD && client->phase <= COE_DOWNLOAD_SEGMENT;
 }
 
+static bool is_segmented(const cm1e_coe_client_t *client)
+{
+    return client->phase == COE_UPLOAD_SEGMENT || client->phase == COE_DOWNLOAD_SEGMENT;
+}
+
+/** What comes is none of its business: nothing was asked, or the answer does not matter. */
+static bool awaits_nothing(const cm1e_coe_client_t *client)
+{
+    return client->phase == COE_ABORT || client->phase == COE_DRAIN || client->phase == COE_LISTEN;
+}
+
 /** Later answers to this transfer must not be taken as answers to the next one. */
 static void distrust(cm1e_coe_client_t *client)
 {
@@ -450,50 +461,38 @@ bool cm1e_coe_take_emergency(cm1e_coe_client_t *client, const uint8_t *message)
     return is_one;
 }
 
+/** Nothing of an earlier transfer can follow. */
+static void on_fence(cm1e_coe_client_t *client)
+{
+    client->doubtful = client->abort_sent = false;
+    start_transfer(client);
+}
+
 static void on_abort(cm1e_coe_client_t *client, const uint8_t *body)
 {
-    if (!addressed(client, body)) {
+    if (!addressed(client, body))
         discard(client);
-    } else if (client->phase == COE_FENCE) {
-        client->doubtful = client->abort_sent = false; /* an abort is an answer, too */
-        start_transfer(client);
-    } else {
+    else if (client->phase == COE_FENCE)
+        on_fence(client); /* an abort is an answer, too */
+    else
         finish(client, CM1E_ERROR_SDO_ABORT, cm1e_get_u32(body + 6));
-    }
 }
 
 /** An SDO answer of at least SDO_BYTES. */
 static void on_sdo(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
 {
-    const bool is_segment = client->phase == COE_UPLOAD_SEGMENT || client->phase == COE_DOWNLOAD_SEGMENT;
-    if (!is_segment && !addressed(client, body)) {
+    if (!is_segmented(client) && !addressed(client, body))
         discard(client); /* of an earlier transfer */
-        return;
-    }
-    switch (client->phase) {
-    case COE_IDLE:
-    case COE_INFORMATION:
-    case COE_ABORT:
-    case COE_DRAIN:
-    case COE_LISTEN:
-        break;
-    case COE_FENCE:
-        client->doubtful = client->abort_sent = false;
-        start_transfer(client);
-        break;
-    case COE_UPLOAD:
+    else if (client->phase == COE_FENCE)
+        on_fence(client);
+    else if (client->phase == COE_UPLOAD)
         on_upload(client, body, size);
-        break;
-    case COE_UPLOAD_SEGMENT:
+    else if (client->phase == COE_UPLOAD_SEGMENT)
         on_upload_segment(client, body, size);
-        break;
-    case COE_DOWNLOAD:
+    else if (client->phase == COE_DOWNLOAD)
         on_download(client, body);
-        break;
-    case COE_DOWNLOAD_SEGMENT:
+    else if (client->phase == COE_DOWNLOAD_SEGMENT)
         on_download_segment(client, body);
-        break;
-    }
 }
 
 /** The first fragment says what it is about: the list, the object, the object with its sub-index. */
@@ -546,7 +545,7 @@ static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     if (service == SERVICE_EMERGENCY) {
         on_emergency(client, body, size);
         discard(client);
-    } else if (client->phase == COE_ABORT || client->phase == COE_DRAIN || client->phase == COE_LISTEN) {
+    } else if (awaits_nothing(client)) {
         discard(client);
     } else if (client->phase == COE_INFORMATION) {
         if (service == SERVICE_SDO_INFORMATION)
@@ -569,15 +568,13 @@ static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
 /** The link layer of the slave refused a message: the request, or an abort that it does not accept. */
 static void on_mailbox_error(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
 {
-    const bool old = client->phase == COE_ABORT || client->phase == COE_DRAIN || client->phase == COE_LISTEN;
-    if (old || (client->phase == COE_FENCE && client->abort_sent)) {
+    if (awaits_nothing(client) || (client->phase == COE_FENCE && client->abort_sent)) {
         client->abort_sent = false;
         discard(client);
         return;
     }
     client->mailbox_error = size >= 4 ? cm1e_get_u16(body + 2) : 0;
-    const bool began = client->phase == COE_UPLOAD_SEGMENT || client->phase == COE_DOWNLOAD_SEGMENT;
-    if (began) {
+    if (is_segmented(client)) {
         abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_GENERAL);
     } else {
         distrust(client);
