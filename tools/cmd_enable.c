@@ -143,7 +143,7 @@ int command_enable(int argc, char **argv)
     if (parse_options(&argp_enable, argc, argv, &p))
         return EXIT_WRONG_USE;
     if (p.seconds == 0 && !at_a_terminal()) {
-        complain("there is no terminal whose key could end it: give --for SECONDS");
+        complain("without a terminal no key can end it: give --for SECONDS");
         return EXIT_WRONG_USE;
     }
     cm1e_control_t *control;

@@ -106,7 +106,7 @@ static int read_file(cm1e_bus_t *bus, uint16_t position, const foe_options_t *op
     cm1e_diag_t diag = {0};
     int status = EXIT_FAILED;
     if (!bytes)
-        complain("no memory for a file of up to %zu bytes: --maximum", size);
+        complain("no memory for a file of up to %zu bytes: give a smaller --maximum", size);
     else if (cm1e_foe_read(bus, position, name_of(options), bytes, &size, transfer, &diag) != CM1E_OK)
         status = fail(&diag);
     else if (write_output(options->words[2], bytes, size))

@@ -232,7 +232,7 @@ static int report(void *context)
 {
     const alone_t *alone = context;
     if (alone->options->common.json && !monitor.quit) {
-        complain("nothing was shown: the run ended before");
+        complain("nothing was shown, because the run ended too early");
         return EXIT_FAILED;
     }
     return alone->status;

@@ -138,7 +138,7 @@ static int write_registers(cm1e_bus_t *bus, const cm1e_bus_config_t *config, con
     uint8_t data[4] = {0};
     cm1e_diag_t diag = {0};
     if (options->size < 4 && options->value >> 8 * options->size != 0) {
-        complain("0x%llX does not fit into %lld byte%s: --size", (unsigned long long)options->value, options->size,
+        complain("0x%llX does not fit into %lld byte%s: give a larger --size", (unsigned long long)options->value, options->size,
                  options->size == 1 ? "" : "s");
         return EXIT_FAILED;
     }

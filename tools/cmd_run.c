@@ -295,7 +295,7 @@ static int run_on_network(st_loaded_t *loaded, const run_options_t *options)
     if (!load_machine(loaded, options, &config))
         return EXIT_WRONG_USE;
     if (options->virtual_time && !is_simulated(&config)) {
-        complain("--virtual-time is for the simulated network; a real one takes its time");
+        complain("--virtual-time is for the simulated network; a real one needs real time");
         return EXIT_WRONG_USE;
     }
     config.virtual_time |= options->virtual_time;

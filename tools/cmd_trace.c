@@ -328,7 +328,7 @@ static int end_alone(void *context)
 {
     alone_t *alone = context;
     if (alone->status == EXIT_OK && !alone->recording.told) {
-        complain("nothing was recorded: the run ended before");
+        complain("nothing was recorded, because the run ended too early");
         alone->status = EXIT_FAILED;
     } else if (alone->status == EXIT_OK) {
         alone->status = alone->options->list ? list(&alone->recording, alone->options)

@@ -47,7 +47,7 @@ extern "C" {
     X(ERROR_PDO_MAPPING, -27, "the PDO mapping lacks an object that the operation needs")                           \
     X(ERROR_BUS_CYCLE_TIME, -28, "the device does not accept the cycle time")                                       \
     X(ERROR_INTERFACE_IN_USE, -29, "another program has the network interface: end it, or attach to it")            \
-    X(ERROR_BUS_CLOCKS, -39, "the clocks of slaves and machine do not come together")                                \
+    X(ERROR_BUS_CLOCKS, -39, "the clocks of the slaves and of this machine do not synchronise")                     \
     X(ERROR_DRIVE_FAULT, -40, "the drive reports a fault")                                                          \
     X(ERROR_DRIVE_POWER, -41, "motor power is off")                                                                 \
     X(ERROR_DRIVE_ENABLE_LOST, -42, "the drive left Operation enabled by itself")                                   \
@@ -94,8 +94,8 @@ extern "C" {
     X(ERROR_AXIS_PROBE, -86, "a trigger came while the position was not known")                                     \
     X(ERROR_AXIS_NO_TORQUE_MODE, -87, "the drive has no torque mode, only positions and velocities")                \
     X(ERROR_AXIS_SIGNAL_AWAY, -88, "the slave with this digital signal does not take part in the bus cycle")        \
-    X(ERROR_AXIS_TABLE, -100, "the table of a profile is empty, too long, not finite or its times do not rise")     \
-    X(ERROR_AXIS_TABLE_LATE, -101, "frames were lost or not sent for too long for a table over time")               \
+    X(ERROR_AXIS_TABLE, -100, "the table of a profile is empty, too long or not finite, or its times do not rise")  \
+    X(ERROR_AXIS_TABLE_LATE, -101, "a table over time was broken off: frames were lost or not sent for too long")   \
     X(ERROR_AXIS_NO_TABLES, -117, "the axis has no memory for tables: set table_profiles in its configuration")     \
     X(ERROR_AXIS_NO_COUPLINGS, -118, "the axis has no memory to follow others: set follows in its configuration")   \
     X(ERROR_AXIS_STEP_INPUT, -110, "an input of the homing step is not valid")                                      \

@@ -170,9 +170,9 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
         signal_text(axis, refused->what == NOT_READ_OUTPUT ? "digital output" : "digital input", " was not read", text,
                     size);
     } else if (refused->what == NOT_SET_PROBE && refused->error == CM1E_ERROR_AXIS_POSITION_RANGE) {
-        snprintf(text, size, "Axis \"%s\": the window of the touch probe at input %d is none: FirstPosition and LastPosition "
-                 "are inside the range of the axis, and on a linear axis FirstPosition is not above LastPosition.", name,
-                 refused->number);
+        snprintf(text, size, "Axis \"%s\": the window of the touch probe at input %d is not valid: FirstPosition and "
+                 "LastPosition have to be inside the range of the axis, and on a linear axis FirstPosition must not be "
+                 "above LastPosition.", name, refused->number);
     } else if (refused->what == NOT_SET_PROBE) {
         signal_text(axis, "no touch probe at input", "", text, size);
     } else if (refused->what == NOT_SET_CAM) {

@@ -46,9 +46,9 @@ static cm1e_error_t read_attached(cm1e_bus_t *bus, uint16_t position, uint16_t a
                                   cm1e_diag_t *diag)
 {
     if (!cm1e_bus_at(bus, position) || size == 0 || address + size > CM1E_ERRAND_REGISTERS_END)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Slave %u, %u bytes from register 0x%04X: of a "
-                             "network that another program runs, expected are slave 1 to %u and registers up to "
-                             "0x%04X.", position, size, address, bus->slave_count, CM1E_ERRAND_REGISTERS_END - 1);
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Slave %u, %u bytes from register 0x%04X: another "
+                             "program runs the network, so only slaves 1 ... %u and registers up to 0x%04X can be "
+                             "read.", position, size, address, bus->slave_count, CM1E_ERRAND_REGISTERS_END - 1);
     return read_remote(bus, position, address, data, size, diag);
 }
 

@@ -28,8 +28,8 @@ void cm1e_hot_forget(cm1e_bus_t *bus)
 cm1e_bus_slave_t *cm1e_hot_plan(cm1e_bus_t *bus, cm1e_address_kind_t kind, uint16_t address, cm1e_diag_t *diag)
 {
     if (bus->slave_count == CM1E_MAX_SLAVES) {
-        cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "With the optional slaves that are absent there are more than "
-                      "%d.", CM1E_MAX_SLAVES);
+        cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "Together with the optional slaves that are absent there are "
+                      "more than %d slaves.", CM1E_MAX_SLAVES);
         return NULL;
     }
     cm1e_bus_slave_t *slave = &bus->slaves[bus->slave_count++];

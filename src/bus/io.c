@@ -176,7 +176,7 @@ static cm1e_error_t find_word(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, co
         return not_found(bus, slave, word, diag);
     if (count > 1)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Slave %u has %u signals with the name \"%.60s\": "
-                             "name the one by its number, such as \"%u.%s %u\".", slave->info.position, count, word,
+                             "choose one by its number, such as \"%u.%s %u\".", slave->info.position, count, word,
                              slave->info.position, found.output ? "output" : "input", found.number);
     return cm1e_io_guest_take(bus, &found, io, diag);
 }

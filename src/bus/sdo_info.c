@@ -29,7 +29,7 @@ static cm1e_error_t diagnose(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slav
                              (unsigned)request->abort_code, cm1e_sdo_abort_text(request->abort_code));
     if (request->error == CM1E_ERROR_TIMEOUT)
         return cm1e_diag_set(diag, request->error, 0,
-                             "%s did not describe %s in time: it may not have SDO information.", label, what);
+                             "%s did not describe %s in time: it may not support SDO information.", label, what);
     return cm1e_diag_set(diag, request->error, slave->coe.mailbox_error, "%s did not describe %s: %s.", label, what,
                          cm1e_strerror(request->error));
 }

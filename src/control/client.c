@@ -198,8 +198,8 @@ static cm1e_error_t connect_to(cm1e_control_t **control, const char *path, cm1e_
         return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "The control socket %s belongs to another user: use the "
                              "rights of the one who started the program, or sudo.", path);
     if (why == EAGAIN)
-        return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "The program at %s has let nobody in for %d s: it is suspended, "
-                             "or it hangs.", path, CONNECT_TIMEOUT_S);
+        return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "The program at %s has accepted no connection for %d s: it is "
+                             "suspended, or it hangs.", path, CONNECT_TIMEOUT_S);
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "No program serves the control socket %s: %s.", path,
                          strerror(why));
 }

@@ -24,7 +24,7 @@ expr_t *cm1e_st_qualified_in(st_t *st, place_t place, const expr_t *space, const
     if (prefix && expr->kind == E_QUALIFIED)
         expr->prefix = cm1e_st_format(st->arena, "%s.%s", prefix, expr->prefix);
     else
-        cm1e_st_report(st, place, "in front of the type stands the name of a namespace");
+        cm1e_st_report(st, place, "only the name of a namespace can stand in front of the type");
     return expr;
 }
 

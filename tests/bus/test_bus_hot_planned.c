@@ -93,7 +93,7 @@ START_TEST(more_slaves_than_a_bus_may_have_are_refused_in_words)
     const cm1e_error_t error = cm1e_bus_start(bus, &diag);
     ck_assert_int_eq(error, CM1E_ERROR_BUS_IDENTITY);
     ck_assert_int_eq(diag.error, error);
-    ck_assert_str_eq(diag.text, "With the optional slaves that are absent there are more than 512.");
+    ck_assert_str_eq(diag.text, "Together with the optional slaves that are absent there are more than 512 slaves.");
     cm1e_bus_close(bus);
     cm1e_bus_config_free(&wire);
 }

@@ -154,7 +154,7 @@ START_TEST(wrong_names_are_told_what_there_is)
         {"valve", "names no slave", CM1E_ERROR_NOT_FOUND},
         {"", "names no slave", CM1E_ERROR_NOT_FOUND},
         {"Digital terminal 4+4.output 1", "names no slave", CM1E_ERROR_NOT_FOUND}, /* two have this name */
-        {"3.Outputs", "has 4 signals with the name \"Outputs\": name the one by its number",
+        {"3.Outputs", "has 4 signals with the name \"Outputs\": choose one by its number",
          CM1E_ERROR_INVALID_ARGUMENT},
     };
     cm1e_bus_t *bus = start_with(CM1E_SIM_IO_TERMINAL);

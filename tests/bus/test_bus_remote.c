@@ -221,7 +221,7 @@ START_TEST(registers_that_change_something_are_not_read)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         ck_assert_int_eq(cm1e_esc_read(bus, rows[i].position, rows[i].address, data, rows[i].size, &diag),
                          CM1E_ERROR_INVALID_ARGUMENT);
-        ck_assert_msg(strstr(diag.text, "expected are slave 1 to 3 and registers up to 0x08FF") != NULL, "%s", diag.text);
+        ck_assert_msg(strstr(diag.text, "only slaves 1 ... 3 and registers up to 0x08FF can be read") != NULL, "%s", diag.text);
     }
     ck_assert_uint_eq(program.errands, 0);
     ck_assert_int_eq(cm1e_esc_read(bus, 1, 0x08FF, data, 1, &diag), CM1E_OK);

@@ -190,7 +190,7 @@ static void test_windows_that_are_none_are_refused_and_leave_the_armed_probe(voi
         uint32_t id;
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE,
                               cm1e_axis_probe(axis, on(1), true, windows[i][0], windows[i][1], &id));
-        bench_told("the window of the touch probe at input 1 is none: FirstPosition and LastPosition are inside");
+        bench_told("the window of the touch probe at input 1 is not valid: FirstPosition and LastPosition have to be inside");
         expect(armed, CM1E_COMMAND_ACTIVE);
     }
     show(500, 1);
