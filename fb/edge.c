@@ -132,14 +132,9 @@ static bool update(cm1e_fb_private_t *fb, cm1e_axis_t *axis, BOOL continuous_upd
     return error == CM1E_OK;
 }
 
-fb_outputs_t cm1e_fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
-                            const cm1e_axis_command_t *command)
-{
-    return cm1e_fb_motion_unless(CM1E_OK, fb, reference, execute, continuous_update, command);
-}
-
-fb_outputs_t cm1e_fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
-                                   BOOL execute, BOOL continuous_update, const cm1e_axis_command_t *command)
+/** `refusal`: a reason of the block not to start, CM1E_OK: there is none. */
+static fb_outputs_t motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
+                                  BOOL execute, BOOL continuous_update, const cm1e_axis_command_t *command)
 {
     cm1e_command_status_t status = {.state = CM1E_COMMAND_UNKNOWN};
     cm1e_axis_t *axis = NULL;
@@ -168,13 +163,26 @@ fb_outputs_t cm1e_fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, 
     return out;
 }
 
+fb_outputs_t cm1e_fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
+                            const cm1e_axis_command_t *command)
+{
+    return motion_unless(CM1E_OK, fb, reference, execute, continuous_update, command);
+}
+
 fb_outputs_t cm1e_fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
                                   BOOL continuous_update, cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode,
                                   const cm1e_axis_table_t *table)
 {
     const cm1e_axis_command_t command = {.kind = kind, .buffer_mode = buffer_mode, .table = table};
     const cm1e_error_t refusal = continuous_update ? CM1E_ERROR_UNSUPPORTED : CM1E_OK;
-    return cm1e_fb_motion_unless(refusal, fb, reference, execute, FALSE, &command);
+    return motion_unless(refusal, fb, reference, execute, FALSE, &command);
+}
+
+fb_outputs_t cm1e_fb_refused_step(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
+                                  cm1e_error_t refusal)
+{
+    return motion_unless(refusal, fb, reference, execute, FALSE,
+                         &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HOMING_STEP});
 }
 
 /* ---- Enable ---------------------------------------------------------------------------------------------------- */

@@ -55,9 +55,9 @@ fb_outputs_t cm1e_fb_outputs(const cm1e_fb_private_t *fb);
  *  error of the block; the motion goes on with the last good inputs. */
 fb_outputs_t cm1e_fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
                             const cm1e_axis_command_t *command);
-/** cm1e_fb_motion() for a block with its own reason not to start: `refusal` is an error at the edge. */
-fb_outputs_t cm1e_fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
-                                   BOOL execute, BOOL continuous_update, const cm1e_axis_command_t *command);
+/** A whole block of a homing step that no motor has: `refusal` is its error at the edge. */
+fb_outputs_t cm1e_fb_refused_step(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
+                                  cm1e_error_t refusal);
 /** cm1e_fb_motion() for a motion along a table. It is locked to time and cannot be changed, so ContinuousUpdate TRUE is
  *  refused. */
 fb_outputs_t cm1e_fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,

@@ -3,9 +3,7 @@
 /* There is no passive homing to abort in this version. */
 void MC_AbortPassiveHoming(MC_AbortPassiveHoming_t *fb)
 {
-    const cm1e_axis_command_t none = {.kind = CM1E_COMMAND_HOMING_STEP};
-    const fb_outputs_t out = cm1e_fb_motion_unless(CM1E_ERROR_UNSUPPORTED, &fb->Private, fb->Axis, fb->Execute, FALSE,
-                                                   &none);
+    const fb_outputs_t out = cm1e_fb_refused_step(&fb->Private, fb->Axis, fb->Execute, CM1E_ERROR_UNSUPPORTED);
     fb->Done = out.done;
     FB_SHOW(fb, out);
 }

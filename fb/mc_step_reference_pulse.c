@@ -3,9 +3,7 @@
 /* The CM1-E shows no reference pulse of its encoder. */
 void MC_StepReferencePulse(MC_StepReferencePulse_t *fb)
 {
-    const cm1e_axis_command_t none = {.kind = CM1E_COMMAND_HOMING_STEP};
-    const fb_outputs_t out = cm1e_fb_motion_unless(CM1E_ERROR_AXIS_NO_SUCH_SIGNAL, &fb->Private, fb->Axis, fb->Execute,
-                                                   FALSE, &none);
+    const fb_outputs_t out = cm1e_fb_refused_step(&fb->Private, fb->Axis, fb->Execute, CM1E_ERROR_AXIS_NO_SUCH_SIGNAL);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }
