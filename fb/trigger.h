@@ -17,8 +17,8 @@ static inline cm1e_error_t fb_trigger(cm1e_axis_t *axis, const MC_TRIGGER_REF *r
     if (!reference)
         return CM1E_OK;
     if (reference->Axis.Handle && reference->Axis.Handle != fb->axis_handle)
-        return cm1e_axis_refuse_input(axis, CM1E_ERROR_UNSUPPORTED, "TriggerInput.Axis, a handle,", reference->Axis.Handle,
-                                      "0, or that of the axis of the block,");
+        return cm1e_axis_refuse_input(axis, CM1E_ERROR_UNSUPPORTED, "TriggerInput.Axis", reference->Axis.Handle,
+                                      "the Axis of the block, or a Handle of 0,");
     if (reference->InputNumber)
         trigger->input = reference->InputNumber;
     trigger->falling = reference->FallingEdge != FALSE;

@@ -78,7 +78,7 @@ static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
              cm1e_strerror(axis->fault.error));
 }
 
-/* Behind "... disabled by MC_Power": the inputs that are FALSE; now, for it may be asked later. */
+/* Behind "... disabled by MC_Power": which inputs are FALSE now, for the text may be asked for later. */
 static const char *disabled_inputs(const cm1e_axis_t *axis)
 {
     const bool positive = axis->power.enable_positive, negative = axis->power.enable_negative;

@@ -137,7 +137,7 @@ START_TEST(test_what_is_refused_is_told_in_words)
     trigger.Axis.Handle = 99;
     MC_TouchProbe_t probe = {.Axis = &reference, .TriggerInput = &trigger, .Execute = TRUE};
     MC_TouchProbe(&probe);
-    told("TriggerInput.Axis, a handle, is 99; 0, or that of the axis of the block, is right.");
+    told("TriggerInput.Axis is 99; the Axis of the block, or a Handle of 0, is right.");
     trigger.Axis.Handle = 0;
     for (int i = 0; i < 2; i++) {
         MC_SetOverride_t override = {.Axis = &reference, .Enable = TRUE, .VelFactor = -1, .AccFactor = 1, .JerkFactor = 1};
