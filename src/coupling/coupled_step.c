@@ -320,9 +320,18 @@ static bool function_jerks(const cm1e_axis_t *axis, const from_t *f)
     return coupling_keeps_jerk(axis->coupling) && jerk_of_function(axis, f) > most * (1.0 + 1e-6) + rounding;
 }
 
+/* Whether the superimposed motion makes the acceleration of the sum larger than it may be on the other side of standstill: the
+ * sum may turn round before that has ended. */
+static bool adds_too_much(const cm1e_axis_t *axis, const from_t *sum)
+{
+    static const double rounding = 1.0 + 1e-6;
+    const double either = smaller(axis->limits.maximum.acceleration, axis->limits.maximum.deceleration);
+    return fabs(sum->acceleration) > either * rounding && axis->superimposed.now.acceleration * sum->acceleration > 0.0;
+}
+
 static bool lacks_room(const cm1e_axis_t *axis, const from_t *sum)
 {
-    return coupling_keeps_jerk(axis->coupling) && !has_room(axis, sum);
+    return coupling_keeps_jerk(axis->coupling) && (!has_room(axis, sum) || adds_too_much(axis, sum));
 }
 
 static bool breaks_more_than_jerk(const cm1e_axis_t *axis, const from_t *sum)

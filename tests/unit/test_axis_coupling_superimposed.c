@@ -17,12 +17,16 @@ void tearDown(void) { axes_end(); }
 
 static double sign(void) { return one_in(2) ? 1.0 : -1.0; }
 
+/* Of the slave. The master has the smaller one of acceleration and deceleration for both. */
+static double slave_deceleration = MOST_ACCELERATION;
+
 static void make_two(void)
 {
     axes_describe(2);
     for (int n = 0; n < 2; n++) {
         axes_config(n)->max_velocity = MOST_VELOCITY;
-        axes_config(n)->max_acceleration = MOST_ACCELERATION;
+        axes_config(n)->max_acceleration = n == SLAVE ? MOST_ACCELERATION : fmin(MOST_ACCELERATION, slave_deceleration);
+        axes_config(n)->max_deceleration = n == SLAVE ? slave_deceleration : axes_config(n)->max_acceleration;
         axes_config(n)->max_jerk = MOST_JERK;
     }
     axes_make();
@@ -100,17 +104,18 @@ static void test_a_master_that_halts_leaves_the_superimposed_motion_as_it_was_as
 /* At most the distance that the slave covers with VelocityDiff while its coupling takes all of its acceleration. */
 static void check_farthest(const on_top_t *on_top, double change)
 {
-    const double longest_s = change / MOST_ACCELERATION + 2.0 * MOST_ACCELERATION / MOST_JERK;
+    const double masters = axes_axis(MASTER)->limits.maximum.acceleration;
+    const double longest_s = change / masters + 2.0 * MOST_ACCELERATION / MOST_JERK;
     AXES_MUST(on_top->farthest <= fabs(on_top->distance) + on_top->velocity * longest_s, "%.9g u covered of %.9g u",
               on_top->farthest, fabs(on_top->distance));
 }
 
-static void test_random_changes_of_the_master(void)
+static void random_changes(int runs)
 {
-    static char text[40];
-    for (int run = 0; run < seed_count(4000); run++) {
+    static char text[60];
+    for (int run = 0; run < seed_count(runs); run++) {
         chance_seed(seed_of(run));
-        snprintf(text, sizeof text, "seed %u", seed_of(run));
+        snprintf(text, sizeof text, "deceleration %g, seed %u", slave_deceleration, seed_of(run));
         const double from = uniform(0.5, 9.0) * sign(), to = one_in(3) ? 0.0 : uniform(0.5, 9.0) * sign();
         on_top_t on_top = {.distance = uniform(0.1, 3.0) * sign(), .velocity = uniform(0.5, 8.0)};
         const int change = pick(4); /* 0 halt, 1 another one that is slower, 2 override, 3 none */
@@ -140,6 +145,19 @@ static void test_random_changes_of_the_master(void)
             check_farthest(&on_top, fabs(to - from));
         axes_end();
     }
+}
+
+static void test_random_changes_of_the_master(void) { random_changes(4000); }
+
+/* The sum turns round elsewhere than the master: what it may have before, it may not have behind. */
+static void test_random_changes_where_the_deceleration_differs(void)
+{
+    static const double decelerations[] = {50.0, 80.0, 120.0, 200.0, 400.0};
+    for (int i = 0; i < 5; i++) {
+        slave_deceleration = decelerations[i];
+        random_changes(2000);
+    }
+    slave_deceleration = MOST_ACCELERATION;
 }
 
 /* The jerk of the master alone is more than the slave has, by the master's own limits or by the ratio. */
@@ -173,5 +191,6 @@ int main(void)
     RUN_TEST(test_a_master_with_more_jerk_than_the_slave_is_an_error_as_ever);
     RUN_TEST(test_a_master_that_halts_leaves_the_superimposed_motion_as_it_was_asked_for);
     RUN_TEST(test_random_changes_of_the_master);
+    RUN_TEST(test_random_changes_where_the_deceleration_differs);
     return UNITY_END();
 }
