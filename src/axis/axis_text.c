@@ -225,7 +225,8 @@ static void refused_direction_text(const cm1e_axis_t *axis, char *text, size_t s
 
 static void refused_disabled_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    snprintf(text, size, "Axis \"%s\", %s: %s%s.", axis->config->name, cm1e_axis_state_name(axis->state),
+    snprintf(text, size, "Axis \"%s\", %s: %s%s. Every part of the way counts: a small Jerk, or a target that is too near, "
+             "may turn the axis round first.", axis->config->name, cm1e_axis_state_name(axis->state),
              cm1e_strerror(CM1E_ERROR_AXIS_DIRECTION_DISABLED), disabled_inputs(axis));
 }
 

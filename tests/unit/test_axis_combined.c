@@ -427,6 +427,8 @@ static void test_a_small_jerk_leads_into_no_disabled_direction(void)
                 .kind = commands[i].kind, .position = commands[i].position, .velocity = commands[i].velocity,
                 .end_velocity = commands[i].end_velocity, .jerk = axis()->limits.maximum.jerk / 200.0}, &id);
             AXES_MUST(error == CM1E_OK || error == commands[i].refusal, "command %d in cycle %d: %s", i, at, axes_text(A));
+            if (error == CM1E_ERROR_AXIS_DIRECTION_DISABLED)
+                axes_told(A, "its EnableNegative is FALSE. Every part of the way counts");
             refused += error != CM1E_OK;
             for (double last = place(), n = 0; n < 2500; n++, last = place()) {
                 axes_cycles(1);
