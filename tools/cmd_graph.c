@@ -77,6 +77,13 @@ static int describe(const graph_t *graph, uint32_t i, char lines[LINES][LINE_BYT
 /** It is behind the break of a ring, at the cable that ends at the second interface. */
 static bool is_from_second(const graph_t *graph, uint32_t i) { return i >= graph->count - graph->from_second; }
 
+/** Of a slave that has none that is known, the one before it. */
+static unsigned parent_of(const graph_t *graph, uint32_t i)
+{
+    const unsigned parent = graph->places[i].parent;
+    return parent > 0 ? parent - 1u : i > 0 ? i - 1u : 0;
+}
+
 static bool is_troubled(const graph_t *graph, uint32_t i)
 {
     const cm1e_slave_place_t *place = &graph->places[i];
@@ -104,7 +111,7 @@ static void find_ring(graph_t *graph)
 {
     uint32_t first = 0;
     graph->second = graph->config->second_interface;
-    while (first < graph->count && graph->places[first].known && (first > 0 || graph->places[first].open[0]))
+    while (first < graph->count && (graph->places[first].known || graph->places[first].parent > 0) && (first > 0 || graph->places[first].open[0]))
         first++;
     graph->from_second = graph->second[0] ? graph->count - first : 0;
 }
@@ -140,7 +147,7 @@ static void print_dot_slave(FILE *file, const graph_t *graph, uint32_t i)
     else if (is_from_second(graph, i))
         fprintf(file, "  master -> s1 [style=dotted, color=red];\n");
     else if (!place->known && i > 0)
-        fprintf(file, "  s%u -> s%u [style=dotted, color=red];\n", i, slave->position);
+        fprintf(file, "  s%u -> s%u [style=dotted, color=red];\n", parent_of(graph, i) + 1, slave->position);
     else if (place->parent)
         fprintf(file, "  s%u -> s%u [taillabel=\"%u\", headlabel=\"%u\"];\n", place->parent, slave->position,
                 place->parent_port, place->entry_port);
@@ -173,8 +180,8 @@ static void place_boxes(graph_t *graph)
     graph->rows = graph->columns = graph->count > 0;
     for (uint32_t i = 0; i < graph->count; i++) {
         const cm1e_slave_place_t *place = &graph->places[i];
-        const bool has_parent = place->known && place->parent > 0;
-        const unsigned parent = has_parent ? place->parent - 1u : i > 0 ? i - 1 : 0;
+        const bool has_parent = place->parent > 0;
+        const unsigned parent = parent_of(graph, i);
         bool goes_on = true;
         for (int port = 1; has_parent && port < CM1E_PORTS; port++) /* is another one of its slaves the way on? */
             goes_on = goes_on && (port == place->parent_port || graph->places[parent].next[port] == 0 ||
@@ -241,7 +248,7 @@ static cable_t cable_to(const graph_t *graph, uint32_t i)
     const cm1e_slave_place_t *place = &graph->places[i];
     const bool has_parent = i > 0 && place->known && place->parent > 0;
     const bool at_break = is_from_second(graph, i) && !place->open[0];
-    const unsigned from = has_parent ? place->parent - 1u : i > 0 ? i - 1 : 0;
+    const unsigned from = parent_of(graph, i);
     cable_t cable = {.from_column = i > 0 ? graph->column[from] + 1 : 0, .from_row = i > 0 ? graph->row[from] : 0,
                      .column = graph->column[i] + 1, .row = graph->row[i], .broken = i > 0 && !has_parent,
                      .from_port = has_parent ? place->parent_port : -1, .port = place->entry_port};

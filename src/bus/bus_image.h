@@ -80,6 +80,9 @@ cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position);
 /** It has a mailbox with CoE, so its objects can be read. @rt any */
 CM1E_GUEST_API bool cm1e_bus_slave_has_coe(const cm1e_bus_t *bus, uint16_t position);
+/** The ports of a slave that were open when the bus reached Operational, bit 0 = port 0; 0: its place is not known,
+ *  or it may leave it, because it is optional. @rt any */
+CM1E_GUEST_API unsigned cm1e_bus_open_ports(const cm1e_bus_t *bus, uint16_t position);
 /** The nic below: the simulator finds its segment by it. @rt any */
 CM1E_GUEST_API struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus);
 

@@ -13,6 +13,16 @@ void cm1e_port_watch_begin(cm1e_bus_t *bus)
         bus->slaves[i].ports = (cm1e_port_watch_t){.place = known && i < bus->scanned ? places[i] : unknown};
 }
 
+unsigned cm1e_bus_open_ports(const cm1e_bus_t *bus, uint16_t position)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    unsigned open = 0;
+    const bool stays = slave && slave->ports.place.known && !slave->hot.optional;
+    for (unsigned port = 0; port < CM1E_PORTS && stays; port++)
+        open |= (unsigned)slave->ports.place.open[port] << port;
+    return open;
+}
+
 void cm1e_port_sentence(const cm1e_bus_t *bus, uint16_t position, int port, cm1e_port_fault_t fault, uint32_t count,
                         char *text, size_t size)
 {

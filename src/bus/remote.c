@@ -51,6 +51,9 @@ cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag)
         take_device(&bus->slaves[i], &told[i]);
         take_emergencies(&bus->slaves[i], &told[i]);
         bus->slaves[i].hot = (cm1e_hot_t){.presence = (uint32_t)told[i].presence, .group = "", .member = 1};
+        bus->slaves[i].ports.place.known = told[i].open_ports != 0;
+        for (unsigned port = 0; port < CM1E_PORTS; port++)
+            bus->slaves[i].ports.place.open[port] = told[i].open_ports >> port & 1;
         if (bus->remote_texts)
             memcpy(bus->remote_texts[i], told[i].presence_text, sizeof told[i].presence_text);
         bus->dc.used = (i > 0 && bus->dc.used) || told[i].has_clock;

@@ -20,6 +20,7 @@ typedef struct cm1e_remote_slave {
     bool coe;
     cm1e_presence_t presence;
     char presence_text[CM1E_PRESENCE_TEXT]; /**< "": it takes part */
+    uint8_t open_ports;     /**< cm1e_bus_open_ports() */
     bool has_clock;         /**< distributed clocks are used there */
     cm1e_slave_clock_t clock;
     uint32_t emergency_count;

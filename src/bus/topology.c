@@ -13,6 +13,13 @@ enum { REG_DL_STATUS = 0x0110, LINK_BIT = 4, LOOP_CLOSED_BIT = 8, COMMUNICATION_
 /** The ports in the order in which a frame leaves a slave that it entered by port 0. */
 static const uint8_t order_of_ports[CM1E_PORTS] = {0, 3, 1, 2};
 
+static void find_entry(cm1e_slave_place_t *place)
+{
+    for (unsigned i = CM1E_PORTS; i-- > 0;)
+        if (place->open[order_of_ports[i]])
+            place->entry_port = order_of_ports[i];
+}
+
 static void take_ports(cm1e_slave_place_t *place, uint16_t status)
 {
     *place = (cm1e_slave_place_t){0};
@@ -21,9 +28,7 @@ static void take_ports(cm1e_slave_place_t *place, uint16_t status)
         place->link[port] = status >> (LINK_BIT + port) & 1;
         place->open[port] = !closed && (status >> (COMMUNICATION_BIT + 2 * port) & 1);
     }
-    for (unsigned i = CM1E_PORTS; i-- > 0;)
-        if (place->open[order_of_ports[i]])
-            place->entry_port = order_of_ports[i];
+    find_entry(place);
 }
 
 /** A port at which a slave is expected that has not been met yet. */
@@ -72,8 +77,23 @@ cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size
     return cm1e_bus_read_topology(bus, places, room, diag);
 }
 
-/** The slaves of a program that runs may have gone since it began. No frame passes those, so the others are wired without
- *  them. */
+/** A slave of a program that runs does not answer any more. Where a slave is expected, it may be there without the address
+ *  that it had, as after a restart, and lets frames pass: then it is between those that it was between when the program
+ *  began. Elsewhere no frame passes it, and the others are wired without it, as without an optional one. */
+static void connect_silent(walk_t *walk, cm1e_slave_place_t *places, const cm1e_bus_slave_t *slave)
+{
+    const uint16_t position = slave->info.position;
+    cm1e_slave_place_t *place = &places[position - 1];
+    *place = (cm1e_slave_place_t){0};
+    if (!slave->ports.place.known || walk->count == 0)
+        return;
+    memcpy(place->open, slave->ports.place.open, sizeof place->open);
+    find_entry(place);
+    connect_slave(walk, places, position);
+    memset(place->open, 0, sizeof place->open); /* what they are now is not known */
+    place->known = false;
+}
+
 cm1e_error_t cm1e_bus_read_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag)
 {
     walk_t walk = {.count = 0};
@@ -84,7 +104,7 @@ cm1e_error_t cm1e_bus_read_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places,
             if (!bus->remote || ++gone == bus->scanned)
                 return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer when its ports are read.",
                                      position);
-            places[position - 1] = (cm1e_slave_place_t){0};
+            connect_silent(&walk, places, cm1e_bus_at(bus, position));
             continue;
         }
         take_ports(&places[position - 1], cm1e_get_u16(status));

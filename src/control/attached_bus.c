@@ -84,6 +84,7 @@ static void take_slave(cm1e_remote_slave_t *slave, uint16_t position, const json
     copy_text(slave->kind, sizeof slave->kind, told, "kind");
     slave->presence = (cm1e_presence_t)(number(told, "presence") & 7);
     copy_text(slave->presence_text, sizeof slave->presence_text, told, "presence_text");
+    slave->open_ports = (uint8_t)(number(told, "open_ports") & ((1 << CM1E_PORTS) - 1));
     take_emergencies(slave, json_object_get(told, "emergencies"));
     take_clock(slave, json_object_get(told, "clock"));
 }

@@ -184,6 +184,7 @@ json_t *cm1e_show_slaves(const view_t *view)
         json_object_set_new(slave, "motors", motors);
         json_object_set_new(slave, "software_version", cm1e_show_text(info->software_version));
         json_object_set_new(slave, "coe", json_boolean(cm1e_bus_slave_has_coe(view->bus, info->position)));
+        json_object_set_new(slave, "open_ports", json_integer(cm1e_bus_open_ports(view->bus, info->position)));
         json_object_set_new(slave, "emergencies", emergencies_of(view->bus, info->position));
         tell_presence(slave, view, i + 1);
         if (view->slaves[i].clock.has_clock)

@@ -125,6 +125,13 @@ def lost(bench):
                    f"lost slaves: {picture.broken}, {picture.red_boxes}")
         dot = bench.dot()
         wire.check("s1 -> s2 [taillabel" in dot and "s2 -> s3 [style=dotted, color=red]" in dot, dot)
+        bench.segment.console("replug 3")
+        bench.segment.console("power-cycle 2 20")  # it has no address then, and lets frames pass
+        wire.wait_for(lambda: "s3 -> s4 [taillabel" in bench.dot(), 10, "the slaves behind it answer")
+        dot = bench.dot()
+        wire.check("s1 -> s2 [style=dotted, color=red]" in dot and "s2 -> s3 [taillabel" in dot and "s1 -> s3" not in dot, dot)
+        picture = bench.picture("a slave that restarted, between others")
+        wire.check(picture.broken == [False, True, False, False], f"a slave that restarted: {picture.broken}")
     finally:
         program.kill()
         program.wait()
