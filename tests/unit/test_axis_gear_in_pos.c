@@ -293,6 +293,11 @@ static void test_modulo_axes_by_every_mode(void)
             const double begin = cm1e_axis_line(axes_axis(SLAVE), axes_axis(SLAVE)->setpoint.position);
             const double master = cm1e_axis_line(axes_axis(MASTER), axes_axis(MASTER)->setpoint.position);
             axes_wait_reached(SLAVE, id, 20000);
+            const double way = fabs(cm1e_axis_line(axes_axis(MASTER), axes_axis(MASTER)->setpoint.position) - master);
+            /* The first place that the slave can reach: the one that is 79 degrees ahead is too near, and so is the one that
+             * is 132 degrees ahead for a slave that has to catch up. */
+            const bool too_near = n == 9 || (n == 0 && mode == mcCatchUp);
+            TEST_ASSERT_TRUE(too_near ? way > 360 && way < 720 : way < 360);
             for (int i = 0; i < 1000; i++) {
                 TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, remainder(set_of(SLAVE) - 20 - (set_of(MASTER) - 90), 20));
                 axes_cycles(1);
