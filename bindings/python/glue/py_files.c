@@ -1,6 +1,5 @@
 /* Files in slaves (FoE), and files of other masters beside the devices that they describe. */
 #include <signal.h>
-#include <time.h>
 
 #include "cm1e/foe.h"
 #include "py_owner.h"
@@ -36,14 +35,6 @@ static void *transfer_in_run(void *argument)
     transfer->result = transfer_file(transfer->bus, transfer);
     atomic_store_explicit(&transfer->done, true, memory_order_release);
     return NULL;
-}
-
-static void let_a_cycle_pass(cm1e_py_session_t *s)
-{
-    const struct timespec moment = {.tv_nsec = 500000};
-    uint64_t advanced;
-    if (cm1e_py_advance(s, 1, NULL, &advanced) != CM1E_OK)
-        nanosleep(&moment, NULL);
 }
 
 /** The bus is not closed before the guest has left. */
@@ -84,7 +75,7 @@ cm1e_error_t cm1e_py_file(cm1e_py_session_t *s, cm1e_py_file_t *file, cm1e_diag_
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "The thread of a transfer cannot be made.");
     }
     while (!atomic_load_explicit(&transfer.done, memory_order_acquire))
-        let_a_cycle_pass(s);
+        py_owner_let_a_cycle_pass(s);
     pthread_join(thread, NULL);
     leave_run(s);
     return transfer.result;

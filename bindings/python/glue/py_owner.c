@@ -221,3 +221,11 @@ bool cm1e_py_wait(cm1e_py_session_t *s, const cm1e_py_block_t *block, int64_t ti
     }
     return cm1e_py_block_ended(block);
 }
+
+void py_owner_let_a_cycle_pass(cm1e_py_session_t *s)
+{
+    const struct timespec moment = {.tv_nsec = 500000};
+    uint64_t advanced;
+    if (cm1e_py_advance(s, 1, NULL, &advanced) != CM1E_OK)
+        nanosleep(&moment, NULL);
+}

@@ -62,6 +62,8 @@ cm1e_error_t py_owner_begin(cm1e_py_session_t *session, cm1e_diag_t *diag);
 cm1e_error_t py_owner_do(cm1e_py_session_t *session, cm1e_error_t (*act)(cm1e_py_session_t *, void *), void *argument);
 /** The network that the calling thread has selected, 0 = first. */
 uint32_t py_owner_selected(void);
+/** For a caller that waits for the cycle: on virtual time it makes a cycle, in real time it waits 0.5 ms. */
+void py_owner_let_a_cycle_pass(cm1e_py_session_t *session);
 /** Stops the run, if there is one, and waits for its end. */
 void py_owner_end_run(cm1e_py_session_t *session);
 /** Ends the owner; nothing runs any more. */

@@ -1,6 +1,5 @@
 /* Signals, slaves, simulator, log and trace of a session. */
 #include <string.h>
-#include <time.h>
 
 #include "cm1e/plot.h"
 #include "cm1e/trace.h"
@@ -118,14 +117,6 @@ static cm1e_error_t begin_transfer(cm1e_py_session_t *s, void *argument)
                                       transfer->diag);
 }
 
-static void let_a_cycle_pass(cm1e_py_session_t *s)
-{
-    const struct timespec moment = {.tv_nsec = 500000};
-    uint64_t advanced;
-    if (cm1e_py_advance(s, 1, NULL, &advanced) != CM1E_OK)
-        nanosleep(&moment, NULL);
-}
-
 /** A transfer is finished by the cycle, also by the last one of the run: the bus cancels what waits when it stops. */
 cm1e_error_t cm1e_py_sdo(cm1e_py_session_t *s, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
 {
@@ -134,7 +125,7 @@ cm1e_error_t cm1e_py_sdo(cm1e_py_session_t *s, cm1e_sdo_t *sdo, cm1e_diag_t *dia
     if (!transfer.submitted || error != CM1E_OK)
         return error;
     while (cm1e_sdo_state(sdo) == CM1E_SDO_BUSY)
-        let_a_cycle_pass(s);
+        py_owner_let_a_cycle_pass(s);
     if (cm1e_sdo_state(sdo) == CM1E_SDO_DONE)
         return CM1E_OK;
     return cm1e_diag_set(diag, sdo->error, sdo->abort_code, "Object 0x%04X:%02X of slave %u: %s%s%s.", sdo->index,
