@@ -156,20 +156,17 @@ static int fail_at(const cm1e_entry_t *entry, const cm1e_diag_t *diag)
     return status;
 }
 
-static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *diag)
+static int transfer(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const sdo_options_t *options, cm1e_diag_t *diag)
 {
-    long long position;
-    uint16_t index = 0;
+    uint16_t position, index = 0;
     uint8_t subindex = 0;
     const bool list = options->word_count == 2;
-    if (!parse_number(options->words[1], "the position", 1, CM1E_MAX_SLAVES, &position)
-        || (!list && !parse_object(options->words[2], &index, &subindex)))
+    const int found = find_slave(bus, axes_to_name(&options->common, config), options->words[1], &position);
+    if (found != EXIT_OK)
+        return found;
+    if (!list && !parse_object(options->words[2], &index, &subindex))
         return EXIT_WRONG_USE;
-    const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, (uint32_t)position);
-    if (!slave) {
-        complain("there is no slave %lld; the network has %u", position, cm1e_bus_slave_count(bus));
-        return EXIT_FAILED;
-    }
+    const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);
     if (list)
         return list_dictionary(bus, slave, options->values, options->common.json);
     const cm1e_entry_t *entry = find_entry(slave, index, subindex);
@@ -179,7 +176,7 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     static uint8_t data[MAX_SDO_BYTES];
     size_t size = sizeof data;
     if (options->word_count == 3) {
-        if (cm1e_sdo_read(bus, (uint16_t)position, index, subindex, data, &size, diag) != CM1E_OK)
+        if (cm1e_sdo_read(bus, position, index, subindex, data, &size, diag) != CM1E_OK)
             return fail_at(entry, diag);
         print_value(data, size, type, entry, options->common.json);
         return EXIT_OK;
@@ -191,7 +188,7 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     size = encode_value(options->words[3], type, data);
     if (size == 0)
         return EXIT_WRONG_USE;
-    const cm1e_error_t error = cm1e_sdo_write(bus, (uint16_t)position, index, subindex, data, size, diag);
+    const cm1e_error_t error = cm1e_sdo_write(bus, position, index, subindex, data, size, diag);
     return error == CM1E_OK ? EXIT_OK : fail_at(entry, diag);
 }
 
@@ -200,17 +197,17 @@ static const struct argp_option table[] = {
     {"values", KEY_VALUES, NULL, 0, "list: also show the present values of the objects", 0},
     {0}};
 const struct argp argp_sdo = {
-    table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
+    table, parse, "read POSITION|AXIS INDEX[:SUB]\nwrite POSITION|AXIS INDEX[:SUB] VALUE\nlist POSITION|AXIS",
     "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x60F6:1B` (index and sub-index are hexadecimal), "
-    "or lists the dictionary of the slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
+    "or lists the dictionary of the slave: type, bits, access (p: in Pre-Operational only), whether the object can be "
+    "mapped, name. AXIS is the name of an axis or a slave in the bus file.",
     attach_children, NULL, NULL};
 
 static int act(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *options, uint16_t position)
 {
     cm1e_diag_t diag = {0};
-    (void)config;
     (void)position;
-    return transfer(bus, options, &diag);
+    return transfer(bus, config, options, &diag);
 }
 
 int command_sdo(int argc, char **argv)

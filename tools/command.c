@@ -371,18 +371,52 @@ int shelter_negative_value(int argc, char **argv, char **sheltered)
     return count;
 }
 
+/** Whether the bus file calls this slave, or the axis that it is, by this word. */
+static bool is_called(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
+                      const char *word)
+{
+    const cm1e_places_t places = {config, bus, cm1e_bus_slave};
+    const uint16_t place = cm1e_place_of(&places, slave);
+    const int axis = find_axis_at(bus, config, slave, 0);
+    bool is = axis >= 0 && strcmp(config->axes[axis].name, word) == 0;
+    for (uint32_t i = 0; i < config->slave_count && !is; i++)
+        is = strcmp(config->slaves[i].name, word) == 0 && cm1e_place_is_of_slave(&places, &config->slaves[i], slave, place);
+    return is;
+}
+
+/** Complains of a word that is neither an axis nor a slave of the bus file. */
+static bool is_no_name(const cm1e_bus_config_t *config, const char *word)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = word};
+    for (uint32_t i = 0; i < config->axis_count; i++) {
+        if (strcmp(config->axes[i].name, word) == 0)
+            return false;
+        cm1e_near_look(&near, config->axes[i].name);
+    }
+    for (uint32_t i = 0; i < config->slave_count; i++) {
+        if (strcmp(config->slaves[i].name, word) == 0) {
+            complain("slave \"%s\" is not on the network", word);
+            return true;
+        }
+        cm1e_near_look(&near, config->slaves[i].name);
+    }
+    complain("the bus file has neither an axis nor a slave \"%s\"%s", word, cm1e_near_text(&near, text, sizeof text));
+    return true;
+}
+
 int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const char *word, uint16_t *position)
 {
     const uint32_t count = cm1e_bus_slave_count(bus);
     long long number;
-    for (uint32_t i = 1; i <= count; i++) {
-        const int axis = find_axis_at(bus, config, cm1e_bus_slave(bus, i), 0);
-        if (axis >= 0 && strcmp(config->axes[axis].name, word) == 0) {
+    for (uint32_t i = 1; i <= count; i++)
+        if (is_called(bus, config, cm1e_bus_slave(bus, i), word)) {
             *position = (uint16_t)i;
             return EXIT_OK;
         }
-    }
-    if (word[0] < '0' || word[0] > '9') {
+    if ((word[0] < '0' || word[0] > '9') && word[0] != '-') {
+        if (config->slave_count > 0 && is_no_name(config, word))
+            return EXIT_WRONG_USE;
         const int axis = find_axis(config, word);
         if (axis >= 0)
             complain("the slave of axis \"%s\" is not on the network, or is a bridge: give its position", word);

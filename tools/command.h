@@ -144,8 +144,8 @@ bool parse_positive(const char *word, const char *what, double *value);
 /** As parse_real(), above 0 and up to `longest` seconds. */
 bool parse_seconds(const char *word, int longest, double *value);
 
-/** The slave of a word after a scan: the name of an axis of the bus file (not behind a bridge), or a position. Returns
- *  the exit status, with a complaint: there is no such slave. */
+/** The slave of a word after a scan: the name of an axis (not behind a bridge) or of a slave of the bus file, or a
+ *  position. Returns the exit status, with a complaint: there is no such slave. */
 int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const char *word, uint16_t *position);
 
 /** What a command does to one slave of a scanned network. It complains of its errors and returns the exit status. */

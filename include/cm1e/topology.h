@@ -33,8 +33,8 @@ typedef struct cm1e_slave_place {
 /** Reads the places of all slaves after cm1e_bus_scan(): while no cycle runs, or through the program that runs the
  *  network (cm1e_bus_open_attached()). `places[0]` is that of the first slave; at most `room` are written. Returns
  *  CM1E_ERROR_TIMEOUT if a slave does not answer; but while a program runs the network, only the place of that slave is
- *  not known, if others answer. Where those behind it answer, it has `parent` and `next` of the program's start. Returns
- *  CM1E_ERROR_STATE before a scan or in a task. @rt block */
+ *  not known, if others answer. Where those behind it answer, it has `parent` and `next` of the program's start.
+ *  Returns CM1E_ERROR_STATE before a scan or in a task. @rt block */
 CM1E_API cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag);
 /** Names the cable at a port in words: "between slave 1 (port 1, OUT) and slave 2 (port 0, IN)". `place` is that of the
  *  slave at `position`. 96 bytes are enough. @rt block */

@@ -73,10 +73,20 @@ with tempfile.TemporaryDirectory() as folder:
         expect(abs(sum(one["lost_frames"] for one in networks) - told["bus"]["lost_frames"]) <= 100, shown)
         program.terminate()
 
+# objects of slaves by the names of the bus file
+MACHINE = os.path.join(sys.argv[2], "examples", "machine.yaml")
+for name, position in (("feed", "6"), ("pressures", "4")):
+    by_name, by_number = (run("sdo", "read", "-b", MACHINE, word, "0x1018:2") for word in (name, position))
+    expect(by_name.returncode == 0 and by_name.stdout == by_number.stdout != "", (by_name, by_number))
+nobody = run("sdo", "read", "-b", MACHINE, "pressure", "0x1018:2")
+expect(nobody.returncode == WRONG_USE and 'neither an axis nor a slave "pressure"; did you mean "pressures"?' in nobody.stderr, nobody)
+states = run("states", "-b", MACHINE, "valves")
+expect(states.returncode == 0 and "Digital" in states.stdout and len(states.stdout.splitlines()) == 1, states)
+
 # a bus file is checked without its network
 good = run("check", FILE)
 expect(good.returncode == 0 and "bus file, 3 axes, 0 other slaves, no error" in good.stdout, good)
-machine = run("check", os.path.join(sys.argv[2], "examples", "machine.yaml"))
+machine = run("check", MACHINE)
 expect(machine.returncode == 0 and "bus file, 1 axis, 5 other slaves, no error" in machine.stdout, machine)
 with tempfile.TemporaryDirectory() as folder:
     for name in ("wrong.yaml", "wrong.yml"):
