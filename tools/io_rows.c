@@ -35,14 +35,19 @@ json_t *io_signal_row(int slave, const char *slave_name, const char *name, const
 
 /* ---- as text ----------------------------------------------------------------------------------------------------- */
 
+enum { SIGNAL_WIDTH = 48 }; /* of the first column */
+
 static void print_axis_row(const json_t *row)
 {
     const json_t *input = json_object_get(row, "input"), *value = json_object_get(row, "value");
+    const char *axis = text_of(row, "axis"), *wired = text_of(row, "wired");
+    char name[CM1E_NAME_LENGTH + 48];
     if (input)
-        printf("%s.IN%d  %-36s %-6s in   %s\n", text_of(row, "axis"), (int)json_integer_value(input),
-               text_of(row, "wired"), "BOOL", json_is_null(value) ? "-" : json_is_true(value) ? "1" : "0");
+        snprintf(name, sizeof name, "%s.IN%d%s%s", axis, (int)json_integer_value(input), wired[0] ? "  " : "", wired);
     else
-        printf("%s.OUT1 %-36s %-6s out  %d\n", text_of(row, "axis"), "", "BOOL", json_is_true(value));
+        snprintf(name, sizeof name, "%s.OUT1", axis);
+    printf("%-*s %-6s %-4s %s\n", SIGNAL_WIDTH, name, "BOOL", input ? "in" : "out",
+           json_is_null(value) ? "-" : json_is_true(value) ? "1" : "0");
 }
 
 /** "valves.clamp", "2.Output 1" */
@@ -53,7 +58,7 @@ static void print_signal_row(const json_t *row)
     snprintf(position, sizeof position, "%d", (int)json_integer_value(json_object_get(row, "slave")));
     snprintf(name, sizeof name, "%s.%s", slave[0] ? slave : position, text_of(row, "name"));
     const char *use = text_of(row, "use");
-    printf("%-44s %-6s %-4s %s%s%s\n", name, text_of(row, "type"),
+    printf("%-*s %-6s %-4s %s%s%s\n", SIGNAL_WIDTH, name, text_of(row, "type"),
            json_is_true(json_object_get(row, "output")) ? "out" : "in", text_of(row, "value"), use[0] ? "    " : "", use);
 }
 
