@@ -78,8 +78,7 @@ static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
              cm1e_strerror(axis->fault.error));
 }
 
-/* Behind "... disabled by MC_Power": which inputs are FALSE now, for the text may be asked for later. */
-static const char *disabled_inputs(const cm1e_axis_t *axis)
+const char *cm1e_axis_disabled_inputs(const cm1e_axis_t *axis)
 {
     const bool positive = axis->power.enable_positive, negative = axis->power.enable_negative;
     return positive && negative ? "" : positive ? ": its EnableNegative is FALSE" : negative ? ": its EnablePositive is FALSE"
@@ -94,7 +93,7 @@ void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t siz
     if (ended->error != CM1E_ERROR_AXIS_SYNC_WAY || !coupling_text(axis, ended->error, true, text, size))
         snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s%s.", axis->config->name,
                  kind_row((unsigned)ended->number)->name, cm1e_strerror(ended->error),
-                 ended->error == CM1E_ERROR_AXIS_DIRECTION_DISABLED ? disabled_inputs(axis) : "");
+                 ended->error == CM1E_ERROR_AXIS_DIRECTION_DISABLED ? cm1e_axis_disabled_inputs(axis) : "");
     if (ended->error == CM1E_ERROR_AXIS_POSITION_RANGE)
         add_counts_limit(axis, text, size);
 }
@@ -225,9 +224,9 @@ static void refused_direction_text(const cm1e_axis_t *axis, char *text, size_t s
 
 static void refused_disabled_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    snprintf(text, size, "Axis \"%s\", %s: %s%s. Every part of the way counts: a small Jerk, or a target that is too near, "
-             "may turn the axis round first.", axis->config->name, cm1e_axis_state_name(axis->state),
-             cm1e_strerror(CM1E_ERROR_AXIS_DIRECTION_DISABLED), disabled_inputs(axis));
+    snprintf(text, size, "Axis \"%s\", %s: %s%s. Every part of the way counts: a small "
+             "Jerk, or a target that is too near, may turn the axis round first.", axis->config->name, cm1e_axis_state_name(axis->state),
+             cm1e_strerror(CM1E_ERROR_AXIS_DIRECTION_DISABLED), cm1e_axis_disabled_inputs(axis));
 }
 
 /* Blocks that begin in Standstill; at standstill it is the end of a homing in steps that lacks a step. */

@@ -7,6 +7,9 @@
 
 #include "axis/axis_limits.h"
 
+/** Behind "... disabled by MC_Power": which inputs are FALSE now, for the text may be asked for later; "": none. */
+const char *cm1e_axis_disabled_inputs(const cm1e_axis_t *axis);
+
 /** Remembers the last refusal for the text. A success clears only a refusal of the same kind. */
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 /** cm1e_axis_remember_not_set() for a block that is refused in every call: when that `begins`, and again if nothing else is

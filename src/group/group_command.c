@@ -24,7 +24,7 @@ static bool is_limit(double value) { return value >= 0.0 && isfinite(value); }
 static cm1e_error_t check_modes(cm1e_group_t *group, const cm1e_group_command_t *command)
 {
     if ((unsigned)command->buffer_mode > mcBlendingHigh)
-        return refuse(group, CM1E_ERROR_AXIS_BUFFER_MODE, 0.0, NULL);
+        return refuse(group, CM1E_ERROR_AXIS_BUFFER_MODE, 0.0, "BufferMode is 0 (mcAborting) ... 5 (mcBlendingHigh).");
     if (command->kind == CM1E_GROUP_HALT)
         return is_blending(command) ? refuse(group, CM1E_ERROR_AXIS_BUFFER_MODE, 0.0,
                                              "MC_GroupHalt supports only mcAborting and mcBuffered.") : CM1E_OK;

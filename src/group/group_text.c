@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "axis/axis_text.h"
 #include "group/group_private.h"
 
 cm1e_error_t cm1e_group_refuse(cm1e_group_t *group, group_refusal_t refusal)
@@ -87,11 +88,14 @@ static void refusal_text(const cm1e_group_t *group, char *text, size_t size)
     if (refusal->ident)
         snprintf(about, sizeof about, " Axis \"%s\" (IdentInGroup %u).", name_of(group, refusal->ident),
                  (unsigned)refusal->ident);
+    const cm1e_axis_t *axis = refusal->ident && refusal->error == CM1E_ERROR_AXIS_DIRECTION_DISABLED
+                                  ? cm1e_axis_from_reference(&group->member[refusal->ident - 1]) : NULL;
     char asked[64] = "";
     if (refusal->value != 0.0)
         snprintf(asked, sizeof asked, " %.6g was given.", refusal->value);
-    snprintf(text, size, "Axes group \"%s\", %s: %s.%s%s%s%s%s", group->config.name,
-             cm1e_group_state_name(group->state), cm1e_strerror(refusal->error), about, asked,
+    snprintf(text, size, "Axes group \"%s\", %s: %s%s.%s%s%s%s%s", group->config.name,
+             cm1e_group_state_name(group->state), cm1e_strerror(refusal->error),
+             axis ? cm1e_axis_disabled_inputs(axis) : "", about, asked,
              path_texts[refusal->path], refusal->why ? " " : "", refusal->why ? refusal->why : "");
 }
 

@@ -323,6 +323,7 @@ static void test_modes_and_numbers_that_are_none(void)
     c = line_to(1.0, 1.0, 1.0);
     c.buffer_mode = (MC_BUFFER_MODE)6;
     refused_without_a_number(&c, CM1E_ERROR_AXIS_BUFFER_MODE);
+    group_told("BufferMode is 0 (mcAborting) ... 5 (mcBlendingHigh).");
     c = (cm1e_group_command_t){.kind = CM1E_GROUP_HALT, .buffer_mode = mcBlendingLow};
     refused_without_a_number(&c, CM1E_ERROR_AXIS_BUFFER_MODE);
     group_told("MC_GroupHalt supports only mcAborting and mcBuffered.");
@@ -398,7 +399,7 @@ static void test_software_limits_and_directions(void)
     axes_cycles(2);
     c = line_to(1.0, 1.0, 1.0);
     group_refused(&c, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
-    group_told("\"axis0\"");
+    group_told("disabled by MC_Power: its EnableNegative is FALSE. Axis \"axis0\"");
     c = line_to(2.0, 0.0, 1.0);
     group_done(group_command(&c));
 }
