@@ -34,6 +34,10 @@ static bool is_cut_off(const char *path)
 cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
 {
     *loaded = (st_loaded_t){0};
+    const char *end = strrchr(path, '.');
+    if (end && (strcasecmp(end, ".st") == 0 || strcasecmp(end, ".TcPOU") == 0))
+        return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "%s is a source: \"cm1e st build %s\" makes %.*s.so of it, which "
+                             "runs.", path, path, (int)(end - path), path);
     if (is_cut_off(path))
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s is cut off: its end is missing. Copy it again, or make it again "
                              "by `cm1e st build`.", path);

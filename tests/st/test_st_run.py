@@ -114,6 +114,8 @@ def check_names():
     program = build("names", "VAR_GLOBAL XX : AXIS_REF; END_VAR PROGRAM Main END_PROGRAM")
     run(program, status=1, says='did you mean "X"?')
     run("nothing.so", status=1, says="cannot be loaded")
+    for name in ("names.st", "MAIN.TcPOU"):
+        run(name, status=1, says=f'{name} is a source: "cm1e st build {name}" makes {name.split(".")[0]}.so of it')
     run(os.path.join(BIN, "cm1e"), status=1, says="cannot")
     build("slow", "CONFIGURATION C RESOURCE R ON P TASK t(INTERVAL := T#1500us); PROGRAM a WITH t : Main; END_RESOURCE "
           "END_CONFIGURATION PROGRAM Main END_PROGRAM")
