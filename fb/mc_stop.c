@@ -6,10 +6,7 @@ static bool hold_axis(cm1e_fb_private_t *fb)
     cm1e_axis_t *axis = fb->command ? cm1e_fb_axis(fb) : NULL;
     if (!axis)
         return false;
-    cm1e_axis_info_t info;
-    cm1e_axis_hold_stop(axis, fb->command, fb->trigger_before);
-    cm1e_axis_get(axis, &info);
-    return fb->trigger_before && info.state == CM1E_AXIS_STOPPING;
+    return cm1e_axis_hold_stop(axis, fb->command, fb->trigger_before);
 }
 
 void MC_Stop(MC_Stop_t *fb)

@@ -230,8 +230,9 @@ typedef struct cm1e_following {
 } cm1e_following_t;
 /** For a block of a slave: what cm1e_axis_command_status() says, as far as it follows by this command. @rt cycle */
 cm1e_following_t cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id);
-/** Holds the axis in Stopping while MC_Stop.Execute is TRUE. @rt cycle */
-void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);
+/** Holds the axis in Stopping while MC_Stop.Execute is TRUE. True: it is this command that holds it there now, and not a
+ *  later MC_Stop. @rt cycle */
+bool cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);
 
 /** MC_Power, called every cycle by its one owner (any non-NULL pointer that identifies the block).
  *  CM1E_ERROR_FB_SECOND_POWER: another one owns it. @rt cycle */

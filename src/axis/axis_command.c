@@ -263,8 +263,10 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     return axis->commands.refusal;
 }
 
-void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
+bool cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
 {
-    if (id != 0 && id == axis->commands.stop)
-        axis->commands.stop_held = hold;
+    if (id == 0 || id != axis->commands.stop)
+        return false;
+    axis->commands.stop_held = hold;
+    return hold && axis->state == CM1E_AXIS_STOPPING;
 }

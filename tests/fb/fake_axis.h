@@ -155,10 +155,13 @@ cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, boo
     return CM1E_OK;
 }
 
-void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
+bool cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
 {
+    cm1e_axis_info_t info;
     axis->hold = hold;
     axis->hold_id = id;
+    cm1e_axis_get(axis, &info);
+    return hold && info.state == CM1E_AXIS_STOPPING;
 }
 
 cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
