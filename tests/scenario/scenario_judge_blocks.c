@@ -74,22 +74,13 @@ static void judge_gear(run_t *run, const instance_t *block, const machine_axis_t
                       axis->name, block->type->name, ratio, axis->info.set_velocity, master->info.set_velocity);
 }
 
-/** Another block has taken over in this cycle: this one may have ended by a blending. */
-static bool is_followed(const run_t *run, const instance_t *block)
-{
-    for (int i = 0; i < run->scenario->step_count; i++)
-        if (&run->blocks[i] != block && run->blocks[i].step->axis == block->step->axis &&
-            run->blocks[i].step->at <= run->cycle && block_flag(&run->blocks[i], "Busy"))
-            return true;
-    return false;
-}
-
+/** One that is passed without a stop, because another command waits to blend into it, is Done on its way. */
 static void judge_arrival(run_t *run, const instance_t *block, const machine_axis_t *axis)
 {
     const double unit = axis->spec->counts_per_unit, range = axis->spec->modulo / unit;
     double off = axis->info.set_position - block_number(block, "Position");
     off = range > 0 ? remainder(off, range) : off;
-    if (block->step->change == 0 && !is_followed(run, block) && fabs(off) * unit > 0.5)
+    if (block->step->change == 0 && axis->info.set_velocity == 0 && fabs(off) * unit > 0.5)
         scenario_fail(run, "claim", "%s: MC_MoveAbsolute is Done at %.9g u, not at %.9g", axis->name,
                       axis->info.set_position, block_number(block, "Position"));
 }
@@ -149,6 +140,55 @@ void judge_block(run_t *run, instance_t *block)
 }
 
 
+/* ---- what blocks read -------------------------------------------------------------------------------------------- */
+
+static void read_axis(run_t *run, machine_axis_t *axis)
+{
+    MC_ReadStatus_t *status = &axis->status;
+    MC_ReadAxisError_t *failure = &axis->failure;
+    MC_ReadMotionState_t *motion = &axis->motion;
+    status->Axis = failure->Axis = motion->Axis = &axis->reference;
+    status->Enable = failure->Enable = motion->Enable = TRUE;
+    MC_ReadStatus(status);
+    MC_ReadAxisError(failure);
+    MC_ReadMotionState(motion);
+    const int states = status->ErrorStop + status->Disabled + status->Stopping + status->Homing + status->Standstill +
+                       status->DiscreteMotion + status->ContinuousMotion + status->SynchronizedMotion;
+    if (!status->Valid || states != 1)
+        scenario_fail(run, "read", "%s: MC_ReadStatus: Valid %d, %d states", axis->name, status->Valid, states);
+    if (!failure->Valid || (failure->AxisErrorID != 0) != (status->ErrorStop != FALSE))
+        scenario_fail(run, "read", "%s: MC_ReadAxisError: Valid %d, AxisErrorID 0x%04X, ErrorStop %d", axis->name,
+                      failure->Valid, failure->AxisErrorID, status->ErrorStop);
+    const int changes = motion->ConstantVelocity + motion->Accelerating + motion->Decelerating;
+    if (motion->Valid && (changes != 1 || (motion->DirectionPositive && motion->DirectionNegative)))
+        scenario_fail(run, "read", "%s: MC_ReadMotionState: constant %d, accelerating %d, decelerating %d, positive %d, "
+                      "negative %d", axis->name, motion->ConstantVelocity, motion->Accelerating, motion->Decelerating,
+                      motion->DirectionPositive, motion->DirectionNegative);
+}
+
+/** A path goes on only while a block has it, or behind a refused edge of one. */
+static void read_group(run_t *run)
+{
+    enum { SOON = 3 };
+    MC_GroupReadStatus_t *group = &run->group_status;
+    bool has = false;
+    group->AxesGroup = &run->group;
+    group->Enable = TRUE;
+    MC_GroupReadStatus(group);
+    const int states = group->GroupMoving + group->GroupHoming + group->GroupErrorStop + group->GroupStandby +
+                       group->GroupStopping + group->GroupDisabled;
+    if (!group->Valid || states != 1)
+        scenario_fail(run, "read", "MC_GroupReadStatus: Valid %d, %d states", group->Valid, states);
+    for (int i = 0; i < run->scenario->step_count; i++) {
+        const instance_t *block = &run->blocks[i];
+        if (block->step->at <= run->cycle && block_member(block->type, "AxesGroup"))
+            has = has || block->triggered || block_flag(block, "Busy") || block_flag(block, "Error") || block->step->again > 0;
+    }
+    run->group_alone = group->GroupMoving && !has ? run->group_alone + 1 : 0;
+    if (run->group_alone > SOON)
+        scenario_fail(run, "block", "the group is in GroupMoving, and no block has it");
+}
+
 /** Moves on top of another motion, or only a part of it. */
 static bool has_axis(const instance_t *block)
 {
@@ -161,6 +201,10 @@ void judge_blocks(run_t *run)
 {
     enum { SOON = 3 };
     const bool program = run->phase == PHASE_PROGRAM;
+    for (int n = 0; n < run->scenario->axis_count; n++)
+        read_axis(run, &run->axes[n]);
+    if (run->grouped && program)
+        read_group(run);
     for (int n = 0; program && n < run->scenario->axis_count; n++) {
         const machine_axis_t *axis = &run->axes[n];
         const instance_t *has = NULL;

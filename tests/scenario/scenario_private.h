@@ -90,6 +90,9 @@ typedef struct machine_axis {
     MC_CAM_REF cam;
     MC_CAM_POINT cam_points[3];
     MC_AddAxisToGroup_t add;
+    MC_ReadStatus_t status;               /**< what blocks show that only read */
+    MC_ReadAxisError_t failure;
+    MC_ReadMotionState_t motion;
     witness_t seen;
 } machine_axis_t;
 
@@ -110,6 +113,8 @@ typedef struct run {
     MC_GroupEnable_t group_enable;
     MC_UngroupAllAxes_t ungroup;
     MC_GroupReset_t group_reset;
+    MC_GroupReadStatus_t group_status;
+    int group_alone;                      /**< cycles in GroupMoving without a block */
     machine_axis_t axes[SCENARIO_AXES];
     instance_t blocks[SCENARIO_STEPS];
     int cycle, phase_begin;

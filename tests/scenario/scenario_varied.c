@@ -57,7 +57,7 @@ static void vary_axis(axis_spec_t *axis)
 {
     const bool limited = axis->limit_negative != 0 || axis->limit_positive != 0;
     if (!limited && axis->stops == 0 && one_in(2))
-        axis->modulo = axis->counts_per_unit * ceil(uniform(2000, one_in(2) ? 20000 : 200000) / axis->counts_per_unit);
+        axis->modulo = axis->counts_per_unit * ceil(uniform(3000, one_in(2) ? 20000 : 200000) / axis->counts_per_unit);
     /* In CSV, and with much friction, a motor does not get into the window of the default. */
     axis->done_waits = one_in(3) && axis->mapping != MAPPING_CSV && axis->friction == 0 && axis->stops == 0;
 }
