@@ -185,8 +185,10 @@ static void note(run_t *run, const fault_t *fault)
         /* Nor can the master help that a motor behind a bridge misses targets, and then gets to the last one. */
         if ((fault->kind == FAULT_LOAD || fault->kind == FAULT_BRIDGE_CABLE) && n == (int)fault->axis)
             axis->seen.pushed_until = end_of(fault);
-        if (fault->kind == FAULT_STALL)
+        if (fault->kind == FAULT_STALL) {
             axis->seen.stalled = 0;
+            axis->seen.pause = (int)fault->length;
+        }
         if ((fault->kind == FAULT_JUMP || fault->kind == FAULT_FREEZE) && n == (int)fault->axis)
             axis->seen.caught = -(int)fault->length; /* what the position loop of CSV makes of it */
         if (fault->kind == FAULT_RING || (run->scenario->ring != 0 && fault->kind == FAULT_POWER_CYCLE))

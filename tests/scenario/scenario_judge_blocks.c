@@ -229,7 +229,8 @@ void judge_blocks(run_t *run)
         const bool moves = axis->info.state == CM1E_AXIS_DISCRETE_MOTION || axis->info.state == CM1E_AXIS_SYNCHRONIZED_MOTION ||
                            axis->info.state == CM1E_AXIS_STOPPING;
         witness_t *seen = &run->axes[n].seen;
-        seen->barred = moves && (seen->barred || !axis->power.Enable || !axis->power.EnablePositive ||
+        const bool turns = moves || axis->info.state == CM1E_AXIS_CONTINUOUS_MOTION;
+        seen->barred = turns && (seen->barred || !axis->power.Enable || !axis->power.EnablePositive ||
                                  !axis->power.EnableNegative || refused || was_disturbed(run, seen));
         seen->alone = moves && !busy && !seen->barred && !(run->grouped && n < 2) ? seen->alone + 1 : 0;
         if (axis->seen.alone > SOON)

@@ -48,6 +48,7 @@ typedef struct witness {
     int rung;                             /**< cycles since a cable of its ring broke or was mended */
     int stopped;                          /**< cycles since a hard stop held it */
     int stalled;                          /**< cycles since the host stood still */
+    int pause;                            /**< cycles of that */
     double runs_to;                       /**< counts, in the direction of its axis: to there it may go on after a pause */
     double runs;                          /**< in this direction: 1 or -1; 0: not */
     double pushed_until;                  /**< cycle until which a load may move it */
