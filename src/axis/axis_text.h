@@ -7,7 +7,7 @@
 
 #include "axis/axis_limits.h"
 
-/** Behind "... disabled by MC_Power": which inputs are FALSE now, for the text may be asked for later; "": none. */
+/** Behind "... disabled by MC_Power": which inputs disable a direction now, for the text may be asked for later; "": none. */
 const char *cm1e_axis_disabled_inputs(const cm1e_axis_t *axis);
 
 /** Remembers the last refusal for the text. A success clears only a refusal of the same kind. */
