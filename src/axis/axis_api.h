@@ -202,9 +202,9 @@ cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1
 /** MC_SetOverride: factors on the velocity of commands (0 ... 1; 0: the axis comes to rest, but not to Standstill), on
  *  their acceleration and deceleration, and on their jerk (above 0 ... 1). They hold until changed. @rt cycle */
 cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk);
-/** The text of the axis says why the factors were refused with this error: called by a block that is refused for the
- *  first time, also where another one was refused with the same factors before. @rt cycle */
-void cm1e_axis_tell_override(cm1e_axis_t *axis, cm1e_error_t error);
+/** cm1e_axis_refuse_level() for factors that were refused. @rt cycle */
+void cm1e_axis_refuse_override(cm1e_axis_t *axis, cm1e_error_t error, double velocity, double acceleration, double jerk,
+                               bool begins);
 /** MC_SetPosition (3.17): the present position becomes `position` (u), or `relative` that much more. Set and actual
  *  position shift alike and keep their lag. Nothing moves, and the present motion ends at the same place as without the
  *  shift. Software limits and later positions are in the new coordinates. CM1E_ERROR_AXIS_POSITION_RANGE: not finite,

@@ -24,17 +24,16 @@ static void resume_failed(cm1e_axis_t *axis, cm1e_error_t error)
         cm1e_axis_ramp_down(axis, &axis->limits.maximum);
 }
 
-static cm1e_error_t set_override(cm1e_axis_t *axis, const override_t *asked)
+cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
 {
     const override_t before = axis->override;
-    const double velocity = asked->velocity;
-    if (!(velocity >= 0.0 && velocity <= 1.0) || !is_factor(asked->acceleration) || !is_factor(asked->jerk))
+    if (!(velocity >= 0.0 && velocity <= 1.0) || !is_factor(acceleration) || !is_factor(jerk))
         return CM1E_ERROR_AXIS_OVERRIDE;
-    if (velocity == before.velocity && asked->acceleration == before.acceleration && asked->jerk == before.jerk)
+    if (velocity == before.velocity && acceleration == before.acceleration && jerk == before.jerk)
         return CM1E_OK;
     if (drive_profiles(axis)) /* the drive would have to accept new values in motion */
         return CM1E_ERROR_UNSUPPORTED;
-    axis->override = *asked;
+    axis->override = (override_t){velocity, acceleration, jerk};
     const bool paused = axis->setpoint.paused;
     cm1e_axis_superimposed_replan(axis);
     const cm1e_error_t error = cm1e_axis_replan(axis);
@@ -43,20 +42,13 @@ static cm1e_error_t set_override(cm1e_axis_t *axis, const override_t *asked)
     return CM1E_OK;
 }
 
-/* A block sends its factors in every cycle. The same refused factors are remembered only once, so that they do not hide
- * the text of a later refusal. */
-cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
+void cm1e_axis_refuse_override(cm1e_axis_t *axis, cm1e_error_t error, double velocity, double acceleration, double jerk,
+                               bool begins)
 {
     const override_t asked = {velocity, acceleration, jerk};
-    const cm1e_error_t error = set_override(axis, &asked);
     /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c): a refused NaN is the same NaN */
-    if (error == CM1E_OK || memcmp(&asked, &axis->override_refused, sizeof asked) != 0)
-        cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OVERRIDE});
-    axis->override_refused = error != CM1E_OK ? asked : axis->override;
-    return error;
-}
-
-void cm1e_axis_tell_override(cm1e_axis_t *axis, cm1e_error_t error)
-{
-    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OVERRIDE});
+    const bool another = axis->not_set.error != CM1E_OK && axis->not_set.what == NOT_SET_OVERRIDE &&
+                         memcmp(&asked, &axis->override_refused, sizeof asked) != 0;
+    axis->override_refused = asked;
+    cm1e_axis_remember_repeated(axis, (not_set_t){.error = error, .what = NOT_SET_OVERRIDE}, begins || another);
 }

@@ -113,10 +113,15 @@ cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double a
     return CM1E_OK;
 }
 
-void cm1e_axis_tell_override(cm1e_axis_t *axis, cm1e_error_t error)
+void cm1e_axis_refuse_override(cm1e_axis_t *axis, cm1e_error_t error, double velocity, double acceleration, double jerk,
+                               bool begins)
 {
     (void)axis;
     (void)error;
+    (void)velocity;
+    (void)acceleration;
+    (void)jerk;
+    (void)begins;
 }
 
 void cm1e_axis_feed(AXIS_REF_t reference, cm1e_command_id_t id, double position)
