@@ -64,7 +64,7 @@ CASES = [
     (["params", "backup", "1", "bridge.yaml", "-i", "sim"], WRONG_USE, "--force"),
     (["init", "-i", "sim", "-o", "bridge.yaml"], WRONG_USE, "--force"),
     (["st", "build", "good.st", "-o", "good.st"], WRONG_USE, "would be lost"),
-    (["st", "check", "bridge.yaml"], FAILED, "error"), (["check", "bridge.yaml"], FAILED, "known format"),
+    (["st", "check", "bridge.yaml"], FAILED, "error"), (["check", "good.st"], FAILED, "known format"),
     (["sii", "decode", "bridge.yaml"], FAILED, "not an SII image"),
     (["graph", "-i", "sim", "--svg", ""], WRONG_USE, "needs a name"), ([*TUNE, "--html", ""], WRONG_USE, "needs a name"),
     ([*TUNE, "--html", "-"], WRONG_USE, "standard output"),
