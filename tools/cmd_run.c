@@ -326,12 +326,7 @@ int command_run(int argc, char **argv)
     int status = check_trace_files(options.files, FILES);
     if (status != EXIT_OK)
         return status;
-    if (st_load(&loaded, options.program, &diag) == CM1E_OK)
-        status = run_on_network(&loaded, &options);
-    else {
-        (void)fail(&diag);
-        status = EXIT_WRONG_USE; /* it cannot be read, or is no program of this version */
-    }
+    status = st_load(&loaded, options.program, &diag) == CM1E_OK ? run_on_network(&loaded, &options) : fail_at_once(&diag);
     st_unload(&loaded);
     return status;
 }

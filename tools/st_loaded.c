@@ -1,11 +1,14 @@
 #include "st_loaded.h"
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "cm1e/axis.h"
 #include "cm1e/group.h"
@@ -13,6 +16,15 @@
 #include "core/near.h"
 #include "scheduler/forcing.h"
 #include "st/st.h"
+
+/** Why there is nothing to be loaded; NULL: a file can be read. */
+static const char *why_unreadable(const char *path)
+{
+    struct stat about;
+    if (stat(path, &about) != 0 || access(path, R_OK) != 0)
+        return strerror(errno);
+    return S_ISREG(about.st_mode) ? NULL : "it is no file";
+}
 
 /** The table at the end of the file is not all there. dlopen() does not look, and the process would die of SIGBUS. */
 static bool is_cut_off(const char *path)
@@ -36,8 +48,12 @@ cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag)
     *loaded = (st_loaded_t){0};
     const char *end = strrchr(path, '.');
     if (end && (strcasecmp(end, ".st") == 0 || strcasecmp(end, ".TcPOU") == 0))
-        return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "%s is a source: \"cm1e st build %s\" makes %.*s.so of it, which "
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "%s is a source: \"cm1e st build %s\" makes %.*s.so of it, which "
                              "runs.", path, path, (int)(end - path), path);
+    const char *why = why_unreadable(path);
+    if (why)
+        return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "%s cannot be loaded: %s. Programs are made by `cm1e st build`.",
+                             path, why);
     if (is_cut_off(path))
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s is cut off: its end is missing. Copy it again, or make it again "
                              "by `cm1e st build`.", path);

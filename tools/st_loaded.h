@@ -28,8 +28,9 @@ typedef struct st_loaded {
     uint32_t untraced;        /**< variables beyond what a trace can have */
 } st_loaded_t;
 
-/** Loads the program. CM1E_ERROR_IO: it cannot be loaded; CM1E_ERROR_UNSUPPORTED: it was made for another version of the
- *  library. @rt init */
+/** Loads the program. CM1E_ERROR_NOT_FOUND: there is no file that can be read; CM1E_ERROR_INVALID_ARGUMENT: its name is that
+ *  of a source; CM1E_ERROR_IO: it is no program, or not a whole one; CM1E_ERROR_UNSUPPORTED: it was made for another version
+ *  of the library. @rt init */
 cm1e_error_t st_load(st_loaded_t *loaded, const char *path, cm1e_diag_t *diag);
 /** Adds an axis of each name that the program has to a configuration without axes: a machine to try the program on. At
  *  least one, because an empty segment has nothing to run. @rt init */

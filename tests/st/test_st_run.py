@@ -113,9 +113,9 @@ def check_what_build_leaves_alone():
 def check_names():
     program = build("names", "VAR_GLOBAL XX : AXIS_REF; END_VAR PROGRAM Main END_PROGRAM")
     run(program, status=1, says='did you mean "X"?')
-    run("nothing.so", status=1, says="cannot be loaded")
+    run("nothing.so", status=2, says="cannot be loaded")
     for name in ("names.st", "MAIN.TcPOU"):
-        run(name, status=1, says=f'{name} is a source: "cm1e st build {name}" makes {name.split(".")[0]}.so of it')
+        run(name, status=2, says=f'{name} is a source: "cm1e st build {name}" makes {name.split(".")[0]}.so of it')
     run(os.path.join(BIN, "cm1e"), status=1, says="cannot")
     build("slow", "CONFIGURATION C RESOURCE R ON P TASK t(INTERVAL := T#1500us); PROGRAM a WITH t : Main; END_RESOURCE "
           "END_CONFIGURATION PROGRAM Main END_PROGRAM")
@@ -204,7 +204,7 @@ END_PROGRAM
 """
 
 
-def check_names():
+def check_names_of_twincat():
     """Inputs and outputs that Tc2_MC2 calls otherwise."""
     run(build("names", NAMES), "-s", "0.1", "--csv", "names.csv")
     last = trace("names.csv")[-1]
@@ -345,6 +345,6 @@ with tempfile.TemporaryDirectory() as folder:
     check_retain()
     check_twincat()
     check_direction()
-    check_names()
+    check_names_of_twincat()
 if faults:
     sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
