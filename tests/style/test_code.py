@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """The code has one form where C allows several: a result of type cm1e_error_t is compared with CM1E_OK or with another
 error, and is never taken for a truth value. A comment about a C bool has true and false; TRUE and FALSE are values of
-PLCopen inputs. No two files in different rooms have one name. No source, header or test is longer than 700 lines.
+PLCopen inputs. No two files in different rooms have one name. No source, header or test is longer than 700 lines. No Python
+source has a function twice, of which the first would never run.
 
 test_code.py SOURCE-DIRECTORY
 """
+import ast
 import glob
 import os
 import re
@@ -249,11 +251,32 @@ def check_length():
                     faults.append(f"{path} has {lines} lines, {LONGEST} may be: split it by what it is for")
 
 
+# ---- functions of Python -------------------------------------------------------------------------------------------
+
+
+def check_twice(path, body):
+    seen = set()
+    for one in body:
+        if isinstance(one, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            if one.name in seen and not one.decorator_list:
+                faults.append(f"{path}:{one.lineno}: {one.name} is there twice, and the first one never runs")
+            seen.add(one.name)
+            check_twice(path, one.body)
+
+
+def check_python():
+    for folder in FOLDERS:
+        for path in glob.glob(os.path.join(SOURCE, folder, "**/*.py"), recursive=True):
+            path = os.path.relpath(path, SOURCE)
+            check_twice(path, ast.parse(read(path)).body)
+
+
 for path in files():
     if path.startswith(("src/", "tools/")):
         check_truth(path)
 check_names()
 check_length()
+check_python()
 check_itself()
 sources = {path: code(read(path)) for path in files()}
 faults += check_error_tests(sources) + check_pointers(sources)
