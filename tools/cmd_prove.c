@@ -145,21 +145,33 @@ static bool is_allowed(const prove_t *prove, const point_t *point)
            || (point->level == LEVEL_DEAD_END && prove->options->allow_dead_ends);
 }
 
-/** By the patterns of the options. The motor is always enabled at rest before it moves. */
-static bool is_chosen(const prove_t *prove, const point_t *point)
+static bool has_point(const prove_t *prove, const point_t *point)
 {
-    const prove_options_t *options = prove->options;
-    bool chosen = options->pattern_count == 0 || (options->allow_motion && strcmp(point->id, "move.enable") == 0);
-    for (int i = 0; i < options->pattern_count; i++)
-        chosen |= names_point(options->patterns[i], point);
-    return chosen && (!point->kind || strcmp(point->kind, prove->device->kind) == 0);
+    return !point->kind || strcmp(point->kind, prove->device->kind) == 0;
 }
 
-static bool is_any_chosen(const prove_t *prove)
+/** By the patterns of the options. */
+static bool is_named(const prove_t *prove, const point_t *point)
+{
+    const prove_options_t *options = prove->options;
+    bool named = options->pattern_count == 0;
+    for (int i = 0; i < options->pattern_count; i++)
+        named |= names_point(options->patterns[i], point);
+    return named && has_point(prove, point);
+}
+
+/** The motor is always enabled at rest before it moves. */
+static bool is_chosen(const prove_t *prove, const point_t *point)
+{
+    const bool enables = prove->options->allow_motion && strcmp(point->id, "move.enable") == 0;
+    return is_named(prove, point) || (enables && has_point(prove, point));
+}
+
+static bool is_any_named(const prove_t *prove)
 {
     bool any = false;
     for (size_t n = 0; prove_point(n) && !any; n++)
-        any = is_chosen(prove, prove_point(n));
+        any = is_named(prove, prove_point(n));
     return any;
 }
 
@@ -279,7 +291,7 @@ static int prove_device(prove_t *prove)
 {
     if (!prove_open(prove) || !choose(prove))
         return EXIT_FAILED;
-    if (!is_any_chosen(prove)) {
+    if (!is_any_named(prove)) {
         complain("--point names no point of a %s (--list --json shows of which device each is)", prove->device->kind);
         return EXIT_WRONG_USE;
     }

@@ -52,6 +52,8 @@ CASES = [
     (["prove", "-i", "sim", "--point", "nothing"], WRONG_USE, 'there is no point "nothing"'),
     (["prove", "-i", "sim", "--point", "id.vendor", "--point", "state.preopp"], WRONG_USE, 'did you mean "state.preop"'),
     (["prove", "-i", "sim", "--point", "map.bridge"], WRONG_USE, "no point of a cm1-e"),
+    (["prove", "-i", "sim", "--point", "cml.mode", "--allow-motion", "--max-velocity", "1", "--max-travel", "1"], WRONG_USE,
+     "no point of a cm1-e"),
     (["prove", "-i", "sim", "-o", "absent/report"], FAILED, "absent/report.md cannot be written"),
     (["prove", "-i", "sim", "-o", ""], WRONG_USE, "needs a name"),
     (["params", "set", "X", "K26=1", "-b", "bridge.yaml"], WRONG_USE, "--allow-motion"),
