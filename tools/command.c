@@ -384,25 +384,26 @@ static bool is_called(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, co
     return is;
 }
 
-/** Complains of a word that is neither an axis nor a slave of the bus file. */
-static bool is_no_name(const cm1e_bus_config_t *config, const char *word)
+/** Complains of a word that is no axis of the bus file: a slave that is not there, or none at all. Returns the exit status;
+ *  EXIT_OK: it is an axis. */
+static int refuse_name(const cm1e_bus_config_t *config, const char *word)
 {
     char text[CM1E_NEAR_TEXT_BYTES];
     cm1e_near_t near = {.word = word};
     for (uint32_t i = 0; i < config->axis_count; i++) {
         if (strcmp(config->axes[i].name, word) == 0)
-            return false;
+            return EXIT_OK;
         cm1e_near_look(&near, config->axes[i].name);
     }
     for (uint32_t i = 0; i < config->slave_count; i++) {
         if (strcmp(config->slaves[i].name, word) == 0) {
             complain("slave \"%s\" is not on the network", word);
-            return true;
+            return EXIT_FAILED;
         }
         cm1e_near_look(&near, config->slaves[i].name);
     }
     complain("the bus file has neither an axis nor a slave \"%s\"%s", word, cm1e_near_text(&near, text, sizeof text));
-    return true;
+    return EXIT_WRONG_USE;
 }
 
 int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const char *word, uint16_t *position)
@@ -415,8 +416,9 @@ int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cha
             return EXIT_OK;
         }
     if ((word[0] < '0' || word[0] > '9') && word[0] != '-') {
-        if (config->slave_count > 0 && is_no_name(config, word))
-            return EXIT_WRONG_USE;
+        const int refused = config->slave_count > 0 ? refuse_name(config, word) : EXIT_OK;
+        if (refused != EXIT_OK)
+            return refused;
         const int axis = find_axis(config, word);
         if (axis >= 0)
             complain("the slave of axis \"%s\" is not on the network, or is a bridge: give its position", word);

@@ -12,6 +12,7 @@ import tempfile
 CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 FAILED, WRONG_USE = 1, 2
 BRIDGE = "bus: {interface: sim}\naxes:\n  - {name: X, position: 1, channel: 1, motor: CM1, k37: 10}\n"
+OTHER = BRIDGE.replace("sim", "'sim:bridge.yaml'") + "  - {name: Y, position: 8}\nslaves:\n  - {name: valves, position: 9}\n"
 TUNE = ["tune", "step", "1", "--max-travel", "1", "--max-velocity", "1", "-i", "sim"]
 SII = ["sii", "write", "1"]
 
@@ -45,6 +46,9 @@ CASES = [
     (["scan", "-i", "absent0"], FAILED, "absent0"), (["status", "--attach", "1"], FAILED, "Process 1 has no control socket"),
     (["sdo", "read", "99", "0x1018:1", "-i", "sim"], FAILED, "there is no slave 99"),
     (["sdo", "read", "0", "0x1018:1", "-i", "sim"], WRONG_USE, "1 ... 512"),
+    (["states", "valves", "-b", "other.yaml"], FAILED, 'slave "valves" is not on the network'),
+    (["states", "Y", "-b", "other.yaml"], FAILED, 'slave of axis "Y" is not on the network'),
+    (["states", "valve", "-b", "other.yaml"], WRONG_USE, 'did you mean "valves"'),
     (["recover", "-i", "absent0"], FAILED, "no program runs this network"),
     (["explain", "nothingofthekind"], FAILED, "no text has"),
     (["var", "lsit"], WRONG_USE, 'there is no action "lsit"'), (["st", "biuld"], WRONG_USE, 'did you mean "build"'),
@@ -89,7 +93,8 @@ def check(words, status, says, folder):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.mkdir(os.path.join(folder, "folder"))
-        for name, text in (("bridge.yaml", BRIDGE), ("good.st", "PROGRAM P VAR n : INT; END_VAR n := 1; END_PROGRAM\n")):
+        for name, text in (("bridge.yaml", BRIDGE), ("other.yaml", OTHER),
+                           ("good.st", "PROGRAM P VAR n : INT; END_VAR n := 1; END_PROGRAM\n")):
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
         for words in READS:
@@ -100,7 +105,7 @@ def main():
                 check([word if word != "FILE" else path for word in words], FAILED, path, folder)
         for words, status, says in CASES:
             check(words, status, says, folder)
-        left = set(os.listdir(folder)) - {"folder", "bridge.yaml", "good.st"}
+        left = set(os.listdir(folder)) - {"folder", "bridge.yaml", "other.yaml", "good.st"}
         if left:
             faults.append(f"files are left: {left}")
     listed = subprocess.run([CM1E, "--help"], capture_output=True, text=True, timeout=60, check=True).stdout
