@@ -135,7 +135,7 @@ const cm1e_bus_config_t *axes_to_name(const common_options_t *options, const cm1
     static cm1e_bus_config_t named;
     cm1e_diag_t diag = {0};
     cm1e_control_t *control;
-    if (config->axis_count > 0 || cm1e_bus_config_init(&named, NULL, 0) != CM1E_OK ||
+    if (config->axis_count + config->slave_count > 0 || cm1e_bus_config_init(&named, NULL, 0) != CM1E_OK ||
         connect_network(options, config, &control, &diag) != CM1E_OK)
         return config;
     json_t *axes = ask_program(control, json_pack("{s:s}", "request", "axes"), "axes", &diag);

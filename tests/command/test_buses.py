@@ -83,6 +83,24 @@ expect(nobody.returncode == WRONG_USE and 'neither an axis nor a slave "pressure
 states = run("states", "-b", MACHINE, "valves")
 expect(states.returncode == 0 and "Digital" in states.stdout and len(states.stdout.splitlines()) == 1, states)
 
+# beside a program too, and in a file that has slaves and no axes
+with tempfile.TemporaryDirectory() as folder:
+    environment = {**os.environ, "CM1E_RUNTIME_DIR": folder}
+    slaves = os.path.join(folder, "slaves.yaml")
+    with open(MACHINE, encoding="utf-8") as whole, open(slaves, "w", encoding="utf-8") as file:
+        text = whole.read()
+        file.write("bus: {interface: sim}\n" + text[text.index("slaves:"):])
+    words = [os.path.join(BIN, "cm1e"), "io", "-b", MACHINE, "valves.lamp=1", "--allow-output", "--for", "60"]
+    with subprocess.Popen(words, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as program:
+        end = time.monotonic() + 20
+        while len(os.listdir(folder)) < 2 and time.monotonic() < end:
+            time.sleep(0.02)
+        for words, says in ((["states", "valves"], "Digital terminal 4+0"), (["scan"], "-          valves\n")):
+            shown = subprocess.run([os.path.join(BIN, "cm1e"), *words, "-b", slaves, "--attach", str(program.pid)], env=environment,
+                                   capture_output=True, text=True, timeout=60)
+            expect(says in shown.stdout, shown)
+        program.terminate()
+
 # a bus file is checked without its network
 good = run("check", FILE)
 expect(good.returncode == 0 and "bus file, 3 axes, 0 other slaves, no error" in good.stdout, good)
