@@ -77,18 +77,35 @@ cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size
     return cm1e_bus_read_topology(bus, places, room, diag);
 }
 
-/** A slave of a program that runs does not answer any more. Where a slave is expected, it may be there without the address
- *  that it had, as after a restart, and lets frames pass: then it is between those that it was between when the program
- *  began. Elsewhere no frame passes it, and the others are wired without it, as without an optional one. */
-static void connect_silent(walk_t *walk, cm1e_slave_place_t *places, const cm1e_bus_slave_t *slave)
+/** Where the slaves of a program that runs were when it began. Behind one whose ports it does not tell, none is known. */
+static void connect_told(const cm1e_bus_t *bus, cm1e_slave_place_t *began)
 {
-    const uint16_t position = slave->info.position;
+    walk_t walk = {.count = 0};
+    bool told = true;
+    for (uint16_t position = 1; position <= bus->scanned; position++) {
+        const cm1e_slave_place_t *place = &bus->slaves[position - 1].ports.place;
+        began[position - 1] = (cm1e_slave_place_t){0};
+        told = told && place->known;
+        if (!told)
+            continue;
+        memcpy(began[position - 1].open, place->open, sizeof place->open);
+        find_entry(&began[position - 1]);
+        connect_slave(&walk, began, position);
+    }
+}
+
+/** A slave of a program that runs does not answer any more. Where it `began`, it may be there without the address that it had,
+ *  as after a restart, and lets frames pass, if a slave is expected at that port: then it is between those that it was between.
+ *  Elsewhere no frame passes it, and the others are wired without it, as without an optional one. */
+static void connect_silent(walk_t *walk, cm1e_slave_place_t *places, uint16_t position, const cm1e_slave_place_t *began)
+{
     cm1e_slave_place_t *place = &places[position - 1];
     *place = (cm1e_slave_place_t){0};
-    if (!slave->ports.place.known || walk->count == 0)
+    const waiting_port_t *next = walk->count > 0 ? &walk->waiting[walk->count - 1] : NULL;
+    if (!began->known || !next || next->position != began->parent || next->port != began->parent_port)
         return;
-    memcpy(place->open, slave->ports.place.open, sizeof place->open);
-    find_entry(place);
+    memcpy(place->open, began->open, sizeof place->open);
+    place->entry_port = began->entry_port;
     connect_slave(walk, places, position);
     memset(place->open, 0, sizeof place->open); /* what they are now is not known */
     place->known = false;
@@ -97,14 +114,17 @@ static void connect_silent(walk_t *walk, cm1e_slave_place_t *places, const cm1e_
 cm1e_error_t cm1e_bus_read_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size_t room, cm1e_diag_t *diag)
 {
     walk_t walk = {.count = 0};
+    cm1e_slave_place_t began[CM1E_MAX_SLAVES];
     uint32_t gone = 0;
+    if (bus->remote)
+        connect_told(bus, began);
     for (uint16_t position = 1; position <= bus->scanned && position <= room; position++) {
         uint8_t status[2] = {0};
         if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status)) {
             if (!bus->remote || ++gone == bus->scanned)
                 return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer when its ports are read.",
                                      position);
-            connect_silent(&walk, places, cm1e_bus_at(bus, position));
+            connect_silent(&walk, places, position, &began[position - 1]);
             continue;
         }
         take_ports(&places[position - 1], cm1e_get_u16(status));

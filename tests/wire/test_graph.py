@@ -4,6 +4,7 @@ one as such, nothing is cut off, and no text is on another one or on the edge of
 
 test_graph.py CM1E
 """
+import contextlib
 import itertools
 import os
 import subprocess
@@ -113,12 +114,35 @@ def ring(bench):
         bench.segment.console(f"replug {cable}")
 
 
-def lost(bench):
-    """Beside a program that runs: what does not answer any more is drawn as such, with the others where they are."""
+@contextlib.contextmanager
+def running(bench):
     program = subprocess.Popen(bench.segment.command([bench.cm1e, "trace", "-b", bench.path, "--for", "60", "--csv", os.devnull]),
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         wire.wait_for(lambda: bench.segment.run([bench.cm1e, "log", "-b", bench.path]).returncode == 0, 10, "nothing runs")
+        yield
+    finally:
+        program.kill()
+        program.wait()
+
+
+def lost_branch(bench):
+    """A branch of which the cable is out takes no place of another one."""
+    for position, branch in ((2, 3001), (3, 1001)):
+        wire.check("quirk" in bench.segment.console(f"quirk {position} branch {branch}"), "quirk")
+    with running(bench):
+        dot = bench.dot()
+        wire.check("s1 -> s2 [taillabel=\"3\"" in dot and "s1 -> s3 [taillabel=\"1\"" in dot, dot)
+        bench.segment.console("unplug 2")
+        wire.wait_for(lambda: "color=red" in bench.dot(), 10, "the slave is there")
+        dot = bench.dot()
+        wire.check("s1 -> s2 [style=dotted, color=red]" in dot and "s1 -> s3 [taillabel=\"1\"" in dot and
+                   "s3 -> s4 [taillabel" in dot, dot)
+
+
+def lost(bench):
+    """Beside a program that runs: what does not answer any more is drawn as such, with the others where they are."""
+    with running(bench):
         bench.segment.console("unplug 3")
         picture = bench.picture("slaves behind a cable that is out")
         wire.check(picture.broken == [False, False, True, True] and picture.red_boxes == 2 and len(picture.boxes) == 5,
@@ -132,9 +156,6 @@ def lost(bench):
         wire.check("s1 -> s2 [style=dotted, color=red]" in dot and "s2 -> s3 [taillabel" in dot and "s1 -> s3" not in dot, dot)
         picture = bench.picture("a slave that restarted, between others")
         wire.check(picture.broken == [False, True, False, False], f"a slave that restarted: {picture.broken}")
-    finally:
-        program.kill()
-        program.wait()
 
 
 def main(cm1e):
@@ -148,6 +169,7 @@ def main(cm1e):
 
     wire.together(lambda: on_a_segment(tree, TREE, "cycle_time_us: 1000"),
                   lambda: on_a_segment(lost, LINE, "lost_cycles_limit: 50"),
+                  lambda: on_a_segment(lost_branch, LINE, "lost_cycles_limit: 50"),
                   lambda: on_a_segment(ring, RING, f"second_interface: {wire.MASTER_SECOND}", ring=True))
 
 
