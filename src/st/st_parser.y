@@ -375,6 +375,17 @@ static const char *missing_end(const yypcontext_t *context, yysymbol_kind_t foun
     return NULL;
 }
 
+/** An expression could go on here. */
+static bool is_behind_expression(const yypcontext_t *context)
+{
+    yysymbol_kind_t expected[YYNTOKENS];
+    const int count = yypcontext_expected_tokens(context, expected, YYNTOKENS);
+    bool is = false;
+    for (int i = 0; i < count; i++)
+        is |= expected[i] == YYSYMBOL_MOD;
+    return is;
+}
+
 static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing)
 {
     char text[300];
@@ -388,7 +399,7 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
     if (strcmp(parsing->last, "=") == 0)
         snprintf(text, sizeof text, strcmp(parsing->before, "=") == 0 ? "; values are compared by one \"=\""
                                                                      : "; a value is assigned by \":=\"");
-    if (strcmp(parsing->last, ":=") == 0)
+    if (strcmp(parsing->last, ":=") == 0 && is_behind_expression(context))
         snprintf(text, sizeof text, "; values are compared by \"=\", and an assignment is a statement of its own");
     if (strcmp(parsing->last, "&") == 0 && strcmp(parsing->before, "&") == 0)
         snprintf(text, sizeof text, "; AND is a single \"&\"");

@@ -290,6 +290,7 @@ SOURCES = [
     ("PROGRAM P VAR RETAIN t : REF_TO INT; END_VAR END_PROGRAM", "1:22", ["RETAIN keeps values"]),
     ("FUNCTION_BLOCK P VAR RETAIN t : INT; END_VAR END_FUNCTION_BLOCK", "1:29", ["VAR_IN_OUT"]),
     ("MC_Power", "1:1", ["cannot stand here"]),
+    ("PROGRAM P VAR i := 1; END_VAR END_PROGRAM", "1:17", ["cannot stand here; expected AT, ',' or ':'"]),
     ("FUNCTION_BLOCK MC_Power END_FUNCTION_BLOCK", "1:16", ["already"]),
 ]
 # Sources that are large, deep or no text at all: an answer in words, whatever it is.
