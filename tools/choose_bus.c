@@ -80,13 +80,27 @@ static bool has_axis(const cm1e_bus_config_t *config, const char *word)
     return false;
 }
 
+static bool has_slave(const cm1e_bus_config_t *config, const char *word)
+{
+    for (uint32_t i = 0; i < config->slave_count; i++)
+        if (strcmp(config->slaves[i].name, word) == 0)
+            return true;
+    return false;
+}
+
+/* The bus of an axis, else the only one with a slave of that name: unlike axes, slaves of several buses may have one name. */
 static int find_by_words(const buses_t *buses)
 {
+    int found = NONE;
     for (int k = 1; k < word_count; k++)
         for (uint32_t i = 0; i < buses->count; i++)
             if (has_axis(&buses->configs[i], words[k]))
                 return (int)i;
-    return NONE;
+    for (int k = 1; k < word_count; k++)
+        for (uint32_t i = 0; i < buses->count; i++)
+            if (has_slave(&buses->configs[i], words[k]))
+                found = found == NONE || found == (int)i ? (int)i : REFUSED;
+    return found;
 }
 
 /* Runs the command in a process of its own for each bus, one after the other. Returns in these only. */

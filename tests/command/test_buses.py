@@ -83,6 +83,19 @@ expect(nobody.returncode == WRONG_USE and 'neither an axis nor a slave "pressure
 states = run("states", "-b", MACHINE, "valves")
 expect(states.returncode == 0 and "Digital" in states.stdout and len(states.stdout.splitlines()) == 1, states)
 
+# of several networks the slave chooses the one that has it
+with tempfile.TemporaryDirectory() as folder:
+    file = os.path.join(folder, "buses.yaml")
+    terminal = "sim: {device: digital, outputs: 4}"
+    with open(file, "w", encoding="ascii") as out:
+        for name, axis, slave in (("left", "X", "lamps"), ("right", "Y", "valves")):
+            out.write(f"{'' if name == 'right' else 'buses:'}\n  - name: {name}\n    bus: {{interface: sim}}\n    axes: [{{name: {axis}, "
+                      f"position: 1}}]\n    slaves: [{{name: {slave}, position: 2, {terminal}}}, {{name: same, position: 3, {terminal}}}]\n")
+    right = run("states", "-b", file, "valves")
+    expect(right.returncode == 0 and right.stdout.startswith("  2 ") and right.stdout.count("\n") == 1, right)
+    both = run("sdo", "read", "-b", file, "same", "0x1018:2")
+    expect(both.returncode == WRONG_USE and "Choose one with --network" in both.stderr, both)
+
 # beside a program too, and in a file that has slaves and no axes
 with tempfile.TemporaryDirectory() as folder:
     environment = {**os.environ, "CM1E_RUNTIME_DIR": folder}
