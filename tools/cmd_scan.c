@@ -97,9 +97,6 @@ static int wider(int width, const char *text)
     return wanted > width ? wanted : width;
 }
 
-/** printf() counts bytes; a letter may have several. */
-static int in_bytes(int width, const char *text) { return width + (int)(strlen(text) - cm1e_text_width(text)); }
-
 /* ---- process data ------------------------------------------------------------------------------------------------ */
 
 static void print_pdos(cm1e_bus_t *bus, uint16_t position)

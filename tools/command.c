@@ -448,6 +448,8 @@ int run_on_slave(const common_options_t *common, const char *where, slave_action
     return close_bus(bus, common, status);
 }
 
+int in_bytes(int width, const char *text) { return width + (int)(strlen(text) - cm1e_text_width(text)); }
+
 const char *text_of(const json_t *object, const char *name)
 {
     const char *text = json_string_value(json_object_get(object, name));

@@ -178,6 +178,8 @@ void complain_of_axis(const char *name, const char *what, const char *details);
 json_t *text_as_json(const char *text);
 /** The text that a member of an object has; "" if it has none. */
 const char *text_of(const json_t *object, const char *name);
+/** The width of a column for printf(), which counts bytes: a letter of `text` may have several. */
+int in_bytes(int width, const char *text);
 
 /** Prints a JSON value on standard output with a final newline, and releases it. */
 void print_json(json_t *value);

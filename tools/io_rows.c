@@ -46,7 +46,7 @@ static void print_axis_row(const json_t *row)
         snprintf(name, sizeof name, "%s.IN%d%s%s", axis, (int)json_integer_value(input), wired[0] ? "  " : "", wired);
     else
         snprintf(name, sizeof name, "%s.OUT1", axis);
-    printf("%-*s %-6s %-4s %s\n", SIGNAL_WIDTH, name, "BOOL", input ? "in" : "out",
+    printf("%-*s %-6s %-4s %s\n", in_bytes(SIGNAL_WIDTH, name), name, "BOOL", input ? "in" : "out",
            json_is_null(value) ? "-" : json_is_true(value) ? "1" : "0");
 }
 
@@ -58,7 +58,7 @@ static void print_signal_row(const json_t *row)
     snprintf(position, sizeof position, "%d", (int)json_integer_value(json_object_get(row, "slave")));
     snprintf(name, sizeof name, "%s.%s", slave[0] ? slave : position, text_of(row, "name"));
     const char *use = text_of(row, "use");
-    printf("%-*s %-6s %-4s %s%s%s\n", SIGNAL_WIDTH, name, text_of(row, "type"),
+    printf("%-*s %-6s %-4s %s%s%s\n", in_bytes(SIGNAL_WIDTH, name), name, text_of(row, "type"),
            json_is_true(json_object_get(row, "output")) ? "out" : "in", text_of(row, "value"), use[0] ? "    " : "", use);
 }
 

@@ -69,10 +69,10 @@ def main(folder):
     expect([(s["slave"], s["name"], s["type"], s["value"]) for s in listed["signals"]] ==
            [(2, "Inputs", "USINT", "0"), (2, "Outputs", "USINT", "0")], "the module", told)
     with open(os.path.join(folder, "wide.yaml"), "w", encoding="utf-8") as file:
-        file.write(BUS.replace("name: Y", "name: turntable"))
+        file.write(BUS.replace("name: Y", "name: 'türntable'"))
     wide = subprocess.run([CM1E, "io", "-b", file.name], capture_output=True, text=True, timeout=60)
     types = {max(line.rfind(" BOOL "), line.rfind(" USINT ")) for line in wide.stdout.splitlines() if "." in line}
-    expect("turntable.IN1" in wide.stdout and types == {48}, "a column for all names", wide)
+    expect("türntable.IN1" in wide.stdout and types == {48}, "a column for all names", wide)
     whole = json.loads(io("--json", "--all").stdout)
     expect(len(whole["signals"]) > 20 and any(s["of_axis"] for s in whole["signals"]), "--all", whole)
     written = io("2.outputs=5", "--allow-output", "--for", "0.2", "--json")
