@@ -108,10 +108,12 @@ def commented(text, note):
 
 
 def enumerators(declaration, dialect):
-    """[(name, number, note)]; where numbers cannot be given, names fill the gaps, so that the order gives them."""
+    """[(name, number, note)]; where numbers cannot be given, names fill the gaps, so that the order gives them. There is always
+    one that is 0: a variable begins with it, as in C, and not with the first one."""
     known = {int(item.default): item for item in declaration.variables}
     if dialect.numbered:
-        return [(item.name, number, item.text) for number, item in sorted(known.items())]
+        zero = [] if 0 in known else [(f"{declaration.name}_0", 0, "not set")]
+        return zero + [(item.name, number, item.text) for number, item in sorted(known.items())]
     return [(known[number].name, number, known[number].text) if number in known
             else (f"{declaration.name}_{number}", number, "none") for number in range(max(known) + 1)]
 

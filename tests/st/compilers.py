@@ -23,6 +23,9 @@ class Source:
         self.enums = {name for name, kind, _ in self.types if kind == "enum"}
         if len(self.blocks) < 70:
             raise ValueError("the declarations cannot be read")
+        for name, kind, rows in self.types:
+            if kind == "enum" and rows[0][1] not in ("", "0"):
+                raise ValueError(f"a {name} that is left out begins with {rows[0][1]}, and with 0 in C")
 
     @staticmethod
     def type(name, body):

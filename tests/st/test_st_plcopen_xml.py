@@ -46,6 +46,7 @@ def compare(name, of, with_pointers):
             numbers = {value.get("name"): int(value.get("value", place)) for place, value in enumerate(found)}
             for item in declaration.variables:
                 expect(f"{name}: {item.name}", numbers.get(item.name), int(item.default))
+            expect(f"{name}: what a {declaration.name} begins with", int(found[0].get("value", 0)), 0)
     expect(f"{name}: references", any(True for _ in root.iter(f"{TC6}pointer")), with_pointers)
 
 
