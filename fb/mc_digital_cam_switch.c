@@ -346,7 +346,7 @@ static void outputs_off(MC_DigitalCamSwitch_t *fb)
         fb->Outputs->Values = 0;
     for (int number = 1; axis && number < CM1E_WIRED_FIRST + CM1E_WIRED_SIGNALS; number++)
         if (fb->Private.written & bit_of_output(number))
-            cm1e_axis_write_output(axis, number, false);
+            cm1e_axis_output_off(axis, number);
     fb->Private.output = fb->Private.written = 0;
 }
 

@@ -211,6 +211,8 @@ cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
     return error;
 }
 
+void cm1e_axis_output_off(cm1e_axis_t *axis, int number) { (void)set_output(axis, number, false, INT64_MAX); }
+
 void cm1e_axis_tell_output(cm1e_axis_t *axis, cm1e_error_t error, int number)
 {
     cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OUTPUT, .number = number});

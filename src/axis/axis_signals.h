@@ -36,6 +36,8 @@ cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_
  *  CM1E_ERROR_PDO_MAPPING also if it is written by SDO, which is too late for outputs that follow a position.
  *  It does not change the text of the axis. @rt cycle */
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns);
+/** Switches off an output that was held, if it can be written. It does not change the text of the axis. @rt cycle */
+void cm1e_axis_output_off(cm1e_axis_t *axis, int number);
 /** The text of the axis says why this output was not written. A block that holds an output in every cycle calls it when
  *  the error begins, and with CM1E_OK when it ends, so that no later refusal is hidden. @rt cycle */
 void cm1e_axis_tell_output(cm1e_axis_t *axis, cm1e_error_t error, int number);

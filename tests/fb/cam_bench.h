@@ -73,10 +73,7 @@ void cm1e_axis_cam_switches_right(cm1e_axis_t *axis)
     (void)axis;
     refused.right++;
 }
-cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
-{
-    return cm1e_axis_hold_output(axis, number, value, -1);
-}
+void cm1e_axis_output_off(cm1e_axis_t *axis, int number) { (void)cm1e_axis_hold_output(axis, number, false, -1); }
 
 /* ---- the axis ---------------------------------------------------------------------------------------------------- */
 

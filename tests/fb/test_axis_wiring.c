@@ -213,6 +213,7 @@ START_TEST(test_cam_outputs_go_off_without_calls_and_with_an_error)
         ck_assert_uint_eq(fb.ErrorID, _i == 0 ? 0 : id_of(CM1E_ERROR_AXIS_SIGNAL)); /* there is no output 13 */
         ck_assert_uint_eq(sent("valves.output 1"), _i == 0);
         ck_assert_uint_eq(sent("valves.output 2"), _i == 0);
+        ck_assert_msg(_i == 0 || strstr(text_of(MOTOR), "digital output 13 was not written"), "%d: %s", n, text_of(MOTOR));
         outputs();
     }
     cycles(150);
