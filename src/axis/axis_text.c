@@ -229,16 +229,20 @@ static void refused_disabled_text(const cm1e_axis_t *axis, char *text, size_t si
              cm1e_strerror(CM1E_ERROR_AXIS_DIRECTION_DISABLED), cm1e_axis_disabled_inputs(axis));
 }
 
-/* Blocks that begin in Standstill; at standstill it is the end of a homing in steps that lacks a step. */
+/* Most of these blocks begin in Standstill; at standstill it is the end of a homing in steps that lacks a step. A motion on
+ * top of another one begins in any state, but not on each kind of motion. In a homing only what should wait is refused so. */
 static void refused_state_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const char *block = kind_row(axis->commands.refused.kind)->name;
-    if (axis->state == CM1E_AXIS_STANDSTILL)
-        snprintf(text, size, "Axis \"%s\", Standstill: %s was refused: it ends a homing, which begins with another step.",
-                 axis->config->name, block);
-    else
-        snprintf(text, size, "Axis \"%s\", %s: %s was refused: it begins in Standstill. End the motion first, with "
-                 "MC_Halt.", axis->config->name, cm1e_axis_state_name(axis->state), block);
+    const command_kind_t *block = kind_row(axis->commands.refused.kind);
+    char why[160] = "it begins in Standstill. End the motion first, with MC_Halt";
+    if (block->plan == PLAN_ON_TOP)
+        snprintf(why, sizeof why, "it cannot be added to %s. End that first, with MC_Halt", kind_row(axis->commands.kind)->name);
+    else if (axis->state == CM1E_AXIS_STANDSTILL)
+        snprintf(why, sizeof why, "it ends a homing, which begins with another step");
+    else if (axis->state == CM1E_AXIS_HOMING)
+        snprintf(why, sizeof why, "it cannot wait behind a motion that does not end by itself");
+    snprintf(text, size, "Axis \"%s\", %s: %s was refused: %s.", axis->config->name, cm1e_axis_state_name(axis->state),
+             block->name, why);
 }
 
 /* Which buffer modes are right depends on the command, and on what it would wait for. */

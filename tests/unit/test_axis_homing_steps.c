@@ -302,6 +302,21 @@ static void test_blending_with_a_step_is_refused_and_a_move_that_blends_behind_o
     expect_smooth(1.0);
 }
 
+static void test_a_step_does_not_wait_behind_a_velocity(void)
+{
+    begin_at(-20000);
+    step = (cm1e_homing_step_t){.mode = mcRisingEdge};
+    start(1.0, 0.0);
+    bench_cycles(20);
+    (void)bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0,
+                                                     .buffer_mode = mcBuffered});
+    cm1e_axis_command_t command = command_of(1.0, 0.0);
+    command.buffer_mode = mcBuffered;
+    cm1e_command_id_t id;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_STATE, cm1e_axis_start(axis, &command, &id));
+    bench_told("Homing: a step of a homing was refused: it cannot wait behind a motion that does not end by itself.");
+}
+
 static void test_homing_takes_no_move_between_its_steps(void)
 {
     begin_at(-20000);
@@ -351,6 +366,7 @@ int main(void)
     RUN_TEST(test_a_whole_homing_may_wait_in_the_buffer);
     RUN_TEST(test_what_waits_behind_a_step_that_fails_is_aborted);
     RUN_TEST(test_blending_with_a_step_is_refused_and_a_move_that_blends_behind_one_waits);
+    RUN_TEST(test_a_step_does_not_wait_behind_a_velocity);
     RUN_TEST(test_homing_takes_no_move_between_its_steps);
     RUN_TEST(test_software_limits_hold_for_the_last_move_only);
     return UNITY_END();

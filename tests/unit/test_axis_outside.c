@@ -137,6 +137,7 @@ static void test_it_begins_only_where_the_axis_stands(void)
     bench_move_velocity(1.0);
     bench_cycles(50);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_STATE, try_follow(cm1e_axis_place(axis, false)));
+    bench_told("ContinuousMotion: CM_FollowPosition was refused: it begins in Standstill. End the motion first, with MC_Halt.");
 }
 
 static void test_a_missing_position_stops_the_axis(void)
@@ -340,6 +341,7 @@ static void test_nothing_waits_behind_it(void)
     const cm1e_axis_command_t more = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 1.0, .velocity = 1.0};
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_BUFFER_MODE, bench_try_command(&move));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_STATE, bench_try_command(&more));
+    bench_told("MC_MoveSuperimposed was refused: it cannot be added to CM_FollowPosition. End that first, with MC_Halt.");
     plan(5);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_SYNCHRONIZED_MOTION, bench_info().state);
 }
