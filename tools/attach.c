@@ -27,7 +27,19 @@ static error_t parse_attach(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp attach_argp = {option_table, parse_attach, NULL, NULL, NULL, NULL, NULL};
-const struct argp_child attach_children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
+
+static error_t parse_both(int key, char *arg, struct argp_state *state)
+{
+    (void)arg;
+    if (key != ARGP_KEY_INIT)
+        return ARGP_ERR_UNKNOWN;
+    state->child_inputs[0] = state->child_inputs[1] = state->input;
+    return 0;
+}
+
+static const struct argp_child both_children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
+static const struct argp both_argp = {NULL, parse_both, NULL, NULL, both_children, NULL, NULL};
+const struct argp_child attach_children[] = {{&both_argp, 0, NULL, 0}, {0}};
 
 bool load_network(const common_options_t *options, cm1e_bus_config_t *config)
 {

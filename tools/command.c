@@ -54,8 +54,7 @@ const struct argp_child common_children[] = {{&common_argp, 0, NULL, 0}, {0}};
 
 error_t give_options(struct argp_state *state, common_options_t *options)
 {
-    for (int i = 0; state->root_argp->children[i].argp; i++)
-        state->child_inputs[i] = options;
+    state->child_inputs[0] = options;
     return 0;
 }
 

@@ -100,7 +100,7 @@ typedef struct common_options {
 } common_options_t;
 extern const struct argp common_argp;
 extern const struct argp_child common_children[]; /**< of a command that opens the network by itself */
-/** At ARGP_KEY_INIT: the children take their options into `options`. Returns 0. */
+/** At ARGP_KEY_INIT of a command with common_children or attach_children: they write into `options`. Returns 0. */
 error_t give_options(struct argp_state *state, common_options_t *options);
 
 /** Loads the configuration of the options: the bus file, with the interface of -i in place of its own. Without a bus
