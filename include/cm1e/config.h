@@ -191,8 +191,8 @@ typedef enum cm1e_control_mode {
     CM1E_CONTROL_OBSERVE = 0,        /**< look: axes, slaves, statistics, log, reading objects */
     CM1E_CONTROL_NONE,               /**< nothing: there is no socket */
     CM1E_CONTROL_MAINTAIN,           /**< also write: objects and files of slaves whose axes the program does not
-                                          command, outputs that it has not found, its variables; and enable, move and
-                                          reset axes that it does not command */
+                                          command, outputs that it has not found, its variables; enable, move and
+                                          reset axes that it does not command; and bring back slaves */
 } cm1e_control_mode_t;
 
 /** One axis: its address, its motor, its units and limits. */
