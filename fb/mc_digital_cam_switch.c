@@ -332,6 +332,8 @@ static cm1e_error_t write_output(MC_DigitalCamSwitch_t *fb, DWORD tracks, TIME l
         error = cm1e_axis_hold_output(axis, *number, tracks >> i & 1, lease);
         if (error != CM1E_OK)
             break;
+        if (fb->Private.output != fb->Outputs->Axis.Handle)
+            fb->Private.written = 0; /* what it held on another axis goes off by itself */
         fb->Private.output = fb->Outputs->Axis.Handle;
         fb->Private.written |= bit_of_output(*number);
     }

@@ -56,6 +56,23 @@ START_TEST(test_enable_that_falls_switches_everything_off_and_forgets)
 }
 END_TEST
 
+START_TEST(test_another_axis_of_the_output_loses_only_what_was_written_to_it)
+{
+    fresh(0.0);
+    add(1, 0.0, 10.0);
+    outputs = (MC_OUTPUT_REF){.Axis = {1}, .Number = 1};
+    at(4.0, 0.0);
+    outputs = (MC_OUTPUT_REF){.Axis = {2}, .Number = 2};
+    at(4.0, 0.0);
+    ck_assert(output.axis == 1 && output.number == 2 && output.value);
+    const unsigned writes = output.writes;
+    fb.Enable = FALSE;
+    at(4.0, 0.0);
+    ck_assert(output.axis == 1 && output.number == 2 && !output.value);
+    ck_assert_uint_eq(output.writes, writes + 1); /* output 1 of this axis may be another one's */
+}
+END_TEST
+
 START_TEST(test_the_output_of_track_1_is_lent_for_a_while_only)
 {
     fresh(0.0);
@@ -238,6 +255,7 @@ int main(void)
     Suite *suite = suite_create("MC_DigitalCamSwitch, outputs");
     TCase *tcase = tcase_create("outputs");
     tcase_add_test(tcase, test_the_mask_takes_tracks_away_and_gives_them_back_at_once);
+    tcase_add_test(tcase, test_another_axis_of_the_output_loses_only_what_was_written_to_it);
     tcase_add_test(tcase, test_enable_that_falls_switches_everything_off_and_forgets);
     tcase_add_test(tcase, test_the_output_of_track_1_is_lent_for_a_while_only);
     tcase_add_test(tcase, test_an_output_that_cannot_be_written_is_an_error_that_passes);
