@@ -64,6 +64,7 @@ static void velocity_outputs(cm1e_sim_cia402_t *drive, uint16_t rising_bits)
 
 static void csv_enter(cm1e_sim_cia402_t *drive)
 {
+    cm1e_servo_forget_distance(&drive->servo, &drive->mechanics);
     drive->servo.own_profile = false;
     velocity_outputs(drive, 0);
 }
@@ -78,6 +79,7 @@ static void csv_step(cm1e_sim_cia402_t *drive, double step_s)
 
 static void pv_enter(cm1e_sim_cia402_t *drive)
 {
+    cm1e_servo_forget_distance(&drive->servo, &drive->mechanics);
     drive->servo.own_profile = true;
     velocity_outputs(drive, 0);
 }

@@ -66,14 +66,6 @@ static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)
     return drive->firmware->following_bit && drive->watch.following ? STATUSWORD_BIT12 : 0;
 }
 
-/* A velocity loop knows no position. What the servo could not make up until now with all of its torque, it would keep as a
- * distance behind a reference that runs with the motor, and drive the motor away from there. */
-static void forget_distance(cm1e_sim_cm1e_t *drive)
-{
-    if (drive->servo.saturated)
-        drive->servo.reference = drive->mechanics.position;
-}
-
 /* ---- cyclic synchronous velocity -------------------------------------------------------------------------------- */
 
 static void csv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
@@ -84,7 +76,7 @@ static void csv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 
 static void csv_enter(cm1e_sim_cm1e_t *drive)
 {
-    forget_distance(drive);
+    cm1e_servo_forget_distance(&drive->servo, &drive->mechanics);
     drive->servo.own_profile = false;
     csv_outputs(drive, 0);
 }
@@ -107,7 +99,7 @@ static void pv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 
 static void pv_enter(cm1e_sim_cm1e_t *drive)
 {
-    forget_distance(drive);
+    cm1e_servo_forget_distance(&drive->servo, &drive->mechanics);
     drive->servo.own_profile = true;
     pv_outputs(drive, 0);
 }

@@ -29,6 +29,12 @@ void cm1e_servo_catch(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics)
     servo->saturated = false;
 }
 
+void cm1e_servo_forget_distance(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics)
+{
+    if (servo->saturated)
+        servo->reference = mechanics->position;
+}
+
 static double limited(double value, double limit) { return value > limit ? limit : value < -limit ? -limit : value; }
 
 void cm1e_servo_rest(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics)
