@@ -320,18 +320,20 @@ static bool function_jerks(const cm1e_axis_t *axis, const from_t *f)
     return coupling_keeps_jerk(axis->coupling) && jerk_of_function(axis, f) > most * (1.0 + 1e-6) + rounding;
 }
 
-/* Whether the superimposed motion makes the acceleration of the sum larger than it may be on the other side of standstill: the
- * sum may turn round before that has ended. */
+/* Whether the superimposed motion makes the acceleration of the sum larger than it may be behind the standstill, to which it
+ * comes nearer. One whose share is more than that, because a maximum was lowered since, could not brake by its plan. */
 static bool adds_too_much(const cm1e_axis_t *axis, const from_t *sum)
 {
-    static const double rounding = 1.0 + 1e-6;
-    const double either = smaller(axis->limits.maximum.acceleration, axis->limits.maximum.deceleration);
-    return fabs(sum->acceleration) > either * rounding && axis->superimposed.now.acceleration * sum->acceleration > 0.0;
+    const superimposed_t *on_top = &axis->superimposed;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const double a = sum->acceleration, either = smaller(most->acceleration, most->deceleration) * (1.0 + 1e-6);
+    return coupling_keeps_jerk(axis->coupling) && fabs(a) > either && a * sum->velocity <= 0.0 &&
+           on_top->now.acceleration * a > 0.0 && larger(on_top->share.acceleration, on_top->share.deceleration) <= either;
 }
 
 static bool lacks_room(const cm1e_axis_t *axis, const from_t *sum)
 {
-    return coupling_keeps_jerk(axis->coupling) && (!has_room(axis, sum) || adds_too_much(axis, sum));
+    return coupling_keeps_jerk(axis->coupling) && !has_room(axis, sum);
 }
 
 static bool breaks_more_than_jerk(const cm1e_axis_t *axis, const from_t *sum)
@@ -340,21 +342,21 @@ static bool breaks_more_than_jerk(const cm1e_axis_t *axis, const from_t *sum)
 }
 
 /* The superimposed motion goes on without jerk for a cycle, or, where the acceleration of the sum is too large, without
- * some of its own. It may pass its target then, and comes back. false: that does not help. */
-CM1E_RARE static bool goes_on_otherwise(cm1e_axis_t *axis, const from_t *f, const parts_t *before, from_t *sum)
+ * some of its own. It may pass its target then, and comes back. `adding`: it may add too much. false: that does not help. */
+CM1E_RARE static bool goes_on_otherwise(cm1e_axis_t *axis, const from_t *f, const parts_t *before, bool adding, from_t *sum)
 {
     verdict_t verdict;
     put_back(axis, before);
     if (cm1e_axis_superimposed_hold(axis, false)) {
         *sum = with_catch_up(axis, f, &verdict);
-        if (!breaks_more_than_jerk(axis, sum))
+        if (!breaks_more_than_jerk(axis, sum) && (adding || !adds_too_much(axis, sum)))
             return true;
     }
     put_back(axis, before);
     if (!cm1e_axis_superimposed_ease(axis))
         return false;
     *sum = with_catch_up(axis, f, &verdict);
-    return !breaks_more_than_jerk(axis, sum);
+    return !breaks_more_than_jerk(axis, sum) && (adding || !adds_too_much(axis, sum));
 }
 
 /* With a superimposed motion, whose sum with the function breaks a limit: if it is the jerk alone, the superimposed motion
@@ -368,10 +370,16 @@ CM1E_RARE static from_t with_less(cm1e_axis_t *axis, const from_t *f, const part
     from_t sum = planned;
     if (function_jerks(axis, f))
         return planned;
-    if (breaks_more_than_jerk(axis, &planned)) {
-        const bool good = goes_on_otherwise(axis, f, before, &sum);
-        *verdict = good ? (verdict_t){.smooth = true} : refused;
-        return good ? sum : planned;
+    const bool breaks = breaks_more_than_jerk(axis, &planned);
+    if (breaks || adds_too_much(axis, &planned)) {
+        if (goes_on_otherwise(axis, f, before, false, &sum) || (breaks && goes_on_otherwise(axis, f, before, true, &sum))) {
+            *verdict = (verdict_t){.smooth = true};
+            return sum;
+        }
+        put_back(axis, &as_planned);
+        *verdict = refused;
+        if (breaks || !refused.guard.limit)
+            return planned;
     }
     put_back(axis, before);
     if (cm1e_axis_superimposed_hold(axis, true)) {
@@ -390,7 +398,7 @@ static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *v
     cm1e_motion_state_t unused = {0};
     cm1e_axis_superimposed_step(axis, &unused);
     const from_t sum = with_catch_up(axis, f, verdict);
-    const bool too_much = verdict->guard.limit || lacks_room(axis, &sum);
+    const bool too_much = verdict->guard.limit || lacks_room(axis, &sum) || adds_too_much(axis, &sum);
     return too_much && axis->superimposed.moving ? with_less(axis, f, &before, sum, verdict) : sum;
 }
 

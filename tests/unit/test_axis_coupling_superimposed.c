@@ -4,6 +4,8 @@
  * more jerk than the slave has is refused as without a superimposed motion. */
 #include "unity.h"
 
+#include "axis/axis_parameters.h"
+
 #include "../support/axes_bench.h"
 #include "../support/chance.h"
 
@@ -160,6 +162,32 @@ static void test_random_changes_where_the_deceleration_differs(void)
     slave_deceleration = MOST_ACCELERATION;
 }
 
+/* One of both limits of acceleration is lowered while the superimposed motion accelerates or brakes: more than the smaller one
+ * of both is no reason for an error, or for a jump of the sum, as long as it does not turn round. */
+static void test_a_lowered_maximum_does_not_disturb_a_superimposed_motion(void)
+{
+    static const int numbers[] = {CM1E_PARAMETER_MAX_ACCELERATION_APPL, CM1E_PARAMETER_MAX_DECELERATION_APPL};
+    for (int i = 0; i < 4; i++)
+        for (int when = 1; when < 250; when += sweep_stride(1, 9)) {
+            on_top_t on_top = {.distance = i < 2 ? 1.25 : -1.25, .velocity = 3.0};
+            make_two();
+            const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+            axes_wait_reached(SLAVE, gear, 100);
+            move_master(6.0);
+            axes_cycles(600);
+            const double before = ahead();
+            begin_on_top(&on_top);
+            watch(&on_top, gear, when);
+            const double a = axes_axis(SLAVE)->superimposed.now.acceleration;
+            const double value = fmax(1.0, 0.6 * fabs(a));
+            const cm1e_error_t error = cm1e_axis_write_parameter(axes_axis(SLAVE), numbers[i % 2], value);
+            AXES_MUST(error == CM1E_OK || (i % 2 == 0) == (a > 0.0), "refused at %g u/s2: %s", a, axes_text(SLAVE));
+            wait_for_end(&on_top, gear);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, before + on_top.distance, ahead());
+            axes_end();
+        }
+}
+
 /* The jerk of the master alone is more than the slave has, by the master's own limits or by the ratio. */
 static void test_a_master_with_more_jerk_than_the_slave_is_an_error_as_ever(void)
 {
@@ -192,5 +220,6 @@ int main(void)
     RUN_TEST(test_a_master_that_halts_leaves_the_superimposed_motion_as_it_was_asked_for);
     RUN_TEST(test_random_changes_of_the_master);
     RUN_TEST(test_random_changes_where_the_deceleration_differs);
+    RUN_TEST(test_a_lowered_maximum_does_not_disturb_a_superimposed_motion);
     return UNITY_END();
 }
