@@ -48,7 +48,7 @@ typedef struct cm1e_scheduler_config {
     int cpu;                    /**< CPU to which the thread is bound (1 = first); 0: any */
     bool realtime_required;     /**< true: a missing privilege is an error; false: `advice` in the statistics */
     int64_t stop_timeout_ns;    /**< maximum time of the ramp-down at the end; 0 selects 10 s. Behind its ramp a motor
-                                     that a load still turns keeps its torque, for up to 2 s more */
+                                     that a load still turns keeps its torque, for about 2 s more at most */
     uint32_t trace_capacity;    /**< number of cycles that the trace keeps per axis; 0: it keeps none */
     uint32_t trace_every;       /**< n: every n-th cycle is recorded; 0 selects 1 */
 } cm1e_scheduler_config_t;
