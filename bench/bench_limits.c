@@ -150,7 +150,7 @@ static void measure_stop(void)
         config.axis[i] = (cm1e_path_axis_t){BLOCKS_VELOCITY, BLOCKS_ACCELERATION, BLOCKS_JERK, -INFINITY, INFINITY};
     if (cm1e_path_begin(&long_path, &config, origin) != CM1E_OK)
         fail("no path");
-    for (unsigned i = 0; cm1e_path_room(&long_path) > 0; i++) {
+    for (unsigned i = 0; long_path.segment_count < CM1E_PATH_SEGMENTS; i++) {
         const double end[2] = {1.0 * (i + 1), i % 2 ? 0.0 : 0.3};
         const cm1e_path_command_t command = {.limits = {30 + i % 7, 0, 0, 0}, .blend = CM1E_PATH_BLEND_LOW, .tag = i + 1,
                                              .junction = CM1E_PATH_CORNER_DEVIATION, .parameter = 0.05};
