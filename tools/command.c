@@ -449,22 +449,6 @@ int run_on_slave(const common_options_t *common, const char *where, slave_action
 
 int in_bytes(int width, const char *text) { return width + (int)(strlen(text) - cm1e_text_width(text)); }
 
-const char *text_of(const json_t *object, const char *name)
-{
-    const char *text = json_string_value(json_object_get(object, name));
-    return text ? text : "";
-}
-
-json_t *text_as_json(const char *text)
-{
-    char *copy = strdup(text ? text : "");
-    if (copy)
-        cm1e_text_clean(copy);
-    json_t *value = json_string(copy ? copy : "");
-    free(copy);
-    return value;
-}
-
 void print_json(json_t *value)
 {
     json_printed = true;
