@@ -231,6 +231,46 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis)
     return axis->power.energized && axis->drive.feedback.state == OPERATION_ENABLED;
 }
 
+/* counts/s; a motor that is slower rests. */
+static double slow_velocity(const cm1e_axis_t *axis)
+{
+    return axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s + CM1E_AXIS_VELOCITY_NOISE;
+}
+
+/* counts/s; of the motor, without the way of the backlash. */
+static double motor_velocity(const cm1e_axis_t *axis)
+{
+    return axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
+}
+
+/* counts/s; the least that tells this velocity, the one of the cycle before, what both come to in the next cycle, and the way
+ * since then. So one untrue value turns nothing, and the motor is not driven where the drive brakes it already. */
+static double coasting_velocity(const cm1e_axis_t *axis)
+{
+    const double now = motor_velocity(axis), before = axis->power.velocity;
+    const double way = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
+    const double others[] = {before, 2.0 * now - before, way / axis->cycle_s};
+    double least = fabs(now);
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        least = fmin(least, others[i] * now > 0.0 ? fabs(others[i]) : 0.0);
+    return copysign(least, now);
+}
+
+/* Begins the ramp of a motor that turns with this velocity (counts/s), if it ends before a software limit. */
+static bool brakes_first(cm1e_axis_t *axis, double counts_per_s)
+{
+    const double most = axis->limits.system.velocity;
+    const double velocity = fmax(-most, fmin(counts_per_s / axis->position.scale, most));
+    const cm1e_motion_state_t next = {.position = velocity * axis->cycle_s, .velocity = velocity};
+    if (fabs(counts_per_s) <= slow_velocity(axis) ||
+        !cm1e_axis_limits_can_stop(axis, cm1e_axis_line(axis, axis_actual(axis)), next))
+        return false;
+    cm1e_axis_set_to_actual(axis);
+    cm1e_axis_put_velocity(axis, velocity);
+    cm1e_axis_ramp_down(axis, &axis->limits.emergency);
+    return true;
+}
+
 /* Takes over the enabled drive (note 5): the set-point begins at the actual position of this cycle. This also applies
  * if power comes back during the ramp of a homing step that pressed: there the set-point is beyond the stop. */
 static void take_over(cm1e_axis_t *axis)
@@ -244,6 +284,22 @@ static void take_over(cm1e_axis_t *axis)
     cm1e_axis_go(axis, ON_POWER_ON);
 }
 
+/* A motor may still turn when it gets its torque: it coasts, or its load turns it. A set-point that stood would brake it with
+ * all of its torque, and pull it back from where that ends. So the set-point goes with the motor and brakes, and the axis is
+ * taken over when it rests. Its velocity is known when two cycles have shown it under torque. */
+static void take_over_or_brake(cm1e_axis_t *axis)
+{
+    const bool set_points = axis->mode == CM1E_MODE_CSP || axis->mode == CM1E_MODE_CSV;
+    const bool true_motion = axis->drive.feedback.fresh && axis->drive.actual.contradictions == 0;
+    if (!axis_free(axis) || !set_points || !true_motion || cm1e_drive_is_virtual(&axis->drive)) {
+        take_over(axis);
+        return;
+    }
+    const bool seen_before = axis->power.velocity != 0.0f;
+    if (seen_before ? !brakes_first(axis, coasting_velocity(axis)) : fabs(motor_velocity(axis)) <= slow_velocity(axis))
+        take_over(axis);
+}
+
 static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b_ns; }
 
 /* Whether the motor is not brought back by its servo: it is farther from the set-point than its lag may be, or it gets
@@ -254,8 +310,8 @@ static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double sl
     const double speed = fabs(velocity);
     const bool goes_away = away * velocity > 0.0;
     if (!goes_away)
-        axis->power.swing = fmaxf(axis->power.swing, (float)speed);
-    return (goes_away && speed > axis->power.swing + slow) ||
+        axis->power.velocity = fmaxf(axis->power.velocity, (float)speed);
+    return (goes_away && speed > axis->power.velocity + slow) ||
            fabs(away) > axis->limits.max_lag * fabs(axis->position.scale);
 }
 
@@ -265,18 +321,17 @@ static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double sl
 static void wait_for_rest(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;
-    const double velocity = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis); /* counts/s */
+    const double velocity = motor_velocity(axis);
     const uint16_t now_ms = (uint16_t)(axis->now_ns / MS_IN_NS);
     const bool first = !power->held;
     if (first) {
         power->held_ms = now_ms;
-        power->swing = (float)fabs(velocity);
+        power->velocity = (float)fabs(velocity);
     }
     power->held = true;
     if (!axis->drive.feedback.fresh || (uint16_t)(now_ms - power->held_ms) >= longest_swing_ms)
         return;
-    const double braked = axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s;
-    const double slow = braked + CM1E_AXIS_VELOCITY_NOISE; /* counts/s */
+    const double slow = slow_velocity(axis);
     const double away = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
     if (runs_away(axis, away, velocity, slow))
         power->held_ms = (uint16_t)(now_ms - longest_swing_ms);
@@ -299,15 +354,18 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
 {
     const bool acting = axis_acts(axis);
     const bool wanted = cm1e_axis_wants_enable(axis) && !axis->power.letting_go;
-    const bool still = axis_free(axis) || axis_holds(axis), leaves = axis_holds(axis) && !wanted;
+    const bool free = axis_free(axis), holds = axis_holds(axis), leaves = holds && !wanted;
+    const bool enables = axis->state == CM1E_AXIS_DISABLED && wanted && acting && (free || holds);
     if (!leaves)
         axis->power.held = false;
-    if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
-        take_over(axis);
+    if (enables)
+        take_over_or_brake(axis);
     else if (leaves && ramp_is_over(axis))
         cm1e_axis_become_free(axis);
-    else if (!axis_free(axis) && !drive_moves(axis) && !acting)
+    else if (!free && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque was lost during a ramp */
+    if (free)
+        axis->power.velocity = acting && axis->drive.feedback.fresh ? (float)motor_velocity(axis) : 0.0f;
 }
 
 void cm1e_axis_enable_step(cm1e_axis_t *axis)

@@ -237,6 +237,66 @@ START_TEST(test_a_turning_shaft_is_caught_where_it_is)
 }
 END_TEST
 
+/* ---- a load that turns on when the torque comes ------------------------------------------------------------------ */
+
+enum { KICK_AT = 5, CAUGHT_AT = 55, SETTLED_CYCLES = 40 };
+static double kicked_speed, speed_before; /* counts/s */
+static double hardest;                    /* counts/s in a cycle, when the servo has the motor */
+static double farthest, turned_back;               /* counts */
+static bool came_on;
+
+static void kicked_program(bench_t *b)
+{
+    if (b->cycle == KICK_AT)
+        bench_console(b, "load 1 %g", load_nm);
+    if (b->cycle == CAUGHT_AT)
+        bench_console(b, "load 1 0");
+    power.Enable = b->cycle >= CAUGHT_AT;
+    call_blocks();
+    const cm1e_sim_probe_t probe = bench_probe(b, 0);
+    const double sign = load_nm < 0 ? -1 : 1;
+    const double speed = probe.velocity_counts_per_s * sign, position = probe.position_counts * sign;
+    torque_cycles += probe.torque_on;
+    if (!probe.torque_on)
+        kicked_speed = speed;
+    if (torque_cycles > SETTLED_CYCLES)
+        hardest = fmax(hardest, speed_before - speed);
+    farthest = torque_cycles > 0 ? fmax(farthest, position) : position;
+    turned_back = farthest - position;
+    MUST(b, torque_cycles < 2 || speed < kicked_speed + 200, "driven from %.0f to %.0f counts/s", kicked_speed, speed);
+    speed_before = speed;
+    came_on |= power.Status;
+    MUST(b, !power.Status || fabs(speed) < 0.02 * kicked_speed, "power is on at %.0f counts/s", speed);
+    MUST(b, power.Status || bench_info(b, 0).state == CM1E_AXIS_DISABLED, "%s", axis_text());
+    if (b->cycle == CAUGHT_AT + 600)
+        cm1e_scheduler_stop(b->scheduler);
+}
+
+START_TEST(test_a_turning_load_is_braked_before_the_axis_is_on)
+{
+    static const double torques_nm[] = {0.06, -0.06};
+    for (size_t t = 0; t < sizeof torques_nm / sizeof torques_nm[0]; t++) {
+        prepare_variant(_i);
+        bench.config.axes[0].sim = (cm1e_sim_axis_config_t){.no_stops = true, .load_inertia = 3e-5};
+        bench.config.axes[0].max_deceleration = 2000;
+        bench.program = kicked_program;
+        load_nm = torques_nm[t];
+        torque_cycles = 0;
+        came_on = false;
+        kicked_speed = speed_before = hardest = farthest = turned_back = 0;
+        bench_open(&bench);
+        bench_start(&bench);
+        run_to_the_end();
+        const cm1e_axis_config_t *axis = &bench.config.axes[0];
+        const double most = axis->max_deceleration * axis->counts_per_unit * 1e-3; /* a cycle */
+        MUST(&bench, kicked_speed > 50 * most, "it only turns at %.0f counts/s", kicked_speed);
+        MUST(&bench, came_on, "the axis is not on: %s", text_at_end);
+        MUST(&bench, hardest < 1.5 * most, "braked by %.0f counts/s in a cycle, limit %.0f", hardest, most);
+        MUST(&bench, turned_back < 200, "turned back by %.0f counts", turned_back);
+    }
+}
+END_TEST
+
 /* ---- frames lost or late on the way to Operation enabled ------------------------------------------------------- */
 
 typedef enum trouble { LOST_THERE = 0, LOST_BACK, LATE_HALF, LATE_ONE, LATE_THREE, WRONG_COUNTER, TROUBLES } trouble_t;
@@ -393,6 +453,7 @@ int main(void)
     tcase_add_loop_test(cases, test_a_resting_shaft_stays_at_rest, 0, VARIANTS);
     tcase_add_loop_test(cases, test_the_end_of_32_bits_is_a_position_like_any_other, 0, 5 * 2 * MAPPINGS);
     tcase_add_loop_test(cases, test_a_turning_shaft_is_caught_where_it_is, 0, VARIANTS);
+    tcase_add_loop_test(cases, test_a_turning_load_is_braked_before_the_axis_is_on, 0, VARIANTS);
     tcase_add_loop_test(cases, test_trouble_with_frames_while_enabling_moves_nothing, 0, TROUBLES * TROUBLE_LOADS);
     tcase_add_loop_test(cases, test_a_load_is_held_while_the_mode_changes, 0, VARIANTS);
     tcase_add_loop_test(cases, test_enable_at_random_moves_nothing, 0, seed_count(24));

@@ -255,12 +255,20 @@ static bool at_stop(const machine_axis_t *axis)
     return axis->spec->stops != 0 && fabs(axis->probe.position_counts) > STOP_COUNTS;
 }
 
+/** A motor that turns when it gets its torque is braked from its velocity, while its axis is Disabled still. */
+static bool is_braked_first(const machine_axis_t *axis, double velocity)
+{
+    const double sign = axis->spec->invert != 0 ? -1 : 1, shaft = sign * axis->probe.velocity_counts_per_s;
+    return is_motor(axis) && axis->info.state == CM1E_AXIS_DISABLED && axis->seen.set_velocity == 0 &&
+           velocity * shaft > 0 && fabs(velocity) < 1.02 * fabs(shaft) + SERVO_SPEED_COUNTS;
+}
+
 /** The set-point itself knows no tolerance but that of its numbers. */
 static void judge_set_point(run_t *run, machine_axis_t *axis)
 {
     const axis_spec_t *spec = axis->spec;
     const double velocity = axis->info.set_velocity * spec->counts_per_unit, before = axis->seen.set_velocity;
-    const double change = fabs(velocity - before);
+    const double change = is_braked_first(axis, velocity) ? 0 : fabs(velocity - before);
     const double most = fmax(spec->acceleration, spec->deceleration) * run->scenario->cycle_us * 1e-6;
     const bool by_drive = axis->info.state == CM1E_AXIS_HOMING && axis->seen.by_drive;
     /* Nobody can brake a motor that has no torque, that its bridge does not reach, or that a hard stop holds. */

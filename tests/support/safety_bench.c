@@ -200,6 +200,8 @@ static bool is_of_last_frame(const bench_t *bench, const uint8_t *data)
     return memcmp(data + from, bench->last_sent + from, (size_t)(to - from)) == 0;
 }
 
+static double counts_between(int32_t to, int32_t from) { return (double)(int32_t)((uint32_t)to - (uint32_t)from); }
+
 /** Inputs that the master may believe: of the frame it sent last, with every slave's part in it. */
 static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
 {
@@ -215,6 +217,8 @@ static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
         w->statusword = word_at(data, w->in_statusword);
         w->position_before = w->shown ? w->position : long_at(data, w->in_position);
         w->position = long_at(data, w->in_position);
+        w->shaft = counts_between(w->position, w->position_before) / fmax(bench->cycle - w->cycle_shown, 1);
+        w->cycle_shown = bench->cycle;
         w->mode_shown = w->in_mode < 0 ? true_mode(bench, n) : (int8_t)data[w->in_mode];
         w->shown = true;
     }
@@ -226,6 +230,17 @@ static bool at_shown_position(const bench_t *bench, const witness_t *w, bool ena
 {
     return w->target == w->position || (bench->frames_late && w->target == w->position_before) ||
            (w->in_mode < 0 && enabling_before && w->target == target_before);
+}
+
+/** A shaft that turns when it gets its torque is braked from there: never faster than it was seen to turn, nor the other
+ *  way. */
+static bool brakes(const bench_t *bench, const witness_t *w)
+{
+    const double cycle_s = (double)bench->config.cycle_time_ns * 1e-9;
+    const bool in_csv = w->out_position < 0;
+    const double step = in_csv ? w->velocity * cycle_s : counts_between(w->target, w->position);
+    const double least = in_csv ? w->velocity_unit * cycle_s : 1;
+    return step * w->shaft > 0 && fabs(step) <= fabs(w->shaft) + least;
 }
 
 bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double step)
@@ -240,8 +255,6 @@ bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double ste
         return true; /* on the way back there, no faster than the axis may go */
     return !moving && (step == 0 || fabs(off) <= fmax(w->max_step, 3 * shaft) + 1.0);
 }
-
-static double counts_between(int32_t to, int32_t from) { return (double)(int32_t)((uint32_t)to - (uint32_t)from); }
 
 /** A load has turned the shaft on while no targets came: it is ahead of its target by more than a servo ever puts it.
  *  Then the target goes after it: with any step that does not lead beyond the shaft, or with smaller and smaller ones. */
@@ -359,12 +372,13 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     if (w->mode_shown == CM1E_MODE_HM && enabling_before)
         return; /* takes no targets */
     if (!w->holding || !holding_before) { /* the drive may act on this frame, or acts on it as the first one */
-        MUST(bench, at_shown_position(bench, w, enabling_before, target_before),
+        const bool braked = w->holding && brakes(bench, w);
+        MUST(bench, braked || at_shown_position(bench, w, enabling_before, target_before),
              "axis %u: controlword 0x%04X, statusword 0x%04X, mode %d: target %d, but the drive is at %d", n,
              w->controlword, w->statusword, w->mode_shown, w->target, w->position);
-        MUST(bench, w->velocity == 0, "axis %u: controlword 0x%04X, statusword 0x%04X: target velocity %.0f", n,
+        MUST(bench, braked || w->velocity == 0, "axis %u: controlword 0x%04X, statusword 0x%04X: target velocity %.0f", n,
              w->controlword, w->statusword, w->velocity);
-        w->step = 0;
+        w->step = braked ? counts_between(w->target, w->position) : 0;
         w->silent = false;
         return;
     }

@@ -44,6 +44,8 @@ typedef struct witness {
     bool shown;                        /**< the drive has shown something */
     uint16_t statusword;
     int32_t position, position_before;
+    int cycle_shown;                   /**< of `position` */
+    double shaft;                      /**< counts a cycle, from the one position to the other */
     int8_t mode_shown;
     bool enabling, holding;            /**< of the last frame sent: controlword bit 3; its set-points count */
     uint16_t controlword;

@@ -35,6 +35,43 @@ static void test_enable_never_moves_also_with_a_turning_shaft(void)
             }
 }
 
+static int world_cycle, untrue_cycle, untrue_counts;
+static bool untrue_stays;
+
+/* In one cycle the motor shows a position where it is not, or is shifted, as if it had turned fast. */
+static void show_untrue(cm1e_bus_t *motor)
+{
+    const bool back = world_cycle == untrue_cycle + 1 && !untrue_stays;
+    if (world_cycle == untrue_cycle || back)
+        motor->position += back ? -untrue_counts : untrue_counts;
+    const int per_s = cm1e_firmware_info(motor->firmware)->velocity_in_counts_per_ms ? 1 : 1000;
+    motor->velocity_raw = world_cycle == untrue_cycle ? untrue_counts * per_s : back ? -untrue_counts * per_s : 0;
+    world_cycle++;
+}
+
+/* A motor that turns is braked from its velocity; a velocity of one cycle is none. */
+static void test_one_untrue_position_while_it_is_enabled_turns_nothing(void)
+{
+    for (int mapping = CM1E_MAPPING_DYNAMIC; mapping <= CM1E_MAPPING_PROFILE; mapping++)
+        for (int run = 0; run < 2 * 2 * 12; run++) {
+            fake_bus_init(&bus, (cm1e_mapping_t)mapping, CM1E_PDO_ORDER_UG_7_2, CM1E_FIRMWARE_1_3_5);
+            bench_create();
+            untrue_counts = run % 2 ? 900 : -900;
+            untrue_stays = run / 2 % 2;
+            untrue_cycle = run / 4;
+            world_cycle = 0;
+            bus.world = show_untrue;
+            bench_power(true);
+            for (int i = 0; i < 40; i++) {
+                bench_cycles(1);
+                TEST_ASSERT_EQUAL_DOUBLE(0.0, bench_info().set_velocity);
+            }
+            TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+            TEST_ASSERT_LESS_OR_EQUAL_INT64(900, bus.torque_step);
+            bus.world = NULL;
+        }
+}
+
 static void test_enable_after_the_shaft_was_turned_while_disabled(void)
 {
     bench_enable();
@@ -461,6 +498,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_enable_never_moves_also_with_a_turning_shaft);
+    RUN_TEST(test_one_untrue_position_while_it_is_enabled_turns_nothing);
     RUN_TEST(test_enable_after_the_shaft_was_turned_while_disabled);
     RUN_TEST(test_power_is_settled_only_as_long_as_nothing_changes);
     RUN_TEST(test_power_is_settled_no_longer_without_torque);
