@@ -147,8 +147,8 @@ static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
     guard_t guard = cm1e_axis_guard(axis, sum, kept_jerk);
     if (!kept && !guard.limit && !keeps_velocity(axis, sum, most * (1.0 + 1e-8)))
         guard = (guard_t){.limit = GUARD_VELOCITY, .asked = fabs(sum->velocity), .allowed = most};
-    return (verdict_t){guard, !guard.limit && (!kept_jerk || (kept && has_room(axis, sum) &&
-                                                             cm1e_axis_guard_smooth(axis, sum)))};
+    const bool eased = !coupling_eases(axis->coupling) || (kept && has_room(axis, sum));
+    return (verdict_t){guard, !guard.limit && eased && (!kept_jerk || cm1e_axis_guard_smooth(axis, sum))};
 }
 
 /* How the catch-up may go on in a cycle, in the order in which it is tried: by its plan; by a new plan with the whole
@@ -333,7 +333,7 @@ static bool adds_too_much(const cm1e_axis_t *axis, const from_t *sum)
 
 static bool lacks_room(const cm1e_axis_t *axis, const from_t *sum)
 {
-    return coupling_keeps_jerk(axis->coupling) && !has_room(axis, sum);
+    return coupling_eases(axis->coupling) && !has_room(axis, sum);
 }
 
 static bool breaks_more_than_jerk(const cm1e_axis_t *axis, const from_t *sum)

@@ -256,6 +256,9 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
 {
     return !c->now->linear && !c->now->by_actual && !c->stopping;
 }
+/** Whether what moves beside the function ends the acceleration before the maximum velocity with the jerk of the axis.
+ *  The actual value of a master has no limit of jerk, but the catch-up and a superimposed motion are plans of the axis. */
+static inline bool coupling_eases(const coupling_t *c) { return !c->now->linear && !c->stopping; }
 /** Puts the coupling `follow` in force. The difference to the state `from` becomes the catch-up. The caller changes the
  *  active command. */
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);

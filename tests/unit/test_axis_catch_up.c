@@ -168,6 +168,33 @@ static void test_random_ratios_in_a_chain_of_slaves(void)
     }
 }
 
+/* A master followed by its actual value, which has no jerk here: its steps are whole counts. Often it is faster than the
+ * slave may be. What is left to do is the slave's own motion, so that ends its acceleration with the jerk of the axis. */
+static void test_the_way_to_an_actual_value_ends_with_the_jerk_of_the_axis(void)
+{
+    for (int run = 0; run < seed_count(1200); run++) {
+        begin_run(run);
+        make(2, 1.0, false);
+        axes_bench.witness[SLAVE].strictness = AXES_STEEP;
+        if (one_in(2))
+            axes_move_velocity(SLAVE, any_velocity(fastest));
+        move_master(floor(any_velocity(fastest) * 50.0) / 50.0 + 0.02);
+        axes_cycles(1500);
+        const cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .source = mcActualValue,
+                                                           .numerator = 1 + pick(4), .denominator = 1}}};
+        const cm1e_command_id_t gear = axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN,
+                                                                                  .coupling = &coupling});
+        const double most = axes_config(SLAVE)->max_jerk * 1e-3 * 1.01;
+        for (int n = 0; n < 2000; n++) {
+            const double before = axes_axis(SLAVE)->setpoint.acceleration;
+            watch(SLAVE, gear, 1);
+            const double step = fabs(axes_axis(SLAVE)->setpoint.acceleration - before);
+            AXES_MUST(step <= most, "the acceleration changes by %.6g u/s2 in a cycle, not %.6g", step, most);
+        }
+        axes_end();
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -175,5 +202,6 @@ int main(void)
     RUN_TEST(test_random_changes_of_the_master_about_a_pause);
     RUN_TEST(test_random_changes_of_the_master_below_a_superimposed_motion);
     RUN_TEST(test_random_ratios_in_a_chain_of_slaves);
+    RUN_TEST(test_the_way_to_an_actual_value_ends_with_the_jerk_of_the_axis);
     return UNITY_END();
 }
