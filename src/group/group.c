@@ -116,6 +116,11 @@ static cm1e_error_t refuse_member(cm1e_group_t *group, cm1e_error_t error, uint3
     return cm1e_group_refuse(group, (group_refusal_t){.error = error, .ident = ident, .why = why});
 }
 
+static cm1e_error_t refuse_ident(cm1e_group_t *group, uint32_t ident, const char *why)
+{
+    return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_MEMBER, .value = ident, .why = why});
+}
+
 /* Whether one thread advances the axis and the members in the same cycle. */
 static bool shares_cycle(const cm1e_group_t *group, const cm1e_axis_t *axis)
 {
@@ -135,10 +140,17 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
         return refused;
     if (!axis)
         return refuse_member(group, CM1E_ERROR_FB_AXIS_REF, 0, NULL);
+    for (uint32_t other = 1; other <= CM1E_GROUP_AXES; other++)
+        if (group->member[other - 1].Handle == reference.Handle)
+            return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, other, "The axis has this place in the group "
+                                                                        "already.");
+    if (cm1e_group_free_ident(group) == 0)
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The group is full: it has 8 axes. "
+                             "MC_RemoveAxisFromGroup makes room.");
+    if (ident > CM1E_GROUP_AXES)
+        return refuse_ident(group, ident, "IdentInGroup must be 1 ... 8, or 0 for the first free place.");
     if (ident == 0)
         ident = cm1e_group_free_ident(group);
-    if (ident == 0 || ident > CM1E_GROUP_AXES)
-        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "IdentInGroup must be 1 ... 8.");
     if (group->member[ident - 1].Handle != 0)
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, ident, "This place is taken: use MC_RemoveAxisFromGroup "
                                                                     "first.");
@@ -150,10 +162,6 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
                              "`motion: host` in the bus file.");
     if (cm1e_axis_configuration(axis)->type == CM1E_AXIS_ENCODER)
         return refuse_member(group, CM1E_ERROR_AXIS_VIRTUAL, 0, "An encoder cannot be moved.");
-    for (uint32_t other = 1; other <= CM1E_GROUP_AXES; other++)
-        if (group->member[other - 1].Handle == reference.Handle)
-            return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, other, "The axis has this place in the group "
-                                                                        "already.");
     if (!cm1e_axis_join(axis, group))
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another group.");
     group->member[ident - 1] = reference;
@@ -166,7 +174,7 @@ cm1e_error_t cm1e_group_remove(cm1e_group_t *group, uint32_t ident)
     if (refused != CM1E_OK)
         return refused;
     if (ident < 1 || ident > CM1E_GROUP_AXES || group->member[ident - 1].Handle == 0)
-        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "There is no axis at this place.");
+        return refuse_ident(group, ident, "There is no axis at this place.");
     cm1e_group_leave(group, ident);
     return CM1E_OK;
 }

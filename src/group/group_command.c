@@ -172,7 +172,7 @@ static cm1e_error_t wait_behind(cm1e_group_t *group, const cm1e_group_command_t 
 {
     double end[CM1E_PATH_AXES];
     if (group->queue.count == CM1E_GROUP_COMMANDS)
-        return refuse(group, CM1E_ERROR_FULL, 0.0, NULL);
+        return refuse(group, CM1E_ERROR_FULL, 0.0, "Wait until one of the commands of the group is done.");
     cm1e_path_end(&group->path, end);
     const cm1e_error_t error = append(group, command, end, !group->halting, id);
     if (error == CM1E_OK && group->halting) /* a command behind the halt begins only when the group has come to rest */
@@ -301,7 +301,7 @@ void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold)
 cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity)
 {
     if (!(velocity >= 0.0 && velocity <= 1.0))
-        return CM1E_ERROR_AXIS_OVERRIDE;
+        return refuse(group, CM1E_ERROR_AXIS_OVERRIDE, velocity, NULL);
     if (velocity == group->override)
         return CM1E_OK;
     group->override = velocity;

@@ -131,7 +131,9 @@ static void test_members_by_place(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_remove(group, 2));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_remove(group, 0));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_remove(group, 9));
+    group_told("9 was given. There is no axis at this place");
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_add(group, axes_reference(1), 9));
+    group_told("9 was given. IdentInGroup must be 1 ... 8");
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_add(group, axes_reference(1), 1));
     group_told("place is taken");
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_add(group, axes_reference(0), 5));
@@ -142,6 +144,34 @@ static void test_members_by_place(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_member(group, 8, &axis));
     TEST_ASSERT_EQUAL_UINT(axes_reference(1).Handle, axis.Handle);
     TEST_ASSERT_EQUAL_INT(3, group_info().axes);
+}
+
+static void test_a_full_group_says_so(void)
+{
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_disable(group));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_remove(group, 2));
+    for (int i = 0; i < CM1E_GROUP_AXES; i++)
+        if (group->member[i].Handle == 0)
+            group->member[i].Handle = 4711; /* there are more places than axes of the bench */
+    for (uint32_t ident = 0; ident <= CM1E_GROUP_AXES + 1; ident++) {
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_add(group, axes_reference(1), ident));
+        group_told("The group is full: it has 8 axes");
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_add(group, axes_reference(0), ident));
+        group_told("has this place in the group already");
+    }
+    for (int i = 0; i < CM1E_GROUP_AXES; i++)
+        if (group->member[i].Handle == 4711)
+            group->member[i].Handle = 0;
+}
+
+static void test_what_is_refused_is_in_the_text(void)
+{
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_OVERRIDE, cm1e_group_set_override(group, 1.5));
+    group_told("1.5 was given");
+    for (int i = 0; i < CM1E_GROUP_COMMANDS; i++)
+        group_line(5, 5, 1, i == 0 ? mcAborting : mcBuffered);
+    group_refused(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_RELATIVE, .buffer_mode = mcBuffered}, CM1E_ERROR_FULL);
+    group_told("Wait until one of the commands of the group is done");
 }
 
 static void test_positions_go_by_place(void)
@@ -597,6 +627,8 @@ int main(void)
     RUN_TEST(test_every_command_in_every_state);
     RUN_TEST(test_names_of_states);
     RUN_TEST(test_members_by_place);
+    RUN_TEST(test_a_full_group_says_so);
+    RUN_TEST(test_what_is_refused_is_in_the_text);
     RUN_TEST(test_positions_go_by_place);
     RUN_TEST(test_an_axis_is_in_one_group);
     RUN_TEST(test_axes_of_another_bus_are_refused);
