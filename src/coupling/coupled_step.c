@@ -276,15 +276,21 @@ CM1E_RARE static from_t with_next_attempts(cm1e_axis_t *axis, const from_t *f, c
     return attempt_to(axis, f, kept, verdict);
 }
 
+/* Whether the slave still approaches, or ends its approach in this cycle. Where the master asks for too much on the curve
+ * of the approach, the slave leaves the curve and makes up what it lags: it may be late then. */
+static bool approaches(const cm1e_axis_t *axis) { return axis->setpoint.synchronizing && !axis->coupling->stopping; }
+
 /* The catch-up was planned with the limits that the coupling function left at that time. If the function needs more,
  * the catch-up is planned anew in every cycle until it ends. */
 static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
-    const coupling_t *c = axis->coupling;
+    coupling_t *c = axis->coupling;
     if (!c->catch_up.on) {
         const from_t sum = sum_of(axis, f);
         *verdict = judge_sum(axis, &sum);
-        return sum;
+        if (!approaches(axis) || is_settled(verdict))
+            return sum;
+        c->catch_up.on = c->catch_up.held_back = true;
     }
     const catch_up_t before = c->catch_up;
     const bool disturbed = f->acceleration != 0.0 || c->f_acceleration != 0.0;
@@ -483,7 +489,7 @@ CM1E_RARE static guard_t judge(cm1e_axis_t *axis, const from_t *f, from_t *next)
     *next = *f;
     if (axis->superimposed.id)
         *next = with_superimposed(axis, f, &verdict);
-    else if (axis->coupling->catch_up.on)
+    else if (axis->coupling->catch_up.on || approaches(axis))
         *next = with_catch_up(axis, f, &verdict);
     else
         return cm1e_axis_look_closely(axis, f, coupling_keeps_jerk(axis->coupling));
@@ -513,7 +519,8 @@ static bool step(cm1e_axis_t *axis)
         return stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
     c->end_of_profile = false;
     c->now->function->evaluate(axis, c->now, &f);
-    if (c->catch_up.on || axis->superimposed.id || !cm1e_axis_well_within(axis, &f, coupling_keeps_jerk(c))) {
+    if (c->catch_up.on || axis->superimposed.id || approaches(axis) ||
+        !cm1e_axis_well_within(axis, &f, coupling_keeps_jerk(c))) {
         const guard_t guard = judge(axis, &f, &sum);
         if (guard.limit)
             return stop_alone(axis, guard);
@@ -676,16 +683,6 @@ void cm1e_coupling_look_across(cm1e_axis_t *axis)
         cm1e_coupling_fall_behind(axis);
     else if (cm1e_coupling_settle(axis))
         go_on_from_here(axis);
-}
-
-void cm1e_coupling_shift(cm1e_axis_t *axis, double way)
-{
-    follow_t *now = axis->coupling->now;
-    const double counts = way * axis->position.scale;
-    position_t *const places[] = {&now->anchor, &now->cam.slave_zero, &now->approach.begin, &now->approach.end};
-    cm1e_axis_look_anew(axis);
-    for (int i = 0; i < 4; i++)
-        *places[i] = cm1e_position_plus(*places[i], counts);
 }
 
 void cm1e_coupling_first_set_point(cm1e_axis_t *axis)

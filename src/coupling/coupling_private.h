@@ -264,8 +264,6 @@ static inline bool coupling_eases(const coupling_t *c) { return !c->now->linear 
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
 /** Notices that the frames of another bus stop or come back. The slave goes on without a step of its set-point. */
 void cm1e_coupling_look_across(cm1e_axis_t *axis);
-/** Makes a superimposed distance (u) a part of the base motion. */
-void cm1e_coupling_shift(cm1e_axis_t *axis, double way);
 /** Makes the set-point of the cycle in which a coupling began, without advancing its masters. */
 void cm1e_coupling_first_set_point(cm1e_axis_t *axis);
 

@@ -48,6 +48,17 @@ static void copy_own(const cm1e_axis_t *axis, cm1e_axis_t *copy, void *memory)
 
 static bool stops_with_masters(const cm1e_axis_t *axis) { return axis->coupling->stopping; }
 
+/* Makes a superimposed distance (u) a part of the base motion. */
+static void shift(cm1e_axis_t *axis, double way)
+{
+    follow_t *now = axis->coupling->now;
+    const double counts = way * axis->position.scale;
+    position_t *const places[] = {&now->anchor, &now->cam.slave_zero, &now->approach.begin, &now->approach.end};
+    cm1e_axis_look_anew(axis);
+    for (int i = 0; i < 4; i++)
+        *places[i] = cm1e_position_plus(*places[i], counts);
+}
+
 static bool by_actual(const cm1e_axis_t *axis) { return axis->coupling->now->by_actual; }
 
 static bool hands_over(const cm1e_axis_t *axis)
@@ -90,7 +101,7 @@ static const coupling_hooks_t hooks = {
     .await_step = cm1e_coupling_await_step,
     .await_nothing = cm1e_coupling_await_nothing,
     .hands_over = hands_over,
-    .shift = cm1e_coupling_shift,
+    .shift = shift,
     .failed = cm1e_coupling_failed,
     .stops_with_masters = stops_with_masters,
     .by_actual = by_actual,

@@ -637,6 +637,31 @@ static void test_an_offset_that_changes_on_the_way_counts_from_its_end_on(void)
     TEST_ASSERT_EQUAL_DOUBLE(on_the_way[0], on_the_way[1]);
 }
 
+/* After the first cycle of StartSync the master goes at another velocity. */
+static double way_off(double masters_velocity)
+{
+    axes_begin(2);
+    const cm1e_axis_coupling_t coupling = meet(20, 4.5, 8);
+    const cm1e_command_id_t id = gear_in_pos(&coupling);
+    axes_move_velocity(MASTER, 8);
+    AXES_UNTIL(axes_status(SLAVE, id).synchronizing);
+    axes_move_velocity(MASTER, masters_velocity);
+    AXES_UNTIL(set_of(MASTER) >= 20);
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+    const double off = 4.5 + set_of(MASTER) - 20 - set_of(SLAVE);
+    AXES_MUST(axes_status(SLAVE, id).reached == (fabs(off) < 1e-6), "InSync, %.9g u off", off);
+    axes_wait_reached(SLAVE, id, 5000);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-8, 4.5 + set_of(MASTER) - 20, set_of(SLAVE));
+    return off;
+}
+
+static void test_a_slave_whose_master_becomes_too_fast_is_late(void)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, way_off(8));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, way_off(5));
+    TEST_ASSERT_TRUE(way_off(24) > 0.01);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -666,6 +691,7 @@ int main(void)
     RUN_TEST(test_a_cam_by_way_is_in_step_at_its_place);
     RUN_TEST(test_a_single_shot_that_begins_with_a_slope);
     RUN_TEST(test_a_single_shot_whose_master_hesitates_at_its_beginning);
+    RUN_TEST(test_a_slave_whose_master_becomes_too_fast_is_late);
     RUN_TEST(test_an_offset_that_changes_on_the_way_counts_from_its_end_on);
     return UNITY_END();
 }
