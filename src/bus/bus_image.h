@@ -73,6 +73,8 @@ int64_t cm1e_bus_next_start(const cm1e_bus_t *bus, int64_t now_ns);
  *  Operational. Locations that were resolved in one operation are not valid in the next. @rt init */
 uint32_t cm1e_bus_operation(const cm1e_bus_t *bus);
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);
+/** When the frame of the last inputs was sent. Read behind cm1e_bus_receive(). @rt cycle */
+int64_t cm1e_bus_sent_ns(const cm1e_bus_t *bus);
 /** A sentence for diagnoses; its value is cm1e_bus_counters_t.foreign_frames as unsigned long long. */
 #define CM1E_OTHER_MASTER_TEXT " Another master sends on this network: %llu of its frames were seen since the start. " \
                                "Only one master may: find that program and end it."

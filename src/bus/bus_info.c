@@ -38,6 +38,8 @@ const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus)
 
 uint32_t cm1e_bus_operation(const cm1e_bus_t *bus) { return bus->phase == BUS_OPERATING ? bus->operations : 0; }
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus) { return bus->clock; }
+
+int64_t cm1e_bus_sent_ns(const cm1e_bus_t *bus) { return bus->sent_ns; }
 struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus) { return bus->nic; }
 
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position)

@@ -201,16 +201,22 @@ static void put_by_size(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
         cm1e_put_uint(image + slot.offset, slot.bytes, value);
 }
 
+/* Frames in less time than this part of a cycle, behind a pause, are too close to each other: a count would be too much. */
+enum { CLOSE_PART = 4 };
+
 /* The velocity is 0x606C, unless the mapping lacks it or the firmware shows a quarter of it (below V1.3.0 in HM and PP,
- * UG 10.1). Then it is the difference of two positions. */
+ * UG 10.1). Then it is the difference of two positions. A slave takes its position when the frame passes, so the time
+ * between two of them is that between two frames: behind a pause of the cycle it is not the time of a cycle. */
 static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
 {
     const bool quarter = drive->range.velocity_quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP);
     if (drive->image.in_velocity.bytes && !quarter)
         return cm1e_drive_clamp((int64_t)get_i32(in, drive->image.in_velocity) * drive->range.velocity_unit);
-    const int64_t elapsed_ns = drive->now_ns - drive->actual.read_ns;
-    if (!drive->actual.seen || elapsed_ns <= 0)
+    const int64_t elapsed_ns = cm1e_bus_sent_ns(drive->bus) - drive->actual.sent_ns;
+    if (!drive->actual.seen)
         return 0;
+    if (elapsed_ns <= cm1e_bus_configuration(drive->bus)->cycle_time_ns / CLOSE_PART)
+        return drive->feedback.velocity;
     const int32_t step = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
     const int64_t velocity = (int64_t)step * INT64_C(1000000000) / elapsed_ns;
     /* A change faster than any motor is a new origin and not a motion: the end of a homing, or a counter that was
@@ -347,6 +353,7 @@ static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t positi
         actual->contradictions++;
     f->position = position;
     actual->read_ns = drive->now_ns;
+    actual->sent_ns = cm1e_bus_sent_ns(drive->bus);
     actual->seen = true;
     return true;
 }

@@ -231,6 +231,7 @@ uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis)
     return axis < bus->config.axis_count ? (uint16_t)(axis + 1) : 0;
 }
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus) { return &bus->clock; }
+int64_t cm1e_bus_sent_ns(const cm1e_bus_t *bus) { return bus->clock.virtual_now_ns; }
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position)
 {
     const cm1e_bus_t *slave = fake_slave(bus, position);
