@@ -36,6 +36,8 @@ typedef struct axis_spec {
     double identified;                   /**< 1: its slave is always there, and has an explicit device ID */
     double modulo;                       /**< its positions run from 0 to below this; 0: linear */
     double done_waits;                   /**< 1: Done waits until the motor is in position */
+    double start;                        /**< counts in the direction of the axis that its device shows at its power-on */
+    double wired;                        /**< 1: inputs and outputs 11, 12 are those of the first terminal of the machine */
 } axis_spec_t;
 
 /** One command: at cycle `at` a block of this axis gets TRUE at Execute (or Enable), for `hold` cycles. */
@@ -63,7 +65,8 @@ typedef enum fault_kind {
     FAULT_LOSE = 0, FAULT_LOSE_OUT, FAULT_LOSE_BACK, FAULT_CORRUPT, FAULT_DELAY, FAULT_COUNTER, FAULT_STALL,
     FAULT_UNPLUG, FAULT_POWER_CYCLE, FAULT_FALL_BACK, FAULT_MOTOR_POWER, FAULT_ERROR, FAULT_OVER_TORQUE,
     FAULT_TEMPERATURE, FAULT_LOAD, FAULT_JUMP, FAULT_FREEZE, FAULT_RING, FAULT_CLOCK, FAULT_BRIDGE_ERROR,
-    FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_SWAP, FAULT_EMERGENCY, FAULT_KINDS
+    FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_SWAP, FAULT_EMERGENCY,
+    FAULT_INPUT, FAULT_KINDS
 } fault_kind_t;
 
 /** One fault. What `value` is depends on the kind; see the table in scenario_fault.c. */
@@ -92,6 +95,11 @@ void scenario_make(scenario_t *scenario, uint64_t seed);
 
 /** After all draws of scenario_make(): modulo axes, blocks that are triggered again, and much more. */
 void scenario_vary(scenario_t *scenario);
+
+/* ---- scenario_beside.c ------------------------------------------------------------------------------------------- */
+
+/** After scenario_vary(): what is read, said and wired beside the motions. */
+void scenario_beside(scenario_t *scenario);
 
 /* ---- scenario_text.c --------------------------------------------------------------------------------------------- */
 

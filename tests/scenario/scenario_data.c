@@ -57,10 +57,34 @@ static void make_cam(instance_t *block, double unit)
     block_put(block, "Periodic", step->value);
 }
 
+/** What a motor behind a bridge is told. AllowMotion is FALSE: what may move it is refused. */
+static void make_string(instance_t *block)
+{
+    static const char *const strings[] = {"?99.1", "K53=100", "?96", "(", "^", "P1=1000", "", "?37"};
+    enum { STRINGS = sizeof strings / sizeof strings[0] };
+    const block_member_t *member = block_member(block->type, "Command");
+    if (member && member->type == BLOCK_STRING)
+        snprintf((char *)block->memory + member->offset, member->size, "%s",
+                 strings[(unsigned)(block->step->mode + block->step->parameter) % STRINGS]);
+}
+
+/** An input or output of the motor, or of a terminal. */
+static void make_signal(instance_t *block, const machine_axis_t *axis)
+{
+    const INT number = (INT)block->step->mode;
+    block->input = (MC_INPUT_REF){.Axis = axis->reference, .Number = number};
+    block->trigger = (MC_TRIGGER_REF){.Axis = axis->reference, .InputNumber = number, .FallingEdge = block->step->value != 0};
+    block_point(block, "Input", &block->input);
+    if (number > 0)
+        block_point(block, "TriggerInput", &block->trigger);
+}
+
 void data_prepare(const run_t *run, instance_t *block)
 {
     const machine_axis_t *axis = &run->axes[(int)block->step->axis];
     const char *name = block->type->name;
+    make_string(block);
+    make_signal(block, axis);
     if (block_member(block->type, "CamTable"))
         make_cam(block, axis->spec->counts_per_unit);
     if (block_member(block->type, "Switches")) {

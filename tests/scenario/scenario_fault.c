@@ -10,7 +10,8 @@ typedef enum concerned { NOBODY = 0, THE_AXIS, THE_NETWORK } concerned_t;
 
 /** "%p": position of the slave, "%c": channel, "%l": length in cycles, "%m": length in ms, "%v": value, "%x": value as
  *  hexadecimal, "%i": its explicit device ID, "%s": that of a stranger; "%o" and "%j": position and ID of the slave that
- *  changes places with it. Orders are separated by ';'. NULL: it is not for the console. */
+ *  changes places with it; "%t": that of the first terminal of its network, "%n": number of its
+ *  input. Orders are separated by ';'. NULL: it is not for the console. */
 typedef struct fault_row {
     const char *begin, *end;
     concerned_t concerned;
@@ -52,6 +53,7 @@ static const fault_row_t rows[FAULT_KINDS] = {
     [FAULT_SWAP] = {"power-cycle %p 30;power-cycle %o 30;switches %p %j;switches %o %i",
                     "power-cycle %p 30;power-cycle %o 30;switches %p %i;switches %o %j", THE_NETWORK, 1, true, false, NULL},
     [FAULT_EMERGENCY] = {NULL, NULL, NOBODY, 0, false, true, NULL},
+    [FAULT_INPUT] = {"input %t %n on", "input %t %n off", NOBODY, 0, false, false, NULL},
 };
 
 /* ---- what is done ------------------------------------------------------------------------------------------------ */
@@ -67,6 +69,8 @@ static void order(run_t *run, const fault_t *fault, const char *format)
             line[used++] = *c;
         else if (*++c == 'p')
             used += (size_t)snprintf(line + used, room, "%u", axis->position);
+        else if (*c == 't')
+            used += (size_t)snprintf(line + used, room, "%u", run->fixed_motors[axis->network] + 1);
         else if (*c == 'c')
             used += (size_t)snprintf(line + used, room, "%u", axis->channel);
         else if (*c == 'l')
@@ -149,7 +153,8 @@ static bool do_the_same(const run_t *run, const fault_t *one, const fault_t *oth
     if (!begin)
         return one->kind == other->kind && one->network == other->network;
     return begins && strcmp(begin, begins) == 0 && here->network == there->network &&
-           here->position == there->position && (!strstr(begin, "%c") || here->channel == there->channel);
+           here->position == there->position && (!strstr(begin, "%c") || here->channel == there->channel) &&
+           (!strstr(begin, "%n") || one->value == other->value);
 }
 
 /** What ends now goes on, by another one. */
@@ -158,6 +163,28 @@ static bool goes_on(const run_t *run, const fault_t *fault)
     for (int i = 0; i < run->scenario->fault_count; i++) {
         const fault_t *other = &run->scenario->faults[i];
         if (other != fault && other->at <= run->cycle && end_of(other) > run->cycle && do_the_same(run, fault, other))
+            return true;
+    }
+    return false;
+}
+
+bool fault_drives_input(const run_t *run, int number)
+{
+    for (int i = 0; i < run->scenario->fault_count; i++) {
+        const fault_t *fault = &run->scenario->faults[i];
+        if (fault->kind == FAULT_INPUT && (int)fault->value == number && fault->at <= run->cycle &&
+            end_of(fault) > run->cycle)
+            return true;
+    }
+    return false;
+}
+
+bool fault_turns_input(const run_t *run, int cycles)
+{
+    for (int i = 0; i < run->scenario->fault_count; i++) {
+        const fault_t *fault = &run->scenario->faults[i];
+        const double since_begin = run->cycle - fault->at, since_end = run->cycle - end_of(fault);
+        if (fault->kind == FAULT_INPUT && ((since_begin >= 0 && since_begin < cycles) || (since_end >= 0 && since_end < cycles)))
             return true;
     }
     return false;

@@ -629,7 +629,7 @@ static void judge_test(run_t *run, machine_axis_t *axis)
         scenario_fail(run, "end", "%s: the last move was %.0f counts, the shaft has gone %.1f", axis->name,
                       axis->test_by, by);
     /* Where nothing made the device forget its position, the coordinates are those of the start. */
-    const double place = axis->probe.position_counts * (axis->spec->invert != 0 ? -1 : 1);
+    const double place = axis->spec->start + axis->probe.position_counts * (axis->spec->invert != 0 ? -1 : 1);
     const double shown = axis->info.actual_position * axis->spec->counts_per_unit;
     if (is_motor(axis) && axis->seen.kept && !axis->seen.shifted &&
         fabs(apart(axis->spec, place - shown)) > KEPT_COUNTS)

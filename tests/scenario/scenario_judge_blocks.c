@@ -111,18 +111,58 @@ static bool is_told_of_another(const run_t *run, const instance_t *block)
     return false;
 }
 
+/** It reads, and leaves the text to the commands of the axis. */
+static bool only_reads(const instance_t *block) { return strncmp(block->type->name, "MC_Read", 7) == 0; }
+
 /** What refuses a command, says why. */
 static void judge_refusal(run_t *run, instance_t *block, const machine_axis_t *axis, WORD id)
 {
     char text[CM1E_AXIS_ERROR_TEXT_BYTES] = "";
     const bool error = block_flag(block, "Error");
-    if (error && !block->was_error && !block_member(block->type, "AxesGroup") && !is_told_of_another(run, block)) {
+    if (error && !only_reads(block) && !block->was_error && !block_member(block->type, "AxesGroup") && !is_told_of_another(run, block)) {
         cm1e_axis_error_text(axis->reference, text, sizeof text);
         if (!strstr(text, axis->name) || strstr(text, "nan"))
             scenario_fail(run, "text", "%s (%s): %s shows error 0x%04X, and the text is: %.300s", axis->name,
                           cm1e_axis_state_name(axis->info.state), block->type->name, id, text);
     }
     block->was_error = error;
+}
+
+/** An input of a terminal shows what is at it, after the two cycles of a frame. */
+static void judge_input(run_t *run, const instance_t *block, const machine_axis_t *axis)
+{
+    enum { WIRED_FIRST = 11, SOON = 3 };
+    const int number = (int)block->step->mode - WIRED_FIRST + 1;
+    const bool wired = axis->spec->wired != 0 && number >= 1 && block_is(block, "MC_ReadDigitalInput");
+    if (wired && run->phase == PHASE_PROGRAM && block_flag(block, "Valid") && !was_disturbed(run, &axis->seen) &&
+        !fault_turns_input(run, SOON) && block_flag(block, "Value") != fault_drives_input(run, number))
+        scenario_fail(run, "read", "%s: MC_ReadDigitalInput shows %d at input %d of its terminal", axis->name,
+                      block_flag(block, "Value"), number);
+}
+
+/** What a block reads is what the axis shows in the same cycle. */
+static void judge_reading(run_t *run, const instance_t *block, const machine_axis_t *axis)
+{
+    const cm1e_axis_info_t *info = &axis->info;
+    const double largest = axis->spec->velocity / axis->spec->counts_per_unit;
+    const bool moved = program_has(run->scenario, axis->number, origins);
+    const struct { const char *block, *output; double value; bool is_known; } values[] = {
+        {"MC_ReadActualPosition", "Position", info->actual_position, !moved},
+        {"MC_ReadActualVelocity", "Velocity", info->actual_velocity, true},
+        {"MC_ReadActualTorque", "Torque", info->actual_torque, true}};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++)
+        if (block_is(block, values[i].block) && block_flag(block, "Valid") && values[i].is_known &&
+            !close_to(block_number(block, values[i].output), values[i].value, largest))
+            scenario_fail(run, "read", "%s: %s shows %.9g, the axis %.9g", axis->name, block->type->name,
+                          block_number(block, values[i].output), values[i].value);
+    if (block_is(block, "MC_ReadAxisInfo") && block_flag(block, "Valid") &&
+        (block_flag(block, "CommunicationReady") != info->online ||
+         block_flag(block, "IsHomed") != info->homed))
+        scenario_fail(run, "read", "%s: MC_ReadAxisInfo: CommunicationReady %d, IsHomed %d; the axis %d, %d", axis->name,
+                      block_flag(block, "CommunicationReady"), block_flag(block, "IsHomed"), info->online, info->homed);
+    judge_input(run, block, axis);
+    if (block_flag(block, "Valid") && block_flag(block, "Error"))
+        scenario_fail(run, "block", "%s: %s is Valid, and shows Error", axis->name, block->type->name);
 }
 
 void judge_block(run_t *run, instance_t *block)
@@ -135,6 +175,7 @@ void judge_block(run_t *run, instance_t *block)
         scenario_fail(run, "block", "%s: Error %d, ErrorID 0x%04X", block->type->name, block_flag(block, "Error"), id);
     judge_refusal(run, block, axis, id);
     judge_claim(run, block, axis);
+    judge_reading(run, block, axis);
     if (block_member(block->type, "Execute"))
         judge_outputs(run, block);
     block->active = block_flag(block, "Active") ? block->active + 1 : 0;
@@ -217,7 +258,8 @@ void judge_blocks(run_t *run)
             const instance_t *block = &run->blocks[i];
             if ((int)block->step->axis != n || block->step->at > run->cycle)
                 continue;
-            busy = busy || block_flag(block, "Busy") || block->triggered;
+            if (!only_reads(block))
+                busy = busy || block_flag(block, "Busy") || block->triggered;
             refused = refused || block_flag(block, "Error") || (block->step->again > 0 && block->step->buffer > 0);
             if (!has_axis(block) || block->active < SOON)
                 continue;

@@ -69,6 +69,13 @@ static void describe_axis(const scenario_t *scenario, cm1e_axis_config_t *axis, 
     axis->modulo_range = spec->modulo / unit;
     axis->in_position_done_waits = spec->done_waits != 0 && spec->kind != AXIS_VIRTUAL;
     axis->coupling_stop = (cm1e_coupling_stop_t)spec->coupling_stop;
+    if (spec->wired != 0) {
+        axis->wiring.input_count = axis->wiring.output_count = WIRED;
+        for (int i = 0; i < WIRED; i++) {
+            snprintf(axis->wiring.inputs[i], sizeof axis->wiring.inputs[i], "io%d0.input %d", machine->network, i + 1);
+            snprintf(axis->wiring.outputs[i], sizeof axis->wiring.outputs[i], "io%d0.output %d", machine->network, i + 1);
+        }
+    }
     axis->table_profiles = program_has(scenario, machine->number, table_blocks);
     if (spec->kind == AXIS_VIRTUAL)
         return;

@@ -12,7 +12,8 @@
 #include "scenario.h"
 #include "block_table.h"
 
-enum { FIRST_ID = 40 /* explicit device ID of the first axis */, STRANGER_ID = 99, BLOCK_ROOM = 2448, SPEEDS = 104, SPEEDS_SEEN = 64 };
+enum { FIRST_ID = 40 /* explicit device ID of the first axis */, STRANGER_ID = 99, WIRED = 2 /* signals of a terminal */,
+        BLOCK_ROOM = 2448, SPEEDS = 104, SPEEDS_SEEN = 64 };
 
 /** A block of the program, by the table of all blocks. */
 typedef struct instance {
@@ -29,6 +30,8 @@ typedef struct instance {
         MC_CAMSWITCH_REF switches;
     } data;
     MC_OUTPUT_REF output;
+    MC_INPUT_REF input;
+    MC_TRIGGER_REF trigger;
     MC_CAM_REF cam;
     MC_CAM_POINT cam_points[3];
     _Alignas(16) unsigned char memory[BLOCK_ROOM];
@@ -164,6 +167,9 @@ void fault_cycle(run_t *run);
 void fault_mend(run_t *run);
 /** One of the faults until now may be the reason why this axis stops. */
 bool fault_explains(const run_t *run, const machine_axis_t *axis, bool of_bus);
+/** Something is at this input of the terminal now; one of its inputs has changed within so many cycles. */
+bool fault_drives_input(const run_t *run, int number);
+bool fault_turns_input(const run_t *run, int cycles);
 /** What had to be detected, was, and in time. */
 void fault_judge(run_t *run);
 

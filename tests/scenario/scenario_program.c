@@ -31,8 +31,8 @@ static const input_t inputs[] = {
     PLAIN("Direction", direction), PLAIN("RatioNumerator", numerator), PLAIN("RatioDenominator", denominator),
     PLAIN("GearRatioNumeratorM1", numerator), PLAIN("GearRatioDenominatorM1", denominator),
     PLAIN("GearRatioNumeratorM2", numerator), PLAIN("GearRatioDenominatorM2", denominator),
-    PLAIN("VelFactor", factor), PLAIN("Relative", relative), PLAIN("Value", value), PLAIN("Mode", mode),
-    PLAIN("StartMode", mode), PLAIN("CircMode", mode), PLAIN("OutputNumber", mode), PLAIN("SwitchMode", mode),
+    PLAIN("VelFactor", factor), PLAIN("Relative", relative), PLAIN("Value", value), PLAIN("Mode", mode), PLAIN("Insist", value),
+    PLAIN("StartMode", mode), PLAIN("CircMode", mode), PLAIN("OutputNumber", mode), PLAIN("Command", mode), PLAIN("SwitchMode", mode),
     PLAIN("LimitSwitchMode", mode), PLAIN("TorqueLimit", torque), PLAIN("Torque", torque),
     LENGTH("SetPosition", position), LENGTH("DistanceLimit", x), PLAIN("ContinuousUpdate", update),
     PLAIN("ParameterNumber", parameter), PLAIN("MasterValueSource", source), PLAIN("TransitionMode", transition),
@@ -379,6 +379,23 @@ static void leave_group(run_t *run)
     MC_UngroupAllAxes(&run->ungroup);
 }
 
+/** From some modes of a bridge only its power leads back. */
+static void leave_modes(run_t *run)
+{
+    static const char *const changers[] = {"CM_SetMode", "CM_Command", NULL};
+    for (int n = 0; n < run->scenario->axis_count; n++) {
+        const machine_axis_t *axis = &run->axes[n];
+        char order[40], answer[200];
+        if (axis->channel == 0 || !program_has(run->scenario, n, changers))
+            continue;
+        snprintf(order, sizeof order, "power-cycle %u 10", axis->position);
+        cm1e_bus_simulate(run->buses[axis->network], order, answer, sizeof answer);
+        for (int i = 0; i < run->scenario->axis_count; i++)
+            if (run->axes[i].network == axis->network && run->axes[i].position == axis->position)
+                run->axes[i].seen.kept = false;
+    }
+}
+
 void program_recover(run_t *run)
 {
     leave_group(run);
@@ -387,6 +404,7 @@ void program_recover(run_t *run)
         run->phase = PHASE_MEND;
         run->phase_begin = run->cycle;
         fault_mend(run);
+        leave_modes(run);
         for (int n = 0; n < run->scenario->axis_count; n++)
             run->outcome->recoveries += run->axes[n].info.state == CM1E_AXIS_ERROR_STOP;
         break;

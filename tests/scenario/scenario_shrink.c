@@ -116,7 +116,7 @@ static bool simplify(scenario_t *scenario, const outcome_t *failure, unsigned li
         axis_spec_t *axis = &scenario->axes[n];
         double *const numbers[] = {&axis->network, &axis->firmware, &axis->mapping, &axis->invert, &axis->load_inertia,
                                    &axis->friction, &axis->coupling_stop, &axis->stops, &axis->modulo,
-                                   &axis->done_waits};
+                                   &axis->done_waits, &axis->start, &axis->wired};
         for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
             simpler = plainer(scenario, failure, limit_s, numbers[i], 0) || simpler;
     }

@@ -21,7 +21,7 @@ static const char *const mappings[] = {"dynamic", "csp", "csv", "profile", NULL}
 const char *const fault_names[FAULT_KINDS + 1] = {
     "lose", "lose-out", "lose-back", "corrupt", "delay", "counter", "stall", "unplug", "power-cycle", "fall-back",
     "motor-power", "error", "over-torque", "temperature", "load", "jump", "freeze", "ring", "clock", "bridge-error",
-    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", "emergency", NULL};
+    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", "emergency", "input", NULL};
 
 const char *const scenario_blocks[] = {
     "MC_MoveAbsolute", "MC_MoveRelative", "MC_MoveAdditive", "MC_MoveVelocity", "MC_Halt", "MC_Stop", "MC_Power",
@@ -34,7 +34,9 @@ const char *const scenario_blocks[] = {
     "MC_PhasingAbsolute", "MC_DigitalCamSwitch", "MC_TorqueControl", "MC_AbortTrigger",
     "MC_MoveCircularAbsolute", "MC_GroupSetOverride", "MC_GroupDisable", "MC_GroupEnable", "MC_WriteParameter",
     "MC_WriteBoolParameter", "MC_CamTableSelect", "MC_HomeAbsolute", "MC_StepReferencePulse",
-    "MC_StepReferenceFlyingSwitch", "MC_AbortPassiveHoming", NULL};
+    "MC_StepReferenceFlyingSwitch", "MC_AbortPassiveHoming",
+    "MC_ReadActualPosition", "MC_ReadActualVelocity", "MC_ReadActualTorque", "MC_ReadParameter", "MC_ReadBoolParameter",
+    "MC_ReadAxisInfo", "MC_ReadDigitalInput", "MC_ReadDigitalOutput", "CM_SendCML", "CM_SetMode", "CM_Command", NULL};
 
 #define NUMBER(type, member) {#member, offsetof(type, member), NULL}
 #define WORD_OF(type, member, words) {#member, offsetof(type, member), words}
@@ -51,7 +53,8 @@ static const field_t axis_fields[] = {
     NUMBER(axis_spec_t, limit_negative), NUMBER(axis_spec_t, limit_positive), NUMBER(axis_spec_t, load_inertia),
     NUMBER(axis_spec_t, friction), NUMBER(axis_spec_t, stops),
     NUMBER(axis_spec_t, coupling_stop), NUMBER(axis_spec_t, motion), NUMBER(axis_spec_t, optional),
-    NUMBER(axis_spec_t, identified), NUMBER(axis_spec_t, modulo), NUMBER(axis_spec_t, done_waits), END};
+    NUMBER(axis_spec_t, identified), NUMBER(axis_spec_t, modulo), NUMBER(axis_spec_t, done_waits),
+    NUMBER(axis_spec_t, start), NUMBER(axis_spec_t, wired), END};
 static const field_t step_fields[] = {
     NUMBER(step_t, at), NUMBER(step_t, axis), WORD_OF(step_t, block, scenario_blocks), NUMBER(step_t, master),
     NUMBER(step_t, hold), NUMBER(step_t, position), NUMBER(step_t, distance), NUMBER(step_t, velocity),

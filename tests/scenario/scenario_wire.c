@@ -14,7 +14,7 @@
 #include "sim/esc_chip.h"
 #include "sim/segment.h"
 
-enum { LRW = 12, COMMAND_AT = 16, DATA_AT = 26, ACTUAL_POSITION = 0x6064, NEXT_CHANNEL = 0x800 };
+enum { LRW = 12, COMMAND_AT = 16, DATA_AT = 26, ACTUAL_POSITION = 0x6064, TARGET_POSITION = 0x607A, NEXT_CHANNEL = 0x800 };
 
 /** An actual position that is not true. */
 typedef struct lie {
@@ -24,6 +24,15 @@ typedef struct lie {
     int32_t offset, frozen;
 } lie_t;
 
+/** A motor whose counter did not begin at 0 at its power-on. */
+typedef struct origin {
+    size_t actual, target; /**< places in the frame; 0: none */
+    uint32_t offset;
+    int network;
+} origin_t;
+
+static origin_t origins[SCENARIO_AXES];
+static int origin_count;
 static unsigned faults[SCENARIO_NETWORKS];
 static lie_t lies[SCENARIO_NETWORKS];
 static int numbers[SCENARIO_NETWORKS] = {0, 1};
@@ -46,12 +55,36 @@ static void tell(lie_t *lie, cm1e_tap_frame_t *frame)
         memcpy(frame->bytes + lie->place, &told, sizeof told);
 }
 
+static void add_to(cm1e_tap_frame_t *frame, size_t place, uint32_t more)
+{
+    uint32_t value;
+    if (place + sizeof value > frame->length)
+        return;
+    memcpy(&value, frame->bytes + place, sizeof value); /* little endian, as this machine */
+    value += more;
+    memcpy(frame->bytes + place, &value, sizeof value);
+}
+
+static void move_origins(cm1e_tap_frame_t *frame, const int *network)
+{
+    for (int i = 0; i < origin_count; i++)
+        if (origins[i].network != *network)
+            continue;
+        else if (frame->direction == CM1E_TAP_SENT)
+            add_to(frame, origins[i].target, (uint32_t)-origins[i].offset);
+        else {
+            add_to(frame, origins[i].actual, origins[i].offset);
+            add_to(frame, origins[i].target, origins[i].offset); /* outputs come back as they were sent */
+        }
+}
+
 static cm1e_tap_verdict_t tap(void *context, cm1e_tap_frame_t *frame)
 {
     const unsigned set = faults[*(const int *)context];
     lie_t *lie = &lies[*(const int *)context];
-    if ((set == 0 && lie->place == 0) || !is_process_data(frame))
+    if ((set == 0 && lie->place == 0 && origin_count == 0) || !is_process_data(frame))
         return CM1E_TAP_PASS;
+    move_origins(frame, context);
     const bool out = frame->direction == CM1E_TAP_SENT;
     if (!out && lie->place > 0)
         tell(lie, frame);
@@ -68,29 +101,51 @@ void wire_forget(void)
     memset(lies, 0, sizeof lies);
 }
 
-/** Where the actual position of a motor is in the inputs of its slave; -1: it is not mapped to a byte. */
-static int place_in_slave(const cm1e_bus_t *bus, const machine_axis_t *axis)
+/** Where the object of a motor is in the inputs, or outputs, of its slave; -1: it is not mapped to a byte. */
+static int place_in_slave(const cm1e_bus_t *bus, const machine_axis_t *axis, unsigned object, bool output)
 {
-    const unsigned index = ACTUAL_POSITION + (axis->channel > 0 ? (axis->channel - 1) * NEXT_CHANNEL : 0);
+    const unsigned index = object + (axis->channel > 0 ? (axis->channel - 1) * NEXT_CHANNEL : 0);
     cm1e_io_info_t info;
     for (uint32_t n = 0; cm1e_io_at(bus, n, &info); n++)
-        if (info.position == axis->position && !info.output && info.index == index && info.bit_offset % 8 == 0)
+        if (info.position == axis->position && info.output == output && info.index == index && info.bit_offset % 8 == 0)
             return (int)(info.bit_offset / 8);
     return -1;
 }
 
-/** The image has the outputs of all slaves, then their inputs. */
-void wire_watch(run_t *run, const machine_axis_t *axis)
+/** Where it is in the frame, which has the outputs of all slaves, then their inputs; 0: nowhere. */
+static size_t place_in_frame(const run_t *run, const machine_axis_t *axis, unsigned object, bool output)
 {
     const cm1e_bus_t *bus = run->buses[axis->network];
-    const int inside = is_motor(axis) ? place_in_slave(bus, axis) : -1;
+    const int inside = is_motor(axis) ? place_in_slave(bus, axis, object, output) : -1;
     size_t place = DATA_AT;
     /* Bits of terminals share bytes; overlapped inputs are in other places. */
     if (inside < 0 || run->scenario->io > 0 || run->scenario->overlap != 0)
-        return;
-    for (uint32_t n = 1; n <= cm1e_bus_slave_count(bus); n++)
-        place += cm1e_bus_slave(bus, n)->output_bytes + (n < axis->position ? cm1e_bus_slave(bus, n)->input_bytes : 0u);
-    lies[axis->network] = (lie_t){.axis = axis->number, .place = place + (size_t)inside};
+        return 0;
+    for (uint32_t n = 1; n <= cm1e_bus_slave_count(bus); n++) {
+        const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, n);
+        place += !output || n < axis->position ? slave->output_bytes : 0u;
+        place += !output && n < axis->position ? slave->input_bytes : 0u;
+    }
+    return place + (size_t)inside;
+}
+
+void wire_watch(run_t *run, const machine_axis_t *axis)
+{
+    const size_t place = place_in_frame(run, axis, ACTUAL_POSITION, false);
+    if (place > 0)
+        lies[axis->network] = (lie_t){.axis = axis->number, .place = place};
+}
+
+static void attach_origin(run_t *run, const machine_axis_t *axis)
+{
+    const double counts = axis->spec->start * (axis->spec->invert != 0 ? -1 : 1);
+    const origin_t origin = {.actual = place_in_frame(run, axis, ACTUAL_POSITION, false), .network = axis->network,
+                             .target = place_in_frame(run, axis, TARGET_POSITION, true),
+                             .offset = (uint32_t)(int64_t)counts};
+    if (origin.actual == 0 || origin.target == 0)
+        scenario_fail(run, "start", "%s: its position is not in a frame of its own", axis->name);
+    else
+        origins[origin_count++] = origin;
 }
 
 bool wire_watches(const machine_axis_t *axis)
@@ -110,6 +165,10 @@ void wire_lie(const machine_axis_t *axis, bool on, bool freeze, double offset)
 void wire_attach(run_t *run)
 {
     wire_forget();
+    origin_count = 0;
+    for (int n = 0; n < run->scenario->axis_count; n++)
+        if (run->axes[n].spec->start != 0)
+            attach_origin(run, &run->axes[n]);
     for (int i = 0; i < run->networks; i++)
         cm1e_nic_set_tap(cm1e_bus_nic(run->buses[i]), tap, &numbers[i]);
 }
