@@ -373,10 +373,11 @@ static void step(cm1e_axis_t *axis)
     const int8_t cml = CM1E_BRIDGE_MODE_CML;
     const bool failed = axis->state == CM1E_AXIS_ERROR_STOP;
     follow_command(axis);
-    follow_string(axis);
     follow_return(axis);
     muscle->release_ns = axis->power.shutting_down ? muscle->release_ns : 0;
     if ((axis->power.enable || axis->power.shutting_down) && !failed && muscle->next == cml && leads_home(axis)) {
+        if (muscle->switching.state == CM1E_COMMAND_ACTIVE)
+            refuse(axis, CM1E_ERROR_CANCELLED, NULL, "CM_SetMode");
         end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
         muscle->next = (int8_t)axis->mode;
     }
@@ -384,6 +385,7 @@ static void step(cm1e_axis_t *axis)
     const bool leaves = muscle->next != cml && !muscle->must_free; /* also if CML was not reached yet */
     if ((failed && !muscle->failed) || away || (leaves && (muscle->moved || !cm1e_drive_cml_idle(cml_of(axis)))))
         end_strings(axis, failed ? axis->fault.error : away ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_CANCELLED);
+    follow_string(axis); /* a string that has just been ended too: the block shows it in the next cycle */
     muscle->failed = failed;
     free_step(axis);
     if (muscle->mode != cml || (!muscle->must_free && cm1e_drive_cml_idle(cml_of(axis))))
