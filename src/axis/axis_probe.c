@@ -188,13 +188,20 @@ static bool position_unknown(const cm1e_axis_t *axis, const probe_sample_t *befo
 {
     const double cycles = (double)(now->time_ns - before->time_ns) / (axis->cycle_s * 1e9);
     const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
-    return cycles > (limit ? limit : 3) + 0.5 || drive_moves(axis);
+    return cycles > (limit ? limit : 3) + 0.5 || drive_homes(axis);
 }
 
-static void triggered(cm1e_axis_t *axis, probe_t *probe, const probe_sample_t *before, const probe_sample_t *now)
+static void fail(cm1e_axis_t *axis, probe_t *probe, int input)
+{
+    end(axis, probe, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_PROBE);
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = CM1E_ERROR_AXIS_PROBE, .what = NOT_SET_PROBE, .number = input});
+}
+
+static void triggered(cm1e_axis_t *axis, probe_t *probe, int input, const probe_sample_t *before,
+                      const probe_sample_t *now)
 {
     if (position_unknown(axis, before, now)) {
-        end(axis, probe, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_PROBE);
+        fail(axis, probe, input);
         return;
     }
     const double way = cm1e_position_minus(now->position, before->position);
@@ -213,8 +220,8 @@ static void take_latched(cm1e_axis_t *axis, probe_t *probe, cm1e_axis_trigger_t 
     int32_t raw;
     if (!cm1e_drive_probe_taken(&axis->drive, trigger.input, trigger.falling, &raw))
         return;
-    if (drive_moves(axis)) {
-        end(axis, probe, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_PROBE);
+    if (drive_homes(axis)) {
+        fail(axis, probe, trigger.input);
         return;
     }
     const int64_t way = (int32_t)((uint32_t)raw - (uint32_t)axis->position.raw);
@@ -236,7 +243,7 @@ static void step_own(cm1e_axis_t *axis, int place, const probe_sample_t *before,
     if (is_latched(axis, trigger))
         take_latched(axis, probe, trigger);
     else if ((before->inputs ^ now->inputs) & bit && !(now->inputs & bit) == trigger.falling)
-        triggered(axis, probe, before, now);
+        triggered(axis, probe, trigger.input, before, now);
 }
 
 /* Both edges of a signal of another slave, if its slave took part in this exchange. */
@@ -250,7 +257,7 @@ static void step_wired(cm1e_axis_t *axis, int place)
     *last = now;
     probe_t *probe = probe_at(axis, (unsigned)place + (now.inputs == 0));
     if (before.inputs != now.inputs && probe->state == CM1E_COMMAND_ACTIVE)
-        triggered(axis, probe, &before, &now);
+        triggered(axis, probe, input, &before, &now);
 }
 
 void cm1e_axis_probe_step(cm1e_axis_t *axis)
