@@ -89,6 +89,15 @@ static void judge_arrival(run_t *run, const instance_t *block, const machine_axi
                       axis->info.set_position, block_number(block, "Position"));
 }
 
+/** Its position is unknown only where inputs were missing, or the drive homes. */
+static void judge_probe(run_t *run, const instance_t *block, const machine_axis_t *axis, WORD id)
+{
+    if (block_is(block, "MC_TouchProbe") && !block->was_error && id == cm1e_error_id(CM1E_ERROR_AXIS_PROBE) &&
+        !was_disturbed(run, &axis->seen) && axis->info.state != CM1E_AXIS_HOMING)
+        scenario_fail(run, "claim", "%s (%s): a touch probe does not know the position of its trigger", axis->name,
+                      cm1e_axis_state_name(axis->info.state));
+}
+
 static void judge_claim(run_t *run, instance_t *block, const machine_axis_t *axis)
 {
     const bool layered = program_has(run->scenario, axis->number, layers);
@@ -173,6 +182,7 @@ void judge_block(run_t *run, instance_t *block)
     memcpy(&id, block->memory + member->offset, sizeof id);
     if (block_flag(block, "Error") != (id != 0) || (id != 0 && cm1e_error_from_id(id) == CM1E_ERROR_NOT_FOUND))
         scenario_fail(run, "block", "%s: Error %d, ErrorID 0x%04X", block->type->name, block_flag(block, "Error"), id);
+    judge_probe(run, block, axis, id);
     judge_refusal(run, block, axis, id);
     judge_claim(run, block, axis);
     judge_reading(run, block, axis);
