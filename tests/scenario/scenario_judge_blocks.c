@@ -141,8 +141,11 @@ static void judge_refusal(run_t *run, instance_t *block, const machine_axis_t *a
 static void judge_input(run_t *run, const instance_t *block, const machine_axis_t *axis)
 {
     enum { WIRED_FIRST = 11, SOON = 3 };
+    /* An input that nothing drives is wired to the output of the same number. */
+    static const char *const writers[] = {"MC_WriteDigitalOutput", NULL};
     const int number = (int)block->step->mode - WIRED_FIRST + 1;
-    const bool wired = axis->spec->wired != 0 && number >= 1 && block_is(block, "MC_ReadDigitalInput");
+    const bool wired = axis->spec->wired != 0 && number >= 1 && block_is(block, "MC_ReadDigitalInput") &&
+                       !program_has(run->scenario, axis->number, writers);
     if (wired && run->phase == PHASE_PROGRAM && block_flag(block, "Valid") && !was_disturbed(run, &axis->seen) &&
         !fault_turns_input(run, SOON) && block_flag(block, "Value") != fault_drives_input(run, number))
         scenario_fail(run, "read", "%s: MC_ReadDigitalInput shows %d at input %d of its terminal", axis->name,
