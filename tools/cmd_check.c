@@ -35,10 +35,12 @@ static int check_bus_file(const char *path, bool json)
     static cm1e_bus_config_t buses[CM1E_MAX_BUSES];
     cm1e_diag_t diag = {0};
     uint32_t count = 0, axes = 0, slaves = 0;
-    const cm1e_error_t error = cm1e_bus_config_load_all(buses, CM1E_MAX_BUSES, &count, path, &diag);
-    for (uint32_t i = 0; error == CM1E_OK && i < count; i++) {
+    cm1e_error_t error = cm1e_bus_config_load_all(buses, CM1E_MAX_BUSES, &count, path, &diag);
+    for (uint32_t i = 0; i < count; i++) { /* 0 after an error */
         axes += buses[i].axis_count;
         slaves += buses[i].slave_count;
+        if (error == CM1E_OK)
+            error = check_segment(buses[i].interface_name, &diag);
         cm1e_bus_config_free(&buses[i]);
     }
     if (json) {
@@ -57,7 +59,8 @@ static const struct argp_option table[] = {{"json", 'j', NULL, 0, "Write JSON", 
 const struct argp argp_check = {table, parse, "FILE",
                                  "Checks an ESI, EC_EXTEND, SII or ENI file from any source for errors that a "
                                  "schema does not find (docs/CHECK-RULES.md). A file whose name ends in .yaml or .yml "
-                                 "is checked as a bus file (docs/BUS-FILE.md), without its network. Exit status 0: no "
+                                 "is checked as a bus file (docs/BUS-FILE.md), without its network, and so is the file "
+                                 "of an interface sim:FILE. Exit status 0: no "
                                  "finding, or warnings only; 1: errors, or a file of no known format; 2: it cannot be "
                                  "read.", NULL, NULL, NULL};
 

@@ -124,23 +124,20 @@ static bool copy_word(char *field, size_t size, const char *word, const char *wh
     return true;
 }
 
-/** A bus file of the simulated segment is refused like the one of the network, before anything is opened. */
-static bool segment_is_good(const char *interface_name)
+cm1e_error_t check_segment(const char *interface_name, cm1e_diag_t *diag)
 {
     static const char prefix[] = CM1E_SIM_FILE_PREFIX;
     cm1e_bus_config_t segment = {0};
-    cm1e_diag_t diag = {0};
     if (strncmp(interface_name, prefix, sizeof prefix - 1) != 0)
-        return true;
-    const cm1e_error_t error = cm1e_bus_config_load(&segment, interface_name + sizeof prefix - 1, &diag);
-    if (error != CM1E_OK)
-        (void)fail(&diag);
+        return CM1E_OK;
+    const cm1e_error_t error = cm1e_bus_config_load(&segment, interface_name + sizeof prefix - 1, diag);
     cm1e_bus_config_free(&segment);
-    return error == CM1E_OK;
+    return error;
 }
 
 bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config)
 {
+    cm1e_diag_t diag = {0};
     if (!options->interface_name && !options->bus_file) {
         complain("the network is missing: -i INTERFACE (\"-i sim\" for a simulated one) or -b BUS-FILE");
         return false;
@@ -152,8 +149,10 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
     if (options->interface_name && !copy_word(config->interface_name, sizeof config->interface_name,
                                               options->interface_name, "the interface name"))
         return false;
-    if (!options->attach && !segment_is_good(config->interface_name)) /* the program has its own, from its folder */
+    if (!options->attach && check_segment(config->interface_name, &diag) != CM1E_OK) {
+        (void)fail(&diag); /* with --attach the program has its own, from its folder */
         return false;
+    }
     return !options->pcap_file
            || copy_word(config->pcap_file, sizeof config->pcap_file, options->pcap_file, "the name of the pcap file");
 }

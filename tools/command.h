@@ -108,6 +108,10 @@ error_t give_options(struct argp_state *state, common_options_t *options);
  *  complains on standard error and returns false. */
 bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config);
 
+/** Reads the bus file of a simulated segment, so that it is refused like that of the network, before anything is opened.
+ *  CM1E_OK also if the interface is no "sim:FILE". */
+cm1e_error_t check_segment(const char *interface_name, cm1e_diag_t *diag);
+
 /** As load_configuration(), but without a bus file the network is scanned and every CM1-E found becomes an axis with
  *  default settings (unit: revolution). A scan does not show K37 of a motor behind a bridge: if there is a bridge, the
  *  function complains and prints a bus file to be completed. Returns the exit status. */

@@ -12,6 +12,8 @@ import tempfile
 CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
 FAILED, WRONG_USE = 1, 2
 BRIDGE = "bus: {interface: sim}\naxes:\n  - {name: X, position: 1, channel: 1, motor: CM1, k37: 10}\n"
+ASTRAY = BRIDGE.replace("sim", "'sim:absent.yaml'")
+BENT = BRIDGE.replace("sim", "'sim:good.st'")
 OTHER = BRIDGE.replace("sim", "'sim:bridge.yaml'") + "  - {name: Y, position: 8}\nslaves:\n  - {name: valves, position: 9}\n"
 TUNE = ["tune", "step", "1", "--max-travel", "1", "--max-velocity", "1", "-i", "sim"]
 SII = ["sii", "write", "1"]
@@ -71,6 +73,7 @@ CASES = [
     (["init", "-i", "sim", "-o", "bridge.yaml"], WRONG_USE, "--force"),
     (["st", "build", "good.st", "-o", "good.st"], WRONG_USE, "would be lost"),
     (["st", "check", "bridge.yaml"], FAILED, "error"), (["check", "good.st"], FAILED, "known format"),
+    (["check", "astray.yaml"], FAILED, "absent.yaml"), (["check", "bent.yaml"], FAILED, "good.st"),
     (["sii", "decode", "bridge.yaml"], FAILED, "not an SII image"),
     (["graph", "-i", "sim", "--svg", ""], WRONG_USE, "needs a name"), ([*TUNE, "--html", ""], WRONG_USE, "needs a name"),
     ([*TUNE, "--html", "-"], WRONG_USE, "standard output"),
@@ -93,7 +96,7 @@ def check(words, status, says, folder):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.mkdir(os.path.join(folder, "folder"))
-        for name, text in (("bridge.yaml", BRIDGE), ("other.yaml", OTHER),
+        for name, text in (("bridge.yaml", BRIDGE), ("other.yaml", OTHER), ("astray.yaml", ASTRAY), ("bent.yaml", BENT),
                            ("good.st", "PROGRAM P VAR n : INT; END_VAR n := 1; END_PROGRAM\n")):
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
@@ -105,7 +108,7 @@ def main():
                 check([word if word != "FILE" else path for word in words], FAILED, path, folder)
         for words, status, says in CASES:
             check(words, status, says, folder)
-        left = set(os.listdir(folder)) - {"folder", "bridge.yaml", "other.yaml", "good.st"}
+        left = set(os.listdir(folder)) - {"folder", "bridge.yaml", "other.yaml", "astray.yaml", "bent.yaml", "good.st"}
         if left:
             faults.append(f"files are left: {left}")
     listed = subprocess.run([CM1E, "--help"], capture_output=True, text=True, timeout=60, check=True).stdout
