@@ -1,6 +1,5 @@
 #include "attach.h"
 
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -209,24 +208,6 @@ void lost_by_network(const json_t *statistics, char *text, size_t size)
     if (at > 0 && at < size)
         snprintf(text + at, size - at, ")");
 }
-
-static volatile sig_atomic_t signalled;
-
-static void on_signal(int number)
-{
-    (void)number;
-    signalled = 1;
-}
-
-void attached_catch_signals(void)
-{
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
-    const struct sigaction action = {.sa_handler = on_signal};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        sigaction(numbers[i], &action, NULL);
-}
-
-bool attached_signalled(void) { return signalled; }
 
 void complain_of_control(const cm1e_scheduler_t *scheduler)
 {

@@ -63,10 +63,6 @@ size_t axis_of_program(const json_t *axes, const char *word);
  *  there is one, of which only name, slave, connector and whether there is a motor are known. */
 const cm1e_bus_config_t *axes_to_name(const common_options_t *options, const cm1e_bus_config_t *config);
 
-/** Signals that would end this program end what it does at another one in order. */
-void attached_catch_signals(void);
-bool attached_signalled(void);
-
 /** Says why nobody could attach to a run that was to have a control socket; it is no failure of the run. */
 void complain_of_control(const cm1e_scheduler_t *scheduler);
 /** Whether this run will have no control socket; complain_of_control() says why. */

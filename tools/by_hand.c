@@ -9,6 +9,7 @@
 #include "cm1e/config.h"
 #include "core/clock.h"
 #include "jog_keys.h"
+#include "signals.h"
 #include "terminal.h"
 
 enum { ENABLE_MS = 2000, PAUSE_US = 20000, KEY_MS = 5 };
@@ -102,7 +103,7 @@ static bool enable(other_t *other)
     const double begin_s = now_s();
     if (!order(other, "enable", json_pack("{s:i}", "keep_ms", ENABLE_MS)))
         return false;
-    while (!is_in(other, "Standstill") && now_s() - begin_s < ENABLE_S && !attached_signalled()) {
+    while (!is_in(other, "Standstill") && now_s() - begin_s < ENABLE_S && !told_to_end()) {
         usleep(PAUSE_US);
         if (!keep(other))
             return false;
@@ -175,7 +176,7 @@ int jog_attached(const by_hand_t *hand, cm1e_control_t *control)
 {
     other_t other;
     jog_keys_t keys = {.factor = 1};
-    attached_catch_signals();
+    catch_signals();
     if (!begin(&other, control))
         return end(&other, fail(&other.diag));
     if (!choose(&other, hand->axis_word ? hand->axis_word : "1"))
@@ -187,7 +188,7 @@ int jog_attached(const by_hand_t *hand, cm1e_control_t *control)
     if (!terminal_begin())
         return end(&other, EXIT_FAILED);
     bool asked = true;
-    while (!keys.end && !attached_signalled() && !has_failed(&other, asked)) {
+    while (!keys.end && !told_to_end() && !has_failed(&other, asked)) {
         asked = jog_step(hand, &other, &keys);
         jog_line(text_of(other.axis, "name"), real_of(&other, "position"), real_of(&other, "set_velocity") != 0,
                  hand->velocity * keys.factor);
@@ -224,7 +225,7 @@ static int report_enable(const by_hand_t *hand, const other_t *other, double sec
 int enable_attached(const by_hand_t *hand, cm1e_control_t *control)
 {
     other_t other;
-    attached_catch_signals();
+    catch_signals();
     if (!begin(&other, control))
         return end(&other, fail(&other.diag));
     if (!choose(&other, hand->axis_word ? hand->axis_word : "1"))
@@ -237,13 +238,13 @@ int enable_attached(const by_hand_t *hand, cm1e_control_t *control)
         fprintf(stderr, "%s is enabled and holds its position. Any key ends it.\n", text_of(other.axis, "name"));
     const double from = real_of(&other, "position"), begin_s = now_s();
     bool answers = true, is_over = false;
-    while (answers && !is_over && !attached_signalled() && is_true(other.axis, "powered")) {
+    while (answers && !is_over && !told_to_end() && is_true(other.axis, "powered")) {
         usleep(PAUSE_US);
         answers = keep(&other);
         is_over = hand->seconds > 0 ? now_s() - begin_s > hand->seconds : terminal_key(0) != TERMINAL_NONE;
     }
     const double seconds = now_s() - begin_s, way = real_of(&other, "position") - from;
-    const bool lost = answers && !is_over && !attached_signalled();
+    const bool lost = answers && !is_over && !told_to_end();
     if (lost)
         cm1e_diag_set(&other.diag, CM1E_ERROR_AXIS_STATE, 0, "%s: %s", text_of(other.axis, "name"),
                       text_of(other.axis, "text")[0] ? text_of(other.axis, "text") : "the program took its torque");

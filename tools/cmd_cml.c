@@ -11,6 +11,7 @@
 #include "device/bridge_status.h"
 #include "device/devices.h"
 #include "device/cml_command.h"
+#include "signals.h"
 
 enum { KEY_SLAVE = 0x400, KEY_CHANNEL, KEY_TIMEOUT, KEY_ALLOW, KEY_STAY, MAX_STRINGS = 64 };
 
@@ -33,18 +34,10 @@ typedef struct session {
     bool used[CM1E_BRIDGE_AXES], moved[CM1E_BRIDGE_AXES];
 } session_t;
 
-static volatile sig_atomic_t interrupted;
-
-static void on_signal(int number)
-{
-    (void)number;
-    interrupted = 1;
-}
-
 static bool is_interrupted(void *context)
 {
     (void)context;
-    return interrupted != 0;
+    return told_to_end();
 }
 
 static error_t parse_count(char *arg, const char *what, long long maximum, long long *value)
@@ -253,7 +246,7 @@ static int send_arguments(session_t *session)
 {
     json_t *results = json_array();
     int status = EXIT_OK;
-    for (int i = 0; i < session->options->count && status == EXIT_OK && !interrupted; i++)
+    for (int i = 0; i < session->options->count && status == EXIT_OK && !told_to_end(); i++)
         status = send_string(session, session->options->strings[i], results);
     if (session->options->common.json)
         print_json(results);
@@ -277,7 +270,7 @@ static int send_lines(session_t *session)
     char *line = NULL;
     size_t room = 0;
     int status = EXIT_OK;
-    while (!interrupted) {
+    while (!told_to_end()) {
         if (prompts)
             fputs("cml> ", stdout);
         fflush(stdout);
@@ -329,14 +322,8 @@ static int run_session(session_t *session, const cm1e_bus_config_t *config, cm1e
  * and no watchdog does that. */
 static void end_in_order(void)
 {
-    const struct sigaction end = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
-    struct sigaction before;
-    sigaction(SIGINT, &end, NULL);
-    sigaction(SIGTERM, &end, NULL);
-    sigaction(SIGQUIT, &end, NULL);
-    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* else: nohup */
-        sigaction(SIGHUP, &end, NULL);
-    sigaction(SIGPIPE, &ignore, NULL);
+    catch_signals();
+    signal(SIGPIPE, SIG_IGN);
 }
 
 static const struct argp_option table[] = {

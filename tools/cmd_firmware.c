@@ -15,6 +15,7 @@
 #include "description/sii_image.h"
 #include "device/devices.h"
 #include "files.h"
+#include "signals.h"
 #include "sii_device.h"
 #include "terminal.h"
 
@@ -29,14 +30,6 @@ typedef struct firmware_options {
     double timeout_s;
     bool other_device, yes;
 } firmware_options_t;
-
-static volatile sig_atomic_t interrupted;
-
-static void on_interrupt(int number)
-{
-    (void)number;
-    interrupted = 1;
-}
 
 static void check_words(const firmware_options_t *options, struct argp_state *state)
 {
@@ -170,7 +163,7 @@ static bool show_progress(void *context, size_t taken, size_t size)
     if (percent != progress->shown && at_a_terminal())
         fprintf(stderr, "\r\033[K%zu of %zu bytes, %d %%%s", taken, size, percent, taken == size ? "\n" : "");
     *progress = (update_progress_t){percent, taken};
-    return !interrupted;
+    return !told_to_end();
 }
 
 static void explain_recovery(cm1e_firmware_state_t state, size_t taken, uint16_t position)
@@ -195,7 +188,7 @@ static void explain_recovery(cm1e_firmware_state_t state, size_t taken, uint16_t
 /** A slave that starts with its new firmware is away for a while. */
 static bool read_back(cm1e_bus_t *bus, uint16_t position, char *version, size_t size, cm1e_diag_t *diag)
 {
-    for (int i = 0; i < BACK_TRIES && !interrupted; i++) {
+    for (int i = 0; i < BACK_TRIES && !told_to_end(); i++) {
         const cm1e_error_t error = cm1e_bus_scan(bus, diag);
         const cm1e_slave_info_t *slave = error == CM1E_OK ? cm1e_bus_slave(bus, position) : NULL;
         if (slave && slave->software_version[0]) {
@@ -239,8 +232,8 @@ static int update(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const firmwa
     if (!is_the_device(bus, position, options->other_device) ||
         !confirmed(options, position, before, image->size))
         return EXIT_FAILED;
-    signal(SIGINT, on_interrupt);
-    signal(SIGTERM, on_interrupt);
+    signal(SIGHUP, SIG_IGN); /* a terminal that is closed leaves no motor with half of a firmware */
+    catch_signals();
     if (cm1e_firmware_update(bus, position, &file, &state, &diag) != CM1E_OK) {
         status = fail(&diag);
         explain_recovery(state, progress.taken, position);

@@ -2,7 +2,6 @@
 #include "cm1e/foe.h"
 
 #include <errno.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +9,7 @@
 #include "attach.h"
 #include "command.h"
 #include "files.h"
+#include "signals.h"
 #include "terminal.h"
 
 enum { KEY_NAME = 0x980, KEY_PASSWORD, KEY_BOOTSTRAP, KEY_TIMEOUT, KEY_MAXIMUM, KEY_ALLOW };
@@ -24,14 +24,6 @@ typedef struct foe_options {
     double timeout_s;
     bool bootstrap, allow;
 } foe_options_t;
-
-static volatile sig_atomic_t interrupted;
-
-static void on_interrupt(int number)
-{
-    (void)number;
-    interrupted = 1;
-}
 
 static bool is_writing(const foe_options_t *options) { return strcmp(options->words[0], "write") == 0; }
 
@@ -76,7 +68,7 @@ static bool show_progress(void *context, size_t done, size_t size)
     if (at_a_terminal() && (done / step != *shown / step || done == size))
         fprintf(stderr, "\r\033[K%zu bytes%s", done, done == size ? "\n" : "");
     *shown = done;
-    return !interrupted;
+    return !told_to_end();
 }
 
 /** The name by which the slave knows the file: that of the file without its folders. */
@@ -139,8 +131,7 @@ static int transfer_file(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const
                                          .answer_ns = (int64_t)(options->timeout_s * 1e9),
                                          .progress = show_progress, .context = &shown};
     (void)config;
-    signal(SIGINT, on_interrupt);
-    signal(SIGTERM, on_interrupt);
+    catch_signals();
     return is_writing(options) ? write_file(bus, position, options, &transfer)
                                : read_file(bus, position, options, &transfer);
 }

@@ -11,6 +11,7 @@
 #include "axis_run.h"
 #include "core/clock.h"
 #include "monitor.h"
+#include "signals.h"
 
 enum { ENABLE_MS = 2000, PAUSE_US = 20000 };
 #define LOOK_NS (100 * MS_IN_NS)
@@ -199,19 +200,19 @@ static int watch_other(const monitor_options_t *options)
         return EXIT_OK;
     }
     const bool was_there = answered;
-    attached_catch_signals();
+    catch_signals();
     if (answered && !screen_begin()) {
         forget(&monitor);
         return EXIT_WRONG_USE;
     }
-    while (answered && !monitor.quit && !attached_signalled()) {
+    while (answered && !monitor.quit && !told_to_end()) {
         answered = tick(&monitor, &diag);
         usleep(PAUSE_US);
     }
     screen_end();
     forget(&monitor);
-    if (answered || attached_signalled() || !was_there)
-        return answered || attached_signalled() ? EXIT_OK : fail(&diag);
+    if (answered || told_to_end() || !was_there)
+        return answered || told_to_end() ? EXIT_OK : fail(&diag);
     complain("%s", diag.text); /* it has ended, as it may */
     return EXIT_OK;
 }

@@ -1,7 +1,6 @@
 /** cm1e prove: the acceptance of a real device: every point of a table is compared with our tables. */
 #include <errno.h>
 #include <fnmatch.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +10,7 @@
 #include "core/output.h"
 #include "files.h"
 #include "prove/prove.h"
+#include "signals.h"
 
 enum { KEY_LIST = 0x800, KEY_WRITES, KEY_MOTION, KEY_VELOCITY, KEY_TRAVEL, KEY_PROFILE, KEY_POINT, KEY_DEAD_ENDS };
 
@@ -177,7 +177,7 @@ static bool is_any_named(const prove_t *prove)
 
 bool prove_is_told_to_end(prove_t *prove)
 {
-    prove->interrupted |= attached_signalled();
+    prove->interrupted |= told_to_end();
     return prove->interrupted;
 }
 
@@ -275,16 +275,6 @@ static int write_results(const prove_t *prove)
     json_decref(report);
     json_decref(profile);
     return good && agrees && !prove->interrupted ? EXIT_OK : EXIT_FAILED;
-}
-
-/** Behind nohup a terminal that is closed ends nothing. */
-static void catch_signals(void)
-{
-    struct sigaction before;
-    sigaction(SIGHUP, NULL, &before);
-    attached_catch_signals();
-    if (before.sa_handler == SIG_IGN)
-        sigaction(SIGHUP, &before, NULL);
 }
 
 static int prove_device(prove_t *prove)

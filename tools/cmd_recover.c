@@ -10,6 +10,7 @@
 #include "attach.h"
 #include "cm1e/hot_connect.h"
 #include "core/clock.h"
+#include "signals.h"
 
 enum { KEY_FOR = 0x600, PAUSE_US = 20000, LONGEST_S = 600 };
 #define PATIENCE_S 10.0
@@ -124,7 +125,7 @@ static int recover(const recover_options_t *options, cm1e_control_t *control)
     while ((presence = look(control, position, text, sizeof text, &diag)) != CM1E_PRESENCE_THERE) {
         if (presence == CM1E_PRESENCE_COUNT)
             return fail(&diag);
-        if (attached_signalled() ||
+        if (told_to_end() ||
             (double)(cm1e_clock_now(cm1e_clock_monotonic()) - begin_ns) * 1e-9 >= options->seconds)
             break;
         usleep(PAUSE_US);
@@ -158,7 +159,7 @@ int command_recover(int argc, char **argv)
                  "starts. `cm1e status` shows what is on the network, and --attach PROCESS names a program");
         return EXIT_FAILED;
     }
-    attached_catch_signals();
+    catch_signals();
     const int done = options.where ? recover(&options, control) : list(&options, control);
     cm1e_control_close(control);
     return done;

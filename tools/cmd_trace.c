@@ -11,6 +11,7 @@
 #include "cm1e/plot.h"
 #include "plot/plot_files.h"
 #include "recording.h"
+#include "signals.h"
 #include "trace_file.h"
 #include "trace_server.h"
 
@@ -291,12 +292,12 @@ static int trace_other(const trace_options_t *options, cm1e_control_t *control)
     static recording_t recording;
     trace_server_t *server = NULL;
     cm1e_diag_t diag = {0};
-    attached_catch_signals();
+    catch_signals();
     int status = begin(&recording, &server, options, control);
     if (status == EXIT_OK && options->list) {
         status = list(&recording, options);
     } else if (status == EXIT_OK) {
-        while (!attached_signalled() && go_on(&recording, server, control, &diag))
+        while (!told_to_end() && go_on(&recording, server, control, &diag))
             usleep(PAUSE_US);
         end_live(server, &recording, diag.text);
         if (diag.text[0])

@@ -9,6 +9,7 @@
 #include "core/clock.h"
 #include "core/near.h"
 #include "command.h"
+#include "signals.h"
 #include "variable_value.h"
 
 enum { KEY_ALLOW = 0xC00, KEY_FOR, NAMES = 64, KEEP_MS = 1000, PAUSE_US = 200000 };
@@ -235,7 +236,7 @@ static int force(var_options_t *options, cm1e_control_t *control)
             options->seconds > 0 ? "the program has them again afterwards" : "Ctrl-C gives them back to the program");
     fflush(stderr);
     bool good = true, ended = false;
-    while (good && !ended && !attached_signalled()) {
+    while (good && !ended && !told_to_end()) {
         usleep(PAUSE_US);
         good = renew_all(options, control, &diag);
         ended = options->count == 0 ||
@@ -252,7 +253,7 @@ static int act(var_options_t *options, cm1e_control_t *control)
     cm1e_diag_t diag = {0};
     if (strcmp(options->word, "list") == 0 || strcmp(options->word, "get") == 0)
         return show(options, control);
-    attached_catch_signals();
+    catch_signals();
     if (!take_values(options, control, &diag))
         return diag.text[0] ? fail_at_once(&diag) : EXIT_WRONG_USE;
     if (strcmp(options->word, "force") == 0)

@@ -6,6 +6,7 @@
 #include "attach.h"
 #include "core/clock.h"
 #include "io_rows.h"
+#include "signals.h"
 
 enum { OBJ_DIGITAL_OUTPUTS = 0x60FE, KEEP_MS = 1000, PAUSE_US = 100000 };
 
@@ -137,7 +138,7 @@ static int write_for_a_while(const io_options_t *options, cm1e_control_t *contro
     const int64_t begin_ns = cm1e_clock_now(cm1e_clock_monotonic());
     long set = 0;
     bool good = set_all(options, control, true, &set, &diag);
-    while (good && !attached_signalled()) {
+    while (good && !told_to_end()) {
         good = set_all(options, control, false, &set, &diag);
         if ((double)(cm1e_clock_now(cm1e_clock_monotonic()) - begin_ns) * 1e-9 >= options->seconds)
             break;
@@ -145,14 +146,14 @@ static int write_for_a_while(const io_options_t *options, cm1e_control_t *contro
     }
     if (!good)
         return set == 0 ? fail_at_once(&diag) : fail(&diag);
-    if (attached_signalled())
+    if (told_to_end())
         complain("interrupted");
-    return attached_signalled() ? EXIT_FAILED : EXIT_OK;
+    return told_to_end() ? EXIT_FAILED : EXIT_OK;
 }
 
 int io_attached(const io_options_t *options, cm1e_control_t *control)
 {
-    attached_catch_signals();
+    catch_signals();
     int status = options->write_count > 0 ? write_for_a_while(options, control) : EXIT_OK;
     if (status == EXIT_OK)
         status = list(options, control);

@@ -123,13 +123,21 @@ def broken_off(bench):
     console("firmware 1 busy 1000000")
     bench.bad(half, "has acknowledged no part of it: it does not say whether it has erased", True, "--timeout", "0.3")
     recovered("1.3.5")  # nothing of the file had come
-    for what in (lambda process: console("power-cycle 1 300"), lambda process: process.send_signal(signal.SIGINT)):
+    def while_writing(what):
         process = subprocess.Popen(bench.segment.command(bench.command(half)), stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
         wire.wait_for(lambda: "BOOT" in console("status 1"), 10, "Bootstrap was not reached")
         time.sleep(0.2)
         what(process)
         out, err = process.communicate(timeout=60)
+        return process, out, err
+
+    process, out, err = while_writing(lambda process: process.send_signal(signal.SIGHUP))
+    wire.check(process.returncode == 0 and "is 1.3.4" in out, f"the terminal was closed: {process.returncode} {out}{err}")
+    recovered("1.3.4")
+    for what in (lambda process: console("power-cycle 1 300"), lambda process: process.send_signal(signal.SIGINT),
+                 lambda process: process.send_signal(signal.SIGQUIT)):
+        process, out, err = while_writing(what)
         wire.check(process.returncode == 1 and ("stopped answering" in err or "Broken off" in err) and
                    "may be incomplete now" in err and "run the same command again" in err, f"{out}{err}")
         wire.wait_for(lambda: bench.segment.run([bench.cm1e, "sii", "decode", "-i", wire.MASTER_INTERFACE, "1"]).returncode
