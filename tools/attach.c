@@ -1,4 +1,5 @@
 #include "attach.h"
+#include "which_slave.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -137,6 +138,7 @@ static void add_axis(cm1e_bus_config_t *config, const json_t *told)
     axis->address_kind = CM1E_ADDRESS_POSITION;
     axis->address = (uint16_t)json_integer_value(json_object_get(told, "slave"));
     axis->channel = (uint8_t)json_integer_value(json_object_get(told, "channel"));
+    strcpy(axis->device, "any"); /* the program has compared its devices with its bus file */
     if (!type || strcmp(type, "motor") != 0)
         axis->type = type && strcmp(type, "encoder") == 0 ? CM1E_AXIS_ENCODER : CM1E_AXIS_VIRTUAL;
 }

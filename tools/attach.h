@@ -9,6 +9,7 @@
 #include "cm1e/control.h"
 #include "cm1e/scheduler.h"
 #include "command.h"
+#include "which_slave.h"
 
 /** The common options, and --attach for options->attach. */
 extern const struct argp_child attach_children[];

@@ -8,6 +8,7 @@
 #include "core/bytes.h"
 #include "description/sii_image.h"
 #include "sii_device.h"
+#include "which_slave.h"
 
 enum { KEY_BACKUP = 0x600 };
 
@@ -33,7 +34,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return parse_number(arg, "the alias", 0, 0xFFFF, &options->alias) ? 0 : EINVAL;
     case ARGP_KEY_END:
         if (!options->where)
-            argp_error(state, "expected: POSITION to show the alias, or POSITION ALIAS --backup FILE to write it");
+            argp_error(state, "expected: POSITION|AXIS to show the alias, or POSITION|AXIS ALIAS --backup FILE to write it");
         if (options->alias >= 0 && !options->backup)
             argp_error(state, "writing needs a backup of the present EEPROM of the slave: --backup FILE");
         return 0;

@@ -7,11 +7,12 @@
 #include "cm1e/generate.h"
 #include "command.h"
 #include "files.h"
+#include "which_slave.h"
 
 typedef struct diff_options {
     common_options_t common;
     const char *file;
-    long long position; /* 0: every slave that the file describes */
+    const char *where; /* NULL: every slave that the file describes */
 } diff_options_t;
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -19,7 +20,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     diff_options_t *options = state->input;
     switch (key) {
     case ARGP_KEY_INIT: return give_options(state, &options->common);
-    case 'p': return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
+    case 'p': options->where = arg; return 0;
     case ARGP_KEY_ARG:
     case ARGP_KEY_END: return parse_file_word(key, arg, state, &options->file);
     default: return ARGP_ERR_UNKNOWN;
@@ -49,22 +50,22 @@ static int diff_slave(cm1e_bus_t *bus, const diff_options_t *options, const inpu
     return status;
 }
 
-static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *input, json_t *json)
+static int run(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const diff_options_t *options, const input_t *input,
+               json_t *json)
 {
     cm1e_diag_t diag = {0};
     const uint32_t count = cm1e_bus_slave_count(bus);
     int status = EXIT_OK;
     uint32_t compared = 0;
-    if (options->position > count) {
-        complain("there is no slave %lld; the network has %u", options->position, count);
+    uint16_t wanted = 0;
+    if (options->where && find_slave(bus, axes_to_name(&options->common, config), options->where, &wanted) != EXIT_OK)
         return EXIT_WRONG_USE;
-    }
     for (uint32_t position = 1; position <= count; position++) {
         bool described;
-        if (options->position && position != options->position)
+        if (wanted && position != wanted)
             continue;
         const int of_slave = diff_slave(bus, options, input, (uint16_t)position, json, &described, &diag);
-        if (of_slave == EXIT_WRONG_USE && (described || options->position)) {
+        if (of_slave == EXIT_WRONG_USE && (described || wanted)) {
             complain("%s: slave %u: %s", options->file, position, diag.text);
             return EXIT_WRONG_USE;
         }
@@ -79,7 +80,7 @@ static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *in
 }
 
 static const struct argp_option table[] = {
-    {"position", 'p', "POSITION", 0, "Compare only this slave; default: every slave that the file "
+    {"position", 'p', "POSITION|AXIS", 0, "Compare only this slave; default: every slave that the file "
                                      "describes", 0}, {0}};
 const struct argp argp_diff = {
     table, parse, "FILE",
@@ -101,7 +102,7 @@ int command_diff(int argc, char **argv)
     json_t *json = options.common.json ? json_array() : NULL;
     int status = EXIT_WRONG_USE;
     if (open_network(&options.common, &config, &bus, &diag) == CM1E_OK)
-        status = run(bus, &options, &input, json);
+        status = run(bus, &config, &options, &input, json);
     else
         fail(&diag);
     status = close_bus(bus, &options.common, status);

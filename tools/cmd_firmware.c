@@ -18,6 +18,7 @@
 #include "signals.h"
 #include "sii_device.h"
 #include "terminal.h"
+#include "which_slave.h"
 
 enum { KEY_NAME = 0x900, KEY_PASSWORD, KEY_OTHER_DEVICE, KEY_TIMEOUT, KEY_YES };
 enum { FIRMWARE_MIN_BYTES = 1024, BACK_TRIES = 60 };

@@ -7,6 +7,7 @@
 #include "attach.h"
 #include "cm1e/topology.h"
 #include "files.h"
+#include "which_slave.h"
 
 enum { KEY_SVG = 0x9C0 };
 /** The picture, in pixels. */

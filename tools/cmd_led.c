@@ -9,6 +9,7 @@
 #include "core/bytes.h"
 #include "device/device.h"
 #include "device/devices.h"
+#include "which_slave.h"
 
 enum { KEY_FOR = 0x600, KEY_BRIGHTNESS, KEY_FLASH, LONGEST_S = 3600 };
 #define FIND_S 10.0

@@ -10,6 +10,7 @@
 #include "files.h"
 #include "params.h"
 #include "terminal.h"
+#include "which_slave.h"
 
 enum { KEY_YES = 0x600, KEY_DRY_RUN, KEY_OTHER_FIRMWARE, KEY_ALLOW, KEY_FORCE, MAX_NAMES = 32 };
 enum { ABORT_NO_OBJECT = 0x06020000, ABORT_NO_SUBINDEX = 0x06090011 };
@@ -417,18 +418,11 @@ static int find_motor(motor_t *motor, const cm1e_bus_config_t *config, const cha
     char position[16], trail;
     unsigned slave = 0, channel = 0;
     const bool has_connector = sscanf(where, "%u.%u%c", &slave, &channel, &trail) == 2;
-    for (uint32_t i = 1; i <= cm1e_bus_slave_count(motor->bus) && !has_connector; i++)
-        for (uint8_t c = 1; c <= CM1E_BRIDGE_AXES; c++) {
-            const int axis = find_axis_at(motor->bus, config, cm1e_bus_slave(motor->bus, i), c);
-            if (axis < 0 || strcmp(config->axes[axis].name, where) != 0)
-                continue;
-            motor->position = (uint16_t)i;
-            motor->channel = c;
-            return EXIT_OK;
-        }
+    uint8_t of_axis;
     snprintf(position, sizeof position, "%u", slave);
-    motor->channel = has_connector ? channel : 0;
-    return find_slave(motor->bus, config, has_connector ? position : where, &motor->position);
+    const int status = find_motor_of(motor->bus, config, has_connector ? position : where, &motor->position, &of_axis);
+    motor->channel = has_connector ? channel : of_axis;
+    return status;
 }
 
 /** A bridge has connectors, and nothing else has. Returns the exit status. */

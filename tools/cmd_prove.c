@@ -11,6 +11,7 @@
 #include "files.h"
 #include "prove/prove.h"
 #include "signals.h"
+#include "which_slave.h"
 
 enum { KEY_LIST = 0x800, KEY_WRITES, KEY_MOTION, KEY_VELOCITY, KEY_TRAVEL, KEY_PROFILE, KEY_POINT, KEY_DEAD_ENDS };
 
@@ -52,10 +53,16 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         need_name(state, "-o", arg);
         options->output = arg;
         return 0;
-    case ARGP_KEY_ARG: return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
+    case ARGP_KEY_ARG:
+        if (options->where)
+            argp_error(state, "one device at a time; \"%s\" is too many", arg);
+        options->where = arg;
+        return 0;
     case ARGP_KEY_END:
         if (options->allow_motion && (options->max_velocity == 0 || options->max_travel == 0))
             argp_error(state, "--allow-motion needs limits: --max-velocity REVOLUTIONS/S and --max-travel REVOLUTIONS");
+        if (options->profile && options->where && !is_position(options->where))
+            argp_error(state, "--profile needs the position of the device, not its name");
         if (!options->allow_motion && (options->max_velocity > 0 || options->max_travel > 0))
             argp_error(state, "--max-velocity and --max-travel are for --allow-motion");
         return 0;
@@ -111,20 +118,25 @@ bool prove_open(prove_t *prove)
     return prove_play(prove->options, prove->bus) && prove_is_at_rest(prove) && prove_scan(prove);
 }
 
-static bool choose(prove_t *prove)
+/** Returns the exit status. */
+static int choose(prove_t *prove)
 {
     unsigned known = 0;
-    for (uint32_t position = 1; position <= cm1e_bus_slave_count(prove->bus); position++) {
-        const cm1e_slave_info_t *slave = cm1e_bus_slave(prove->bus, position);
-        if (slave->device && (prove->options->position == 0 || prove->options->position == position)) {
+    uint16_t wanted = 0;
+    uint8_t channel; /* of an axis behind a bridge: the bridge is compared as a whole */
+    const int found = prove->options->where ? find_motor_of(prove->bus, prove->config, prove->options->where, &wanted,
+                                                            &channel) : EXIT_OK;
+    if (found != EXIT_OK)
+        return found;
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(prove->bus); position++)
+        if (cm1e_bus_slave(prove->bus, position)->device && (wanted == 0 || wanted == position)) {
             prove->position = (uint16_t)position;
             known++;
         }
-    }
     if (known != 1) {
         complain(known > 1 ? "there are %u devices: say which one by its position"
                            : "there is no device that our tables know%.0u", known);
-        return false;
+        return EXIT_FAILED;
     }
     prove->slave = cm1e_bus_slave(prove->bus, prove->position);
     prove->device = prove->slave->device;
@@ -133,7 +145,7 @@ static bool choose(prove_t *prove)
         if (!prove->firmware)
             prove->firmware = cm1e_firmware_info(CM1E_FIRMWARE_COUNT - 1);
     }
-    return true;
+    return EXIT_OK;
 }
 
 /* ---- the points -------------------------------------------------------------------------------------------------- */
@@ -279,8 +291,9 @@ static int write_results(const prove_t *prove)
 
 static int prove_device(prove_t *prove)
 {
-    if (!prove_open(prove) || !choose(prove))
-        return EXIT_FAILED;
+    const int found = prove_open(prove) ? choose(prove) : EXIT_FAILED;
+    if (found != EXIT_OK)
+        return found;
     if (!is_any_named(prove)) {
         complain("--point names no point of a %s (--list --json shows of which device each is)", prove->device->kind);
         return EXIT_WRONG_USE;
@@ -317,7 +330,7 @@ static const struct argp_option table[] = {
     {"profile", KEY_PROFILE, "FILE", 0, "With -i sim: the simulated motor behaves as this device", 0},
     {0}};
 const struct argp argp_prove = {
-    table, parse, "[POSITION]",
+    table, parse, "[POSITION|AXIS]",
     "Compares a device with what this program knows of its kind: identity, EEPROM, the whole dictionary, mappings, "
     "registers, EtherCAT states, and requests that must be refused. Each point is told as agrees, differs or unknown, "
     "with the clause of the guide. Without --allow-motion nothing is enabled, and nothing is written that is kept or "

@@ -6,6 +6,7 @@
 #include "attach.h"
 #include "cm1e/esc.h"
 #include "core/bytes.h"
+#include "which_slave.h"
 
 enum { KEY_ALLOW = 0x9A0, KEY_SIZE, WORDS = 4, ROW_BYTES = 16 };
 

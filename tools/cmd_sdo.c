@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "device/device.h"
 #include "sdo_list.h"
+#include "which_slave.h"
 
 enum { KEY_TYPE = 0x200, KEY_VALUES, MAX_SDO_BYTES = 4096 };
 
@@ -55,8 +56,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         const bool write = options->word_count == 4 && strcmp(options->words[0], "write") == 0;
         const bool list = options->word_count == 2 && strcmp(options->words[0], "list") == 0;
         if (!read && !write && !list)
-            argp_error(state, "expected: read POSITION INDEX[:SUB], write POSITION INDEX[:SUB] VALUE, or list "
-                              "POSITION");
+            argp_error(state, "expected: read POSITION|AXIS INDEX[:SUB], write POSITION|AXIS INDEX[:SUB] VALUE, or list "
+                              "POSITION|AXIS");
         return 0;
     }
     default: return ARGP_ERR_UNKNOWN;

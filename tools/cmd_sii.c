@@ -13,6 +13,7 @@
 #include "files.h"
 #include "sii_device.h"
 #include "sii_text.h"
+#include "which_slave.h"
 
 enum { KEY_BACKUP = 0x500, KEY_FORCE_CHECKSUM, KEY_FORCE_IDENTITY, KEY_FORCE_CONFIGURATION, KEY_OWN };
 
@@ -51,7 +52,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (!is_verb(options, "read", 3) && !is_verb(options, "write", 3) && !is_verb(options, "decode", 2))
-            argp_error(state, "expected: read POSITION FILE, write POSITION FILE, or decode FILE|POSITION");
+            argp_error(state, "expected: read POSITION|AXIS FILE, write POSITION|AXIS FILE, or decode FILE|POSITION|AXIS");
         need_name(state, "the file", options->words[options->word_count - 1]);
         if (is_verb(options, "write", 3) && !options->backup)
             argp_error(state, "writing needs a backup of the present contents of the slave: --backup FILE");
@@ -62,28 +63,19 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 /** Opens the bus of the options, or attaches to the program that has it, unless an SII is to be written;
  *  NULL, a complaint and the exit status after an error. It does not scan, because a damaged SII stops a scan. */
-static cm1e_bus_t *open_bus(const sii_options_t *options, int *status)
+static cm1e_bus_t *open_bus(const sii_options_t *options, cm1e_bus_config_t *config, int *status)
 {
-    static cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
     *status = EXIT_WRONG_USE;
-    if (!load_network(&options->common, &config))
+    if (!load_network(&options->common, config))
         return NULL;
     const bool writes = is_verb(options, "write", 3);
-    if ((writes ? own_network(&options->common, &config, "Writing an SII",
+    if ((writes ? own_network(&options->common, config, "Writing an SII",
                                 "while it is written, the application of the slave has no access to it", &bus, &diag)
-                : open_unscanned(&options->common, &config, &bus, &diag)) != CM1E_OK)
+                : open_unscanned(&options->common, config, &bus, &diag)) != CM1E_OK)
         *status = fail(&diag);
     return bus;
-}
-
-static bool parse_position(const char *word, uint16_t *position)
-{
-    long long number;
-    const bool good = parse_number(word, "the position", 1, CM1E_MAX_SLAVES, &number);
-    *position = good ? (uint16_t)number : 0;
-    return good;
 }
 
 /* ---- read ------------------------------------------------------------------------------------------------------- */
@@ -154,19 +146,19 @@ static int decode(const input_t *image, bool json)
     return error == CM1E_OK ? EXIT_OK : fail(&diag);
 }
 
-static bool is_position(const char *word) { return word[0] && strspn(word, "0123456789") == strlen(word); }
-
 /* ---- the command ------------------------------------------------------------------------------------------------ */
 
 static int run_on_bus(const sii_options_t *options)
 {
+    static cm1e_bus_config_t config;
     uint16_t position;
     int status;
-    if (!parse_position(options->words[1], &position))
-        return EXIT_WRONG_USE;
-    cm1e_bus_t *bus = open_bus(options, &status);
+    cm1e_bus_t *bus = open_bus(options, &config, &status);
     if (!bus)
         return status;
+    status = find_slave_unscanned(bus, axes_to_name(&options->common, &config), options->words[1], &position);
+    if (status != EXIT_OK)
+        return close_bus(bus, &options->common, status);
     if (is_verb(options, "read", 3)) {
         status = run_read(bus, options, position);
     } else if (is_verb(options, "write", 3)) {
@@ -191,18 +183,27 @@ static const struct argp_option table[] = {
      "write: also write alias and serial number of the image; by default those of the slave stay", 0},
     {0}};
 const struct argp argp_sii = {
-    table, parse, "read POSITION FILE\nwrite POSITION FILE --backup FILE\ndecode FILE|POSITION",
+    table, parse, "read POSITION|AXIS FILE\nwrite POSITION|AXIS FILE --backup FILE\ndecode FILE|POSITION|AXIS",
     "Reads, writes or shows the SII, the EEPROM with the identity of a slave. Writing changes only the words that "
     "differ, reads all data back, and names the word at which it stopped. To undo it, write the backup with `cm1e "
-    "sii write`.",
+    "sii write`. AXIS is the name of an axis or a slave in the bus file; `decode` takes a file where neither a network nor "
+    "a bus file is stated.",
     attach_children, NULL, NULL};
+
+/** `decode` takes a file, too: a word that is no position names a slave where a network is stated. */
+static bool is_of_slave(const sii_options_t *options)
+{
+    const common_options_t *common = &options->common;
+    return !is_verb(options, "decode", 2) || is_position(options->words[1]) || common->interface_name ||
+           common->bus_file || common->attach;
+}
 
 int command_sii(int argc, char **argv)
 {
     sii_options_t options = {0};
     if (parse_options(&argp_sii, argc, argv, &options))
         return EXIT_WRONG_USE;
-    if (!is_verb(&options, "decode", 2) || is_position(options.words[1]))
+    if (is_of_slave(&options))
         return run_on_bus(&options);
     input_t image;
     if (!read_input(options.words[1], &image))

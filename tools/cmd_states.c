@@ -4,6 +4,7 @@
 
 #include "attach.h"
 #include "cm1e/esc.h"
+#include "which_slave.h"
 
 enum { STATE_TIMEOUT_S = 10 };
 #define STATES "init|preop|safeop|boot"

@@ -14,6 +14,7 @@
 #include "device/unit.h"
 #include "status_bridge.h"
 #include "status_drive.h"
+#include "which_slave.h"
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {

@@ -9,7 +9,6 @@
 #include "choose_bus.h"
 #include "cm1e/bridge.h"
 #include "config/interface.h"
-#include "config/places.h"
 #include "core/near.h"
 #include "core/text.h"
 #include "device/devices.h"
@@ -334,16 +333,6 @@ int find_axis(const cm1e_bus_config_t *config, const char *word)
     return -1;
 }
 
-int find_axis_at(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, uint8_t channel)
-{
-    const cm1e_places_t places = {config, bus, cm1e_bus_slave};
-    const uint16_t place = cm1e_place_of(&places, slave);
-    for (uint32_t i = 0; i < config->axis_count; i++)
-        if (config->axes[i].channel == channel && cm1e_place_is_of_axis(&places, i, slave, place))
-            return (int)i;
-    return -1;
-}
-
 int shelter_negative_value(int argc, char **argv, char **sheltered)
 {
     static char end_of_options[] = "--";
@@ -367,83 +356,6 @@ int shelter_negative_value(int argc, char **argv, char **sheltered)
         sheltered[count++] = value;
     sheltered[count] = NULL;
     return count;
-}
-
-/** Whether the bus file calls this slave, or the axis that it is, by this word. */
-static bool is_called(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
-                      const char *word)
-{
-    const cm1e_places_t places = {config, bus, cm1e_bus_slave};
-    const uint16_t place = cm1e_place_of(&places, slave);
-    const int axis = find_axis_at(bus, config, slave, 0);
-    bool is = axis >= 0 && strcmp(config->axes[axis].name, word) == 0;
-    for (uint32_t i = 0; i < config->slave_count && !is; i++)
-        is = strcmp(config->slaves[i].name, word) == 0 && cm1e_place_is_of_slave(&places, &config->slaves[i], slave, place);
-    return is;
-}
-
-/** Complains of a word that is no axis of the bus file: a slave that is not there, or none at all. Returns the exit status;
- *  EXIT_OK: it is an axis. */
-static int refuse_name(const cm1e_bus_config_t *config, const char *word)
-{
-    char text[CM1E_NEAR_TEXT_BYTES];
-    cm1e_near_t near = {.word = word};
-    for (uint32_t i = 0; i < config->axis_count; i++) {
-        if (strcmp(config->axes[i].name, word) == 0)
-            return EXIT_OK;
-        cm1e_near_look(&near, config->axes[i].name);
-    }
-    for (uint32_t i = 0; i < config->slave_count; i++) {
-        if (strcmp(config->slaves[i].name, word) == 0) {
-            complain("slave \"%s\" is not on the network", word);
-            return EXIT_FAILED;
-        }
-        cm1e_near_look(&near, config->slaves[i].name);
-    }
-    complain("the bus file has neither an axis nor a slave \"%s\"%s", word, cm1e_near_text(&near, text, sizeof text));
-    return EXIT_WRONG_USE;
-}
-
-int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const char *word, uint16_t *position)
-{
-    const uint32_t count = cm1e_bus_slave_count(bus);
-    long long number;
-    for (uint32_t i = 1; i <= count; i++)
-        if (is_called(bus, config, cm1e_bus_slave(bus, i), word)) {
-            *position = (uint16_t)i;
-            return EXIT_OK;
-        }
-    if ((word[0] < '0' || word[0] > '9') && word[0] != '-') {
-        const int refused = config->slave_count > 0 ? refuse_name(config, word) : EXIT_OK;
-        if (refused != EXIT_OK)
-            return refused;
-        const int axis = find_axis(config, word);
-        if (axis >= 0)
-            complain("the slave of axis \"%s\" is not on the network, or is a bridge: give its position", word);
-        return axis >= 0 ? EXIT_FAILED : EXIT_WRONG_USE;
-    }
-    if (!parse_number(word, "the position", 1, CM1E_MAX_SLAVES, &number))
-        return EXIT_WRONG_USE;
-    *position = (uint16_t)number;
-    if (number <= count)
-        return EXIT_OK;
-    complain("there is no slave %lld; the network has %u", number, count);
-    return EXIT_FAILED;
-}
-
-int run_on_slave(const common_options_t *common, const char *where, slave_action_t action, const void *options)
-{
-    static cm1e_bus_config_t config;
-    cm1e_bus_t *bus;
-    uint16_t position;
-    if (!load_configuration(common, &config))
-        return EXIT_WRONG_USE;
-    if (open_scanned(&config, &bus) != EXIT_OK)
-        return EXIT_FAILED;
-    int status = find_slave(bus, &config, where, &position);
-    if (status == EXIT_OK)
-        status = action(bus, &config, options, position);
-    return close_bus(bus, common, status);
 }
 
 int in_bytes(int width, const char *text) { return width + (int)(strlen(text) - cm1e_text_width(text)); }

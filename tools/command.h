@@ -134,9 +134,6 @@ void tell_simulated(const cm1e_bus_config_t *config);
 /** Finds an axis of the configuration by name or number (1 = first); -1 and a complaint: there is none. */
 int find_axis(const cm1e_bus_config_t *config, const char *word);
 
-/** The axis of the configuration at a slave, and behind a bridge at a connector (1 ... 4; else 0); -1: none. */
-int find_axis_at(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, uint8_t channel);
-
 /** A whole decimal or 0x number within [minimum, maximum]; false and a complaint that names `what` otherwise. */
 bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value);
 /** An object as the field writes it, hexadecimal with or without 0x: "0x60F6:1B", "607C" (sub-index 0). Complains of nothing. */
@@ -147,18 +144,6 @@ bool parse_real(const char *word, const char *what, double *value);
 bool parse_positive(const char *word, const char *what, double *value);
 /** As parse_real(), above 0 and up to `longest` seconds. */
 bool parse_seconds(const char *word, int longest, double *value);
-
-/** The slave of a word after a scan: the name of an axis (not behind a bridge) or of a slave of the bus file, or a
- *  position. Returns the exit status, with a complaint: there is no such slave. */
-int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const char *word, uint16_t *position);
-
-/** What a command does to one slave of a scanned network. It complains of its errors and returns the exit status. */
-typedef int (*slave_action_t)(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *options,
-                              uint16_t position);
-
-/** Loads the configuration, opens and scans the network, finds the slave of the word `where`, acts on it with `options`,
- *  and closes the network. Returns the exit status. */
-int run_on_slave(const common_options_t *common, const char *where, slave_action_t action, const void *options);
 
 /** A negative value looks like an option, so such a word is moved to the end, behind a "--". Words behind a "--" of the
  *  user are not moved. `sheltered` has room for MAX_WORDS + 2. Returns their number; -1 and a complaint: too many. */

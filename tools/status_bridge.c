@@ -7,6 +7,7 @@
 #include "core/bytes.h"
 #include "device/bridge_facts.h"
 #include "device/bridge_status.h"
+#include "which_slave.h"
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 

@@ -571,7 +571,7 @@ WRONG = [
     (["sim", "-i", "no-such-interface"], FAILED, "no-such-interface"),
     (["sim", "-i", "lo", "--pdo-order", "up"], WRONG_USE, "ug-4.4"),
     (["cml", "?99.1"], WRONG_USE, "-i"),
-    (["sii", "-i", "sim"], WRONG_USE, "read POSITION FILE"),
+    (["sii", "-i", "sim"], WRONG_USE, "read POSITION|AXIS FILE"),
     (["sii", "-i", "sim", "read", "0", "x"], WRONG_USE, "position"),
     (["sii", "-i", "sim", "read", "2", "x"], FAILED, "no slave 2"),
     (["sii", "-i", "sim", "read", "1", "/no/such/folder/x"], FAILED, "/no/such/folder"),

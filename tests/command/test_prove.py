@@ -239,7 +239,7 @@ def check_refusals(folder):
     for words, said in ((["-i", "sim", "--allow-motion"], "needs limits"),
                         (["-i", "sim", "--max-travel", "1"], "for --allow-motion"),
                         (["-i", "lo", "--profile", "x"], "for the simulated segment"),
-                        (["-i", "sim", "9"], "no device")):
+                        (["-i", "sim", "9"], "no slave 9")):
         done = prove(*words)
         expect(done.returncode != 0 and said in done.stderr, f"{words}: {done}")
     for text, said in (("{", "file"), ('{"cm1e_profile": 2}', "device profile"),

@@ -1,5 +1,6 @@
 /* A run for each point at which the motor moves: a configuration within the limits, a bus, a scheduler. */
 #include "prove/motion.h"
+#include "which_slave.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -37,7 +37,7 @@ typedef struct prove_options {
     common_options_t common;
     const char *output, *profile, *patterns[PROVE_PATTERNS];
     int pattern_count;
-    long long position;        /**< 0: the only motor or bridge */
+    const char *where;         /**< position or name; NULL: the only motor or bridge */
     bool list, allow_writes, allow_motion, allow_dead_ends;
     double max_velocity, max_travel; /**< revolutions of the motor and revolutions/s; 0: not given */
 } prove_options_t;

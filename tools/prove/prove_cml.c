@@ -7,6 +7,7 @@
 #include "cm1e/cml.h"
 #include "device/bridge_facts.h"
 #include "prove/prove.h"
+#include "which_slave.h"
 
 enum { K_FIRST = 21, K_PROVED = 42, STATUS_QUERY = 99, SWITCH_READS = 40,
        SWITCH_PAUSE_US = 1000 };

@@ -27,6 +27,6 @@ bool play_profile(cm1e_sim_segment_t *segment, uint32_t position, const char *pa
 bool prove_play(const prove_options_t *options, cm1e_bus_t *bus)
 {
     cm1e_sim_segment_t *segment = cm1e_bus_segment(bus);
-    const uint32_t position = options->position ? (uint32_t)options->position : 1;
+    const uint32_t position = options->where ? (uint32_t)strtoul(options->where, NULL, 10) : 1;
     return !options->profile || !segment || play_profile(segment, position, options->profile);
 }
