@@ -8,8 +8,8 @@
 #include "axis_run.h"
 #include "cm1e/config.h"
 #include "core/clock.h"
+#include "end_signals.h"
 #include "jog_keys.h"
-#include "signals.h"
 #include "terminal.h"
 
 enum { ENABLE_MS = 2000, PAUSE_US = 20000, KEY_MS = 5 };

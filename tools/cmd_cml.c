@@ -11,7 +11,7 @@
 #include "device/bridge_status.h"
 #include "device/devices.h"
 #include "device/cml_command.h"
-#include "signals.h"
+#include "end_signals.h"
 
 enum { KEY_SLAVE = 0x400, KEY_CHANNEL, KEY_TIMEOUT, KEY_ALLOW, KEY_STAY, MAX_STRINGS = 64 };
 

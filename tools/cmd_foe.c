@@ -8,8 +8,8 @@
 
 #include "attach.h"
 #include "command.h"
+#include "end_signals.h"
 #include "files.h"
-#include "signals.h"
 #include "terminal.h"
 
 enum { KEY_NAME = 0x980, KEY_PASSWORD, KEY_BOOTSTRAP, KEY_TIMEOUT, KEY_MAXIMUM, KEY_ALLOW };

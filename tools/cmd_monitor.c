@@ -10,8 +10,8 @@
 #include "attach.h"
 #include "axis_run.h"
 #include "core/clock.h"
+#include "end_signals.h"
 #include "monitor.h"
-#include "signals.h"
 
 enum { ENABLE_MS = 2000, PAUSE_US = 20000 };
 #define LOOK_NS (100 * MS_IN_NS)

@@ -8,9 +8,9 @@
 #include "attach.h"
 #include "core/near.h"
 #include "core/output.h"
+#include "end_signals.h"
 #include "files.h"
 #include "prove/prove.h"
-#include "signals.h"
 #include "which_slave.h"
 
 enum { KEY_LIST = 0x800, KEY_WRITES, KEY_MOTION, KEY_VELOCITY, KEY_TRAVEL, KEY_PROFILE, KEY_POINT, KEY_DEAD_ENDS };

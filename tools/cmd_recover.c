@@ -10,7 +10,7 @@
 #include "attach.h"
 #include "cm1e/hot_connect.h"
 #include "core/clock.h"
-#include "signals.h"
+#include "end_signals.h"
 
 enum { KEY_FOR = 0x600, PAUSE_US = 20000, LONGEST_S = 600 };
 #define PATIENCE_S 10.0

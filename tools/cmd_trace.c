@@ -9,9 +9,9 @@
 #include "attach.h"
 #include "axis_run.h"
 #include "cm1e/plot.h"
+#include "end_signals.h"
 #include "plot/plot_files.h"
 #include "recording.h"
-#include "signals.h"
 #include "trace_file.h"
 #include "trace_server.h"
 

@@ -9,7 +9,7 @@
 #include "core/clock.h"
 #include "core/near.h"
 #include "command.h"
-#include "signals.h"
+#include "end_signals.h"
 #include "variable_value.h"
 
 enum { KEY_ALLOW = 0xC00, KEY_FOR, NAMES = 64, KEEP_MS = 1000, PAUSE_US = 200000 };

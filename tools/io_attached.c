@@ -5,8 +5,8 @@
 
 #include "attach.h"
 #include "core/clock.h"
+#include "end_signals.h"
 #include "io_rows.h"
-#include "signals.h"
 
 enum { OBJ_DIGITAL_OUTPUTS = 0x60FE, KEEP_MS = 1000, PAUSE_US = 100000 };
 

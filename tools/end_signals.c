@@ -1,4 +1,4 @@
-#include "signals.h"
+#include "end_signals.h"
 
 #include <signal.h>
 #include <stddef.h>

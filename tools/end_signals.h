@@ -1,9 +1,9 @@
 /**
- * @file signals.h
+ * @file end_signals.h
  * Signals that would end this program: a command that must leave something in order ends it itself.
  */
-#ifndef CM1E_TOOLS_SIGNALS_H
-#define CM1E_TOOLS_SIGNALS_H
+#ifndef CM1E_TOOLS_END_SIGNALS_H
+#define CM1E_TOOLS_END_SIGNALS_H
 
 #include <stdbool.h>
 
