@@ -23,6 +23,8 @@ PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRIN
 STATEMENTS = [
     ("i := 1", "10:1", ["cannot stand here", '";"']),
     ("i = 1;", "9:3", ["cannot stand here", '":="']),
+    ("b S= b;", "9:3", ["S= and R= are not in the standard", "x := TRUE"]),
+    ("b R= b;", "9:3", ["S= and R= are not in the standard", "x := FALSE"]),
     ("IF i == 1 THEN i := 2; END_IF", "9:7", ["compared by one"]),
     ("IF i := 1 THEN i := 2; END_IF", "9:6", ['compared by "="']),
     ("i := d := 3;", "9:8", ["statement of its own"]),
