@@ -115,11 +115,12 @@ json_t *cm1e_record_begin(control_request_t *request, control_run_t *run, const 
         return refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a recording.");
     const cm1e_error_t error = make(recorder, &run->view, message,
                                     every ? (uint32_t)json_integer_value(every) : 1, &diag);
-    if (error != CM1E_OK) {
+    json_t *told = error == CM1E_OK ? cm1e_recorder_show(recorder, cm1e_bus_configuration(run->view.bus)->cycle_time_ns) : NULL;
+    if (!told) {
         cm1e_recorder_free(recorder);
-        return refuse(request, error, diag.text);
+        return error == CM1E_OK ? refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a recording.")
+                                : refuse(request, error, diag.text);
     }
-    json_t *told = cm1e_recorder_show(recorder, cm1e_bus_configuration(run->view.bus)->cycle_time_ns);
     cm1e_recorder_begin(&run->view, request->client, recorder);
     return cm1e_request_accept(request->id, "record", told);
 }
