@@ -24,6 +24,8 @@ typedef struct stream_host_config {
     int64_t timeout_ns;
     int64_t period_ns;          /**< of the control; 0: the cycle of the bus */
     int realtime_priority, cpu;
+    /** Called in the thread of the bus. It must return, and call nothing of this header: stream_host_close() waits for
+     *  that thread. */
     void (*say)(void *context, const char *sentence);
     void *context;
 } stream_host_config_t;
