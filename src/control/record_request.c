@@ -115,7 +115,8 @@ json_t *cm1e_record_begin(control_request_t *request, control_run_t *run, const 
         return refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a recording.");
     const cm1e_error_t error = make(recorder, &run->view, message,
                                     every ? (uint32_t)json_integer_value(every) : 1, &diag);
-    json_t *told = error == CM1E_OK ? cm1e_recorder_show(recorder, cm1e_bus_configuration(run->view.bus)->cycle_time_ns) : NULL;
+    const int64_t cycle_ns = cm1e_bus_configuration(run->view.bus)->cycle_time_ns;
+    json_t *told = error == CM1E_OK ? cm1e_recorder_show(recorder, cycle_ns) : NULL;
     if (!told) {
         cm1e_recorder_free(recorder);
         return error == CM1E_OK ? refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a recording.")
