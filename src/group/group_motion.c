@@ -70,10 +70,24 @@ static void begin_step(cm1e_group_t *group)
     group->told = false;
 }
 
+/* After a silence all axes go on from the same place of the path, before it makes its step. */
+static void meet(const cm1e_group_t *group)
+{
+    cm1e_axis_t *axes[CM1E_GROUP_AXES];
+    uint32_t count = 0;
+    for (int i = 0; i < group->axes; i++) {
+        cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
+        if (axis)
+            axes[count++] = axis;
+    }
+    cm1e_axis_meet(axes, count);
+}
+
 /* The first axis of a cycle makes the step for all. */
 static void take_turn(cm1e_group_t *group, unsigned bit)
 {
     if ((group->asked & bit) != 0) {
+        meet(group);
         begin_step(group);
         if (!group->ending) {
             cm1e_path_step(&group->path, &group->sample);
