@@ -8,10 +8,19 @@ static cm1e_error_t set_factors(cm1e_group_t *group, const MC_GroupSetOverride_t
     return cm1e_group_set_override(group, fb->VelFactor);
 }
 
+/* Factors are refused in every call; the text of the group is left to others after the first one. */
+static cm1e_error_t set_or_refuse(cm1e_group_t *group, const MC_GroupSetOverride_t *fb)
+{
+    const cm1e_error_t error = set_factors(group, fb);
+    if (error != CM1E_OK && fb->ErrorID != cm1e_error_id(error))
+        cm1e_group_refuse_override(group, error, fb->VelFactor, fb->AccFactor);
+    return error;
+}
+
 void MC_GroupSetOverride(MC_GroupSetOverride_t *fb)
 {
     cm1e_group_t *group = cm1e_fb_group_enable(&fb->Private, fb->AxesGroup, fb->Enable);
-    const fb_reading_t out = cm1e_fb_reading(&fb->Private, group, group ? set_factors(group, fb) : CM1E_OK);
+    const fb_reading_t out = cm1e_fb_reading(&fb->Private, group, group ? set_or_refuse(group, fb) : CM1E_OK);
     fb->Enabled = out.valid;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -80,6 +80,8 @@ void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold);
 /** Sets the factor on the velocities of commands, 0 ... 1, which holds until it is changed. CM1E_ERROR_AXIS_OVERRIDE:
  *  the factor is out of this range. @rt cycle */
 cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity);
+/** Remembers for the text of the group which factor was refused. @rt cycle */
+void cm1e_group_refuse_override(cm1e_group_t *group, cm1e_error_t error, double velocity, double acceleration);
 
 /* ---- readings ---------------------------------------------------------------------------------------------------- */
 

@@ -309,3 +309,11 @@ cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity)
         cm1e_path_override(&group->path, velocity);
     return CM1E_OK;
 }
+
+void cm1e_group_refuse_override(cm1e_group_t *group, cm1e_error_t error, double velocity, double acceleration)
+{
+    (void)refuse(group, error, 0.0,
+                 !(velocity >= 0.0 && velocity <= 1.0) ? "VelFactor must be 0 ... 1."
+                 : acceleration != 1.0                 ? "AccFactor must be 1 in this version."
+                                                       : "JerkFactor must be 1 in this version.");
+}

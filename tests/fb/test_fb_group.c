@@ -402,6 +402,22 @@ START_TEST(test_a_stop_that_is_in_error_still_holds_the_group)
 }
 END_TEST
 
+START_TEST(test_a_refused_override_says_which_factor)
+{
+    static const struct { double velocity, acceleration, jerk; const char *why; } cases[] = {
+        {2, 1, 1, "VelFactor"}, {NAN, 1, 1, "VelFactor"}, {1, 0, 1, "AccFactor"}, {1, 1, 0, "JerkFactor"},
+    };
+    begin();
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        MC_GroupSetOverride_t fb = {.AxesGroup = &group_reference, .Enable = TRUE, .VelFactor = cases[i].velocity,
+                                    .AccFactor = cases[i].acceleration, .JerkFactor = cases[i].jerk};
+        MC_GroupSetOverride(&fb);
+        AXES_MUST(fb.ErrorID == cm1e_error_id(CM1E_ERROR_AXIS_OVERRIDE), "0x%04X", fb.ErrorID);
+        AXES_MUST(strstr(group_text(), cases[i].why), "no %s in: %s", cases[i].why, group_text());
+    }
+}
+END_TEST
+
 /* ---- an axis that is lost ---------------------------------------------------------------------------------------- */
 
 START_TEST(test_power_loss_of_an_axis_in_every_phase)
@@ -523,6 +539,7 @@ int main(void)
     tcase_add_loop_test(all, test_a_pulse_of_one_call_shows_the_result_for_one_call, 0, MOVES);
     tcase_add_test(all, test_no_group_another_group_and_a_group_that_goes);
     tcase_add_test(all, test_a_stop_that_is_in_error_still_holds_the_group);
+    tcase_add_test(all, test_a_refused_override_says_which_factor);
     tcase_add_loop_test(all, test_power_loss_of_an_axis_in_every_phase, 0, MOVES);
     tcase_add_test(all, test_the_group_s_axes_and_their_own_blocks);
     tcase_add_loop_test(all, test_an_axis_of_the_group_is_a_master, 0, 3);
