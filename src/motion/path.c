@@ -375,11 +375,14 @@ static bool end_stop(cm1e_path_t *path, cm1e_path_sample_t *sample)
     return true;
 }
 
-/** The profile has ended, and with it the last element of the run. */
+/** The profile has ended, and with it the last element of the run. Of what two transitions have taken all length, nothing
+ *  is left to move on: no profile could change a velocity there, not even by what rounding has added to it. */
 static void end_run(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     const int count = cm1e_path_run(path, 0, path->element_count).count;
     for (int i = 0; i < count; i++)
+        pop(path, sample);
+    while (path->element_count > 1 && cm1e_path_element(path, 0)->length == 0 && cm1e_path_element(path, 1)->passed > 0)
         pop(path, sample);
     path->along.position = 0;
     if (path->element_count == 0 || cm1e_path_element(path, 0)->passed == 0)

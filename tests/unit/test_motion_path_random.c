@@ -383,6 +383,13 @@ static void test_a_run_that_is_begun_too_fast_is_braked_in_over_more_than_one(vo
     begin_too_fast(1);
 }
 
+/** Two transitions may leave nothing of a segment: nothing to brake in there. */
+static void test_a_segment_without_length_that_is_begun_too_fast_is_passed(void)
+{
+    random_state = 13163837031273866584u;
+    begin_too_fast(1);
+}
+
 static void run_tests(void)
 {
     RUN_TEST(test_paths_that_are_appended_at_once);
@@ -390,6 +397,7 @@ static void run_tests(void)
     RUN_TEST(test_paths_that_are_stopped_slowed_and_cut);
     RUN_TEST(test_a_run_that_is_begun_too_fast_is_braked_in_on_the_path);
     RUN_TEST(test_a_run_that_is_begun_too_fast_is_braked_in_over_more_than_one);
+    RUN_TEST(test_a_segment_without_length_that_is_begun_too_fast_is_passed);
 }
 
 int main(void)
