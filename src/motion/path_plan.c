@@ -342,7 +342,8 @@ static void cut_at(cm1e_path_t *path, double position)
 {
     int last = 0;
     double begin = 0;
-    while (last < path->element_count - 1 && begin + cm1e_path_element(path, last)->length < position)
+    while (last < path->element_count - 1 &&
+           begin + cm1e_path_element(path, last)->length * (1 + CM1E_PATH_AS_LONG) < position)
         begin += cm1e_path_element(path, last++)->length;
     cm1e_path_element_t *element = cm1e_path_element(path, last);
     element->length = smaller(element->length, position - begin);

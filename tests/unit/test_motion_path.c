@@ -348,6 +348,32 @@ static void test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there(voi
     TEST_ASSERT_EQUAL(4, driven.done_tag);
 }
 
+/* The second segment is to be begun from rest. Wherever the first one is cut off, also where it comes to rest as soon as
+ * it can in any case, only a part of it is left, and the path ends where it says. */
+static void test_a_segment_that_comes_to_rest_in_any_case_is_the_last_one(void)
+{
+    for (int k = 0; k < 3000; k++) {
+        const double velocity = random_decade(20, 500), length = random_decade(0.01, 5);
+        const cm1e_path_config_t config = plain_config(2, 2, velocity, velocity * random_decade(2, 30), 1e4);
+        begin_path(&config, ORIGIN);
+        line((double[]){length, 0}, 500, CM1E_PATH_STOP, 0);
+        line((double[]){length, 30}, 500, CM1E_PATH_STOP, 0);
+        const int at = 1 + (int)(random_bits() % 60);
+        for (int i = 0; i < at; i++)
+            step_path();
+        if (driven.now.active != 1)
+            continue;
+        cm1e_path_clear(&driven.path);
+        double end[2];
+        cm1e_path_end(&driven.path, end);
+        TEST_ASSERT_EQUAL(1, driven.path.segment_count);
+        (void)run_path();
+        TEST_ASSERT_EQUAL_UINT32(1, driven.done_tag); /* what was cut off is not done */
+        TEST_ASSERT_EQUAL_DOUBLE(end[0], driven.now.position[0]);
+        TEST_ASSERT_TRUE(end[0] <= length && end[1] == 0 && driven.now.position[1] == 0);
+    }
+}
+
 /* A stop that ends in the second segment is cut off there. If the master pauses before, it ends where the pause finds it;
  * with another segment behind it, it begins again from rest with most of the way still before it, and the end of the cut
  * is not run over, nor met at speed. */
@@ -446,6 +472,7 @@ int main(void)
     RUN_TEST(test_a_transition_that_is_given_up_leaves_the_way_ahead_as_it_was);
     RUN_TEST(test_override_slows_pauses_and_goes_on);
     RUN_TEST(test_absurdly_slow_commands_do_not_jump);
+    RUN_TEST(test_a_segment_that_comes_to_rest_in_any_case_is_the_last_one);
     RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
     RUN_TEST(test_a_path_that_was_cut_off_ends_there_also_after_a_pause);
     RUN_TEST(test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners);

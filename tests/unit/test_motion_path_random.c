@@ -1,4 +1,5 @@
 /* Random paths: every sample keeps the programmed geometry, the limits of the axes and those of the commands. */
+#include "motion/path_private.h"
 #include "path_check.h"
 
 enum { PATHS = 80, SEGMENTS_MAX = 24 };
@@ -285,10 +286,26 @@ static void test_paths_that_are_appended_on_the_way(void)
         drive_one(false);
 }
 
-/** Whatever the owner does, the path is kept, and nothing steps. */
-static void test_paths_that_are_stopped_slowed_and_cut(void)
+/** Whatever is left ends with the motion under way, or as soon as it can stop with the lowest limits that are left. */
+static void check_cut(void)
 {
-    for (int k = 0; k < PATHS; k++) {
+    cm1e_path_t *path = &driven.path;
+    double v = path->profile.end.velocity, deceleration = INFINITY, jerk = INFINITY;
+    for (int i = 0; i < path->element_count; i++) {
+        const cm1e_path_element_t *element = cm1e_path_element(path, i);
+        v = i > 0 ? fmax(v, element->hard_entry) : v;
+        deceleration = fmin(deceleration, element->limits.deceleration);
+        jerk = fmin(jerk, element->limits.jerk);
+    }
+    const double way = v / 2 * (v / deceleration + deceleration / jerk) + v * sqrt(v / jerk);
+    CHECK_PATH(path->element_count == 0 ||
+               cm1e_path_left(path) <= (path->profile.end.position - path->along.position + way) * (1 + 1e-6));
+}
+
+/** Whatever the owner does, the path is kept, and nothing steps. */
+static void stop_slow_and_cut(int paths)
+{
+    for (int k = 0; k < paths; k++) {
         const cm1e_path_config_t config = random_config();
         const double origin[CM1E_PATH_AXES] = {0};
         begin_path(&config, origin);
@@ -312,6 +329,7 @@ static void test_paths_that_are_stopped_slowed_and_cut(void)
                 cm1e_path_override(&driven.path, one_in(4) ? 0 : one_in(3) ? 1 : random_between(0, 1.5));
             if (one_in(1000)) {
                 cm1e_path_clear(&driven.path);
+                check_cut();
                 break;
             }
             step_path();
@@ -330,6 +348,19 @@ static void test_paths_that_are_stopped_slowed_and_cut(void)
         for (int i = 0; i < axes; i++)
             TEST_ASSERT_EQUAL_DOUBLE(end[i], driven.now.position[i]);
         TEST_ASSERT_EQUAL(0, driven.path.segment_count);
+    }
+}
+
+static void test_paths_that_are_stopped_slowed_and_cut(void) { stop_slow_and_cut(PATHS); }
+
+/** Some cannot stop any more before a run with other limits. */
+static void test_paths_that_are_cut_where_they_cannot_stop_on_the_run(void)
+{
+    static const uint64_t states[] = {12446217520451855312u, 11307107647782443808u, 5419314360734579674u,
+                                      5236463589177559819u, 275665088565781429u};
+    for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
+        random_state = states[i];
+        stop_slow_and_cut(1);
     }
 }
 
@@ -395,6 +426,7 @@ static void run_tests(void)
     RUN_TEST(test_paths_that_are_appended_at_once);
     RUN_TEST(test_paths_that_are_appended_on_the_way);
     RUN_TEST(test_paths_that_are_stopped_slowed_and_cut);
+    RUN_TEST(test_paths_that_are_cut_where_they_cannot_stop_on_the_run);
     RUN_TEST(test_a_run_that_is_begun_too_fast_is_braked_in_on_the_path);
     RUN_TEST(test_a_run_that_is_begun_too_fast_is_braked_in_over_more_than_one);
     RUN_TEST(test_a_segment_without_length_that_is_begun_too_fast_is_passed);
