@@ -310,7 +310,7 @@ void cm1e_path_clear(cm1e_path_t *path)
     if (!path->stop_wanted)
         cm1e_path_stop(path, 0, 0);
     cm1e_path_cut(path);
-    path->cut = true; /* also where the stop ends at the end of a segment */
+    path->cut = true;
     path->last_stop = true;
     path->stop_wanted = false;
 }

@@ -349,7 +349,6 @@ static void cut_at(cm1e_path_t *path, double position)
     element->length = smaller(element->length, position - begin);
     element->last_of_tag = element->dropped = true;
     path->element_count = last + 1;
-    path->cut = true;
     path->segment_count = 0;
     for (int i = 0; i <= last; i++)
         path->segment_count += cm1e_path_element(path, i)->last_of_tag;

@@ -460,6 +460,10 @@ static void test_what_it_shows(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, group_at(1), position[1]);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_UNSUPPORTED,
                           cm1e_group_values(group, mcCommandedValue, position, velocity, &path));
+    axes_axis(1)->drive.feedback.online = false;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_OFFLINE, cm1e_group_values(group, mcActualValue, position, velocity, &path));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_values(group, mcSetValue, position, velocity, &path));
+    axes_axis(1)->drive.feedback.online = true;
     axes_cycles(5000);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_values(group, mcSetValue, position, velocity, &path));
     TEST_ASSERT_EQUAL_DOUBLE(4.0, position[1]);
