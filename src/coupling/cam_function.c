@@ -20,8 +20,7 @@ static const double largest_scaling = 1e9;
 /* A division is exact where a product with the inverse is not: a master at an end of the cam is exactly at it. */
 static double place_in_cam(const cam_place_t *cam, const link_t *link, double counts)
 {
-    const double way = (counts + cam->away) / link->master->position.scale - cam->master_offset;
-    return cam->master_scaling == 1.0 ? way : way / cam->master_scaling;
+    return ((counts + cam->away) / link->master->position.scale - cam->master_offset) / cam->master_scaling;
 }
 
 static double place_now(const follow_t *follow)
