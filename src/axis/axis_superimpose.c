@@ -7,7 +7,7 @@
  * time (3.8). Both change with the same jerk, so that the sum also keeps the limits during the change. A base that is
  * about to arrive and needs its whole deceleration for that gets it; then the superimposed motion begins later. The
  * velocity of a follower is that of its master, which is not shared: where it takes the limits, the superimposed motion
- * goes on with less acceleration, or the sum with more jerk (coupling/coupled_step.c). If a command takes over from a follower that is
+ * goes on with less acceleration, or the sum with more jerk (coupling/coupled_sum.c). If a command takes over from a follower that is
  * faster than the rest, or is a halt that would pass a software limit with the rest, the command gets the whole motion,
  * and the superimposed motion waits, with what it has covered, until there is room for it again. On an axis in
  * Standstill the superimposed motion has all limits.

@@ -215,44 +215,6 @@ void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double c
                                   .curvature = cam->slave_scaling * once * once * sample.point.curvature};
 }
 
-/* The maximum velocity, acceleration and jerk that the cam needs anywhere, at the present velocity of the master. */
-static cm1e_motion_limits_t cam_demand(const follow_t *follow)
-{
-    const cam_place_t *cam = &follow->cam;
-    const double once = 1.0 / fabs(cam->master_scaling), all = fabs(cam->slave_scaling) * once;
-    cm1e_curve_extremes_t scaled = cam->slot->cam.extremes;
-    cm1e_motion_limits_t demand;
-    scaled.least_slope *= all;
-    scaled.most_slope *= all;
-    scaled.curvature *= all * once;
-    scaled.third *= all * once * once;
-    cm1e_approach_demand(&scaled, follow->links[0].seen.velocity, &demand);
-    return demand;
-}
-
-static double part_of(double asked, double most, double needed)
-{
-    const double minimum_part = 0.1, maximum_part = 0.5; /* a part: the master may become faster */
-    return smaller(asked, larger(smaller(most - needed, maximum_part * most), minimum_part * most));
-}
-
-cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
-                                          const cm1e_motion_limits_t *asked)
-{
-    const cm1e_motion_limits_t nothing = {0}, *most = &axis->limits.maximum;
-    const cm1e_motion_limits_t needed = follow->cam.slot ? cam_demand(follow) : nothing;
-    /* Both are bounded alike, because a deceleration of the catch-up may accelerate the axis. */
-    const double change = part_of(smaller(asked->acceleration, asked->deceleration),
-                                  smaller(most->acceleration, most->deceleration),
-                                  larger(needed.acceleration, needed.deceleration));
-    return (cm1e_motion_limits_t){
-        .velocity = part_of(asked->velocity, most->velocity, needed.velocity),
-        .acceleration = change,
-        .deceleration = change,
-        .jerk = part_of(asked->jerk, most->jerk, needed.jerk),
-    };
-}
-
 /* ---- where it is placed ------------------------------------------------------------------------------------------ */
 
 static bool take_scaling(double asked, double *scaling)

@@ -95,8 +95,8 @@ static bool beyond(cm1e_axis_t *axis, const char *what, const char *unit, double
     return true;
 }
 
-/* Whether the curve keeps the limits of the slave at the present velocity of the master. It may begin with the acceleration
- * that the slave has, if that may be an acceleration and a deceleration of the axis. */
+/* Whether the curve keeps the limits of the slave at the present velocity of the master. It may begin with the
+ * acceleration that the slave has, if that may be an acceleration and a deceleration of the axis. */
 static bool keeps_limits(cm1e_axis_t *axis, const follow_t *follow, const from_t *from,
                          const cm1e_motion_limits_t *limits, const cm1e_curve_extremes_t *extremes)
 {

@@ -4,8 +4,8 @@
  * master alone. If the course of the master is known (axis_course.h), its largest velocity, acceleration and jerk are,
  * and so are those of the slave: the checks of the guard, and whether the master can be followed, are decided for the
  * whole course. What is left to each cycle is the coupling function. Whatever could change one of these decisions
- * changes the number of the course of the master or of the slave. Both ways give the same bits (test_axis_ordinary_led, and
- * by its bench every test of couplings).
+ * changes the number of the course of the master or of the slave. Both ways give the same bits (test_axis_ordinary_led,
+ * and by its bench every test of couplings).
  */
 #include <math.h>
 

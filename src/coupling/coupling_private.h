@@ -92,11 +92,11 @@ typedef struct coupling_function {
     void (*evaluate)(cm1e_axis_t *axis, follow_t *follow, from_t *point);
     /** The maximum of |u of the slave per u of the master of this link|. */
     double (*steepest)(const cm1e_axis_t *axis, const follow_t *follow, int link);
-    /** evaluate() in an ordinary cycle: it ends with cm1e_coupling_put(), and returns true. It is a function of its own, so
-     *  that the set-point stays in registers. */
+    /** evaluate() in an ordinary cycle: it ends with cm1e_coupling_put(), and returns true. It is a function of its
+     *  own, so that the set-point stays in registers. */
     bool (*ordinary)(cm1e_axis_t *axis, follow_t *follow);
-    /** The bounds of the slave's motion while its only master is on this course; no bound of jerk: infinite. false: they
-     *  are not known ahead. */
+    /** The bounds of the slave's motion while its only master is on this course; no bound of jerk: infinite. false:
+     *  they are not known ahead. */
     bool (*bounds)(const cm1e_axis_t *axis, const follow_t *follow, const course_t *master, cm1e_motion_bounds_t *most);
 } coupling_function_t;
 
@@ -160,8 +160,9 @@ typedef struct followed {
                                             stops */
 } followed_t;
 
-/** The couplings of an axis, made with it unless the configuration says that it follows nothing. The first cache line has what every cycle needs. The end of `phasing`, the
- *  beginning of `catch_up` and the present `follow_t` have the rest of it. */
+/** The couplings of an axis, made with it unless the configuration says that it follows nothing. The first cache line
+ *  has what every cycle needs. The end of `phasing`, the beginning of `catch_up` and the present `follow_t` have the
+ *  rest of it. */
 typedef struct coupling {
     follow_t *now;                 /**< the present coupling, or the last one; NULL: there was none */
     cm1e_motion_state_t phase;     /**< u of the master: phase shift of links[0], while it is followed */
@@ -259,6 +260,12 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
 /** Whether what moves beside the function ends the acceleration before the maximum velocity with the jerk of the axis.
  *  The actual value of a master has no limit of jerk, but the catch-up and a superimposed motion are plans of the axis. */
 static inline bool coupling_eases(const coupling_t *c) { return !c->now->linear && !c->stopping; }
+/** Whether the slave still approaches, or ends its approach in this cycle. Where the master asks for too much on the
+ *  curve of the approach, the slave leaves the curve and makes up what it lags: it may be late then. */
+static inline bool coupling_approaches(const cm1e_axis_t *axis)
+{
+    return axis->setpoint.synchronizing && !axis->coupling->stopping;
+}
 /** Puts the coupling `follow` in force. The difference to the state `from` becomes the catch-up. The caller changes the
  *  active command. */
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
@@ -266,6 +273,35 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
 void cm1e_coupling_look_across(cm1e_axis_t *axis);
 /** Makes the set-point of the cycle in which a coupling began, without advancing its masters. */
 void cm1e_coupling_first_set_point(cm1e_axis_t *axis);
+
+/* coupled_sum.c */
+/** The set-point of the axis: the coupling function at `f`, the present catch-up, and what is superimposed. */
+from_t cm1e_coupled_sum(const cm1e_axis_t *axis, const from_t *f);
+/** Makes the set-point of a rare cycle: with a catch-up or a superimposed motion, or close to a limit. Both advance by
+ *  a cycle, so that the sum keeps the limits if possible; else the result tells the limit that it breaks. */
+guard_t cm1e_coupled_judge(cm1e_axis_t *axis, const from_t *f, from_t *next);
+
+/* coupling_catch_up.c */
+/** How the catch-up may go on in a cycle, in the order in which it is tried: by its plan; by a new plan with the whole
+ *  jerk, which may act against the jerk of the coupling function; by a new plan with the jerk that the function leaves,
+ *  and with parts of it, because the function may have begun its jerk within the cycle; without jerk, but for giving
+ *  way where the function takes all of a limit. */
+typedef enum attempt {
+    AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITH_HALF_OF_IT, WITH_QUARTER_OF_IT, WITHOUT_JERK, ATTEMPTS
+} attempt_t;
+/** Begins the catch-up from the state `from`. `made_up` false: lost distance is not made up, and the coupling function
+ *  begins at the position of the axis. `across`: a master on another bus may have changed its velocity at any place of
+ *  a cam. Then the velocity comes first, with all that the cam leaves there, and the position after it, as at the
+ *  beginning of a cam. */
+void cm1e_catch_up_begin(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up,
+                         bool across);
+/** Advances the catch-up by a cycle in which the coupling function comes to `f`. */
+void cm1e_catch_up_step(cm1e_axis_t *axis, const from_t *f, attempt_t attempt);
+/** Called after the set-point of a cycle with a catch-up: ends it, or plans it anew, if its profile has ended. */
+void cm1e_catch_up_after(cm1e_axis_t *axis, const from_t *f);
+/** u/s3; the smallest jerk that explains what the coupling function did in this cycle, if the jerk changes at most once
+ *  within it. */
+double cm1e_coupling_jerk(const cm1e_axis_t *axis, const from_t *f);
 
 /* coupling_ordinary.c */
 /** Writes the set-point of an ordinary cycle: that of the coupling function. */
@@ -348,9 +384,6 @@ cm1e_error_t cm1e_cam_in_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *c
 void cm1e_cam_in_enter(follow_t *follow, double counts);
 void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,
                        cm1e_curve_point_t *point);
-/** The limits for the way onto the cam: what the cam leaves of the axis's limits at the master's present velocity. */
-cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
-                                     const cm1e_motion_limits_t *asked);
 
 /* coupling_stop.c */
 /** Stops the other axes that have to stop when this follower has failed. */
