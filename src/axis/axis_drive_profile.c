@@ -382,13 +382,6 @@ static bool goes(cm1e_axis_t *axis, double sign)
     return axis->set_aside.driving->goal == HOME_GOAL_DONE && axis->set_aside.driving->way * sign > 0.0;
 }
 
-/* Only the end of its way is known. */
-static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
-{
-    (void)axis;
-    return isinf(lower) && isinf(upper);
-}
-
 /* What the motor is to do while it moves by itself; in the other steps the axis's own targets hold. */
 static void write(cm1e_axis_t *axis)
 {
@@ -403,7 +396,7 @@ const source_t cm1e_source_drive = {
     .step = step,
     .stop = stop,
     .goes = goes,
-    .keeps = keeps,
+    .keeps = cm1e_axis_unknown_way_keeps,
     .write = write,
     .by_drive = true,
 };

@@ -6,6 +6,7 @@
 #include "axis/axis_backlash.h"
 #include "axis/axis_events.h"
 #include "axis/axis_guard.h"
+#include "axis/axis_limits.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 #include "core/rare.h"
@@ -166,20 +167,13 @@ static void slow(cm1e_axis_t *axis, double part)
     cm1e_axis_put_motion(axis, velocity, acceleration);
 }
 
-/* The way of a led axis is unknown: only its leader knows it. */
-static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
-{
-    (void)axis;
-    return isinf(lower) && isinf(upper);
-}
-
 const source_t cm1e_source_leader = {
     .step = step,
     .ordinary = ordinary,
     .stop = cm1e_axis_stop_by_ramp,
     .begin_anew = begin_anew,
     .slow = slow,
-    .keeps = keeps,
+    .keeps = cm1e_axis_unknown_way_keeps,
     .moves = true,
     .is_composite = true,
 };

@@ -362,6 +362,12 @@ bool cm1e_axis_way_keeps(const cm1e_axis_t *axis, double lowest, double highest,
     return true;
 }
 
+bool cm1e_axis_unknown_way_keeps(const cm1e_axis_t *axis, double lower, double upper)
+{
+    (void)axis;
+    return isinf(lower) && isinf(upper);
+}
+
 bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
     double lowest, highest;

@@ -54,6 +54,8 @@ bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 
 /** Whether a motion that goes so far from its begin (u), and ends as the profile of the axis, keeps these limits. */
 bool cm1e_axis_way_keeps(const cm1e_axis_t *axis, double lowest, double highest, double lower, double upper);
+/** source_t.keeps of a motion whose way only the drive, the planner outside or the leader knows: it may go anywhere. */
+bool cm1e_axis_unknown_way_keeps(const cm1e_axis_t *axis, double lower, double upper);
 /** source_t.keeps of a profile. */
 bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper);
 

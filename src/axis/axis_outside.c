@@ -19,6 +19,7 @@
 #include "axis/axis_guard.h"
 #include "axis/axis_handle.h"
 #include "axis/axis_lead.h"
+#include "axis/axis_limits.h"
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
@@ -129,13 +130,6 @@ static void leave(cm1e_axis_t *axis) { axis->outside = (outside_t){0}; }
 
 static bool goes(cm1e_axis_t *axis, double sign) { return axis->setpoint.velocity * sign > 0.0; }
 
-/* Only the planner knows the way. */
-static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
-{
-    (void)axis;
-    return isinf(lower) && isinf(upper);
-}
-
 const source_t cm1e_source_outside = {
     .step = step,
     .stop = cm1e_axis_stop_by_ramp,
@@ -143,7 +137,7 @@ const source_t cm1e_source_outside = {
     .slow = slow,
     .leave = leave,
     .goes = goes,
-    .keeps = keeps,
+    .keeps = cm1e_axis_unknown_way_keeps,
     .moves = true,
     .is_composite = true,
 };

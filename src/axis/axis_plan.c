@@ -135,7 +135,7 @@ cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *fr
         positive = false;
         break;
     case mcCurrentDirection:
-        positive = from->velocity != 0.0 ? from->velocity > 0.0 : axis->setpoint.positive_before;
+        positive = cm1e_axis_goes_positive(axis, from->velocity);
         break;
     default: /* there is no shortest way to a velocity */
         return CM1E_ERROR_AXIS_DIRECTION;

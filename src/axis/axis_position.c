@@ -202,7 +202,7 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
         positive = false;
         break;
     case mcCurrentDirection:
-        positive = velocity != 0.0 ? velocity > 0.0 : axis->setpoint.positive_before;
+        positive = cm1e_axis_goes_positive(axis, velocity);
         break;
     case 0: /* not given */
     case mcShortestWay:

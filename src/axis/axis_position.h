@@ -45,6 +45,11 @@ static inline bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double 
 }
 /** The inverse of cm1e_axis_units(); false: not finite, or outside the range of the counts. */
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
+/** mcCurrentDirection of an axis with this velocity (u/s): at standstill it is the direction of the last motion. */
+static inline bool cm1e_axis_goes_positive(const cm1e_axis_t *axis, double velocity)
+{
+    return velocity != 0.0 ? velocity > 0.0 : axis->setpoint.positive_before;
+}
 /** The target of a command to `position` (u) that begins at `from` with `velocity` (u/s). On a linear axis it is that
  *  position, whatever the direction. On a modulo axis it is the first repetition in the commanded direction beyond the
  *  point where the axis can stop, `stop` (u, signed) after `from`. The shortest way is judged at `from`. */
