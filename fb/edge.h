@@ -88,7 +88,8 @@ static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *refe
 #define FB_STEP_LIMITS(fb)                                                                                           \
     .torque_limit = (fb)->TorqueLimit, .distance_limit = (fb)->DistanceLimit, .time_limit_ns = (fb)->TimeLimit
 #define FB_STEP_COMMAND(fb, described)                                                                               \
-    .kind = CM1E_COMMAND_HOMING_STEP, .position = (fb)->SetPosition, .buffer_mode = (fb)->BufferMode, .step = (described)
+    .kind = CM1E_COMMAND_HOMING_STEP, .position = (fb)->SetPosition, .buffer_mode = (fb)->BufferMode,                 \
+    .step = (described)
 /* Outputs of motion blocks. */
 #define FB_SHOW(fb, out)                                                                                             \
     ((fb)->Busy = (out).busy, (fb)->CommandAborted = (out).aborted, (fb)->Error = (out).error,                       \
@@ -121,7 +122,8 @@ typedef struct cm1e_fb_reading {
 /** Sets the outputs; `axis` is the result of cm1e_fb_enable(). */
 fb_reading_t cm1e_fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing);
 
-/** For a block whose inputs are judged in every call, before it shows its error: one that is over need not be told any more. */
+/** For a block whose inputs are judged in every call, before it shows its error: one that is over need not be told any
+ *  more. */
 static inline void fb_reads_right(const cm1e_fb_private_t *fb, WORD shown, BOOL error)
 {
     cm1e_axis_t *axis = shown && !error ? cm1e_fb_axis(fb) : NULL;

@@ -182,7 +182,8 @@ static const checked_t *first_wrong(const checked_t inputs[], int count)
     return NULL;
 }
 
-/** The axis keeps for its text what was wrong first, so that no later refusal of another kind is hidden in every call. */
+/** The axis keeps for its text what was wrong first, so that no later refusal of another kind is hidden in every
+ *  call. */
 static bool refuse(const MC_DigitalCamSwitch_t *fb, int number, const checked_t *wrong)
 {
     if (wrong && fb->ErrorID != cm1e_error_id(CM1E_ERROR_FB_CAM_SWITCH))

@@ -110,8 +110,8 @@ static void stop(MC_Jog_t *fb, cm1e_axis_t *axis)
         cm1e_fb_fail(&fb->Private.common, error);
 }
 
-/* The axis stands at the limit, and the button is still pressed. Somebody else may move the axis away or take its torque
- * now, and it may fail: that ends the jog, although its own motion has ended before. */
+/* The axis stands at the limit, and the button is still pressed. Somebody else may move the axis away or take its
+ * torque now, and it may fail: that ends the jog, although its own motion has ended before. */
 static void wait_at_limit(MC_Jog_t *fb, cm1e_axis_t *axis)
 {
     cm1e_axis_info_t info;

@@ -25,7 +25,8 @@ static cm1e_error_t refuse_number(cm1e_axis_t *axis, INT number, bool boolean, c
 {
     const cm1e_error_t error = CM1E_ERROR_AXIS_PARAMETER;
     return cm1e_axis_refuse_level(axis, error,
-                                  boolean ? "MC_ReadBoolParameter: ParameterNumber" : "MC_ReadParameter: ParameterNumber",
+                                  boolean ? "MC_ReadBoolParameter: ParameterNumber"
+                                          : "MC_ReadParameter: ParameterNumber",
                                   number, boolean ? "4, 5, 6, 1800 or 1804" : CM1E_PARAMETER_NUMBERS,
                                   shown->error_id != cm1e_error_id(error));
 }

@@ -171,10 +171,11 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns);
 void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed);
 /** Whether the slave of the axis may be silent while the others of its bus go on: it is optional. @rt cycle */
 bool cm1e_axis_is_heard_alone(const cm1e_axis_t *axis);
-/** Whether a silence of one of them is always one of the other too: they are on one bus, or have one slave. @rt cycle */
+/** Whether a silence of one of them is always one of the other too: they are on one bus, or have one slave.
+ *  @rt cycle */
 bool cm1e_axis_is_heard_with(const cm1e_axis_t *axis, const cm1e_axis_t *other);
-/** Called before cm1e_axis_outputs() where axes of one cycle are not all heard together: some may have been silent while
- *  the others were not, and all slaves see it before any axis goes on. @rt cycle */
+/** Called before cm1e_axis_outputs() where axes of one cycle are not all heard together: some may have been silent
+ *  while the others were not, and all slaves see it before any axis goes on. @rt cycle */
 void cm1e_axis_meet(cm1e_axis_t *const *axes, uint32_t count);
 
 /** Starts a command, or refuses it; then *id is 0 and nothing has changed. CM1E_ERROR_UNSUPPORTED: the profiles of a
@@ -183,15 +184,15 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
 /** A block refuses a command by itself: remembered for the text in place of an earlier refusal. Returns `error`.
  *  @rt cycle */
 cm1e_error_t cm1e_axis_refuse(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error);
-/** A block refuses one of its inputs, as "MC_Jog: Mode", for its value; `right` says which are allowed. Both are constants.
- *  Returns `error`. @rt cycle */
+/** A block refuses one of its inputs, as "MC_Jog: Mode", for its value; `right` says which are allowed. Both are
+ *  constants. Returns `error`. @rt cycle */
 cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const char *input, double value,
                                     const char *right);
-/** cm1e_axis_refuse_input() of a block that is called with the same input in every cycle: it is remembered when the error
- *  `begins`, for another value, and where nothing else is to be told, so that it does not hide the text of a later refusal.
- *  Returns `error`. @rt cycle */
-cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const char *input, int value, const char *right,
-                                    bool begins);
+/** cm1e_axis_refuse_input() of a block that is called with the same input in every cycle: it is remembered when the
+ *  error `begins`, for another value, and where nothing else is to be told, so that it does not hide the text of a
+ *  later refusal. Returns `error`. @rt cycle */
+cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const char *input, int value,
+                                    const char *right, bool begins);
 /** A block that is called in every cycle is refused no longer: forgets what the text has of such a block. @rt cycle */
 void cm1e_axis_reads_right(cm1e_axis_t *axis);
 /** ContinuousUpdate (2.4.6): gives the present inputs of a command. Unchanged inputs cost one comparison. Relative
@@ -230,8 +231,8 @@ typedef struct cm1e_following {
 } cm1e_following_t;
 /** For a block of a slave: what cm1e_axis_command_status() says, as far as it follows by this command. @rt cycle */
 cm1e_following_t cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id);
-/** Holds the axis in Stopping while MC_Stop.Execute is TRUE. True: it is this command that holds it there now, and not a
- *  later MC_Stop. @rt cycle */
+/** Holds the axis in Stopping while MC_Stop.Execute is TRUE. True: it is this command that holds it there now, and not
+ *  a later MC_Stop. @rt cycle */
 bool cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);
 
 /** MC_Power, called every cycle by its one owner (any non-NULL pointer that identifies the block).
@@ -261,9 +262,9 @@ typedef enum cm1e_lead {
  *  the next set-point in cm1e_axis_outputs(). A set-point that it could not follow is not sent to the motor: the axis
  *  stops with CM1E_ERROR_AXIS_COUPLING_LIMIT. */
 typedef struct cm1e_axis_leader {
-    /** The short way of an ordinary cycle, if `bounds` is not NULL. It is taken while the number of `course` stays and the
-     *  set-points were found to be well within the limits ahead. Then next() would do nothing but give the set-point.
-     *  Bits of the axes that have had the present set-point, and that of this one: */
+    /** The short way of an ordinary cycle, if `bounds` is not NULL. It is taken while the number of `course` stays and
+     *  the set-points were found to be well within the limits ahead. Then next() would do nothing but give the
+     *  set-point. Bits of the axes that have had the present set-point, and that of this one: */
     uint32_t *asked;
     uint32_t bit;
     const double *position, *velocity, *acceleration; /**< of this axis in the present set-point */
@@ -278,9 +279,9 @@ typedef struct cm1e_axis_leader {
     /** Position (u, as cm1e_axis_get() counts it, without the turns of a modulo axis), velocity, acceleration of this
      *  cycle. */
     cm1e_lead_t (*next)(void *context, uint32_t index, double *position, double *velocity, double *acceleration);
-    /** `course` is a number that stays as long as what `bounds` has told of the axis holds: its largest velocity, acceleration and
-     *  jerk from the last set-point on, and for how long at most. The number is that of the set-point which next() gave
-     *  last. false: nothing is known ahead. NULL, both: nothing ever is. */
+    /** `course` is a number that stays as long as what `bounds` has told of the axis holds: its largest velocity,
+     *  acceleration and jerk from the last set-point on, and for how long at most. The number is that of the set-point
+     *  which next() gave last. false: nothing is known ahead. NULL, both: nothing ever is. */
     bool (*bounds)(void *context, uint32_t index, cm1e_motion_bounds_t *most, double *left_s);
     /** The lead has ended, by MC_Stop, MC_Power or an error of the axis. `error` is that with which commands end;
      *  CM1E_OK: they are aborted. */
@@ -298,15 +299,15 @@ typedef struct cm1e_axis_leader {
     /** s; the time that the slowest axis of the leader needs to brake, for the common ramp when the bus is lost. NULL:
      *  each axis has its own ramp. */
     double (*stop_time)(void *context);
-    /** The set-point of the axis goes after its motor, which a load has turned on in a pause or silence, with this velocity
-     *  (u/s). Called in place of next(), in every cycle of that. Then next() gives set-points from there on. NULL: it does
-     *  not go after it. */
+    /** The set-point of the axis goes after its motor, which a load has turned on in a pause or silence, with this
+     *  velocity (u/s). Called in place of next(), in every cycle of that. Then next() gives set-points from there on.
+     *  NULL: it does not go after it. */
     void (*strays)(void *context, uint32_t index, double velocity);
     /** The bus of the axis is silent: its set-point stays in this cycle. Called in place of next(). NULL: nothing. */
     void (*held)(void *context, uint32_t index);
-    /** Called after a silence, before the next set-point: whether the axis is not where its leader has the others, because
-     *  these were not silent, or because it strays. Then the axis goes on by itself: the next set-point begins at its last
-     *  one, with the velocity that the motor has left. NULL: it is. */
+    /** Called after a silence, before the next set-point: whether the axis is not where its leader has the others,
+     *  because these were not silent, or because it strays. Then the axis goes on by itself: the next set-point begins
+     *  at its last one, with the velocity that the motor has left. NULL: it is. */
     bool (*alone)(void *context, uint32_t index);
 } cm1e_axis_leader_t;
 /** Gives an axis a leader. Until the lead ends, motion commands other than MC_Stop, and MC_SetPosition, are refused
@@ -323,8 +324,8 @@ void cm1e_axis_leave(cm1e_axis_t *axis, const void *group);
 bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context);
 /** The set or actual position in u, as a leader gives positions. @rt cycle */
 double cm1e_axis_place(const cm1e_axis_t *axis, bool actual);
-/** Axes with the same `cycle` may follow each other, even on different buses: one thread advances all of them in the same
- *  cycle. @rt init */
+/** Axes with the same `cycle` may follow each other, even on different buses: one thread advances all of them in the
+ *  same cycle. @rt init */
 void cm1e_axis_share_cycle(cm1e_axis_t *axis, const void *cycle);
 /** Whether one of the two may follow the other. @rt cycle */
 bool cm1e_axis_shares_cycle(const cm1e_axis_t *axis, const cm1e_axis_t *other);
@@ -351,9 +352,9 @@ cm1e_axis_state_t cm1e_axis_present_state(const cm1e_axis_t *axis);
 CM1E_GUEST_API void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info);
 CM1E_GUEST_API const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis);
 
-/** The program of the axis is gone: `task` did not return within `limit_ns`. The axis is in ErrorStop and brakes, also if
- *  it has no torque, because blocks of that program may have begun what needs none. MC_Power.Enable is taken back: it
- *  acts again when a living program calls it. `task` must outlive the axis. @rt cycle */
+/** The program of the axis is gone: `task` did not return within `limit_ns`. The axis is in ErrorStop and brakes, also
+ *  if it has no torque, because blocks of that program may have begun what needs none. MC_Power.Enable is taken back:
+ *  it acts again when a living program calls it. `task` must outlive the axis. @rt cycle */
 void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns);
 /** For so long no frame was sent that a drive with a watchdog has taken its torque off by itself. So does one without:
  *  ErrorStop, if the axis has torque or is about to get it. Called after cm1e_axis_after_pause(). @rt cycle */
@@ -362,7 +363,8 @@ void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns);
  *  in every cycle instead of the programs. @rt cycle */
 bool cm1e_axis_shut_down(cm1e_axis_t *axis);
 enum { CM1E_AXIS_LONGEST_SWING_MS = 2000 };
-/** Whether its ramp has ended and the torque only waits until the motor rests, CM1E_AXIS_LONGEST_SWING_MS at most. @rt cycle */
+/** Whether its ramp has ended and the torque only waits until the motor rests, CM1E_AXIS_LONGEST_SWING_MS at most.
+ *  @rt cycle */
 bool cm1e_axis_swings(const cm1e_axis_t *axis);
 
 #endif

@@ -114,8 +114,8 @@ static move_t take_first(cm1e_axis_t *axis)
     return move;
 }
 
-/* Whether a waiting command begins where the one before it has passed its target. The look-ahead has chosen that velocity
- * by the target of the waiting command, which is on a modulo axis in the turn that is next from there. */
+/* Whether a waiting command begins where the one before it has passed its target. The look-ahead has chosen that
+ * velocity by the target of the waiting command, which is on a modulo axis in the turn that is next from there. */
 static bool was_looked_ahead(const cm1e_axis_t *axis, const from_t *from)
 {
     const double way = cm1e_position_minus(from->position, axis->commands.move.target) / axis->position.scale;
@@ -156,8 +156,10 @@ bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
         if (method->awaits && method->awaits(axis, &from, offset_s))
             return false;
         move_t move = take_first(axis);
-        const bool may_begin_now = offset_s == 0.0 || move.kind == CM1E_COMMAND_HALT; /* a halt has no place to count from */
-        if (is_planned(move.kind) && may_begin_now && cm1e_axis_superimposed_give_way(axis, &move, &from) && offset_s != 0.0)
+        /* A halt has no place to count from. */
+        const bool may_begin_now = offset_s == 0.0 || move.kind == CM1E_COMMAND_HALT;
+        if (is_planned(move.kind) && may_begin_now && cm1e_axis_superimposed_give_way(axis, &move, &from) &&
+            offset_s != 0.0)
             offset_s = axis->cycle_s; /* since the present set-point */
         cm1e_error_t error = cm1e_axis_state_refusal(axis->state, kind->trigger);
         if (error == CM1E_OK)

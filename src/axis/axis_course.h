@@ -1,9 +1,9 @@
 /**
  * @file axis_course.h
- * What an axis on a profile does in its next cycles, decided ahead (axis_ordinary.c). Whoever follows it can decide ahead
- * too, and remembers the number of the course (setpoint_t.course): while the number stays, every cycle of the axis is
- * what was decided. The number changes with every new decision, whenever something changes on which one depends, and
- * with every cycle that takes the long way.
+ * What an axis on a profile does in its next cycles, decided ahead (axis_ordinary.c). Whoever follows it can decide
+ * ahead too, and remembers the number of the course (setpoint_t.course): while the number stays, every cycle of the
+ * axis is what was decided. The number changes with every new decision, whenever something changes on which one
+ * depends, and with every cycle that takes the long way.
  */
 #ifndef CM1E_AXIS_AXIS_COURSE_H
 #define CM1E_AXIS_AXIS_COURSE_H

@@ -246,8 +246,8 @@ static bool there(const cm1e_axis_t *axis)
     return llabs((int64_t)axis->position.raw - axis->set_aside.driving->target) <= there_counts;
 }
 
-/* Whether the motor is at its target and rests. A drive may say too early that it has reached it; then the switch to the mode
- * of the axis would stop a motor that turns. */
+/* Whether the motor is at its target and rests. A drive may say too early that it has reached it; then the switch to
+ * the mode of the axis would stop a motor that turns. */
 static bool rests_there(cm1e_axis_t *axis)
 {
     standstill_t *standstill = &axis->set_aside.driving->standstill;

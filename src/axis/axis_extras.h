@@ -1,7 +1,7 @@
 /**
  * @file axis_extras.h
- * What an axis has to do in a cycle beside its motion, as bits (extra_t). Who begins or ends something of that kind sets
- * its bit.
+ * What an axis has to do in a cycle beside its motion, as bits (extra_t). Who begins or ends something of that kind
+ * sets its bit.
  */
 #ifndef CM1E_AXIS_AXIS_EXTRAS_H
 #define CM1E_AXIS_AXIS_EXTRAS_H

@@ -2,7 +2,8 @@
  * @file axis_guest.h
  * For those that act on an axis beside the program, as a person does through the control socket. The program has
  * precedence: its commands abort those of a guest, its MC_Power takes the power over, and an axis for which it has
- * called MC_Power is never enabled by a guest. In the cycle thread, after cm1e_axis_outputs(): it acts in the next cycle.
+ * called MC_Power is never enabled by a guest. In the cycle thread, after cm1e_axis_outputs(): it acts in the next
+ * cycle.
  */
 #ifndef CM1E_AXIS_AXIS_GUEST_H
 #define CM1E_AXIS_AXIS_GUEST_H

@@ -92,8 +92,8 @@ CM1E_RARE static bool be_left(cm1e_axis_t *axis)
     return false;
 }
 
-/* What cm1e_axis_position_from_line() does, with what does not change while the axis is led, and without its checks: the
- * position was found to be in the range of the counts ahead. */
+/* What cm1e_axis_position_from_line() does, with what does not change while the axis is led, and without its checks:
+ * the position was found to be in the range of the counts ahead. */
 static inline bool take_set_point(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
 {
     const double counts =

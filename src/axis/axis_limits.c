@@ -235,7 +235,8 @@ double cm1e_axis_velocity_beside(const cm1e_axis_t *axis)
 
 /* Takes the share of a superimposed motion off the limits, so that the sum of both stays within the maximum values in
  * every direction. An acceleration above the rest falls as fast as that of the other motion can rise. Where the maxima
- * were lowered since, and the superimposed motion goes on as it was commanded, there is half of them for the other one. */
+ * were lowered since, and the superimposed motion goes on as it was commanded, there is half of them for the other
+ * one. */
 static void share_with_superimposed(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->limits.maximum, *share = &axis->superimposed.share;

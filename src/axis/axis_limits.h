@@ -20,8 +20,8 @@ void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, c
 /** The dynamics of a superimposed motion: its inputs times these factors, limited to its share. */
 cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
                                      const override_t *override, cm1e_motion_limits_t *limits);
-/** u/s; what a superimposed motion leaves the base: the rest of the maximum. If that was lowered below its share, and it goes
- *  on as it was commanded, half of the maximum. */
+/** u/s; what a superimposed motion leaves the base: the rest of the maximum. If that was lowered below its share, and
+ *  it goes on as it was commanded, half of the maximum. */
 double cm1e_axis_velocity_beside(const cm1e_axis_t *axis);
 /** For the planning of one motion: the maximum values become these, and these become what they were. */
 void cm1e_axis_exchange_maximum(cm1e_axis_t *axis, cm1e_motion_limits_t *most);

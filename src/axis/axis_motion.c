@@ -227,7 +227,8 @@ static inline void follow(cm1e_axis_t *axis, double time_s)
     }
     const double counts = next.position * axis->position.scale;
     axis->setpoint.position = cm1e_position_plus(axis->setpoint.base, counts);
-    if (axis->setpoint.reached && !on_top && fabs(counts) > profile_farthest_from_base && axis->setpoint.slow.missing == 0.0)
+    if (axis->setpoint.reached && !on_top && fabs(counts) > profile_farthest_from_base &&
+        axis->setpoint.slow.missing == 0.0)
         count_anew(axis);
     axis->setpoint.velocity = next.velocity;
     axis->setpoint.acceleration = next.acceleration;
@@ -251,8 +252,8 @@ static void meet_limit(cm1e_axis_t *axis, double velocity)
 
 static bool at_end(const cm1e_axis_t *axis, double time_s)
 {
-    return time_s >= axis->setpoint.profile.duration_s - profile_same_moment * axis->cycle_s && !axis->setpoint.reached &&
-           !axis->setpoint.paused && !axis->setpoint.stands;
+    return time_s >= axis->setpoint.profile.duration_s - profile_same_moment * axis->cycle_s &&
+           !axis->setpoint.reached && !axis->setpoint.paused && !axis->setpoint.stands;
 }
 
 /* Passes the end of the profile, and of all further profiles that end within this cycle. */
@@ -375,8 +376,8 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
 
 /* The correction of the position loop. While inputs are missing the last correction stays, and an offline ramp of
  * ErrorStop has none. When the actual velocity contradicts the actual position, the last correction stays too at first,
- * and then there is none. Else an actual position that stays the same would drive the motor faster and faster. So would one
- * from before a pause, in which the motor has gone on: the last correction stays in that cycle too. */
+ * and then there is none. Else an actual position that stays the same would drive the motor faster and faster. So would
+ * one from before a pause, in which the motor has gone on: the last correction stays in that cycle too. */
 static double loop_velocity(cm1e_axis_t *axis)
 {
     if (axis->silence.resumed == RESUMED_FROM_PAUSE)

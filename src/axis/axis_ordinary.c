@@ -2,9 +2,9 @@
  * The short way of an ordinary cycle. Most axes in most cycles are in the middle of a stretch of the profile of their
  * command: nothing begins, ends or changes. Then a cycle is a sample of the stretch and nothing else, and a few tests
  * show it. All decisions of the long way (cm1e_axis_advance_any()) that depend on the profile alone are made ahead, for
- * some cycles at once: look_ahead(). Whatever could change one of them calls cm1e_axis_look_anew(). An axis that follows
- * a master or a leader is asked for nothing else either; its own source makes and checks the set-point as ever. Both
- * ways give the same bits (tests test_axis_ordinary, test_axis_ordinary_led).
+ * some cycles at once: look_ahead(). Whatever could change one of them calls cm1e_axis_look_anew(). An axis that
+ * follows a master or a leader is asked for nothing else either; its own source makes and checks the set-point as ever.
+ * Both ways give the same bits (tests test_axis_ordinary, test_axis_ordinary_led).
  */
 #include <math.h>
 

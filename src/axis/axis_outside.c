@@ -119,7 +119,8 @@ static void begin_anew(cm1e_axis_t *axis)
         fail_after_pause(axis, axis->outside.velocity);
 }
 
-/* After a short silence at nearly the maximum velocity the motor would exceed it, and the planner does not slow down. */
+/* After a short silence at nearly the maximum velocity the motor would exceed it, and the planner does not slow
+ * down. */
 static void slow(cm1e_axis_t *axis, double part)
 {
     if (part < 1.0)

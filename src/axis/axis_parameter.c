@@ -248,8 +248,8 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
         least = parameter->least_counts * axis->position.count / scale;
         largest = double_at(axis, parameter->system);
         if (value >= least && value <= largest)
-            snprintf(text, size, "%.6g was given, which is less than the axis needed then to follow its master. Let its "
-                     "master be slower before, or end the coupling.", value);
+            snprintf(text, size, "%.6g was given, which is less than the axis needed then to follow its master. Let "
+                     "its master be slower before, or end the coupling.", value);
         else
             snprintf(text, size, "%.6g was given; %.6g ... %.6g is right, which is %s.", value, least, largest,
                      (parameter - 1)->name);

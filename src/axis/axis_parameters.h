@@ -39,7 +39,8 @@ enum {
 };
 
 /** Which numbers are right, for texts. */
-#define CM1E_PARAMETER_NUMBERS "1 ... 17, 1800 ... 1804, or from 1021 on that of an object of the drive (docs/DEVICE.md)"
+#define CM1E_PARAMETER_NUMBERS                                                                                       \
+    "1 ... 17, 1800 ... 1804, or from 1021 on that of an object of the drive (docs/DEVICE.md)"
 
 /** Whether a parameter is an object of the drive, which is read and written by transfers. @rt any */
 static inline bool cm1e_axis_parameter_is_object(int number)

@@ -159,8 +159,8 @@ typedef struct power {
                                          torque. `held`: how fast it was at first, or came back since */
     int64_t free_ns;                /**< since when no torque is commanded */
     int64_t brake_until_ns;         /**< until then the torque stays at least, to brake */
-    uint64_t settled;               /**< what the owner shows while the power stage is on and it has nothing to do; 0: it
-                                         has, or may have */
+    uint64_t settled;               /**< what the owner shows while the power stage is on and it has nothing to do; 0:
+                                         it has, or may have */
 } power_t;
 
 /** Why the axis is in ErrorStop. Written by axis_power.h and axis_power.c. */
@@ -180,7 +180,8 @@ enum { CM1E_SHAKEN_BY_SILENCE = 8 };
 typedef enum resumed {
     RESUMED_FROM_NOTHING = 0,
     RESUMED_FROM_SILENCE,
-    RESUMED_FROM_PAUSE,             /**< the inputs are from before it: the next frame tells what the motor did meanwhile */
+    RESUMED_FROM_PAUSE,             /**< the inputs are from before it: the next frame tells what the motor did
+                                         meanwhile */
 } resumed_t;
 
 /** Cycles in which no answer came from the bus. Written by axis_pause.h and axis_pause.c. */
@@ -363,12 +364,12 @@ typedef struct not_set {
 
 /* ---- beside the motion: axis_extras.h ---------------------------------------------------------------------------- */
 
-/** What an axis may have to do in a cycle beside its motion. Most axes have nothing of it in most cycles, which one test
- *  shows. */
+/** What an axis may have to do in a cycle beside its motion. Most axes have nothing of it in most cycles, which one
+ *  test shows. */
 typedef enum extra {
     EXTRA_SIGNALS = 1,  /**< a digital output is on, a motion has to be kept, or other slaves have its signals */
-    EXTRA_AWAITS = 2,   /**< the first waiting command begins at a place of its master (StartSync); until then the active
-                             one goes on */
+    EXTRA_AWAITS = 2,   /**< the first waiting command begins at a place of its master (StartSync); until then the
+                             active one goes on */
     EXTRA_ON_TOP = 4,   /**< a superimposed motion is a part of the set-point, or waits for room */
     EXTRA_BACKLASH = 8, /**< there is a gap between motor and load */
     EXTRA_OBJECTS = 16, /**< vendor parameters are asked for */

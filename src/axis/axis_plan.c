@@ -163,8 +163,8 @@ static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const 
            cm1e_axis_directions_allow(axis, profile, &brake);
 }
 
-/* Whether an endless motion first goes over the limit that lies behind it: what is left of a braking may need more jerk than
- * there is now, to end before the axis stands. */
+/* Whether an endless motion first goes over the limit that lies behind it: what is left of a braking may need more jerk
+ * than there is now, to end before the axis stands. */
 static bool swings_out(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     double lowest, highest;
@@ -173,7 +173,8 @@ static bool swings_out(const cm1e_axis_t *axis, const from_t *from, const cm1e_p
                                        : !cm1e_axis_limits_contain_way(axis, from, 0.0, highest);
 }
 
-/* Checks an endless motion: the directions of its way must be permitted, and it must be able to brake before a limit. */
+/* Checks an endless motion: the directions of its way must be permitted, and it must be able to brake before a
+ * limit. */
 static cm1e_error_t check_endless(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     const double velocity = profile->end.velocity, now = cm1e_axis_line(axis, from->position);
@@ -253,7 +254,8 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
 
 static const override_t no_override = {1.0, 1.0, 1.0};
 
-void cm1e_axis_keep_direction(const cm1e_axis_t *axis, double v, double a, double most_jerk, cm1e_motion_limits_t *limits)
+void cm1e_axis_keep_direction(const cm1e_axis_t *axis, double v, double a, double most_jerk,
+                              cm1e_motion_limits_t *limits)
 {
     if (v * a < 0.0 && !cm1e_axis_direction_enabled(axis, a))
         limits->jerk = larger(limits->jerk, smaller(a * a / (2.0 * fabs(v)), most_jerk));
@@ -278,8 +280,8 @@ static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_
     return error != CM1E_OK ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
 }
 
-/* Plans the motion after a master was left: it keeps the velocity (4.4, 4.6). A VelFactor that is smaller than the one of that
- * time, move->velocity, reduces it; none makes it faster than it was. */
+/* Plans the motion after a master was left: it keeps the velocity (4.4, 4.6). A VelFactor that is smaller than the one
+ * of that time, move->velocity, reduces it; none makes it faster than it was. */
 static cm1e_error_t plan_kept(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     static const double next_to_nothing = 1e-12;
@@ -364,8 +366,8 @@ static double exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t 
     return has_exit ? cm1e_axis_exit_velocity(axis, from, move) : 0.0;
 }
 
-bool cm1e_axis_goes_wrong(const cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile,
-                          cm1e_error_t error)
+bool cm1e_axis_goes_wrong(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                          const cm1e_profile_t *profile, cm1e_error_t error)
 {
     return error == CM1E_ERROR_AXIS_POSITION_RANGE || error == CM1E_ERROR_AXIS_DIRECTION_DISABLED ||
            (error == CM1E_OK && cm1e_axis_profile_strays(axis, from, move, profile));

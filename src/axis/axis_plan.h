@@ -40,10 +40,10 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
 /** Whether a profile overruns its target (NULL: none), or goes back although its target lies ahead. */
 bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start, const double *target,
                       const cm1e_profile_t *profile);
-/** Whether a plan that ended with this error leads where it should not: it strays, or, which is an error, beyond a software
- *  limit or in a disabled direction. */
-bool cm1e_axis_goes_wrong(const cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile,
-                          cm1e_error_t error);
+/** Whether a plan that ended with this error leads where it should not: it strays, or, which is an error, beyond a
+ *  software limit or in a disabled direction. */
+bool cm1e_axis_goes_wrong(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                          const cm1e_profile_t *profile, cm1e_error_t error);
 /** Plans a command that leaves its target with move->exit_velocity, with the present factors. */
 cm1e_error_t cm1e_axis_plan_to_exit(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
 /** Plans a move with the acceleration, deceleration and jerk that were allowed before, as far as the axis has them. */
@@ -53,12 +53,12 @@ bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const
                               const cm1e_profile_t *profile);
 /** Checks that a profile from `from` keeps the software limits and the enabled directions. */
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
-/** Whether the directions permit a profile. In a disabled direction only the braking under way, `brake`, is permitted, and no
- *  way back to a target that is too near. */
+/** Whether the directions permit a profile. In a disabled direction only the braking under way, `brake`, is permitted,
+ *  and no way back to a target that is too near. */
 bool cm1e_axis_directions_allow(const cm1e_axis_t *axis, const cm1e_profile_t *profile, const cm1e_profile_t *brake);
-/** For a stop. The braking before may be harder than its jerk can end before the axis stands: it would turn round. Where that
- *  direction is disabled, the jerk becomes the one with which velocity and braking end together, or `most_jerk`. Elsewhere it
- *  stays as it was told: slaves may need it. */
+/** For a stop. The braking before may be harder than its jerk can end before the axis stands: it would turn round.
+ *  Where that direction is disabled, the jerk becomes the one with which velocity and braking end together, or
+ *  `most_jerk`. Elsewhere it stays as it was told: slaves may need it. */
 void cm1e_axis_keep_direction(const cm1e_axis_t *axis, double velocity, double acceleration, double most_jerk,
                               cm1e_motion_limits_t *limits);
 /** Plans a stop. If it would overrun a software limit, the axis brakes with the ramp of an error. */

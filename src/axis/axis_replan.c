@@ -36,7 +36,8 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
     return error;
 }
 
-/* What was accepted goes on within what the application allows now, but for the braking that it needs to reach its target. */
+/* What was accepted goes on within what the application allows now, but for the braking that it needs to reach its
+ * target. */
 cm1e_error_t cm1e_axis_replan_anew(cm1e_axis_t *axis)
 {
     move_t move = axis->commands.move;
@@ -65,8 +66,8 @@ static bool turns_round(const cm1e_axis_t *axis)
     return cm1e_profile_way_back(profile, 1.0) > tolerance && cm1e_profile_way_back(profile, -1.0) > tolerance;
 }
 
-/* Plans the command anew. `careful`: not if it would then overrun its target or go back. An axis that turns round anyway may
- * need a way back to come to rest in a pause. */
+/* Plans the command anew. `careful`: not if it would then overrun its target or go back. An axis that turns round
+ * anyway may need a way back to come to rest in a pause. */
 static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
 {
     move_t move = axis->commands.move;
@@ -74,7 +75,9 @@ static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
     const from_t from = from_base(axis);
     move.accepted = !axis->setpoint.paused;
     const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
-    *done = error == CM1E_OK && ((move.paused && turns_round(axis)) || !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile)));
+    *done = error == CM1E_OK &&
+            ((move.paused && turns_round(axis)) ||
+             !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile)));
     if (*done)
         go_on_as(axis, &from, &move, &profile);
     return error;

@@ -61,8 +61,8 @@ bool cm1e_axis_inputs_ordinary(cm1e_axis_t *axis, cm1e_error_t received, cm1e_er
 /** cm1e_axis_advance() for an ordinary cycle of a move; false, and nothing has changed: it is not one
  *  (axis_ordinary.c). */
 bool cm1e_axis_ordinary_step(cm1e_axis_t *axis);
-/** cm1e_axis_advance() but for the short ways of a cycle that was decided ahead. It is not inlined, so that these save no
- *  registers. Always true: an axis_otherwise_t. */
+/** cm1e_axis_advance() but for the short ways of a cycle that was decided ahead. It is not inlined, so that these save
+ *  no registers. Always true: an axis_otherwise_t. */
 bool cm1e_axis_advance_undecided(cm1e_axis_t *axis);
 /** cm1e_axis_advance() for an axis in SynchronizedMotion that has nothing to do but to follow its master or leader.
  *  false, and nothing has changed: it has. `*over`: another source has taken over, and the cycle is not complete. */

@@ -7,13 +7,13 @@
  * time (3.8). Both change with the same jerk, so that the sum also keeps the limits during the change. A base that is
  * about to arrive and needs its whole deceleration for that gets it; then the superimposed motion begins later. The
  * velocity of a follower is that of its master, which is not shared: where it takes the limits, the superimposed motion
- * goes on with less acceleration, or the sum with more jerk (coupling/coupled_sum.c). If a command takes over from a follower that is
- * faster than the rest, or is a halt that would pass a software limit with the rest, the command gets the whole motion,
- * and the superimposed motion waits, with what it has covered, until there is room for it again. On an axis in
- * Standstill the superimposed motion has all limits.
+ * goes on with less acceleration, or the sum with more jerk (coupling/coupled_sum.c). If a command takes over from a
+ * follower that is faster than the rest, or is a halt that would pass a software limit with the rest, the command gets
+ * the whole motion, and the superimposed motion waits, with what it has covered, until there is room for it again. On
+ * an axis in Standstill the superimposed motion has all limits.
  *
- * Of the plan the axis keeps from what it was made, and makes it again when the motion comes to its next stretch: few axes
- * have such a motion, and the profile would be an eighth of the memory of all of them.
+ * Of the plan the axis keeps from what it was made, and makes it again when the motion comes to its next stretch: few
+ * axes have such a motion, and the profile would be an eighth of the memory of all of them.
  *
  * During a superimposed motion the base counts its positions without it. At its end the base and its target are shifted
  * by what it has covered.
@@ -49,7 +49,8 @@ static bool plan_with(const cm1e_axis_t *axis, const override_t *override, super
     if (cm1e_axis_limits_on_top(axis, on_top, override, &made.limits) != CM1E_OK)
         return false;
     if (stops)
-        cm1e_axis_keep_direction(axis, on_top->now.velocity, on_top->now.acceleration, on_top->share.jerk, &made.limits);
+        cm1e_axis_keep_direction(axis, on_top->now.velocity, on_top->now.acceleration, on_top->share.jerk,
+                                 &made.limits);
     if (make_profile(&made, profile) != CM1E_OK)
         return false;
     made.duration_s = profile->duration_s;
@@ -290,7 +291,8 @@ static bool inside(cm1e_axis_t *axis, double distance, bool replaces)
 }
 
 /* `replaces`: it takes the place of a superimposed motion, and does not only change its inputs. */
-static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, bool replaces, cm1e_motion_limits_t *limits)
+static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, bool replaces,
+                          cm1e_motion_limits_t *limits)
 {
     static const override_t none = {1.0, 1.0, 1.0};
     const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
@@ -332,7 +334,8 @@ static bool directions_allow(const cm1e_axis_t *axis, const superimposed_t *on_t
 
 /* Whether the superimposed motion can go on as `move` from its present state. This is tested before anything changes,
  * because the present motion cannot end at once. */
-static cm1e_error_t check_going_on(const cm1e_axis_t *axis, const move_t *move, bool alone, const cm1e_motion_limits_t *share)
+static cm1e_error_t check_going_on(const cm1e_axis_t *axis, const move_t *move, bool alone,
+                                   const cm1e_motion_limits_t *share)
 {
     superimposed_t trial = {.move = *move, .alone = alone, .share = *share, .now = axis->superimposed.now};
     trial.now.position = 0.0;

@@ -27,15 +27,15 @@ static void sentence(const table_refusal_t *wrong, const char *quantity, char *t
                  wrong->point == 1 ? ", or 0" : "");
         break;
     case TABLE_VALUE:
-        snprintf(text, size, "the %s of point %d of the table is %g; a number between -1e30 and 1e30 is right", quantity,
-                 wrong->point, wrong->given);
+        snprintf(text, size, "the %s of point %d of the table is %g; a number between -1e30 and 1e30 is right",
+                 quantity, wrong->point, wrong->given);
         break;
     case TABLE_ONLY_NOW:
         snprintf(text, size, "the only point of the table is at time 0; a time above 0 is right");
         break;
     case TABLE_JUMP:
-        snprintf(text, size, "the table begins with a jump: its first point, at time 0, has the %s %g, and the axis has "
-                 "%g. Give that one, or a time above 0", quantity, wrong->given, wrong->right);
+        snprintf(text, size, "the table begins with a jump: its first point, at time 0, has the %s %g, and the axis "
+                 "has %g. Give that one, or a time above 0", quantity, wrong->given, wrong->right);
         break;
     case TABLE_BEYOND_NUMBERS:
         snprintf(text, size, "the numbers of the table are so large that nothing can be computed with them");
@@ -49,7 +49,7 @@ void cm1e_axis_table_refused_text(const cm1e_axis_t *axis, char *text, size_t si
     const cm1e_command_kind_t kind = axis->commands.refused.kind;
     char what[240];
     sentence(&axis->set_aside.tables->refused,
-             quantities[(kind == CM1E_COMMAND_VELOCITY_PROFILE) + 2 * (kind == CM1E_COMMAND_ACCELERATION_PROFILE)], what,
-             sizeof what);
+             quantities[(kind == CM1E_COMMAND_VELOCITY_PROFILE) + 2 * (kind == CM1E_COMMAND_ACCELERATION_PROFILE)],
+             what, sizeof what);
     snprintf(text, size, "Axis \"%s\": %s.", axis->config->name, what);
 }

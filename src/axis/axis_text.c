@@ -25,9 +25,9 @@ static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     if (axis->fault.bound == 0.0) {
         snprintf(text, size,
-                 "Axis \"%s\": the drive reports a following error, with the motor %.6g u away from its target. Look for "
-                 "a mechanical stop or a blocked axis, reduce load, velocity or acceleration; then reset the axis with "
-                 "MC_Reset.", axis->config->name, fabs(axis->fault.value));
+                 "Axis \"%s\": the drive reports a following error, with the motor %.6g u away from its target. Look "
+                 "for a mechanical stop or a blocked axis, reduce load, velocity or acceleration; then reset the axis "
+                 "with MC_Reset.", axis->config->name, fabs(axis->fault.value));
         return;
     }
     snprintf(text, size,
@@ -61,14 +61,14 @@ static void program_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     if (!axis->fault.task) {
         snprintf(text, size,
-                 "Axis \"%s\": no frame was sent for %.0f ms: the process was stopped or suspended, a task took so long, "
-                 "or the machine gave it no processor. Its motor was without set-points. Find out why; then reset the "
-                 "axis with MC_Reset.", axis->config->name, axis->fault.value);
+                 "Axis \"%s\": no frame was sent for %.0f ms: the process was stopped or suspended, a task took so "
+                 "long, or the machine gave it no processor. Its motor was without set-points. Find out why; then "
+                 "reset the axis with MC_Reset.", axis->config->name, axis->fault.value);
         return;
     }
     snprintf(text, size,
-             "Axis \"%s\": task \"%s\" did not return within %g ms, so it was ended, and all axes were stopped. Look for "
-             "an endless loop, or for a call that waits, in its program; then start it again.",
+             "Axis \"%s\": task \"%s\" did not return within %g ms, so it was ended, and all axes were stopped. Look "
+             "for an endless loop, or for a call that waits, in its program; then start it again.",
              axis->config->name, axis->fault.task, axis->fault.value);
 }
 
@@ -81,8 +81,10 @@ static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
 const char *cm1e_axis_disabled_inputs(const cm1e_axis_t *axis)
 {
     const bool positive = axis->power.enable_positive, negative = axis->power.enable_negative;
-    return positive && negative ? "" : positive ? ": its EnableNegative is FALSE" : negative ? ": its EnablePositive is FALSE"
-                                     : ": its EnablePositive and EnableNegative are FALSE";
+    return positive && negative ? ""
+           : positive           ? ": its EnableNegative is FALSE"
+           : negative           ? ": its EnablePositive is FALSE"
+                                : ": its EnablePositive and EnableNegative are FALSE";
 }
 
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -138,8 +140,8 @@ void cm1e_axis_small_text(const cm1e_axis_t *axis, const small_input_t *small, c
                  small->value, small->unit);
     else
         snprintf(commanded, sizeof commanded, "%s %.6g was commanded", small->name, small->value);
-    snprintf(text, size, "Axis \"%s\": %s%s%s too small to compute with; %sfrom %.6g %s on is right.", axis->config->name,
-             commanded, factor, factor[0] ? ": together they are" : ", which is",
+    snprintf(text, size, "Axis \"%s\": %s%s%s too small to compute with; %sfrom %.6g %s on is right.",
+             axis->config->name, commanded, factor, factor[0] ? ": together they are" : ", which is",
              small->is_maximum || small->error == CM1E_ERROR_AXIS_VELOCITY_RANGE ? "" : "0 (the maximum), or ",
              small->least / small->factor, small->unit);
 }
@@ -224,19 +226,21 @@ static void refused_direction_text(const cm1e_axis_t *axis, char *text, size_t s
 
 static void refused_disabled_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    snprintf(text, size, "Axis \"%s\", %s: %s%s. Every part of the way counts: a small "
-             "Jerk, or a target that is too near, may turn the axis round first.", axis->config->name, cm1e_axis_state_name(axis->state),
+    snprintf(text, size, "Axis \"%s\", %s: %s%s. Every part of the way counts: a small Jerk, or a target that is too "
+             "near, may turn the axis round first.", axis->config->name, cm1e_axis_state_name(axis->state),
              cm1e_strerror(CM1E_ERROR_AXIS_DIRECTION_DISABLED), cm1e_axis_disabled_inputs(axis));
 }
 
-/* Most of these blocks begin in Standstill; at standstill it is the end of a homing in steps that lacks a step. A motion on
- * top of another one begins in any state, but not on each kind of motion. In a homing only what should wait is refused so. */
+/* Most of these blocks begin in Standstill; at standstill it is the end of a homing in steps that lacks a step. A
+ * motion on top of another one begins in any state, but not on each kind of motion. In a homing only what should wait
+ * is refused so. */
 static void refused_state_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const command_kind_t *block = kind_row(axis->commands.refused.kind);
     char why[160] = "it begins in Standstill. End the motion first, with MC_Halt";
     if (block->plan == PLAN_ON_TOP)
-        snprintf(why, sizeof why, "it cannot be added to %s. End that first, with MC_Halt", kind_row(axis->commands.kind)->name);
+        snprintf(why, sizeof why, "it cannot be added to %s. End that first, with MC_Halt",
+                 kind_row(axis->commands.kind)->name);
     else if (axis->state == CM1E_AXIS_STANDSTILL)
         snprintf(why, sizeof why, "it ends a homing, which begins with another step");
     else if (axis->state == CM1E_AXIS_HOMING)

@@ -89,8 +89,8 @@ static void cam_switch_text(const cm1e_axis_t *axis, char *text, size_t size)
         [CM1E_CAM_SWITCH_DIRECTION] = {"AxisDirection", "0, 1 or 2 is right", 1.0},
         [CM1E_CAM_SWITCH_MODE] = {"CamSwitchMode", "0 or 1 is right", 1.0},
         [CM1E_CAM_SWITCH_DURATION] = {"Duration in ms", "0 or more is right", 1e-6},
-        [CM1E_CAM_SWITCH_ON_COMPENSATION] = {"OnCompensation of its track in ms", "up to an hour is right, or minus an hour",
-                                             1e-6},
+        [CM1E_CAM_SWITCH_ON_COMPENSATION] = {"OnCompensation of its track in ms",
+                                             "up to an hour is right, or minus an hour", 1e-6},
         [CM1E_CAM_SWITCH_OFF_COMPENSATION] = {"OffCompensation of its track in ms",
                                               "up to an hour is right, or minus an hour", 1e-6},
         [CM1E_CAM_SWITCH_HYSTERESIS] = {"Hysteresis of its track", "0 or more is right", 1.0},
@@ -114,13 +114,15 @@ static void position_text(const cm1e_axis_t *axis, char *text, size_t size)
         snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u: %s.", name, how, refused->value,
                  cm1e_strerror(refused->error));
     else if (!isfinite(refused->value))
-        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u: a finite number is right.", name, how, refused->value);
+        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u: a finite number is right.", name, how,
+                 refused->value);
     else if (axis->position.modulo_range > 0.0)
-        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u: positions of this modulo axis are 0 ... below %.6g u.",
+        snprintf(text, size,
+                 "Axis \"%s\": MC_SetPosition %s %.6g u: positions of this modulo axis are 0 ... below %.6g u.",
                  name, how, refused->value, axis->position.modulo_range);
     else if (limits->negative_enabled || limits->positive_enabled)
-        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u would bring the axis, its running motion or one that "
-                 "waits outside the software limits %.6g ... %.6g u.", name, how, refused->value,
+        snprintf(text, size, "Axis \"%s\": MC_SetPosition %s %.6g u would bring the axis, its running motion or one "
+                 "that waits outside the software limits %.6g ... %.6g u.", name, how, refused->value,
                  limits->negative_enabled ? limits->negative : -INFINITY,
                  limits->positive_enabled ? limits->positive : INFINITY);
     else
@@ -136,11 +138,12 @@ cm1e_error_t cm1e_axis_refuse_input(cm1e_axis_t *axis, cm1e_error_t error, const
     return error;
 }
 
-cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const char *input, int value, const char *right,
-                                    bool begins)
+cm1e_error_t cm1e_axis_refuse_level(cm1e_axis_t *axis, cm1e_error_t error, const char *input, int value,
+                                    const char *right, bool begins)
 {
     const not_set_t *last = &axis->not_set;
-    const bool another = last->error != CM1E_OK && last->what == NOT_SET_INPUT && last->name == input && last->value != value;
+    const bool another = last->error != CM1E_OK && last->what == NOT_SET_INPUT && last->name == input &&
+                         last->value != value;
     cm1e_axis_remember_repeated(axis, (not_set_t){.error = error, .what = NOT_SET_INPUT, .name = input, .value = value,
                                                   .right = right}, begins || another);
     return error;

@@ -29,8 +29,8 @@ const cm1e_device_error_t *cm1e_axis_device_error(const cm1e_axis_t *axis, uint1
 CM1E_GUEST_API bool cm1e_axis_has_text(const cm1e_axis_t *axis);
 /** Bytes of a copy of this axis, whole cache lines. @rt any */
 CM1E_GUEST_API size_t cm1e_axis_copy_bytes(const cm1e_axis_t *axis);
-/** A copy whose text another thread may make while the axis goes on, with all that the text is made of. `copy` begins at
- *  a cache line (core/cache_line.h). @rt cycle */
+/** A copy whose text another thread may make while the axis goes on, with all that the text is made of. `copy` begins
+ *  at a cache line (core/cache_line.h). @rt cycle */
 CM1E_GUEST_API void cm1e_axis_copy(const cm1e_axis_t *axis, void *copy);
 /** As cm1e_axis_error_text(), of an axis or of a copy. @rt block */
 CM1E_GUEST_API void cm1e_axis_text(const cm1e_axis_t *axis, char *text, size_t size);

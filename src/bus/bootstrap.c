@@ -70,8 +70,8 @@ static cm1e_error_t refused(const cm1e_bootstrap_t *bootstrap, uint8_t target, u
                          bootstrap->position, cm1e_al_state_text(target), code, cm1e_al_status_text((uint16_t)code));
 }
 
-/** Requests a state and waits for it. The request acknowledges an earlier error, which the slave shows until it has read
- *  the request. A slave that starts anew may not hear it, and has no station address; the caller scans. */
+/** Requests a state and waits for it. The request acknowledges an earlier error, which the slave shows until it has
+ *  read the request. A slave that starts anew may not hear it, and has no station address; the caller scans. */
 static cm1e_error_t to_state(const cm1e_bootstrap_t *bootstrap, uint8_t target, int64_t timeout_ns)
 {
     uint8_t request[2] = {(uint8_t)(target | AL_ERROR_FLAG), 0}, before[STATUS_BYTES] = {0}, answer[STATUS_BYTES] = {0};

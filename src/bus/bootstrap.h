@@ -19,8 +19,8 @@ typedef struct cm1e_bootstrap {
 
 /** Brings the slave from any state to Init and then to Bootstrap. */
 cm1e_error_t cm1e_bootstrap_enter(cm1e_bootstrap_t *bootstrap);
-/** Brings the slave to Init. A device may copy its memory before it answers, or start anew: then it is in Init without a
- *  station address. */
+/** Brings the slave to Init. A device may copy its memory before it answers, or start anew: then it is in Init without
+ *  a station address. */
 cm1e_error_t cm1e_bootstrap_leave(cm1e_bootstrap_t *bootstrap);
 
 #endif

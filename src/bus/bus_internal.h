@@ -167,7 +167,7 @@ typedef struct cm1e_errands {
     cm1e_errand_t *errand;                   /**< atomic; NULL: none */
     bool sent;                               /**< CoE has the next turn of that slave */
     cm1e_foe_t *file;                        /**< atomic; NULL: none */
-    const void *driver;                      /**< atomic; the thread whose scheduler makes the cycles; NULL: none does */
+    const void *driver;                      /**< atomic; the thread whose scheduler runs the cycles; NULL: none */
     const char *refused;                     /**< atomic; what another thread has called meanwhile to end the bus */
 } cm1e_errands_t;
 
@@ -203,7 +203,7 @@ struct cm1e_bus {
 
     cm1e_layout_t layout;
     uint8_t *image;                          /**< what SOEM sends and receives: outputs, then inputs, or overlapped */
-    uint8_t *sent;                           /**< outputs or an overlapped image as they left, to know the frame again */
+    uint8_t *sent;                           /**< outputs, or an overlapped image, as sent: to know the frame again */
     cm1e_overlap_t overlap;
     uint8_t *outputs, *inputs;               /**< what the upper rooms write and read */
     cm1e_safe_outputs_t safe;

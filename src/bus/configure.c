@@ -102,7 +102,8 @@ enum { IMAGE_PARTS = 9 };
 
 static uint8_t **image_part(cm1e_bus_t *bus, int part)
 {
-    uint8_t **const parts[IMAGE_PARTS] = {&bus->image, &bus->sent, &bus->outputs, &bus->inputs, &bus->silence.markers[0],
+    uint8_t **const parts[IMAGE_PARTS] = {&bus->image, &bus->sent, &bus->outputs, &bus->inputs,
+                                          &bus->silence.markers[0],
                                           &bus->silence.markers[1], &bus->safe.values, &bus->safe.mask,
                                           &bus->safe.claimed};
     return parts[part];

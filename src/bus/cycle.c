@@ -29,8 +29,8 @@ void cm1e_bus_find_silence(cm1e_bus_t *bus)
     }
 }
 
-/** Whether some of the slaves that may be missing explain what is missing in the working counter: `inputs` of them count
- *  1, `both` count 3, and `takers` of the others may take no outputs, which counts 2. */
+/** Whether some of the slaves that may be missing explain what is missing in the working counter: `inputs` of them
+ *  count 1, `both` count 3, and `takers` of the others may take no outputs, which counts 2. */
 static bool is_explained(int missing, int inputs, int both, int takers)
 {
     for (int n = 0; n <= both; n++) {
@@ -42,8 +42,8 @@ static bool is_explained(int missing, int inputs, int both, int takers)
     return false;
 }
 
-/** Returns true if the silent slaves explain the working counter: 3 less for each of them (or its own share), 2 less for
- *  each slave that took no outputs. Any number of those with few inputs may only seem to be silent. */
+/** Returns true if the silent slaves explain the working counter: 3 less for each of them (or its own share), 2 less
+ *  for each slave that took no outputs. Any number of those with few inputs may only seem to be silent. */
 static bool silence_explains(const cm1e_bus_t *bus, int working_counter)
 {
     int missing = bus->expected_working_counter - working_counter, takers = 0, may_be[2] = {0, 0};

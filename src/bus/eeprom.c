@@ -30,16 +30,16 @@ static bool read_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data,
     return !eeprom->lost;
 }
 
-/** Writes a register once. A busy interface accepts no request, so a request that was accepted must not be repeated, and
- *  one that was not says nothing of the slave: the next look at the interface does. */
+/** Writes a register once. A busy interface accepts no request, so a request that was accepted must not be repeated,
+ *  and one that was not says nothing of the slave: the next look at the interface does. */
 static bool write_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
 {
     return cm1e_soem_transfer(eeprom->soem, COMMAND_FPWR, eeprom->station, offset, data, size) == 1;
 }
 
 /** Waits until the interface is idle; one datagram reads the status and the words of the last command. false: the slave
- *  is lost, or the interface stays busy. A time that passed while this process stood still says nothing of the slave, so
- *  it is looked at often, too. */
+ *  is lost, or the interface stays busy. A time that passed while this process stood still says nothing of the slave,
+ *  so it is looked at often, too. */
 static bool wait_idle(cm1e_eeprom_t *eeprom, int64_t timeout_ns, uint16_t *status)
 {
     cm1e_clock_t *clock = cm1e_clock_current();

@@ -58,8 +58,8 @@ static bool owes_eeprom(const cm1e_errand_t *errand)
     return errand->kind == ERRAND_SII && errand->begun && errand->step >= STEP_FORCE && errand->was_offered;
 }
 
-/** Ends an errand whose place is free again. Afterwards it belongs to the thread that submitted it, and the bus does not
- *  touch it any more. */
+/** Ends an errand whose place is free again. Afterwards it belongs to the thread that submitted it, and the bus does
+ *  not touch it any more. */
 static void give_back(cm1e_bus_t *bus, cm1e_errand_t *errand, cm1e_error_t error)
 {
     if (errand->error == CM1E_OK)

@@ -12,7 +12,8 @@ enum { HIGHEST_STATE = 15 };
 
 static cm1e_error_t silent(uint16_t position, uint16_t address, cm1e_diag_t *diag)
 {
-    return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer at register 0x%04X.", position, address);
+    return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "Slave %u does not answer at register 0x%04X.", position,
+                         address);
 }
 
 /** Asks the program that runs the network, in pieces. `diag` has its words where it cannot be asked. */

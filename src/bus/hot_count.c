@@ -60,9 +60,9 @@ static void take_out_one(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
     cm1e_hot_note(bus, slave);
 }
 
-/** Those whose inputs show that they have left are taken out. Without inputs nothing shows it: the supervision does. A few
- *  inputs may be like their marker by chance, so these have left only if as much is missing as all count that seem to be
- *  silent, also those that are always there. */
+/** Those whose inputs show that they have left are taken out. Without inputs nothing shows it: the supervision does. A
+ *  few inputs may be like their marker by chance, so these have left only if as much is missing as all count that seem
+ *  to be silent, also those that are always there. */
 static void take_out(cm1e_bus_t *bus, int working_counter)
 {
     for (int few = 0; few < 2; few++) {
@@ -109,10 +109,10 @@ static bool misses_one(const cm1e_bus_t *bus, int missing, int unseen, int most)
 }
 
 /** Slaves that are not counted may take part or not: on their way to Operational first the inputs count, then the
- *  outputs, also of one that was refused on its way, until the search has met it again. A slave that is counted may have
- *  stopped to take outputs, or may have left if it has no inputs: nothing shows which one it is, so the optional ones are
- *  asked for their state at once. Until each of them can have answered, the others go on; after that the working counter
- *  is wrong. */
+ *  outputs, also of one that was refused on its way, until the search has met it again. A slave that is counted may
+ *  have stopped to take outputs, or may have left if it has no inputs: nothing shows which one it is, so the optional
+ *  ones are asked for their state at once. Until each of them can have answered, the others go on; after that the
+ *  working counter is wrong. */
 static bool explains(cm1e_bus_t *bus, int working_counter)
 {
     const int more = -missing_of(bus, working_counter);
@@ -138,8 +138,8 @@ static bool explains(cm1e_bus_t *bus, int working_counter)
     return true;
 }
 
-/** Whether one of those that are counted may take no part, although the working counter is the expected one: another one
- *  that comes back may make up for it. */
+/** Whether one of those that are counted may take no part, although the working counter is the expected one: another
+ *  one that comes back may make up for it. */
 static bool hides_one(const cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {

@@ -565,7 +565,8 @@ static bool run_machine(cm1e_bus_t *bus, cm1e_datagram_t *d, int64_t now_ns)
     return false;
 }
 
-/** A machine of several datagrams repeats a question until its own deadline, which is long: the one of the SII is 5 s. */
+/** A machine of several datagrams repeats a question until its own deadline, which is long: the one of the SII is
+ *  5 s. */
 static bool is_gone(cm1e_search_t *search, const cm1e_datagram_t *d)
 {
     if (d->working_counter != 0)

@@ -29,15 +29,16 @@ void cm1e_bus_make_markers(cm1e_bus_t *bus)
 }
 
 /** A single bit that stays would be like every second marker. So its marker is the other value, as long as the slave is
- *  heard. One that seemed to be silent may have changed to just that, so the next marker is the last value: then the change
- *  shows. */
+ *  heard. One that seemed to be silent may have changed to just that, so the next marker is the last value: then the
+ *  change shows. */
 static void mark_single_bits(cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         const uint8_t bits = single_bit_of(&slave->placement);
         if (bits)
-            bus->silence.markers[bus->silence.turn][slave->placement.input_offset] = slave->silent_cycles % 2 ? 0 : bits;
+            bus->silence.markers[bus->silence.turn][slave->placement.input_offset] = slave->silent_cycles % 2 ? 0
+                                                                                                              : bits;
     }
 }
 

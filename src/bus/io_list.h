@@ -23,7 +23,8 @@ struct cm1e_signal_list {
 
 /** Makes the list of a slave of the configuration. CM1E_ERROR_PDO_MAPPING: it does not have a signal that is named. */
 cm1e_error_t cm1e_io_list_make(cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
-/** The signal behind `info`, which is all zero before the first one; inputs before outputs. false: there are no more. */
+/** The signal behind `info`, which is all zero before the first one; inputs before outputs. false: there are no
+ *  more. */
 bool cm1e_io_next(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_io_info_t *info);
 
 #endif

@@ -142,6 +142,6 @@ cm1e_error_t cm1e_bus_refuse_driven(const cm1e_bus_t *bus, const char *function,
 {
     if (!bus || !cm1e_bus_is_driven(bus))
         return CM1E_OK;
-    return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s is refused while a scheduler runs the bus: it would send frames "
-                         "beside the cycle.%s%s", function, instead[0] ? " " : "", instead);
+    return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s is refused while a scheduler runs the bus: it would send "
+                         "frames beside the cycle.%s%s", function, instead[0] ? " " : "", instead);
 }

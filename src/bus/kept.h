@@ -1,7 +1,8 @@
 /**
  * @file kept.h
- * Buses in Operational that no scheduler runs yet. Their slaves need frames, or their watchdogs end Operational. So while
- * the thread that started them waits for another bus, as in the start of a second one, their process data goes on.
+ * Buses in Operational that no scheduler runs yet. Their slaves need frames, or their watchdogs end Operational. So
+ * while the thread that started them waits for another bus, as in the start of a second one, their process data goes
+ * on.
  */
 #ifndef CM1E_BUS_KEPT_H
 #define CM1E_BUS_KEPT_H
@@ -23,7 +24,8 @@ void cm1e_bus_kept_lead_alone(const cm1e_bus_t *bus);
 void cm1e_bus_drive(cm1e_bus_t *bus, bool on);
 /** A bus in Operational that has waited for its first cycle. A busy machine may take longer for that than the watchdogs
  *  of the slaves allow (100 ms): taking real time and locking memory needs tens of milliseconds of computing. No motor
- *  has torque yet, so the slaves are brought back to Operational. Returns the error of one that does not come. @rt init */
+ *  has torque yet, so the slaves are brought back to Operational. Returns the error of one that does not come.
+ *  @rt init */
 cm1e_error_t cm1e_bus_resume(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Whether the scheduler of another thread runs the bus, which must not be stopped or freed under it. It learns which
  *  function was called. @rt any */
@@ -31,7 +33,8 @@ bool cm1e_bus_refuse_end(cm1e_bus_t *bus, const char *function);
 /** The function that was refused in this run; NULL: none. @rt cycle */
 const char *cm1e_bus_refused_end(const cm1e_bus_t *bus);
 /** Refuses what another thread would do beside the cycle of a scheduler; CM1E_OK: none runs the bus. @rt block */
-cm1e_error_t cm1e_bus_refuse_driven(const cm1e_bus_t *bus, const char *function, const char *instead, cm1e_diag_t *diag);
+cm1e_error_t cm1e_bus_refuse_driven(const cm1e_bus_t *bus, const char *function, const char *instead,
+                                    cm1e_diag_t *diag);
 /** Whether a scheduler makes the cycles. @rt any */
 bool cm1e_bus_is_driven(const cm1e_bus_t *bus);
 /** The calling thread runs a cycle (true), so that no other bus may use its time. @rt init */

@@ -193,8 +193,8 @@ static void took(cm1e_mapping_job_t *job)
     }
 }
 
-/** Behind the first row: sub-index 0 states more rows than there are, as the tables of UG 7.2 do. The slave checks the size
- *  of its process data on the way to Safe-Operational. */
+/** Behind the first row: sub-index 0 states more rows than there are, as the tables of UG 7.2 do. The slave checks the
+ *  size of its process data on the way to Safe-Operational. */
 static bool no_more_rows(const cm1e_mapping_job_t *job)
 {
     return job->step == MAPPING_READ_ENTRY && job->entry > 1 && job->sdo.error == CM1E_ERROR_SDO_ABORT &&

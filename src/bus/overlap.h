@@ -1,11 +1,12 @@
 /**
  * @file overlap.h
- * Overlapped process data: in the frame the inputs of a slave take the place of its outputs, so the longer of both counts.
+ * Overlapped process data: in the frame the inputs of a slave take the place of its outputs, so the longer of both
+ * counts.
  *
  * A slave that does not answer returns its own outputs there. So nothing is taken that came back as it was sent: each
- * slave has bytes of its inputs, up to CM1E_OVERLAP_OWN_BYTES, that no output covers, and they leave with the marker. And
- * no output comes back by which a frame is known again. So each frame ends with the number of its cycle, which no slave
- * is mapped to.
+ * slave has bytes of its inputs, up to CM1E_OVERLAP_OWN_BYTES, that no output covers, and they leave with the marker.
+ * And no output comes back by which a frame is known again. So each frame ends with the number of its cycle, which no
+ * slave is mapped to.
  */
 #ifndef CM1E_BUS_OVERLAP_H
 #define CM1E_BUS_OVERLAP_H

@@ -23,14 +23,15 @@ cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_
         return cm1e_in_task_refuse("cm1e_bus_read_ports()", "", diag);
     if (!bus)
         return cm1e_bus_missing("cm1e_bus_read_ports()", diag);
-    const cm1e_error_t driven = cm1e_bus_refuse_driven(bus, "cm1e_bus_read_ports()", "cm1e_bus_port_faults() has what the "
-                                                       "ports have counted since Operational.", diag);
+    const cm1e_error_t driven = cm1e_bus_refuse_driven(bus, "cm1e_bus_read_ports()", "cm1e_bus_port_faults() has what "
+                                                       "the ports have counted since Operational.", diag);
     if (driven != CM1E_OK)
         return driven;
     if (!cm1e_bus_slave(bus, position))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u.", position);
     if (!ports)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_read_ports() needs a place for the ports.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_bus_read_ports() needs a place for the ports.");
     if (!cm1e_bus_read_registers(bus, position, REG_DL_STATUS, status, sizeof status) ||
         !cm1e_bus_read_registers(bus, position, REG_RECEIVE_ERRORS, errors, sizeof errors) ||
         !cm1e_bus_read_registers(bus, position, REG_LOST_LINKS, lost, sizeof lost))

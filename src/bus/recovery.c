@@ -63,8 +63,9 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
 }
 
 /** Whether the device has to give its address back. A device that is not the expected one must not keep the address:
- *  the expected one, plugged in elsewhere, would answer at the same address. Where places move, a device may have got the
- *  address of another one, and fail before it can be identified. An optional slave is searched for again in any case. */
+ *  the expected one, plugged in elsewhere, would answer at the same address. Where places move, a device may have got
+ *  the address of another one, and fail before it can be identified. An optional slave is searched for again in any
+ *  case. */
 static bool must_release(const cm1e_bus_slave_t *slave)
 {
     const cm1e_recovery_t *recovery = &slave->recovery;
@@ -278,7 +279,8 @@ static bool next_eeprom(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return write_registers(slave, d, REG_EEPROM_CONFIG, &(uint8_t){1}, 1);
 }
 
-/** A request to repeat an answer, sent before the slave lost its power, activates an empty SM1 if it comes after that. */
+/** A request to repeat an answer, sent before the slave lost its power, activates an empty SM1 if it comes after
+ *  that. */
 static bool next_clear(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     static const uint8_t inactive[4 * SYNC_MANAGER_BYTES];
@@ -560,9 +562,9 @@ bool cm1e_recovery_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return actions[recovery->step].next(slave, d, now_ns);
 }
 
-/** Whether the slave has lost its power again: its controller answers every question for a register at once, while the time
- *  of a step is that of its processor, up to 10 s. A mailbox does not answer while it is full: then the controller is
- *  asked for a register. */
+/** Whether the slave has lost its power again: its controller answers every question for a register at once, while the
+ *  time of a step is that of its processor, up to 10 s. A mailbox does not answer while it is full: then the controller
+ *  is asked for a register. */
 static bool is_gone(cm1e_recovery_t *recovery, const cm1e_datagram_t *d)
 {
     enum { UNANSWERED_LIMIT = 10, REGISTERS_END = 0x1000 };

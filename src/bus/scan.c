@@ -159,8 +159,8 @@ static cm1e_error_t nobody_answers(const cm1e_bus_t *bus, cm1e_diag_t *diag)
     const char *name = bus->config.interface_name;
     if (cm1e_nic_lacks_link(name))
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_NO_SLAVES, 0,
-                             "No EtherCAT slave answers on %s: the interface has no link. Plug the cable from it into IN "
-                             "of the first slave, and switch the control power of that slave on.", name);
+                             "No EtherCAT slave answers on %s: the interface has no link. Plug the cable from it into "
+                             "IN of the first slave, and switch the control power of that slave on.", name);
     return cm1e_diag_set(diag, CM1E_ERROR_BUS_NO_SLAVES, 0,
                          "No EtherCAT slave answers on %s. Check the cable to IN of the first slave, the power of "
                          "the slaves and the name of the interface.", name);

@@ -12,7 +12,8 @@ static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag
         return cm1e_bus_missing(sdo->write ? "cm1e_sdo_write()" : "cm1e_sdo_read()", diag);
     const cm1e_error_t driven =
         cm1e_bus_refuse_driven(bus, sdo->write ? "cm1e_sdo_write()" : "cm1e_sdo_read()",
-                               "From another thread: cm1e_sdo_submit(), then cm1e_sdo_state() until it has ended.", diag);
+                               "From another thread: cm1e_sdo_submit(), then cm1e_sdo_state() until it has ended.",
+                               diag);
     if (driven != CM1E_OK)
         return driven;
     if (bus->phase < BUS_SCANNED)

@@ -111,7 +111,8 @@ cm1e_error_t cm1e_sdo_info_object(cm1e_bus_t *bus, uint16_t position, uint16_t i
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_sdo_info_object()", "", diag);
     if (!info)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sdo_info_object() needs a place for the object.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_sdo_info_object() needs a place for the object.");
     uint8_t answer[CM1E_DATAGRAM_MAX];
     cm1e_info_request_t request = {.kind = INFO_OBJECT, .index = index, .answer = answer, .size = sizeof answer};
     const cm1e_error_t error = ask(bus, position, &request, diag);
@@ -126,7 +127,8 @@ cm1e_error_t cm1e_sdo_info_entry(cm1e_bus_t *bus, uint16_t position, uint16_t in
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_sdo_info_entry()", "", diag);
     if (!info)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sdo_info_entry() needs a place for the entry.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_sdo_info_entry() needs a place for the entry.");
     uint8_t answer[CM1E_DATAGRAM_MAX];
     /* If the values of a slave do not have the length that it states, only the description is requested. */
     static const uint8_t values[] = {INFO_VALUES, 0};

@@ -15,12 +15,12 @@ static cm1e_error_t check(const cm1e_bus_t *bus, const cm1e_sdo_t *sdo)
     return slave->facts.coe ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
 }
 
-/* A place of the ring has an odd number where it is filled: the address of the transfer, plus 1. It has an even one where
- * it is free: the round in which it will be filled next, times 2. One exchange puts a transfer in, if the place is free
- * and it is its turn, so no thread ever holds a place that it has not filled; one that stands still in between holds back
- * nobody. The round keeps a thread that stood still for long from filling the place out of turn. Zeros are an empty ring.
- * The counter `head` follows: who finds its place filled moves it on, also for the thread that filled it (Tsigas and
- * Zhang 2001, "A simple, fast and scalable non-blocking concurrent FIFO queue"). */
+/* A place of the ring has an odd number where it is filled: the address of the transfer, plus 1. It has an even one
+ * where it is free: the round in which it will be filled next, times 2. One exchange puts a transfer in, if the place
+ * is free and it is its turn, so no thread ever holds a place that it has not filled; one that stands still in between
+ * holds back nobody. The round keeps a thread that stood still for long from filling the place out of turn. Zeros are
+ * an empty ring. The counter `head` follows: who finds its place filled moves it on, also for the thread that filled it
+ * (Tsigas and Zhang 2001, "A simple, fast and scalable non-blocking concurrent FIFO queue"). */
 
 static uintptr_t filled_with(const cm1e_sdo_t *sdo) { return (uintptr_t)sdo + 1; }
 static cm1e_sdo_t *transfer_in(uintptr_t content) { return (cm1e_sdo_t *)(content - 1); }

@@ -153,7 +153,8 @@ cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *i
     if (bus && bus->remote && size && image)
         return read_remote(bus, position, image, size, diag);
     if (!size || (!image && *size > 0))
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sii_read_device() needs a buffer and its size.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_sii_read_device() needs a buffer and its size.");
     cm1e_error_t error = begin(&session, bus, position, diag);
     if (error != CM1E_OK)
         return error;
@@ -271,8 +272,8 @@ static cm1e_error_t check_alias(const session_t *session, const uint8_t *image, 
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                          "The rotary switches of %s are set (explicit device ID %u). With the alias %u too, it has an "
-                         "internal error from its next power-on (UG 4.2.4): set both switches to 0 first, and switch it "
-                         "off and on.", session->label, slave->explicit_id, alias);
+                         "internal error from its next power-on (UG 4.2.4): set both switches to 0 first, and switch "
+                         "it off and on.", session->label, slave->explicit_id, alias);
 }
 
 static cm1e_error_t check_size(session_t *session, const uint8_t *image, size_t size, cm1e_diag_t *diag)

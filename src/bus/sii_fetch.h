@@ -1,8 +1,8 @@
 /**
  * @file sii_fetch.h
  * Fetches words of the SII (EEPROM; ETG.1000.4 section 6.4) of one slave, one datagram at a time, so that those of many
- * slaves come at the same time. cm1e_sii_fetched() is a reader for sii_reader.h: what it does not have yet it notes, and
- * the reading is repeated when that has come. No clock inside.
+ * slaves come at the same time. cm1e_sii_fetched() is a reader for sii_reader.h: what it does not have yet it notes,
+ * and the reading is repeated when that has come. No clock inside.
  */
 #ifndef CM1E_BUS_SII_FETCH_H
 #define CM1E_BUS_SII_FETCH_H

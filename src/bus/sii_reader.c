@@ -66,7 +66,7 @@ cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, 
     return result;
 }
 
-/* ---- strings, as far as they are needed --------------------------------------------------------------------------- */
+/* ---- strings, as far as they are needed -------------------------------------------------------------------------- */
 
 /** A category that was not fetched yet, by byte address. */
 typedef struct part {
@@ -79,8 +79,8 @@ static bool fetch_bytes(const source_t *source, size_t start, size_t count)
     return fetch(source, (uint32_t)first, (uint32_t)(behind - first));
 }
 
-/** Fetches the lengths of the strings before number `wanted`, and that string. `*length`: its bytes; 0: there is no such
- *  string. */
+/** Fetches the lengths of the strings before number `wanted`, and that string. `*length`: its bytes; 0: there is no
+ *  such string. */
 static bool fetch_string(const source_t *source, const part_t *strings, unsigned wanted, unsigned *length)
 {
     const size_t end = strings->start + strings->bytes;
@@ -125,7 +125,7 @@ static bool fetch_names_of_modes(const source_t *source, const part_t *strings, 
     return true;
 }
 
-/* ---- categories ---------------------------------------------------------------------------------------------------- */
+/* ---- categories -------------------------------------------------------------------------------------------------- */
 
 /** What a brief reading comes back to. */
 typedef struct brief {

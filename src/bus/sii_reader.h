@@ -12,7 +12,8 @@
 
 #include "config/clock_pulses.h"
 
-enum { CM1E_SII_DC_MODES = 4, CM1E_SII_DC_MODE_NAME = 32, CM1E_SII_SYNC_MANAGERS = 8, CM1E_SII_NAME = 48, CM1E_SII_SIGNAL_NAME = 64 };
+enum { CM1E_SII_DC_MODES = 4, CM1E_SII_DC_MODE_NAME = 32, CM1E_SII_SYNC_MANAGERS = 8, CM1E_SII_NAME = 48,
+       CM1E_SII_SIGNAL_NAME = 64 };
 
 /** An entry of a PDO that a sync manager carries; gaps are left out. */
 typedef struct cm1e_sii_signal {
@@ -71,8 +72,8 @@ typedef enum cm1e_sii_result { SII_OK = 0, SII_UNREADABLE, SII_DAMAGED, SII_NO_M
 /** The fixed part: identity and mailbox. */
 cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context);
 /** The categories: name, sync managers, process data with their meaning (`signals`, NULL before). `brief`: without the
- *  process data, and of the strings only the name of the device and those of the modes of its clock; for a device that is
- *  asked for its mapping anyway. */
+ *  process data, and of the strings only the name of the device and those of the modes of its clock; for a device that
+ *  is asked for its mapping anyway. */
 cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, bool brief, cm1e_sii_reader reader, void *context);
 /** Frees the signals; the rest stays. */
 void cm1e_sii_free(cm1e_sii_t *sii);

@@ -1,8 +1,8 @@
 /**
  * @file slave_setup.h
  * What the configuration writes into a slave without an axis at its start: SDOs and PDOs. What it wrote of PDOs is read
- * back, because a slave may take another value without a word. Before that a modular device is asked for its modules, and
- * the slave which PDOs exclude each other: an assignment that names two of these is refused, and nothing of it is
+ * back, because a slave may take another value without a word. Before that a modular device is asked for its modules,
+ * and the slave which PDOs exclude each other: an assignment that names two of these is refused, and nothing of it is
  * written. A list of SDO transfers, one after the other; who runs it owns the CoE client. No clock inside.
  */
 #ifndef CM1E_BUS_SLAVE_SETUP_H
@@ -40,8 +40,8 @@ typedef struct cm1e_setup_job {
     cm1e_error_t error;                /**< result, valid when idle; foreign code in sdo.abort_code */
 } cm1e_setup_job_t;
 
-/** Whether anything is written into the slave. If it gets SYNC0, its objects of synchronisation (ETG.1020: 0x1C32:01 and
- *  0x1C33:01) are set to 2 and read back, unless the slave lacks or refuses them, or the configuration writes them
+/** Whether anything is written into the slave. If it gets SYNC0, its objects of synchronisation (ETG.1020: 0x1C32:01
+ *  and 0x1C33:01) are set to 2 and read back, unless the slave lacks or refuses them, or the configuration writes them
  *  itself. If it gets SYNC1 too, it is asked what it supports (sub-index 4): they are set to 3 if it can be synchronous
  *  with SYNC1, to 2 if only with SYNC0, and left as they are if it does not say. */
 bool cm1e_setup_is_needed(const cm1e_slave_config_t *config, cm1e_setup_pulses_t pulses, bool before_op);

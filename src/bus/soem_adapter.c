@@ -245,7 +245,8 @@ bool cm1e_soem_ring_reach(const cm1e_soem_t *soem, uint32_t reach[2])
 
 /* ---- single datagrams ------------------------------------------------------------------------------------------ */
 
-enum { DATAGRAM_HEADER_BYTES = 10, DATAGRAM_LENGTH = 0x07FF, FRAME_ROOM = EC_MAXECATFRAME - 4 /* its check sequence */ };
+/* FRAME_ROOM: without the check sequence. */
+enum { DATAGRAM_HEADER_BYTES = 10, DATAGRAM_LENGTH = 0x07FF, FRAME_ROOM = EC_MAXECATFRAME - 4 };
 
 void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
 {

@@ -56,8 +56,8 @@ void cm1e_soem_destroy(cm1e_soem_t *soem);
 /** Finds the slaves, brings them to Init with default settings, gives them station addresses and reads their SII.
  *  SOEM's own scan is not used, because a bad SII or a silent slave can block it. Returns the number of slaves; 0:
  *  none; SCAN_TOO_MANY: more than CM1E_MAX_SLAVES. With the slave in `*position`: SCAN_LOST: it stopped answering,
- *  SCAN_NO_ADDRESS: it answers, but not at the station address that it was given, SCAN_SII_UNREADABLE: its EEPROM does not answer, SCAN_SII_DAMAGED: its categories are invalid, SCAN_NO_MEMORY: no
- *  memory to read it. */
+ *  SCAN_NO_ADDRESS: it answers, but not at the station address that it was given, SCAN_SII_UNREADABLE: its EEPROM does
+ *  not answer, SCAN_SII_DAMAGED: its categories are invalid, SCAN_NO_MEMORY: no memory to read it. */
 enum {
     SCAN_TOO_MANY = -1, SCAN_LOST = -2, SCAN_SII_UNREADABLE = -3, SCAN_SII_DAMAGED = -4, SCAN_NO_MEMORY = -5,
     SCAN_NO_ADDRESS = -6,
@@ -80,16 +80,16 @@ void cm1e_soem_set_count(cm1e_soem_t *soem, uint16_t count);
 bool cm1e_soem_set_process_data(cm1e_soem_t *soem, uint16_t position, uint16_t output_bits, uint16_t input_bits);
 /** Sets the process data of a slave as its SII states it. Returns false if the SII is contradictory. */
 bool cm1e_soem_set_process_data_by_sii(cm1e_soem_t *soem, uint16_t position);
-/** Sets the process data of a slave with a mailbox: SM2 and SM3 as its SII has them, with the length that its PDOs have.
- *  Returns false if they cannot carry it. */
+/** Sets the process data of a slave with a mailbox: SM2 and SM3 as its SII has them, with the length that its PDOs
+ *  have. Returns false if they cannot carry it. */
 bool cm1e_soem_set_process_data_by_pdos(cm1e_soem_t *soem, uint16_t position, uint16_t output_bits,
                                         uint16_t input_bits);
 /** Upper bound of the image size in bytes, for all slaves set so far. */
 size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem);
 /** Bytes of process data that every frame has room for. */
 size_t cm1e_soem_frame_room(void);
-/** Maps into `image`, programs sync managers and FMMUs: first all outputs, then all inputs. `present`: the slaves behind so
- *  many are absent. False: it does not fit into so many frames. */
+/** Maps into `image`, programs sync managers and FMMUs: first all outputs, then all inputs. `present`: the slaves
+ *  behind so many are absent. False: it does not fit into so many frames. */
 bool cm1e_soem_map(cm1e_soem_t *soem, uint16_t present, uint8_t *image, unsigned most_frames, size_t *output_bytes,
                    size_t *input_bytes);
 /** The SII of a slave says that it does not know LRW. */

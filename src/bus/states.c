@@ -32,9 +32,9 @@ static void why_both_addresses(const cm1e_bus_slave_t *slave, char *text, size_t
     text[0] = '\0';
     if (device && device->explicit_id && slave->info.alias != 0 && slave->al.target == CM1E_AL_PRE_OP &&
         (slave->al.state & ~AL_ERROR_FLAG) == CM1E_AL_INIT)
-        snprintf(text, size, " It has the alias %u: with its rotary switches set too, it has an internal error. Set both "
-                 "switches to 0, and switch it off and on. `cm1e alias` takes the alias away, if the switches are to count.",
-                 slave->info.alias);
+        snprintf(text, size, " It has the alias %u: with its rotary switches set too, it has an internal error. Set "
+                 "both switches to 0, and switch it off and on. `cm1e alias` takes the alias away, if the switches are "
+                 "to count.", slave->info.alias);
 }
 
 cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
@@ -51,8 +51,8 @@ cm1e_error_t cm1e_bus_diagnose_state(cm1e_bus_t *bus, const cm1e_bus_slave_t *sl
                              label, target, other);
     if (al->state & AL_ERROR_FLAG && al->code == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code,
-                             "%s refuses %s, is in %s, and gives no reason: its AL status code is 0.%s%s", label, target,
-                             cm1e_al_state_text(al->state), both, other);
+                             "%s refuses %s, is in %s, and gives no reason: its AL status code is 0.%s%s", label,
+                             target, cm1e_al_state_text(al->state), both, other);
     if (al->state & AL_ERROR_FLAG)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code,
                              "%s refuses %s and is in %s: AL status 0x%04X, %s.%s%s", label, target,

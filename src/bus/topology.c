@@ -77,7 +77,8 @@ cm1e_error_t cm1e_bus_topology(cm1e_bus_t *bus, cm1e_slave_place_t *places, size
     return cm1e_bus_read_topology(bus, places, room, diag);
 }
 
-/** Where the slaves of a program that runs were when it began. Behind one whose ports it does not tell, none is known. */
+/** Where the slaves of a program that runs were when it began. Behind one whose ports it does not tell, none is
+ *  known. */
 static void connect_told(const cm1e_bus_t *bus, cm1e_slave_place_t *began)
 {
     walk_t walk = {.count = 0};
@@ -94,9 +95,9 @@ static void connect_told(const cm1e_bus_t *bus, cm1e_slave_place_t *began)
     }
 }
 
-/** A slave of a program that runs does not answer any more. Where it `began`, it may be there without the address that it had,
- *  as after a restart, and lets frames pass, if a slave is expected at that port: then it is between those that it was between.
- *  Elsewhere no frame passes it, and the others are wired without it, as without an optional one. */
+/** A slave of a program that runs does not answer any more. Where it `began`, it may be there without the address that
+ *  it had, as after a restart, and lets frames pass, if a slave is expected at that port: then it is between those that
+ *  it was between. Elsewhere no frame passes it, and the others are wired without it, as without an optional one. */
 static void connect_silent(walk_t *walk, cm1e_slave_place_t *places, uint16_t position, const cm1e_slave_place_t *began)
 {
     cm1e_slave_place_t *place = &places[position - 1];

@@ -141,8 +141,8 @@ bool cm1e_busfile_convert_several(cm1e_busfile_loaded_t *loaded, const cm1e_busf
  *  is. `list`: "axes" or "slaves". */
 bool cm1e_busfile_convert_address(const uint16_t stated[3], cm1e_address_kind_t *kind, uint16_t *address,
                                   const char *list, uint32_t index, cm1e_config_problem_t *problem);
-/** Takes the inputs of switches, by number or by signal, and the signals on other slaves (load_wiring.c). `index`: of the
- *  axis in the list. */
+/** Takes the inputs of switches, by number or by signal, and the signals on other slaves (load_wiring.c). `index`: of
+ *  the axis in the list. */
 bool cm1e_busfile_convert_wiring(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
                                  cm1e_config_problem_t *problem);
 /** Adds the slaves of the file to the configuration. The path of an ESI is as seen from the folder of `path`, the bus

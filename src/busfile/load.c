@@ -120,7 +120,8 @@ bool cm1e_busfile_convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from,
     config->cycle_time_ns = (int64_t)from->cycle_time_us * 1000;
     config->frame_timeout_ns = (int64_t)from->frame_timeout_us * 1000;
     if (from->axis_count + from->slave_count == 0) {
-        snprintf(problem->text, sizeof problem->text, "key 'axes' is missing in the file; expected axes, slaves or both");
+        snprintf(problem->text, sizeof problem->text,
+                 "key 'axes' is missing in the file; expected axes, slaves or both");
         return false;
     }
     for (uint32_t i = 0; i < from->axis_count; i++)

@@ -29,7 +29,8 @@ static bool wrong(cm1e_config_problem_t *problem, uint32_t bus, const char *path
 
 static bool is_same_interface(const char *a, const char *b)
 {
-    return !cm1e_interface_is_simulated(a) && cm1e_interface_is_same(a, b); /* every simulated segment is one of its own */
+    /* Every simulated segment is one of its own. */
+    return !cm1e_interface_is_simulated(a) && cm1e_interface_is_same(a, b);
 }
 
 /* An interface of `config` that the bus `other` has too; NULL: there is none. */

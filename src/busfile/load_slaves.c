@@ -235,7 +235,8 @@ static bool convert_sdo(const place_t *place, unsigned n, const cm1e_busfile_sdo
     char values[80];
     list_values(type, values);
     return take_value(from->value, type, &sdo->value) ||
-           wrong(place, key, "value is '%s', which is no %s; expected %s", from->value, cm1e_io_types[type].name, values);
+           wrong(place, key, "value is '%s', which is no %s; expected %s", from->value, cm1e_io_types[type].name,
+                 values);
 }
 
 /* ---- signals ----------------------------------------------------------------------------------------------------- */

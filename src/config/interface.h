@@ -1,8 +1,8 @@
 /**
  * @file interface.h
- * The kinds of interface names, and what a name of a network interface has behind its last comma: the way on which frames
- * are sent and received, "eth1,xdp". A name without a comma goes through a packet socket. Linux lets an interface have a
- * comma in its own name; then the way must be stated, "odd,name,packet".
+ * The kinds of interface names, and what a name of a network interface has behind its last comma: the way on which
+ * frames are sent and received, "eth1,xdp". A name without a comma goes through a packet socket. Linux lets an
+ * interface have a comma in its own name; then the way must be stated, "odd,name,packet".
  */
 #ifndef CM1E_CONFIG_INTERFACE_H
 #define CM1E_CONFIG_INTERFACE_H

@@ -65,8 +65,8 @@ uint16_t cm1e_place_of(const cm1e_places_t *places, const cm1e_slave_info_t *sla
     uint16_t place = slave->position;
     if (is_optional(places, slave))
         return 0;
-    for (uint32_t position = 1; position < slave->position && (before = places->slave_at(places->bus, position)) != NULL;
-         position++)
+    for (uint32_t position = 1;
+         position < slave->position && (before = places->slave_at(places->bus, position)) != NULL; position++)
         place = (uint16_t)(place - is_optional(places, before));
     return place;
 }

@@ -93,7 +93,8 @@ static bool check_address(const check_t *check)
                           kind);
     const uint16_t address = check->addresses[check->index];
     if (address == 0 || address > cm1e_config_addresses[kind].maximum)
-        return axis_wrong(check, cm1e_config_addresses[kind].key, "is %u; expected 1 ... %u", address, cm1e_config_addresses[kind].maximum);
+        return axis_wrong(check, cm1e_config_addresses[kind].key, "is %u; expected 1 ... %u", address,
+                          cm1e_config_addresses[kind].maximum);
     for (uint32_t i = 0; i < check->index; i++)
         if (at_same_address(check, i) && !may_share(check, i))
             return false;
@@ -215,6 +216,6 @@ bool cm1e_config_check_device(const check_t *check)
     if (!cm1e_axis_has_motor(check->axis))
         return cm1e_config_check_without_motor(check);
     return check_channel(check) && check_kind(check) && check_address(check) && check_motor(check) &&
-           check_absent(check) && check_pulses(check) && check_shared(check) && check_stated_motor(check) && check_own_keys(check) &&
-           check_firmware(check);
+           check_absent(check) && check_pulses(check) && check_shared(check) && check_stated_motor(check) &&
+           check_own_keys(check) && check_firmware(check);
 }

@@ -99,8 +99,8 @@ static bool check_address(const slave_check_t *check)
             return slave_wrong(check, key, "is %u, which entry %u of the list has already; expected one slave at each "
                                "address", slave->address, i + 1);
     for (uint32_t i = 0; i < config->axis_count; i++)
-        if (!is_member && cm1e_axis_has_motor(&config->axes[i]) && config->axes[i].address_kind == slave->address_kind &&
-            cm1e_axis_address(config, i) == slave->address)
+        if (!is_member && cm1e_axis_has_motor(&config->axes[i]) &&
+            config->axes[i].address_kind == slave->address_kind && cm1e_axis_address(config, i) == slave->address)
             return slave_wrong(check, key, "is %u, where the axis %.31s is; expected another place, or an axis that "
                                "states its own", slave->address, config->axes[i].name);
     return true;
@@ -168,7 +168,8 @@ static bool check_sdos(const slave_check_t *check)
             return slave_wrong(check, place, "is 0x%04X:%02X; expected an object from 0x1000 on", slave->sdos[i].index,
                                slave->sdos[i].subindex);
         if (slave->sdos[i].bytes > 8 || (slave->sdos[i].bytes == 0 && !has_data(slave, &slave->sdos[i])))
-            return slave_wrong(check, place, "has %u bytes; expected 1 ... 8, or data of its own", slave->sdos[i].bytes);
+            return slave_wrong(check, place, "has %u bytes; expected 1 ... 8, or data of its own",
+                               slave->sdos[i].bytes);
         if (slave->sdos[i].complete_access && slave->sdos[i].subindex > 1)
             return slave_wrong(check, place, "has complete access from sub-index %u on; expected 0 or 1",
                                slave->sdos[i].subindex);
@@ -297,8 +298,8 @@ static bool check_sim(const slave_check_t *check)
         return slave_wrong(check, "sim", "has neither inputs nor outputs; expected their number, 1 ... %d",
                            CHANNELS_MAX);
     if (!has_channels && (sim->inputs || sim->outputs || sim->wired_to[0]))
-        return slave_wrong(check, "sim", "has inputs or outputs, which its device has not; expected the device digital, "
-                           "analog or encoder");
+        return slave_wrong(check, "sim", "has inputs or outputs, which its device has not; expected the device "
+                           "digital, analog or encoder");
     if (sim->kind == CM1E_SIM_SLAVE_ENCODER && (sim->outputs || sim->wired_to[0]))
         return slave_wrong(check, sim->outputs ? "sim.outputs" : "sim.wired_to", "is given, and an encoder has inputs "
                            "only, which count by counts_per_s; expected none");

@@ -32,7 +32,8 @@ static inline void cm1e_clock_sleep_until(cm1e_clock_t *clock, int64_t time_ns)
     clock->ops->sleep_until_ns(clock, time_ns);
 }
 
-/** CLOCK_BOOTTIME, with absolute sleeps: it is monotonic, and goes on while the machine is suspended. Shared, never freed.
+/** CLOCK_BOOTTIME, with absolute sleeps: it is monotonic, and goes on while the machine is suspended. Shared, never
+ *  freed.
  *  @rt any */
 CM1E_GUEST_API cm1e_clock_t *cm1e_clock_monotonic(void);
 /** Makes a clock that starts at `start_ns` and is advanced only by cm1e_clock_sleep_until(). @rt any */

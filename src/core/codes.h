@@ -1,6 +1,7 @@
 /**
  * @file codes.h
- * The tables behind cm1e_sdo_abort_text(), cm1e_al_status_text() and cm1e_foe_error_text(), and what the user does about each error.
+ * The tables behind cm1e_sdo_abort_text(), cm1e_al_status_text() and cm1e_foe_error_text(), and what the user does
+ * about each error.
  */
 #ifndef CM1E_CORE_CODES_H
 #define CM1E_CORE_CODES_H

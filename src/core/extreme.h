@@ -1,6 +1,7 @@
 /**
  * @file extreme.h
- * The smaller and the larger of two numbers, as fmin() and fmax() say. Those are calls, and a plan makes dozens of them.
+ * The smaller and the larger of two numbers, as fmin() and fmax() say. Those are calls, and a plan makes dozens of
+ * them.
  */
 #ifndef CM1E_CORE_EXTREME_H
 #define CM1E_CORE_EXTREME_H

@@ -3,8 +3,8 @@
  * The last records of something, in a ring: one thread writes and never waits, any number of others read at the same
  * time. A reader sees by the number of a record whether it was overwritten meanwhile, and how many it has missed.
  *
- * The ring is a plain array of words, so that it may lie in a struct that is zeroed: an array of zeros is an empty ring.
- * A record is a struct of whole words whose first member is its number, a uint64_t; the ring counts from 1.
+ * The ring is a plain array of words, so that it may lie in a struct that is zeroed: an array of zeros is an empty
+ * ring. A record is a struct of whole words whose first member is its number, a uint64_t; the ring counts from 1.
  */
 #ifndef CM1E_CORE_HISTORY_H
 #define CM1E_CORE_HISTORY_H
@@ -28,8 +28,8 @@ void cm1e_history_add(uint64_t *ring, cm1e_history_shape_t shape, const void *re
 /** The next record gets the number after `last`: the one before it was not kept here. The writer only. @rt cycle */
 void cm1e_history_go_on_after(uint64_t *ring, uint64_t last);
 /** Copies the records after the one with number `after` (0: all that there are), oldest first, at most `room`. Returns
- *  how many there are in `records`; their numbers have no gap. `*lost`, if not NULL, is the number of those after `after`
- *  that are no longer kept. @rt any */
+ *  how many there are in `records`; their numbers have no gap. `*lost`, if not NULL, is the number of those after
+ *  `after` that are no longer kept. @rt any */
 size_t cm1e_history_copy(const uint64_t *ring, cm1e_history_shape_t shape, uint64_t after, void *records, size_t room,
                          uint64_t *lost);
 

@@ -35,8 +35,8 @@ void cm1e_in_task_watched(in_task_leave_t *leave);
 /** Leaves the task in which this thread is, if it is to be left: then it does not return. Otherwise it does nothing.
  *  Async-signal-safe. @rt cycle */
 void cm1e_in_task_leave(void);
-/** The first line of what a task calls to change an axis or a group: a task that is to be left changes nothing more, and
- *  is never left in the middle of a change. @rt cycle */
+/** The first line of what a task calls to change an axis or a group: a task that is to be left changes nothing more,
+ *  and is never left in the middle of a change. @rt cycle */
 static inline void cm1e_in_task_gate(void)
 {
     if (atomic_load_explicit(&cm1e_in_task_over, memory_order_relaxed))

@@ -22,8 +22,8 @@ typedef struct cm1e_near {
  *  (Main.parts[2].name) only what is behind the parts that both begin with is compared. */
 void cm1e_near_look(cm1e_near_t *near, const char *candidate);
 
-/** "; did you mean "scan"?", or "" if none is near, or if the nearest is longer than a text can hold: half a name is none.
- *  Returns `text`. */
+/** "; did you mean "scan"?", or "" if none is near, or if the nearest is longer than a text can hold: half a name is
+ *  none. Returns `text`. */
 const char *cm1e_near_text(const cm1e_near_t *near, char *text, size_t size);
 enum { CM1E_NEAR_TEXT_BYTES = 240 };
 

@@ -1,8 +1,8 @@
 /**
  * @file rare.h
  * Marks a function that a cycle seldom needs, within code that every cycle of every axis runs. It is kept out of line,
- * so that the usual path neither saves registers for it nor jumps over it. A chain of conditions that the compiler knows
- * nothing of makes the usual path look rare.
+ * so that the usual path neither saves registers for it nor jumps over it. A chain of conditions that the compiler
+ * knows nothing of makes the usual path look rare.
  */
 #ifndef CM1E_CORE_RARE_H
 #define CM1E_CORE_RARE_H

@@ -1,8 +1,8 @@
 /**
  * @file tc2_axis.h
- * What programs for TwinCAT read of an axis without a block: members of AXIS_REF of the library Tc2_MC2, as far as their
- * meaning is one of our axes. The translator of Structured Text knows their names, the blocks their values; a translated
- * program has the numbers, so rows are added at the end only.
+ * What programs for TwinCAT read of an axis without a block: members of AXIS_REF of the library Tc2_MC2, as far as
+ * their meaning is one of our axes. The translator of Structured Text knows their names, the blocks their values; a
+ * translated program has the numbers, so rows are added at the end only.
  */
 #ifndef CM1E_CORE_TC2_AXIS_H
 #define CM1E_CORE_TC2_AXIS_H

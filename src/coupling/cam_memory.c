@@ -107,7 +107,8 @@ void cm1e_no_couplings_text(const cm1e_axis_t *axis, const char *what, char *tex
     const cm1e_axis_config_t *config = axis->config;
     if (config->type == CM1E_AXIS_ENCODER || config->motion == CM1E_MOTION_DRIVE)
         snprintf(text, size, "Axis \"%s\": %s, because the axis cannot follow: %s.", config->name, what,
-                 config->type == CM1E_AXIS_ENCODER ? "it is an encoder" : "its drive makes the motions (motion: drive)");
+                 config->type == CM1E_AXIS_ENCODER ? "it is an encoder"
+                                                   : "its drive makes the motions (motion: drive)");
     else
         snprintf(text, size, "Axis \"%s\": %s, because the configuration has `follows: %s` for this axis. Write "
                  "`follows: %s` there.", config->name, what,

@@ -105,8 +105,8 @@ static bool keeps_limits(cm1e_axis_t *axis, const follow_t *follow, const from_t
     const bool both = fabs(from->acceleration) <= either * (1.0 + relative_tolerance);
     cm1e_approach_demand(extremes, follow->links[0].seen.velocity, &demand);
     return !beyond(axis, "velocity", "u/s", demand.velocity, limits->velocity, from->velocity) &&
-           !beyond(axis, "acceleration", "u/s2", demand.acceleration, smaller(limits->acceleration, limits->deceleration),
-                   both ? from->acceleration : 0.0) &&
+           !beyond(axis, "acceleration", "u/s2", demand.acceleration,
+                   smaller(limits->acceleration, limits->deceleration), both ? from->acceleration : 0.0) &&
            !beyond(axis, "jerk", "u/s3", demand.jerk, limits->jerk, 0.0);
 }
 

@@ -30,8 +30,8 @@ static bool is_of_usual_size(double number) { return number >= 1e-15 && number <
 static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
     const double most = axis->limits.maximum.velocity;
-    if (is_of_usual_size(2.0 * most) && is_of_usual_size(asked->acceleration) && is_of_usual_size(asked->deceleration) &&
-        is_of_usual_size(asked->jerk))
+    if (is_of_usual_size(2.0 * most) && is_of_usual_size(asked->acceleration) &&
+        is_of_usual_size(asked->deceleration) && is_of_usual_size(asked->jerk))
         return CM1E_OK;
     const cm1e_motion_state_t fastest = {.velocity = most};
     const cm1e_motion_limits_t limits = {2.0 * most, asked->acceleration, asked->deceleration, asked->jerk};

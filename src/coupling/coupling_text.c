@@ -21,7 +21,8 @@ static void master_lost_text(const cm1e_axis_t *axis, bool refused, char *text, 
 {
     const coupling_t *c = axis->coupling;
     int used = snprintf(text, size, "Axis \"%s\" %s its master \"%s\", which %s", axis->config->name,
-                        refused ? "cannot follow" : "was braked, as it lost", axis->followed->other_name, troubles[c->trouble]);
+                        refused ? "cannot follow" : "was braked, as it lost", axis->followed->other_name,
+                        troubles[c->trouble]);
     if (c->master_error != CM1E_OK && used > 0 && (size_t)used < size)
         used += snprintf(text + used, size - (size_t)used, " (%s)", cm1e_strerror(c->master_error));
     if (used > 0 && (size_t)used < size)
@@ -78,14 +79,15 @@ static void refused_coupling_text(const cm1e_axis_t *axis, char *text, size_t si
 /* Of MC_GearInPos and MC_CamIn, whose positions are in several inputs; false: of another block. */
 static bool place_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    static const char *const gear = "SlaveSyncPosition, or the way to it,", *const cam = "the cam at this place, or the way to it,";
+    static const char *const gear = "SlaveSyncPosition, or the way to it,";
+    static const char *const cam = "the cam at this place, or the way to it,";
     const cm1e_command_kind_t kind = axis->commands.refused.kind;
     if (kind != CM1E_COMMAND_GEAR_IN_POS && kind != CM1E_COMMAND_CAM_IN)
         return false;
     const bool is_cam = kind == CM1E_COMMAND_CAM_IN, limited = axis->limits.software_limits;
     const double farthest = cm1e_axis_farthest(axis);
-    snprintf(text, size, "Axis \"%s\", at %.6g u: %s: %s would leave %.6g ... %.6g u%s, or an input is no finite number that "
-             "its axis can have.", axis->config->name, cm1e_axis_units(axis, axis->setpoint.position),
+    snprintf(text, size, "Axis \"%s\", at %.6g u: %s: %s would leave %.6g ... %.6g u%s, or an input is no finite "
+             "number that its axis can have.", axis->config->name, cm1e_axis_units(axis, axis->setpoint.position),
              kind_row(kind)->name, is_cam ? cam : gear, limited ? axis->limits.lower : -farthest,
              limited ? axis->limits.upper : farthest, limited ? " (software limits)" : "");
     return true;

@@ -6,7 +6,8 @@
 #include "description/describe.h"
 #include "description/sii_image.h"
 
-/* In SII word 0: a digital I/O process data interface, and whether the controller emulates the device (0x0141 bit 0). */
+/* In SII word 0: a digital I/O process data interface, and whether the controller emulates the device (0x0141
+ * bit 0). */
 enum { PDI_DIGITAL_IO = 0x0004, DEVICE_EMULATION = 0x0100 };
 enum { STEP = 0x10, INPUTS = 0x6000, OUTPUTS = 0x7000 };
 enum { UNDERRANGE = 0x01, OVERRANGE = 0x02, OPEN_CIRCUIT = 0x01, VALUE = 0x11 };
@@ -81,8 +82,8 @@ static void describe_eeprom(cm1e_arena_t *arena, cm1e_description_t *device, con
 
 /* ---- analog ------------------------------------------------------------------------------------------------------ */
 
-/* As devices of this kind have them: by process data, by SYNC0 with every cycle, and several samples a cycle, with SYNC1
- * for the last one. */
+/* As devices of this kind have them: by process data, by SYNC0 with every cycle, and several samples a cycle, with
+ * SYNC1 for the last one. */
 static void add_dc_modes(cm1e_arena_t *arena, cm1e_description_t *device)
 {
     static const cm1e_dc_mode_t modes[] = {
@@ -114,8 +115,8 @@ static void describe_counters(cm1e_arena_t *arena, cm1e_description_t *device, c
     }
 }
 
-/* A PDO for each slot, whose objects and PDOs are moved by its number (ETG.5001: SlotIndexIncrement 16, SlotPdoIncrement
- * 1). */
+/* A PDO for each slot, whose objects and PDOs are moved by its number (ETG.5001: SlotIndexIncrement 16,
+ * SlotPdoIncrement 1). */
 static void describe_modules(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave)
 {
     for (unsigned output = 0; output < 2; output++)

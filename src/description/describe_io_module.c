@@ -1,6 +1,7 @@
 #include "description/describe.h"
 
-/* In SII word 0: a digital I/O process data interface, and whether the controller emulates the device (0x0141 bit 0). */
+/* In SII word 0: a digital I/O process data interface, and whether the controller emulates the device (0x0141
+ * bit 0). */
 enum { PDI_DIGITAL_IO = 0x0004, DEVICE_EMULATION = 0x0100 };
 
 typedef struct direction {

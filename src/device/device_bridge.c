@@ -180,7 +180,8 @@ static bool check_axis(const cm1e_axis_config_t *axis, cm1e_wrong_key_t *wrong)
     else if (cm1e_bridge_counts_per_revolution(axis->k37) > 0 && position_limit(axis) > 0)
         return true;
     else
-        snprintf(wrong->text, sizeof wrong->text, "is %u; expected 0 ... 8 or 10, 40 ... 50, or each of these plus 20%s",
+        snprintf(wrong->text, sizeof wrong->text,
+                 "is %u; expected 0 ... 8 or 10, 40 ... 50, or each of these plus 20%s",
                  axis->k37, motor_of(axis) == CM1E_BRIDGE_CM2 ? ", or 80 ... 88 or 90" : "");
     return false;
 }

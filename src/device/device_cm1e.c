@@ -122,8 +122,8 @@ static bool pdo_known(const cm1e_pdo_t *pdo, bool transmit)
 
 static const cm1e_absent_key_t absent[] = {
     {"k37", "is given without a channel; expected only behind a bridge: a CM1-E has 50000 counts in a revolution"},
-    {"dc", "is given, and a CM1-E takes its cycle from the process data (UG 4.3), not from SYNC0; distributed_clocks of "
-           "the bus lets its frames arrive at a constant phase"},
+    {"dc", "is given, and a CM1-E takes its cycle from the process data (UG 4.3), not from SYNC0; distributed_clocks "
+           "of the bus lets its frames arrive at a constant phase"},
     {NULL, NULL},
 };
 

@@ -15,7 +15,8 @@ const cm1e_entry_t cm1e_device_k_parameters[1 + K_PARAMETER_COUNT] = {
     K(15, 35), K(16, 36), K(17, 37), K(18, 38), K(19, 39), K(20, 40), K(21, 41),
     K(22, 42), K(23, 43), K(24, 44), K(25, 45), K(26, 46),
     ENTRY_RANGE(OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, RW, UINT, "K47", "%", 30, 10, 100,
-                .use = CM1E_USE_SETTING, .meaning = "torque limit of a homing, against a hard stop or to a switch (UG 6.2.4)"),
+                .use = CM1E_USE_SETTING, .meaning = "torque limit of a homing, against a hard stop or to a switch "
+                                                    "(UG 6.2.4)"),
     K(28, 48), K(29, 49), K(30, 50), K(31, 51), K(32, 52), K(33, 53), K(34, 54), K(35, 55), K(36, 56), K(37, 57),
     K(38, 58), K(39, 59), K(40, 60), K(41, 61), K(42, 62), K(43, 63), K(44, 64), K(45, 65), K(46, 66), K(47, 67),
     K(48, 68), K(49, 69), K(50, 70), K(51, 71), K(52, 72), K(53, 73), K(54, 74), K(55, 75), K(56, 76), K(57, 77),

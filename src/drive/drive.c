@@ -171,7 +171,8 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 static void refuse_torque(cm1e_drive_t *drive)
 {
     const bool asked = drive->command.enable && !drive->torque.asked && drive->actual.seen && drive->feedback.online;
-    if (asked && !cm1e_drive_in_range(drive, drive->feedback.position)) /* as a target it would be clamped, which is a jump */
+    /* As a target it would be clamped, which is a jump. */
+    if (asked && !cm1e_drive_in_range(drive, drive->feedback.position))
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE);
     if (!asked || drive->mode.takes_torque || drive->waits.blocked_ns == 0) /* 0: not set yet */
         drive->waits.blocked_ns = drive->now_ns;
@@ -183,10 +184,12 @@ static void refuse_torque(cm1e_drive_t *drive)
 static bool brakes_by_itself(const cm1e_drive_t *drive)
 {
     const int64_t slow = drive->range.velocity_possible / QUICK_STOP_PART;
-    return llabs((int64_t)drive->feedback.velocity) > slow && drive->now_ns < drive->waits.torque_from_ns + quick_stop_ns;
+    return llabs((int64_t)drive->feedback.velocity) > slow &&
+           drive->now_ns < drive->waits.torque_from_ns + quick_stop_ns;
 }
 
-/* Nobody waits for ever for a drive that does not obey: that its motor has torque is an error, also while power is off. */
+/* Nobody waits for ever for a drive that does not obey: that its motor has torque is an error, also while power is
+ * off. */
 static void watch_torque(cm1e_drive_t *drive)
 {
     cm1e_drive_waits_t *waits = &drive->waits;
@@ -242,8 +245,9 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
     return bits;
 }
 
-/* A drive that is in Quick stop active by itself brakes, and may stay in that state under torque (0x605A). Shutdown does
- * not lead out of it, but Disable voltage does (CiA 402, transition 12). It waits until the ramp of the drive is over. */
+/* A drive that is in Quick stop active by itself brakes, and may stay in that state under torque (0x605A). Shutdown
+ * does not lead out of it, but Disable voltage does (CiA 402, transition 12). It waits until the ramp of the drive is
+ * over. */
 static bool ends_quick_stop(const cm1e_drive_t *drive)
 {
     return drive->feedback.state == QUICK_STOP_ACTIVE && !brakes_by_itself(drive);

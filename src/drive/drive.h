@@ -14,8 +14,8 @@
  *
  * What the drive holds is known as long as every frame comes back with every slave's part in it. After a cycle without
  * that, the drive may hold the target of any frame sent since then. A target position (CSP) is therefore repeated
- * until a frame has come back: whichever frame is heard next, it carries at most the step that was planned for one cycle.
- * A target velocity (CSV) may still be reduced.
+ * until a frame has come back: whichever frame is heard next, it carries at most the step that was planned for one
+ * cycle. A target velocity (CSV) may still be reduced.
  */
 #ifndef CM1E_DRIVE_DRIVE_H
 #define CM1E_DRIVE_DRIVE_H

@@ -319,8 +319,8 @@ static bool contradicts(const cm1e_drive_t *drive, int32_t position)
                                   cm1e_drive_tolerance(drive, elapsed_ns));
 }
 
-/* A position that stays the same although the motor turns agrees with no velocity, also where the tolerance is larger than
- * the way of a slow motor. It does not end a contradiction. */
+/* A position that stays the same although the motor turns agrees with no velocity, also where the tolerance is larger
+ * than the way of a slow motor. It does not end a contradiction. */
 static bool stays_frozen(const cm1e_drive_t *drive, int32_t position)
 {
     static const int64_t least_way = 1500000000; /* 1.5 counts, as counts/s * ns: a turning motor shows one of them */

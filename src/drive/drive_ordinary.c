@@ -35,7 +35,8 @@ void cm1e_drive_note_calm(cm1e_drive_t *drive, uint16_t controlword)
 {
     drive->ordinary.controlword = controlword;
     drive->ordinary.calm = drive->wire.known && !drive->step && !drive->wiring && drive->fault.error == CM1E_OK &&
-                           !drive->fault.slave_absent && drive->unbound == CM1E_OK && is_led(drive) && shows_calm(drive);
+                           !drive->fault.slave_absent && drive->unbound == CM1E_OK && is_led(drive) &&
+                           shows_calm(drive);
 }
 
 CM1E_RARE static void renew(cm1e_drive_t *drive, int64_t elapsed_ns)

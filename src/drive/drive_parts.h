@@ -65,7 +65,8 @@ typedef struct cm1e_drive_fault {
     uint16_t statusword;
     int8_t mode_commanded, mode_shown;
     uint16_t al_state, al_status_code;
-    uint16_t missing;               /**< position of another slave that took no part in the cycle, then or later; 0: none */
+    uint16_t missing;               /**< position of another slave that took no part in the cycle, then or later; 0:
+                                         none */
     uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error */
     bool motor_status_known : 1;    /**< `motor_status` is valid */
     bool slave_lost : 1;            /**< the slave did not answer at its address, then or later */
@@ -90,13 +91,14 @@ typedef struct cm1e_drive_image {
     cm1e_image_slot_t in_latched[4]; /**< touch probe of the drive: edges of probe 1, of probe 2 */
 } cm1e_drive_image_t;
 
-/** Offsets of the objects that a cycle needs, where the mapping has all of them, each with its usual size, and no others
- *  that a cycle writes. Written by drive_io.c. */
+/** Offsets of the objects that a cycle needs, where the mapping has all of them, each with its usual size, and no
+ *  others that a cycle writes. Written by drive_io.c. */
 typedef struct cm1e_drive_wire {
     bool known;                     /**< the mapping is such a one */
     uint32_t in, out;               /**< of the statusword and the controlword, in the image */
-    uint8_t in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc, in_mode; /**< from `in` */
-    uint8_t out_digital, out_position, out_velocity, out_mode;                                         /**< from `out` */
+    /** From `in`. */
+    uint8_t in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc, in_mode;
+    uint8_t out_digital, out_position, out_velocity, out_mode; /**< from `out` */
 } cm1e_drive_wire_t;
 
 /** An ordinary cycle: the torque acts, and set positions are followed (drive_ordinary.c). Written by drive.c,
@@ -105,8 +107,8 @@ typedef struct cm1e_drive_ordinary {
     bool calm;                      /**< the last cycle was one, and nothing has happened since */
     uint16_t controlword;           /**< of these cycles */
     int64_t elapsed_ns;             /**< for which the next two are computed */
-    int64_t farthest, tolerance;    /**< counts: way that the motor can have gone in that time, tolerance of the way that
-                                         its velocity makes in it */
+    int64_t farthest, tolerance;    /**< counts: way that the motor can have gone in that time, tolerance of the way
+                                         that its velocity makes in it */
 } cm1e_drive_ordinary_t;
 
 /** What this motor can do, in counts: known when the drive is made. Written by drive.c, drive_bridge.c, drive_cia402.c,
@@ -180,7 +182,8 @@ typedef struct cm1e_drive_torque {
 typedef struct cm1e_drive_waits {
     int64_t enable_deadline_ns, torque_from_ns;
     int64_t blocked_ns;             /**< since when torque is requested in a mode that has none */
-    int64_t kept_ns;                /**< since when it shows torque that it was told to give up, and does not brake; 0: no */
+    int64_t kept_ns;                /**< since when it shows torque that it was told to give up, and does not brake;
+                                         0: no */
 } cm1e_drive_waits_t;
 
 /** A fault reset. Written by drive_private.h and drive_reset.c. */

@@ -17,7 +17,8 @@ enum { RESET_IDLE = 0, RESET_WAIT_ONLINE, RESET_EDGE, RESET_RELEASED };
 /** After this cause the drive may still have torque and receive targets, so a ramp makes sense. */
 static inline bool drive_fault_allows_ramp(cm1e_error_t error)
 {
-    return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER || error == CM1E_ERROR_DRIVE_POSITION;
+    return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER ||
+           error == CM1E_ERROR_DRIVE_POSITION;
 }
 
 /** The slave is optional and not there. */

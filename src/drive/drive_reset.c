@@ -59,7 +59,8 @@ static void wait_online(cm1e_drive_t *drive)
     if (drive->watch.absent) {
         finish(drive, CM1E_ERROR_AXIS_OFFLINE);
     } else if (drive->feedback.online && cm1e_bus_slave_looks(drive->bus, drive->position) == drive->looks) {
-        /* Frames come back again, and what is known of its state is from before: its watchdog may have ended meanwhile. */
+        /* Frames come back again, and what is known of its state is from before: its watchdog may have ended
+         * meanwhile. */
     } else if (drive->feedback.online && !drive->feedback.fault) {
         finish(drive, CM1E_OK);
     } else if (drive->feedback.online && drive->mode.words != drive->mode.wanted->words) {

@@ -46,10 +46,10 @@ static const advice_t advices[] = {
                                 "since the last good one. The set-points were ramped down without that position. Check "
                                 "the motor's encoder, what else writes to the drive (homing, position preset), and its "
                                 "PDO mapping"},
-    {CM1E_ERROR_DRIVE_KEEPS_TORQUE, "The drive stayed in the state named here, in which its motor has torque, although it "
-                                    "was told to have none (controlword Shutdown, or Disable voltage in a quick stop). Cut "
-                                    "its motor power before somebody reaches into the machine. Check whether another tool "
-                                    "controls it, and whether it is defect"},
+    {CM1E_ERROR_DRIVE_KEEPS_TORQUE, "The drive stayed in the state named here, in which its motor has torque, although "
+                                    "it was told to have none (controlword Shutdown, or Disable voltage in a quick "
+                                    "stop). Cut its motor power before somebody reaches into the machine. Check "
+                                    "whether another tool controls it, and whether it is defect"},
     {CM1E_ERROR_AXIS_POSITION_RANGE, "The actual position, or a target, is beyond what the resolution of the motor "
                                      "(K37) allows"},
     {CM1E_ERROR_DRIVE_RESET_TIMEOUT, "The fault came back or stayed. Remove its cause, or switch the drive off and on"},

@@ -29,7 +29,8 @@ cm1e_error_t cm1e_drive_wire(cm1e_drive_t *drive, cm1e_diag_t *diag);
 /** Samples the inputs. @rt cycle */
 void cm1e_drive_wiring_read(cm1e_drive_t *drive);
 
-/** The place of signal `number` among `count`, which have the numbers from CM1E_WIRED_FIRST on; -1: it is none of them. */
+/** The place of signal `number` among `count`, which have the numbers from CM1E_WIRED_FIRST on; -1: it is none of
+ *  them. */
 static inline int cm1e_drive_wired_place(int number, int count)
 {
     return number >= CM1E_WIRED_FIRST && number - CM1E_WIRED_FIRST < count ? number - CM1E_WIRED_FIRST : -1;

@@ -134,8 +134,8 @@ cm1e_description_t cm1e_eni_describe(cm1e_arena_t *arena, const cm1e_eni_device_
     return description;
 }
 
-/* A master switches a sync manager on for its PDOs only, while a description proposes to switch it on for those that may
- * be assigned. Of one without PDOs a file says nothing about that. */
+/* A master switches a sync manager on for its PDOs only, while a description proposes to switch it on for those that
+ * may be assigned. Of one without PDOs a file says nothing about that. */
 static void take_enable(cm1e_description_t *file, const cm1e_description_t *device)
 {
     for (size_t n = 0; n < file->sync_managers.count && n < device->sync_managers.count; n++) {

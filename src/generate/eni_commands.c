@@ -284,7 +284,8 @@ static void make_clock(maker_t *maker, uint16_t assign_activate)
     cm1e_put_u32(cycles, (uint32_t)dc->cycle0_ns);
     cm1e_put_u32(cycles + 4, (uint32_t)dc->cycle1_ns);
     write_zeros(maker, DC_CONTROL, 2, "clear dc activation");
-    set_bytes(maker, to_slave(maker, CM1E_ENI_PS, CM1E_ENI_FPWR, DC_CYCLES, "set dc cycle time"), cycles, sizeof cycles);
+    set_bytes(maker, to_slave(maker, CM1E_ENI_PS, CM1E_ENI_FPWR, DC_CYCLES, "set dc cycle time"), cycles,
+              sizeof cycles);
     write_zeros(maker, DC_START, 8, "set dc start time (of the master)");
     write_number(maker, CM1E_ENI_PS, CM1E_ENI_FPWR, DC_CONTROL, assign_activate, 2, "set dc activation");
     clear(maker, CM1E_ENI_SP | CM1E_ENI_SI | CM1E_ENI_OP | CM1E_ENI_OI, CM1E_ENI_FPWR, DC_CONTROL, 2,

@@ -107,8 +107,8 @@ static void make_sdos(maker_t *maker, cm1e_eni_mailbox_t *mailbox, const cm1e_de
     }
 }
 
-/* The mailbox of a direction: that of its sync manager, with the length of the words 0x18 to 0x1B of an EEPROM where that
- * states none. No length: there is none. */
+/* The mailbox of a direction: that of its sync manager, with the length of the words 0x18 to 0x1B of an EEPROM where
+ * that states none. No length: there is none. */
 static cm1e_eni_mailbox_area_t mailbox_area(const cm1e_description_t *described, cm1e_sync_manager_use_t use)
 {
     const cm1e_described_eeprom_t *eeprom = &described->eeprom;
@@ -158,7 +158,8 @@ static void make_clock(maker_t *maker, cm1e_eni_device_t *device, const cm1e_eni
     if (!slave->has_clock)
         return;
     device->dc = (cm1e_eni_dc_t){.present = true, .potential_reference = true, .reference = !maker->reference,
-                                 .cycle0_ns = ns_of(slave->pulses.sync0_us), .cycle1_ns = ns_of(slave->pulses.sync1_us)};
+                                 .cycle0_ns = ns_of(slave->pulses.sync0_us),
+                                 .cycle1_ns = ns_of(slave->pulses.sync1_us)};
     if (pulses)
         device->dc.shift_ns = slave->pulses.shift_us != 0 ? ns_of(slave->pulses.shift_us) : maker->cycle_time_ns / 2;
     if (!maker->reference) {
@@ -351,16 +352,17 @@ static void add_state_check(maker_t *maker, size_t slaves)
     command->count = (int32_t)slaves;
 }
 
-/* The time of the reference clock for all others, with every cycle from Pre-Operational on. It goes with the first frame,
- * behind the process data, so that their places are those of a network without clocks. How many answer is not stated:
- * not every controller has the register. */
+/* The time of the reference clock for all others, with every cycle from Pre-Operational on. It goes with the first
+ * frame, behind the process data, so that their places are those of a network without clocks. How many answer is not
+ * stated: not every controller has the register. */
 static void add_drift_compensation(maker_t *maker)
 {
     enum { TIME_BYTES = 8 };
     if (!maker->frame || frame_bytes(maker->frame) + CM1E_ENI_DATAGRAM_OVERHEAD + TIME_BYTES > CM1E_ENI_FRAME_BYTES)
         begin_frame(maker);
     cm1e_eni_command_t *command =
-        add_command(maker, CM1E_ENI_ARMW, CM1E_ENI_PREOP | CM1E_ENI_SAFEOP | CM1E_ENI_OPERATIONAL, "dc drift compensation");
+        add_command(maker, CM1E_ENI_ARMW, CM1E_ENI_PREOP | CM1E_ENI_SAFEOP | CM1E_ENI_OPERATIONAL,
+                    "dc drift compensation");
     command->adp = maker->reference_position;
     command->ado = DC_SYSTEM_TIME;
     command->length = TIME_BYTES;

@@ -202,7 +202,8 @@ static void command_sdos(writer_t *to, const cm1e_slave_config_t *slave, bool be
         cm1e_init_command_t *made = command(to, sdo->index, sdo->subindex, sdo->value, sdo->bytes, before_op);
         made->complete_access = sdo->complete_access;
         if (sdo->bytes == 0)
-            made->data = (cm1e_bytes_t){cm1e_arena_bytes(to->arena, slave->sdo_data + sdo->value, sdo->size), sdo->size};
+            made->data = (cm1e_bytes_t){cm1e_arena_bytes(to->arena, slave->sdo_data + sdo->value, sdo->size),
+                                        sdo->size};
     }
 }
 
@@ -319,8 +320,8 @@ bool cm1e_eni_is_writable(const cm1e_description_t *device, unsigned index, unsi
     return entry && (entry->access & CM1E_ACCESS_WRITE);
 }
 
-void cm1e_eni_synchronise(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave, bool inputs,
-                          unsigned type)
+void cm1e_eni_synchronise(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave,
+                          bool inputs, unsigned type)
 {
     const unsigned index = OBJ_1C32_SM_OUTPUT_PARAMETER + inputs;
     writer_t to = {.arena = arena, .list = device->init_commands};

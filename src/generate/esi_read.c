@@ -308,6 +308,7 @@ cm1e_error_t cm1e_esi_read(cm1e_description_file_t *file, const void *bytes, siz
     read_root(&reader, xmlDocGetRootElement(doc), file);
     xmlFreeDoc(doc);
     if (file->arena.failed)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory, or the file needs more memory than any real one");
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0,
+                             "out of memory, or the file needs more memory than any real one");
     return reader.failed ? CM1E_ERROR_FILE : CM1E_OK;
 }

@@ -98,8 +98,8 @@ static cm1e_error_t check_excludes(const cm1e_slave_config_t *stated, const cm1e
             for (size_t k = 0; k < device->pdos.count; k++)
                 if (device->pdos.at[k].index == pdo->excludes.at[n].index && k != i &&
                     is_assigned(stated, &device->pdos.at[k]))
-                    return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, 0, "line %u: the PDO 0x%04X excludes 0x%04X, and "
-                                         "both are assigned; expected one of them in %s", (unsigned)pdo->place,
+                    return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, 0, "line %u: the PDO 0x%04X excludes 0x%04X, "
+                                         "and both are assigned; expected one of them in %s", (unsigned)pdo->place,
                                          pdo->index, pdo->excludes.at[n].index,
                                          pdo->transmit ? "inputs_pdos" : "outputs_pdos");
     }

@@ -142,8 +142,8 @@ typedef struct node {
 /* Another axis of the same bridge; the check of the configuration ensures that the channels differ. */
 static bool is_behind(const node_t *node, const cm1e_axis_config_t *axis)
 {
-    return node->axis && cm1e_device_is_shared(axis) && axis->address && node->axis->address_kind == axis->address_kind &&
-           node->axis->address == axis->address;
+    return node->axis && cm1e_device_is_shared(axis) && axis->address &&
+           node->axis->address_kind == axis->address_kind && node->axis->address == axis->address;
 }
 
 static uint32_t places_of(const cm1e_bus_config_t *network) { return network->axis_count + network->slave_count; }
@@ -329,8 +329,8 @@ static void warn_of_bus_file(cm1e_file_t *file, const cm1e_bus_config_t *network
     const size_t used = strlen(file->warning);
     if (clocks)
         snprintf(file->warning + used, sizeof file->warning - used,
-                 "The distributed clocks that the bus file asks for are not in this file, because only a scan shows who "
-                 "has one. ");
+                 "The distributed clocks that the bus file asks for are not in this file, because only a scan shows "
+                 "who has one. ");
     if (optional || clocks)
         snprintf(file->warning + strlen(file->warning), sizeof file->warning - strlen(file->warning),
                  "Make the ENI from a scan of the network");

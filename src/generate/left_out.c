@@ -22,7 +22,8 @@ typedef struct names {
 static bool add(names_t *names, const name_t *name)
 {
     for (size_t i = 0; i < names->count; i++)
-        if (names->at[i].own == name->own && names->at[i].parent == name->parent && names->at[i].attribute == name->attribute)
+        if (names->at[i].own == name->own && names->at[i].parent == name->parent &&
+            names->at[i].attribute == name->attribute)
             return false;
     if (names->count < NAMES_MAX)
         names->at[names->count++] = *name;
@@ -55,8 +56,8 @@ static const xmlNode *behind(const xmlNode *node, const xmlNode *root, bool into
     return next;
 }
 
-/** Adds the names of a document that `known` (NULL: none) does not have. What stands in an unknown element is not looked
- *  at, where there are known ones. */
+/** Adds the names of a document that `known` (NULL: none) does not have. What stands in an unknown element is not
+ *  looked at, where there are known ones. */
 static void collect(names_t *names, const xmlNode *root, const names_t *known)
 {
     bool into;

@@ -7,8 +7,8 @@
 
 #include "cm1e/generate.h"
 
-/** Compares the elements and attributes of two files of one XML format by name, and adds those that `file` has nowhere to
- *  its warning: "Device/ImageData16x14", "Device/@Foo". Does nothing if one of them cannot be parsed. */
+/** Compares the elements and attributes of two files of one XML format by name, and adds those that `file` has nowhere
+ *  to its warning: "Device/ImageData16x14", "Device/@Foo". Does nothing if one of them cannot be parsed. */
 void cm1e_warn_of_left_out(cm1e_file_t *file, const void *bytes, size_t size);
 
 #endif

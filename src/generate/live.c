@@ -11,7 +11,8 @@
 
 enum { OBJECTS_MAX = 0x10000, ENTRIES_MAX = 254 };
 enum { RXPDO_FIRST = 0x1600, RXPDO_LAST = 0x17FF, TXPDO_FIRST = 0x1A00, TXPDO_LAST = 0x1BFF };
-enum { TO_PARAMETER = 0x200, EXCLUDES = 6, EXCLUDED_BYTES = 128 }; /* 0x1800:06 is that of the PDO 0x1A00 (ETG.1000.6) */
+/* 0x1800:06 is that of the PDO 0x1A00 (ETG.1000.6) */
+enum { TO_PARAMETER = 0x200, EXCLUDES = 6, EXCLUDED_BYTES = 128 };
 
 typedef struct live {
     cm1e_bus_t *bus;

@@ -185,7 +185,8 @@ static cm1e_error_t configure_drive(cm1e_description_file_t *file, const cm1e_ax
     return error;
 }
 
-/* What 0x1C32:01 and 0x1C33:01 get for its pulses, as the bus does it: of SYNC1 only what the slave says that it can. */
+/* What 0x1C32:01 and 0x1C33:01 get for its pulses, as the bus does it: of SYNC1 only what the slave says that it
+ * can. */
 static void synchronise(cm1e_arena_t *arena, cm1e_description_t *device, cm1e_bus_t *bus, uint16_t position,
                         const cm1e_eni_slave_t *slave, const known_t *known)
 {
@@ -194,8 +195,8 @@ static void synchronise(cm1e_arena_t *arena, cm1e_description_t *device, cm1e_bu
         uint8_t can[2] = {CAN_SYNC0, 0};
         size_t size = sizeof can;
         if (slave->pulses.sync1_us != 0 &&
-            cm1e_sdo_read(bus, position, (uint16_t)(OBJ_1C32_SM_OUTPUT_PARAMETER + inputs), SUPPORTED, can, &size, NULL) !=
-                CM1E_OK)
+            cm1e_sdo_read(bus, position, (uint16_t)(OBJ_1C32_SM_OUTPUT_PARAMETER + inputs), SUPPORTED, can, &size,
+                          NULL) != CM1E_OK)
             continue;
         cm1e_eni_synchronise(arena, device, known->slave, inputs != 0,
                              can[0] & CAN_SYNC1 ? BY_SYNC1 : can[0] & CAN_SYNC0 ? BY_SYNC0 : 0);

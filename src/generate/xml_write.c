@@ -24,7 +24,8 @@ void cm1e_xml_begin(cm1e_xml_writer_t *writer)
     writer->failed = !writer->writer;
     if (writer->failed)
         return;
-    xmlBufferSetAllocationScheme(writer->buffer, XML_BUFFER_ALLOC_DOUBLEIT); /* else each element copies the whole file */
+    /* Else each element copies the whole file. */
+    xmlBufferSetAllocationScheme(writer->buffer, XML_BUFFER_ALLOC_DOUBLEIT);
     note(writer, xmlTextWriterSetIndent(writer->writer, 1));
     note(writer, xmlTextWriterSetIndentString(writer->writer, xml("  ")));
     note(writer, xmlTextWriterStartDocument(writer->writer, "1.0", "UTF-8", NULL));

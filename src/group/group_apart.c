@@ -1,13 +1,13 @@
 /*
  * Axes that leave the path of their group for a while. It is so where not all axes are heard together, because they are
- * on several buses, or some are optional. While all of them are silent at once, time stands still for all axes, as on one
- * bus. While only some of them are, the axes that are heard cannot stand still: their drives would hear it. So the path
- * comes to rest, within the limits of its axes. An axis that was silent has left the path: it holds its set-point.
+ * on several buses, or some are optional. While all of them are silent at once, time stands still for all axes, as on
+ * one bus. While only some of them are, the axes that are heard cannot stand still: their drives would hear it. So the
+ * path comes to rest, within the limits of its axes. An axis that was silent has left the path: it holds its set-point.
  * It is so too where a load has turned a motor on in a pause or silence: its set-point goes after it (axis_pursuit.c).
  *
- * Then the axis comes to rest by itself, and goes back to its place on the path when that is at rest. Then the path goes
- * on. Each axis keeps its limits all the time. Behind a stop, a halt or an error no axis goes back: it is released where
- * it came to rest.
+ * Then the axis comes to rest by itself, and goes back to its place on the path when that is at rest. Then the path
+ * goes on. Each axis keeps its limits all the time. Behind a stop, a halt or an error no axis goes back: it is released
+ * where it came to rest.
  */
 #include "group/group_private.h"
 

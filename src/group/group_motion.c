@@ -274,7 +274,8 @@ cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group)
         if (!axis)
             continue;
         cm1e_axis_bounds(axis, &limits, &lowest, &highest);
-        config.axis[config.axes] = (cm1e_path_axis_t){limits.velocity, smaller(limits.acceleration, limits.deceleration),
+        config.axis[config.axes] = (cm1e_path_axis_t){limits.velocity,
+                                                      smaller(limits.acceleration, limits.deceleration),
                                                       limits.jerk, lowest, highest};
         config.cycle_s = cm1e_axis_cycle(axis);
         position[config.axes] = cm1e_axis_place(axis, false);

@@ -67,8 +67,8 @@ static const char *const path_texts[] = {
     [CM1E_PATH_FULL] = " Wait until one of the commands of the group is done.",
     [CM1E_PATH_NO_NUMBER] = " A position is not a finite number, or farther away than the axis counts.",
     [CM1E_PATH_NO_ARC] = (" A circle needs at least two axes, and points that neither coincide nor lie on a line; the "
-                          "centre must be as far from the end as from the beginning. A half or a full circle by its centre "
-                          "needs begin, centre and end at the same Z."),
+                          "centre must be as far from the end as from the beginning. A half or a full circle by its "
+                          "centre needs begin, centre and end at the same Z."),
     [CM1E_PATH_OUT_OF_BOUNDS] = "",
     [CM1E_PATH_NO_TRANSITION] = " TransitionParameter must be above 0.",
 };

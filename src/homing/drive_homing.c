@@ -473,9 +473,9 @@ static void step_run(cm1e_axis_t *axis)
         timed_out(axis);
 }
 
-/* Waits for standstill. A drive may say too early that it has homed, and while the mode is switched the target rests: it
- * would be far behind a motor that still turns. Behind a bridge the end of the homing and the position come over the serial
- * line of the motor, and not always in one cycle. */
+/* Waits for standstill. A drive may say too early that it has homed, and while the mode is switched the target rests:
+ * it would be far behind a motor that still turns. Behind a bridge the end of the homing and the position come over the
+ * serial line of the motor, and not always in one cycle. */
 static void step_settle(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);

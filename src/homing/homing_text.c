@@ -19,15 +19,16 @@ bool cm1e_homing_failed_text(const cm1e_axis_t *axis, char *text, size_t size)
         return true;
     }
     if (axis->fault.error == CM1E_ERROR_AXIS_HOMING_FAILED && home->unsettled) {
-        snprintf(text, size, "Axis \"%s\": the drive reported that its homing was completed, although its motor still turned, "
-                 "for a second and longer. Look for a load that moves the motor, a servo that swings, and the end of the "
-                 "homing in the drive; then reset the axis with MC_Reset, and home it again.", axis->config->name);
+        snprintf(text, size, "Axis \"%s\": the drive reported that its homing was completed, although its motor still "
+                 "turned, for a second and longer. Look for a load that moves the motor, a servo that swings, and the "
+                 "end of the homing in the drive; then reset the axis with MC_Reset, and home it again.",
+                 axis->config->name);
         return true;
     }
     snprintf(text, size,
-             "Axis \"%s\": %s. Method %d, with %.6g u/s for up to %.6g s; statusword bits 13 (error), 12 (attained), 10 "
-             "(reached) were %u %u %u; homing began with %u %u %u. Check that the %s is reached in this direction, speed "
-             "(homing.velocity), torque limit and timeout; then reset the axis with MC_Reset.",
+             "Axis \"%s\": %s. Method %d, with %.6g u/s for up to %.6g s; statusword bits 13 (error), 12 (attained), "
+             "10 (reached) were %u %u %u; homing began with %u %u %u. Check that the %s is reached in this direction, "
+             "speed (homing.velocity), torque limit and timeout; then reset the axis with MC_Reset.",
              axis->config->name, cm1e_strerror(axis->fault.error), (int)home->raw[CM1E_HOMING_METHOD],
              cm1e_homing_velocity(axis), (double)home->timeout_ns * 1e-9, bits >> 2 & 1u, bits >> 1 & 1u,
              bits & 1u, home->bits_before >> 2 & 1u, home->bits_before >> 1 & 1u, home->bits_before & 1u,

@@ -114,7 +114,8 @@ static void hull(const cm1e_cam_knot_t *a, cm1e_curve_extremes_t *hull)
         }
         factor *= (5 - k) / h;
     }
-    *hull = (cm1e_curve_extremes_t){low[0], high[0], low[1], high[1], larger(-low[2], high[2]), larger(-low[3], high[3])};
+    *hull = (cm1e_curve_extremes_t){low[0], high[0], low[1], high[1], larger(-low[2], high[2]),
+                                    larger(-low[3], high[3])};
 }
 
 static void widen(cm1e_curve_extremes_t *all, const cm1e_curve_extremes_t *part)

@@ -25,8 +25,8 @@ typedef struct cm1e_cam {
     double advance;                 /**< distance of the slave from the first to the last point */
     cm1e_curve_extremes_t extremes; /**< extremes, between the points too; `third` is an upper bound. With
                                          mcCamLinear without the steps of slope at the points */
-    double corner, shortest;        /**< mcCamLinear: largest step of the slope at a point, also from the end of a period
-                                         to the next one; shortest distance of the master between two points */
+    double corner, shortest;        /**< mcCamLinear: largest step of the slope at a point, also from the end of a
+                                         period to the next one; shortest distance of the master between two points */
 } cm1e_cam_t;
 
 typedef enum cm1e_cam_fault {

@@ -1,9 +1,9 @@
 /*
  * The common move: forward to standstill, with one rise of the velocity to a peak and one fall. An axis that moves away
- * from the target first comes to standstill; what its acceleration is there does not depend on the peak. Its ways are mean
- * velocities by times, so no piece has to be integrated. Where the peak is the velocity limit, all is in closed form.
- * Else the peak is the root of the whole way, a convex function of the time in which the acceleration would be ramped
- * up to it: Newton's method finds it from any start.
+ * from the target first comes to standstill; what its acceleration is there does not depend on the peak. Its ways are
+ * mean velocities by times, so no piece has to be integrated. Where the peak is the velocity limit, all is in closed
+ * form. Else the peak is the root of the whole way, a convex function of the time in which the acceleration would be
+ * ramped up to it: Newton's method finds it from any start.
  */
 #include <math.h>
 

@@ -122,8 +122,8 @@ static cm1e_path_refusal_t check(const cm1e_path_t *path, const double *point, c
 
 /** Whether an axis would move in a direction in which it must not: a line goes one way, an arc beyond one of its ends
  *  both. What an arc adds by rounding is no motion. */
-static bool goes_wrong_way(const cm1e_path_command_t *command, int axis, double from, double low, double high, double to,
-                           double length)
+static bool goes_wrong_way(const cm1e_path_command_t *command, int axis, double from, double low, double high,
+                           double to, double length)
 {
     const double rounding = STILL * (fabs(from) + length);
     const bool beyond = smaller(from, to) - low > rounding || high - larger(from, to) > rounding;
@@ -232,7 +232,8 @@ static bool is_at_rest(const cm1e_path_t *path)
 /** Cancels a stop, but not the last one. If no continuation can be planned any more, the stop is completed first. */
 static void try_to_go_on(cm1e_path_t *path)
 {
-    if (!must_stop(path) && path->stopping && !path->last_stop && !is_at_rest(path)) /* at rest, the next step goes on */
+    /* At rest, the next step goes on. */
+    if (!must_stop(path) && path->stopping && !path->last_stop && !is_at_rest(path))
         cm1e_path_change_pace(path);
 }
 
@@ -441,8 +442,8 @@ bool cm1e_path_bounds(const cm1e_path_t *path, int axis, cm1e_motion_bounds_t *m
     return isfinite(v);
 }
 
-/* A line has no curvature: 0 is added so that a zero has the sign that it has elsewhere. The axes are computed in pairs:
- * an axis behind the last one gets zeros. */
+/* A line has no curvature: 0 is added so that a zero has the sign that it has elsewhere. The axes are computed in
+ * pairs: an axis behind the last one gets zeros. */
 static inline void fill_line(const cm1e_path_piece_t *line, int axes, double length, double v, double a,
                              cm1e_path_sample_t *restrict sample)
 {

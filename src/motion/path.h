@@ -48,8 +48,8 @@ typedef enum cm1e_path_junction {
     CM1E_PATH_STOP,  /**< at rest */
     /** Exactly along both segments. If the tangent of any axis breaks by more than 0.001, the path stops there. If it
      *  breaks by less, or only the curvature does (a line into an arc), the acceleration of axes steps. The junction is
-     *  then passed so slowly that the step is at most half of what the jerk limit of the axis allows in a cycle; for one
-     *  cycle before and after, the path has the other half of that limit, and what is left of the acceleration. */
+     *  then passed so slowly that the step is at most half of what the jerk limit of the axis allows in a cycle; for
+     *  one cycle before and after, the path has the other half of that limit, and what is left of the acceleration. */
     CM1E_PATH_EXACT,
     /** By a transition from `parameter` u (length of path) before the end to the same distance behind it, smooth in
      *  tangent and curvature. It is shorter if that is more than half of one of the segments, or has begun. */
@@ -203,7 +203,8 @@ typedef struct cm1e_path {
     int first_element, element_count;
     cm1e_path_element_t element[CM1E_PATH_ELEMENTS]; /**< ring; the first is the present one */
     bool cut;                       /**< the end is the end of a stop: no segment goes on there */
-    bool last_stop;                 /**< cleared: it comes to rest at the end of what is left, and nothing hinders that */
+    bool last_stop;                 /**< cleared: it comes to rest at the end of what is left, and nothing hinders
+                                         that */
     bool stop_wanted;
     bool stopping;                  /**< the profile is a stop without a given end position */
     cm1e_motion_limits_t stop;      /**< deceleration and jerk of it */
@@ -230,9 +231,9 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
 void cm1e_path_copy(cm1e_path_t *copy, const cm1e_path_t *path);
 
 /** Appends a straight line to `end` (all axes). Returns CM1E_ERROR_FULL, CM1E_ERROR_INVALID_ARGUMENT,
- *  CM1E_ERROR_AXIS_DIRECTION_DISABLED or CM1E_ERROR_AXIS_POSITION_RANGE with the reason in `problem` (may be NULL), and then nothing has changed. A line of
- *  no length is a segment too; it is done at once when it becomes active. During a stop, or while the path is stopped,
- *  it waits behind the remaining segments. */
+ *  CM1E_ERROR_AXIS_DIRECTION_DISABLED or CM1E_ERROR_AXIS_POSITION_RANGE with the reason in `problem` (may be NULL), and
+ *  then nothing has changed. A line of no length is a segment too; it is done at once when it becomes active. During a
+ *  stop, or while the path is stopped, it waits behind the remaining segments. */
 cm1e_error_t cm1e_path_append_line(cm1e_path_t *path, const double *end, const cm1e_path_command_t *command,
                                    cm1e_path_problem_t *problem);
 /** Appends an arc from the end of the path through `border` (its space axes) to `end`, in the plane of the three
@@ -240,11 +241,11 @@ cm1e_error_t cm1e_path_append_line(cm1e_path_t *path, const double *end, const c
 cm1e_error_t cm1e_path_append_arc_border(cm1e_path_t *path, const double *border, const double *end,
                                          const cm1e_path_command_t *command, cm1e_path_problem_t *problem);
 /** Appends an arc around `centre`, in the plane of beginning, centre and end. The end must be as far from the centre as
- *  the beginning, to within 1e-6 of the radius and 1e-3 of the length; both ends are kept exactly. An end equal to the beginning in space (to
- *  within 1e-9 of the radius) is a full circle. If the three points lie on a line (half and full circles), the plane is
- *  the one parallel to X and Y, provided that all three are equally high. If they are not, and lie within 0.02 rad of a
- *  line, an arc of more than a quarter is refused, because a small error of an end would turn its plane; an arc by border
- *  must be used. */
+ *  the beginning, to within 1e-6 of the radius and 1e-3 of the length; both ends are kept exactly. An end equal to the
+ *  beginning in space (to within 1e-9 of the radius) is a full circle. If the three points lie on a line (half and full
+ *  circles), the plane is the one parallel to X and Y, provided that all three are equally high. If they are not, and
+ *  lie within 0.02 rad of a line, an arc of more than a quarter is refused, because a small error of an end would turn
+ *  its plane; an arc by border must be used. */
 cm1e_error_t cm1e_path_append_arc_centre(cm1e_path_t *path, const double *centre, const double *end,
                                          cm1e_path_way_t way, const cm1e_path_command_t *command,
                                          cm1e_path_problem_t *problem);
@@ -257,13 +258,14 @@ double cm1e_path_left(const cm1e_path_t *path);
 /** Sets the factor (>= 0) of the velocities of commands; the limits of the axes still apply. 0: the path comes to rest
  *  and waits. After cm1e_path_clear() it acts when the path has come to rest. */
 void cm1e_path_override(cm1e_path_t *path, double factor);
-/** Stops along the path, as soon as `deceleration` and `jerk` allow (0 selects as much as the axes allow). Where the way
- *  that is left is too short for these, or the next corner too near, it stops as gently as fits; where not even the limits
- *  of the commands fit before a corner, it begins as soon as they do. A stop under way stays where the path is cut off at
- *  its end and these would need longer. The state is CM1E_PATH_STOPPING, then CM1E_PATH_STOPPED (CM1E_PATH_IDLE at the
- *  end of the path). The remaining segments wait. */
+/** Stops along the path, as soon as `deceleration` and `jerk` allow (0 selects as much as the axes allow). Where the
+ *  way that is left is too short for these, or the next corner too near, it stops as gently as fits; where not even the
+ *  limits of the commands fit before a corner, it begins as soon as they do. A stop under way stays where the path is
+ *  cut off at its end and these would need longer. The state is CM1E_PATH_STOPPING, then CM1E_PATH_STOPPED
+ *  (CM1E_PATH_IDLE at the end of the path). The remaining segments wait. */
 void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk);
-/** Continues with the remaining segments, also while it still stops; after cm1e_path_clear() when it has come to rest. */
+/** Continues with the remaining segments, also while it still stops; after cm1e_path_clear() when it has come to
+ *  rest. */
 void cm1e_path_go_on(cm1e_path_t *path);
 /** Drops the segments that are no longer needed. During a stop these are the segments behind the point of rest; that
  *  point becomes the end of the path (cm1e_path_end()), and segments appended later begin there. At rest all segments
@@ -272,7 +274,8 @@ void cm1e_path_go_on(cm1e_path_t *path);
 void cm1e_path_clear(cm1e_path_t *path);
 
 /** The axes have come to rest at the last step, because no further set-points were sent. The remaining segments begin
- *  again from there, from rest. A path without further segments that comes to rest after cm1e_path_clear() ends there. */
+ *  again from there, from rest. A path without further segments that comes to rest after cm1e_path_clear() ends
+ *  there. */
 void cm1e_path_pause(cm1e_path_t *path);
 
 /** The axes go on with this part (0.5 ... 1) of their velocities at the last step, along the path, and get back to what

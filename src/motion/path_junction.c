@@ -127,7 +127,8 @@ static double room_on_last(cm1e_path_t *path)
 typedef struct {
     bool corner, even; /**< a break of the tangent; no step of the acceleration either */
     double velocity;   /**< at which the step is as large as it may be */
-    double bend_s;     /**< of the acceleration of an axis, per velocity: what a break of the tangent makes in a cycle */
+    double bend_s;     /**< of the acceleration of an axis, per velocity: what a break of the tangent makes in a
+                            cycle */
 } break_t;
 
 static break_t look_at_break(const cm1e_path_t *path, const cm1e_path_piece_t *before, const cm1e_path_piece_t *after,
@@ -141,7 +142,8 @@ static break_t look_at_break(const cm1e_path_t *path, const cm1e_path_piece_t *b
     for (int i = 0; i < config->axes; i++) {
         const double bend = fabs(b.tangent[i] - a.tangent[i]) / config->cycle_s;
         const double curve = fabs(b.curvature[i] - a.curvature[i]);
-        const double allowed = STEP_SHARE * smaller(config->axis[i].jerk * config->cycle_s, config->axis[i].acceleration);
+        const double allowed = STEP_SHARE * smaller(config->axis[i].jerk * config->cycle_s,
+                                                    config->axis[i].acceleration);
         found.corner = found.corner || bend * config->cycle_s > CORNER;
         found.even = found.even && bend * velocity + curve * velocity * velocity <= NO_STEP * allowed;
         found.bend_s = larger(found.bend_s, bend / config->axis[i].acceleration);
@@ -152,7 +154,8 @@ static break_t look_at_break(const cm1e_path_t *path, const cm1e_path_piece_t *b
     return found;
 }
 
-/** Next to a step, half of the axes' jerk is for the step; and of their acceleration what a break of the tangent takes. */
+/** Next to a step, half of the axes' jerk is for the step; and of their acceleration what a break of the tangent
+ *  takes. */
 static bool pass_slowly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment, double velocity,
                         double bend_s, double junction)
 {
@@ -305,7 +308,8 @@ static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_
             main->joined = false;
     }
     pop_last(path, 2);
-    element->length = saved.length; /* what was known of the way stays that of this try: the next plan finds it changed */
+    /* What was known of the way stays that of this try: the next plan finds it changed. */
+    element->length = saved.length;
     return false;
 }
 

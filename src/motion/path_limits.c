@@ -129,7 +129,8 @@ static double velocity_with(const bends_t *bends, double velocity, double a, dou
         const double whole = bends->round ? hypot(along, across) : along + across;
         if (whole > bend->acceleration * (1 + ROUNDING)) {
             const double most = bend->acceleration * (1 + ROUNDING);
-            const double left = bends->round ? sqrt(larger(0, (most - along) * (most + along))) : larger(0, most - along);
+            const double left = bends->round ? sqrt(larger(0, (most - along) * (most + along)))
+                                             : larger(0, most - along);
             velocity = sqrt(left / bend->second);
         }
         const double turned = 3 * bend->second * velocity * a;
@@ -141,7 +142,10 @@ static double velocity_with(const bends_t *bends, double velocity, double a, dou
     return velocity;
 }
 
-static double strongest(const cm1e_motion_limits_t *limits) { return larger(limits->acceleration, limits->deceleration); }
+static double strongest(const cm1e_motion_limits_t *limits)
+{
+    return larger(limits->acceleration, limits->deceleration);
+}
 
 static cm1e_motion_limits_t lower(const cm1e_motion_limits_t *a, const cm1e_motion_limits_t *b, double share)
 {

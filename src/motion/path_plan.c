@@ -144,7 +144,8 @@ bool cm1e_path_keeps(const cm1e_profile_t *profile, const cm1e_motion_state_t *s
     cm1e_profile_extent(profile, &low, &high);
     cm1e_path_velocities(profile, &slowest, &fastest);
     const double slack = CM1E_PATH_AS_LONG * (end - start->position);
-    return high <= end + slack && slowest >= -CM1E_PATH_AS_LONG * highest && fastest <= highest * (1 + CM1E_PATH_AS_LONG);
+    return high <= end + slack && slowest >= -CM1E_PATH_AS_LONG * highest &&
+           fastest <= highest * (1 + CM1E_PATH_AS_LONG);
 }
 
 static bool plan_to(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double exit,
@@ -210,8 +211,8 @@ static bool plan_wide(cm1e_path_t *path, const cm1e_motion_state_t *start, const
                       double velocity, cm1e_profile_t *profile)
 {
     const double a = start->acceleration;
-    if (larger(start->velocity, cm1e_path_eased(start, wide->limits.jerk)) > velocity || a > wide->limits.acceleration ||
-        -a > wide->limits.deceleration)
+    if (larger(start->velocity, cm1e_path_eased(start, wide->limits.jerk)) > velocity ||
+        a > wide->limits.acceleration || -a > wide->limits.deceleration)
         return false;
     double soft, hard;
     exits(path, 0, wide, &soft, &hard);
@@ -246,9 +247,11 @@ static bool widen(cm1e_path_t *path, const cm1e_motion_state_t *start, cm1e_path
             if (planned || !plan_wide(path, start, &wide, wide.highest, &wider))
                 break;
         }
-        if (planned && wider.duration_s > (profile->duration_s + time_over(path, run->count, &next->braking,
-                                                                           profile->end.velocity)) * (1 + CM1E_PATH_AS_LONG))
-            break;
+        if (planned) {
+            const double over_s = time_over(path, run->count, &next->braking, profile->end.velocity);
+            if (wider.duration_s > (profile->duration_s + over_s) * (1 + CM1E_PATH_AS_LONG))
+                break;
+        }
         *profile = wider;
         *run = wide;
         planned = true;
@@ -300,7 +303,8 @@ static bool keep_going_with(cm1e_path_t *path, const cm1e_motion_state_t *start,
     cm1e_profile_t profile;
     double soft, hard;
     exits(path, 0, run, &soft, &hard);
-    if (!(alone ? plan_run(&profile, start, run, soft, hard, false) : plan_wide(path, start, run, run->highest, &profile)))
+    if (!(alone ? plan_run(&profile, start, run, soft, hard, false)
+                : plan_wide(path, start, run, run->highest, &profile)))
         return false;
     for (int i = 1; i < run->count; i++)
         cm1e_path_element(path, i)->joined = true;

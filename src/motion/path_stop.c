@@ -105,8 +105,8 @@ static double between(double gentle, double hard, double part)
     return hard > gentle ? gentle * pow(hard / gentle, part) : gentle;
 }
 
-/** As gentle as fits, where what was told does not fit into the way that is left: between that, or what the way needs at
- *  least, and the limits of the motion itself. */
+/** As gentle as fits, where what was told does not fit into the way that is left: between that, or what the way needs
+ *  at least, and the limits of the motion itself. */
 static bool find_gentlest(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
                           const cm1e_motion_state_t *start)
 {
@@ -121,8 +121,8 @@ static bool find_gentlest(cm1e_path_t *path, double deceleration, double jerk, c
     for (int i = 0; i < GENTLE_STEPS; i++) {
         const double middle = (low + high) / 2;
         cm1e_profile_t gentler;
-        if (find_soonest(path, between(deceleration, most.deceleration, middle), between(jerk, most.jerk, middle), &gentler,
-                         start)) {
+        if (find_soonest(path, between(deceleration, most.deceleration, middle), between(jerk, most.jerk, middle),
+                         &gentler, start)) {
             *stop = gentler;
             high = middle;
         } else {

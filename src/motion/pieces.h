@@ -33,8 +33,8 @@ void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, 
                                         const cm1e_motion_limits_t *limits);
 
 /** Appends the fastest way from (velocity < 0, acceleration) to standstill, with the largest acceleration there from
- *  which the velocity may rise on: `*at_zero`. false: the case is of another kind, and what was appended is of no use. A
- *  limit of jerk is needed. */
+ *  which the velocity may rise on: `*at_zero`. false: the case is of another kind, and what was appended is of no use.
+ *  A limit of jerk is needed. */
 bool cm1e_pieces_append_rise_to_standstill(cm1e_pieces_t *pieces, double velocity, double acceleration,
                                            const cm1e_motion_limits_t *limits, double *at_zero);
 

@@ -95,7 +95,8 @@ static inline bool places(const cm1e_profile_t *profile, int index, double *begi
     if (index < profile->segment_count - 1) {
         *begin = segment->start.position;
         turns = may_turn(v, segment[1].start.velocity, a, a + (segment[1].start_s - segment->start_s) * segment->jerk);
-    } else { /* with jerk its acceleration comes to zero exactly at the end, so in between it does not change its sign */
+    } else {
+        /* With jerk its acceleration comes to zero exactly at the end, so in between it does not change its sign. */
         const cm1e_profile_stretch_t stretch = stretch_of(profile, index);
         *begin = cm1e_profile_stretch_state(&stretch, stretch.from_s).position;
         turns = may_turn(v, profile->end.velocity, a, segment->jerk == 0 ? a : 0);

@@ -163,8 +163,8 @@ static size_t look(cm1e_nic_link_t *link, int *port, uint8_t *frame)
 static size_t raw_receive(cm1e_nic_link_t *link, int *port, uint8_t *frame, int64_t deadline_ns)
 {
     raw_t *raw = link->state;
-    /* A look before the first sleep is a call for nothing where the frame was sent a moment ago. Leaving it out was tried:
-     * the answer is not taken sooner, because the call is made while the frame is on its way (bench_socket). */
+    /* A look before the first sleep is a call for nothing where the frame was sent a moment ago. Leaving it out was
+     * tried: the answer is not taken sooner, because the call is made while the frame is on its way (bench_socket). */
     for (int useless = 0;;) {
         const size_t length = look(link, port, frame);
         if (length > 0 || deadline_ns == NIC_NOW)

@@ -127,8 +127,8 @@ static cm1e_error_t in_use(const char *interface_name, const cm1e_interface_owne
     const bool ended = owner->pid > 0 && kill(owner->pid, 0) != 0 && errno == ESRCH;
     return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, (uint32_t)owner->pid,
                          "Network interface \"%s\" is in use by %s. An interface has one owner at a time: two masters, "
-                         "or two simulated segments, on one network disturb each other, and motors lose their torque.%s "
-                         "End that program first, or use another interface.", interface_name, who,
+                         "or two simulated segments, on one network disturb each other, and motors lose their "
+                         "torque.%s End that program first, or use another interface.", interface_name, who,
                          ended ? " This process has ended, or is in another container; a process that it started may "
                                  "still hold the interface." : "");
 }

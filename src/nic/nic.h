@@ -25,8 +25,8 @@ cm1e_error_t cm1e_nic_close(cm1e_nic_t *nic);
 /** The clock that runs on this nic: monotonic, or one of the backend. */
 cm1e_clock_t *cm1e_nic_clock(cm1e_nic_t *nic);
 
-/** `function` runs before every frame that the library sends, in the thread that sends it; the last one given counts. What
- *  it sends itself on other nics passes it too. @rt any */
+/** `function` runs before every frame that the library sends, in the thread that sends it; the last one given counts.
+ *  What it sends itself on other nics passes it too. @rt any */
 void cm1e_nic_before_send(void (*function)(const cm1e_nic_t *nic));
 
 /* ---- tap --------------------------------------------------------------------------------------------------------- */

@@ -42,8 +42,8 @@ static cm1e_error_t cannot_write(const char *path, cm1e_diag_t *diag)
     return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s cannot be written: %s.", path, strerror(errno));
 }
 
-/** Opens a file that nobody else writes, and empties it: two that write one file damage the records of each other. A lock
- *  needs no file of its own and ends with the process. -1: errno is EWOULDBLOCK where somebody writes it. */
+/** Opens a file that nobody else writes, and empties it: two that write one file damage the records of each other. A
+ *  lock needs no file of its own and ends with the process. -1: errno is EWOULDBLOCK where somebody writes it. */
 static int open_alone(const char *path)
 {
     struct stat found;
@@ -72,8 +72,8 @@ cm1e_error_t cm1e_pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *d
         if (fd >= 0)
             close(fd);
         else if (errno == EWOULDBLOCK)
-            return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s is being written already, for another network "
-                                 "or by another program: name another file.", path);
+            return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s is being written already, for another "
+                                 "network or by another program: name another file.", path);
         return cannot_write(path, diag);
     }
     setvbuf(p->file, p->buffer, _IOFBF, sizeof p->buffer);
@@ -103,7 +103,8 @@ cm1e_error_t cm1e_pcap_close(pcap_file_t *pcap)
     if (!pcap)
         return CM1E_OK;
     const bool arrived = fflush(pcap->file) == 0;
-    flock(fileno(pcap->file), LOCK_UN); /* a child that was forked meanwhile has the file open too, and the lock with it */
+    /* A child that was forked meanwhile has the file open too, and the lock with it. */
+    flock(fileno(pcap->file), LOCK_UN);
     const bool whole = fclose(pcap->file) == 0 && arrived && !pcap->failed;
     free(pcap);
     return whole ? CM1E_OK : CM1E_ERROR_IO;

@@ -61,8 +61,8 @@ static cm1e_error_t check_interface(int fd, const char *name, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
-/* The driver knows at once that the link is lost. The flags follow up to a second later, but do so for a link that comes,
- * too: the kernel sends nothing before. */
+/* The driver knows at once that the link is lost. The flags follow up to a second later, but do so for a link that
+ * comes, too: the kernel sends nothing before. */
 static bool says_no_link(int fd, const char *interface_name)
 {
     struct ethtool_value link = {.cmd = ETHTOOL_GLINK};

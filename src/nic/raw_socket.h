@@ -22,8 +22,8 @@ typedef struct cm1e_raw_socket {
 /** Locks, opens, binds, drains. `interface_name` is the interface's own, without a way. An interface that is in use,
  *  unknown or down, and a missing privilege, are diagnosed with the cure. */
 cm1e_error_t cm1e_raw_socket_open(cm1e_raw_socket_t *made, const char *interface_name, cm1e_diag_t *diag);
-/** As cm1e_raw_socket_open(), but nothing is received: for another way to the frames, which needs the lock, an interface
- *  that is up, and one that takes frames for any address. */
+/** As cm1e_raw_socket_open(), but nothing is received: for another way to the frames, which needs the lock, an
+ *  interface that is up, and one that takes frames for any address. */
 cm1e_error_t cm1e_raw_socket_hold(cm1e_raw_socket_t *made, const char *interface_name, cm1e_diag_t *diag);
 /** Closing a closed socket does nothing. */
 void cm1e_raw_socket_close(cm1e_raw_socket_t *closed);

@@ -10,7 +10,10 @@
 
 enum { ETHERTYPE_ETHERCAT = 0x88A4 };
 
-static int bpf(enum bpf_cmd command, union bpf_attr *words) { return (int)syscall(SYS_bpf, command, words, sizeof *words); }
+static int bpf(enum bpf_cmd command, union bpf_attr *words)
+{
+    return (int)syscall(SYS_bpf, command, words, sizeof *words);
+}
 
 #define OP(c, d, s, o, i) ((struct bpf_insn){.code = (c), .dst_reg = (d), .src_reg = (s), .off = (o), .imm = (i)})
 

@@ -1,7 +1,7 @@
 /**
  * @file xdp_program.h
- * A program of eBPF at a network interface, which hands EtherCAT frames to an AF_XDP socket and all others to the kernel.
- * It ends with the descriptors: when the process ends, however that happens, the interface is as before.
+ * A program of eBPF at a network interface, which hands EtherCAT frames to an AF_XDP socket and all others to the
+ * kernel. It ends with the descriptors: when the process ends, however that happens, the interface is as before.
  */
 #ifndef CM1E_NIC_XDP_PROGRAM_H
 #define CM1E_NIC_XDP_PROGRAM_H
@@ -18,8 +18,9 @@ typedef struct cm1e_xdp_program {
 /** What is being done, for a diagnosis. */
 typedef enum cm1e_xdp_step { CM1E_XDP_MAKE, CM1E_XDP_ATTACH } cm1e_xdp_step_t;
 
-/** Makes the program for a socket that is bound to receive queue 0 of the interface, and attaches it. 0, or the errno of
- *  `*step`; what has been made is then to be closed. EBUSY, EEXIST of CM1E_XDP_ATTACH: there is a program already. @rt init */
+/** Makes the program for a socket that is bound to receive queue 0 of the interface, and attaches it. 0, or the errno
+ *  of `*step`; what has been made is then to be closed. EBUSY, EEXIST of CM1E_XDP_ATTACH: there is a program already.
+ *  @rt init */
 int cm1e_xdp_program_attach(cm1e_xdp_program_t *made, int socket, unsigned interface_index, cm1e_xdp_step_t *step);
 /** Closing what is not made does nothing. */
 void cm1e_xdp_program_close(cm1e_xdp_program_t *closed);

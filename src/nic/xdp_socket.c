@@ -19,8 +19,9 @@
 #include "nic/raw_socket.h"
 #include "nic/xdp_program.h"
 
-/* A chunk holds a frame. Chunks before OUTGOING are for frames that come in: a burst of them waits there, as in the buffer
- * of a packet socket. The others are for frames that go out: drivers give them back late, some after a millisecond. */
+/* A chunk holds a frame. Chunks before OUTGOING are for frames that come in: a burst of them waits there, as in the
+ * buffer of a packet socket. The others are for frames that go out: drivers give them back late, some after a
+ * millisecond. */
 enum {
     CHUNK = 2048, OUTGOING = 256, SENT = 64, CHUNKS = OUTGOING + SENT, MEMORY = CHUNK * CHUNKS,
     SHORTEST_FRAME = 60, USUAL_MTU = 1500,
@@ -62,10 +63,10 @@ static cm1e_error_t no_right(const char *name, cm1e_diag_t *diag)
     char self[160];
     cm1e_program_path(self, sizeof self);
     return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0,
-                         "AF_XDP on \"%s\" needs the privileges CAP_NET_RAW, CAP_NET_ADMIN and CAP_BPF, in a container those "
-                         "of the host. Start the program with sudo, or give them once: sudo setcap cap_net_raw,"
-                         "cap_net_admin,cap_bpf,cap_sys_nice,cap_ipc_lock+ep %s. \"%s\" without a comma needs CAP_NET_RAW "
-                         "only.", name, self, name);
+                         "AF_XDP on \"%s\" needs the privileges CAP_NET_RAW, CAP_NET_ADMIN and CAP_BPF, in a container "
+                         "those of the host. Start the program with sudo, or give them once: sudo setcap cap_net_raw,"
+                         "cap_net_admin,cap_bpf,cap_sys_nice,cap_ipc_lock+ep %s. \"%s\" without a comma needs "
+                         "CAP_NET_RAW only.", name, self, name);
 }
 
 static cm1e_error_t no_socket(const char *name, int why, cm1e_diag_t *diag)
@@ -79,21 +80,24 @@ static cm1e_error_t no_socket(const char *name, int why, cm1e_diag_t *diag)
 static cm1e_error_t no_rings(const char *name, int why, cm1e_diag_t *diag)
 {
     if (why == ENOBUFS || why == ENOMEM)
-        return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "AF_XDP on \"%s\" needs %d KB of locked memory, and this program "
-                             "may not lock so much. Give it CAP_IPC_LOCK, or raise memlock in /etc/security/limits.conf "
-                             "(LimitMEMLOCK= of a service).", name, MEMORY / 1024);
-    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The rings of AF_XDP for \"%s\" cannot be made: %s.", name, strerror(why));
+        return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "AF_XDP on \"%s\" needs %d KB of locked memory, and this "
+                             "program may not lock so much. Give it CAP_IPC_LOCK, or raise memlock in "
+                             "/etc/security/limits.conf (LimitMEMLOCK= of a service).", name, MEMORY / 1024);
+    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The rings of AF_XDP for \"%s\" cannot be made: %s.", name,
+                         strerror(why));
 }
 
 static cm1e_error_t not_bound(const char *name, int why, cm1e_diag_t *diag)
 {
     if (why == EBUSY)
-        return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, 0, "Another program has an AF_XDP socket on network interface "
-                             "\"%s\". End that program first.", name);
-    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The AF_XDP socket cannot be bound to \"%s\": %s.", name, strerror(why));
+        return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, 0, "Another program has an AF_XDP socket on network "
+                             "interface \"%s\". End that program first.", name);
+    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The AF_XDP socket cannot be bound to \"%s\": %s.", name,
+                         strerror(why));
 }
 
-static cm1e_error_t not_attached(const cm1e_xdp_socket_t *x, const char *name, int why, cm1e_xdp_step_t step, cm1e_diag_t *diag)
+static cm1e_error_t not_attached(const cm1e_xdp_socket_t *x, const char *name, int why, cm1e_xdp_step_t step,
+                                 cm1e_diag_t *diag)
 {
     const int mtu = question(x->holder.fd, name, SIOCGIFMTU, NULL);
     char cure[100];
@@ -102,17 +106,17 @@ static cm1e_error_t not_attached(const cm1e_xdp_socket_t *x, const char *name, i
     if (step == CM1E_XDP_MAKE)
         return no_socket(name, why, diag);
     if (why == EBUSY || why == EEXIST)
-        return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, 0, "There is an XDP program at network interface \"%s\" "
-                             "already, of a firewall for example, and an interface has one. `ip link show %s` shows it. End "
-                             "what has put it there (or: sudo ip link set %s xdp off), or name the interface without a "
-                             "comma: \"%s\".", name, name, name, name);
+        return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, 0, "There is an XDP program at network interface "
+                             "\"%s\" already, of a firewall for example, and an interface has one. `ip link show %s` "
+                             "shows it. End what has put it there (or: sudo ip link set %s xdp off), or name the "
+                             "interface without a comma: \"%s\".", name, name, name, name);
     if (mtu > USUAL_MTU)
         snprintf(cure, sizeof cure, "its MTU is %d, try: sudo ip link set %s mtu %d", mtu, name, USUAL_MTU);
     else
         snprintf(cure, sizeof cure, "switch LRO off (sudo ethtool -K %s lro off)", name);
-    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "The driver of \"%s\" or this kernel (before Linux 5.9) takes no XDP "
-                         "program: %s. Often it is a setting of the card: %s. Or name the interface without a comma: \"%s\".",
-                         name, strerror(why), cure, name);
+    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "The driver of \"%s\" or this kernel (before Linux 5.9) "
+                         "takes no XDP program: %s. Often it is a setting of the card: %s. Or name the interface "
+                         "without a comma: \"%s\".", name, strerror(why), cure, name);
 }
 
 /* ---- the interface ----------------------------------------------------------------------------------------------- */
@@ -138,9 +142,9 @@ static cm1e_error_t check_queues(const cm1e_xdp_socket_t *x, const char *name, c
     const unsigned count = count_queues(x->holder.fd, name, &word);
     if (count == 1)
         return CM1E_OK;
-    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "Network interface \"%s\" has %u receive queues, and AF_XDP sees the "
-                         "frames of one. Leave one: sudo ethtool -L %s %s 1. Or name the interface without a comma: \"%s\".",
-                         name, count, name, word, name);
+    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "Network interface \"%s\" has %u receive queues, and AF_XDP "
+                         "sees the frames of one. Leave one: sudo ethtool -L %s %s 1. Or name the interface without a "
+                         "comma: \"%s\".", name, count, name, word, name);
 }
 
 /* Some drivers begin anew with a program at them, and their link with them. */
@@ -211,7 +215,8 @@ static cm1e_error_t make_socket(cm1e_xdp_socket_t *x, const char *name, cm1e_dia
     if (chunks == MAP_FAILED)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the frames of \"%s\".", name);
     x->chunks = chunks;
-    madvise(chunks, MEMORY, MADV_DONTFORK); /* after a fork() the kernel would go on with pages that are not ours any more */
+    /* After a fork() the kernel would go on with pages that are not ours any more. */
+    madvise(chunks, MEMORY, MADV_DONTFORK);
     x->fd = socket(AF_XDP, SOCK_RAW | SOCK_CLOEXEC, 0);
     if (x->fd < 0)
         return no_socket(name, errno, diag);
@@ -295,7 +300,8 @@ static void take_back(cm1e_xdp_socket_t *x)
 {
     while (*x->completion.consumer != seen(x->completion.producer)) {
         if (x->free_count < SENT)
-            x->free[x->free_count++] = ((const uint64_t *)x->completion.entries)[*x->completion.consumer & x->completion.mask];
+            x->free[x->free_count++] =
+                ((const uint64_t *)x->completion.entries)[*x->completion.consumer & x->completion.mask];
         advance(x->completion.consumer);
     }
 }
@@ -313,8 +319,9 @@ static bool send_all(cm1e_xdp_socket_t *x)
     return !x->failed;
 }
 
-/* A frame that the interface did not take, because it was down, is still in the ring and leaves before the next one. Its
- * targets are old by then: it leaves as a frame without datagrams, which no slave processes. false: it is still there. */
+/* A frame that the interface did not take, because it was down, is still in the ring and leaves before the next one.
+ * Its targets are old by then: it leaves as a frame without datagrams, which no slave processes. false: it is still
+ * there. */
 static bool clear_unsent(cm1e_xdp_socket_t *x)
 {
     if (*x->out.producer == seen(x->out.consumer))

@@ -91,8 +91,8 @@ static bool is_real(const trace_column_t *column)
 /** What a value of an axis may be off: the page shows five decimals. */
 static const double tolerance = 1e-6;
 
-/** Four bytes are enough for a difference that they keep exactly, and for a value of an axis that they keep closely enough.
- *  Variables of the program are kept exactly. */
+/** Four bytes are enough for a difference that they keep exactly, and for a value of an axis that they keep closely
+ *  enough. Variables of the program are kept exactly. */
 static bool needs_eight_bytes(const trace_t *trace, uint32_t column, double base)
 {
     const bool of_axis = trace->columns[column].kind == TRACE_KIND_NUMBER && is_real(&trace->columns[column]) &&

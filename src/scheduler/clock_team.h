@@ -1,7 +1,7 @@
 /**
  * @file clock_team.h
- * The distributed clocks of the buses of a scheduler: the cycle follows the reference clock of one of them, which leads,
- * and the clocks of the others follow that clock too (docs/CLOCKS.md). Buses without clocks are members as well.
+ * The distributed clocks of the buses of a scheduler: the cycle follows the reference clock of one of them, which
+ * leads, and the clocks of the others follow that clock too (docs/CLOCKS.md). Buses without clocks are members as well.
  */
 #ifndef CM1E_SCHEDULER_CLOCK_TEAM_H
 #define CM1E_SCHEDULER_CLOCK_TEAM_H

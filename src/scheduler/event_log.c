@@ -67,7 +67,8 @@ static void look_at_axis(log_t *log, const cm1e_axis_t *axis, uint32_t index, in
     /* The code of the drive may come a cycle after the error. */
     if (now.error != CM1E_OK && (now.error != seen->error || now.device_error != seen->device_error))
         write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_ERROR, .axis = (int32_t)index, .code = (int32_t)now.error,
-                                            .detail = now.device_error, .value = now.value, .bound = now.bound}, run_ns);
+                                            .detail = now.device_error, .value = now.value, .bound = now.bound},
+                                            run_ns);
     *seen = now;
 }
 
@@ -110,8 +111,8 @@ static void write_emergency(log_t *log, uint32_t number, uint32_t position, cons
                                         .value = (double)bytes, .bound = (double)left_out}, run_ns);
 }
 
-/** How many records there may be now; at the end of the run one at least. Where there may be none, the time from which on
- *  there may be one is noted. */
+/** How many records there may be now; at the end of the run one at least. Where there may be none, the time from which
+ *  on there may be one is noted. */
 static size_t records_left(const log_slaves_t *slaves, const log_pace_t *pace, int64_t run_ns, int64_t *due_ns)
 {
     const int64_t most_ns = BURST * PACE_NS, ahead_ns = pace->paid_until_ns - run_ns;

@@ -44,7 +44,10 @@ static forced_t *find(forcing_t *forcing, uint32_t variable)
     return NULL;
 }
 
-static bool is_of(const forced_t *row, const forced_t *who) { return row->owner == who->owner && row->client == who->client; }
+static bool is_of(const forced_t *row, const forced_t *who)
+{
+    return row->owner == who->owner && row->client == who->client;
+}
 
 /** The place of what another one has released, and which this owner has not let go of; NULL: there is none. */
 static forced_t *find_taken(const forcing_parts_t *p, const forced_t *who)

@@ -1,8 +1,8 @@
 /**
  * @file forcing.h
  * Variables of a program that others force: the value that they have whatever the program writes. They are those of the
- * table of the scheduler (variables.h); the runner of the program applies what is forced before and behind each task. All
- * @rt cycle.
+ * table of the scheduler (variables.h); the runner of the program applies what is forced before and behind each task.
+ * All @rt cycle.
  */
 #ifndef CM1E_SCHEDULER_FORCING_H
 #define CM1E_SCHEDULER_FORCING_H
@@ -39,11 +39,11 @@ typedef enum forcing_result {
 /** Gives the forced variables their values: between the inputs and the program, and behind it. */
 CM1E_GUEST_API void cm1e_scheduler_apply_forced(cm1e_scheduler_t *scheduler);
 
-/** Forces a variable, or renews that. An owner whose variable another one has released is refused, until it has let go of
- *  it: has released it too, or has not asked for it for the time of `until_ns`. */
+/** Forces a variable, or renews that. An owner whose variable another one has released is refused, until it has let go
+ *  of it: has released it too, or has not asked for it for the time of `until_ns`. */
 CM1E_GUEST_API forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_t *forced);
-/** Whoever forces it, it is the program's again. `who` has the variable, and the owner that releases it. One whose variable
- *  another one has released only lets go of it: what a third one forces meanwhile stays. */
+/** Whoever forces it, it is the program's again. `who` has the variable, and the owner that releases it. One whose
+ *  variable another one has released only lets go of it: what a third one forces meanwhile stays. */
 CM1E_GUEST_API void cm1e_scheduler_release(cm1e_scheduler_t *scheduler, const forced_t *who);
 /** Ends what this client forces. */
 CM1E_GUEST_API void cm1e_scheduler_release_all(cm1e_scheduler_t *scheduler, const void *owner, uint32_t client);

@@ -36,7 +36,8 @@ static const char *const counter_texts[] = {
     [CM1E_LOG_WORKING_COUNTER] = "cycles with a wrong working counter because a slave did not take part",
     [CM1E_LOG_UNSENT_FRAMES] = "frames that the network interface did not take because it is down or too slow",
     [CM1E_LOG_OTHER_MASTER] = "frames of another master on this network, which is to be ended",
-    [CM1E_LOG_SYNC_LOST] = "loss of synchronism: the clock of a slave left the reference clock, or the reference is away",
+    [CM1E_LOG_SYNC_LOST] = "loss of synchronism: the clock of a slave left the reference clock, or the reference is "
+                           "away",
 };
 
 const char *cm1e_log_kind_name(cm1e_log_kind_t kind)
@@ -44,19 +45,21 @@ const char *cm1e_log_kind_name(cm1e_log_kind_t kind)
     return (unsigned)kind < CM1E_LOG_KIND_COUNT ? kind_names[kind] : "unknown";
 }
 
-static void error_text(const cm1e_axis_t *axis, const char *name, const cm1e_log_event_t *event, char *text, size_t size)
+static void error_text(const cm1e_axis_t *axis, const char *name, const cm1e_log_event_t *event, char *text,
+                       size_t size)
 {
     const cm1e_device_error_t *device = event->detail ? cm1e_axis_device_error(axis, (uint16_t)event->detail) : NULL;
     char numbers[64] = "", code[400] = "";
     /* Of a set-point these are a velocity, an acceleration or a jerk; the text of the axis says which. */
-    const bool of_set_point = event->code == CM1E_ERROR_AXIS_SET_POINT_LIMIT || event->code == CM1E_ERROR_AXIS_COUPLING_LIMIT;
+    const bool of_set_point = event->code == CM1E_ERROR_AXIS_SET_POINT_LIMIT ||
+                              event->code == CM1E_ERROR_AXIS_COUPLING_LIMIT;
     const char *unit = of_set_point ? "" : " u";
     if (event->bound != 0.0)
         snprintf(numbers, sizeof numbers, ": %.6g%s, allowed are %.6g%s", event->value, unit, event->bound, unit);
     if (event->detail)
         snprintf(code, sizeof code, " Device error 0x%04X: %s.%s%s%s", event->detail,
-                 device ? device->text : "not a code of the manual", device ? " Cure: " : "", device ? device->cure : "",
-                 device ? "." : "");
+                 device ? device->text : "not a code of the manual", device ? " Cure: " : "",
+                 device ? device->cure : "", device ? "." : "");
     snprintf(text, size, "%s: %s%s.%s", name, cm1e_strerror((cm1e_error_t)event->code), numbers, code);
 }
 
@@ -127,8 +130,8 @@ static void number_text(const variable_t *variable, const cm1e_log_event_t *even
     else if (type == CM1E_TRACE_ULINT)
         snprintf(text, size, "%" PRIu64 "%s%s", (uint64_t)event->value + (uint64_t)event->bound, space, unit);
     else
-        snprintf(text, size, "%.10g%s%s", type == CM1E_TRACE_REAL ? cm1e_variable_decimal((float)event->value) : event->value,
-                 space, unit);
+        snprintf(text, size, "%.10g%s%s",
+                 type == CM1E_TRACE_REAL ? cm1e_variable_decimal((float)event->value) : event->value, space, unit);
 }
 
 static void variable_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)

@@ -72,9 +72,9 @@ static bool bind_to_cpu(realtime_t *realtime, int cpu)
     return realtime->bound;
 }
 
-/** Forbids sleep states of the processors while the file is open, which ends with the process at the latest. A processor
- *  that sleeps between two cycles wakes up late. It is no part of "real time is in force": the file is root's, unless the
- *  administrator gave it away (docs/REALTIME.md), and a privilege does not replace that. */
+/** Forbids sleep states of the processors while the file is open, which ends with the process at the latest. A
+ *  processor that sleeps between two cycles wakes up late. It is no part of "real time is in force": the file is
+ *  root's, unless the administrator gave it away (docs/REALTIME.md), and a privilege does not replace that. */
 static void keep_awake(realtime_t *realtime)
 {
     const int32_t latency_us = 0;
@@ -107,8 +107,8 @@ bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *co
                  config->cpu);
     if (config->realtime_priority < 0)
         return false;
-    /* The priority first: locking takes tens of milliseconds of computing, and the slaves are in Operational already. On
-     * a busy machine their watchdogs (100 ms) would not wait for it at an ordinary priority. */
+    /* The priority first: locking takes tens of milliseconds of computing, and the slaves are in Operational already.
+     * On a busy machine their watchdogs (100 ms) would not wait for it at an ordinary priority. */
     const bool fifo = take_fifo(realtime, config->realtime_priority);
     keep_awake(realtime);
     touch_stack();

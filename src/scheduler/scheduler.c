@@ -133,7 +133,10 @@ static void shut_down_axes(cm1e_scheduler_t *s)
 }
 
 /** Number of the cycle to whose time a moment belongs. */
-static int64_t cycle_of(const cm1e_scheduler_t *s, int64_t time_ns) { return (time_ns - s->start_ns) / s->cycle_time_ns; }
+static int64_t cycle_of(const cm1e_scheduler_t *s, int64_t time_ns)
+{
+    return (time_ns - s->start_ns) / s->cycle_time_ns;
+}
 
 /** After a few missed cycles the motor has hardly slowed down; after more it is at rest (CSP). After the time of the
  *  watchdogs no motion begins again by itself, whether a drive has one or not: somebody may have resumed a program that
@@ -349,8 +352,8 @@ static bool any_swings(const cm1e_scheduler_t *s)
     return false;
 }
 
-/* Whether the stop may go on, `time_ns` after its begin. The stop timeout is for the ramps: behind them a motor that a load
- * still turns keeps its torque until it rests, and a drive gets the time to take it off. */
+/* Whether the stop may go on, `time_ns` after its begin. The stop timeout is for the ramps: behind them a motor that a
+ * load still turns keeps its torque until it rests, and a drive gets the time to take it off. */
 static bool may_go_on(const cm1e_scheduler_t *s, int64_t time_ns, int64_t *swing_ns)
 {
     static const int64_t longest_ns = CM1E_AXIS_LONGEST_SWING_MS * MS_IN_NS, least_off_ns = 100 * MS_IN_NS;
@@ -376,8 +379,8 @@ static cm1e_error_t shut_down(cm1e_scheduler_t *s, cm1e_diag_t *diag)
                              s->refused);
     if (s->shut_down && s->ended)
         return cm1e_diag_set(diag, CM1E_ERROR_PROGRAM, 0,
-                             "Task \"%s\" did not return within %g ms, so it was ended, and all axes were stopped. Look "
-                             "for an endless loop, or for a call that waits, in its program; then start it again.",
+                             "Task \"%s\" did not return within %g ms, so it was ended, and all axes were stopped. "
+                             "Look for an endless loop, or for a call that waits, in its program; then start it again.",
                              s->ended->name, (double)s->ended->limit_ns * 1e-6);
     if (s->shut_down)
         return CM1E_OK;

@@ -125,13 +125,13 @@ static const char *other_bus_refused(const cm1e_scheduler_t *s, cm1e_bus_t *bus)
     if (s->member_count == CM1E_MAX_BUSES)
         return "a scheduler has at most four buses";
     if (cm1e_bus_clock(bus) != s->clock)
-        return "it runs on another time: either all buses of a scheduler have virtual_time and were opened in one thread, "
-               "or none has it";
+        return "it runs on another time: either all buses of a scheduler have virtual_time and were opened in one "
+               "thread, or none has it";
     if (cm1e_bus_configuration(bus)->cycle_time_ns != s->cycle_time_ns)
         return "its cycle_time_us differs from that of the first bus";
     if (!cm1e_bus_follow_one_clock(clock_team_leader(&s->clocks), bus))
-        return "its distributed clocks and those of another bus do not follow each other: start the buses in one thread, "
-               "each while those before it are in operation";
+        return "its distributed clocks and those of another bus do not follow each other: start the buses in one "
+               "thread, each while those before it are in operation";
     _Static_assert(CM1E_MAX_AXES == 512, "the text says so");
     if (s->axis_count + cm1e_bus_configuration(bus)->axis_count > CM1E_MAX_AXES)
         return "a scheduler has at most 512 axes";
@@ -158,12 +158,12 @@ cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Buses are added before the scheduler runs.");
     if (scheduler->trace.variables > 0 || scheduler->trace.trigger.kind != CM1E_TRACE_NO_TRIGGER)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Buses are added before signals and the trigger of the trace, whose "
-                             "columns begin with those of all axes.");
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Buses are added before signals and the trigger of the trace, "
+                             "whose columns begin with those of all axes.");
     const char *refused = other_bus_refused(scheduler, bus), *taken = name_taken(scheduler, bus);
     if (refused[0])
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The bus on \"%s\" cannot be added to the scheduler: "
-                             "%s.", cm1e_bus_configuration(bus)->interface_name, refused);
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The bus on \"%s\" cannot be added to the "
+                             "scheduler: %s.", cm1e_bus_configuration(bus)->interface_name, refused);
     if (taken)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Two buses have an axis with the name \"%s\": give "
                              "each axis of a program a name of its own.", taken);
@@ -234,8 +234,8 @@ cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const ch
     snprintf(column.name, sizeof column.name, "%s", name ? name : "");
     snprintf(column.unit, sizeof column.unit, "%s", unit ? unit : "");
     if (!is_clean(column.name) || !is_clean(column.unit))
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The name and the unit of a signal are expected to be "
-                             "UTF-8 without control characters, so that programs can read the files of the trace.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The name and the unit of a signal are expected to "
+                             "be UTF-8 without control characters, so that programs can read the files of the trace.");
     return cm1e_trace_add(&scheduler->trace, &column, diag);
 }
 

@@ -29,7 +29,8 @@ typedef struct cm1e_window {
 
 enum { CM1E_WINDOWS = 2 };
 
-/** Makes a kind of window known; again: nothing changes. false: CM1E_WINDOWS are registered. Not while a scheduler runs.
+/** Makes a kind of window known; again: nothing changes. false: CM1E_WINDOWS are registered. Not while a scheduler
+ *  runs.
  *  @rt init */
 CM1E_GUEST_API bool cm1e_scheduler_register_window(const cm1e_window_t *window);
 
@@ -43,8 +44,8 @@ CM1E_GUEST_API cm1e_axis_t *const *cm1e_scheduler_axes_at(const cm1e_scheduler_t
 CM1E_GUEST_API cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler);
 /** 0: that bus; then those that were added, NULL behind the last. */
 CM1E_GUEST_API cm1e_bus_t *cm1e_scheduler_bus_at(const cm1e_scheduler_t *scheduler, uint32_t index);
-/** What the bus number `bus` (0 = first), which the scheduler has, counted in this run; returns how often the clock of one
- *  of its slaves, or its reference, was lost. @rt any */
+/** What the bus number `bus` (0 = first), which the scheduler has, counted in this run; returns how often the clock of
+ *  one of its slaves, or its reference, was lost. @rt any */
 CM1E_GUEST_API uint64_t cm1e_scheduler_counted(const cm1e_scheduler_t *scheduler, uint32_t bus,
                                                cm1e_bus_counters_t *counters);
 /** The name of a task, in the order in which they run (0 = first); "": there is none. @rt any */

@@ -1,7 +1,8 @@
 /**
  * @file task_watch.h
- * The watch over the tasks: a thread beside the cycle that ends a call of a task which does not return. Tasks run in the
- * thread of the cycle, so such a call would leave the motors without set-points. The cycle goes on without the task.
+ * The watch over the tasks: a thread beside the cycle that ends a call of a task which does not return. Tasks run in
+ * the thread of the cycle, so such a call would leave the motors without set-points. The cycle goes on without the
+ * task.
  *
  * Only the time counts in which the call computes or waits. The time that the machine takes away from it does not: a
  * task is not blamed for a busy processor, a suspended machine or a debugger.

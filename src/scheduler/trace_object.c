@@ -45,8 +45,8 @@ cm1e_error_t cm1e_trace_add_object(trace_t *trace, cm1e_bus_t *bus, uint16_t pos
     const uint8_t *place = find(bus, position, index, subindex, &bytes);
     if (!place)
         return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, index,
-                             "Object 0x%04X:%02X is not in the process data of axis \"%s\" (slave %u), so that no cycle "
-                             "can record it. Choose a mapping that has it.", index, subindex, axis, position);
+                             "Object 0x%04X:%02X is not in the process data of axis \"%s\" (slave %u), so that no "
+                             "cycle can record it. Choose a mapping that has it.", index, subindex, axis, position);
     const cm1e_entry_t *entry = known_entry(cm1e_bus_slave(bus, position), index, subindex);
     trace_column_t column = {.type = type_of(is_signed(entry), bytes), .value = place, .little_endian = true};
     if (cm1e_bus_slave_watch(bus, position).out) /* what is planned for it may not be what it has */

@@ -135,7 +135,8 @@ static cm1e_error_t check_trigger(const trace_t *trace, const cm1e_trace_trigger
 {
     if (trace->capacity == 0 || trace->begun)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
-                             "Set the trigger of a trace before the scheduler runs, and with a trace_capacity above 0.");
+                             "Set the trigger of a trace before the scheduler runs, and with a trace_capacity above "
+                             "0.");
     if ((unsigned)trigger->kind > CM1E_TRACE_ON_CHANGE || !isfinite(trigger->level))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
                              "The kind of the trigger is unknown, or its level is not a number.");

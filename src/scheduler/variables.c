@@ -100,7 +100,8 @@ void cm1e_variable_write(const variable_t *variable, const variable_value_t *val
 {
     uint8_t *const data = variable->data;
     if (variable->bit)
-        *data = (uint8_t)((*data & ~(1u << (variable->bit - 1))) | (unsigned)(value->bytes[0] != 0) << (variable->bit - 1));
+        *data = (uint8_t)((*data & ~(1u << (variable->bit - 1))) |
+                          (unsigned)(value->bytes[0] != 0) << (variable->bit - 1));
     else
         memcpy(data, value->bytes, variable->form == VARIABLE_NUMBER ? size_of(variable->type) : variable->bytes);
 }
@@ -112,8 +113,8 @@ cm1e_error_t cm1e_variable_trace(const variable_t *variable, trace_t *trace, cm1
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "\"%s\" is a text; a trace records numbers.",
                              variable->name);
     if (strlen(variable->name) >= sizeof column.name)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The name \"%s\" is longer than the %zu bytes of a signal "
-                             "in a trace.", variable->name, sizeof column.name - 1);
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The name \"%s\" is longer than the %zu bytes of a "
+                             "signal in a trace.", variable->name, sizeof column.name - 1);
     snprintf(column.name, sizeof column.name, "%s", variable->name);
     snprintf(column.unit, sizeof column.unit, "%s", variable->unit);
     return cm1e_trace_add(trace, &column, diag);

@@ -45,7 +45,8 @@ static uint16_t check_process_data(cm1e_sim_slave_t *slave)
         slave->ops->process_data_sizes(slave->app, &outputs, &inputs);
     if (!cm1e_sim_esc_process_data_valid(slave, ESC_ROLE_OUTPUTS, outputs))
         return AL_CODE_INVALID_OUTPUT_CONFIG;
-    return cm1e_sim_esc_process_data_valid(slave, ESC_ROLE_INPUTS, inputs) ? AL_CODE_NONE : AL_CODE_INVALID_INPUT_CONFIG;
+    return cm1e_sim_esc_process_data_valid(slave, ESC_ROLE_INPUTS, inputs) ? AL_CODE_NONE
+                                                                           : AL_CODE_INVALID_INPUT_CONFIG;
 }
 
 static uint16_t ask_application(cm1e_sim_slave_t *slave, uint8_t to)

@@ -36,7 +36,8 @@ static void step(cm1e_sim_bridge_t *bridge, double step_s)
     cm1e_sim_bridge_deliver(bridge);
 }
 
-/* Up to where the next steps go: data that are on the serial lines end one of them, and are not late by the rest of it. */
+/* Up to where the next steps go: data that are on the serial lines end one of them, and are not late by the rest of
+ * it. */
 static int64_t steps_until(const cm1e_sim_bridge_t *bridge, int64_t now_ns)
 {
     const int64_t due_ns = cm1e_sim_bridge_delivery_ns(bridge);

@@ -99,7 +99,8 @@ static unsigned mode_bits(const cm1e_sim_bridge_axis_t *axis)
         return (cm1e_sim_search_running(&axis->search) ? 0u : STATUSWORD_TARGET_REACHED) |
                (axis->search.phase == SEARCH_DONE ? STATUSWORD_HOMING_ATTAINED : 0u) |
                (axis->error || axis->search_failed ? STATUSWORD_HOMING_ERROR : 0u);
-    const bool follows = axis->state == OPERATION_ENABLED && cm1e_sim_bridge_follows_targets(axis) && lag <= FOLLOWING_WINDOW_COUNTS;
+    const bool follows = axis->state == OPERATION_ENABLED && cm1e_sim_bridge_follows_targets(axis) &&
+                         lag <= FOLLOWING_WINDOW_COUNTS;
     return follows ? STATUSWORD_BIT12 : 0u;
 }
 

@@ -179,7 +179,7 @@ static cm1e_error_t play(void *app, const cm1e_sim_profile_t *profile, int64_t n
     .advance = advance, .due = due, .state_change = state_change,                                                   \
     .process_data_sizes = cm1e_sim_process_data_sizes, .outputs = outputs, .inputs = cm1e_sim_inputs,               \
     .sdo_read = cm1e_sim_sdo_read, .sdo_write = cm1e_sim_sdo_write, .object = cm1e_sim_object,                      \
-    .entry = cm1e_sim_entry, .explicit_device_id = explicit_device_id, .station_alias = station_alias,                  \
+    .entry = cm1e_sim_entry, .explicit_device_id = explicit_device_id, .station_alias = station_alias,              \
     .power_on = cm1e_sim_cm1e_power_on,                                                                         \
     .file_begin = cm1e_sim_firmware_begin, .file_data = cm1e_sim_firmware_data, .destroy = destroy, .play = play
 

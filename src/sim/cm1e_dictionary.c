@@ -6,7 +6,8 @@ const cm1e_entry_t *cm1e_sim_entry(void *app, uint16_t index, uint8_t subindex)
 {
     const cm1e_sim_cm1e_t *drive = app;
     cm1e_sim_cell_t cell;
-    return cm1e_sim_store_find(&drive->store, index, subindex, &cell) == 0 ? cm1e_sim_own_entry(drive, cell.entry) : NULL;
+    return cm1e_sim_store_find(&drive->store, index, subindex, &cell) == 0 ? cm1e_sim_own_entry(drive, cell.entry)
+                                                                           : NULL;
 }
 
 const cm1e_object_t *cm1e_sim_object(void *app, size_t n)

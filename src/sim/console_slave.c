@@ -17,7 +17,8 @@ cm1e_error_t cm1e_console_emergency(call_t *call)
     data[0] = (uint8_t)first;
     if (!call->slave->ops->sdo_read ||
         !cm1e_sim_slave_emergency(call->slave, (uint16_t)code, (uint8_t)error_register, data))
-        return REFUSE(call, "slave %u sends no emergency: it has no CoE, is in INIT, or eight of them wait", call->position);
+        return REFUSE(call, "slave %u sends no emergency: it has no CoE, is in INIT, or eight of them wait",
+                      call->position);
     say(call, "slave %u: emergency 0x%04lX", call->position, code);
     return CM1E_OK;
 }

@@ -128,7 +128,8 @@ int64_t cm1e_sim_esc_due(const cm1e_sim_slave_t *slave)
     return first;
 }
 
-/* Reads into `read`, or writes `written` where that is not NULL: registers, memory behind sync managers, other memory. */
+/* Reads into `read`, or writes `written` where that is not NULL: registers, memory behind sync managers, other
+ * memory. */
 static bool access_memory(cm1e_sim_slave_t *slave, uint32_t address, uint8_t *read, const uint8_t *written,
                           size_t length)
 {

@@ -1,6 +1,6 @@
-/* The dictionary of an analog device, of an encoder, or of one with modules, in the shape of ETG.5001: a channel or slot
- * has its inputs at 0x6000, outputs at 0x7000 and settings at 0x8000, 0x10 apart. Of each analog input there are two PDOs,
- * one with state and value, one with the value. */
+/* The dictionary of an analog device, of an encoder, or of one with modules, in the shape of ETG.5001: a channel or
+ * slot has its inputs at 0x6000, outputs at 0x7000 and settings at 0x8000, 0x10 apart. Of each analog input there are
+ * two PDOs, one with state and value, one with the value. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

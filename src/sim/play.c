@@ -33,7 +33,8 @@ cm1e_error_t cm1e_sim_segment_play(cm1e_sim_segment_t *segment, uint32_t positio
     cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment, position);
     if (!slave)
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "there is a profile for the simulated slave %u; the "
-                             "segment has %u slaves", (unsigned)position, (unsigned)cm1e_sim_segment_slave_count(segment));
+                             "segment has %u slaves", (unsigned)position,
+                             (unsigned)cm1e_sim_segment_slave_count(segment));
     if (!slave->ops->play)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "the simulated slave %u cannot play a profile: only a "
                              "CM1-E, a bridge and a drive by CiA 402 can", (unsigned)position);

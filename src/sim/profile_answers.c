@@ -1,5 +1,5 @@
-/* What a slave answers by the profile that it plays (play.c). What is missing is hidden here, because an application may
- * need its own objects. */
+/* What a slave answers by the profile that it plays (play.c). What is missing is hidden here, because an application
+ * may need its own objects. */
 #include <stdlib.h>
 
 #include "sim/esc_chip.h"

@@ -41,7 +41,8 @@ static place_t *place_of_bridge(place_t *places, const cm1e_axis_config_t *axis)
 {
     for (uint32_t i = 0; cm1e_device_is_shared(axis) && i < CM1E_MAX_SLAVES; i++) {
         const cm1e_axis_config_t *other = places[i].axis;
-        if (other && cm1e_device_is_shared(other) && other->address_kind == axis->address_kind && other->address == axis->address)
+        if (other && cm1e_device_is_shared(other) && other->address_kind == axis->address_kind &&
+            other->address == axis->address)
             return &places[i];
     }
     return NULL;

@@ -251,8 +251,8 @@ static void find_interface(server_t *server, end_t *end, int64_t now_ns)
     end->retry_ns = now_ns + RETRY_NS;
 }
 
-/* In a ring the slave behind an end without a link closes its port there, so that frames of the other end turn around at
- * it. A line has nobody else who would send frames. */
+/* In a ring the slave behind an end without a link closes its port there, so that frames of the other end turn around
+ * at it. A line has nobody else who would send frames. */
 static void look_at_links(server_t *server, int64_t now_ns)
 {
     if (server->end_count < 2 || now_ns < server->links_due_ns)

@@ -29,14 +29,15 @@ typedef struct cm1e_servo {
 void cm1e_servo_init(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
 /** Starts to hold the present position with no torque. */
 void cm1e_servo_catch(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
-/** Called where a mode with a velocity begins, which knows no position. What the servo could not make up with all of its
- *  torque, it would keep as a distance behind a reference that runs with the motor, and drive the motor away from there. */
+/** Called where a mode with a velocity begins, which knows no position. What the servo could not make up with all of
+ *  its torque, it would keep as a distance behind a reference that runs with the motor, and drive the motor away from
+ *  there. */
 void cm1e_servo_forget_distance(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
 /** For a reference without a target position: when it has stopped and the shaft is at rest, the servo holds that place
  *  with the present torque, and no deviation remains. */
 void cm1e_servo_rest(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
-/** Moves a reference of velocity on. While the torque limit holds the motor back the reference moves with it: a velocity
- *  servo does not catch up. */
+/** Moves a reference of velocity on. While the torque limit holds the motor back the reference moves with it: a
+ *  velocity servo does not catch up. */
 void cm1e_servo_run(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics, double step_s);
 /** Torque for the next `step_s` seconds, at whose end the reference applies. */
 double cm1e_servo_step(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics, double step_s);

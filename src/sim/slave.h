@@ -41,7 +41,8 @@ enum {
 
 /** Error codes of FoE (ETG.1000.6 section 5.8) that the simulator answers with, and other results of a request. */
 enum {
-    FOE_CODE_NOT_FOUND = 0x8001, FOE_CODE_ACCESS_DENIED = 0x8002, FOE_CODE_DISK_FULL = 0x8003, FOE_CODE_ILLEGAL = 0x8004,
+    FOE_CODE_NOT_FOUND = 0x8001, FOE_CODE_ACCESS_DENIED = 0x8002, FOE_CODE_DISK_FULL = 0x8003,
+    FOE_CODE_ILLEGAL = 0x8004,
     FOE_CODE_PACKET_NUMBER = 0x8005, FOE_CODE_BOOTSTRAP_ONLY = 0x8008, FOE_CODE_INVALID_FIRMWARE = 0x800D,
     FOE_CODE_FILE_INCOMPATIBLE = 0x8012, FOE_RESULT_BUSY = 1, FOE_RESULT_SILENT = 2,
 };
@@ -80,8 +81,8 @@ typedef struct cm1e_sim_app_ops {
     uint16_t (*explicit_device_id)(void *app);
     /** The alias that the controller has taken from the EEPROM at power-on. NULL: it does not matter. */
     void (*station_alias)(void *app, uint16_t alias);
-    /** A file that the master writes: its name, then its bytes from `offset` on. Return 0, an error code of FoE, BUSY (asked again
-     *  later) or SILENT. NULL: the device takes no file. */
+    /** A file that the master writes: its name, then its bytes from `offset` on. Return 0, an error code of FoE, BUSY
+     *  (asked again later) or SILENT. NULL: the device takes no file. */
     uint32_t (*file_begin)(void *app, const char *name, uint32_t password);
     uint32_t (*file_data)(void *app, size_t offset, const uint8_t *data, size_t size, bool last);
     /** A file that the master reads: up to `*size` bytes from `offset` on. Results as above. NULL: there is none. */

@@ -33,9 +33,9 @@ typedef struct cm1e_sim_cell {
  *  store in that case too. */
 bool cm1e_sim_store_create(cm1e_sim_store_t *store, const cm1e_device_t *device, cm1e_firmware_t firmware);
 void cm1e_sim_store_destroy(cm1e_sim_store_t *store);
-/** store_profile.c: amends the entries by a profile, and adds those that only it has. Values stay. Entries that it calls
- *  missing stay too: the slave hides them. Refuses a number that the type of its entry does not have. After an error
- *  nothing has changed. */
+/** store_profile.c: amends the entries by a profile, and adds those that only it has. Values stay. Entries that it
+ *  calls missing stay too: the slave hides them. Refuses a number that the type of its entry does not have. After an
+ *  error nothing has changed. */
 cm1e_error_t cm1e_sim_store_play(cm1e_sim_store_t *store, const struct cm1e_sim_profile *profile, cm1e_diag_t *diag);
 /** Sets the values that the profile states; after a reset. Does nothing without one. */
 void cm1e_sim_store_set_profile_values(cm1e_sim_store_t *store);

@@ -151,7 +151,8 @@ static bool range_of(const cm1e_entry_t *entry, int64_t *least, int64_t *most)
     return true;
 }
 
-static cm1e_error_t check_numbers(const cm1e_sim_store_t *store, const cm1e_sim_profile_entry_t *told, cm1e_diag_t *diag)
+static cm1e_error_t check_numbers(const cm1e_sim_store_t *store, const cm1e_sim_profile_entry_t *told,
+                                  cm1e_diag_t *diag)
 {
     const struct {
         const char *key;
@@ -166,8 +167,8 @@ static cm1e_error_t check_numbers(const cm1e_sim_store_t *store, const cm1e_sim_
         return CM1E_OK;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         if (numbers[i].given && (numbers[i].value < least || numbers[i].value > most))
-            return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "the profile gives 0x%04X:%02X the %s %lld, which its type does "
-                                 "not have: %lld ... %lld", told->index, told->subindex, numbers[i].key,
+            return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "the profile gives 0x%04X:%02X the %s %lld, which its type "
+                                 "does not have: %lld ... %lld", told->index, told->subindex, numbers[i].key,
                                  (long long)numbers[i].value, (long long)least, (long long)most);
     return CM1E_OK;
 }

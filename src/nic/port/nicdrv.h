@@ -72,8 +72,9 @@ typedef struct ecx_port {
 
     struct cm1e_nic *nic;
     const uint8_t *logical;     /**< the process image from logical address 0 on, which an LRD carries; NULL: zeros */
-    uint16_t absent_from;       /**< nobody has a configured address from this one on; 0: not known. SOEM's mapping, which
-                                 *   asks each slave for 2 s whether it is in Pre-Operational, is told so by the port */
+    uint16_t absent_from;       /**< nobody has a configured address from this one on; 0: not known. SOEM's mapping,
+                                 *   which asks each slave for 2 s whether it is in Pre-Operational, is told so by the
+                                 *   port */
     cm1e_port_counters_t counters;
 
     /* private */
