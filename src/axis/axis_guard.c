@@ -5,9 +5,9 @@
  * Only the ends of cycles are known. So a cycle is judged by the gentlest motion that leads from one end to the other:
  * a step of the velocity or of the acceleration inside a cycle is seen if it needs more than the limits at its ends, or
  * more jerk inside. What stays unseen is a detour of the position that is over at the end of the cycle, which no motor
- * is sent, and a step of the position of less than a quarter of (acceleration * cycle time^2). Of an axis of a group the
- * ends alone are judged, because the time of its path may run slower from within a cycle on. Without a limit of jerk
- * (a linear cam, an actual value, a stop) the velocity may step by what the acceleration makes of it in a cycle.
+ * is sent, and a step of the position of less than a quarter of (acceleration * cycle time^2). Of an axis of a group
+ * the ends alone are judged, because the time of its path may run slower from within a cycle on. Without a limit of
+ * jerk (a linear cam, an actual value, a stop) the velocity may step by what the acceleration makes of it in a cycle.
  */
 #include <math.h>
 #include <stdio.h>
@@ -188,7 +188,8 @@ CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *nex
         return false;
     const double per_count = axis->guarding.per_count;
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) * per_count;
-    const double unit_a = per_jerk * per_t, unit_v = unit_a * per_t, unit_s = unit_v * per_t; /* of a jerk for a cycle */
+    /* Of a jerk for a cycle. */
+    const double unit_a = per_jerk * per_t, unit_v = unit_a * per_t, unit_s = unit_v * per_t;
     const double x = (a - a0) * unit_a, y = (gain - a0 * t) * unit_v, z = (step - t * (v0 + t * a0 / 2.0)) * unit_s;
     const double few = slack + (1e-9 * fabs(per_count) + 1e-13 * fabs(step)) * unit_s;
     return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few;
@@ -271,8 +272,8 @@ void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
     if (outside && axis->broken.limit == GUARD_PAUSE) {
         snprintf(text, size,
                  "Axis \"%s\": it followed positions from outside at %.6g u/s, and the bus paused or was silent for so "
-                 "long that the motor could not go on with them. The axis was braked. Look at overruns of the cycle and "
-                 "lost frames; then reset the axis with MC_Reset.", axis->config->name, axis->broken.asked);
+                 "long that the motor could not go on with them. The axis was braked. Look at overruns of the cycle "
+                 "and lost frames; then reset the axis with MC_Reset.", axis->config->name, axis->broken.asked);
         return;
     }
     snprintf(asked, sizeof asked, said[axis->broken.limit], axis->broken.asked, axis->broken.allowed);

@@ -15,7 +15,8 @@ bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next);
 /** Computes the numbers anew. Called when the axis begins to follow or to be led, when its limits are written, and when
  *  its set-point has gone after its motor. */
 void cm1e_axis_guard_renew(cm1e_axis_t *axis);
-/** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT or CM1E_ERROR_AXIS_SET_POINT_LIMIT, whose text has the value asked for and the value allowed. */
+/** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT or CM1E_ERROR_AXIS_SET_POINT_LIMIT, whose text has the value asked for
+ *  and the value allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
 /** Whether a set-point is within the limits without any tolerance. Nearly every set-point is, and this test is cheap. A

@@ -6,9 +6,9 @@
  * MC_Power.Status is TRUE. ErrorStop ramps down without a limit of jerk and ends without torque too. So MC_Reset leads
  * to Disabled (note 3), and from there to Standstill if MC_Power.Enable is TRUE.
  *
- * The end of a ramp is the end of its set-points. A heavy load that a pause has let swing still turns the motor then, and
- * only the torque can stop it. So the torque stays until the motor rests too, or for two seconds if it never does. It does
- * not stay for a motor that runs away.
+ * The end of a ramp is the end of its set-points. A heavy load that a pause has let swing still turns the motor then,
+ * and only the torque can stop it. So the torque stays until the motor rests too, or for two seconds if it never does.
+ * It does not stay for a motor that runs away.
  */
 #include <math.h>
 
@@ -106,7 +106,8 @@ void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns)
 }
 
 /* Begins to brake at the actual state, no faster and no farther than the set-point would have gone, or went before a
- * pause. The ramp lasts a moment at least, because the feedback is some cycles old and the motor may just begin to move. */
+ * pause. The ramp lasts a moment at least, because the feedback is some cycles old and the motor may just begin to
+ * move. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
 {
     if (axis_free(axis))
@@ -303,8 +304,8 @@ static void take_over_or_brake(cm1e_axis_t *axis)
 static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b_ns; }
 
 /* Whether the motor is not brought back by its servo: it is farther from the set-point than its lag may be, or it gets
- * faster on its way there than it ever came back, or was at first. A load that swings does neither. `away`: counts; `slow`:
- * tolerance. */
+ * faster on its way there than it ever came back, or was at first. A load that swings does neither. `away`: counts;
+ * `slow`: tolerance. */
 static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double slow)
 {
     const double speed = fabs(velocity);
@@ -315,9 +316,9 @@ static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double sl
            fabs(away) > axis->limits.max_lag * fabs(axis->position.scale);
 }
 
-/* The set-point is at rest. The torque stays for a moment after the motor turned last: where a swinging load turns round,
- * it is slow too, but away from the set-point. A motor that something holds away from there rests all the same. One that
- * runs away is let go: its torque may be what drives it. */
+/* The set-point is at rest. The torque stays for a moment after the motor turned last: where a swinging load turns
+ * round, it is slow too, but away from the set-point. A motor that something holds away from there rests all the same.
+ * One that runs away is let go: its torque may be what drives it. */
 static void wait_for_rest(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;
@@ -335,7 +336,8 @@ static void wait_for_rest(cm1e_axis_t *axis)
     const double away = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
     if (runs_away(axis, away, velocity, slow))
         power->held_ms = (uint16_t)(now_ms - longest_swing_ms);
-    else if (fabs(velocity) > slow || (first && fabs(away) > slow * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts)))
+    else if (fabs(velocity) > slow ||
+             (first && fabs(away) > slow * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts)))
         power->brake_until_ns = later(power->brake_until_ns, axis->now_ns + brake_ns);
 }
 

@@ -20,9 +20,9 @@ static inline bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
            (!axis->motor_hooks || axis->motor_hooks->is_home(axis));
 }
 void cm1e_axis_become_free(cm1e_axis_t *axis); /* axis_free.c */
-/** Called at the end of a motion or homing of the drive that power off has stopped. If power is wanted again by now, the
- *  torque goes all the same before it comes back: with torque the drive would go on in the mode of that motion, or jump
- *  to its target in the mode of the axis. */
+/** Called at the end of a motion or homing of the drive that power off has stopped. If power is wanted again by now,
+ *  the torque goes all the same before it comes back: with torque the drive would go on in the mode of that motion, or
+ *  jump to its target in the mode of the axis. */
 void cm1e_axis_let_go(cm1e_axis_t *axis); /* axis_free.c */
 void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound,
                           const cm1e_motion_limits_t *ramp);

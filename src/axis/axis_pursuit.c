@@ -5,8 +5,9 @@
  * missing, and is beyond that target when the next one comes. If the motion began anew there, the servo would pull the
  * load back, even backwards, and the motor would exceed its maximum velocity while it catches up afterwards. So the
  * set-point first goes after the motor, never faster than before the silence or pause, and slower when it is near. The
- * motion begins anew where both meet. A slave makes up its distance to its master then, and slaves of the axis, which see
- * another velocity of their master, catch up. An axis of a group comes to rest, and goes back to its path, which waits.
+ * motion begins anew where both meet. A slave makes up its distance to its master then, and slaves of the axis, which
+ * see another velocity of their master, catch up. An axis of a group comes to rest, and goes back to its path, which
+ * waits.
  *
  * A slave does so after a pause only: while frames are lost it stays with its master. A motion made of several, and a
  * path, go on after one or two cycles instead.
@@ -26,8 +27,8 @@
 #include "axis/axis_pursuit.h"
 #include "axis/axis_setpoint.h"
 
-/* The set-point goes as much faster than the motor as makes up the distance in this time. A servo with a bandwidth above
- * 1 / approach_s brakes the motor until both meet, and does not overshoot. */
+/* The set-point goes as much faster than the motor as makes up the distance in this time. A servo with a bandwidth
+ * above 1 / approach_s brakes the motor until both meet, and does not overshoot. */
 static const double approach_s = 8e-3;
 /* Of the way in a cycle before: so near, the servo makes up the rest. */
 static const double near = 0.5;
@@ -163,7 +164,8 @@ static double cycles_of_braking(const cm1e_axis_t *axis)
     return silent + fmax(0.0, earlier) / 3.0;
 }
 
-/* A slave stays with its master. What is made of several motions would end after a short silence, which it rides out. */
+/* A slave stays with its master. What is made of several motions would end after a short silence, which it rides
+ * out. */
 static bool goes_on(const cm1e_axis_t *axis)
 {
     if (axis_follows(axis))
@@ -294,8 +296,8 @@ void cm1e_axis_pursuit_hold(cm1e_axis_t *axis)
     axis->setpoint.pursuit.holds = axis_has_extra(axis, EXTRA_PURSUIT);
 }
 
-/* The set-point goes to the motor. true: it is there. No target that is heard late makes a larger step than one of an axis
- * that has braked since the bus was lost. */
+/* The set-point goes to the motor. true: it is there. No target that is heard late makes a larger step than one of an
+ * axis that has braked since the bus was lost. */
 static bool go_to_motor(cm1e_axis_t *axis)
 {
     const double sign = copysign(1.0, axis->setpoint.pursuit.velocity), way = way_of_cycle(axis);
@@ -305,8 +307,8 @@ static bool go_to_motor(cm1e_axis_t *axis)
     return ahead <= way;
 }
 
-/* The drive brakes by itself, with all of its torque, towards the last target. Where its load has turned it on beyond that,
- * it would be pulled back as hard, to and fro. So it is held near the place where it comes to rest. */
+/* The drive brakes by itself, with all of its torque, towards the last target. Where its load has turned it on beyond
+ * that, it would be pulled back as hard, to and fro. So it is held near the place where it comes to rest. */
 static void hold_near_rest(cm1e_axis_t *axis)
 {
     pursuit_t *pursuit = &axis->setpoint.pursuit;

@@ -11,11 +11,11 @@
 /** Called after a pause, before the motion begins anew: the next actual position shows whether the motor has run
  *  ahead. */
 void cm1e_axis_pursuit_prepare(cm1e_axis_t *axis, double unheard_s);
-/** Called after a silence, before the motion begins anew. true: the motor has run ahead, and the set-point goes after it
- *  from this cycle on. */
+/** Called after a silence, before the motion begins anew. true: the motor has run ahead, and the set-point goes after
+ *  it from this cycle on. */
 bool cm1e_axis_pursuit_begin(cm1e_axis_t *axis);
-/** Called when the bus is lost, before the set-point is held: where a load turns the motor on, it is held near the place
- *  where it comes to rest. */
+/** Called when the bus is lost, before the set-point is held: where a load turns the motor on, it is held near the
+ *  place where it comes to rest. */
 void cm1e_axis_pursuit_hold(cm1e_axis_t *axis);
 /** Whether a motor that has run ahead may be beyond the limit of the lag, and brakes all the same. */
 static inline bool cm1e_axis_may_lead(const cm1e_axis_t *axis) { return axis_has_extra(axis, EXTRA_PURSUIT); }

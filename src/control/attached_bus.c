@@ -183,8 +183,8 @@ static cm1e_error_t transfer(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
     json_t *reply = NULL;
     cm1e_diag_t told = {0};
     if (sdo->write && sdo->size > WRITE_MAX)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Through the program that has the network an object of at "
-                             "most %d bytes is written; this one has %zu.", WRITE_MAX, sdo->size);
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Through the program that has the network an object "
+                             "of at most %d bytes is written; this one has %zu.", WRITE_MAX, sdo->size);
     cm1e_error_t error = cm1e_control_call(state, request_of(sdo), &reply, &told);
     const bool answered = reply != NULL;
     sdo->error = CM1E_OK;
@@ -323,7 +323,7 @@ cm1e_error_t cm1e_bus_open_attached(cm1e_bus_t **bus, const cm1e_bus_config_t *c
                                     cm1e_diag_t *diag)
 {
     if (!bus || !config || !control)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_open_attached() needs a place for the bus, "
-                             "a configuration and a connection.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_open_attached() needs a place for the "
+                             "bus, a configuration and a connection.");
     return cm1e_bus_open_remote(bus, config, &through_control, control, diag);
 }

@@ -124,8 +124,8 @@ cm1e_error_t cm1e_control_call(cm1e_control_t *control, json_t *request, json_t 
     const bool is_lost = control->fd < 0, sent = !is_lost && send_all(control, bytes, length);
     free(bytes);
     if (is_lost)
-        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The connection to %s was given up because of an answer that did not "
-                             "come, or could not be read: connect again.", control->path);
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The connection to %s was given up because of an answer that did "
+                             "not come, or could not be read: connect again.", control->path);
     if (!sent && errno != EPIPE && errno != ECONNRESET)
         return lose(control, gone(control, diag));
     /* One that was turned away has been told why before it asked. */
@@ -198,8 +198,8 @@ static cm1e_error_t connect_to(cm1e_control_t **control, const char *path, cm1e_
         return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "The control socket %s belongs to another user: use the "
                              "rights of the one who started the program, or sudo.", path);
     if (why == EAGAIN)
-        return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "The program at %s has accepted no connection for %d s: it is "
-                             "suspended, or it hangs.", path, CONNECT_TIMEOUT_S);
+        return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "The program at %s has accepted no connection for %d s: it "
+                             "is suspended, or it hangs.", path, CONNECT_TIMEOUT_S);
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "No program serves the control socket %s: %s.", path,
                          strerror(why));
 }
@@ -219,17 +219,18 @@ static cm1e_error_t check_server(const cm1e_control_t *control, int pid, cm1e_di
     socklen_t size = sizeof peer;
     if (getsockopt(control->fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.pid == (pid_t)pid)
         return CM1E_OK;
-    return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "%s has the name of process %d, and process %d of user %u serves "
-                         "it: name the path if that is meant.", control->path, pid, (int)peer.pid, (unsigned)peer.uid);
+    return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "%s has the name of process %d, and process %d of user %u "
+                         "serves it: name the path if that is meant.", control->path, pid, (int)peer.pid,
+                         (unsigned)peer.uid);
 }
 
 /** Of several networks of one program, the one with this interface or name; NULL or "": the first. */
 static cm1e_error_t connect_to_process(cm1e_control_t **control, int pid, const char *interface_name, cm1e_diag_t *diag)
 {
     char path[CM1E_SOCKET_PATH];
-    cm1e_error_t error = cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "Process %d has no control socket: it does not run "
-                                       "a network at present, its configuration says `control: none`, or it was built "
-                                       "without cm1e::control.", pid);
+    cm1e_error_t error = cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "Process %d has no control socket: it does not "
+                                       "run a network at present, its configuration says `control: none`, or it was "
+                                       "built without cm1e::control.", pid);
     for (int n = 0; cm1e_runtime_find(pid, &n, path);) {
         json_t *reply = NULL;
         error = connect_to(control, path, diag);

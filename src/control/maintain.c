@@ -91,8 +91,8 @@ static maintain_refusal_t disable(view_t *view, maintain_order_t *order, hold_t 
     return MAINTAIN_DONE;
 }
 
-/** What a motion is ended with: never less than a jog without pause was given before, or the end of one that goes on, so
- *  that nobody makes the way to standstill longer. 0 is the most that the axis has. */
+/** What a motion is ended with: never less than a jog without pause was given before, or the end of one that goes on,
+ *  so that nobody makes the way to standstill longer. 0 is the most that the axis has. */
 static double braking(const hold_t *hold, const maintain_order_t *order)
 {
     if ((hold->motion != HOLD_JOG && hold->motion != HOLD_END) || order->acceleration == 0.0)
@@ -164,7 +164,8 @@ static maintain_refusal_t stop(view_t *view, maintain_order_t *order, hold_t *ho
     stopped->any &= stopped->client != order->client; /* who stops it itself has let go of it */
     if (!hold->held || hold->motion == HOLD_NONE)
         return MAINTAIN_NOT_HELD;
-    if (hold->motion != HOLD_HOME && hold->client != order->client) /* also while a jog ends that was renewed too late */
+    /* Also while a jog ends that was renewed too late. */
+    if (hold->motion != HOLD_HOME && hold->client != order->client)
         *stopped = (stopped_t){true, hold->client, now_ns + hold->motion_keep_ns};
     end_motion(view->axes[order->axis], hold);
     return MAINTAIN_DONE;

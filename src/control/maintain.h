@@ -1,9 +1,9 @@
 /**
  * @file maintain.h
  * What others do to the axes of a running program with its consent (`control: maintain`): enable, jog, home, stop,
- * reset. Whoever moves or enables an axis holds it, and has to renew that: a motion that is not renewed in time is ended
- * by the cycle, power that is not renewed goes off. What a client holds ends with its connection. The program has precedence
- * (axis/axis_guest.h).
+ * reset. Whoever moves or enables an axis holds it, and has to renew that: a motion that is not renewed in time is
+ * ended by the cycle, power that is not renewed goes off. What a client holds ends with its connection. The program has
+ * precedence (axis/axis_guest.h).
  */
 #ifndef CM1E_CONTROL_MAINTAIN_H
 #define CM1E_CONTROL_MAINTAIN_H

@@ -130,7 +130,8 @@ static json_t *refuse_order(const control_request_t *request, const char *name)
         snprintf(text, sizeof text, "Axis \"%s\" is already moved by this connection: stop it first.", name);
         break;
     case MAINTAIN_STOPPED:
-        snprintf(text, sizeof text, "Another connection has stopped axis \"%s\": let go of the jog, then jog again.", name);
+        snprintf(text, sizeof text, "Another connection has stopped axis \"%s\": let go of the jog, then jog again.",
+                 name);
         break;
     default: snprintf(text, sizeof text, "The program ends, and shuts its axes down."); break;
     }

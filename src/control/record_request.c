@@ -35,8 +35,8 @@ static cm1e_error_t add_within(recorder_t *recorder, const variables_t *variable
     }
     if (found)
         return error;
-    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "The program has no variable \"%.100s\": `variables` lists them.",
-                         path);
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0,
+                         "The program has no variable \"%.100s\": `variables` lists them.", path);
 }
 
 /** Those that the request names, or else those that the program records. */

@@ -316,8 +316,8 @@ static json_t *variables(control_request_t *request, control_run_t *run, const j
         return wrong(request, "\"name\" and \"forced\" exclude each other.");
     if (name && !cm1e_variable_named(&run->view, name, &row, text, sizeof text))
         return refuse(request, CM1E_ERROR_NOT_FOUND, text);
-    if (!cm1e_variables_begin(&request->variable, &run->view, name ? row : (uint32_t)from, name ? 1 : VARIABLES_OF_REPLY,
-                              json_is_true(json_object_get(message, "forced"))))
+    if (!cm1e_variables_begin(&request->variable, &run->view, name ? row : (uint32_t)from,
+                              name ? 1 : VARIABLES_OF_REPLY, json_is_true(json_object_get(message, "forced"))))
         return refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a list.");
     return give_order(request, &request->variable.order, end_variable);
 }

@@ -80,8 +80,8 @@ json_t *cm1e_request_write(control_request_t *request, view_write_t write);
 bool cm1e_request_must_end(const control_request_t *request);
 /** Frees what belongs to a request, which may be used again. */
 void cm1e_request_clear(control_request_t *request);
-/** The client is gone: what it holds ends, and its request is cleared. false: something of it is still on its way through
- *  the cycle; ask again. */
+/** The client is gone: what it holds ends, and its request is cleared. false: something of it is still on its way
+ *  through the cycle; ask again. */
 bool cm1e_request_leave(control_request_t *request, control_run_t *run, uint32_t client, bool stopping);
 
 #endif

@@ -20,7 +20,8 @@
 #include "core/program.h"
 
 enum {
-    CLIENTS = CM1E_CONTROL_CLIENTS, IN_ROOM = CM1E_MESSAGE_HEADER + CM1E_REQUEST_MAX, FIRST_CLIENT = 2, /* of the polled descriptors */
+    CLIENTS = CM1E_CONTROL_CLIENTS, IN_ROOM = CM1E_MESSAGE_HEADER + CM1E_REQUEST_MAX,
+    FIRST_CLIENT = 2, /* of the polled descriptors */
     STACK_BYTES = 512 * 1024, BUSY_MS = 1, IDLE_MS = 500, REQUESTS_AT_ONCE = 8,
     QUEUE = 64, ACCEPT_FLAGS = SOCK_CLOEXEC | SOCK_NONBLOCK,
 };
@@ -171,8 +172,8 @@ static void serve_client(server_t *server, client_t *client, short events)
 
 /* ---- all of them ------------------------------------------------------------------------------------------------ */
 
-/** Those first that wait for what the cycle has: the others make it begin anew. The cycle takes one order at a time: those
- *  that stop or move an axis come before those that look. */
+/** Those first that wait for what the cycle has: the others make it begin anew. The cycle takes one order at a time:
+ *  those that stop or move an axis come before those that look. */
 static int rank(const client_t *client)
 {
     return client->request.wanted ? 0 : client->request.order == &client->request.maintain.order ? 1 : 2;
@@ -274,7 +275,8 @@ static int fill_polled(server_t *server, polled_t *polled)
     return server->full && wait_ms < 0 ? IDLE_MS : wait_ms;
 }
 
-/** Takes those that want to connect. Without a descriptor for one it waits, and the listener is left alone for a while. */
+/** Takes those that want to connect. Without a descriptor for one it waits, and the listener is left alone for a
+ *  while. */
 static void welcome_all(server_t *server)
 {
     /* cppcheck-suppress nullPointer ; accept4() needs no place for an address that nobody wants */
@@ -327,8 +329,8 @@ static void *serve(void *context)
 
 /* ---- begin and end ---------------------------------------------------------------------------------------------- */
 
-/** Several schedulers of a program may begin or end at the same time: one after the other looks for a number that none of
- *  them has, and removes what is left at its path, which must not be the socket of another one. */
+/** Several schedulers of a program may begin or end at the same time: one after the other looks for a number that none
+ *  of them has, and removes what is left at its path, which must not be the socket of another one. */
 static pthread_mutex_t sockets_of_process = PTHREAD_MUTEX_INITIALIZER;
 
 static cm1e_error_t find_path(server_t *server, const char *directory, cm1e_diag_t *diag)
@@ -355,7 +357,8 @@ static cm1e_error_t find_path(server_t *server, const char *directory, cm1e_diag
     }
     close(server->listener); /* the path is that of another scheduler */
     server->listener = -1;
-    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "This program has %d control sockets already, as many as there can be.",
+    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0,
+                         "This program has %d control sockets already, as many as there can be.",
                          CM1E_SOCKETS_OF_PROCESS);
 }
 

@@ -94,7 +94,8 @@ static bool encode_digits(const char *text, variable_value_t *out)
 static const char *bare_name(const variable_t *variable, const char *word)
 {
     const size_t length = strlen(variable->declared);
-    const bool qualified = strncasecmp(word, variable->declared, length) == 0 && (word[length] == '.' || word[length] == '#');
+    const bool qualified = strncasecmp(word, variable->declared, length) == 0 &&
+                           (word[length] == '.' || word[length] == '#');
     return qualified ? word + length + 1 : word;
 }
 
@@ -167,7 +168,8 @@ void cm1e_variable_expected(const variable_t *variable, char *text, size_t size)
     else if (variable->type == CM1E_TRACE_BOOL)
         snprintf(values, sizeof values, "TRUE or FALSE");
     else if (types[variable->type].bits == 0)
-        snprintf(values, sizeof values, "a finite number%s", variable->type == CM1E_TRACE_REAL ? " up to 3.402823e+38" : "");
+        snprintf(values, sizeof values, "a finite number%s",
+                 variable->type == CM1E_TRACE_REAL ? " up to 3.402823e+38" : "");
     else
         whole_range(variable, values, sizeof values);
     snprintf(text, size, "%.100s (%.60s) takes %s%s%s.", variable->name, variable->declared, values,

@@ -1,6 +1,7 @@
 /**
  * @file variable_number.h
- * Numbers of a program in JSON: whole ones to the last digit, and those of an enumeration by the names of its enumerators.
+ * Numbers of a program in JSON: whole ones to the last digit, and those of an enumeration by the names of its
+ * enumerators.
  */
 #ifndef CM1E_CONTROL_VARIABLE_NUMBER_H
 #define CM1E_CONTROL_VARIABLE_NUMBER_H

@@ -147,7 +147,8 @@ const char *cm1e_variable_take(variable_order_t *order, const view_t *view, cons
     if (!cm1e_variable_named(view, name ? name : "", &order->forced.variable, text, size))
         return wrong(error, CM1E_ERROR_NOT_FOUND, text);
     if (!cm1e_take_keep(message, KEEP_LEAST_MS, KEEP_MOST_MS, KEEP_MS, &order->keep_ns))
-        return wrong(error, CM1E_ERROR_INVALID_ARGUMENT, "\"keep_ms\" is expected to be 100 ... 5000, or to be left out.");
+        return wrong(error, CM1E_ERROR_INVALID_ARGUMENT,
+                     "\"keep_ms\" is expected to be 100 ... 5000, or to be left out.");
     const variable_t *variable = &variables->rows[order->forced.variable];
     if (order->release || take_value(value, variable, &order->forced.value))
         return NULL;
@@ -162,8 +163,8 @@ const char *cm1e_variable_refusal(const variable_order_t *order)
         [FORCING_HELD] = "The variable is forced, by another connection or by this one.",
         [FORCING_FULL] = "64 variables are forced already.",
         [FORCING_ENDING] = "The program ends.",
-        [FORCING_TAKEN] = "Another connection has released the variable. This one can force it again when it has released "
-                          "it too, or has not asked for it for \"keep_ms\".",
+        [FORCING_TAKEN] = "Another connection has released the variable. This one can force it again when it has "
+                          "released it too, or has not asked for it for \"keep_ms\".",
     };
     return texts[order->result];
 }

@@ -1,7 +1,7 @@
 /**
  * @file variable_request.h
- * The requests about variables of the program: `variables` lists them with their values, `variable` writes one or forces
- * it (scheduler/forcing.h).
+ * The requests about variables of the program: `variables` lists them with their values, `variable` writes one or
+ * forces it (scheduler/forcing.h).
  */
 #ifndef CM1E_CONTROL_VARIABLE_REQUEST_H
 #define CM1E_CONTROL_VARIABLE_REQUEST_H

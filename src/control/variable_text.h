@@ -1,6 +1,7 @@
 /**
  * @file variable_text.h
- * Texts of a program in JSON: a STRING has bytes, a WSTRING characters of 16 bits (UTF-16 in the order of this machine).
+ * Texts of a program in JSON: a STRING has bytes, a WSTRING characters of 16 bits (UTF-16 in the order of this
+ * machine).
  */
 #ifndef CM1E_CONTROL_VARIABLE_TEXT_H
 #define CM1E_CONTROL_VARIABLE_TEXT_H

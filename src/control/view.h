@@ -107,8 +107,8 @@ void cm1e_view_cycle(view_t *view);
 
 /** Of the thread: wants a snapshot; returns the number of the first one that begins from now on. */
 uint32_t cm1e_view_want(view_t *view);
-/** The snapshot of this number, or a later one, is there. Whoever needs a later one than is there makes the cycle fill it
- *  in: so those that wait longest are asked first. */
+/** The snapshot of this number, or a later one, is there. Whoever needs a later one than is there makes the cycle fill
+ *  it in: so those that wait longest are asked first. */
 bool cm1e_view_has(view_t *view, uint32_t number);
 /** The text of an axis of the snapshot, "" if it has none. */
 void cm1e_view_text(const view_t *view, uint32_t axis, char *text, size_t size);

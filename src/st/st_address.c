@@ -47,8 +47,8 @@ static void check_memory(st_t *st, var_t *var, const char *at, int bits)
     const type_t *type = var->type;
     const uint64_t size = bits == 1 ? 1 : type->size, alignment = bits == 1 || !type->alignment ? 1 : type->alignment;
     if (*end || byte >= MEMORY_BYTES || (bits == 1) != (bit < 8)) {
-        cm1e_st_report(st, var->address->place, "an address of memory has its byte, 0 ... %d, and of a BOOL the bit: %%MW4, "
-                       "%%MX4.3", MEMORY_BYTES - 1);
+        cm1e_st_report(st, var->address->place, "an address of memory has its byte, 0 ... %d, and of a BOOL the bit: "
+                       "%%MW4, %%MX4.3", MEMORY_BYTES - 1);
     } else if (!fits_memory(type, bits)) {
         cm1e_st_report(st, var->address->place, "%s has %d bit%s, and %s is %s", address, bits, bits == 1 ? "" : "s",
                        var->name, cm1e_st_type_name(type));
@@ -107,9 +107,10 @@ void cm1e_st_check_address(st_t *st, var_t *var)
         numbers[count] = strtoul(at, &end, 10);
         at = *end == '.' ? end + 1 : end;
     }
-    if (*at || count != (bits == 1 ? 3 : 2) || numbers[0] < 1 || numbers[0] > 65535 || numbers[1] > 4095 || numbers[2] > 7)
-        cm1e_st_report(st, place, "an address has the slave (1 = first), the byte in its inputs or outputs, and of a BOOL the "
-                       "bit: %%IX3.0.5, %%QW2.4");
+    if (*at || count != (bits == 1 ? 3 : 2) || numbers[0] < 1 || numbers[0] > 65535 || numbers[1] > 4095 ||
+        numbers[2] > 7)
+        cm1e_st_report(st, place, "an address has the slave (1 = first), the byte in its inputs or outputs, and of a "
+                       "BOOL the bit: %%IX3.0.5, %%QW2.4");
     else if (bits_of_type(var->type) != bits)
         cm1e_st_report(st, place, "%s has %d bit%s, and %s is %s", address, bits, bits == 1 ? "" : "s", var->name,
                        cm1e_st_type_name(var->type));

@@ -1,5 +1,5 @@
-/* Inputs and outputs that have another name in TwinCAT's library Tc2_MC2, and what programs for TwinCAT and CODESYS look
- * for in vain. */
+/* Inputs and outputs that have another name in TwinCAT's library Tc2_MC2, and what programs for TwinCAT and CODESYS
+ * look for in vain. */
 #include <strings.h>
 
 #include "st/st_state.h"

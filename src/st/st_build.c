@@ -124,8 +124,8 @@ void cm1e_st_edge(parsing_t *parsing, place_t place, const char *word, vars_t va
 
 static bool is_external(const st_t *st, place_t place) { return st->sources[place.file].external; }
 
-/** In our interface the type CM_COMMAND and the block CM_Command differ in case only. The later one is kept under a name
- * that nobody can write, where cm1e_st_resolve() finds it by its exact spelling. */
+/** In our interface the type CM_COMMAND and the block CM_Command differ in case only. The later one is kept under a
+ * name that nobody can write, where cm1e_st_resolve() finds it by its exact spelling. */
 static bool keep_beside(st_t *st, map_t *map, place_t place, const char *name, void *value)
 {
     if (map != st->types || !is_external(st, place))

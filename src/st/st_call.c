@@ -105,7 +105,8 @@ static void match_positions(st_t *st, const unit_t *unit, expr_t *call)
 /** Override of MC_Power, which TwinCAT has: the velocity of the axis in percent. */
 static bool is_override(st_t *st, const unit_t *unit, expr_t *call, arg_t *arg)
 {
-    if (!unit->external || strcasecmp(unit->name, "MC_Power") != 0 || strcasecmp(arg->name, "Override") != 0 || arg->output)
+    if (!unit->external || strcasecmp(unit->name, "MC_Power") != 0 || strcasecmp(arg->name, "Override") != 0 ||
+        arg->output)
         return false;
     if (arg->value) {
         cm1e_st_expression(st, arg->value);
@@ -252,12 +253,13 @@ static void call_block(st_t *st, expr_t *call, bool statement)
     unit_t *unit = call->a->type->unit;
     call->type = st->elementary[T_NONE];
     if (unit->object.is_class)
-        cm1e_st_report(st, call->place, "\"%s\" is a CLASS, which has no statements of its own: call a method of it", unit->name);
+        cm1e_st_report(st, call->place, "\"%s\" is a CLASS, which has no statements of its own: call a method of it",
+                       unit->name);
     call->unit = unit;
     call->impure = true;
     if (!statement)
-        cm1e_st_report(st, call->place, "a function block has no result: call it in a statement of its own, and then read "
-                       "its outputs");
+        cm1e_st_report(st, call->place, "a function block has no result: call it in a statement of its own, and then "
+                       "read its outputs");
     cm1e_st_note_call(st, unit);
     cm1e_st_note_change(st, call->a);
     check_args(st, unit, call);

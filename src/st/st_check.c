@@ -23,8 +23,8 @@ static uint64_t follow_calls(st_t *st, unit_t *unit, int depth)
     if (unit->mark == 2)
         return unit->stack;
     if (unit->mark == 1 || depth > CALL_DEPTH) {
-        cm1e_st_report(st, unit->place, unit->mark == 1 ? "\"%s\" calls itself, over others or directly: recursion is not "
-                       "permitted (IEC 61131-3), because its end is not known" :
+        cm1e_st_report(st, unit->place, unit->mark == 1 ? "\"%s\" calls itself, over others or directly: recursion is "
+                       "not permitted (IEC 61131-3), because its end is not known" :
                        "calls are nested too deeply below \"%s\"", unit->name);
         return 0;
     }
@@ -37,8 +37,8 @@ static uint64_t follow_calls(st_t *st, unit_t *unit, int depth)
     unit->mark = 2;
     unit->stack = deepest + locals_of(unit);
     if (unit->stack > STACK_BYTES)
-        cm1e_st_report(st, unit->place, "the local variables of \"%s\" and of the functions that it calls need %llu bytes; "
-                       "%d are the most: make large ones variables of a function block or a program", unit->name,
+        cm1e_st_report(st, unit->place, "the local variables of \"%s\" and of the functions that it calls need %llu "
+                       "bytes; %d are the most: make large ones variables of a function block or a program", unit->name,
                        (unsigned long long)unit->stack, STACK_BYTES);
     return unit->stack;
 }
@@ -63,8 +63,8 @@ static void single(st_t *st, task_t *task, arg_t *arg)
     while (at->kind == E_MEMBER && at->a)
         at = at->a;
     if (arg->value->type->kind != T_WRONG && (arg->value->type->kind != T_BOOL || at->kind != E_NAME))
-        cm1e_st_report(st, arg->place, "SINGLE is a global variable of type BOOL, or an output or variable of a program: its "
-                       "rising edge runs the task");
+        cm1e_st_report(st, arg->place, "SINGLE is a global variable of type BOOL, or an output or variable of a "
+                       "program: its rising edge runs the task");
 }
 
 static void setting(st_t *st, task_t *task, arg_t *arg)
@@ -191,8 +191,8 @@ static void check_configuration(st_t *st)
         for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
             count += instance->unit == unit;
         if (unit->reached.line > 0 && count != 1)
-            cm1e_st_report(st, unit->reached, "a variable of the program \"%s\" can be used here if that has one instance; "
-                           "it has %d", unit->name, count);
+            cm1e_st_report(st, unit->reached, "a variable of the program \"%s\" can be used here if that has one "
+                           "instance; it has %d", unit->name, count);
     }
     if (st->tree.configuration && !st->tree.instances)
         cm1e_st_report(st, st->tree.configuration_place, "this configuration runs no program: PROGRAM name WITH task : "

@@ -42,8 +42,8 @@ const char *cm1e_st_hidden_enumerator(const type_t *type, const expr_t *expr, ch
     text[0] = '\0';
     for (const var_t *one = type->kind == T_ENUM && expr->kind == E_NAME ? type->members : NULL; one; one = one->next)
         if (strcasecmp(one->name, expr->name) == 0)
-            snprintf(text, size, "; \"%.60s\" is the variable here, the enumerator is %.60s#%.60s", expr->name, type->name,
-                     one->name);
+            snprintf(text, size, "; \"%.60s\" is the variable here, the enumerator is %.60s#%.60s", expr->name,
+                     type->name, one->name);
     return text;
 }
 
@@ -52,8 +52,8 @@ static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *wh
     char hidden[240];
     const type_kind_t from = expr->type->kind, to = type->kind;
     if ((from == T_ANY_INT && to <= T_LREAL && expr->value.known) || is_constant_enumerator(expr, to))
-        cm1e_st_report(st, expr->place, "%s%lld is not a value of %s, which \"%s\" is", expr->value.huge ? "(as LINT) " : "",
-                       (long long)expr->value.integer, type->name, what);
+        cm1e_st_report(st, expr->place, "%s%lld is not a value of %s, which \"%s\" is",
+                       expr->value.huge ? "(as LINT) " : "", (long long)expr->value.integer, type->name, what);
     else if (from == T_NONE)
         cm1e_st_report(st, expr->place, "this has no value, and \"%s\" is %s", what, cm1e_st_type_name(type));
     else if ((from <= T_DT || from == T_STRING) && (to <= T_DT || to == T_STRING) && (from != to || from == T_STRING))
@@ -66,9 +66,9 @@ static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *wh
                        "; an integer may be none of them: choose one by CASE" : "",
                        cm1e_st_hidden_enumerator(type, expr, hidden, sizeof hidden));
     else if (from == T_ENUM && to > T_BOOL && to <= T_LREAL)
-        cm1e_st_report(st, expr->place, "\"%s\" is %s, and %s has values of %s, which could be lost or change their meaning: "
-                       "TO_%s(...) converts them", what, cm1e_st_type_name(type), cm1e_st_type_name(expr->type),
-                       expr->type->element->name, plain_name(type));
+        cm1e_st_report(st, expr->place, "\"%s\" is %s, and %s has values of %s, which could be lost or change their "
+                       "meaning: TO_%s(...) converts them", what, cm1e_st_type_name(type),
+                       cm1e_st_type_name(expr->type), expr->type->element->name, plain_name(type));
     else
         cm1e_st_report(st, expr->place, "\"%s\" is %s, and this is %s", what, cm1e_st_type_name(type),
                        cm1e_st_type_name(expr->type));
@@ -138,7 +138,8 @@ static expr_t *refer(st_t *st, expr_t *expr, type_t *type, const char *what)
     args_t args = {0};
     arg_t *arg = cm1e_st_arg(st, expr->place, NULL, expr);
     ST_APPEND(args, arg);
-    expr_t *call = cm1e_st_with_args(st, E_CALL, expr->place, cm1e_st_named(st, E_NAME, expr->place, NULL, "REF"), args);
+    expr_t *call = cm1e_st_with_args(st, E_CALL, expr->place, cm1e_st_named(st, E_NAME, expr->place, NULL, "REF"),
+                                     args);
     st->checker->standard_call(st, call, "REF");
     return call;
 }
@@ -164,7 +165,8 @@ static expr_t *coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
         return cm1e_st_convert_node(st, expr, type);
     if (to == T_REF && type->automatic)
         return refer(st, expr, type, what);
-    if ((from == T_STRING && to == T_STRING && expr->type->wide == type->wide) || (from == T_NULL && (to == T_REF || to == T_INTERFACE)))
+    if ((from == T_STRING && to == T_STRING && expr->type->wide == type->wide) ||
+        (from == T_NULL && (to == T_REF || to == T_INTERFACE)))
         return expr;
     const bool object = (from == T_BLOCK || from == T_INTERFACE) && to == T_INTERFACE;
     if (object && cm1e_st_is_a(st, expr->type->unit, type->unit) && (from == T_INTERFACE || cm1e_st_is_place(expr)))
@@ -219,8 +221,8 @@ bool cm1e_st_assignable(st_t *st, const expr_t *expr)
         if (at->type->kind == T_WRONG || !at->a)
             return false;
         if (at->kind == E_MEMBER && at->var && at->a->type->kind == T_BLOCK && at->var->section == V_OUTPUT) {
-            cm1e_st_report(st, at->place, "\"%s\" is an output of %s, which only the block itself writes", at->var->name,
-                           at->a->type->name);
+            cm1e_st_report(st, at->place, "\"%s\" is an output of %s, which only the block itself writes",
+                           at->var->name, at->a->type->name);
             return false;
         }
     }
@@ -247,8 +249,8 @@ bool cm1e_st_assignable(st_t *st, const expr_t *expr)
         return false;
     }
     if (at->var->controls)
-        cm1e_st_report(st, expr->place, "the FOR around this counts with \"%s\": it must not be changed within (EXIT leaves "
-                       "the loop)", at->var->name);
+        cm1e_st_report(st, expr->place, "the FOR around this counts with \"%s\": it must not be changed within (EXIT "
+                       "leaves the loop)", at->var->name);
     return !at->var->controls;
 }
 

@@ -103,7 +103,8 @@ static void check_section(st_t *st, var_t *var)
         cm1e_st_report(st, var->place, "the constant \"%s\" needs a value: := ...", var->name);
     if (unit && unit->object.is_class && var->section != V_LOCAL && var->section != V_EXTERNAL)
         cm1e_st_report(st, var->place, "a CLASS has variables (VAR), and no inputs and outputs: its methods have");
-    if ((var->qualifiers & Q_EDGE) && (var->section != V_INPUT || var->type->kind != T_BOOL || !unit || cm1e_st_is_function(unit)))
+    if ((var->qualifiers & Q_EDGE) &&
+        (var->section != V_INPUT || var->type->kind != T_BOOL || !unit || cm1e_st_is_function(unit)))
         cm1e_st_report(st, var->place, "R_EDGE and F_EDGE are for inputs of type BOOL of function blocks and programs");
     if (var->section == V_IN_OUT && var->initial)
         cm1e_st_report(st, var->place, "a VAR_IN_OUT has no initial value: the call gives the variable");
@@ -117,11 +118,11 @@ static void check_section(st_t *st, var_t *var)
     else if (var->address)
         cm1e_st_check_address(st, var);
     if ((var->qualifiers & Q_RETAIN) && !(unit && unit->kind == U_BLOCK) && !cm1e_st_can_be_kept(var->type))
-        cm1e_st_report(st, var->place, "RETAIN keeps values, not %s: it is for elementary types, enumerations, texts, and "
-                       "arrays and structures of these", cm1e_st_type_name(var->type));
+        cm1e_st_report(st, var->place, "RETAIN keeps values, not %s: it is for elementary types, enumerations, texts, "
+                       "and arrays and structures of these", cm1e_st_type_name(var->type));
     if ((var->qualifiers & Q_RETAIN) && unit && unit->kind == U_BLOCK)
-        cm1e_st_report(st, var->place, "RETAIN in a function block is not supported: put the variable into the program, or "
-                       "VAR_GLOBAL, and give it as VAR_IN_OUT");
+        cm1e_st_report(st, var->place, "RETAIN in a function block is not supported: put the variable into the "
+                       "program, or VAR_GLOBAL, and give it as VAR_IN_OUT");
 }
 
 static void check_external(st_t *st, var_t *var)
@@ -152,7 +153,8 @@ static void declare_var(st_t *st, var_t *var)
         cm1e_st_report(st, var->place, "\"%s\" is a program: only a CONFIGURATION makes instances of programs",
                        var->type->name);
     if (var->type->kind == T_BLOCK && var->type->unit->object.abstract && var->section != V_IN_OUT)
-        cm1e_st_report(st, var->place, "\"%s\" is ABSTRACT: only blocks that extend it have instances", var->type->name);
+        cm1e_st_report(st, var->place, "\"%s\" is ABSTRACT: only blocks that extend it have instances",
+                       var->type->name);
     if (var->unit && cm1e_st_is_function(var->unit) && var->type->kind == T_BLOCK && var->section != V_IN_OUT)
         cm1e_st_report(st, var->place, "a function keeps nothing, so an instance of %s in it would begin anew in every "
                        "call: put it in a function block or a program, or take it as VAR_IN_OUT", var->type->name);

@@ -6,5 +6,6 @@
 #define DECLARE(name, symbol, library) extern const char cm1e_st_##name##_begin[], cm1e_st_##name##_end[];
 PARTS(DECLARE)
 
-#define ROW(name, symbol, library) {"fb/interface/" #name ".st", cm1e_st_##name##_begin, cm1e_st_##name##_end, symbol, library},
+#define ROW(name, symbol, library)                                                                                   \
+    {"fb/interface/" #name ".st", cm1e_st_##name##_begin, cm1e_st_##name##_end, symbol, library},
 const embedded_t cm1e_st_interface_parts[] = {PARTS(ROW){0}};

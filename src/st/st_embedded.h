@@ -1,6 +1,7 @@
 /**
  * @file st_embedded.h
- * Files that are part of the program: the interface of the function blocks, and the run-time part of translated programs.
+ * Files that are part of the program: the interface of the function blocks, and the run-time part of translated
+ * programs.
  */
 #ifndef CM1E_ST_EMBEDDED_H
 #define CM1E_ST_EMBEDDED_H

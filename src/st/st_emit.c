@@ -66,7 +66,8 @@ void cm1e_st_emit(st_t *st, FILE *file, const char *name)
 {
     st->out = file;
     st->unit = NULL;
-    cm1e_st_put(st, "/* Translated from Structured Text by cm1e st build. Compile with -std=c11 -fwrapv -fPIC -shared. */\n");
+    cm1e_st_put(st, "/* Translated from Structured Text by cm1e st build. Compile with -std=c11 -fwrapv -fPIC "
+                "-shared. */\n");
     emit_embedded(st, "st_program.h", cm1e_st_program_begin, cm1e_st_program_end);
     emit_embedded(st, "st_runtime.h", cm1e_st_runtime_begin, cm1e_st_runtime_end);
     cm1e_st_put(st, "\n");

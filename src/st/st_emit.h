@@ -44,7 +44,8 @@ void cm1e_st_emit_type(st_t *st, type_t *type);
 const char *cm1e_st_int64(st_t *st, int64_t value);
 /** The type of runtime functions that takes these values: enumerations and times are integers there. */
 const char *cm1e_st_plain_type(const type_t *type);
-/** The functions init_<type>(): each stands before all that uses a type, and refers to variables that stand behind it. */
+/** The functions init_<type>(): each stands before all that uses a type, and refers to variables that stand behind
+ *  it. */
 void cm1e_st_emit_init_functions(st_t *st);
 /** Gives something of this type, which is zeroed, its initial value: that of the variable or else that of its type. */
 void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr_t *initial);

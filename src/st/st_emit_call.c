@@ -168,7 +168,8 @@ static void emit_standard(st_t *st, const expr_t *call)
             return;
         }
     if (strcmp(name, "MIN") == 0 || strcmp(name, "MAX") == 0)
-        emit_chain(st, cm1e_st_format(st->arena, "st_%s_%s", strcmp(name, "MIN") == 0 ? "min" : "max", type), call->args);
+        emit_chain(st, cm1e_st_format(st->arena, "st_%s_%s", strcmp(name, "MIN") == 0 ? "min" : "max", type),
+                   call->args);
     else if (strcmp(name, "CONCAT") == 0)
         emit_chain(st, call->type->wide ? "st_wconcat" : "st_concat", call->args);
     else if (strcmp(name, "MUX") == 0)

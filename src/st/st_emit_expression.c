@@ -33,7 +33,8 @@ void cm1e_st_emit_constant(st_t *st, const type_t *type, const constant_t *value
     else if (value->integer == INT64_MIN || (bits == 32 && value->integer == INT32_MIN))
         cm1e_st_put(st, bits == 64 ? "(%" PRId64 "LL - 1)" : "(%" PRId64 " - 1)", value->integer + 1);
     else
-        cm1e_st_put(st, value->integer < 0 ? "(%" PRId64 "%s)" : "%" PRId64 "%s", value->integer, bits == 64 ? "LL" : "");
+        cm1e_st_put(st, value->integer < 0 ? "(%" PRId64 "%s)" : "%" PRId64 "%s", value->integer,
+                    bits == 64 ? "LL" : "");
 }
 
 /* ---- variables --------------------------------------------------------------------------------------------------- */
@@ -48,8 +49,9 @@ static const char *instance_of(const st_t *st, const unit_t *unit)
 
 void cm1e_st_emit_in_out(st_t *st, const var_t *var)
 {
-    const char *says = cm1e_st_format(st->arena, "\"%s\" is a VAR_IN_OUT of %s and has no variable yet: call the instance "
-                                      "with %s := ... before its methods", var->name, var->unit->name, var->name);
+    const char *says = cm1e_st_format(st->arena, "\"%s\" is a VAR_IN_OUT of %s and has no variable yet: call the "
+                                      "instance with %s := ... before its methods", var->name, var->unit->name,
+                                      var->name);
     cm1e_st_put(st, "(*(%s *)st_given(self->%s, ", cm1e_st_c_type(st, var->type), var->c_name);
     cm1e_st_put_quoted(st, says);
     cm1e_st_put(st, ", ST_HERE))");

@@ -1,5 +1,5 @@
-/* Methods in C: a function that gets its instance. Where blocks override a method, a function chooses by the class that the
- * instance has as its first member. */
+/* Methods in C: a function that gets its instance. Where blocks override a method, a function chooses by the class that
+ * the instance has as its first member. */
 #include <strings.h>
 
 #include "st/st_emit.h"
@@ -71,7 +71,8 @@ static void emit_case(st_t *st, const unit_t *class, const char *name)
 
 static void emit_dispatcher(st_t *st, const unit_t *unit, const unit_t *method, bool body)
 {
-    cm1e_st_put(st, "ST_UNUSED static %s %s(void *self", method->result_type ? cm1e_st_c_type(st, method->result_type) : "void",
+    cm1e_st_put(st, "ST_UNUSED static %s %s(void *self",
+                method->result_type ? cm1e_st_c_type(st, method->result_type) : "void",
                 cm1e_st_method_name(st, "CALL", unit, method->name));
     emit_arguments(st, method, true);
     if (!body) {
@@ -80,7 +81,8 @@ static void emit_dispatcher(st_t *st, const unit_t *unit, const unit_t *method, 
     }
     cm1e_st_put(st, ")\n{\n    switch (*(const uint32_t *)self) {\n");
     for (const unit_t *class = st->tree.units; class; class = class->next)
-        if (class->kind == U_BLOCK && class->object.has_class && !class->object.abstract && cm1e_st_is_a(st, class, unit))
+        if (class->kind == U_BLOCK && class->object.has_class && !class->object.abstract &&
+            cm1e_st_is_a(st, class, unit))
             emit_case(st, class, method->name);
     cm1e_st_put(st, "    default: st_fail(ST_HERE, \"this object has no such method\", 0, 0, 0);\n    }\n}\n");
 }

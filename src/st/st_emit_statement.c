@@ -215,8 +215,8 @@ static void emit_count(st_t *st, const expr_t *target, unsigned n)
                 cm1e_st_int64(st, type->last));
 }
 
-/** The limits are evaluated one after the other, as they are written: a call in one may change the next one. All stands in
- *  one line, which is that of the FOR in a fault. */
+/** The limits are evaluated one after the other, as they are written: a call in one may change the next one. All stands
+ *  in one line, which is that of the FOR in a fault. */
 static void emit_for(st_t *st, const stmt_t *stmt)
 {
     const unsigned n = ++st->temporaries;

@@ -110,8 +110,8 @@ static const char *indices_of(const listing_t *l, const type_t *type, uint64_t e
     for (int i = type->dimension_count - 1; i >= 0; i--) {
         const dimension_t *d = &type->dimensions[i];
         const uint64_t length = (uint64_t)(d->last - d->first + 1);
-        text = cm1e_st_format(l->st->arena, "%lld%s%s", (long long)(d->first + (int64_t)(element % length)), *text ? "," : "",
-                              text);
+        text = cm1e_st_format(l->st->arena, "%lld%s%s", (long long)(d->first + (int64_t)(element % length)),
+                              *text ? "," : "", text);
         element /= length;
     }
     return text;
@@ -203,8 +203,8 @@ static void list_all(listing_t *l)
     st_t *st = l->st;
     for (const var_t *var = st->tree.globals; var; var = var->next)
         if (!st->sources[var->place.file].external)
-            list_variable(l, var->list ? cm1e_st_format(st->arena, "%s.%s", var->list, var->name) : var->name, var->c_name,
-                          var);
+            list_variable(l, var->list ? cm1e_st_format(st->arena, "%s.%s", var->list, var->name) : var->name,
+                          var->c_name, var);
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         for (const var_t *var = instance->unit->vars; var; var = var->next)
             if (var->section == V_LOCAL || var->section == V_INPUT || var->section == V_OUTPUT)
@@ -325,7 +325,8 @@ static bool calls_init(const type_t *type)
         return calls_init(type->element);
     if (type->kind == T_BLOCK && cm1e_st_has_init(type->unit))
         return true;
-    for (const var_t *var = type->kind == T_BLOCK || type->kind == T_STRUCT ? type->members : NULL; var; var = var->next)
+    const bool has_members = type->kind == T_BLOCK || type->kind == T_STRUCT;
+    for (const var_t *var = has_members ? type->members : NULL; var; var = var->next)
         if (cm1e_st_is_stored(var) && var->section != V_IN_OUT && calls_init(var->type))
             return true;
     return false;
@@ -342,7 +343,8 @@ static void emit_global_initial(st_t *st, const var_t *var, bool with_init)
         cm1e_st_emit_var_initial(st, var->c_name, var);
 }
 
-/** In the order of their declaration, which that of the list is not; at last those with FB_Init, which may use others. */
+/** In the order of their declaration, which that of the list is not; at last those with FB_Init, which may use
+ *  others. */
 static void emit_globals_initial(st_t *st)
 {
     size_t count = 0;
@@ -362,7 +364,8 @@ static void emit_begin(st_t *st)
 {
     cm1e_st_put(st, "static void begin(void)\n{\n");
     st->indent = 1;
-    cm1e_st_line(st, "if (setjmp(st_leave) != 0)\n        return;\n    st_loops_left = st_loop_limit;\n"); /* FB_Init may fail */
+    /* FB_Init may fail. */
+    cm1e_st_line(st, "if (setjmp(st_leave) != 0)\n        return;\n    st_loops_left = st_loop_limit;\n");
     emit_globals_initial(st);
     for (const unit_t *unit = st->tree.units; unit; unit = unit->next)
         for (const var_t *var = unit->vars; var; var = var->next)

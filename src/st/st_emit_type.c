@@ -35,8 +35,8 @@ static void emit_edges(st_t *st, const type_t *type)
         if (!(var->qualifiers & Q_EDGE))
             continue;
         const bool rising = var->qualifiers & Q_R_EDGE;
-        cm1e_st_put(st, "    self->%sedge = %sself->%s && %sself->%sbefore;\n", var->c_name, rising ? "" : "!", var->c_name,
-                    rising ? "!" : "", var->c_name);
+        cm1e_st_put(st, "    self->%sedge = %sself->%s && %sself->%sbefore;\n", var->c_name, rising ? "" : "!",
+                    var->c_name, rising ? "!" : "", var->c_name);
         cm1e_st_put(st, "    self->%sbefore = self->%s;\n", var->c_name, var->c_name);
     }
     cm1e_st_put(st, "}\n");

@@ -16,8 +16,8 @@ static void emit_locals(st_t *st, const unit_t *unit)
         cm1e_st_line(st, "ST_UNUSED %s%s%s = %s;\n", cm1e_st_c_type(st, var->type), pointer ? "" : " ", var->c_name,
                      aggregate ? "{0}" : pointer ? "NULL" : "0");
         if (text_input)
-            cm1e_st_line(st, "%s(%s.text, sizeof %s.text, %sin);\n", cm1e_st_text_assign(var->type), var->c_name, var->c_name,
-                         var->c_name);
+            cm1e_st_line(st, "%s(%s.text, sizeof %s.text, %sin);\n", cm1e_st_text_assign(var->type), var->c_name,
+                         var->c_name, var->c_name);
         else
             cm1e_st_emit_initial(st, var->c_name, var->type, var->initial);
     }

@@ -8,7 +8,8 @@
 static type_t *named(st_t *st, const char *name)
 {
     const bool wide = strcasecmp(name, "WSTRING") == 0;
-    return wide || strcasecmp(name, "STRING") == 0 ? cm1e_st_text_type(st, ST_STRING_BYTES, wide) : cm1e_st_elementary(st, name);
+    return wide || strcasecmp(name, "STRING") == 0 ? cm1e_st_text_type(st, ST_STRING_BYTES, wide)
+                                                   : cm1e_st_elementary(st, name);
 }
 
 /** Whether there is a conversion at all. */

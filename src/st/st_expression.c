@@ -101,7 +101,8 @@ static void enumerator_of(st_t *st, expr_t *expr, const char *type_name)
         use_enumerator(expr, var);
         return;
     }
-    var = cm1e_st_map_get(st->globals, expr->name); /* MC_Direction.MC_Shortest_Way: a constant of that type (Tc2_MC2) */
+    /* MC_Direction.MC_Shortest_Way: a constant of that type (Tc2_MC2). */
+    var = cm1e_st_map_get(st->globals, expr->name);
     if (var && (var->qualifiers & Q_CONSTANT) && cm1e_st_resolve(st, var->type) == type) {
         expr->kind = E_NAME;
         expr->a = NULL;
@@ -244,7 +245,8 @@ static void member(st_t *st, expr_t *expr)
     }
     if (type->kind == T_BLOCK && expr->a->kind != E_THIS && expr->var->section != V_INPUT &&
         expr->var->section != V_OUTPUT && !(expr->var->qualifiers & Q_PUBLIC)) {
-        cm1e_st_report(st, expr->place, "\"%s\" is within %s: from outside its inputs, outputs and VAR PUBLIC can be reached",
+        cm1e_st_report(st, expr->place,
+                       "\"%s\" is within %s: from outside its inputs, outputs and VAR PUBLIC can be reached",
                        expr->var->name, type->name);
         set_wrong(st, expr);
     }
@@ -260,13 +262,16 @@ static void element(st_t *st, expr_t *expr)
         cm1e_st_expression(st, arg->value);
         arg->value = cm1e_st_settle(st, arg->value);
         if (arg->value->impure)
-            cm1e_st_report(st, arg->value->place, "this call can change variables: give its result to a variable first, and "
-                           "use that as the index");
+            cm1e_st_report(st, arg->value->place, "this call can change variables: give its result to a variable "
+                           "first, and use that as the index");
         const type_kind_t kind = arg->value->type->kind;
-        if (!cm1e_st_is_integer(kind) && !(cm1e_st_is_bits(kind) && kind != T_BOOL) && kind != T_ENUM && kind != T_WRONG)
-            cm1e_st_report(st, arg->value->place, "an index is an integer, not %s", cm1e_st_type_name(arg->value->type));
+        if (!cm1e_st_is_integer(kind) && !(cm1e_st_is_bits(kind) && kind != T_BOOL) && kind != T_ENUM &&
+            kind != T_WRONG)
+            cm1e_st_report(st, arg->value->place, "an index is an integer, not %s",
+                           cm1e_st_type_name(arg->value->type));
         if (kind == T_ULINT || kind == T_LWORD)
-            cm1e_st_report(st, arg->value->place, "an index has at most the range of LINT, not %s", arg->value->type->name);
+            cm1e_st_report(st, arg->value->place, "an index has at most the range of LINT, not %s",
+                           arg->value->type->name);
     }
     if (type->kind == T_WRONG) {
         set_wrong(st, expr);
@@ -387,7 +392,8 @@ static bool is_comparable(const expr_t *expr, type_kind_t kind)
 /** 0 beside an interface is NULL (TwinCAT). */
 static void zero_as_null(st_t *st, expr_t *zero, const expr_t *beside)
 {
-    if (beside->type->kind == T_INTERFACE && zero->type->kind == T_ANY_INT && zero->value.known && zero->value.integer == 0)
+    if (beside->type->kind == T_INTERFACE && zero->type->kind == T_ANY_INT && zero->value.known &&
+        zero->value.integer == 0)
         zero->type = st->elementary[T_NULL];
 }
 
@@ -421,7 +427,9 @@ static type_kind_t time_result(const expr_t *expr)
     const type_kind_t a = expr->a->type->kind, b = expr->b->type->kind;
     switch (expr->op) {
     case OP_ADD:
-        return b == T_TIME && a != T_DATE && cm1e_st_is_time(a) ? a : a == T_TIME && (b == T_TOD || b == T_DT) ? b : T_NONE;
+        return b == T_TIME && a != T_DATE && cm1e_st_is_time(a) ? a
+               : a == T_TIME && (b == T_TOD || b == T_DT)       ? b
+                                                                : T_NONE;
     case OP_SUB:
         return b == T_TIME && a != T_DATE && cm1e_st_is_time(a) ? a : a == b ? T_TIME : T_NONE;
     case OP_MUL:

@@ -6,7 +6,8 @@
 
 static bool is_standard(const var_t *var)
 {
-    return var->section == V_INPUT && (strcasecmp(var->name, "bInitRetains") == 0 || strcasecmp(var->name, "bInCopyCode") == 0);
+    return var->section == V_INPUT &&
+           (strcasecmp(var->name, "bInitRetains") == 0 || strcasecmp(var->name, "bInCopyCode") == 0);
 }
 
 static bool is_parameter(const var_t *var)
@@ -77,21 +78,23 @@ void cm1e_st_check_init_args(st_t *st, var_t *var)
         if (parameter)
             arg->value = cm1e_st_initialiser(st, arg->value, cm1e_st_resolve(st, parameter->type), arg->name);
         else
-            cm1e_st_report(st, arg->place, "%s has no FB_Init with an input \"%s\"%s; initial values of inputs stand behind :=",
+            cm1e_st_report(st, arg->place,
+                           "%s has no FB_Init with an input \"%s\"%s; initial values of inputs stand behind :=",
                            cm1e_st_type_name(var->type), arg->name, meant_parameter(st, unit, arg->name));
     }
     for (const unit_t *at = unit; at && var->section != V_IN_OUT; at = at->object.base) {
         const unit_t *method = cm1e_st_init_method(at);
         for (const var_t *parameter = method ? method->vars : NULL; parameter; parameter = parameter->next)
             if (is_parameter(parameter) && !is_standard(parameter) && !given(var, parameter->name))
-                cm1e_st_report(st, var->place, "FB_Init of %s needs \"%s\": %s : %s(%s := ...)", at->name, parameter->name,
-                               var->name, unit->name, parameter->name);
+                cm1e_st_report(st, var->place, "FB_Init of %s needs \"%s\": %s : %s(%s := ...)", at->name,
+                               parameter->name, var->name, unit->name, parameter->name);
     }
     const type_t *element = var->type;
     while (element->kind == T_ARRAY)
         element = element->element;
     if (element != var->type && element->kind == T_BLOCK && cm1e_st_init_takes(element->unit))
-        cm1e_st_report(st, var->place, "FB_Init of %s needs inputs, which the instances of an array cannot be given here",
+        cm1e_st_report(st, var->place,
+                       "FB_Init of %s needs inputs, which the instances of an array cannot be given here",
                        element->name);
 }
 

@@ -11,8 +11,8 @@ static const struct { const char *name; int bits, class; } elementary[] = {
 #define X(name, bits, class) [T_##name] = {#name, bits, class},
     ST_ELEMENTARY(X)
 #undef X
-    [T_ANY_INT] = {"an integer", 64, SIGNED}, [T_ANY_REAL] = {"a real number", 64, FLOATING}, [T_NULL] = {"NULL", 64, 0},
-    [T_STRING] = {"STRING", 0, 0}, [T_WRONG] = {"?", 0, 0},
+    [T_ANY_INT] = {"an integer", 64, SIGNED}, [T_ANY_REAL] = {"a real number", 64, FLOATING},
+    [T_NULL] = {"NULL", 64, 0}, [T_STRING] = {"STRING", 0, 0}, [T_WRONG] = {"?", 0, 0},
 };
 
 static const struct { const char *name; type_kind_t kind; } other_names[] = {

@@ -9,8 +9,8 @@ const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owne
 {
     const bool get = strncmp(name, "get ", 4) == 0, set = strncmp(name, "set ", 4) == 0;
     const char *class_name = cm1e_st_c_name(st, owner->name);
-    return cm1e_st_format(st->arena, "%s%s%zu_%s_%s", prefix, get ? "_GET" : set ? "_SET" : "", strlen(class_name), class_name,
-                          get || set ? name + 4 : name);
+    return cm1e_st_format(st->arena, "%s%s%zu_%s_%s", prefix, get ? "_GET" : set ? "_SET" : "", strlen(class_name),
+                          class_name, get || set ? name + 4 : name);
 }
 
 /* ---- links ------------------------------------------------------------------------------------------------------- */
@@ -37,7 +37,8 @@ static unit_t *named_unit(st_t *st, const unit_t *unit, const char *name, unit_k
     wanted_t wanted = {.near = {.word = name}, .asks = unit, .kind = kind};
     cm1e_st_map_each(st->units, look_at_unit, &wanted);
     cm1e_st_report(st, unit->place, "there is no %s \"%s\" that \"%s\" could %s%s", what, name, unit->name,
-                   kind == U_INTERFACE && unit->kind == U_BLOCK ? "implement" : "extend", cm1e_st_meant(st, &wanted.near));
+                   kind == U_INTERFACE && unit->kind == U_BLOCK ? "implement" : "extend",
+                   cm1e_st_meant(st, &wanted.near));
     return NULL;
 }
 
@@ -126,7 +127,8 @@ unit_t *cm1e_st_find_method(const unit_t *unit, const char *name)
 
 const char *cm1e_st_plain_name(const unit_t *method)
 {
-    return strncmp(method->name, "get ", 4) == 0 || strncmp(method->name, "set ", 4) == 0 ? method->name + 4 : method->name;
+    return strncmp(method->name, "get ", 4) == 0 || strncmp(method->name, "set ", 4) == 0 ? method->name + 4
+                                                                                          : method->name;
 }
 
 unit_t *cm1e_st_this(const st_t *st)
@@ -194,11 +196,11 @@ static void check_override(st_t *st, const unit_t *method, const unit_t *of)
         cm1e_st_report(st, method->place, "\"%s\" is %s in \"%s\": what extends it cannot have one of that name",
                        cm1e_st_plain_name(method), of->object.final ? "FINAL" : "PRIVATE", of->object.owner->name);
     if (of_interface && method->object.access & ~M_PUBLIC)
-        cm1e_st_report(st, method->place, "\"%s\" is of the interface \"%s\", so it is PUBLIC", cm1e_st_plain_name(method),
-                       of->object.owner->name);
+        cm1e_st_report(st, method->place, "\"%s\" is of the interface \"%s\", so it is PUBLIC",
+                       cm1e_st_plain_name(method), of->object.owner->name);
     if (of && strcasecmp(method->name, "FB_Init") != 0 && !same_signature(st, method, of))
-        cm1e_st_report(st, method->place, "\"%s\" has another result or other parameters than that of \"%s\"", method->name,
-                       of->object.owner->name);
+        cm1e_st_report(st, method->place, "\"%s\" has another result or other parameters than that of \"%s\"",
+                       method->name, of->object.owner->name);
 }
 
 static void check_interface(st_t *st, const unit_t *unit, const unit_t *interface)

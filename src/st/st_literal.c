@@ -263,8 +263,10 @@ bool cm1e_st_read_literal(const char *text, st_literal_t *literal, char *why, si
     const expr_t *expr = good_text ? cm1e_st_literal(st, (place_t){0}, text) : wrong(st, (place_t){0});
     const type_kind_t kind = expr->type->kind;
     const bool good = kind <= T_DT || kind == T_ANY_INT || kind == T_ANY_REAL;
-    *literal = (st_literal_t){.type = "", .huge = expr->value.huge, .integer = expr->value.integer, .real = expr->value.real,
-                              .is_real = cm1e_st_is_floating(kind) || kind == T_ANY_REAL, .is_time = cm1e_st_is_time(kind)};
+    *literal = (st_literal_t){.type = "", .huge = expr->value.huge, .integer = expr->value.integer,
+                              .real = expr->value.real,
+                              .is_real = cm1e_st_is_floating(kind) || kind == T_ANY_REAL,
+                              .is_time = cm1e_st_is_time(kind)};
     if (good && kind <= T_DT)
         literal->type = expr->type->name;
     if (!good)
@@ -273,8 +275,8 @@ bool cm1e_st_read_literal(const char *text, st_literal_t *literal, char *why, si
     return good;
 }
 
-/** The character of an escape behind a $, which may have `digits` hexadecimal ones; `length`: how many characters it has.
- *  -1: there is no such escape. */
+/** The character of an escape behind a $, which may have `digits` hexadecimal ones; `length`: how many characters it
+ *  has. -1: there is no such escape. */
 static long escape(const char *text, size_t digits, size_t *length)
 {
     static const char from[] = "$'NnLlRrTtPp\"", to[] = "$'\n\n\n\n\r\r\t\t\f\f\"";
@@ -343,8 +345,8 @@ expr_t *cm1e_st_wide_literal(st_t *st, place_t place, const char *text)
             size_t skip;
             const long unit = escape(text, 4, &skip);
             if (unit < 0) {
-                cm1e_st_report(st, place, "\"$%.4s\" means nothing in a WSTRING; right are $$, $\", $N, $L, $R, $T, $P and "
-                               "$0041 (a character other than 0)", text);
+                cm1e_st_report(st, place, "\"$%.4s\" means nothing in a WSTRING; right are $$, $\", $N, $L, $R, $T, $P "
+                               "and $0041 (a character other than 0)", text);
                 return wrong(st, place);
             }
             used += put_utf8(bytes + used, (unsigned long)unit);

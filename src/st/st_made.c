@@ -25,13 +25,14 @@ type_t *cm1e_st_range_type(st_t *st, const type_t *base, int64_t first, int64_t 
         if (type->ranged && type->kind == base->kind && type->first == first && type->last == last)
             return type;
     type_t *type = cm1e_st_type_node(st, base->kind, (place_t){0}, base->name);
-    const uint64_t low = first < 0 ? 0 - (uint64_t)first : (uint64_t)first, high = last < 0 ? 0 - (uint64_t)last : (uint64_t)last;
+    const uint64_t low = first < 0 ? 0 - (uint64_t)first : (uint64_t)first;
+    const uint64_t high = last < 0 ? 0 - (uint64_t)last : (uint64_t)last;
     type->ranged = true;
     type->first = first;
     type->last = last;
     type->shown = cm1e_st_format(st->arena, "%s (%lld..%lld)", base->name, (long long)first, (long long)last);
-    type->c_name = cm1e_st_format(st->arena, "%s_%s%llu_%s%llu", base->name, first < 0 ? "m" : "", (unsigned long long)low,
-                                  last < 0 ? "m" : "", (unsigned long long)high);
+    type->c_name = cm1e_st_format(st->arena, "%s_%s%llu_%s%llu", base->name, first < 0 ? "m" : "",
+                                  (unsigned long long)low, last < 0 ? "m" : "", (unsigned long long)high);
     type->state = ST_READY;
     type->size = base->size;
     type->alignment = base->alignment;

@@ -1,5 +1,5 @@
-/* Calls of methods, and properties. A method is a function that gets its instance; which one is meant is known by the class
- * of the instance where blocks override each other. */
+/* Calls of methods, and properties. A method is a function that gets its instance; which one is meant is known by the
+ * class of the instance where blocks override each other. */
 #include <strings.h>
 
 #include "st/st_parsing.h"
@@ -79,7 +79,8 @@ static unit_t *method_of(st_t *st, expr_t *object, const char *name, unit_t **se
     if (type->kind != T_BLOCK && type->kind != T_INTERFACE)
         return NULL;
     *seen_as = type->unit;
-    return type->kind == T_INTERFACE ? cm1e_st_interface_method(st, type->unit, name) : cm1e_st_find_method(type->unit, name);
+    return type->kind == T_INTERFACE ? cm1e_st_interface_method(st, type->unit, name)
+                                     : cm1e_st_find_method(type->unit, name);
 }
 
 static bool call_base(st_t *st, expr_t *call, const char *name)
@@ -89,7 +90,8 @@ static bool call_base(st_t *st, expr_t *call, const char *name)
     call->super = true;
     if (!method) {
         /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): SUPER is known where there is a base only */
-        cm1e_st_report(st, call->place, "\"%s\" has no method \"%s\" that could be called", base->name, name ? name : "");
+        cm1e_st_report(st, call->place, "\"%s\" has no method \"%s\" that could be called", base->name,
+                       name ? name : "");
         call->type = st->elementary[T_WRONG];
         return true;
     }

@@ -1,7 +1,7 @@
 /**
  * @file st_program.h
- * What a program translated from Structured Text shows to the one that runs it: the symbol cm1e_st_program. This text is
- * part of every translated program, and of the command that loads it.
+ * What a program translated from Structured Text shows to the one that runs it: the symbol cm1e_st_program. This text
+ * is part of every translated program, and of the command that loads it.
  */
 #ifndef CM1E_ST_PROGRAM_H
 #define CM1E_ST_PROGRAM_H

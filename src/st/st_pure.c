@@ -1,5 +1,5 @@
-/* Whether a method changes more than its own variables. It is found in the statements as they were read, before they are
- * checked, because an expression may call a method that is checked later. */
+/* Whether a method changes more than its own variables. It is found in the statements as they were read, before they
+ * are checked, because an expression may call a method that is checked later. */
 #include <strings.h>
 
 #include "st/st_parsing.h"
@@ -146,8 +146,8 @@ bool cm1e_st_body_changes(st_t *st, unit_t *unit)
     return unit->object.purity == CHANGES; /* BUSY: a method of this name that calls another one of it, as by SUPER^ */
 }
 
-/** Any method of this name, because which one is called may be known when the program runs only. A name that is no method
- *  is one of a standard function or an error. */
+/** Any method of this name, because which one is called may be known when the program runs only. A name that is no
+ *  method is one of a standard function or an error. */
 bool cm1e_st_changes(st_t *st, const char *name)
 {
     bool changes = false;

@@ -147,8 +147,8 @@ bool cm1e_st_begins_part(const parsing_t *parsing)
 bool cm1e_st_is_modifier(const parsing_t *parsing)
 {
     static const char *const sections[] = {"VAR", "VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_TEMP"};
-    static const char *const words[] = {"METHOD", "PROPERTY", "FUNCTION_BLOCK", "CLASS", "ABSTRACT", "FINAL", "PUBLIC", "PRIVATE",
-                                        "PROTECTED", "INTERNAL", "OVERRIDE"};
+    static const char *const words[] = {"METHOD", "PROPERTY", "FUNCTION_BLOCK", "CLASS", "ABSTRACT", "FINAL", "PUBLIC",
+                                        "PRIVATE", "PROTECTED", "INTERNAL", "OVERRIDE"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (parsing->heading && strcasecmp(parsing->before, words[i]) == 0)
             return true;
@@ -162,8 +162,8 @@ bool cm1e_st_unsupported(parsing_t *parsing, place_t place)
 {
     for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++)
         if (strcasecmp(parsing->last, missing[i]) == 0 || strcasecmp(parsing->before, missing[i]) == 0) {
-            cm1e_st_report(parsing->st, place, "%s is not supported by this translator (docs/STRUCTURED-TEXT.md says what "
-                           "is)", missing[i]);
+            cm1e_st_report(parsing->st, place, "%s is not supported by this translator (docs/STRUCTURED-TEXT.md says "
+                           "what is)", missing[i]);
             return true;
         }
     return false;

@@ -1,9 +1,9 @@
 /**
  * @file st_runtime.h
  * The run-time part of a program translated from Structured Text; it is a part of the translated program. It needs
- * -fwrapv: integers wrap at the ends of their types. What cannot go on (a wrong index, a division of integers by zero, a
- * reference to nothing, a loop without an end) is a fault: the task returns at once, no task runs again, and whoever runs
- * the program stops the axes.
+ * -fwrapv: integers wrap at the ends of their types. What cannot go on (a wrong index, a division of integers by zero,
+ * a reference to nothing, a loop without an end) is a fault: the task returns at once, no task runs again, and whoever
+ * runs the program stops the axes.
  */
 #ifndef CM1E_ST_RUNTIME_H
 #define CM1E_ST_RUNTIME_H
@@ -23,7 +23,8 @@
 #if __GNUC__ >= 11
 #pragma GCC diagnostic ignored "-Wstringop-overread" /* it does not see that the length of a text is looked at */
 #endif
-/* GCC 12 makes |x| of IF x < 0 THEN x := 0 - x, and takes that for above 0, although it wraps at the smallest number. */
+/* GCC 12 makes |x| of IF x < 0 THEN x := 0 - x, and takes that for above 0, although it wraps at the smallest
+ * number. */
 #pragma GCC optimize("no-ssa-phiopt")
 #else
 #pragma clang diagnostic ignored "-Wparentheses-equality" /* every operation has brackets */
@@ -67,8 +68,8 @@ ST_NO_RETURN ST_UNUSED static void st_fail(const char *file, int line, const cha
 ST_UNUSED static inline void st_loop(const char *file, int line)
 {
     if (--st_loops_left < 0)
-        st_fail(file, line, "this loop, with those around and before it, has been passed more than %lld times in one call "
-                            "of the task", st_loop_limit, 0, 0);
+        st_fail(file, line, "this loop, with those around and before it, has been passed more than %lld times in one "
+                            "call of the task", st_loop_limit, 0, 0);
 }
 
 /** The place of an element in its array. */
@@ -108,8 +109,8 @@ typedef void *st_interface_t;
 
 /* ---- arithmetic -------------------------------------------------------------------------------------------------- */
 
-/* A division of integers by zero is a fault; x MOD 0 is 0 (IEC 61131-3). The quotient that is one too large for its type
- * wraps, as a product does. */
+/* A division of integers by zero is a fault; x MOD 0 is 0 (IEC 61131-3). The quotient that is one too large for its
+ * type wraps, as a product does. */
 #define ST_SIGNED_DIVISION(T)                                                                                         \
     ST_UNUSED static inline T st_div_##T(T a, T b, const char *file, int line)                                        \
     {                                                                                                                 \
@@ -207,7 +208,7 @@ int64_t cm1e_scan_time(void);
 LREAL cm1e_tc2_axis_value(UINT handle, UINT number);
 void cm1e_tc2_override(UINT handle, LREAL percent);
 
-/* ---- texts: at most 254 bytes and a final 0 ----------------------------------------------------------------------- */
+/* ---- texts: at most 254 bytes and a final 0 ---------------------------------------------------------------------- */
 
 typedef struct STRING_254 {
     char text[255];
@@ -227,13 +228,14 @@ ST_UNUSED static inline size_t st_wlength(const uint16_t *text)
     return length;
 }
 
-/* The functions of both kinds of texts. ASSIGN cuts off what does not fit into `size` bytes. MID: `count` characters from
- * position `at` (1 = first); what is outside the text is left out. REPLACE: without `count` characters from position `at`,
- * with `put` in their place. */
+/* The functions of both kinds of texts. ASSIGN cuts off what does not fit into `size` bytes. MID: `count` characters
+ * from position `at` (1 = first); what is outside the text is left out. REPLACE: without `count` characters from
+ * position `at`, with `put` in their place. */
 #define ST_TEXTS(w, UNIT, TEXT)                                                                                       \
     ST_UNUSED static inline void st_##w##assign(UNIT *to, size_t size, const UNIT *from)                              \
     {                                                                                                                 \
-        const size_t room = size / sizeof(UNIT) - 1, whole = st_##w##length(from), length = whole < room ? whole : room; \
+        const size_t room = size / sizeof(UNIT) - 1, whole = st_##w##length(from);                                    \
+        const size_t length = whole < room ? whole : room;                                                            \
         memmove(to, from, length * sizeof(UNIT));                                                                     \
         to[length] = 0;                                                                                               \
     }                                                                                                                 \
@@ -435,7 +437,8 @@ ST_UNUSED static inline double st_real_of(const char *text)
     char number[255]; /* without underscores, and without what C reads and ST does not */
     size_t used = 0;
     int negative;
-    for (text = st_sign_of(text, &negative); *text && strchr("0123456789_.eE+-", *text) && used < sizeof number - 1; text++)
+    for (text = st_sign_of(text, &negative); *text && strchr("0123456789_.eE+-", *text) &&
+         used < sizeof number - 1; text++)
         if (*text != '_')
             number[used++] = *text;
     number[used] = '\0';

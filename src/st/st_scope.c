@@ -1,5 +1,5 @@
-/* Namespaces (IEC 61131-3, 3rd edition): what is declared in one has its full name, "Machines.Axes.Speed". A name is looked
- * for from the inside to the outside. */
+/* Namespaces (IEC 61131-3, 3rd edition): what is declared in one has its full name, "Machines.Axes.Speed". A name is
+ * looked for from the inside to the outside. */
 #include <string.h>
 #include <strings.h>
 
@@ -82,7 +82,8 @@ void *cm1e_st_lookup(st_t *st, const map_t *map, const scope_t *scope, place_t p
         for (const struct used *used = scope->used; used && !found; used = used->next) {
             found = in_space(st, map, used->space, name);
             for (const struct used *other = used->next; found && other; other = other->next) {
-                void *second = strcasecmp(other->space, used->space) != 0 ? in_space(st, map, other->space, name) : NULL;
+                void *second = strcasecmp(other->space, used->space) != 0 ? in_space(st, map, other->space, name)
+                                                                          : NULL;
                 if (second)
                     cm1e_st_report(st, place, "\"%s\" is in %s and in %s: write the namespace in front of it", name,
                                    other->space, used->space);

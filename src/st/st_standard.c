@@ -264,7 +264,8 @@ static bool is_input(st_t *st, const expr_t *call, const arg_t *arg)
             return true;
         cm1e_near_look(&near, name);
     }
-    cm1e_st_report(st, arg->place, "%s has no input \"%s\"%s", call->standard->name, arg->name, cm1e_st_meant(st, &near));
+    cm1e_st_report(st, arg->place, "%s has no input \"%s\"%s", call->standard->name, arg->name,
+                   cm1e_st_meant(st, &near));
     return false;
 }
 

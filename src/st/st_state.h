@@ -112,8 +112,8 @@ type_kind_t cm1e_st_common(type_kind_t a, type_kind_t b);
 int64_t cm1e_st_wrap(type_kind_t kind, int64_t value);
 
 /* st_scope.c */
-/** What a name means where it is written: in its namespace and those around it, in one that is used there, or outside of
- *  all; NULL: nothing. Reports a name that several used namespaces have. */
+/** What a name means where it is written: in its namespace and those around it, in one that is used there, or outside
+ *  of all; NULL: nothing. Reports a name that several used namespaces have. */
 /** Whether a place is in a namespace, or in one within it. */
 bool cm1e_st_same_namespace(const scope_t *scope, const scope_t *of);
 void *cm1e_st_lookup(st_t *st, const map_t *map, const scope_t *scope, place_t place, const char *name);
@@ -143,8 +143,8 @@ void cm1e_st_check_expression(st_t *st, expr_t *expr);
 static inline void cm1e_st_expression(st_t *st, expr_t *expr) { st->checker->expression(st, expr); }
 /** The expression as a value of this type: converted, if that is lossless; else reported. */
 expr_t *cm1e_st_coerce(st_t *st, expr_t *expr, type_t *type, const char *what);
-/** Says that an expression is a variable, and how the enumerator of the same name is written, where it has the name of an
- *  enumerator of the type; else "". Names have no case. */
+/** Says that an expression is a variable, and how the enumerator of the same name is written, where it has the name of
+ *  an enumerator of the type; else "". Names have no case. */
 const char *cm1e_st_hidden_enumerator(const type_t *type, const expr_t *expr, char *text, size_t size);
 /** A literal without a type gets the one it has if nothing else says so. */
 expr_t *cm1e_st_settle(st_t *st, expr_t *expr);
@@ -179,7 +179,8 @@ void cm1e_st_standard_names(void (*visit)(const char *name, void *context), void
 /* st_statement.c */
 void cm1e_st_statements(st_t *st, stmt_t *list);
 
-/** st_alias.c: our name of an input or member that TwinCAT calls `name`; NULL: there is none, `hint` may say what to do. */
+/** st_alias.c: our name of an input or member that TwinCAT calls `name`; NULL: there is none, `hint` may say what to
+ *  do. */
 const char *cm1e_st_alias(const char *block, const char *name, const char **hint);
 
 /** st_view.c: axis.NcToPlc.ActPos and the like: false: it is none. */

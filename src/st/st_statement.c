@@ -41,8 +41,8 @@ static void assign(st_t *st, stmt_t *stmt)
     if (stmt->value->impure && (target->kind == E_INDEX || target->kind == E_DEREF || target->kind == E_MEMBER))
         for (const expr_t *at = target; at; at = at->a)
             if (at->kind == E_DEREF || (at->kind == E_INDEX && !cm1e_st_is_fixed(at->args->value)))
-                cm1e_st_report(st, stmt->place, "this call can change which variable is meant on the left: give its result "
-                               "to a variable first");
+                cm1e_st_report(st, stmt->place, "this call can change which variable is meant on the left: give its "
+                               "result to a variable first");
 }
 
 static void call(st_t *st, stmt_t *stmt)
@@ -72,8 +72,8 @@ static void label(st_t *st, arg_t *arg, type_t *selector)
         const bool by_base = selector->kind == T_ENUM && cm1e_st_is_integer((*ends[i])->type->kind);
         *ends[i] = cm1e_st_coerce(st, *ends[i], by_base ? selector->element : selector, "the selector");
         if ((*ends[i])->type->kind != T_WRONG && !(*ends[i])->value.known)
-            cm1e_st_report(st, (*ends[i])->place, "a label of CASE is known before the program runs: a number, a CONSTANT "
-                           "or an enumerator");
+            cm1e_st_report(st, (*ends[i])->place, "a label of CASE is known before the program runs: a number, a "
+                           "CONSTANT or an enumerator");
     }
     if (ends[1] && (*ends[0])->value.known && (*ends[1])->value.known &&
         (*ends[0])->value.integer > (*ends[1])->value.integer)
@@ -158,11 +158,13 @@ static void count(st_t *st, stmt_t *stmt)
     }
     if (type->kind != T_WRONG && cm1e_st_assignable(st, stmt->target))
         cm1e_st_note_change(st, stmt->target);
+    type_t *const counted = type->ranged ? st->elementary[type->kind] : type;
+    const char *const counter = stmt->target->name ? stmt->target->name : "the counter";
     for (int i = 0; i < 3; i++) {
         if (!*parts[i])
             continue;
         cm1e_st_expression(st, *parts[i]);
-        *parts[i] = cm1e_st_coerce(st, *parts[i], type->ranged ? st->elementary[type->kind] : type, stmt->target->name ? stmt->target->name : "the counter");
+        *parts[i] = cm1e_st_coerce(st, *parts[i], counted, counter);
     }
     if (stmt->by && stmt->by->value.known && stmt->by->value.integer == 0)
         cm1e_st_report(st, stmt->by->place, "a FOR in steps of 0 would not end");

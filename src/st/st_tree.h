@@ -193,7 +193,8 @@ typedef enum section {
     V_LOCAL, V_INPUT, V_OUTPUT, V_IN_OUT, V_GLOBAL, V_EXTERNAL, V_TEMP, V_RESULT, V_MEMBER, V_ENUMERATOR,
 } section_t;
 
-enum { Q_CONSTANT = 1, Q_RETAIN = 2, Q_NON_RETAIN = 4, Q_R_EDGE = 8, Q_F_EDGE = 16, Q_PUBLIC = 32, Q_EDGE = Q_R_EDGE | Q_F_EDGE };
+enum { Q_CONSTANT = 1, Q_RETAIN = 2, Q_NON_RETAIN = 4, Q_R_EDGE = 8, Q_F_EDGE = 16, Q_PUBLIC = 32,
+       Q_EDGE = Q_R_EDGE | Q_F_EDGE };
 
 struct var {
     const char *name;
@@ -233,7 +234,8 @@ typedef enum unit_kind { U_FUNCTION, U_BLOCK, U_PROGRAM, U_METHOD, U_INTERFACE }
 /** What object orientation adds to a unit. */
 typedef struct object {
     unit_t *owner;       /**< of a method: its block, program or interface */
-    unit_t *methods;     /**< of a block: its own, by `next_method`; those of a property are "get name" and "set name" */
+    unit_t *methods;     /**< of a block: its own, by `next_method`; those of a property are "get name" and
+                              "set name" */
     unit_t *next_method;
     struct map *names;   /**< of these methods */
     const char *base_name;

@@ -59,7 +59,10 @@ static const char *first_word(const char *text, const char *end)
 {
     static const char *const words[] = {"FUNCTION_BLOCK", "FUNCTION", "PROGRAM", "INTERFACE"};
     while (text < end) {
-        const char *close = *text == '{' ? "}" : strncmp(text, "(*", 2) == 0 ? "*)" : strncmp(text, "//", 2) == 0 ? "\n" : NULL;
+        const char *close = *text == '{'                    ? "}"
+                            : strncmp(text, "(*", 2) == 0   ? "*)"
+                            : strncmp(text, "//", 2) == 0   ? "\n"
+                                                            : NULL;
         const char *stop = close ? memmem(text, (size_t)(end - text), close, strlen(close)) : NULL;
         for (size_t i = 0; i < sizeof words / sizeof words[0] && !close; i++)
             if (strncasecmp(text, words[i], strlen(words[i])) == 0)
@@ -107,7 +110,8 @@ static void begin_element(conversion_t *c, const char *name, const char *close)
         put(c, " SET ");
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         if (strcmp(name, others[i]) == 0)
-            cm1e_st_report(c->st, (place_t){.file = (uint16_t)(c->source - c->st->sources), .line = c->line, .column = 1},
+            cm1e_st_report(c->st,
+                           (place_t){.file = (uint16_t)(c->source - c->st->sources), .line = c->line, .column = 1},
                            "this part is not in Structured Text (it is <%s>): write it in Structured Text", name);
 }
 

@@ -26,7 +26,8 @@ static void name_array(st_t *st, type_t *type)
                                (long long)(d->last < 0 ? -d->last : d->last));
     }
     type->name = cm1e_st_format(st->arena, "ARRAY [%s] OF %s", bounds, cm1e_st_type_name(type->element));
-    const bool unnamed = type->element->kind == T_REF || type->element->kind == T_INTERFACE; /* C has no name for each */
+    /* C has no name for each. */
+    const bool unnamed = type->element->kind == T_REF || type->element->kind == T_INTERFACE;
     unsigned same = 0;
     for (const type_t *other = st->made; other; other = other->next)
         same += other->kind == T_ARRAY && unnamed;
@@ -117,7 +118,8 @@ void cm1e_st_inherit_initial(st_t *st, var_t *var)
     for (int depth = 0; type && !var->initial && !has_none && depth < ST_DEPTH; depth++) {
         if (type->kind != T_NONE)
             return;
-        /* By its name also where it is resolved, as for the second one of "a, b : t": that leads past its initial value. */
+        /* By its name also where it is resolved, as for the second one of "a, b : t": that leads past its initial
+         * value. */
         const type_t *named = type->name ? cm1e_st_lookup(st, st->types, type->scope, type->place, type->name) : NULL;
         type = named && named != type ? named : type->same;
         if (type && type->initial && type->kind != T_ENUM)
@@ -184,8 +186,8 @@ static type_t *resolve_range(st_t *st, type_t *type, type_t *base)
     if (cm1e_st_is_integer(base->kind) && !base->ranged && first <= last && cm1e_st_fits(base->kind, &low) &&
         cm1e_st_fits(base->kind, &high))
         return cm1e_st_range_type(st, base, first, last);
-    cm1e_st_report(st, type->place, "%lld..%lld is no range of %s: a range has two values of a type of integers, the lower one "
-                   "first", (long long)first, (long long)last, cm1e_st_type_name(base));
+    cm1e_st_report(st, type->place, "%lld..%lld is no range of %s: a range has two values of a type of integers, the "
+                   "lower one first", (long long)first, (long long)last, cm1e_st_type_name(base));
     return st->elementary[T_WRONG];
 }
 

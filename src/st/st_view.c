@@ -24,8 +24,8 @@ static void unknown(st_t *st, expr_t *expr, const char *group)
     for (int i = 0; i < MEMBERS; i++)
         if (strcasecmp(members[i].group, group) == 0)
             cm1e_near_look(&near, members[i].name);
-    cm1e_st_report(st, expr->place, "\"%s\" of %s is not known here%s: read the axis by MC_ReadStatus, MC_ReadAxisInfo and "
-                   "the like", expr->name, group, cm1e_near_text(&near, text, sizeof text));
+    cm1e_st_report(st, expr->place, "\"%s\" of %s is not known here%s: read the axis by MC_ReadStatus, MC_ReadAxisInfo "
+                   "and the like", expr->name, group, cm1e_near_text(&near, text, sizeof text));
     expr->type = st->elementary[T_WRONG];
 }
 
