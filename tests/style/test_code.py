@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The code has one form where C allows several: a result of type cm1e_error_t is compared with CM1E_OK or with another
 error, and is never taken for a truth value. A comment about a C bool has true and false; TRUE and FALSE are values of
-PLCopen inputs. No two files in different rooms have one name. No source, header or test is longer than 700 lines. No Python
-source has a function twice, of which the first would never run.
+PLCopen inputs. No two files in different rooms have one name. No source, header or test is longer than 700 lines, and
+no line of a source or header of the library is wider than 120 columns. No Python source has a function twice, of which
+the first would never run.
 
 test_code.py SOURCE-DIRECTORY
 """
@@ -251,6 +252,20 @@ def check_length():
                     faults.append(f"{path} has {lines} lines, {LONGEST} may be: split it by what it is for")
 
 
+# ---- width of lines -------------------------------------------------------------------------------------------------
+
+WIDEST = 120
+LIBRARY = ("include/", "src/", "fb/")
+
+
+def check_width():
+    for path in files():
+        if path.startswith(LIBRARY):
+            for number, line in enumerate(read(path).split("\n"), 1):
+                if len(line) > WIDEST:
+                    faults.append(f"{path}:{number}: {len(line)} columns, {WIDEST} may be: break the line")
+
+
 # ---- functions of Python -------------------------------------------------------------------------------------------
 
 
@@ -276,6 +291,7 @@ for path in files():
         check_truth(path)
 check_names()
 check_length()
+check_width()
 check_python()
 check_itself()
 sources = {path: code(read(path)) for path in files()}
