@@ -3,6 +3,7 @@
  * every method, moves, random commands, on every mapping, both orders of objects, every firmware and cycle time.
  */
 #include "axis_segment.h"
+#include "../support/xorshift.h"
 
 /* ---- the variants ------------------------------------------------------------------------------------------------ */
 
@@ -418,10 +419,7 @@ END_TEST
 static uint64_t seed;
 static double uniform(double low, double high)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return low + (high - low) * (double)(seed >> 11) / 9007199254740992.0;
+    return xorshift_between(&seed, low, high);
 }
 
 static void random_command(void)

@@ -6,6 +6,7 @@
 #include "coupling/coupling.h"
 #include "block_table.h"
 #include "fb_bench.h"
+#include "../support/xorshift.h"
 
 static _Alignas(16) unsigned char memory[4096];
 
@@ -234,10 +235,7 @@ static uint64_t chance_state;
 
 static uint32_t chance(uint32_t below)
 {
-    chance_state ^= chance_state << 13;
-    chance_state ^= chance_state >> 7;
-    chance_state ^= chance_state << 17;
-    return (uint32_t)(chance_state >> 33) % below;
+    return (uint32_t)(xorshift(&chance_state) >> 33) % below;
 }
 
 static void random_value(const block_member_t *member)

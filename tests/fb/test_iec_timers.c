@@ -6,6 +6,7 @@
 #include "cm1e/iec.h"
 #include "cm1e/scan_time.h"
 #include "quick_check.h"
+#include "../support/xorshift.h"
 
 #define MS INT64_C(1000000)
 #define DAY (INT64_C(86400) * 1000 * MS)
@@ -343,10 +344,7 @@ END_TEST
 static uint64_t random_state;
 static uint64_t next_random(void)
 {
-    random_state ^= random_state << 13;
-    random_state ^= random_state >> 7;
-    random_state ^= random_state << 17;
-    return random_state;
+    return xorshift(&random_state);
 }
 
 START_TEST(test_random_sequences)

@@ -1,4 +1,5 @@
 #include "chance.h"
+#include "xorshift.h"
 
 uint64_t chance_state;
 
@@ -10,15 +11,12 @@ void chance_seed(uint64_t seed)
 
 uint64_t chance(void)
 {
-    chance_state ^= chance_state << 13;
-    chance_state ^= chance_state >> 7;
-    chance_state ^= chance_state << 17;
-    return chance_state;
+    return xorshift(&chance_state);
 }
 
 double uniform(double low, double high)
 {
-    return low + (high - low) * (double)(chance() >> 11) * 0x1p-53;
+    return xorshift_between(&chance_state, low, high);
 }
 
 bool one_in(unsigned n) { return (chance() >> 11) % n == 0; }

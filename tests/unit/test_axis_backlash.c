@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "../support/axis_bench.h"
+#include "../support/xorshift.h"
 
 enum { GAP = 600 }; /* counts */
 
@@ -10,10 +11,7 @@ static uint64_t seed;
 
 static uint64_t draw(uint64_t below)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (seed >> 11) % below;
+    return (xorshift(&seed) >> 11) % below;
 }
 
 static double uniform(double low, double high) { return low + (high - low) * (double)draw(1 << 30) / (1 << 30); }

@@ -1,15 +1,13 @@
 /* Blending (2.4.2, figures 56-63): with which velocity a position is passed, and the moment of the change. */
 #include "../support/axis_bench.h"
 #include "../support/axis_witness.h"
+#include "../support/xorshift.h"
 
 static uint64_t seed;
 
 static double uniform(double low, double high)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+    return xorshift_between(&seed, low, high);
 }
 
 static void begin_as_described(void)

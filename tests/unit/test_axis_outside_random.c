@@ -6,6 +6,7 @@
 
 #include "../support/axis_bench.h"
 #include "../support/seeds.h"
+#include "../support/xorshift.h"
 
 static const double cycle_s = 1e-3;
 static uint64_t chance_state;
@@ -18,10 +19,7 @@ void tearDown(void) { bench_end(); }
 
 static uint32_t chance(uint32_t below)
 {
-    chance_state ^= chance_state << 13;
-    chance_state ^= chance_state >> 7;
-    chance_state ^= chance_state << 17;
-    return (uint32_t)(chance_state >> 33) % below;
+    return (uint32_t)(xorshift(&chance_state) >> 33) % below;
 }
 
 static double between(double least, double most) { return least + (most - least) * chance(100001) / 1e5; }

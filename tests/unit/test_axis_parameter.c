@@ -6,15 +6,13 @@
 #include <string.h>
 
 #include "../support/axis_bench.h"
+#include "../support/xorshift.h"
 
 static uint64_t seed;
 
 static uint64_t draw(uint64_t below)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (seed >> 11) % below;
+    return (xorshift(&seed) >> 11) % below;
 }
 
 static double uniform(double low, double high) { return low + (high - low) * (double)draw(1 << 30) / (1 << 30); }

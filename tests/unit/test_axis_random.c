@@ -5,6 +5,7 @@
 
 #include "../support/axis_bench.h"
 #include "../support/seeds.h"
+#include "../support/xorshift.h"
 
 static uint64_t seed;
 static unsigned number; /* of the run, from which the seed is made */
@@ -19,10 +20,7 @@ void tearDown(void)
 
 static uint32_t draw(uint32_t below)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (uint32_t)(seed >> 33) % below;
+    return (uint32_t)(xorshift(&seed) >> 33) % below;
 }
 
 static double wild(double size)

@@ -5,15 +5,13 @@
 
 #include "../support/axis_bench.h"
 #include "../support/axis_witness.h"
+#include "../support/xorshift.h"
 
 static uint64_t seed;
 
 static double draw(double low, double high)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+    return xorshift_between(&seed, low, high);
 }
 
 static void begin_with(double acceleration, double deceleration, double limit)

@@ -3,6 +3,7 @@
 
 #include "../support/axis_bench.h"
 #include "../support/axis_witness.h"
+#include "../support/xorshift.h"
 
 void setUp(void)
 {
@@ -170,10 +171,7 @@ static uint64_t seed;
 
 static double draw(double low, double high)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+    return xorshift_between(&seed, low, high);
 }
 
 static cm1e_axis_command_t random_inputs(const cm1e_axis_command_t *before)

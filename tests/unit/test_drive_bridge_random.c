@@ -2,6 +2,7 @@
 #include "drive_bridge_bench.h"
 
 #include "../support/seeds.h"
+#include "../support/xorshift.h"
 
 enum { CYCLES = 3000 };
 
@@ -18,10 +19,7 @@ void tearDown(void)
 
 static uint32_t draw(uint32_t below)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (uint32_t)(seed >> 33) % below;
+    return (uint32_t)(xorshift(&seed) >> 33) % below;
 }
 
 static const int modes[] = {8, 8, 8, 6, 101, 120, 121, 0, 9, -1};

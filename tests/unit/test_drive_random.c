@@ -4,6 +4,7 @@
 
 #include "../support/fake_bus.h"
 #include "../support/seeds.h"
+#include "../support/xorshift.h"
 
 enum { CYCLES = 4000 };
 static const int64_t cycle_ns = 1000000;
@@ -22,10 +23,7 @@ void tearDown(void)
 
 static uint32_t draw(uint32_t below)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (uint32_t)(seed >> 33) % below;
+    return (uint32_t)(xorshift(&seed) >> 33) % below;
 }
 
 /* Mostly something near the truth, so that the drive gets far enough to be wrong. */
