@@ -43,12 +43,7 @@ static bool is_latched(const cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
     return !cm1e_drive_is_virtual(&axis->drive) && cm1e_drive_has_probe(&axis->drive, trigger.input, trigger.falling);
 }
 
-static probe_t *probe_at(cm1e_axis_t *axis, unsigned place)
-{
-    return place < PROBES ? &axis->signals.own->probes[place] : &axis->signals.wired->probes[place - PROBES];
-}
-
-static const probe_t *probe_seen(const cm1e_axis_t *axis, unsigned place)
+static probe_t *probe_at(const cm1e_axis_t *axis, unsigned place)
 {
     return place < PROBES ? &axis->signals.own->probes[place] : &axis->signals.wired->probes[place - PROBES];
 }
@@ -116,7 +111,7 @@ static bool in_window(const cm1e_axis_t *axis, const probe_t *probe, double posi
 /* Whether a probe waits for the other edge of this input, so that the sample before it must stay. */
 static bool other_edge_waits(const cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
 {
-    return probe_seen(axis, place_of(trigger) ^ 1u)->state == CM1E_COMMAND_ACTIVE;
+    return probe_at(axis, place_of(trigger) ^ 1u)->state == CM1E_COMMAND_ACTIVE;
 }
 
 static cm1e_error_t arm(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool window, double first, double last,
@@ -159,9 +154,9 @@ cm1e_error_t cm1e_axis_probe(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, boo
 cm1e_probe_status_t cm1e_axis_probe_status(const cm1e_axis_t *axis, uint32_t id)
 {
     const uint32_t place = id % ALL_PROBES;
-    if (id == 0 || (place >= PROBES && !axis->signals.wired) || probe_seen(axis, place)->id != id)
+    if (id == 0 || (place >= PROBES && !axis->signals.wired) || probe_at(axis, place)->id != id)
         return (cm1e_probe_status_t){.state = CM1E_COMMAND_UNKNOWN};
-    const probe_t *probe = probe_seen(axis, place);
+    const probe_t *probe = probe_at(axis, place);
     cm1e_probe_status_t status = {.state = (cm1e_command_state_t)probe->state, .error = (cm1e_error_t)probe->error};
     if (status.state == CM1E_COMMAND_DONE) {
         status.position = probe->position;

@@ -39,7 +39,7 @@ static void count_bytes(const cm1e_description_t *device, uint32_t *bytes)
 
 static bool is_mailbox(const cm1e_described_sync_manager_t *manager)
 {
-    return manager->use == CM1E_SM_MAILBOX_OUT || manager->use == CM1E_SM_MAILBOX_IN;
+    return cm1e_sync_manager_is_mailbox(manager->use);
 }
 static bool is_process_data(const cm1e_described_sync_manager_t *manager)
 {
@@ -54,7 +54,7 @@ static void check_control(const cm1e_check_t *check, size_t n, bool carries)
     const cm1e_described_sync_manager_t *manager = &check->device->sync_managers.at[n];
     if (manager->use == CM1E_SM_UNUSED || manager->control_missing)
         return;
-    const bool writes = manager->use == CM1E_SM_MAILBOX_OUT || manager->use == CM1E_SM_OUTPUTS;
+    const bool writes = cm1e_sync_manager_is_written(manager->use);
     const unsigned mode = manager->control & CONTROL_MODE, direction = manager->control & CONTROL_DIRECTION;
     /* Process data may also have one buffer, in which the reader waits for the writer. */
     const bool mode_fits = mode == MODE_MAILBOX || (mode == MODE_BUFFERED && is_process_data(manager));

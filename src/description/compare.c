@@ -101,7 +101,7 @@ static void compare_sync_manager(const comparison_t *c, unsigned n)
 {
     const cm1e_described_sync_manager_t *file = &c->file->sync_managers.at[n];
     const cm1e_described_sync_manager_t *device = &c->device->sync_managers.at[n];
-    const bool of_mailbox = file->use == CM1E_SM_MAILBOX_OUT || file->use == CM1E_SM_MAILBOX_IN;
+    const bool of_mailbox = cm1e_sync_manager_is_mailbox(file->use);
     if (file->use != device->use)
         DIFFERS(c, DIFFERS_SYNC_MANAGER, file->place, "Sync manager %u is for %s in the file, for %s in the device.", n,
                 use_name(file->use), use_name(device->use));

@@ -41,8 +41,6 @@ static cm1e_error_t check_options(const cm1e_device_options_t *options, cm1e_dia
     return check_identity(options, diag);
 }
 
-static const char *motor_name(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? "CM1" : "CM2"; }
-
 static void describe_identity(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_device_options_t *options,
                               unsigned axes)
 {
@@ -50,7 +48,7 @@ static void describe_identity(cm1e_arena_t *arena, cm1e_description_t *device, c
     const char *motors = "";
     for (unsigned axis = 0; axis < axes; axis++)
         motors = cm1e_arena_format(arena, "%s%s%s on %s", motors, axis ? ", " : "",
-                                   motor_name(cm1e_bridge_motor(options->model, axis)), ids[axis]);
+                                   cm1e_bridge_motor_name(cm1e_bridge_motor(options->model, axis)), ids[axis]);
     device->vendor_id = options->vendor_id;
     device->vendor_name = options->vendor_id == CM1E_VENDOR_ID ? CM1E_VENDOR_NAME : "Muscle Corporation";
     device->product_code = options->product_code;

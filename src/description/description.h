@@ -116,6 +116,16 @@ typedef enum cm1e_sync_manager_use {
     CM1E_SM_UNUSED = 0, CM1E_SM_MAILBOX_OUT, CM1E_SM_MAILBOX_IN, CM1E_SM_OUTPUTS, CM1E_SM_INPUTS, /* as in 0x1C00 */
 } cm1e_sync_manager_use_t;
 
+static inline bool cm1e_sync_manager_is_mailbox(cm1e_sync_manager_use_t use)
+{
+    return use == CM1E_SM_MAILBOX_OUT || use == CM1E_SM_MAILBOX_IN;
+}
+/** Whether the master writes it. */
+static inline bool cm1e_sync_manager_is_written(cm1e_sync_manager_use_t use)
+{
+    return use == CM1E_SM_MAILBOX_OUT || use == CM1E_SM_OUTPUTS;
+}
+
 typedef struct cm1e_described_sync_manager {
     cm1e_place_t place;
     cm1e_sync_manager_use_t use;

@@ -109,7 +109,7 @@ static void compare_sync_manager(beside_t *beside, const cm1e_ec_sync_manager_t 
     if (use != its->use)
         found(beside, manager->place, "sync manager %u is %s here, %s in the device", (unsigned)manager->index,
               manager->function, cm1e_ec_function(its->use));
-    const bool mailbox = use == CM1E_SM_MAILBOX_OUT || use == CM1E_SM_MAILBOX_IN;
+    const bool mailbox = cm1e_sync_manager_is_mailbox(use);
     if (mailbox && manager->size >= 0 && its->length_given && manager->size != its->length)
         found(beside, manager->place, "the mailbox of sync manager %u has %d bytes here, %u in the device",
               (unsigned)manager->index, (int)manager->size, its->length);

@@ -85,16 +85,11 @@ static bool has_entry(const cm1e_ec_pdo_t *pdo, const char *name)
 
 /* ---- sync managers ---------------------------------------------------------------------------------------------- */
 
-static bool is_mailbox(cm1e_sync_manager_use_t use)
-{
-    return use == CM1E_SM_MAILBOX_OUT || use == CM1E_SM_MAILBOX_IN;
-}
-
 static void check_sync_manager(cm1e_findings_t *findings, const cm1e_ec_sync_manager_t *manager)
 {
     bool bootstrap;
     const cm1e_sync_manager_use_t use = cm1e_ec_use(manager->function, &bootstrap);
-    const bool out = use == CM1E_SM_MAILBOX_OUT || use == CM1E_SM_OUTPUTS;
+    const bool out = cm1e_sync_manager_is_written(use);
     if (use == CM1E_SM_UNUSED) {
         cm1e_findings_add(findings, CM1E_RULE_TRIO_UNKNOWN, manager->place,
                           "\"" SHORT "\" is no function of a sync manager that is known here: MBOXOUT, MBOXIN, "
@@ -106,11 +101,11 @@ static void check_sync_manager(cm1e_findings_t *findings, const cm1e_ec_sync_man
                           "%s with control byte 0x%02X: its bits 2 and 3 say that the %s writes", manager->function,
                           manager->control, out ? "device" : "controller");
     /* Trio's file has mailboxes of Bootstrap in buffered mode; whoever does that will know why. */
-    if (is_mailbox(use) && !bootstrap && (manager->control & MODE_MASK) != MODE_MAILBOX)
+    if (cm1e_sync_manager_is_mailbox(use) && !bootstrap && (manager->control & MODE_MASK) != MODE_MAILBOX)
         cm1e_findings_add(findings, CM1E_RULE_TRIO_SYNC_MANAGER, manager->place,
                           "%s with control byte 0x%02X: bits 0 and 1 of a mailbox are 2", manager->function,
                           manager->control);
-    if (is_mailbox(use) && manager->size <= 0)
+    if (cm1e_sync_manager_is_mailbox(use) && manager->size <= 0)
         cm1e_findings_add(findings, CM1E_RULE_TRIO_SYNC_MANAGER, manager->place, "%s needs a Size", manager->function);
 }
 

@@ -186,7 +186,7 @@ static uint32_t share_controller(plan_t *plan, const cm1e_description_t *device)
     cm1e_ec_controller_t controller = {.index = (uint32_t)plan->lists.controllers.count};
     for (size_t i = 0; i < device->sync_managers.count; i++) {
         const cm1e_described_sync_manager_t *from = &device->sync_managers.at[i];
-        const bool mailbox = from->use == CM1E_SM_MAILBOX_OUT || from->use == CM1E_SM_MAILBOX_IN;
+        const bool mailbox = cm1e_sync_manager_is_mailbox(from->use);
         cm1e_ec_sync_manager_t *manager = CM1E_APPEND(&plan->lists.arena, &controller.sync_managers);
         manager->index = (uint32_t)i;
         manager->start = from->start;

@@ -40,8 +40,6 @@ static bool check_identity(const boot_t *boot)
     return true;
 }
 
-static bool is_mailbox(cm1e_sync_manager_use_t use) { return use == CM1E_SM_MAILBOX_OUT || use == CM1E_SM_MAILBOX_IN; }
-
 /* The image defines the place of the buffers, but not their purpose. */
 static bool check_sync_managers(const boot_t *boot)
 {
@@ -54,7 +52,8 @@ static bool check_sync_managers(const boot_t *boot)
         if (manager->use != device->sync_managers.at[i].use)
             return REFUSE(boot, "has sync manager %zu of type %d; on this slave it is of type %d", i, manager->use,
                           device->sync_managers.at[i].use);
-        if (is_mailbox(manager->use) && (manager->length < MAILBOX_MIN_BYTES || manager->length > MAILBOX_MAX_BYTES))
+        if (cm1e_sync_manager_is_mailbox(manager->use) &&
+            (manager->length < MAILBOX_MIN_BYTES || manager->length > MAILBOX_MAX_BYTES))
             return REFUSE(boot, "has a mailbox of %u bytes; expected %d to %d", manager->length, MAILBOX_MIN_BYTES,
                           MAILBOX_MAX_BYTES);
     }
