@@ -19,6 +19,7 @@
 #include <time.h>
 
 #include "blocks_cm1e.h"
+#include "sort.h"
 
 enum {
     CYCLES = 1000,        /* timed of each move; the shortest move takes a little longer */
@@ -56,15 +57,9 @@ static double now_ns(void)
 
 /* ---- statistics -------------------------------------------------------------------------------------------------- */
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double quantile(double *values, unsigned count, double part)
 {
-    qsort(values, count, sizeof values[0], compare);
+    sort_values(values, count);
     return values[(unsigned)(part * (count - 1))];
 }
 

@@ -17,6 +17,7 @@
 #include "bus/bus_internal.h"
 #include "bus/kept.h"
 #include "served_drives.h"
+#include "sort.h"
 #include "start_soem.h"
 #include "support/veth.h"
 
@@ -59,12 +60,6 @@ MEASURED measured_cycles(subject_t *subject, unsigned cycles)
 
 static void keep_least(double *least, double us) { *least = *least == 0 || us < *least ? us : *least; }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double now_us(void)
 {
     struct timespec t;
@@ -85,7 +80,7 @@ static void measure_subject(subject_t *subject)
         measured_cycles(subject, BATCH_CYCLES);
         batches[batch] = (now_us() - began) / BATCH_CYCLES;
     }
-    qsort(batches, BATCHES, sizeof batches[0], compare);
+    sort_values(batches, BATCHES);
     measured_us = batches[BATCHES / 2];
 }
 
@@ -181,7 +176,7 @@ static void measure_wire(void *master, int (*receive)(void *), void (*send)(void
         if (n >= 0)
             us[n] = between_us(began, ended);
     }
-    qsort(us, WIRE_CYCLES, sizeof us[0], compare);
+    sort_values(us, WIRE_CYCLES);
     last_round = (round_t){us[WIRE_CYCLES / 2], us[WIRE_CYCLES * 99 / 100]};
 }
 

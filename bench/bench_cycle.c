@@ -9,6 +9,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
+#include "sort.h"
 
 enum { BATCHES = 20, BATCH_CYCLES = 5000, MOTION_SECONDS = 20 };
 
@@ -17,12 +18,6 @@ static double now_s(void)
     struct timespec t;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 static cm1e_bus_t *start_bus(uint32_t axes, int64_t cycle_ns)
@@ -64,7 +59,7 @@ static double bench_bus(uint32_t axes, int64_t cycle_ns)
         batches[batch] = (now_s() - start) / BATCH_CYCLES * 1e6;
     }
     cm1e_bus_close(bus);
-    qsort(batches, BATCHES, sizeof batches[0], compare);
+    sort_values(batches, BATCHES);
     return batches[BATCHES / 2];
 }
 

@@ -9,6 +9,7 @@
 
 #include "bus/bus_image.h"
 #include "cm1e/io.h"
+#include "sort.h"
 
 enum { TERMINALS = 8, CHANNELS = 8, SIGNALS = TERMINALS * CHANNELS, AXES = 4, BATCHES = 40, BATCH_CYCLES = 5000 };
 enum { CALLS = 1000000 };
@@ -22,15 +23,9 @@ static double now_s(void)
     return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *values, size_t count)
 {
-    qsort(values, count, sizeof *values, compare);
+    sort_values(values, count);
     return values[count / 2];
 }
 

@@ -12,6 +12,7 @@
 
 #include "motion/profile.h"
 #include "motion/table_profile.h"
+#include "sort.h"
 
 enum { PROBLEMS = 20000, BATCHES = 7, BATCH = 8 };
 
@@ -42,12 +43,6 @@ static double random_between(double low, double high) /* splitmix64 */
 }
 
 static double random_decade(double low, double high) { return pow(10, random_between(log10(low), log10(high))); }
-
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static problem_t from_rest(void)
 {
@@ -163,7 +158,7 @@ static void report_plan(const char *name, problem_t (*make)(void), void (*plan)(
         }
         sink = profile.duration_s;
     }
-    qsort(costs, PROBLEMS, sizeof costs[0], compare);
+    sort_values(costs, PROBLEMS);
     printf("plan   %-34s median %6.0f ns  p99 %6.0f ns  worst %6.0f ns  median / cbrt %5.1f\n", name,
            costs[PROBLEMS / 2], costs[PROBLEMS * 99 / 100], costs[PROBLEMS - 1], costs[PROBLEMS / 2] / yardstick);
 }
@@ -206,7 +201,7 @@ static void report_sample(const char *name, cm1e_motion_state_t (*state_at)(cons
             sink = sum;
         }
     }
-    qsort(batches, PROFILES, sizeof batches[0], compare);
+    sort_values(batches, PROFILES);
     printf("sample %-34s median %6.1f ns  p99 %6.1f ns  worst %6.1f ns  median / cbrt %5.1f\n", name,
            batches[PROFILES / 2], batches[PROFILES * 99 / 100], batches[PROFILES - 1],
            batches[PROFILES / 2] / yardstick);

@@ -21,6 +21,7 @@
 #include <unistd.h>
 
 #include "socket_ways.h"
+#include "sort.h"
 #include "veth.h"
 
 enum { ROUNDS = 5, PACED = 1000, QUICK = 4000, ALL = ROUNDS * (QUICK > PACED ? QUICK : PACED), WARM_UP = 20, PAUSE_NS = 1000000 };
@@ -129,12 +130,6 @@ static void one_round(const way_t *way, result_t *result, size_t bytes, manner_t
         way->close(state);
 }
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double part(const result_t *result, double of) { return result->us[(int)((result->count - 1) * of)]; }
 
 static void print(size_t bytes, manner_t manner)
@@ -158,7 +153,7 @@ static void measure(size_t bytes, manner_t manner)
         for (int w = 0; w < WAYS; w++)
             one_round(ways[w], &results[w], bytes, manner);
     for (int w = 0; w < WAYS; w++)
-        qsort(results[w].us, (size_t)results[w].count, sizeof results[w].us[0], by_size);
+        sort_values(results[w].us, (size_t)results[w].count);
     print(bytes, manner);
 }
 

@@ -14,6 +14,7 @@ int example_main(int argc, char **argv);
 #include <strings.h>
 #include <time.h>
 
+#include "sort.h"
 #include "st/st_program.h"
 
 enum { TURNS = 15 };
@@ -89,15 +90,9 @@ static double run_one(const char *bus_file, bool in_st)
     return (double)timed.sum_ns / (double)timed.calls;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *values)
 {
-    qsort(values, TURNS, sizeof values[0], compare);
+    sort_values(values, TURNS);
     return values[TURNS / 2];
 }
 

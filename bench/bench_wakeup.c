@@ -9,6 +9,7 @@
 
 #include "cm1e/scheduler.h"
 #include "scheduler/trace_recorder.h"
+#include "sort.h"
 
 enum { WARM = 100, USUAL_CYCLES = 5000 };
 
@@ -30,12 +31,6 @@ static void note(void *context)
         late_us[n] = cm1e_scheduler_trace(scheduler)->timing.wake_up_latency_us;
     if (n == wanted)
         cm1e_scheduler_stop(scheduler);
-}
-
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 static void run(int cpu)
@@ -67,7 +62,7 @@ int main(int words, char **word)
     if (!late_us)
         fail("no memory");
     run(cpu);
-    qsort(late_us, (size_t)wanted, sizeof *late_us, compare);
+    sort_values(late_us, (size_t)wanted);
     printf("us late: median %.2f, 99.9 %% %.2f, worst %.2f, of %ld cycles\n", late_us[wanted / 2],
            late_us[wanted * 999 / 1000], late_us[wanted - 1], wanted);
     free(late_us);
