@@ -6,19 +6,11 @@ enum { OBJECTS_MAX = 512 };
 
 static uint16_t indexes[OBJECTS_MAX];
 
-static cm1e_bus_t *scanned_bus(uint32_t axes)
-{
-    sim_config(axes);
-    cm1e_bus_t *bus = open_bus();
-    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
-    return bus;
-}
-
 static cm1e_firmware_t firmware(void) { return cm1e_firmware_from_version(tested_firmware())->firmware; }
 
 START_TEST(the_list_holds_every_object_of_the_firmware)
 {
-    cm1e_bus_t *bus = scanned_bus(2);
+    cm1e_bus_t *bus = open_scanned_bus(2);
     size_t count, told = OBJECTS_MAX, n = 0;
     const cm1e_object_t *objects = cm1e_device_objects(&count);
     ck_assert_msg(cm1e_sdo_info_list(bus, 2, CM1E_OBJECTS_ALL, indexes, &told, &diag) == CM1E_OK, "%s", diag.text);
@@ -35,7 +27,7 @@ END_TEST
 
 START_TEST(the_lists_of_mappable_objects_are_shorter)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     size_t sizes[6];
     for (int list = CM1E_OBJECTS_ALL; list <= CM1E_OBJECTS_SETTINGS; list++) {
         sizes[list] = OBJECTS_MAX;
@@ -72,7 +64,7 @@ static void check_entry(cm1e_bus_t *bus, const cm1e_entry_t *entry)
 
 START_TEST(every_object_and_entry_is_described_as_in_the_tables)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     size_t count;
     const cm1e_object_t *objects = cm1e_device_objects(&count);
     for (size_t i = 0; i < count; i++) {
@@ -96,7 +88,7 @@ START_TEST(what_is_not_there_is_named)
     cm1e_object_info_t object;
     cm1e_entry_info_t entry;
     size_t room = OBJECTS_MAX;
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     ck_assert_int_eq(cm1e_sdo_info_object(bus, 1, 0x5FFF, &object, &diag), CM1E_ERROR_SDO_ABORT);
     ck_assert_msg(strstr(diag.text, "0x5FFF") && strstr(diag.text, "does not exist"), "%s", diag.text);
     ck_assert_int_eq(cm1e_sdo_info_entry(bus, 1, 0x1018, 9, &entry, &diag), CM1E_ERROR_SDO_ABORT);
@@ -123,7 +115,7 @@ static cm1e_tap_verdict_t lose_one(void *context, cm1e_tap_frame_t *frame)
 START_TEST(a_lost_frame_changes_no_answer)
 {
     static uint16_t again[OBJECTS_MAX];
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     size_t count = OBJECTS_MAX;
     ck_assert_int_eq(cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, indexes, &count, &diag), CM1E_OK);
     cm1e_nic_set_tap(cm1e_bus_nic(bus), lose_one, NULL);
@@ -203,7 +195,7 @@ START_TEST(an_answer_that_is_cut_short_is_told_and_the_next_one_is_right)
         {ask_entry, 3, 3, ""},
         {ask_list, 2, 100, "Slave 1: its description of its objects is shorter than it says."},
     };
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     for (bytes_left = 0; bytes_left < 12; bytes_left++) {
         unsigned answers = 0;
         const bool is_list = rows[_i].ask == ask_list;
@@ -235,7 +227,7 @@ static cm1e_tap_verdict_t cut_all(void *context, cm1e_tap_frame_t *frame)
 
 START_TEST(an_entry_that_is_never_whole_is_told)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_nic_set_tap(cm1e_bus_nic(bus), cut_all, NULL);
     for (bytes_left = 3; bytes_left < 10; bytes_left++) {
         ck_assert_int_eq(ask_entry(bus), CM1E_ERROR_BUS_MAILBOX);

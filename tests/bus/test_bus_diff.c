@@ -12,14 +12,6 @@
 
 static cm1e_findings_t *findings;
 
-static cm1e_bus_t *scanned_bus(uint32_t axes)
-{
-    sim_config(axes);
-    cm1e_bus_t *bus = open_bus();
-    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
-    return bus;
-}
-
 static void generate(cm1e_file_t *file, cm1e_file_format_t format, const char *firmware)
 {
     cm1e_device_options_t device = {.order = tested_order()};
@@ -57,7 +49,7 @@ static const cm1e_file_format_t formats[] = {CM1E_FILE_ESI, CM1E_FILE_SII, CM1E_
 
 START_TEST(a_file_of_every_format_that_is_made_for_the_device_differs_in_nothing)
 {
-    cm1e_bus_t *bus = scanned_bus(2);
+    cm1e_bus_t *bus = open_scanned_bus(2);
     cm1e_file_t file = {0};
     generate(&file, formats[_i], tested_firmware());
     compare(bus, 2, file.bytes, file.size);
@@ -90,7 +82,7 @@ START_TEST(the_sii_of_the_device_itself_differs_in_nothing)
 {
     static uint8_t image[4096];
     size_t size = sizeof image;
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     ck_assert_int_eq(cm1e_sii_read_device(bus, 1, image, &size, &diag), CM1E_OK);
     compare(bus, 1, image, size);
     check_no_finding();
@@ -169,7 +161,7 @@ static bool contains(const cm1e_file_t *file, const char *text)
 START_TEST(the_eni_of_a_scan_has_the_protocols_of_the_sii)
 {
     enum { PROTOCOLS = 0x38, FOE = 0x08 };
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_file_t file = {0};
     cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment_of(bus), 1);
     const bool has_foe = slave->sii[PROTOCOLS] & FOE;
@@ -325,7 +317,7 @@ static void compare_modular(cm1e_bus_t *bus, const char *firmware)
 
 START_TEST(a_modular_file_differs_in_nothing)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     compare_modular(bus, tested_firmware());
     check_no_finding();
     cm1e_bus_close(bus);
@@ -346,7 +338,7 @@ static bool has(const char *rule, const char *words)
 /** Also in a module that nobody has chosen. */
 START_TEST(a_modular_file_for_another_firmware_differs_in_its_modules)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     compare_modular(bus, strcmp(tested_firmware(), "1.2.0") == 0 ? "1.3.5" : "1.2.0");
     ck_assert_msg(has("differs-identity", "revision") && has("differs-pdo", "RxPDO 0x1603"), "%s", first_text());
     cm1e_findings_free(findings);
@@ -383,7 +375,7 @@ static const struct {
 
 START_TEST(what_is_changed_in_a_file_is_found_in_its_line)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
         compare_changed(bus, changes[i].old, changes[i].changed);
         bool found = has(changes[i].rule, changes[i].words);
@@ -398,7 +390,7 @@ END_TEST
 
 START_TEST(a_file_for_another_firmware_differs_in_revision_and_dictionary)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_file_t file = {0};
     const bool old = strcmp(tested_firmware(), "1.2.0") == 0;
     generate(&file, CM1E_FILE_ESI, old ? "1.3.5" : "1.2.0");
@@ -414,7 +406,7 @@ END_TEST
 
 START_TEST(a_file_with_other_revisions_names_them)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_file_t file = {0};
     const cm1e_device_options_t devices[2] = {{.firmware = "1.2.0", .order = tested_order()},
                                               {.firmware = "1.3.5", .order = tested_order()}};
@@ -435,7 +427,7 @@ END_TEST
 
 START_TEST(the_other_order_of_the_mappings_is_found)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_file_t file = {0};
     cm1e_device_options_t device = {.order = tested_order() == CM1E_PDO_ORDER_UG_4_4 ? CM1E_PDO_ORDER_UG_7_2
                                                                                     : CM1E_PDO_ORDER_UG_4_4};
@@ -453,7 +445,7 @@ END_TEST
 START_TEST(another_assignment_is_a_warning)
 {
     static const uint8_t csp[] = {0x01, 0x16}, zero[] = {0}, one[] = {1};
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_file_t file = {0};
     generate(&file, CM1E_FILE_ESI, tested_firmware());
     ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x1C12, 0, zero, 1, &diag), CM1E_OK);
@@ -472,7 +464,7 @@ END_TEST
 START_TEST(a_file_about_something_else_is_not_compared)
 {
     static const char text[] = "this is no file", other[] = "<EtherCATInfo><Vendor><Id>1</Id></Vendor></EtherCATInfo>";
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     ck_assert_int_eq(cm1e_diff_file(&findings, text, sizeof text - 1, bus, 1, &diag), CM1E_ERROR_FILE);
     ck_assert_ptr_null(findings);
     ck_assert_int_ne(cm1e_diff_file(&findings, other, sizeof other - 1, bus, 1, &diag), CM1E_OK);
@@ -488,7 +480,7 @@ START_TEST(a_file_about_something_else_is_not_compared)
     ck_assert_int_eq(cm1e_diff_file(&findings, file.bytes, file.size, bus, 1, &diag), CM1E_ERROR_NOT_FOUND);
     cm1e_file_free(&file);
     cm1e_bus_close(bus);
-    bus = scanned_bus(2);
+    bus = open_scanned_bus(2);
     config.axis_count = 1; /* a network of one slave */
     generate(&file, CM1E_FILE_ENI, tested_firmware());
     ck_assert_int_eq(cm1e_diff_file(&findings, file.bytes, file.size, bus, 2, &diag), CM1E_ERROR_NOT_FOUND);
@@ -502,7 +494,7 @@ END_TEST
 
 START_TEST(the_live_device_is_described_by_what_it_tells)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_description_file_t file = {0};
     findings = cm1e_findings_create();
     ck_assert_msg(cm1e_live_describe(&file, bus, 1, findings, &diag) == CM1E_OK, "%s", diag.text);
@@ -533,7 +525,7 @@ static cm1e_tap_verdict_t no_information(void *context, cm1e_tap_frame_t *frame)
 
 START_TEST(a_device_without_sdo_information_is_compared_by_the_rest)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_file_t file = {0};
     generate(&file, CM1E_FILE_ESI, tested_firmware());
     cm1e_nic_set_tap(cm1e_bus_nic(bus), no_information, NULL);
@@ -582,7 +574,7 @@ static cm1e_tap_verdict_t lose_one(void *context, cm1e_tap_frame_t *frame)
 
 START_TEST(a_lost_frame_changes_no_finding)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_file_t file = {0};
     generate(&file, CM1E_FILE_ESI, tested_firmware());
     cm1e_nic_set_tap(cm1e_bus_nic(bus), lose_one, NULL);
@@ -621,7 +613,7 @@ START_TEST(a_device_that_lies_ends_in_findings_or_an_error_in_bounded_time)
     printf("seed %u\n", seed);
     srand(seed);
     for (int i = 0; i < 60; i++) {
-        cm1e_bus_t *bus = scanned_bus(1);
+        cm1e_bus_t *bus = open_scanned_bus(1);
         cm1e_file_t file = {0};
         generate(&file, formats[i % 4], tested_firmware());
         one_of = i % 2 ? 50 : 2000;
@@ -642,7 +634,7 @@ END_TEST
 
 START_TEST(a_device_that_goes_away_ends_the_comparison_soon)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     cm1e_file_t file = {0};
     generate(&file, CM1E_FILE_ESI, tested_firmware());
     cm1e_sim_segment_cut(segment_of(bus), 1, true);

@@ -4,18 +4,10 @@
 
 #define TIMEOUT_NS INT64_C(500000000)
 
-static cm1e_bus_t *scanned_bus(void)
-{
-    sim_config(2);
-    cm1e_bus_t *bus = open_bus();
-    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
-    return bus;
-}
-
 START_TEST(registers_are_read_and_written)
 {
     enum { WATCHDOG_DATA = 0x0420, AL_STATUS = 0x0130 };
-    cm1e_bus_t *bus = scanned_bus();
+    cm1e_bus_t *bus = open_scanned_bus(2);
     uint8_t value[2] = {0}, wanted[2] = {0x34, 0x12};
     ck_assert_int_eq(cm1e_esc_write(bus, 2, WATCHDOG_DATA, wanted, sizeof wanted, &diag), CM1E_OK);
     ck_assert_int_eq(cm1e_esc_read(bus, 2, WATCHDOG_DATA, value, sizeof value, &diag), CM1E_OK);
@@ -30,7 +22,7 @@ END_TEST
 
 START_TEST(states_are_requested_as_they_are)
 {
-    cm1e_bus_t *bus = scanned_bus();
+    cm1e_bus_t *bus = open_scanned_bus(2);
     cm1e_al_answer_t answer;
     ck_assert_int_eq(cm1e_esc_request_state(bus, 1, CM1E_AL_OP, TIMEOUT_NS, &answer, &diag), CM1E_OK);
     ck_assert_int_eq(answer.state, CM1E_AL_PRE_OP | CM1E_AL_ERROR);
@@ -47,7 +39,7 @@ END_TEST
 
 START_TEST(what_cannot_be_meant_is_refused_in_words)
 {
-    cm1e_bus_t *bus = scanned_bus();
+    cm1e_bus_t *bus = open_scanned_bus(2);
     uint8_t value[2] = {0};
     cm1e_al_answer_t answer;
     ck_assert_int_eq(cm1e_esc_read(bus, 3, 0, value, 2, &diag), CM1E_ERROR_INVALID_ARGUMENT);
@@ -73,7 +65,7 @@ END_TEST
 /** Its neighbour still answers. */
 START_TEST(a_slave_that_is_gone_is_named_with_the_register)
 {
-    cm1e_bus_t *bus = scanned_bus();
+    cm1e_bus_t *bus = open_scanned_bus(2);
     uint8_t value[2] = {0};
     cm1e_al_answer_t answer = {0};
     simulate(bus, "unplug 2");
@@ -95,7 +87,7 @@ END_TEST
 /** Without a valid SII the processor of a slave does not run, so nobody reads the request. */
 START_TEST(a_slave_that_neither_goes_nor_refuses_is_told_with_its_present_state)
 {
-    cm1e_bus_t *bus = scanned_bus();
+    cm1e_bus_t *bus = open_scanned_bus(2);
     cm1e_al_answer_t answer = {0};
     simulate(bus, "quirk 2 wrong-checksum");
     const int64_t begun_ns = now_of(bus);

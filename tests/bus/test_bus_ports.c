@@ -6,14 +6,6 @@
 
 enum { SLAVES = 3 };
 
-static cm1e_bus_t *scanned_bus(void)
-{
-    sim_config(SLAVES);
-    cm1e_bus_t *bus = open_bus();
-    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
-    return bus;
-}
-
 static uint8_t *registers_of(cm1e_bus_t *bus, uint32_t position)
 {
     return cm1e_sim_segment_slave(segment_of(bus), position)->memory;
@@ -21,7 +13,7 @@ static uint8_t *registers_of(cm1e_bus_t *bus, uint32_t position)
 
 START_TEST(every_counter_of_every_port_is_found)
 {
-    cm1e_bus_t *bus = scanned_bus();
+    cm1e_bus_t *bus = open_scanned_bus(SLAVES);
     cm1e_slave_port_t ports[CM1E_PORTS];
     for (uint16_t position = 1; position <= SLAVES; position++) {
         uint8_t *registers = registers_of(bus, position);
@@ -45,7 +37,7 @@ END_TEST
 
 START_TEST(links_are_those_of_a_line)
 {
-    cm1e_bus_t *bus = scanned_bus();
+    cm1e_bus_t *bus = open_scanned_bus(SLAVES);
     for (uint16_t position = 1; position <= SLAVES; position++) {
         cm1e_slave_port_t ports[CM1E_PORTS];
         ck_assert_int_eq(cm1e_bus_read_ports(bus, position, ports, &diag), CM1E_OK);
@@ -100,7 +92,7 @@ END_TEST
 
 START_TEST(slaves_that_are_none_or_silent_are_errors_in_words)
 {
-    cm1e_bus_t *bus = scanned_bus();
+    cm1e_bus_t *bus = open_scanned_bus(SLAVES);
     cm1e_slave_port_t ports[CM1E_PORTS];
     ck_assert_int_eq(cm1e_bus_read_ports(bus, 0, ports, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_int_eq(cm1e_bus_read_ports(bus, SLAVES + 1, ports, &diag), CM1E_ERROR_INVALID_ARGUMENT);

@@ -6,14 +6,6 @@
 #include "bus/bus_internal.h"
 #include "bus_support.h"
 
-static cm1e_bus_t *scanned_bus(uint32_t axes)
-{
-    sim_config(axes);
-    cm1e_bus_t *bus = open_bus();
-    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
-    return bus;
-}
-
 typedef void (*entry_fn)(cm1e_bus_t *bus, const cm1e_entry_t *entry);
 
 static unsigned for_each_entry(cm1e_bus_t *bus, entry_fn function)
@@ -61,7 +53,7 @@ static void check_read(cm1e_bus_t *bus, const cm1e_entry_t *entry)
 
 START_TEST(every_entry_of_the_dictionary_is_read)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     ck_assert_uint_gt(for_each_entry(bus, check_read), 150);
     cm1e_bus_close(bus);
 }
@@ -94,7 +86,7 @@ static void check_write(cm1e_bus_t *bus, const cm1e_entry_t *entry)
 
 START_TEST(every_entry_is_written_or_refused_by_its_access)
 {
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     for_each_entry(bus, check_write);
     cm1e_bus_close(bus);
 }
@@ -112,7 +104,7 @@ START_TEST(abort_names_the_slave_the_object_and_the_reason)
         {0x1018, 9, SDO_ABORT_NO_SUBINDEX, "sub-index"},
     };
     uint8_t data[64];
-    cm1e_bus_t *bus = scanned_bus(2);
+    cm1e_bus_t *bus = open_scanned_bus(2);
     for (unsigned i = 0; i < 2; i++) {
         size_t size = sizeof data;
         ck_assert_int_eq(cm1e_sdo_read(bus, 2, cases[i].index, cases[i].subindex, data, &size, &diag),
@@ -136,7 +128,7 @@ START_TEST(wrong_arguments_are_refused_at_once)
 {
     uint8_t data[4];
     size_t size = 4;
-    cm1e_bus_t *bus = scanned_bus(2);
+    cm1e_bus_t *bus = open_scanned_bus(2);
     ck_assert_int_eq(cm1e_sdo_read(bus, 0, 0x1000, 0, data, &size, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_int_eq(cm1e_sdo_read(bus, 3, 0x1000, 0, data, &size, &diag), CM1E_ERROR_INVALID_ARGUMENT);
     ck_assert_msg(strstr(diag.text, "no slave 3") && strstr(diag.text, "2"), "%s", diag.text);
@@ -242,7 +234,7 @@ START_TEST(queue_takes_64_and_refuses_the_65th)
 {
     static cm1e_sdo_t sdos[66];
     static uint8_t data[66][4];
-    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_bus_t *bus = open_scanned_bus(1);
     for (int round = 0; round < 3; round++) {
         for (int i = 0; i < 66; i++) {
             sdos[i] = (cm1e_sdo_t){.position = 1, .index = 0x1000, .data = data[i], .size = 4};

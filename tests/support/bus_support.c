@@ -38,6 +38,14 @@ cm1e_bus_t *open_bus(void)
     return bus;
 }
 
+cm1e_bus_t *open_scanned_bus(uint32_t axes)
+{
+    sim_config(axes);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
 cm1e_sim_segment_t *segment_of(cm1e_bus_t *bus) { return cm1e_bus_segment(bus); }
 
 uint8_t *register_memory_of(cm1e_bus_t *bus, uint32_t position)

@@ -31,6 +31,8 @@ cm1e_pdo_order_t tested_order(void);
 cm1e_bus_config_t *sim_config(uint32_t axes);
 
 cm1e_bus_t *open_bus(void);
+/** A bus with so many CM1-E, opened and scanned. */
+cm1e_bus_t *open_scanned_bus(uint32_t axes);
 
 /** The segment of an open bus. */
 cm1e_sim_segment_t *segment_of(cm1e_bus_t *bus);
