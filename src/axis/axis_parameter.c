@@ -190,9 +190,9 @@ static cm1e_error_t write_time(cm1e_axis_t *axis, const parameter_t *parameter, 
     return CM1E_OK;
 }
 
-/* What a slave needs of a maximum now. In step its coupling gives way to nothing, and on its way into step to no maximum that
- * it is beyond already: with less it would be in ErrorStop in the next cycle. Other motions were planned, and go on as they
- * are. */
+/* What a slave needs of a maximum now. In step its coupling gives way to nothing, and on its way into step to no
+ * maximum that it is beyond already: with less it would be in ErrorStop in the next cycle. Other motions were
+ * planned, and go on as they are. */
 static double needed(const cm1e_axis_t *axis, int number)
 {
     const double v = axis->setpoint.velocity, a = axis->setpoint.acceleration, rounding = 1.0 - 1e-9;

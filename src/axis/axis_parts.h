@@ -155,8 +155,8 @@ typedef struct power {
     uint8_t reset_state : 4;        /**< cm1e_command_state_t */
     uint16_t held_ms;               /**< the lower bits of the time */
     cm1e_error_t reset_error;
-    float velocity;                 /**< counts/s of the motor. Before the axis takes over: in the cycle before, 0 without
-                                         torque. `held`: how fast it was at first, or came back since */
+    float velocity;                 /**< counts/s of the motor. Before the axis takes over: in the cycle before, 0
+                                         without torque. `held`: how fast it was at first, or came back since */
     int64_t free_ns;                /**< since when no torque is commanded */
     int64_t brake_until_ns;         /**< until then the torque stays at least, to brake */
     uint64_t settled;               /**< what the owner shows while the power stage is on and it has nothing to do; 0:

@@ -244,8 +244,9 @@ static double motor_velocity(const cm1e_axis_t *axis)
     return axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
 }
 
-/* counts/s; the least that tells this velocity, the one of the cycle before, what both come to in the next cycle, and the way
- * since then. So one untrue value turns nothing, and the motor is not driven where the drive brakes it already. */
+/* counts/s; the least that tells this velocity, the one of the cycle before, what both come to in the next cycle, and
+ * the way since then. So one untrue value turns nothing, and the motor is not driven where the drive brakes it
+ * already. */
 static double coasting_velocity(const cm1e_axis_t *axis)
 {
     const double now = motor_velocity(axis), before = axis->power.velocity;
@@ -285,9 +286,9 @@ static void take_over(cm1e_axis_t *axis)
     cm1e_axis_go(axis, ON_POWER_ON);
 }
 
-/* A motor may still turn when it gets its torque: it coasts, or its load turns it. A set-point that stood would brake it with
- * all of its torque, and pull it back from where that ends. So the set-point goes with the motor and brakes, and the axis is
- * taken over when it rests. Its velocity is known when two cycles have shown it under torque. */
+/* A motor may still turn when it gets its torque: it coasts, or its load turns it. A set-point that stood would brake
+ * it with all of its torque, and pull it back from where that ends. So the set-point goes with the motor and brakes,
+ * and the axis is taken over when it rests. Its velocity is known when two cycles have shown it under torque. */
 static void take_over_or_brake(cm1e_axis_t *axis)
 {
     const bool set_points = axis->mode == CM1E_MODE_CSP || axis->mode == CM1E_MODE_CSV;

@@ -189,7 +189,8 @@ static bool position_unknown(const cm1e_axis_t *axis, const probe_sample_t *befo
 static void fail(cm1e_axis_t *axis, probe_t *probe, int input)
 {
     end(axis, probe, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_PROBE);
-    cm1e_axis_remember_not_set(axis, (not_set_t){.error = CM1E_ERROR_AXIS_PROBE, .what = NOT_SET_PROBE, .number = input});
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = CM1E_ERROR_AXIS_PROBE, .what = NOT_SET_PROBE,
+                                                 .number = input});
 }
 
 static void triggered(cm1e_axis_t *axis, probe_t *probe, int input, const probe_sample_t *before,

@@ -51,10 +51,10 @@ static void end(cm1e_axis_t *axis)
     cm1e_axis_set_extra(axis, EXTRA_PURSUIT, false);
 }
 
-/* Without 0x606C the actual velocity is the mean one between two answers. The first one after a pause or silence shows
- * that of the whole pause. A pause ends anywhere in a cycle: the second answer may come so soon that it shows no velocity.
- * Only the third one shows how fast the motor is. So it is with the first answers after a silence, if one of them came
- * late. */
+/* Without 0x606C the actual velocity is the mean one between two answers. The first one after a pause or silence
+ * shows that of the whole pause. A pause ends anywhere in a cycle: the second answer may come so soon that it shows
+ * no velocity. Only the third one shows how fast the motor is. So it is with the first answers after a silence, if
+ * one of them came late. */
 enum { WAITS_AFTER_PAUSE = 2, WAITS_AFTER_SILENCE = 1 };
 static bool shows_velocity(const cm1e_axis_t *axis) { return axis->drive.image.in_velocity.bytes > 0; }
 

@@ -257,14 +257,15 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
 {
     return !c->now->linear && !c->now->by_actual && !c->stopping;
 }
-/** Whether what moves beside the function ends the acceleration before the maximum velocity with the jerk of the axis.
- *  The actual value of a master has no limit of jerk, but the catch-up and a superimposed motion are plans of the axis. */
+/** Whether what moves beside the function ends the acceleration before the maximum velocity with the jerk of the
+ *  axis. The actual value of a master has no limit of jerk, but the catch-up and a superimposed motion are plans of
+ *  the axis. */
 static inline bool coupling_eases(const coupling_t *c) { return !c->now->linear && !c->stopping; }
 /** Whether the slave still approaches, or ends its approach in this cycle. Where the master asks for too much on the
  *  curve of the approach, the slave leaves the curve and makes up what it lags: it may be late then. */
-static inline bool coupling_approaches(const cm1e_axis_t *axis)
+static inline bool coupling_approaches(const cm1e_axis_t *follower)
 {
-    return axis->setpoint.synchronizing && !axis->coupling->stopping;
+    return follower->setpoint.synchronizing && !follower->coupling->stopping;
 }
 /** Puts the coupling `follow` in force. The difference to the state `from` becomes the catch-up. The caller changes the
  *  active command. */

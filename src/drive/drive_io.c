@@ -201,7 +201,8 @@ static void put_by_size(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
         cm1e_put_uint(image + slot.offset, slot.bytes, value);
 }
 
-/* Frames in less time than this part of a cycle, behind a pause, are too close to each other: a count would be too much. */
+/* Frames in less time than this part of a cycle, behind a pause, are too close to each other: a count would be too
+ * much. */
 enum { CLOSE_PART = 4 };
 
 /* The velocity is 0x606C, unless the mapping lacks it or the firmware shows a quarter of it (below V1.3.0 in HM and PP,

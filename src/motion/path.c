@@ -376,8 +376,8 @@ static bool end_stop(cm1e_path_t *path, cm1e_path_sample_t *sample)
     return true;
 }
 
-/** The profile has ended, and with it the last element of the run. Of what two transitions have taken all length, nothing
- *  is left to move on: no profile could change a velocity there, not even by what rounding has added to it. */
+/** The profile has ended, and with it the last element of the run. Of what two transitions have taken all length,
+ *  nothing is left to move on: no profile could change a velocity there, not even by what rounding has added to it. */
 static void end_run(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     const int count = cm1e_path_run(path, 0, path->element_count).count;
