@@ -417,10 +417,11 @@ void watch_set_point(void)
                       (!axis->commands.active || stops(axis) || judged.stopped || axis->setpoint.paused);
     const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
     watched.rough = follows_roughly(axis, JUDGED_MOST) || (watched.rough && ours && watched.velocity != 0.0);
-    /* Without an answer nobody knows that the torque is off: the ramp goes on. */
-    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping ||
-                         (axis->state == CM1E_AXIS_DISABLED && !axis->drive.answered) || (stop && axis->limits.software_limits) ||
-                         watched.rough;
+    /* Without an answer nobody knows that the torque is off: the ramp goes on. A motor that turns when it gets its torque is
+     * braked before the axis is taken over. */
+    const bool by_ramp = axis->state == CM1E_AXIS_DISABLED && (!axis->drive.answered || !axis->power.energized);
+    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || by_ramp ||
+                         (stop && axis->limits.software_limits) || watched.rough;
     const bool hard = is_hard || watched.hard;
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
     const bool taken_over = watched.disabled && axis->state == CM1E_AXIS_STANDSTILL && v == 0.0 && a == 0.0 &&
