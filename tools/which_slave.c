@@ -39,6 +39,8 @@ typedef struct named {
 static named_t look_up(const cm1e_bus_config_t *config, const char *word)
 {
     named_t named = {0};
+    if (is_position(word))
+        return named;
     for (uint32_t i = 0; i < config->axis_count; i++)
         if (cm1e_axis_has_motor(&config->axes[i]) && strcmp(config->axes[i].name, word) == 0)
             named.axis = &config->axes[i];

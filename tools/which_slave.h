@@ -1,7 +1,8 @@
 /**
  * @file which_slave.h
  * The slave of a word that a user gives to a command: a position, or a name of the bus file. A name means the device that
- * the bus file describes: where another one is found, the name is refused. A position means whatever is there.
+ * the bus file describes: where another one is found, the name is refused. A position means whatever is there;
+ * a word of digits is a position, also where the bus file has a name of digits.
  */
 #ifndef CM1E_TOOLS_WHICH_SLAVE_H
 #define CM1E_TOOLS_WHICH_SLAVE_H

@@ -16,6 +16,7 @@ ASTRAY = BRIDGE.replace("sim", "'sim:absent.yaml'")
 BENT = BRIDGE.replace("sim", "'sim:good.st'")
 SWAPPED = "bus: {interface: 'sim:bridge.yaml'}\naxes: [{name: X, position: 1}]\n"
 OTHER_MAKER = "bus: {interface: 'sim:bridge.yaml'}\nslaves: [{name: valves, position: 1, vendor: 0x999}]\n"
+DIGITS = "bus: {interface: sim}\naxes: [{name: '2', position: 1}]\n"
 OTHER = BRIDGE.replace("sim", "'sim:bridge.yaml'") + "  - {name: Y, position: 8}\nslaves:\n  - {name: valves, position: 9}\n"
 TUNE = ["tune", "step", "1", "--max-travel", "1", "--max-velocity", "1", "-i", "sim"]
 SII = ["sii", "write", "1"]
@@ -56,7 +57,7 @@ CASES = [
     (["sdo", "write", "X", "0x6083", "1", "-b", "swapped.yaml"], FAILED, 'expected a CM1-E as axis "X", and found "EB'),
     (["foe", "write", "X", "bridge.yaml", "--allow-write", "-b", "swapped.yaml"], FAILED, "slave 1. Nothing was done"),
     (["sii", "write", "X", "bridge.yaml", "--backup", "new.sii", "-b", "swapped.yaml"], FAILED, "expected a CM1-E"),
-    (["firmware", "update", "bridge.yaml", "-a", "X", "--yes", "-b", "swapped.yaml"], FAILED, "no firmware is that short"),
+    (["firmware", "update", "long", "-a", "X", "--yes", "-b", "swapped.yaml"], FAILED, "expected a CM1-E as axis"),
     (["alias", "X", "7", "--backup", "new.sii", "-b", "swapped.yaml"], FAILED, "The position 1 instead of the name"),
     (["states", "X", "init", "-b", "swapped.yaml"], FAILED, "expected a CM1-E"),
     (["prove", "X", "-b", "swapped.yaml"], FAILED, "expected a CM1-E"),
@@ -64,6 +65,8 @@ CASES = [
     (["sdo", "write", "valves", "0x6083", "1", "-b", "other_maker.yaml"], FAILED, "expected vendor 0x00000999"),
     (["sdo", "read", "X", "0x1018:1", "-b", "bridge.yaml"], WRONG_USE, "give the position, 1"),
     (["sdo", "read", "1"], WRONG_USE, "read POSITION|AXIS INDEX"), (["sii", "decode", "X", "-b", "bridge.yaml"], WRONG_USE, "connector 1"),
+    (["sdo", "write", "2", "0x6083", "1", "-b", "digits.yaml"], FAILED, "there is no slave 2"),
+    (["firmware", "update", "long", "-p", "2", "--yes", "-b", "digits.yaml"], FAILED, "there is no slave 2"),
     (["recover", "-i", "absent0"], FAILED, "no program runs this network"),
     (["explain", "nothingofthekind"], FAILED, "no text has"),
     (["var", "lsit"], WRONG_USE, 'there is no action "lsit"'), (["st", "biuld"], WRONG_USE, 'did you mean "build"'),
@@ -110,7 +113,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         os.mkdir(os.path.join(folder, "folder"))
         for name, text in (("bridge.yaml", BRIDGE), ("other.yaml", OTHER), ("astray.yaml", ASTRAY), ("bent.yaml", BENT),
-                           ("swapped.yaml", SWAPPED), ("other_maker.yaml", OTHER_MAKER),
+                           ("swapped.yaml", SWAPPED), ("other_maker.yaml", OTHER_MAKER), ("digits.yaml", DIGITS),
+                           ("long", 2000 * "x"),
                            ("good.st", "PROGRAM P VAR n : INT; END_VAR n := 1; END_PROGRAM\n")):
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
@@ -123,7 +127,7 @@ def main():
         for words, status, says in CASES:
             check(words, status, says, folder)
         left = set(os.listdir(folder)) - {"folder", "bridge.yaml", "other.yaml", "astray.yaml", "bent.yaml", "swapped.yaml",
-                                          "other_maker.yaml", "good.st"}
+                                          "other_maker.yaml", "digits.yaml", "long", "good.st"}
         if left:
             faults.append(f"files are left: {left}")
     listed = subprocess.run([CM1E, "--help"], capture_output=True, text=True, timeout=60, check=True).stdout
