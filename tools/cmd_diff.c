@@ -20,7 +20,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     diff_options_t *options = state->input;
     switch (key) {
     case ARGP_KEY_INIT: return give_options(state, &options->common);
-    case 'p': options->where = arg; return 0;
+    case 'p': {
+        uint16_t position;
+        options->where = arg;
+        return is_position(arg) && !parse_position(arg, &position) ? EINVAL : 0;
+    }
     case ARGP_KEY_ARG:
     case ARGP_KEY_END: return parse_file_word(key, arg, state, &options->file);
     default: return ARGP_ERR_UNKNOWN;

@@ -20,7 +20,7 @@ int find_axis_at(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const c
 
 bool is_position(const char *word) { return word[0] && strspn(word, "0123456789") == strlen(word); }
 
-static bool parse_position(const char *word, uint16_t *position)
+bool parse_position(const char *word, uint16_t *position)
 {
     long long number;
     const bool good = parse_number(word, "the position", 1, CM1E_MAX_SLAVES, &number);

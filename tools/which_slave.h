@@ -14,6 +14,8 @@ int find_axis_at(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const c
 
 /** Whether the word is a position: digits. */
 bool is_position(const char *word);
+/** false and a complaint: no slave can have this position. */
+bool parse_position(const char *word, uint16_t *position);
 
 /** The slave of a word after a scan: the name of an axis (not behind a bridge) or of a slave of the bus file, or a
  *  position. Returns the exit status, with a complaint: there is no such slave, or it is another device. */
