@@ -124,12 +124,12 @@ typedef struct cm1e_drive_range {
 
 /** Whether the actual position can be believed. Written by drive_io.c, drive_ordinary.c and drive_virtual.c. */
 typedef struct cm1e_drive_actual {
-    int64_t read_ns;                /**< time of the cycle of the last good one, */
-    int64_t sent_ns;                /**< and of the frame that brought it */
+    int64_t read_ns;                /**< time of the cycle of the last good one */
     bool seen;                      /**< inputs were valid at least once */
     uint8_t rejected;               /**< in a row: positions that the motor cannot have reached */
     uint8_t contradictions;         /**< positions that contradicted the actual velocity, less those that agreed */
     uint8_t distrusted;             /**< good positions still to come before torque is requested */
+    uint32_t sent_ns;               /**< the lower bits of the time of the frame that brought it */
 } cm1e_drive_actual_t;
 
 /** The set-point on the wire. Written by drive.h, drive.c, drive_io.c, drive_ordinary.c and drive_virtual.c. */
