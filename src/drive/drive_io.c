@@ -205,8 +205,8 @@ static void put_by_size(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
  * much. */
 enum { CLOSE_PART = 4 };
 
-/* From the frame that brought the last good position to this one. Of a time that its 32 bits do not hold, the cycles tell
- * it. */
+/* From the frame that brought the last good position to this one. A time that 32 bits do not hold is counted in
+ * cycles. */
 static int64_t between_frames(const cm1e_drive_t *drive)
 {
     static const int64_t longest_ns = 4 * INT64_C(1000000000);
