@@ -68,7 +68,7 @@ NUMBERS = [
     (["generate", "sii", "-o", "-", "--alias", "65536"], "65535"), (["generate", "sii", "-o", "-", "--alias", "-1"],
                                                                     "65535"),
     (["generate", "ec-extend", "-o", "-", "--device", "eb12", "--axes", "0"], "1 ... 4"),
-    (["sii", "-i", "sim", "read", "0", "never"], "position"), (["diff", __file__, "-i", "sim", "-p", "0"], "position"),
+    (["sii", "-i", "sim", "read", "0", "never"], "position"), (["diff", "x", "-i", "sim", "-p", "0"], "position"),
     (["cml", "-i", "sim", "--timeout", "1e10", "?99.1"], "3600"),
     (["sdo", "-i", "sim", "read", "-1", "0x1018:1"], "position"),
     (["sdo", "-i", "sim", "read", "1", "0x1018:256"], "sub-index"),

@@ -361,6 +361,18 @@ static bool is_tolerated(const run_t *run, const fault_t *fault)
     return true;
 }
 
+/** Two cables of a ring that are broken at once: what is between them is cut off. */
+static bool cuts_ring(const run_t *run, const fault_t *fault)
+{
+    for (int i = 0; i < run->scenario->fault_count; i++) {
+        const fault_t *other = &run->scenario->faults[i];
+        const bool same_ring = run->axes[(int)other->axis].network == run->axes[(int)fault->axis].network;
+        if (other != fault && other->kind == FAULT_RING && same_ring && other->at <= end_of(fault) && end_of(other) >= fault->at)
+            return true;
+    }
+    return false;
+}
+
 /** What a fault can do to an axis: a fault of one motor stops no other one, a network stops only its own axes, and some
  *  faults stop nobody by an error of bus or drive. */
 static bool may_stop(const run_t *run, const fault_t *fault, const machine_axis_t *axis, bool of_bus)
@@ -370,8 +382,8 @@ static bool may_stop(const run_t *run, const fault_t *fault, const machine_axis_
     const bool same_slave = there->network == axis->network && there->position == axis->position;
     switch ((fault_kind_t)fault->kind) {
     case FAULT_EEPROM:
-    case FAULT_RING:
     case FAULT_EMERGENCY: return false;
+    case FAULT_RING: return there->network == axis->network && cuts_ring(run, fault);
     case FAULT_STALL: return fault->length * run->scenario->cycle_us >= WATCHDOG_US;
     case FAULT_DETACH:
     case FAULT_STRANGER: return there == axis;
