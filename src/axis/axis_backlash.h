@@ -30,6 +30,11 @@ static inline position_t axis_actual(const cm1e_axis_t *axis)
 {
     return cm1e_axis_load(axis, axis->position.actual_counts);
 }
+/** Its actual velocity, counts/s: that of the motor, without the way of the backlash. */
+static inline double axis_actual_velocity(const cm1e_axis_t *axis)
+{
+    return axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
+}
 /** The target position of the motor for the set-point, in whole counts. */
 static inline int64_t cm1e_axis_motor_target(const cm1e_axis_t *axis)
 {

@@ -13,7 +13,7 @@ static double actual_velocity(const cm1e_axis_t *axis)
 {
     if (axis->config->wiring.encoder[0] && axis->coupling_hooks)
         return axis->coupling_hooks->observed_velocity(axis);
-    return (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale;
+    return axis_actual_velocity(axis) / axis->position.scale;
 }
 
 cm1e_axis_state_t cm1e_axis_present_state(const cm1e_axis_t *axis) { return axis->state; }

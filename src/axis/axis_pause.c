@@ -201,7 +201,7 @@ static double velocity_left(const cm1e_axis_t *axis)
     const double set = axis->setpoint.velocity;
     if (motor_goes_on(axis))
         return set;
-    const double motor = (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale;
+    const double motor = axis_actual_velocity(axis) / axis->position.scale;
     const double left = set > 0.0 ? fmax(0.0, fmin(motor, set)) : fmin(0.0, fmax(motor, set));
     const double most = fabs(set) * part_below(axis, highest_after(axis, axis->silence.silent_before));
     const double change = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration) * axis->cycle_s *

@@ -112,8 +112,8 @@ void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
 {
     if (axis_free(axis))
         return;
-    const double motor = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
-    const double velocity = motor / axis->position.scale, before = cm1e_axis_pursuit_velocity(axis);
+    const double velocity = axis_actual_velocity(axis) / axis->position.scale;
+    const double before = cm1e_axis_pursuit_velocity(axis);
     cm1e_axis_set_to_actual(axis);
     cm1e_axis_put_velocity(axis, before > 0.0 ? fmax(0.0, fmin(velocity, before)) : fmin(0.0, fmax(velocity, before)));
     cm1e_axis_ramp_down(axis, &axis->limits.emergency);
@@ -238,18 +238,12 @@ static double slow_velocity(const cm1e_axis_t *axis)
     return axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s + CM1E_AXIS_VELOCITY_NOISE;
 }
 
-/* counts/s; of the motor, without the way of the backlash. */
-static double motor_velocity(const cm1e_axis_t *axis)
-{
-    return axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
-}
-
 /* counts/s; the least that tells this velocity, the one of the cycle before, what both come to in the next cycle, and
  * the way since then. So one untrue value turns nothing, and the motor is not driven where the drive brakes it
  * already. */
 static double coasting_velocity(const cm1e_axis_t *axis)
 {
-    const double now = motor_velocity(axis), before = axis->power.velocity;
+    const double now = axis_actual_velocity(axis), before = axis->power.velocity;
     const double way = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
     const double others[] = {before, 2.0 * now - before, way / axis->cycle_s};
     double least = fabs(now);
@@ -298,7 +292,8 @@ static void take_over_or_brake(cm1e_axis_t *axis)
         return;
     }
     const bool seen_before = axis->power.velocity != 0.0f;
-    if (seen_before ? !brakes_first(axis, coasting_velocity(axis)) : fabs(motor_velocity(axis)) <= slow_velocity(axis))
+    const bool rests = !seen_before && fabs(axis_actual_velocity(axis)) <= slow_velocity(axis);
+    if (rests || (seen_before && !brakes_first(axis, coasting_velocity(axis))))
         take_over(axis);
 }
 
@@ -323,7 +318,7 @@ static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double sl
 static void wait_for_rest(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;
-    const double velocity = motor_velocity(axis);
+    const double velocity = axis_actual_velocity(axis);
     const uint16_t now_ms = (uint16_t)(axis->now_ns / MS_IN_NS);
     const bool first = !power->held;
     if (first) {
@@ -368,7 +363,7 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     else if (!free && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque was lost during a ramp */
     if (free)
-        axis->power.velocity = acting && axis->drive.feedback.fresh ? (float)motor_velocity(axis) : 0.0f;
+        axis->power.velocity = acting && axis->drive.feedback.fresh ? (float)axis_actual_velocity(axis) : 0.0f;
 }
 
 void cm1e_axis_enable_step(cm1e_axis_t *axis)

@@ -73,8 +73,7 @@ static bool may_pursue(const cm1e_axis_t *axis)
 /* u/s, in the direction of the motion before. */
 static double speed_of_motor(const cm1e_axis_t *axis)
 {
-    const double counts_per_s = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
-    return copysign(1.0, axis->setpoint.pursuit.velocity) * counts_per_s / axis->position.scale;
+    return copysign(1.0, axis->setpoint.pursuit.velocity) * axis_actual_velocity(axis) / axis->position.scale;
 }
 
 /* u; by how much the motor is farther than one that follows its set-point, which is a cycle behind it. */

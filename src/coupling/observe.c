@@ -35,7 +35,7 @@ static double first_velocity(const cm1e_axis_t *axis)
 {
     if (axis->config->type == CM1E_AXIS_ENCODER)
         return 0.0;
-    return !goes_as_told(axis) ? axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)
+    return !goes_as_told(axis) ? axis_actual_velocity(axis)
                                            : axis->setpoint.velocity * axis->position.scale;
 }
 
