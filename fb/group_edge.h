@@ -41,7 +41,10 @@ static inline bool fb_group_stands(const cm1e_fb_private_t *fb, const AXES_GROUP
      (fb)->CommandID = (fb)->CommandAccepted ? (fb)->Private.command : 0)
 /* Inputs of these blocks, with the names of the standard. */
 #define FB_GROUP_INPUTS(fb)                                                                                          \
-    .velocity = (fb)->Velocity, FB_DYNAMICS(fb), .coordinates = (fb)->CoordSystem, .buffer_mode = (fb)->BufferMode,  \
-    .transition = (fb)->TransitionMode, .transition_parameter = (fb)->TransitionParameter
+    .velocity = (fb)->Velocity, FB_DYNAMICS(fb), FB_GROUP_ORDER(fb)
+/* ... and of those that move as fast as the axes can. */
+#define FB_GROUP_ORDER(fb)                                                                                           \
+    .coordinates = (fb)->CoordSystem, .buffer_mode = (fb)->BufferMode, .transition = (fb)->TransitionMode,           \
+    .transition_parameter = (fb)->TransitionParameter
 
 #endif

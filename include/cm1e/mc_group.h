@@ -274,6 +274,48 @@ typedef struct MC_MoveCircularRelative_t {
 } MC_MoveCircularRelative_t;
 CM1E_API void MC_MoveCircularRelative(MC_MoveCircularRelative_t *fb);
 
+/** Part 4 v2.0. Moves a group to Position as fast as its axes can; all axes reach their targets together. @rt cycle */
+typedef struct MC_MoveDirectAbsolute_t {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    LREAL Position[8];                 /**< u; target, by IdentInGroup */
+    MC_COORD_SYSTEM CoordSystem;       /**< only mcACS is supported */
+    MC_BUFFER_MODE BufferMode;
+    MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
+    LREAL TransitionParameter;         /**< u, > 0; used by mcTMCornerDistance and mcTMMaxCornerDeviation */
+    /* outputs */
+    BOOL Done;                         /**< the group has reached the end of this part of the path */
+    BOOL Busy;
+    BOOL Active;                       /**< the command moves the group */
+    BOOL CommandAccepted;              /**< the group has accepted the command, and it was not aborted */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    UDINT CommandID;                   /**< number of the command; 0: none */
+    cm1e_fb_private_t Private;
+} MC_MoveDirectAbsolute_t;
+CM1E_API void MC_MoveDirectAbsolute(MC_MoveDirectAbsolute_t *fb);
+
+/** Part 4 v2.0. Moves a group by Distance as fast as its axes can; all axes reach their targets together. @rt cycle */
+typedef struct MC_MoveDirectRelative_t {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    LREAL Distance[8];                 /**< u; distance, by IdentInGroup */
+    MC_COORD_SYSTEM CoordSystem;       /**< only mcACS is supported */
+    MC_BUFFER_MODE BufferMode;
+    MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
+    LREAL TransitionParameter;         /**< u, > 0; used by mcTMCornerDistance and mcTMMaxCornerDeviation */
+    /* outputs */
+    BOOL Done;                         /**< the group has reached the end of this part of the path */
+    BOOL Busy;
+    BOOL Active;                       /**< the command moves the group */
+    BOOL CommandAccepted;              /**< the group has accepted the command, and it was not aborted */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    UDINT CommandID;                   /**< number of the command; 0: none */
+    cm1e_fb_private_t Private;
+} MC_MoveDirectRelative_t;
+CM1E_API void MC_MoveDirectRelative(MC_MoveDirectRelative_t *fb);
+
 /** Part 4 v2.0, 9.14. Reads the positions of the axes of a group, all taken in the same cycle. @rt cycle */
 typedef struct MC_GroupReadPosition_t {
     AXES_GROUP_REF_t *AxesGroup;

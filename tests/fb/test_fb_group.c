@@ -181,8 +181,9 @@ static fb_t *into(cm1e_group_state_t state)
 }
 
 static const char *const moves[] = {"MC_MoveLinearAbsolute", "MC_MoveLinearRelative", "MC_MoveCircularAbsolute",
-                                    "MC_MoveCircularRelative", "MC_GroupHalt", "MC_GroupStop"};
-enum { MOVES = sizeof moves / sizeof *moves, HALT = 4, STOP = 5 };
+                                    "MC_MoveCircularRelative", "MC_MoveDirectAbsolute", "MC_MoveDirectRelative",
+                                    "MC_GroupHalt", "MC_GroupStop"};
+enum { MOVES = sizeof moves / sizeof *moves, HALT = MOVES - 2, STOP = MOVES - 1 };
 
 static const cm1e_error_t refusals[CM1E_GROUP_STATE_COUNT] = {
     [CM1E_GROUP_DISABLED] = CM1E_ERROR_GROUP_DISABLED,
@@ -418,6 +419,72 @@ START_TEST(test_a_refused_override_says_which_factor)
 }
 END_TEST
 
+/* ---- MC_MoveDirect... -------------------------------------------------------------------------------------------- */
+
+/* Four axes, of which the third one has a tenth of the velocity of the others; distances, and the axis that needs the
+ * longest time for its one. */
+static const struct {
+    double way[8];
+    int slowest;
+} direct_ways[] = {{{40, 20, 1, -5}, 0}, {{1, 30, -29, 0}, 2}, {{0, 0, 0, 25}, 3}, {{-0.5, 0.25, 0, 40}, 3}};
+
+static void four_axes(void)
+{
+    fb_count = 0;
+    group_end();
+    axes_describe(4);
+    axes_config(2)->max_velocity = 5.0;
+    axes_make();
+    axes_enable_all();
+    axes_bench.program = program;
+    axes_bench.run = scene;
+}
+
+/* Cycles until it is Done; the axes keep on a straight line meanwhile. */
+static int direct_cycles(fb_t *fb, const double *way, int slowest)
+{
+    int cycles = 0;
+    for (execute(fb, TRUE); !fb->now.done && cycles < 20000; cycles++) {
+        axes_cycles(1);
+        for (int n = 0; n < 4; n++)
+            AXES_MUST(fabs(group_at(n) - group_at(slowest) / way[slowest] * way[n]) < 1e-9, "axis %d is off the line", n);
+    }
+    AXES_MUST(fb->now.done && fabs(group_at(slowest) - way[slowest]) < 1e-9, "not Done there: %s", group_text());
+    return cycles;
+}
+
+static int cycles_alone(int n, double way)
+{
+    AXIS_REF_t axis = axes_reference(n);
+    MC_MoveRelative_t move = {.Axis = &axis, .Distance = way, .Execute = TRUE,
+                              .Velocity = axes_bench.axes[n]->limits.maximum.velocity};
+    int cycles = 0;
+    for (; !move.Done && cycles < 20000; cycles++) {
+        MC_MoveRelative(&move);
+        AXES_MUST(!move.Error, "0x%04X", move.ErrorID);
+        axes_cycles(1);
+    }
+    return cycles;
+}
+
+START_TEST(test_a_direct_motion_takes_as_long_as_its_slowest_axis_alone)
+{
+    for (size_t i = 0; i < sizeof direct_ways / sizeof *direct_ways; i++) {
+        const double *way = direct_ways[i].way;
+        snprintf(scene, sizeof scene, "way %zu", i);
+        four_axes();
+        const int alone = cycles_alone(direct_ways[i].slowest, way[direct_ways[i].slowest]);
+        four_axes();
+        group_form();
+        AXES_MUST(cm1e_group_enable(group) == CM1E_OK, "%s", group_text());
+        fb_t *fb = make(_i ? "MC_MoveDirectRelative" : "MC_MoveDirectAbsolute");
+        put(fb, _i ? "Distance" : "Position", way, sizeof direct_ways[i].way);
+        const int together = direct_cycles(fb, way, direct_ways[i].slowest);
+        AXES_MUST(abs(together - alone) <= 2, "%d cycles, the axis alone needs %d", together, alone);
+    }
+}
+END_TEST
+
 /* ---- an axis that is lost ---------------------------------------------------------------------------------------- */
 
 START_TEST(test_power_loss_of_an_axis_in_every_phase)
@@ -540,6 +607,7 @@ int main(void)
     tcase_add_test(all, test_no_group_another_group_and_a_group_that_goes);
     tcase_add_test(all, test_a_stop_that_is_in_error_still_holds_the_group);
     tcase_add_test(all, test_a_refused_override_says_which_factor);
+    tcase_add_loop_test(all, test_a_direct_motion_takes_as_long_as_its_slowest_axis_alone, 0, 2);
     tcase_add_loop_test(all, test_power_loss_of_an_axis_in_every_phase, 0, MOVES);
     tcase_add_test(all, test_the_group_s_axes_and_their_own_blocks);
     tcase_add_loop_test(all, test_an_axis_of_the_group_is_a_master, 0, 3);

@@ -667,6 +667,40 @@ AT(MC_MoveCircularRelative, Error, 213);
 AT(MC_MoveCircularRelative, ErrorID, 214);
 AT(MC_MoveCircularRelative, CommandID, 216);
 AT(MC_MoveCircularRelative, Private, 220);
+_Static_assert(sizeof(MC_MoveDirectAbsolute_t) == 128, "MC_MoveDirectAbsolute");
+AT(MC_MoveDirectAbsolute, AxesGroup, 0);
+AT(MC_MoveDirectAbsolute, Execute, 8);
+AT(MC_MoveDirectAbsolute, Position, 16);
+AT(MC_MoveDirectAbsolute, CoordSystem, 80);
+AT(MC_MoveDirectAbsolute, BufferMode, 84);
+AT(MC_MoveDirectAbsolute, TransitionMode, 88);
+AT(MC_MoveDirectAbsolute, TransitionParameter, 96);
+AT(MC_MoveDirectAbsolute, Done, 104);
+AT(MC_MoveDirectAbsolute, Busy, 105);
+AT(MC_MoveDirectAbsolute, Active, 106);
+AT(MC_MoveDirectAbsolute, CommandAccepted, 107);
+AT(MC_MoveDirectAbsolute, CommandAborted, 108);
+AT(MC_MoveDirectAbsolute, Error, 109);
+AT(MC_MoveDirectAbsolute, ErrorID, 110);
+AT(MC_MoveDirectAbsolute, CommandID, 112);
+AT(MC_MoveDirectAbsolute, Private, 116);
+_Static_assert(sizeof(MC_MoveDirectRelative_t) == 128, "MC_MoveDirectRelative");
+AT(MC_MoveDirectRelative, AxesGroup, 0);
+AT(MC_MoveDirectRelative, Execute, 8);
+AT(MC_MoveDirectRelative, Distance, 16);
+AT(MC_MoveDirectRelative, CoordSystem, 80);
+AT(MC_MoveDirectRelative, BufferMode, 84);
+AT(MC_MoveDirectRelative, TransitionMode, 88);
+AT(MC_MoveDirectRelative, TransitionParameter, 96);
+AT(MC_MoveDirectRelative, Done, 104);
+AT(MC_MoveDirectRelative, Busy, 105);
+AT(MC_MoveDirectRelative, Active, 106);
+AT(MC_MoveDirectRelative, CommandAccepted, 107);
+AT(MC_MoveDirectRelative, CommandAborted, 108);
+AT(MC_MoveDirectRelative, Error, 109);
+AT(MC_MoveDirectRelative, ErrorID, 110);
+AT(MC_MoveDirectRelative, CommandID, 112);
+AT(MC_MoveDirectRelative, Private, 116);
 _Static_assert(sizeof(MC_GroupReadPosition_t) == 112, "MC_GroupReadPosition");
 AT(MC_GroupReadPosition, AxesGroup, 0);
 AT(MC_GroupReadPosition, Enable, 8);
@@ -2661,6 +2695,72 @@ static const cm1e_error_t errors_of_MC_MoveCircularRelative[] = {
     CM1E_ERROR_INVALID_ARGUMENT,
     CM1E_OK,
 };
+static const block_member_t members_of_MC_MoveDirectAbsolute[] = {
+    MEMBER(MC_MoveDirectAbsolute, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_MoveDirectAbsolute, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveDirectAbsolute, Position, INPUT, LREAL),
+    MEMBER(MC_MoveDirectAbsolute, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_MoveDirectAbsolute, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveDirectAbsolute, TransitionMode, INPUT, ENUM),
+    MEMBER(MC_MoveDirectAbsolute, TransitionParameter, INPUT, LREAL),
+    MEMBER(MC_MoveDirectAbsolute, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectAbsolute, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectAbsolute, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectAbsolute, CommandAccepted, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectAbsolute, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectAbsolute, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectAbsolute, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_MoveDirectAbsolute, CommandID, OUTPUT, UDINT),
+};
+static void call_MC_MoveDirectAbsolute(void *fb) { MC_MoveDirectAbsolute(fb); }
+static const cm1e_error_t errors_of_MC_MoveDirectAbsolute[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_TRANSITION,
+    CM1E_ERROR_GROUP_PATH,
+    CM1E_ERROR_GROUP_AXIS,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_MoveDirectRelative[] = {
+    MEMBER(MC_MoveDirectRelative, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_MoveDirectRelative, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveDirectRelative, Distance, INPUT, LREAL),
+    MEMBER(MC_MoveDirectRelative, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_MoveDirectRelative, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveDirectRelative, TransitionMode, INPUT, ENUM),
+    MEMBER(MC_MoveDirectRelative, TransitionParameter, INPUT, LREAL),
+    MEMBER(MC_MoveDirectRelative, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectRelative, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectRelative, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectRelative, CommandAccepted, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectRelative, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectRelative, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveDirectRelative, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_MoveDirectRelative, CommandID, OUTPUT, UDINT),
+};
+static void call_MC_MoveDirectRelative(void *fb) { MC_MoveDirectRelative(fb); }
+static const cm1e_error_t errors_of_MC_MoveDirectRelative[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_TRANSITION,
+    CM1E_ERROR_GROUP_PATH,
+    CM1E_ERROR_GROUP_AXIS,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_GroupReadPosition[] = {
     MEMBER(MC_GroupReadPosition, AxesGroup, IN_OUT, POINTER),
     MEMBER(MC_GroupReadPosition, Enable, INPUT, BOOL),
@@ -3692,6 +3792,8 @@ const block_t block_table[] = {
     BLOCK(MC_MoveLinearRelative, NULL),
     BLOCK(MC_MoveCircularAbsolute, NULL),
     BLOCK(MC_MoveCircularRelative, NULL),
+    BLOCK(MC_MoveDirectAbsolute, NULL),
+    BLOCK(MC_MoveDirectRelative, NULL),
     BLOCK(MC_GroupReadPosition, NULL),
     BLOCK(MC_GroupReadVelocity, NULL),
     BLOCK(MC_GroupSetOverride, NULL),

@@ -272,6 +272,44 @@ static void linear_relative(void)
     trace_end();
 }
 
+static void direct_absolute(void)
+{
+    MC_MoveDirectAbsolute_t to = {GROUP, .Position = {2, 0.5}};
+    MC_MoveLinearAbsolute_t back = {GROUP, .Position = {0, 0}, .Velocity = 8, .BufferMode = mcBuffered};
+    trace_begin_with_group("MC_MoveDirectAbsolute",
+                           "To (2, 0.5) as fast as the axes can, and back along a line with a velocity of 8 u/s.");
+    trace_block("MC_MoveDirectAbsolute", "", &to);
+    trace_block("MC_MoveLinearAbsolute", "MC_MoveLinearAbsolute, buffered", &back);
+    trace_curves(true, true);
+    trace_master_curves(0, true, true);
+    UNTIL(800) {
+        to.Execute = during(20, 700);
+        back.Execute = during(60, 700);
+        MC_MoveDirectAbsolute(&to);
+        MC_MoveLinearAbsolute(&back);
+    }
+    trace_end();
+}
+
+static void direct_relative(void)
+{
+    MC_MoveDirectRelative_t there = {GROUP, .Distance = {1, 2}};
+    MC_MoveDirectRelative_t back = {GROUP, .Distance = {-1, -2}, .BufferMode = mcBuffered};
+    trace_begin_with_group("MC_MoveDirectRelative",
+                           "Twice: the second Distance counts from the end of the first motion.");
+    trace_block("MC_MoveDirectRelative", "by (1, 2)", &there);
+    trace_block("MC_MoveDirectRelative", "by (-1, -2), buffered", &back);
+    trace_curves(true, true);
+    trace_master_curves(0, true, true);
+    UNTIL(800) {
+        there.Execute = during(20, 700);
+        back.Execute = during(60, 700);
+        MC_MoveDirectRelative(&there);
+        MC_MoveDirectRelative(&back);
+    }
+    trace_end();
+}
+
 static void circular_absolute(void)
 {
     MC_MoveCircularAbsolute_t circle = {GROUP, .CircMode = mcCenter, .AuxPoint = {0, 1}, .EndPoint = {0, 0},
@@ -378,6 +416,8 @@ const scenario_t group_scenarios[] = {
     {"MC_MoveLinearRelative", linear_relative},
     {"MC_MoveCircularAbsolute", circular_absolute},
     {"MC_MoveCircularRelative", circular_relative},
+    {"MC_MoveDirectAbsolute", direct_absolute},
+    {"MC_MoveDirectRelative", direct_relative},
     {"MC_GroupReadPosition", read_position},
     {"MC_GroupReadVelocity", read_velocity},
     {"MC_GroupSetOverride", set_override},

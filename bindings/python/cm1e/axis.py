@@ -288,6 +288,13 @@ class Group(AXES_GROUP_REF):
             AxesGroup=self, Position=position, Velocity=velocity, Acceleration=acceleration, Deceleration=deceleration,
             Jerk=jerk, BufferMode=buffer_mode), wait=wait, timeout=timeout)
 
+    def move_direct_absolute(self, position: list[float], *,
+                             buffer_mode: fb.MC_BUFFER_MODE = fb.MC_BUFFER_MODE.mcAborting, wait: bool = True,
+                             timeout: Optional[float] = None) -> Command:
+        """MC_MoveDirectAbsolute: as fast as the axes can, all of them get there together."""
+        return self.execute(fb.MC_MoveDirectAbsolute(AxesGroup=self, Position=position, BufferMode=buffer_mode),
+                            wait=wait, timeout=timeout)
+
     def stop(self) -> None:
         """MC_GroupStop: ramps down along the path."""
         self.execute(fb.MC_GroupStop(AxesGroup=self))

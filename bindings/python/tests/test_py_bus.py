@@ -193,6 +193,8 @@ def test_group():
         table.enable()
         table.move_linear_absolute([3, 4], 10)
         assert [axis.info.set_position for axis in bus.axes] == pytest.approx([3, 4])
+        table.move_direct_absolute([-1, 2])
+        assert [axis.info.set_position for axis in bus.axes] == pytest.approx([-1, 2])
         with pytest.raises(TimeoutError):
             table.move_linear_absolute([30, 40], 5, timeout=0.5)
         bus.advance(0.1)

@@ -1,0 +1,15 @@
+#include "group_edge.h"
+
+CM1E_APART static void work(MC_MoveDirectAbsolute_t *fb)
+{
+    cm1e_group_command_t command = {.kind = CM1E_GROUP_LINEAR_ABSOLUTE, FB_GROUP_ORDER(fb)};
+    memcpy(command.position, fb->Position, sizeof command.position);
+    const fb_outputs_t out = cm1e_fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
+    FB_SHOW_GROUP_MOTION(fb, out);
+}
+
+void MC_MoveDirectAbsolute(MC_MoveDirectAbsolute_t *fb)
+{
+    if (!fb_group_stands(&fb->Private, fb->AxesGroup, fb->Execute))
+        work(fb);
+}
