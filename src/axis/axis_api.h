@@ -363,7 +363,7 @@ void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns);
  *  in every cycle instead of the programs. @rt cycle */
 bool cm1e_axis_shut_down(cm1e_axis_t *axis);
 enum { CM1E_AXIS_LONGEST_SWING_MS = 2000 };
-/** Whether its ramp has ended and the torque only waits until the motor rests, CM1E_AXIS_LONGEST_SWING_MS at most.
+/** Whether its ramp has ended and only the rest of the motor is waited for, CM1E_AXIS_LONGEST_SWING_MS at most.
  *  @rt cycle */
 bool cm1e_axis_swings(const cm1e_axis_t *axis);
 

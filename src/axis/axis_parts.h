@@ -151,7 +151,8 @@ typedef struct power {
     bool shutting_down : 1;
     bool letting_go : 1;            /**< the torque goes first, also if power is wanted again by now */
     bool reset_sent : 1;
-    bool held : 1;                  /**< the set-point rests and the torque is to go, since `held_ms` */
+    bool held : 1;                  /**< the set-point rests and the motor is to rest too, since `held_ms`: the torque
+                                         is to go, or the axis to be taken over */
     uint8_t reset_state : 4;        /**< cm1e_command_state_t */
     uint16_t held_ms;               /**< the lower bits of the time */
     cm1e_error_t reset_error;

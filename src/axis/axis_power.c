@@ -280,23 +280,6 @@ static void take_over(cm1e_axis_t *axis)
     cm1e_axis_go(axis, ON_POWER_ON);
 }
 
-/* A motor may still turn when it gets its torque: it coasts, or its load turns it. A set-point that stood would brake
- * it with all of its torque, and pull it back from where that ends. So the set-point goes with the motor and brakes,
- * and the axis is taken over when it rests. Its velocity is known when two cycles have shown it under torque. */
-static void take_over_or_brake(cm1e_axis_t *axis)
-{
-    const bool set_points = axis->mode == CM1E_MODE_CSP || axis->mode == CM1E_MODE_CSV;
-    const bool true_motion = axis->drive.feedback.fresh && axis->drive.actual.contradictions == 0;
-    if (!axis_free(axis) || !set_points || !true_motion || cm1e_drive_is_virtual(&axis->drive)) {
-        take_over(axis);
-        return;
-    }
-    const bool seen_before = axis->power.velocity != 0.0f;
-    const bool rests = !seen_before && fabs(axis_actual_velocity(axis)) <= slow_velocity(axis);
-    if (rests || (seen_before && !brakes_first(axis, coasting_velocity(axis))))
-        take_over(axis);
-}
-
 static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b_ns; }
 
 /* Whether the motor is not brought back by its servo: it is farther from the set-point than its lag may be, or it gets
@@ -337,13 +320,43 @@ static void wait_for_rest(cm1e_axis_t *axis)
         power->brake_until_ns = later(power->brake_until_ns, axis->now_ns + brake_ns);
 }
 
-/* Whether the torque may go: a ramp has ended, its last set-point was sent, and the motor rests. */
+/* Whether a ramp has ended, its last set-point was sent, and the motor rests: its torque may go, or the axis is taken
+ * over. */
 static bool ramp_is_over(cm1e_axis_t *axis)
 {
     if (!cm1e_drive_is_virtual(&axis->drive))
         wait_for_rest(axis);
     return axis->now_ns >= axis->power.brake_until_ns && cm1e_axis_backlash_at_rest(axis) &&
            (!axis->power.shutting_down || cm1e_axis_outputs_off_first(axis));
+}
+
+/* Whether the drive has shown in this cycle what the motor does now. */
+static bool shows_motor(const cm1e_axis_t *axis)
+{
+    return axis->drive.feedback.fresh && !axis->silence.frozen && axis->silence.resumed != RESUMED_FROM_PAUSE;
+}
+
+/* Whether a motor that has just got its torque needs no ramp, or none is possible. Its velocity is known when two
+ * cycles in a row have shown it under torque. */
+static bool needs_no_ramp(cm1e_axis_t *axis)
+{
+    if (axis->drive.actual.contradictions > 0)
+        return true;
+    const bool seen_before = axis->power.velocity != 0.0f;
+    return seen_before ? !brakes_first(axis, coasting_velocity(axis))
+                       : fabs(axis_actual_velocity(axis)) <= slow_velocity(axis);
+}
+
+/* A motor may still turn when it gets its torque: it coasts, or its load turns it. A set-point that stood would brake
+ * it with all of its torque, and pull it back from where that ends. So the set-point goes with the motor and brakes,
+ * and the axis is taken over when both rest. */
+static void take_over_or_brake(cm1e_axis_t *axis)
+{
+    const bool set_points = axis->mode == CM1E_MODE_CSP || axis->mode == CM1E_MODE_CSV;
+    if (!set_points || cm1e_drive_is_virtual(&axis->drive) || axis->power.energized)
+        take_over(axis);
+    else if (shows_motor(axis) && (axis_free(axis) ? needs_no_ramp(axis) : ramp_is_over(axis)))
+        take_over(axis);
 }
 
 bool cm1e_axis_swings(const cm1e_axis_t *axis) { return axis->power.held && axis_holds(axis); }
@@ -354,7 +367,7 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     const bool wanted = cm1e_axis_wants_enable(axis) && !axis->power.letting_go;
     const bool free = axis_free(axis), holds = axis_holds(axis), leaves = holds && !wanted;
     const bool enables = axis->state == CM1E_AXIS_DISABLED && wanted && acting && (free || holds);
-    if (!leaves)
+    if (!holds || (wanted && axis->power.energized))
         axis->power.held = false;
     if (enables)
         take_over_or_brake(axis);
@@ -363,7 +376,7 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     else if (!free && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque was lost during a ramp */
     if (free)
-        axis->power.velocity = acting && axis->drive.feedback.fresh ? (float)axis_actual_velocity(axis) : 0.0f;
+        axis->power.velocity = acting && shows_motor(axis) ? (float)axis_actual_velocity(axis) : 0.0f;
 }
 
 void cm1e_axis_enable_step(cm1e_axis_t *axis)

@@ -297,6 +297,73 @@ START_TEST(test_a_turning_load_is_braked_before_the_axis_is_on)
 }
 END_TEST
 
+/* ---- what comes between while a motor is braked ----------------------------------------------------------------- */
+
+/* From so many cycles of torque on: frames that do not come back, or a pause of the master. */
+typedef struct interruption { int at, lost_frames; double pause_ms, load_inertia, deceleration; } interruption_t;
+static const interruption_t interruptions[] = {
+    {.at = 1, .lost_frames = 1}, {.at = 2, .lost_frames = 1}, {.at = 2, .lost_frames = 2}, {.at = 3, .lost_frames = 1},
+    {.at = 8, .lost_frames = 2}, {.at = 3, .pause_ms = 50}, {.at = 3, .pause_ms = 5}, {.at = 20, .pause_ms = 50},
+    {.load_inertia = 1e-3, .deceleration = 2000},
+};
+enum { INTERRUPTIONS = sizeof interruptions / sizeof interruptions[0], THROWN_AT = 40, THROWN_SPEED = 100000 };
+static const interruption_t *interruption;
+static double speed_when_on;
+
+static cm1e_tap_verdict_t lose_answers(bench_t *b, cm1e_tap_frame_t *frame)
+{
+    (void)b;
+    const int since_torque = torque_cycles - interruption->at;
+    const bool lost = since_torque >= 0 && since_torque < interruption->lost_frames;
+    return lost && frame->direction == CM1E_TAP_RECEIVED ? CM1E_TAP_DROP : CM1E_TAP_PASS;
+}
+
+static void thrown_program(bench_t *b)
+{
+    if (b->cycle == THROWN_AT - 3)
+        bench_drive(b, 0)->mechanics.velocity = THROWN_SPEED;
+    power.Enable = b->cycle >= THROWN_AT;
+    call_blocks();
+    const cm1e_sim_probe_t probe = bench_probe(b, 0);
+    torque_cycles += probe.torque_on;
+    if (probe.torque_on && torque_cycles == interruption->at && interruption->pause_ms > 0)
+        bench_miss(b, (int64_t)(interruption->pause_ms * 1e6));
+    MUST(b, probe.velocity_counts_per_s <= THROWN_SPEED, "driven to %.0f counts/s", probe.velocity_counts_per_s);
+    if (power.Status && !came_on) {
+        came_on = true;
+        speed_when_on = probe.velocity_counts_per_s;
+    }
+    if (b->cycle == THROWN_AT + 800)
+        cm1e_scheduler_stop(b->scheduler);
+}
+
+/* The axis is on when the motor rests, wherever its ramp has ended; but a pause before the ramp ends with a standing
+ * set-point. */
+START_TEST(test_what_interrupts_the_braking_of_a_turning_motor)
+{
+    interruption = &interruptions[_i % INTERRUPTIONS];
+    prepare((cm1e_mapping_t)(_i / INTERRUPTIONS), CM1E_PDO_ORDER_UG_7_2, "1.3.5");
+    cm1e_axis_config_t *axis = &bench.config.axes[0];
+    axis->max_deceleration = interruption->deceleration > 0 ? interruption->deceleration : 500;
+    axis->sim = (cm1e_sim_axis_config_t){
+        .no_stops = true, .load_inertia = interruption->load_inertia > 0 ? interruption->load_inertia : 3e-4};
+    const size_t used = strlen(bench.scene);
+    snprintf(bench.scene + used, sizeof bench.scene - used, ", at %d: %d frames lost, pause of %.0f ms",
+             interruption->at, interruption->lost_frames, interruption->pause_ms);
+    bench.program = thrown_program;
+    bench.fault = lose_answers;
+    torque_cycles = 0;
+    came_on = false;
+    bench_open(&bench);
+    bench_start(&bench);
+    run_to_the_end();
+    const bool caught = interruption->pause_ms > 0 && interruption->at < 4;
+    const double rests = axis->max_deceleration * 3 + 4500; /* counts/s */
+    MUST(&bench, came_on, "the axis is not on: %s", text_at_end);
+    MUST(&bench, caught || fabs(speed_when_on) < rests, "power is on at %.0f counts/s", speed_when_on);
+}
+END_TEST
+
 /* ---- frames lost or late on the way to Operation enabled ------------------------------------------------------- */
 
 typedef enum trouble { LOST_THERE = 0, LOST_BACK, LATE_HALF, LATE_ONE, LATE_THREE, WRONG_COUNTER, TROUBLES } trouble_t;
@@ -454,6 +521,7 @@ int main(void)
     tcase_add_loop_test(cases, test_the_end_of_32_bits_is_a_position_like_any_other, 0, 5 * 2 * MAPPINGS);
     tcase_add_loop_test(cases, test_a_turning_shaft_is_caught_where_it_is, 0, VARIANTS);
     tcase_add_loop_test(cases, test_a_turning_load_is_braked_before_the_axis_is_on, 0, VARIANTS);
+    tcase_add_loop_test(cases, test_what_interrupts_the_braking_of_a_turning_motor, 0, INTERRUPTIONS * MAPPINGS);
     tcase_add_loop_test(cases, test_trouble_with_frames_while_enabling_moves_nothing, 0, TROUBLES * TROUBLE_LOADS);
     tcase_add_loop_test(cases, test_a_load_is_held_while_the_mode_changes, 0, VARIANTS);
     tcase_add_loop_test(cases, test_enable_at_random_moves_nothing, 0, seed_count(24));
