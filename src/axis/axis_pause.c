@@ -37,7 +37,9 @@ static const double reserve = 0.08;
 static cm1e_error_t stop_anew(cm1e_axis_t *axis)
 {
     const from_t from = from_set(axis);
-    cm1e_motion_limits_t limits = axis->state == CM1E_AXIS_ERROR_STOP ? axis->limits.emergency : axis->limits.maximum;
+    /* Without a limit of jerk: an error, and a motor that turned when it got its torque. */
+    const bool hard = axis->state == CM1E_AXIS_ERROR_STOP || !axis->power.energized;
+    cm1e_motion_limits_t limits = hard ? axis->limits.emergency : axis->limits.maximum;
     cm1e_profile_t profile;
     cm1e_error_t error = axis->commands.active ? cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits)
                          : CM1E_OK;

@@ -300,15 +300,16 @@ END_TEST
 /* ---- what comes between while a motor is braked ----------------------------------------------------------------- */
 
 /* From so many cycles of torque on: frames that do not come back, or a pause of the master. */
-typedef struct interruption { int at, lost_frames; double pause_ms, load_inertia, deceleration; } interruption_t;
+typedef struct interruption { int at, lost_frames; double pause_ms, load_inertia, deceleration, jerk; } interruption_t;
 static const interruption_t interruptions[] = {
     {.at = 1, .lost_frames = 1}, {.at = 2, .lost_frames = 1}, {.at = 2, .lost_frames = 2}, {.at = 3, .lost_frames = 1},
     {.at = 8, .lost_frames = 2}, {.at = 3, .pause_ms = 50}, {.at = 3, .pause_ms = 5}, {.at = 20, .pause_ms = 50},
-    {.load_inertia = 1e-3, .deceleration = 2000},
+    {.at = 8, .pause_ms = 5, .jerk = 2000}, {.load_inertia = 1e-3, .deceleration = 2000},
 };
 enum { INTERRUPTIONS = sizeof interruptions / sizeof interruptions[0], THROWN_AT = 40, THROWN_SPEED = 100000 };
 static const interruption_t *interruption;
 static double speed_when_on;
+static int on_after; /* cycles of torque */
 
 static cm1e_tap_verdict_t lose_answers(bench_t *b, cm1e_tap_frame_t *frame)
 {
@@ -332,6 +333,7 @@ static void thrown_program(bench_t *b)
     if (power.Status && !came_on) {
         came_on = true;
         speed_when_on = probe.velocity_counts_per_s;
+        on_after = torque_cycles;
     }
     if (b->cycle == THROWN_AT + 800)
         cm1e_scheduler_stop(b->scheduler);
@@ -345,6 +347,7 @@ START_TEST(test_what_interrupts_the_braking_of_a_turning_motor)
     prepare((cm1e_mapping_t)(_i / INTERRUPTIONS), CM1E_PDO_ORDER_UG_7_2, "1.3.5");
     cm1e_axis_config_t *axis = &bench.config.axes[0];
     axis->max_deceleration = interruption->deceleration > 0 ? interruption->deceleration : 500;
+    axis->max_jerk = interruption->jerk;
     axis->sim = (cm1e_sim_axis_config_t){
         .no_stops = true, .load_inertia = interruption->load_inertia > 0 ? interruption->load_inertia : 3e-4};
     const size_t used = strlen(bench.scene);
@@ -361,6 +364,8 @@ START_TEST(test_what_interrupts_the_braking_of_a_turning_motor)
     const double rests = axis->max_deceleration * 3 + 4500; /* counts/s */
     MUST(&bench, came_on, "the axis is not on: %s", text_at_end);
     MUST(&bench, caught || fabs(speed_when_on) < rests, "power is on at %.0f counts/s", speed_when_on);
+    const double ramp_cycles = THROWN_SPEED / axis->max_deceleration;
+    MUST(&bench, interruption->jerk == 0 || on_after < ramp_cycles + 20, "on after %d cycles", on_after);
 }
 END_TEST
 
