@@ -54,7 +54,7 @@ void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts)
 {
     backlash_t *b = &axis->backlash;
     if (foreign(axis))
-        b->offset = fmax(-b->gap, fmin(b->offset + sign(axis) * moved_counts, 0.0));
+        b->target = b->offset = fmax(-b->gap, fmin(b->offset + sign(axis) * moved_counts, 0.0));
 }
 
 /* Moves the offset on by a cycle: as fast as allowed, and slow enough to stop at its target. */

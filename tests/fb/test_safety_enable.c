@@ -369,6 +369,35 @@ START_TEST(test_what_interrupts_the_braking_of_a_turning_motor)
 }
 END_TEST
 
+/* A motor that turns in the gap of its backlash while its load rests is caught where it is: no compensation pulls it. */
+static void in_gap_program(bench_t *b)
+{
+    if (b->cycle == THROWN_AT - 3)
+        bench_drive(b, 0)->mechanics.velocity = bench.config.axes[0].invert ? THROWN_SPEED / 10 : -THROWN_SPEED / 10;
+    power.Enable = b->cycle >= THROWN_AT;
+    call_blocks();
+    torque_cycles += bench_probe(b, 0).torque_on;
+    const double off = bench_info(b, 0).set_position;
+    MUST(b, fabs(off) < 1e-9, "the set-point of a load that rests is at %g", off);
+    if (b->cycle == THROWN_AT + 100)
+        cm1e_scheduler_stop(b->scheduler);
+}
+
+START_TEST(test_a_motor_that_turns_in_its_backlash_is_caught_there)
+{
+    prepare((cm1e_mapping_t)(_i / 2), CM1E_PDO_ORDER_UG_7_2, "1.3.5");
+    bench.config.axes[0].invert = _i % 2;
+    bench.config.axes[0].backlash = 0.5;
+    bench.config.axes[0].sim = (cm1e_sim_axis_config_t){.no_stops = true, .load_inertia = 3e-5};
+    bench.program = in_gap_program;
+    torque_cycles = 0;
+    bench_open(&bench);
+    bench_start(&bench);
+    run_to_the_end();
+    MUST(&bench, torque_cycles > 90, "not enabled: %s", text_at_end);
+}
+END_TEST
+
 /* ---- frames lost or late on the way to Operation enabled ------------------------------------------------------- */
 
 typedef enum trouble { LOST_THERE = 0, LOST_BACK, LATE_HALF, LATE_ONE, LATE_THREE, WRONG_COUNTER, TROUBLES } trouble_t;
@@ -527,6 +556,7 @@ int main(void)
     tcase_add_loop_test(cases, test_a_turning_shaft_is_caught_where_it_is, 0, VARIANTS);
     tcase_add_loop_test(cases, test_a_turning_load_is_braked_before_the_axis_is_on, 0, VARIANTS);
     tcase_add_loop_test(cases, test_what_interrupts_the_braking_of_a_turning_motor, 0, INTERRUPTIONS * MAPPINGS);
+    tcase_add_loop_test(cases, test_a_motor_that_turns_in_its_backlash_is_caught_there, 0, 2 * MAPPINGS);
     tcase_add_loop_test(cases, test_trouble_with_frames_while_enabling_moves_nothing, 0, TROUBLES * TROUBLE_LOADS);
     tcase_add_loop_test(cases, test_a_load_is_held_while_the_mode_changes, 0, VARIANTS);
     tcase_add_loop_test(cases, test_enable_at_random_moves_nothing, 0, seed_count(24));
