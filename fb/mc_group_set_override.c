@@ -8,12 +8,12 @@ static cm1e_error_t set_factors(cm1e_group_t *group, const MC_GroupSetOverride_t
     return cm1e_group_set_override(group, fb->VelFactor);
 }
 
-/* Factors are refused in every call; the text of the group is left to others after the first one. */
 static cm1e_error_t set_or_refuse(cm1e_group_t *group, const MC_GroupSetOverride_t *fb)
 {
     const cm1e_error_t error = set_factors(group, fb);
-    if (error != CM1E_OK && fb->ErrorID != cm1e_error_id(error))
-        cm1e_group_refuse_override(group, error, fb->VelFactor, fb->AccFactor);
+    if (error != CM1E_OK)
+        cm1e_group_refuse_override(group, error, fb->VelFactor, fb->AccFactor, fb->JerkFactor,
+                                   fb->ErrorID != cm1e_error_id(error));
     return error;
 }
 

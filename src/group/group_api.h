@@ -80,8 +80,10 @@ void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold);
 /** Sets the factor on the velocities of commands, 0 ... 1, which holds until it is changed. CM1E_ERROR_AXIS_OVERRIDE:
  *  the factor is out of this range. @rt cycle */
 cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity);
-/** Remembers for the text of the group which factor was refused. @rt cycle */
-void cm1e_group_refuse_override(cm1e_group_t *group, cm1e_error_t error, double velocity, double acceleration);
+/** Remembers for the text of the group which factor was refused. A block is refused in every call: the text is set when
+ *  that `begins`, and when it is of another factor, so that it does not hide that of a command. @rt cycle */
+void cm1e_group_refuse_override(cm1e_group_t *group, cm1e_error_t error, double velocity, double acceleration,
+                                double jerk, bool begins);
 
 /* ---- readings ---------------------------------------------------------------------------------------------------- */
 

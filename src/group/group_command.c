@@ -298,10 +298,12 @@ void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold)
         group->state = cm1e_group_rule(group->state, TRIGGER_AT_REST)->next;
 }
 
+static bool is_override(double velocity) { return velocity >= 0.0 && velocity <= 1.0; }
+
 cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity)
 {
-    if (!(velocity >= 0.0 && velocity <= 1.0))
-        return refuse(group, CM1E_ERROR_AXIS_OVERRIDE, velocity, NULL);
+    if (!is_override(velocity))
+        return CM1E_ERROR_AXIS_OVERRIDE;
     if (velocity == group->override)
         return CM1E_OK;
     group->override = velocity;
@@ -310,10 +312,17 @@ cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity)
     return CM1E_OK;
 }
 
-void cm1e_group_refuse_override(cm1e_group_t *group, cm1e_error_t error, double velocity, double acceleration)
+void cm1e_group_refuse_override(cm1e_group_t *group, cm1e_error_t error, double velocity, double acceleration,
+                                double jerk, bool begins)
 {
-    (void)refuse(group, error, 0.0,
-                 !(velocity >= 0.0 && velocity <= 1.0) ? "VelFactor must be 0 ... 1."
-                 : acceleration != 1.0                 ? "AccFactor must be 1 in this version."
-                                                       : "JerkFactor must be 1 in this version.");
+    group_refusal_t refusal = {.error = error, .value = jerk, .why = "JerkFactor must be 1 in this version."};
+    if (!is_override(velocity))
+        refusal = (group_refusal_t){.error = error, .value = velocity, .why = "VelFactor must be 0 ... 1."};
+    else if (acceleration != 1.0)
+        refusal = (group_refusal_t){.error = error, .value = acceleration,
+                                    .why = "AccFactor must be 1 in this version."};
+    const group_refusal_t *last = &group->refusal;
+    const bool another = last->error == error && (last->value != refusal.value || last->why != refusal.why);
+    if (begins || another)
+        (void)cm1e_group_refuse(group, refusal);
 }

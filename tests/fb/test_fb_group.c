@@ -485,6 +485,28 @@ START_TEST(test_a_direct_motion_takes_as_long_as_its_slowest_axis_alone)
 }
 END_TEST
 
+/* The block is refused in every call, and its text appears once, and again when another factor is refused. */
+START_TEST(test_a_refused_override_does_not_hide_the_text_of_a_command)
+{
+    begin();
+    MC_GroupSetOverride_t fb = {.AxesGroup = &group_reference, .Enable = TRUE, .VelFactor = 2, .AccFactor = 1,
+                                .JerkFactor = 1};
+    MC_GroupSetOverride(&fb);
+    AXES_MUST(strstr(group_text(), "2 was given. VelFactor"), "%s", group_text());
+    fb.VelFactor = 3;
+    MC_GroupSetOverride(&fb);
+    AXES_MUST(strstr(group_text(), "3 was given. VelFactor"), "%s", group_text());
+    fb_t *line = make("MC_MoveLinearAbsolute");
+    put_number(line, "Velocity", NAN);
+    start(line);
+    char *before = strdup(group_text());
+    AXES_MUST(line->now.error && !strstr(before, "VelFactor"), "%s", before);
+    MC_GroupSetOverride(&fb);
+    AXES_MUST(strcmp(group_text(), before) == 0, "%s", group_text());
+    free(before);
+}
+END_TEST
+
 /* ---- an axis that is lost ---------------------------------------------------------------------------------------- */
 
 START_TEST(test_power_loss_of_an_axis_in_every_phase)
@@ -608,6 +630,7 @@ int main(void)
     tcase_add_test(all, test_a_stop_that_is_in_error_still_holds_the_group);
     tcase_add_test(all, test_a_refused_override_says_which_factor);
     tcase_add_loop_test(all, test_a_direct_motion_takes_as_long_as_its_slowest_axis_alone, 0, 2);
+    tcase_add_test(all, test_a_refused_override_does_not_hide_the_text_of_a_command);
     tcase_add_loop_test(all, test_power_loss_of_an_axis_in_every_phase, 0, MOVES);
     tcase_add_test(all, test_the_group_s_axes_and_their_own_blocks);
     tcase_add_loop_test(all, test_an_axis_of_the_group_is_a_master, 0, 3);

@@ -166,8 +166,6 @@ static void test_a_full_group_says_so(void)
 
 static void test_what_is_refused_is_in_the_text(void)
 {
-    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_OVERRIDE, cm1e_group_set_override(group, 1.5));
-    group_told("1.5 was given");
     for (int i = 0; i < CM1E_GROUP_COMMANDS; i++)
         group_line(5, 5, 1, i == 0 ? mcAborting : mcBuffered);
     group_refused(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_RELATIVE, .buffer_mode = mcBuffered}, CM1E_ERROR_FULL);
