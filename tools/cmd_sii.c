@@ -185,9 +185,9 @@ static const struct argp_option table[] = {
 const struct argp argp_sii = {
     table, parse, "read POSITION|AXIS FILE\nwrite POSITION|AXIS FILE --backup FILE\ndecode FILE|POSITION|AXIS",
     "Reads, writes or shows the SII, the EEPROM with the identity of a slave. Writing changes only the words that "
-    "differ, reads all data back, and names the word at which it stopped. To undo it, write the backup with `cm1e "
-    "sii write`. AXIS is the name of an axis or a slave in the bus file; `decode` takes a file where neither a network nor "
-    "a bus file is stated.",
+    "differ, reads all data back, and names the word at which it stopped; Ctrl-C does not break it off. To undo it, "
+    "write the backup with `cm1e sii write`. AXIS is the name of an axis or a slave in the bus file; `decode` takes a "
+    "file where neither a network nor a bus file is stated.",
     attach_children, NULL, NULL};
 
 /** `decode` takes a file, too: a word that is no position names a slave where a network is stated. */

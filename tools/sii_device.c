@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "command.h"
+#include "end_signals.h"
 
 bool read_device(cm1e_bus_t *bus, uint16_t position, input_t *image, cm1e_diag_t *diag)
 {
@@ -51,6 +52,7 @@ int write_device(cm1e_bus_t *bus, uint16_t position, const input_t *image, const
     cm1e_diag_t diag = {0};
     if (!write_backup(backup, present))
         return EXIT_FAILED;
+    catch_signals(); /* none of them breaks it off: half of an image is no SII */
     const cm1e_error_t error = cm1e_sii_write_device(bus, position, image->bytes, image->size, options, &diag);
     if (nothing_written(error))
         remove(backup);

@@ -4,6 +4,8 @@
 test_sii.py CM1E
 """
 import os
+import signal
+import subprocess
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -13,6 +15,28 @@ import wire  # noqa: E402
 def read(path):
     with open(path, "rb") as file:
         return file.read()
+
+
+def signals(segment, cm1e, first):
+    """Behind a signal the words that are left are written: half of an image is no SII."""
+    image = bytearray(read(first))
+    for place in range(2 * 0x300, len(image)):
+        image[place] ^= 0xA5
+    wanted = os.path.join(segment.folder, "wanted")
+    with open(wanted, "wb") as file:
+        file.write(image)
+    for number, what in enumerate((signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)):
+        backup, again = (os.path.join(segment.folder, f"{name}{number}") for name in ("signalled", "seen"))
+        write = [cm1e, "sii", "write", "-i", wire.MASTER_INTERFACE, "1", wanted, "--backup", backup]
+        process = subprocess.Popen(segment.command(write), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        wire.wait_for(lambda: os.path.exists(backup) and os.path.getsize(backup) == len(image), 10, "no backup")
+        process.send_signal(what)
+        out, err = process.communicate(timeout=60)
+        wire.check(process.returncode == 0 and "is written" in out, f"{what.name}: {process.returncode} {out}{err}")
+        for words in (("read", "1", again), ("write", "1", backup, "--backup", f"{again}.backup")):
+            told = segment.run([cm1e, "sii", "-i", wire.MASTER_INTERFACE, *words])
+            wire.check(told.returncode == 0, f"{what.name}: {told.stderr}")
+        wire.check(read(again) == bytes(image), f"{what.name}: half of the image was written")
 
 
 def main(cm1e):
@@ -50,6 +74,7 @@ def main(cm1e):
         wire.check(diff.returncode == 0, f"diff: {diff.stdout}{diff.stderr}")
         scan = segment.run([cm1e, "scan", "-i", wire.MASTER_INTERFACE])
         wire.check(scan.returncode == 0 and "CM1-E" in scan.stdout, f"scan: {scan.stdout}{scan.stderr}")
+        signals(segment, cm1e, first)
     print("SII read, written, read back, and the backup written back")
 
 
