@@ -2,13 +2,13 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "attach.h"
 #include "axis_run.h"
+#include "end_signals.h"
 #include "params.h"
 #include "trace_file.h"
 #include "tune.h"
@@ -367,6 +367,8 @@ static void prepare(cm1e_scheduler_t *scheduler, void *context)
                                     .Acceleration = limits.acceleration, .Deceleration = limits.acceleration,
                                     .Jerk = limits.jerk};
     run->stop = (MC_Stop_t){.Axis = &run->axis};
+    if (told_to_end())
+        cm1e_scheduler_stop(scheduler);
 }
 
 /* ---- parameters of the motor ------------------------------------------------------------------------------------- */
@@ -615,9 +617,8 @@ static int run_both(tune_run_t runs[2], cm1e_bus_config_t *config)
         runs[1].before = runs[0].before;
         runs[1].after = runs[0].after;
         runs[1].sets = true;
-        signal(SIGINT, SIG_IGN); /* between the runs: the motor must get its values back */
+        catch_signals(); /* also before and behind the run: the motor must get its values back */
         status = run_one(&runs[1], config);
-        signal(SIGINT, SIG_IGN);
         if (runs[1].written && !runs[0].options->keep && restore(&runs[1], config) != EXIT_OK)
             status = EXIT_FAILED;
     }

@@ -145,6 +145,20 @@ def interrupted(bench):
         wire.check(bench.parameter("K47") == before, f"K47 after an interruption: {bench.parameter('K47')}")
 
 
+def signalled_beside_the_runs(bench):
+    """A signal while the bus of the second run starts: the motor has the value of that run already."""
+    words = [bench.cm1e, "tune", "step", "X", "-b", bench.bus_file(), "--max-travel", "0.1", "--max-velocity", "2", "--set",
+             "K47=77"]
+    for number, what in enumerate((signal.SIGHUP, signal.SIGTERM, signal.SIGQUIT, signal.SIGHUP, signal.SIGINT)):
+        process = subprocess.Popen(bench.segment.command(words), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        for there in (True, False):
+            wire.wait_for(lambda: ("Operation enabled" in bench.segment.console("status 1")) == there, 15, "the first run")
+        time.sleep(0.02 + 0.01 * number)
+        process.send_signal(what)
+        out, err = process.communicate(timeout=30)
+        wire.check(bench.parameter("K47") == 30, f"{what.name} {number}: K47 is {bench.parameter('K47')}: {out}{err}")
+
+
 def main(cm1e):
     def on_a_segment(check):
         with tempfile.TemporaryDirectory() as folder:
@@ -156,7 +170,8 @@ def main(cm1e):
                 check(Bench(cm1e, segment, folder))
                 print(f"{check.__name__}: {time.monotonic() - begin:.1f} s", flush=True)
 
-    wire.together(*(lambda check=check: on_a_segment(check) for check in (interrupted, measurements, settings, limits)))
+    wire.together(*(lambda check=check: on_a_segment(check) for check in (interrupted, measurements, settings, limits,
+                                                                              signalled_beside_the_runs)))
 
 
 if __name__ == "__main__":
