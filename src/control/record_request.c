@@ -116,14 +116,14 @@ json_t *cm1e_record_begin(control_request_t *request, control_run_t *run, const 
     const cm1e_error_t error = make(recorder, &run->view, message,
                                     every ? (uint32_t)json_integer_value(every) : 1, &diag);
     const int64_t cycle_ns = cm1e_bus_configuration(run->view.bus)->cycle_time_ns;
-    json_t *told = error == CM1E_OK ? cm1e_recorder_show(recorder, cycle_ns) : NULL;
-    if (!told) {
+    json_t *reply = error == CM1E_OK
+                        ? cm1e_request_accept(request->id, "record", cm1e_recorder_show(recorder, cycle_ns))
+                        : refuse(request, error, diag.text);
+    if (json_is_true(json_object_get(reply, "ok")))
+        cm1e_recorder_begin(&run->view, request->client, recorder);
+    else
         cm1e_recorder_free(recorder);
-        return error == CM1E_OK ? refuse(request, CM1E_ERROR_NO_MEMORY, "No memory for a recording.")
-                                : refuse(request, error, diag.text);
-    }
-    cm1e_recorder_begin(&run->view, request->client, recorder);
-    return cm1e_request_accept(request->id, "record", told);
+    return reply;
 }
 
 json_t *cm1e_record_samples(control_request_t *request, control_run_t *run, const json_t *message)

@@ -106,19 +106,37 @@ void cm1e_recorder_cycle(view_t *view)
 
 /* ---- what is told ----------------------------------------------------------------------------------------------- */
 
+/** NULL: no memory. */
+static json_t *names_of(const trace_t *trace)
+{
+    json_t *axes = json_array();
+    bool whole = axes;
+    for (uint32_t i = 0; i < trace->axes && whole; i++)
+        whole = json_array_append_new(axes, cm1e_show_text(trace->names[i])) == 0;
+    if (!whole)
+        json_decref(axes);
+    return whole ? axes : NULL;
+}
+
+static json_t *columns_of(const trace_t *trace)
+{
+    json_t *columns = json_array();
+    bool whole = columns;
+    for (uint32_t i = 0; i < trace->column_count && whole; i++) {
+        const trace_column_t *column = &trace->columns[i];
+        whole = json_array_append_new(columns, json_pack("{s:o, s:o, s:i, s:i}", "name", cm1e_show_text(column->name),
+                                                         "unit", cm1e_show_text(column->unit), "kind",
+                                                         (int)column->kind, "type", (int)column->type)) == 0;
+    }
+    if (!whole)
+        json_decref(columns);
+    return whole ? columns : NULL;
+}
+
 json_t *cm1e_recorder_show(const recorder_t *recorder, int64_t cycle_ns)
 {
-    const trace_t *trace = &recorder->trace;
-    json_t *axes = json_array(), *columns = json_array();
-    for (uint32_t i = 0; i < trace->axes; i++)
-        json_array_append_new(axes, cm1e_show_text(trace->names[i]));
-    for (uint32_t i = 0; i < trace->column_count; i++)
-        json_array_append_new(columns, json_pack("{s:o, s:o, s:i, s:i}", "name",
-                                                 cm1e_show_text(trace->columns[i].name), "unit",
-                                                 cm1e_show_text(trace->columns[i].unit), "kind",
-                                                 (int)trace->columns[i].kind, "type", (int)trace->columns[i].type));
     return json_pack("{s:I, s:i, s:o, s:o}", "cycle_ns", (json_int_t)cycle_ns, "every", (int)recorder->every, "axes",
-                     axes, "columns", columns);
+                     names_of(&recorder->trace), "columns", columns_of(&recorder->trace));
 }
 
 /** The bytes of a sample as hexadecimal digits, each word with its least significant byte first. */

@@ -36,7 +36,7 @@ bool cm1e_recorder_end(view_t *view, uint32_t client, bool stopped);
 /** Every cycle. @rt cycle */
 void cm1e_recorder_cycle(view_t *view);
 
-/** What is recorded: {"cycle_ns", "every", "axes", "columns"}. */
+/** What is recorded: {"cycle_ns", "every", "axes", "columns"}, all of it; NULL: no memory. */
 json_t *cm1e_recorder_show(const recorder_t *recorder, int64_t cycle_ns);
 /** The samples since the last call, at most as many as fit into a reply, and none behind a gap: {"samples", "lost",
  *  "data"}. `lost` are those of the time up to the end of these samples, so a gap is where it grows. */

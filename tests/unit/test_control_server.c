@@ -1,5 +1,5 @@
 /* Control sockets of several schedulers of one program, which begin and end at the same time: each has a socket of its own,
- * and keeps it. */
+ * and keeps it. And a request that finds no memory for its reply. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +11,7 @@
 #include "cm1e/control.h"
 #include "cm1e/scheduler.h"
 #include "cm1e/sim.h"
+#include "control/record_request.h"
 #include "control/runtime_dir.h"
 #include "control/server.h"
 
@@ -101,6 +102,39 @@ static void test_one_too_many_is_refused_and_removes_no_socket(void)
         cm1e_control_server_stop(servers[i]);
 }
 
+/* ---- no memory --------------------------------------------------------------------------------------------------- */
+
+static int countdown; /* the allocation of the texts of replies that fails; 0: none */
+static void *allocate(size_t size) { return countdown > 0 && --countdown == 0 ? NULL : malloc(size); }
+
+/* A recording is told whole, or it does not begin: then the connection can ask for it again. */
+static void test_a_recording_whose_description_finds_no_memory_does_not_begin(void)
+{
+    static control_run_t control_run;
+    control_request_t request = {.client = 1};
+    json_t *message = json_object(), *whole = NULL;
+    int refused = 0;
+    json_set_alloc_funcs(allocate, free);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_view_init(&control_run.view, scheduler, 0));
+    for (int n = 0; n == 0 || countdown == 0; n++) { /* 0: as it is; the last one needs none that fails */
+        countdown = n;
+        json_t *reply = cm1e_record_begin(&request, &control_run, message);
+        const bool begun = json_is_true(json_object_get(reply, "ok"));
+        TEST_ASSERT_EQUAL_INT(begun, control_run.view.recorders[1] != NULL);
+        whole = whole ? whole : json_incref(reply);
+        TEST_ASSERT_TRUE(!begun || json_equal(reply, whole));
+        TEST_ASSERT_TRUE(cm1e_recorder_end(&control_run.view, 1, true));
+        refused += !begun;
+        json_decref(reply);
+    }
+    TEST_ASSERT_GREATER_THAN_INT(10, refused);
+    countdown = 0;
+    json_decref(whole);
+    json_decref(message);
+    cm1e_view_free(&control_run.view);
+    json_set_alloc_funcs(malloc, free);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -115,6 +149,7 @@ int main(void)
     RUN_TEST(test_those_that_begin_together_have_different_sockets);
     RUN_TEST(test_one_that_ends_leaves_those_of_others_alone);
     RUN_TEST(test_one_too_many_is_refused_and_removes_no_socket);
+    RUN_TEST(test_a_recording_whose_description_finds_no_memory_does_not_begin);
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(bus);
     rmdir(directory);
