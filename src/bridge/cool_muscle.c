@@ -133,12 +133,16 @@ static cm1e_error_t check_string(const cm1e_axis_t *axis, const char *text, bool
 
 /* ---- CML --------------------------------------------------------------------------------------------------------- */
 
-static void end_switching(cool_muscle_t *muscle, cm1e_command_state_t state, cm1e_error_t error)
+/* In ErrorStop the axis tells of its error. */
+static void end_switching(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
-    if (muscle->switching.state == CM1E_COMMAND_ACTIVE) {
-        muscle->switching.state = state;
-        muscle->switching.error = error;
-    }
+    asked_t *switching = &axis->muscle->switching;
+    if (switching->state != CM1E_COMMAND_ACTIVE)
+        return;
+    switching->state = state;
+    switching->error = error;
+    if (error != CM1E_OK && axis->state != CM1E_AXIS_ERROR_STOP)
+        refuse(axis, error, NULL, "CM_SetMode");
 }
 
 cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size, int64_t timeout_ns, bool allow_motion,
@@ -159,7 +163,7 @@ cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size
     cm1e_axis_set_refusal(axis, CM1E_OK);
     muscle->last = *ticket;
     if (muscle->next != CM1E_BRIDGE_MODE_CML)
-        end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
+        end_switching(axis, CM1E_COMMAND_ABORTED, CM1E_ERROR_CANCELLED);
     muscle->next = CM1E_BRIDGE_MODE_CML;
     if (cm1e_cml_kind(copy) == CM1E_CML_MOTION) {
         muscle->moved = true;
@@ -204,6 +208,7 @@ cm1e_error_t cm1e_axis_set_mode(cm1e_axis_t *axis, cm1e_bridge_mode_t mode, bool
         return refuse(axis, error, why, NULL);
     cool_muscle_t *muscle = axis->muscle;
     cm1e_axis_set_refusal(axis, CM1E_OK);
+    end_switching(axis, CM1E_COMMAND_ABORTED, CM1E_ERROR_CANCELLED); /* that of another block */
     muscle->next = (int8_t)mode;
     muscle->insist = insist;
     *ticket = ++muscle->switching.ticket;
@@ -237,14 +242,14 @@ static void follow_switch(cm1e_axis_t *axis)
     cool_muscle_t *muscle = axis->muscle;
     const int8_t shown = axis->drive.feedback.mode;
     if (axis->state == CM1E_AXIS_ERROR_STOP && muscle->switching.state == CM1E_COMMAND_ACTIVE)
-        end_switching(muscle, CM1E_COMMAND_ERROR, axis->fault.error);
+        end_switching(axis, CM1E_COMMAND_ERROR, axis->fault.error);
     if (axis->state == CM1E_AXIS_ERROR_STOP && is_mode(shown))
         muscle->next = muscle->mode = shown;
     if (shown != muscle->next || muscle->mode != muscle->next)
         return;
     if (shown == CM1E_BRIDGE_MODE_CSP || shown == CM1E_BRIDGE_MODE_CPIO)
         axis->mode = (cm1e_mode_t)shown;
-    end_switching(muscle, CM1E_COMMAND_DONE, CM1E_OK);
+    end_switching(axis, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
 /* A bridge that was offline may come back in another mode: after power-on it is in CSP (BR 6). The mode that it shows
@@ -261,7 +266,7 @@ static void follow_return(cm1e_axis_t *axis)
     if (!is_mode(shown))
         return;
     if (shown != muscle->next)
-        end_switching(muscle, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_OFFLINE);
+        end_switching(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_OFFLINE);
     muscle->next = shown;
 }
 
@@ -376,9 +381,7 @@ static void step(cm1e_axis_t *axis)
     follow_return(axis);
     muscle->release_ns = axis->power.shutting_down ? muscle->release_ns : 0;
     if ((axis->power.enable || axis->power.shutting_down) && !failed && muscle->next == cml && leads_home(axis)) {
-        if (muscle->switching.state == CM1E_COMMAND_ACTIVE)
-            refuse(axis, CM1E_ERROR_CANCELLED, NULL, "CM_SetMode");
-        end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
+        end_switching(axis, CM1E_COMMAND_ABORTED, CM1E_ERROR_CANCELLED);
         muscle->next = (int8_t)axis->mode;
     }
     const bool away = muscle->moved && !muscle->must_free && !cm1e_drive_operational(&axis->drive);
@@ -442,8 +445,8 @@ static bool text_of(const cm1e_axis_t *axis, cm1e_error_t error, char *text, siz
                  "positions mean, or is not known: it is sent only if AllowMotion is TRUE.", name, muscle->text);
         return true;
     case CM1E_ERROR_CANCELLED:
-        snprintf(text, size, "Axis \"%s\": \"%s\" was cancelled by MC_Power, by CM_SetMode or by the end of the "
-                 "run.", name, muscle->text);
+        snprintf(text, size, "Axis \"%s\": \"%s\" was cancelled by MC_Power, by CM_SetMode, by CM_SendCML or by "
+                 "the end of the run.", name, muscle->text);
         return muscle->text[0] != '\0';
     case CM1E_ERROR_CML_TIMEOUT:
     case CM1E_ERROR_CM_SEARCH_TIMEOUT:

@@ -453,6 +453,29 @@ START_TEST(test_a_switch_that_another_one_replaces_is_cancelled)
 }
 END_TEST
 
+/* What ends a switch of the mode says so, and not only MC_Power. */
+START_TEST(test_a_switch_that_ends_otherwise_has_a_text)
+{
+    start();
+    switch_mode(0, cmCML, FALSE);
+    CM_SetMode_t back = {.Axis = &references[0], .Execute = TRUE, .Mode = cmCSP};
+    CM_SetMode(&back);
+    begin(0, "?99.1", FALSE);
+    CM_SetMode(&back);
+    ck_assert_int_eq(ERROR_OF(back), CM1E_ERROR_CANCELLED);
+    ck_assert_msg(strstr(text_of(0), "\"CM_SetMode\" was cancelled"), "by a string: %s", text_of(0));
+    CM_SetMode_t first = {.Axis = &references[1], .Execute = TRUE, .Mode = cmCML};
+    CM_SetMode(&first);
+    scan(1);
+    set_mode[1].Execute = TRUE;
+    scan(1);
+    CM_SetMode(&first);
+    ck_assert_int_eq(ERROR_OF(first), CM1E_ERROR_CANCELLED);
+    ck_assert_msg(strstr(text_of(1), "\"CM_SetMode\" was cancelled"), "by another one: %s", text_of(1));
+    close_segment();
+}
+END_TEST
+
 /* The way out of a dead end, as MC_Power tells it: the bridge is switched off and on, and found in CSP. Nothing leads it
  * back, and no motor has torque that MC_Power does not tell of. */
 static void power_cycle_in(CM_MODE mode, bool enabled)
@@ -501,6 +524,10 @@ START_TEST(test_nothing_leads_back_into_a_dead_end)
     switch_mode(2, cmCMD, FALSE);
     power_of[3].Enable = TRUE;
     scan(300);
+    set_mode[1].Mode = cmCML; /* under way when the bridge goes */
+    set_mode[1].Execute = TRUE;
+    scan(3);
+    ck_assert(set_mode[1].Busy);
     simulate("power-cycle 1 300");
     scan(1000);
     MC_Reset_t reset = {.Axis = &references[3], .Execute = TRUE};
@@ -511,6 +538,8 @@ START_TEST(test_nothing_leads_back_into_a_dead_end)
     }
     ck_assert_msg(reset.Done, "%s", text_of(3));
     scan(500);
+    ck_assert_int_eq(ERROR_OF(set_mode[1]), CM1E_ERROR_AXIS_OFFLINE);
+    ck_assert_msg(strstr(text_of(1), cm1e_strerror(CM1E_ERROR_AXIS_OFFLINE)), "%s", text_of(1));
     ck_assert_int_eq(info_of(2).state, CM1E_AXIS_DISABLED);
     ck_assert_int_eq(info_of(2).mode, CM1E_BRIDGE_MODE_CSP);
     enable_axis(2);
@@ -627,6 +656,7 @@ int main(void)
     tcase_add_test(tests, test_modes_and_their_dead_ends);
     tcase_add_test(tests, test_cpio_moves_as_csp_but_does_not_home);
     tcase_add_test(tests, test_a_switch_that_another_one_replaces_is_cancelled);
+    tcase_add_test(tests, test_a_switch_that_ends_otherwise_has_a_text);
     tcase_add_test(tests, test_a_bridge_that_was_switched_off_and_on_is_in_csp);
     tcase_add_test(tests, test_nothing_leads_back_into_a_dead_end);
     tcase_add_test(tests, test_mc_power_does_not_wait_for_ever_for_a_bridge_that_is_not_in_operational);
