@@ -83,6 +83,12 @@ static cm1e_error_t aim_velocity(const cm1e_axis_t *axis, const from_t *from, co
     return CM1E_OK;
 }
 
+/* ns; no less than a profile of this way takes, which may be too short for its velocity. */
+static int64_t profile_time(const driving_t *d, int64_t way)
+{
+    return (int64_t)(1e9 * fmin((double)way / d->speed + d->speed / d->acceleration, 1e9));
+}
+
 cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move_t *move, driving_t *d)
 {
     cm1e_motion_limits_t limits;
@@ -107,6 +113,7 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
     d->speed = limits.velocity * scale;
     d->acceleration = acceleration;
     d->braking = braking;
+    d->profile_ns = profile_time(d, llabs((int64_t)d->target - axis->position.raw));
     const double values[2][DRIVE_PARAMETERS] = {{d->speed, braking}, {acceleration, braking}};
     for (int i = 0; i < DRIVE_PARAMETERS; i++)
         if (!parameter(axis, parameters[d->velocity_mode][i], values[d->velocity_mode][i], &d->raw[i]))
@@ -298,6 +305,16 @@ static bool can_halt(const cm1e_axis_t *axis)
     return v > 0.0 ? end <= axis->limits.upper : v < 0.0 ? end >= axis->limits.lower : true;
 }
 
+/* Whether the drive says for too long that its motor is at a target at which it does not rest. A drive may say so
+ * before its profile has ended, and may be slower than that. */
+static bool comes_to_no_rest(cm1e_axis_t *axis)
+{
+    driving_t *d = axis->set_aside.driving;
+    if (!axis->drive.feedback.target_reached || axis->now_ns < d->step_ns + d->profile_ns)
+        d->due_ns = axis->now_ns;
+    return axis->now_ns - d->due_ns >= axis->in_position.timeout_us * INT64_C(1000);
+}
+
 static void step_move(cm1e_axis_t *axis)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
@@ -315,6 +332,8 @@ static void step_move(cm1e_axis_t *axis)
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, ((double)d->target - axis->position.raw) / axis->position.scale, 0.0);
     } else if (f->target_reached && rests) {
         arrived(axis);
+    } else if (comes_to_no_rest(axis)) {
+        cm1e_axis_in_position_fail(axis, ((double)axis->position.raw - d->target) / axis->position.scale);
     }
 }
 

@@ -91,26 +91,33 @@ void cm1e_axis_settled(cm1e_axis_t *axis)
     cm1e_axis_go(axis, ON_DONE);
 }
 
+/* % of rated torque; NAN: unknown. */
+static float torque_of(const cm1e_axis_t *axis)
+{
+    return axis->drive.image.in_torque.bytes > 0 ? 0.1f * (float)abs(axis->drive.feedback.torque) : NAN;
+}
+
 /* Remembers the numbers for the text, because a motor without torque may move away. */
-static void remember(cm1e_axis_t *axis)
+static void remember(cm1e_axis_t *axis, double missed_by)
 {
     in_position_t *p = &axis->in_position;
     p->missed_actual = cm1e_axis_units(axis, axis_actual(axis));
-    p->missed_by = deviation(axis);
+    p->missed_by = missed_by;
 }
 
 void cm1e_axis_in_position_ended(cm1e_axis_t *axis, bool by_error)
 {
     axis->in_position.missed = by_error && axis_settling(axis);
     if (axis->in_position.missed)
-        remember(axis);
+        remember(axis, deviation(axis));
 }
 
-static void fail(cm1e_axis_t *axis)
+void cm1e_axis_in_position_fail(cm1e_axis_t *axis, double missed_by)
 {
-    remember(axis);
+    axis->in_position.torque = torque_of(axis);
+    remember(axis, missed_by);
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_NOT_IN_POSITION);
-    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_NOT_IN_POSITION, axis->in_position.missed_by, axis->in_position.window);
+    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_NOT_IN_POSITION, missed_by, axis->in_position.window);
 }
 
 void cm1e_axis_in_position_step(cm1e_axis_t *axis)
@@ -126,11 +133,11 @@ void cm1e_axis_in_position_step(cm1e_axis_t *axis)
     p->there = inside && passed(axis, p->inside_ns, p->time_us);
     if (!axis_settling(axis))
         return;
-    p->torque = axis->drive.image.in_torque.bytes > 0 ? 0.1f * (float)abs(axis->drive.feedback.torque) : NAN;
+    p->torque = torque_of(axis);
     if (axis->commands.waiting.count > 0 || p->there || !p->done_waits)
         cm1e_axis_settled(axis);
     else if (passed(axis, p->arrived_ns, p->timeout_us))
-        fail(axis);
+        cm1e_axis_in_position_fail(axis, deviation(axis));
 }
 
 /* ---- in words ---------------------------------------------------------------------------------------------------- */

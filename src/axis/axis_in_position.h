@@ -19,6 +19,9 @@ static inline void cm1e_axis_in_position_leave(cm1e_axis_t *axis) { axis->in_pos
 bool cm1e_axis_settle(cm1e_axis_t *axis);
 /** Ends the wait for the motor: the command is Done, because another one goes on from its end. */
 void cm1e_axis_settled(cm1e_axis_t *axis);
+/** The motor did not come to rest at its set-point, or its target, in time: the command and the axis fail. `missed_by`:
+ *  how far it is beyond it; u. */
+void cm1e_axis_in_position_fail(cm1e_axis_t *axis, double missed_by);
 /** Called when all commands end. */
 void cm1e_axis_in_position_ended(cm1e_axis_t *axis, bool by_error);
 void cm1e_axis_in_position_text(const cm1e_axis_t *axis, char *text, size_t size);

@@ -327,6 +327,8 @@ typedef struct driving {
     uint8_t data[4];
     cm1e_sdo_t sdo;
     int64_t step_ns;         /**< when the step began */
+    int64_t profile_ns;      /**< how long a motion to a position takes at most */
+    int64_t due_ns;          /**< since when the motor should rest at its target: the drive says that it is there */
     standstill_t standstill;
 } driving_t;
 

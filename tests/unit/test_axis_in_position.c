@@ -1,4 +1,5 @@
 /* In position: window, time and timeout, and the Done that waits for the motor. */
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -554,6 +555,33 @@ static void test_a_motor_that_turns_is_not_at_the_target_of_its_drive(void)
     }
 }
 
+/* A drive that never shows its motor at rest does not keep the move Active for ever: not one that says "target reached"
+ * from the beginning on, and not before the profile can have ended. */
+static void test_a_motor_that_never_rests_at_the_target_of_its_drive_is_an_error(void)
+{
+    static const double ways[] = {0.1, 3.0};
+    for (int i = 0; i < 2; i++) {
+        bench_end();
+        fake_bus_init(&bus, CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.config.axes[0].motion = CM1E_MOTION_DRIVE;
+        bus.config.axes[0].in_position_timeout_s = 0.5;
+        bus.world = drive_lies;
+        swings_left = INT_MAX;
+        bench_create();
+        bench_enable();
+        const cm1e_command_id_t id = bench_move_by(ways[i], 1.0);
+        int cycles = 0;
+        while (bench_state_of(id) == CM1E_COMMAND_ACTIVE && cycles < 10000) {
+            bench_cycles(1);
+            cycles++;
+        }
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_NOT_IN_POSITION, bench_info().error);
+        bench_told("did not reach its set-point");
+        TEST_ASSERT_TRUE(cycles > 500 + 1000 * ways[i] && cycles < 1000 + 1000 * ways[i]);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -582,5 +610,6 @@ int main(void)
     RUN_TEST(test_a_backlash_is_taken_up_before);
     RUN_TEST(test_homing_waits_for_the_motor_too);
     RUN_TEST(test_a_motor_that_turns_is_not_at_the_target_of_its_drive);
+    RUN_TEST(test_a_motor_that_never_rests_at_the_target_of_its_drive_is_an_error);
     return UNITY_END();
 }
