@@ -177,13 +177,21 @@ cm1e_error_t cm1e_axis_probe_abort(cm1e_axis_t *axis, cm1e_axis_trigger_t trigge
     return error;
 }
 
+/* The counts got another origin between the samples: a motor behind a bridge that CML homes, a drive that was reset. */
+static bool origin_moved(const cm1e_axis_t *axis, const probe_sample_t *before, const probe_sample_t *now)
+{
+    const double way = fabs(cm1e_position_minus(now->position, before->position));
+    return !cm1e_drive_is_virtual(&axis->drive) &&
+           way > (double)cm1e_drive_farthest(&axis->drive, now->time_ns - before->time_ns);
+}
+
 /* Whether the position of the edge is unknown: inputs were missing for too long, or the counts of the motor got another
  * meaning. */
 static bool position_unknown(const cm1e_axis_t *axis, const probe_sample_t *before, const probe_sample_t *now)
 {
     const double cycles = (double)(now->time_ns - before->time_ns) / (axis->cycle_s * 1e9);
     const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
-    return cycles > (limit ? limit : 3) + 0.5 || drive_homes(axis);
+    return cycles > (limit ? limit : 3) + 0.5 || drive_homes(axis) || origin_moved(axis, before, now);
 }
 
 static void fail(cm1e_axis_t *axis, probe_t *probe, int input)

@@ -115,6 +115,9 @@ bool cm1e_drive_signals_in_cycle(const cm1e_drive_t *drive);
  *  those that the motor behind a bridge leaves to its user (BR 6.5). 0: none. @rt cycle */
 uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive);
 uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive);
+/** How far a motor can have gone in this time, by the age of its positions; counts. Farther away than that its counts
+ *  have another origin. Not for a drive without a device. @rt cycle */
+int64_t cm1e_drive_farthest(const cm1e_drive_t *drive, int64_t elapsed_ns);
 /** The drive itself latches the position at this edge of input 1 or 2 (its touch probe 1 or 2), and the objects for it
  *  are mapped. @rt cycle */
 bool cm1e_drive_has_probe(const cm1e_drive_t *drive, int input, bool falling);

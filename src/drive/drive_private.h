@@ -45,9 +45,7 @@ void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_device_mode_t *row);
 void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity);
 /** A target velocity in counts/s as 0x60FF has it. */
 int32_t cm1e_drive_velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s);
-/** Ages of positions and velocities: how far the motor can have gone in a time, and how far position and velocity may
- *  differ then; counts. */
-int64_t cm1e_drive_farthest(const cm1e_drive_t *drive, int64_t elapsed_ns);
+/** How far position and velocity may differ after a time, by their ages; counts. */
 int64_t cm1e_drive_tolerance(const cm1e_drive_t *drive, int64_t elapsed_ns);
 /** Whether position and velocity contradict each other: the motor has gone `way` counts, and `told` by its velocity. */
 static inline bool cm1e_drive_ways_differ(int64_t way, int64_t told, int64_t tolerance)

@@ -169,7 +169,7 @@ static void test_window_ends_are_included_and_other_events_are_not_counted(void)
         int32_t from, to;
         bool in;
     } events[] = {{49998, 50000, false}, {50000, 50000, true}, {49999, 50001, true}, {60000, 60000, true},
-                  {59999, 60001, true},  {60000, 60002, false}, {0, 100, false},     {0, 110000, true}};
+                  {59999, 60001, true},  {60000, 60002, false}, {0, 100, false},     {46000, 55000, true}};
     for (size_t i = 0; i < sizeof events / sizeof events[0]; i++) {
         show(events[i].from, 0);
         const uint32_t id = arm_window(1.0, 1.2);
@@ -304,6 +304,23 @@ static void test_while_the_motor_homes_its_counts_tell_nothing(void)
     expect(other, CM1E_COMMAND_ACTIVE);
 }
 
+/* A string may have homed the motor: between its positions before and after lies no place of the edge. */
+static void test_between_two_origins_there_is_no_position(void)
+{
+    static const int32_t jumps[] = {12000, -30000, 1000000, INT32_MAX};
+    for (size_t i = 0; i < sizeof jumps / sizeof jumps[0]; i++) {
+        show(0, 0);
+        bench_cycles(5);
+        const uint32_t id = arm(on(1)), other = arm(on(2));
+        show(jumps[i], 1);
+        expect(id, CM1E_COMMAND_ERROR);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_PROBE, cm1e_axis_probe_status(axis, id).error);
+        show(jumps[i] - 100, 3);
+        expect(other, CM1E_COMMAND_DONE); /* of the new origin */
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 50.0 / 50000.0, cm1e_axis_probe_status(axis, other).uncertainty);
+    }
+}
+
 /* ---- any state, any sequence ------------------------------------------------------------------------------------- */
 
 static void test_probes_work_in_motion_and_change_no_state(void)
@@ -421,6 +438,7 @@ int main(void)
     RUN_TEST(test_a_probe_armed_in_a_gap_counts_from_the_last_inputs);
     RUN_TEST(test_before_anything_was_seen_there_is_nothing_to_arm);
     RUN_TEST(test_while_the_motor_homes_its_counts_tell_nothing);
+    RUN_TEST(test_between_two_origins_there_is_no_position);
     RUN_TEST(test_probes_work_in_motion_and_change_no_state);
     RUN_TEST(test_random_sequences_agree_with_a_model);
     return UNITY_END();
