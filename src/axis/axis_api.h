@@ -320,8 +320,6 @@ void cm1e_axis_release(cm1e_axis_t *axis);
 bool cm1e_axis_join(cm1e_axis_t *axis, const void *group);
 /** @rt cycle */
 void cm1e_axis_leave(cm1e_axis_t *axis, const void *group);
-/** Whether a leader with this context leads the axis. @rt cycle */
-bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context);
 /** The set or actual position in u, as a leader gives positions. @rt cycle */
 double cm1e_axis_place(const cm1e_axis_t *axis, bool actual);
 /** Axes with the same `cycle` may follow each other, even on different buses: one thread advances all of them in the

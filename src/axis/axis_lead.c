@@ -58,11 +58,6 @@ void cm1e_axis_leave(cm1e_axis_t *axis, const void *group)
         axis->belongs.group = NULL;
 }
 
-bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
-{
-    return axis_led(axis) && axis->leader->context == context;
-}
-
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
 /* Whether all set-points are well within the limits, as long as the course of the leader stays. */

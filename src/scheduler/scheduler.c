@@ -61,8 +61,6 @@ cm1e_axis_t *const *cm1e_scheduler_axes_at(const cm1e_scheduler_t *scheduler, ui
     return scheduler->axes + member->first;
 }
 
-cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler) { return scheduler->members[0].bus; }
-
 cm1e_bus_t *cm1e_scheduler_bus_at(const cm1e_scheduler_t *scheduler, uint32_t index)
 {
     return index < scheduler->member_count ? scheduler->members[index].bus : NULL;

@@ -40,9 +40,7 @@ CM1E_GUEST_API cm1e_axis_t *const *cm1e_scheduler_axes(const cm1e_scheduler_t *s
  *  @rt any */
 CM1E_GUEST_API cm1e_axis_t *const *cm1e_scheduler_axes_at(const cm1e_scheduler_t *scheduler, uint32_t bus,
                                                           uint32_t *first, uint32_t *count);
-/** The bus that the scheduler was made for. */
-CM1E_GUEST_API cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler);
-/** 0: that bus; then those that were added, NULL behind the last. */
+/** 0: the bus that the scheduler was made for; then those that were added, NULL behind the last. */
 CM1E_GUEST_API cm1e_bus_t *cm1e_scheduler_bus_at(const cm1e_scheduler_t *scheduler, uint32_t index);
 /** What the bus number `bus` (0 = first), which the scheduler has, counted in this run; returns how often the clock of
  *  one of its slaves, or its reference, was lost. @rt any */
