@@ -517,6 +517,33 @@ START_TEST(test_a_bridge_that_was_switched_off_and_on_is_in_csp)
 }
 END_TEST
 
+/* Whatever a bridge was doing, and however short it is away: only MC_Power leads a motor out of state A again (BR 6.1.1),
+ * and after the error not before MC_Reset. */
+START_TEST(test_a_bridge_that_restarts_alone_gets_no_request_for_torque)
+{
+    static const int away_ms[] = {1, 2, 3, 5, 20, 300};
+    for (int i = 0; i < (int)(sizeof away_ms / sizeof away_ms[0]) * 4; i++) {
+        char line[40];
+        start();
+        power_of[1].Enable = i % 4 > 0;
+        scan(i % 4 == 1 ? 5 : 400); /* free, on its way to torque, at rest, turning */
+        turning[1].Execute = i % 4 == 3;
+        scan(100);
+        snprintf(line, sizeof line, "power-cycle 1 %d", away_ms[i / 4]);
+        simulate(line);
+        scan(away_ms[i / 4] + 1);
+        for (int n = 0; n < 3000; n++) {
+            for (int k = 0; k < AXES; k++)
+                ck_assert_msg(motor(k)->state != SWITCHED_ON && motor(k)->state != OPERATION_ENABLED,
+                              "%d ms, %d: motor %d after %d cycles", away_ms[i / 4], i % 4, k, n);
+            scan(1);
+        }
+        ck_assert_int_eq(info_of(1).state, power_of[1].Enable ? CM1E_AXIS_ERROR_STOP : CM1E_AXIS_DISABLED);
+        close_segment();
+    }
+}
+END_TEST
+
 /* Another axis resets the bridge; this one, in CMD before, was asked nothing and stays where the bridge begins. */
 START_TEST(test_nothing_leads_back_into_a_dead_end)
 {
@@ -658,6 +685,7 @@ int main(void)
     tcase_add_test(tests, test_a_switch_that_another_one_replaces_is_cancelled);
     tcase_add_test(tests, test_a_switch_that_ends_otherwise_has_a_text);
     tcase_add_test(tests, test_a_bridge_that_was_switched_off_and_on_is_in_csp);
+    tcase_add_test(tests, test_a_bridge_that_restarts_alone_gets_no_request_for_torque);
     tcase_add_test(tests, test_nothing_leads_back_into_a_dead_end);
     tcase_add_test(tests, test_mc_power_does_not_wait_for_ever_for_a_bridge_that_is_not_in_operational);
     tcase_add_test(tests, test_a_string_that_a_switch_overtakes_is_cancelled);
