@@ -1,6 +1,7 @@
 #include "device/cml_command.h"
 
 #include <string.h>
+#include <strings.h>
 
 enum { QUERY_PARAMETERS = 90, QUERY_POSITION = 96, QUERY_STATUS = 99, OUTPUTS = 4, MOTORS = 4, DIGITS_MOST = 9 };
 
@@ -14,7 +15,6 @@ bool cm1e_cml_parameter_can_move(unsigned number)
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 static bool is_printable(char c) { return c >= ' ' && c <= '~'; }
-static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
 /* Reads digits at `at` and moves behind them. false: there are none, or the number has more than 32 bits. */
 static bool take_number(const char **at, const char *end, unsigned *number)
@@ -156,12 +156,7 @@ const char *cm1e_cml_check(const char *text, unsigned id)
 static bool is_nothing(const char *at, size_t size)
 {
     static const char word[] = "null";
-    if (size != 0 && size != sizeof word - 1)
-        return false;
-    for (size_t i = 0; i < size; i++)
-        if (lower(at[i]) != word[i])
-            return false;
-    return true;
+    return size == 0 || (size == sizeof word - 1 && strncasecmp(at, word, size) == 0);
 }
 
 /* A name, for a K parameter with its number, ".ID", "=value". false: it is another text. */

@@ -45,20 +45,15 @@ void cm1e_st_note_call(st_t *st, unit_t *callee)
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
-static bool is_parameter(const var_t *var)
-{
-    return var->section == V_INPUT || var->section == V_OUTPUT || var->section == V_IN_OUT;
-}
-
 static var_t *named_parameter(st_t *st, const unit_t *unit, const arg_t *arg)
 {
     char text[CM1E_NEAR_TEXT_BYTES];
     cm1e_near_t near = {.word = arg->name};
     const char *hint, *ours = cm1e_st_alias(unit->name, arg->name, &hint);
     var_t *var = cm1e_st_map_get(unit->names, ours ? ours : arg->name);
-    if (var && is_parameter(var) && arg->output == (var->section == V_OUTPUT))
+    if (var && cm1e_st_is_parameter(var) && arg->output == (var->section == V_OUTPUT))
         return var;
-    if (var && is_parameter(var)) {
+    if (var && cm1e_st_is_parameter(var)) {
         cm1e_st_report(st, arg->place, arg->output ? "\"%s\" is an input of %s: use :="
                                                    : "\"%s\" is an output of %s: use =>", var->name, unit->name);
         return NULL;
@@ -68,7 +63,7 @@ static var_t *named_parameter(st_t *st, const unit_t *unit, const arg_t *arg)
         return NULL;
     }
     for (const var_t *other = unit->vars; other; other = other->next)
-        if (is_parameter(other))
+        if (cm1e_st_is_parameter(other))
             cm1e_near_look(&near, other->name);
     cm1e_st_report(st, arg->place, "%s has no %s \"%s\"%s", unit->name, arg->output ? "output" : "input", arg->name,
                    cm1e_near_text(&near, text, sizeof text));

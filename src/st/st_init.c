@@ -10,11 +10,6 @@ static bool is_standard(const var_t *var)
            (strcasecmp(var->name, "bInitRetains") == 0 || strcasecmp(var->name, "bInCopyCode") == 0);
 }
 
-static bool is_parameter(const var_t *var)
-{
-    return var->section == V_INPUT || var->section == V_OUTPUT || var->section == V_IN_OUT;
-}
-
 unit_t *cm1e_st_init_method(const unit_t *unit)
 {
     return unit->object.names ? cm1e_st_map_get(unit->object.names, "FB_Init") : NULL;
@@ -33,7 +28,7 @@ bool cm1e_st_init_takes(const unit_t *unit)
     for (; unit; unit = unit->object.base) {
         const unit_t *method = cm1e_st_init_method(unit);
         for (const var_t *var = method ? method->vars : NULL; var; var = var->next)
-            if (is_parameter(var) && !is_standard(var))
+            if (cm1e_st_is_parameter(var) && !is_standard(var))
                 return true;
     }
     return false;
@@ -85,7 +80,7 @@ void cm1e_st_check_init_args(st_t *st, var_t *var)
     for (const unit_t *at = unit; at && var->section != V_IN_OUT; at = at->object.base) {
         const unit_t *method = cm1e_st_init_method(at);
         for (const var_t *parameter = method ? method->vars : NULL; parameter; parameter = parameter->next)
-            if (is_parameter(parameter) && !is_standard(parameter) && !given(var, parameter->name))
+            if (cm1e_st_is_parameter(parameter) && !is_standard(parameter) && !given(var, parameter->name))
                 cm1e_st_report(st, var->place, "FB_Init of %s needs \"%s\": %s : %s(%s := ...)", at->name,
                                parameter->name, var->name, unit->name, parameter->name);
     }

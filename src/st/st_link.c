@@ -166,14 +166,9 @@ unit_t *cm1e_st_interface_method(const st_t *st, const unit_t *interface, const 
 
 /* ---- conformance ------------------------------------------------------------------------------------------------- */
 
-static bool is_parameter(const var_t *var)
-{
-    return var && (var->section == V_INPUT || var->section == V_OUTPUT || var->section == V_IN_OUT);
-}
-
 static const var_t *next_parameter(const var_t *var)
 {
-    while (var && !is_parameter(var))
+    while (var && !cm1e_st_is_parameter(var))
         var = var->next;
     return var;
 }

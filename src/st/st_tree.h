@@ -220,6 +220,12 @@ struct var {
     var_t *next;
 };
 
+/** A call may give it a value, or take one from it. */
+static inline bool cm1e_st_is_parameter(const var_t *var)
+{
+    return var->section == V_INPUT || var->section == V_OUTPUT || var->section == V_IN_OUT;
+}
+
 /** By it a call changes a variable of its caller. */
 static inline bool cm1e_st_gives_back(const var_t *var)
 {
