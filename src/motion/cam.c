@@ -90,8 +90,8 @@ static bool interval(const cm1e_cam_t *cam, int i, cm1e_curve_t *curve)
         *curve = (cm1e_curve_t){a->master - cam->start, b->master - a->master, {a->slave, a->slope}};
         return true;
     }
-    const cm1e_curve_point_t first = {a->slave, a->slope, a->curvature, 0};
-    const cm1e_curve_point_t last = {b->slave, b->slope, b->curvature, 0};
+    const cm1e_curve_point_t first = {.position = a->slave, .slope = a->slope, .curvature = a->curvature};
+    const cm1e_curve_point_t last = {.position = b->slave, .slope = b->slope, .curvature = b->curvature};
     return cm1e_curve_between(curve, a->master - cam->start, &first, b->master - cam->start, &last);
 }
 

@@ -82,7 +82,7 @@ bool cm1e_pieces_append_forward_move(cm1e_pieces_t *pieces, double velocity, dou
     if (a > limits->acceleration)
         return false;
     const double per_jerk = 1 / jerk, begun_s = a * per_jerk, rest = v - a * begun_s / 2;
-    if ((a < 0 && rest < 0) || rest > most || v + a * begun_s / 2 > most)
+    if ((a < 0 && rest < 0) || v + a * begun_s / 2 > most)
         return false; /* it passes standstill, where the limits may change, or is too fast */
     const forward_t f = {
         rest, begun_s, target + begun_s * (rest + a * begun_s * (1.0 / 6.0)), limits->acceleration,

@@ -63,17 +63,15 @@ static double last_fitting(const passing_t *passing, double fitting, double too_
 }
 
 /** That limit in closed form, or by Newton's method from above on a convex function, for an axis that moves towards the
- *  target and accelerates: the change from (v, a) is the change from (rest, 0) without the distance up to (v, a). NaN:
- *  the case is not of this kind. */
+ *  target and accelerates: the change from (v, a) is the change from (rest, 0) without the distance up to (v, a). In
+ *  other cases it is any number or NaN: the caller looks whether it is the limit. */
 static double last_rise(const passing_t *passing)
 {
     const cm1e_motion_limits_t *limits = passing->limits;
     const double v = passing->velocity, a = passing->acceleration, jerk = limits->jerk, most = limits->acceleration;
     if (isinf(jerk))
-        return v >= 0 ? sqrt(v * v + 2 * passing->distance * most) : NAN;
+        return sqrt(v * v + 2 * passing->distance * most);
     const double ramp = fabs(a) / jerk, rest = v - fabs(a) * ramp / 2;
-    if (v < 0 || fabs(a) > most || (a < 0 && rest < 0))
-        return NAN;
     /* From -a the velocity falls to `rest`; the distance equals that of the rise from there with a. */
     const double way = ramp * (rest + fabs(a) * ramp / 6), whole = passing->distance + (a < 0 ? -way : way);
     const double edge = most / jerk * most, long_way = rest - edge / 2;

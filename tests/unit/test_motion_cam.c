@@ -266,6 +266,36 @@ static void test_extremes_are_those_of_dense_samples(void)
     }
 }
 
+/* Of these cams only one extreme is between two points, in their last interval, and the other ones are at points. */
+static void test_an_extreme_between_points_is_found_also_where_it_is_the_only_one(void)
+{
+    static const MC_CAM_POINT position[] = {{0, 0, 0, 100}, {0.01, 0.002, 0.3, 0}, {0.5, 0.3205, 1, 0},
+                                            {1.5, 0.3205, -1, 0}};
+    static const MC_CAM_POINT slope[] = {{0, 0, 0, 100}, {0.01, 0.002, 0.3, 0}, {0.5, 0.01, 0, 0}, {1.5, 1, 0, 0}};
+    static const MC_CAM_POINT curvature[] = {{9, 90, 10, 0}, {10, 100, 10, 0}, {11, 110 - 1.7 / 6, 9.15, -1.7},
+                                             {12, 118.15 - 1.7 / 6, 7.15, -1.7}};
+    static const double sizes[] = {1, -1, 1e-6, -1e-6, 1e6};
+    const MC_CAM_POINT *const cams[] = {position, slope, curvature};
+    for (int c = 0; c < 3; c++)
+        for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+            MC_CAM_POINT points[4];
+            for (int i = 0; i < 4; i++)
+                points[i] = (MC_CAM_POINT){cams[c][i].Master, sizes[k] * cams[c][i].Slave,
+                                           sizes[k] * cams[c][i].Velocity, sizes[k] * cams[c][i].Acceleration};
+            const MC_CAM_REF table = {points, 4, mcCamPolynomial5};
+            compile(&table, false);
+            const double least = 1 - 1e-12;
+            for (int i = 1; i < 1000; i++) {
+                const double way = points[3].Master - points[2].Master;
+                const cm1e_curve_point_t here = at(points[2].Master + i * way / 1000).point;
+                TEST_ASSERT_TRUE(fabs(here.position) * least <= size_of(&cam));
+                TEST_ASSERT_TRUE(fabs(here.slope) * least <= fmax(fabs(cam.extremes.least_slope),
+                                                                  fabs(cam.extremes.most_slope)));
+                TEST_ASSERT_TRUE(fabs(here.curvature) * least <= cam.extremes.curvature);
+            }
+        }
+}
+
 /* The place of the sample before is only a help. */
 static void test_the_place_changes_nothing(void)
 {
@@ -454,6 +484,7 @@ int main(void)
     RUN_TEST(test_a_period_that_no_double_holds_loses_no_turn);
     RUN_TEST(test_single_shot_keeps_its_ends);
     RUN_TEST(test_extremes_are_those_of_dense_samples);
+    RUN_TEST(test_an_extreme_between_points_is_found_also_where_it_is_the_only_one);
     RUN_TEST(test_the_place_changes_nothing);
     RUN_TEST(test_what_is_no_cam_is_refused);
     RUN_TEST(test_every_wrong_number_is_found_and_named);

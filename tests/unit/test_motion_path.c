@@ -132,9 +132,25 @@ static void test_what_makes_no_sense_is_refused(void)
                    CM1E_ERROR_INVALID_ARGUMENT, CM1E_PATH_NO_ARC);
     expect_refused(cm1e_path_append_arc_centre(&driven.path, (double[]){5.1, 0}, end, CM1E_PATH_CLOCKWISE, &fine,
                                                &problem), &problem, CM1E_ERROR_INVALID_ARGUMENT, CM1E_PATH_NO_ARC);
-    config.axes = 9;
-    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_path_begin(&driven.path, &config, ORIGIN));
-    config.axes = 3, config.axis[1].acceleration = NO_LIMIT;
+}
+
+/** Of 1 to 8 axes, of which 1 to 3 make up the space. */
+static void test_a_path_begins_with_axes_a_space_and_a_cycle_that_there_are(void)
+{
+    static const struct { int axes, space; double cycle_s; bool possible; } rows[] = {
+        {1, 1, 1e-3, true},  {2, 2, 1e-3, true},   {3, 3, 1e-3, true},   {8, 3, 1e-3, true},   {8, 1, 1e-3, true},
+        {0, 0, 1e-3, false}, {0, 1, 1e-3, false},  {-1, 1, 1e-3, false}, {9, 3, 1e-3, false},  {3, 0, 1e-3, false},
+        {3, -1, 1e-3, false}, {8, 4, 1e-3, false}, {2, 3, 1e-3, false},  {1, 2, 1e-3, false},  {3, 2, 0, false},
+        {3, 2, -1e-3, false}, {3, 2, NAN, false},  {3, 2, INFINITY, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        cm1e_path_config_t config = plain_config(CM1E_PATH_AXES, 1, 1000, 2000, 1e5);
+        config.axes = rows[i].axes, config.space = rows[i].space, config.cycle_s = rows[i].cycle_s;
+        TEST_ASSERT_EQUAL(rows[i].possible ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT,
+                          cm1e_path_begin(&driven.path, &config, ORIGIN));
+    }
+    cm1e_path_config_t config = plain_config(3, 2, 1000, 2000, 1e5);
+    config.axis[1].acceleration = NO_LIMIT;
     TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_path_begin(&driven.path, &config, ORIGIN));
 }
 
@@ -463,6 +479,7 @@ int main(void)
     RUN_TEST(test_a_corner_with_a_transition_is_not_stopped_at);
     RUN_TEST(test_a_circle);
     RUN_TEST(test_what_makes_no_sense_is_refused);
+    RUN_TEST(test_a_path_begins_with_axes_a_space_and_a_cycle_that_there_are);
     RUN_TEST(test_an_arc_that_bulges_over_a_bound_is_refused);
     RUN_TEST(test_from_outside_the_bounds_only_back);
     RUN_TEST(test_a_line_into_an_arc_is_passed_without_a_stop);

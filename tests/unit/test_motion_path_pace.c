@@ -1,7 +1,7 @@
 /* How soon paths are through: against the soonest way, which without a limit of jerk is known. */
 #include "path_check.h"
 
-enum { PATHS = 12, SEGMENTS = 24, PARTS = 20000 };
+enum { PATHS = 12, SEGMENTS = 24, PARTS = 20000, OTHER_LIMITS = 1500 };
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -163,6 +163,100 @@ static void test_stops_in_bends_take_little_longer_than_on_a_line(void)
     TEST_ASSERT_TRUE(stops_s <= 1.15 * lines_s);
 }
 
+/** Lines straight on, each with limits of its own: so long, with so much of the velocity, and of the acceleration. */
+typedef struct {
+    double length, velocity, acceleration;
+} stretch_t;
+
+static cm1e_motion_limits_t limits_of(const stretch_t *stretch)
+{
+    const double a = 2000 * stretch->acceleration;
+    return (cm1e_motion_limits_t){200 * stretch->velocity, a, a, 20000};
+}
+
+/** With acceleration 0 at each junction. */
+static double one_by_one(const stretch_t *stretches, int count)
+{
+    double passed[SEGMENTS + 1] = {0}, time = 0;
+    for (int i = count - 1; i > 0; i--) {
+        const cm1e_motion_limits_t limits = limits_of(&stretches[i]), before = limits_of(&stretches[i - 1]);
+        passed[i] = cm1e_profile_entry_velocity(stretches[i].length, fmin(limits.velocity, before.velocity),
+                                                passed[i + 1], &limits);
+    }
+    for (int i = 0; i < count; i++) {
+        const cm1e_motion_limits_t limits = limits_of(&stretches[i]);
+        const cm1e_motion_state_t start = {0, passed[i], 0};
+        cm1e_profile_t profile;
+        if (i + 1 < count)
+            passed[i + 1] = cm1e_profile_passing_velocity(&start, stretches[i].length, passed[i + 1], &limits);
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_profile_to_state(&profile, &start, stretches[i].length, passed[i + 1],
+                                                         &limits));
+        time += profile.duration_s;
+    }
+    return time;
+}
+
+/** As one line with the lowest of their limits. */
+static double all_in_one(const stretch_t *stretches, int count)
+{
+    stretch_t whole = {0, INFINITY, INFINITY};
+    for (int i = 0; i < count; i++) {
+        whole.length += stretches[i].length;
+        whole.velocity = fmin(whole.velocity, stretches[i].velocity);
+        whole.acceleration = fmin(whole.acceleration, stretches[i].acceleration);
+    }
+    const cm1e_motion_limits_t limits = limits_of(&whole);
+    cm1e_profile_t profile;
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_profile_to_position(&profile, &(cm1e_motion_state_t){0, 0, 0}, whole.length,
+                                                        &limits));
+    return profile.duration_s;
+}
+
+static double along(const stretch_t *stretches, int count)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 500, 5000, 60000);
+    double x = 0;
+    begin_path(&config, (double[CM1E_PATH_AXES]){0});
+    for (int i = 0; i < count; i++) {
+        const cm1e_motion_limits_t limits = limits_of(&stretches[i]);
+        cm1e_path_command_t command = command_of(limits.velocity, limits.acceleration, limits.jerk, CM1E_PATH_EXACT, 0);
+        x += stretches[i].length;
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){x, 0}, &command, NULL));
+    }
+    return run_path();
+}
+
+static void random_stretches(stretch_t *stretches, int count)
+{
+    const double spread = random_decade(0.001, 2), weaker = random_decade(0.001, 2), size = random_decade(0.5, 100);
+    const bool all_differ = one_in(2);
+    for (int i = 0; i < count; i++) {
+        stretches[i] = (stretch_t){size * random_decade(0.3, 3), 1, 1};
+        if (!all_differ && i != count / 2)
+            continue;
+        stretches[i].velocity = exp(-spread * random_between(0, 1));
+        stretches[i].acceleration = exp(-weaker * random_between(0, 1));
+    }
+}
+
+/** To plan several in one costs their limits, to plan each by itself the acceleration between them. */
+static void test_lines_with_other_limits_take_hardly_longer_than_the_better_of_two_ways(void)
+{
+    double times = 0, better = 0;
+    for (int i = 0; i < OTHER_LIMITS; i++) {
+        stretch_t stretches[SEGMENTS];
+        const int count = 2 + (int)(random_bits() % 8);
+        random_stretches(stretches, count);
+        const double one = one_by_one(stretches, count), all = all_in_one(stretches, count);
+        const double time = along(stretches, count);
+        CHECK_PATH(time <= fmin(one, all) * 1.1 + driven.path.config.cycle_s);
+        times += time;
+        better += fmin(one, all);
+    }
+    printf("lines with other limits take %.5f times as long as the better of two ways\n", times / better);
+    TEST_ASSERT_TRUE(times <= better);
+}
+
 int main(void)
 {
     seed_random();
@@ -172,6 +266,7 @@ int main(void)
     RUN_TEST(test_short_lines_that_hardly_turn);
     RUN_TEST(test_lines_and_arcs);
     RUN_TEST(test_a_piece_with_other_limits_costs_what_it_must);
+    RUN_TEST(test_lines_with_other_limits_take_hardly_longer_than_the_better_of_two_ways);
     RUN_TEST(test_a_stop_on_a_circle_brakes_harder_the_slower_it_is);
     RUN_TEST(test_stops_in_bends_take_little_longer_than_on_a_line);
     return UNITY_END();

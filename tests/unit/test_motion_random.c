@@ -58,6 +58,20 @@ static double any_number(double decades)
     return one_in(8) ? 0 : (one_in(2) ? 1 : -1) * random_decade(pow(10, -decades), pow(10, decades));
 }
 
+/* The last sample before the end is next to it: a profile that cannot be has been refused. */
+static void check_arrival(const cm1e_profile_t *profile, const problem_t *problem)
+{
+    double fastest = fabs(profile->end.velocity), farthest = fabs(profile->end.position) + fabs(problem->start.position);
+    for (int i = 0; i < profile->segment_count; i++) {
+        fastest = fmax(fastest, fabs(profile->segments[i].start.velocity));
+        farthest = fmax(farthest, fabs(profile->segments[i].start.position));
+    }
+    cm1e_motion_state_t last;
+    cm1e_profile_sample(profile, nextafter(profile->duration_s, 0), &last);
+    CHECK(fabs(last.position - profile->end.position) <= 1e-8 * fastest * profile->duration_s + 1e-14 * farthest,
+          problem);
+}
+
 static void test_numbers_of_any_size_give_a_profile_or_a_refusal(void)
 {
     static const double decades[] = {3, 6, 12, 15, 30, 300};
@@ -91,6 +105,7 @@ static void test_numbers_of_any_size_give_a_profile_or_a_refusal(void)
         double low, high;
         cm1e_profile_extent(&profile, &low, &high);
         CHECK(isfinite(low) && isfinite(high) && low <= high, &problem);
+        check_arrival(&profile, &problem);
     }
 }
 
