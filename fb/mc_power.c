@@ -12,7 +12,6 @@ static void release(cm1e_fb_private_t *fb)
 {
     fb->axis_handle = 0;
     fb->state = FB_IDLE;
-    fb->error_id = 0;
 }
 
 static void take(cm1e_fb_private_t *fb, const AXIS_REF_t *reference)

@@ -75,6 +75,28 @@ static void write(MC_WriteDigitalOutput_t *fb, BOOL value, cm1e_error_t expected
     ck_assert(fb->Done == (expected == CM1E_OK) && fb->Error == (expected != CM1E_OK));
 }
 
+/* A block that asks again and again has told once what is wrong. What it told goes when it can be done. */
+START_TEST(test_what_was_wrong_with_a_number_is_not_told_any_more_when_it_is_right)
+{
+    begin();
+    const MC_INPUT_REF input = {.Axis = motor};
+    const MC_OUTPUT_REF output = {.Axis = motor};
+    MC_ReadDigitalInput_t in = {.Input = &input, .Enable = TRUE};
+    MC_ReadDigitalOutput_t out = {.Output = &output, .Enable = TRUE};
+    for (int right = 0; right < 2; right++) {
+        in.InputNumber = right ? PART : PART + 1;
+        MC_ReadDigitalInput(&in);
+        ck_assert_msg(in.Error == !right && (text_of(MOTOR)[0] == 0) == right, "input: %s", text_of(MOTOR));
+    }
+    for (int right = 0; right < 2; right++) {
+        out.OutputNumber = right ? BLOWER : BLOWER + 1;
+        MC_ReadDigitalOutput(&out);
+        ck_assert_msg(out.Error == !right && (text_of(MOTOR)[0] == 0) == right, "output: %s", text_of(MOTOR));
+    }
+    close_segment();
+}
+END_TEST
+
 START_TEST(test_outputs_of_another_slave_are_written_by_their_number)
 {
     begin();
@@ -331,6 +353,7 @@ int main(void)
     tcase_set_timeout(tests, 120);
     tcase_add_test(tests, test_inputs_of_another_slave_are_read_by_their_number);
     tcase_add_test(tests, test_an_input_whose_slave_is_away_is_an_error_until_it_is_back);
+    tcase_add_test(tests, test_what_was_wrong_with_a_number_is_not_told_any_more_when_it_is_right);
     tcase_add_test(tests, test_outputs_of_another_slave_are_written_by_their_number);
     tcase_add_loop_test(tests, test_a_touch_probe_on_another_slave_captures_the_position_of_its_exchange, 0, 2);
     tcase_add_loop_test(tests, test_an_edge_while_the_slave_was_away_is_an_error, 0, 2);

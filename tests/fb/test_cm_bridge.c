@@ -200,6 +200,22 @@ START_TEST(test_what_is_refused_says_why_and_sends_nothing)
 }
 END_TEST
 
+/* An axis keeps the answers to its last strings only. */
+START_TEST(test_a_block_that_comes_too_late_for_its_answer_is_told_so)
+{
+    start();
+    CM_SendCML_t late = {.Axis = &references[0], .Execute = TRUE, .Command = "?99.1"};
+    CM_SendCML(&late);
+    ck_assert(late.Busy && !late.Error);
+    for (int i = 0; i < CM1E_DRIVE_CML_QUEUE; i++)
+        sends(0, "K53", "K53.1=0");
+    CM_SendCML(&late);
+    ck_assert_int_eq(ERROR_OF(late), CM1E_ERROR_CANCELLED);
+    ck_assert(!late.Busy && !late.Done && late.Lines == 0 && !late.Response[0]);
+    close_segment();
+}
+END_TEST
+
 START_TEST(test_a_cm1e_has_none_of_this)
 {
     describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
@@ -689,6 +705,7 @@ int main(void)
     tcase_add_test(tests, test_nothing_leads_back_into_a_dead_end);
     tcase_add_test(tests, test_mc_power_does_not_wait_for_ever_for_a_bridge_that_is_not_in_operational);
     tcase_add_test(tests, test_a_string_that_a_switch_overtakes_is_cancelled);
+    tcase_add_test(tests, test_a_block_that_comes_too_late_for_its_answer_is_told_so);
     tcase_add_test(tests, test_commands_of_cmd);
     tcase_add_test(tests, test_a_search_in_cmd_that_lasts_too_long_is_ended);
     suite_add_tcase(suite, tests);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cm1e/config.h"
+#include "config/clock_pulses.h"
 #include "unity.h"
 
 static cm1e_bus_config_t config;
@@ -493,6 +494,55 @@ static void test_only_listed_axes_are_checked(void)
     expect_wrong("axis axis3: limits.velocity");
 }
 
+/* At a cycle time of 2 ms; ETG.2000, OpMode, and ETG.1000.4 for SYNC1. */
+static void test_the_pulses_of_a_mode(void)
+{
+    static const struct { cm1e_dc_facts_t facts; double shift_us, sync0_us, sync1_us, shifted_us; } rows[] = {
+        {{.assign_activate = 0x0000, .sync0_factor = 2, .sync1_factor = 2}, 300, 0, 0, 0},
+        {{.assign_activate = 0x0300}, 0, 2000, 0, 1000},
+        {{.assign_activate = 0x0300, .sync0_factor = 1, .sync0_shift_ns = 50000}, 0, 2000, 0, 1050},
+        {{.assign_activate = 0x0300, .sync0_factor = 3, .sync0_shift_ns = -50000}, 300, 6000, 0, 250},
+        {{.assign_activate = 0x0300, .sync0_factor = -4, .sync1_factor = 4, .sync1_shift_ns = 9000}, 300, 500, 0, 300},
+        {{.assign_activate = 0x0700, .sync0_factor = -4, .sync1_factor = 4}, 300, 500, 1500, 300},
+        {{.assign_activate = 0x0700, .sync0_factor = 1, .sync1_factor = 2, .sync1_shift_ns = 9000}, 300, 2000, 2009, 300},
+        {{.assign_activate = 0x0700, .sync0_factor = 1, .sync1_factor = 1, .sync1_shift_ns = 9000}, 300, 2000, 9, 300},
+        {{.assign_activate = 0x0700, .sync0_factor = 1, .sync1_shift_ns = 9000}, 300, 2000, 9, 300},
+        {{.assign_activate = 0x0700, .sync0_cycle_ns = 250000, .sync0_factor = 7, .sync1_factor = 3}, 300, 250, 500, 300},
+        {{.assign_activate = 0x0400, .sync0_factor = 1, .sync1_factor = 2}, 300, 0, 0, 0}, /* SYNC1 comes of SYNC0 */
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const cm1e_dc_config_t pulses = cm1e_config_pulses_of_mode(&rows[i].facts, rows[i].shift_us, 2000000);
+        TEST_ASSERT_EQUAL_DOUBLE(rows[i].sync0_us, pulses.sync0_us);
+        TEST_ASSERT_EQUAL_DOUBLE(rows[i].sync1_us, pulses.sync1_us);
+        TEST_ASSERT_EQUAL_DOUBLE(rows[i].shifted_us, pulses.shift_us);
+        TEST_ASSERT_EQUAL(rows[i].sync0_us != 0, cm1e_config_mode_has_sync0(&rows[i].facts));
+    }
+}
+
+/* The data of start-up SDOs of more than 8 bytes are those of the slave, from `value` on. */
+static void test_the_data_of_an_sdo_are_those_of_its_slave(void)
+{
+    static const struct { unsigned bytes, there, from, size; bool good; } rows[] = {
+        {1, 0, 0, 0, true},    {8, 0, 0, 0, true},    {9, 0, 0, 0, false},  {0, 0, 0, 0, false},  {0, 10, 0, 0, false},
+        {0, 10, 0, 10, true},  {0, 10, 0, 11, false}, {0, 10, 3, 7, true},  {0, 10, 4, 7, false}, {0, 10, 9, 1, true},
+        {0, 10, 10, 1, false}, {0, CM1E_SLAVE_SDO_DATA, 0, CM1E_SLAVE_SDO_DATA, true},
+        {0, CM1E_SLAVE_SDO_DATA + 1, 0, 1, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        setUp();
+        cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "valves");
+        slave->address = 3;
+        slave->sdo_count = 1;
+        slave->sdo_data_count = (uint16_t)rows[i].there;
+        slave->sdos[0] = (cm1e_sdo_config_t){.index = 0x8000, .bytes = (uint8_t)rows[i].bytes,
+                                             .size = (uint16_t)rows[i].size, .value = rows[i].from};
+        if (rows[i].good)
+            expect_good();
+        else
+            expect_wrong("expected 1 ... 8, or data of its own");
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -520,5 +570,7 @@ int main(void)
     RUN_TEST(test_old_firmware_runs_at_1_ms_only);
     RUN_TEST(test_virtual_time_needs_the_simulated_segment);
     RUN_TEST(test_only_listed_axes_are_checked);
+    RUN_TEST(test_the_pulses_of_a_mode);
+    RUN_TEST(test_the_data_of_an_sdo_are_those_of_its_slave);
     return UNITY_END();
 }
