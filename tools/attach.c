@@ -60,11 +60,21 @@ cm1e_error_t connect_network(const common_options_t *options, const cm1e_bus_con
 static cm1e_error_t attach(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_control_t *control,
                            cm1e_bus_t **bus, cm1e_diag_t *diag)
 {
-    if (!options->pcap_file)
-        return cm1e_bus_open_attached(bus, config, control, diag);
-    cm1e_control_close(control);
-    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "--pcap records the frames of this program, and another one "
-                         "runs the network: leave it out.");
+    if (options->pcap_file) {
+        cm1e_control_close(control);
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "--pcap records the frames of this program, and another "
+                             "one runs the network: leave it out.");
+    }
+    /* Its interface, whatever we were told: --attach alone tells none, and a bus file may be made for another one. */
+    cm1e_bus_config_t of_program = *config;
+    json_t *hello = ask_program(control, json_pack("{s:s}", "request", "hello"), "hello", diag);
+    if (!hello) {
+        cm1e_control_close(control);
+        return diag->error;
+    }
+    snprintf(of_program.interface_name, sizeof of_program.interface_name, "%s", text_of(hello, "interface"));
+    json_decref(hello);
+    return cm1e_bus_open_attached(bus, &of_program, control, diag);
 }
 
 cm1e_error_t open_unscanned(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,

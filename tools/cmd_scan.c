@@ -200,7 +200,7 @@ static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *co
         print_json(slaves);
     } else {
         print_table(bus, named, scan->pdos);
-        tell_simulated(config);
+        tell_simulated(cm1e_bus_configuration(bus));
     }
     /* A bus file states the expected slaves: compare. */
     const bool as_expected = config->axis_count + config->slave_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;

@@ -335,7 +335,7 @@ static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *co
     if (all)
         print_json(all);
     else
-        tell_simulated(config);
+        tell_simulated(cm1e_bus_configuration(bus));
     return readable ? EXIT_OK : fail(&diag);
 }
 

@@ -54,6 +54,14 @@ def doctor_tells(segment, cm1e, control):
         wire.check("in use by cm1e move" in network["slaves"]["fact"] and "program" not in network, told)
 
 
+def attached_by_process(segment, cm1e, move):
+    """--attach names no interface: that of the program counts, which is no simulated one."""
+    for words in (["scan"], ["status"]):
+        told = segment.run([cm1e, *words, "--attach", str(move.pid)])
+        wire.check(told.returncode == 0 and "Operation" in told.stdout and "simulated" not in told.stdout,
+                   f"{words} --attach: {told.stdout}{told.stderr}")
+
+
 def move_is_left_alone(segment, cm1e, bus_file, control):
     if not control:
         with open(bus_file, "r+", encoding="utf-8") as file:
@@ -79,6 +87,8 @@ def move_is_left_alone(segment, cm1e, bus_file, control):
             if number == 0:
                 print(told.strip())
     doctor_tells(segment, cm1e, control)
+    if control:
+        attached_by_process(segment, cm1e, move)
     out, err = move.communicate(timeout=60)
     wire.check(move.returncode == 0, f"the move did not end: {out}{err}")
 
