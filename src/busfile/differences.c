@@ -127,7 +127,8 @@ static bool compare_float(const compare_t *compare, const yaml_node_t *node, con
     const char *text = (const char *)node->data.scalar.value;
     char shown[SHOWN];
     if (!is_number(text))
-        return wrong(compare, node, "%s is %s; expected a number", key, found(node, shown));
+        return wrong(compare, node, "%s is %s; expected a number%s", key, found(node, shown),
+                     strchr(text, ',') ? " with a decimal point" : "");
     errno = 0;
     const double value = strtod(text, NULL);
     if (errno)
@@ -226,6 +227,27 @@ static bool unknown_key(const compare_t *compare, const yaml_node_t *name, const
                  meant[0] ? meant : ";", meant[0] ? "E" : "e", keys);
 }
 
+static const char *scalar(const compare_t *compare, int index)
+{
+    const yaml_node_t *node = yaml_document_get_node(compare->document, index);
+    return node->type == YAML_SCALAR_NODE ? (const char *)node->data.scalar.value : "";
+}
+
+/* In braces a decimal comma ends the number: {velocity: 10,5} has a velocity of 10, and a key 5 without a value. Said
+ * before any of them is compared, because the 0 of 0,5 would be refused for another reason. */
+static bool compare_commas(const compare_t *compare, const yaml_node_t *node, const char *key)
+{
+    const yaml_node_pair_t *const first = node->data.mapping.pairs.start;
+    for (const yaml_node_pair_t *pair = first; pair < node->data.mapping.pairs.top; pair++) {
+        const char *name = scalar(compare, pair->key), *whole = pair > first ? scalar(compare, pair[-1].value) : "";
+        if (skip_digits(name) == name || !is_number(name) || !is_integer(whole) || scalar(compare, pair->value)[0])
+            continue;
+        return wrong(compare, yaml_document_get_node(compare->document, pair->key), "unknown key '%s' in %s; expected "
+                     "a decimal point, not a comma: %s: %s.%s", name, key, scalar(compare, pair[-1].key), whole, name);
+    }
+    return true;
+}
+
 static bool compare_mapping(const compare_t *compare, const yaml_node_t *node, const cyaml_schema_value_t *schema,
                             const char *key)
 {
@@ -234,6 +256,8 @@ static bool compare_mapping(const compare_t *compare, const yaml_node_t *node, c
     list_keys(keys, sizeof keys, fields);
     if (node->type != YAML_MAPPING_NODE)
         return wrong(compare, node, "%s is %s; expected a group with the keys: %s", key, found(node, shown), keys);
+    if (!compare_commas(compare, node, key))
+        return false;
     bool seen[MAX_FIELDS] = {false};
     for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
         const yaml_node_t *name = yaml_document_get_node(compare->document, pair->key);
