@@ -18,7 +18,13 @@ static cm1e_error_t load(const char *axes)
     FILE *file = fopen(temporary, "wb");
     TEST_ASSERT_NOT_NULL(file);
     TEST_ASSERT_GREATER_THAN(0, fprintf(file, "axes:\n%s", axes));
-    TEST_ASSERT_GREATER_THAN(0, fprintf(file, "slaves:\n  - {name: switches, position: 2}\n  - {position: 3}\n"));
+    TEST_ASSERT_GREATER_THAN(0, fprintf(file, "slaves:\n  - {name: switches, position: 2}\n  - {position: 3}\n"
+                                            "  - name: mixed\n    position: 4\n"
+                                            "    inputs: [{name: bit, bit: 0}, {name: byte, bit: 8, bits: 8}, "
+                                            "{name: object, object: 0x6000:01}, {name: real, bit: 16, type: REAL}, "
+                                            "{name: long, bit: 48, bits: 65}]\n"
+                                            "    outputs: [{name: lamp, bit: 0}, {name: level, object: 0x7000:01, "
+                                            "type: UINT}]\n"));
     TEST_ASSERT_EQUAL(0, fclose(file));
     return cm1e_bus_config_load(&config, temporary, &diag);
 }
@@ -75,6 +81,15 @@ static void test_wrong_keys_are_told_with_their_place(void)
         {"  - {encoder_signal: switches.a, limits: {velocity: 5}}\n", ":2:", "expected `type: encoder`"},
         {"  - {type: virtual, inputs: {home: switches.a}}\n", ":2:", "inputs"},
         {"  - {inputs: {limit_positive: switches.a, limit_negative: switches.a}}\n", ":2:", "expected another input"},
+        {"  - {inputs: {signals: [mixed.lamp]}}\n", ":2:24: ", "has 'mixed.lamp', which is an output of its slave"},
+        {"  - {outputs: {signals: [mixed.bit]}}\n", ":2:25: ", "has 'mixed.bit', which is an input of its slave"},
+        {"  - {inputs: {signals: [mixed.byte]}}\n", ":2:24: ", "has 8 bits; expected a signal of a single bit"},
+        {"  - {inputs: {signals: [MIXED.Real]}}\n", ":2:24: ", "has 32 bits"},
+        {"  - {outputs: {signals: [mixed.level]}}\n", ":2:25: ", "has 16 bits"},
+        {"  - {type: encoder, encoder_signal: mixed.bit, limits: {velocity: 5}}\n", ":2:37: ", "is no counter"},
+        {"  - {type: encoder, encoder_signal: mixed.real, limits: {velocity: 5}}\n", ":2:37: ", "is no counter"},
+        {"  - {type: encoder, encoder_signal: mixed.long, limits: {velocity: 5}}\n", ":2:37: ", "is no counter"},
+        {"  - {type: encoder, encoder_signal: mixed.level, limits: {velocity: 5}}\n", ":2:37: ", "is an output of"},
         {"  - {outputs: {signals: [switches.0123456789012345678901234567890123456789012345678901234567]}}\n", ":2:",
          "signals"},
     };
@@ -85,10 +100,19 @@ static void test_wrong_keys_are_told_with_their_place(void)
     }
 }
 
+static void test_signals_that_may_fit_are_left_to_the_bus(void)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(
+        "  - {inputs: {signals: [mixed.bit, mixed.object, mixed.input 2]}, outputs: {signals: [mixed.lamp]}}\n"
+        "  - {type: encoder, encoder_signal: mixed.byte, limits: {velocity: 5}}\n"
+        "  - {type: encoder, encoder_signal: mixed.object, limits: {velocity: 5}}\n"), diag.text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_key_becomes_what_it_says);
     RUN_TEST(test_wrong_keys_are_told_with_their_place);
+    RUN_TEST(test_signals_that_may_fit_are_left_to_the_bus);
     return UNITY_END();
 }
