@@ -4,10 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "command.h"
 #include "files.h"
 #include "template.h"
+
+enum { PATH_BYTES = 4096 };
 
 typedef struct new_options {
     const char *folder;
@@ -39,9 +42,28 @@ const struct argp argp_new = {
     "CMakeLists.txt and a Makefile, which build it against the installed library. It runs on the simulated network at "
     "once. A folder that exists is left alone.", NULL, NULL, NULL};
 
+/* Whether there is room for it. */
+static bool path_of(const new_options_t *options, size_t file, char *path, size_t size)
+{
+    const int length = snprintf(path, size, "%s/%s", options->folder, template_files[file].name);
+    return length >= 0 && (size_t)length < size;
+}
+
+/* Half a project would be left alone the next time. */
+static int take_away(const new_options_t *options, size_t files)
+{
+    char path[PATH_BYTES];
+    while (files-- > 0)
+        if (path_of(options, files, path, sizeof path))
+            (void)unlink(path);
+    (void)rmdir(options->folder);
+    return EXIT_FAILED;
+}
+
 int command_new(int argc, char **argv)
 {
     new_options_t options = {0};
+    char path[PATH_BYTES];
     if (parse_options(&argp_new, argc, argv, &options))
         return EXIT_WRONG_USE;
     if (mkdir(options.folder, 0777) != 0) {
@@ -49,14 +71,11 @@ int command_new(int argc, char **argv)
         return EXIT_FAILED;
     }
     for (size_t i = 0; i < template_file_count; i++) {
-        char path[4096];
-        const int length = snprintf(path, sizeof path, "%s/%s", options.folder, template_files[i].name);
-        if (length < 0 || (size_t)length >= sizeof path) {
+        const bool fits = path_of(&options, i, path, sizeof path);
+        if (!fits)
             complain("the name of the folder is too long");
-            return EXIT_FAILED;
-        }
-        if (!write_output(path, template_files[i].bytes, template_files[i].size))
-            return EXIT_FAILED;
+        if (!fits || !write_output(path, template_files[i].bytes, template_files[i].size))
+            return take_away(&options, i);
         printf("%s\n", path);
     }
     printf("\ncd %s && make && ./motion\n", options.folder);

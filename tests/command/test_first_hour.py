@@ -6,6 +6,8 @@ test_first_hour.py BIN-DIRECTORY SOURCE-DIRECTORY
 """
 import os
 import re
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -68,10 +70,23 @@ def check_new(folder):
                     faults.append(f"cm1e new: {name} of the folder")
         with open(os.path.join(made, "main.c"), "a", encoding="utf-8") as file:
             file.write("/* mine */\n")
+    check_no_half_of_it(os.path.join(folder, "half"))
     for words in ([], [""], ["a", "b"], ["/no/such/folder/x"]):
         result = subprocess.run([os.path.join(BIN, "cm1e"), "new", *words], capture_output=True, text=True, timeout=60)
         if result.returncode == 0 or "folder" not in result.stderr:
             faults.append(f"cm1e new {words}: {result}")
+
+
+def check_no_half_of_it(folder):
+    """Where the disk is full the folder is not left, which a second try would leave alone."""
+    def small_files():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))  # the first file fits, main.c does not
+
+    result = subprocess.run([os.path.join(BIN, "cm1e"), "new", folder], capture_output=True, text=True, timeout=60,
+                            preexec_fn=small_files)
+    if result.returncode != 1 or "cannot be written" not in result.stderr or os.path.exists(folder):
+        faults.append(f"cm1e new where no more fits: {result}")
 
 
 def main():
