@@ -244,7 +244,7 @@ static void find_interface(server_t *server, end_t *end, int64_t now_ns)
         return;
     const cm1e_error_t error = cm1e_raw_socket_open(&end->socket, end->interface_name, &why);
     if (error != CM1E_OK && error != end->told)
-        notice(server, "%s The simulated segment waits for it.", why.text);
+        notice(server, "The simulated segment waits for its network interface. %s", why.text);
     if (error == CM1E_OK && end->told != CM1E_OK)
         notice(server, "Network interface \"%s\" is there again.", end->interface_name);
     end->told = error;
