@@ -100,13 +100,22 @@ static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t 
     return (cm1e_motion_limits_t){velocity, change, change, jerk};
 }
 
+/* An estimate of an actual value is never quite even: what is far from the limits of the axis is its noise. */
+static double largest_unevenness(const cm1e_axis_t *axis)
+{
+    const double part = 0.5;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    return axis->coupling->now->by_actual ? part * smaller(most->acceleration, most->deceleration) : 0.0;
+}
+
 /* Whether the catch-up makes up distance now, and not only velocity. A gear that accelerates may need all limits of the
  * axis. So distance is made up while the gear is steady and leaves some velocity. */
 static bool goes_to_place(const cm1e_axis_t *axis, const from_t *f)
 {
     const double next_to_nothing = 1e-4 * axis->limits.maximum.velocity;
     const coupling_t *c = axis->coupling;
-    const bool steady = f->acceleration == 0.0 && c->f_acceleration == 0.0;
+    const double most = largest_unevenness(axis);
+    const bool steady = fabs(f->acceleration) <= most && fabs(c->f_acceleration) <= most;
     if (c->now->to_position)
         return !c->catch_up.momentary;
     return c->catch_up.made_up && steady && room_beside(axis, f) > next_to_nothing;
