@@ -80,6 +80,12 @@ cm1e_error_t cm1e_axis_check_input(const cm1e_axis_t *axis, int number)
     return check_signal(number, CM1E_AXIS_INPUTS, signals->by_sdo ? mask : signals->inputs, mask);
 }
 
+uint16_t cm1e_axis_encoder_slave(const cm1e_axis_t *axis)
+{
+    const cm1e_drive_wiring_t *wiring = axis->drive.wiring;
+    return wiring && wiring->has_encoder ? wiring->encoder.position : 0;
+}
+
 bool cm1e_axis_sees_input(const cm1e_axis_t *axis, int number)
 {
     if (cm1e_drive_wired_input(&axis->drive, number) >= 0)

@@ -55,6 +55,8 @@ typedef enum cm1e_cam_switch_input {
 void cm1e_axis_refuse_cam_switch(cm1e_axis_t *axis, cm1e_cam_switch_input_t input, int number, double value);
 /** They are right again: that text is forgotten. @rt cycle */
 void cm1e_axis_cam_switches_right(cm1e_axis_t *axis);
+/** The position of the slave whose counts are the position of this axis; 0: none is. @rt cycle */
+uint16_t cm1e_axis_encoder_slave(const cm1e_axis_t *axis);
 /** Whether an input is in the process data, so that it is seen in every cycle. @rt cycle */
 bool cm1e_axis_sees_input(const cm1e_axis_t *axis, int number);
 /** Reads the actual torque in % of rated torque. CM1E_ERROR_PDO_MAPPING: it is not in the process data.

@@ -149,6 +149,8 @@ typedef struct observed {
     cm1e_observer_t filter;
     from_t now, before;            /**< in this cycle, and in the previous one */
     uint32_t lost;                 /**< cycles in a row without a position */
+    bool counted, clocked;         /**< the counts are those of a slave; which takes them with its SYNC0 */
+    int64_t taken_ns, planned_ns;  /**< when the last counts were taken; the start of the last cycle */
 } observed_t;
 
 /** What an axis needs to be followed. Every axis has it, also one that follows nothing. */

@@ -8,19 +8,44 @@
 
 #include "axis/axis_backlash.h"
 #include "axis/axis_setpoint.h"
+#include "axis/axis_signals.h"
+#include "cm1e/clocks.h"
 #include "coupling/coupling_private.h"
 
 enum { DEFAULT_FILTER_CYCLES = 10 };
 
-static void look(cm1e_axis_t *axis)
+/* When the counts of this exchange were taken. The slave of an encoder takes them when the frame passes, which was sent
+ * in the cycle before, however late that began; or with SYNC0, which keeps the time of the plan. What follows our
+ * set-points, or is written by the program, goes on cycle by cycle. */
+static int64_t taken_ns(const cm1e_axis_t *axis)
+{
+    const observed_t *own = &axis->followed->own;
+    return own->clocked ? own->planned_ns : cm1e_bus_sent_ns(axis->drive.bus);
+}
+
+static void see_how_it_counts(cm1e_axis_t *axis)
+{
+    observed_t *own = &axis->followed->own;
+    const uint16_t slave = cm1e_axis_encoder_slave(axis);
+    cm1e_slave_clock_t clock = {0};
+    own->counted = slave > 0;
+    if (own->counted)
+        cm1e_bus_slave_clock(axis->drive.bus, slave, &clock);
+    own->clocked = clock.sync0_ns > 0;
+    own->planned_ns = axis->now_ns - cm1e_bus_configuration(axis->drive.bus)->cycle_time_ns;
+    own->taken_ns = taken_ns(axis);
+    own->planned_ns = axis->now_ns;
+}
+
+static void look(cm1e_axis_t *axis, double since_s)
 {
     observed_t *own = &axis->followed->own;
     const cm1e_observed_t seen = cm1e_observer_now(&own->filter);
     own->before = own->now;
     own->now.position = cm1e_position_plus((position_t){seen.counts, 0.0}, seen.offset);
     const double way = cm1e_position_minus(own->now.position, own->before.position) / axis->position.scale;
-    own->now.velocity = way / axis->cycle_s;
-    own->now.acceleration = (own->now.velocity - own->before.velocity) / axis->cycle_s;
+    own->now.velocity = way / since_s;
+    own->now.acceleration = (own->now.velocity - own->before.velocity) / since_s;
 }
 
 /* Whether our set-points move the axis. Else a hand or its drive may move it. */
@@ -49,11 +74,32 @@ static void begin(cm1e_axis_t *axis)
     own->filter.velocity = velocity;
     if (goes_as_told(axis))
         own->filter.acceleration = axis->setpoint.acceleration * axis->position.scale;
-    look(axis);
+    see_how_it_counts(axis);
+    look(axis, cycle_s);
     own->now = own->before = (from_t){.position = own->now.position, .velocity = velocity / axis->position.scale};
     own->before.position = cm1e_position_plus(own->now.position, -velocity * cycle_s);
     own->lost = 0;
     own->begun = axis->observed = true;
+}
+
+/* A cycle that began late is no motion of the encoder, and behind skipped cycles it has turned in all of that time. */
+static void step_by_time(cm1e_axis_t *axis, bool fresh)
+{
+    observed_t *own = &axis->followed->own;
+    const int64_t taken = taken_ns(axis), since_ns = taken - own->taken_ns, planned_ns = axis->now_ns - own->planned_ns;
+    own->taken_ns = taken;
+    own->planned_ns = axis->now_ns;
+    cm1e_observer_step_after(&own->filter, (double)since_ns * 1e-9, (double)(axis->now_ns - taken) * 1e-9,
+                             axis_actual(axis).counts, fresh);
+    look(axis, planned_ns > 0 ? (double)planned_ns * 1e-9 : axis->cycle_s);
+}
+
+/* So long that all followers have stopped (scheduler.c), and an estimate would be far away. */
+static bool was_suspended(const cm1e_axis_t *axis)
+{
+    static const int64_t longest_ns = INT64_C(100000000);
+    const observed_t *own = &axis->followed->own;
+    return own->counted && axis->now_ns - own->planned_ns > longest_ns;
 }
 
 void cm1e_coupling_observe(cm1e_axis_t *axis)
@@ -61,6 +107,8 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
     observed_t *own = &axis->followed->own;
     const bool fresh = axis->drive.feedback.fresh;
     const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
+    if (was_suspended(axis))
+        own->lost = UINT32_MAX;
     /* After a homing of the drive, or after a long silence, the position is not a motion from the last one. */
     const bool anew = !own->begun || drive_homes(axis) || own->lost > limit;
     if (anew && fresh) {
@@ -70,8 +118,12 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
     own->lost = fresh ? 0 : own->lost + (own->lost < UINT32_MAX);
     if (own->lost > limit) /* no slave sees it, and an estimate that went on for days would leave the range */
         return;
+    if (own->counted) {
+        step_by_time(axis, fresh);
+        return;
+    }
     cm1e_observer_step(&own->filter, axis_actual(axis).counts, fresh);
-    look(axis);
+    look(axis, axis->cycle_s);
 }
 
 double cm1e_coupling_observed_velocity(const cm1e_axis_t *axis)

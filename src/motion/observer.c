@@ -35,7 +35,12 @@ static void correct(cm1e_observer_t *observer, double error)
 
 void cm1e_observer_step(cm1e_observer_t *observer, int64_t counts, bool valid)
 {
-    const double t = observer->cycle_s;
+    cm1e_observer_step_after(observer, observer->cycle_s, observer->delay_s, counts, valid);
+}
+
+void cm1e_observer_step_after(cm1e_observer_t *observer, double t, double delay_s, int64_t counts, bool valid)
+{
+    observer->delay_s = delay_s;
     observer->offset += t * (observer->velocity + t * (observer->acceleration / 2));
     observer->velocity += t * observer->acceleration;
     if (valid)

@@ -32,6 +32,8 @@ void cm1e_observer_init(cm1e_observer_t *observer, double cycle_s, double time_c
 void cm1e_observer_reset(cm1e_observer_t *observer, int64_t counts);
 /** Takes one sample per cycle. `valid` false: no sample came, and the master is assumed to go on unchanged. */
 void cm1e_observer_step(cm1e_observer_t *observer, int64_t counts, bool valid);
+/** The same for a sample that does not come when it should: `since_s` after the last one, and `delay_s` old. */
+void cm1e_observer_step_after(cm1e_observer_t *observer, double since_s, double delay_s, int64_t counts, bool valid);
 cm1e_observed_t cm1e_observer_now(const cm1e_observer_t *observer);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cm1e/clocks.h"
 #include "cm1e/io.h"
 
 void fake_bus_init(cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_pdo_order_t order, cm1e_firmware_t firmware)
@@ -231,6 +232,12 @@ uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis)
     return axis < bus->config.axis_count ? (uint16_t)(axis + 1) : 0;
 }
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus) { return &bus->clock; }
+void cm1e_bus_slave_clock_sized(const cm1e_bus_t *bus, uint16_t position, cm1e_slave_clock_t *clock, size_t size)
+{
+    (void)bus;
+    (void)position;
+    memset(clock, 0, size);
+}
 int64_t cm1e_bus_sent_ns(const cm1e_bus_t *bus) { return bus->clock.virtual_now_ns; }
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position)
 {
