@@ -65,17 +65,18 @@ static void add_to(cm1e_tap_frame_t *frame, size_t place, uint32_t more)
     memcpy(frame->bytes + place, &value, sizeof value);
 }
 
+/** What goes out, in the counts of the motor; what comes back, in those that the master sees. In a broken ring a frame that
+ *  came back goes out again, to the other side, with the positions that it has. */
 static void move_origins(cm1e_tap_frame_t *frame, const int *network)
 {
-    for (int i = 0; i < origin_count; i++)
-        if (origins[i].network != *network)
+    for (int i = 0; i < origin_count; i++) {
+        const origin_t *origin = &origins[i];
+        const uint32_t more = frame->direction == CM1E_TAP_SENT ? -origin->offset : origin->offset;
+        if (origin->network != *network)
             continue;
-        else if (frame->direction == CM1E_TAP_SENT)
-            add_to(frame, origins[i].target, (uint32_t)-origins[i].offset);
-        else {
-            add_to(frame, origins[i].actual, origins[i].offset);
-            add_to(frame, origins[i].target, origins[i].offset); /* outputs come back as they were sent */
-        }
+        add_to(frame, origin->actual, more);
+        add_to(frame, origin->target, more);
+    }
 }
 
 static cm1e_tap_verdict_t tap(void *context, cm1e_tap_frame_t *frame)
