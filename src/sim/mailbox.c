@@ -54,8 +54,9 @@ void cm1e_sim_mailbox_start(cm1e_sim_slave_t *slave)
 
 void cm1e_sim_mailbox_written(cm1e_sim_slave_t *slave)
 {
-    slave->mailbox.request_due_ns = slave->now_ns + REQUEST_NS;
-    wake(slave, REQUEST_NS);
+    const int64_t takes_ns = REQUEST_NS + slave->quirks.mailbox_extra_ns;
+    slave->mailbox.request_due_ns = slave->now_ns + takes_ns;
+    wake(slave, takes_ns);
 }
 
 void cm1e_sim_mailbox_read(cm1e_sim_slave_t *slave)

@@ -23,6 +23,7 @@ unsigned cm1e_sim_quirk_sync_managers(const cm1e_sim_slave_t *slave)
 static void set_fmmus(cm1e_sim_slave_t *slave, long number) { slave->quirks.fmmus = (uint8_t)number; }
 static void set_sync_managers(cm1e_sim_slave_t *slave, long number) { slave->quirks.sync_managers = (uint8_t)number; }
 static void set_slow_eeprom(cm1e_sim_slave_t *slave, long us) { slave->quirks.sii_extra_ns = us * INT64_C(1000); }
+static void set_slow_mailbox(cm1e_sim_slave_t *slave, long us) { slave->quirks.mailbox_extra_ns = us * INT64_C(1000); }
 static void set_abort_info(cm1e_sim_slave_t *slave, long n) { slave->quirks.info_fragments = (unsigned)n; }
 static void set_late_id(cm1e_sim_slave_t *slave, long on) { slave->quirks.late_id = on != 0; }
 static void set_loop(cm1e_sim_slave_t *slave, long on) { slave->quirks.loops = on != 0; }
@@ -81,6 +82,7 @@ static const struct quirk {
     {"fmmus", 1, ESC_FMMUS, set_fmmus},
     {"sync-managers", 1, ESC_SYNC_MANAGERS, set_sync_managers},
     {"slow-eeprom", 1, 1000000, set_slow_eeprom},
+    {"slow-mailbox", 1, 10000000, set_slow_mailbox},
     {"abort-info", 1, 1000, set_abort_info},
     {"late-id", 0, 1, set_late_id},
     {"fixed-assignment", 0, 0, set_fixed_assignment},

@@ -13,6 +13,7 @@
 typedef struct cm1e_sim_quirks {
     uint8_t fmmus, sync_managers; /**< a small controller: it has so many; 0: all of the simulated one */
     int64_t sii_extra_ns;         /**< a slow EEPROM: each read takes so much longer */
+    int64_t mailbox_extra_ns;     /**< a slow mailbox: each request is taken so much later */
     unsigned info_fragments;      /**< the list of objects is aborted after so many fragments; 0: never */
     bool fixed_assignment;        /**< 0x1C12 and 0x1C13 cannot be written */
     bool fixed_mapping;           /**< 0x1600 ... 0x1BFF cannot be written */

@@ -189,6 +189,22 @@ START_TEST(a_slow_eeprom)
 }
 END_TEST
 
+/** A mailbox that takes each of its requests 20 ms later answers all of them. */
+START_TEST(a_slow_mailbox)
+{
+    cm1e_bus_t *bus = BUS_WITH(2, "quirk 1 slow-mailbox 20000");
+    uint32_t type = 0;
+    size_t size = sizeof type;
+    expect_start(bus);
+    const int64_t begun_ns = now_of(bus);
+    ck_assert_msg(cm1e_sdo_read(bus, 1, 0x1000, 0, &type, &size, &diag) == CM1E_OK, "%s", diag.text);
+    const int64_t took_ns = now_of(bus) - begun_ns;
+    ck_assert_msg(took_ns >= 20000000 && took_ns < 60000000, "%lld ns", (long long)took_ns);
+    ck_assert_uint_eq(size, sizeof type);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** The controller does not load it, so the device hears of no state: it stays in Init, and the reason is said. */
 START_TEST(a_wrong_checksum)
 {
@@ -343,6 +359,7 @@ int main(void)
     tcase_add_test(tests, controllers_that_do_not_tell);
     tcase_add_test(tests, fixed_pdos);
     tcase_add_test(tests, a_slow_eeprom);
+    tcase_add_test(tests, a_slow_mailbox);
     tcase_add_test(tests, a_wrong_checksum);
     tcase_add_test(tests, information_that_breaks_off);
     tcase_add_test(tests, a_mailbox_without_coe);

@@ -38,6 +38,8 @@ typedef struct axis_spec {
     double done_waits;                   /**< 1: Done waits until the motor is in position */
     double start;                        /**< counts in the direction of the axis that its device shows at its power-on */
     double wired;                        /**< 1: inputs and outputs 11, 12 are those of the first terminal of the machine */
+    double switched;                     /**< 1: its limit switches are at inputs 13 and 14 of that terminal */
+    double backlash, backlash_velocity;  /**< counts, counts/s */
 } axis_spec_t;
 
 /** One command: at cycle `at` a block of this axis gets TRUE at Execute (or Enable), for `hold` cycles. */
@@ -59,6 +61,7 @@ typedef struct step {
     double source;                       /**< MasterValueSource */
     double transition, corner;           /**< TransitionMode and its parameter */
     double scaling, start_distance;      /**< of MC_CamIn: SlaveScaling, MasterStartDistance */
+    double allow;                        /**< AllowMotion */
 } step_t;
 
 typedef enum fault_kind {
@@ -66,7 +69,7 @@ typedef enum fault_kind {
     FAULT_UNPLUG, FAULT_POWER_CYCLE, FAULT_FALL_BACK, FAULT_MOTOR_POWER, FAULT_ERROR, FAULT_OVER_TORQUE,
     FAULT_TEMPERATURE, FAULT_LOAD, FAULT_JUMP, FAULT_FREEZE, FAULT_RING, FAULT_CLOCK, FAULT_BRIDGE_ERROR,
     FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_SWAP, FAULT_EMERGENCY,
-    FAULT_INPUT, FAULT_KINDS
+    FAULT_INPUT, FAULT_MAILBOX, FAULT_KINDS
 } fault_kind_t;
 
 /** One fault. What `value` is depends on the kind; see the table in scenario_fault.c. */

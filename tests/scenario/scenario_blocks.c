@@ -22,6 +22,10 @@ const block_member_t *block_member(const block_t *type, const char *name)
 const char *const step_homings[] = {"MC_StepAbsoluteSwitch", "MC_StepLimitSwitch", "MC_StepBlock", "MC_HomeDirect",
                                     "MC_FinishHoming", "MC_HomeAbsolute", "MC_StepReferencePulse",
                                     "MC_StepReferenceFlyingSwitch", NULL};
+const char *const origin_blocks[] = {"MC_SetPosition", "MC_Home", "MC_HomeDirect", "MC_HomeAbsolute",
+                                      "MC_StepAbsoluteSwitch", "MC_StepLimitSwitch", "MC_StepBlock",
+                                      "MC_StepReferencePulse", "MC_StepReferenceFlyingSwitch", "MC_FinishHoming", NULL};
+const char *const limit_blocks[] = {"MC_WriteParameter", NULL};
 const char *const table_blocks[] = {"MC_PositionProfile", "MC_VelocityProfile", "MC_AccelerationProfile", NULL};
 
 bool program_has(const scenario_t *scenario, int axis, const char *const *blocks)

@@ -57,15 +57,17 @@ static void make_cam(instance_t *block, double unit)
     block_put(block, "Periodic", step->value);
 }
 
-/** What a motor behind a bridge is told. AllowMotion is FALSE: what may move it is refused. */
+/** What a motor behind a bridge is told. Where AllowMotion is FALSE, what may move it is refused. */
 static void make_string(instance_t *block)
 {
     static const char *const strings[] = {"?99.1", "K53=100", "?96", "(", "^", "P1=1000", "", "?37"};
-    enum { STRINGS = sizeof strings / sizeof strings[0] };
+    static const char *const motions[] = {"(,|", "|", ")", "(", "K42=100,(,|", "?99", "?90"};
     const block_member_t *member = block_member(block->type, "Command");
+    const unsigned which = (unsigned)(block->step->mode + block->step->parameter);
     if (member && member->type == BLOCK_STRING)
         snprintf((char *)block->memory + member->offset, member->size, "%s",
-                 strings[(unsigned)(block->step->mode + block->step->parameter) % STRINGS]);
+                 block->step->allow != 0 ? motions[which % (sizeof motions / sizeof motions[0])]
+                                         : strings[which % (sizeof strings / sizeof strings[0])]);
 }
 
 /** An input or output of the motor, or of a terminal. */

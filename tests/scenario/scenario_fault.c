@@ -21,6 +21,7 @@ typedef struct fault_row {
     const char *word;        /**< what the text of the axis has; NULL: anything */
 } fault_row_t;
 
+#define SWITCH_COUNTS 200000.0 /* before the hard stops, at 250,000 */
 enum { FRAMES_A_CYCLE = 3, ALONE_CYCLES = 80, ORDER_BYTES = 100, AWAY_CYCLES = 30 };
 
 static const fault_row_t rows[FAULT_KINDS] = {
@@ -53,6 +54,7 @@ static const fault_row_t rows[FAULT_KINDS] = {
     [FAULT_SWAP] = {"power-cycle %p 30;power-cycle %o 30;switches %p %j;switches %o %i",
                     "power-cycle %p 30;power-cycle %o 30;switches %p %i;switches %o %j", THE_NETWORK, 1, true, false, NULL},
     [FAULT_EMERGENCY] = {NULL, NULL, NOBODY, 0, false, true, NULL},
+    [FAULT_MAILBOX] = {"quirk %p slow-mailbox %v", "quirk %p nothing", NOBODY, 0, false, false, NULL},
     [FAULT_INPUT] = {"input %t %n on", "input %t %n off", NOBODY, 0, false, false, NULL},
 };
 
@@ -139,6 +141,24 @@ static void end_fault(run_t *run, const fault_t *fault)
         run->axes[(int)fault->axis].seen.stranger = false;
     if (fault->kind == FAULT_SWAP)
         run->axes[(int)fault->value].seen.stranger = false;
+}
+
+void fault_switches(run_t *run)
+{
+    for (int n = 0; n < run->scenario->axis_count; n++) {
+        machine_axis_t *axis = &run->axes[n];
+        for (int i = 0; axis->spec->switched != 0 && i < SWITCHES; i++) {
+            const bool pressed = (i == 0 ? axis->seen.load : -axis->seen.load) > SWITCH_COUNTS;
+            char line[ORDER_BYTES], answer[200];
+            if (run->cycle > 0 && pressed == axis->seen.pressed[i])
+                continue;
+            axis->seen.pressed[i] = pressed;
+            snprintf(line, sizeof line, "input %u %d %s", run->fixed_motors[axis->network] + 1, WIRED + 1 + i,
+                     pressed ? "on" : "off");
+            if (cm1e_bus_simulate(run->buses[axis->network], line, answer, sizeof answer) != CM1E_OK)
+                scenario_fail(run, "console", "%s: %s", line, answer);
+        }
+    }
 }
 
 /* ---- whom it concerns -------------------------------------------------------------------------------------------- */
@@ -377,12 +397,13 @@ static bool cuts_ring(const run_t *run, const fault_t *fault)
  *  faults stop nobody by an error of bus or drive. */
 static bool may_stop(const run_t *run, const fault_t *fault, const machine_axis_t *axis, bool of_bus)
 {
-    enum { WATCHDOG_US = 90000 };
+    enum { WATCHDOG_US = 90000, MODE_TIMEOUT_US = 1000000, MODE_TRANSFERS = 4 /* for a switch of the mode, read twice */ };
     const machine_axis_t *there = &run->axes[(int)fault->axis];
     const bool same_slave = there->network == axis->network && there->position == axis->position;
     switch ((fault_kind_t)fault->kind) {
     case FAULT_EEPROM:
     case FAULT_EMERGENCY: return false;
+    case FAULT_MAILBOX: return same_slave && !of_bus && fault->value >= MODE_TIMEOUT_US / MODE_TRANSFERS;
     case FAULT_RING: return there->network == axis->network && cuts_ring(run, fault);
     case FAULT_STALL: return fault->length * run->scenario->cycle_us >= WATCHDOG_US;
     case FAULT_DETACH:

@@ -29,6 +29,7 @@
 #define CAUGHT_SPEED 1000.0       /* counts/s */
 #define STOP_COUNTS 240000.0      /* near a hard stop */
 #define STILL_COUNTS 4.0
+#define LOAD_COUNTS 100.0 /* in_position.window, and overshoot of the servo with a heavy load at the end of a crossing */
 #define STEP_OVERSHOOT 1.13 /* of the simulated servo: it goes 11.5 % beyond a step of its target (seed 910146) */
 #define COARSE_STILL_COUNTS 110.0 /* in CSV it hunts round its target, where friction is large (in_position.window) */
 #define ROTOR_INERTIA_PER_TORQUE 3e-5 /* kg m2 for a Nm of peak torque */
@@ -40,7 +41,7 @@
 #define RESTING 0.01          /* of the velocity of the axis */
 /* After a pause: the inputs of its first cycle are older, the set-point of the second one is the first that knows of it, and
  * the drive has it in the third. */
-enum { AFTER_STALL = 2, LATE_CYCLES = 3 };
+enum { AFTER_STALL = 2, LATE_CYCLES = 3, MODE_CML = 101, MODE_CMD = 120 };
 enum { GAIN_MS = 20, STILL_MS = 60, STALL_MS = 300, CATCH_MS = 500, QUIET_MS = 200, HALT_MS = 300, SWING_MS = 50 };
 
 static int cycles_of(const run_t *run, double ms) { return (int)(ms * 1000 / run->scenario->cycle_us); }
@@ -53,23 +54,33 @@ static void hash(run_t *run, const void *data, size_t size)
         run->outcome->hash = (run->outcome->hash ^ ((const unsigned char *)data)[i]) * UINT64_C(0x100000001B3);
 }
 
+/** A motor pushes its load with either flank of the gap: at the start with the one of the positive direction. */
+static void move_load(const run_t *run, machine_axis_t *axis)
+{
+    const double motor = axis->probe.position_counts * (axis->spec->invert != 0 ? -1 : 1);
+    const double load = fmax(motor, fmin(axis->seen.load, motor + axis->spec->backlash));
+    axis->seen.unseen = axis->seen.unseen || (load != axis->seen.load && (run->bad[axis->network] > 0 || !axis->info.online));
+    axis->seen.load = load;
+}
+
 static void look_at_axis(run_t *run, machine_axis_t *axis)
 {
     cm1e_axis_read(axis->reference, &axis->info);
     if (is_motor(axis))
         cm1e_sim_probe_channel(run->segments[axis->network], axis->position, axis->channel, &axis->probe);
+    move_load(run, axis);
     hash(run, &axis->info.state, sizeof axis->info.state);
     hash(run, &axis->info.set_position, sizeof axis->info.set_position);
     hash(run, &axis->info.set_velocity, sizeof axis->info.set_velocity);
     hash(run, &axis->probe.position_counts, sizeof axis->probe.position_counts);
     if (scenario_trace)
-        fprintf(scenario_trace, "%d,%s,%d,%s,%.6g,%.6g,%.9g,%.9g,%.9g,%d,%04X,%d,%04X\n", run->cycle, axis->name,
+        fprintf(scenario_trace, "%d,%s,%d,%s,%.6g,%.6g,%.9g,%.9g,%.9g,%d,%04X,%d,%04X,%d\n", run->cycle, axis->name,
                 run->phase,
                 cm1e_axis_state_name(axis->info.state), axis->info.set_position * axis->spec->counts_per_unit,
                 axis->info.set_velocity * axis->spec->counts_per_unit,
                 axis->info.actual_position * axis->spec->counts_per_unit, axis->probe.position_counts,
                 axis->probe.velocity_counts_per_s, axis->probe.torque_on, axis->probe.controlword,
-                run->bad[axis->network], cm1e_error_id(axis->info.error));
+                run->bad[axis->network], cm1e_error_id(axis->info.error), axis->info.mode);
 }
 
 void judge_look(run_t *run)
@@ -89,6 +100,8 @@ void judge_look(run_t *run)
 /** Nm; counts of a revolution. */
 static double peak_torque(const axis_spec_t *spec) { return spec->kind == AXIS_CIA402 ? 1.2 : 0.117; }
 static double revolution(const axis_spec_t *spec) { return spec->kind == AXIS_CIA402 ? 131072 : 50000; }
+
+double crossing_speed(const axis_spec_t *spec) { return spec->backlash > 0 ? spec->backlash_velocity : 0; }
 
 static bool by_velocity(const axis_spec_t *spec) { return spec->kind == AXIS_CM1E && spec->mapping == MAPPING_CSV; }
 
@@ -214,7 +227,7 @@ static allowance_t highest_speed(const run_t *run, const machine_axis_t *axis)
     const double velocity = axis->spec->velocity;
     const allowance_t share = allowed_share(run, axis);
     const allowance_t by_drive = {HOMING_SPEED * (1 + HOMING_OVERSHOOT), SPEED_OF_HOMING};
-    allowance_t by_axis = {velocity * (1 + share.amount), share.reason};
+    allowance_t by_axis = {(velocity + crossing_speed(axis->spec)) * (1 + share.amount), share.reason};
     if (leaves_stop(run, axis))
         by_axis = (allowance_t){by_axis.amount + catch_up_speed(axis->spec, velocity), SPEED_FROM_STOP};
     if (!axis->seen.by_drive)
@@ -232,7 +245,7 @@ static void judge_speed(run_t *run, machine_axis_t *axis)
         return;
     const double servo = SERVO_FILTER_S * fmax(spec->acceleration, spec->deceleration) + SERVO_SPEED_COUNTS +
                          (by_velocity(spec) ? COARSE_COUNTS : 0);
-    const double own = is_homing(run, axis) && axis->seen.by_drive ? HOMING_SPEED : 0, over = speed / fmax(spec->velocity, own) - 1;
+    const double own = is_homing(run, axis) && axis->seen.by_drive ? HOMING_SPEED : 0, over = speed / (fmax(spec->velocity, own) + crossing_speed(spec)) - 1;
     const allowance_t highest = highest_speed(run, axis);
     double *over_speed = &run->outcome->over_speed[highest.reason];
     *over_speed = fmax(*over_speed, over);
@@ -311,7 +324,7 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
     seen->speeds[0] = fmax(speed, speed_held_back(axis));
     const double homing = is_homing(run, axis) && axis->seen.by_drive ? HOMING_ACCELERATION : 0;
     const double most = fmax(fmax(axis->spec->acceleration, axis->spec->deceleration), homing) * window *
-                        run->scenario->cycle_us * 1e-6;
+                        run->scenario->cycle_us * 1e-6 + crossing_speed(axis->spec); /* within some 20 ms */
     double before = 0; /* a short silence stops a motor and lets it go on: it gets no faster than it was */
     const int seen_speeds = window < SPEEDS_SEEN ? SPEEDS_SEEN : SPEEDS; /* cycles of 250 us need more of them */
     for (int i = window; i < seen_speeds; i++)
@@ -397,7 +410,7 @@ static void note_pause(const run_t *run, machine_axis_t *axis, double place, dou
 static void judge_place(run_t *run, machine_axis_t *axis)
 {
     const axis_spec_t *spec = axis->spec;
-    const double place = axis->probe.position_counts * (spec->invert != 0 ? -1 : 1);
+    const double place = axis->seen.load;
     note_pause(run, axis, place, axis->probe.velocity_counts_per_s * (spec->invert != 0 ? -1 : 1));
     const bool inside = place >= spec->limit_negative && place <= spec->limit_positive;
     axis->seen.coasted = !inside && (axis->seen.coasted || !axis->probe.torque_on);
@@ -570,6 +583,7 @@ static void judge_log(run_t *run)
 
 static const char *const drive_homings[] = {"MC_Home", NULL}, *const shifts[] = {"MC_SetPosition", NULL};
 static const char *const superimposed[] = {"MC_MoveSuperimposed", NULL};
+static const char *const own_motions[] = {"CM_SendCML", "CM_Command", NULL};
 
 void judge_begin(run_t *run)
 {
@@ -582,7 +596,49 @@ void judge_begin(run_t *run)
         seen->by_drive = program_has(run->scenario, n, drive_homings);
         seen->shifted = seen->by_steps || seen->by_drive || program_has(run->scenario, n, shifts);
         seen->superimposed = program_has(run->scenario, n, superimposed);
+        seen->by_itself = program_has(run->scenario, n, own_motions);
+        for (int i = 0; i < run->scenario->step_count; i++) /* its place in the gap is mended slowly */
+            seen->unseen = seen->unseen || (run->scenario->steps[i].source != 0 && (int)run->scenario->steps[i].master == n);
     }
+}
+
+bool moves_by_itself(const machine_axis_t *axis)
+{
+    return axis->seen.by_itself && (axis->info.mode == MODE_CML || axis->info.mode == MODE_CMD);
+}
+
+/** It has other limits than its axis, and gets another origin. */
+static void judge_own_motion(run_t *run, machine_axis_t *axis)
+{
+    if (!moves_by_itself(axis))
+        return;
+    axis->seen.kept = false;
+    if (axis->probe.torque_on)
+        axis->seen.pushed_until = run->cycle;
+    if (axis->power.Status || axis->info.powered)
+        scenario_fail(run, "own-motion", "%s (%s) is in a mode in which its motor moves by itself, and shows power",
+                      axis->name, cm1e_axis_state_name(axis->info.state));
+}
+
+/** A distance of a modulo axis counts in the nearer direction. */
+static double apart(const axis_spec_t *spec, double distance)
+{
+    return spec->modulo > 0 ? remainder(distance, spec->modulo) : distance;
+}
+
+/** At rest in position, with a flank of its gear closed, an axis shows where its load is. */
+static void judge_load(run_t *run, machine_axis_t *axis)
+{
+    const axis_spec_t *spec = axis->spec;
+    const witness_t *seen = &axis->seen;
+    const double gap = seen->load - axis->probe.position_counts * (spec->invert != 0 ? -1 : 1);
+    const bool closed = gap <= 0 || gap >= spec->backlash;
+    const double off = spec->start + seen->load - axis->info.actual_position * spec->counts_per_unit;
+    if (spec->backlash > 0 && closed && seen->kept && !seen->unseen && !seen->shifted && at_rest(axis) && axis->info.in_position &&
+        axis->probe.torque_on && !is_pushed(run, axis) && !was_disturbed(run, seen) &&
+        fabs(apart(spec, off)) > LOAD_COUNTS)
+        scenario_fail(run, "load", "%s (%s): its load is %.1f counts from where the axis shows it", axis->name,
+                      cm1e_axis_state_name(axis->info.state), off);
 }
 
 void judge_cycle(run_t *run)
@@ -602,6 +658,8 @@ void judge_cycle(run_t *run)
         judge_set_point(run, axis);
         if (!is_motor(axis))
             continue;
+        judge_own_motion(run, axis);
+        judge_load(run, axis);
         judge_still(run, axis);
         judge_speed(run, axis);
         judge_gain(run, axis);
@@ -614,25 +672,23 @@ void judge_cycle(run_t *run)
         judge_log(run);
 }
 
-/** A distance of a modulo axis counts in the nearer direction. */
-static double apart(const axis_spec_t *spec, double distance)
-{
-    return spec->modulo > 0 ? remainder(distance, spec->modulo) : distance;
-}
-
 /** The last move of all axes. */
 static void judge_test(run_t *run, machine_axis_t *axis)
 {
-    const double by = (axis->probe.position_counts - axis->test_from) * (axis->spec->invert != 0 ? -1 : 1);
-    const double most = STILL_COUNTS + slack_of(axis->spec) + (by_velocity(axis->spec) ? COARSE_STILL_COUNTS : 0);
-    if (is_motor(axis) && fabs(by - axis->test_by) > most)
-        scenario_fail(run, "end", "%s: the last move was %.0f counts, the shaft has gone %.1f", axis->name,
+    const double by = axis->seen.load - axis->test_from;
+    /* A load stays where the servo has pushed it on its way into position. Where a motor was without power, or turned while
+     * nobody saw it, its place in the gap is unknown. */
+    const bool known = axis->seen.kept && !axis->seen.unseen;
+    const double geared = axis->spec->backlash > 0 ? LOAD_COUNTS : 0;
+    const double most = STILL_COUNTS + slack_of(axis->spec) + (by_velocity(axis->spec) ? COARSE_STILL_COUNTS : 0) + geared;
+    if (is_motor(axis) && fabs(by - axis->test_by) > most + (known ? 0 : axis->spec->backlash))
+        scenario_fail(run, "end", "%s: the last move was %.0f counts, its load has gone %.1f", axis->name,
                       axis->test_by, by);
     /* Where nothing made the device forget its position, the coordinates are those of the start. */
-    const double place = axis->spec->start + axis->probe.position_counts * (axis->spec->invert != 0 ? -1 : 1);
+    const double place = axis->spec->start + axis->seen.load;
     const double shown = axis->info.actual_position * axis->spec->counts_per_unit;
     if (is_motor(axis) && axis->seen.kept && !axis->seen.shifted &&
-        fabs(apart(axis->spec, place - shown)) > KEPT_COUNTS)
+        fabs(apart(axis->spec, place - shown)) > KEPT_COUNTS + geared + (known ? 0 : axis->spec->backlash))
         scenario_fail(run, "position", "%s is at %.1f counts, and shows %.1f", axis->name, place, shown);
 }
 

@@ -34,12 +34,6 @@ static void judge_outputs(run_t *run, instance_t *block)
 static const char *const layers[] = {"MC_MoveSuperimposed", "MC_HaltSuperimposed", "MC_PhasingRelative",
                                      "MC_PhasingAbsolute", NULL};
 static const char *const overrides[] = {"MC_SetOverride", NULL};
-static const char *const origins[] = {"MC_SetPosition", "MC_Home", "MC_HomeDirect", "MC_HomeAbsolute",
-                                      "MC_StepAbsoluteSwitch", "MC_StepLimitSwitch", "MC_StepBlock",
-                                      "MC_StepReferencePulse", "MC_StepReferenceFlyingSwitch", "MC_FinishHoming", NULL};
-
-static const char *const maxima[] = {"MC_WriteParameter", NULL};
-
 static double number_of(const instance_t *block, const char *name)
 {
     const block_member_t *member = block_member(block->type, name);
@@ -48,7 +42,7 @@ static double number_of(const instance_t *block, const char *name)
     return value;
 }
 
-static bool close_to(double one, double other, double largest)
+bool close_to(double one, double other, double largest)
 {
     return fabs(one - other) <= 1e-6 * largest + 1e-9;
 }
@@ -59,7 +53,7 @@ static void judge_velocity(run_t *run, const instance_t *block, const machine_ax
     const double wanted = fabs(block_number(block, "Velocity"));
     const bool by_drive = axis->spec->motion != 0; /* the drive alone knows its set-point */
     /* A motion that begins anew has a maximum that was lowered meanwhile. */
-    const bool lowered = program_has(run->scenario, axis->number, maxima) && fabs(axis->info.set_velocity) < wanted;
+    const bool lowered = program_has(run->scenario, axis->number, limit_blocks) && fabs(axis->info.set_velocity) < wanted;
     if (block->step->change == 0 && !by_drive && !program_has(run->scenario, axis->number, overrides) &&
         !lowered && !close_to(fabs(axis->info.set_velocity), wanted, most))
         scenario_fail(run, "claim", "%s: InVelocity, but the set velocity is %.9g u/s, not %.9g", axis->name,
@@ -107,7 +101,7 @@ static void judge_claim(run_t *run, instance_t *block, const machine_axis_t *axi
     if (block_flag(block, "Active") && !layered && block_member(block->type, "RatioNumerator") &&
         (block_flag(block, "InGear") || block_flag(block, "InSync")))
         judge_gear(run, block, axis);
-    if (ended && block_is(block, "MC_MoveAbsolute") && !layered && !program_has(run->scenario, axis->number, origins))
+    if (ended && block_is(block, "MC_MoveAbsolute") && !layered && !program_has(run->scenario, axis->number, origin_blocks))
         judge_arrival(run, block, axis);
 }
 
@@ -135,46 +129,6 @@ static void judge_refusal(run_t *run, instance_t *block, const machine_axis_t *a
                           cm1e_axis_state_name(axis->info.state), block->type->name, id, text);
     }
     block->was_error = error;
-}
-
-/** An input of a terminal shows what is at it, after the two cycles of a frame. */
-static void judge_input(run_t *run, const instance_t *block, const machine_axis_t *axis)
-{
-    enum { WIRED_FIRST = 11, SOON = 3 };
-    /* An input that nothing drives is wired to the output of the same number. */
-    static const char *const writers[] = {"MC_WriteDigitalOutput", NULL};
-    const int number = (int)block->step->mode - WIRED_FIRST + 1;
-    const bool wired = axis->spec->wired != 0 && number >= 1 && block_is(block, "MC_ReadDigitalInput") &&
-                       !program_has(run->scenario, axis->number, writers);
-    if (wired && run->phase == PHASE_PROGRAM && block_flag(block, "Valid") && !was_disturbed(run, &axis->seen) &&
-        !fault_turns_input(run, SOON) && block_flag(block, "Value") != fault_drives_input(run, number))
-        scenario_fail(run, "read", "%s: MC_ReadDigitalInput shows %d at input %d of its terminal", axis->name,
-                      block_flag(block, "Value"), number);
-}
-
-/** What a block reads is what the axis shows in the same cycle. */
-static void judge_reading(run_t *run, const instance_t *block, const machine_axis_t *axis)
-{
-    const cm1e_axis_info_t *info = &axis->info;
-    const double largest = axis->spec->velocity / axis->spec->counts_per_unit;
-    const bool moved = program_has(run->scenario, axis->number, origins);
-    const struct { const char *block, *output; double value; bool is_known; } values[] = {
-        {"MC_ReadActualPosition", "Position", info->actual_position, !moved},
-        {"MC_ReadActualVelocity", "Velocity", info->actual_velocity, true},
-        {"MC_ReadActualTorque", "Torque", info->actual_torque, true}};
-    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++)
-        if (block_is(block, values[i].block) && block_flag(block, "Valid") && values[i].is_known &&
-            !close_to(block_number(block, values[i].output), values[i].value, largest))
-            scenario_fail(run, "read", "%s: %s shows %.9g, the axis %.9g", axis->name, block->type->name,
-                          block_number(block, values[i].output), values[i].value);
-    if (block_is(block, "MC_ReadAxisInfo") && block_flag(block, "Valid") &&
-        (block_flag(block, "CommunicationReady") != info->online ||
-         block_flag(block, "IsHomed") != info->homed))
-        scenario_fail(run, "read", "%s: MC_ReadAxisInfo: CommunicationReady %d, IsHomed %d; the axis %d, %d", axis->name,
-                      block_flag(block, "CommunicationReady"), block_flag(block, "IsHomed"), info->online, info->homed);
-    judge_input(run, block, axis);
-    if (block_flag(block, "Valid") && block_flag(block, "Error"))
-        scenario_fail(run, "block", "%s: %s is Valid, and shows Error", axis->name, block->type->name);
 }
 
 void judge_block(run_t *run, instance_t *block)
@@ -233,6 +187,13 @@ static void read_group(run_t *run)
     group->AxesGroup = &run->group;
     group->Enable = TRUE;
     MC_GroupReadStatus(group);
+    MC_GroupReadError_t *failure = &run->group_failure;
+    failure->AxesGroup = &run->group;
+    failure->Enable = TRUE;
+    MC_GroupReadError(failure);
+    if (!failure->Valid || (failure->GroupErrorID != 0) != (group->GroupErrorStop != FALSE))
+        scenario_fail(run, "read", "MC_GroupReadError: Valid %d, GroupErrorID 0x%04X, GroupErrorStop %d", failure->Valid,
+                      failure->GroupErrorID, group->GroupErrorStop);
     const int states = group->GroupMoving + group->GroupHoming + group->GroupErrorStop + group->GroupStandby +
                        group->GroupStopping + group->GroupDisabled;
     if (!group->Valid || states != 1)

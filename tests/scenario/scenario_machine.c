@@ -67,14 +67,17 @@ static void describe_axis(const scenario_t *scenario, cm1e_axis_config_t *axis, 
     axis->software_limit_negative = spec->limit_negative / unit;
     axis->software_limit_positive = spec->limit_positive / unit;
     axis->modulo_range = spec->modulo / unit;
+    axis->backlash = spec->backlash / unit;
+    axis->backlash_velocity = crossing_speed(spec) / unit;
     axis->in_position_done_waits = spec->done_waits != 0 && spec->kind != AXIS_VIRTUAL;
     axis->coupling_stop = (cm1e_coupling_stop_t)spec->coupling_stop;
     if (spec->wired != 0) {
-        axis->wiring.input_count = axis->wiring.output_count = WIRED;
-        for (int i = 0; i < WIRED; i++) {
+        axis->wiring.input_count = (uint8_t)(spec->switched != 0 ? WIRED + SWITCHES : WIRED);
+        axis->wiring.output_count = WIRED;
+        for (int i = 0; i < axis->wiring.input_count; i++)
             snprintf(axis->wiring.inputs[i], sizeof axis->wiring.inputs[i], "io%d0.input %d", machine->network, i + 1);
+        for (int i = 0; i < WIRED; i++)
             snprintf(axis->wiring.outputs[i], sizeof axis->wiring.outputs[i], "io%d0.output %d", machine->network, i + 1);
-        }
     }
     axis->table_profiles = program_has(scenario, machine->number, table_blocks);
     if (spec->kind == AXIS_VIRTUAL)
@@ -85,6 +88,9 @@ static void describe_axis(const scenario_t *scenario, cm1e_axis_config_t *axis, 
     if (spec->stops != 0 && program_has(scenario, machine->number, step_homings))
         axis->inputs = (cm1e_input_config_t){.limit_positive = spec->invert != 0 ? 3 : 2,
                                              .limit_negative = spec->invert != 0 ? 2 : 3, .home = 2};
+    if (spec->switched != 0)
+        axis->inputs = (cm1e_input_config_t){.limit_positive = CM1E_WIRED_FIRST + WIRED,
+                                             .limit_negative = CM1E_WIRED_FIRST + WIRED + 1, .home = CM1E_WIRED_FIRST + WIRED};
     if (spec->kind == AXIS_CM1E)
         axis->homing = (cm1e_homing_config_t){.method = -2, .velocity = 100000 / unit, .acceleration = 2000000 / unit,
                                               .torque = 30, .timeout_s = 3};

@@ -12,7 +12,7 @@
 #include "scenario.h"
 #include "block_table.h"
 
-enum { FIRST_ID = 40 /* explicit device ID of the first axis */, STRANGER_ID = 99, WIRED = 2 /* signals of a terminal */,
+enum { FIRST_ID = 40 /* explicit device ID of the first axis */, STRANGER_ID = 99, WIRED = 2 /* signals of a terminal */, SWITCHES = 2 /* behind them */,
         BLOCK_ROOM = 2448, SPEEDS = 104, SPEEDS_SEEN = 64 };
 
 /** A block of the program, by the table of all blocks. */
@@ -43,6 +43,9 @@ typedef struct witness {
     double speeds[SPEEDS];                    /**< of the last cycles */
     double set_velocity;                  /**< counts/s, of the set-point */
     double rest_at;                       /**< counts; where it came to rest */
+    double load;                          /**< counts in the direction of its axis: what its gear moves */
+    bool unseen;                          /**< that moved while nobody saw it */
+    bool pressed[SWITCHES];               /**< its limit switches at a terminal */
     int rest_cycles;                      /**< since it is to be at rest, and is */
     bool torque_on;                       /**< in the cycle before */
     int quiet;                            /**< cycles since something disturbed it */
@@ -59,6 +62,7 @@ typedef struct witness {
     bool coasted;                         /**< beyond a software limit, since it had no torque */
     bool shifted;                         /**< its coordinates are not those of the start any more */
     bool superimposed;                    /**< the program has a motion on top of others for it */
+    bool by_itself;                       /**< the program lets its motor search an origin by itself */
     bool by_steps, by_drive;              /**< it homes by itself, or its drive does */
     bool stranger;                        /**< another device is in the place of its slave, */
     int stranger_from;                    /**< since this cycle */
@@ -85,7 +89,7 @@ typedef struct machine_axis {
     MC_Reset_t reset;
     MC_SetOverride_t override;            /**< after the program: back to 1 */
     MC_MoveRelative_t test;
-    double test_from, test_by;            /**< counts; shaft before the last move, and what that is */
+    double test_from, test_by;            /**< counts; load before the last move, and what that is */
     int resets;                           /**< after the program */
     MC_CamTableSelect_t select;
     MC_CAM_ID cam_id;                     /**< of the cam that was selected last */
@@ -118,6 +122,7 @@ typedef struct run {
     MC_UngroupAllAxes_t ungroup;
     MC_GroupReset_t group_reset;
     MC_GroupReadStatus_t group_status;
+    MC_GroupReadError_t group_failure;
     int group_alone;                      /**< cycles in GroupMoving without a block */
     machine_axis_t axes[SCENARIO_AXES];
     instance_t blocks[SCENARIO_STEPS];
@@ -167,6 +172,8 @@ void fault_cycle(run_t *run);
 void fault_mend(run_t *run);
 /** One of the faults until now may be the reason why this axis stops. */
 bool fault_explains(const run_t *run, const machine_axis_t *axis, bool of_bus);
+/** The limit switches at a terminal follow their shaft. */
+void fault_switches(run_t *run);
 /** Something is at this input of the terminal now; one of its inputs has changed within so many cycles. */
 bool fault_drives_input(const run_t *run, int number);
 bool fault_turns_input(const run_t *run, int cycles);
@@ -190,6 +197,8 @@ void wire_fall_back(run_t *run, int network, uint32_t position);
 
 /* ---- scenario_judge.c -------------------------------------------------------------------------------------------- */
 
+/** Counts/s, at which a motor crosses its gear's backlash, on top of its motion. */
+double crossing_speed(const axis_spec_t *spec);
 void judge_begin(run_t *run);
 /** Before the program: what the machine shows now. */
 void judge_look(run_t *run);
@@ -197,6 +206,8 @@ void judge_look(run_t *run);
 void judge_cycle(run_t *run);
 void judge_end(run_t *run);
 bool at_rest(const machine_axis_t *axis);
+/** In CML or CMD, while its axis is Disabled: a motor of which the program has such commands. */
+bool moves_by_itself(const machine_axis_t *axis);
 /** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
 bool was_disturbed(const run_t *run, const witness_t *seen);
 
@@ -206,6 +217,14 @@ bool was_disturbed(const run_t *run, const witness_t *seen);
 void judge_block(run_t *run, instance_t *block);
 /** After all blocks of a cycle. */
 void judge_blocks(run_t *run);
+
+/** Two numbers are the same but for rounding, where numbers are as large as `largest`. */
+bool close_to(double one, double other, double largest);
+
+/* ---- scenario_judge_reading.c ------------------------------------------------------------------------------------ */
+
+/** After a call of a block that reads. */
+void judge_reading(run_t *run, const instance_t *block, const machine_axis_t *axis);
 
 /* ---- scenario_data.c --------------------------------------------------------------------------------------------- */
 
@@ -220,6 +239,8 @@ void data_cycle(const run_t *run, instance_t *block);
 bool program_has(const scenario_t *scenario, int axis, const char *const *blocks);
 extern const char *const step_homings[];  /**< homings in steps, by the axis itself */
 extern const char *const table_blocks[];
+extern const char *const origin_blocks[]; /**< they give an axis another origin */
+extern const char *const limit_blocks[];  /**< they change its limits */
 
 const block_t *block_type(const char *name);
 const block_member_t *block_member(const block_t *type, const char *name);

@@ -37,7 +37,8 @@ static const input_t inputs[] = {
     LENGTH("SetPosition", position), LENGTH("DistanceLimit", x), PLAIN("ContinuousUpdate", update),
     PLAIN("ParameterNumber", parameter), PLAIN("MasterValueSource", source), PLAIN("TransitionMode", transition),
     LENGTH("TransitionParameter", corner), PLAIN("SlaveScaling", scaling),
-    LENGTH("MasterStartDistance", start_distance)};
+    LENGTH("MasterStartDistance", start_distance), PLAIN("AllowMotion", allow), PLAIN("Source", source),
+    PLAIN("IdentInGroup", mode)};
 
 /** They change the limits that the configuration has. */
 static const char *const limit_writers[] = {"MC_WriteParameter", "MC_WriteBoolParameter", NULL};
@@ -245,6 +246,8 @@ static bool is_down(run_t *run, machine_axis_t *axis)
 {
     axis->power.Enable = FALSE;
     const cm1e_axis_state_t state = axis->info.state;
+    if (moves_by_itself(axis)) /* MC_Power ends that */
+        return true;
     /* A motor behind a bridge may hold its position by itself when it gets its supply (docs/SAFETY.md). */
     const bool rests = axis->seen.rest_cycles >= cycles_of(run, REST_MS);
     const bool free = !axis->probe.torque_on || (axis->channel > 0 && rests);
@@ -311,7 +314,7 @@ static bool is_enabled(run_t *run, machine_axis_t *axis)
         return false;
     axis->power.Enable = axis->override.Enable = TRUE;
     MC_SetOverride(&axis->override);
-    axis->test_from = axis->probe.position_counts;
+    axis->test_from = axis->seen.load;
     /* A turning shaft is caught, and the axis is in Standstill meanwhile. */
     const bool turns = fabs(axis->probe.velocity_counts_per_s) > TURNING ||
                        axis->seen.rest_cycles < cycles_of(run, REST_MS);
@@ -349,7 +352,8 @@ static bool is_moved(run_t *run, machine_axis_t *axis)
     }
     if (axis->test_by == 0)
         return true;
-    axis->test.Execute = TRUE;
+    /* The values of a motion of the drive that was stopped may still be written: it is asked again. */
+    axis->test.Execute = axis->test.ErrorID != cm1e_error_id(CM1E_ERROR_BUSY);
     MC_MoveRelative(&axis->test);
     /* In CSV friction lets the motor hunt round its target: judge_end() says how far from it is right. */
     const bool by_velocity = axis->spec->kind == AXIS_CM1E && axis->spec->mapping == MAPPING_CSV;

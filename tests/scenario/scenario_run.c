@@ -53,6 +53,7 @@ static void one_cycle(void *context)
         scenario_fail(run, "memory", "%llu allocations between two cycles",
                       (unsigned long long)(heap_allocations() - run->allocations));
     judge_look(run);
+    fault_switches(run);
     fault_cycle(run);
     program_cycle(run);
     judge_cycle(run);

@@ -116,7 +116,7 @@ static bool simplify(scenario_t *scenario, const outcome_t *failure, unsigned li
         axis_spec_t *axis = &scenario->axes[n];
         double *const numbers[] = {&axis->network, &axis->firmware, &axis->mapping, &axis->invert, &axis->load_inertia,
                                    &axis->friction, &axis->coupling_stop, &axis->stops, &axis->modulo,
-                                   &axis->done_waits, &axis->start, &axis->wired};
+                                   &axis->done_waits, &axis->start, &axis->wired, &axis->switched, &axis->backlash};
         for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
             simpler = plainer(scenario, failure, limit_s, numbers[i], 0) || simpler;
     }
@@ -124,7 +124,7 @@ static bool simplify(scenario_t *scenario, const outcome_t *failure, unsigned li
         step_t *step = &scenario->steps[i];
         double *const numbers[] = {&step->acceleration, &step->deceleration, &step->jerk, &step->buffer, &step->hold,
                                    &step->direction, &step->again, &step->update, &step->change, &step->source,
-                                   &step->transition, &step->scaling, &step->start_distance};
+                                   &step->transition, &step->scaling, &step->start_distance, &step->allow};
         for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; k++)
             simpler = plainer(scenario, failure, limit_s, numbers[k], 0) || simpler;
     }

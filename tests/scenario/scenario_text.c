@@ -21,7 +21,7 @@ static const char *const mappings[] = {"dynamic", "csp", "csv", "profile", NULL}
 const char *const fault_names[FAULT_KINDS + 1] = {
     "lose", "lose-out", "lose-back", "corrupt", "delay", "counter", "stall", "unplug", "power-cycle", "fall-back",
     "motor-power", "error", "over-torque", "temperature", "load", "jump", "freeze", "ring", "clock", "bridge-error",
-    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", "emergency", "input", NULL};
+    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", "emergency", "input", "mailbox", NULL};
 
 const char *const scenario_blocks[] = {
     "MC_MoveAbsolute", "MC_MoveRelative", "MC_MoveAdditive", "MC_MoveVelocity", "MC_Halt", "MC_Stop", "MC_Power",
@@ -36,7 +36,8 @@ const char *const scenario_blocks[] = {
     "MC_WriteBoolParameter", "MC_CamTableSelect", "MC_HomeAbsolute", "MC_StepReferencePulse",
     "MC_StepReferenceFlyingSwitch", "MC_AbortPassiveHoming",
     "MC_ReadActualPosition", "MC_ReadActualVelocity", "MC_ReadActualTorque", "MC_ReadParameter", "MC_ReadBoolParameter",
-    "MC_ReadAxisInfo", "MC_ReadDigitalInput", "MC_ReadDigitalOutput", "CM_SendCML", "CM_SetMode", "CM_Command", NULL};
+    "MC_ReadAxisInfo", "MC_ReadDigitalInput", "MC_ReadDigitalOutput", "CM_SendCML", "CM_SetMode", "CM_Command",
+    "MC_GroupReadPosition", "MC_GroupReadVelocity", "MC_GroupReadError", "MC_GroupReadConfiguration", NULL};
 
 #define NUMBER(type, member) {#member, offsetof(type, member), NULL}
 #define WORD_OF(type, member, words) {#member, offsetof(type, member), words}
@@ -54,7 +55,8 @@ static const field_t axis_fields[] = {
     NUMBER(axis_spec_t, friction), NUMBER(axis_spec_t, stops),
     NUMBER(axis_spec_t, coupling_stop), NUMBER(axis_spec_t, motion), NUMBER(axis_spec_t, optional),
     NUMBER(axis_spec_t, identified), NUMBER(axis_spec_t, modulo), NUMBER(axis_spec_t, done_waits),
-    NUMBER(axis_spec_t, start), NUMBER(axis_spec_t, wired), END};
+    NUMBER(axis_spec_t, start), NUMBER(axis_spec_t, wired), NUMBER(axis_spec_t, switched),
+    NUMBER(axis_spec_t, backlash), NUMBER(axis_spec_t, backlash_velocity), END};
 static const field_t step_fields[] = {
     NUMBER(step_t, at), NUMBER(step_t, axis), WORD_OF(step_t, block, scenario_blocks), NUMBER(step_t, master),
     NUMBER(step_t, hold), NUMBER(step_t, position), NUMBER(step_t, distance), NUMBER(step_t, velocity),
@@ -64,7 +66,8 @@ static const field_t step_fields[] = {
     NUMBER(step_t, y), NUMBER(step_t, aux_x), NUMBER(step_t, aux_y), NUMBER(step_t, torque),
     NUMBER(step_t, period), NUMBER(step_t, points), NUMBER(step_t, again), NUMBER(step_t, update),
     NUMBER(step_t, change), NUMBER(step_t, change_after), NUMBER(step_t, parameter), NUMBER(step_t, source),
-    NUMBER(step_t, transition), NUMBER(step_t, corner), NUMBER(step_t, scaling), NUMBER(step_t, start_distance), END};
+    NUMBER(step_t, transition), NUMBER(step_t, corner), NUMBER(step_t, scaling), NUMBER(step_t, start_distance),
+    NUMBER(step_t, allow), END};
 static const field_t fault_fields[] = {
     NUMBER(fault_t, at), WORD_OF(fault_t, kind, fault_names), NUMBER(fault_t, axis), NUMBER(fault_t, network),
     NUMBER(fault_t, length), NUMBER(fault_t, value), END};
