@@ -37,7 +37,7 @@ struct cool_muscle {
     bool failed;                /* the axis was in ErrorStop in the last cycle */
     bool away;                  /* the slave was offline, and its mode is not known yet */
     uint32_t freeing;           /* ticket of the string that frees the motor; 0: none is under way */
-    uint32_t last;              /* ticket of the last string of a block until its end is reported; 0: reported */
+    uint32_t unsaid[CM1E_DRIVE_CML_QUEUE]; /* tickets of strings of blocks whose end is not reported yet; 0: none */
     int64_t release_ns;         /* when the wait for the shut-down began; 0: no wait */
     asked_t switching, command;
     const char *why;            /* the reason of the last refusal, as a sentence, or `said`; NULL: none */
@@ -145,6 +145,11 @@ static void end_switching(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_er
         refuse(axis, error, NULL, "CM_SetMode");
 }
 
+static uint32_t *place_of(cool_muscle_t *muscle, uint32_t ticket)
+{
+    return &muscle->unsaid[ticket % CM1E_DRIVE_CML_QUEUE];
+}
+
 cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size, int64_t timeout_ns, bool allow_motion,
                                 uint32_t *ticket)
 {
@@ -155,13 +160,15 @@ cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size
     cm1e_error_t error = check(axis, true);
     if (error == CM1E_OK)
         error = check_string(axis, copy, allow_motion, &why);
+    if (error == CM1E_OK && *place_of(axis->muscle, cml_of(axis)->next) != 0)
+        error = CM1E_ERROR_FULL; /* the end of the one that had its place is reported in this cycle */
     if (error == CM1E_OK)
         error = cm1e_drive_cml_send(cml_of(axis), copy, timeout_ns, ticket);
     if (error != CM1E_OK)
         return refuse(axis, error, why, copy);
     cool_muscle_t *muscle = axis->muscle;
     cm1e_axis_set_refusal(axis, CM1E_OK);
-    muscle->last = *ticket;
+    *place_of(muscle, *ticket) = *ticket;
     if (muscle->next != CM1E_BRIDGE_MODE_CML)
         end_switching(axis, CM1E_COMMAND_ABORTED, CM1E_ERROR_CANCELLED);
     muscle->next = CM1E_BRIDGE_MODE_CML;
@@ -183,7 +190,10 @@ cm1e_axis_cml_t cm1e_axis_cml_state(const cm1e_axis_t *axis, uint32_t ticket)
     const cm1e_drive_cml_request_t *request = cml ? cm1e_drive_cml_request(cml, ticket) : NULL;
     if (!request)
         return (cm1e_axis_cml_t){.state = CM1E_COMMAND_UNKNOWN};
-    return (cm1e_axis_cml_t){states[request->state], request->error, request->lines, request->strays};
+    /* The answer has come in this cycle: the axis says why it is an error in its step, and the block shows it then. */
+    const bool unsaid = request->state == CM1E_DRIVE_CML_ERROR && ticket == *place_of(axis->muscle, ticket);
+    return (cm1e_axis_cml_t){unsaid ? CM1E_COMMAND_ACTIVE : states[request->state], request->error, request->lines,
+                             request->strays};
 }
 
 const char *cm1e_axis_cml_line(const cm1e_axis_t *axis, uint32_t ticket, unsigned line)
@@ -343,21 +353,30 @@ static void free_step(cm1e_axis_t *axis)
         muscle->must_free = muscle->moved = false;
 }
 
-/* Reports the end of the last string. If it may have moved the motor and failed, the motor is freed. */
-static void follow_string(cm1e_axis_t *axis)
+/* Reports the end of a string. If it may have moved the motor and failed, the motor is freed, and the strings that wait
+ * behind it end too: the axis has its reason. */
+static void follow_string(cm1e_axis_t *axis, uint32_t *ticket)
 {
     cool_muscle_t *muscle = axis->muscle;
-    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml_of(axis), muscle->last);
-    if (muscle->last == 0 || (request && request->state < CM1E_DRIVE_CML_DONE))
+    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml_of(axis), *ticket);
+    if (*ticket == 0 || (request && request->state < CM1E_DRIVE_CML_DONE))
         return;
-    muscle->last = 0;
+    *ticket = 0;
     if (!request || request->state != CM1E_DRIVE_CML_ERROR)
         return;
     const bool said = request->error == CM1E_ERROR_CML_ANSWER || request->error == CM1E_ERROR_CM_SEARCH;
     memcpy(muscle->said, request->first, sizeof muscle->said);
     refuse(axis, request->error, said ? muscle->said : NULL, request->text);
-    if (request->sent && cm1e_cml_kind(request->text) == CM1E_CML_MOTION)
-        end_strings(axis, CM1E_ERROR_CANCELLED);
+    if (!request->sent || cm1e_cml_kind(request->text) != CM1E_CML_MOTION)
+        return;
+    end_strings(axis, CM1E_ERROR_CANCELLED);
+    memset(muscle->unsaid, 0, sizeof muscle->unsaid);
+}
+
+static void follow_strings(cm1e_axis_t *axis)
+{
+    for (int i = 0; i < CM1E_DRIVE_CML_QUEUE; i++)
+        follow_string(axis, &axis->muscle->unsaid[i]);
 }
 
 /* Whether the motor is in the axis's own mode, or on the way to it, so that it may be enabled. */
@@ -388,7 +407,7 @@ static void step(cm1e_axis_t *axis)
     const bool leaves = muscle->next != cml && !muscle->must_free; /* also if CML was not reached yet */
     if ((failed && !muscle->failed) || away || (leaves && (muscle->moved || !cm1e_drive_cml_idle(cml_of(axis)))))
         end_strings(axis, failed ? axis->fault.error : away ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_CANCELLED);
-    follow_string(axis); /* a string that has just been ended too: the block shows it in the next cycle */
+    follow_strings(axis); /* a string that has just been ended too: the block shows it in the next cycle */
     muscle->failed = failed;
     free_step(axis);
     if (muscle->mode != cml || (!muscle->must_free && cm1e_drive_cml_idle(cml_of(axis))))
