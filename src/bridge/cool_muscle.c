@@ -270,7 +270,9 @@ static void follow_return(cm1e_axis_t *axis)
     cool_muscle_t *muscle = axis->muscle;
     const int8_t shown = axis->drive.feedback.mode;
     muscle->away = muscle->away || !cm1e_drive_operational(&axis->drive);
-    if (!muscle->away || !cm1e_drive_operational(&axis->drive) || !axis->drive.change.known || shown == CM1E_MODE_NONE)
+    /* Its mode comes by its mailbox, also while other slaves are missing in the frames: `shown` may be older then. */
+    const bool known = axis->drive.change.known && axis->drive.feedback.fresh && shown != CM1E_MODE_NONE;
+    if (!muscle->away || !cm1e_drive_operational(&axis->drive) || !known)
         return;
     muscle->away = false;
     if (!is_mode(shown))
