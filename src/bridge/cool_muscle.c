@@ -279,7 +279,7 @@ static void follow_return(cm1e_axis_t *axis)
         return;
     if (shown != muscle->next)
         end_switching(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_OFFLINE);
-    muscle->next = shown;
+    muscle->next = muscle->mode = shown; /* also where a string that would free the motor waits for CML */
 }
 
 /* ---- CMD --------------------------------------------------------------------------------------------------------- */
