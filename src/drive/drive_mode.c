@@ -155,6 +155,9 @@ static bool is_outdated(const cm1e_drive_t *drive)
     return drive->change.uncertain && drive->change.wrote != (int8_t)drive->mode.commanded;
 }
 
+/* Whether the device was away meanwhile, and may have forgotten its mode. */
+static bool is_forgotten(const cm1e_drive_t *drive) { return drive->kind->asks_mode_first && !drive->change.known; }
+
 static void read_done(cm1e_drive_t *drive)
 {
     const cm1e_device_mode_t *before = cm1e_device_mode(drive->kind, drive->change.read);
@@ -166,7 +169,7 @@ static void read_done(cm1e_drive_t *drive)
     drive->change.abnormal |= now && now->leaves_abnormal;
     /* The device may have been switched off and show a mode that was not commanded: that mode is the new starting
      * point. */
-    if (now && drive->kind->asks_mode_first && !drive->change.known && !drive->change.uncertain)
+    if (now && is_forgotten(drive) && !drive->change.uncertain)
         cm1e_drive_want_mode(drive, now);
     drive->change.known = true;
     if (drive->change.read == (int8_t)drive->mode.commanded && !is_outdated(drive))
@@ -228,7 +231,7 @@ static void go_on(cm1e_drive_t *drive)
     const bool fresh = !is_outdated(drive) && drive->now_ns - drive->change.write_ns < write_again_ns;
     if (drive->change.phase == PHASE_WAIT && fresh)
         submit(drive, false);
-    else if (drive->kind->asks_mode_first && !drive->change.known)
+    else if (is_forgotten(drive))
         submit(drive, false);
     else if (may_write(drive))
         submit(drive, true);
@@ -239,11 +242,18 @@ static void go_on(cm1e_drive_t *drive)
 /* A transfer that ended in an error may have arrived. A transfer that the device has forgotten proves nothing. */
 static void written(cm1e_drive_t *drive, bool good)
 {
-    const bool forgotten = drive->kind->asks_mode_first && !drive->change.known;
     drive->change.write_ns = drive->now_ns;
-    drive->change.phase = good && !forgotten ? PHASE_WAIT : PHASE_IDLE;
-    drive->change.uncertain &= !forgotten;
+    drive->change.phase = good && !is_forgotten(drive) ? PHASE_WAIT : PHASE_IDLE;
+    drive->change.uncertain &= !is_forgotten(drive);
     drive->change.retry_ns = drive->now_ns + (good ? 0 : write_again_ns);
+}
+
+/* A motor that moves keeps the next write back, but 0x6061 is read again. */
+static void not_read(cm1e_drive_t *drive)
+{
+    drive->change.uncertain &= !is_forgotten(drive);
+    drive->change.phase = drive->change.uncertain ? PHASE_WAIT : PHASE_IDLE;
+    drive->change.retry_ns = drive->now_ns + write_again_ns;
 }
 
 void cm1e_drive_mode_step(cm1e_drive_t *drive)
@@ -261,14 +271,12 @@ void cm1e_drive_mode_step(cm1e_drive_t *drive)
     const cm1e_sdo_state_t state = cm1e_sdo_state(&drive->change.sdo);
     if (state == CM1E_SDO_BUSY)
         return;
-    if (drive->change.phase == PHASE_WRITING) {
+    if (drive->change.phase == PHASE_WRITING)
         written(drive, state == CM1E_SDO_DONE);
-    } else if (state == CM1E_SDO_DONE) {
+    else if (state == CM1E_SDO_DONE)
         read_done(drive);
-    } else { /* a motor that moves keeps the next write back, but 0x6061 is read again */
-        drive->change.phase = drive->change.uncertain ? PHASE_WAIT : PHASE_IDLE;
-        drive->change.retry_ns = drive->now_ns + write_again_ns;
-    }
+    else
+        not_read(drive);
 }
 
 void cm1e_drive_mode_forget(cm1e_drive_t *drive)
