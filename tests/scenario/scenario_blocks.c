@@ -3,6 +3,8 @@
 
 #include "scenario_private.h"
 
+enum { LOOKS = 40, MEMBERS = 4093 };
+
 const block_t *block_type(const char *name)
 {
     for (size_t i = 0; i < block_count; i++)
@@ -11,12 +13,26 @@ const block_t *block_type(const char *name)
     return NULL;
 }
 
-const block_member_t *block_member(const block_t *type, const char *name)
+/** What was found at some places of the members; names are never changed. Most of a run would go into comparing them. */
+static struct { const block_t *type; const char *name; const block_member_t *member; } found_members[MEMBERS];
+
+static const block_member_t *find_member(const block_t *type, const char *name)
 {
     for (size_t i = 0; i < type->member_count; i++)
         if (strcmp(type->members[i].name, name) == 0)
             return &type->members[i];
     return NULL;
+}
+
+const block_member_t *block_member(const block_t *type, const char *name)
+{
+    const size_t at = ((uintptr_t)type / sizeof *type * 37 + (uintptr_t)name) % MEMBERS;
+    if (found_members[at].type != type || found_members[at].name != name) {
+        found_members[at].type = type;
+        found_members[at].name = name;
+        found_members[at].member = find_member(type, name);
+    }
+    return found_members[at].member;
 }
 
 const char *const step_homings[] = {"MC_StepAbsoluteSwitch", "MC_StepLimitSwitch", "MC_StepBlock", "MC_HomeDirect",
@@ -28,13 +44,38 @@ const char *const origin_blocks[] = {"MC_SetPosition", "MC_Home", "MC_HomeDirect
 const char *const limit_blocks[] = {"MC_WriteParameter", NULL};
 const char *const table_blocks[] = {"MC_PositionProfile", "MC_VelocityProfile", "MC_AccelerationProfile", NULL};
 
-bool program_has(const scenario_t *scenario, int axis, const char *const *blocks)
+/** What has been looked for in the program, for each axis: 0: not yet, 1: it has it, -1: it has not. */
+static struct { const char *const *blocks; signed char found[SCENARIO_AXES]; } looks[LOOKS];
+static int look_count;
+
+void program_forget(void)
+{
+    memset(looks, 0, sizeof looks);
+    look_count = 0;
+}
+
+static bool look_for(const scenario_t *scenario, int axis, const char *const *blocks)
 {
     for (int i = 0; i < scenario->step_count; i++)
         for (int n = 0; blocks[n] && (int)scenario->steps[i].axis == axis; n++)
             if (strcmp(scenario_blocks[(int)scenario->steps[i].block], blocks[n]) == 0)
                 return true;
     return false;
+}
+
+bool program_has(const scenario_t *scenario, int axis, const char *const *blocks)
+{
+    int n = 0;
+    while (n < look_count && looks[n].blocks != blocks)
+        n++;
+    if (n == LOOKS)
+        return look_for(scenario, axis, blocks);
+    if (n == look_count)
+        looks[look_count++].blocks = blocks;
+    signed char *found = &looks[n].found[axis];
+    if (*found == 0)
+        *found = look_for(scenario, axis, blocks) ? 1 : -1;
+    return *found > 0;
 }
 
 bool block_flag(const instance_t *block, const char *name)

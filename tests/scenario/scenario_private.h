@@ -237,6 +237,8 @@ void data_cycle(const run_t *run, instance_t *block);
 
 /** The program has one of these blocks for the axis; NULL ends the list. */
 bool program_has(const scenario_t *scenario, int axis, const char *const *blocks);
+/** Another program comes. */
+void program_forget(void);
 extern const char *const step_homings[];  /**< homings in steps, by the axis itself */
 extern const char *const table_blocks[];
 extern const char *const origin_blocks[]; /**< they give an axis another origin */
@@ -244,6 +246,7 @@ extern const char *const limit_blocks[];  /**< they change its limits */
 
 const block_t *block_type(const char *name);
 const block_member_t *block_member(const block_t *type, const char *name);
+/** `name` is a literal, here and below. */
 bool block_flag(const instance_t *block, const char *name);
 void block_put(instance_t *block, const char *name, double value);
 /** Value of an LREAL; 0: it has none of this name. */

@@ -137,6 +137,7 @@ void scenario_run(const scenario_t *scenario, outcome_t *outcome)
         outcome->faults[i].cycles = -1;
     run.scenario = scenario;
     run.outcome = outcome;
+    program_forget();
     judge_begin(&run);
     if (scenario->memory > 0)
         judge_memory(&run);
