@@ -104,6 +104,11 @@ void scenario_vary(scenario_t *scenario);
 /** After scenario_vary(): what is read, said and wired beside the motions. */
 void scenario_beside(scenario_t *scenario);
 
+/* ---- scenario_plant.c -------------------------------------------------------------------------------------------- */
+
+/** After scenario_beside(): backlash, late mailboxes, limit switches at a terminal, motors that move by themselves. */
+void scenario_plant(scenario_t *scenario);
+
 /* ---- scenario_text.c --------------------------------------------------------------------------------------------- */
 
 extern const char *const fault_names[FAULT_KINDS + 1];

@@ -21,7 +21,6 @@ typedef struct fault_row {
     const char *word;        /**< what the text of the axis has; NULL: anything */
 } fault_row_t;
 
-#define SWITCH_COUNTS 200000.0 /* before the hard stops, at 250,000 */
 enum { FRAMES_A_CYCLE = 3, ALONE_CYCLES = 80, ORDER_BYTES = 100, AWAY_CYCLES = 30 };
 
 static const fault_row_t rows[FAULT_KINDS] = {

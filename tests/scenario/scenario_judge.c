@@ -41,7 +41,7 @@
 #define RESTING 0.01          /* of the velocity of the axis */
 /* After a pause: the inputs of its first cycle are older, the set-point of the second one is the first that knows of it, and
  * the drive has it in the third. */
-enum { AFTER_STALL = 2, LATE_CYCLES = 3, MODE_CML = 101, MODE_CMD = 120 };
+enum { AFTER_STALL = 2, LATE_CYCLES = 3 };
 enum { GAIN_MS = 20, STILL_MS = 60, STALL_MS = 300, CATCH_MS = 500, QUIET_MS = 200, HALT_MS = 300, SWING_MS = 50 };
 
 static int cycles_of(const run_t *run, double ms) { return (int)(ms * 1000 / run->scenario->cycle_us); }
@@ -626,17 +626,19 @@ static double apart(const axis_spec_t *spec, double distance)
     return spec->modulo > 0 ? remainder(distance, spec->modulo) : distance;
 }
 
-/** At rest in position, with a flank of its gear closed, an axis shows where its load is. */
+/** At rest in position, with a flank of its gear closed, an axis shows where its load is. A motor that lags behind the
+ *  crossing when that turns round has not got to the flank. */
 static void judge_load(run_t *run, machine_axis_t *axis)
 {
     const axis_spec_t *spec = axis->spec;
     const witness_t *seen = &axis->seen;
     const double gap = seen->load - axis->probe.position_counts * (spec->invert != 0 ? -1 : 1);
     const bool closed = gap <= 0 || gap >= spec->backlash;
+    const double lag = 4 * run->scenario->cycle_us * 1e-6 * crossing_speed(spec) + 2.5 * slack_of(spec);
     const double off = spec->start + seen->load - axis->info.actual_position * spec->counts_per_unit;
     if (spec->backlash > 0 && closed && seen->kept && !seen->unseen && !seen->shifted && at_rest(axis) && axis->info.in_position &&
         axis->probe.torque_on && !is_pushed(run, axis) && !was_disturbed(run, seen) &&
-        fabs(apart(spec, off)) > LOAD_COUNTS)
+        fabs(apart(spec, off)) > LOAD_COUNTS + lag)
         scenario_fail(run, "load", "%s (%s): its load is %.1f counts from where the axis shows it", axis->name,
                       cm1e_axis_state_name(axis->info.state), off);
 }

@@ -92,6 +92,17 @@ static void judge_probe(run_t *run, const instance_t *block, const machine_axis_
                       cm1e_axis_state_name(axis->info.state));
 }
 
+/** A switch at a terminal is where its reference is: but for the way of the cycles in which the input comes. */
+static void judge_switch(run_t *run, const instance_t *block, const machine_axis_t *axis)
+{
+    const double unit = axis->spec->counts_per_unit, most = 3 * axis->spec->velocity * run->scenario->cycle_us * 1e-6 + 10;
+    const double place = axis->seen.load - copysign(SWITCH_COUNTS, axis->seen.load);
+    const double shown = (axis->info.actual_position - block_number(block, "SetPosition")) * unit;
+    if (!was_disturbed(run, &axis->seen) && fabs(shown - place) > most)
+        scenario_fail(run, "claim", "%s: %s is Done %.0f counts from its switch, and shows %.0f", axis->name,
+                      block->type->name, place, shown);
+}
+
 static void judge_claim(run_t *run, instance_t *block, const machine_axis_t *axis)
 {
     const bool layered = program_has(run->scenario, axis->number, layers);
@@ -101,6 +112,10 @@ static void judge_claim(run_t *run, instance_t *block, const machine_axis_t *axi
     if (block_flag(block, "Active") && !layered && block_member(block->type, "RatioNumerator") &&
         (block_flag(block, "InGear") || block_flag(block, "InSync")))
         judge_gear(run, block, axis);
+    const bool by_edge = block->step->mode == mcRisingEdge || block->step->mode == mcFallingEdge; /* else it may be there already */
+    if (ended && axis->spec->switched != 0 &&
+        (block_is(block, "MC_StepLimitSwitch") || (block_is(block, "MC_StepAbsoluteSwitch") && by_edge)))
+        judge_switch(run, block, axis);
     if (ended && block_is(block, "MC_MoveAbsolute") && !layered && !program_has(run->scenario, axis->number, origin_blocks))
         judge_arrival(run, block, axis);
 }

@@ -13,7 +13,9 @@
 #include "block_table.h"
 
 enum { FIRST_ID = 40 /* explicit device ID of the first axis */, STRANGER_ID = 99, WIRED = 2 /* signals of a terminal */, SWITCHES = 2 /* behind them */,
-        BLOCK_ROOM = 2448, SPEEDS = 104, SPEEDS_SEEN = 64 };
+        MODE_CML = 101, MODE_CMD = 120 /* as a bridge shows them */, BLOCK_ROOM = 2448, SPEEDS = 104, SPEEDS_SEEN = 64 };
+
+#define SWITCH_COUNTS 200000.0 /* limit switches at a terminal, before the hard stops at 250,000 */
 
 /** A block of the program, by the table of all blocks. */
 typedef struct instance {

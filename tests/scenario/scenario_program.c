@@ -383,14 +383,15 @@ static void leave_group(run_t *run)
     MC_UngroupAllAxes(&run->ungroup);
 }
 
-/** From some modes of a bridge only its power leads back. */
+/** From some modes of a bridge only its power leads back, and an error in CML is ended by it, or by a string. */
 static void leave_modes(run_t *run)
 {
     static const char *const changers[] = {"CM_SetMode", "CM_Command", NULL};
     for (int n = 0; n < run->scenario->axis_count; n++) {
         const machine_axis_t *axis = &run->axes[n];
         char order[40], answer[200];
-        if (axis->channel == 0 || !program_has(run->scenario, n, changers))
+        const bool fails_in_cml = axis->info.state == CM1E_AXIS_ERROR_STOP && axis->info.mode == MODE_CML;
+        if (axis->channel == 0 || !(program_has(run->scenario, n, changers) || fails_in_cml))
             continue;
         snprintf(order, sizeof order, "power-cycle %u 10", axis->position);
         cm1e_bus_simulate(run->buses[axis->network], order, answer, sizeof answer);

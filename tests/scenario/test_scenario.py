@@ -11,8 +11,9 @@ import tempfile
 from pathlib import Path
 
 PROGRAM = sys.argv[1]
-SEEDS = (1, 2, 7, 11, 1000000002, 2000000006, 6000000003, 7000000005)
-MORE, WIDE, VARIED, BESIDE, COUNT = 1000000000, 2000000000, 6000000000, 7000000000, 20  # seeds with what scenario_random.c has for seeds from there on
+SEEDS = (1, 2, 7, 11, 1000000002, 2000000006, 6000000003, 7000000005, 8000000003)
+# Seeds with what scenario_random.c has for seeds from there on.
+MORE, WIDE, VARIED, BESIDE, PLANT, COUNT = 1000000000, 2000000000, 6000000000, 7000000000, 8000000000, 20
 # The judge takes a limit that the machine was not made for as a failure: a way to see that it can fail at all.
 SPOILED = ("run cycles=900 cycle_us=1000 lost_limit=3\n"
            "axis kind=cm1e counts_per_unit=1000 velocity=400000 acceleration=3e6 deceleration=3e6 jerk=1e8\n"
@@ -92,6 +93,15 @@ def check_beside():
         assert word not in run("--seed", BESIDE - 1, "--write")[1], word
 
 
+def check_plant():
+    code, said = run("--seed", PLANT, "--count", COUNT)
+    assert code == 0 and f"{COUNT} scenarios from seed {PLANT} on: 0 failed" in said, said
+    text = "".join(run("--seed", PLANT + number, "--write")[1] for number in range(3 * COUNT))
+    for word in (" backlash=", " switched=1", "kind=mailbox", " allow=1", "MC_GroupReadPosition"):
+        assert word in text, word
+        assert word not in run("--seed", PLANT - 1, "--write")[1], word
+
+
 def check_refusals(folder):
     for text, words in (("axis kind=nonsense\n", "line 1"), ("run cycles=100 cycle_us=1000\n", "needs an axis"),
                         ("nonsense\n", "expected run"), ("run cycles=abc\n", "not one of this name")):
@@ -111,6 +121,7 @@ def main():
     check_wide()
     check_varied()
     check_beside()
+    check_plant()
     print("ok")
 
 
