@@ -57,6 +57,7 @@ typedef struct cm1e_group_info {
     double path_velocity, path_acceleration; /**< u/s, u/s2; values of the set-point */
     double path_left;                /**< u; distance to the end of all commands */
     int commands;                    /**< number of active and waiting commands */
+    bool interrupted;                /**< by MC_GroupInterrupt: MC_GroupContinue makes them go on */
 } cm1e_group_info_t;
 
 /** Makes a group without axes, in GroupDisabled. Free it with cm1e_group_destroy(). Returns CM1E_ERROR_FULL if the

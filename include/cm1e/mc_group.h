@@ -167,6 +167,33 @@ typedef struct MC_GroupHalt_t {
 } MC_GroupHalt_t;
 CM1E_API void MC_GroupHalt(MC_GroupHalt_t *fb);
 
+/** Part 4 v2.0, 9.27. Interrupts the motion of a group: it comes to rest along its path, and keeps path and
+ *  commands until MC_GroupContinue. @rt cycle */
+typedef struct MC_GroupInterrupt_t {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    LREAL Deceleration; /**< u/s2, >= 0; 0, or a higher value, selects as much as the axes allow */
+    LREAL Jerk;         /**< u/s3, >= 0; 0, or a higher value, selects as much as the axes allow */
+    /* outputs */
+    BOOL Done;          /**< the set velocity is 0 */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GroupInterrupt_t;
+CM1E_API void MC_GroupInterrupt(MC_GroupInterrupt_t *fb);
+
+/** Part 4 v2.0, 9.28. Goes on with what MC_GroupInterrupt has interrupted. @rt cycle */
+typedef struct MC_GroupContinue_t {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done; /**< the commands of the group have control of it again */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GroupContinue_t;
+CM1E_API void MC_GroupContinue(MC_GroupContinue_t *fb);
+
 /** Part 4 v2.0, 9.34. Moves a group along a straight line to Position. @rt cycle */
 typedef struct MC_MoveLinearAbsolute_t {
     AXES_GROUP_REF_t *AxesGroup;

@@ -252,6 +252,7 @@ void cm1e_group_get(cm1e_group_t *group, cm1e_group_info_t *info)
         .error = group->error,
         .axes = cm1e_group_count(group),
         .commands = group->queue.count,
+        .interrupted = group->interruption.on,
     };
     for (int i = 0; i < CM1E_GROUP_AXES; i++)
         info->axis[i] = group->member[i];

@@ -7,7 +7,7 @@
  *
  * Then the axis comes to rest by itself, and goes back to its place on the path when that is at rest. Then the path
  * goes on. Each axis keeps its limits all the time. Behind a stop, a halt or an error no axis goes back: it is released
- * where it came to rest.
+ * where it came to rest. In an interruption it waits there.
  */
 #include "group/group_private.h"
 
@@ -55,7 +55,7 @@ static bool as_one(const cm1e_group_t *group, uint32_t silent)
 static void hold_path(cm1e_group_t *group)
 {
     cm1e_path_override(&group->path, 0.0);
-    if (group->state != CM1E_GROUP_MOVING || group->halting)
+    if (group->state != CM1E_GROUP_MOVING || group->halting || group->interruption.on)
         return; /* it stops already */
     cm1e_path_stop(&group->path, 0.0, 0.0);
     cm1e_path_go_on(&group->path);
@@ -161,7 +161,8 @@ void cm1e_group_stray_step(cm1e_group_t *group, uint32_t index, cm1e_motion_stat
 {
     stray_t *stray = &group->apart.strays[index];
     const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[index]);
-    const bool goes_on = group->state == CM1E_GROUP_MOVING && !group->halting && group->queue.count > 0;
+    const bool goes_on = group->state == CM1E_GROUP_MOVING && !group->halting && !group->interruption.on &&
+                         group->queue.count > 0;
     if (stray->step == STRAY_SILENT)
         come_to_rest(stray, axis);
     else if (stray->step == STRAY_REST && goes_on && path_rests(group))

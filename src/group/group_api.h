@@ -50,6 +50,7 @@ typedef enum cm1e_group_kind {
     CM1E_GROUP_CIRCULAR_RELATIVE,
     CM1E_GROUP_HALT,
     CM1E_GROUP_STOP,
+    CM1E_GROUP_INTERRUPT,
     CM1E_GROUP_KIND_COUNT,
 } cm1e_group_kind_t;
 
@@ -75,6 +76,9 @@ cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_
 bool cm1e_group_runs(AXES_GROUP_REF_t reference, cm1e_command_id_t id);
 /** Whether this is a waiting command of an existing group. @rt cycle */
 bool cm1e_group_waits(AXES_GROUP_REF_t reference, cm1e_command_id_t id);
+/** Goes on with the commands that were interrupted, also while the group still brakes. CM1E_ERROR_GROUP_STATE: nothing
+ *  is interrupted. @rt cycle */
+cm1e_error_t cm1e_group_continue(cm1e_group_t *group);
 /** Tells whether MC_GroupStop.Execute is TRUE. While it is, the group stays in GroupStopping. @rt cycle */
 void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold);
 /** Sets the factor on the velocities of commands, 0 ... 1, which holds until it is changed. CM1E_ERROR_AXIS_OVERRIDE:

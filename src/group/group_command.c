@@ -54,7 +54,7 @@ static cm1e_error_t check(cm1e_group_t *group, const cm1e_group_command_t *comma
         !is_limit(command->jerk))
         return refuse(group, CM1E_ERROR_AXIS_DYNAMICS_RANGE, 0.0,
                       "Acceleration, Deceleration and Jerk must be 0 (as much as the axes allow) or above.");
-    return command->kind == CM1E_GROUP_STOP ? CM1E_OK : check_modes(group, command);
+    return command->kind >= CM1E_GROUP_STOP ? CM1E_OK : check_modes(group, command);
 }
 
 /* ---- where it goes ----------------------------------------------------------------------------------------------- */
@@ -175,8 +175,8 @@ static cm1e_error_t wait_behind(cm1e_group_t *group, const cm1e_group_command_t 
         return refuse(group, CM1E_ERROR_FULL, 0.0, "Wait until one of the commands of the group is done.");
     cm1e_path_end(&group->path, end);
     const cm1e_error_t error = append(group, command, end, !group->halting, id);
-    if (error == CM1E_OK && group->halting) /* a command behind the halt begins only when the group has come to rest */
-        cm1e_path_stop(&group->path, group->halt_deceleration, group->halt_jerk);
+    if (error == CM1E_OK && (group->halting || group->interruption.on)) /* it does not make the group go on */
+        cm1e_path_stop(&group->path, group->rest_deceleration, group->rest_jerk);
     return error;
 }
 
@@ -228,8 +228,8 @@ static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *
     cm1e_group_brake(group, command->deceleration, command->jerk);
     cm1e_group_end_all(group, CM1E_COMMAND_ABORTED, CM1E_OK);
     group->halting = true;
-    group->halt_deceleration = command->deceleration;
-    group->halt_jerk = command->jerk;
+    group->rest_deceleration = command->deceleration;
+    group->rest_jerk = command->jerk;
     cm1e_group_enqueue(group, id);
     return CM1E_OK;
 }
@@ -249,14 +249,28 @@ static void start_stop(cm1e_group_t *group, const cm1e_group_command_t *command,
         cm1e_group_finish(group, id);
 }
 
+/* Starts MC_GroupInterrupt: the group comes to rest along its path, and nothing is dropped. */
+static void start_interrupt(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
+{
+    cm1e_group_end_interrupt(group, CM1E_COMMAND_ABORTED, CM1E_OK);
+    group->interruption = (interruption_t){.on = true, .braking = id};
+    group->rest_deceleration = command->deceleration;
+    group->rest_jerk = command->jerk;
+    cm1e_group_suspend(group);
+    cm1e_path_stop(&group->path, command->deceleration, command->jerk);
+}
+
 static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     static const group_trigger_t triggers[CM1E_GROUP_KIND_COUNT] = {
-        [CM1E_GROUP_HALT] = TRIGGER_HALT, [CM1E_GROUP_STOP] = TRIGGER_STOP};
+        [CM1E_GROUP_HALT] = TRIGGER_HALT,
+        [CM1E_GROUP_STOP] = TRIGGER_STOP,
+        [CM1E_GROUP_INTERRUPT] = TRIGGER_INTERRUPT};
     const group_trigger_t trigger = is_move(command->kind) ? TRIGGER_MOVE : triggers[command->kind];
     const group_rule_t *rule = cm1e_group_rule(group->state, trigger);
     if (rule->refusal != CM1E_OK)
-        return refuse(group, rule->refusal, 0.0, NULL);
+        return refuse(group, rule->refusal, 0.0, rule->refusal == CM1E_ERROR_GROUP_STATE
+                      ? "It does not move: there is nothing to interrupt." : NULL);
     if (group->state == CM1E_GROUP_STOPPING && group->stop_held)
         return refuse(group, CM1E_ERROR_GROUP_STOPPING, 0.0, NULL);
     cm1e_error_t error = check(group, command);
@@ -268,8 +282,10 @@ static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *comma
         error = start_move(group, command, id);
     else if (command->kind == CM1E_GROUP_HALT)
         error = start_halt(group, command, id);
-    else
+    else if (command->kind == CM1E_GROUP_STOP)
         start_stop(group, command, id);
+    else
+        start_interrupt(group, command, id);
     if (error == CM1E_OK)
         group->state = rule->next;
     return error;
@@ -287,6 +303,21 @@ cm1e_error_t cm1e_group_start(cm1e_group_t *group, const cm1e_group_command_t *c
     if (error == CM1E_OK)
         *id = number;
     return error;
+}
+
+cm1e_error_t cm1e_group_continue(cm1e_group_t *group)
+{
+    cm1e_group_refresh(group);
+    const cm1e_error_t refusal = cm1e_group_rule(group->state, TRIGGER_INTERRUPT)->refusal;
+    if (refusal != CM1E_OK || !group->interruption.on)
+        return refuse(group, refusal != CM1E_OK ? refusal : CM1E_ERROR_GROUP_STATE, 0.0,
+                      "Nothing is interrupted that could go on.");
+    cm1e_group_end_interrupt(group, CM1E_COMMAND_ABORTED, CM1E_OK);
+    group->interruption.on = false;
+    cm1e_group_resume(group);
+    if (!group->halting) /* else it goes on behind the halt */
+        cm1e_path_go_on(&group->path);
+    return refuse(group, CM1E_OK, 0.0, NULL);
 }
 
 void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold)

@@ -52,13 +52,18 @@ static void after_step(cm1e_group_t *group)
     if (sample->phase == CM1E_PATH_MOVING && sample->done == 0 && group->apart.passed_count == 0)
         return;
     const bool at_rest = cm1e_group_at_rest(group);
+    for (int i = 0; i < sample->done; i++)
+        cm1e_group_pass(group, sample->done_tags[i]);
+    if (group->interruption.on) {
+        if (at_rest)
+            cm1e_group_end_interrupt(group, CM1E_COMMAND_DONE, CM1E_OK);
+        return;
+    }
     if (group->halting && at_rest) { /* before the commands that waited for it, which may be done in the same step */
         group->halting = false;
         cm1e_group_finish(group, group->queue.ids[group->queue.first]);
         cm1e_path_go_on(&group->path);
     }
-    for (int i = 0; i < sample->done; i++)
-        cm1e_group_pass(group, sample->done_tags[i]);
     cm1e_group_finish_passed(group);
     if (at_rest && come_to_rest(group))
         group->ending = true;
@@ -319,7 +324,7 @@ cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
     group->led = 0;
     group->asked = UINT32_MAX;
     cm1e_group_together(group);
-    group->ending = group->halting = false;
+    group->ending = group->halting = group->interruption.on = false;
     for (int i = 0; i < group->axes; i++) {
         cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
         if (axis && cm1e_axis_lead(axis, &group->leads[i].leader) == CM1E_OK) {

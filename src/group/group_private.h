@@ -22,6 +22,7 @@ typedef enum group_trigger {
     TRIGGER_RESET,
     TRIGGER_MOVE,
     TRIGGER_HALT,
+    TRIGGER_INTERRUPT,     /**< also MC_GroupContinue */
     TRIGGER_STOP,
     TRIGGER_AT_REST,       /**< all commands are done, MC_GroupStop is no longer held */
     TRIGGER_FAIL,
@@ -46,6 +47,12 @@ typedef struct group_queue {
     cm1e_command_id_t active;       /**< the first of them; 0: there is none */
     bool in_a_row;                  /**< no number is missing between the first and the last one */
 } group_queue_t;
+
+/** MC_GroupInterrupt: the group comes to rest on its path, and keeps path and commands. */
+typedef struct interruption {
+    bool on;                        /**< until the group goes on, or its commands end */
+    cm1e_command_id_t braking;      /**< the MC_GroupInterrupt that is not done yet; 0: none */
+} interruption_t;
 
 /** The last refusal, for the text. */
 typedef struct group_refusal {
@@ -101,8 +108,9 @@ struct cm1e_group {
     bool told;                          /**< since the last step the path was told of a pause or silence */
     uint32_t asked;                     /**< bits of axes of the path that have had this sample; at first all of them */
     bool ending;                        /**< the present set-point is the last one */
-    bool halting;                       /**< MC_GroupHalt brakes, with ... */
-    double halt_deceleration, halt_jerk;
+    bool halting;                       /**< MC_GroupHalt brakes */
+    interruption_t interruption;
+    double rest_deceleration, rest_jerk; /**< with which the latest one of both comes to rest */
     double override;
     cm1e_path_sample_t sample;
     cm1e_path_t path, before;           /**< copy of the path, for commands that are refused later */
@@ -151,7 +159,13 @@ void cm1e_group_record(cm1e_group_t *group, cm1e_command_id_t id, cm1e_command_s
 void cm1e_group_enqueue(cm1e_group_t *group, cm1e_command_id_t id);
 /** Ends the first command of the queue. */
 void cm1e_group_finish(cm1e_group_t *group, cm1e_command_id_t id);
-/** Ends all commands of the queue. */
+/** From now on no command is active: all of them wait. */
+void cm1e_group_suspend(cm1e_group_t *group);
+/** The first command of the queue is active again. */
+void cm1e_group_resume(cm1e_group_t *group);
+/** Ends the MC_GroupInterrupt that brakes, if there is one. */
+void cm1e_group_end_interrupt(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error);
+/** Ends all commands of the queue, and an interruption of them. */
 void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error);
 
 /* group.c */

@@ -20,13 +20,34 @@ void cm1e_group_finish(cm1e_group_t *group, cm1e_command_id_t id)
     cm1e_group_record(group, id, CM1E_COMMAND_DONE, CM1E_OK);
     queue->first = (queue->first + 1) % CM1E_GROUP_COMMANDS;
     queue->count--;
+    cm1e_group_resume(group);
+}
+
+void cm1e_group_suspend(cm1e_group_t *group)
+{
+    group->queue.active = 0;
+    group->queue.in_a_row = false;
+}
+
+void cm1e_group_resume(cm1e_group_t *group)
+{
+    group_queue_t *queue = &group->queue;
     queue->active = queue->count > 0 ? queue->ids[queue->first] : 0;
+}
+
+void cm1e_group_end_interrupt(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error)
+{
+    if (group->interruption.braking != 0)
+        cm1e_group_record(group, group->interruption.braking, state, error);
+    group->interruption.braking = 0;
 }
 
 void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error)
 {
     for (int i = 0; i < group->queue.count; i++)
         cm1e_group_record(group, group->queue.ids[(group->queue.first + i) % CM1E_GROUP_COMMANDS], state, error);
+    cm1e_group_end_interrupt(group, state, error);
+    group->interruption.on = false;
     group->queue.count = 0;
     group->queue.active = 0;
     group->stop = 0;
@@ -45,7 +66,7 @@ void cm1e_group_enqueue(cm1e_group_t *group, cm1e_command_id_t id)
 
 static bool is_among(const group_queue_t *queue, cm1e_command_id_t id)
 {
-    for (int i = 1; i < queue->count; i++)
+    for (int i = queue->active != 0 ? 1 : 0; i < queue->count; i++)
         if (queue->ids[(queue->first + i) % CM1E_GROUP_COMMANDS] == id)
             return true;
     return false;
@@ -67,7 +88,7 @@ bool cm1e_group_waits(AXES_GROUP_REF_t reference, cm1e_command_id_t id)
 
 cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id)
 {
-    if (id != 0 && first_of(group) == id)
+    if (id != 0 && (first_of(group) == id || group->interruption.braking == id))
         return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
     if (is_waiting(&group->queue, id))
         return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};

@@ -25,7 +25,7 @@ typedef struct fb {
     _Alignas(16) unsigned char memory[1024];
 } fb_t;
 
-enum { FBS = 4 };
+enum { FBS = 5 };
 static fb_t fbs[FBS];
 static int fb_count;
 
@@ -113,7 +113,9 @@ static void call(fb_t *fb)
     RULE(!now->busy || before->busy || edge, "Busy without an edge");
     RULE(!before->busy || now->busy || results || has(fb, "Enable"), "Busy fell and nothing rose");
     RULE(now->execute || !results || before->busy || edge, "a result outlives Execute");
-    RULE(!has(fb, "Active") || !before->active || now->active || !now->busy || edge, "Active fell while Busy");
+    RULE(!has(fb, "Active") || !before->active || now->active || !now->busy || edge || group->interruption.on,
+         "Active fell while Busy");
+    RULE(!now->active || edge || !group->interruption.on, "Active while its group is interrupted");
     if (edge)
         fb->refused = now->error;
 }
@@ -231,6 +233,8 @@ START_TEST(test_every_administrative_block_in_every_state)
         {"MC_GroupEnable", "yyxxx"},
         {"MC_GroupDisable", "yyyyy"},
         {"MC_GroupReset", "yyyyy"},
+        {"MC_GroupInterrupt", "xxyxx"},
+        {"MC_GroupContinue", "xxxxx"}, /* nothing is interrupted */
     };
     for (size_t b = 0; b < sizeof blocks / sizeof *blocks; b++)
         for (int state = 0; state < CM1E_GROUP_STATE_COUNT; state++) {
@@ -350,6 +354,52 @@ START_TEST(test_a_pulse_of_one_call_shows_the_result_for_one_call)
     }
     ck_assert_int_eq(shown, 1);
     group_must_be(CM1E_GROUP_STANDBY);
+}
+END_TEST
+
+/* ---- interrupted ------------------------------------------------------------------------------------------------- */
+
+/* By the same instances twice. Its blocks are Busy all the time, and Active but for the interruption. */
+START_TEST(test_every_move_is_interrupted_and_goes_on)
+{
+    for (int phase = 1; phase < 700; phase += phase < 5 ? 1 : 67)
+        for (int rest = 1; rest < 200; rest += 61) {
+            snprintf(scene, sizeof scene, "%s, interrupted after %d cycles for %d", moves[_i], phase, rest);
+            begin();
+            fb_t *line = make("MC_MoveLinearRelative"), *fb = make(moves[_i]), *next = make("MC_MoveLinearAbsolute");
+            fb_t *interrupt = make("MC_GroupInterrupt"), *go_on = make("MC_GroupContinue");
+            start(line);
+            axes_cycles(100);
+            ck_assert_uint_eq(start(fb), 0);
+            put_mode(next, mcBuffered);
+            start(next);
+            for (int again = 0; again < 2; again++) {
+                axes_cycles(phase);
+                if (group_info().state != CM1E_GROUP_MOVING)
+                    break;
+                const bool busy = fb->now.busy, active = fb->now.active, waits = next->now.busy;
+                ck_assert_uint_eq(start(interrupt), 0);
+                axes_cycles(rest);
+                AXES_MUST(fb->now.busy == busy && next->now.busy == waits, "an interrupted block has ended");
+                AXES_MUST(!fb->now.active && !next->now.active, "Active while it is interrupted");
+                const bool rests = interrupt->now.done;
+                ck_assert_uint_eq(start(go_on), 0);
+                ck_assert(go_on->now.done);
+                axes_cycles(1);
+                AXES_MUST(!active || fb->now.active || fb->now.done, "it is not Active again");
+                const bool done = interrupt->now.done; /* it may be so in the cycle in which it goes on */
+                const WORD id = done ? 0 : cm1e_error_id(CM1E_ERROR_CANCELLED);
+                AXES_MUST((done || !rests) && interrupt->now.error_id == id, "the interrupt: Done %d, 0x%04X", done,
+                          interrupt->now.error_id);
+                execute(interrupt, FALSE);
+                execute(go_on, FALSE);
+                axes_cycles(1);
+            }
+            until_ended(next);
+            ck_assert(fb->now.done && next->now.done);
+            axes_cycles(2);
+            group_must_be(CM1E_GROUP_STANDBY);
+        }
 }
 END_TEST
 
@@ -626,6 +676,7 @@ int main(void)
     tcase_add_test(all, test_every_move_behind_every_other_in_every_mode);
     tcase_add_loop_test(all, test_every_move_triggered_again, 0, MOVES);
     tcase_add_loop_test(all, test_a_pulse_of_one_call_shows_the_result_for_one_call, 0, MOVES);
+    tcase_add_loop_test(all, test_every_move_is_interrupted_and_goes_on, 0, STOP);
     tcase_add_test(all, test_no_group_another_group_and_a_group_that_goes);
     tcase_add_test(all, test_a_stop_that_is_in_error_still_holds_the_group);
     tcase_add_test(all, test_a_refused_override_says_which_factor);

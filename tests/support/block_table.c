@@ -577,6 +577,24 @@ AT(MC_GroupHalt, CommandAborted, 44);
 AT(MC_GroupHalt, Error, 45);
 AT(MC_GroupHalt, ErrorID, 46);
 AT(MC_GroupHalt, Private, 48);
+_Static_assert(sizeof(MC_GroupInterrupt_t) == 56, "MC_GroupInterrupt");
+AT(MC_GroupInterrupt, AxesGroup, 0);
+AT(MC_GroupInterrupt, Execute, 8);
+AT(MC_GroupInterrupt, Deceleration, 16);
+AT(MC_GroupInterrupt, Jerk, 24);
+AT(MC_GroupInterrupt, Done, 32);
+AT(MC_GroupInterrupt, Busy, 33);
+AT(MC_GroupInterrupt, Error, 34);
+AT(MC_GroupInterrupt, ErrorID, 36);
+AT(MC_GroupInterrupt, Private, 40);
+_Static_assert(sizeof(MC_GroupContinue_t) == 32, "MC_GroupContinue");
+AT(MC_GroupContinue, AxesGroup, 0);
+AT(MC_GroupContinue, Execute, 8);
+AT(MC_GroupContinue, Done, 9);
+AT(MC_GroupContinue, Busy, 10);
+AT(MC_GroupContinue, Error, 11);
+AT(MC_GroupContinue, ErrorID, 12);
+AT(MC_GroupContinue, Private, 16);
 _Static_assert(sizeof(MC_MoveLinearAbsolute_t) == 160, "MC_MoveLinearAbsolute");
 AT(MC_MoveLinearAbsolute, AxesGroup, 0);
 AT(MC_MoveLinearAbsolute, Execute, 8);
@@ -2529,6 +2547,46 @@ static const cm1e_error_t errors_of_MC_GroupHalt[] = {
     CM1E_ERROR_FULL,
     CM1E_OK,
 };
+static const block_member_t members_of_MC_GroupInterrupt[] = {
+    MEMBER(MC_GroupInterrupt, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupInterrupt, Execute, INPUT, BOOL),
+    MEMBER(MC_GroupInterrupt, Deceleration, INPUT, LREAL),
+    MEMBER(MC_GroupInterrupt, Jerk, INPUT, LREAL),
+    MEMBER(MC_GroupInterrupt, Done, OUTPUT, BOOL),
+    MEMBER(MC_GroupInterrupt, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupInterrupt, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupInterrupt, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupInterrupt(void *fb) { MC_GroupInterrupt(fb); }
+static const cm1e_error_t errors_of_MC_GroupInterrupt[] = {
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_STATE,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_CANCELLED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupContinue[] = {
+    MEMBER(MC_GroupContinue, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupContinue, Execute, INPUT, BOOL),
+    MEMBER(MC_GroupContinue, Done, OUTPUT, BOOL),
+    MEMBER(MC_GroupContinue, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupContinue, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupContinue, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupContinue(void *fb) { MC_GroupContinue(fb); }
+static const cm1e_error_t errors_of_MC_GroupContinue[] = {
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_STATE,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_MoveLinearAbsolute[] = {
     MEMBER(MC_MoveLinearAbsolute, AxesGroup, IN_OUT, POINTER),
     MEMBER(MC_MoveLinearAbsolute, Execute, INPUT, BOOL),
@@ -3788,6 +3846,8 @@ const block_t block_table[] = {
     BLOCK(MC_GroupReadError, NULL),
     BLOCK(MC_GroupStop, NULL),
     BLOCK(MC_GroupHalt, NULL),
+    BLOCK(MC_GroupInterrupt, NULL),
+    BLOCK(MC_GroupContinue, NULL),
     BLOCK(MC_MoveLinearAbsolute, NULL),
     BLOCK(MC_MoveLinearRelative, NULL),
     BLOCK(MC_MoveCircularAbsolute, NULL),

@@ -128,7 +128,8 @@ static const char *next_for(const struct random_group *g)
     switch (info.state) {
     case CM1E_GROUP_DISABLED: return info.axes == 0 || one_in(2) ? "MC_AddAxisToGroup" : "MC_GroupEnable";
     case CM1E_GROUP_STANDBY: return moves[pick(5)];
-    case CM1E_GROUP_MOVING: return moves[pick(6)];
+    case CM1E_GROUP_MOVING:
+        return info.interrupted ? "MC_GroupContinue" : one_in(8) ? "MC_GroupInterrupt" : moves[pick(6)];
     case CM1E_GROUP_ERROR_STOP: return "MC_GroupReset";
     default: return NULL;
     }
@@ -269,7 +270,10 @@ void judge_group(struct random_group *g, int longest, int stuck)
     const bool brakes = state != CM1E_GROUP_MOVING && group->led != 0 && !held;
     g->braking_cycles = brakes ? g->braking_cycles + 1 : 0;
     MUST(g->braking_cycles < longest, "%s does not come to rest", cm1e_group_state_name(state));
-    const bool to_move = state == CM1E_GROUP_MOVING && group->override > 0.0;
+    MUST(!group->interruption.on || state == CM1E_GROUP_MOVING, "%s, and interrupted", cm1e_group_state_name(state));
+    MUST(!group->interruption.on || group->interruption.braking != 0 || group_stands(group),
+         "MC_GroupInterrupt is Done, and an axis moves");
+    const bool to_move = state == CM1E_GROUP_MOVING && group->override > 0.0 && !group->interruption.on;
     g->still_cycles = to_move && group_stands(group) ? g->still_cycles + 1 : 0;
     MUST(g->still_cycles < stuck, "GroupMoving, and nothing has moved for %d cycles", g->still_cycles);
 }
@@ -279,8 +283,8 @@ static double origin_of(const cm1e_axis_t *axis) { return cm1e_axis_units(axis, 
 void begin_group_story(const instance_t *fb, int n, const double *set, cm1e_group_state_t before)
 {
     struct random_group *g = random_group_of(fb);
-    if (!g || is(fb, "MC_GroupReset"))
-        return;
+    if (!g || is(fb, "MC_GroupReset") || is(fb, "MC_GroupInterrupt") || is(fb, "MC_GroupContinue"))
+        return; /* the way goes on behind them */
     g->story.known = false;
     const bool relative = is(fb, "MC_MoveLinearRelative");
     if (before != CM1E_GROUP_STANDBY || !(relative || is(fb, "MC_MoveLinearAbsolute")) || fb->now.error)

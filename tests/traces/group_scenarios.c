@@ -232,6 +232,49 @@ static void halt(void)
     trace_end();
 }
 
+/* Over a corner that is blended. */
+static void draw_interruption(const char *about, const char *text, MC_GroupInterrupt_t *interrupt,
+                              MC_GroupContinue_t *go_on, int end, int continued)
+{
+    MC_MoveLinearAbsolute_t first = LINE;
+    MC_MoveLinearAbsolute_t second = {GROUP, .Position = {0, 2}, .Velocity = 8, .BufferMode = mcBlendingHigh,
+                                      .TransitionMode = mcTMCornerDistance, .TransitionParameter = 0.5};
+    trace_begin_with_group(about, text);
+    trace_block("MC_MoveLinearAbsolute", "a line", &first);
+    trace_block("MC_MoveLinearAbsolute", "another one, blended", &second);
+    trace_block("MC_GroupInterrupt", "MC_GroupInterrupt", interrupt);
+    trace_block("MC_GroupContinue", "MC_GroupContinue", go_on);
+    trace_curves(true, true);
+    trace_master_curves(0, true, true);
+    UNTIL(end) {
+        first.Execute = second.Execute = during(20, end - 50);
+        interrupt->Execute = during(200, 300);
+        go_on->Execute = during(continued, continued + 100) || during(end - 200, end - 150);
+        MC_MoveLinearAbsolute(&first);
+        MC_MoveLinearAbsolute(&second);
+        MC_GroupInterrupt(interrupt);
+        MC_GroupContinue(go_on);
+    }
+    trace_end();
+}
+
+static void interrupt(void)
+{
+    MC_GroupInterrupt_t interrupt = {GROUP, .Deceleration = 60};
+    MC_GroupContinue_t go_on = {GROUP};
+    draw_interruption("MC_GroupInterrupt", "Two lines are interrupted in the first one. They are Busy until they go on.",
+                      &interrupt, &go_on, 1500, 700);
+}
+
+static void go_on(void)
+{
+    MC_GroupInterrupt_t interrupt = {GROUP, .Deceleration = 60};
+    MC_GroupContinue_t go_on = {GROUP};
+    draw_interruption("MC_GroupContinue",
+                      "It makes two lines go on while the group still brakes; then nothing is interrupted any more.",
+                      &interrupt, &go_on, 1200, 250);
+}
+
 static void linear_absolute(void)
 {
     MC_MoveLinearAbsolute_t first = {GROUP, .Position = {2, 0}, .Velocity = 8};
@@ -412,6 +455,8 @@ const scenario_t group_scenarios[] = {
     {"MC_GroupReadError", read_error},
     {"MC_GroupStop", stop},
     {"MC_GroupHalt", halt},
+    {"MC_GroupInterrupt", interrupt},
+    {"MC_GroupContinue", go_on},
     {"MC_MoveLinearAbsolute", linear_absolute},
     {"MC_MoveLinearRelative", linear_relative},
     {"MC_MoveCircularAbsolute", circular_absolute},

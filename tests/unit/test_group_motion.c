@@ -610,6 +610,8 @@ static cm1e_group_command_t random_command(void)
         .buffer_mode = (MC_BUFFER_MODE)chance(0.0, 5.999),
         .transition_parameter = chance(0.001, 0.3),
     };
+    if (chance(0, 1) < 0.08)
+        c.kind = CM1E_GROUP_INTERRUPT;
     static const MC_TRANSITION_MODE modes[] = {mcTMNone, mcTMCornerDistance, mcTMMaxCornerDeviation};
     c.transition = modes[(int)chance(0.0, 2.999)];
     if (chance(0, 1) < 0.02) /* what has to be refused, whatever runs */
@@ -637,11 +639,15 @@ static void test_random_paths_keep_every_limit(void)
             refused++;
         if (chance(0, 1) < 0.05)
             cm1e_group_set_override(group, chance(0, 1) < 0.2 ? 0.0 : chance(0.1, 1));
+        if (chance(0, 1) < 0.15)
+            (void)cm1e_group_continue(group);
         axes_cycles((int)chance(1.0, 400.0));
+        AXES_MUST(!group_info().interrupted || group_info().state == CM1E_GROUP_MOVING, "%s", group_text());
         AXES_MUST(group_info().state == CM1E_GROUP_MOVING || group_info().state == CM1E_GROUP_STANDBY, "%s",
                   group_text());
     }
     cm1e_group_set_override(group, 1.0);
+    (void)cm1e_group_continue(group);
     for (int i = 0; i < 1000000 && group_info().state == CM1E_GROUP_MOVING; i++)
         axes_cycles(1);
     group_must_be(CM1E_GROUP_STANDBY);

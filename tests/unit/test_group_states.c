@@ -33,7 +33,7 @@ static void into(cm1e_group_state_t state)
 /* ---- every command in every state -------------------------------------------------------------------------------- */
 
 typedef enum what {
-    ADD = 0, REMOVE, UNGROUP, ENABLE, DISABLE, RESET, LINE, RELATIVE, ARC, BEND, HALT, STOP, WHATS
+    ADD = 0, REMOVE, UNGROUP, ENABLE, DISABLE, RESET, LINE, RELATIVE, ARC, BEND, HALT, STOP, INTERRUPT, CONTINUE, WHATS
 } what_t;
 
 static cm1e_error_t post(what_t what)
@@ -45,6 +45,7 @@ static cm1e_error_t post(what_t what)
         {.kind = CM1E_GROUP_CIRCULAR_RELATIVE, .auxiliary = {1.0, 1.0}, .position = {2.0, 0.0}, .velocity = 1.0},
         {.kind = CM1E_GROUP_HALT},
         {.kind = CM1E_GROUP_STOP},
+        {.kind = CM1E_GROUP_INTERRUPT},
     };
     cm1e_command_id_t id;
     switch (what) {
@@ -54,6 +55,7 @@ static cm1e_error_t post(what_t what)
     case ENABLE: return cm1e_group_enable(group);
     case DISABLE: return cm1e_group_disable(group);
     case RESET: return cm1e_group_reset(group);
+    case CONTINUE: return cm1e_group_continue(group);
     default: return cm1e_group_start(group, &commands[what - LINE], &id);
     }
 }
@@ -62,12 +64,12 @@ static cm1e_error_t post(what_t what)
  * ErrorStop. Lower case: refused, d: GROUP_DISABLED, s: GROUP_STATE, p: GROUP_STOPPING, e: GROUP_ERROR_STOP; m:
  * GROUP_MEMBER, for it is one already. */
 static const char *const expected[CM1E_GROUP_STATE_COUNT] = {
-    /* add remove ungroup enable disable reset line relative arc bend halt stop */
-    [CM1E_GROUP_DISABLED] = "mDDSDDdddddd",
-    [CM1E_GROUP_STANDBY] = "ssDSDSMMMMSP",
-    [CM1E_GROUP_MOVING] = "ssDsDMMMMMMP",
-    [CM1E_GROUP_STOPPING] = "ppDpDPpppppp",
-    [CM1E_GROUP_ERROR_STOP] = "eeDeDEeeeeee", /* the reset takes its time */
+    /* add remove ungroup enable disable reset line relative arc bend halt stop interrupt continue (nothing) */
+    [CM1E_GROUP_DISABLED] = "mDDSDDdddddddd",
+    [CM1E_GROUP_STANDBY] = "ssDSDSMMMMSPss",
+    [CM1E_GROUP_MOVING] = "ssDsDMMMMMMPMs",
+    [CM1E_GROUP_STOPPING] = "ppDpDPpppppppp",
+    [CM1E_GROUP_ERROR_STOP] = "eeDeDEeeeeeeee", /* the reset takes its time */
 };
 
 static cm1e_error_t refusal(char code)

@@ -295,6 +295,14 @@ class Group(AXES_GROUP_REF):
         return self.execute(fb.MC_MoveDirectAbsolute(AxesGroup=self, Position=position, BufferMode=buffer_mode),
                             wait=wait, timeout=timeout)
 
+    def interrupt(self, deceleration: float = 0, jerk: float = 0) -> None:
+        """MC_GroupInterrupt: comes to rest along the path, and keeps the commands, which wait for resume()."""
+        self.execute(fb.MC_GroupInterrupt(AxesGroup=self, Deceleration=deceleration, Jerk=jerk))
+
+    def resume(self) -> None:
+        """MC_GroupContinue: the commands that were interrupted go on."""
+        self.execute(fb.MC_GroupContinue(AxesGroup=self))
+
     def stop(self) -> None:
         """MC_GroupStop: ramps down along the path."""
         self.execute(fb.MC_GroupStop(AxesGroup=self))

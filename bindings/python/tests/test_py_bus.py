@@ -199,6 +199,17 @@ def test_group():
             table.move_linear_absolute([30, 40], 5, timeout=0.5)
         bus.advance(0.1)
         assert table.state == cm1e.GroupState.STANDBY
+        move = table.move_linear_absolute([0, 0], 10, wait=False)
+        bus.advance(0.2)
+        table.interrupt()
+        rest = [axis.info.set_position for axis in bus.axes]
+        bus.advance(0.5)
+        assert rest == [axis.info.set_position for axis in bus.axes] and not move.done
+        table.resume()
+        move.wait()
+        assert [axis.info.set_position for axis in bus.axes] == pytest.approx([0, 0])
+        with pytest.raises(cm1e.Error, match="Nothing is interrupted"):
+            table.resume()
 
 
 def test_sdo(bus):
