@@ -12,9 +12,13 @@ typedef enum loss { PAUSE = 0, LOST_OUT, LOST_BACK, LOSSES } loss_t;
 static const char *const loss_names[LOSSES] = {"pause", "frames lost on the way out", "frames lost on the way back"};
 
 /** What comes after it. */
-typedef enum order { GO_ON = 0, GROUP_STOP, GROUP_HALT, AXIS_STOP, POWER_OFF, NEXT_LINE, LOSS_AGAIN, ORDERS } order_t;
-static const char *const order_names[ORDERS] = {"nothing", "MC_GroupStop", "MC_GroupHalt", "MC_Stop of the heavy axis",
-                                                "MC_Power FALSE", "another line", "the same again"};
+typedef enum order {
+    GO_ON = 0, LOSS_AGAIN, INTERRUPT, GROUP_STOP, GROUP_HALT, AXIS_STOP, POWER_OFF, NEXT_LINE, ORDERS
+} order_t;
+static const char *const order_names[ORDERS] = {"nothing", "the same again", "MC_GroupInterrupt", "MC_GroupStop",
+                                                "MC_GroupHalt", "MC_Stop of the heavy axis", "MC_Power FALSE",
+                                                "another line"};
+static bool keeps_the_line(order_t given) { return given <= INTERRUPT; }
 
 enum { HEAVY = 0, OTHER, AXES, GROUPED = 240, ENABLED = 260, LAST = 900, ORDERED = 2100, END = 3600, STOP_HELD = 300 };
 static const double unit = 1000, acceleration_u = 3285, jerk_u = 127965; /* counts a unit; u/s2, u/s3 */
@@ -36,6 +40,8 @@ static MC_GroupReset_t reset_group;
 static MC_MoveLinearAbsolute_t line, next_line;
 static MC_GroupStop_t stop_group;
 static MC_GroupHalt_t halt_group;
+static MC_GroupInterrupt_t interrupt_group;
+static MC_GroupContinue_t continue_group;
 static MC_Stop_t stop_axis;
 static AXES_GROUP_REF_t group;
 static int left_path; /**< cycles in which the heavy axis was off its line, of all runs */
@@ -72,6 +78,8 @@ static void make_blocks(void)
                                           .BufferMode = mcAborting};
     stop_group = (MC_GroupStop_t){.AxesGroup = &group};
     halt_group = (MC_GroupHalt_t){.AxesGroup = &group};
+    interrupt_group = (MC_GroupInterrupt_t){.AxesGroup = &group};
+    continue_group = (MC_GroupContinue_t){.AxesGroup = &group};
     stop_axis = (MC_Stop_t){.Axis = &bench.axis[HEAVY]};
 }
 
@@ -80,9 +88,11 @@ static void give_order(int cycle)
     const bool now = cycle >= order_at(), held = now && cycle < order_at() + STOP_HELD;
     stop_group.Execute = order == GROUP_STOP && held;
     halt_group.Execute = order == GROUP_HALT && now;
+    interrupt_group.Execute = order == INTERRUPT && held;
+    continue_group.Execute = order == INTERRUPT && now && !held;
     stop_axis.Execute = order == AXIS_STOP && held;
     power[HEAVY].Enable = !(order == POWER_OFF && held);
-    next_line.Execute = order == NEXT_LINE ? now : cycle > ORDERED && order != GO_ON && order != LOSS_AGAIN;
+    next_line.Execute = order == NEXT_LINE ? now : cycle > ORDERED && !keeps_the_line(order);
     reset_group.Execute = cycle > ORDERED - 10 && (order == AXIS_STOP || order == POWER_OFF);
 }
 
@@ -104,6 +114,8 @@ static void call_blocks(int cycle)
     MC_MoveLinearAbsolute(&line);
     MC_GroupStop(&stop_group);
     MC_GroupHalt(&halt_group);
+    MC_GroupInterrupt(&interrupt_group);
+    MC_GroupContinue(&continue_group);
     MC_Stop(&stop_axis);
     MC_MoveLinearAbsolute(&next_line);
 }
@@ -115,8 +127,22 @@ static bool is_on_line(void)
     return fabs(bench_info(&bench, OTHER).set_position - bench_info(&bench, HEAVY).set_position * slope) < 1e-6;
 }
 
+/* From Done of MC_GroupInterrupt until MC_GroupContinue no set-point moves, also where an axis has left the path. */
+static void watch_rest(void)
+{
+    static double rest[AXES];
+    static bool rests;
+    for (uint32_t n = 0; n < AXES; n++) {
+        const double at = bench_info(&bench, n).set_position;
+        MUST(&bench, !rests || at == rest[n], "interrupted, axis %u moves by %g", n, at - rest[n]);
+        rest[n] = at;
+    }
+    rests = interrupt_group.Done && !continue_group.Execute;
+}
+
 static void watch(void)
 {
+    watch_rest();
     for (uint32_t n = 0; n < AXES; n++)
         fastest[n] = fmax(fastest[n], fabs(bench_probe(&bench, n).peak_velocity_counts_per_s));
     const bool on_line = is_on_line();
@@ -135,7 +161,7 @@ static void judge_place(uint32_t n, double place)
 
 static void judge_end(void)
 {
-    const bool goes_on = order == GO_ON || order == LOSS_AGAIN;
+    const bool goes_on = keeps_the_line(order);
     for (uint32_t n = 0; n < AXES; n++)
         MUST(&bench, fastest[n] < 1.01 * limit_u * unit, "axis %u: %.0f counts/s, %.2f of its maximum", n, fastest[n],
              fastest[n] / (limit_u * unit));

@@ -26,7 +26,9 @@ static struct grouped {
     MC_MoveCircularRelative_t circle;
     MC_GroupHalt_t halt;
     MC_GroupStop_t stop;
-    unsigned done, aborted, errors, resets;
+    MC_GroupInterrupt_t interrupt;
+    MC_GroupContinue_t go_on;
+    unsigned done, aborted, errors, resets, interrupted;
 } grouped;
 
 /** A second of every kind of motion, each waiting for, blended with or aborting the one before. */
@@ -46,6 +48,8 @@ static void group_program(void *context)
     g->blended.Execute = phase >= 12 && phase < 600;
     g->relative.Execute = phase >= 150 && phase < 600;
     g->circle.Execute = phase >= 160 && phase < 600;
+    g->interrupt.Execute = (phase >= 30 && phase < 60) || (phase >= 190 && phase < 220);
+    g->go_on.Execute = (phase >= 65 && phase < 70) || (phase >= 195 && phase < 200);
     g->halt.Execute = phase >= 400 && phase < 600;
     g->stop.Execute = phase >= 700 && phase < 800;
     g->reset.Execute = g->status.GroupErrorStop && phase % 100 < 50;
@@ -58,6 +62,8 @@ static void group_program(void *context)
     MC_MoveLinearAbsolute(&g->blended);
     MC_MoveLinearRelative(&g->relative);
     MC_MoveCircularRelative(&g->circle);
+    MC_GroupInterrupt(&g->interrupt);
+    MC_GroupContinue(&g->go_on);
     MC_GroupHalt(&g->halt);
     MC_GroupStop(&g->stop);
     MC_GroupDisable(&g->disable);
@@ -68,6 +74,7 @@ static void group_program(void *context)
     g->aborted += g->relative.CommandAborted + g->circle.CommandAborted;
     g->errors += g->status.GroupErrorStop;
     g->resets += g->reset.Done;
+    g->interrupted += g->go_on.Done;
 }
 
 START_TEST(test_an_axes_group_calls_nothing_of_that)
@@ -88,7 +95,8 @@ START_TEST(test_an_axes_group_calls_nothing_of_that)
     AXES_GROUP_REF_t **const references[] = {
         &g->enable.AxesGroup, &g->disable.AxesGroup, &g->reset.AxesGroup, &g->status.AxesGroup, &g->position.AxesGroup,
         &g->velocity.AxesGroup, &g->override.AxesGroup, &g->line.AxesGroup, &g->blended.AxesGroup,
-        &g->relative.AxesGroup, &g->circle.AxesGroup, &g->halt.AxesGroup, &g->stop.AxesGroup};
+        &g->relative.AxesGroup, &g->circle.AxesGroup, &g->halt.AxesGroup, &g->stop.AxesGroup,
+        &g->interrupt.AxesGroup, &g->go_on.AxesGroup};
     for (size_t i = 0; i < sizeof references / sizeof *references; i++)
         *references[i] = &g->group;
     for (int i = 0; i < AXES; i++) {
@@ -102,6 +110,7 @@ START_TEST(test_an_axes_group_calls_nothing_of_that)
     ck_assert_uint_ge(g->aborted, 100);
     ck_assert_uint_ge(g->errors, 10);
     ck_assert_uint_ge(g->resets, 1);
+    ck_assert_uint_ge(g->interrupted, 10);
     machine_close(&machine);
     ck_assert_int_eq(cm1e_group_destroy(g->group), CM1E_OK);
 }

@@ -313,7 +313,10 @@ static struct {
     MC_GroupEnable_t enable;
     MC_MoveLinearAbsolute_t line;
     MC_GroupStop_t stop;
-    int stop_at, rest_at;          /* cycles; 0: never */
+    MC_GroupInterrupt_t interrupt;
+    MC_GroupContinue_t go_on;
+    int stop_at, interrupt_at, go_on_at, rest_at; /* cycles; 0: never */
+    bool rested;                   /* MC_GroupInterrupt was Done before MC_GroupContinue */
     cm1e_group_info_t info;
     cm1e_axis_info_t seen[BUSES];  /* in the last cycle of the program */
     double at_rest[BUSES], latest; /* u; the position in cycle rest_at, and how far an axis went after it */
@@ -321,7 +324,8 @@ static struct {
 
 static void watch_rest(void)
 {
-    for (int i = 0; i < BUSES && run.cycle >= grouped.rest_at; i++) {
+    const bool rests = run.cycle >= grouped.rest_at && !(grouped.go_on_at && run.cycle > grouped.go_on_at);
+    for (int i = 0; i < BUSES && rests; i++) {
         const double at = see(i).set_position;
         if (run.cycle == grouped.rest_at)
             grouped.at_rest[i] = at;
@@ -346,6 +350,11 @@ static void grouped_program(void *context)
     MC_MoveLinearAbsolute(&grouped.line);
     grouped.stop.Execute = run.cycle == grouped.stop_at;
     MC_GroupStop(&grouped.stop);
+    grouped.interrupt.Execute = run.cycle == grouped.interrupt_at;
+    MC_GroupInterrupt(&grouped.interrupt);
+    grouped.rested = grouped.rested || grouped.interrupt.Done;
+    grouped.go_on.Execute = run.cycle == grouped.go_on_at;
+    MC_GroupContinue(&grouped.go_on);
     snprintf(line, sizeof line, "lose %d", run.lost);
     if (run.cycle == run.lose_at)
         must(cm1e_bus_simulate(buses[run.lost_bus], line, answer, sizeof answer));
@@ -356,19 +365,17 @@ static void grouped_program(void *context)
     must(cm1e_group_read(grouped.reference, &grouped.info));
 }
 
-static void run_group(int lost, int stop_at, int rest_at)
+static void play_group(int lost)
 {
     prepare();
-    memset(&grouped, 0, sizeof grouped);
     must(cm1e_group_create(&grouped.reference, NULL, &diag));
     for (int i = 0; i < BUSES; i++)
         grouped.add[i] = (MC_AddAxisToGroup_t){.AxesGroup = &grouped.reference, .Axis = &axes[i],
                                                .IdentInGroup = (MC_IDENT_IN_GROUP)(i + 1)};
     grouped.enable.AxesGroup = grouped.stop.AxesGroup = &grouped.reference;
+    grouped.interrupt.AxesGroup = grouped.go_on.AxesGroup = &grouped.reference;
     grouped.line = (MC_MoveLinearAbsolute_t){.AxesGroup = &grouped.reference, .Position = {10, 5}, .Velocity = 8,
                                              .Acceleration = 50, .Deceleration = 50};
-    grouped.stop_at = stop_at;
-    grouped.rest_at = rest_at;
     run.lost = lost;
     run.lose_at = lost ? 500 : 0;
     cm1e_scheduler_destroy(scheduler); /* that of prepare() has the other program */
@@ -379,6 +386,14 @@ static void run_group(int lost, int stop_at, int rest_at)
     must(cm1e_scheduler_add_task(scheduler, &(cm1e_task_config_t){.program = grouped_program}, &diag));
     must(cm1e_scheduler_run(scheduler, 4000 * MS_IN_NS, &diag));
     expect_no_leap();
+}
+
+static void run_group(int lost, int stop_at, int rest_at)
+{
+    memset(&grouped, 0, sizeof grouped);
+    grouped.stop_at = stop_at;
+    grouped.rest_at = rest_at;
+    play_group(lost);
 }
 
 static void close_group(void)
@@ -406,6 +421,26 @@ START_TEST(test_behind_a_stop_no_axis_goes_back_to_the_path)
     const double off_path = grouped.seen[A].set_position - 2 * grouped.seen[B].set_position;
     ck_assert_double_gt(fabs(off_path), 1e-3);
     ck_assert_double_lt(grouped.latest, 1e-12);
+    close_group();
+}
+END_TEST
+
+/* Interrupted before one bus is silent, and after it. */
+START_TEST(test_in_an_interruption_no_axis_goes_back_to_the_path)
+{
+    static const int moments[] = {490, 499, 501, 505, 530};
+    memset(&grouped, 0, sizeof grouped);
+    grouped.interrupt_at = moments[_i];
+    grouped.rest_at = 800;
+    grouped.go_on_at = 1500;
+    play_group(2);
+    ck_assert(grouped.rested);
+    ck_assert_double_lt(grouped.at_rest[A], 9.0);
+    ck_assert_double_gt(fabs(grouped.at_rest[A] - 2 * grouped.at_rest[B]), 1e-3); /* off the path */
+    ck_assert_double_lt(grouped.latest, 1e-12);
+    ck_assert_msg(grouped.line.Done && grouped.info.state == CM1E_GROUP_STANDBY, "%s; %s", text_of(A), text_of(B));
+    ck_assert_double_eq_tol(grouped.seen[A].set_position, 10.0, 1e-9);
+    ck_assert_double_eq_tol(grouped.seen[B].set_position, 5.0, 1e-9);
     close_group();
 }
 END_TEST
@@ -472,6 +507,7 @@ int main(void)
     tcase_add_test(all, test_the_event_log_says_on_which_bus_it_was);
     tcase_add_loop_test(all, test_a_group_across_buses_makes_up_what_one_of_them_loses, 0, 3);
     tcase_add_test(all, test_behind_a_stop_no_axis_goes_back_to_the_path);
+    tcase_add_loop_test(all, test_in_an_interruption_no_axis_goes_back_to_the_path, 0, 5);
     tcase_add_test(all, test_a_lost_bus_stops_the_whole_group);
     Suite *suite = suite_create("scheduler with several buses");
     suite_add_tcase(suite, all);
