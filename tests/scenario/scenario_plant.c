@@ -1,6 +1,7 @@
 /*
  * What seeds from 8,000,000,000 on add around the motors: gears with backlash, mailboxes that answer late, limit switches
- * at a terminal, motors behind a bridge that a string or a command moves, and what is read of a group.
+ * at a terminal, motors behind a bridge that a string or a command moves, what is read of a group, paths that are
+ * interrupted and go on, and direct motions of a group.
  */
 #include <math.h>
 #include <string.h>
@@ -88,6 +89,25 @@ static void read_group(scenario_t *scenario)
                                .source = pick(3), .mode = pick(4), .again = one_in(3) ? 2 + pick(300) : 0});
 }
 
+/** Some lines become direct motions, and some parts of paths are interrupted. */
+static void interrupt_paths(scenario_t *scenario)
+{
+    const double absolute = scenario_block("MC_MoveLinearAbsolute"), relative = scenario_block("MC_MoveLinearRelative");
+    for (int i = 0, count = scenario->step_count; i < count; i++) {
+        step_t *step = &scenario->steps[i];
+        if ((step->block != absolute && step->block != relative) || one_in(2))
+            continue;
+        const double at = step->at + 1 + pick(one_in(2) ? 20 : 300);
+        if (one_in(4))
+            step->block = scenario_block(step->block == absolute ? "MC_MoveDirectAbsolute" : "MC_MoveDirectRelative");
+        add(scenario, (step_t){.at = at, .block = scenario_block("MC_GroupInterrupt"), .hold = 1 + pick(600),
+                               .deceleration = one_in(2) ? 0 : step->deceleration});
+        if (!one_in(4))
+            add(scenario, (step_t){.at = at + 1 + pick(one_in(2) ? 40 : 500), .block = scenario_block("MC_GroupContinue"),
+                                   .hold = 1 + pick(100)});
+    }
+}
+
 /* ---- the faults -------------------------------------------------------------------------------------------------- */
 
 static void make_late_mailbox(scenario_t *scenario)
@@ -115,4 +135,5 @@ void scenario_plant(scenario_t *scenario)
         read_group(scenario);
     while (one_in(2))
         make_late_mailbox(scenario);
+    interrupt_paths(scenario);
 }

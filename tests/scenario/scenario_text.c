@@ -37,7 +37,8 @@ const char *const scenario_blocks[] = {
     "MC_StepReferenceFlyingSwitch", "MC_AbortPassiveHoming",
     "MC_ReadActualPosition", "MC_ReadActualVelocity", "MC_ReadActualTorque", "MC_ReadParameter", "MC_ReadBoolParameter",
     "MC_ReadAxisInfo", "MC_ReadDigitalInput", "MC_ReadDigitalOutput", "CM_SendCML", "CM_SetMode", "CM_Command",
-    "MC_GroupReadPosition", "MC_GroupReadVelocity", "MC_GroupReadError", "MC_GroupReadConfiguration", NULL};
+    "MC_GroupReadPosition", "MC_GroupReadVelocity", "MC_GroupReadError", "MC_GroupReadConfiguration",
+    "MC_GroupInterrupt", "MC_GroupContinue", "MC_MoveDirectAbsolute", "MC_MoveDirectRelative", NULL};
 
 #define NUMBER(type, member) {#member, offsetof(type, member), NULL}
 #define WORD_OF(type, member, words) {#member, offsetof(type, member), words}
