@@ -16,7 +16,7 @@ static const struct {
     {CM1E_ERROR_UNSUPPORTED, "the text beside the error says what is missing; look at docs/FEATURES.md"},
     {CM1E_ERROR_CONFIG, "the text beside the error names line, column and key of the bus file"},
     {CM1E_ERROR_STATE, "call the functions in the order of their header"},
-    {CM1E_ERROR_CANCELLED, "start the bus again, then repeat it"},
+    {CM1E_ERROR_CANCELLED, "repeat it if it is still wanted; start a bus that was stopped first"},
     {CM1E_ERROR_FILE, "cm1e check FILE says what is wrong in it, and where"},
     {CM1E_ERROR_PROGRAM, "look for an endless loop, or for a call that waits, in the program; then start it again"},
     {CM1E_ERROR_BUS_NO_SLAVES,
