@@ -403,7 +403,7 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
         snprintf(text, sizeof text, "; values are compared by \"=\", and an assignment is a statement of its own");
     if (strcmp(parsing->last, "&") == 0 && strcmp(parsing->before, "&") == 0)
         snprintf(text, sizeof text, "; AND is a single \"&\"");
-    if (strcasecmp(parsing->last, "S") == 0 || strcasecmp(parsing->last, "R") == 0)
+    if (parsing->sets_bit)
         snprintf(text, sizeof text, "; is a \";\" missing before it? (S= and R= are not in the standard: write IF c THEN x := "
                  "%s; END_IF;)", strcasecmp(parsing->last, "S") == 0 ? "TRUE" : "FALSE");
     if (strcasecmp(parsing->last, "THEN") == 0)
