@@ -68,6 +68,7 @@ typedef struct witness {
     bool by_steps, by_drive;              /**< it homes by itself, or its drive does */
     bool stranger;                        /**< another device is in the place of its slave, */
     int stranger_from;                    /**< since this cycle */
+    unsigned excused;                     /**< rules of the bridge's guide that may be broken by now */
     int homing;                           /**< cycles since its drive homed */
     int error_at;                         /**< cycle in which it came into ErrorStop */
     cm1e_axis_state_t logged;             /**< last state that the log told, */

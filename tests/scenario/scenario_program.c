@@ -6,7 +6,7 @@
 
 enum { SELECT_AT = 3, ENABLE_AT = 5, GROUP_AT = 150 };
 /* Cycles of 1 ms at most; with shorter cycles they last as long. */
-enum { MEND_MS = 40, DOWN_MS = 40000, REST_MS = 40, RESET_MS = 10500, RESETS = 3, AGAIN_MS = 200, POWER_MS = 4000,
+enum { MEND_MS = 40, MEND_LATE_MS = 1200, DOWN_MS = 40000, REST_MS = 40, RESET_MS = 10500, RESETS = 3, AGAIN_MS = 200, POWER_MS = 4000,
        TEST_MS = 8000, OFF_MS = 3000 };
 #define TEST_COUNTS 2000.0
 #define NEAR_STOP 200000.0
@@ -369,8 +369,11 @@ static bool is_off(run_t *run, machine_axis_t *axis)
 
 static bool is_mended(run_t *run, machine_axis_t *axis)
 {
+    bool late = false; /* a switch of the mode that waits for a late mailbox fails within a second */
     (void)axis;
-    return run->cycle - run->phase_begin >= cycles_of(run, MEND_MS);
+    for (int i = 0; i < run->scenario->fault_count; i++)
+        late = late || run->scenario->faults[i].kind == FAULT_MAILBOX;
+    return run->cycle - run->phase_begin >= cycles_of(run, late ? MEND_LATE_MS : MEND_MS);
 }
 
 static void leave_group(run_t *run)
