@@ -299,17 +299,19 @@ END_TEST
 
 /* ---- what comes between while a motor is braked ----------------------------------------------------------------- */
 
-/* From so many cycles of torque on: frames that do not come back, or a pause of the master. */
-typedef struct interruption { int at, lost_frames; double pause_ms, load_inertia, deceleration, jerk; } interruption_t;
+/* From so many cycles of torque on: frames that do not come back, or a pause of the master. Or a software limit. */
+typedef struct interruption { int at, lost_frames; double pause_ms, load_inertia, deceleration, jerk, limit; } interruption_t;
 static const interruption_t interruptions[] = {
     {.at = 1, .lost_frames = 1}, {.at = 2, .lost_frames = 1}, {.at = 2, .lost_frames = 2}, {.at = 3, .lost_frames = 1},
     {.at = 8, .lost_frames = 2}, {.at = 3, .pause_ms = 50}, {.at = 3, .pause_ms = 5}, {.at = 20, .pause_ms = 50},
     {.at = 8, .pause_ms = 5, .jerk = 2000}, {.load_inertia = 1e-3, .deceleration = 2000},
+    {.limit = 4}, {.limit = 12}, /* units; the ramp takes 8 */
 };
 enum { INTERRUPTIONS = sizeof interruptions / sizeof interruptions[0], THROWN_AT = 40, THROWN_SPEED = 100000 };
 static const interruption_t *interruption;
 static double speed_when_on;
 static int on_after; /* cycles of torque */
+static bool ramp_began;
 
 static cm1e_tap_verdict_t lose_answers(bench_t *b, cm1e_tap_frame_t *frame)
 {
@@ -329,6 +331,13 @@ static void thrown_program(bench_t *b)
     torque_cycles += probe.torque_on;
     if (probe.torque_on && torque_cycles == interruption->at && interruption->pause_ms > 0)
         bench_miss(b, (int64_t)(interruption->pause_ms * 1e6));
+    const cm1e_axis_info_t info = bench_info(b, 0);
+    if (info.set_velocity != 0 && !ramp_began) {
+        ramp_began = true;
+        MUST(b, interruption->at > 0 || fabs(info.set_position - info.actual_position) < 0.015, "the ramp begins %.0f "
+             "counts from the motor", (info.set_position - info.actual_position) * 1000);
+    }
+    MUST(b, interruption->limit == 0 || info.actual_position < interruption->limit, "at %g", info.actual_position);
     MUST(b, probe.velocity_counts_per_s <= THROWN_SPEED, "driven to %.0f counts/s", probe.velocity_counts_per_s);
     if (power.Status && !came_on) {
         came_on = true;
@@ -339,8 +348,8 @@ static void thrown_program(bench_t *b)
         cm1e_scheduler_stop(b->scheduler);
 }
 
-/* The axis is on when the motor rests, wherever its ramp has ended; but a pause before the ramp ends with a standing
- * set-point. */
+/* The axis is on when the motor rests, wherever its ramp has ended; but behind a pause before the ramp, and before a
+ * software limit, the motor is caught by a standing set-point. */
 START_TEST(test_what_interrupts_the_braking_of_a_turning_motor)
 {
     interruption = &interruptions[_i % INTERRUPTIONS];
@@ -348,6 +357,8 @@ START_TEST(test_what_interrupts_the_braking_of_a_turning_motor)
     cm1e_axis_config_t *axis = &bench.config.axes[0];
     axis->max_deceleration = interruption->deceleration > 0 ? interruption->deceleration : 500;
     axis->max_jerk = interruption->jerk;
+    axis->software_limit_positive = interruption->limit;
+    axis->software_limit_negative = -interruption->limit;
     axis->sim = (cm1e_sim_axis_config_t){
         .no_stops = true, .load_inertia = interruption->load_inertia > 0 ? interruption->load_inertia : 3e-4};
     const size_t used = strlen(bench.scene);
@@ -356,11 +367,11 @@ START_TEST(test_what_interrupts_the_braking_of_a_turning_motor)
     bench.program = thrown_program;
     bench.fault = lose_answers;
     torque_cycles = 0;
-    came_on = false;
+    came_on = ramp_began = false;
     bench_open(&bench);
     bench_start(&bench);
     run_to_the_end();
-    const bool caught = interruption->pause_ms > 0 && interruption->at < 4;
+    const bool caught = (interruption->pause_ms > 0 && interruption->at < 4) || interruption->limit == 4;
     const double rests = axis->max_deceleration * 3 + 4500; /* counts/s */
     MUST(&bench, came_on, "the axis is not on: %s", text_at_end);
     MUST(&bench, caught || fabs(speed_when_on) < rests, "power is on at %.0f counts/s", speed_when_on);
