@@ -26,6 +26,7 @@ axes:
   - {{name: E, type: encoder}}
 """
 X, Y, Z, E = 1, 2, 3, 4
+VELOCITY_RANGE = -66  # CM1E_ERROR_AXIS_VELOCITY_RANGE
 
 
 def running(control="maintain"):
@@ -99,6 +100,7 @@ def check_jog():
     with running() as (client, _):
         enable(client, Y)
         expect(axis(client, Y)["held"] and axis(client, Y)["state"] == "Standstill", "enabled", axis(client, Y))
+        refused(client.ask("stop", axis=Y), "not moved through", "stop of an axis that is enabled and at rest")
         jog_for(client, Y, 0.5, 1.0)
         moved = axis(client, Y)
         expect(moved["state"] == "ContinuousMotion" and 0.3 < moved["position"] < 0.7, "a jog that is renewed", moved)
@@ -113,7 +115,9 @@ def check_jog():
         reply = client.ask("stop", axis=Y)
         expect(reply["ok"], "stop is refused", reply)
         wait_for(lambda: stands(client, Y), "after stop the motor goes on", 1)
-        refused(client.ask("jog", axis=Y, velocity=1e6), "elocity", "a velocity above that of the axis")
+        reply = client.ask("jog", axis=Y, velocity=1e6)
+        refused(reply, "elocity", "a velocity above that of the axis")
+        expect(reply["error"]["code"] == VELOCITY_RANGE, "the code of a velocity above that of the axis", reply)
         expect(client.ask("disable", axis=Y)["ok"], "disable")
         wait_for(lambda: not axis(client, Y)["powered"], "disable")
         expect(not axis(client, Y)["held"], "held after disable")

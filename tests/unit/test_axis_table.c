@@ -506,6 +506,47 @@ static void test_bus_lost_on_the_way_brakes(void)
     TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
 }
 
+/* The motor was near its maximum velocity, and gets back to its speed with what is left below that: the time of the table
+ * runs slower for a while. Its way stays, and it arrives a little later. */
+static void test_a_short_silence_makes_a_fast_table_later_and_nothing_else(void)
+{
+    pair_t pairs[] = {{second, 1.0}, {second, 2.0}};
+    int arrived[3], fastest_at = 0;
+    double fastest = 0.0;
+    (void)start(CM1E_COMMAND_POSITION_PROFILE, pairs, COUNT(pairs));
+    for (int n = 1; n <= 2000; n++) {
+        bench_cycles(1);
+        fastest_at = bench_info().set_velocity > fastest ? n : fastest_at;
+        fastest = fmax(fastest, bench_info().set_velocity);
+    }
+    const double most = axis->limits.maximum.velocity;
+    for (int i = 0; i < COUNT(pairs); i++)
+        pairs[i].value *= 0.99 * most / fastest;
+    for (int silent = 0; silent <= 2; silent++) {
+        bench_end();
+        setUp();
+        const cm1e_command_id_t id = start(CM1E_COMMAND_POSITION_PROFILE, pairs, COUNT(pairs));
+        cycles_within_limits(fastest_at);
+        received = CM1E_ERROR_TIMEOUT;
+        bench_cycles(silent);
+        received = CM1E_OK;
+        const double before = bench_info().set_position;
+        bench_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * most * axis->cycle_s, bench_info().set_velocity * axis->cycle_s,
+                                  bench_info().set_position - before);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * most, (silent ? 1.0 - 0.08 * silent : 0.99) * most, bench_info().set_velocity);
+        for (arrived[silent] = fastest_at + 1; bench_state_of(id) == CM1E_COMMAND_ACTIVE && arrived[silent] < 3000;
+             arrived[silent]++)
+            cycles_within_limits(1);
+        expect(id, CM1E_COMMAND_DONE, CM1E_OK);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, bench_info().set_velocity);
+        TEST_ASSERT_EQUAL_DOUBLE(pairs[1].value, bench_info().set_position);
+    }
+    TEST_ASSERT_EQUAL_INT(2000, arrived[0]);
+    TEST_ASSERT_TRUE(arrived[1] > arrived[0] && arrived[1] < arrived[0] + 50);
+    TEST_ASSERT_TRUE(arrived[2] > arrived[1] && arrived[2] < arrived[0] + 100);
+}
+
 /* ---- random ------------------------------------------------------------------------------------------------------ */
 
 static uint32_t seed;
@@ -575,6 +616,7 @@ int main(void)
     RUN_TEST(test_waiting_table_that_does_not_fit_fails_when_its_turn_comes);
     RUN_TEST(test_move_stop_and_power_off_at_every_cycle);
     RUN_TEST(test_bus_lost_on_the_way_brakes);
+    RUN_TEST(test_a_short_silence_makes_a_fast_table_later_and_nothing_else);
     RUN_TEST(test_random_tables_are_refused_or_kept_to_at_every_sample);
     return UNITY_END();
 }
