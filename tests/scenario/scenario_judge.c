@@ -300,7 +300,7 @@ static void judge_set_point(run_t *run, machine_axis_t *axis)
 }
 
 /** A turning shaft was enabled not long ago: the servo catches it, as hard as it can. */
-static bool is_caught(const run_t *run, const machine_axis_t *axis)
+bool is_caught(const run_t *run, const machine_axis_t *axis)
 {
     return axis->seen.caught < cycles_of(run, CATCH_MS);
 }
@@ -583,8 +583,6 @@ static void judge_log(run_t *run)
 
 static const char *const drive_homings[] = {"MC_Home", NULL}, *const shifts[] = {"MC_SetPosition", NULL};
 static const char *const superimposed[] = {"MC_MoveSuperimposed", NULL};
-static const char *const mode_switches[] = {"CM_SetMode", NULL};
-static const char *const own_motions[] = {"CM_SendCML", "CM_Command", NULL};
 
 void judge_begin(run_t *run)
 {
@@ -601,38 +599,6 @@ void judge_begin(run_t *run)
         for (int i = 0; i < run->scenario->step_count; i++) /* its place in the gap is mended slowly */
             seen->unseen = seen->unseen || (run->scenario->steps[i].source != 0 && (int)run->scenario->steps[i].master == n);
     }
-}
-
-bool moves_by_itself(const machine_axis_t *axis)
-{
-    return axis->seen.by_itself && (axis->info.mode == MODE_CML || axis->info.mode == MODE_CMD);
-}
-
-/** Rules of the bridge's guide (cm1e/sim.h). An output may be written when the motor has lost its power; a motor that still
- *  turns gets a target that goes with it; one that stands behind its set-point by more than position_lag gets its own
- *  position; and CM_SetMode may insist on a way that the guide warns of. */
-static void judge_rules(run_t *run, machine_axis_t *axis)
-{
-    const unsigned turns = is_caught(run, axis) ? CM1E_SIM_STEP_AT_START : 0u;
-    const unsigned lags = axis->info.error == CM1E_ERROR_AXIS_LAG ? CM1E_SIM_STEP_IN_CYCLE : 0u;
-    const unsigned insists = program_has(run->scenario, axis->number, mode_switches) ? CM1E_SIM_MODE_NO_WAY : 0u;
-    axis->seen.excused |= CM1E_SIM_OUTPUT_IN_VAIN | turns | lags | insists;
-    if ((axis->probe.broken_rules & ~axis->seen.excused) != 0)
-        scenario_fail(run, "rules", "%s (%s): rules of the bridge's guide are broken: 0x%03X", axis->name,
-                      cm1e_axis_state_name(axis->info.state), axis->probe.broken_rules);
-}
-
-/** It has other limits than its axis, and gets another origin. */
-static void judge_own_motion(run_t *run, machine_axis_t *axis)
-{
-    if (!moves_by_itself(axis))
-        return;
-    axis->seen.kept = false;
-    if (axis->probe.torque_on)
-        axis->seen.pushed_until = run->cycle;
-    if (axis->power.Status || axis->info.powered)
-        scenario_fail(run, "own-motion", "%s (%s) is in a mode in which its motor moves by itself, and shows power",
-                      axis->name, cm1e_axis_state_name(axis->info.state));
 }
 
 /** A distance of a modulo axis counts in the nearer direction. */
@@ -675,8 +641,7 @@ void judge_cycle(run_t *run)
         judge_set_point(run, axis);
         if (!is_motor(axis))
             continue;
-        judge_rules(run, axis);
-        judge_own_motion(run, axis);
+        judge_bridge(run, axis);
         judge_load(run, axis);
         judge_still(run, axis);
         judge_speed(run, axis);

@@ -209,8 +209,8 @@ void judge_look(run_t *run);
 void judge_cycle(run_t *run);
 void judge_end(run_t *run);
 bool at_rest(const machine_axis_t *axis);
-/** In CML or CMD, while its axis is Disabled: a motor of which the program has such commands. */
-bool moves_by_itself(const machine_axis_t *axis);
+/** A turning shaft was enabled not long ago: the servo catches it, as hard as it can. */
+bool is_caught(const run_t *run, const machine_axis_t *axis);
 /** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
 bool was_disturbed(const run_t *run, const witness_t *seen);
 
@@ -223,6 +223,13 @@ void judge_blocks(run_t *run);
 
 /** Two numbers are the same but for rounding, where numbers are as large as `largest`. */
 bool close_to(double one, double other, double largest);
+
+/* ---- scenario_judge_bridge.c ------------------------------------------------------------------------------------- */
+
+extern const char *const own_motions[]; /**< strings and commands that may move a motor */
+/** In CML or CMD, while its axis is Disabled: a motor of which the program has such commands. */
+bool moves_by_itself(const machine_axis_t *axis);
+void judge_bridge(run_t *run, machine_axis_t *axis);
 
 /* ---- scenario_judge_reading.c ------------------------------------------------------------------------------------ */
 

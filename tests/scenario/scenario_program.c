@@ -389,11 +389,11 @@ static void leave_group(run_t *run)
 /** From some modes of a bridge only its power leads back, and an error in CML is ended by it, or by a string. */
 static void leave_modes(run_t *run)
 {
-    static const char *const changers[] = {"CM_SetMode", "CM_Command", NULL};
+    static const char *const changers[] = {"CM_SetMode", "CM_Command", NULL}, *const strings[] = {"CM_SendCML", NULL};
     for (int n = 0; n < run->scenario->axis_count; n++) {
         const machine_axis_t *axis = &run->axes[n];
         char order[40], answer[200];
-        const bool fails_in_cml = axis->info.state == CM1E_AXIS_ERROR_STOP && axis->info.mode == MODE_CML;
+        const bool fails_in_cml = axis->info.state == CM1E_AXIS_ERROR_STOP && program_has(run->scenario, n, strings);
         if (axis->channel == 0 || !(program_has(run->scenario, n, changers) || fails_in_cml))
             continue;
         snprintf(order, sizeof order, "power-cycle %u 10", axis->position);
