@@ -80,7 +80,7 @@ static bool step(cm1e_axis_t *axis)
         return stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
     c->end_of_profile = false;
     c->now->function->evaluate(axis, c->now, &f);
-    if (c->catch_up.on || axis->superimposed.id || coupling_approaches(axis) ||
+    if (coupling_gives_way(axis) || axis->superimposed.id ||
         !cm1e_axis_well_within(axis, &f, coupling_keeps_jerk(c))) {
         const guard_t guard = cm1e_coupled_judge(axis, &f, &sum);
         if (guard.limit)

@@ -250,7 +250,7 @@ CM1E_RARE guard_t cm1e_coupled_judge(cm1e_axis_t *axis, const from_t *f, from_t 
     *next = *f;
     if (axis->superimposed.id)
         *next = with_superimposed(axis, f, &verdict);
-    else if (axis->coupling->catch_up.on || coupling_approaches(axis))
+    else if (coupling_gives_way(axis))
         *next = with_catch_up(axis, f, &verdict);
     else
         return cm1e_axis_look_closely(axis, f, coupling_keeps_jerk(axis->coupling));

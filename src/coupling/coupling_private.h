@@ -269,6 +269,12 @@ static inline bool coupling_approaches(const cm1e_axis_t *follower)
 {
     return follower->setpoint.synchronizing && !follower->coupling->stopping;
 }
+/** Whether the slave gives way to its maximum velocity, acceleration and jerk: it has something to make up, or
+ *  approaches. In step it follows exactly or not at all. */
+static inline bool coupling_gives_way(const cm1e_axis_t *follower)
+{
+    return follower->coupling->catch_up.on || coupling_approaches(follower);
+}
 /** Puts the coupling `follow` in force. The difference to the state `from` becomes the catch-up. The caller changes the
  *  active command. */
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);

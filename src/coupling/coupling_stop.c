@@ -61,18 +61,26 @@ bool cm1e_coupling_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t troubl
     return true;
 }
 
-/* u/s2 of the slave: the deceleration with which master and slave can brake together. 0: they cannot. */
-static double braking_together(const cm1e_axis_t *axis)
+/* A slave that still gets in step has no ratio to keep: both brake with their own ramps. If the master braked no harder
+ * than the ratio allows, it could go on for minutes after its slave has stopped. */
+static bool gets_in_step(const coupling_t *c)
+{
+    return !c->now->in_step || (c->catch_up.on && !c->catch_up.made_up);
+}
+
+/* u/s2 of the slave: its deceleration if its master is braked too. 0: the master is not. */
+static double braking_with_master(const cm1e_axis_t *axis)
 {
     const follow_t *follow = axis->coupling->now;
     const link_t *link = &follow->links[0];
-    const double slope = follow->function->steepest(axis, follow, 0);
+    const double own = axis->limits.emergency.deceleration, slope = follow->function->steepest(axis, follow, 0);
     if (follow->count != 1 || link->source != mcSetValue || !set_points_move(link->master) || !(slope > 0.0))
         return 0.0;
-    return fmin(axis->limits.emergency.deceleration, link->master->limits.emergency.deceleration * slope);
+    return gets_in_step(axis->coupling) ? own : fmin(own, link->master->limits.emergency.deceleration * slope);
 }
 
-/* The limit that the slave would break if both went on for another cycle before they brake. */
+/* The limit that the slave would break if both went on for another cycle before they brake. A slave that gives way
+ * breaks no maximum velocity. */
 static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
 {
     const double t = axis->cycle_s, v = axis->setpoint.velocity + axis->setpoint.acceleration * t;
@@ -84,7 +92,7 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
     const double toward = axis->setpoint.acceleration * v;
     const bool eases = coupling_keeps_jerk(axis->coupling) && toward > 0.0;
     const double peak = fabs(v) + (eases ? a * a * axis->guarding.ease : 0.0);
-    if (peak > most)
+    if (peak > most && !coupling_gives_way(axis))
         return (guard_t){.limit = GUARD_VELOCITY, .asked = peak, .allowed = most};
     if (axis->limits.software_limits && ((v > 0.0 && end > axis->limits.upper) ||
                                          (v < 0.0 && end < axis->limits.lower)))
@@ -93,19 +101,12 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
     return (guard_t){.limit = GUARD_KEPT};
 }
 
-/* A slave that still gets in step has no ratio to keep: both brake with their own ramps. If the master braked no harder
- * than the ratio allows, it could go on for minutes after its slave has stopped. */
-static bool gets_in_step(const coupling_t *c)
-{
-    return !c->now->in_step || (c->catch_up.on && !c->catch_up.made_up);
-}
-
 void cm1e_coupling_keep_ratio(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     if (!keeps_ratio(axis) || c->stopping || c->phase.velocity != 0.0) /* a phase shift ends by itself */
         return;
-    const double braking = braking_together(axis);
+    const double braking = braking_with_master(axis);
     const guard_t guard = braking > 0.0 ? limit_ahead(axis, braking) : (guard_t){.limit = GUARD_KEPT};
     if (!guard.limit)
         return;

@@ -342,6 +342,8 @@ static void test_a_slave_that_is_not_in_gear_yet_does_not_keep_its_master_turnin
     axes_describe(2);
     axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
     axes_config(SLAVE)->max_deceleration = 5.0;
+    axes_config(SLAVE)->software_limit_negative = -10.0;
+    axes_config(SLAVE)->software_limit_positive = 10.0;
     axes_make();
     axes_enable_all();
     axes_move_velocity(MASTER, 20.0);
@@ -350,12 +352,41 @@ static void test_a_slave_that_is_not_in_gear_yet_does_not_keep_its_master_turnin
     axes_gear_in(SLAVE, MASTER, 30, 1);
     for (int n = 0; n < 20000 && axes_state(MASTER) != CM1E_AXIS_ERROR_STOP; n++)
         axes_cycles(1);
-    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "a velocity of");
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "the software limit at 10 u");
     failed(MASTER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
     int braking = 0;
     for (; braking < 20000 && axes_info(MASTER).set_velocity != 0.0; braking++)
         axes_cycles(1);
     TEST_ASSERT_LESS_THAN_INT(2000, braking);
+    axes_cycles(5000);
+    TEST_ASSERT_TRUE(axes_info(SLAVE).set_position <= 10.0 && axes_info(SLAVE).set_position > 9.0);
+}
+
+/* Into gear at nearly the maximum velocity, behind a master that is too fast, and from a large velocity into a gear of a
+ * small ratio, whose master would brake as gently as the ratio allows: no limit is broken, whatever coupling_stop says. */
+static void test_a_slave_that_gives_way_on_its_way_into_gear_stops_nobody(void)
+{
+    static const struct { double own, masters; uint32_t denominator; bool gets_there; } runs[] = {
+        {0.0, 7.99, 1, true}, {0.0, 12.0, 1, false}, {7.0, 0.5, 100, true},
+    };
+    for (int n = 0; n < 3; n++) {
+        axes_describe(2);
+        axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+        axes_config(SLAVE)->max_velocity = 8.0;
+        axes_config(SLAVE)->software_limit_negative = -20.0;
+        axes_config(SLAVE)->software_limit_positive = 20.0;
+        axes_make();
+        axes_enable_all();
+        if (runs[n].own != 0.0)
+            axes_move_velocity(SLAVE, runs[n].own);
+        axes_move_velocity(MASTER, runs[n].masters);
+        axes_cycles(1000);
+        const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, runs[n].denominator);
+        axes_cycles(1000);
+        axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+        axes_must_be(MASTER, CM1E_AXIS_CONTINUOUS_MOTION);
+        TEST_ASSERT_EQUAL(runs[n].gets_there, axes_status(SLAVE, gear).reached);
+    }
 }
 
 /* A master that brakes by its own error is followed to its standstill. */
@@ -413,6 +444,7 @@ int main(void)
     RUN_TEST(test_a_slave_beyond_a_software_limit_stands_and_is_led_back);
     RUN_TEST(test_the_ratio_is_kept_where_the_master_becomes_too_fast);
     RUN_TEST(test_a_slave_that_is_not_in_gear_yet_does_not_keep_its_master_turning);
+    RUN_TEST(test_a_slave_that_gives_way_on_its_way_into_gear_stops_nobody);
     RUN_TEST(test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails);
     RUN_TEST(test_a_ramp_that_is_too_steep_is_not_followed);
     return UNITY_END();
