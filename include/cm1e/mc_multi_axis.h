@@ -126,7 +126,7 @@ typedef struct MC_GearInPos_t {
     LREAL Jerk;                  /**< u/s3, 0 ... maximum; as Acceleration */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL StartSync;              /**< the approach has begun */
+    BOOL StartSync;              /**< the approach has begun, and InSync has not come yet */
     BOOL InSync;                 /**< the set position follows the ratio */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;

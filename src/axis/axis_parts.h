@@ -43,7 +43,7 @@ typedef struct pursuit {
 typedef struct setpoint {
     const source_t *source;         /**< cm1e_axis_set_source() */
     bool reached, positive_before;
-    bool synchronizing;             /**< it follows, but the approach is not over */
+    bool synchronizing;             /**< it follows after an approach, and was not in step yet */
     bool paused;                    /**< the profile ends before the target; the command waits (MC_SetOverride) */
     bool stands;                    /**< the base motion has ended, and only a superimposed one goes on */
     bool brakes_hard;               /**< the set-point is on a ramp without a limit of jerk */

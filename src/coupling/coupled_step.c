@@ -13,10 +13,16 @@
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
+/* A slave that is late at the end of its approach still synchronises, until it is in step for the first time. */
+static void show_synchronizing(cm1e_axis_t *axis)
+{
+    const coupling_t *c = axis->coupling;
+    cm1e_axis_set_synchronizing(axis, !c->now->in_step || (axis->setpoint.synchronizing && c->catch_up.on));
+}
+
 static void emit(cm1e_axis_t *axis, const from_t *point)
 {
     cm1e_axis_put_set_point(axis, point);
-    cm1e_axis_set_synchronizing(axis, !axis->coupling->now->in_step);
     if (!cm1e_position_in_range(axis->setpoint.position))
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
                        cm1e_axis_farthest(axis));
@@ -29,6 +35,7 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
         cm1e_catch_up_after(axis, f);
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
+    show_synchronizing(axis);
     cm1e_axis_set_reached(axis, !c->catch_up.on && c->now->in_step && coupling_sees_all(c->now));
     if (axis->setpoint.reached && axis->commands.waiting.count > 0 &&
         (!c->now->waits_for_end || c->end_of_profile || c->now->cam.left != 0.0)) {
@@ -173,7 +180,7 @@ static void begin_anew(cm1e_axis_t *axis)
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up;
     const bool comes_back = axis->mode == CM1E_MODE_CSP || axis->silence.silent_before > 0;
     cm1e_catch_up_begin(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back), across);
-    cm1e_axis_set_synchronizing(axis, !c->now->in_step);
+    show_synchronizing(axis);
     cm1e_axis_set_reached(axis, false);
 }
 
@@ -187,7 +194,7 @@ static void go_on_from_here(cm1e_axis_t *axis)
     if (cm1e_coupling_look(axis, c->now) != MASTER_GOOD && !c->stopping)
         return; /* the next set-point deals with it */
     cm1e_catch_up_begin(axis, &from, &asked, c->now->to_position || was_in_step, true);
-    cm1e_axis_set_synchronizing(axis, !c->now->in_step);
+    show_synchronizing(axis);
     cm1e_axis_set_reached(axis, false);
 }
 
@@ -208,4 +215,5 @@ void cm1e_coupling_first_set_point(cm1e_axis_t *axis)
     axis->coupling->now->function->evaluate(axis, axis->coupling->now, &f);
     const from_t point = cm1e_coupled_sum(axis, &f);
     emit(axis, &point);
+    show_synchronizing(axis);
 }

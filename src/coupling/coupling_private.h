@@ -263,8 +263,9 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
  *  axis. The actual value of a master has no limit of jerk, but the catch-up and a superimposed motion are plans of
  *  the axis. */
 static inline bool coupling_eases(const coupling_t *c) { return !c->now->linear && !c->stopping; }
-/** Whether the slave still approaches, or ends its approach in this cycle. Where the master asks for too much on the
- *  curve of the approach, the slave leaves the curve and makes up what it lags: it may be late then. */
+/** Whether the slave was not in step yet since its approach began, or ends its approach in this cycle. Where the master
+ *  asks for too much on the curve of the approach, the slave leaves the curve and makes up what it lags: it may be late
+ *  then. */
 static inline bool coupling_approaches(const cm1e_axis_t *follower)
 {
     return follower->setpoint.synchronizing && !follower->coupling->stopping;

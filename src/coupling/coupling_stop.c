@@ -63,9 +63,10 @@ bool cm1e_coupling_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t troubl
 
 /* A slave that still gets in step has no ratio to keep: both brake with their own ramps. If the master braked no harder
  * than the ratio allows, it could go on for minutes after its slave has stopped. */
-static bool gets_in_step(const coupling_t *c)
+static bool gets_in_step(const cm1e_axis_t *axis)
 {
-    return !c->now->in_step || (c->catch_up.on && !c->catch_up.made_up);
+    const catch_up_t *catch_up = &axis->coupling->catch_up;
+    return axis->setpoint.synchronizing || (catch_up->on && !catch_up->made_up);
 }
 
 /* u/s2 of the slave: its deceleration if its master is braked too. 0: the master is not. */
@@ -76,7 +77,7 @@ static double braking_with_master(const cm1e_axis_t *axis)
     const double own = axis->limits.emergency.deceleration, slope = follow->function->steepest(axis, follow, 0);
     if (follow->count != 1 || link->source != mcSetValue || !set_points_move(link->master) || !(slope > 0.0))
         return 0.0;
-    return gets_in_step(axis->coupling) ? own : fmin(own, link->master->limits.emergency.deceleration * slope);
+    return gets_in_step(axis) ? own : fmin(own, link->master->limits.emergency.deceleration * slope);
 }
 
 /* The limit that the slave would break if both went on for another cycle before they brake. A slave that gives way
@@ -110,7 +111,7 @@ void cm1e_coupling_keep_ratio(cm1e_axis_t *axis)
     const guard_t guard = braking > 0.0 ? limit_ahead(axis, braking) : (guard_t){.limit = GUARD_KEPT};
     if (!guard.limit)
         return;
-    c->stopping = !gets_in_step(c);
+    c->stopping = !gets_in_step(axis);
     fail_with(c->now->links[0].master, axis,
               c->stopping ? braking / c->now->function->steepest(axis, c->now, 0) : INFINITY);
     cm1e_axis_guard_fail(axis, guard);
