@@ -156,6 +156,13 @@ static double jerk_of_attempt(const cm1e_axis_t *axis, const from_t *f, attempt_
     return part_of_jerk_left[attempt] * rest_of(asked, axis->limits.maximum.jerk, cm1e_coupling_jerk(axis, f));
 }
 
+/* u/s2; the acceleration at the end of a cycle, into which it changes evenly from `a`, that is the maximum where the
+ * velocity changes its sign. Before, it may be the maximum deceleration. */
+static double passing_zero(double v, double a, double most, double t)
+{
+    return v < 0.0 && a > most ? a + (a * a - most * most) * t / (2.0 * v) : most;
+}
+
 /* u/s2; the largest acceleration at the end of a cycle, into which it changes evenly from `a`, with which the axis has
  * room then (has_room()), and its jerk can end the acceleration before the maximum velocity. */
 static double largest_acceleration(const cm1e_axis_t *axis, double v, double a)
@@ -165,7 +172,7 @@ static double largest_acceleration(const cm1e_axis_t *axis, double v, double a)
     if (v + a * t / 2.0 >= 0.0 && left < 0.0) /* it ends within the cycle: neither the end nor the mean is too fast */
         return smaller(2.0 * left / t, 6.0 * (most->velocity - v) / t - 2.0 * a);
     if (v + a * t / 2.0 >= 0.0)
-        return smaller(most->acceleration, sqrt(half * half + 2.0 * jerk * left) - half);
+        return smaller(passing_zero(v, a, most->acceleration, t), sqrt(half * half + 2.0 * jerk * left) - half);
     const double square = half * half + most->acceleration * most->acceleration - 2.0 * jerk * (v + a * t / 2.0);
     return smaller(most->deceleration, larger(most->acceleration, sqrt(square) - half));
 }
