@@ -10,7 +10,7 @@
 #include "coupling/coupling_private.h"
 #include "../support/random_master.h"
 
-enum { RUNS = 150, HISTORY = 4 };
+enum { RUNS = 150, HISTORY = 4, LARGEST_RATIO = 3 };
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }
@@ -26,7 +26,11 @@ static struct seen {
     double worst_acceleration, worst_jerk; /* of the limit */
 } seen;
 
+/* Of what a gear of the largest ratio can follow. */
+#define LARGEST_PART 0.95
+
 static int taken, stopped;
+static bool too_fast; /* the master: a command with less jerk than before makes it pass the velocity of the command */
 
 static void judge(const cm1e_axis_t *axis, const double step[3])
 {
@@ -80,6 +84,8 @@ static void cycles(int count, const random_master_t *master, bool onwards)
         else
             random_master_drive(master);
         axes_cycles(1);
+        too_fast = too_fast || fabs(axes_axis(0)->setpoint.velocity) * LARGEST_RATIO >
+                                   LARGEST_PART * axes_axis(1)->limits.maximum.velocity;
         look();
     }
 }
@@ -125,7 +131,8 @@ static bool start(const cm1e_axis_command_t *command)
 static bool gear(void)
 {
     const cm1e_axis_coupling_t coupling = {
-        .master = {{.axis = axes_reference(0), .numerator = 1 + pick(3), .denominator = 1 + (uint32_t)pick(3)}}};
+        .master = {{.axis = axes_reference(0), .numerator = 1 + pick(LARGEST_RATIO),
+                    .denominator = 1 + (uint32_t)pick(3)}}};
     const cm1e_axis_command_t command = dynamics(CM1E_COMMAND_GEAR_IN, &coupling);
     return start(&command);
 }
@@ -197,10 +204,11 @@ static bool go(way_in_t way, const random_master_t *master)
 
 static void run(way_in_t way, const char *scene)
 {
-    const double part = way == CAMS || way == CAMS_BY_PLACE ? 1e-9 : 3.0;
+    const double part = way == CAMS || way == CAMS_BY_PLACE ? 1e-9 : LARGEST_RATIO;
     random_axes();
     axes_bench.run = scene;
-    random_master_t master = random_master_for(0, 1, part, uniform(0.2, way == PHASINGS ? 0.45 : 0.95));
+    too_fast = false;
+    random_master_t master = random_master_for(0, 1, part, uniform(0.2, way == PHASINGS ? 0.45 : LARGEST_PART));
     master.seldom = 20 + (unsigned)pick(300);
     const bool onwards = way == GEARS_IN_POSITION || way == CAMS_BY_PLACE;
     cycles(300 + pick(300), &master, onwards);
@@ -208,7 +216,7 @@ static void run(way_in_t way, const char *scene)
         taken += go(way, &master);
         cycles(300 + pick(1500), &master, onwards);
     }
-    stopped += axes_state(1) == CM1E_AXIS_ERROR_STOP;
+    stopped += axes_state(1) == CM1E_AXIS_ERROR_STOP && !too_fast; /* else it leaves the slave what it needs in step */
     axes_end();
 }
 
@@ -229,8 +237,7 @@ static void runs_of(way_in_t way, const char *name)
         run_seed(way, name, seed_of(i));
     printf("%s: %d begun, %d in ErrorStop at the end; acceleration %.9f, jerk %.9f of the limit\n", name, taken,
            stopped, seen.worst_acceleration, seen.worst_jerk);
-    if (!seeds_given())
-        TEST_ASSERT_EQUAL_INT(0, stopped); /* every master leaves the slave what it needs in step */
+    TEST_ASSERT_EQUAL_INT(0, stopped);
 }
 
 /* In these the slave turns round with all of its deceleration, which is larger than its acceleration. */
