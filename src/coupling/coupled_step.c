@@ -81,6 +81,7 @@ static bool step(cm1e_axis_t *axis)
     coupling_t *c = axis->coupling;
     from_t f, sum;
     const from_t *next = &f;
+    guard_t broken = {.limit = GUARD_KEPT};
     if (c->phasing.moving)
         cm1e_phasing_step(axis);
     if (has_to_stop(axis, cm1e_coupling_see(axis, c->now)))
@@ -89,7 +90,11 @@ static bool step(cm1e_axis_t *axis)
     c->now->function->evaluate(axis, c->now, &f);
     if (coupling_gives_way(axis) || axis->superimposed.id ||
         !cm1e_axis_well_within(axis, &f, coupling_keeps_jerk(c))) {
-        const guard_t guard = cm1e_coupled_judge(axis, &f, &sum);
+        guard_t guard = cm1e_coupled_judge(axis, &f, &sum);
+        if (guard.limit && cm1e_coupling_brakes_with_master(axis, guard)) {
+            broken = guard;
+            guard = cm1e_coupling_before_braking(axis, &f, &sum);
+        }
         if (guard.limit)
             return stop_alone(axis, guard);
         next = &sum;
@@ -100,7 +105,7 @@ static bool step(cm1e_axis_t *axis)
     if (axis_follows(axis))
         after_set_point(axis, &f);
     if (c->keeps_ratio && axis_follows(axis)) {
-        cm1e_coupling_keep_ratio(axis);
+        cm1e_coupling_keep_ratio(axis, broken);
         stand_with_masters(axis, &f);
     }
     if (next == &f) /* else the step to the next set-point is more than that of the coupling function */

@@ -400,9 +400,13 @@ void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double c
 void cm1e_coupling_failed(cm1e_axis_t *axis);
 /** Whether the axis, now in ErrorStop, follows a master that stops to its standstill. false: it has to stop alone. */
 bool cm1e_coupling_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t trouble);
-/** Called after every set-point: brakes master and slave together, if this is the last set-point from which that is
- *  possible. */
-void cm1e_coupling_keep_ratio(cm1e_axis_t *axis);
+/** Whether a slave in step that would break this limit brakes with its master instead, from the next cycle on. */
+bool cm1e_coupling_brakes_with_master(const cm1e_axis_t *axis, guard_t guard);
+/** Makes the set-point of the cycle before that, as near to the function as the velocity allows. */
+guard_t cm1e_coupling_before_braking(const cm1e_axis_t *axis, const from_t *f, from_t *next);
+/** Called after every set-point: brakes master and slave together because of the limit `broken`, or if this is the last
+ *  set-point from which they can stop before a software limit. */
+void cm1e_coupling_keep_ratio(cm1e_axis_t *axis, guard_t broken);
 
 /* coupling_text.c */
 /** Explains an error of couplings; false: it is no such error. `refused`: a command was refused; else the axis has

@@ -6,6 +6,7 @@
  * master brakes no harder than the slave can follow. So the braking begins a cycle before the limit, while the slave
  * can still follow. If it cannot follow, it brakes alone.
  */
+#include <math.h>
 #include <string.h>
 
 #include "axis/axis_events.h"
@@ -80,21 +81,12 @@ static double braking_with_master(const cm1e_axis_t *axis)
     return gets_in_step(axis) ? own : fmin(own, link->master->limits.emergency.deceleration * slope);
 }
 
-/* The limit that the slave would break if both went on for another cycle before they brake. A slave that gives way
- * breaks no maximum velocity. */
+/* The software limit that the slave would leave if both went on for another cycle before they brake. */
 static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
 {
     const double t = axis->cycle_s, v = axis->setpoint.velocity + axis->setpoint.acceleration * t;
-    const double most = axis->limits.system.velocity;
     const double line = cm1e_axis_line(axis, axis->setpoint.position) + (axis->setpoint.velocity + v) / 2.0 * t;
     const double end = line + v * fabs(v) / (2.0 * braking) + v * t;
-    /* In that cycle the acceleration may grow too, and the jerk needs time to end it. */
-    const double a = fabs(axis->setpoint.acceleration) + axis->guarding.jerk;
-    const double toward = axis->setpoint.acceleration * v;
-    const bool eases = coupling_keeps_jerk(axis->coupling) && toward > 0.0;
-    const double peak = fabs(v) + (eases ? a * a * axis->guarding.ease : 0.0);
-    if (peak > most && !coupling_gives_way(axis))
-        return (guard_t){.limit = GUARD_VELOCITY, .asked = peak, .allowed = most};
     if (axis->limits.software_limits && ((v > 0.0 && end > axis->limits.upper) ||
                                          (v < 0.0 && end < axis->limits.lower)))
         return (guard_t){.limit = GUARD_SOFTWARE_LIMIT, .asked = line,
@@ -102,17 +94,45 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
     return (guard_t){.limit = GUARD_KEPT};
 }
 
-void cm1e_coupling_keep_ratio(cm1e_axis_t *axis)
+/* u/s2 of the slave: its deceleration if it has to brake with its master. 0: it would brake alone, or does already. */
+static double braking(const cm1e_axis_t *axis)
+{
+    const coupling_t *c = axis->coupling;
+    const bool can = keeps_ratio(axis) && !c->stopping && c->phase.velocity == 0.0; /* a phase shift ends by itself */
+    return can ? braking_with_master(axis) : 0.0;
+}
+
+bool cm1e_coupling_brakes_with_master(const cm1e_axis_t *axis, guard_t guard)
+{
+    return guard.limit == GUARD_VELOCITY && !coupling_gives_way(axis) && braking(axis) > 0.0;
+}
+
+/* The ramp of both has no limit of jerk: so this set-point needs none either. Where the function itself is faster than
+ * the axis may be, by what its jerk makes of it in a cycle, the slave lags by that until the next one. */
+guard_t cm1e_coupling_before_braking(const cm1e_axis_t *axis, const from_t *f, from_t *next)
+{
+    *next = *f;
+    const guard_t guard = cm1e_axis_guard(axis, next, false);
+    if (guard.limit != GUARD_VELOCITY)
+        return guard;
+    next->velocity = copysign(axis->limits.maximum.velocity, f->velocity);
+    const double way = (axis->setpoint.velocity + next->velocity) / 2.0 * axis->cycle_s;
+    next->position = cm1e_position_plus(axis->setpoint.position, way * axis->position.scale);
+    return cm1e_axis_guard(axis, next, false);
+}
+
+void cm1e_coupling_keep_ratio(cm1e_axis_t *axis, guard_t broken)
 {
     coupling_t *c = axis->coupling;
-    if (!keeps_ratio(axis) || c->stopping || c->phase.velocity != 0.0) /* a phase shift ends by itself */
+    const double deceleration = braking(axis);
+    if (!(deceleration > 0.0))
         return;
-    const double braking = braking_with_master(axis);
-    const guard_t guard = braking > 0.0 ? limit_ahead(axis, braking) : (guard_t){.limit = GUARD_KEPT};
-    if (!guard.limit)
+    if (!broken.limit)
+        broken = limit_ahead(axis, deceleration);
+    if (!broken.limit)
         return;
     c->stopping = !gets_in_step(axis);
     fail_with(c->now->links[0].master, axis,
-              c->stopping ? braking / c->now->function->steepest(axis, c->now, 0) : INFINITY);
-    cm1e_axis_guard_fail(axis, guard);
+              c->stopping ? deceleration / c->now->function->steepest(axis, c->now, 0) : INFINITY);
+    cm1e_axis_guard_fail(axis, broken);
 }

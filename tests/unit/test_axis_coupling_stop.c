@@ -2,6 +2,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
+#include "../support/random_master.h"
 #include "../support/ordinary_witness.h"
 
 void setUp(void) {}
@@ -335,6 +336,91 @@ static void test_the_ratio_is_kept_where_the_master_becomes_too_fast(void)
     failed(MASTER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
 }
 
+/* What a run with a random master and a slave that it may be too fast for came to. */
+typedef struct fate {
+    int stopped;      /* cycle; 0: it has not */
+    bool with_master;
+    double worst;     /* counts of the slave beside its gear, from InGear to the standstill */
+} fate_t;
+
+static double beside_gear(position_t slave, position_t master, double ratio)
+{
+    const cm1e_axis_t *axis = axes_axis(SLAVE);
+    const double counts = cm1e_position_minus(axes_axis(MASTER)->setpoint.position, master);
+    return cm1e_position_minus(axis->setpoint.position, slave) -
+           counts / axes_axis(MASTER)->position.scale * ratio * axis->position.scale;
+}
+
+static fate_t random_run(cm1e_coupling_stop_t mode)
+{
+    fate_t fate = {0};
+    axes_describe(2);
+    for (int n = 0; n < 2; n++) {
+        axes_config(n)->max_velocity = uniform(5.0, 40.0);
+        axes_config(n)->max_acceleration = uniform(20.0, 200.0);
+        axes_config(n)->max_deceleration = one_in(2) ? 0.0 : uniform(20.0, 200.0);
+        axes_config(n)->max_jerk = uniform(300.0, 6000.0);
+        axes_config(n)->invert = one_in(2);
+    }
+    axes_config(SLAVE)->coupling_stop = mode;
+    axes_make();
+    axes_enable_all();
+    const int numerator = 1 + pick(3);
+    const uint32_t denominator = 1 + (uint32_t)pick(3);
+    const double ratio = (double)numerator / denominator;
+    random_master_t master = random_master_for(MASTER, SLAVE, ratio, 1.0);
+    if (one_in(2))
+        master.most.velocity = fmin(axes_config(MASTER)->max_velocity, master.most.velocity * 1.2);
+    position_t places[2] = {axes_axis(SLAVE)->setpoint.position, axes_axis(MASTER)->setpoint.position};
+    axes_gear_in(SLAVE, MASTER, numerator, denominator);
+    for (int n = 1; n < 5000; n++) {
+        if (!fate.stopped)
+            random_master_drive(&master);
+        axes_cycles(1);
+        if (!fate.stopped && axes_state(SLAVE) == CM1E_AXIS_ERROR_STOP) {
+            fate.stopped = n;
+            fate.with_master = axes_state(MASTER) == CM1E_AXIS_ERROR_STOP;
+        }
+        if (!axis_free(axes_axis(SLAVE)) && !axis_free(axes_axis(MASTER))) /* else it is where its motor is */
+            fate.worst = fmax(fate.worst, fabs(beside_gear(places[0], places[1], ratio)));
+    }
+    return fate;
+}
+
+/* A slave is as fast as it may be with any coupling_stop, and stops for the same reasons in the same cycle. */
+static bool stops_alike(unsigned seed)
+{
+    char words[40];
+    snprintf(words, sizeof words, "seed %u", seed);
+    chance_seed(seed);
+    const fate_t alone = random_run(CM1E_COUPLING_STOP_THIS);
+    chance_seed(seed);
+    const fate_t together = random_run(CM1E_COUPLING_STOP_KEEP_RATIO);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(alone.stopped, together.stopped, words);
+    TEST_ASSERT_EQUAL_MESSAGE(together.stopped != 0, together.with_master, words);
+    if (together.with_master)
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.2, 0.0, together.worst, words);
+    return together.with_master;
+}
+
+static void test_keep_ratio_stops_no_slave_that_could_go_on(void)
+{
+    TEST_ASSERT_TRUE(stops_alike(520)); /* the master passes the velocity of the slave within a cycle */
+    for (int run = 0; run < seed_count(100); run++)
+        (void)stops_alike(seed_of(run));
+}
+
+static void test_equal_axes_reach_their_maximum_velocity_together(void)
+{
+    begin(CM1E_COUPLING_STOP_KEEP_RATIO);
+    const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+    const double most = axes_axis(SLAVE)->limits.maximum.velocity;
+    axes_move_velocity(MASTER, most);
+    axes_cycles(5000);
+    TEST_ASSERT_EQUAL_DOUBLE(most, axes_info(SLAVE).set_velocity);
+    TEST_ASSERT_TRUE(axes_status(SLAVE, gear).reached);
+}
+
 /* A slave that still accelerates into its gear has no ratio to keep. The slave has a gentle deceleration, and the gear a
  * large ratio: what is right for the ratio would let the master go on for a minute. */
 static void test_a_slave_that_is_not_in_gear_yet_does_not_keep_its_master_turning(void)
@@ -443,6 +529,8 @@ int main(void)
     RUN_TEST(test_the_ratio_is_kept_to_the_standstill_before_a_software_limit);
     RUN_TEST(test_a_slave_beyond_a_software_limit_stands_and_is_led_back);
     RUN_TEST(test_the_ratio_is_kept_where_the_master_becomes_too_fast);
+    RUN_TEST(test_keep_ratio_stops_no_slave_that_could_go_on);
+    RUN_TEST(test_equal_axes_reach_their_maximum_velocity_together);
     RUN_TEST(test_a_slave_that_is_not_in_gear_yet_does_not_keep_its_master_turning);
     RUN_TEST(test_a_slave_that_gives_way_on_its_way_into_gear_stops_nobody);
     RUN_TEST(test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails);
