@@ -72,8 +72,9 @@ CM1E_API const char *cm1e_axis_name(AXIS_REF_t axis);
 /** Buffer size that is large enough for every text of cm1e_axis_error_text(). */
 enum { CM1E_AXIS_ERROR_TEXT_BYTES = 1024 };
 /** Writes the error of the axis as sentences: what happened, with which values, what to do. Without an error it writes
- *  why the last command was refused or the last homing could not start, and which values are allowed; "" if there was
- *  nothing of that. A buffer that is too small gets the beginning of the text. @rt block */
+ *  why the last command was refused or the last homing could not start, and which values are allowed; else that a slave
+ *  does not get in step, because its master is too fast for it; "" if there is nothing of that. A buffer that is too
+ *  small gets the beginning of the text. @rt block */
 CM1E_API void cm1e_axis_error_text(AXIS_REF_t axis, char *text, size_t size);
 
 #ifdef __cplusplus

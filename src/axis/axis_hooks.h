@@ -65,7 +65,8 @@ typedef struct coupling_hooks {
     bool (*phasing_status)(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_status_t *status);
     /** The distance that the last ended phase shift covered; 0: `id` is another command. */
     double (*phasing_covered)(const cm1e_axis_t *axis, cm1e_command_id_t id);
-    /** Explains why a command was refused (`refused`) or the axis has failed; false: it is no error of couplings. */
+    /** Explains why a command was refused (`refused`) or the axis has failed; false: it is no error of couplings.
+     *  CM1E_OK: why the axis does not get in step; false: nothing keeps it from that. */
     bool (*text)(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size);
     /** Explains what is wrong with the cam that was refused last. */
     void (*cam_text)(const cm1e_axis_t *axis, char *text, size_t size);

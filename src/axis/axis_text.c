@@ -325,6 +325,8 @@ void cm1e_axis_text(const cm1e_axis_t *axis, char *text, size_t size)
             refused_text(axis, text, size);
         else if (axis->not_set.error)
             cm1e_axis_not_set_text(axis, text, size);
+        else
+            (void)coupling_text(axis, CM1E_OK, false, text, size);
         return;
     }
     if (axis->fault.error == axis->drive.fault.error) {

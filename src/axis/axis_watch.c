@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "axis/axis_kind.h"
-#include "axis/axis_parts.h"
+#include "axis/axis_setpoint.h"
 #include "core/cache_line.h"
 
 void cm1e_axis_news(const cm1e_axis_t *axis, cm1e_axis_news_t *news)
@@ -36,7 +36,8 @@ const cm1e_device_error_t *cm1e_axis_device_error(const cm1e_axis_t *axis, uint1
 
 bool cm1e_axis_has_text(const cm1e_axis_t *axis)
 {
-    return axis->fault.error || axis->commands.refusal || axis->not_set.error;
+    const bool gets_in_step = axis_follows(axis) && !axis->setpoint.reached;
+    return axis->fault.error || axis->commands.refusal || axis->not_set.error || gets_in_step;
 }
 
 /** What rooms above the axis keep of it. */

@@ -25,7 +25,7 @@ CM1E_GUEST_API const char *cm1e_command_name(cm1e_command_kind_t kind);
 /** Meaning and cure of an error code of the axis's drive; NULL: not a code of its manual. @rt any */
 const cm1e_device_error_t *cm1e_axis_device_error(const cm1e_axis_t *axis, uint16_t code);
 
-/** Whether cm1e_axis_text() has a text. @rt cycle */
+/** false: cm1e_axis_text() has no text. @rt cycle */
 CM1E_GUEST_API bool cm1e_axis_has_text(const cm1e_axis_t *axis);
 /** Bytes of a copy of this axis, whole cache lines. @rt any */
 CM1E_GUEST_API size_t cm1e_axis_copy_bytes(const cm1e_axis_t *axis);

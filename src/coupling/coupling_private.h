@@ -409,8 +409,7 @@ guard_t cm1e_coupling_before_braking(const cm1e_axis_t *axis, const from_t *f, f
 void cm1e_coupling_keep_ratio(cm1e_axis_t *axis, guard_t broken);
 
 /* coupling_text.c */
-/** Explains an error of couplings; false: it is no such error. `refused`: a command was refused; else the axis has
- *  failed. */
+/** coupling_hooks_t.text. */
 bool cm1e_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size);
 
 #endif

@@ -1,4 +1,5 @@
 /* Sentences about couplings: why a command was refused, and why a coupling was lost. */
+#include <math.h>
 #include <stdio.h>
 
 #include "axis/axis_position.h"
@@ -93,6 +94,19 @@ static bool place_text(const cm1e_axis_t *axis, char *text, size_t size)
     return true;
 }
 
+/* A slave that gives way gets in step when its master leaves it the velocity for that; else it never does. */
+static bool too_slow_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const double most = axis->limits.maximum.velocity, next_to_nothing = 1e-4;
+    if (!axis->coupling || !axis_follows(axis) || !coupling_gives_way(axis) ||
+        fabs(axis->coupling->f_velocity) < most * (1.0 - next_to_nothing))
+        return false;
+    snprintf(text, size, "Axis \"%s\" is not in step: its master asks it for %.6g u/s, and its maximum is %.6g u/s. It "
+             "follows as fast as it may. Let the master be slower, or raise the maximum velocity of this axis.",
+             axis->config->name, fabs(axis->coupling->f_velocity), most);
+    return true;
+}
+
 static bool refusal_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size)
 {
     switch (error) {
@@ -126,6 +140,8 @@ bool cm1e_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refuse
         return true;
     const char *name = axis->config->name, *other = axis->followed->other_name;
     switch (error) {
+    case CM1E_OK:
+        return too_slow_text(axis, text, size);
     case CM1E_ERROR_AXIS_MASTER:
         snprintf(text, size, "Axis \"%s\": Master names no axis of its scheduler; expected the AXIS_REF of another "
                  "axis of a bus in this scheduler.", name);

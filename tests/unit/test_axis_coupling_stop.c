@@ -2,6 +2,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
+#include "axis/axis_watch.h"
 #include "../support/random_master.h"
 #include "../support/ordinary_witness.h"
 
@@ -472,6 +473,11 @@ static void test_a_slave_that_gives_way_on_its_way_into_gear_stops_nobody(void)
         axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
         axes_must_be(MASTER, CM1E_AXIS_CONTINUOUS_MOTION);
         TEST_ASSERT_EQUAL(runs[n].gets_there, axes_status(SLAVE, gear).reached);
+        TEST_ASSERT_EQUAL(runs[n].gets_there, !cm1e_axis_has_text(axes_axis(SLAVE)));
+        if (runs[n].gets_there)
+            TEST_ASSERT_EQUAL_STRING("", axes_text(SLAVE));
+        else
+            axes_told(SLAVE, "its master asks it for 12 u/s, and its maximum is 8 u/s");
     }
 }
 
