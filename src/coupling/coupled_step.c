@@ -144,6 +144,8 @@ const source_t cm1e_source_coupling = {
 
 /* ---- beginnings -------------------------------------------------------------------------------------------------- */
 
+static distance_rule_t rule_of(bool made_up) { return made_up ? DISTANCE_IS_MADE_UP : DISTANCE_IS_LOST; }
+
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked)
 {
     coupling_t *c = axis->coupling;
@@ -156,7 +158,7 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     cm1e_coupling_list_links(follow);
     c->now = follow;
     c->end_of_profile = c->stopping = c->due = false;
-    cm1e_catch_up_begin(axis, from, asked, c->now->to_position, false);
+    cm1e_catch_up_begin(axis, from, asked, rule_of(c->now->to_position), ALL_TOGETHER);
     cm1e_axis_set_source(axis, &cm1e_source_coupling);
     if (!followed)
         cm1e_axis_guard_renew(axis); /* else its numbers are of the present limits, and its course has ended above */
@@ -184,7 +186,8 @@ static void begin_anew(cm1e_axis_t *axis)
      * motor in CSV that went on by itself: it is not moved back. */
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up;
     const bool comes_back = axis->mode == CM1E_MODE_CSP || axis->silence.silent_before > 0;
-    cm1e_catch_up_begin(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back), across);
+    cm1e_catch_up_begin(axis, &from, &asked, rule_of(c->now->to_position || (was_in_step && comes_back)),
+                        across ? VELOCITY_FIRST : ALL_TOGETHER);
     show_synchronizing(axis);
     cm1e_axis_set_reached(axis, false);
 }
@@ -198,7 +201,7 @@ static void go_on_from_here(cm1e_axis_t *axis)
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up;
     if (cm1e_coupling_look(axis, c->now) != MASTER_GOOD && !c->stopping)
         return; /* the next set-point deals with it */
-    cm1e_catch_up_begin(axis, &from, &asked, c->now->to_position || was_in_step, true);
+    cm1e_catch_up_begin(axis, &from, &asked, rule_of(c->now->to_position || was_in_step), VELOCITY_FIRST);
     show_synchronizing(axis);
     cm1e_axis_set_reached(axis, false);
 }

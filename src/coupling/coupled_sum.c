@@ -180,24 +180,32 @@ static bool breaks_more_than_jerk(const cm1e_axis_t *axis, const from_t *sum)
     return cm1e_axis_guard(axis, sum, false).limit || lacks_room(axis, sum);
 }
 
+/* What the sum keeps in an attempt to go on otherwise: all limits but the jerk, or all but that and the acceleration
+ * behind the standstill (adds_too_much()). */
+typedef enum keeping { KEEPS_ALL_BUT_JERK = 0, MAY_ADD_TOO_MUCH } keeping_t;
+
+static bool keeps(const cm1e_axis_t *axis, const from_t *sum, keeping_t keeping)
+{
+    return !breaks_more_than_jerk(axis, sum) && (keeping == MAY_ADD_TOO_MUCH || !adds_too_much(axis, sum));
+}
+
 /* The superimposed motion goes on without jerk for a cycle, or, where the acceleration of the sum is too large, without
- * some of its own. It may pass its target then, and comes back. `adding`: it may add too much. false: that does not
- * help. */
-CM1E_RARE static bool goes_on_otherwise(cm1e_axis_t *axis, const from_t *f, const parts_t *before, bool adding,
+ * some of its own. It may pass its target then, and comes back. false: that does not help. */
+CM1E_RARE static bool goes_on_otherwise(cm1e_axis_t *axis, const from_t *f, const parts_t *before, keeping_t keeping,
                                         from_t *sum)
 {
     verdict_t verdict;
     put_back(axis, before);
     if (cm1e_axis_superimposed_hold(axis, false)) {
         *sum = with_catch_up(axis, f, &verdict);
-        if (!breaks_more_than_jerk(axis, sum) && (adding || !adds_too_much(axis, sum)))
+        if (keeps(axis, sum, keeping))
             return true;
     }
     put_back(axis, before);
     if (!cm1e_axis_superimposed_ease(axis))
         return false;
     *sum = with_catch_up(axis, f, &verdict);
-    return !breaks_more_than_jerk(axis, sum) && (adding || !adds_too_much(axis, sum));
+    return keeps(axis, sum, keeping);
 }
 
 /* With a superimposed motion, whose sum with the function breaks a limit: if it is the jerk alone, the superimposed
@@ -213,8 +221,8 @@ CM1E_RARE static from_t with_less(cm1e_axis_t *axis, const from_t *f, const part
         return planned;
     const bool breaks = breaks_more_than_jerk(axis, &planned);
     if (breaks || adds_too_much(axis, &planned)) {
-        if (goes_on_otherwise(axis, f, before, false, &sum) ||
-            (breaks && goes_on_otherwise(axis, f, before, true, &sum))) {
+        if (goes_on_otherwise(axis, f, before, KEEPS_ALL_BUT_JERK, &sum) ||
+            (breaks && goes_on_otherwise(axis, f, before, MAY_ADD_TOO_MUCH, &sum))) {
             *verdict = (verdict_t){.smooth = true};
             return sum;
         }

@@ -233,14 +233,14 @@ static bool is_something(const cm1e_motion_state_t *left)
 }
 
 /* A difference that is only rounding does not move the anchor, because it would add up. */
-void cm1e_catch_up_begin(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up,
-                         bool across)
+void cm1e_catch_up_begin(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked,
+                         distance_rule_t rule, catch_up_order_t order)
 {
     coupling_t *c = axis->coupling;
     from_t f;
     c->now->function->evaluate(axis, c->now, &f);
     double counts = cm1e_position_minus(from->position, f.position);
-    if (!made_up) {
+    if (rule == DISTANCE_IS_LOST) {
         if (fabs(counts) > rounding_counts)
             c->now->anchor = cm1e_position_plus(c->now->anchor, counts);
         counts = 0.0;
@@ -248,7 +248,8 @@ void cm1e_catch_up_begin(cm1e_axis_t *axis, const from_t *from, const cm1e_motio
     cm1e_axis_look_anew(axis);
     c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
-    c->catch_up = (catch_up_t){.asked = *asked, .made_up = made_up, .momentary = across && c->now->to_position,
+    c->catch_up = (catch_up_t){.asked = *asked, .made_up = rule == DISTANCE_IS_MADE_UP,
+                       .momentary = order == VELOCITY_FIRST && c->now->to_position,
                        .now = {counts / axis->position.scale, from->velocity - f.velocity,
                                from->acceleration - f.acceleration},
                        .held_back = f.acceleration != 0.0};

@@ -299,12 +299,20 @@ guard_t cm1e_coupled_judge(cm1e_axis_t *axis, const from_t *f, from_t *next);
 typedef enum attempt {
     AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITH_HALF_OF_IT, WITH_QUARTER_OF_IT, WITHOUT_JERK, ATTEMPTS
 } attempt_t;
-/** Begins the catch-up from the state `from`. `made_up` false: lost distance is not made up, and the coupling function
- *  begins at the position of the axis. `across`: a master on another bus may have changed its velocity at any place of
- *  a cam. Then the velocity comes first, with all that the cam leaves there, and the position after it, as at the
- *  beginning of a cam. */
-void cm1e_catch_up_begin(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up,
-                         bool across);
+/** What becomes of the distance between axis and coupling function at the beginning of a catch-up. */
+typedef enum distance_rule {
+    DISTANCE_IS_LOST = 0,          /**< it is not made up: the coupling function begins at the position of the axis */
+    DISTANCE_IS_MADE_UP,
+} distance_rule_t;
+/** What the catch-up of a cam brings to 0 first. */
+typedef enum catch_up_order {
+    ALL_TOGETHER = 0,              /**< position and velocity, within what the whole cam leaves of the limits */
+    VELOCITY_FIRST,                /**< with all that the cam leaves at this place: a master on another bus may have
+                                        changed its velocity anywhere in the cam */
+} catch_up_order_t;
+/** Begins the catch-up from the state `from`. */
+void cm1e_catch_up_begin(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked,
+                         distance_rule_t rule, catch_up_order_t order);
 /** Advances the catch-up by a cycle in which the coupling function comes to `f`. */
 void cm1e_catch_up_step(cm1e_axis_t *axis, const from_t *f, attempt_t attempt);
 /** Called after the set-point of a cycle with a catch-up: ends it, or plans it anew, if its profile has ended. */
