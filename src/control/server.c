@@ -220,8 +220,8 @@ static void turn_away(int fd, cm1e_error_t error, const char *text)
 {
     size_t length = 0;
     uint8_t *bytes = cm1e_message_write(cm1e_request_refuse(NULL, error, 0, text), &length);
-    if (bytes && send(fd, bytes, length, MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
-        length = 0; /* it is gone already */
+    if (bytes)
+        (void)send(fd, bytes, length, MSG_DONTWAIT | MSG_NOSIGNAL); /* it may be gone already */
     free(bytes);
     close(fd);
 }

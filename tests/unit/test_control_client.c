@@ -275,8 +275,11 @@ static void test_connections_that_cannot_be_made_say_why(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_control_connect(&control, name, NULL, &diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "is too long for a socket"), diag.text);
     TEST_ASSERT_NULL(control);
-    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_NOT_FOUND, cm1e_control_connect(&control, "/no/such/socket", NULL, &diag));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "/no/such/socket"), diag.text);
+    static const char *const sockets[] = {"/no/such/socket", "12x", "x12", "1234567890"}; /* no numbers of processes */
+    for (size_t i = 0; i < sizeof sockets / sizeof *sockets; i++) {
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_NOT_FOUND, cm1e_control_connect(&control, sockets[i], NULL, &diag));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, sockets[i]), diag.text);
+    }
     cm1e_in_task_begin();
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_STATE, cm1e_control_connect(&control, path, NULL, &diag));
     cm1e_in_task_end();
