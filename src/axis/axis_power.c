@@ -131,6 +131,7 @@ void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
     if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
         return;
     cm1e_axis_keep_torque(axis, axis->setpoint.velocity);
+    cm1e_axis_backlash_stop(axis); /* the drive has stopped at the last target that it has heard */
     cm1e_axis_pursuit_hold(axis);
     cm1e_axis_hold_here(axis);
 }
