@@ -83,10 +83,12 @@ static cm1e_error_t aim_velocity(const cm1e_axis_t *axis, const from_t *from, co
     return CM1E_OK;
 }
 
-/* ns; no less than a profile of this way takes, which may be too short for its velocity. */
-static int64_t profile_time(const driving_t *d, int64_t way)
+/* ns; no less than the profile takes with the values that the drive keeps. Its way may be too short for its speed. */
+static int64_t profile_time(const cm1e_axis_t *axis, const driving_t *d)
 {
-    return (int64_t)(1e9 * fmin((double)way / d->speed + d->speed / d->acceleration, 1e9));
+    const double way = (double)llabs((int64_t)d->target - axis->position.raw), speed = d->raw[0];
+    const double acceleration = d->raw[1] * (axis->config->acceleration_in_kpulses ? 1000.0 : 1.0);
+    return (int64_t)(1e9 * fmin(way / speed + speed / acceleration, 1e9));
 }
 
 cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move_t *move, driving_t *d)
@@ -113,11 +115,11 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
     d->speed = limits.velocity * scale;
     d->acceleration = acceleration;
     d->braking = braking;
-    d->profile_ns = profile_time(d, llabs((int64_t)d->target - axis->position.raw));
     const double values[2][DRIVE_PARAMETERS] = {{d->speed, braking}, {acceleration, braking}};
     for (int i = 0; i < DRIVE_PARAMETERS; i++)
         if (!parameter(axis, parameters[d->velocity_mode][i], values[d->velocity_mode][i], &d->raw[i]))
             return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+    d->profile_ns = d->velocity_mode ? 0 : profile_time(axis, d);
     return CM1E_OK;
 }
 
