@@ -281,7 +281,8 @@ static void judge_set_point(run_t *run, machine_axis_t *axis)
 {
     const axis_spec_t *spec = axis->spec;
     const double velocity = axis->info.set_velocity * spec->counts_per_unit, before = axis->seen.set_velocity;
-    const double change = is_braked_first(axis, velocity) ? 0 : fabs(velocity - before);
+    const bool braked_first = is_braked_first(axis, velocity);
+    const double change = braked_first ? 0 : fabs(velocity - before);
     const double most = fmax(spec->acceleration, spec->deceleration) * run->scenario->cycle_us * 1e-6;
     const bool by_drive = axis->info.state == CM1E_AXIS_HOMING && axis->seen.by_drive;
     /* Nobody can brake a motor that has no torque, that its bridge does not reach, or that a hard stop holds. */
@@ -289,7 +290,12 @@ static void judge_set_point(run_t *run, machine_axis_t *axis)
     const bool lied_to = by_velocity(spec) && axis->seen.caught < cycles_of(run, QUIET_MS);
     const bool gone = is_motor(axis) && axis->info.state == CM1E_AXIS_ERROR_STOP && velocity == 0 &&
                       (!axis->probe.torque_on || axis->channel > 0 || at_stop(axis));
+    /* Whatever has disturbed it: no axis that is Disabled begins to move but to brake. */
+    const bool begins = is_motor(axis) && axis->info.state == CM1E_AXIS_DISABLED && before == 0 && velocity != 0;
     axis->seen.set_velocity = velocity;
+    if (begins && !braked_first)
+        scenario_fail(run, "set-point", "%s: the set velocity of an axis that is Disabled is %.0f counts/s, its shaft turns at "
+                      "%.0f", axis->name, velocity, axis->probe.velocity_counts_per_s);
     if (change > most * (1 + 1e-6) + 1e-3 && !was_disturbed(run, &axis->seen) && !by_drive && !gone &&
         !lied_to)
         scenario_fail(run, "set-point", "%s (%s): the set velocity changes from %.3f to %.3f counts/s in a cycle, its limits "
