@@ -2,10 +2,10 @@
  * Backlash. Between the motor and its load is a gap of `gap` counts. A motor that pushes in the positive direction of
  * the axis is at the position of the load. One that pushes in the negative direction is a gap before it. `offset`, -gap
  * ... 0, is the position of the motor relative to the load. At a reversal the offset is ramped from one flank to the
- * other, in addition to the motion of the axis, whose maximum velocity leaves room for the ramp. Until the ramp ends, the
- * load is not where the set-point has it: it rests until the motor reaches the flank. Without our set-points (no torque,
- * homing by the drive) the offset is the one that the positions of the motor say: a ramp that ended on its way has not
- * moved the load. At the start the offset is unknown, and the positive flank is assumed to be closed.
+ * other, in addition to the motion of the axis, whose maximum velocity leaves room for the ramp. Until the ramp ends,
+ * the load is not where the set-point has it: it rests until the motor reaches the flank. Without our set-points (no
+ * torque, homing by the drive) the offset is the one that the positions of the motor say: a ramp that ended on its way
+ * has not moved the load. At the start the offset is unknown, and the positive flank is assumed to be closed.
  *
  * All other parts of the axis know only the load: its set-point, its actual position, its lag.
  */
@@ -53,8 +53,8 @@ static bool foreign(const cm1e_axis_t *axis)
 
 static double in_gap(const backlash_t *b, double place) { return fmax(-b->gap, fmin(place, 0.0)); }
 
-/* What the set-points had made of the offset is taken back at once, or where slaves follow the actual position, no faster
- * than they may cross the gap. */
+/* What the set-points had made of the offset is taken back at once, or where slaves follow the actual position, no
+ * faster than they may cross the gap. */
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts)
 {
     backlash_t *b = &axis->backlash;

@@ -203,7 +203,8 @@ typedef struct silence {
 typedef struct backlash {
     double velocity, acceleration; /**< of its compensation; counts/s, counts/s2 */
     double offset;                 /**< -gap ... 0: position of the motor relative to the load, as set-points have it */
-    double seen;                   /**< -gap ... 0: the same by the positions of the motor, which moves its load by a flank only */
+    double seen;                   /**< -gap ... 0: the same by the positions of the motor, which moves its load by a
+                                        flank only */
     double offset_velocity, target;
     double gap;                    /**< 0: no backlash */
 } backlash_t;
