@@ -272,8 +272,9 @@ static bool at_stop(const machine_axis_t *axis)
 static bool is_braked_first(const machine_axis_t *axis, double velocity)
 {
     const double sign = axis->spec->invert != 0 ? -1 : 1, shaft = sign * axis->probe.velocity_counts_per_s;
+    const double before = axis->seen.speeds[0]; /* what the drive has shown is a cycle older, and it may brake already */
     return is_motor(axis) && axis->info.state == CM1E_AXIS_DISABLED && axis->seen.set_velocity == 0 &&
-           velocity * shaft > 0 && fabs(velocity) < 1.02 * fabs(shaft) + SERVO_SPEED_COUNTS;
+           velocity * shaft > 0 && fabs(velocity) < 1.02 * fmax(fabs(shaft), before) + SERVO_SPEED_COUNTS;
 }
 
 /** The set-point itself knows no tolerance but that of its numbers. */
