@@ -291,8 +291,9 @@ static void judge_set_point(run_t *run, machine_axis_t *axis)
     const bool lied_to = by_velocity(spec) && axis->seen.caught < cycles_of(run, QUIET_MS);
     const bool gone = is_motor(axis) && axis->info.state == CM1E_AXIS_ERROR_STOP && velocity == 0 &&
                       (!axis->probe.torque_on || axis->channel > 0 || at_stop(axis));
-    /* Whatever has disturbed it: no axis that is Disabled begins to move but to brake. */
-    const bool begins = is_motor(axis) && axis->info.state == CM1E_AXIS_DISABLED && before == 0 && velocity != 0;
+    /* Whatever has disturbed it: an axis that got its torque not long ago begins nothing in Disabled but to brake. A ramp
+     * of before, which a pause had held, may go on. */
+    const bool begins = is_caught(run, axis) && axis->info.state == CM1E_AXIS_DISABLED && before == 0 && velocity != 0;
     axis->seen.set_velocity = velocity;
     if (begins && !braked_first)
         scenario_fail(run, "set-point", "%s: the set velocity of an axis that is Disabled is %.0f counts/s, its shaft turns at "
