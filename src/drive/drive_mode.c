@@ -264,7 +264,9 @@ void cm1e_drive_mode_step(cm1e_drive_t *drive)
     if (away && drive->change.known) /* it may have been switched off */
         cm1e_drive_mode_forget(drive);
     if (drive->change.phase != PHASE_WRITING && drive->change.phase != PHASE_READING) {
-        if (!away)
+        if (away)
+            drive->change.deadline_ns = 0; /* its time begins when it is there again */
+        else
             go_on(drive);
         return;
     }
