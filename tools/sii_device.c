@@ -50,9 +50,9 @@ int write_device(cm1e_bus_t *bus, uint16_t position, const input_t *image, const
                  const cm1e_sii_write_options_t *options)
 {
     cm1e_diag_t diag = {0};
+    catch_signals(); /* none of them breaks it off: half of an image is no SII */
     if (!write_backup(backup, present))
         return EXIT_FAILED;
-    catch_signals(); /* none of them breaks it off: half of an image is no SII */
     const cm1e_error_t error = cm1e_sii_write_device(bus, position, image->bytes, image->size, options, &diag);
     if (nothing_written(error))
         remove(backup);
