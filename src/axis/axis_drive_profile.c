@@ -135,7 +135,7 @@ cm1e_error_t cm1e_axis_drive_profile_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 static void enter(cm1e_axis_t *axis, drive_step_t step)
 {
     axis->set_aside.driving->step = step;
-    axis->set_aside.driving->step_ns = axis->now_ns;
+    axis->set_aside.driving->step_ns = axis->set_aside.driving->due_ns = axis->now_ns;
     cm1e_axis_watch_standstill(axis, &axis->set_aside.driving->standstill);
 }
 

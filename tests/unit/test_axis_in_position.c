@@ -582,6 +582,28 @@ static void test_a_motor_that_never_rests_at_the_target_of_its_drive_is_an_error
     }
 }
 
+/* Also where the profile is shorter than a cycle, the motor has its time to come to rest. */
+static void test_a_tiny_move_of_the_drive_has_that_time_too(void)
+{
+    for (int counts = 1; counts < 12; counts++) {
+        bench_end();
+        fake_bus_init(&bus, CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.config.axes[0].motion = CM1E_MOTION_DRIVE;
+        bus.config.axes[0].max_acceleration = bus.config.axes[0].max_deceleration = 600.0;
+        bus.world = drive_lies;
+        swings_left = 0;
+        bench_create();
+        bench_enable();
+        bench_cycles(2500);
+        const cm1e_command_id_t id = bench_move_by(counts / 50000.0, 0.1);
+        for (int n = 0; n < 1000 && bench_state_of(id) == CM1E_COMMAND_ACTIVE; n++)
+            bench_cycles(1);
+        char text[64];
+        snprintf(text, sizeof text, "%d counts", counts);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_COMMAND_DONE, bench_state_of(id), text);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -611,5 +633,6 @@ int main(void)
     RUN_TEST(test_homing_waits_for_the_motor_too);
     RUN_TEST(test_a_motor_that_turns_is_not_at_the_target_of_its_drive);
     RUN_TEST(test_a_motor_that_never_rests_at_the_target_of_its_drive_is_an_error);
+    RUN_TEST(test_a_tiny_move_of_the_drive_has_that_time_too);
     return UNITY_END();
 }
