@@ -37,11 +37,13 @@ static const cm1e_io_type_row_t *type_of(const cm1e_signal_config_t *signal)
     return signal->type_stated && (unsigned)signal->type < CM1E_IO_TYPE_COUNT ? &cm1e_io_types[signal->type] : NULL;
 }
 
-/* 0: only the slave knows. */
+/* 0: only the slave knows. An object may have fewer bits than its type, but for BOOL, REAL and LREAL. */
 static unsigned bits_of(const cm1e_signal_config_t *signal)
 {
     const cm1e_io_type_row_t *type = type_of(signal);
-    return signal->bits ? signal->bits : type ? type->bits : signal->index ? 0 : 1;
+    if (signal->index)
+        return type && (type->bits == 1 || type->is_real) ? type->bits : 0;
+    return signal->bits ? signal->bits : type ? type->bits : 1;
 }
 
 static bool is_counter(const cm1e_signal_config_t *signal)

@@ -22,9 +22,10 @@ static cm1e_error_t load(const char *axes)
                                             "  - name: mixed\n    position: 4\n"
                                             "    inputs: [{name: bit, bit: 0}, {name: byte, bit: 8, bits: 8}, "
                                             "{name: object, object: 0x6000:01}, {name: real, bit: 16, type: REAL}, "
-                                            "{name: long, bit: 48, bits: 65}]\n"
+                                            "{name: long, bit: 48, bits: 65}, "
+                                            "{name: narrow, object: 0x6000:02, type: USINT}]\n"
                                             "    outputs: [{name: lamp, bit: 0}, {name: level, object: 0x7000:01, "
-                                            "type: UINT}]\n"));
+                                            "type: REAL}]\n"));
     TEST_ASSERT_EQUAL(0, fclose(file));
     return cm1e_bus_config_load(&config, temporary, &diag);
 }
@@ -85,7 +86,7 @@ static void test_wrong_keys_are_told_with_their_place(void)
         {"  - {outputs: {signals: [mixed.bit]}}\n", ":2:25: ", "has 'mixed.bit', which is an input of its slave"},
         {"  - {inputs: {signals: [mixed.byte]}}\n", ":2:24: ", "has 8 bits; expected a signal of a single bit"},
         {"  - {inputs: {signals: [MIXED.Real]}}\n", ":2:24: ", "has 32 bits"},
-        {"  - {outputs: {signals: [mixed.level]}}\n", ":2:25: ", "has 16 bits"},
+        {"  - {outputs: {signals: [mixed.level]}}\n", ":2:25: ", "has 32 bits"},
         {"  - {type: encoder, encoder_signal: mixed.bit, limits: {velocity: 5}}\n", ":2:37: ", "is no counter"},
         {"  - {type: encoder, encoder_signal: mixed.real, limits: {velocity: 5}}\n", ":2:37: ", "is no counter"},
         {"  - {type: encoder, encoder_signal: mixed.long, limits: {velocity: 5}}\n", ":2:37: ", "is no counter"},
@@ -103,7 +104,8 @@ static void test_wrong_keys_are_told_with_their_place(void)
 static void test_signals_that_may_fit_are_left_to_the_bus(void)
 {
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(
-        "  - {inputs: {signals: [mixed.bit, mixed.object, mixed.input 2]}, outputs: {signals: [mixed.lamp]}}\n"
+        "  - {inputs: {signals: [mixed.bit, mixed.object, mixed.input 2, mixed.narrow]}, "
+        "outputs: {signals: [mixed.lamp]}}\n"
         "  - {type: encoder, encoder_signal: mixed.byte, limits: {velocity: 5}}\n"
         "  - {type: encoder, encoder_signal: mixed.object, limits: {velocity: 5}}\n"), diag.text);
 }
