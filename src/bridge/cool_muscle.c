@@ -150,6 +150,13 @@ static uint32_t *place_of(cool_muscle_t *muscle, uint32_t ticket)
     return &muscle->unsaid[ticket % CM1E_DRIVE_CML_QUEUE];
 }
 
+/* Whether the string at the place of this ticket has failed, and the axis has not said why yet: it does in its step. */
+static bool is_unsaid(const cm1e_axis_t *axis, uint32_t ticket)
+{
+    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml_of(axis), *place_of(axis->muscle, ticket));
+    return request && request->state == CM1E_DRIVE_CML_ERROR;
+}
+
 cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size, int64_t timeout_ns, bool allow_motion,
                                 uint32_t *ticket)
 {
@@ -160,8 +167,8 @@ cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size
     cm1e_error_t error = check(axis, true);
     if (error == CM1E_OK)
         error = check_string(axis, copy, allow_motion, &why);
-    if (error == CM1E_OK && *place_of(axis->muscle, cml_of(axis)->next) != 0)
-        error = CM1E_ERROR_FULL; /* the end of the one that had its place is reported in this cycle */
+    if (error == CM1E_OK && is_unsaid(axis, cml_of(axis)->next))
+        error = CM1E_ERROR_FULL;
     if (error == CM1E_OK)
         error = cm1e_drive_cml_send(cml_of(axis), copy, timeout_ns, ticket);
     if (error != CM1E_OK)
@@ -190,8 +197,8 @@ cm1e_axis_cml_t cm1e_axis_cml_state(const cm1e_axis_t *axis, uint32_t ticket)
     const cm1e_drive_cml_request_t *request = cml ? cm1e_drive_cml_request(cml, ticket) : NULL;
     if (!request)
         return (cm1e_axis_cml_t){.state = CM1E_COMMAND_UNKNOWN};
-    /* The answer has come in this cycle: the axis says why it is an error in its step, and the block shows it then. */
-    const bool unsaid = request->state == CM1E_DRIVE_CML_ERROR && ticket == *place_of(axis->muscle, ticket);
+    /* The answer has come in this cycle: the block shows the error when the axis says why. */
+    const bool unsaid = ticket == *place_of(axis->muscle, ticket) && is_unsaid(axis, ticket);
     return (cm1e_axis_cml_t){unsaid ? CM1E_COMMAND_ACTIVE : states[request->state], request->error, request->lines,
                              request->strays};
 }

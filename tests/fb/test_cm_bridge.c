@@ -93,6 +93,35 @@ START_TEST(test_a_block_that_comes_too_late_for_its_answer_is_told_so)
 }
 END_TEST
 
+/* A string that was answered leaves its place to the next one in the cycle in which its block is Done. */
+START_TEST(test_as_many_strings_wait_as_there_are_places)
+{
+    start();
+    sends(0, "K53", "K53.1=0");
+    CM_SendCML_t some[CM1E_DRIVE_CML_QUEUE];
+    for (int i = 0; i < CM1E_DRIVE_CML_QUEUE; i++)
+        some[i] = (CM_SendCML_t){.Axis = &references[0], .Execute = TRUE, .Command = "K53"};
+    for (int cycle = 0, done = 0; done < 20; cycle++) {
+        ck_assert_int_lt(cycle, 2000);
+        inputs();
+        for (int i = 0; i < CM1E_DRIVE_CML_QUEUE; i++) {
+            CM_SendCML(&some[i]);
+            ck_assert_msg(!some[i].Error, "string %d: %X", done, (unsigned)ERROR_OF(some[i]));
+            if (!some[i].Done)
+                continue;
+            done++;
+            some[i].Execute = FALSE;
+            CM_SendCML(&some[i]);
+            some[i].Execute = TRUE;
+            CM_SendCML(&some[i]);
+            ck_assert_msg(some[i].Busy, "string %d: %X", done, (unsigned)ERROR_OF(some[i]));
+        }
+        outputs();
+    }
+    close_segment();
+}
+END_TEST
+
 START_TEST(test_a_cm1e_has_none_of_this)
 {
     describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
@@ -280,6 +309,7 @@ int main(void)
     tcase_add_test(tests, test_queries_parameters_and_outputs);
     tcase_add_test(tests, test_a_list_is_read_line_by_line);
     tcase_add_test(tests, test_what_is_refused_says_why_and_sends_nothing);
+    tcase_add_test(tests, test_as_many_strings_wait_as_there_are_places);
     tcase_add_test(tests, test_a_cm1e_has_none_of_this);
     tcase_add_test(tests, test_a_query_while_the_others_move);
     tcase_add_test(tests, test_mc_power_leaves_cml_and_nothing_jumps);
