@@ -340,6 +340,17 @@ static void end_strings(cm1e_axis_t *axis, cm1e_error_t error)
     muscle->freeing = 0;
 }
 
+/* Whether a string that may move the motor waits. */
+static bool motion_waits(const cm1e_axis_t *axis)
+{
+    for (int i = 0; i < CM1E_DRIVE_CML_QUEUE; i++) {
+        const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml_of(axis), axis->muscle->unsaid[i]);
+        if (request && cm1e_cml_kind(request->text) == CM1E_CML_MOTION)
+            return true;
+    }
+    return false;
+}
+
 /* Sends the string that frees the motor, until it was answered. In a mode other than CML no motion by CML goes on, so
  * the motor need not be freed there. */
 static void free_step(cm1e_axis_t *axis)
@@ -356,7 +367,8 @@ static void free_step(cm1e_axis_t *axis)
     } else if (!request || request->state == CM1E_DRIVE_CML_ERROR) {
         muscle->freeing = 0; /* it is sent again in the next cycle */
     } else if (request->state == CM1E_DRIVE_CML_DONE) {
-        muscle->must_free = muscle->moved = false;
+        muscle->must_free = false;
+        muscle->moved = motion_waits(axis);
     }
     if (shown != CM1E_BRIDGE_MODE_CML && is_mode(shown))
         muscle->must_free = muscle->moved = false;

@@ -237,6 +237,33 @@ START_TEST(test_an_origin_search_is_ended_when_power_or_the_end_of_the_run_comes
 }
 END_TEST
 
+/* A string that was sent while the string before it was ended, and its motor freed, is ended like any other. */
+START_TEST(test_a_search_behind_one_that_has_failed_is_ended_by_the_end_of_the_run)
+{
+    start();
+    CM_SendCML_t enable = {.Axis = &references[1], .Execute = TRUE, .AllowMotion = TRUE, .Command = "(.2"};
+    CM_SendCML_t again = {.Axis = &references[1], .Execute = TRUE, .AllowMotion = TRUE, .Command = "|.2"};
+    send(1, "(.2", TRUE);
+    cml[1].Timeout = 300 * (TIME)1000000;
+    send(1, "|.2", TRUE);
+    ck_assert_int_eq(ERROR_OF(cml[1]), CM1E_ERROR_CM_SEARCH_TIMEOUT);
+    CM_SendCML(&enable);
+    CM_SendCML(&again);
+    scan(500);
+    ck_assert(cm1e_sim_search_running(&motor(1)->search));
+    bool off = false;
+    for (int n = 0; !off; n++) {
+        ck_assert_int_lt(n, 3000);
+        inputs();
+        off = cm1e_axis_shut_down(axes[1]);
+        outputs();
+    }
+    ck_assert(motor(1)->motor_free);
+    ck_assert(!cm1e_sim_search_running(&motor(1)->search));
+    close_segment();
+}
+END_TEST
+
 START_TEST(test_an_origin_search_to_a_stop_is_done)
 {
     start();
@@ -315,6 +342,7 @@ int main(void)
     tcase_add_test(tests, test_mc_power_leaves_cml_and_nothing_jumps);
     tcase_add_test(tests, test_mc_power_ends_a_string_under_way);
     tcase_add_test(tests, test_an_origin_search_is_ended_when_power_or_the_end_of_the_run_comes);
+    tcase_add_test(tests, test_a_search_behind_one_that_has_failed_is_ended_by_the_end_of_the_run);
     tcase_add_test(tests, test_an_origin_search_to_a_stop_is_done);
     tcase_add_test(tests, test_a_motor_that_is_unplugged_or_broken_is_a_word);
     tcase_add_test(tests, test_slave_lost_at_every_cycle_of_a_string);
