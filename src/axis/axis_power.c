@@ -331,17 +331,19 @@ static bool ramp_is_over(cm1e_axis_t *axis)
            (!axis->power.shutting_down || cm1e_axis_outputs_off_first(axis));
 }
 
+static bool paused(const cm1e_axis_t *axis) { return axis->silence.resumed == RESUMED_FROM_PAUSE; }
+
 /* Whether the drive has shown in this cycle what the motor does now. */
 static bool shows_motor(const cm1e_axis_t *axis)
 {
-    return axis->drive.feedback.fresh && !axis->silence.frozen && axis->silence.resumed != RESUMED_FROM_PAUSE;
+    return axis->drive.feedback.fresh && !axis->silence.frozen && !paused(axis);
 }
 
 /* Whether a motor that has just got its torque needs no ramp, or none is possible. Its velocity is known when two
  * cycles in a row have shown it under torque. */
 static bool needs_no_ramp(cm1e_axis_t *axis)
 {
-    if (axis->drive.actual.contradictions > 0)
+    if (axis->drive.actual.contradictions > 0 || paused(axis))
         return true;
     const bool seen_before = axis->power.velocity != 0.0f;
     return seen_before ? !brakes_first(axis, coasting_velocity(axis))
@@ -356,7 +358,8 @@ static void take_over_or_brake(cm1e_axis_t *axis)
     const bool set_points = axis->mode == CM1E_MODE_CSP || axis->mode == CM1E_MODE_CSV;
     if (!set_points || cm1e_drive_is_virtual(&axis->drive) || axis->power.energized)
         take_over(axis);
-    else if (shows_motor(axis) && (axis_free(axis) ? needs_no_ramp(axis) : ramp_is_over(axis)))
+    else if (axis_free(axis) ? (shows_motor(axis) || paused(axis)) && needs_no_ramp(axis)
+                             : shows_motor(axis) && ramp_is_over(axis))
         take_over(axis);
 }
 

@@ -299,13 +299,19 @@ END_TEST
 
 /* ---- what comes between while a motor is braked ----------------------------------------------------------------- */
 
-/* From so many cycles of torque on: frames that do not come back, or a pause of the master. Or a software limit. */
-typedef struct interruption { int at, lost_frames; double pause_ms, load_inertia, deceleration, jerk, limit; } interruption_t;
+/* From so many cycles of torque on: frames that do not come back, or a pause of the master, or one in every cycle. Or a
+ * software limit. */
+typedef struct interruption {
+    int at, lost_frames;
+    double pause_ms, load_inertia, deceleration, jerk, limit;
+    bool for_ever;
+} interruption_t;
 static const interruption_t interruptions[] = {
     {.at = 1, .lost_frames = 1}, {.at = 2, .lost_frames = 1}, {.at = 2, .lost_frames = 2}, {.at = 3, .lost_frames = 1},
     {.at = 8, .lost_frames = 2}, {.at = 3, .pause_ms = 50}, {.at = 3, .pause_ms = 5}, {.at = 20, .pause_ms = 50},
     {.at = 8, .pause_ms = 5, .jerk = 2000}, {.load_inertia = 1e-3, .deceleration = 2000},
     {.limit = 4}, {.limit = 12}, /* units; the ramp takes 8 */
+    {.at = 1, .pause_ms = 5, .for_ever = true},
 };
 enum { INTERRUPTIONS = sizeof interruptions / sizeof interruptions[0], THROWN_AT = 40, THROWN_SPEED = 100000 };
 static const interruption_t *interruption;
@@ -329,7 +335,8 @@ static void thrown_program(bench_t *b)
     call_blocks();
     const cm1e_sim_probe_t probe = bench_probe(b, 0);
     torque_cycles += probe.torque_on;
-    if (probe.torque_on && torque_cycles == interruption->at && interruption->pause_ms > 0)
+    const bool now = torque_cycles == interruption->at || (interruption->for_ever && torque_cycles > interruption->at);
+    if (probe.torque_on && now && interruption->pause_ms > 0)
         bench_miss(b, (int64_t)(interruption->pause_ms * 1e6));
     const cm1e_axis_info_t info = bench_info(b, 0);
     if (info.set_velocity != 0 && !ramp_began) {
