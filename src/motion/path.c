@@ -256,8 +256,8 @@ void cm1e_path_override(cm1e_path_t *path, double factor)
     if (path->element_count == 0 || is_at_rest(path))
         return;
     if (factor == 0 && !path->stopping) {
-        const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
-        path->stop = run.limits;
+        if (!path->stop_wanted) /* else the stop that was told has yet to begin */
+            path->stop = cm1e_path_run(path, 0, path->element_count).limits;
         (void)cm1e_path_plan_stop(path);
     } else if (path->stopping) {
         try_to_go_on(path);

@@ -425,6 +425,35 @@ static void test_the_override_acts_when_it_goes_on(void)
             }
 }
 
+/* A corner comes too soon for it to rest before: it is passed, and the stop begins behind it. */
+static double rest_behind_a_corner(bool override)
+{
+    group_end();
+    group_begin(3);
+    group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_ABSOLUTE, .position = {-1.4, 0.5, 0.9},
+                                          .acceleration = 65.0, .deceleration = 33.0});
+    axes_cycles(90);
+    group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_RELATIVE, .position = {-1.5, -0.15, -1.2},
+                                          .velocity = 1.0, .buffer_mode = mcBlendingPrevious,
+                                          .transition = mcTMMaxCornerDeviation, .transition_parameter = 0.02});
+    axes_cycles(45);
+    const cm1e_command_id_t id = interrupt(0.25);
+    TEST_ASSERT_FALSE(group->path.stopping);
+    if (override)
+        cm1e_group_set_override(group, 0.0);
+    for (int i = 0; i < 8000 && group_state_of(id) == CM1E_COMMAND_ACTIVE; i++)
+        axes_cycles(1);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, group_state_of(id));
+    return group_at(0);
+}
+
+static void test_before_it_brakes_an_override_of_0_leaves_its_deceleration(void)
+{
+    const double rest = rest_behind_a_corner(false);
+    TEST_ASSERT_TRUE(rest < -1.5);
+    TEST_ASSERT_EQUAL_DOUBLE(rest, rest_behind_a_corner(true));
+}
+
 /* ---- what ends it ------------------------------------------------------------------------------------------------ */
 
 typedef enum ending { ABORTING, HALTED, STOPPED, DISABLED, UNGROUPED, BY_FAULT, BY_POWER, BY_AXIS, ENDINGS } ending_t;
@@ -540,6 +569,7 @@ int main(void)
     RUN_TEST(test_a_halt_that_is_interrupted_is_done_when_it_goes_on);
     RUN_TEST(test_the_braking_of_a_new_command_is_interrupted);
     RUN_TEST(test_the_override_acts_when_it_goes_on);
+    RUN_TEST(test_before_it_brakes_an_override_of_0_leaves_its_deceleration);
     RUN_TEST(test_what_ends_the_commands_ends_the_interruption);
     RUN_TEST(test_its_axes_are_led_as_long_as_it_lasts);
     RUN_TEST(test_after_a_pause_of_the_pc_it_rests);
