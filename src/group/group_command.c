@@ -254,10 +254,11 @@ static void start_interrupt(cm1e_group_t *group, const cm1e_group_command_t *com
 {
     cm1e_group_end_interrupt(group, CM1E_COMMAND_ABORTED, CM1E_OK);
     group->interruption = (interruption_t){.on = true, .braking = id};
-    group->rest_deceleration = command->deceleration;
-    group->rest_jerk = command->jerk;
+    const bool together = group->apart.off == 0; /* else the path comes to rest with the limits of its axes */
+    group->rest_deceleration = together ? command->deceleration : 0.0;
+    group->rest_jerk = together ? command->jerk : 0.0;
     cm1e_group_suspend(group);
-    cm1e_path_stop(&group->path, command->deceleration, command->jerk);
+    cm1e_path_stop(&group->path, group->rest_deceleration, group->rest_jerk);
 }
 
 static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)

@@ -445,6 +445,23 @@ START_TEST(test_in_an_interruption_no_axis_goes_back_to_the_path)
 }
 END_TEST
 
+/* A gentle interruption would lead the axis that is heard far from the path that the other one has left. */
+START_TEST(test_in_a_gentle_interruption_the_axes_that_are_heard_brake_with_their_limits)
+{
+    static const int moments[] = {490, 505};
+    memset(&grouped, 0, sizeof grouped);
+    grouped.interrupt_at = moments[_i];
+    grouped.interrupt.Deceleration = 5;
+    grouped.rest_at = 800;
+    grouped.go_on_at = 1500;
+    play_group(2);
+    ck_assert_double_lt(fabs(grouped.at_rest[A] - 2 * grouped.at_rest[B]), 0.5);
+    ck_assert_double_lt(grouped.latest, 1e-12);
+    ck_assert_msg(grouped.line.Done && grouped.info.state == CM1E_GROUP_STANDBY, "%s; %s", text_of(A), text_of(B));
+    close_group();
+}
+END_TEST
+
 /** Each bus has a slave 1. */
 START_TEST(test_the_event_log_says_on_which_bus_it_was)
 {
@@ -508,6 +525,7 @@ int main(void)
     tcase_add_loop_test(all, test_a_group_across_buses_makes_up_what_one_of_them_loses, 0, 3);
     tcase_add_test(all, test_behind_a_stop_no_axis_goes_back_to_the_path);
     tcase_add_loop_test(all, test_in_an_interruption_no_axis_goes_back_to_the_path, 0, 5);
+    tcase_add_loop_test(all, test_in_a_gentle_interruption_the_axes_that_are_heard_brake_with_their_limits, 0, 2);
     tcase_add_test(all, test_a_lost_bus_stops_the_whole_group);
     Suite *suite = suite_create("scheduler with several buses");
     suite_add_tcase(suite, all);
