@@ -279,10 +279,22 @@ void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk)
         (void)cm1e_path_plan_stop(path);
 }
 
+/** It waits with an override of 0: not more gently than that brakes. */
+static void wait_without_stop(cm1e_path_t *path)
+{
+    const cm1e_motion_limits_t limits = cm1e_path_run(path, 0, path->element_count).limits;
+    path->stop.deceleration = larger(path->stop.deceleration, limits.deceleration);
+    path->stop.jerk = larger(path->stop.jerk, limits.jerk);
+    (void)cm1e_path_plan_stop(path);
+}
+
 void cm1e_path_go_on(cm1e_path_t *path)
 {
+    const bool waits = path->stop_wanted && path->override == 0 && !path->last_stop && !is_at_rest(path);
     cm1e_path_look_anew(path);
     path->stop_wanted = false;
+    if (waits)
+        wait_without_stop(path);
     try_to_go_on(path);
 }
 

@@ -454,6 +454,26 @@ static void test_before_it_brakes_an_override_of_0_leaves_its_deceleration(void)
     TEST_ASSERT_EQUAL_DOUBLE(rest, rest_behind_a_corner(true));
 }
 
+/* MC_GroupContinue takes the gentle deceleration back: VelFactor 0 brakes as it does without an interruption. */
+static void test_gone_on_with_an_override_of_0_it_brakes_as_that_does(void)
+{
+    for (int braked = 0; braked < 60; braked += 20) {
+        again();
+        const cm1e_command_id_t line = group_line(50.0, 0.0, 5.0, mcAborting);
+        axes_cycles(500);
+        interrupt(0.2);
+        axes_cycles(braked);
+        cm1e_group_set_override(group, 0.0);
+        go_on();
+        axes_cycles(200);
+        must_rest(30);
+        cm1e_group_set_override(group, 1.0);
+        axes_cycles(300);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5.0, group->sample.path_velocity);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, group_state_of(line));
+    }
+}
+
 /* ---- what ends it ------------------------------------------------------------------------------------------------ */
 
 typedef enum ending { ABORTING, HALTED, STOPPED, DISABLED, UNGROUPED, BY_FAULT, BY_POWER, BY_AXIS, ENDINGS } ending_t;
@@ -570,6 +590,7 @@ int main(void)
     RUN_TEST(test_the_braking_of_a_new_command_is_interrupted);
     RUN_TEST(test_the_override_acts_when_it_goes_on);
     RUN_TEST(test_before_it_brakes_an_override_of_0_leaves_its_deceleration);
+    RUN_TEST(test_gone_on_with_an_override_of_0_it_brakes_as_that_does);
     RUN_TEST(test_what_ends_the_commands_ends_the_interruption);
     RUN_TEST(test_its_axes_are_led_as_long_as_it_lasts);
     RUN_TEST(test_after_a_pause_of_the_pc_it_rests);
