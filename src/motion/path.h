@@ -265,7 +265,7 @@ void cm1e_path_override(cm1e_path_t *path, double factor);
  *  (CM1E_PATH_IDLE at the end of the path). The remaining segments wait. */
 void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk);
 /** Continues with the remaining segments, also while it still stops; after cm1e_path_clear() when it has come to
- *  rest. */
+ *  rest. With an override of 0 it goes on braking, no more gently than that override does. */
 void cm1e_path_go_on(cm1e_path_t *path);
 /** Drops the segments that are no longer needed. During a stop these are the segments behind the point of rest; that
  *  point becomes the end of the path (cm1e_path_end()), and segments appended later begin there. At rest all segments
