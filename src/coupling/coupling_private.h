@@ -149,7 +149,9 @@ typedef struct observed {
     cm1e_observer_t filter;
     from_t now, before;            /**< in this cycle, and in the previous one */
     uint32_t lost;                 /**< cycles in a row without a position */
-    bool counted, clocked;         /**< the counts are those of a slave; which takes them with its SYNC0 */
+    bool counted;                  /**< the counts are those of a slave */
+    uint32_t sync0_ns;             /**< period of its SYNC0, with which it takes them; 0: a frame does */
+    int32_t shift_ns;              /**< cm1e_slave_clock_t.shift_ns */
     int64_t taken_ns, planned_ns;  /**< when the last counts were taken; the start of the last cycle */
 } observed_t;
 

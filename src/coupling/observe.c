@@ -15,12 +15,18 @@
 enum { DEFAULT_FILTER_CYCLES = 10 };
 
 /* When the counts of this exchange were taken. The slave of an encoder takes them when the frame passes, which was sent
- * in the cycle before, however late that began; or with SYNC0, which keeps the time of the plan. What follows our
- * set-points, or is written by the program, goes on cycle by cycle. */
+ * in the cycle before, however late that began; or with the last SYNC0 before that. What follows our set-points, or is
+ * written by the program, goes on cycle by cycle. */
 static int64_t taken_ns(const cm1e_axis_t *axis)
 {
     const observed_t *own = &axis->followed->own;
-    return own->clocked ? own->planned_ns : cm1e_bus_sent_ns(axis->drive.bus);
+    const int64_t sent_ns = cm1e_bus_sent_ns(axis->drive.bus), period_ns = own->sync0_ns;
+    cm1e_bus_clocks_t clocks;
+    if (period_ns == 0)
+        return sent_ns;
+    cm1e_bus_clocks(axis->drive.bus, &clocks);
+    const int64_t behind_ns = (clocks.reference_ns - own->shift_ns) % period_ns; /* SYNC0: dc_pulses.c */
+    return sent_ns - (behind_ns < 0 ? behind_ns + period_ns : behind_ns);
 }
 
 static void see_how_it_counts(cm1e_axis_t *axis)
@@ -31,8 +37,8 @@ static void see_how_it_counts(cm1e_axis_t *axis)
     own->counted = slave > 0;
     if (own->counted)
         cm1e_bus_slave_clock(axis->drive.bus, slave, &clock);
-    own->clocked = clock.sync0_ns > 0;
-    own->planned_ns = axis->now_ns - cm1e_bus_configuration(axis->drive.bus)->cycle_time_ns;
+    own->sync0_ns = clock.sync0_ns;
+    own->shift_ns = clock.shift_ns;
     own->taken_ns = taken_ns(axis);
     own->planned_ns = axis->now_ns;
 }

@@ -192,6 +192,8 @@ void cm1e_sim_esc_dc_activated(cm1e_sim_slave_t *slave)
     const uint8_t bits = slave->memory[ESC_DC_ACTIVATION];
     *pulses = (esc_pulses_t){0};
     slave->memory[ESC_DC_ACTIVATION_STATUS] = 0;
+    if (slave->ops->sync0)
+        slave->ops->sync0(slave->app, INT64_MAX);
     if ((bits & (ACTIVATE | SYNC0)) != (ACTIVATE | SYNC0))
         return;
     pulses->next_ns = cm1e_get_u64(slave->memory + ESC_DC_START);
@@ -233,6 +235,8 @@ void cm1e_sim_esc_dc_advance(cm1e_sim_slave_t *slave, int64_t now_ns)
     pulses->count += count;
     pulses->without_outputs += count;
     pulses->next_ns += count * cycle;
+    if (slave->ops->sync0)
+        slave->ops->sync0(slave->app, now_ns - (int64_t)(now - (pulses->next_ns - cycle)));
     pulses->running = cycle > 0; /* a cycle of 0: a single pulse */
     slave->memory[ESC_DC_ACTIVATION_STATUS] &= (uint8_t)~PENDING_0;
     cm1e_put_u64(slave->memory + ESC_DC_START, pulses->next_ns);

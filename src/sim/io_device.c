@@ -98,11 +98,14 @@ static void power_on(void *app, int64_t now_ns)
     cm1e_sim_io_device_t *device = app;
     release(device);
     device->power_on_ns = device->now_ns = now_ns;
+    device->sync0_ns = INT64_MAX;
     if (device->objects)
         cm1e_sim_io_objects_power_on(device);
 }
 
 static void advance(void *app, int64_t now_ns) { ((cm1e_sim_io_device_t *)app)->now_ns = now_ns; }
+
+static void sync0(void *app, int64_t at_ns) { ((cm1e_sim_io_device_t *)app)->sync0_ns = at_ns; }
 
 static uint16_t explicit_device_id(void *app) { return ((cm1e_sim_io_device_t *)app)->id; }
 
@@ -121,7 +124,7 @@ static void destroy(void *app)
 static const cm1e_sim_app_ops_t ops = {LIFE};
 static const cm1e_sim_app_ops_t ops_with_coe = {
     LIFE, .advance = advance, .sdo_read = cm1e_sim_io_objects_read, .sdo_write = cm1e_sim_io_objects_write,
-    .object = cm1e_sim_io_objects_at, .entry = cm1e_sim_io_objects_entry, .runs_by_sync0 = true,
+    .object = cm1e_sim_io_objects_at, .entry = cm1e_sim_io_objects_entry, .sync0 = sync0, .runs_by_sync0 = true,
 };
 
 cm1e_sim_io_device_t *cm1e_sim_io_device_of(cm1e_sim_slave_t *slave)

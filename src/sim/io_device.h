@@ -47,6 +47,7 @@ typedef struct cm1e_sim_io_device {
     uint8_t module_count;                    /**< of a modular device */
     const cm1e_module_kind_t *modules[IO_CHANNELS];
     int64_t now_ns, power_on_ns;             /**< of an encoder, which counts since its power-on */
+    int64_t sync0_ns;                        /**< of the last SYNC0, which takes the counts; INT64_MAX: frames do */
 } cm1e_sim_io_device_t;
 
 /** The device that a slave of the configuration names, with its identity and address. NULL: no memory. */

@@ -321,7 +321,8 @@ void cm1e_sim_io_objects_power_on(cm1e_sim_io_device_t *device)
 
 static void count(cm1e_sim_io_device_t *device)
 {
-    const double seconds = (double)(device->now_ns - device->power_on_ns) * 1e-9;
+    const int64_t taken_ns = device->sync0_ns < device->now_ns ? device->sync0_ns : device->now_ns;
+    const double seconds = (double)(taken_ns - device->power_on_ns) * 1e-9;
     const int64_t counts = (int64_t)floor(device->config.counts_per_s * seconds);
     for (unsigned n = 0; n < device->config.inputs; n++)
         *value_of(device, INPUTS + n * STEP, VALUE) = (uint32_t)(device->is_held[n] ? device->held[n] : counts);

@@ -93,6 +93,8 @@ typedef struct cm1e_sim_app_ops {
     void (*destroy)(void *app);
     /** Takes over the dictionary of a profile and powers on; after an error nothing has changed. NULL: it cannot. */
     cm1e_error_t (*play)(void *app, const struct cm1e_sim_profile *profile, int64_t now_ns, cm1e_diag_t *diag);
+    /** SYNC0 came last at this time; INT64_MAX: there is none, and it runs by its process data. NULL: never called. */
+    void (*sync0)(void *app, int64_t at_ns);
     /** It runs by SYNC0 where the master activates that (esc_sync.c); else by its process data. */
     bool runs_by_sync0;
 } cm1e_sim_app_ops_t;

@@ -238,6 +238,11 @@ void cm1e_bus_slave_clock_sized(const cm1e_bus_t *bus, uint16_t position, cm1e_s
     (void)position;
     memset(clock, 0, size);
 }
+void cm1e_bus_clocks_sized(const cm1e_bus_t *bus, cm1e_bus_clocks_t *clocks, size_t size)
+{
+    (void)bus;
+    memset(clocks, 0, size);
+}
 int64_t cm1e_bus_sent_ns(const cm1e_bus_t *bus) { return bus->clock.virtual_now_ns; }
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position)
 {
