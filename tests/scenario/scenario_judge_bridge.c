@@ -1,4 +1,6 @@
 /* What a master may do with a motor behind a bridge, and when such a motor may move by itself. */
+#include <math.h>
+
 #include "scenario_private.h"
 
 const char *const own_motions[] = {"CM_SendCML", "CM_Command", NULL};
@@ -9,17 +11,22 @@ bool moves_by_itself(const machine_axis_t *axis)
     return axis->seen.by_itself && (axis->info.mode == MODE_CML || axis->info.mode == MODE_CMD);
 }
 
+/* Counts/s: 3 counts in 20 ms, which the library takes for rest, as the positions of the motor show no more. */
+#define CREEPING 150.0
+
 /** Rules of the bridge's guide (cm1e/sim.h). An output may be written when the motor has lost its power; a motor that still
  *  turns gets a target that goes with it; one that stands behind its set-point by more than position_lag gets its own
- *  position; a write of the mode may be on its way when the motor fails; and CM_SetMode may insist on a way that the guide
- *  warns of. */
+ *  position; a write of the mode may be on its way when the motor fails; one that creeps stands as far as its counts show; and
+ *  CM_SetMode may insist on a way that the guide warns of. */
 static void judge_rules(run_t *run, machine_axis_t *axis)
 {
     const unsigned turns = is_caught(run, axis) ? CM1E_SIM_STEP_AT_START : 0u;
     const unsigned lags = axis->info.error == CM1E_ERROR_AXIS_LAG ? CM1E_SIM_STEP_IN_CYCLE : 0u;
     const unsigned insists = program_has(run->scenario, axis->number, mode_switches) ? CM1E_SIM_MODE_NO_WAY : 0u;
     const unsigned fails = fault_explains(run, axis, false) ? CM1E_SIM_MODE_IN_ERROR : 0u;
-    axis->seen.excused |= CM1E_SIM_OUTPUT_IN_VAIN | turns | lags | insists | fails;
+    const bool creeps = fabs(axis->probe.velocity_counts_per_s) < CREEPING;
+    const unsigned stands = creeps ? axis->probe.broken_rules & CM1E_SIM_MODE_IN_MOTION : 0u; /* in this cycle */
+    axis->seen.excused |= CM1E_SIM_OUTPUT_IN_VAIN | turns | lags | insists | fails | stands;
     if ((axis->probe.broken_rules & ~axis->seen.excused) != 0)
         scenario_fail(run, "rules", "%s (%s): rules of the bridge's guide are broken: 0x%03X", axis->name,
                       cm1e_axis_state_name(axis->info.state), axis->probe.broken_rules);
