@@ -92,12 +92,13 @@ static void judge_probe(run_t *run, const instance_t *block, const machine_axis_
                       cm1e_axis_state_name(axis->info.state));
 }
 
-/** A switch at a terminal is where its reference is: but for the way of the cycles in which the input comes. */
+/** One of the two switches at a terminal is where the reference is: but for the way of the cycles in which the input comes. A
+ *  fast motor may stop behind the middle. */
 static void judge_switch(run_t *run, const instance_t *block, const machine_axis_t *axis)
 {
     const double unit = axis->spec->counts_per_unit, most = 3 * axis->spec->velocity * run->scenario->cycle_us * 1e-6 + 10;
-    const double place = axis->seen.load - copysign(SWITCH_COUNTS, axis->seen.load);
     const double shown = (axis->info.actual_position - block_number(block, "SetPosition")) * unit;
+    const double place = axis->seen.load + (shown > axis->seen.load ? SWITCH_COUNTS : -SWITCH_COUNTS);
     if (!was_disturbed(run, &axis->seen) && fabs(shown - place) > most)
         scenario_fail(run, "claim", "%s: %s is Done %.0f counts from its switch, and shows %.0f", axis->name,
                       block->type->name, place, shown);
