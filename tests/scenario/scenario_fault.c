@@ -231,6 +231,8 @@ static void note(run_t *run, const fault_t *fault)
         /* Nor can the master help that a motor behind a bridge misses targets, and then gets to the last one. */
         if ((fault->kind == FAULT_LOAD || fault->kind == FAULT_BRIDGE_CABLE) && n == (int)fault->axis)
             axis->seen.pushed_until = end_of(fault);
+        if (fault->kind == FAULT_BRIDGE_CABLE && n == (int)fault->axis) /* nobody sees how far it swings */
+            axis->seen.unseen = true;
         if (fault->kind == FAULT_STALL) {
             axis->seen.stalled = 0;
             axis->seen.pause = (int)fault->length;

@@ -82,6 +82,14 @@ static void judge_group_reading(run_t *run, const instance_t *block)
 }
 
 /** What a block reads is what the axis shows in the same cycle. */
+/** Another block of this cycle may have homed it. */
+static bool is_homed_now(const machine_axis_t *axis)
+{
+    cm1e_axis_info_t now = {0};
+    cm1e_axis_read(axis->reference, &now);
+    return now.homed;
+}
+
 void judge_reading(run_t *run, const instance_t *block, const machine_axis_t *axis)
 {
     const cm1e_axis_info_t *info = &axis->info;
@@ -98,7 +106,7 @@ void judge_reading(run_t *run, const instance_t *block, const machine_axis_t *ax
                           block_number(block, values[i].output), values[i].value);
     if (block_is(block, "MC_ReadAxisInfo") && block_flag(block, "Valid") &&
         (block_flag(block, "CommunicationReady") != info->online ||
-         block_flag(block, "IsHomed") != info->homed))
+         (block_flag(block, "IsHomed") != info->homed && block_flag(block, "IsHomed") != is_homed_now(axis))))
         scenario_fail(run, "read", "%s: MC_ReadAxisInfo: CommunicationReady %d, IsHomed %d; the axis %d, %d", axis->name,
                       block_flag(block, "CommunicationReady"), block_flag(block, "IsHomed"), info->online, info->homed);
     judge_parameter(run, block, axis);

@@ -395,7 +395,10 @@ static void leave_modes(run_t *run)
     for (int n = 0; n < run->scenario->axis_count; n++) {
         const machine_axis_t *axis = &run->axes[n];
         char order[40], answer[200];
-        const bool fails_in_cml = axis->info.state == CM1E_AXIS_ERROR_STOP && program_has(run->scenario, n, strings);
+        bool fails = axis->info.state == CM1E_AXIS_ERROR_STOP; /* or has an error that its axis does not know yet */
+        for (int i = 0; i < run->scenario->fault_count; i++)
+            fails = fails || (run->scenario->faults[i].kind == FAULT_BRIDGE_ERROR && (int)run->scenario->faults[i].axis == n);
+        const bool fails_in_cml = fails && program_has(run->scenario, n, strings);
         if (axis->channel == 0 || !(program_has(run->scenario, n, changers) || fails_in_cml))
             continue;
         snprintf(order, sizeof order, "power-cycle %u 10", axis->position);
