@@ -11,8 +11,9 @@ bool moves_by_itself(const machine_axis_t *axis)
     return axis->seen.by_itself && (axis->info.mode == MODE_CML || axis->info.mode == MODE_CMD);
 }
 
-/* Counts/s: 3 counts in 20 ms, which the library takes for rest, as the positions of the motor show no more. */
-#define CREEPING 150.0
+/* Counts/s. The library takes a motor for one at rest whose positions change by no more than 3 counts within 20 ms. One that
+ * breaks loose from its friction, and creeps to its target, gets so fast meanwhile. */
+#define CREEPING 500.0
 
 /** Rules of the bridge's guide (cm1e/sim.h). An output may be written when the motor has lost its power; a motor that still
  *  turns gets a target that goes with it; one that stands behind its set-point by more than position_lag gets its own
