@@ -292,8 +292,10 @@ static void judge_set_point(run_t *run, machine_axis_t *axis)
     const bool gone = is_motor(axis) && axis->info.state == CM1E_AXIS_ERROR_STOP && velocity == 0 &&
                       (!axis->probe.torque_on || axis->channel > 0 || at_stop(axis));
     /* Whatever has disturbed it: an axis that got its torque not long ago begins nothing in Disabled but to brake. A ramp
-     * of before, which a pause had held, may go on. */
-    const bool begins = is_caught(run, axis) && axis->info.state == CM1E_AXIS_DISABLED && before == 0 && velocity != 0;
+     * that a pause or a silence had held goes on. */
+    const bool rested = axis->seen.unmoved > cycles_of(run, GAIN_MS);
+    const bool begins = is_caught(run, axis) && axis->info.state == CM1E_AXIS_DISABLED && rested && velocity != 0;
+    axis->seen.unmoved = velocity == 0 ? axis->seen.unmoved + 1 : 0;
     axis->seen.set_velocity = velocity;
     if (begins && !braked_first)
         scenario_fail(run, "set-point", "%s: the set velocity of an axis that is Disabled is %.0f counts/s, its shaft turns at "

@@ -44,6 +44,7 @@ typedef struct witness {
     cm1e_axis_state_t state;
     double speeds[SPEEDS];                    /**< of the last cycles */
     double set_velocity;                  /**< counts/s, of the set-point */
+    int unmoved;                          /**< cycles since that was another one than 0 */
     double rest_at;                       /**< counts; where it came to rest */
     double load;                          /**< counts in the direction of its axis: what its gear moves */
     bool unseen;                          /**< that moved while nobody saw it */
