@@ -174,6 +174,17 @@ static void until_the_end_of_the_way(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, group_at(1));
 }
 
+/* So many cycles of the path, from its beginning. */
+static void go_along_the_way(const char *run, int cycles)
+{
+    again();
+    axes_bench.run = run;
+    start_path();
+    way.at = 0;
+    for (int i = 0; i < cycles; i++)
+        cycle_on_the_way();
+}
+
 static void test_at_every_moment_it_rests_on_the_path_and_goes_on(void)
 {
     static const double decelerations[] = {0.0, 40.0, 5.0};
@@ -184,12 +195,7 @@ static void test_at_every_moment_it_rests_on_the_path_and_goes_on(void)
         for (int at = sweep_first(d, stride); at < moments - 1; at += stride) {
             snprintf(run, sizeof run, "interrupted after %d of %d cycles, deceleration %g", at, moments,
                      decelerations[d]);
-            again();
-            axes_bench.run = run;
-            start_path();
-            way.at = 0;
-            for (int i = 0; i < at; i++)
-                cycle_on_the_way();
+            go_along_the_way(run, at);
             interrupt_on_the_way(decelerations[d]);
             go_on_at_once();
             until_the_end_of_the_way();
@@ -225,12 +231,7 @@ static void test_it_goes_on_while_it_still_brakes(void)
     for (int braked = 0; braked < 60; braked += 19)
         for (int at = sweep_first(braked, stride); at < moments - 1; at += stride) {
             snprintf(run, sizeof run, "interrupted after %d cycles for %d", at, braked);
-            again();
-            axes_bench.run = run;
-            start_path();
-            way.at = 0;
-            for (int i = 0; i < at; i++)
-                cycle_on_the_way();
+            go_along_the_way(run, at);
             remember_states();
             const cm1e_command_id_t id = interrupt(10.0);
             for (int i = 0; i < braked; i++)
