@@ -29,7 +29,8 @@ static struct seen {
 /* Of what a gear of the largest ratio can follow. */
 #define LARGEST_PART 0.95
 
-static int taken, stopped;
+static int taken, stopped, excused;
+static double ratio;  /* of the gear that was begun last; 0 for cams, which leave two thirds of the limits */
 static bool too_fast; /* the master: a command with less jerk than before makes it pass the velocity of the command */
 
 static void judge(const cm1e_axis_t *axis, const double step[3])
@@ -84,7 +85,7 @@ static void cycles(int count, const random_master_t *master, bool onwards)
         else
             random_master_drive(master);
         axes_cycles(1);
-        too_fast = too_fast || fabs(axes_axis(0)->setpoint.velocity) * LARGEST_RATIO >
+        too_fast = too_fast || fabs(axes_axis(0)->setpoint.velocity) * ratio >
                                    LARGEST_PART * axes_axis(1)->limits.maximum.velocity;
         look();
     }
@@ -128,13 +129,20 @@ static bool start(const cm1e_axis_command_t *command)
     return cm1e_axis_start(axes_axis(1), command, &id) == CM1E_OK;
 }
 
+static bool geared(bool begun, const cm1e_axis_coupling_t *coupling)
+{
+    if (begun)
+        ratio = (double)coupling->master[0].numerator / coupling->master[0].denominator;
+    return begun;
+}
+
 static bool gear(void)
 {
     const cm1e_axis_coupling_t coupling = {
         .master = {{.axis = axes_reference(0), .numerator = 1 + pick(LARGEST_RATIO),
                     .denominator = 1 + (uint32_t)pick(3)}}};
     const cm1e_axis_command_t command = dynamics(CM1E_COMMAND_GEAR_IN, &coupling);
-    return start(&command);
+    return geared(start(&command), &coupling);
 }
 
 static bool gear_in_pos(void)
@@ -145,7 +153,7 @@ static bool gear_in_pos(void)
         .master_sync_position = axes_info(0).set_position + v * uniform(0.5, 3.0),
         .slave_sync_position = axes_info(1).set_position + v * uniform(0.1, 3.0)};
     const cm1e_axis_command_t command = dynamics(CM1E_COMMAND_GEAR_IN_POS, &coupling);
-    return start(&command);
+    return geared(start(&command), &coupling);
 }
 
 /* There and back, by polynomials that rest at both ends: the derivatives of a way of 1 in a time of 1 are 1.875, 5.77
@@ -207,6 +215,7 @@ static void run(way_in_t way, const char *scene)
     const double part = way == CAMS || way == CAMS_BY_PLACE ? 1e-9 : LARGEST_RATIO;
     random_axes();
     axes_bench.run = scene;
+    ratio = 0.0;
     too_fast = false;
     random_master_t master = random_master_for(0, 1, part, uniform(0.2, way == PHASINGS ? 0.45 : LARGEST_PART));
     master.seldom = 20 + (unsigned)pick(300);
@@ -216,7 +225,8 @@ static void run(way_in_t way, const char *scene)
         taken += go(way, &master);
         cycles(300 + pick(1500), &master, onwards);
     }
-    stopped += axes_state(1) == CM1E_AXIS_ERROR_STOP && !too_fast; /* else it leaves the slave what it needs in step */
+    if (axes_state(1) == CM1E_AXIS_ERROR_STOP)
+        (*(too_fast ? &excused : &stopped))++; /* a master that is not too fast leaves the slave what it needs in step */
     axes_end();
 }
 
@@ -232,11 +242,11 @@ static void runs_of(way_in_t way, const char *name)
 {
     const int runs = seed_count(RUNS);
     seen = (struct seen){.count = 0};
-    taken = stopped = 0;
+    taken = stopped = excused = 0;
     for (int i = 0; i < runs; i++)
         run_seed(way, name, seed_of(i));
-    printf("%s: %d begun, %d in ErrorStop at the end; acceleration %.9f, jerk %.9f of the limit\n", name, taken,
-           stopped, seen.worst_acceleration, seen.worst_jerk);
+    printf("%s: %d begun, %d in ErrorStop at the end, %d behind a master too fast; acceleration %.9f, jerk %.9f of "
+           "the limit\n", name, taken, stopped, excused, seen.worst_acceleration, seen.worst_jerk);
     TEST_ASSERT_EQUAL_INT(0, stopped);
 }
 
