@@ -329,6 +329,8 @@ void cm1e_axis_after_silence(cm1e_axis_t *axis)
     axis->silence.resumed = RESUMED_FROM_SILENCE;
     if (axis_follows(axis))
         axis->coupling_hooks->resume_masters(axis, 0);
+    if (!motor_goes_on(axis) && axis->silence.silent_before > CM1E_AXIS_RIDDEN_OUT_CYCLES)
+        cm1e_axis_backlash_stop(axis);
     if (set_points_move(axis))
         go_on_or_begin_anew(axis);
     if (axis->coupling_hooks)

@@ -211,6 +211,39 @@ static void test_power_taken_away_or_an_error_in_the_middle_of_it(void)
         }
 }
 
+/* Goes on until the motor crosses the gap at full velocity, with the set-point at rest or not. */
+static void cross(bool at_rest)
+{
+    begin_with(CM1E_MAPPING_DYNAMIC, false);
+    bus.config.axes[0].backlash_velocity = 0.1; /* slow, so that the set-point rests long before the end */
+    bench_create();
+    bench_power(true);
+    cycles(20);
+    const cm1e_command_id_t id = at_rest ? bench_move_to(-0.0001, 10) : bench_move_to(-1, 0.5);
+    for (int n = 0; n < 25 || (at_rest && bench_state_of(id) == CM1E_COMMAND_ACTIVE); n++)
+        cycles(1);
+    TEST_ASSERT_EQUAL_DOUBLE(-axis->backlash.velocity, axis->backlash.offset_velocity);
+}
+
+/* The motor has stopped at its last target meanwhile: the crossing begins anew, as motions do. */
+static void test_silence_in_the_middle_of_it_begins_it_anew(void)
+{
+    for (int silent = CM1E_AXIS_RIDDEN_OUT_CYCLES + 1; silent < 20; silent++)
+        for (int at_rest = 0; at_rest < 2; at_rest++) {
+            cross(at_rest);
+            received = CM1E_ERROR_BUS_LOST;
+            cycles(silent);
+            received = CM1E_OK;
+            TEST_ASSERT_EQUAL_DOUBLE(-axis->backlash.velocity, axis->backlash.offset_velocity);
+            cycles(1);
+            TEST_ASSERT_TRUE(fabs(axis->backlash.offset_velocity) <=
+                             axis->backlash.acceleration * axis->cycle_s * (1.0 + 1e-9));
+            cycles(2000);
+            TEST_ASSERT_EQUAL_DOUBLE(-GAP, axis->backlash.offset);
+            TEST_ASSERT_DOUBLE_WITHIN(1.01 / 50000, load_units(), bench_info().actual_position);
+        }
+}
+
 /* A jammed motor: the set-point of the load falls back to where the load is, the offset goes no farther. */
 static void test_motor_that_does_not_follow_the_compensation(void)
 {
@@ -258,6 +291,7 @@ int main(void)
     RUN_TEST(test_reversals_at_any_time_keep_the_motors_limits);
     RUN_TEST(test_without_torque_the_load_is_shown);
     RUN_TEST(test_power_taken_away_or_an_error_in_the_middle_of_it);
+    RUN_TEST(test_silence_in_the_middle_of_it_begins_it_anew);
     RUN_TEST(test_motor_that_does_not_follow_the_compensation);
     RUN_TEST(test_velocity_mode_has_the_compensation_in_its_target);
     return UNITY_END();
