@@ -128,10 +128,14 @@ void cm1e_axis_keep_torque(cm1e_axis_t *axis, double velocity)
 
 void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
 {
-    if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
+    const bool moves = set_points_move(axis);
+    if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) ||
+        !(moves || !cm1e_axis_backlash_at_rest(axis)))
         return;
-    cm1e_axis_keep_torque(axis, axis->setpoint.velocity);
+    cm1e_axis_keep_torque(axis, axis->setpoint.velocity + cm1e_axis_backlash_velocity(axis) / axis->position.scale);
     cm1e_axis_backlash_stop(axis); /* the drive has stopped at the last target that it has heard */
+    if (!moves)
+        return;
     cm1e_axis_pursuit_hold(axis);
     cm1e_axis_hold_here(axis);
 }

@@ -244,6 +244,26 @@ static void test_silence_in_the_middle_of_it_begins_it_anew(void)
         }
 }
 
+/* A drive stops at the same place whether it still receives frames or not, and keeps its torque until it has. */
+static void test_bus_that_is_lost_in_the_middle_of_it_ends_it(void)
+{
+    for (int after_error = -1; after_error < 3; after_error++) {
+        cross(after_error >= 0);
+        if (after_error >= 0) { /* the set-point rests, and the crossing brakes */
+            cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, 0, 0);
+            cycles(after_error);
+        }
+        const double offset = axis->backlash.offset;
+        TEST_ASSERT_TRUE(axis->backlash.offset_velocity < 0.0);
+        received = health = CM1E_ERROR_BUS_LOST;
+        cycles(19);
+        TEST_ASSERT_TRUE(axis->drive.command.enable);
+        cycles(200);
+        TEST_ASSERT_FALSE(axis->drive.command.enable);
+        TEST_ASSERT_EQUAL_DOUBLE(offset, axis->backlash.offset);
+    }
+}
+
 /* A jammed motor: the set-point of the load falls back to where the load is, the offset goes no farther. */
 static void test_motor_that_does_not_follow_the_compensation(void)
 {
@@ -292,6 +312,7 @@ int main(void)
     RUN_TEST(test_without_torque_the_load_is_shown);
     RUN_TEST(test_power_taken_away_or_an_error_in_the_middle_of_it);
     RUN_TEST(test_silence_in_the_middle_of_it_begins_it_anew);
+    RUN_TEST(test_bus_that_is_lost_in_the_middle_of_it_ends_it);
     RUN_TEST(test_motor_that_does_not_follow_the_compensation);
     RUN_TEST(test_velocity_mode_has_the_compensation_in_its_target);
     return UNITY_END();
