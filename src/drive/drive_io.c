@@ -205,16 +205,6 @@ static void put_by_size(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
  * much. */
 enum { CLOSE_PART = 4 };
 
-/* From the frame that brought the last good position to this one. A time that 32 bits do not hold is counted in
- * cycles. */
-static int64_t between_frames(const cm1e_drive_t *drive)
-{
-    static const int64_t longest_ns = 4 * INT64_C(1000000000);
-    const int64_t by_cycles_ns = drive->now_ns - drive->actual.read_ns;
-    const uint32_t by_frames_ns = (uint32_t)cm1e_bus_sent_ns(drive->bus) - drive->actual.sent_ns;
-    return by_cycles_ns > longest_ns ? by_cycles_ns : (int64_t)by_frames_ns;
-}
-
 /* The velocity is 0x606C, unless the mapping lacks it or the firmware shows a quarter of it (below V1.3.0 in HM and PP,
  * UG 10.1). Then it is the difference of two positions. A slave takes its position when the frame passes, so the time
  * between two of them is that between two frames: behind a pause of the cycle it is not the time of a cycle. */
@@ -223,7 +213,7 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
     const bool quarter = drive->range.velocity_quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP);
     if (drive->image.in_velocity.bytes && !quarter)
         return cm1e_drive_clamp((int64_t)get_i32(in, drive->image.in_velocity) * drive->range.velocity_unit);
-    const int64_t elapsed_ns = between_frames(drive);
+    const int64_t elapsed_ns = cm1e_bus_sent_ns(drive->bus) - drive->actual.sent_ns;
     if (!drive->actual.seen)
         return 0;
     if (elapsed_ns <= cm1e_bus_configuration(drive->bus)->cycle_time_ns / CLOSE_PART)
@@ -364,7 +354,7 @@ static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t positi
         actual->contradictions++;
     f->position = position;
     actual->read_ns = drive->now_ns;
-    actual->sent_ns = (uint32_t)cm1e_bus_sent_ns(drive->bus);
+    actual->sent_ns = cm1e_bus_sent_ns(drive->bus);
     actual->seen = true;
     return true;
 }

@@ -69,7 +69,7 @@ bool cm1e_drive_read_ordinary(cm1e_drive_t *drive, int64_t now_ns)
         cm1e_drive_ways_differ(way, velocity * elapsed_ns / S_IN_NS, drive->ordinary.tolerance))
         return false;
     drive->now_ns = drive->actual.read_ns = now_ns;
-    drive->actual.sent_ns = (uint32_t)cm1e_bus_sent_ns(drive->bus);
+    drive->actual.sent_ns = cm1e_bus_sent_ns(drive->bus);
     drive->answered = true;
     f->position = position;
     f->velocity = velocity;

@@ -116,20 +116,20 @@ typedef struct cm1e_drive_ordinary {
 typedef struct cm1e_drive_range {
     int64_t velocity_possible;      /**< counts/s: no motor of this kind is faster */
     int64_t velocity_believed;      /**< counts/s: the largest that is measured from positions */
-    int32_t velocity_unit;          /**< counts/s per unit of 0x60FF and 0x606C */
-    int32_t velocity_most;          /**< of 0x60FF, in that unit */
+    int32_t velocity_most;          /**< of 0x60FF, in units of it */
     int32_t position_least, position_most; /**< what may be a target */
+    int16_t velocity_unit;          /**< counts/s per unit of 0x60FF and 0x606C */
     bool velocity_quarter;          /**< 0x606C is wrong in HM and PP */
 } cm1e_drive_range_t;
 
 /** Whether the actual position can be believed. Written by drive_io.c, drive_ordinary.c and drive_virtual.c. */
 typedef struct cm1e_drive_actual {
     int64_t read_ns;                /**< time of the cycle of the last good one */
+    int64_t sent_ns;                /**< time of the frame that brought it */
     bool seen;                      /**< inputs were valid at least once */
     uint8_t rejected;               /**< in a row: positions that the motor cannot have reached */
     uint8_t contradictions;         /**< positions that contradicted the actual velocity, less those that agreed */
     uint8_t distrusted;             /**< good positions still to come before torque is requested */
-    uint32_t sent_ns;               /**< the lower bits of the time of the frame that brought it */
 } cm1e_drive_actual_t;
 
 /** The set-point on the wire. Written by drive.h, drive.c, drive_io.c, drive_ordinary.c and drive_virtual.c. */

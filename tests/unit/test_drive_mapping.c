@@ -221,6 +221,23 @@ static void test_velocity_below_1_3_0_in_homing_comes_from_positions(void)
     }
 }
 
+/* Behind a pause the next frame comes a planned cycle after the last one, and brings the way of the whole pause. */
+static void test_velocity_from_positions_has_the_time_of_any_pause(void)
+{
+    for (int64_t pause_s = 1; pause_s < 100; pause_s++) {
+        fake_bus_init(&bus, CM1E_MAPPING_CSP, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        drop(&bus.tx, 0x606C);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_init(&drive, &bus, 0, &diag));
+        fake_bus_show(&bus);
+        cycle();
+        bus.position += (int32_t)(pause_s * 10000);
+        fake_bus_show(&bus);
+        bus.clock.virtual_now_ns += pause_s * 1000000000;
+        cm1e_drive_read(&drive, true, drive.now_ns + cycle_ns);
+        TEST_ASSERT_EQUAL_INT32(10000, drive.feedback.velocity);
+    }
+}
+
 static void test_inputs_of_both_orders_are_decoded(void)
 {
     for (int mapping = CM1E_MAPPING_DYNAMIC; mapping <= CM1E_MAPPING_PROFILE; mapping++)
@@ -436,6 +453,7 @@ int main(void)
     RUN_TEST(test_velocity_has_the_unit_of_the_firmware_and_is_limited);
     RUN_TEST(test_actual_velocity_has_counts_per_second_in_every_firmware);
     RUN_TEST(test_velocity_below_1_3_0_in_homing_comes_from_positions);
+    RUN_TEST(test_velocity_from_positions_has_the_time_of_any_pause);
     RUN_TEST(test_inputs_of_both_orders_are_decoded);
     RUN_TEST(test_32_bit_torque_saturates);
     RUN_TEST(test_24_bit_torque_has_a_sign);
