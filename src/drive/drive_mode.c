@@ -17,7 +17,8 @@ static const int64_t interval_ns = CM1E_BRIDGE_MODE_INTERVAL_NS + MS_IN_NS;
 static const int64_t silence_ns = 10 * MS_IN_NS;    /* 0000h for five cycles before words of another coding */
 
 static const char abnormal[] = "Since power-on the motor was in CMD or CPIO: by way of CML, CSP \"will possibly result "
-                               "in operating abnormal\" (BR 6 note 2). Switch the bridge off and on, or use Insist";
+                               "in operating abnormal\" (BR 6 note 2). Switch the bridge off and on. In CML or CSP "
+                               "that is not seen: use Insist then";
 
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
 {

@@ -433,6 +433,24 @@ static void test_an_absence_alone_makes_no_dead_end_normal(void)
     TEST_ASSERT_FALSE(bench_mode(CSP, 500));
 }
 
+/* Another tool may have led it there, so the refusal says what to do if it was switched off. */
+static void test_power_off_in_cml_is_not_seen_and_that_is_said(void)
+{
+    const char *why = NULL;
+    go_to(CMD);
+    go_to(CML);
+    bus.watch.al_state = CM1E_AL_SAFE_OP;
+    bench_cycles(20);
+    cm1e_sim_bridge_ops.power_on(fake_bridge.app, bus.clock.virtual_now_ns);
+    cm1e_sim_bridge_ops.state_change(fake_bridge.app, CM1E_AL_INIT, CM1E_AL_OP);
+    bus.watch.al_state = CM1E_AL_OP;
+    bench_cycles(100);
+    go_to(CML);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_STATE, cm1e_drive_mode_check(&drive, CM1E_MODE_CSP, false, &why));
+    TEST_ASSERT_NOT_NULL(strstr(why, "not seen: use Insist"));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_mode_check(&drive, CM1E_MODE_CSP, true, &why));
+}
+
 /* The slave is away, and in csp when it is back, as it was commanded meanwhile. Nothing is written. */
 static void expect_csp_after_an_absence(void)
 {
@@ -648,6 +666,7 @@ int main(void)
     RUN_TEST(test_failed_transfers_are_not_repeated_at_once);
     RUN_TEST(test_a_switch_has_its_time_anew_after_an_absence);
     RUN_TEST(test_an_absence_alone_makes_no_dead_end_normal);
+    RUN_TEST(test_power_off_in_cml_is_not_seen_and_that_is_said);
     RUN_TEST(test_after_an_absence_the_mode_that_is_found_counts);
     RUN_TEST(test_after_an_absence_a_write_that_was_under_way_is_not_repeated);
     RUN_TEST(test_a_switch_is_not_overtaken_by_the_next_one);
