@@ -136,6 +136,7 @@ static void enter(cm1e_axis_t *axis, drive_step_t step)
 {
     axis->set_aside.driving->step = step;
     axis->set_aside.driving->step_ns = axis->set_aside.driving->due_ns = axis->now_ns;
+    axis->set_aside.driving->nearest = INT64_MAX;
     cm1e_axis_watch_standstill(axis, &axis->set_aside.driving->standstill);
 }
 
@@ -307,13 +308,15 @@ static bool can_halt(const cm1e_axis_t *axis)
     return v > 0.0 ? end <= axis->limits.upper : v < 0.0 ? end >= axis->limits.lower : true;
 }
 
-/* Whether the drive says for too long that its motor is at a target at which it does not rest. A drive may say so
- * before its profile has ended, and may be slower than that. */
-static bool comes_to_no_rest(cm1e_axis_t *axis)
+/* Whether the motor has come no nearer to its target for too long: it stands elsewhere, turns around the target, or
+ * rests there and the drive does not say so. A drive may be slower than its profile. */
+static bool is_overdue(cm1e_axis_t *axis)
 {
     driving_t *d = axis->set_aside.driving;
-    if (!axis->drive.feedback.target_reached || axis->now_ns < d->step_ns + d->profile_ns)
+    const int64_t away = llabs((int64_t)axis->position.raw - d->target);
+    if (away < d->nearest || axis->now_ns < d->step_ns + d->profile_ns)
         d->due_ns = axis->now_ns;
+    d->nearest = away < d->nearest ? away : d->nearest;
     return axis->now_ns - d->due_ns >= axis->in_position.timeout_us * INT64_C(1000);
 }
 
@@ -334,7 +337,7 @@ static void step_move(cm1e_axis_t *axis)
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, ((double)d->target - axis->position.raw) / axis->position.scale, 0.0);
     } else if (f->target_reached && rests) {
         arrived(axis);
-    } else if (comes_to_no_rest(axis)) {
+    } else if (is_overdue(axis)) {
         cm1e_axis_in_position_fail(axis, ((double)axis->position.raw - d->target) / axis->position.scale);
     }
 }

@@ -142,8 +142,11 @@ void cm1e_axis_in_position_step(cm1e_axis_t *axis)
 
 /* ---- in words ---------------------------------------------------------------------------------------------------- */
 
-static const char *probable_cause(float torque)
+static const char *probable_cause(bool inside, float torque)
 {
+    if (inside)
+        return "It was there, but did not rest, or the drive did not say that its target is reached: check the drive's "
+               "own window and time (0x6067, 0x6068)";
     if (isnan(torque))
         return "Look for a mechanical stop or an obstacle, a load or a friction that is too large for the motor, and a "
                "torque limit in the drive";
@@ -163,7 +166,7 @@ static void where(const cm1e_axis_t *axis, char *text, size_t size)
         snprintf(torque, sizeof torque, ", with %.0f %% of its rated torque", (double)p->torque);
     snprintf(text, size, "Its set-point stood at %.6g u, the motor was at %.6g u, %.6g u %s it%s; in_position.window "
              "is %.6g u. %s", set, p->missed_actual, fabs(p->missed_by), p->missed_by < 0.0 ? "below" : "above", torque,
-             p->window, probable_cause(p->torque));
+             p->window, probable_cause(fabs(p->missed_by) <= p->window, p->torque));
 }
 
 void cm1e_axis_in_position_text(const cm1e_axis_t *axis, char *text, size_t size)

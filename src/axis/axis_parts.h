@@ -330,7 +330,8 @@ typedef struct driving {
     cm1e_sdo_t sdo;
     int64_t step_ns;         /**< when the step began */
     int64_t profile_ns;      /**< how long a motion to a position takes at most */
-    int64_t due_ns;          /**< since when the motor should rest at its target: the drive says that it is there */
+    int64_t nearest;         /**< counts: how near to its target the motor was */
+    int64_t due_ns;          /**< since when it should rest there: it comes no nearer */
     standstill_t standstill;
 } driving_t;
 

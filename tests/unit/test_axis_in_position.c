@@ -582,6 +582,38 @@ static void test_a_motor_that_never_rests_at_the_target_of_its_drive_is_an_error
     }
 }
 
+static int32_t short_of; /* counts */
+
+/* A drive that never says "target reached": its motor stops at the target or before it. */
+static void drive_is_mute(cm1e_bus_t *b)
+{
+    if (b->state != OPERATION_ENABLED || b->mode != CM1E_MODE_PP)
+        return;
+    b->mode_status = b->controlword & CONTROLWORD_NEW_SET_POINT ? STATUSWORD_SET_POINT_ACKNOWLEDGE : 0;
+    const int32_t way = b->target_position - short_of - b->position;
+    b->position += way > 10 ? 10 : way < -10 ? -10 : way; /* slower than its profile */
+}
+
+static void test_a_drive_that_never_says_that_it_is_there_is_an_error(void)
+{
+    for (int elsewhere = 0; elsewhere < 2; elsewhere++) {
+        bench_end();
+        fake_bus_init(&bus, CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.config.axes[0].motion = CM1E_MOTION_DRIVE;
+        bus.config.axes[0].in_position_timeout_s = 0.5;
+        bus.world = drive_is_mute;
+        short_of = elsewhere ? 10000 : 0;
+        bench_create();
+        bench_enable();
+        const cm1e_command_id_t id = bench_move_by(1.0, 10.0);
+        const int way = (50000 - short_of) / 10, cycles = bench_wait(id, 10000);
+        TEST_ASSERT_INT_WITHIN(20, way + 500, cycles);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_NOT_IN_POSITION, bench_info().error);
+        bench_told(elsewhere ? "0.2 u below it" : "the drive did not say that its target is reached");
+    }
+}
+
 /* Also where the profile is shorter than a cycle, the motor has its time to come to rest. */
 static void test_a_tiny_move_of_the_drive_has_that_time_too(void)
 {
@@ -633,6 +665,7 @@ int main(void)
     RUN_TEST(test_homing_waits_for_the_motor_too);
     RUN_TEST(test_a_motor_that_turns_is_not_at_the_target_of_its_drive);
     RUN_TEST(test_a_motor_that_never_rests_at_the_target_of_its_drive_is_an_error);
+    RUN_TEST(test_a_drive_that_never_says_that_it_is_there_is_an_error);
     RUN_TEST(test_a_tiny_move_of_the_drive_has_that_time_too);
     return UNITY_END();
 }
