@@ -130,7 +130,7 @@ static void print_emergencies(const cm1e_bus_t *bus, uint16_t position)
 {
     cm1e_emergency_t all[CM1E_EMERGENCIES];
     char text[CM1E_EMERGENCY_TEXT_BYTES], when[32];
-    const size_t count = cm1e_bus_emergency(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
+    const size_t count = cm1e_bus_emergencies(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
     for (size_t i = count > EMERGENCIES_SHOWN ? count - EMERGENCIES_SHOWN : 0; i < count; i++) {
         cm1e_emergency_text(bus, position, &all[i], text, sizeof text);
         time_text(all[i].time_ns, when);
@@ -142,7 +142,7 @@ static json_t *emergencies_as_json(const cm1e_bus_t *bus, uint16_t position)
 {
     cm1e_emergency_t all[CM1E_EMERGENCIES];
     char text[CM1E_EMERGENCY_TEXT_BYTES];
-    const size_t count = cm1e_bus_emergency(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
+    const size_t count = cm1e_bus_emergencies(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
     json_t *list = json_array();
     for (size_t i = 0; i < count; i++) {
         cm1e_emergency_text(bus, position, &all[i], text, sizeof text);

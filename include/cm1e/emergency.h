@@ -30,8 +30,8 @@ typedef struct cm1e_emergency {
 /** Copies the emergencies of a slave after the one with number `after` (0: all that there are), oldest first, at most
  *  `room`. Returns how many there are in `emergencies`. `*lost`, if not NULL, is the number of those after `after` that
  *  are no longer kept. A slave that does not exist has none. @rt any */
-CM1E_API size_t cm1e_bus_emergency(const cm1e_bus_t *bus, uint16_t position, uint64_t after,
-                                   cm1e_emergency_t *emergencies, size_t room, uint64_t *lost);
+CM1E_API size_t cm1e_bus_emergencies(const cm1e_bus_t *bus, uint16_t position, uint64_t after,
+                                     cm1e_emergency_t *emergencies, size_t room, uint64_t *lost);
 /** Writes an emergency of the slave at `position` in words, without slave and time: the text of the device for its
  *  code, else that of its class (CiA 301, CiA 402), the error register, the bytes, and a cure if there is one. A buffer
  *  that is too small gets the beginning; CM1E_EMERGENCY_TEXT_BYTES are enough. @rt block */

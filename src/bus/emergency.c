@@ -9,8 +9,8 @@
 
 /* ---- what is kept ------------------------------------------------------------------------------------------------ */
 
-size_t cm1e_bus_emergency(const cm1e_bus_t *bus, uint16_t position, uint64_t after, cm1e_emergency_t *emergencies,
-                          size_t room, uint64_t *lost)
+size_t cm1e_bus_emergencies(const cm1e_bus_t *bus, uint16_t position, uint64_t after, cm1e_emergency_t *emergencies,
+                            size_t room, uint64_t *lost)
 {
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (slave)
@@ -30,7 +30,7 @@ void cm1e_bus_keep_emergency(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
     bus->listening.emergencies++;
 }
 
-uint64_t cm1e_bus_emergencies(const cm1e_bus_t *bus) { return bus->listening.emergencies; }
+uint64_t cm1e_bus_emergency_count(const cm1e_bus_t *bus) { return bus->listening.emergencies; }
 
 /* ---- texts ------------------------------------------------------------------------------------------------------ */
 

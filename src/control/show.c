@@ -127,7 +127,7 @@ static json_t *emergencies_of(const cm1e_bus_t *bus, uint16_t position)
     cm1e_emergency_t emergencies[CM1E_EMERGENCIES];
     char text[CM1E_EMERGENCY_TEXT_BYTES];
     json_t *all = json_array();
-    const size_t count = cm1e_bus_emergency(bus, position, 0, emergencies, CM1E_EMERGENCIES, NULL);
+    const size_t count = cm1e_bus_emergencies(bus, position, 0, emergencies, CM1E_EMERGENCIES, NULL);
     for (size_t i = 0; i < count; i++) {
         const cm1e_emergency_t *one = &emergencies[i];
         json_t *data = json_array();

@@ -134,8 +134,8 @@ static void tell_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number,
     log_slaves_t *slaves = &log->slaves[number];
     cm1e_emergency_t news[CM1E_EMERGENCIES];
     uint64_t lost = 0;
-    const size_t count = cm1e_bus_emergency(bus, (uint16_t)(slave + 1), slaves->told[slave], news, CM1E_EMERGENCIES,
-                                            &lost);
+    const size_t count = cm1e_bus_emergencies(bus, (uint16_t)(slave + 1), slaves->told[slave], news, CM1E_EMERGENCIES,
+                                              &lost);
     log_pace_t *pace = &slaves->emergency_pace[slave];
     const size_t left = count > 0 ? records_left(slaves, pace, run_ns, &slaves->emergencies_due_ns) : 0;
     const size_t first = count > left ? count - left : 0;
@@ -150,10 +150,10 @@ static void tell_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number,
 void cm1e_log_emergencies(log_t *log, const cm1e_bus_t *bus, uint32_t number, int64_t run_ns)
 {
     log_slaves_t *slaves = &log->slaves[number];
-    if (slaves->emergencies == cm1e_bus_emergencies(bus) && run_ns < slaves->emergencies_due_ns &&
+    if (slaves->emergencies == cm1e_bus_emergency_count(bus) && run_ns < slaves->emergencies_due_ns &&
         !slaves->ended)
         return;
-    slaves->emergencies = cm1e_bus_emergencies(bus);
+    slaves->emergencies = cm1e_bus_emergency_count(bus);
     if (slaves->operation != cm1e_bus_operation(bus)) /* after another scan they count from 1 again */
         memset(slaves->told, 0, sizeof slaves->told);
     slaves->operation = cm1e_bus_operation(bus);

@@ -11,7 +11,7 @@ static cm1e_emergency_t all[CM1E_EMERGENCIES];
 
 static size_t emergencies_of(const cm1e_bus_t *bus, uint16_t position)
 {
-    return cm1e_bus_emergency(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
+    return cm1e_bus_emergencies(bus, position, 0, all, CM1E_EMERGENCIES, NULL);
 }
 
 static void expect_text(const cm1e_bus_t *bus, uint16_t position, const cm1e_emergency_t *emergency, const char *words)
@@ -107,20 +107,20 @@ START_TEST(the_last_ones_are_kept)
         cycles(bus, 10);
     }
     uint64_t lost = 0;
-    ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, 0, all, CM1E_EMERGENCIES, &lost), CM1E_EMERGENCIES);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus, 1, 0, all, CM1E_EMERGENCIES, &lost), CM1E_EMERGENCIES);
     ck_assert_uint_eq(lost, 5);
     for (unsigned i = 0; i < CM1E_EMERGENCIES; i++) {
         ck_assert_uint_eq(all[i].number, i + 6);
         ck_assert_uint_eq(all[i].code, 0x1005 + i);
     }
-    ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, all[0].number, all, 3, &lost), 3);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus, 1, all[0].number, all, 3, &lost), 3);
     ck_assert_uint_eq(all[0].number, 7);
     ck_assert_uint_eq(lost, 0);
-    ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, CM1E_EMERGENCIES + 5, all, 3, &lost), 0);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus, 1, CM1E_EMERGENCIES + 5, all, 3, &lost), 0);
     lost = 7;
-    ck_assert_uint_eq(cm1e_bus_emergency(bus, 9, 0, all, 3, &lost), 0);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus, 9, 0, all, 3, &lost), 0);
     ck_assert_uint_eq(lost, 0);
-    ck_assert_uint_eq(cm1e_bus_emergency(bus, 9, 0, all, 3, NULL), 0);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus, 9, 0, all, 3, NULL), 0);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -205,7 +205,7 @@ START_TEST(those_of_a_slave_that_is_brought_back_are_kept_once_each)
     ck_assert_uint_eq(emergencies_of(bus, 1), 4);
     for (unsigned i = 0; i < 4; i++)
         ck_assert_uint_eq(all[i].code, 0x1001 + i);
-    ck_assert_uint_eq(cm1e_bus_emergencies(bus), 4);
+    ck_assert_uint_eq(cm1e_bus_emergency_count(bus), 4);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -343,7 +343,7 @@ START_TEST(looks_ride_in_every_kind_of_frame)
     cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
     ck_assert_uint_eq(bus->counters.lost_frames - before.lost_frames, 0);
     ck_assert_uint_eq(bus->counters.working_counter_errors - before.working_counter_errors, 0);
-    ck_assert_uint_eq(cm1e_bus_emergencies(bus), 3);
+    ck_assert_uint_eq(cm1e_bus_emergency_count(bus), 3);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -374,7 +374,7 @@ START_TEST(a_lost_frame_neither_loses_nor_delays_a_message)
                 cycle(bus);
         }
     cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
-    ck_assert_uint_eq(cm1e_bus_emergencies(bus), messages);
+    ck_assert_uint_eq(cm1e_bus_emergency_count(bus), messages);
     cm1e_bus_close(bus);
 }
 END_TEST

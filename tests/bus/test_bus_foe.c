@@ -245,7 +245,7 @@ START_TEST(the_mailbox_is_shared)
         write_and_read(bus, 100 * i, NULL);
     }
     cm1e_emergency_t all[CM1E_EMERGENCIES];
-    ck_assert_uint_eq(cm1e_bus_emergency(bus, 1, 0, all, CM1E_EMERGENCIES, NULL), CM1E_EMERGENCIES);
+    ck_assert_uint_eq(cm1e_bus_emergencies(bus, 1, 0, all, CM1E_EMERGENCIES, NULL), CM1E_EMERGENCIES);
     ck_assert_uint_eq(all[CM1E_EMERGENCIES - 1].number, 20);
     cm1e_bus_close(bus);
 }

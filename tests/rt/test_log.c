@@ -146,7 +146,7 @@ START_TEST(test_a_flood_of_emergencies_of_one_slave_takes_few_records)
     machine_run(&machine, (FLOOD_BEGINS_MS + goes_on_ms) * MS);
     const size_t n = cm1e_log_read(machine.scheduler, 0, events, CM1E_LOG_EVENTS, NULL);
     cm1e_emergency_t newest[CM1E_EMERGENCIES];
-    const size_t kept = cm1e_bus_emergency(machine.bus, 2, 0, newest, CM1E_EMERGENCIES, NULL);
+    const size_t kept = cm1e_bus_emergencies(machine.bus, 2, 0, newest, CM1E_EMERGENCIES, NULL);
     ck_assert_uint_eq(kept, CM1E_EMERGENCIES);
     uint64_t told = 0, records = 0;
     const cm1e_log_event_t *last = NULL;
