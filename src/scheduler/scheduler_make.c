@@ -168,13 +168,15 @@ cm1e_error_t cm1e_scheduler_add_bus(cm1e_scheduler_t *scheduler, cm1e_bus_t *bus
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "Two buses have an axis with the name \"%s\": give "
                              "each axis of a program a name of its own.", taken);
     const member_t before = {.first = scheduler->axis_count, .end = scheduler->member_count};
+    trace_t trace = scheduler->trace; /* its columns point to where it was, and will be again after an error */
     cm1e_error_t error = join(scheduler, bus, diag);
-    if (error == CM1E_OK) {
-        cm1e_trace_free(&scheduler->trace);
-        error = make_trace(scheduler, diag);
-    }
     if (error == CM1E_OK)
-        return error;
+        error = make_trace(scheduler, diag);
+    if (error == CM1E_OK) {
+        cm1e_trace_free(&trace);
+        return CM1E_OK;
+    }
+    scheduler->trace = trace;
     while (scheduler->axis_count > before.first) {
         cm1e_axis_destroy(scheduler->axes[--scheduler->axis_count]);
         scheduler->axes[scheduler->axis_count] = NULL;

@@ -227,6 +227,46 @@ START_TEST(test_a_lost_bus_concerns_its_own_axes)
 }
 END_TEST
 
+void *__real_calloc(size_t count, size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+static int countdown; /* the allocation that fails; 0: none */
+
+void *__wrap_calloc(size_t count, size_t size)
+{
+    return countdown > 0 && --countdown == 0 ? NULL : __real_calloc(count, size);
+}
+
+/* Whatever allocation fails, the scheduler is as it was: it has its axes and the columns of its trace, and runs. */
+START_TEST(test_a_bus_for_which_there_is_no_memory_changes_nothing)
+{
+    static const double variable = 1.0;
+    buses[A] = open_bus("X", 1, MS_IN_NS, true);
+    buses[B] = open_bus("Y", 1, MS_IN_NS, true);
+    must(cm1e_bus_start(buses[A], &diag));
+    must(cm1e_bus_start(buses[B], &diag));
+    const cm1e_scheduler_config_t config = {.trace_capacity = 10};
+    must(cm1e_scheduler_create(&scheduler, buses[A], &config, &diag));
+    bool failed = true;
+    int failures = 0;
+    for (; failed; failures += failed) {
+        countdown = failures + 1;
+        const cm1e_error_t error = cm1e_scheduler_add_bus(scheduler, buses[B], &diag);
+        failed = countdown == 0;
+        countdown = 0;
+        ck_assert_int_eq(error, failed ? CM1E_ERROR_NO_MEMORY : CM1E_OK);
+        ck_assert_uint_eq(cm1e_scheduler_axis(scheduler, 1).Handle != 0, !failed);
+        const trace_t *trace = cm1e_scheduler_trace(scheduler);
+        ck_assert_uint_eq(trace->axes, failed ? 1 : 2);
+        ck_assert_str_eq(trace->columns[0].name, "X1 state");
+    }
+    ck_assert_int_gt(failures, 4);
+    must(cm1e_scheduler_trace_variable(scheduler, "v", "", CM1E_TRACE_LREAL, &variable, &diag));
+    must(cm1e_scheduler_run(scheduler, 20 * MS_IN_NS, &diag));
+    ck_assert_uint_eq(cm1e_scheduler_trace(scheduler)->used, 10);
+    close_all();
+}
+END_TEST
+
 START_TEST(test_what_cannot_run_together_is_refused)
 {
     prepare();
@@ -518,6 +558,7 @@ int main(void)
     tcase_add_test(all, test_objects_of_both_buses_are_recorded);
     tcase_add_test(all, test_a_gear_from_one_bus_to_the_other_is_in_step);
     tcase_add_test(all, test_a_lost_bus_concerns_its_own_axes);
+    tcase_add_test(all, test_a_bus_for_which_there_is_no_memory_changes_nothing);
     tcase_add_test(all, test_what_cannot_run_together_is_refused);
     tcase_add_test(all, test_buses_come_before_the_signals_of_the_trace);
     tcase_add_test(all, test_four_buses_and_no_more);
