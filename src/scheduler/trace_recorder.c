@@ -152,21 +152,17 @@ cm1e_error_t cm1e_trace_set_trigger(trace_t *trace, const cm1e_trace_trigger_t *
     const cm1e_error_t error = check_trigger(trace, trigger, diag);
     if (error != CM1E_OK)
         return error;
-    trace_trigger_t *t = &trace->trigger;
-    *t = (trace_trigger_t){.kind = trigger->kind, .level = trigger->level, .before = NAN,
-                           .samples_before = trigger->samples_before};
-    const char *signal = trigger->signal;
-    if (trigger->kind == CM1E_TRACE_ON_ERROR_STOP)
-        signal = "ErrorStop";
-    else if (trigger->kind != CM1E_TRACE_NO_TRIGGER) {
-        t->column = signal ? find_column(trace, signal) : trace->column_count;
-        if (t->column == trace->column_count) {
-            t->kind = CM1E_TRACE_NO_TRIGGER;
+    trace_trigger_t t = {.kind = trigger->kind, .level = trigger->level, .before = NAN,
+                         .samples_before = trigger->samples_before};
+    const char *signal = trigger->kind == CM1E_TRACE_ON_ERROR_STOP ? "ErrorStop" : trigger->signal;
+    if (trigger->kind > CM1E_TRACE_ON_ERROR_STOP) {
+        t.column = signal ? find_column(trace, signal) : trace->column_count;
+        if (t.column == trace->column_count)
             return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The trace has no signal \"%s\" for a trigger.",
                                  signal ? signal : "");
-        }
     }
-    snprintf(t->text, sizeof t->text, "%s%s", trigger_mark, signal ? signal : "");
+    snprintf(t.text, sizeof t.text, "%s%s", trigger_mark, signal ? signal : "");
+    trace->trigger = t;
     return CM1E_OK;
 }
 

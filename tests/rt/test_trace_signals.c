@@ -440,6 +440,21 @@ START_TEST(test_an_axis_in_error_stop_ends_the_recording)
 }
 END_TEST
 
+/* A trigger that is refused leaves the one that was set before. */
+START_TEST(test_a_trigger_that_is_refused_changes_nothing)
+{
+    open_machine(100);
+    plc.fault_at = 300;
+    expect(cm1e_scheduler_trace_trigger(machine.scheduler, &(cm1e_trace_trigger_t){
+               .kind = CM1E_TRACE_ON_ERROR_STOP, .samples_before = 60}, &diag), CM1E_OK, "");
+    expect(cm1e_scheduler_trace_trigger(machine.scheduler, &(cm1e_trace_trigger_t){
+               .kind = CM1E_TRACE_ON_CHANGE, .signal = "none of these"}, &diag), CM1E_ERROR_INVALID_ARGUMENT, "no signal");
+    machine_run(&machine, 600 * MS);
+    ck_assert_str_eq(cm1e_trace_mark_at(cm1e_scheduler_trace(machine.scheduler), 0)->text, "trigger: ErrorStop");
+    machine_close(&machine);
+}
+END_TEST
+
 START_TEST(test_an_axis_that_enters_error_stop_as_another_one_leaves_it_ends_the_recording)
 {
     static const char *const names[] = {"A", "B"};
@@ -535,6 +550,7 @@ int main(void)
     tcase_add_test(tests, test_the_cycle_itself_is_recorded);
     tcase_add_test(tests, test_triggers_keep_what_a_search_in_the_whole_signal_says);
     tcase_add_test(tests, test_an_axis_in_error_stop_ends_the_recording);
+    tcase_add_test(tests, test_a_trigger_that_is_refused_changes_nothing);
     tcase_add_test(tests, test_an_axis_that_enters_error_stop_as_another_one_leaves_it_ends_the_recording);
     tcase_add_test(tests, test_triggers_that_cannot_be_are_refused);
     tcase_add_test(tests, test_a_numpy_file_has_a_header_that_fits_and_every_value);
