@@ -183,22 +183,31 @@ static bool take_values(var_options_t *options, cm1e_control_t *control, cm1e_di
 /** After a change that failed: the exit status. The connection ends, and with it what this command has forced. */
 static int fail_of(int done, const cm1e_diag_t *diag) { return done == 0 ? fail_at_once(diag) : fail(diag); }
 
-/** Writes, forces or releases one; false: `diag` says why. */
-static bool change(const var_options_t *options, cm1e_control_t *control, int i, cm1e_diag_t *diag)
+/** Writes, forces or releases one, or asks only whether that would be refused; false: `diag` says why. */
+static bool change(const var_options_t *options, cm1e_control_t *control, int i, bool check, cm1e_diag_t *diag)
 {
-    json_t *done = ask_program(control, json_pack("{s:s, s:o, s:O, s:b, s:i}", "request", "variable", "name",
-                                                  name_of(options->names[i]), "value", options->values[i], "force",
-                                                  strcmp(options->word, "force") == 0, "keep_ms", KEEP_MS),
+    json_t *done = ask_program(control, json_pack("{s:s, s:o, s:O, s:b, s:b, s:i}", "request", "variable", "name",
+                                                  name_of(options->names[i]), "value", options->values[i], "check", check,
+                                                  "force", strcmp(options->word, "force") == 0, "keep_ms", KEEP_MS),
                                "variable", diag);
     json_decref(done);
     return done != NULL;
+}
+
+/** Of several variables none is written if one of them is refused. */
+static bool check_all(const var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
+{
+    bool good = true;
+    for (int i = 0; i < options->count && options->count > 1 && writes(options) && good; i++)
+        good = change(options, control, i, true, diag);
+    return good;
 }
 
 /** Returns how many were changed; less than all: `diag` says why. */
 static int change_all(const var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
 {
     int done = 0;
-    while (done < options->count && change(options, control, done, diag))
+    while (done < options->count && change(options, control, done, false, diag))
         done++;
     if (done < options->count && done > 0 && strcmp(options->word, "set") == 0)
         complain("the first %d of %d variables were written, the others were not", done, options->count);
@@ -209,7 +218,7 @@ static int change_all(const var_options_t *options, cm1e_control_t *control, cm1
 static bool renew_all(var_options_t *options, cm1e_control_t *control, cm1e_diag_t *diag)
 {
     for (int i = 0; i < options->count;) {
-        if (change(options, control, i, diag)) {
+        if (change(options, control, i, false, diag)) {
             i++;
             continue;
         }
@@ -256,6 +265,8 @@ static int act(var_options_t *options, cm1e_control_t *control)
     catch_signals();
     if (!take_values(options, control, &diag))
         return diag.text[0] ? fail_at_once(&diag) : EXIT_WRONG_USE;
+    if (!check_all(options, control, &diag))
+        return fail_at_once(&diag);
     if (strcmp(options->word, "force") == 0)
         return force(options, control);
     const int done = change_all(options, control, &diag);

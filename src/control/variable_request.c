@@ -102,6 +102,9 @@ static void change(view_t *view, view_order_t *order)
     of->forced.until_ns = cm1e_scheduler_time_ns(view->scheduler) + of->keep_ns;
     if (of->release)
         cm1e_scheduler_release(view->scheduler, &of->forced);
+    else if (of->check)
+        of->result = !of->force && cm1e_scheduler_is_forced(view->scheduler, of->forced.variable) ? FORCING_HELD
+                                                                                                 : FORCING_DONE;
     else if (of->force)
         of->result = cm1e_scheduler_force(view->scheduler, &of->forced);
     else
@@ -142,6 +145,7 @@ const char *cm1e_variable_take(variable_order_t *order, const view_t *view, cons
     const json_t *value = json_object_get(message, "value");
     const uint32_t client = order->forced.client;
     *order = (variable_order_t){.order.decide = change, .force = json_is_true(json_object_get(message, "force")),
+                                .check = json_is_true(json_object_get(message, "check")),
                                 .release = json_is_null(value),
                                 .forced.client = client};
     if (!cm1e_variable_named(view, name ? name : "", &order->forced.variable, text, size))

@@ -18,6 +18,7 @@ typedef struct variable_order {
     view_order_t order;
     forced_t forced;            /**< client and variable; what is forced or written */
     bool force, release;
+    bool check;                 /**< nothing is written: only whether it would be */
     int64_t keep_ns;
     forcing_result_t result;    /**< valid when decided */
     struct variable_values *values; /**< of the list; NULL: there is none. Owned */
