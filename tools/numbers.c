@@ -46,8 +46,9 @@ bool parse_real(const char *word, const char *what, double *value)
     const bool decimal = word[strspn(word, "+-.0123456789eE")] == '\0';
     if (*word && *end == '\0' && decimal && isfinite(*value))
         return true;
+    const bool large = *word && *end == '\0' && decimal; /* strtod() has made it infinite */
     complain("%s is \"%s\"; expected a number%s", what, word,
-             strchr(word, ',') ? ", with a point instead of the comma" : "");
+             large ? " up to 1.7e308" : strchr(word, ',') ? ", with a point instead of the comma" : "");
     return false;
 }
 
