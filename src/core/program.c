@@ -1,9 +1,11 @@
 #include "core/program.h"
 
 #include <errno.h>
+#include <linux/capability.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 enum { COMMAND_LINE = 512 };
@@ -37,4 +39,22 @@ void cm1e_program_path(char *path, size_t size)
         path[length] = '\0';
     else
         snprintf(path, size, "<program>");
+}
+
+void cm1e_program_cure(char *text, size_t size)
+{
+    static const struct { int capability; const char *name; } needed[] = {
+        {CAP_NET_RAW, "CAP_NET_RAW"}, {CAP_SYS_NICE, "CAP_SYS_NICE"}, {CAP_IPC_LOCK, "CAP_IPC_LOCK"}};
+    char path[160], lacking[64] = "";
+    for (size_t i = 0, used = 0; i < sizeof needed / sizeof needed[0]; i++)
+        if (prctl(PR_CAPBSET_READ, needed[i].capability) == 0)
+            used += (size_t)snprintf(lacking + used, sizeof lacking - used, "%s %s", used ? "," : "",
+                                     needed[i].name);
+    cm1e_program_path(path, sizeof path);
+    if (lacking[0])
+        snprintf(text, size, "Not even root has%s in this container or service: start that with what it lacks (docker run --network host "
+                 "--cap-add NET_RAW --cap-add SYS_NICE --cap-add IPC_LOCK)", lacking);
+    else
+        snprintf(text, size, "Start the program with sudo, or give it the privileges once: sudo setcap "
+                 "cap_net_raw,cap_sys_nice,cap_ipc_lock+ep %s", path);
 }

@@ -88,12 +88,10 @@ static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)
 {
     if (why != EPERM && why != EACCES)
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "No packet socket: %s.", strerror(why));
-    char self[160];
-    cm1e_program_path(self, sizeof self);
+    char cure[300];
+    cm1e_program_cure(cure, sizeof cure);
     return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0,
-                         "EtherCAT on a network interface needs the privilege CAP_NET_RAW. Start the program with "
-                         "sudo, or give it the privilege once: "
-                         "sudo setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep %s", self);
+                         "EtherCAT on a network interface needs the privilege CAP_NET_RAW. %s", cure);
 }
 
 /** Options that are useful, but not needed: a kernel without them still works. */

@@ -87,12 +87,12 @@ static void keep_awake(realtime_t *realtime)
 
 static void advise(char *advice, size_t size, bool fifo, bool locked, int priority)
 {
-    char path[256];
-    cm1e_program_path(path, sizeof path);
+    char cure[300];
+    cm1e_program_cure(cure, sizeof cure);
     snprintf(advice, size,
-             "Not real time: %s%s%s refused. As root: setcap cap_sys_nice,cap_ipc_lock,cap_net_raw+ep %s; or limits of "
-             "the user in /etc/security/limits.conf: rtprio %d, memlock unlimited (ulimit -r -l shows them).",
-             fifo ? "" : "SCHED_FIFO", fifo || locked ? "" : " and ", locked ? "" : "locked memory", path, priority);
+             "Not real time: %s%s%s refused. %s; or limits of the user in /etc/security/limits.conf: rtprio %d, memlock "
+             "unlimited (ulimit -r -l shows them).", fifo ? "" : "SCHED_FIFO", fifo || locked ? "" : " and ",
+             locked ? "" : "locked memory", cure, priority);
 }
 
 bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config, char *advice, size_t size)

@@ -58,6 +58,8 @@ FAULTS = [
     ({"sys/devices/system/clocksource/clocksource0/current_clocksource": "hpet"}, "clock source", "problem",
      "hpet", "echo tsc"),
     ({"proc/self/status": "CapEff:\t0000000000000000\n"}, "privileges", "problem", "may not open raw sockets", "setcap"),
+    ({"proc/self/status": "CapEff:\t0000000000000000\nCapBnd:\t00000000a80425fb\n"}, "privileges", "problem",
+     "may not open raw sockets", ""),  # a container of Docker: CAP_NET_RAW, but not CAP_SYS_NICE and CAP_IPC_LOCK
     ({NET + "flags": "0x1002"}, "link", "problem", "eth9 is down", "ip link set eth9 up"),
     ({NET + "carrier": "0"}, "link", "problem", "no link", ""),
     ({NET + "speed": "10"}, "link", "problem", "10 Mbit/s", "ethtool -s eth9"),

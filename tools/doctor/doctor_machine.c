@@ -122,15 +122,16 @@ static void look_at_clock(doctor_t *doctor)
 
 enum { CAPABILITY_NET_RAW = 13, CAPABILITY_IPC_LOCK = 14, CAPABILITY_SYS_NICE = 23 };
 
-static uint64_t effective_capabilities(const doctor_t *doctor)
+/** A set of capabilities of this program, "CapEff:" or "CapBnd:"; `unknown` where the file does not say. */
+static uint64_t capabilities(const doctor_t *doctor, const char *set, uint64_t unknown)
 {
     char path[512], line[256];
-    uint64_t mask = 0;
+    uint64_t mask = unknown;
     snprintf(path, sizeof path, "%s/proc/self/status", doctor->root);
     FILE *file = fopen(path, "r");
     while (file && fgets(line, sizeof line, file))
-        if (strncmp(line, "CapEff:", 7) == 0)
-            mask = strtoull(line + 7, NULL, 16);
+        if (strncmp(line, set, strlen(set)) == 0)
+            mask = strtoull(line + strlen(set), NULL, 16);
     if (file)
         fclose(file);
     return mask;
@@ -144,7 +145,9 @@ static bool limit_reached(__rlimit_resource_t resource, rlim_t wanted)
 
 static void look_at_privileges(doctor_t *doctor)
 {
-    const uint64_t mask = effective_capabilities(doctor);
+    const uint64_t mask = capabilities(doctor, "CapEff:", 0), permitted = capabilities(doctor, "CapBnd:", UINT64_MAX);
+    const uint64_t needed = UINT64_C(1) << CAPABILITY_NET_RAW | UINT64_C(1) << CAPABILITY_IPC_LOCK |
+                            UINT64_C(1) << CAPABILITY_SYS_NICE;
     const bool raw = mask >> CAPABILITY_NET_RAW & 1;
     const bool priority = mask >> CAPABILITY_SYS_NICE & 1 || limit_reached(RLIMIT_RTPRIO, 80);
     const bool memory = mask >> CAPABILITY_IPC_LOCK & 1 || limit_reached(RLIMIT_MEMLOCK, RLIM_INFINITY);
@@ -154,13 +157,18 @@ static void look_at_privileges(doctor_t *doctor)
         doctor_find(doctor, FINDING_GOOD, group, "privileges", "raw sockets, real-time priority, locked memory");
         return;
     }
-    doctor_advise(
+    static const char why[] =
+        "Raw sockets are the network; without real-time priority and locked memory any program delays a cycle.";
+    finding_t *finding =
         doctor_find(doctor, raw ? FINDING_ADVICE : FINDING_PROBLEM, group, "privileges", "this program may not%s%s%s",
                     raw ? "" : " open raw sockets;", priority ? "" : " take a real-time priority;",
-                    memory ? "" : " lock its memory;"),
-        "Raw sockets are the network; without real-time priority and locked memory any program delays a cycle.",
-        "Give the rights to this program, and do it again after every build.",
-        "setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep '%.300s'", program);
+                    memory ? "" : " lock its memory;");
+    if ((permitted & needed) == needed)
+        doctor_advise(finding, why, "Give the rights to this program, and do it again after every build.",
+                      "setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep '%.300s'", program);
+    else /* a file with a capability that is not permitted does not start at all */
+        doctor_advise(finding, why, "Not even root has them in this container or service: start that with them "
+                      "(docker run --network host --cap-add NET_RAW --cap-add SYS_NICE --cap-add IPC_LOCK).", "%s", "");
 }
 
 void doctor_look_at_machine(doctor_t *doctor)
