@@ -180,7 +180,8 @@ static const struct argp_option table[] = {
 const struct argp argp_scan = {
     table, parse, NULL,
     "Lists the slaves of a network, and what a bus file, or the program that runs the network, calls them. "
-    "Exit status 1: the network is not as the bus file says.",
+    "Exit status 1: a slave is not there, or not the one that the bus file says. What is written into the slaves at the "
+    "start is not looked at, nor the signals, which depend on it: `cm1e io -b` does the start, and lists them.",
     attach_children, NULL, NULL};
 
 static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
