@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """scripts/mutate: which defects it can plant in a source, and that it leaves comments, texts and the lines alone;
 which tests it runs for a line, and its table; that no entry of its list of equivalent defects is old; that a program
-with a defect, which may wait for ever, ends with the script, however that ends.
+with a defect, which may wait for ever, ends with the script, however that ends; and that a test which could not run
+has not seen a defect.
 
     test_mutate.py <source folder>
 """
@@ -73,10 +74,23 @@ def check_ends_with_the_script(number):
         until(lambda: not runs(pid), f"the program ended after signal {number}")
 
 
+def check_results(mutate):
+    """A test that could not run has seen nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        build = Path(folder)
+        (build / "tests").mkdir()
+        for status, wanted in ((0, (-1e-9, 1.0)), (mutate.SKIPPED, (float("inf"), float("inf")))):
+            took = mutate.run_test(["sh", "-c", f"exit {status}"], 10, build)
+            assert wanted[0] <= took <= wanted[1], (status, took)
+        assert mutate.run_test(["false"], 10, build) is None
+        assert mutate.run_test(["sleep", "0.3"], 0.1, build, True) is None
+        assert mutate.run_test(["sleep", "0.3"], 10, build, True) >= 0.3 > mutate.run_test(["sleep", "0.3"], 10, build)
+
+
 def run_one(mutate, folder):
     mutate.BUILD = Path(folder)
     mutate.arguments = lambda: mutate.argparse.Namespace(sources=[])
-    mutate.places = lambda sources: mutate.run_test(mutate.BUILD / "waits", 1000, mutate.BUILD)
+    mutate.places = lambda sources: mutate.run_test([mutate.BUILD / "waits"], 1000, mutate.BUILD)
     mutate.main()
 
 
@@ -91,6 +105,7 @@ def main():
         return
     for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         check_ends_with_the_script(number)
+    check_results(mutate)
     found = list(mutate.defects("a.c", SOURCE))
     assert {(SOURCE[begin:end], new) for _, begin, end, new in found} == WANTED, found
     assert found == list(mutate.defects("a.c", SOURCE))
@@ -103,7 +118,8 @@ def main():
         assert mutate.that_run(tests, path, line, coded) == names, (path, line)
     texts = [re.sub(":[0-9]+:", ":", mutate.shown(defect, SOURCE)) for defect in found]
     assert 'a.c: " > " -> " >= " in: if (way > 2.5 && axis->count == 1)' in texts
-    output = "\n".join(f"{mutate.shown(defect, SOURCE)} (3 programs run it)" for defect in found)
+    output = "\n".join(f"{mutate.shown(defect, SOURCE)} (3 programs run it, control could not judge it)"
+                       for defect in found)
     assert set(texts) <= mutate.survivors(output)
     shown = mutate.table({"a.c": {"killed": 3, "survived": 1, "same code": 2, "no code": 0}, "b.c":
                           {"killed": 4, "survived": 0, "same code": 0, "no code": 1}}).splitlines()
