@@ -364,7 +364,7 @@ static void cut_at(cm1e_path_t *path, double position)
 
 void cm1e_path_cut(cm1e_path_t *path)
 {
-    if (path->stopping || cm1e_path_plan_stop(path)) {
+    if (path->stopping) {
         cut_at(path, path->profile.end.position - path->begin);
         (void)cm1e_path_plan(path, 0); /* the stop stays; what was known of the way behind it is not true any more */
         return;

@@ -93,6 +93,21 @@ static void test_where_the_slave_is_not_on_the_cam_it_is_refused(void)
     axes_wait_reached(SLAVE, cam_in(&coupling), 5000);
 }
 
+static void test_within_ten_counts_the_slave_is_on_the_cam(void)
+{
+    static const double counts[] = {-9.9, 10, 10.1};
+    for (int i = 0; i < 3; i++) {
+        axes_begin(2);
+        const cm1e_axis_coupling_t coupling = by_cam(select_hill(1.5, 0, true, true, true), mcAbsolute);
+        axes_wait(SLAVE, axes_move_to(SLAVE, counts[i] / 50000, 10), 5000);
+        if (i == 2)
+            cam_refused(&coupling, CM1E_ERROR_AXIS_CAM_START);
+        else
+            (void)cam_in(&coupling);
+        axes_end();
+    }
+}
+
 /* The bench watches every set-point: velocity, acceleration and jerk within the slave's limits, each the derivative of
  * the next. From any place, at any phase, and also from a motion. */
 static void test_ramp_in_has_no_step(void)
@@ -423,6 +438,7 @@ int main(void)
     RUN_TEST(test_offsets_and_scalings);
     RUN_TEST(test_relative_to_where_they_are);
     RUN_TEST(test_where_the_slave_is_not_on_the_cam_it_is_refused);
+    RUN_TEST(test_within_ten_counts_the_slave_is_on_the_cam);
     RUN_TEST(test_ramp_in_has_no_step);
     RUN_TEST(test_random_cams_are_got_onto);
     RUN_TEST(test_a_cam_is_changed_for_another_while_it_runs);

@@ -353,11 +353,11 @@ static void stop_slow_and_cut(int paths)
 
 static void test_paths_that_are_stopped_slowed_and_cut(void) { stop_slow_and_cut(PATHS); }
 
-/** Some cannot stop any more before a run with other limits. */
+/** Most cannot stop any more before a run with other limits; the last one is cut off in its last segment. */
 static void test_paths_that_are_cut_where_they_cannot_stop_on_the_run(void)
 {
     static const uint64_t states[] = {12446217520451855312u, 11307107647782443808u, 5419314360734579674u,
-                                      5236463589177559819u, 275665088565781429u};
+                                      5236463589177559819u, 275665088565781429u, 17530126831957359872u};
     for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
         random_state = states[i];
         stop_slow_and_cut(1);
