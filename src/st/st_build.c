@@ -60,6 +60,14 @@ branch_t *cm1e_st_branch(st_t *st, place_t place, expr_t *condition, stmt_t *bod
     return branch;
 }
 
+stmt_t *cm1e_st_latch(st_t *st, place_t place, expr_t *target, const char *word)
+{
+    const char *given = strcasecmp(word, "S") == 0 ? "TRUE" : "FALSE";
+    stmt_t *stmt = cm1e_st_stmt(st, S_ASSIGN, place, cm1e_st_literal(st, place, given), (stmts_t){0});
+    stmt->target = target;
+    return stmt;
+}
+
 void cm1e_st_group_case(st_t *st, stmt_t *stmt, stmts_t items, stmts_t otherwise, bool has_else, place_t place)
 {
     branches_t branches = {0};

@@ -34,7 +34,7 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
     int number;
 }
 %token <text> NAME "a name" LITERAL "a number" CHARACTERS "a text" WIDE_CHARACTERS "a WSTRING" QUALIFIED "a value of a type" ADDRESS "an address"
-%token <text> TRUTH "TRUE"
+%token <text> TRUTH "TRUE" LATCH "S= or R="
 %token IF "IF" THEN "THEN" ELSIF "ELSIF" ELSE "ELSE" END_IF "END_IF" CASE "CASE" OF "OF" END_CASE "END_CASE"
 %token FOR "FOR" TO "TO" BY "BY" DO "DO" END_FOR "END_FOR" WHILE "WHILE" END_WHILE "END_WHILE"
 %token REPEAT "REPEAT" UNTIL "UNTIL" END_REPEAT "END_REPEAT" EXIT "EXIT" CONTINUE "CONTINUE" RETURN "RETURN"
@@ -69,7 +69,7 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %type <expr> expr variable value constant_initial initial address label signed
 %type <arg> argument member_init element_init setting
 %type <args> arguments argument_list expr_list labels member_inits element_inits settings setting_list
-%type <stmts> stmts stmts_of_block case_items body
+%type <stmts> stmts stmts_of_block case_items body latches
 %type <stmt> stmt
 %type <branches> elsifs
 %type <type> type simple_type result base
@@ -242,6 +242,8 @@ stmt: ';' { $$ = NULL; }
     | variable ASSIGN expr ';' { $$ = cm1e_st_stmt(ST, S_ASSIGN, @1, $3, (stmts_t){0}); $$->target = $1; }
     | variable REF_ASSIGN expr ';' { $$ = cm1e_st_stmt(ST, S_ASSIGN, @1, $3, (stmts_t){0}); $$->target = $1;
                                      $$->reference = true; }
+    | latches expr ';' { $$ = cm1e_st_stmt(ST, S_IF, @1, NULL, (stmts_t){0}); $$->latch = true;
+                         $$->branches = cm1e_st_branch(ST, @1, $2, $1.first); cm1e_st_deepen(ST, $$); }
     | variable ';' {
         cm1e_st_report(ST, @1, "this does nothing: expected \":=\" and a value, or \"(\" of a call");
         $$ = NULL; }
@@ -273,6 +275,8 @@ stmt: ';' { $$ = NULL; }
     | EXIT ';' { $$ = cm1e_st_stmt(ST, S_EXIT, @1, NULL, (stmts_t){0}); }
     | CONTINUE ';' { $$ = cm1e_st_stmt(ST, S_CONTINUE, @1, NULL, (stmts_t){0}); }
     | RETURN ';' { $$ = cm1e_st_stmt(ST, S_RETURN, @1, NULL, (stmts_t){0}); };
+latches: variable LATCH '=' { $$ = (stmts_t){0}; stmt_t *stmt = cm1e_st_latch(ST, @1, $1, $2); ST_APPEND($$, stmt); }
+    | latches variable LATCH '=' { $$ = $1; stmt_t *stmt = cm1e_st_latch(ST, @2, $2, $3); ST_APPEND($$, stmt); };
 elsifs: %empty { $$ = (branches_t){0}; } | elsifs ELSIF expr THEN stmts {
         branch_t *branch = cm1e_st_branch(ST, @2, $3, $5.first);
         $$ = $1; ST_APPEND($$, branch); };
@@ -292,8 +296,10 @@ signed: variable { $$ = $1; } | value { $$ = $1; }
 
 /* ---- expressions ---- */
 variable: NAME { $$ = cm1e_st_named(ST, E_NAME, @1, NULL, $1); }
+    | LATCH { $$ = cm1e_st_named(ST, E_NAME, @1, NULL, $1); } /* a variable "s" that is compared */
     | ADDRESS { $$ = cm1e_st_named(ST, E_ADDRESS, @1, NULL, $1); }
     | variable '.' NAME { $$ = cm1e_st_named(ST, E_MEMBER, @3, $1, $3); }
+    | variable '.' LATCH { $$ = cm1e_st_named(ST, E_MEMBER, @3, $1, $3); }
     | variable '.' LITERAL { $$ = cm1e_st_named(ST, E_MEMBER, @3, $1, $3); $$->bit = true; }
     | variable '[' expr_list ']' { $$ = cm1e_st_with_args(ST, E_INDEX, @1, $1, $3); }
     | variable '^' { $$ = cm1e_st_node(ST, E_DEREF, @1, $1, NULL); };
@@ -345,7 +351,11 @@ enum { SHOWN = 6 };
 static void expectations(const yypcontext_t *context, char *text, size_t size)
 {
     yysymbol_kind_t expected[YYNTOKENS];
-    const int count = yypcontext_expected_tokens(context, expected, YYNTOKENS);
+    const int all = yypcontext_expected_tokens(context, expected, YYNTOKENS);
+    int count = 0;
+    for (int i = 0; i < all; i++) /* S and R in front of "=" are names, or of no interest */
+        if (expected[i] != YYSYMBOL_LATCH)
+            expected[count++] = expected[i];
     size_t used = 0;
     text[0] = '\0';
     for (int i = 0; i < count && count <= SHOWN && used < size; i++)
@@ -403,9 +413,6 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
         snprintf(text, sizeof text, "; values are compared by \"=\", and an assignment is a statement of its own");
     if (strcmp(parsing->last, "&") == 0 && strcmp(parsing->before, "&") == 0)
         snprintf(text, sizeof text, "; AND is a single \"&\"");
-    if (parsing->sets_bit)
-        snprintf(text, sizeof text, "; is a \";\" missing before it? (S= and R= are not in the standard: write IF c THEN x := "
-                 "%s; END_IF;)", strcasecmp(parsing->last, "S") == 0 ? "TRUE" : "FALSE");
     if (strcasecmp(parsing->last, "THEN") == 0)
         snprintf(text, sizeof text, "; THEN is that of IF or ELSIF");
     if (strcasecmp(parsing->before, "ELSEIF") == 0)

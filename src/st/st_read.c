@@ -120,7 +120,6 @@ void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, bool skip
     *place = (place_t){.file = (uint16_t)parsing->st->source, .line = parsing->line, .column = parsing->column};
     const size_t kept = length < sizeof parsing->last - 1 ? length : sizeof parsing->last - 1;
     if (!skipped && !is_between(text, length)) {
-        parsing->sets_bit = false;
         memcpy(parsing->before, parsing->last, sizeof parsing->before);
         memcpy(parsing->last, text, kept);
         parsing->last[kept] = '\0';

@@ -195,7 +195,7 @@ static void statement(st_t *st, stmt_t *stmt)
     case S_IF:
         for (branch_t *branch = stmt->branches; branch; branch = branch->next) {
             if (branch->condition)
-                condition(st, branch->condition, "the condition of IF");
+                condition(st, branch->condition, stmt->latch ? "what is behind S= and R=" : "the condition of IF");
             cm1e_st_statements(st, branch->body);
         }
         break;

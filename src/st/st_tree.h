@@ -180,6 +180,7 @@ struct stmt {
     place_t place;
     int depth;
     bool reference;     /**< target REF= value */
+    bool latch;         /**< S_IF: it is S= or R= */
     expr_t *target, *value; /**< S_ASSIGN; S_CALL, S_CASE, S_WHILE, S_REPEAT, S_FOR: value */
     expr_t *to, *by;    /**< S_FOR */
     branch_t *branches;

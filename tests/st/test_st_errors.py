@@ -23,9 +23,12 @@ PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRIN
 STATEMENTS = [
     ("i := 1", "10:1", ["cannot stand here", '";"']),
     ("i = 1;", "9:3", ["cannot stand here", '":="']),
-    ("b S= b;", "9:3", ["S= and R= are not in the standard", "x := TRUE"]),
+    ("b S= i;", "9:6", ["what is behind S= and R= is a BOOL; this is INT"]),
+    ("i S= b;", "9:1", ["INT"]),
+    ("N R= b;", "9:1", ["CONSTANT"]),
+    ("b S= b R= ;", "9:11", ["cannot stand here"]),
     ("i := 1 r := 2.0;", "9:8", ["cannot stand here", '";"', "!not in the standard"]),
-    ("b R= b;", "9:3", ["S= and R= are not in the standard", "x := FALSE"]),
+    ("b := b S= b;", "9:8", ["cannot stand here"]),
     ("IF i == 1 THEN i := 2; END_IF", "9:7", ["compared by one"]),
     ("IF i := 1 THEN i := 2; END_IF", "9:6", ['compared by "="']),
     ("i := d := 3;", "9:8", ["statement of its own"]),
@@ -293,6 +296,7 @@ SOURCES = [
     ("PROGRAM P VAR RETAIN t : REF_TO INT; END_VAR END_PROGRAM", "1:22", ["RETAIN keeps values"]),
     ("FUNCTION_BLOCK P VAR RETAIN t : INT; END_VAR END_FUNCTION_BLOCK", "1:29", ["VAR_IN_OUT"]),
     ("MC_Power", "1:1", ["cannot stand here"]),
+    ("PROGRAM P VAR b : BOOL; END_VAR b := b.IF; END_PROGRAM", "1:40", ["expected a name, a number or a value of a type"]),
     ("PROGRAM P VAR i := 1; END_VAR END_PROGRAM", "1:17", ["cannot stand here; expected AT, ',' or ':'"]),
     ("FUNCTION_BLOCK MC_Power END_FUNCTION_BLOCK", "1:16", ["already"]),
 ]

@@ -76,6 +76,8 @@ FUNCTION LeftOut : INT VAR_INPUT a : INT; p : Point := (y := 4); row : Row := [1
 FUNCTION_BLOCK Leaver METHOD M : INT VAR_INPUT a : INT; p : Point; END_VAR M := p.x; END_METHOD END_FUNCTION_BLOCK
 FUNCTION Next : INT VAR_IN_OUT c : INT; END_VAR c := c + 1; Next := c; END_FUNCTION
 FUNCTION Fill : BOOL VAR_IN_OUT w : WORD; END_VAR w := w OR 16#F0; Fill := TRUE; END_FUNCTION
+TYPE Latched : STRUCT r, s : BOOL; END_STRUCT; END_TYPE
+FUNCTION_BLOCK Setter VAR_OUTPUT S : BOOL := TRUE; END_VAR END_FUNCTION_BLOCK
 VAR_GLOBAL flag AT %MX0.3 : BOOL := TRUE; bits AT %MB0 : BYTE; word2 AT %MW2 : WORD; low2 AT %MB2 : BYTE; real8 AT %MD8 : REAL;
   raw8 AT %MD8 : DWORD; END_VAR
 VAR_GLOBAL g : INT := 3; over AT %MW20 : INT := 4; under AT %MB21 : BYTE := 7; END_VAR
@@ -89,7 +91,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
        "e : Edges; e2 : Edges2; speed : Counter; idle : ARRAY[1..3] OF Idle; empty : ARRAY[1..3] OF Nothing; behind : BYTE := 7; late : Late(n := 5) := (a := 9); leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; pump : Pump; pump2 : Pump__Set; " \
-       "hue : Plant.Inner.Hue; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
+       "hue : Plant.Inner.Hue; f1 : ARRAY[1..2] OF BOOL; bit : Latched; setter : Setter; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # The literal of a time and its value, in both directions.
 TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
          ("T#106751d23h47m16s854ms775us807ns", 2**63 - 1), ("T#0ms", 0), ("T#-1ns", -1), ("T#-1h500us", -3600000500000)]
@@ -246,6 +248,11 @@ CASES = [
     ("t := STRING_TO_TIME('T#2h and more'); big := TIME_TO_LINT(STRING_TO_TIME('T#1h_30m ')); b := STRING_TO_BOOL(' TRUE;') AND NOT "
      "STRING_TO_BOOL('TRUEX'); { if not for us: a note } i := 3; { else where }", {"t": 7200 * 10**9, "big": 5400000, "b": 1, "i": 3}),
     ("i := LeftOut(a := 1); j := leaver.M(a := 1);", {"i": 7438, "j": 7}),
+    # S= and R=: each of several refers to what is behind the last. S and R are names too.
+    ("b S= i = 0; w.3 S= b; f1[1] S= f1[2] S= w.3 R= b; w.4 R= b; f1[2] R= i <> 0; i := WORD_TO_INT(w); b S= FALSE;",
+     {"b": 1, "i": 0, "f1[1]": 1, "f1[2]": 1}),
+    ("S := 'x'; IF s='x' AND NOT (S='y') THEN i := 1; END_IF bit.r R= b; bit.s s= TRUE; IF bit.S=NOT bit.R THEN j := 1; END_IF "
+     "setter(S=>b);", {"i": 1, "j": 1, "b": 1, "bit.r": 0, "bit.s": 1}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
