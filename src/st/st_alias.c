@@ -1,5 +1,5 @@
-/* Inputs and outputs that have another name in TwinCAT's library Tc2_MC2, and what programs for TwinCAT and CODESYS
- * look for in vain. */
+/* Inputs and outputs that have another name in TwinCAT's library Tc2_MC2, or in the standard library of TwinCAT and
+ * CODESYS, and what programs for these look for in vain. */
 #include <strings.h>
 
 #include "st/st_state.h"
@@ -28,6 +28,14 @@ static const struct { const char *block, *name, *ours, *hint; } aliases[] = {
     {"AXIS_REF", "dwErrorID", NULL, "NcToPlc.ErrorCode, or MC_ReadAxisError"},
     {"AXIS_REF", "NcToPlc", NULL, "some of its members are known, as NcToPlc.ActPos; it is not as a whole"},
     {"AXIS_REF", "PlcToNc", NULL, "command the axis by function blocks"},
+    {"CTU", "RESET", "R", NULL}, {"CTD", "LOAD", "LD", NULL}, {"CTUD", "RESET", "R", NULL}, {"CTUD", "LOAD", "LD", NULL},
+    {"SR", "SET1", "S1", NULL}, {"SR", "RESET", "R", NULL}, {"RS", "SET", "S", NULL}, {"RS", "RESET1", "R1", NULL},
+    {"LEN", "STR", "IN", NULL}, {"LEFT", "STR", "IN", NULL}, {"LEFT", "SIZE", "L", NULL}, {"RIGHT", "STR", "IN", NULL},
+    {"RIGHT", "SIZE", "L", NULL}, {"MID", "STR", "IN", NULL}, {"MID", "LEN", "L", NULL}, {"MID", "POS", "P", NULL},
+    {"CONCAT", "STR1", "IN1", NULL}, {"CONCAT", "STR2", "IN2", NULL}, {"INSERT", "STR1", "IN1", NULL},
+    {"INSERT", "STR2", "IN2", NULL}, {"INSERT", "POS", "P", NULL}, {"DELETE", "STR", "IN", NULL},
+    {"DELETE", "LEN", "L", NULL}, {"DELETE", "POS", "P", NULL}, {"REPLACE", "STR1", "IN1", NULL},
+    {"REPLACE", "STR2", "IN2", NULL}, {"FIND", "STR1", "IN1", NULL}, {"FIND", "STR2", "IN2", NULL},
     {"AXIS_REF", "Status", NULL, "some of its members are known, as Status.Error; it is not as a whole"},
 };
 

@@ -10,7 +10,8 @@ static void initialise_struct(st_t *st, expr_t *initial, type_t *type)
         return;
     }
     for (arg_t *arg = initial->args; arg; arg = arg->next) {
-        arg->parameter = cm1e_st_member(type, arg->name);
+        const char *hint, *ours = cm1e_st_alias(type->name, arg->name, &hint);
+        arg->parameter = cm1e_st_member(type, ours ? ours : arg->name);
         if (!arg->parameter || arg->parameter->section == V_IN_OUT || arg->parameter->section == V_EXTERNAL) {
             cm1e_st_report(st, arg->place, "%s has no member \"%s\" that could get a value%s",
                            cm1e_st_type_name(type), arg->name,

@@ -278,9 +278,12 @@ static bool order_args(st_t *st, expr_t *call, int count)
                        call->standard->name);
         return false;
     }
-    for (arg_t *arg = call->args; arg; arg = arg->next)
+    for (arg_t *arg = call->args; arg; arg = arg->next) {
+        const char *hint, *ours = arg->name ? cm1e_st_alias(call->standard->name, arg->name, &hint) : NULL;
+        arg->name = ours ? ours : arg->name;
         if (arg->name && !is_input(st, call, arg))
             return false;
+    }
     for (int i = 0; i < count; i++) {
         const char *name = input_name(st, call->standard, i);
         arg_t *found = NULL;

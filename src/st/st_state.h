@@ -179,7 +179,7 @@ void cm1e_st_standard_names(void (*visit)(const char *name, void *context), void
 /* st_statement.c */
 void cm1e_st_statements(st_t *st, stmt_t *list);
 
-/** st_alias.c: our name of an input or member that TwinCAT calls `name`; NULL: there is none, `hint` may say what to
+/** st_alias.c: our name of an input or member of a block or standard function that TwinCAT calls `name`; NULL: there is none, `hint` may say what to
  *  do. */
 const char *cm1e_st_alias(const char *block, const char *name, const char **hint);
 

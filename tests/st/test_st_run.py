@@ -196,7 +196,10 @@ TURN = "VAR_GLOBAL X : AXIS_REF; END_VAR\nPROGRAM Main VAR power : MC_Power := (
 
 NAMES = """VAR_GLOBAL X : AXIS_REF; END_VAR
 PROGRAM Main
-VAR set : MC_SetPosition; v : MC_ReadActualVelocity; velocity : LREAL := 9; END_VAR
+VAR set : MC_SetPosition; v : MC_ReadActualVelocity; velocity : LREAL := 9; known : BOOL;
+  sr : SR; rs : RS; up : CTU := (RESET := TRUE); ud : CTUD := (PV := 3, LOAD := TRUE); p : MC_Power := (Enable_Positive := TRUE); END_VAR
+sr(SET1 := TRUE, RESET := TRUE); rs.SET := TRUE; rs(RESET1 := FALSE); ud(CU := TRUE, RESET := up.RESET AND FALSE);
+known := sr.Q1 AND rs.Q1 AND ud.CV = 3 AND p.EnablePositive;
 set(Axis := X, Execute := TRUE, Position := 4.0, Mode := TRUE);
 v(Axis := X, Enable := TRUE, ActualVelocity => velocity);
 velocity := v.ActualVelocity;
@@ -205,10 +208,10 @@ END_PROGRAM
 
 
 def check_names_of_twincat():
-    """Inputs and outputs that Tc2_MC2 calls otherwise."""
+    """Inputs and outputs that Tc2_MC2 and the standard library of TwinCAT and CODESYS call otherwise."""
     run(build("names", NAMES), "-s", "0.1", "--csv", "names.csv")
     last = trace("names.csv")[-1]
-    if (last["Main.set.Relative"], last["Main.velocity"], float(last["X actual position [u]"])) != ("1", "0", 4):
+    if (last["Main.set.Relative"], last["Main.velocity"], float(last["X actual position [u]"]), last["Main.known"]) != ("1", "0", 4, "1"):
         faults.append(f"names of Tc2_MC2: {last}")
 
 

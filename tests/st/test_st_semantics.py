@@ -253,6 +253,10 @@ CASES = [
      {"b": 1, "i": 0, "f1[1]": 1, "f1[2]": 1}),
     ("S := 'x'; IF s='x' AND NOT (S='y') THEN i := 1; END_IF bit.r R= b; bit.s s= TRUE; IF bit.S=NOT bit.R THEN j := 1; END_IF "
      "setter(S=>b);", {"i": 1, "j": 1, "b": 1, "bit.r": 0, "bit.s": 1}),
+    # The names of the standard library of TwinCAT and CODESYS.
+    ("s := CONCAT(STR1 := 'ab', STR2 := 'cd'); n := FIND(STR2 := 'c', STR1 := s); "
+     "y := INSERT(STR1 := MID(STR := \"abcd\", POS := 2, LEN := 2), STR2 := \"-\", POS := 1);",
+     {"s": b"abcd", "n": 3, "y": "b-c"}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
