@@ -208,16 +208,16 @@ int64_t cm1e_scan_time(void);
 LREAL cm1e_tc2_axis_value(UINT handle, UINT number);
 void cm1e_tc2_override(UINT handle, LREAL percent);
 
-/* ---- texts: at most 254 bytes and a final 0 ---------------------------------------------------------------------- */
+/* ---- texts: at most 255 bytes and a final 0 ---------------------------------------------------------------------- */
 
-typedef struct STRING_254 {
-    char text[255];
-} STRING_254;
+typedef struct STRING_255 {
+    char text[256];
+} STRING_255;
 
-/** A WSTRING: at most 254 characters of 16 bits (UTF-16 in the order of the machine). */
-typedef struct WSTRING_254 {
-    uint16_t text[255];
-} WSTRING_254;
+/** A WSTRING: at most 255 characters of 16 bits (UTF-16 in the order of the machine). */
+typedef struct WSTRING_255 {
+    uint16_t text[256];
+} WSTRING_255;
 
 ST_UNUSED static inline size_t st_length(const char *text) { return strlen(text); }
 ST_UNUSED static inline size_t st_wlength(const uint16_t *text)
@@ -288,8 +288,8 @@ ST_UNUSED static inline size_t st_wlength(const uint16_t *text)
                 return (INT)(i + 1);                                                                                  \
         return 0;                                                                                                     \
     }
-ST_TEXTS(, char, STRING_254)
-ST_TEXTS(w, uint16_t, WSTRING_254)
+ST_TEXTS(, char, STRING_255)
+ST_TEXTS(w, uint16_t, WSTRING_255)
 
 ST_UNUSED static inline int st_wcompare(const uint16_t *a, const uint16_t *b)
 {
@@ -299,11 +299,11 @@ ST_UNUSED static inline int st_wcompare(const uint16_t *a, const uint16_t *b)
 }
 
 /** STRING to WSTRING: a STRING is UTF-8. A byte that belongs to no character becomes the character of its number. */
-ST_UNUSED static inline WSTRING_254 st_widen(const char *text)
+ST_UNUSED static inline WSTRING_255 st_widen(const char *text)
 {
-    WSTRING_254 result = {{0}};
+    WSTRING_255 result = {{0}};
     size_t used = 0;
-    for (const uint8_t *at = (const uint8_t *)text; *at && used < 254;) {
+    for (const uint8_t *at = (const uint8_t *)text; *at && used < 255;) {
         const int more = *at < 0xC2 ? 0 : *at < 0xE0 ? 1 : *at < 0xF0 ? 2 : *at < 0xF5 ? 3 : 0;
         uint32_t c = more ? *at & (0x3Fu >> more) : *at;
         int good = 0;
@@ -313,7 +313,7 @@ ST_UNUSED static inline WSTRING_254 st_widen(const char *text)
         at += good < more ? 1 : more + 1;
         if (c < 0x10000) {
             result.text[used++] = (uint16_t)c;
-        } else if (used < 253) {
+        } else if (used < 254) {
             result.text[used++] = (uint16_t)(0xD7C0 + (c >> 10));
             result.text[used++] = (uint16_t)(0xDC00 | (c & 0x3FF));
         } else {
@@ -324,16 +324,16 @@ ST_UNUSED static inline WSTRING_254 st_widen(const char *text)
 }
 
 /** WSTRING to STRING, in UTF-8: what does not fit is left out. */
-ST_UNUSED static inline STRING_254 st_narrow(const uint16_t *text)
+ST_UNUSED static inline STRING_255 st_narrow(const uint16_t *text)
 {
-    STRING_254 result = {{0}};
+    STRING_255 result = {{0}};
     size_t used = 0;
     for (; *text; text++) {
         uint32_t c = *text;
         if ((c & 0xFC00) == 0xD800 && (text[1] & 0xFC00) == 0xDC00)
             c = 0x10000 + ((c & 0x3FF) << 10) + (*++text & 0x3FFu);
         const size_t count = c < 0x80 ? 1 : c < 0x800 ? 2 : c < 0x10000 ? 3 : 4;
-        if (used + count > 254)
+        if (used + count > 255)
             break;
         for (size_t i = count; i > 1; c >>= 6)
             result.text[used + --i] = (char)(0x80 | (c & 0x3F));
@@ -343,21 +343,21 @@ ST_UNUSED static inline STRING_254 st_narrow(const uint16_t *text)
     return result;
 }
 
-ST_UNUSED static inline STRING_254 st_text_of_integer(int64_t value)
+ST_UNUSED static inline STRING_255 st_text_of_integer(int64_t value)
 {
-    STRING_254 result;
+    STRING_255 result;
     snprintf(result.text, sizeof result.text, "%lld", (long long)value);
     return result;
 }
-ST_UNUSED static inline STRING_254 st_text_of_unsigned(uint64_t value)
+ST_UNUSED static inline STRING_255 st_text_of_unsigned(uint64_t value)
 {
-    STRING_254 result;
+    STRING_255 result;
     snprintf(result.text, sizeof result.text, "%llu", (unsigned long long)value);
     return result;
 }
-ST_UNUSED static inline STRING_254 st_text_of_real(double value, int digits)
+ST_UNUSED static inline STRING_255 st_text_of_real(double value, int digits)
 {
-    STRING_254 result;
+    STRING_255 result;
     snprintf(result.text, sizeof result.text, "%.*g", digits, value);
     return result;
 }
@@ -368,9 +368,9 @@ static const struct { const char *name; uint64_t ns; } st_time_units[] = {
 enum { ST_TIME_UNITS = sizeof st_time_units / sizeof st_time_units[0] };
 /** The literal of the value: T#1h2m3s4ms, without units of which there are 0. TwinCAT and CODESYS document T#12ms for
  *  a TIME; how they write others is not known. An LTIME is a TIME here, and begins with T#, too. */
-ST_UNUSED static inline STRING_254 st_text_of_time(int64_t value)
+ST_UNUSED static inline STRING_255 st_text_of_time(int64_t value)
 {
-    STRING_254 result;
+    STRING_255 result;
     uint64_t left = value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
     int used = snprintf(result.text, sizeof result.text, "T#%s%s", value < 0 ? "-" : "", left ? "" : "0ms");
     for (size_t i = 0; left > 0; left %= st_time_units[i++].ns)
@@ -379,9 +379,9 @@ ST_UNUSED static inline STRING_254 st_text_of_time(int64_t value)
                              (unsigned long long)(left / st_time_units[i].ns), st_time_units[i].name);
     return result;
 }
-ST_UNUSED static inline STRING_254 st_text_of_bool(BOOL value)
+ST_UNUSED static inline STRING_255 st_text_of_bool(BOOL value)
 {
-    return value ? (STRING_254){"TRUE"} : (STRING_254){"FALSE"};
+    return value ? (STRING_255){"TRUE"} : (STRING_255){"FALSE"};
 }
 
 /* Texts are read as literals: 1_000, 16#FF, T#2h. What is behind the value does not count; a text that begins with none
@@ -434,7 +434,7 @@ ST_UNUSED static inline uint64_t st_unsigned_of(const char *text)
 }
 ST_UNUSED static inline double st_real_of(const char *text)
 {
-    char number[255]; /* without underscores, and without what C reads and ST does not */
+    char number[256]; /* without underscores, and without what C reads and ST does not */
     size_t used = 0;
     int negative;
     for (text = st_sign_of(text, &negative); *text && strchr("0123456789_.eE+-", *text) &&

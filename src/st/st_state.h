@@ -10,7 +10,7 @@
 #include "st/st_memory.h"
 #include "st/st_tree.h"
 
-enum { ST_ERRORS = 20, ST_DEPTH = 200, ST_SOURCES = 1000, ST_SOURCE_BYTES = 16 << 20, ST_STRING_BYTES = 254 };
+enum { ST_ERRORS = 20, ST_DEPTH = 200, ST_SOURCES = 1000, ST_SOURCE_BYTES = 16 << 20, ST_STRING_BYTES = 255 };
 
 typedef struct source {
     const char *name, *text;

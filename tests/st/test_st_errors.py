@@ -226,7 +226,7 @@ SOURCES = [
     ("TYPE A : (Red, red); END_TYPE", "1:16", ["already"]),
     ("TYPE A : (Red := 200) SINT; END_TYPE", "1:11", ["SINT"]),
     ("TYPE INT : REAL; END_TYPE", "1:6", ["elementary"]),
-    ("PROGRAM P VAR s : STRING[1000]; END_VAR END_PROGRAM", "1:19", ["254"]),
+    ("PROGRAM P VAR s : STRING[1000]; END_VAR END_PROGRAM", "1:19", ["255"]),
     ("PROGRAM P VAR y : INT; x : INT REF= y; END_VAR END_PROGRAM", "1:37", ["REF_TO INT"]),
     ("PROGRAM P VAR x, y : INT; END_VAR x REF= y; END_PROGRAM", "1:35", ["REFERENCE TO"]),
     ("PROGRAM P VAR x : REFERENCE TO INT; y : DINT; END_VAR x REF= y; END_PROGRAM", "1:62", ["REFERENCE TO INT"]),

@@ -340,7 +340,7 @@ class Generator:
         return Node(f"REPLACE({a.text}, {b.text}, {n}, {p})", name, s[:p - 1] + b.value + s[p - 1 + n:] if inside else s)
 
 
-OF = {"STRING": "STRING(254)", "WSTRING": "WSTRING(254)"}
+OF = {"STRING": "STRING(255)", "WSTRING": "WSTRING(255)"}
 
 
 def same(name, found, expected):

@@ -91,7 +91,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
        "e : Edges; e2 : Edges2; speed : Counter; idle : ARRAY[1..3] OF Idle; empty : ARRAY[1..3] OF Nothing; behind : BYTE := 7; late : Late(n := 5) := (a := 9); leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; pump : Pump; pump2 : Pump__Set; " \
-       "hue : Plant.Inner.Hue; f1 : ARRAY[1..2] OF BOOL; bit : Latched; setter : Setter; y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
+       "hue : Plant.Inner.Hue; f1 : ARRAY[1..2] OF BOOL; bit : Latched; setter : Setter; long : STRING(255); wlong : WSTRING(255); y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # The literal of a time and its value, in both directions.
 TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
          ("T#106751d23h47m16s854ms775us807ns", 2**63 - 1), ("T#0ms", 0), ("T#-1ns", -1), ("T#-1h500us", -3600000500000)]
@@ -257,6 +257,8 @@ CASES = [
     ("s := CONCAT(STR1 := 'ab', STR2 := 'cd'); n := FIND(STR2 := 'c', STR1 := s); "
      "y := INSERT(STR1 := MID(STR := \"abcd\", POS := 2, LEN := 2), STR2 := \"-\", POS := 1);",
      {"s": b"abcd", "n": 3, "y": "b-c"}),
+    ("FOR i := 1 TO 20 DO long := CONCAT(long, 'abcdefghijklm', 'no'); END_FOR i := LEN(long); j := FIND(RIGHT(long, 3), 'mno'); "
+     "wlong := STRING_TO_WSTRING(long); n := LEN(wlong); b := WSTRING_TO_STRING(wlong) = long;", {"i": 255, "j": 1, "n": 255, "b": 1}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
