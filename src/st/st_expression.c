@@ -361,8 +361,22 @@ static void both_as(st_t *st, expr_t *expr, type_kind_t kind)
     expr->b = cm1e_st_coerce(st, expr->b, st->elementary[kind], "the right side");
 }
 
+static bool is_number_or_bits(const expr_t *expr)
+{
+    const type_kind_t kind = expr->type->kind;
+    return cm1e_st_is_number(kind) || (cm1e_st_is_bits(kind) && kind != T_BOOL);
+}
+
+/** An enumeration whose base is BYTE ... LWORD has bits. */
+static expr_t *as_bits(st_t *st, expr_t *expr)
+{
+    return cm1e_st_is_bits(cm1e_st_plain_kind(expr->type)) ? cm1e_st_as_integer(st, expr) : expr;
+}
+
 static void logical(st_t *st, expr_t *expr)
 {
+    expr->a = as_bits(st, expr->a);
+    expr->b = as_bits(st, expr->b);
     const type_kind_t kind = cm1e_st_type_for_both(expr->a, expr->b);
     const bool lazy = expr->op == OP_AND_THEN || expr->op == OP_OR_ELSE;
     if (!(cm1e_st_is_bits(kind) || kind == T_ANY_INT) || (lazy && kind != T_BOOL)) {
@@ -401,7 +415,7 @@ static void comparison(st_t *st, expr_t *expr)
 {
     zero_as_null(st, expr->a, expr->b);
     zero_as_null(st, expr->b, expr->a);
-    if (cm1e_st_is_number(expr->a->type->kind) || cm1e_st_is_number(expr->b->type->kind)) {
+    if (is_number_or_bits(expr->a) || is_number_or_bits(expr->b)) {
         expr->a = cm1e_st_as_integer(st, expr->a);
         expr->b = cm1e_st_as_integer(st, expr->b);
     }

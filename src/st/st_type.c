@@ -158,9 +158,11 @@ static void resolve_enum(st_t *st, type_t *type)
     int64_t next = 0;
     const bool stated = type->element;
     type_t *base = stated ? cm1e_st_resolve(st, type->element) : st->elementary[type->external ? T_DINT : T_INT];
-    if (!cm1e_st_is_integer(base->kind) && base->kind != T_WRONG)
-        cm1e_st_report(st, type->place, "the values of an enumeration are integers, not %s", base->name);
-    type->element = cm1e_st_is_integer(base->kind) ? base : st->elementary[T_DINT];
+    const bool good = cm1e_st_is_integer(base->kind) || (cm1e_st_is_bits(base->kind) && base->kind != T_BOOL);
+    if (!good && base->kind != T_WRONG)
+        cm1e_st_report(st, type->place, "the values of an enumeration are integers or BYTE ... LWORD, not %s",
+                       cm1e_st_type_name(base));
+    type->element = good ? base : st->elementary[T_DINT];
     for (var_t *var = type->members; var; var = var->next) {
         if (var->initial && !cm1e_st_integer_constant(st, var->initial, &next, "the value of an enumerator"))
             continue;

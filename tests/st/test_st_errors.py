@@ -225,6 +225,8 @@ SOURCES = [
     ("PROGRAM P VAR x : INT (1..5) := 0; END_VAR END_PROGRAM", "1:33", ["0 is not a value"]),
     ("TYPE A : (Red, red); END_TYPE", "1:16", ["already"]),
     ("TYPE A : (Red := 200) SINT; END_TYPE", "1:11", ["SINT"]),
+    ("TYPE A : (Red) REAL; END_TYPE", "1:6", ["BYTE ... LWORD, not REAL"]),
+    ("TYPE A : (Red := 300) BYTE; END_TYPE", "1:11", ["300 is not a value of BYTE"]),
     ("TYPE INT : REAL; END_TYPE", "1:6", ["elementary"]),
     ("PROGRAM P VAR s : STRING[1000]; END_VAR END_PROGRAM", "1:19", ["255"]),
     ("PROGRAM P VAR y : INT; x : INT REF= y; END_VAR END_PROGRAM", "1:37", ["REF_TO INT"]),

@@ -76,7 +76,7 @@ FUNCTION LeftOut : INT VAR_INPUT a : INT; p : Point := (y := 4); row : Row := [1
 FUNCTION_BLOCK Leaver METHOD M : INT VAR_INPUT a : INT; p : Point; END_VAR M := p.x; END_METHOD END_FUNCTION_BLOCK
 FUNCTION Next : INT VAR_IN_OUT c : INT; END_VAR c := c + 1; Next := c; END_FUNCTION
 FUNCTION Fill : BOOL VAR_IN_OUT w : WORD; END_VAR w := w OR 16#F0; Fill := TRUE; END_FUNCTION
-TYPE Latched : STRUCT r, s : BOOL; END_STRUCT; END_TYPE
+TYPE E_Flags : (FlagsOff, FlagsOn := 200) BYTE := FlagsOn; Latched : STRUCT r, s : BOOL; END_STRUCT; END_TYPE
 FUNCTION_BLOCK Setter VAR_OUTPUT S : BOOL := TRUE; END_VAR END_FUNCTION_BLOCK
 VAR_GLOBAL flag AT %MX0.3 : BOOL := TRUE; bits AT %MB0 : BYTE; word2 AT %MW2 : WORD; low2 AT %MB2 : BYTE; real8 AT %MD8 : REAL;
   raw8 AT %MD8 : DWORD; END_VAR
@@ -91,7 +91,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
        "e : Edges; e2 : Edges2; speed : Counter; idle : ARRAY[1..3] OF Idle; empty : ARRAY[1..3] OF Nothing; behind : BYTE := 7; late : Late(n := 5) := (a := 9); leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; pump : Pump; pump2 : Pump__Set; " \
-       "hue : Plant.Inner.Hue; f1 : ARRAY[1..2] OF BOOL; bit : Latched; setter : Setter; long : STRING(255); wlong : WSTRING(255); y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
+       "hue : Plant.Inner.Hue; f1 : ARRAY[1..2] OF BOOL; bit : Latched; setter : Setter; flags : E_Flags; long : STRING(255); wlong : WSTRING(255); y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # The literal of a time and its value, in both directions.
 TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
          ("T#106751d23h47m16s854ms775us807ns", 2**63 - 1), ("T#0ms", 0), ("T#-1ns", -1), ("T#-1h500us", -3600000500000)]
@@ -259,6 +259,8 @@ CASES = [
      {"s": b"abcd", "n": 3, "y": "b-c"}),
     ("FOR i := 1 TO 20 DO long := CONCAT(long, 'abcdefghijklm', 'no'); END_FOR i := LEN(long); j := FIND(RIGHT(long, 3), 'mno'); "
      "wlong := STRING_TO_WSTRING(long); n := LEN(wlong); b := WSTRING_TO_STRING(wlong) = long;", {"i": 255, "j": 1, "n": 255, "b": 1}),
+    ("b := flags = FlagsOn AND flags > 4 AND flags <> behind AND (flags OR 16#1) = 201; w := flags; i := flags; CASE flags OF FlagsOff: j := 1; 200: j := 2; END_CASE flags := FlagsOff; "
+     "w := w OR flags; n := TO_INT(E_Flags.FlagsOn);", {"b": 1, "w": 200, "i": 200, "j": 2, "n": 200, "flags": 0}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
