@@ -100,6 +100,7 @@ void cm1e_axis_begin_anew(cm1e_axis_t *axis, double velocity)
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
 {
     const bool goes_on = axis->mode == CM1E_MODE_CSV;
+    cm1e_drive_note_late(&axis->drive);
     if (axis->silence.resumed) /* a follower has caused it already */
         return;
     axis->silence.resumed = RESUMED_FROM_PAUSE;
@@ -150,6 +151,7 @@ void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
     note_silence(axis, missed);
     axis->silence.frozen = true;
     cm1e_axis_note_disturbed(axis);
+    cm1e_drive_note_late(&axis->drive);
     cm1e_drive_slew(&axis->drive);
 }
 

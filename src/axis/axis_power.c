@@ -35,6 +35,8 @@ static const int64_t brake_ns = 20 * MS_IN_NS;
 /* A motor that its emergency deceleration brings to rest in this time is about to rest: it follows its set-point. */
 static const double rests_in_s = 3e-3;
 static const double rest_counts = 50.0; /* tolerance, in counts of a CM1-E */
+/* Cycles, at most 15. */
+static const unsigned longest_undecided = 10;
 /* A motor that does not come to rest by then is turned by something else than its ramp. */
 static const uint16_t longest_swing_ms = CM1E_AXIS_LONGEST_SWING_MS;
 
@@ -240,7 +242,8 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis)
 /* counts/s; a motor that is slower rests. */
 static double slow_velocity(const cm1e_axis_t *axis)
 {
-    return axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s + CM1E_AXIS_VELOCITY_NOISE;
+    const double noise = cm1e_axis_tolerance_counts(axis, CM1E_AXIS_VELOCITY_NOISE * axis->cycle_s) / axis->cycle_s;
+    return axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s + noise;
 }
 
 /* counts/s; the least that tells this velocity, the one of the cycle before, what both come to in the next cycle, and
@@ -272,8 +275,17 @@ static bool brakes_first(cm1e_axis_t *axis, double counts_per_s)
     return true;
 }
 
-/* Takes over the enabled drive (note 5): the set-point begins at the actual position of this cycle. This also applies
- * if power comes back during the ramp of a homing step that pressed: there the set-point is beyond the stop. */
+/* Lets the set-point stand where the motor is. It is to rest too, so long at least. */
+static void hold_motor(cm1e_axis_t *axis, int64_t time_ns)
+{
+    cm1e_axis_set_to_actual(axis);
+    cm1e_axis_hold_here(axis);
+    axis->power.brake_until_ns = axis->now_ns + time_ns;
+}
+
+/* Takes over the enabled drive (note 5). Its set-point is where the motor was braked, or begins at the actual position
+ * of this cycle. This also applies if power comes back during the ramp of a homing step that pressed: there the
+ * set-point is beyond the stop. */
 static void take_over(cm1e_axis_t *axis)
 {
     if (axis_free(axis) || axis->homing_step.pushing)
@@ -287,17 +299,33 @@ static void take_over(cm1e_axis_t *axis)
 
 static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b_ns; }
 
-/* Whether the motor is not brought back by its servo: it is farther from the set-point than its lag may be, or it gets
- * faster on its way there than it ever came back, or was at first. A load that swings does neither. `away`: counts;
+/* Whether the motor is not brought back by its servo: it gets faster on its way away from the set-point than it ever
+ * came back, or was at first, or it is farther away than its lag may be. A load that swings does neither. A motor that
+ * is caught when it gets its torque may do both for a moment, but never exceeds its maximum velocity. `away`: counts;
  * `slow`: tolerance. */
 static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double slow)
 {
-    const double speed = fabs(velocity);
-    const bool goes_away = away * velocity > 0.0;
+    const double speed = fabs(velocity), scale = fabs(axis->position.scale);
+    const bool goes_away = away * velocity > 0.0, caught = !axis->power.energized;
     if (!goes_away)
         axis->power.velocity = fmaxf(axis->power.velocity, (float)speed);
-    return (goes_away && speed > axis->power.velocity + slow) ||
-           fabs(away) > axis->limits.max_lag * fabs(axis->position.scale);
+    const double most = caught ? axis->limits.system.velocity * scale : 0.0;
+    return (goes_away && speed > fmax(axis->power.velocity, most) + slow) ||
+           (!caught && fabs(away) > axis->limits.max_lag * scale);
+}
+
+/* Whether the motor is given up: it turns on for too long, or runs away. */
+static bool swing_is_over(const cm1e_axis_t *axis)
+{
+    return (uint16_t)((uint16_t)(axis->now_ns / MS_IN_NS) - axis->power.held_ms) >= longest_swing_ms;
+}
+
+static bool paused(const cm1e_axis_t *axis) { return axis->silence.resumed == RESUMED_FROM_PAUSE; }
+
+/* Whether the drive has shown in this cycle what the motor does now. */
+static bool shows_motor(const cm1e_axis_t *axis)
+{
+    return axis->drive.feedback.fresh && !axis->silence.frozen && !paused(axis);
 }
 
 /* The set-point is at rest. The torque stays for a moment after the motor turned last: where a swinging load turns
@@ -308,20 +336,20 @@ static void wait_for_rest(cm1e_axis_t *axis)
     power_t *power = &axis->power;
     const double velocity = axis_actual_velocity(axis);
     const uint16_t now_ms = (uint16_t)(axis->now_ns / MS_IN_NS);
-    const bool first = !power->held;
+    const bool first = !power->held, unseen = first || (power->undecided > 0 && shows_motor(axis));
     if (first) {
         power->held_ms = now_ms;
         power->velocity = (float)fabs(velocity);
     }
     power->held = true;
-    if (!axis->drive.feedback.fresh || (uint16_t)(now_ms - power->held_ms) >= longest_swing_ms)
+    if (!axis->drive.feedback.fresh || swing_is_over(axis))
         return;
     const double slow = slow_velocity(axis);
     const double away = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
     if (runs_away(axis, away, velocity, slow))
         power->held_ms = (uint16_t)(now_ms - longest_swing_ms);
     else if (fabs(velocity) > slow ||
-             (first && fabs(away) > slow * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts)))
+             (unseen && fabs(away) > slow * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts)))
         power->brake_until_ns = later(power->brake_until_ns, axis->now_ns + brake_ns);
 }
 
@@ -335,36 +363,41 @@ static bool ramp_is_over(cm1e_axis_t *axis)
            (!axis->power.shutting_down || cm1e_axis_outputs_off_first(axis));
 }
 
-static bool paused(const cm1e_axis_t *axis) { return axis->silence.resumed == RESUMED_FROM_PAUSE; }
-
-/* Whether the drive has shown in this cycle what the motor does now. */
-static bool shows_motor(const cm1e_axis_t *axis)
+/* The motor has just got its torque. If it turns, the set-point goes with it and brakes, or stands if that cannot be.
+ * Its velocity is known when two cycles in a row have shown it under torque, by numbers that agree. Behind a pause the
+ * drive has braked it already, and a target that went to it now would drive it. A motor that is slow then may be one
+ * that its servo just turns round. */
+static void brake_or_hold(cm1e_axis_t *axis)
 {
-    return axis->drive.feedback.fresh && !axis->silence.frozen && !paused(axis);
-}
-
-/* Whether a motor that has just got its torque needs no ramp, or none is possible. Its velocity is known when two
- * cycles in a row have shown it under torque. */
-static bool needs_no_ramp(cm1e_axis_t *axis)
-{
-    if (axis->drive.actual.contradictions > 0 || paused(axis))
-        return true;
-    const bool seen_before = axis->power.velocity != 0.0f;
-    return seen_before ? !brakes_first(axis, coasting_velocity(axis))
-                       : fabs(axis_actual_velocity(axis)) <= slow_velocity(axis);
+    power_t *power = &axis->power;
+    const bool known = shows_motor(axis) && axis->drive.actual.contradictions == 0;
+    const bool rests = known && fabs(axis_actual_velocity(axis)) <= slow_velocity(axis);
+    const bool never = paused(axis) || cm1e_drive_contradicts_itself(&axis->drive) ||
+                       power->undecided >= longest_undecided;
+    if (rests || (known && power->velocity != 0.0f) ? !brakes_first(axis, coasting_velocity(axis)) : never)
+        hold_motor(axis, rests && power->undecided == 0 ? 0 : brake_ns);
+    power->undecided++;
 }
 
 /* A motor may still turn when it gets its torque: it coasts, or its load turns it. A set-point that stood would brake
- * it with all of its torque, and pull it back from where that ends. So the set-point goes with the motor and brakes,
- * and the axis is taken over when both rest. */
+ * it with all of its torque, and pull it back from where that ends. The axis is taken over when both rest. */
 static void take_over_or_brake(cm1e_axis_t *axis)
 {
     const bool set_points = axis->mode == CM1E_MODE_CSP || axis->mode == CM1E_MODE_CSV;
-    if (!set_points || cm1e_drive_is_virtual(&axis->drive) || axis->power.energized)
+    if (!set_points || cm1e_drive_is_virtual(&axis->drive) || axis->power.energized) {
         take_over(axis);
-    else if (axis_free(axis) ? (shows_motor(axis) || paused(axis)) && needs_no_ramp(axis)
-                             : shows_motor(axis) && ramp_is_over(axis))
+        return;
+    }
+    if (axis_free(axis))
+        brake_or_hold(axis);
+    if (!axis_holds(axis) || !(shows_motor(axis) || paused(axis)) || !ramp_is_over(axis))
+        return;
+    if (!axis->power.held || !swing_is_over(axis)) {
         take_over(axis);
+        return;
+    }
+    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_NOT_AT_REST, axis_actual_velocity(axis) / axis->position.scale, 0.0);
+    cm1e_axis_become_free(axis);
 }
 
 bool cm1e_axis_swings(const cm1e_axis_t *axis) { return axis->power.held && axis_holds(axis); }
@@ -383,8 +416,11 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
         cm1e_axis_become_free(axis);
     else if (!free && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque was lost during a ramp */
-    if (free)
+    if (axis_free(axis))
         axis->power.velocity = acting && shows_motor(axis) ? (float)axis_actual_velocity(axis) : 0.0f;
+    const bool at_work = wanted && axis->power.energized;
+    if (at_work || (axis_free(axis) ? !acting : !set_points_move(axis)))
+        axis->power.undecided = !at_work && !shows_motor(axis);
 }
 
 void cm1e_axis_enable_step(cm1e_axis_t *axis)

@@ -37,6 +37,14 @@ static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
              axis->config->name, cm1e_strerror(axis->fault.error), axis->fault.value, axis->fault.bound);
 }
 
+static void not_at_rest_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size,
+             "Axis \"%s\": the motor turned when it got its torque, and did not come to rest: %.6g u/s in the end. It was "
+             "let go. Look for a load that drives it, or a servo that swings; then reset the axis with MC_Reset.",
+             axis->config->name, axis->fault.value);
+}
+
 /* Adds where the counts of a motor behind a bridge end (BR appendix 5). */
 static void add_counts_limit(const cm1e_axis_t *axis, char *text, size_t size)
 {
@@ -309,6 +317,7 @@ static const struct {
     void (*text)(const cm1e_axis_t *axis, char *text, size_t size);
 } texts[] = {
     {CM1E_ERROR_AXIS_LAG, lag_text},
+    {CM1E_ERROR_AXIS_NOT_AT_REST, not_at_rest_text},
     {CM1E_ERROR_PROGRAM, program_text},
     {CM1E_ERROR_AXIS_NOT_IN_POSITION, cm1e_axis_in_position_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, range_text},

@@ -264,6 +264,15 @@ static uint16_t no_torque_word(const cm1e_drive_t *drive)
     return ends_quick_stop(drive) ? cm1e_fsa_commands[COMMAND_DISABLE_VOLTAGE].controlword : words->no_torque;
 }
 
+/* The torque comes with a target where the motor is, so not with one that was made cycles ago; but what was commanded
+ * before stays. */
+static bool is_too_late(const cm1e_drive_t *drive, cm1e_fsa_command_t command)
+{
+    const uint16_t enables = cm1e_fsa_commands[COMMAND_ENABLE_OPERATION].controlword;
+    return drive->target.late && command == COMMAND_ENABLE_OPERATION &&
+           (drive->ordinary.controlword & enables) != enables;
+}
+
 /* Sends one command per cycle, chosen from the state that the drive shows (UG 6.1.2, BR 6.1.2). */
 static uint16_t controlword(cm1e_drive_t *drive, bool pass)
 {
@@ -277,7 +286,9 @@ static uint16_t controlword(cm1e_drive_t *drive, bool pass)
     const bool ready = f->voltage && f->mode == (int8_t)drive->mode.commanded;
     if (!ready && f->state != OPERATION_ENABLED)
         return no_torque_word(drive);
-    const cm1e_fsa_command_t command = cm1e_fsa_next_command(f->state, true);
+    cm1e_fsa_command_t command = cm1e_fsa_next_command(f->state, true);
+    if (is_too_late(drive, command))
+        command = COMMAND_SWITCH_ON;
     if (command == COMMAND_FAULT_RESET || command >= CM1E_FSA_COMMAND_COUNT)
         return no_torque_word(drive);
     uint16_t word = cm1e_fsa_commands[command].controlword;
@@ -377,5 +388,6 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE); /* the last target holds until the torque goes */
     const uint16_t word = controlword(drive, pass) | (drive->mode.marked ? signals(drive) : 0);
     cm1e_drive_encode(drive, word, position, follow ? next_velocity(drive) : 0);
+    drive->target.late = false;
     cm1e_drive_note_calm(drive, word);
 }

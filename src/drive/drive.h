@@ -46,6 +46,12 @@ static inline bool cm1e_drive_contradicts_itself(const cm1e_drive_t *drive)
 {
     return drive->actual.contradictions >= 3;
 }
+/** Called when frames were not sent in time: what goes into the next one was decided by inputs that are cycles old. The
+ *  drive does not get its torque by it. @rt cycle */
+static inline void cm1e_drive_note_late(cm1e_drive_t *drive)
+{
+    drive->target.late = drive->feedback.state != OPERATION_ENABLED;
+}
 /** Whether the target velocity (CSV) is on its way back to the commanded one, by command.velocity_step per cycle. @rt
  *  cycle */
 static inline void cm1e_drive_slew(cm1e_drive_t *drive) { drive->target.slewing = true; }

@@ -139,6 +139,8 @@ typedef struct cm1e_drive_target {
     int32_t set_point;              /**< PP: the target position that bit 4 announced */
     bool set_point_bit;             /**< PP: controlword bit 4 */
     bool holds;                     /**< the position was the caller's, and the drive is still seen holding one */
+    bool late;                      /**< without torque: the next target comes cycles after the inputs that it is
+                                         made of */
     bool slewing;                   /**< CSV: the velocity is not yet the commanded one after lost frames */
 } cm1e_drive_target_t;
 

@@ -387,6 +387,59 @@ START_TEST(test_what_interrupts_the_braking_of_a_turning_motor)
 }
 END_TEST
 
+/* ---- pauses of the master round the enabling ---------------------------------------------------------------------- */
+
+/* Whichever cycle before, at, or behind that of the torque is so late: the axis is on when the motor rests, not before,
+ * and until then nothing drives the motor. */
+enum { PAUSES_FROM = -2, PAUSES_TO = 22, LONGEST_PAUSE = 20 };
+static int pause_at, pause_cycles;
+static double fastest_with_torque, before_now;
+
+static void late_program(bench_t *b)
+{
+    if (b->cycle == THROWN_AT - 3)
+        bench_drive(b, 0)->mechanics.velocity = THROWN_SPEED;
+    power.Enable = b->cycle >= THROWN_AT;
+    call_blocks();
+    const double speed = bench_probe(b, 0).velocity_counts_per_s;
+    fastest_with_torque = fmax(fastest_with_torque, fabs(speed));
+    if (power.Status && !came_on) {
+        came_on = true;
+        speed_when_on = fmax(fabs(speed), fabs(before_now));
+    }
+    before_now = speed;
+    if (b->cycle == pause_at)
+        bench_miss(b, pause_cycles * bench.config.cycle_time_ns);
+    if (came_on ? b->cycle >= pause_at + 200 : b->cycle == THROWN_AT + 1500)
+        cm1e_scheduler_stop(b->scheduler);
+}
+
+START_TEST(test_a_pause_while_a_turning_motor_gets_its_torque_turns_nothing_on)
+{
+    static const double loads[] = {2e-6, 3e-5, 3e-4};
+    const double load = loads[_i / MAPPINGS];
+    for (pause_cycles = 1; pause_cycles <= LONGEST_PAUSE; pause_cycles += sweep_stride(1, 3))
+        for (pause_at = THROWN_AT + PAUSES_FROM; pause_at < THROWN_AT + PAUSES_TO; pause_at++) {
+            prepare((cm1e_mapping_t)(_i % MAPPINGS), CM1E_PDO_ORDER_UG_7_2, "1.3.5");
+            bench.config.axes[0].max_deceleration = 1000;
+            bench.config.axes[0].sim = (cm1e_sim_axis_config_t){.no_stops = true, .load_inertia = load};
+            const size_t used = strlen(bench.scene);
+            snprintf(bench.scene + used, sizeof bench.scene - used, ", load %g, %d cycles late at %d", load,
+                     pause_cycles, pause_at);
+            came_on = false;
+            fastest_with_torque = before_now = 0;
+            bench.program = late_program;
+            bench_open(&bench);
+            bench_start(&bench);
+            run_to_the_end();
+            const double rests = bench.config.axes[0].max_deceleration * 3 + 4500;
+            MUST(&bench, came_on, "the axis is not on: %s", text_at_end);
+            MUST(&bench, speed_when_on < rests, "power is on at %.0f counts/s", speed_when_on);
+            MUST(&bench, fastest_with_torque <= THROWN_SPEED, "driven to %.0f counts/s", fastest_with_torque);
+        }
+}
+END_TEST
+
 /* A motor that turns in the gap of its backlash while its load rests is caught where it is: no compensation pulls it. */
 static void in_gap_program(bench_t *b)
 {
@@ -574,6 +627,7 @@ int main(void)
     tcase_add_loop_test(cases, test_a_turning_shaft_is_caught_where_it_is, 0, VARIANTS);
     tcase_add_loop_test(cases, test_a_turning_load_is_braked_before_the_axis_is_on, 0, VARIANTS);
     tcase_add_loop_test(cases, test_what_interrupts_the_braking_of_a_turning_motor, 0, INTERRUPTIONS * MAPPINGS);
+    tcase_add_loop_test(cases, test_a_pause_while_a_turning_motor_gets_its_torque_turns_nothing_on, 0, 3 * MAPPINGS);
     tcase_add_loop_test(cases, test_a_motor_that_turns_in_its_backlash_is_caught_there, 0, 2 * MAPPINGS);
     tcase_add_loop_test(cases, test_trouble_with_frames_while_enabling_moves_nothing, 0, TROUBLES * TROUBLE_LOADS);
     tcase_add_loop_test(cases, test_a_load_is_held_while_the_mode_changes, 0, VARIANTS);

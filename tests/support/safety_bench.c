@@ -253,7 +253,9 @@ bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double ste
     const double shaft = fabs((double)(int32_t)((uint32_t)w->position - (uint32_t)w->position_before));
     if (!moving && step * (off - step) < 0 && fabs(off) <= fabs(off - step) && fabs(step) <= w->max_step + 1.0)
         return true; /* on the way back there, no faster than the axis may go */
-    return !moving && (step == 0 || fabs(off) <= fmax(w->max_step, 3 * shaft) + 1.0);
+    /* A motor that has just got its torque is seen every cycle: its target is no farther ahead than its way in one. */
+    const double most = info.state == CM1E_AXIS_DISABLED ? shaft : fmax(w->max_step, 3 * shaft);
+    return !moving && (step == 0 || fabs(off) <= most + 1.0);
 }
 
 /** A load has turned the shaft on while no targets came: it is ahead of its target by more than a servo ever puts it.
@@ -297,7 +299,7 @@ static bool judge_silence(const bench_t *bench, uint32_t n, witness_t *w, double
     const bool was_silent = w->silent;
     w->silent = !bench->answered;
     if (w->silent) { /* in another mode, which only frames with a wrong counter have shown, it takes no targets */
-        MUST(bench, step == 0 || true_mode(bench, n) != w->mode, "axis %u: the target moves by %.0f counts while no frame comes back", n, step);
+        MUST(bench, step == 0 || w->target == w->position || true_mode(bench, n) != w->mode, "axis %u: the target moves by %.0f counts while no frame comes back", n, step);
         return true;
     }
     const bool turns = step * w->step < 0 && fabs(step) > w->max_gain + 1.0; /* from rest it may go either way */

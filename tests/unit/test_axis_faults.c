@@ -404,6 +404,37 @@ static void test_a_motor_that_runs_away_loses_its_torque(void)
     }
 }
 
+/** A motor that turns when it gets its torque, and never rests, or runs away: the axis is never on. */
+static void test_a_motor_that_does_not_rest_when_it_gets_its_torque_is_let_go(void)
+{
+    for (int n = 0; n < 4; n++) {
+        const bool runs = n & 1, monitored = n & 2;
+        bench_start();
+        bench_cycles(5);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING,
+                                                                 monitored));
+        bus.blocked = runs;
+        bus.world = runs ? run_away : swing;
+        swings = INT_MAX;
+        run_velocity = 400.0;
+        run_acceleration = 0.5;
+        run_position = bus.position;
+        bench_power(true);
+        int with_torque = 0;
+        while (bench_info().state == CM1E_AXIS_DISABLED && with_torque < 3000) {
+            bench_cycles(1);
+            TEST_ASSERT_FALSE(cm1e_axis_powered(axis));
+            with_torque += bus.state == OPERATION_ENABLED;
+        }
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+        TEST_ASSERT_EQUAL_INT(runs && monitored ? CM1E_ERROR_AXIS_LAG : CM1E_ERROR_AXIS_NOT_AT_REST, bench_info().error);
+        TEST_ASSERT_LESS_THAN_INT(runs && monitored ? 500 : 2150, with_torque);
+        bench_cycles(runs ? 80 : 5);
+        TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+        bus.world = NULL;
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -413,7 +444,7 @@ int main(void)
     RUN_TEST(test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again);
     RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
     RUN_TEST(test_a_silence_slows_an_axis_only_near_its_maximum_velocity);
-    RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
+    RUN_TEST(test_a_motor_that_does_not_rest_when_it_gets_its_torque_is_let_go);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
     RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
@@ -421,7 +452,6 @@ int main(void)
     RUN_TEST(test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit);
     RUN_TEST(test_motor_ahead_after_a_pause_is_judged_by_the_speed_that_it_had);
     RUN_TEST(test_torque_stays_while_the_motor_turns_for_two_seconds_at_most);
-    RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
     RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
     return UNITY_END();

@@ -79,10 +79,14 @@ static void test_enable_after_the_shaft_was_turned_while_disabled(void)
     for (int round = 0; round < 5; round++) {
         bench_power(false);
         bench_cycles(20);
+        const int per_s = cm1e_firmware_info(bus.firmware)->velocity_in_counts_per_ms ? 1 : 1000;
+        const int turn = 3000 * (round % 2 ? -1 : 1);
+        bus.velocity_raw = turn * per_s;
         for (int i = 0; i < 100; i++) { /* by hand, several turns */
-            bus.position += 3000 * (round % 2 ? -1 : 1);
+            bus.position += turn;
             bench_cycles(1);
         }
+        bus.velocity_raw = 0;
         const double there = bench_info().actual_position;
         bench_enable();
         TEST_ASSERT_EQUAL_DOUBLE(there, bench_info().set_position);

@@ -309,7 +309,7 @@ static void with_software_limits(double negative, double positive)
 {
     bench_end();
     bus.state = READY_TO_SWITCH_ON;
-    bus.position = 0;
+    bus.position = bus.velocity_raw = 0;
     bus.config.axes[0].software_limit_negative = negative;
     bus.config.axes[0].software_limit_positive = positive;
     bench_create();
