@@ -28,11 +28,18 @@ static struct bench {
     cm1e_error_t received, health;
     int homing_cycles;              /**< what the drive's own homing takes */
     int homing_cycle[JUDGED_MOST];  /**< -1: none runs; -2: it is over */
+    /** A load that turns the shaft: counts in a cycle, and how many cycles more when the motor has torque. */
+    struct coasting {
+        int32_t position, speed;
+        int cycles;
+    } coasting[JUDGED_MOST];
     uint32_t encoder;               /**< what all encoders count, and how fast they do */
     int encoder_speed;
 } bench;
 
 static cm1e_bus_t *motor_of(int n) { return n == 0 ? &bench.bus : &bench.others[n - 1]; }
+
+static int number_of(const cm1e_bus_t *bus) { return bus == &bench.bus ? 0 : (int)(bus - bench.others) + 1; }
 
 static cm1e_axis_type_t type_of(int n) { return cm1e_axis_configuration(judged_axes[n].axis)->type; }
 
@@ -41,7 +48,7 @@ static cm1e_axis_type_t type_of(int n) { return cm1e_axis_configuration(judged_a
 /** The drive's own homing: the bits of UG 6.2.4 one after the other; the counts are renamed at the end. */
 static void fake_homing(cm1e_bus_t *bus)
 {
-    int *cycle = &bench.homing_cycle[bus == &bench.bus ? 0 : bus - bench.others + 1];
+    int *cycle = &bench.homing_cycle[number_of(bus)];
     const bool start = bus->state == OPERATION_ENABLED && (bus->controlword & CONTROLWORD_HOMING_START);
     if (!start || (bus->controlword & CONTROLWORD_HALT)) {
         if (*cycle >= 0 || bus->mode_status == 0)
@@ -60,6 +67,29 @@ static void fake_homing(cm1e_bus_t *bus)
         bus->position -= 20;
     else if (n == bench.homing_cycles + 5)
         bus->position = 2;
+}
+
+/** The motor has torque, and its load still turns it for some cycles; then it follows, at once. */
+static void coast(cm1e_bus_t *bus)
+{
+    struct coasting *load = &bench.coasting[number_of(bus)];
+    if (load->cycles == 0)
+        return;
+    load->cycles -= bus->state == OPERATION_ENABLED;
+    load->position = bus->position = (int32_t)((uint32_t)load->position + (uint32_t)load->speed);
+    const double per_s = 1e9 / (double)judged.cycle_ns;
+    const int unit = cm1e_firmware_info(bus->firmware)->velocity_in_counts_per_ms ? 1000 : 1;
+    bus->velocity_raw = load->cycles > 0 ? (int32_t)lround(load->speed * per_s / unit) : 0;
+}
+
+/** Somebody shoves the load of a motor without torque. */
+static void shove(cm1e_bus_t *bus)
+{
+    const int n = number_of(bus);
+    const cm1e_axis_t *axis = judged_axes[n].axis;
+    const double most = axis->limits.system.velocity * fabs(axis->position.scale) * (double)judged.cycle_ns * 1e-9;
+    bench.coasting[n] = (struct coasting){
+        .position = bus->position, .speed = (int32_t)uniform(-1.2 * most, 1.2 * most), .cycles = 1 + pick(8)};
 }
 
 /** In CSV the shaft turns as it is told. */
@@ -131,6 +161,7 @@ static void describe_motor(int n)
     snprintf(axis.name, sizeof axis.name, "axis%d", n);
     motor_of(n)->config.axes[0] = axis;
     motor_of(n)->homing = fake_homing;
+    motor_of(n)->world = coast;
     motor_of(n)->mode_status = STATUSWORD_TARGET_REACHED;
     bench.homing_cycle[n] = -1;
     if (n > 0)
@@ -196,6 +227,8 @@ static void act_on_motor(cm1e_bus_t *bus)
         bus->digital_inputs = (uint16_t)pick(16);
     if (bus->state != OPERATION_ENABLED && one_in(1000))
         bus->position += pick(20001) - 10000; /* somebody turns the shaft */
+    if (bus->state != OPERATION_ENABLED && one_in(300))
+        shove(bus);
 }
 
 void act_on_device(void)
@@ -248,6 +281,14 @@ static unsigned long long moving_of_all(void)
     return cycles;
 }
 
+static unsigned long long ramps_of_all(void)
+{
+    unsigned long long ramps = 0;
+    for (int n = 0; n < JUDGED_MOST; n++)
+        ramps += watched_axes[n].ramps;
+    return ramps;
+}
+
 /** Every other program has several axes. */
 static void run(unsigned seed)
 {
@@ -268,11 +309,12 @@ START_TEST(test_random_programs_keep_every_rule)
         run(seed_of(i));
 
     printf("batch %d: %llu axis-cycles, %llu of them moving, %llu in gear, %llu led by a group, %llu edges, "
-           "%llu times Done, %llu of groups\n", _i, cycles_total, moving_of_all(), synchronised_total, led_total,
-           edges_total, done_total, group_done_total);
+           "%llu times Done, %llu of groups, %llu motors braked when they got their torque\n", _i, cycles_total,
+           moving_of_all(), synchronised_total, led_total, edges_total, done_total, group_done_total, ramps_of_all());
     if (seeds_given() || runs < RUNS)
         return;
     MUST(moving_of_all() > cycles_total / 8, "too wild to test anything");
+    MUST(ramps_of_all() > 20, "only %llu motors were braked when they got their torque", ramps_of_all());
     MUST(led_total > cycles_total / 200 && group_done_total > 0, "groups have moved nothing");
     for (int state = 0; state < CM1E_GROUP_STATE_COUNT; state++)
         MUST(group_seen[state] > 0, "never in %s", cm1e_group_state_name((cm1e_group_state_t)state));

@@ -428,6 +428,12 @@ void watch_set_point(void)
                             cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) == 0.0;
     const bool goes_on = ours && watched.ours && !watched.lost && !taken_over;
     const double most_jerk = most->jerk + jerk_on_coupling(axis, &watched.on_coupling);
+    if (axis->state == CM1E_AXIS_DISABLED && watched.disabled && !axis->power.energized && v != 0.0 &&
+        watched.velocity == 0.0) {
+        const double motor = axis_actual_velocity(axis) / axis->position.scale;
+        watched.ramps++;
+        KEEPS(v * motor > 0.0 && fabs(v) <= fabs(motor) * slack, "it is braked from %.9g u/s, and turns at %.9g", v, motor);
+    }
     if (goes_on && !watched.rough) /* a hard one too */
         KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
     if (goes_on && !hard && !watch_silence()) {

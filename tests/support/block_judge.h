@@ -119,6 +119,7 @@ struct watched_axis {
     double lower, upper;       /**< u; software limits */
     double lowest, highest;    /**< u; where it may be */
     unsigned long long moving; /**< cycles */
+    unsigned long long ramps;  /**< of motors that turned when they got their torque */
 };
 extern struct watched_axis watched_axes[JUDGED_MOST];
 #define watched watched_axes[judged_at]
