@@ -3,7 +3,7 @@
  * Motion of several axes along one path of lines and arcs, with a limited jerk: it looks ahead over all appended
  * segments, so that the path is left only as far as the command allows, and stops only where necessary. Pure functions,
  * no clock, no heap: the owner has the memory. Units: u of each axis for positions; along the path the unit of the
- * space axes, s. @rt cycle throughout: a step takes a fraction of a microsecond, an append a few.
+ * space axes, s. @rt cycle throughout: a step takes a fraction of a microsecond, an append some ten.
  *
  * The first `space` axes (up to three: X, Y, Z) span the space in which lengths are measured and arcs lie; further axes
  * move linearly with the length of a segment. A line that moves none of the space axes is as long as the Euclidean norm

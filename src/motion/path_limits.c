@@ -8,10 +8,10 @@
 #include "core/extreme.h"
 #include "motion/path_piece.h"
 
-enum { STEPS_LEAST = 24, STEPS_MOST = 96, BENDS_MAX = (STEPS_MOST + 1) * CM1E_PATH_AXES, SOLVER_STEPS = 40 };
+enum { STEPS_LEAST = 40, STEPS_MOST = 96, BENDS_MAX = (STEPS_MOST + 1) * CM1E_PATH_AXES, SOLVER_STEPS = 40 };
 
-/** Allowance for a stronger bend of a curve between the evaluated points. */
-static const double BETWEEN_POINTS = 1.01;
+/** Allowance for what the parabolas through the evaluated points of a curve do not show. */
+static const double BEYOND_PARABOLAS = 1.001;
 
 /** Allowance for rounding at a limit that is fully used. */
 static const double ROUNDING = 1e-9;
@@ -47,14 +47,44 @@ static void add(bends_t *bends, const cm1e_path_axis_t *axis, const cm1e_path_sh
     }
 }
 
-/** The sharper a curve, the shorter the distance over the middle of its parameter. */
+/** The sharper a curve, the shorter the distance over the middle of its parameter, and the faster its bend changes
+ *  there. */
 static int steps_over(const cm1e_path_piece_t *curve)
 {
     double shortest = INFINITY;
     for (int i = 0; i < CM1E_PATH_KNOTS; i++)
         shortest = smaller(shortest, curve->at[i + 1] - curve->at[i]);
-    const double steps = STEPS_LEAST / 2.0 * curve->length / CM1E_PATH_KNOTS / shortest;
-    return (int)smaller(larger(steps, STEPS_LEAST), STEPS_MOST);
+    const double sharpness = curve->length / CM1E_PATH_KNOTS / shortest;
+    return (int)smaller(larger(STEPS_LEAST / 4.0 * sharpness * sharpness, STEPS_LEAST), STEPS_MOST);
+}
+
+/** The largest size up to half way to the next points. A parabola is above its chords by at most an eighth of its
+ *  second difference. */
+static double most_near(double here, double second_difference)
+{
+    return BEYOND_PARABOLAS * larger(fabs(here), fabs(here - second_difference / 8));
+}
+
+static void look_along(bends_t *bends, const cm1e_path_piece_t *curve, const cm1e_path_config_t *config,
+                       const cm1e_path_share_t *share)
+{
+    const int steps = steps_over(curve);
+    double by_length[3][3][CM1E_PATH_AXES]; /* of three points, by the number of the point modulo 3 */
+    for (int k = 0; k < 3; k++)
+        cm1e_path_curve_derivatives(curve, config->axes, (double)k / steps, by_length[k]);
+    for (int k = 0; k <= steps; k++) {
+        if (k > 1 && k < steps)
+            cm1e_path_curve_derivatives(curve, config->axes, (k + 1.0) / steps, by_length[(k + 1) % 3]);
+        const int middle = k == 0 ? 1 : k == steps ? steps - 1 : k;
+        for (int i = 0; i < config->axes; i++) {
+            double most[3];
+            for (int order = 0; order < 3; order++)
+                most[order] = most_near(by_length[k % 3][order][i],
+                                        by_length[(middle - 1) % 3][order][i] - 2 * by_length[middle % 3][order][i] +
+                                            by_length[(middle + 1) % 3][order][i]);
+            add(bends, &config->axis[i], share, &(bend_t){most[0], most[1], most[2], 0, 0});
+        }
+    }
 }
 
 static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path_config_t *config,
@@ -64,15 +94,7 @@ static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path
     bends->round = piece->kind == CM1E_PATH_ARC;
     bends->count = 0;
     if (piece->kind == CM1E_PATH_CURVE) {
-        const int steps = steps_over(piece);
-        for (int k = 0; k <= steps; k++) {
-            double by_length[3][CM1E_PATH_AXES];
-            cm1e_path_curve_derivatives(piece, config->axes, (double)k / steps, by_length);
-            for (int i = 0; i < config->axes; i++)
-                add(bends, &config->axis[i], share,
-                    &(bend_t){BETWEEN_POINTS * fabs(by_length[0][i]), BETWEEN_POINTS * fabs(by_length[1][i]),
-                              BETWEEN_POINTS * fabs(by_length[2][i]), 0, 0});
-        }
+        look_along(bends, piece, config, share);
     } else {
         for (int i = 0; i < config->axes; i++) {
             const bool bent = bends->round && i < piece->measured;
