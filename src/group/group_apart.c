@@ -55,11 +55,10 @@ static bool as_one(const cm1e_group_t *group, uint32_t silent)
 static void hold_path(cm1e_group_t *group)
 {
     cm1e_path_override(&group->path, 0.0);
-    if (group->state != CM1E_GROUP_MOVING || group->halting)
-        return; /* it stops already */
-    group->rest_deceleration = group->rest_jerk = 0.0;
-    cm1e_path_stop(&group->path, 0.0, 0.0);
-    if (!group->interruption.on)
+    if (group->state != CM1E_GROUP_MOVING && group->state != CM1E_GROUP_STOPPING)
+        return; /* it stops so already */
+    cm1e_group_rest(group, 0.0, 0.0);
+    if (group->state == CM1E_GROUP_MOVING && !group->halting && !group->interruption.on)
         cm1e_path_go_on(&group->path);
 }
 

@@ -186,6 +186,7 @@ static cm1e_error_t replace(cm1e_group_t *group, const cm1e_group_command_t *com
 {
     double rest[CM1E_PATH_AXES];
     const bool halting = group->halting;
+    const double deceleration = group->rest_deceleration, jerk = group->rest_jerk;
     cm1e_path_copy(&group->before, &group->path);
     cm1e_group_brake(group, command->deceleration, command->jerk);
     cm1e_path_end(&group->path, rest);
@@ -194,6 +195,8 @@ static cm1e_error_t replace(cm1e_group_t *group, const cm1e_group_command_t *com
     if (error != CM1E_OK) {
         cm1e_path_copy(&group->path, &group->before);
         group->halting = halting;
+        group->rest_deceleration = deceleration;
+        group->rest_jerk = jerk;
         return error;
     }
     cm1e_path_go_on(&group->path);
@@ -228,8 +231,6 @@ static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *
     cm1e_group_brake(group, command->deceleration, command->jerk);
     cm1e_group_end_all(group, CM1E_COMMAND_ABORTED, CM1E_OK);
     group->halting = true;
-    group->rest_deceleration = command->deceleration;
-    group->rest_jerk = command->jerk;
     cm1e_group_enqueue(group, id);
     return CM1E_OK;
 }
@@ -254,11 +255,8 @@ static void start_interrupt(cm1e_group_t *group, const cm1e_group_command_t *com
 {
     cm1e_group_end_interrupt(group, CM1E_COMMAND_ABORTED, CM1E_OK);
     group->interruption = (interruption_t){.on = true, .braking = id};
-    const bool together = group->apart.off == 0; /* else the path comes to rest with the limits of its axes */
-    group->rest_deceleration = together ? command->deceleration : 0.0;
-    group->rest_jerk = together ? command->jerk : 0.0;
     cm1e_group_suspend(group);
-    cm1e_path_stop(&group->path, group->rest_deceleration, group->rest_jerk);
+    cm1e_group_rest(group, command->deceleration, command->jerk);
 }
 
 static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)

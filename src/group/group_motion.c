@@ -10,12 +10,21 @@ bool cm1e_group_at_rest(const cm1e_group_t *group)
     return !group->led || ((phase == CM1E_PATH_IDLE || phase == CM1E_PATH_STOPPED) && group->apart.moving == 0);
 }
 
+/* While an axis is off the path, the others go no farther from where it left than they must. */
+void cm1e_group_rest(cm1e_group_t *group, double deceleration, double jerk)
+{
+    const bool together = group->apart.off == 0;
+    group->rest_deceleration = together ? deceleration : 0.0;
+    group->rest_jerk = together ? jerk : 0.0;
+    cm1e_path_stop(&group->path, group->rest_deceleration, group->rest_jerk);
+}
+
 void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk)
 {
     group->halting = false;
     if (!group->led)
         return;
-    cm1e_path_stop(&group->path, deceleration, jerk);
+    cm1e_group_rest(group, deceleration, jerk);
     cm1e_path_clear(&group->path);
 }
 

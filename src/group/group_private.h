@@ -201,7 +201,9 @@ void cm1e_group_make_leaders(cm1e_group_t *group);
 cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some);
 /** Releases the axes; moving axes ramp down by themselves. */
 void cm1e_group_let_go(cm1e_group_t *group);
-/** Brakes along the path and drops what is behind it. */
+/** Brakes along the path, while an axis is off it with the limits of the axes. */
+void cm1e_group_rest(cm1e_group_t *group, double deceleration, double jerk);
+/** Does so, and drops what is behind it. */
 void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk);
 /** Goes to GroupErrorStop: commands end with an error, and axes that are still led brake along the path. */
 void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit);

@@ -353,9 +353,10 @@ static struct {
     MC_GroupEnable_t enable;
     MC_MoveLinearAbsolute_t line;
     MC_GroupStop_t stop;
+    MC_GroupHalt_t halt;
     MC_GroupInterrupt_t interrupt;
     MC_GroupContinue_t go_on;
-    int stop_at, interrupt_at, go_on_at, rest_at; /* cycles; 0: never */
+    int stop_at, halt_at, interrupt_at, go_on_at, rest_at; /* cycles; 0: never */
     bool rested;                   /* MC_GroupInterrupt was Done before MC_GroupContinue */
     cm1e_group_info_t info;
     cm1e_axis_info_t seen[BUSES];  /* in the last cycle of the program */
@@ -390,6 +391,8 @@ static void grouped_program(void *context)
     MC_MoveLinearAbsolute(&grouped.line);
     grouped.stop.Execute = run.cycle == grouped.stop_at;
     MC_GroupStop(&grouped.stop);
+    grouped.halt.Execute = run.cycle == grouped.halt_at;
+    MC_GroupHalt(&grouped.halt);
     grouped.interrupt.Execute = run.cycle == grouped.interrupt_at;
     MC_GroupInterrupt(&grouped.interrupt);
     grouped.rested = grouped.rested || grouped.interrupt.Done;
@@ -412,7 +415,7 @@ static void play_group(int lost)
     for (int i = 0; i < BUSES; i++)
         grouped.add[i] = (MC_AddAxisToGroup_t){.AxesGroup = &grouped.reference, .Axis = &axes[i],
                                                .IdentInGroup = (MC_IDENT_IN_GROUP)(i + 1)};
-    grouped.enable.AxesGroup = grouped.stop.AxesGroup = &grouped.reference;
+    grouped.enable.AxesGroup = grouped.stop.AxesGroup = grouped.halt.AxesGroup = &grouped.reference;
     grouped.interrupt.AxesGroup = grouped.go_on.AxesGroup = &grouped.reference;
     grouped.line = (MC_MoveLinearAbsolute_t){.AxesGroup = &grouped.reference, .Position = {10, 5}, .Velocity = 8,
                                              .Acceleration = 50, .Deceleration = 50};
@@ -502,6 +505,22 @@ START_TEST(test_in_a_gentle_interruption_the_axes_that_are_heard_brake_with_thei
 }
 END_TEST
 
+/* Stopped and halted before one bus is silent, and after it. */
+START_TEST(test_in_a_gentle_stop_the_axes_that_are_heard_brake_with_their_limits)
+{
+    static const int moments[] = {490, 505};
+    memset(&grouped, 0, sizeof grouped);
+    *(_i < 2 ? &grouped.stop_at : &grouped.halt_at) = moments[_i % 2];
+    grouped.stop.Deceleration = grouped.halt.Deceleration = 5;
+    grouped.rest_at = 800;
+    play_group(2);
+    ck_assert(grouped.line.CommandAborted && grouped.info.state == CM1E_GROUP_STANDBY);
+    ck_assert_double_lt(fabs(grouped.at_rest[A] - 2 * grouped.at_rest[B]), 0.5);
+    ck_assert_double_lt(grouped.latest, 1e-12);
+    close_group();
+}
+END_TEST
+
 /** Each bus has a slave 1. */
 START_TEST(test_the_event_log_says_on_which_bus_it_was)
 {
@@ -567,6 +586,7 @@ int main(void)
     tcase_add_test(all, test_behind_a_stop_no_axis_goes_back_to_the_path);
     tcase_add_loop_test(all, test_in_an_interruption_no_axis_goes_back_to_the_path, 0, 5);
     tcase_add_loop_test(all, test_in_a_gentle_interruption_the_axes_that_are_heard_brake_with_their_limits, 0, 2);
+    tcase_add_loop_test(all, test_in_a_gentle_stop_the_axes_that_are_heard_brake_with_their_limits, 0, 4);
     tcase_add_test(all, test_a_lost_bus_stops_the_whole_group);
     Suite *suite = suite_create("scheduler with several buses");
     suite_add_tcase(suite, all);
