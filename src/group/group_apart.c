@@ -7,7 +7,7 @@
  *
  * Then the axis comes to rest by itself, and goes back to its place on the path when that is at rest. Then the path
  * goes on. Each axis keeps its limits all the time. Behind a stop, a halt or an error no axis goes back: it is released
- * where it came to rest. In an interruption it waits there.
+ * where it came to rest, and one that is on its way back comes to rest at once. In an interruption it waits there.
  */
 #include "group/group_private.h"
 
@@ -164,7 +164,7 @@ void cm1e_group_stray_step(cm1e_group_t *group, uint32_t index, cm1e_motion_stat
     const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[index]);
     const bool goes_on = group->state == CM1E_GROUP_MOVING && !group->halting && !group->interruption.on &&
                          group->queue.count > 0;
-    if (stray->step == STRAY_SILENT)
+    if (stray->step == STRAY_SILENT || (stray->step == STRAY_BACK && !goes_on))
         come_to_rest(stray, axis);
     else if (stray->step == STRAY_REST && goes_on && path_rests(group))
         go_back(group, stray, axis, index);

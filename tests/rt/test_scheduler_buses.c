@@ -521,6 +521,24 @@ START_TEST(test_in_a_gentle_stop_the_axes_that_are_heard_brake_with_their_limits
 }
 END_TEST
 
+/* From cycle 549 to 595 the axis goes back by 0.06 u. Stop, halt and interruption come meanwhile. */
+START_TEST(test_an_axis_on_its_way_back_stops_too)
+{
+    memset(&grouped, 0, sizeof grouped);
+    *(_i == 0 ? &grouped.stop_at : _i == 1 ? &grouped.halt_at : &grouped.interrupt_at) = 557;
+    grouped.rest_at = 800;
+    grouped.go_on_at = 1500;
+    play_group(2);
+    ck_assert_double_gt(grouped.at_rest[A] - 2 * grouped.at_rest[B], 0.04); /* off the path */
+    ck_assert_double_lt(grouped.latest, 1e-12);
+    ck_assert(grouped.info.state == CM1E_GROUP_STANDBY);
+    ck_assert(_i < 2 ? grouped.line.CommandAborted : grouped.rested && grouped.line.Done);
+    if (grouped.line.Done)
+        ck_assert_double_eq_tol(grouped.seen[B].set_position, 5.0, 1e-9);
+    close_group();
+}
+END_TEST
+
 /** Each bus has a slave 1. */
 START_TEST(test_the_event_log_says_on_which_bus_it_was)
 {
@@ -587,6 +605,7 @@ int main(void)
     tcase_add_loop_test(all, test_in_an_interruption_no_axis_goes_back_to_the_path, 0, 5);
     tcase_add_loop_test(all, test_in_a_gentle_interruption_the_axes_that_are_heard_brake_with_their_limits, 0, 2);
     tcase_add_loop_test(all, test_in_a_gentle_stop_the_axes_that_are_heard_brake_with_their_limits, 0, 4);
+    tcase_add_loop_test(all, test_an_axis_on_its_way_back_stops_too, 0, 3);
     tcase_add_test(all, test_a_lost_bus_stops_the_whole_group);
     Suite *suite = suite_create("scheduler with several buses");
     suite_add_tcase(suite, all);
