@@ -326,16 +326,23 @@ static const struct {
     {CM1E_ERROR_AXIS_SET_POINT_MISSING, cm1e_axis_outside_missing_text},
 };
 
+/* What was refused or not finished, and what is still so: that a slave does not get in step. */
+static void no_fault_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    if (axis->commands.refusal)
+        refused_text(axis, text, size);
+    else if (axis->not_set.error)
+        cm1e_axis_not_set_text(axis, text, size);
+    const size_t used = strlen(text), begin = used > 0 ? used + 1 : 0;
+    if (begin < size && coupling_text(axis, CM1E_OK, false, text + begin, size - begin) && used > 0)
+        text[used] = ' ';
+}
+
 void cm1e_axis_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     text[0] = '\0';
     if (axis->fault.error == CM1E_OK) {
-        if (axis->commands.refusal)
-            refused_text(axis, text, size);
-        else if (axis->not_set.error)
-            cm1e_axis_not_set_text(axis, text, size);
-        else
-            (void)coupling_text(axis, CM1E_OK, false, text, size);
+        no_fault_text(axis, text, size);
         return;
     }
     if (axis->fault.error == axis->drive.fault.error) {

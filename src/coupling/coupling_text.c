@@ -94,16 +94,25 @@ static bool place_text(const cm1e_axis_t *axis, char *text, size_t size)
     return true;
 }
 
-/* A slave that gives way gets in step when its master leaves it the velocity for that; else it never does. */
-static bool too_slow_text(const cm1e_axis_t *axis, char *text, size_t size)
+/* A slave that gives way gets in step when its master leaves it the velocity for that; else it never does. One that
+ * makes up distance has what its master leaves of its limits, which can take long. */
+static bool not_in_step_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    const coupling_t *c = axis->coupling;
     const double most = axis->limits.maximum.velocity, next_to_nothing = 1e-4;
-    if (!axis->coupling || !axis_follows(axis) || !coupling_gives_way(axis) ||
-        fabs(axis->coupling->f_velocity) < most * (1.0 - next_to_nothing))
+    if (!c || !axis_follows(axis) || !coupling_gives_way(axis))
         return false;
-    snprintf(text, size, "Axis \"%s\" is not in step: its master asks it for %.6g u/s, and its maximum is %.6g u/s. It "
-             "follows as fast as it may. Let the master be slower, or raise the maximum velocity of this axis.",
-             axis->config->name, fabs(axis->coupling->f_velocity), most);
+    const bool too_slow = fabs(c->f_velocity) >= most * (1.0 - next_to_nothing);
+    if (too_slow)
+        snprintf(text, size, "Axis \"%s\" is not in step: its master asks it for %.6g u/s, and its maximum is %.6g "
+                 "u/s. It follows as fast as it may. Let the master be slower, or raise the maximum velocity of this "
+                 "axis.", axis->config->name, fabs(c->f_velocity), most);
+    else if (c->catch_up.on && c->catch_up.made_up)
+        snprintf(text, size, "Axis \"%s\" is not in step: it makes up %.6g u with what its master leaves of its "
+                 "limits. It is sooner in step if the master moves more slowly and evenly, or with higher maxima of "
+                 "this axis.", axis->config->name, fabs(c->catch_up.now.position));
+    else
+        return false;
     return true;
 }
 
@@ -141,7 +150,7 @@ bool cm1e_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refuse
     const char *name = axis->config->name, *other = axis->followed->other_name;
     switch (error) {
     case CM1E_OK:
-        return too_slow_text(axis, text, size);
+        return not_in_step_text(axis, text, size);
     case CM1E_ERROR_AXIS_MASTER:
         snprintf(text, size, "Axis \"%s\": Master names no axis of its scheduler; expected the AXIS_REF of another "
                  "axis of a bus in this scheduler.", name);

@@ -125,7 +125,9 @@ static void test_ramp_in_has_no_step(void)
             const cm1e_command_id_t id = cam_in(&coupling);
             axes_cycles(1);
             TEST_ASSERT_FALSE(axes_status(SLAVE, id).reached);
+            axes_told(SLAVE, "is not in step: it makes up ");
             axes_wait_reached(SLAVE, id, 20000);
+            TEST_ASSERT_EQUAL_STRING("", axes_text(SLAVE));
             for (int n = 0; n < 3000; n++) {
                 if (n == 1000)
                     axes_move_velocity(MASTER, -3);

@@ -478,6 +478,12 @@ static void test_a_slave_that_gives_way_on_its_way_into_gear_stops_nobody(void)
             TEST_ASSERT_EQUAL_STRING("", axes_text(SLAVE));
         else
             axes_told(SLAVE, "its master asks it for 12 u/s, and its maximum is 8 u/s");
+        if (runs[n].gets_there)
+            continue;
+        const cm1e_axis_command_t out = {.kind = CM1E_COMMAND_CAM_OUT}; /* what was refused does not hide it */
+        axes_refused(SLAVE, &out, CM1E_ERROR_AXIS_NOT_COUPLED);
+        axes_told(SLAVE, "needs an axis that follows a master by MC_CamIn; this one follows MC_GearIn. Axis \"axis1\" "
+                         "is not in step: its master asks it for 12 u/s");
     }
 }
 
