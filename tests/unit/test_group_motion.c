@@ -506,6 +506,7 @@ static void test_after_a_pause_it_goes_on_along_the_path_from_rest(void)
             cm1e_axis_after_pause(axes_axis(n), 5000000);
             axes_bench.witness[n].ours = false; /* the velocity is gone, and so it is meant */
         }
+        TEST_ASSERT_EQUAL_UINT(0, group->apart.off); /* none has left the path */
         axes_outputs();
         while (group_state_of(id) == CM1E_COMMAND_ACTIVE) {
             axes_cycles(1);

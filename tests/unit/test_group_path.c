@@ -234,6 +234,27 @@ static void test_a_stop_in_a_wide_bend_is_nearly_as_short_as_on_a_line(void)
         }
 }
 
+/* That of the first three axes, which are the space; where none of them moves, that of the others. */
+static void test_the_velocity_of_the_path_is_that_in_space(void)
+{
+    static const double ways[][4] = {{1.0, 2.0, 2.0, 0.5}, {0.0, 0.0, 2.0, 3.0}, {0.0, 0.0, 0.0, -2.0}};
+    for (int i = 0; i < 3; i++) {
+        double position[CM1E_GROUP_AXES], velocity[CM1E_GROUP_AXES], path;
+        group_end();
+        group_begin(4);
+        cm1e_group_command_t c = line_to(ways[i][0], ways[i][1], 0.0);
+        c.position[2] = ways[i][2];
+        c.position[3] = ways[i][3];
+        const cm1e_command_id_t id = group_command(&c);
+        axes_cycles(100);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_values(group, mcSetValue, position, velocity, &path));
+        const double in_space = hypot(hypot(velocity[0], velocity[1]), velocity[2]);
+        TEST_ASSERT_TRUE(fabs(velocity[3]) > 0.0);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, in_space > 0.0 ? in_space : fabs(velocity[3]), path);
+        group_done(id);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -245,5 +266,6 @@ int main(void)
     RUN_TEST(test_a_stop_that_is_told_again_brakes_on);
     RUN_TEST(test_a_stop_begins_at_once_also_while_it_gets_faster);
     RUN_TEST(test_a_stop_in_a_wide_bend_is_nearly_as_short_as_on_a_line);
+    RUN_TEST(test_the_velocity_of_the_path_is_that_in_space);
     return UNITY_END();
 }

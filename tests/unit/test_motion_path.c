@@ -339,6 +339,35 @@ static void test_absurdly_slow_commands_do_not_jump(void)
     }
 }
 
+/* By the times of its pieces, also where it turns or ends in the middle of one. */
+static void test_the_extremes_of_the_velocity_are_those_of_a_search(void)
+{
+    enum { STEPS = 400 };
+    for (int n = 0; n < 2000; n++) {
+        cm1e_profile_t profile = {.segment_count = 1 + (int)(random_bits() % CM1E_PROFILE_MAX_SEGMENTS)};
+        cm1e_motion_state_t at = {0, random_between(-1, 1), random_between(-1, 1)};
+        double low = at.velocity, high = at.velocity, coarse = 0;
+        for (int i = 0; i < profile.segment_count; i++) {
+            const double duration_s = random_between(0.01, 1), jerk = one_in(4) ? 0 : random_between(-3, 3);
+            profile.segments[i] = (cm1e_profile_segment_t){profile.duration_s, jerk, at};
+            for (int k = 1; k <= STEPS; k++) {
+                const double t = duration_s * k / STEPS, v = at.velocity + t * (at.acceleration + t * jerk / 2);
+                low = fmin(low, v);
+                high = fmax(high, v);
+            }
+            coarse = fmax(coarse, fabs(jerk) * pow(duration_s / STEPS, 2));
+            at.velocity += duration_s * (at.acceleration + duration_s * jerk / 2);
+            at.acceleration += duration_s * jerk;
+            profile.duration_s += duration_s;
+        }
+        profile.end = at;
+        double lowest, highest;
+        cm1e_path_velocities(&profile, &lowest, &highest);
+        TEST_ASSERT_TRUE(lowest <= low + 1e-12 && lowest >= low - coarse - 1e-12);
+        TEST_ASSERT_TRUE(highest >= high - 1e-12 && highest <= high + coarse + 1e-12);
+    }
+}
+
 static void test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there(void)
 {
     const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
@@ -490,6 +519,7 @@ int main(void)
     RUN_TEST(test_override_slows_pauses_and_goes_on);
     RUN_TEST(test_absurdly_slow_commands_do_not_jump);
     RUN_TEST(test_a_segment_that_comes_to_rest_in_any_case_is_the_last_one);
+    RUN_TEST(test_the_extremes_of_the_velocity_are_those_of_a_search);
     RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
     RUN_TEST(test_a_path_that_was_cut_off_ends_there_also_after_a_pause);
     RUN_TEST(test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners);

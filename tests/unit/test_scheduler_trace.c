@@ -246,6 +246,25 @@ static void test_svg_of_an_empty_trace_says_so(void)
     cm1e_trace_free(&empty);
 }
 
+/* ---- recording ------------------------------------------------------------------------------------------------- */
+
+static void test_one_of_so_many_cycles_is_recorded_from_the_first_one_on(void)
+{
+    enum { CYCLES = 60 };
+    for (uint32_t every = 0; every <= 7; every++) {
+        trace_t trace;
+        const uint32_t step = every ? every : 1;
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_init(&trace, NULL, 0, CYCLES, every, NULL));
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_begin(&trace, NULL));
+        for (int64_t n = 0; n < CYCLES; n++)
+            cm1e_trace_record(&trace, NULL, n);
+        TEST_ASSERT_EQUAL_UINT32((CYCLES + step - 1) / step, trace.used);
+        for (uint32_t i = 0; i < trace.used; i++)
+            TEST_ASSERT_EQUAL_INT64(i * step, trace.times_ns[i]);
+        cm1e_trace_free(&trace);
+    }
+}
+
 /* ---- CSV ------------------------------------------------------------------------------------------------------- */
 
 static void test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring_went_round(void)
@@ -373,6 +392,7 @@ int main(void)
     RUN_TEST(test_svg_survives_any_values);
     RUN_TEST(test_svg_shows_a_state_of_one_sample_and_a_peak_of_one_sample);
     RUN_TEST(test_svg_of_an_empty_trace_says_so);
+    RUN_TEST(test_one_of_so_many_cycles_is_recorded_from_the_first_one_on);
     RUN_TEST(test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring_went_round);
     RUN_TEST(test_numbers_have_a_point_in_every_locale);
     RUN_TEST(test_old_file_stays_until_the_new_one_is_whole);
