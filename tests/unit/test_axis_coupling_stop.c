@@ -2,6 +2,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
+#include "axis/axis_parameters.h"
 #include "axis/axis_watch.h"
 #include "../support/random_master.h"
 #include "../support/ordinary_witness.h"
@@ -81,6 +82,27 @@ static void test_it_stops_before_a_software_limit(void)
         failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "the software limit at");
         TEST_ASSERT_TRUE(axes_bench.witness[SLAVE].highest <= 20.0 && axes_bench.witness[SLAVE].lowest >= -20.0);
         TEST_ASSERT_DOUBLE_WITHIN(0.05, 20.0 * sign, axes_info(SLAVE).set_position); /* not before it must */
+    }
+}
+
+/* What its master will do is not known: it has to be able to stop. */
+static void test_a_software_limit_that_it_can_no_longer_stop_before_is_refused(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const int limit = sign > 0 ? CM1E_PARAMETER_SW_LIMIT_POS : CM1E_PARAMETER_SW_LIMIT_NEG;
+        const int enable = sign > 0 ? CM1E_PARAMETER_ENABLE_LIMIT_POS : CM1E_PARAMETER_ENABLE_LIMIT_NEG;
+        axes_begin(2);
+        axes_move_velocity(MASTER, 5.0 * sign);
+        axes_wait_reached(SLAVE, axes_gear_in(SLAVE, MASTER, 1, 1), 2000);
+        axes_cycles(1000);
+        const double at = axes_info(SLAVE).set_position, v = axes_info(SLAVE).set_velocity;
+        const double way = v * fabs(v) * axes_axis(SLAVE)->limits.emergency_way;
+        TEST_ASSERT_TRUE(way * sign > 0.01);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axes_axis(SLAVE), limit, at + 1.01 * way));
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axes_axis(SLAVE), enable, 1.0));
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE,
+                              cm1e_axis_write_parameter(axes_axis(SLAVE), limit, at + 0.99 * way));
+        axes_end();
     }
 }
 
@@ -530,6 +552,7 @@ int main(void)
     RUN_TEST(test_a_set_point_beyond_a_limit_is_not_given_out);
     RUN_TEST(test_it_stops_before_a_software_limit);
     RUN_TEST(test_it_does_not_creep_over_a_software_limit);
+    RUN_TEST(test_a_software_limit_that_it_can_no_longer_stop_before_is_refused);
     RUN_TEST(test_braking_has_a_limit_of_its_own_at_every_speed);
     RUN_TEST(test_a_direction_that_is_not_enabled_stops_it);
     RUN_TEST(test_a_direction_that_is_taken_away_stops_it);

@@ -154,10 +154,15 @@ static void test_another_ratio_of_the_same_command_is_reached_anew(void)
 {
     const cm1e_axis_coupling_t twice = {.master = {{.axis = axes_reference(MASTER), .source = mcSetValue,
                                                     .numerator = 2, .denominator = 1}}};
+    const cm1e_axis_coupling_t once = {.master = {{.axis = axes_reference(MASTER), .source = mcSetValue,
+                                                   .numerator = 1, .denominator = 1}}};
     const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_GEAR_IN, .coupling = &twice};
+    const cm1e_axis_command_t as_it_began = {.kind = CM1E_COMMAND_GEAR_IN, .coupling = &once};
     axes_move_velocity(MASTER, 4.0);
     const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
     axes_cycles(1000);
+    TEST_ASSERT_TRUE(axes_status(SLAVE, gear).reached);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axes_axis(SLAVE), gear, &as_it_began));
     TEST_ASSERT_TRUE(axes_status(SLAVE, gear).reached);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axes_axis(SLAVE), gear, &command));
     TEST_ASSERT_FALSE(axes_status(SLAVE, gear).reached);

@@ -66,6 +66,7 @@ static void assert_text_has(const char *part)
     cm1e_drive_fault_text(&drive, text, sizeof text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, part), text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "slide"), text);
+    TEST_ASSERT_TRUE_MESSAGE(drive.fault.keeps_torque || !strstr(text, "still has torque"), text);
 }
 
 static bool reset(int at_most)

@@ -239,6 +239,29 @@ static void test_the_extent_of_an_arc_is_that_of_its_points(void)
     }
 }
 
+/** A curve is within the hull of its points, which of a power of the way are between 0 and 1. */
+static void test_the_extent_of_a_curve_has_all_of_it(void)
+{
+    double lowest, highest;
+    for (int k = 0; k < TRIALS; k++) {
+        cm1e_path_piece_t curve = {.kind = CM1E_PATH_CURVE};
+        const int alone = k < 5 ? k + 1 : 0;
+        for (int j = 0; j <= 5; j++)
+            curve.power[j][0] = alone ? j == alone : random_between(-10, 10);
+        cm1e_path_extent(&curve, &FRAME, 0, &lowest, &highest);
+        for (int n = 0; n <= 50; n++) {
+            double at = 0;
+            for (int j = 5; j >= 0; j--)
+                at = curve.power[j][0] + n / 50.0 * at;
+            TEST_ASSERT_TRUE(lowest <= at + 1e-9 && highest >= at - 1e-9);
+        }
+        if (!alone)
+            continue;
+        TEST_ASSERT_EQUAL_DOUBLE(0, lowest);
+        TEST_ASSERT_EQUAL_DOUBLE(1, highest);
+    }
+}
+
 int main(void)
 {
     seed_random();
@@ -249,5 +272,6 @@ int main(void)
     RUN_TEST(test_an_arc_is_round_by_its_own_length);
     RUN_TEST(test_a_half_or_full_circle_keeps_its_height);
     RUN_TEST(test_the_extent_of_an_arc_is_that_of_its_points);
+    RUN_TEST(test_the_extent_of_a_curve_has_all_of_it);
     return UNITY_END();
 }
