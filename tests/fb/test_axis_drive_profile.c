@@ -198,6 +198,11 @@ START_TEST(halt_at_any_cycle_ends_in_standstill)
             ck_assert_msg(status(halt).state == CM1E_COMMAND_DONE, "after %d: %s", after, text());
             ck_assert(ended || status(id).state == CM1E_COMMAND_ABORTED);
             expect_standstill();
+            if (after < 40) { /* also where its parameters were on their way */
+                const cm1e_command_id_t next = drive_to(info().actual_position + 1, 100, 0);
+                await(next, 3);
+                ck_assert_msg(status(next).state == CM1E_COMMAND_DONE, "after %d: %s", after, text());
+            }
             close_segment();
         }
 }
