@@ -113,6 +113,8 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
     if (axis->set_aside.driving->submitted && cm1e_sdo_state(&axis->set_aside.driving->sdo) == CM1E_SDO_BUSY)
         return CM1E_ERROR_BUSY; /* of a motion that was stopped */
     d->speed = limits.velocity * scale;
+    if (llround(d->speed) < 1)
+        return CM1E_ERROR_AXIS_VELOCITY_RANGE; /* to the drive it is 0, with which no motion ends */
     d->acceleration = acceleration;
     d->braking = braking;
     const double values[2][DRIVE_PARAMETERS] = {{d->speed, braking}, {acceleration, braking}};

@@ -131,6 +131,12 @@ START_TEST(what_the_drive_does_not_do_is_refused)
                      CM1E_ERROR_UNSUPPORTED);
     ck_assert_int_eq(refusal((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .velocity = 2501}),
                      CM1E_ERROR_AXIS_VELOCITY_RANGE);
+    for (int turns = 0; turns < 2; turns++) { /* the drive would take 0, and never arrive */
+        const cm1e_axis_command_t slow = {.kind = turns ? CM1E_COMMAND_MOVE_VELOCITY : CM1E_COMMAND_MOVE_RELATIVE,
+                                          .position = turns ? 0 : 1, .velocity = turns ? -0.00049 : 0.00049};
+        ck_assert_int_eq(refusal(slow), CM1E_ERROR_AXIS_VELOCITY_RANGE);
+        ck_assert_ptr_nonnull(strstr(text(), "which its drive rounds to 0 counts/s; from 0.0005 u/s on is right"));
+    }
     /* beyond the drive's 32 bits it would turn the other way round */
     ck_assert_int_eq(refusal((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = 2147484}),
                      CM1E_ERROR_AXIS_POSITION_RANGE);
