@@ -267,12 +267,8 @@ static cm1e_error_t connect_to_owner(cm1e_control_t **control, const char *inter
         return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "No program has the network interface \"%s\". One with a "
                              "simulated segment is found by its process: --attach PROCESS.",
                              interface_name ? interface_name : "");
-    if (connect_to_process(control, owner.pid, NULL, &why) == CM1E_OK) {
-        cm1e_control_close(*control); /* which of its networks it is shows only here */
-        *control = NULL;
-        if (connect_to_process(control, owner.pid, interface_name, &why) == CM1E_OK)
-            return CM1E_OK;
-    }
+    if (connect_to_process(control, owner.pid, interface_name, &why) == CM1E_OK)
+        return CM1E_OK;
     char told[256];
     cm1e_interface_owner_text(told, sizeof told, &owner);
     return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, (uint32_t)owner.pid,

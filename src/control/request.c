@@ -58,7 +58,6 @@ static json_t *want(control_request_t *request, json_t *(*show)(const view_t *vi
 {
     request->state = REQUEST_SNAPSHOT;
     request->show = show;
-    request->wanted = false;
     return NULL;
 }
 

@@ -62,6 +62,8 @@ def check_requests():
         statistics = client.ask("statistics")["statistics"]
         expect(statistics["cycles"] > 0 and statistics["bus"]["foreign_frames"] == 0 and
                sum(statistics["cycle_time"]["histogram"]) == statistics["cycle_time"]["count"], "statistics", statistics)
+        expect([(one["network"], one["interface"], one["sync_losses"]) for one in statistics["networks"]] ==
+               [("", "sim", 0)], "networks", statistics["networks"])
         log = client.ask("log")["log"]
         expect([e["number"] for e in log["events"]] == list(range(1, log["last"] + 1)), "log", log)
         expect(any(e["text"] == "X: ContinuousMotion (was Standstill)" for e in log["events"]), "log", log)
@@ -204,6 +206,14 @@ def check_bad_clients():
             return bool(reply and reply["ok"])
 
         wait_for(answered, "no answer after clients that vanished")
+
+
+def check_one_byte():
+    """Nobody else wakes the server."""
+    with running() as program, Client(program) as client:
+        client.socket.sendall(b"\0")
+        client.socket.settimeout(8)
+        expect(client.receive() is None, "a message of which one byte came is not waited for for ever")
 
 
 def check_end_beside_clients():
@@ -350,7 +360,7 @@ def check_more_commands():
 def main():
     for control in ("none", "observe", "maintain"):
         bench.write(f"{control}.yaml", BUS.format(control=control))
-    bench.run(check_bad_clients, check_more_commands, check_end_beside_clients, check_no_socket, check_commands,
+    bench.run(check_one_byte, check_bad_clients, check_more_commands, check_end_beside_clients, check_no_socket, check_commands,
               check_requests, check_reading_slaves, check_writing, check_wrong_messages,
               alone=(check_rights, check_left_behind))  # these two look at the folder that all programs share
 

@@ -37,11 +37,11 @@ def same(one, other):
         return a.read() == b.read()
 
 
-def begin(client, slave, name, data=None, **more):
-    """Reads, or writes `data`. The reply to the beginning."""
+def begin(client, slave, name, data=None, again=False):
+    """Reads, or writes `data`, or what was written before. The reply to the beginning."""
     for at in range(0, len(data or b""), PIECE):
         client.ask("file_data", offset=at, data=data[at:at + PIECE].hex())
-    return client.ask("file_begin", slave=slave, name=name, write=data is not None, **more)
+    return client.ask("file_begin", slave=slave, name=name, write=again or data is not None)
 
 
 def begin_soon(client, *words):
@@ -120,6 +120,8 @@ def check_one_at_a_time():
         told = client.ask("file")
         expect(told["ok"] and told["file"]["size"] == len(data) and not told["file"]["ended"], "progress", told)
         refused(ended(client, stop=True), "Broken off after", "stop")
+        begin_soon(client, Y, "long", None, True)
+        expect(ended(client)["file"]["done"] == len(data), "all bytes go again after a part of them went")
         begin_soon(other, Y, "second", b"abc")
         expect(ended(other)["ok"], "the next one")
         identity = other.ask("sdo_read", slave=Y, index=0x1018, subindex=1)

@@ -14,7 +14,7 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import control_bench as bench  # noqa: E402
 from control_bench import CM1E, ENVIRONMENT, expect, wait_for  # noqa: E402
-from control_client import Client  # noqa: E402
+from control_client import Client, Program  # noqa: E402
 
 # Axis Y has stops 5 revolutions away, Z a software limit.
 BUS = """\
@@ -121,6 +121,19 @@ def check_jog():
         expect(client.ask("disable", axis=Y)["ok"], "disable")
         wait_for(lambda: not axis(client, Y)["powered"], "disable")
         expect(not axis(client, Y)["held"], "held after disable")
+
+
+def check_jog_of_an_axis_that_the_program_enables():
+    """A jog needs no "enable" through the socket then, and ends like any other one."""
+    program = Program(CM1E, bench.path_of("maintain.yaml"), ENVIRONMENT, command=("enable",))
+    wait_for(program.listens, "no control socket")
+    with Client(program) as client:
+        wait_for(lambda: axis(client, X)["state"] == "Standstill", "the program does not enable its axis")
+        moved = jog_for(client, X, 0.5, 0.5)
+        expect(moved["ok"] and not stands(client, X), "a jog of an axis that the program enables", moved)
+        wait_for(lambda: stands(client, X), "a jog that is not renewed goes on", 3)
+        expect(axis(client, X)["powered"], "the program's power is off")
+    program.end()
 
 
 def check_power_goes_off():
@@ -344,4 +357,4 @@ if __name__ == "__main__":
         bench.write(f"{consent}.yaml", BUS.format(control=consent))
     bench.write("numbers.yaml", BUS.format(control="maintain").replace("name: Z", 'name: "2"').replace("name: Y", 'name: "3"'))
     bench.run(check_commands, check_client_suspended, check_error_and_reset, check_power_goes_off, check_home, check_jog,
-              check_connection_lost, check_stop_of_a_jog_that_is_renewed, check_software_limit, check_precedence, check_consent)
+              check_jog_of_an_axis_that_the_program_enables, check_connection_lost, check_stop_of_a_jog_that_is_renewed, check_software_limit, check_precedence, check_consent)

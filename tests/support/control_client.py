@@ -53,14 +53,15 @@ class Client:
 
 
 class Program:
-    """`cm1e move` of axis X on a simulated segment, and where its socket is. It has no block for other axes."""
+    """`cm1e move`, or another command, of axis X on a simulated segment, and where its socket is. It has no block for
+    other axes."""
 
     SPEED = 0.5
 
-    def __init__(self, cm1e, bus_file, environment, *options, seconds=120):
+    def __init__(self, cm1e, bus_file, environment, *options, seconds=120, command=None):
         self.cm1e, self.environment = cm1e, environment
-        self.process = subprocess.Popen([cm1e, "move", "-b", bus_file, "X", "--speed", str(self.SPEED), "--for",
-                                         str(seconds), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        command = command or ("move", "--speed", str(self.SPEED))
+        self.process = subprocess.Popen([cm1e, *command, "-b", bus_file, "X", "--for", str(seconds), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                         text=True, env=environment)
         self.pid = self.process.pid
         self.path = os.path.join(environment["CM1E_RUNTIME_DIR"], f"cm1e-{self.pid}-0.sock")

@@ -15,6 +15,8 @@
 
 #include "cm1e/bus.h"
 #include "cm1e/control.h"
+#include "cm1e/sdo_info.h"
+#include "cm1e/sii.h"
 #include "control/message.h"
 #include "core/in_task.h"
 
@@ -26,8 +28,8 @@ static char *reply;
 /* ---- a program that answers -------------------------------------------------------------------------------------- */
 
 /** What it does with a request; a late answer comes when the next request has come, before that of it. */
-typedef enum act { ANSWER = 0, BYTE_BY_BYTE, LATE, NO_JSON, TOO_LONG, NOT_OK, NO_REASON, CLOSE, SLAVES, ACTS } act_t;
-static act_t acts[4];
+typedef enum act { ANSWER = 0, BYTE_BY_BYTE, LATE, NO_JSON, TOO_LONG, NOT_OK, NO_REASON, CLOSE, SLAVES, NO_DATA, ACTS } act_t;
+static act_t acts[6];
 static unsigned act_count;
 static int listening;
 static pthread_t thread;
@@ -66,6 +68,7 @@ static void answer(int fd, unsigned number)
     case NOT_OK: send_text(fd, "{\"ok\": false, \"error\": {\"code\": -22, \"foreign_code\": 5, \"text\": \"no\"}}", false); break;
     case NO_REASON: send_text(fd, "{}", false); break;
     case SLAVES: send_text(fd, "{\"ok\": true, \"slaves\": [{\"position\": 1, \"name\": \"a\", \"coe\": true}]}", false); break;
+    case NO_DATA: send_text(fd, "{\"ok\": true, \"data\": \"0g\"}", false); break;
     case LATE:
     case CLOSE:
     case ACTS: break;
@@ -229,24 +232,50 @@ static void test_refusal_has_the_words_of_the_program(void)
 
 /* ---- an attached bus ---------------------------------------------------------------------------------------------- */
 
-/* What does not fit into a request is refused; it was written as an empty value. */
-static void test_object_that_is_too_large_for_a_request_is_not_written(void)
+static cm1e_bus_t *open_attached(unsigned count, const act_t *list)
 {
-    enum { MOST = (CM1E_REQUEST_MAX - 512) / 2 };
-    static uint8_t bytes[MOST + 10000];
     static cm1e_bus_config_t config;
     cm1e_bus_t *bus;
-    connect_to(2, (const act_t[]){SLAVES, ANSWER});
+    connect_to(count, list);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_bus_config_init(&config, "eth9", 0));
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_bus_open_attached(&bus, &config, control, &diag), diag.text);
     cm1e_bus_config_free(&config);
     control = NULL; /* the bus has it */
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_bus_scan(bus, &diag), diag.text);
+    return bus;
+}
+
+/* What does not fit into a request is refused; it was written as an empty value. */
+static void test_object_that_is_too_large_for_a_request_is_not_written(void)
+{
+    enum { MOST = (CM1E_REQUEST_MAX - 512) / 2 };
+    static uint8_t bytes[MOST + 10000];
+    cm1e_bus_t *bus = open_attached(2, (const act_t[]){SLAVES, ANSWER});
     for (size_t size = MOST + 1; size <= sizeof bytes; size += 3333) {
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_sdo_write(bus, 1, 0x2000, 0, bytes, size, &diag));
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "at most 32512 bytes"), diag.text);
     }
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_sdo_write(bus, 1, 0x2000, 0, bytes, MOST, &diag), diag.text);
+    cm1e_bus_close(bus);
+    pthread_join(thread, NULL);
+}
+
+/* No code of a slave is beside the error: the slave was not asked, or its answer is not known. */
+static void test_data_of_an_answer_that_cannot_be_read_are_told_as_such(void)
+{
+    static uint8_t bytes[CM1E_SII_IMAGE_MAX];
+    static uint16_t indexes[8];
+    cm1e_bus_t *bus = open_attached(4, (const act_t[]){SLAVES, NO_DATA, NO_DATA, NO_DATA});
+    for (int kind = 0; kind < 3; kind++) {
+        size_t size = sizeof bytes, count = 8;
+        diag = (cm1e_diag_t){.foreign_code = 7};
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE,
+                              kind == 0   ? cm1e_sdo_read(bus, 1, 0x2000, 0, bytes, &size, &diag)
+                              : kind == 1 ? cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, indexes, &count, &diag)
+                                          : cm1e_sii_read_device(bus, 1, bytes, &size, &diag));
+        TEST_ASSERT_EQUAL_STRING("The answer of the program has no data in hexadecimal digits.", diag.text);
+        TEST_ASSERT_EQUAL_UINT32(0, diag.foreign_code);
+    }
     cm1e_bus_close(bus);
     pthread_join(thread, NULL);
 }
@@ -360,6 +389,7 @@ int main(void)
     RUN_TEST(test_program_that_closes_the_connection_has_ended);
     RUN_TEST(test_refusal_has_the_words_of_the_program);
     RUN_TEST(test_object_that_is_too_large_for_a_request_is_not_written);
+    RUN_TEST(test_data_of_an_answer_that_cannot_be_read_are_told_as_such);
     RUN_TEST(test_request_that_is_no_object_is_not_sent);
     RUN_TEST(test_connections_that_cannot_be_made_say_why);
     RUN_TEST(test_program_that_lets_nobody_in_is_given_up);

@@ -14,6 +14,7 @@
 #include "control/record_request.h"
 #include "control/runtime_dir.h"
 #include "control/server.h"
+#include "control/view.h"
 
 enum { THREADS = 8, TIMES = 60, PATH = 112 };
 
@@ -135,6 +136,18 @@ static void test_a_recording_whose_description_finds_no_memory_does_not_begin(vo
     json_set_alloc_funcs(malloc, free);
 }
 
+/* The order of a list of signals is handed in for each part of the list. */
+static void test_an_order_that_was_decided_waits_when_it_is_handed_in_again(void)
+{
+    static view_t view;
+    view_order_t order = {.decided = true}, other = {0};
+    TEST_ASSERT_TRUE(cm1e_view_submit(&view, &order));
+    TEST_ASSERT_FALSE(order.decided);
+    TEST_ASSERT_FALSE(cm1e_view_submit(&view, &other));
+    TEST_ASSERT_TRUE(cm1e_view_withdraw(&view, &order));
+    TEST_ASSERT_FALSE(cm1e_view_withdraw(&view, &order));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -150,6 +163,7 @@ int main(void)
     RUN_TEST(test_one_that_ends_leaves_those_of_others_alone);
     RUN_TEST(test_one_too_many_is_refused_and_removes_no_socket);
     RUN_TEST(test_a_recording_whose_description_finds_no_memory_does_not_begin);
+    RUN_TEST(test_an_order_that_was_decided_waits_when_it_is_handed_in_again);
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(bus);
     rmdir(directory);
