@@ -117,6 +117,7 @@ static void refuses_all(cm1e_command_kind_t kind, MC_BUFFER_MODE mode, const cha
     axes_refused(SLAVE, &(cm1e_axis_command_t){.kind = kind, .coupling = &coupling, .buffer_mode = mode},
                  CM1E_ERROR_AXIS_NO_COUPLINGS);
     axes_told(SLAVE, words);
+    axes_told(SLAVE, "was refused");
 }
 
 /* It moves by itself as ever, and others follow it. */

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "plot/plot_files.h"
+#include "scheduler/variables.h"
 #include "unity.h"
 
 void setUp(void) {}
@@ -265,6 +266,26 @@ static void test_one_of_so_many_cycles_is_recorded_from_the_first_one_on(void)
     }
 }
 
+/** A double holds 53 of 64 bits; with the rest there are all of them. */
+static void test_a_number_of_64_bits_is_whole_with_its_rest(void)
+{
+    static const int64_t numbers[] = {0, 1, -1, INT64_C(1) << 53, -(INT64_C(1) << 53), (INT64_C(1) << 53) + 1,
+                                      -(INT64_C(1) << 53) - 1, (INT64_C(1) << 62) + 1025, -(INT64_C(1) << 62) - 1025,
+                                      INT64_MAX, INT64_MIN, INT64_MIN + 1};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        for (int is_signed = 0; is_signed < 2; is_signed++) {
+            const variable_t variable = {.form = VARIABLE_NUMBER, .type = is_signed ? CM1E_TRACE_LINT : CM1E_TRACE_ULINT};
+            variable_value_t value = {{0}};
+            double rest;
+            memcpy(value.bytes, &numbers[i], sizeof numbers[i]);
+            const double number = cm1e_variable_number_of(&variable, &value, &rest);
+            if (is_signed)
+                TEST_ASSERT_EQUAL_INT64(numbers[i], (int64_t)number + (int64_t)rest);
+            else
+                TEST_ASSERT_EQUAL_UINT64((uint64_t)numbers[i], (uint64_t)number + (uint64_t)rest);
+        }
+}
+
 /* ---- CSV ------------------------------------------------------------------------------------------------------- */
 
 static void test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring_went_round(void)
@@ -393,6 +414,7 @@ int main(void)
     RUN_TEST(test_svg_shows_a_state_of_one_sample_and_a_peak_of_one_sample);
     RUN_TEST(test_svg_of_an_empty_trace_says_so);
     RUN_TEST(test_one_of_so_many_cycles_is_recorded_from_the_first_one_on);
+    RUN_TEST(test_a_number_of_64_bits_is_whole_with_its_rest);
     RUN_TEST(test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring_went_round);
     RUN_TEST(test_numbers_have_a_point_in_every_locale);
     RUN_TEST(test_old_file_stays_until_the_new_one_is_whole);
