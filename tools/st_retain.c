@@ -2,13 +2,18 @@
 #include "st_retain.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "core/output.h"
+#include "core/regular_file.h"
 
 enum { MOST_BYTES = 65536, POLL_NS = 50000000 };
 #define PERIOD_NS INT64_C(1000000000)
@@ -32,6 +37,14 @@ static void copy_out(st_retain_t *retain)
     }
 }
 
+/** The lock goes over to the file that takes the place of the present one. */
+static void move_lock(st_retain_t *retain, int file)
+{
+    if (retain->file >= 0)
+        close(retain->file);
+    retain->file = file;
+}
+
 static cm1e_error_t write_file(st_retain_t *retain, cm1e_diag_t *diag)
 {
     cm1e_output_t output;
@@ -42,9 +55,16 @@ static cm1e_error_t write_file(st_retain_t *retain, cm1e_diag_t *diag)
         return error;
     fprintf(output.file, HEAD, retain->program->layout, retain->size, checksum(retain->copy, retain->size));
     fwrite(retain->copy, 1, retain->size, output.file);
+    const int file = fcntl(fileno(output.file), F_DUPFD_CLOEXEC, 0);
+    if (file >= 0)
+        flock(file, LOCK_EX | LOCK_NB);
     const cm1e_error_t closed = cm1e_output_close(&output, diag);
-    if (closed == CM1E_OK)
+    if (closed == CM1E_OK) {
         memcpy(retain->written, retain->copy, retain->size);
+        move_lock(retain, file);
+    } else if (file >= 0) {
+        close(file);
+    }
     return closed;
 }
 
@@ -72,14 +92,34 @@ static cm1e_error_t refuse(const st_retain_t *retain, cm1e_error_t error, const 
                          "program, and replaces the file", retain->path, why);
 }
 
+/** The file, if there is one, is that of this program until the end: two that keep their values in it, as that of the
+ *  machine and one that is tried on the simulated segment, would replace those of the other. */
+static cm1e_error_t take_file(st_retain_t *retain, cm1e_diag_t *diag)
+{
+    char why[160];
+    struct stat mine, present;
+    const cm1e_error_t error = cm1e_regular_file_open(retain->path, &retain->file, why, sizeof why);
+    if (error == CM1E_ERROR_NOT_FOUND)
+        return CM1E_OK; /* the first run */
+    if (error != CM1E_OK)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s %s", retain->path, why);
+    const bool locked = flock(retain->file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    const bool replaced = fstat(retain->file, &mine) != 0 || stat(retain->path, &present) != 0 ||
+                          mine.st_ino != present.st_ino;
+    if (locked || replaced)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "a program that runs keeps its RETAIN variables in %s. End it, or "
+                             "name another file with --retain", retain->path);
+    return CM1E_OK;
+}
+
 static cm1e_error_t read_file(st_retain_t *retain, cm1e_diag_t *diag)
 {
-    FILE *file = fopen(retain->path, "rb");
     uint64_t layout = 0, sum = 0;
     size_t size = 0;
     char head[80] = "";
-    if (!file && errno == ENOENT)
+    if (retain->file < 0)
         return CM1E_OK; /* the first run */
+    FILE *file = fdopen(fcntl(retain->file, F_DUPFD_CLOEXEC, 0), "rb");
     if (!file)
         return cm1e_diag_set(diag, CM1E_ERROR_IO, (uint32_t)errno, "%s cannot be read: %s", retain->path,
                              strerror(errno));
@@ -106,7 +146,7 @@ static cm1e_error_t read_file(st_retain_t *retain, cm1e_diag_t *diag)
 cm1e_error_t st_retain_begin(st_retain_t *retain, const st_program_t *program, const char *path, bool cold,
                              cm1e_diag_t *diag)
 {
-    *retain = (st_retain_t){.program = program};
+    *retain = (st_retain_t){.program = program, .file = -1};
     for (uint32_t i = 0; i < program->retained.count; i++)
         retain->size += program->retained.first[i].size;
     if (retain->size == 0)
@@ -120,7 +160,9 @@ cm1e_error_t st_retain_begin(st_retain_t *retain, const st_program_t *program, c
     if (!retain->copy)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "%s", cm1e_strerror(CM1E_ERROR_NO_MEMORY));
     retain->written = retain->copy + retain->size;
-    cm1e_error_t error = cold ? CM1E_OK : read_file(retain, diag);
+    cm1e_error_t error = take_file(retain, diag);
+    if (error == CM1E_OK && !cold)
+        error = read_file(retain, diag);
     if (error == CM1E_OK)
         error = cm1e_output_check(path, diag);
     if (error != CM1E_OK)
@@ -154,6 +196,8 @@ cm1e_error_t st_retain_end(st_retain_t *retain, cm1e_diag_t *diag)
         error = write_file(retain, diag);
     }
     free(retain->copy);
-    *retain = (st_retain_t){0};
+    if (retain->program) /* it has begun */
+        move_lock(retain, -1);
+    *retain = (st_retain_t){.file = -1};
     return error;
 }

@@ -19,6 +19,7 @@ typedef struct st_retain {
     char path[4096];
     unsigned char *copy, *written; /**< owned; what the cycle has copied, and what the file has */
     size_t size;
+    int file;                      /**< the present file, locked; -1: there is none yet */
     atomic_int state;              /**< 0: the cycle may copy; 1: the thread may write */
     int64_t copied_ns;             /**< when the cycle copied last */
     atomic_bool end, failed;
@@ -27,7 +28,7 @@ typedef struct st_retain {
 } st_retain_t;
 
 /** Takes the values of the file, if there is one and `cold` is false. CM1E_ERROR_CONFIG: it is of another layout;
- *  CM1E_ERROR_IO: it cannot be read, is damaged, or cannot be written. `program` has begun. @rt init */
+ *  CM1E_ERROR_STATE: another program that runs has it; CM1E_ERROR_IO: it cannot be read, is damaged, or cannot be written. `program` has begun. @rt init */
 cm1e_error_t st_retain_begin(st_retain_t *retain, const st_program_t *program, const char *path, bool cold,
                              cm1e_diag_t *diag);
 /** At the end of a task. @rt cycle */

@@ -7,6 +7,7 @@ test_st_run.py BIN-DIRECTORY SOURCE-DIRECTORY
 import csv
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -317,6 +318,24 @@ def check_retain():
         if file.read() != good:
             faults.append("a refused file of RETAIN variables was changed")
     retained(8)
+    check_owner_of_retain()
+
+
+def check_owner_of_retain():
+    """The file belongs to the program that runs, also after it has been replaced; a FIFO is no such file."""
+    first = subprocess.Popen([os.path.join(BIN, "cm1e"), "run", "retain.so", "-b", "bus.yaml", "--virtual-time", "-s", "86400"], stdout=subprocess.DEVNULL)
+    number, end = os.stat("retain.retain").st_ino, time.monotonic() + 30
+    while os.stat("retain.retain").st_ino == number and time.monotonic() < end:
+        time.sleep(0.02)
+    retained(0, status=1, says="a program that runs keeps its RETAIN variables in retain.retain")
+    retained(0, "--cold-start", status=1, says="--retain")
+    retained(6, "--retain", "second.retain")
+    first.send_signal(signal.SIGINT)
+    if first.wait(30) != 0:
+        faults.append(f"the run with the file of RETAIN variables ends with {first.returncode}")
+    retained(10)
+    os.mkfifo("fifo.retain")
+    retained(0, "--retain", "fifo.retain", status=1, says="is not a regular file")
 
 
 def check_without_bus_file():
