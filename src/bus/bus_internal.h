@@ -289,6 +289,16 @@ static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
 /** A diagnosis that ends with what the scan found; what a slave is addressed by (identify.c). */
 cm1e_error_t cm1e_bus_identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, const char *problem);
 uint32_t cm1e_bus_address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t kind);
+/** A slave that the configuration expects at an address, and the words for it: `what` "Axis" with this `name`. */
+typedef struct cm1e_expected {
+    const char *what, *name;
+    cm1e_address_kind_t kind;
+    uint16_t address;
+    bool optional;
+    const char *device;
+} cm1e_expected_t;
+/** The one slave at an address; an optional one is planned if there is none. NULL, diagnosed: none, or several. */
+cm1e_bus_slave_t *cm1e_bus_find_expected(cm1e_bus_t *bus, const cm1e_expected_t *expected, cm1e_diag_t *diag);
 /** Finds the slaves that the configuration names beside the axes: the optional ones, or the others
  *  (identify_slaves.c). */
 cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, bool optional, cm1e_diag_t *diag);
@@ -296,6 +306,8 @@ cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, bool optional, cm1e_diag_
 cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_diagnose_setup(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_read_pdos(cm1e_bus_t *bus, cm1e_diag_t *diag);
+/** Takes what a finished mapping job has found over into its slave. */
+cm1e_error_t cm1e_bus_take_mapping(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
 /** safe_outputs.c: where safe values go; puts them where they are needed in this cycle. */
 cm1e_error_t cm1e_bus_prepare_safe_outputs(cm1e_bus_t *bus, cm1e_diag_t *diag);
 void cm1e_bus_make_outputs_safe(cm1e_bus_t *bus);

@@ -56,21 +56,16 @@ static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         char label[CM1E_LABEL_LENGTH];
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        cm1e_mapping_job_t *job = &slave->mapping;
         if (!cm1e_bus_has_motors(slave) || !cm1e_bus_was_there(slave))
             continue;
-        if (!ended && !cm1e_mapping_idle(job)) {
+        if (!ended && !cm1e_mapping_idle(&slave->mapping)) {
             cm1e_acyclic_cancel(bus);
             return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "%s takes too long to report its PDO mapping.",
                                  cm1e_bus_label_first(bus, slave, label));
         }
-        if (job->error == CM1E_ERROR_PDO_MAPPING)
-            return cm1e_diag_set(diag, job->error, 0,
-                                 "The PDO mapping of %s cannot be used: %s (object 0x%04X:%02X).",
-                                 cm1e_bus_label(bus, slave, label), job->reason, job->sdo.index, job->sdo.subindex);
-        if (job->error != CM1E_OK)
-            return cm1e_bus_diagnose_sdo(bus, slave, &job->sdo, "PDO mapping", diag);
-        memcpy(slave->mapped, job->mapped, sizeof slave->mapped);
+        const cm1e_error_t error = cm1e_bus_take_mapping(bus, slave, diag);
+        if (error != CM1E_OK)
+            return error;
     }
     return CM1E_OK;
 }

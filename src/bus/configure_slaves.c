@@ -67,7 +67,7 @@ static bool is_asked(const cm1e_bus_slave_t *slave)
     return slave->config && slave->facts.coe && !cm1e_bus_has_motors(slave) && cm1e_bus_was_there(slave);
 }
 
-static cm1e_error_t take_pdos(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+cm1e_error_t cm1e_bus_take_mapping(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
     const cm1e_mapping_job_t *job = &slave->mapping;
     char label[CM1E_LABEL_LENGTH];
@@ -76,9 +76,16 @@ static cm1e_error_t take_pdos(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm
                              cm1e_bus_label(bus, slave, label), job->reason, job->sdo.index, job->sdo.subindex);
     if (job->error != CM1E_OK)
         return cm1e_bus_diagnose_sdo(bus, slave, &job->sdo, "PDO mapping", diag);
-    slave->by_pdos = job->unknown < 2; /* without any object for it, as its SII says */
     memcpy(slave->mapped, job->mapped, sizeof slave->mapped);
     return CM1E_OK;
+}
+
+static cm1e_error_t take_pdos(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+{
+    const cm1e_error_t error = cm1e_bus_take_mapping(bus, slave, diag);
+    if (error == CM1E_OK)
+        slave->by_pdos = slave->mapping.unknown < 2; /* without any object for it, as its SII says */
+    return error;
 }
 
 cm1e_error_t cm1e_bus_read_pdos(cm1e_bus_t *bus, cm1e_diag_t *diag)

@@ -6,10 +6,10 @@
 #include "device/place.h"
 
 /** "alias 17", "position 3" ...: how the configuration finds an axis. */
-static const char *address_text(const cm1e_axis_config_t *axis, char text[32])
+static const char *address_text(cm1e_address_kind_t kind, uint16_t address, char text[32])
 {
     static const char *const kinds[] = {"position", "alias", "explicit device ID"};
-    snprintf(text, 32, "%s %u", kinds[axis->address_kind], axis->address);
+    snprintf(text, 32, "%s %u", kinds[kind], address);
     return text;
 }
 
@@ -97,7 +97,8 @@ static cm1e_error_t check_kind(const cm1e_bus_t *bus, const cm1e_axis_config_t *
     wrong_kind(axis, slave, wrong, sizeof wrong);
     if (!wrong[0])
         return CM1E_OK;
-    snprintf(problem, sizeof problem, "Axis \"%s\" at %s: %s", axis->name, address_text(axis, where), wrong);
+    snprintf(problem, sizeof problem, "Axis \"%s\" at %s: %s", axis->name,
+             address_text(axis->address_kind, axis->address, where), wrong);
     return cm1e_bus_identity_error(bus, diag, problem);
 }
 
@@ -164,31 +165,38 @@ static cm1e_error_t check_firmware(cm1e_bus_t *bus, const cm1e_axis_config_t *ax
     return cm1e_bus_identity_error(bus, diag, problem);
 }
 
-/** The one slave at an address; NULL: there is none, or more than one. */
-static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
+cm1e_bus_slave_t *cm1e_bus_find_expected(cm1e_bus_t *bus, const cm1e_expected_t *expected, cm1e_diag_t *diag)
 {
     char where[32], problem[256];
     cm1e_bus_slave_t *match = NULL;
+    address_text(expected->kind, expected->address, where);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (cm1e_bus_address_of(slave, axis->address_kind) != axis->address)
+        if (cm1e_bus_address_of(slave, expected->kind) != expected->address)
             continue;
         if (match) {
-            snprintf(problem, sizeof problem, "Axis \"%s\": %s is doubled, slaves %u and %u both have it.", axis->name,
-                     address_text(axis, where), match->info.position, slave->info.position);
+            snprintf(problem, sizeof problem, "%s \"%s\": %s is doubled, slaves %u and %u both have it.",
+                     expected->what, expected->name, where, match->info.position, slave->info.position);
             cm1e_bus_identity_error(bus, diag, problem);
             return NULL;
         }
         match = slave;
     }
-    if (!match && axis->optional)
-        return cm1e_hot_plan(bus, axis->address_kind, axis->address, diag);
-    if (!match) {
-        snprintf(problem, sizeof problem, "Axis \"%s\": expected a %s at %s, which is missing.", axis->name,
-                 cm1e_device_configured(axis)->label, address_text(axis, where));
-        cm1e_bus_identity_error(bus, diag, problem);
-    }
-    return match;
+    if (match)
+        return match;
+    if (expected->optional)
+        return cm1e_hot_plan(bus, expected->kind, expected->address, diag);
+    snprintf(problem, sizeof problem, "%s \"%s\": expected a %s at %s, which is missing.", expected->what,
+             expected->name, expected->device, where);
+    cm1e_bus_identity_error(bus, diag, problem);
+    return NULL;
+}
+
+static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
+{
+    const cm1e_expected_t expected = {"Axis", axis->name, axis->address_kind, axis->address, axis->optional,
+                                      cm1e_device_configured(axis)->label};
+    return cm1e_bus_find_expected(bus, &expected, diag);
 }
 
 /** Two axes are one motor. */

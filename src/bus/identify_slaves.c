@@ -5,38 +5,11 @@
 #include "bus/bus_internal.h"
 #include "device/place.h"
 
-static const char *address_text(const cm1e_slave_config_t *slave, char text[32])
-{
-    static const char *const kinds[] = {"position", "alias", "explicit device ID"};
-    snprintf(text, 32, "%s %u", kinds[slave->address_kind], slave->address);
-    return text;
-}
-
-/** The one slave at an address; NULL: there is none, or more than one. */
 static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_slave_config_t *config, cm1e_diag_t *diag)
 {
-    char where[32], problem[256];
-    cm1e_bus_slave_t *match = NULL;
-    for (uint32_t i = 0; i < bus->slave_count; i++) {
-        cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (cm1e_bus_address_of(slave, config->address_kind) != config->address)
-            continue;
-        if (match) {
-            snprintf(problem, sizeof problem, "Slave \"%s\": %s is doubled, slaves %u and %u both have it.",
-                     config->name, address_text(config, where), match->info.position, slave->info.position);
-            cm1e_bus_identity_error(bus, diag, problem);
-            return NULL;
-        }
-        match = slave;
-    }
-    if (!match && cm1e_slave_is_optional(config))
-        return cm1e_hot_plan(bus, config->address_kind, config->address, diag);
-    if (!match) {
-        snprintf(problem, sizeof problem, "Slave \"%s\": expected at %s, where there is none.", config->name,
-                 address_text(config, where));
-        cm1e_bus_identity_error(bus, diag, problem);
-    }
-    return match;
+    const cm1e_expected_t expected = {"Slave", config->name, config->address_kind, config->address,
+                                      cm1e_slave_is_optional(config), "slave"};
+    return cm1e_bus_find_expected(bus, &expected, diag);
 }
 
 /** A member of a Hot Connect group is behind its head, at its place in the group. What else is there is none of ours,

@@ -160,7 +160,7 @@ static const struct {
     const char *words;
 } slave_cases[] = {
     {4, {ALIAS}, {4}, "Slave \"first\": alias 4 is doubled, slaves 2 and 3 both have it. Found 3 slaves"},
-    {6, {ALIAS}, {5}, "Slave \"first\": expected at alias 5, where there is none. Found 3 slaves"},
+    {6, {ALIAS}, {5}, "Slave \"first\": expected a slave at alias 5, which is missing. Found 3 slaves"},
     {6, {POSITION, ALIAS}, {2, 4}, "\"first\" and \"second\" are both slave 2. Found 3 slaves"},
     {6, {ALIAS}, {3}, "Slave \"first\" is slave 1, which an axis of the configuration is already. Found 3 slaves"},
 };

@@ -174,9 +174,9 @@ START_TEST(identity_and_address_are_checked)
         {CM1E_ADDRESS_POSITION, VALVES, 0xD0401, 0, "expects the product 0x000D0401, the device is \"Digital", 0},
         {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 2, "expects the revision 0x00000002", 0},
         {CM1E_ADDRESS_POSITION, VALVES, 0xD0400, 1, "expects the vendor 0x00000009", 9},
-        {CM1E_ADDRESS_POSITION, 9, 0, 0, "\"valves\": expected at position 9, where there is none", 0},
-        {CM1E_ADDRESS_ALIAS, 77, 0, 0, "expected at alias 77", 0},
-        {CM1E_ADDRESS_EXPLICIT_ID, 7, 0, 0, "expected at explicit device ID 7", 0},
+        {CM1E_ADDRESS_POSITION, 9, 0, 0, "\"valves\": expected a slave at position 9, which is missing", 0},
+        {CM1E_ADDRESS_ALIAS, 77, 0, 0, "expected a slave at alias 77", 0},
+        {CM1E_ADDRESS_EXPLICIT_ID, 7, 0, 0, "expected a slave at explicit device ID 7", 0},
         {CM1E_ADDRESS_POSITION, 7, 0, 0, "is slave 7, a CM1-E: name it among the axes", 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
