@@ -335,16 +335,23 @@ bool cm1e_io_bool(const cm1e_io_t *io)
     return io && (cm1e_io_types[io->type].is_real ? cm1e_io_real(io) != 0.0 : bits_of(io) != 0);
 }
 
+/** Byte number `i` of a signal, as a signal of at most 8 bits. */
+static cm1e_io_t byte_of(const cm1e_io_t *io, size_t i)
+{
+    const unsigned left = io->bits - 8u * (unsigned)i;
+    cm1e_io_t part = *io;
+    part.byte += (uint32_t)i;
+    part.bits = (uint16_t)(left < 8 ? left : 8);
+    return part;
+}
+
 size_t cm1e_io_bytes(const cm1e_io_t *io, void *bytes, size_t size)
 {
     const size_t count = io ? (io->bits + 7u) / 8u : 0;
     if (!is_valid(io) || !bytes || count > size)
         return 0;
     for (size_t i = 0; i < count; i++) {
-        const unsigned left = io->bits - 8u * (unsigned)i;
-        cm1e_io_t part = *io;
-        part.byte = io->byte + (uint32_t)i;
-        part.bits = (uint16_t)(left < 8 ? left : 8);
+        const cm1e_io_t part = byte_of(io, i);
         ((uint8_t *)bytes)[i] = (uint8_t)bits_of(&part);
     }
     return count;
@@ -412,10 +419,7 @@ cm1e_error_t cm1e_io_set_bytes(const cm1e_io_t *io, const void *bytes, size_t si
     if (!bytes || size != (io->bits + 7u) / 8u)
         return CM1E_ERROR_INVALID_ARGUMENT;
     for (size_t i = 0; i < size; i++) {
-        const unsigned left = io->bits - 8u * (unsigned)i;
-        cm1e_io_t part = *io;
-        part.byte = io->byte + (uint32_t)i;
-        part.bits = (uint16_t)(left < 8 ? left : 8);
+        const cm1e_io_t part = byte_of(io, i);
         put_bits(&part, ((const uint8_t *)bytes)[i]);
     }
     return CM1E_OK;

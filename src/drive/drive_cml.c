@@ -204,12 +204,19 @@ static void look_again(cm1e_drive_cml_t *cml, int64_t wait_ns)
     cml->due_ns = cml->now_ns + wait_ns;
 }
 
-static void received(cm1e_drive_cml_t *cml)
+/* Ends what was read with a 0. true: the bridge had nothing. */
+static bool end_data(cm1e_drive_cml_t *cml)
 {
     const size_t size = strnlen(cml->data, cml->sdo.size);
     cm1e_cml_answer_t answer;
     const bool nothing = cm1e_cml_parse(&answer, cml->data, size) == CM1E_OK && answer.what == CM1E_CML_NOTHING;
     cml->data[size] = '\0';
+    return nothing;
+}
+
+static void received(cm1e_drive_cml_t *cml)
+{
+    const bool nothing = end_data(cml);
     for (const char *line = cml->data; !nothing && *line;) {
         size_t whole = strcspn(line, "\r\n");
         whole += strspn(line + whole, "\r\n");
@@ -275,10 +282,7 @@ static void begin(cm1e_drive_cml_t *cml)
 
 static void drained(cm1e_drive_cml_t *cml)
 {
-    const size_t size = strnlen(cml->data, cml->sdo.size);
-    cm1e_cml_answer_t answer;
-    const bool nothing = cm1e_cml_parse(&answer, cml->data, size) == CM1E_OK && answer.what == CM1E_CML_NOTHING;
-    cml->data[size] = '\0';
+    const bool nothing = end_data(cml);
     if (!nothing)
         set_aside(cml, cml->data, strcspn(cml->data, "\r\n"));
     cml->phase = nothing || ++cml->drained == DRAIN_MOST ? CML_SEND : CML_PREPARE;

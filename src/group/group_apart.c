@@ -33,8 +33,8 @@ void cm1e_group_together(cm1e_group_t *group)
 bool cm1e_group_all_held(const cm1e_group_t *group)
 {
     for (int i = 0; i < group->axes; i++) {
-        const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        if (axis && (group->led & 1u << i) != 0 && !cm1e_axis_held(axis))
+        const cm1e_axis_t *axis = cm1e_group_led_axis(group, i);
+        if (axis && !cm1e_axis_held(axis))
             return false;
     }
     return true;
@@ -44,8 +44,8 @@ bool cm1e_group_all_held(const cm1e_group_t *group)
 static bool as_one(const cm1e_group_t *group, uint32_t silent)
 {
     for (int i = 0; i < group->axes; i++) {
-        const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        if (axis && (group->led & 1u << i) != 0 && (cm1e_axis_held(axis) || cm1e_axis_was_silent(axis) != silent))
+        const cm1e_axis_t *axis = cm1e_group_led_axis(group, i);
+        if (axis && (cm1e_axis_held(axis) || cm1e_axis_was_silent(axis) != silent))
             return false;
     }
     return group->apart.off == 0;

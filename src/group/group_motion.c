@@ -180,8 +180,8 @@ static double part_left(const cm1e_group_t *group)
 {
     double least = 1.0;
     for (int i = 0; i < group->axes; i++) {
-        const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        if (axis && (group->led & 1u << i) != 0)
+        const cm1e_axis_t *axis = cm1e_group_led_axis(group, i);
+        if (axis)
             least = smaller(least, cm1e_axis_part_left(axis));
     }
     return least;
@@ -221,8 +221,8 @@ static bool begins_anew(void *context)
 {
     const cm1e_group_t *group = context;
     for (int i = 0; i < group->axes; i++) {
-        const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        if (axis && (group->led & 1u << i) != 0 && cm1e_axis_begins_anew(axis))
+        const cm1e_axis_t *axis = cm1e_group_led_axis(group, i);
+        if (axis && cm1e_axis_begins_anew(axis))
             return true;
     }
     return false;
@@ -270,8 +270,8 @@ static bool bounds(void *context, uint32_t index, cm1e_motion_bounds_t *most, do
 void cm1e_group_let_go(cm1e_group_t *group)
 {
     for (int i = 0; i < group->axes; i++) {
-        cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        if (axis && (group->led & 1u << i) != 0)
+        cm1e_axis_t *axis = cm1e_group_led_axis(group, i);
+        if (axis)
             cm1e_axis_release(axis);
     }
     group->led = 0;

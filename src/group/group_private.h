@@ -143,6 +143,11 @@ void cm1e_group_drop_handle(AXES_GROUP_REF_t reference);
 /* group_member.c */
 /** The member with this `ident`; NULL: no member, or the axis no longer exists. */
 cm1e_axis_t *cm1e_group_axis(const cm1e_group_t *group, uint32_t ident);
+/** Member number `i` (0 = first) if the path leads it; else NULL. */
+static inline cm1e_axis_t *cm1e_group_led_axis(const cm1e_group_t *group, int i)
+{
+    return group->led & 1u << i ? cm1e_group_axis(group, group->ident[i]) : NULL;
+}
 int cm1e_group_count(const cm1e_group_t *group);
 /** 0: there is no free place. */
 uint32_t cm1e_group_free_ident(const cm1e_group_t *group);
