@@ -8,6 +8,7 @@
 #include "axis_run.h"
 #include "cm1e/config.h"
 #include "core/clock.h"
+#include "core/json_text.h"
 #include "end_signals.h"
 #include "jog_keys.h"
 #include "terminal.h"
@@ -147,7 +148,7 @@ static int report_jog(const by_hand_t *hand, const other_t *other, double from, 
     if (hand->common->json)
         print_json(json_pack("{s:s, s:b, s:f, s:f, s:s, s:o, s:b, s:n}", "axis", name, "done", !failed, "from", from,
                              "to", real_of(other, "position"), "error", failed ? why : "", "details",
-                             text_as_json(!failed ? "" : in_error ? details : other->diag.text), "simulated",
+                             cm1e_json_text(!failed ? "" : in_error ? details : other->diag.text), "simulated",
                              other->simulated[0] != '\0', "timing"));
     else if (!failed)
         printf("%s: jogged from %.6g to %.6g%s\n", name, from, real_of(other, "position"), other->simulated);
@@ -212,7 +213,7 @@ static int report_enable(const by_hand_t *hand, const other_t *other, double sec
         print_json(json_pack("{s:s, s:b, s:f, s:f, s:f, s:s, s:o, s:b, s:n}", "axis", name, "enabled", seconds > 0,
                              "seconds", seconds, "position", real_of(other, "position"), "way", way, "error",
                              failed ? cm1e_strerror(other->diag.error) : "", "details",
-                             text_as_json(failed ? other->diag.text : ""), "simulated", other->simulated[0] != '\0',
+                             cm1e_json_text(failed ? other->diag.text : ""), "simulated", other->simulated[0] != '\0',
                              "timing"));
     else if (!failed)
         printf("%s: was enabled for %.1f s, at %.6g, and was displaced by %.2g%s\n", name, seconds,
@@ -285,8 +286,8 @@ static bool reset_one(const by_hand_t *hand, other_t *other, json_t *all)
                                                                        : other->diag.text;
     json_array_append_new(all, json_pack("{s:s, s:b, s:b, s:s, s:I, s:o, s:o}", "axis", axis, "had_error", had_error,
                                          "good", good, "error", had_error ? name : "", "device_error",
-                                         had_error ? device_error : 0, "details", text_as_json(text), "why",
-                                         text_as_json(why)));
+                                         had_error ? device_error : 0, "details", cm1e_json_text(text), "why",
+                                         cm1e_json_text(why)));
     if (hand->common->json)
         return good;
     if (!had_error)

@@ -6,6 +6,7 @@
 
 #include "command.h"
 #include "core/bytes.h"
+#include "core/json_text.h"
 #include "description/sii_image.h"
 #include "sii_device.h"
 #include "which_slave.h"
@@ -71,7 +72,7 @@ static int write_alias(cm1e_bus_t *bus, const alias_options_t *options, uint16_t
     }
     if (status == EXIT_OK && options->common.json)
         print_json(json_pack("{s:i, s:i, s:I, s:o}", "position", position, "before", (int)before, "alias",
-                             (json_int_t)options->alias, "backup", text_as_json(options->backup)));
+                             (json_int_t)options->alias, "backup", cm1e_json_text(options->backup)));
     else if (status == EXIT_OK)
         printf("slave %u: the alias was %u; it is %lld when the slave has been switched off and on. The earlier "
                "EEPROM is in %s; "

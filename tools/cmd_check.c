@@ -5,6 +5,7 @@
 
 #include "cm1e/generate.h"
 #include "command.h"
+#include "core/json_text.h"
 #include "files.h"
 
 typedef struct check_options {
@@ -47,7 +48,7 @@ static int check_bus_file(const char *path, bool json)
         json_t *findings = json_array();
         if (error != CM1E_OK)
             json_array_append_new(findings, json_pack("{s:s, s:s}", "severity", "error", "text", diag.text));
-        print_json(json_pack("{s:o, s:s, s:o}", "file", text_as_json(path), "format", "bus file", "findings", findings));
+        print_json(json_pack("{s:o, s:s, s:o}", "file", cm1e_json_text(path), "format", "bus file", "findings", findings));
     } else if (error == CM1E_OK) {
         printf("%s: bus file, %u ax%s, %u other slave%s, no error\n", path, axes, axes == 1 ? "is" : "es", slaves,
                slaves == 1 ? "" : "s");

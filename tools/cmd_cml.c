@@ -8,6 +8,7 @@
 
 #include "cm1e/cml.h"
 #include "command.h"
+#include "core/json_text.h"
 #include "device/bridge_status.h"
 #include "device/devices.h"
 #include "device/cml_command.h"
@@ -147,19 +148,19 @@ static json_t *as_json(const session_t *session, const cm1e_cml_exchange_t *exch
 {
     char words[CM1E_BRIDGE_STATUS_TEXT];
     json_t *lines = json_array();
-    json_t *object = json_pack("{s:o, s:i, s:i, s:o}", "sent", text_as_json(exchange->text), "slave",
+    json_t *object = json_pack("{s:o, s:i, s:i, s:o}", "sent", cm1e_json_text(exchange->text), "slave",
                                exchange->position, "channel", exchange->channel, "lines", lines);
     for (unsigned i = 0; i < exchange->count; i++) {
         const char *state = state_in_words(session, exchange->lines[i], words, sizeof words);
-        json_array_append_new(lines, text_as_json(exchange->lines[i]));
+        json_array_append_new(lines, cm1e_json_text(exchange->lines[i]));
         if (state[0])
-            json_object_set_new(object, "state", text_as_json(state));
+            json_object_set_new(object, "state", cm1e_json_text(state));
     }
     json_object_set_new(object, "strays", json_integer(exchange->strays));
     if (exchange->strays)
-        json_object_set_new(object, "stray", text_as_json(exchange->stray));
+        json_object_set_new(object, "stray", cm1e_json_text(exchange->stray));
     if (diag->error != CM1E_OK)
-        json_object_set_new(object, "error", text_as_json(diag->text));
+        json_object_set_new(object, "error", cm1e_json_text(diag->text));
     return object;
 }
 

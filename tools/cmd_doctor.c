@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "config/interface.h"
+#include "core/json_text.h"
 #include "doctor/doctor.h"
 
 enum { KEY_FIX = 0x300, KEY_ROOT, KEY_SECONDS };
@@ -42,8 +43,8 @@ static json_t *as_json(const doctor_t *doctor)
         const finding_t *f = &doctor->findings[i];
         json_array_append_new(
             list, json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:o}", "level", doctor_level_name(f->level), "group",
-                            f->group, "subject", text_as_json(f->subject), "fact", text_as_json(f->fact), "why",
-                            text_as_json(f->why), "action", text_as_json(f->action), "fix", text_as_json(f->fix)));
+                            f->group, "subject", cm1e_json_text(f->subject), "fact", cm1e_json_text(f->fact), "why",
+                            cm1e_json_text(f->why), "action", cm1e_json_text(f->action), "fix", cm1e_json_text(f->fix)));
     }
     return list;
 }

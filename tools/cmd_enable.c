@@ -5,6 +5,7 @@
 
 #include "axis_run.h"
 #include "by_hand.h"
+#include "core/json_text.h"
 #include "terminal.h"
 
 enum { KEY_FOR = 0x600, LONGEST_S = 1000000 };
@@ -117,7 +118,7 @@ static int report(void *context)
                              "enabled",
                              was_enabled, "seconds", seconds, "position", p->end.actual_position, "way", way, "error",
                              p->failed ? cm1e_strerror(cm1e_error_from_id(p->error_id)) : "", "details",
-                             text_as_json(text), "simulated", p->simulated[0] != '\0', "timing", timing_as_json()));
+                             cm1e_json_text(text), "simulated", p->simulated[0] != '\0', "timing", timing_as_json()));
     else if (was_enabled && !p->failed)
         printf("%s: was enabled for %.1f s, at %.6g, and was displaced by %.2g%s\n", cm1e_axis_name(p->axis), seconds,
                p->end.actual_position, way, p->simulated);

@@ -11,7 +11,7 @@
 #include "cm1e/sii.h"
 #include "core/bytes.h"
 #include "core/clock.h"
-#include "core/text.h"
+#include "core/json_text.h"
 #include "description/sii_image.h"
 #include "device/devices.h"
 #include "end_signals.h"
@@ -204,8 +204,8 @@ static bool read_back(cm1e_bus_t *bus, uint16_t position, char *version, size_t 
 static int tell(const firmware_options_t *options, uint16_t position, const char *before, const char *after)
 {
     if (options->common.json)
-        print_json(json_pack("{s:i, s:o, s:o, s:o}", "position", position, "file", text_as_json(options->file),
-                             "before", text_as_json(before), "after", text_as_json(after)));
+        print_json(json_pack("{s:i, s:o, s:o, s:o}", "position", position, "file", cm1e_json_text(options->file),
+                             "before", cm1e_json_text(before), "after", cm1e_json_text(after)));
     else
         printf("slave %u: firmware %s was %s and is %s\n", position, options->file, before, after);
     return EXIT_OK;

@@ -8,6 +8,7 @@
 
 #include "attach.h"
 #include "command.h"
+#include "core/json_text.h"
 #include "end_signals.h"
 #include "files.h"
 #include "terminal.h"
@@ -83,7 +84,7 @@ static int tell(const foe_options_t *options, uint16_t position, size_t size)
     const bool writing = is_writing(options);
     if (options->common.json)
         print_json(json_pack("{s:i, s:s, s:o, s:I}", "position", position, "action", writing ? "write" : "read",
-                             "name", text_as_json(name_of(options)), "bytes", (json_int_t)size));
+                             "name", cm1e_json_text(name_of(options)), "bytes", (json_int_t)size));
     else
         fprintf(stderr, "slave %u: %s of %zu bytes was %s\n", position, name_of(options), size,
                 writing ? "written" : "read");

@@ -6,6 +6,7 @@
 
 #include "attach.h"
 #include "cm1e/topology.h"
+#include "core/json_text.h"
 #include "files.h"
 #include "which_slave.h"
 
@@ -320,7 +321,7 @@ static void show_json(const graph_t *graph)
             json_array_append_new(ports, json_pack("{s:b, s:b, s:i}", "link", place->link[port], "open",
                                                    place->open[port], "slave", place->next[port]));
         json_array_append_new(all, json_pack("{s:i, s:o, s:b, s:i, s:i, s:i, s:o}", "position", (int)i + 1, "name",
-                                             text_as_json(cm1e_bus_slave(graph->bus, i + 1)->name), "known",
+                                             cm1e_json_text(cm1e_bus_slave(graph->bus, i + 1)->name), "known",
                                              place->known, "parent", place->parent, "parent_port",
                                              place->parent_port, "entry_port", place->entry_port, "ports", ports));
     }

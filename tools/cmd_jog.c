@@ -7,6 +7,7 @@
 
 #include "axis_run.h"
 #include "by_hand.h"
+#include "core/json_text.h"
 #include "jog_keys.h"
 #include "terminal.h"
 
@@ -149,7 +150,7 @@ static int report(void *context)
         print_json(json_pack("{s:s, s:b, s:f, s:f, s:s, s:o, s:b, s:o}", "axis", cm1e_axis_name(p->axis), "done",
                              !p->failed, "from", p->from, "to", p->to, "error",
                              p->failed ? cm1e_strerror(cm1e_error_from_id(p->error_id)) : "", "details",
-                             text_as_json(text), "simulated", p->simulated[0] != '\0', "timing", timing_as_json()));
+                             cm1e_json_text(text), "simulated", p->simulated[0] != '\0', "timing", timing_as_json()));
     else if (!p->failed)
         printf("%s: jogged from %.6g to %.6g%s\n", cm1e_axis_name(p->axis), p->from, p->to, p->simulated);
     if (p->failed)

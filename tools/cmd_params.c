@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "attach.h"
+#include "core/json_text.h"
 #include "core/text.h"
 #include "files.h"
 #include "params.h"
@@ -364,7 +365,7 @@ static int backup(motor_t *motor, const params_options_t *options)
         complain("out of memory");
     free(text);
     if (written && options->common.json)
-        print_json(json_pack("{s:o, s:I}", "file", text_as_json(options->words[0]), "parameters",
+        print_json(json_pack("{s:o, s:I}", "file", cm1e_json_text(options->words[0]), "parameters",
                              (json_int_t)motor->params.count));
     else if (written && strcmp(options->words[0], "-") != 0)
         printf("%s: %zu parameters of %s\n", options->words[0], motor->params.count, motor->label);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "attach.h"
+#include "core/json_text.h"
 #include "core/near.h"
 #include "core/output.h"
 #include "end_signals.h"
@@ -213,7 +214,7 @@ static void look_at(prove_t *prove, const point_t *point)
                           json_pack("{s:s, s:s, s:s, s:s, s:s, s:i, s:o, s:o}", "id", point->id, "what", point->what,
                                     "clause", point->clause, "how", point->how, "verdict", verdict, "compared",
                                     (int)prove->compared, "differences", prove->differences, "note",
-                                    text_as_json(prove->note)));
+                                    cm1e_json_text(prove->note)));
     prove->differences = NULL;
 }
 

@@ -10,6 +10,7 @@
 #include "attach.h"
 #include "cm1e/hot_connect.h"
 #include "core/clock.h"
+#include "core/json_text.h"
 #include "end_signals.h"
 
 enum { KEY_FOR = 0x600, PAUSE_US = 20000, LONGEST_S = 600 };
@@ -61,7 +62,7 @@ static int list(const recover_options_t *options, cm1e_control_t *control)
             printf("%s: %s\n", cm1e_presence_name(presence), text_of(slave, "presence_text"));
         json_array_append_new(all, json_pack("{s:i, s:s, s:o}", "position", (int)i + 1, "presence",
                                              cm1e_presence_name(presence), "text",
-                                             text_as_json(text_of(slave, "presence_text"))));
+                                             cm1e_json_text(text_of(slave, "presence_text"))));
     }
     if (options->common.json && slaves)
         print_json(json_incref(all));
@@ -81,7 +82,7 @@ static int ask_for(const recover_options_t *options, cm1e_control_t *control, cm
     long long position = 0;
     if (!named && !parse_number(options->where, "the position", 1, CM1E_MAX_SLAVES, &position))
         return -1;
-    json_t *slave = named ? text_as_json(options->where) : json_integer(position);
+    json_t *slave = named ? cm1e_json_text(options->where) : json_integer(position);
     json_t *accepted = ask_program(control, json_pack("{s:s, s:o}", "request", "recover", "slave", slave), "recover",
                                    diag);
     const int found = (int)json_integer_value(accepted);
@@ -105,7 +106,7 @@ static int tell(const recover_options_t *options, int position, cm1e_presence_t 
     const bool good = presence == CM1E_PRESENCE_THERE;
     if (options->common.json)
         print_json(json_pack("{s:i, s:b, s:s, s:o}", "position", position, "good", good, "presence",
-                             cm1e_presence_name(presence), "text", text_as_json(text)));
+                             cm1e_presence_name(presence), "text", cm1e_json_text(text)));
     else if (good)
         printf("slave %d: Operational again; its axis, if it has one, still needs a reset and power\n", position);
     if (!good)

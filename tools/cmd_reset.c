@@ -4,6 +4,7 @@
 
 #include "axis_run.h"
 #include "by_hand.h"
+#include "core/json_text.h"
 #include "device/place.h"
 
 enum { LOOK_NS = 300000000 }; /* until then a drive has shown the error that it has */
@@ -107,7 +108,7 @@ static int report(void *context)
         json_array_append_new(all, json_pack("{s:s, s:b, s:b, s:s, s:i, s:o, s:s}", "axis", cm1e_axis_name(a->axis),
                                              "had_error", a->had_error, "good", good, "error",
                                              a->had_error ? cm1e_strerror(a->before.error) : "", "device_error",
-                                             a->before.device_error, "details", text_as_json(a->text), "why", why));
+                                             a->before.device_error, "details", cm1e_json_text(a->text), "why", why));
         if (p->common.json)
             continue;
         if (!a->had_error && good)

@@ -12,6 +12,7 @@
 #include "cm1e/log.h"
 #include "cm1e/plot.h"
 #include "command.h"
+#include "core/json_text.h"
 #include "scheduler/scheduler_window.h"
 #include "service_notify.h"
 #include "st_loaded.h"
@@ -194,7 +195,7 @@ static void tell_end(const cm1e_scheduler_t *scheduler, const run_options_t *opt
     const double ran = (double)cm1e_scheduler_time_ns(scheduler) * 1e-9;
     const bool over = cm1e_scheduler_ran_its_time(scheduler); /* the ramp of a run that a signal ended may last longer */
     if (options->common.json) {
-        print_json(json_pack("{s:o, s:b, s:f, s:I, s:I, s:s}", "program", text_as_json(options->program), "simulated",
+        print_json(json_pack("{s:o, s:b, s:f, s:I, s:I, s:s}", "program", cm1e_json_text(options->program), "simulated",
                              is_simulated(config), "seconds", ran, "cycles", (json_int_t)statistics.cycles, "overruns",
                              (json_int_t)statistics.overruns, "end", over ? "time" : "signal"));
         return;

@@ -9,6 +9,7 @@
 #include "attach.h"
 #include "command.h"
 #include "core/bytes.h"
+#include "core/json_text.h"
 #include "core/text.h"
 #include "device/device.h"
 #include "sdo_list.h"
@@ -109,7 +110,7 @@ static void print_value(const uint8_t *data, size_t size, int type, const cm1e_e
         if (entry)
             json_object_set_new(object, "name", json_string(entry->name));
         if (is_text)
-            json_object_set_new(object, "value", text_as_json(text));
+            json_object_set_new(object, "value", cm1e_json_text(text));
         else if (is_number)
             json_object_set_new(object, "value", json_integer(number));
         print_json(object);

@@ -9,6 +9,7 @@
 #include "attach.h"
 #include "cm1e/sii.h"
 #include "command.h"
+#include "core/json_text.h"
 #include "description/sii_image.h"
 #include "files.h"
 #include "sii_device.h"
@@ -88,7 +89,7 @@ static int run_read(cm1e_bus_t *bus, const sii_options_t *options, uint16_t posi
         return fail(&diag);
     const bool written = write_output(options->words[2], image.bytes, image.size);
     if (written && options->common.json)
-        print_json(json_pack("{s:o, s:I}", "file", text_as_json(options->words[2]), "bytes", (json_int_t)image.size));
+        print_json(json_pack("{s:o, s:I}", "file", cm1e_json_text(options->words[2]), "bytes", (json_int_t)image.size));
     else if (written && strcmp(options->words[2], "-") != 0)
         printf("%s: %zu bytes, the SII of slave %u\n", options->words[2], image.size, position);
     free(image.bytes);
@@ -104,7 +105,7 @@ static int write_and_tell(cm1e_bus_t *bus, const sii_options_t *options, uint16_
     if (status != EXIT_OK)
         return status;
     if (options->common.json)
-        print_json(json_pack("{s:b, s:o}", "written", true, "backup", text_as_json(options->backup)));
+        print_json(json_pack("{s:b, s:o}", "written", true, "backup", cm1e_json_text(options->backup)));
     else
         printf("The SII of slave %u is written, and reading it back gave the same data; the earlier contents are in "
                "%s.\nSwitch the slave off and on: it then uses the new SII.\n", position, options->backup);

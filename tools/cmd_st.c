@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "command.h"
+#include "core/json_text.h"
 #include "core/output.h"
 #include "files.h"
 #include "st/st.h"
@@ -75,9 +76,9 @@ static void print_errors(const st_t *st, bool json)
     for (unsigned i = 0; i < cm1e_st_errors(st); i++) {
         const st_error_t error = cm1e_st_error(st, i);
         if (json)
-            json_array_append_new(all, json_pack("{s:o, s:I, s:I, s:o}", "file", text_as_json(error.file), "line",
+            json_array_append_new(all, json_pack("{s:o, s:I, s:I, s:o}", "file", cm1e_json_text(error.file), "line",
                                                  (json_int_t)error.line, "column", (json_int_t)error.column, "text",
-                                                 text_as_json(error.text)));
+                                                 cm1e_json_text(error.text)));
         else
             cm1e_st_print_error(st, i, stderr);
     }

@@ -4,6 +4,7 @@
 
 #include "attach.h"
 #include "cm1e/esc.h"
+#include "core/json_text.h"
 #include "which_slave.h"
 
 enum { STATE_TIMEOUT_S = 10 };
@@ -39,7 +40,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static json_t *as_json(const cm1e_slave_info_t *slave)
 {
     char state[48];
-    return json_pack("{s:i, s:o, s:s, s:i, s:s}", "position", slave->position, "name", text_as_json(slave->name),
+    return json_pack("{s:i, s:o, s:s, s:i, s:s}", "position", slave->position, "name", cm1e_json_text(slave->name),
                      "al_state", al_state_name(slave->al_state, state, sizeof state), "al_status_code",
                      slave->al_status_code, "text",
                      slave->al_status_code ? cm1e_al_status_text(slave->al_status_code) : "");

@@ -9,6 +9,7 @@
 #include "attach.h"
 #include "axis_run.h"
 #include "cm1e/plot.h"
+#include "core/json_text.h"
 #include "end_signals.h"
 #include "plot/plot_files.h"
 #include "recording.h"
@@ -275,8 +276,8 @@ static int list(const recording_t *recording, const trace_options_t *options)
     json_t *all = json_array();
     for (uint32_t i = 0; i < recording->trace.column_count; i++) {
         const trace_column_t *column = &recording->trace.columns[i];
-        json_array_append_new(all, json_pack("{s:o, s:o}", "name", text_as_json(column->name), "unit",
-                                             text_as_json(column->unit)));
+        json_array_append_new(all, json_pack("{s:o, s:o}", "name", cm1e_json_text(column->name), "unit",
+                                             cm1e_json_text(column->unit)));
         if (!options->common.json)
             printf("%s%s%s%s\n", column->name, column->unit[0] ? " [" : "", column->unit, column->unit[0] ? "]" : "");
     }

@@ -9,6 +9,7 @@
 #include "choose_bus.h"
 #include "cm1e/bridge.h"
 #include "config/interface.h"
+#include "core/json_text.h"
 #include "core/near.h"
 #include "core/text.h"
 #include "device/devices.h"
@@ -371,7 +372,7 @@ void print_json(json_t *value)
 void print_json_of_failure(void)
 {
     if (json_wanted && !json_printed)
-        print_json(json_pack("{s:o}", "error", text_as_json(complaints)));
+        print_json(json_pack("{s:o}", "error", cm1e_json_text(complaints)));
 }
 
 const char *al_state_name(uint16_t al_state, char *buffer, size_t size)

@@ -163,8 +163,6 @@ void describe_error(char *line, size_t size, const char *name, const char *what,
 /** Complains of that. */
 void complain_of_axis(const char *name, const char *what, const char *details);
 
-/** A text as JSON, which must be UTF-8; other bytes and control characters become "?". NULL counts as "". */
-json_t *text_as_json(const char *text);
 /** The text that a member of an object has; "" if it has none. */
 const char *text_of(const json_t *object, const char *name);
 /** The width of a column for printf(), which counts bytes: a letter of `text` may have several. */

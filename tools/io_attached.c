@@ -5,6 +5,7 @@
 
 #include "attach.h"
 #include "core/clock.h"
+#include "core/json_text.h"
 #include "end_signals.h"
 #include "io_rows.h"
 
@@ -122,7 +123,7 @@ static bool set_all(const io_options_t *options, cm1e_control_t *control, bool c
         io_name(&options->writes[i], name);
         json_t *value = check ? json_null() : json_real(options->writes[i].value);
         json_t *done = ask_program(control, json_pack("{s:s, s:o, s:o, s:i}", "request", "output", "name",
-                                                      text_as_json(name), "value", value, "keep_ms", KEEP_MS),
+                                                      cm1e_json_text(name), "value", value, "keep_ms", KEEP_MS),
                                    "output", diag);
         good = done != NULL;
         *set += good && !check;

@@ -1,4 +1,5 @@
 #include "io_rows.h"
+#include "core/json_text.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -29,8 +30,8 @@ json_t *io_signal_row(int slave, const char *slave_name, const char *name, const
                       const char *value, const char *use)
 {
     return json_pack("{s:i, s:s, s:o, s:s, s:b, s:b, s:s, s:o}", "slave", slave, "slave_name", slave_name, "name",
-                     text_as_json(name), "type", type, "output", output, "of_axis", of_axis, "value", value, "use",
-                     text_as_json(use));
+                     cm1e_json_text(name), "type", type, "output", output, "of_axis", of_axis, "value", value, "use",
+                     cm1e_json_text(use));
 }
 
 /* ---- as text ----------------------------------------------------------------------------------------------------- */

@@ -2,6 +2,7 @@
 
 #include "cm1e/generate.h"
 #include "command.h"
+#include "core/json_text.h"
 #include "files.h"
 
 const char *finding_severity(const cm1e_finding_t *finding) { return finding->is_error ? "error" : "warning"; }
@@ -20,7 +21,7 @@ json_t *findings_as_list(const cm1e_findings_t *findings, const char *place)
 
 json_t *findings_as_json(const char *path, const char *format, const cm1e_findings_t *findings)
 {
-    return json_pack("{s:o, s:s, s:o}", "file", text_as_json(path), "format", format, "findings",
+    return json_pack("{s:o, s:s, s:o}", "file", cm1e_json_text(path), "format", format, "findings",
                      findings_as_list(findings, "line"));
 }
 

@@ -7,6 +7,7 @@
 #include "cm1e/sdo_info.h"
 #include "command.h"
 #include "core/bytes.h"
+#include "core/json_text.h"
 #include "core/text.h"
 #include "description/description.h"
 #include "device/devices.h"
@@ -64,7 +65,7 @@ static json_t *value_as_json(const char *type, const uint8_t *bytes, size_t size
     char text[VALUE_TEXT] = "";
     if (strncmp(type, "STRING", 6) == 0) {
         cm1e_text_of_device(text, sizeof text, bytes, size);
-        return text_as_json(text);
+        return cm1e_json_text(text);
     }
     for (size_t i = 0; i < size && strlen(text) + 4 < sizeof text; i++)
         snprintf(text + strlen(text), sizeof text - strlen(text), "%s%02X", i ? " " : "", bytes[i]);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "core/json_text.h"
 #include "files.h"
 
 static const char *const sync_manager_uses[] = {
@@ -144,10 +145,10 @@ static json_t *pdo_as_json(const cm1e_described_pdo_t *pdo)
         const cm1e_described_pdo_entry_t *entry = &pdo->entries.at[i];
         json_array_append_new(entries, json_pack("{s:i, s:i, s:i, s:o, s:o}", "index", entry->index, "subindex",
                                                  entry->subindex, "bits", (int)entry->bits, "type",
-                                                 text_as_json(entry->type), "name", text_as_json(entry->name)));
+                                                 cm1e_json_text(entry->type), "name", cm1e_json_text(entry->name)));
     }
     return json_pack("{s:i, s:s, s:o, s:i, s:o}", "index", pdo->index, "direction", pdo->transmit ? "Tx" : "Rx", "name",
-                     text_as_json(pdo->name), "sync_manager", pdo->sync_manager, "entries", entries);
+                     cm1e_json_text(pdo->name), "sync_manager", pdo->sync_manager, "entries", entries);
 }
 
 static json_t *channels_as_json(const cm1e_description_t *device)
@@ -163,7 +164,7 @@ static json_t *channels_as_json(const cm1e_description_t *device)
     for (size_t i = 0; i < device->fmmus.count; i++)
         json_array_append_new(fmmus, json_string(TEXT_OF(fmmu_uses, device->fmmus.at[i].use)));
     for (size_t i = 0; i < device->dc_modes.count; i++)
-        json_array_append_new(modes, json_pack("{s:o, s:i}", "name", text_as_json(device->dc_modes.at[i].name),
+        json_array_append_new(modes, json_pack("{s:o, s:i}", "name", cm1e_json_text(device->dc_modes.at[i].name),
                                                "assign_activate", device->dc_modes.at[i].assign_activate));
     return json_pack("{s:o, s:o, s:o}", "sync_managers", managers, "fmmus", fmmus, "dc_modes", modes);
 }
@@ -192,8 +193,8 @@ json_t *sii_as_json(const cm1e_description_t *device, size_t size, const cm1e_fi
         "eeprom_bytes", (json_int_t)eeprom->byte_size, "version", eeprom->version, "configuration", words, "vendor_id",
         (json_int_t)device->vendor_id, "product_code", (json_int_t)device->product_code, "revision",
         (json_int_t)device->revision, "serial_number", (json_int_t)eeprom->serial_number, "alias", eeprom->alias,
-        "name", text_as_json(device->name), "order_number", text_as_json(device->type), "group",
-        text_as_json(device->group), "mailbox", mailbox_as_json(device));
+        "name", cm1e_json_text(device->name), "order_number", cm1e_json_text(device->type), "group",
+        cm1e_json_text(device->group), "mailbox", mailbox_as_json(device));
     json_t *channels = channels_as_json(device), *pdos = json_array();
     json_object_update(object, channels);
     json_decref(channels);

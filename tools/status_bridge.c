@@ -5,6 +5,7 @@
 
 #include "cia402/cia402.h"
 #include "core/bytes.h"
+#include "core/json_text.h"
 #include "device/bridge_facts.h"
 #include "device/bridge_status.h"
 #include "which_slave.h"
@@ -232,7 +233,7 @@ static json_t *motor_as_json(unsigned id, const char *axis, const cm1e_bridge_ch
 {
     char text[CM1E_BRIDGE_STATUS_TEXT];
     json_t *object = json_pack("{s:i, s:s, s:o}", "id", (int)id, "motor", motor_name(channel), "axis",
-                               axis[0] ? text_as_json(axis) : json_null());
+                               axis[0] ? cm1e_json_text(axis) : json_null());
     json_object_set_new(object, "state", motor->statusword.known ? json_string(state_name(motor)) : json_null());
     json_object_set_new(object, "statusword", as_json(&motor->statusword));
     json_object_set_new(object, "status", as_json(&channel->status));

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "control/show.h"
+#include "core/json_text.h"
 
 bool cm1e_take_number(const json_t *message, const char *name, json_int_t minimum, json_int_t maximum,
                       json_int_t otherwise, json_int_t *value)
@@ -70,7 +71,7 @@ static json_t *with_id(json_t *reply, json_t *id)
 json_t *cm1e_request_refuse(json_t *id, cm1e_error_t error, uint32_t foreign_code, const char *text)
 {
     json_t *reply = json_pack("{s:b, s:{s:i, s:I, s:o}}", "ok", 0, "error", "code", (int)error, "foreign_code",
-                              (json_int_t)foreign_code, "text", cm1e_show_text(text));
+                              (json_int_t)foreign_code, "text", cm1e_json_text(text));
     return with_id(reply, id);
 }
 

@@ -7,6 +7,7 @@
 #include "config/io_types.h"
 #include "control/arguments.h"
 #include "control/show.h"
+#include "core/json_text.h"
 
 enum { KEEP_LEAST_MS = 100, KEEP_MOST_MS = 5000, KEEP_MS = 1000, USE_TEXT = 256 };
 
@@ -66,8 +67,8 @@ static json_t *show_signal(const io_list_t *list, const view_t *view, uint32_t i
     cm1e_io_use(view->bus, info, use, sizeof use);
     json_t *signal = json_object();
     json_object_set_new(signal, "slave", json_integer(info->position));
-    json_object_set_new(signal, "slave_name", cm1e_show_text(cm1e_bus_slave_name(view->bus, info->position)));
-    json_object_set_new(signal, "name", cm1e_show_text(info->name));
+    json_object_set_new(signal, "slave_name", cm1e_json_text(cm1e_bus_slave_name(view->bus, info->position)));
+    json_object_set_new(signal, "name", cm1e_json_text(info->name));
     json_object_set_new(signal, "number", json_integer(info->number));
     json_object_set_new(signal, "output", json_boolean(info->output));
     json_object_set_new(signal, "of_axis", json_boolean(info->of_axis));
@@ -78,7 +79,7 @@ static json_t *show_signal(const io_list_t *list, const view_t *view, uint32_t i
     json_object_set_new(signal, "bits", json_integer(info->bits));
     json_object_set_new(signal, "quality", json_string(cm1e_io_quality_name(list->values.qualities[i])));
     json_object_set_new(signal, "value", value_of(&list->values, i));
-    json_object_set_new(signal, "use", cm1e_show_text(use));
+    json_object_set_new(signal, "use", cm1e_json_text(use));
     return signal;
 }
 

@@ -4,8 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "control/show.h"
-
 /* ---- what is asked for ------------------------------------------------------------------------------------------ */
 
 static const struct {

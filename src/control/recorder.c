@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "control/show.h"
+#include "core/json_text.h"
 
 enum { RING_BYTES = 1 << 24, LEAST_SAMPLES = 16, DATA_BYTES = 1 << 20, DIGITS = 16 /* of 8 bytes */ };
 #define RING_NS INT64_C(4000000000)
@@ -112,7 +113,7 @@ static json_t *names_of(const trace_t *trace)
     json_t *axes = json_array();
     bool whole = axes;
     for (uint32_t i = 0; i < trace->axes && whole; i++)
-        whole = json_array_append_new(axes, cm1e_show_text(trace->names[i])) == 0;
+        whole = json_array_append_new(axes, cm1e_json_text(trace->names[i])) == 0;
     if (!whole)
         json_decref(axes);
     return whole ? axes : NULL;
@@ -124,8 +125,8 @@ static json_t *columns_of(const trace_t *trace)
     bool whole = columns;
     for (uint32_t i = 0; i < trace->column_count && whole; i++) {
         const trace_column_t *column = &trace->columns[i];
-        whole = json_array_append_new(columns, json_pack("{s:o, s:o, s:i, s:i}", "name", cm1e_show_text(column->name),
-                                                         "unit", cm1e_show_text(column->unit), "kind",
+        whole = json_array_append_new(columns, json_pack("{s:o, s:o, s:i, s:i}", "name", cm1e_json_text(column->name),
+                                                         "unit", cm1e_json_text(column->unit), "kind",
                                                          (int)column->kind, "type", (int)column->type)) == 0;
     }
     if (!whole)

@@ -14,6 +14,7 @@
 #include "control/recorder.h"
 #include "control/recover_request.h"
 #include "control/show.h"
+#include "core/json_text.h"
 
 enum { SDO_MAX = 1 << 15, INFO_MAX = 2 + 2 * 0x10000, SII_WORDS = 1 << 18 };
 #define PATIENCE_NS INT64_C(2000000000)
@@ -45,10 +46,10 @@ static json_t *hello(control_request_t *request, control_run_t *run, const json_
     (void)message;
     const cm1e_bus_config_t *config = cm1e_bus_configuration(run->view.bus);
     json_t *told = json_pack("{s:i, s:s, s:o, s:i, s:I, s:o, s:o, s:s, s:I, s:i, s:i}", "protocol",
-                             CM1E_CONTROL_PROTOCOL, "version", cm1e_version(), "program", cm1e_show_text(run->program),
+                             CM1E_CONTROL_PROTOCOL, "version", cm1e_version(), "program", cm1e_json_text(run->program),
                              "pid", (int)getpid(), "since", (json_int_t)run->since,
-                             "interface", cm1e_show_text(config->interface_name),
-                             "network", cm1e_show_text(config->name), "control", names[run->control],
+                             "interface", cm1e_json_text(config->interface_name),
+                             "network", cm1e_json_text(config->name), "control", names[run->control],
                              "cycle_ns", (json_int_t)config->cycle_time_ns, "axes", (int)run->view.axis_count,
                              "slaves", (int)run->view.slave_count);
     return accept(request, "hello", told);

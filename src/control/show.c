@@ -2,24 +2,13 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cm1e/emergency.h"
 #include "cm1e/hot_connect.h"
-#include "core/text.h"
+#include "core/json_text.h"
 
 enum { EVENTS_OF_REPLY = 256, EVENT_TEXT = 512 };
-
-json_t *cm1e_show_text(const char *text)
-{
-    char *copy = strdup(text ? text : "");
-    if (copy)
-        cm1e_text_clean(copy);
-    json_t *value = json_string(copy ? copy : "");
-    free(copy);
-    return value;
-}
 
 json_t *cm1e_show_real(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 
@@ -91,7 +80,7 @@ static void add_error(json_t *axis, const view_t *view, uint32_t index)
     }
     json_object_set_new(axis, "error", error);
     cm1e_view_text(view, index, text, sizeof text);
-    json_object_set_new(axis, "text", cm1e_show_text(text));
+    json_object_set_new(axis, "text", cm1e_json_text(text));
 }
 
 json_t *cm1e_show_axes(const view_t *view)
@@ -102,7 +91,7 @@ json_t *cm1e_show_axes(const view_t *view)
         const cm1e_axis_news_t *news = &view->news[i];
         json_t *axis = json_object();
         json_object_set_new(axis, "number", json_integer(i + 1));
-        json_object_set_new(axis, "name", cm1e_show_text(config->name));
+        json_object_set_new(axis, "name", cm1e_json_text(config->name));
         json_object_set_new(axis, "type", json_string(types[config->type]));
         json_object_set_new(axis, "slave", json_integer(cm1e_bus_axis_position(view->bus, i)));
         json_object_set_new(axis, "channel", json_integer(config->channel));
@@ -136,7 +125,7 @@ static json_t *emergencies_of(const cm1e_bus_t *bus, uint16_t position)
         cm1e_emergency_text(bus, position, one, text, sizeof text);
         json_array_append_new(all, json_pack("{s:I, s:I, s:i, s:i, s:o, s:o}", "number", (json_int_t)one->number,
                                              "time_ns", (json_int_t)one->time_ns, "code", one->code, "error_register",
-                                             one->error_register, "data", data, "text", cm1e_show_text(text)));
+                                             one->error_register, "data", data, "text", cm1e_json_text(text)));
     }
     return all;
 }
@@ -158,7 +147,7 @@ static void tell_presence(json_t *slave, const view_t *view, uint32_t position)
         return;
     cm1e_bus_presence_text(view->bus, position, text, sizeof text);
     json_object_set_new(slave, "presence", json_integer(presence));
-    json_object_set_new(slave, "presence_text", cm1e_show_text(text));
+    json_object_set_new(slave, "presence_text", cm1e_json_text(text));
 }
 
 json_t *cm1e_show_slaves(const view_t *view)
@@ -168,7 +157,7 @@ json_t *cm1e_show_slaves(const view_t *view)
         const cm1e_slave_info_t *info = cm1e_bus_slave(view->bus, i + 1);
         json_t *slave = json_object(), *motors = json_array();
         json_object_set_new(slave, "position", json_integer(info->position));
-        json_object_set_new(slave, "name", cm1e_show_text(info->name));
+        json_object_set_new(slave, "name", cm1e_json_text(info->name));
         json_object_set_new(slave, "vendor_id", number(info->vendor_id));
         json_object_set_new(slave, "product_code", number(info->product_code));
         json_object_set_new(slave, "revision", number(info->revision));
@@ -182,7 +171,7 @@ json_t *cm1e_show_slaves(const view_t *view)
         for (size_t m = 0; m < sizeof info->motors; m++)
             json_array_append_new(motors, json_integer(info->motors[m]));
         json_object_set_new(slave, "motors", motors);
-        json_object_set_new(slave, "software_version", cm1e_show_text(info->software_version));
+        json_object_set_new(slave, "software_version", cm1e_json_text(info->software_version));
         json_object_set_new(slave, "coe", json_boolean(cm1e_bus_slave_has_coe(view->bus, info->position)));
         json_object_set_new(slave, "open_ports", json_integer(cm1e_bus_open_ports(view->bus, info->position)));
         json_object_set_new(slave, "emergencies", emergencies_of(view->bus, info->position));
@@ -200,7 +189,7 @@ json_t *cm1e_show_ring(const view_t *view)
     const cm1e_bus_ring_t *ring = &view->ring;
     cm1e_bus_ring_text(view->bus, ring, text, sizeof text);
     return json_pack("{s:b, s:i, s:i, s:I, s:o}", "broken", ring->broken, "behind", ring->behind, "before",
-                     ring->before, "breaks", (json_int_t)ring->breaks, "text", cm1e_show_text(text));
+                     ring->before, "breaks", (json_int_t)ring->breaks, "text", cm1e_json_text(text));
 }
 
 json_t *cm1e_show_strangers(const view_t *view)
@@ -216,7 +205,7 @@ json_t *cm1e_show_strangers(const view_t *view)
                                              one->alias, "explicit_id", one->explicit_id, "vendor_id",
                                              number(one->vendor_id), "product_code", number(one->product_code),
                                              "revision", number(one->revision), "serial_number",
-                                             number(one->serial_number), "text", cm1e_show_text(text)));
+                                             number(one->serial_number), "text", cm1e_json_text(text)));
     }
     return all;
 }
@@ -266,8 +255,8 @@ static json_t *networks_of(const cm1e_scheduler_t *scheduler)
         const uint64_t sync_losses = cm1e_scheduler_counted(scheduler, i, &counters);
         const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
         json_t *network = counters_of(&counters);
-        json_object_set_new(network, "network", cm1e_show_text(config->name));
-        json_object_set_new(network, "interface", cm1e_show_text(config->interface_name));
+        json_object_set_new(network, "network", cm1e_json_text(config->name));
+        json_object_set_new(network, "interface", cm1e_json_text(config->interface_name));
         json_object_set_new(network, "sync_losses", number(sync_losses));
         json_array_append_new(networks, network);
     }
@@ -289,7 +278,7 @@ json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler)
     if (s.clocks.used)
         json_object_set_new(shown, "clocks", clocks_of(&s.clocks));
     json_object_set_new(shown, "realtime", json_boolean(s.realtime));
-    json_object_set_new(shown, "advice", cm1e_show_text(s.advice));
+    json_object_set_new(shown, "advice", cm1e_json_text(s.advice));
     return shown;
 }
 
@@ -311,7 +300,7 @@ static json_t *event_of(const view_t *view, const cm1e_log_event_t *event)
     json_object_set_new(shown, "detail", json_integer(event->detail));
     json_object_set_new(shown, "value", cm1e_show_real(event->value));
     json_object_set_new(shown, "bound", cm1e_show_real(event->bound));
-    json_object_set_new(shown, "text", cm1e_show_text(text));
+    json_object_set_new(shown, "text", cm1e_json_text(text));
     return shown;
 }
 

@@ -21,8 +21,6 @@ json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler);
  *  events of other buses only the text has the axis. */
 json_t *cm1e_show_log(const view_t *view, uint64_t after);
 
-/** A text that may come from a device or a file: always valid UTF-8. */
-json_t *cm1e_show_text(const char *text);
 /** null for what JSON has no number for. */
 json_t *cm1e_show_real(double value);
 

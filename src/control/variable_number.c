@@ -9,6 +9,7 @@
 #include <strings.h>
 
 #include "control/show.h"
+#include "core/json_text.h"
 
 /** A type, its name, and the range of its whole numbers; 0: it is none. */
 static const struct { const char *name; int bits; bool is_signed; } types[] = {
@@ -50,7 +51,7 @@ json_t *cm1e_variable_enumerator_show(const variable_t *variable, const variable
     json_t *number = cm1e_variable_number_show(variable, value);
     const char *name = cm1e_variable_enumerator(variable, json_integer_value(number));
     json_decref(number);
-    return name ? cm1e_show_text(name) : json_null();
+    return name ? cm1e_json_text(name) : json_null();
 }
 
 /* ---- taken ------------------------------------------------------------------------------------------------------- */

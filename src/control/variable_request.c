@@ -8,6 +8,7 @@
 #include "control/show.h"
 #include "control/variable_number.h"
 #include "control/variable_text.h"
+#include "core/json_text.h"
 #include "core/near.h"
 
 enum { KEEP_LEAST_MS = 100, KEEP_MOST_MS = 5000, KEEP_MS = 1000 };
@@ -58,9 +59,9 @@ static json_t *show_one(const variable_values_t *values, const variable_t *varia
 {
     const bool number = variable->form == VARIABLE_NUMBER;
     const variable_value_t *value = &values->values[i];
-    json_t *row = json_pack("{s:o, s:o, s:s, s:o, s:o, s:b}", "name", cm1e_show_text(variable->name), "unit",
-                            cm1e_show_text(variable->unit), "type", cm1e_variable_type(variable), "declared",
-                            cm1e_show_text(variable->declared), "value",
+    json_t *row = json_pack("{s:o, s:o, s:s, s:o, s:o, s:b}", "name", cm1e_json_text(variable->name), "unit",
+                            cm1e_json_text(variable->unit), "type", cm1e_variable_type(variable), "declared",
+                            cm1e_json_text(variable->declared), "value",
                             number ? cm1e_variable_number_show(variable, value)
                                    : cm1e_variable_text_show(variable, value->bytes),
                             "forced", values->forced[i]);

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "control/show.h"
+#include "core/json_text.h"
 
 /* ---- UTF-8 and UTF-16 -------------------------------------------------------------------------------------------- */
 
@@ -72,7 +72,7 @@ json_t *cm1e_variable_text_show(const variable_t *variable, const uint8_t *bytes
     else
         snprintf(text, sizeof text, "%s", (const char *)bytes);
     json_t *value = json_string(text);
-    return value ? value : cm1e_show_text(text);
+    return value ? value : cm1e_json_text(text);
 }
 
 bool cm1e_variable_text_take(const variable_t *variable, const json_t *text, uint8_t bytes[VARIABLE_BYTES])

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "core/json_text.h"
 #include "prove/prove.h"
 
 static json_t *hex_of(const uint8_t *bytes, size_t size)
@@ -49,7 +50,7 @@ static json_t *entry_as_json(const prove_t *prove, const seen_entry_t *entry)
     snprintf(name, sizeof name, "0x%04X:%02X", entry->index, entry->subindex);
     json_t *object = json_pack("{s:s}", "entry", name);
     if (entry->told) {
-        json_object_set_new(object, "name", text_as_json(entry->info.name));
+        json_object_set_new(object, "name", cm1e_json_text(entry->info.name));
         json_object_set_new(object, "type", json_integer(entry->info.data_type));
         json_object_set_new(object, "bits", json_integer(entry->info.bits));
         json_object_set_new(object, "access", json_integer(entry->info.access));
@@ -61,7 +62,7 @@ static json_t *entry_as_json(const prove_t *prove, const seen_entry_t *entry)
         return object;
     cm1e_text_of_device(text, sizeof text, entry->value, entry->size);
     if (type == CM1E_TYPE_STRING)
-        json_object_set_new(object, "text", text_as_json(text));
+        json_object_set_new(object, "text", cm1e_json_text(text));
     else if (fits(entry->size, bits))
         json_object_set_new(object, "value", json_integer(prove_number_of(entry->value, entry->size,
                                                                           prove_is_signed(type))));
@@ -80,6 +81,6 @@ json_t *prove_profile(const prove_t *prove)
     }
     return json_pack("{s:i, s:s, s:o, s:o, s:o, s:o, s:O}", "cm1e_profile", 1, "device",
                      prove->device->name ? prove->device->name : prove->device->kind, "firmware",
-                     text_as_json(prove->slave->software_version), "sii", hex_of(prove->sii, prove->sii_size),
+                     cm1e_json_text(prove->slave->software_version), "sii", hex_of(prove->sii, prove->sii_size),
                      "entries", entries, "missing", missing, "codes", prove->profile_codes);
 }

@@ -6,7 +6,7 @@
 
 #include "cm1e/sii.h"
 #include "core/bytes.h"
-#include "core/text.h"
+#include "core/json_text.h"
 #include "prove/prove.h"
 
 /* ---- comparing --------------------------------------------------------------------------------------------------- */
@@ -16,7 +16,7 @@ void prove_compare(prove_t *prove, const char *thing, const char *expected, cons
     prove->compared++;
     if (strcmp(expected, found) != 0)
         json_array_append_new(prove->differences, json_pack("{s:s, s:o, s:o}", "thing", thing, "expected",
-                                                            text_as_json(expected), "found", text_as_json(found)));
+                                                            cm1e_json_text(expected), "found", cm1e_json_text(found)));
 }
 
 static void write_number(char text[32], int64_t value, int digits)

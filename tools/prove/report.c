@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "cm1e/version.h"
-#include "core/text.h"
+#include "core/json_text.h"
 #include "prove/prove.h"
 
 static const char *const verdicts[] = {"agrees", "differs", "unknown", "not tried"};
@@ -27,7 +27,7 @@ static json_t *device_as_json(const prove_t *prove)
 {
     const cm1e_slave_info_t *slave = prove->slave;
     return json_pack("{s:s, s:o, s:o, s:I, s:I, s:I, s:I, s:i, s:i, s:i, s:b}", "kind", prove->device->kind, "name",
-                     text_as_json(slave->name), "firmware", text_as_json(slave->software_version), "vendor",
+                     cm1e_json_text(slave->name), "firmware", cm1e_json_text(slave->software_version), "vendor",
                      (json_int_t)slave->vendor_id, "product", (json_int_t)slave->product_code, "revision",
                      (json_int_t)slave->revision, "serial", (json_int_t)slave->serial_number, "position",
                      slave->position, "alias", slave->alias, "explicit_id", slave->explicit_id, "simulated",
