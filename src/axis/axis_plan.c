@@ -355,11 +355,6 @@ static cm1e_error_t plan_with_exit(const cm1e_axis_t *axis, const from_t *from, 
     return error;
 }
 
-cm1e_error_t cm1e_axis_plan_to_exit(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
-{
-    return plan_with_exit(axis, from, move, move->passing, profile);
-}
-
 static double exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move, bool before_others)
 {
     const bool has_exit = before_others || kind_row(move->kind)->is_endless;
@@ -406,7 +401,7 @@ cm1e_error_t cm1e_axis_plan_as_before(cm1e_axis_t *axis, const from_t *from, mov
     most.velocity = axis->limits.maximum.velocity;
     move->exit_velocity = cm1e_axis_exit_velocity(axis, from, move); /* by the present ones */
     cm1e_axis_exchange_maximum(axis, &most);
-    cm1e_error_t error = cm1e_axis_plan_to_exit(axis, from, move, profile);
+    cm1e_error_t error = plan_with_exit(axis, from, move, move->passing, profile);
     if (cm1e_axis_goes_wrong(axis, from, move, profile, error)) /* it cannot become so slow on its way */
         error = cm1e_axis_plan(axis, from, move, true, profile);
     cm1e_axis_exchange_maximum(axis, &most);

@@ -44,8 +44,6 @@ bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start,
  *  software limit or in a disabled direction. */
 bool cm1e_axis_goes_wrong(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                           const cm1e_profile_t *profile, cm1e_error_t error);
-/** Plans a command that leaves its target with move->exit_velocity, with the present factors. */
-cm1e_error_t cm1e_axis_plan_to_exit(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
 /** Plans a move with the acceleration, deceleration and jerk that were allowed before, as far as the axis has them. */
 cm1e_error_t cm1e_axis_plan_as_before(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
 /** Like cm1e_axis_strays(), for the profile of a command. */

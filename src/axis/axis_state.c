@@ -73,7 +73,8 @@ cm1e_error_t cm1e_axis_state_refusal(cm1e_axis_state_t state, state_trigger_t tr
     return cell < 0 ? (cm1e_error_t)cell : CM1E_OK;
 }
 
-cm1e_axis_state_t cm1e_axis_state_after(cm1e_axis_state_t state, state_trigger_t trigger)
+/* The same one where the diagram has no arrow, or the command is refused. */
+static cm1e_axis_state_t state_after(cm1e_axis_state_t state, state_trigger_t trigger)
 {
     const int cell = diagram[trigger][state];
     return cell < 0 || cell == STAYS ? state : (cm1e_axis_state_t)cell;
@@ -81,7 +82,7 @@ cm1e_axis_state_t cm1e_axis_state_after(cm1e_axis_state_t state, state_trigger_t
 
 void cm1e_axis_go(cm1e_axis_t *axis, state_trigger_t trigger)
 {
-    axis->state = cm1e_axis_state_after(axis->state, trigger);
+    axis->state = state_after(axis->state, trigger);
 }
 
 const char *cm1e_axis_state_name(cm1e_axis_state_t state)

@@ -41,8 +41,6 @@ typedef enum state_trigger {
 
 /** Why a command is refused in this state; CM1E_OK: it is accepted. */
 cm1e_error_t cm1e_axis_state_refusal(cm1e_axis_state_t state, state_trigger_t trigger);
-/** The state that the trigger leads to: the same one where the diagram has no arrow, or the command is refused. */
-cm1e_axis_state_t cm1e_axis_state_after(cm1e_axis_state_t state, state_trigger_t trigger);
 /** Assigns the state that the trigger leads to. */
 void cm1e_axis_go(cm1e_axis_t *axis, state_trigger_t trigger);
 

@@ -286,9 +286,8 @@ static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
     __atomic_store_n(&bus->phase, (int)phase, __ATOMIC_SEQ_CST);
 }
 
-/** A diagnosis that ends with what the scan found; what a slave is addressed by (identify.c). */
+/** A diagnosis that ends with what the scan found (identify.c). */
 cm1e_error_t cm1e_bus_identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, const char *problem);
-uint32_t cm1e_bus_address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t kind);
 /** A slave that the configuration expects at an address, and the words for it: `what` "Axis" with this `name`. */
 typedef struct cm1e_expected {
     const char *what, *name;
@@ -304,7 +303,6 @@ cm1e_bus_slave_t *cm1e_bus_find_expected(cm1e_bus_t *bus, const cm1e_expected_t 
 cm1e_error_t cm1e_bus_identify_slaves(cm1e_bus_t *bus, bool optional, cm1e_diag_t *diag);
 /** configure_slaves.c: writes what the configuration states for them; then reads which process data they have. */
 cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t *diag);
-cm1e_error_t cm1e_bus_diagnose_setup(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_read_pdos(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Takes what a finished mapping job has found over into its slave. */
 cm1e_error_t cm1e_bus_take_mapping(const cm1e_bus_t *bus, cm1e_bus_slave_t *slave, cm1e_diag_t *diag);

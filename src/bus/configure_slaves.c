@@ -8,7 +8,7 @@
 /** Some hundred transfers, of all slaves at once; in practice some milliseconds. */
 #define SETUP_TIMEOUT_NS INT64_C(60000000000)
 
-cm1e_error_t cm1e_bus_diagnose_setup(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+static cm1e_error_t diagnose_setup(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
     const cm1e_setup_job_t *job = &slave->setup;
     char label[CM1E_LABEL_LENGTH];
@@ -50,7 +50,7 @@ cm1e_error_t cm1e_bus_set_up_slaves(cm1e_bus_t *bus, bool before_op, cm1e_diag_t
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         char label[CM1E_LABEL_LENGTH];
         if (slave->setup.error != CM1E_OK)
-            return cm1e_bus_diagnose_setup(bus, slave, diag);
+            return diagnose_setup(bus, slave, diag);
         if (ended || cm1e_setup_idle(&slave->setup))
             continue;
         cm1e_acyclic_cancel(bus);

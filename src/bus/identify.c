@@ -13,7 +13,7 @@ static const char *address_text(cm1e_address_kind_t kind, uint16_t address, char
     return text;
 }
 
-uint32_t cm1e_bus_address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t kind)
+static uint32_t address_of(const cm1e_bus_slave_t *slave, cm1e_address_kind_t kind)
 {
     switch (kind) {
     case CM1E_ADDRESS_POSITION:
@@ -172,7 +172,7 @@ cm1e_bus_slave_t *cm1e_bus_find_expected(cm1e_bus_t *bus, const cm1e_expected_t 
     address_text(expected->kind, expected->address, where);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (cm1e_bus_address_of(slave, expected->kind) != expected->address)
+        if (address_of(slave, expected->kind) != expected->address)
             continue;
         if (match) {
             snprintf(problem, sizeof problem, "%s \"%s\": %s is doubled, slaves %u and %u both have it.",

@@ -96,7 +96,6 @@ typedef struct cm1e_mode_row {
     uint8_t supported_bit; /**< in 0x6502 */
     const char *abbreviation, *name;
 } cm1e_mode_row_t;
-extern const cm1e_mode_row_t cm1e_modes[5];
 /** NULL: not a mode of the CM1-E. */
 const cm1e_mode_row_t *cm1e_mode_find(int8_t mode);
 

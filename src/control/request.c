@@ -478,12 +478,19 @@ json_t *cm1e_request_write(control_request_t *request, view_write_t write)
     return give_order(request, &request->write.order, end_write);
 }
 
+/** A transfer is still on its way: the request must live until it has ended. */
+static bool must_end(const control_request_t *request)
+{
+    return request->state == REQUEST_SDO ||
+           (request->wanted && (request->state == REQUEST_ORDER || request->state == REQUEST_ERRAND));
+}
+
 /** true: the cycle cannot have it any more. */
 static bool give_up(control_request_t *request, control_run_t *run)
 {
     if (request->state == REQUEST_ORDER && request->wanted)
         return cm1e_view_withdraw(&run->view, request->order);
-    return !cm1e_request_must_end(request);
+    return !must_end(request);
 }
 
 json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, int64_t now_ns, bool stopping)
@@ -504,12 +511,6 @@ json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, in
     return reply;
 }
 
-bool cm1e_request_must_end(const control_request_t *request)
-{
-    return request->state == REQUEST_SDO ||
-           (request->wanted && (request->state == REQUEST_ORDER || request->state == REQUEST_ERRAND));
-}
-
 void cm1e_request_clear(control_request_t *request)
 {
     json_decref(request->id);
@@ -526,7 +527,7 @@ bool cm1e_request_leave(control_request_t *request, control_run_t *run, uint32_t
     atomic_fetch_or_explicit(&run->view.gone, UINT32_C(1) << client, memory_order_release);
     const bool recorded = cm1e_recorder_end(&run->view, client, stopping);
     /* The file last: the cycle may have it for as long as the request has not ended. */
-    if (!recorded || cm1e_request_must_end(request) || !cm1e_file_leave(run, client))
+    if (!recorded || must_end(request) || !cm1e_file_leave(run, client))
         return false;
     cm1e_request_clear(request);
     return true;

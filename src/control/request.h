@@ -76,8 +76,6 @@ json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const
 json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, int64_t now_ns, bool stopping);
 /** The cycle decides whether the write begins. Returns NULL: the request goes on. */
 json_t *cm1e_request_write(control_request_t *request, view_write_t write);
-/** A transfer is still on its way: the request must live until it has ended. */
-bool cm1e_request_must_end(const control_request_t *request);
 /** Frees what belongs to a request, which may be used again. */
 void cm1e_request_clear(control_request_t *request);
 /** The client is gone: what it holds ends, and its request is cleared. false: something of it is still on its way

@@ -92,8 +92,6 @@ uint8_t cm1e_bridge_input_mask(cm1e_bridge_motor_t motor);
 
 /** "CM1", "CM2". */
 const char *cm1e_bridge_motor_name(cm1e_bridge_motor_t motor);
-/** The model has these motors at its connectors: "CM1", "CM2", or "" (or NULL) for any. */
-bool cm1e_bridge_has_motors(cm1e_device_model_t model, const char *const motors[CM1E_BRIDGE_AXES]);
 /** The model that has them; EB12 where all may be any. false: there is no such bridge. */
 bool cm1e_bridge_model_with(const char *const motors[CM1E_BRIDGE_AXES], cm1e_device_model_t *model);
 

@@ -181,7 +181,8 @@ uint8_t cm1e_bridge_input_mask(cm1e_bridge_motor_t motor) { return motor == CM1E
 
 const char *cm1e_bridge_motor_name(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? "CM1" : "CM2"; }
 
-bool cm1e_bridge_has_motors(cm1e_device_model_t model, const char *const asked[CM1E_BRIDGE_AXES])
+/* "CM1", "CM2", or "" (or NULL) for any. */
+static bool has_motors(cm1e_device_model_t model, const char *const asked[CM1E_BRIDGE_AXES])
 {
     for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
         if (asked[i] && asked[i][0] && strcmp(asked[i], cm1e_bridge_motor_name(cm1e_bridge_motor(model, i))) != 0)
@@ -192,7 +193,7 @@ bool cm1e_bridge_has_motors(cm1e_device_model_t model, const char *const asked[C
 bool cm1e_bridge_model_with(const char *const asked[CM1E_BRIDGE_AXES], cm1e_device_model_t *model)
 {
     for (*model = CM1E_DEVICE_EB12; is_bridge(*model); (*model)--)
-        if (cm1e_bridge_has_motors(*model, asked))
+        if (has_motors(*model, asked))
             return true;
     return false;
 }

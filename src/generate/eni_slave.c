@@ -221,12 +221,20 @@ static void command_mapping(writer_t *to, const cm1e_slave_config_t *slave)
     }
 }
 
+/** Whether the dictionary of a device has an entry that can be written. A master stops where a start-up command is
+ *  refused, so what this library only tries is in the file if that says that it goes. */
+static bool is_writable(const cm1e_description_t *device, unsigned index, unsigned subindex)
+{
+    const cm1e_described_entry_t *entry = cm1e_description_entry(device, (uint16_t)index, (uint8_t)subindex);
+    return entry && (entry->access & CM1E_ACCESS_WRITE);
+}
+
 /** A simulated device has no dictionary here, and takes them. */
 static bool takes_modules(const cm1e_description_t *device, const cm1e_slave_config_t *slave)
 {
     const bool is_simulated = device->objects.count == 0 && slave->sim.kind == CM1E_SIM_SLAVE_MODULAR;
-    return slave->module_count > 0 && (is_simulated || (cm1e_eni_is_writable(device, CONFIGURED_MODULES, 0) &&
-                                                        cm1e_eni_is_writable(device, CONFIGURED_MODULES, 1)));
+    return slave->module_count > 0 && (is_simulated || (is_writable(device, CONFIGURED_MODULES, 0) &&
+                                                        is_writable(device, CONFIGURED_MODULES, 1)));
 }
 
 static void command_modules(writer_t *to, const cm1e_description_t *device, const cm1e_slave_config_t *slave)
@@ -314,12 +322,6 @@ cm1e_error_t cm1e_eni_configure_slave(cm1e_description_file_t *file, const cm1e_
 
 /* ---- what goes with the configuration ---------------------------------------------------------------------------- */
 
-bool cm1e_eni_is_writable(const cm1e_description_t *device, unsigned index, unsigned subindex)
-{
-    const cm1e_described_entry_t *entry = cm1e_description_entry(device, (uint16_t)index, (uint8_t)subindex);
-    return entry && (entry->access & CM1E_ACCESS_WRITE);
-}
-
 void cm1e_eni_synchronise(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave,
                           bool inputs, unsigned type)
 {
@@ -328,7 +330,7 @@ void cm1e_eni_synchronise(cm1e_arena_t *arena, cm1e_description_t *device, const
     bool is_stated = false;
     for (unsigned i = 0; slave && i < slave->sdo_count; i++)
         is_stated |= slave->sdos[i].index == index && slave->sdos[i].subindex == SYNC_TYPE;
-    if (is_stated || type == 0 || !cm1e_eni_is_writable(device, index, SYNC_TYPE))
+    if (is_stated || type == 0 || !is_writable(device, index, SYNC_TYPE))
         return;
     command(&to, index, SYNC_TYPE, type, SYNC_TYPE_BYTES, false)->comment = "synchronisation type";
     device->init_commands = to.list;
@@ -349,7 +351,7 @@ void cm1e_eni_start_mode(cm1e_arena_t *arena, cm1e_description_t *device)
 {
     const unsigned index = OBJ_6060_MODES_OF_OPERATION;
     writer_t to = {.arena = arena, .list = device->init_commands};
-    if (has_output(device, index) || !cm1e_eni_is_writable(device, index, 0))
+    if (has_output(device, index) || !is_writable(device, index, 0))
         return;
     const bool by_position = has_output(device, OBJ_607A_TARGET_POSITION);
     command(&to, index, 0, by_position ? CSP : CSV, MODE_BYTES, false)->comment = "mode of operation";

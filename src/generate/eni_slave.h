@@ -16,9 +16,6 @@ cm1e_error_t cm1e_eni_describe_slave(cm1e_description_file_t *file, const cm1e_s
  *  the device does not have what they need. */
 cm1e_error_t cm1e_eni_configure_slave(cm1e_description_file_t *file, const cm1e_slave_config_t *slave,
                                       cm1e_diag_t *diag);
-/** Whether the dictionary of a device has an entry that can be written. A master stops where a start-up command is
- *  refused, so what this library only tries is in the file if that says that it goes. */
-bool cm1e_eni_is_writable(const cm1e_description_t *device, unsigned index, unsigned subindex);
 /** Writes how a device with pulses is synchronised: `type` to 0x1C32:01 (`inputs`: 0x1C33:01), where it can be written
  *  and the bus file (`slave`, NULL: none) does not write it. */
 void cm1e_eni_synchronise(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_slave_config_t *slave,

@@ -112,7 +112,7 @@ static void print_npy_header(const trace_t *trace, FILE *file)
     free(header);
 }
 
-void cm1e_trace_print_npy(const trace_t *trace, FILE *file)
+static void print_npy(const trace_t *trace, FILE *file)
 {
     print_npy_header(trace, file);
     for (uint32_t n = 0; n < trace->used; n++) {
@@ -158,5 +158,5 @@ cm1e_error_t cm1e_trace_write_csv(const trace_t *trace, const char *path, cm1e_d
 
 cm1e_error_t cm1e_trace_write_npy(const trace_t *trace, const char *path, cm1e_diag_t *diag)
 {
-    return cm1e_trace_write_file(trace, path, cm1e_trace_print_npy, diag);
+    return cm1e_trace_write_file(trace, path, print_npy, diag);
 }

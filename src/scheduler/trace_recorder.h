@@ -135,9 +135,8 @@ CM1E_GUEST_API const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *sched
 cm1e_error_t cm1e_trace_write_csv(const trace_t *trace, const char *path, cm1e_diag_t *diag); /**< @rt block */
 cm1e_error_t cm1e_trace_write_npy(const trace_t *trace, const char *path, cm1e_diag_t *diag); /**< @rt block */
 
-/** Print the content of files. */
+/** Prints the content of a file. */
 void cm1e_trace_print_csv(const trace_t *trace, FILE *file);
-void cm1e_trace_print_npy(const trace_t *trace, FILE *file);
 /** Writes under a temporary name and renames, so that no reader sees an incomplete file; in the "C" locale.
  *  @rt block */
 CM1E_GUEST_API cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,

@@ -256,8 +256,6 @@ const char *cm1e_sim_bridge_cml_read(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_
 void cm1e_sim_bridge_cml_step(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 
 /* ---- bridge_command.c ------------------------------------------------------------------------------------------- */
-/** "Wait for 5 cycles of PDO sending" (BR appendix 1, 2): the controlword is there long enough. */
-bool cm1e_sim_bridge_word_is_sent(const cm1e_sim_bridge_axis_t *axis);
 /** The controlword has been 0000h for long enough: no controlwords go over the serial line. */
 bool cm1e_sim_bridge_line_is_free(const cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_command_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);

@@ -11,11 +11,12 @@ enum {
 };
 enum { READY = 0x0007, CPIO = 0xC, CPIO_POSITION_CONTROL = 0x0F };
 
-bool cm1e_sim_bridge_word_is_sent(const cm1e_sim_bridge_axis_t *axis) { return axis->same_words >= SENT_CYCLES; }
+/* "Wait for 5 cycles of PDO sending" (BR appendix 1, 2): the controlword is there long enough. */
+static bool word_is_sent(const cm1e_sim_bridge_axis_t *axis) { return axis->same_words >= SENT_CYCLES; }
 
 bool cm1e_sim_bridge_line_is_free(const cm1e_sim_bridge_axis_t *axis)
 {
-    return axis->controlword == 0 && cm1e_sim_bridge_word_is_sent(axis);
+    return axis->controlword == 0 && word_is_sent(axis);
 }
 
 /* ---- CMD -------------------------------------------------------------------------------------------------------- */

@@ -115,7 +115,7 @@ static void watchdog_expired(void *app) { cm1e_sim_fsa_disable(app); }
 /* ---- life ------------------------------------------------------------------------------------------------------- */
 
 /* Until now the axis ran out without torque. The motor does not know its place: the position counts from 0. */
-void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns)
+static void back_to_power_on(void *app, int64_t now_ns)
 {
     cm1e_sim_cm1e_t *drive = app;
     cm1e_sim_fsa_off(drive);
@@ -140,7 +140,7 @@ static void outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_n
     drive->restarts = false;
     cm1e_sim_outputs(drive, data, size, now_ns);
     if (drive->restarts && !drive->slave)
-        cm1e_sim_cm1e_power_on(drive, drive->now_ns);
+        back_to_power_on(drive, drive->now_ns);
 }
 
 static void destroy(void *app)
@@ -171,7 +171,7 @@ static cm1e_error_t play(void *app, const cm1e_sim_profile_t *profile, int64_t n
     cm1e_sim_store_destroy(&drive->store);
     drive->store = store;
     drive->firmware = firmware;
-    cm1e_sim_cm1e_power_on(drive, now_ns);
+    back_to_power_on(drive, now_ns);
     return CM1E_OK;
 }
 
@@ -180,7 +180,7 @@ static cm1e_error_t play(void *app, const cm1e_sim_profile_t *profile, int64_t n
     .process_data_sizes = cm1e_sim_process_data_sizes, .outputs = outputs, .inputs = cm1e_sim_inputs,               \
     .sdo_read = cm1e_sim_sdo_read, .sdo_write = cm1e_sim_sdo_write, .object = cm1e_sim_object,                      \
     .entry = cm1e_sim_entry, .explicit_device_id = explicit_device_id, .station_alias = station_alias,              \
-    .power_on = cm1e_sim_cm1e_power_on,                                                                         \
+    .power_on = back_to_power_on,                                                                         \
     .file_begin = cm1e_sim_firmware_begin, .file_data = cm1e_sim_firmware_data, .destroy = destroy, .play = play
 
 /* The watchdog came with V1.3.0 (UG 10.1): before it a drive goes on with the outputs that it had last. */
@@ -215,7 +215,7 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
     }
     cm1e_mechanics_init(&drive->mechanics, &config->sim, motor->peak_torque_nm * CM1E_ROTOR_INERTIA_PER_PEAK_TORQUE);
     cm1e_servo_init(&drive->servo, &drive->mechanics);
-    cm1e_sim_cm1e_power_on(drive, 0);
+    back_to_power_on(drive, 0);
     drive->running = false; /* the first advance() tells the time */
     return drive;
 }

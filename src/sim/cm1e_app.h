@@ -175,8 +175,6 @@ const cm1e_sim_app_ops_t *cm1e_sim_cm1e_ops(const cm1e_sim_cm1e_t *drive);
 /** The application alone; destroyed by its ops. NULL: unknown motor or firmware, or no memory. */
 cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
                                           uint8_t rotary_switches);
-/** Back to power-on state: cm1e_sim_app_ops_t's power_on. */
-void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns);
 /** The CM1-E in a slave; NULL: it is something else. */
 cm1e_sim_cm1e_t *cm1e_sim_cm1e_of(cm1e_sim_slave_t *slave);
 
