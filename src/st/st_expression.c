@@ -117,11 +117,27 @@ static void enumerator_of(st_t *st, expr_t *expr, const char *type_name)
     set_wrong(st, expr);
 }
 
+static bool has_single_bits(const type_t *type)
+{
+    return type->kind != T_BOOL && (cm1e_st_is_bits(type->kind) || cm1e_st_is_integer(type->kind));
+}
+
+/** word.Ready: a CONSTANT says which bit (TwinCAT, CODESYS). */
+static void bit_of_constant(st_t *st, expr_t *expr)
+{
+    var_t *var = has_single_bits(expr->a->type) ? cm1e_st_find_var(st, expr->name) : NULL;
+    const constant_t *value = var && cm1e_st_is_integer(var->type->kind) ? cm1e_st_constant_of(st, var) : NULL;
+    if (!value || !value->known)
+        return;
+    expr->name = cm1e_st_format(st->arena, "%lld", (long long)value->integer);
+    expr->bit = true;
+}
+
 static void bit(st_t *st, expr_t *expr)
 {
     const type_t *type = expr->a->type;
     const long number = strtol(expr->name, NULL, 10);
-    const bool has_bits = type->kind != T_BOOL && (cm1e_st_is_bits(type->kind) || cm1e_st_is_integer(type->kind));
+    const bool has_bits = has_single_bits(type);
     expr->type = st->elementary[T_BOOL];
     if (has_bits && strspn(expr->name, "0123456789") == strlen(expr->name) && number < cm1e_st_bits(type->kind))
         return;
@@ -216,13 +232,16 @@ static void member(st_t *st, expr_t *expr)
         set_wrong(st, expr);
         return;
     }
+    if (!expr->bit)
+        bit_of_constant(st, expr);
     if (expr->bit) {
         bit(st, expr);
         return;
     }
     if (type->kind != T_STRUCT && type->kind != T_BLOCK) {
         cm1e_st_report(st, expr->place, "%s has no members%s", cm1e_st_type_name(type),
-                       type->kind == T_REF ? "; write ^ in front of the point" : "");
+                       type->kind == T_REF ? "; write ^ in front of the point" : has_single_bits(type) ?
+                       "; a single bit is chosen by a number, or an integer CONSTANT" : "");
         set_wrong(st, expr);
         return;
     }

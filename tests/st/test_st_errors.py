@@ -17,7 +17,7 @@ faults = []
 # (declarations and statements of a program, or a whole source; line:column; words, and behind a "!" those that it must not have)
 PROGRAM = "PROGRAM Main\nVAR\n  i : INT; r : REAL; b : BOOL; w : WORD; s : STRING; l : LREAL; u : UINT; t : TON; d : DINT;\n" \
           "  a : ARRAY[1..3] OF INT; tm : TIME; c : E_Color; p : Point; q : REF_TO INT; k : LINT; x : ULINT; d1 : DATE; wide : E_Wide; tod : TOD;\nEND_VAR\n" \
-          "VAR CONSTANT\n  N : INT := 3;\nEND_VAR\n{}\nEND_PROGRAM\nTYPE E_Color : (Red, Green); E_Wide : (Below := -1, Far := 70000); Point : STRUCT x, y : INT; " \
+          "VAR CONSTANT\n  N : INT := 3; TOO : INT := 16;\nEND_VAR\n{}\nEND_PROGRAM\nTYPE E_Color : (Red, Green); E_Wide : (Below := -1, Far := 70000); Point : STRUCT x, y : INT; " \
           "END_STRUCT; END_TYPE\nFUNCTION Twice : INT\nVAR_INPUT v : INT; END_VAR\nTwice := 2 * v;\nEND_FUNCTION\n" \
           "FUNCTION Change : INT\nVAR_IN_OUT v : INT; END_VAR\nv := v + 1; Change := v;\nEND_FUNCTION\n"
 STATEMENTS = [
@@ -175,6 +175,8 @@ STATEMENTS = [
     ("i := MAX(i, s);", "9:13", ["elementary"]),
     ("k := MAX(k, x);", "9:13", ["one type"]),
     ("i := LEN(i);", "9:10", ["STRING"]),
+    ("w.i := TRUE;", "9:3", ["single bit", "CONSTANT"]),
+    ("u := UINT#3; b := i.TOO;", "9:21", ["bits .0 to .15"]),
     ("w := SHL(w, w);", "9:13", ["integer"]),
     ("d1 := REAL_TO_DATE(r);", "9:7", ["no conversion"]),
     ("EXIT;", "9:1", ["within FOR"]),

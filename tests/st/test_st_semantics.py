@@ -261,6 +261,7 @@ CASES = [
      "wlong := STRING_TO_WSTRING(long); n := LEN(wlong); b := WSTRING_TO_STRING(wlong) = long;", {"i": 255, "j": 1, "n": 255, "b": 1}),
     ("b := flags = FlagsOn AND flags > 4 AND flags <> behind AND (flags OR 16#1) = 201; w := flags; i := flags; CASE flags OF FlagsOff: j := 1; 200: j := 2; END_CASE flags := FlagsOff; "
      "w := w OR flags; n := TO_INT(E_Flags.FlagsOn);", {"b": 1, "w": 200, "i": 200, "j": 2, "n": 200, "flags": 0}),
+    ("w.KK := TRUE; x64.KK2 := w.KK; p.x.KK := FALSE; i := i; b := x64.KK2 AND NOT w.KK2;", {"w": 16, "x64": 512, "p.x": 7, "b": 1}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
