@@ -118,15 +118,18 @@ static void emit_args(st_t *st, const arg_t *args)
     }
 }
 
+/** MUX, and SEL of texts. */
 static void emit_mux(st_t *st, const expr_t *call)
 {
-    const char *type = cm1e_st_plain_type(call->type);
+    const bool text = call->type->kind == T_STRING;
+    const char *type = text ? cm1e_st_text_unit(call->type) : cm1e_st_plain_type(call->type);
     int count = 0;
     for (const arg_t *arg = call->args->next; arg; arg = arg->next)
         count++;
-    cm1e_st_put(st, "st_mux_%s((int64_t)", type);
+    cm1e_st_put(st, "st_%s((int64_t)", text ? (call->type->wide ? "wmux" : "mux") :
+                cm1e_st_format(st->arena, "mux_%s", type));
     cm1e_st_emit_expression(st, call->args->value);
-    cm1e_st_put(st, ", %d, (const %s[]){", count, type);
+    cm1e_st_put(st, text ? ", %d, (%s *const[]){" : ", %d, (const %s[]){", count, type);
     emit_args(st, call->args->next);
     cm1e_st_put(st, "}, ST_HERE)");
 }
@@ -149,6 +152,11 @@ static void emit_standard(st_t *st, const expr_t *call)
     static const char *const plain[] = {"LEFT", "RIGHT", "MID", "INSERT", "DELETE", "REPLACE", "FIND", NULL};
     const char *name = cm1e_st_standard_name(call->standard);
     const char *type = cm1e_st_plain_type(call->type);
+    const bool text = call->type->kind == T_STRING;
+    if (strcmp(name, "MUX") == 0 || (strcmp(name, "SEL") == 0 && text)) {
+        emit_mux(st, call);
+        return;
+    }
     for (int i = 0; typed[i]; i++)
         if (strcmp(name, typed[i]) == 0) {
             cm1e_st_put(st, "st_");
@@ -172,8 +180,6 @@ static void emit_standard(st_t *st, const expr_t *call)
                    call->args);
     else if (strcmp(name, "CONCAT") == 0)
         emit_chain(st, call->type->wide ? "st_wconcat" : "st_concat", call->args);
-    else if (strcmp(name, "MUX") == 0)
-        emit_mux(st, call);
     else if (strcmp(name, "LEN") == 0) {
         cm1e_st_put(st, call->args->value->type->wide ? "(INT)st_wlength(" : "(INT)strlen(");
         emit_args(st, call->args);

@@ -280,6 +280,13 @@ ST_UNUSED static inline size_t st_wlength(const uint16_t *text)
     {                                                                                                                 \
         return st_##w##replace(text, (const UNIT[1]){0}, count, at);                                                  \
     }                                                                                                                 \
+    ST_UNUSED static inline TEXT st_##w##mux(int64_t which, int64_t count, const UNIT *const *texts,                  \
+                                             const char *file, int line)                                              \
+    {                                                                                                                 \
+        TEXT result = {{0}};                                                                                          \
+        st_##w##assign(result.text, sizeof result.text, texts[st_at(which, 0, count - 1, file, line)]);               \
+        return result;                                                                                                \
+    }                                                                                                                 \
     ST_UNUSED static inline INT st_##w##find(const UNIT *text, const UNIT *part)                                      \
     {                                                                                                                 \
         const size_t length = st_##w##length(text), wanted = st_##w##length(part);                                    \

@@ -126,6 +126,19 @@ static void literals_are_real(st_t *st, expr_t *call)
             arg->value = cm1e_st_coerce(st, arg->value, st->elementary[T_LREAL], "the argument");
 }
 
+/** Of texts the result is the longest one that there is. */
+static bool selects_text(st_t *st, expr_t *call)
+{
+    const type_t *type = call->args->next->value->type;
+    if (type->kind != T_STRING)
+        return false;
+    for (const arg_t *arg = call->args->next; arg; arg = arg->next)
+        if (arg->value->type->kind != T_STRING || arg->value->type->wide != type->wide)
+            return false;
+    call->type = cm1e_st_text_type(st, ST_STRING_BYTES, type->wide);
+    return true;
+}
+
 static bool select_one(st_t *st, expr_t *call)
 {
     const expr_t *selector = call->args->value;
@@ -141,7 +154,7 @@ static bool select_one(st_t *st, expr_t *call)
         call->type = call->args->next->value->type;
         return true;
     }
-    return one_type(st, call, call->args->next, is_any, "values of an elementary type");
+    return selects_text(st, call) || one_type(st, call, call->args->next, is_any, "values of one elementary type");
 }
 
 static bool shift(st_t *st, expr_t *call)

@@ -177,6 +177,7 @@ STATEMENTS = [
     ("i := LEN(i);", "9:10", ["STRING"]),
     ("w.i := TRUE;", "9:3", ["single bit", "CONSTANT"]),
     ("u := UINT#3; b := i.TOO;", "9:21", ["bits .0 to .15"]),
+    ("s := SEL(b, s, i);", "9:13", ["one elementary type"]),
     ("w := SHL(w, w);", "9:13", ["integer"]),
     ("d1 := REAL_TO_DATE(r);", "9:7", ["no conversion"]),
     ("EXIT;", "9:1", ["within FOR"]),

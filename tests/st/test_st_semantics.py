@@ -262,6 +262,8 @@ CASES = [
     ("b := flags = FlagsOn AND flags > 4 AND flags <> behind AND (flags OR 16#1) = 201; w := flags; i := flags; CASE flags OF FlagsOff: j := 1; 200: j := 2; END_CASE flags := FlagsOff; "
      "w := w OR flags; n := TO_INT(E_Flags.FlagsOn);", {"b": 1, "w": 200, "i": 200, "j": 2, "n": 200, "flags": 0}),
     ("w.KK := TRUE; x64.KK2 := w.KK; p.x.KK := FALSE; i := i; b := x64.KK2 AND NOT w.KK2;", {"w": 16, "x64": 512, "p.x": 7, "b": 1}),
+    ("s := SEL(b, 'no', s); i := LEN(s); b := TRUE; s := SEL(G := b, IN0 := s, IN1 := CONCAT(s, '-yes')); y := MUX(1, \"a\", y, y2); "
+     "s := CONCAT(s, MUX(n + 1, 'a', SEL(b, 'x', 'y')));", {"i": 2, "s": b"no-yesy", "y": ""}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
@@ -271,7 +273,7 @@ FAULTS = [
     ("q^ := 1;", "NULL"), ("i := q2^.x;", "NULL"), ("WHILE TRUE DO i := i; END_WHILE", "1000000 times"),
     ("REPEAT b := FALSE; UNTIL b END_REPEAT", "1000000 times"),
     ("FOR i := 1 TO 30000 DO FOR d := 1 TO 30000 DO j := 1; END_FOR END_FOR", "1000000 times"),
-    ("FOR i := 1 TO 3 BY n DO j := 1; END_FOR", "steps of 0"), ("i := MUX(n + 3, 1, 2);", "3 is outside 0..1"),
+    ("FOR i := 1 TO 3 BY n DO j := 1; END_FOR", "steps of 0"), ("i := MUX(n + 3, 1, 2);", "3 is outside 0..1"), ("s := MUX(n - 1, s, 'a');", "-1 is outside 0..1"),
     ("t := t / f;", "divided by zero"), ("i := 101; h := i;", "the value 101 is outside the range 10..100"),
     ("near := near * -3;", "-6 is outside the range -5..5"), ("n := Half(v := n);", "0 is outside the range 10..100"),
     ("CASE a[n - 1] OF 1: j := 1; END_CASE", "-1 is outside 1..4"),
