@@ -36,6 +36,13 @@ static const struct { const char *block, *name, *ours, *hint; } aliases[] = {
     {"INSERT", "STR2", "IN2", NULL}, {"INSERT", "POS", "P", NULL}, {"DELETE", "STR", "IN", NULL},
     {"DELETE", "LEN", "L", NULL}, {"DELETE", "POS", "P", NULL}, {"REPLACE", "STR1", "IN1", NULL},
     {"REPLACE", "STR2", "IN2", NULL}, {"FIND", "STR1", "IN1", NULL}, {"FIND", "STR2", "IN2", NULL},
+    {"", "__NEW", NULL, "memory is not allocated while a program runs; declare a variable"},
+    {"", "__DELETE", NULL, "memory is not allocated while a program runs"},
+    {"", "__QUERYINTERFACE", NULL, "keep a variable of the other interface beside this one"},
+    {"", "__QUERYPOINTER", NULL, "keep a reference to the instance"},
+    {"", "MEMCPY", NULL, "assign the whole variable, array or structure"},
+    {"", "MEMMOVE", NULL, "assign the whole variable, array or structure"},
+    {"", "MEMSET", NULL, "assign a variable of the same type that has its initial value"},
     {"AXIS_REF", "Status", NULL, "some of its members are known, as Status.Error; it is not as a whole"},
 };
 

@@ -17,6 +17,13 @@ static void unknown_function(st_t *st, expr_t *call, const char *name)
 {
     char text[CM1E_NEAR_TEXT_BYTES];
     cm1e_near_t near = {.word = name};
+    const char *hint;
+    cm1e_st_alias("", name, &hint);
+    if (hint) {
+        cm1e_st_report(st, call->place, "%s of TwinCAT and CODESYS is not supported: %s", name, hint);
+        call->type = st->elementary[T_WRONG];
+        return;
+    }
     cm1e_st_map_each(st->units, look_at_unit, &near);
     cm1e_st_standard_names(look_at_standard, &near);
     cm1e_st_report(st, call->place, "there is no function or instance \"%s\"%s", name,

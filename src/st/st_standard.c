@@ -314,6 +314,20 @@ static bool order_args(st_t *st, expr_t *call, int count)
     return true;
 }
 
+/** SIZEOF(ST_Recipe), SIZEOF(INT): the name of a type instead of a variable. */
+static void take_type(st_t *st, expr_t *expr)
+{
+    const char *name = cm1e_st_dotted(st, expr);
+    const expr_t *root = expr;
+    while (root->kind == E_MEMBER)
+        root = root->a;
+    if (!name || cm1e_st_find_var(st, root->name))
+        return;
+    type_t *type = cm1e_st_elementary(st, name);
+    type = type ? type : cm1e_st_lookup(st, st->types, root->scope, root->place, name);
+    expr->type = type ? cm1e_st_resolve(st, type) : NULL;
+}
+
 static bool check_args(st_t *st, expr_t *call)
 {
     int count = 0;
@@ -328,6 +342,8 @@ static bool check_args(st_t *st, expr_t *call)
     }
     if (named && !order_args(st, call, count))
         return false;
+    if (call->standard->rule == R_SIZE)
+        take_type(st, call->args->value);
     for (arg_t *arg = call->args; arg; arg = arg->next) {
         cm1e_st_expression(st, arg->value);
         call->impure |= arg->value->impure;

@@ -90,7 +90,7 @@ static void look_at(const char *name, void *value, void *context)
 /** A type of the standard that this translator has not. */
 static bool is_missing(const char *name)
 {
-    return strcasecmp(name, "CHAR") == 0 || strcasecmp(name, "WCHAR") == 0 || strcasecmp(name, "ANY") == 0 ||
+    return strcasecmp(name, "BIT") == 0 || strcasecmp(name, "CHAR") == 0 || strcasecmp(name, "WCHAR") == 0 || strcasecmp(name, "ANY") == 0 ||
            strncasecmp(name, "ANY_", 4) == 0;
 }
 

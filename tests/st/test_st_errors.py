@@ -178,6 +178,9 @@ STATEMENTS = [
     ("w.i := TRUE;", "9:3", ["single bit", "CONSTANT"]),
     ("u := UINT#3; b := i.TOO;", "9:21", ["bits .0 to .15"]),
     ("s := SEL(b, s, i);", "9:13", ["one elementary type"]),
+    ("q := __NEW(INT);", "9:6", ["__NEW", "declare a variable"]),
+    ("MEMCPY(ADR(a), ADR(a), SIZEOF(a));", "9:1", ["MEMCPY", "assign the whole"]),
+    ("i := SIZEOF(Pont);", "9:13", ['"Pont"']),
     ("w := SHL(w, w);", "9:13", ["integer"]),
     ("d1 := REAL_TO_DATE(r);", "9:7", ["no conversion"]),
     ("EXIT;", "9:1", ["within FOR"]),
@@ -207,6 +210,7 @@ STATEMENTS = [
 ]
 SOURCES = [
     ("PROGRAM Main VAR c : CHAR; END_VAR END_PROGRAM", "1:22", ["CHAR is not supported"]),
+    ("TYPE S : STRUCT a : BIT; END_STRUCT; END_TYPE", "1:21", ["BIT is not supported"]),
     ("PROGRAM Main VAR c : ANY_INT; END_VAR END_PROGRAM", "1:22", ["ANY_INT is not supported"]),
     ("TYPE U : UNION a : INT; b : REAL; END_UNION END_TYPE PROGRAM Main END_PROGRAM", "1:16", ["UNION is not supported"]),
     ("PROGRAM Main VAR x : INT; END_VAR JMP l; l: x := 1; END_PROGRAM", "1:39", ["JMP is not supported"]),

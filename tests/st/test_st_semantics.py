@@ -264,6 +264,7 @@ CASES = [
     ("w.KK := TRUE; x64.KK2 := w.KK; p.x.KK := FALSE; i := i; b := x64.KK2 AND NOT w.KK2;", {"w": 16, "x64": 512, "p.x": 7, "b": 1}),
     ("s := SEL(b, 'no', s); i := LEN(s); b := TRUE; s := SEL(G := b, IN0 := s, IN1 := CONCAT(s, '-yes')); y := MUX(1, \"a\", y, y2); "
      "s := CONCAT(s, MUX(n + 1, 'a', SEL(b, 'x', 'y')));", {"i": 2, "s": b"no-yesy", "y": ""}),
+    ("d := UDINT_TO_DINT(SIZEOF(Point) * 1000 + SIZEOF(Plant.Inner.Hue) + SIZEOF(INT) * 10 + SIZEOF(E_Wide) * 100); i := UDINT_TO_INT(SIZEOF(r));", {"d": 4422, "i": 6}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
