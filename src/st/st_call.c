@@ -260,11 +260,34 @@ static void call_block(st_t *st, expr_t *call, bool statement)
     call->unit = unit;
     call->impure = true;
     if (!statement)
-        cm1e_st_report(st, call->place, "a function block has no result: call it in a statement of its own, and then "
-                       "read its outputs");
+        cm1e_st_report(st, call->place, "a %s has no result: call it in a statement of its own, and then read its "
+                       "outputs", unit->kind == U_PROGRAM ? "program" : "function block");
     cm1e_st_note_call(st, unit);
     cm1e_st_note_change(st, call->a);
     check_args(st, unit, call);
+}
+
+void cm1e_st_take_program(st_t *st, expr_t *expr, unit_t *program)
+{
+    var_t *instance = cm1e_st_take(st->arena, sizeof *instance);
+    *instance = (var_t){.name = program->name, .section = V_GLOBAL, .type = cm1e_st_resolve(st, program->type)};
+    program->reached = expr->place;
+    expr->var = instance;
+    expr->type = instance->type;
+}
+
+/** A program calls others in TwinCAT and CODESYS. */
+static bool call_program(st_t *st, expr_t *call, bool statement)
+{
+    unit_t *program = cm1e_st_map_get(st->units, call->a->name);
+    if (!program || program->kind != U_PROGRAM)
+        return false;
+    if (st->unit && st->unit->kind == U_FUNCTION)
+        cm1e_st_report(st, call->place, "a function keeps nothing, and calls no program");
+    program->called = true;
+    cm1e_st_take_program(st, call->a, program);
+    call_block(st, call, statement);
+    return true;
 }
 
 static void call_function(st_t *st, expr_t *call, unit_t *unit)
@@ -323,13 +346,15 @@ void cm1e_st_call(st_t *st, expr_t *call, bool statement)
             call_function(st, call, unit);
             return;
         }
+        if (!var && call_program(st, call, statement))
+            return;
         if (!instance && cm1e_st_standard_call(st, call, call->a->name))
             return;
         if (!var) {
             if (unit)
                 cm1e_st_report(st, call->place, unit->kind == U_BLOCK ?
                                "\"%s\" is a function block: declare an instance of it, and call that" :
-                               "\"%s\" is a program: a task calls it", unit->name);
+                               "\"%s\" is an interface: declare a variable of it, and call its methods", unit->name);
             else
                 unknown_function(st, call, call->a->name);
             call->type = st->elementary[T_WRONG];

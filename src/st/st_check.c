@@ -172,11 +172,30 @@ static void default_instances(st_t *st)
         cm1e_st_add_instance(st, units[count]->place, units[count]->name, NULL, units[count]->name, none);
 }
 
+/** A program that another one calls has one instance, of its own name, which no task runs. */
+static void called_instance(st_t *st, const unit_t *unit)
+{
+    args_t none = {0};
+    for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
+        if (strcasecmp(instance->program_name, unit->name) == 0) {
+            cm1e_st_report(st, instance->place, "the program \"%s\" is called in the statements of another one: no task "
+                           "runs it, too. Remove it here, or the call", unit->name);
+            return;
+        }
+    cm1e_st_add_instance(st, unit->place, unit->name, NULL, unit->name, none);
+}
+
 static void check_configuration(st_t *st)
 {
     st->unit = NULL;
     if (!st->tree.configuration)
         default_instances(st);
+    else if (!st->tree.instances)
+        cm1e_st_report(st, st->tree.configuration_place, "this configuration runs no program: PROGRAM name WITH task : "
+                       "Type;");
+    for (const unit_t *unit = st->tree.units; unit && st->tree.configuration; unit = unit->next)
+        if (unit->called)
+            called_instance(st, unit);
     for (task_t *task = st->tree.tasks; task; task = task->next) {
         for (arg_t *arg = task->settings; arg; arg = arg->next)
             setting(st, task, arg);
@@ -194,9 +213,6 @@ static void check_configuration(st_t *st)
             cm1e_st_report(st, unit->reached, "a variable of the program \"%s\" can be used here if that has one "
                            "instance; it has %d", unit->name, count);
     }
-    if (st->tree.configuration && !st->tree.instances)
-        cm1e_st_report(st, st->tree.configuration_place, "this configuration runs no program: PROGRAM name WITH task : "
-                       "Type;");
 }
 
 bool cm1e_st_check(st_t *st)

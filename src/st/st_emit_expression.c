@@ -65,6 +65,10 @@ static void emit_variable(st_t *st, const var_t *var)
         cm1e_st_put(st, "%s", var->c_name);
         return;
     }
+    if (!var->unit && var->type->kind == T_BLOCK && var->type->unit->kind == U_PROGRAM) {
+        cm1e_st_put(st, "I_%s", instance_of(st, var->type->unit));
+        return;
+    }
     if (var->unit && var->unit->kind == U_PROGRAM &&
         !(st->unit && (st->unit == var->unit || st->unit->object.owner == var->unit))) {
         cm1e_st_put(st, "I_%s.%s", instance_of(st, var->unit), var->c_name);

@@ -123,7 +123,7 @@ static void emit_call(st_t *st, const stmt_t *stmt)
         cm1e_st_line(st, "%s((%s *)self);\n", stmt->value->unit->c_name, stmt->value->unit->c_type);
         return;
     }
-    if (stmt->value->unit->kind == U_BLOCK) {
+    if (stmt->value->unit->kind == U_BLOCK || stmt->value->unit->kind == U_PROGRAM) {
         emit_block_call(st, stmt->value);
         return;
     }

@@ -284,6 +284,9 @@ static void emit_task_row(st_t *st, unsigned *count, const char *name, const tas
     ++*count;
 }
 
+/** Neither a task nor another program calls it: it is a task of its own. */
+static bool runs_alone(const instance_t *instance) { return !instance->task && !instance->unit->called; }
+
 static void emit_tasks(st_t *st)
 {
     unsigned count = 0;
@@ -293,7 +296,7 @@ static void emit_tasks(st_t *st)
             emit_event(st, task);
     }
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
-        if (!instance->task)
+        if (runs_alone(instance))
             emit_task(st, cm1e_st_format(st->arena, "program_task_%s", instance->name), NULL, instance);
     cm1e_st_put(st, "static const st_task_t st_tasks[] = {\n");
     for (const task_t *task = st->tree.tasks; task; task = task->next) {
@@ -303,7 +306,7 @@ static void emit_tasks(st_t *st)
             emit_task_row(st, &count, task->name, task, task->single ? "between_" : "", task->interval_ns);
     }
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
-        if (!instance->task) {
+        if (runs_alone(instance)) {
             cm1e_st_put(st, "    {\"%s\", 0, 65535, program_task_%s},\n", instance->name, instance->name);
             count++;
         }

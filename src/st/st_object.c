@@ -72,7 +72,11 @@ static bool can_be_object(st_t *st, const expr_t *expr)
 /** The method of an object by name, and as what the object is seen. */
 static unit_t *method_of(st_t *st, expr_t *object, const char *name, unit_t **seen_as)
 {
-    if (!can_be_object(st, object))
+    unit_t *program = object->kind == E_NAME && !cm1e_st_find_var(st, object->name)
+        ? cm1e_st_map_get(st->units, object->name) : NULL;
+    if (program && program->kind == U_PROGRAM && cm1e_st_find_method(program, name))
+        cm1e_st_take_program(st, object, program);
+    else if (!can_be_object(st, object))
         return NULL;
     cm1e_st_expression(st, object);
     const type_t *type = object->type;

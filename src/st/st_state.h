@@ -167,6 +167,8 @@ static inline bool cm1e_st_integer_constant(st_t *st, expr_t *expr, int64_t *val
 void cm1e_st_fold(st_t *st, expr_t *expr);
 
 /* st_call.c */
+/** The name of a program becomes its instance. */
+void cm1e_st_take_program(st_t *st, expr_t *expr, unit_t *program);
 /** The value is known, and evaluating it changes nothing. */
 bool cm1e_st_is_fixed(const expr_t *expr);
 /** Two operands of which C does not say which one comes first: reports if that could matter. */

@@ -338,6 +338,32 @@ def check_events(folder):
         faults.append(f"intervals of tasks: {intervals}")
 
 
+CALLED = """
+PROGRAM Sub VAR_INPUT x : INT; up : BOOL R_EDGE; END_VAR VAR_OUTPUT y : INT; END_VAR VAR n, ups : INT := 0; END_VAR
+  y := x + 1; n := n + 1; IF up THEN ups := ups + 1; END_IF
+  ACTION Clear: n := 0; END_ACTION METHOD Get : INT VAR_INPUT k : INT; END_VAR Get := n + k; END_METHOD END_PROGRAM
+PROGRAM Other VAR k : INT; END_VAR k := k + 1; IF k = 2 THEN Sub.Clear(); END_IF END_PROGRAM
+FUNCTION_BLOCK Caller Sub(); END_FUNCTION_BLOCK
+PROGRAM Main VAR n, m, q : INT; b : BOOL; c : Caller; END_VAR
+  b := NOT b; Sub(x := 3, up := b, y => m); n := Sub.y; Sub(20); c(); q := Sub.Get(k := 100); Main.More();
+  ACTION More: m := m + 1; END_ACTION END_PROGRAM
+"""
+CONFIGURED = "CONFIGURATION C RESOURCE R ON PC TASK T(PRIORITY := 1); PROGRAM a WITH T : Other; PROGRAM m WITH T : Main; END_RESOURCE END_CONFIGURATION"
+
+
+def check_called():
+    """A program that others call runs there only, with one instance."""
+    for name, text in (("called", CALLED.replace("Main.More", "More")), ("configured", CALLED.replace("Main.More", "More") + CONFIGURED),
+                       ("by_name", CALLED)):
+        host = Host(BIN, folder, text, name)
+        for _ in range(3):
+            host.run()
+        main, other = ("m", "a") if name == "configured" else ("Main", "Other")
+        found = [host.value(of) for of in (f"{main}.n", f"{main}.m", f"{main}.q", "Sub.y", "Sub.n", "Sub.ups", f"{other}.k")]
+        if found != [4, 5, 106, 21, 6, 2, 3] or host.table.task_count != (1 if name == "configured" else 2):
+            faults.append(f"{name}: programs that are called: {found}, {host.table.task_count} tasks")
+
+
 KEPT = "TYPE Mode : (Idle, Run := 5); Recipe : STRUCT speed : INT; depth : INT; mode : Mode; list : ARRAY[1..2] OF INT; " \
        "END_STRUCT; END_TYPE VAR_GLOBAL RETAIN rec : ARRAY[0..1] OF Recipe; END_VAR PROGRAM P END_PROGRAM"
 KEPT_OTHERWISE = [("speed : INT; depth : INT", "depth : INT; speed : INT"), ("depth", "width"), ("Idle, Run := 5", "Run, Idle := 5"),
@@ -358,6 +384,7 @@ def check_layouts(folder):
 with tempfile.TemporaryDirectory() as folder:
     check_layouts(folder)
     check_events(folder)
+    check_called()
     check_cases(folder)
     check_faults(folder)
 if faults:
