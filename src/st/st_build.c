@@ -185,6 +185,50 @@ void cm1e_st_add_type(parsing_t *parsing, place_t place, const char *name, type_
     }
 }
 
+/** A VAR_STAT or VAR_INST becomes the name of a variable that is elsewhere. */
+static var_t *keep(st_t *st, unit_t *unit, var_t *var, section_t section)
+{
+    var_t *kept = cm1e_st_take(st->arena, sizeof *kept);
+    *kept = *var;
+    kept->section = section;
+    kept->keeper = unit;
+    kept->next = NULL;
+    var->section = V_EXTERNAL;
+    var->global = kept;
+    var->initial = var->address = NULL;
+    var->init_args = NULL;
+    return kept;
+}
+
+/** VAR_STAT: a global variable that only this unit knows. */
+static void keep_statics(st_t *st, unit_t *unit)
+{
+    for (var_t *var = unit->vars; var; var = var->next) {
+        if (var->section != V_STATIC)
+            continue;
+        if (unit->kind == U_FUNCTION && !(var->qualifiers & Q_CONSTANT))
+            cm1e_st_report(st, var->place, "a function keeps nothing: VAR_STAT is for function blocks, methods and "
+                           "programs. Make a function block of \"%s\"", unit->name);
+        var_t *kept = keep(st, unit, var, V_GLOBAL);
+        kept->next = st->tree.globals;
+        st->tree.globals = kept;
+    }
+}
+
+/** VAR_INST of a method: a variable of its block, under a name that nobody can write. */
+static void keep_in_instance(st_t *st, unit_t *method, vars_t *vars)
+{
+    for (var_t *var = method->vars; var; var = var->next) {
+        if (var->section != V_INSTANCE)
+            continue;
+        if (method->object.owner->kind == U_INTERFACE)
+            cm1e_st_report(st, var->place, "an interface has no instance variables (VAR_INST): what implements it has");
+        var_t *kept = keep(st, method, var, V_LOCAL);
+        kept->name = cm1e_st_format(st->arena, "%s.%s", cm1e_st_shown_name(st, method), var->name);
+        ST_APPEND(*vars, kept);
+    }
+}
+
 void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const char *name, type_t *result,
                       vars_t vars, stmts_t body)
 {
@@ -200,10 +244,18 @@ void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const
     if (kind != U_FUNCTION) {
         unit->object = parsing->object;
         unit->object.methods = parsing->methods;
-        for (unit_t *method = parsing->methods; method; method = method->object.next_method)
+        for (unit_t *method = parsing->methods; method; method = method->object.next_method) {
             method->object.owner = unit;
+            keep_in_instance(st, method, &vars);
+        }
         parsing->methods = NULL;
     }
+    for (var_t *var = vars.first; var; var = var->next)
+        if (var->section == V_INSTANCE)
+            cm1e_st_report(st, var->place, "VAR_INST is for methods; the variables of a block or a program (VAR) keep "
+                           "their values anyway");
+    unit->vars = vars.first;
+    keep_statics(st, unit);
     if (kind == U_FUNCTION && result) {
         var_t *var = cm1e_st_var_name(parsing, place, own);
         var->section = V_RESULT;
@@ -246,6 +298,7 @@ static unit_t *add_part(parsing_t *parsing, place_t place, const char *name, typ
         ST_APPEND(vars, unit->result);
     }
     unit->vars = vars.first;
+    keep_statics(st, unit);
     unit->next = st->tree.units;
     st->tree.units = unit;
     return unit;

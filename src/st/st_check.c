@@ -12,7 +12,7 @@ static uint64_t locals_of(const unit_t *unit)
 {
     uint64_t bytes = 0;
     for (const var_t *var = unit->vars; var; var = var->next)
-        if (cm1e_st_is_function(unit) || var->section == V_TEMP)
+        if ((cm1e_st_is_function(unit) && var->section != V_EXTERNAL) || var->section == V_TEMP)
             bytes += var->type->size;
     return bytes;
 }

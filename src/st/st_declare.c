@@ -22,6 +22,14 @@ static void name_types(st_t *st)
     }
 }
 
+/** No variable of a program ends in such a letter in C. */
+static const char *kept_name(st_t *st, const var_t *var)
+{
+    const char *plain = strrchr(var->name, '.') ? strrchr(var->name, '.') + 1 : var->name;
+    const char *keeper = cm1e_st_c_name(st, cm1e_st_shown_name(st, var->keeper));
+    return cm1e_st_format(st->arena, "K%zu_%s_%s_k", strlen(keeper), keeper, plain);
+}
+
 static void name_units(st_t *st)
 {
     static const char *const prefixes[] = {[U_FUNCTION] = "FUN", [U_BLOCK] = "FB", [U_PROGRAM] = "PRG",
@@ -39,12 +47,16 @@ static void name_units(st_t *st)
         if (unit->type)
             unit->type->c_name = unit->kind == U_INTERFACE ? "st_interface_t" : unit->c_type;
         for (var_t *var = unit->vars; var; var = var->next) {
-            var->c_name = cm1e_st_format(st->arena, "%s_", var->name);
+            var->c_name = var->keeper ? kept_name(st, var) : cm1e_st_format(st->arena, "%s_", var->name);
             var->unit = unit;
         }
     }
     for (var_t *var = st->tree.globals; var; var = var->next)
-        var->c_name = var->list ? cm1e_st_format(st->arena, "G_%s__%s", var->list, var->name)
+        if (var->keeper) {
+            var->list = cm1e_st_shown_name(st, var->keeper);
+            var->c_name = kept_name(st, var);
+        } else
+            var->c_name = var->list ? cm1e_st_format(st->arena, "G_%s__%s", var->list, var->name)
                                 : cm1e_st_format(st->arena, "G_%s", var->name);
 }
 
@@ -128,6 +140,8 @@ static void check_section(st_t *st, var_t *var)
 static void check_external(st_t *st, var_t *var)
 {
     var->type = cm1e_st_resolve(st, var->type);
+    if (var->global) /* VAR_STAT, VAR_INST */
+        return;
     var->global = cm1e_st_map_get(st->globals, var->name);
     if (!var->global) {
         cm1e_st_report(st, var->place, "there is no global variable \"%s\" (VAR_GLOBAL)%s", var->name,
@@ -177,8 +191,10 @@ void cm1e_st_declare(st_t *st)
     map_names(st);
     for (type_t *type = st->tree.types; type; type = type->next)
         cm1e_st_resolve(st, type);
-    for (var_t *var = st->tree.globals; var; var = var->next)
+    for (var_t *var = st->tree.globals; var; var = var->next) {
+        st->unit = var->keeper;
         declare_var(st, var);
+    }
     for (st->unit = st->tree.units; st->unit; st->unit = st->unit->next)
         for (var_t *var = st->unit->vars; var; var = var->next)
             declare_var(st, var);
@@ -255,12 +271,15 @@ void cm1e_st_check_initial(st_t *st, var_t *var)
         return;
     var->state = ST_BUSY;
     st->resolving++;
-    st->unit = var->unit;
+    st->unit = var->unit ? var->unit : var->keeper;
+    const bool before = st->before_all;
+    st->before_all = var->keeper && !var->unit;
     var->type = cm1e_st_resolve(st, var->type);
     var->initial = cm1e_st_initialiser(st, var->initial, var->type, var->name);
     if (var->qualifiers & Q_CONSTANT)
         var->value = var->initial->value;
     st->unit = unit;
+    st->before_all = before;
     st->resolving--;
     var->state = ST_READY;
 }

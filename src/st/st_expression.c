@@ -92,7 +92,10 @@ static void enumerator_of(st_t *st, expr_t *expr, const char *type_name)
     if (!type || type->kind != T_ENUM) {
         cm1e_near_t near = {.word = type_name};
         cm1e_st_map_each(st->types, look_at_enumeration, &near);
-        cm1e_st_report(st, expr->place, "there is no enumeration \"%s\"%s", type_name, cm1e_st_meant(st, &near));
+        if (type && type->kind != T_WRONG)
+            cm1e_st_report(st, expr->place, "\"%s\" is a type, and no enumeration: name a variable of it", type_name);
+        else if (!type)
+            cm1e_st_report(st, expr->place, "there is no enumeration \"%s\"%s", type_name, cm1e_st_meant(st, &near));
         set_wrong(st, expr);
         return;
     }

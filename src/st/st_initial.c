@@ -70,6 +70,9 @@ expr_t *cm1e_st_initialiser(st_t *st, expr_t *initial, type_t *type, const char 
     }
     cm1e_st_expression(st, initial);
     expr_t *value = cm1e_st_coerce(st, initial, type, what);
+    if (st->before_all && (type->kind == T_REF || type->kind == T_INTERFACE) && value->type->kind != T_NULL)
+        cm1e_st_report(st, value->place, "a VAR_STAT exists before there is an instance: it begins as a reference to "
+                       "nothing, and gets its value in a statement");
     if (!value->value.known && value->type->kind != T_WRONG && !value->bit && type->kind != T_REF &&
         type->kind != T_INTERFACE)
         cm1e_st_report(st, value->place, "the initial value of \"%s\" is not known before the program runs: only "

@@ -125,6 +125,14 @@ unit_t *cm1e_st_find_method(const unit_t *unit, const char *name)
     return found;
 }
 
+const char *cm1e_st_shown_name(st_t *st, const unit_t *unit)
+{
+    const char *plain = cm1e_st_plain_name(unit);
+    if (plain != unit->name)
+        plain = cm1e_st_format(st->arena, "%s.%.3s", plain, unit->name);
+    return unit->object.owner ? cm1e_st_format(st->arena, "%s.%s", unit->object.owner->name, plain) : plain;
+}
+
 const char *cm1e_st_plain_name(const unit_t *method)
 {
     return strncmp(method->name, "get ", 4) == 0 || strncmp(method->name, "set ", 4) == 0 ? method->name + 4

@@ -45,6 +45,7 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %token FUNCTION "FUNCTION" END_FUNCTION "END_FUNCTION" FUNCTION_BLOCK "FUNCTION_BLOCK"
 %token END_FUNCTION_BLOCK "END_FUNCTION_BLOCK" PROGRAM "PROGRAM" END_PROGRAM "END_PROGRAM"
 %token VAR "VAR" VAR_INPUT "VAR_INPUT" VAR_OUTPUT "VAR_OUTPUT" VAR_IN_OUT "VAR_IN_OUT" VAR_TEMP "VAR_TEMP"
+%token VAR_STAT "VAR_STAT" VAR_INST "VAR_INST"
 %token VAR_GLOBAL "VAR_GLOBAL" VAR_EXTERNAL "VAR_EXTERNAL" END_VAR "END_VAR"
 %token CONSTANT "CONSTANT" RETAIN "RETAIN" NON_RETAIN "NON_RETAIN" AT "AT"
 %token METHOD "METHOD" END_METHOD "END_METHOD" ACTION "ACTION" END_ACTION "END_ACTION" PROPERTY "PROPERTY"
@@ -155,6 +156,7 @@ sections: %empty { $$ = (vars_t){0}; } | sections section { $$ = $1; ST_JOIN($$,
 section: begin_section qualifiers_of_section declarations END_VAR { $$ = $3; };
 begin_section: VAR { parsing->section = V_LOCAL; } | VAR_INPUT { parsing->section = V_INPUT; }
     | VAR_OUTPUT { parsing->section = V_OUTPUT; } | VAR_IN_OUT { parsing->section = V_IN_OUT; }
+    | VAR_STAT { parsing->section = V_STATIC; } | VAR_INST { parsing->section = V_INSTANCE; }
     | VAR_TEMP { parsing->section = V_TEMP; } | VAR_EXTERNAL { parsing->section = V_EXTERNAL; };
 qualifiers_of_section: qualifiers { parsing->qualifiers = $1; };
 qualifiers: %empty { $$ = 0; } | qualifiers qualifier { $$ = $1 | $2; };

@@ -50,6 +50,7 @@ struct st {
     unit_t *unit;         /**< that is checked or emitted */
     int resolving;        /**< types that are being resolved */
     int loops;            /**< around the statement that is checked */
+    bool before_all;      /**< the initial value of a VAR_STAT is checked: there is no instance */
     st_error_t errors[ST_ERRORS];
     unsigned error_count, suppressed;
     FILE *out;
@@ -203,6 +204,8 @@ const char *cm1e_st_method_name(st_t *st, const char *prefix, const unit_t *owne
 unit_t *cm1e_st_find_method(const unit_t *unit, const char *name);
 /** Whether `unit` is `other`, extends it, or implements it. */
 bool cm1e_st_is_a(const st_t *st, const unit_t *unit, const unit_t *other);
+/** As others see it: that of a method with its block, of a property "Block.Name.get". */
+const char *cm1e_st_shown_name(st_t *st, const unit_t *unit);
 /** Its name as it is written; that of a property is "get name" or "set name". */
 const char *cm1e_st_plain_name(const unit_t *method);
 /** A method of an interface or of those that it extends; NULL: there is none. */

@@ -192,6 +192,7 @@ struct stmt {
 
 typedef enum section {
     V_LOCAL, V_INPUT, V_OUTPUT, V_IN_OUT, V_GLOBAL, V_EXTERNAL, V_TEMP, V_RESULT, V_MEMBER, V_ENUMERATOR,
+    V_STATIC, V_INSTANCE, /**< VAR_STAT and VAR_INST until their unit is complete: then they are V_EXTERNAL */
 } section_t;
 
 enum { Q_CONSTANT = 1, Q_RETAIN = 2, Q_NON_RETAIN = 4, Q_R_EDGE = 8, Q_F_EDGE = 16, Q_PUBLIC = 32,
@@ -215,7 +216,8 @@ struct var {
     int state;           /**< of its value: 0 new, 1 being computed, 2 known */
     unit_t *unit;        /**< whose variable it is; NULL: global, member */
     type_t *owner;       /**< of an enumerator: its type */
-    var_t *global;       /**< of VAR_EXTERNAL */
+    var_t *global;       /**< of VAR_EXTERNAL; of VAR_STAT and VAR_INST where its value is */
+    unit_t *keeper;      /**< the value of a VAR_STAT or VAR_INST: the unit that alone knows it */
     bool init_checked;   /**< what FB_Init needs has been looked at */
     bool controls;       /**< a FOR counts with it at the moment */
     var_t *next;
