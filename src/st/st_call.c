@@ -185,6 +185,13 @@ static void check_output(st_t *st, const unit_t *unit, const expr_t *callee, arg
     arg->source = cm1e_st_coerce(st, output, arg->value->type, "the variable behind =>");
 }
 
+/** An array of any length takes any array with its elements and dimensions. */
+static bool takes_array(const type_t *open, const type_t *given)
+{
+    return open->open && given->kind == T_ARRAY && given->element == open->element &&
+           given->dimension_count == open->dimension_count;
+}
+
 static void check_in_out(st_t *st, arg_t *arg)
 {
     var_t *var = arg->parameter;
@@ -195,7 +202,8 @@ static void check_in_out(st_t *st, arg_t *arg)
         arg->value = cm1e_st_coerce(st, arg->value, var->type, var->name);
     if (arg->value->type->kind == T_WRONG || var->type->kind == T_WRONG)
         return;
-    if (arg->value->type != var->type || (!value && !cm1e_st_is_place(arg->value)))
+    const bool same = arg->value->type == var->type || takes_array(var->type, arg->value->type);
+    if (!same || (!value && !cm1e_st_is_place(arg->value)))
         cm1e_st_report(st, arg->place, "\"%s\" is a VAR_IN_OUT of type %s and needs a variable of this type, not %s",
                        var->name, cm1e_st_type_name(var->type), cm1e_st_type_name(arg->value->type));
     else if (arg->value->bit)

@@ -65,6 +65,8 @@ void cm1e_st_emit_call(st_t *st, const expr_t *call);
 bool cm1e_st_is_variable(const expr_t *expr);
 /** The address of a variable; of a value for VAR_IN_OUT CONSTANT that of a copy, which ends with the call. */
 void cm1e_st_emit_address(st_t *st, const expr_t *expr);
+/** The same for a VAR_IN_OUT, which may be an array of any length. */
+void cm1e_st_emit_given(st_t *st, const var_t *parameter, const expr_t *expr);
 /* st_emit_object.c */
 /** The name of the function that a call of a method calls, and the instance that it gets. */
 void cm1e_st_emit_method(st_t *st, const expr_t *call);

@@ -27,6 +27,26 @@ void cm1e_st_emit_address(st_t *st, const expr_t *expr)
     cm1e_st_put(st, variable ? "" : "}");
 }
 
+static void emit_bounds(st_t *st, const type_t *array, bool last)
+{
+    cm1e_st_put(st, ", {");
+    for (int i = 0; i < array->dimension_count; i++)
+        cm1e_st_put(st, "%s%lld", i ? ", " : "", (long long)(last ? array->dimensions[i].last : array->dimensions[i].first));
+    cm1e_st_put(st, "}");
+}
+
+void cm1e_st_emit_given(st_t *st, const var_t *parameter, const expr_t *expr)
+{
+    const bool opens = parameter->type->open && !expr->type->open;
+    cm1e_st_put(st, opens ? "&(st_open_t){" : "");
+    cm1e_st_emit_address(st, expr);
+    if (!opens)
+        return;
+    emit_bounds(st, expr->type, false);
+    emit_bounds(st, expr->type, true);
+    cm1e_st_put(st, "}");
+}
+
 /** An input that a call leaves out has its initial value, or 0. */
 static void emit_missing(st_t *st, const expr_t *call, const var_t *var)
 {
@@ -71,7 +91,7 @@ static void emit_function_call(st_t *st, const expr_t *call)
         else if (var->section == V_INPUT)
             cm1e_st_emit_expression(st, arg->value);
         else if (arg && arg->value)
-            cm1e_st_emit_address(st, arg->value);
+            cm1e_st_emit_given(st, var, arg->value);
         else
             cm1e_st_put(st, "NULL");
     }
@@ -188,6 +208,10 @@ static void emit_standard(st_t *st, const expr_t *call)
         cm1e_st_put(st, "(DINT)st_round(trunc((double)");
         emit_args(st, call->args);
         cm1e_st_put(st, "), INT32_MIN, INT32_MAX)");
+    } else if (call->args && call->args->value->type->open) { /* LOWER_BOUND, UPPER_BOUND */
+        cm1e_st_emit_expression(st, call->args->value);
+        cm1e_st_put(st, ".%s[%lld]", name[0] == 'L' ? "first" : "last",
+                    (long long)call->args->next->value->value.integer - 1);
     } else if (strcmp(name, "TIME") == 0) {
         cm1e_st_put(st, "cm1e_scan_time()");
     } else if (strcmp(name, "__ISVALIDREF") == 0) {

@@ -87,10 +87,37 @@ static void emit_variable(st_t *st, const var_t *var)
         cm1e_st_put(st, pointer ? "(*self->%s)" : "self->%s%s", var->c_name, var->qualifiers & Q_EDGE ? "edge" : "");
 }
 
+/** An element of an array of any length. */
+static void emit_open_index(st_t *st, const expr_t *expr)
+{
+    int dimension = 0;
+    cm1e_st_put(st, "((%s *)", cm1e_st_c_type(st, expr->a->type->element));
+    cm1e_st_emit_expression(st, expr->a);
+    cm1e_st_put(st, ".at)[");
+    for (int i = 1; i < expr->a->type->dimension_count; i++)
+        cm1e_st_put(st, "(");
+    for (const arg_t *arg = expr->args; arg; arg = arg->next, dimension++) {
+        cm1e_st_put(st, dimension > 0 ? ") * st_width(&" : "st_open_at((int64_t)(");
+        if (dimension > 0) {
+            cm1e_st_emit_expression(st, expr->a);
+            cm1e_st_put(st, ", %d) + st_open_at((int64_t)(", dimension);
+        }
+        cm1e_st_emit_expression(st, arg->value);
+        cm1e_st_put(st, "), &");
+        cm1e_st_emit_expression(st, expr->a);
+        cm1e_st_put(st, ", %d, ST_HERE)", dimension);
+    }
+    cm1e_st_put(st, "]");
+}
+
 static void emit_index(st_t *st, const expr_t *expr)
 {
     const type_t *type = expr->a->type;
     int dimension = 0;
+    if (type->open) {
+        emit_open_index(st, expr);
+        return;
+    }
     cm1e_st_emit_expression(st, expr->a);
     cm1e_st_put(st, ".at[");
     for (int i = 1; i < type->dimension_count; i++)

@@ -53,7 +53,7 @@ static void emit_input(st_t *st, const arg_t *arg)
     cm1e_st_place(st, arg->place);
     if (var->section == V_IN_OUT) {
         cm1e_st_line(st, "fb->%s = ", var->c_name);
-        cm1e_st_emit_address(st, arg->value);
+        cm1e_st_emit_given(st, var, arg->value);
     } else if (var->type->kind == T_STRING) {
         cm1e_st_line(st, "%s(fb->%s.text, %llu, ", cm1e_st_text_assign(var->type), var->c_name,
                      (unsigned long long)var->type->size);
@@ -66,11 +66,13 @@ static void emit_input(st_t *st, const arg_t *arg)
     cm1e_st_put(st, ";\n");
 }
 
-/** A value for VAR_IN_OUT CONSTANT ends with the call: methods that are called later do not see it. */
+/** A value for VAR_IN_OUT CONSTANT, and the bounds of an array of any length, end with the call: methods that are called
+ *  later do not see them. */
 static void emit_ends(st_t *st, const expr_t *call)
 {
     for (const arg_t *arg = call->args; arg; arg = arg->next)
-        if (arg->value && arg->parameter && arg->parameter->section == V_IN_OUT && !cm1e_st_is_variable(arg->value))
+        if (arg->value && arg->parameter && arg->parameter->section == V_IN_OUT &&
+            (arg->parameter->type->open || !cm1e_st_is_variable(arg->value)))
             cm1e_st_line(st, "fb->%s = NULL;\n", arg->parameter->c_name);
 }
 

@@ -147,7 +147,9 @@ void cm1e_st_emit_type(st_t *st, type_t *type)
         emit_reference(st, type);
         return;
     }
-    if (type->kind == T_ARRAY) {
+    if (type->open) {
+        cm1e_st_emit_type(st, type->element);
+    } else if (type->kind == T_ARRAY) {
         cm1e_st_emit_type(st, type->element);
         const char *element = cm1e_st_c_type(st, type->element);
         cm1e_st_put(st, "typedef struct %s {\n    %s at[%llu];\n} %s;\n", type->c_name, element,

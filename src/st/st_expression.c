@@ -310,7 +310,7 @@ static void element(st_t *st, expr_t *expr)
     }
     const arg_t *arg = expr->args;
     for (int i = 0; i < count; i++, arg = arg->next)
-        if (arg->value->value.known && (arg->value->value.integer < type->dimensions[i].first ||
+        if (arg->value->value.known && !type->open && (arg->value->value.integer < type->dimensions[i].first ||
                                         arg->value->value.integer > type->dimensions[i].last))
             cm1e_st_report(st, arg->value->place, "the index %lld is outside %lld..%lld",
                            (long long)arg->value->value.integer, (long long)type->dimensions[i].first,

@@ -76,7 +76,7 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %type <type> type simple_type result base
 %type <vars> names declarations declaration sections section enumerators members member parts
 %type <var> enumerator
-%type <number> text_type qualifiers qualifier modifiers
+%type <number> stars text_type qualifiers qualifier modifiers
 %type <args> interface_names
 %type <text> with dotted
 %%
@@ -166,6 +166,14 @@ declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1,
     | names address ':' '(' enumerators ')' initial ';' {
         cm1e_st_report(ST, @4, "an enumeration needs a name here: declare it with TYPE ... END_TYPE");
         $$ = (vars_t){0}; }
+    | names address ':' ARRAY '[' stars ']' OF type ';' {
+        type_t *type = cm1e_st_type_node(ST, T_ARRAY, @4, NULL);
+        type->open = true;
+        type->dimension_count = $6 < ST_DIMENSIONS ? $6 : ST_DIMENSIONS;
+        type->element = $9;
+        if (parsing->section != V_IN_OUT || $6 > ST_DIMENSIONS)
+            cm1e_st_report(ST, @6, "ARRAY[*] is for VAR_IN_OUT, and has at most %d dimensions", ST_DIMENSIONS);
+        $$ = cm1e_st_vars(parsing, $1, $2, type, NULL); }
     | names address ':' type NAME ';' { $$ = cm1e_st_vars(parsing, $1, $2, $4, NULL);
         cm1e_st_edge(parsing, @5, $5, $1); }
     | names address ':' dotted '(' member_inits ')' initial ';' {
@@ -173,6 +181,7 @@ declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1,
         for (var_t *var = $1.first; var; var = var->next)
             var->init_args = $6.first; }
     | error ';' { $$ = (vars_t){0}; };
+stars: '*' { $$ = 1; } | stars ',' '*' { $$ = $1 + 1; };
 names: NAME { var_t *var = cm1e_st_var_name(parsing, @1, $1); $$ = (vars_t){var, var}; }
     | names ',' NAME { var_t *var = cm1e_st_var_name(parsing, @3, $3); $$ = $1; ST_APPEND($$, var); };
 address: %empty { $$ = NULL; } | AT ADDRESS { $$ = cm1e_st_named(ST, E_ADDRESS, @2, NULL, $2); };
@@ -413,6 +422,8 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
                                                                      : "; a value is assigned by \":=\"");
     if (strcmp(parsing->last, ":=") == 0 && is_behind_expression(context))
         snprintf(text, sizeof text, "; values are compared by \"=\", and an assignment is a statement of its own");
+    if (strcmp(parsing->last, "*") == 0 && strcmp(parsing->before, "[") == 0)
+        snprintf(text, sizeof text, "; ARRAY[*] is for variables of VAR_IN_OUT only");
     if (strcmp(parsing->last, "&") == 0 && strcmp(parsing->before, "&") == 0)
         snprintf(text, sizeof text, "; AND is a single \"&\"");
     if (strcasecmp(parsing->last, "THEN") == 0)

@@ -81,6 +81,21 @@ ST_UNUSED static inline size_t st_at(int64_t index, int64_t first, int64_t last,
 }
 #define ST_AT(index, first, last) st_at((int64_t)(index), first, last, ST_HERE)
 
+/** ARRAY[*]: an array of a caller, and its bounds. */
+typedef struct st_open {
+    void *at;
+    int32_t first[4], last[4];
+} st_open_t;
+
+ST_UNUSED static inline size_t st_open_at(int64_t index, const st_open_t *array, int dimension, const char *file, int line)
+{
+    return st_at(index, array->first[dimension], array->last[dimension], file, line);
+}
+ST_UNUSED static inline size_t st_width(const st_open_t *array, int dimension)
+{
+    return (size_t)((int64_t)array->last[dimension] - array->first[dimension] + 1);
+}
+
 /** A value for a variable of a subrange. */
 ST_UNUSED static inline int64_t st_within(int64_t value, int64_t first, int64_t last, const char *file, int line)
 {

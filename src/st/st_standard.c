@@ -24,6 +24,7 @@ typedef enum rule {
     R_REF,
     R_VALID,
     R_SIZE,
+    R_BOUND,     /* an array and the number of a dimension */
     R_STRING,    /* the letters of `types` say which: S string, I integer; the first one is the result */
 } rule_t;
 
@@ -52,6 +53,7 @@ static const standard_t standards[] = {
     {"LE", R_COMPARE, 2, 2, OP_LE, "", "IN1 IN2"}, {"LT", R_COMPARE, 2, 2, OP_LT, "", "IN1 IN2"},
     {"TRUNC", R_TRUNC, 1, 1, 0, "", "IN"}, {"MOVE", R_MOVE, 1, 1, 0, "", "IN"}, {"TIME", R_NOW, 0, 0, 0, "", ""},
     {"REF", R_REF, 1, 1, 0, "", ""}, {"ADR", R_REF, 1, 1, 0, "", ""},
+    {"LOWER_BOUND", R_BOUND, 2, 2, 0, "", "ARR DIM"}, {"UPPER_BOUND", R_BOUND, 2, 2, 0, "", "ARR DIM"},
     {"__ISVALIDREF", R_VALID, 1, 1, 0, "", ""}, {"SIZEOF", R_SIZE, 1, 1, 0, "", ""},
     {"LEN", R_STRING, 1, 1, 0, "IS", "IN"}, {"LEFT", R_STRING, 2, 2, 0, "SSI", "IN L"},
     {"RIGHT", R_STRING, 2, 2, 0, "SSI", "IN L"}, {"MID", R_STRING, 3, 3, 0, "SSII", "IN L P"},
@@ -202,6 +204,8 @@ static bool reference(st_t *st, expr_t *call)
     while ((root->kind == E_MEMBER || root->kind == E_INDEX) && root->a)
         root = root->a;
     const var_t *var = root->kind == E_NAME ? root->var : NULL;
+    if (of->type->open)
+        return refuse(st, call, of, "a variable whose size is known");
     if (of->bit || (var && (var->section == V_TEMP || (var->unit && cm1e_st_is_function(var->unit))))) {
         cm1e_st_report(st, of->place, of->bit ? "there is no reference to a single bit"
                                               : "this variable ends with the call: a reference to it would outlive it");
@@ -209,6 +213,27 @@ static bool reference(st_t *st, expr_t *call)
     }
     cm1e_st_note_change(st, of);
     call->type = cm1e_st_ref_type(st, of->type);
+    return true;
+}
+
+/** Of an array of any length it is known when the program runs. */
+static bool bound(st_t *st, expr_t *call)
+{
+    const type_t *array = call->args->value->type;
+    expr_t *number = call->args->next->value = cm1e_st_settle(st, call->args->next->value);
+    if (array->kind != T_ARRAY)
+        return refuse(st, call, call->args->value, "an array");
+    const int64_t n = number->value.integer;
+    if (!cm1e_st_is_integer(number->type->kind) || !number->value.known || n < 1 || n > array->dimension_count) {
+        cm1e_st_report(st, number->place, "the number of a dimension of %s is known before the program runs: 1%s",
+                       array->name, array->dimension_count > 1 ? ", 2 and so on" : "");
+        return false;
+    }
+    const dimension_t *dimension = &array->dimensions[n - 1];
+    call->type = st->elementary[T_DINT];
+    if (!array->open)
+        call->value = (constant_t){.known = true, .integer = call->standard->name[0] == 'L' ? dimension->first
+                                                                                          : dimension->last};
     return true;
 }
 
@@ -246,7 +271,10 @@ static bool give_type(st_t *st, expr_t *call)
         call->args->value = first->a;
         call->type = st->elementary[T_BOOL];
         return true;
+    case R_BOUND: return bound(st, call);
     case R_SIZE:
+        if (first->type->open)
+            return refuse(st, call, first, "a variable whose size is known");
         call->type = st->elementary[T_UDINT];
         call->value = (constant_t){.known = true, .integer = (int64_t)cm1e_st_settle(st, first)->type->size};
         return true;

@@ -36,6 +36,8 @@ static void assign(st_t *st, stmt_t *stmt)
     cm1e_st_note_change(st, target);
     if (target->type->kind == T_BLOCK)
         cm1e_st_report(st, stmt->place, "an instance of a function block cannot be assigned");
+    if (target->type->open)
+        cm1e_st_report(st, stmt->place, "an array of any length is assigned element by element");
     stmt->value = cm1e_st_coerce(st, stmt->value, target->type,
                                  target->var ? target->var->name : target->name ? target->name : "the variable");
     if (stmt->value->impure && (target->kind == E_INDEX || target->kind == E_DEREF || target->kind == E_MEMBER))

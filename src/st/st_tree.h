@@ -81,6 +81,7 @@ struct type {
     type_t *element;         /**< of an array, of a reference; of an ENUM its base */
     dimension_t dimensions[ST_DIMENSIONS];
     int dimension_count;
+    bool open;               /**< ARRAY[*]: the bounds are those of the variable that a VAR_IN_OUT has in a call */
     expr_t *length_expr;     /**< of STRING */
     int64_t length;
     bool wide;               /**< WSTRING: a T_STRING whose characters have 16 bits */

@@ -11,12 +11,18 @@ static bool same_dimensions(const type_t *a, const type_t *b)
     for (int i = 0; i < a->dimension_count; i++)
         if (a->dimensions[i].first != b->dimensions[i].first || a->dimensions[i].last != b->dimensions[i].last)
             return false;
-    return a->dimension_count == b->dimension_count;
+    return a->dimension_count == b->dimension_count && a->open == b->open;
 }
 
 static void name_array(st_t *st, type_t *type)
 {
     const char *bounds = "", *parts = "";
+    if (type->open) {
+        type->name = cm1e_st_format(st->arena, "ARRAY [*%.*s] OF %s", 3 * (type->dimension_count - 1), ", *, *, *",
+                                    cm1e_st_type_name(type->element));
+        type->c_name = "st_open_t";
+        return;
+    }
     for (int i = 0; i < type->dimension_count; i++) {
         const dimension_t *d = &type->dimensions[i];
         bounds = cm1e_st_format(st->arena, "%s%s%lld..%lld", bounds, i ? ", " : "", (long long)d->first,
@@ -40,7 +46,7 @@ static type_t *resolve_array(st_t *st, type_t *type)
 {
     uint64_t count = 1;
     type->element = cm1e_st_resolve(st, type->element);
-    for (int i = 0; i < type->dimension_count; i++) {
+    for (int i = 0; i < type->dimension_count && !type->open; i++) {
         dimension_t *d = &type->dimensions[i];
         if (!cm1e_st_integer_constant(st, d->low, &d->first, "the lower bound of an array") ||
             !cm1e_st_integer_constant(st, d->high, &d->last, "the upper bound of an array"))

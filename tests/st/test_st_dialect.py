@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What TwinCAT and CODESYS have and the standard has not, or has since its 3rd edition: VAR_STAT and VAR_INST. Programs by
+"""What TwinCAT and CODESYS have and the standard has not, or has since its 3rd edition: VAR_STAT and VAR_INST, ARRAY[*]. Programs by
 the rules of their manuals, and the values that their variables have then; what is refused is in test_st_errors.py.
 
 test_st_dialect.py BIN-DIRECTORY
@@ -10,7 +10,7 @@ import tempfile
 from st_host import Host
 
 BIN = sys.argv[1]
-# (name, source, {variable: value after two cycles})
+# (name, source, cycles, {variable: value behind them})
 PROGRAMS = [
     ("kept", """
 FUNCTION_BLOCK FB_A
@@ -39,22 +39,86 @@ VAR_STAT RETAIN s : STRING := 'x'; END_VAR
 a1(); a2(); n := a1.M(a := 1); n := a1.M(a := F()); m := a2.M(a := 5); o := b.M(a := 9);
 p := a1.P; p := a1.P; p := a2.P; a1.P := 4; s := CONCAT(s, 'y');
 END_PROGRAM
-""", {"FB_A.nCalls": 19, "FB_A.aBuf[3]": 19, "FB_A.M.nCalls": 8, "Main.n": 1, "Main.m": 5, "Main.o": 60, "Main.p": 2,
+""", 2, {"FB_A.nCalls": 19, "FB_A.aBuf[3]": 19, "FB_A.M.nCalls": 8, "Main.n": 1, "Main.m": 5, "Main.o": 60, "Main.p": 2,
       "Main.a1.FB_A.M.nLast": 2, "Main.b.FB_B.M.nLast": 52, "Main.b.FB_A.M.nLast": 9, "Main.a1.FB_A.P.get.n": 4,
       "Main.a1.mine": 4, "FB_A.P.set.q": 8, "Main.s": b"xyy"}),
+    ("open", """
+TYPE ST_P : STRUCT a : INT; l : ARRAY[2..4] OF INT := [7,8,9]; END_STRUCT END_TYPE
+VAR_GLOBAL CONSTANT gTab : ARRAY[-1..1] OF INT := [10, 20, 30]; END_VAR
+FUNCTION F_Sum : DINT
+VAR_IN_OUT CONSTANT a : ARRAY[*] OF INT; END_VAR
+VAR i : DINT; END_VAR
+FOR i := LOWER_BOUND(a, 1) TO UPPER_BOUND(a, 1) DO F_Sum := F_Sum + a[i]; IF a[i] = 99 THEN CONTINUE; END_IF END_FOR
+END_FUNCTION
+FUNCTION F_Fill : BOOL
+VAR_IN_OUT m : ARRAY[*,*] OF LREAL; END_VAR
+VAR_INPUT k : LREAL; END_VAR
+VAR i, j : DINT; END_VAR
+FOR i := LOWER_BOUND(ARR := m, DIM := 1) TO UPPER_BOUND(m, 1) DO
+ FOR j := LOWER_BOUND(m, 2) TO UPPER_BOUND(m, 2) DO m[i, j] := k * i + j; END_FOR END_FOR
+END_FUNCTION
+FUNCTION F_Sort
+VAR_IN_OUT a : ARRAY[*] OF INT; END_VAR
+VAR i, j : DINT; t : INT; END_VAR
+FOR i := LOWER_BOUND(a,1) TO UPPER_BOUND(a,1) - 1 DO FOR j := i + 1 TO UPPER_BOUND(a,1) DO IF a[j] < a[i] THEN t := a[i]; a[i] := a[j]; a[j] := t; END_IF END_FOR END_FOR
+END_FUNCTION
+FUNCTION F_Outer : DINT
+VAR_IN_OUT b : ARRAY[*] OF INT; END_VAR
+F_Sort(a := b); F_Outer := F_Sum(a := b); b[LOWER_BOUND(b,1)].0 := TRUE;
+END_FUNCTION
+INTERFACE I_X METHOD Use : DINT VAR_IN_OUT a : ARRAY[*] OF INT; END_VAR END_METHOD END_INTERFACE
+FUNCTION_BLOCK FB_A IMPLEMENTS I_X
+VAR_IN_OUT buf : ARRAY[*] OF ST_P; END_VAR
+VAR_OUTPUT n : DINT; END_VAR
+METHOD Use : DINT VAR_IN_OUT a : ARRAY[*] OF INT; END_VAR a[1] := a[1] + 1; Use := F_Sum(a); END_METHOD
+METHOD Inner : INT buf[1].a := 5; Inner := buf[1].l[3]; END_METHOD
+n := Inner(); n := n + UPPER_BOUND(buf, 1); buf[2].l[2] := 77;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK FB_B EXTENDS FB_A
+METHOD Use : DINT VAR_IN_OUT a : ARRAY[*] OF INT; END_VAR Use := SUPER^.Use(a := a) * 2; END_METHOD
+SUPER^();
+END_FUNCTION_BLOCK
+PROGRAM Main VAR
+ x : ARRAY[1..3] OF INT := [3,1,2]; y : ARRAY[0..4] OF INT := [5,4,3,2,1]; z : ARRAY[1..2] OF ARRAY[1..3] OF INT; m : ARRAY[0..1,-1..1] OF LREAL; m1 : ARRAY[1..1,5..6] OF LREAL;
+ s1, s2, s3, s4, s5, s6 : DINT; p : ARRAY[1..2] OF ST_P; f : FB_A; g : FB_B; i : I_X; st : ST_P; o : DINT; END_VAR
+VAR CONSTANT c : DINT := UPPER_BOUND(gTab, 1); END_VAR
+s1 := F_Sum(gTab); s2 := F_Outer(b := y); F_Sort(x); s3 := F_Sum(x); z[2][3] := 6; s4 := F_Sum(a := z[2]);
+F_Fill(m, 10.0); F_Fill(m := m1, k := 1);
+f(buf := p); g(buf := p, n => o); i := g; s5 := i.Use(a := x); s6 := F_Sum(a := st.l);
+END_PROGRAM
+""", 1,
+     {"Main.s1": 60, "Main.s2": 15, "Main.y[0]": 1, "Main.x[1]": 2, "Main.s3": 6, "Main.s4": 6, "Main.m[1,-1]": 9.0,
+      "Main.m[1,1]": 11.0, "Main.m1[1,6]": 7.0, "Main.f.n": 10, "Main.o": 10, "Main.p[2].l[2]": 77,
+      "Main.p[1].a": 5, "Main.s5": 14, "Main.s6": 24}),
+    ("open_texts", """
+FUNCTION G : INT VAR_IN_OUT a : ARRAY[*] OF STRING(5); END_VAR a[1] := 'abcdefg'; G := LEN(a[2]); END_FUNCTION
+PROGRAM Main VAR x : ARRAY[1..3] OF STRING(5) := [3('ab')]; n : INT; END_VAR n := G(a := x); END_PROGRAM
+""", 1, {"Main.x[1]": b"abcde", "Main.n": 2}),
+]
+OPEN = "FUNCTION_BLOCK F VAR_IN_OUT a : ARRAY[*] OF INT; END_VAR VAR_INPUT at1 : INT; END_VAR METHOD M a[1] := 1; END_METHOD " \
+       "a[at1] := 1; END_FUNCTION_BLOCK PROGRAM Main VAR x : ARRAY[1..3] OF INT; f : F; END_VAR {} END_PROGRAM"
+# (source, words of what stops it)
+FAULTS = [
+    (OPEN.format("f(a := x, at1 := 4);"), "the index 4 is outside 1..3"),
+    (OPEN.format("f(a := x, at1 := 0);"), "the index 0 is outside 1..3"),
+    (OPEN.format("f(a := x, at1 := 1); f.M();"), "has no variable yet"),
 ]
 faults = []
 
 
 with tempfile.TemporaryDirectory() as folder:
-    for name, source, expected in PROGRAMS:
+    for name, source, cycles, expected in PROGRAMS:
         host = Host(BIN, folder, source, name)
-        if not (host.run() and host.run()):
+        if not all(host.run() for _ in range(cycles)):
             faults.append(f"{name}: {host.fault()}")
             continue
         found = {variable: host.value(variable) if variable in host.variables else None for variable in expected}
         faults += [f"{name}: {variable} is {found[variable]!r}; expected {expected[variable]!r}"
                    for variable in expected if found[variable] != expected[variable]]
+    for number, (source, words) in enumerate(FAULTS):
+        host = Host(BIN, folder, source, f"fault{number}")
+        if host.run() or words not in host.fault()[1]:
+            faults.append(f"{source}: {host.fault()}")
 if faults:
     sys.exit("\n".join(faults) + f"\n{len(faults)} faults")
-print(f"{len(PROGRAMS)} programs")
+print(f"{len(PROGRAMS) + len(FAULTS)} programs")
