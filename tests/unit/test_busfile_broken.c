@@ -62,6 +62,8 @@ static const struct {
     {"axes: [{}]\nbus: {}\naxes: [{}]\n", "3:1", {"'axes' is given twice"}},
     {"axes: [{[a]: 1}]\n", "1:9", {"unknown key a list"}},
     {"axes: [{<<: {}}]\n", "1:9", {"unknown key '<<'"}},
+    {"axes: [{kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk: 1}]\n", "1:9", {"unknown key 'kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk' in"}},
+    {"axes: [{kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk: 1}]\n", "1:9", {"unknown key 'kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk...' in"}},
     {"axes: [{\"na\\0me\": 1}]\n", "1:9", {"unknown key 'na?me'"}},
     /* missing things */
     {"", "1:1", {"the file is empty", "bus and axes"}},

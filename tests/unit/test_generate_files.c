@@ -86,6 +86,13 @@ static void test_image_of_an_sii_is_seen_by_its_words(void)
     file.bytes[14] ^= 1; /* checksum: version and size still say what it is */
     TEST_ASSERT_EQUAL_INT(CM1E_FILE_SII, cm1e_file_recognise(file.bytes, file.size));
     TEST_ASSERT_EQUAL_INT(CM1E_FILE_UNKNOWN, cm1e_file_recognise(file.bytes, 127));
+    for (int first = 0; first < 256; first++) /* but for the two marks of UTF-16 */
+        for (int second = 0; second < 256; second++) {
+            const bool mark = (first == 0xFF && second == 0xFE) || (first == 0xFE && second == 0xFF);
+            file.bytes[0] = (uint8_t)first;
+            file.bytes[1] = (uint8_t)second;
+            TEST_ASSERT_EQUAL_INT(mark ? CM1E_FILE_UNKNOWN : CM1E_FILE_SII, cm1e_file_recognise(file.bytes, file.size));
+        }
     memset(file.bytes, 0xFF, file.size); /* an erased EEPROM */
     TEST_ASSERT_EQUAL_INT(CM1E_FILE_UNKNOWN, cm1e_file_recognise(file.bytes, file.size));
 }
@@ -324,6 +331,9 @@ static void test_unknown_files_are_refused(void)
     TEST_ASSERT_NULL(findings);
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "EtherCATInfo"));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, cm1e_generate_from(&file, "nothing", 7, CM1E_FILE_ESI, 0, &diag));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, cm1e_generate_from(&file, NULL, 0, CM1E_FILE_ESI, 0, &diag));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_generate_from(&file, NULL, 7, CM1E_FILE_ESI, 0, &diag));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, cm1e_generate_from(NULL, "nothing", 7, CM1E_FILE_ESI, 0, &diag));
     generate(&file, &(cm1e_generate_options_t){.format = CM1E_FILE_ESI});
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_UNSUPPORTED,
                           cm1e_generate_from(&again, file.bytes, file.size, CM1E_FILE_ENI, 0, &diag));
