@@ -495,6 +495,19 @@ static void test_only_listed_axes_are_checked(void)
 }
 
 /* At a cycle time of 2 ms; ETG.2000, OpMode, and ETG.1000.4 for SYNC1. */
+static void test_pulses_of_any_axis_need_clocks(void)
+{
+    TEST_ASSERT_FALSE(cm1e_config_uses_clocks(&config));
+    config.distributed_clocks = true;
+    TEST_ASSERT_TRUE(cm1e_config_uses_clocks(&config));
+    config.distributed_clocks = false;
+    for (int i = 0; i < 2; i++) {
+        config.axes[i].dc.sync0_us = 1000;
+        TEST_ASSERT_TRUE(cm1e_config_uses_clocks(&config));
+        config.axes[i].dc.sync0_us = 0;
+    }
+}
+
 static void test_the_pulses_of_a_mode(void)
 {
     static const struct { cm1e_dc_facts_t facts; double shift_us, sync0_us, sync1_us, shifted_us; } rows[] = {
@@ -570,6 +583,7 @@ int main(void)
     RUN_TEST(test_old_firmware_runs_at_1_ms_only);
     RUN_TEST(test_virtual_time_needs_the_simulated_segment);
     RUN_TEST(test_only_listed_axes_are_checked);
+    RUN_TEST(test_pulses_of_any_axis_need_clocks);
     RUN_TEST(test_the_pulses_of_a_mode);
     RUN_TEST(test_the_data_of_an_sdo_are_those_of_its_slave);
     return UNITY_END();

@@ -64,6 +64,20 @@ static void test_what_is_not_known_is_passed_over(void)
     TEST_ASSERT_EQUAL(CM1E_SM_UNUSED, document.devices.at[0].sync_managers.at[0].manager.use);
 }
 
+static void test_numbers_that_are_not_there_are_0(void)
+{
+    reads(CONFIG("<Slave><Info/><Mailbox><CoE><InitCmds><InitCmd><Transition>PS</Transition></InitCmd></InitCmds></CoE>"
+                 "</Mailbox></Slave><ProcessImage><Inputs><Variable/></Inputs><Outputs/></ProcessImage>"));
+    const cm1e_eni_mailbox_t *mailbox = &document.devices.at[0].mailbox;
+    const cm1e_eni_sdo_t *sdo = &mailbox->sdos.at[0];
+    TEST_ASSERT_EQUAL(1, sdo->specifier);
+    TEST_ASSERT_EQUAL(0, sdo->timeout_ms + sdo->index + sdo->subindex + sdo->data.size);
+    TEST_ASSERT_FALSE(sdo->fixed || sdo->complete_access || sdo->disabled);
+    TEST_ASSERT_TRUE(document.has_image);
+    TEST_ASSERT_EQUAL(0, document.inputs.bytes + document.outputs.bytes);
+    TEST_ASSERT_EQUAL(0, document.inputs.variables.at[0].bits + document.inputs.variables.at[0].offset);
+}
+
 static void test_flags_may_be_words(void)
 {
     reads(COMMAND("<BeforeSlave>true</BeforeSlave><Cmd>8</Cmd><Ado>16</Ado><DataLength>2</DataLength>"));
@@ -229,6 +243,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_numbers_are_taken_as_files_write_them);
     RUN_TEST(test_what_is_not_known_is_passed_over);
+    RUN_TEST(test_numbers_that_are_not_there_are_0);
     RUN_TEST(test_flags_may_be_words);
     RUN_TEST(test_a_command_without_data_has_zeros_of_its_length);
     RUN_TEST(test_every_transition_and_state_is_known);
