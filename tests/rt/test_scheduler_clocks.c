@@ -307,6 +307,24 @@ START_TEST(test_the_clocks_of_a_second_bus_follow_those_of_the_first)
 }
 END_TEST
 
+/** Its clocks followed those of the other one when it was started, but nobody keeps these. */
+START_TEST(test_a_bus_that_runs_without_the_one_that_it_followed_leads_itself)
+{
+    pair_t p;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_clocks_t clocks;
+    start_pair(&p);
+    cm1e_bus_clocks(p.buses[SECOND], &clocks);
+    ck_assert(clocks.led);
+    const cm1e_task_config_t task = {.name = "program", .program = watch_clocks, .context = &p};
+    ck_assert_msg(cm1e_scheduler_create(&p.scheduler, p.buses[SECOND], NULL, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert(cm1e_scheduler_add_task(p.scheduler, &task, &diag) == CM1E_OK);
+    ck_assert_msg(cm1e_scheduler_run(p.scheduler, 2 * INT64_C(1000000000), &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert(!p.led[SECOND] && !p.left[SECOND] && p.losses[SECOND] == 0);
+    close_pair(&p);
+}
+END_TEST
+
 /** The bus that leads gets no frame for two seconds: the other one goes on by the rate that the cycle has learnt. */
 START_TEST(test_the_second_bus_keeps_the_time_of_a_first_one_that_is_silent)
 {
@@ -413,6 +431,7 @@ int main(void)
     tcase_add_test(all, test_a_drive_whose_pulses_stop_has_lost_synchronism);
     tcase_add_test(all, test_without_clocks_nothing_is_told_of_them);
     tcase_add_loop_test(all, test_the_clocks_of_a_second_bus_follow_those_of_the_first, 0, BUSES);
+    tcase_add_test(all, test_a_bus_that_runs_without_the_one_that_it_followed_leads_itself);
     tcase_add_test(all, test_the_second_bus_keeps_the_time_of_a_first_one_that_is_silent);
     tcase_add_test(all, test_the_second_bus_follows_although_it_loses_frames);
     tcase_add_test(all, test_a_clock_that_is_lost_is_told_of_its_own_bus);
