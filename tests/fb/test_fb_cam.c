@@ -11,13 +11,15 @@
 START_TEST(test_a_switch_over_the_end_of_a_turn_may_be_stated_in_any_turn)
 {
     static const double ends[][2] = {{-10.0, 10.0}, {350.0, 370.0}, {350.0, 10.0}, {710.0, 730.0}};
-    for (int i = 0; i < 4; i++) {
-        fresh(360.0);
-        add(1, ends[i][0], ends[i][1]);
+    for (int i = 0; i < 8; i++) {
+        const double degree = i < 4 ? 1.0 : 1.0 / 512.0; /* exact; a turn is less than 1 u then */
+        const double *const of = ends[i % 4];
+        fresh(360.0 * degree);
+        add(1, of[0] * degree, of[1] * degree);
         for (int place = 0; place < 360; place++) {
-            at(place, 0.0);
-            ck_assert_msg(fb.InOperation && outputs.Values == (place <= 10 || place >= 350), "%g ... %g at %d", ends[i][0],
-                          ends[i][1], place);
+            at(place * degree, 0.0);
+            ck_assert_msg(fb.InOperation && outputs.Values == (place <= 10 || place >= 350), "%g ... %g at %d", of[0],
+                          of[1], place);
         }
     }
 }
