@@ -67,12 +67,19 @@ static void test_what_is_not_known_is_passed_over(void)
 static void test_numbers_that_are_not_there_are_0(void)
 {
     reads(CONFIG("<Slave><Info/><Mailbox><CoE><InitCmds><InitCmd><Transition>PS</Transition></InitCmd></InitCmds></CoE>"
-                 "</Mailbox></Slave><ProcessImage><Inputs><Variable/></Inputs><Outputs/></ProcessImage>"));
+                 "</Mailbox><ProcessData><Sm0/><TxPdo><Entry/></TxPdo></ProcessData></Slave>"
+                 "<ProcessImage><Inputs><Variable/></Inputs><Outputs/></ProcessImage>"));
     const cm1e_eni_mailbox_t *mailbox = &document.devices.at[0].mailbox;
     const cm1e_eni_sdo_t *sdo = &mailbox->sdos.at[0];
     TEST_ASSERT_EQUAL(1, sdo->specifier);
     TEST_ASSERT_EQUAL(0, sdo->timeout_ms + sdo->index + sdo->subindex + sdo->data.size);
     TEST_ASSERT_FALSE(sdo->fixed || sdo->complete_access || sdo->disabled);
+    const cm1e_described_sync_manager_t *manager = &document.devices.at[0].sync_managers.at[0].manager;
+    TEST_ASSERT_EQUAL(0, manager->start + manager->length + manager->minimum_length + manager->maximum_length);
+    TEST_ASSERT_EQUAL(0, manager->control);
+    TEST_ASSERT_FALSE(manager->enable || manager->length_given);
+    const cm1e_described_pdo_t *pdo = &document.devices.at[0].pdos.at[0];
+    TEST_ASSERT_EQUAL(0, pdo->index + pdo->entries.at[0].index + pdo->entries.at[0].subindex + pdo->entries.at[0].bits);
     TEST_ASSERT_TRUE(document.has_image);
     TEST_ASSERT_EQUAL(0, document.inputs.bytes + document.outputs.bytes);
     TEST_ASSERT_EQUAL(0, document.inputs.variables.at[0].bits + document.inputs.variables.at[0].offset);
