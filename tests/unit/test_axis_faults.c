@@ -248,6 +248,28 @@ static void test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is(vo
     }
 }
 
+/** In CSV the motor goes on through a silence, and its motion from where it is then. */
+static void test_a_motion_by_velocity_goes_on_evenly_after_a_silence(void)
+{
+    for (int silent = CM1E_AXIS_RIDDEN_OUT_CYCLES + 1; silent <= 40; silent++) {
+        by_velocity_within(0.0);
+        const cm1e_command_id_t id = bench_move_to(20.0, 10.0);
+        bench_cycles(500);
+        received = CM1E_ERROR_TIMEOUT;
+        bench_cycles(silent);
+        received = CM1E_OK;
+        csv_worst_change = 0;
+        bench_cycles(50);
+        TEST_ASSERT_LESS_OR_EQUAL_INT32(50, csv_worst_change); /* 0.001 u/s */
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, 10.0, bench_info().set_velocity);
+        bench_cycles(3000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, 20.0, bench_info().actual_position);
+        bench_end();
+    }
+    bench_start();
+}
+
 /** In CSV the motor goes on while the cycle pauses, here beyond its software limit. */
 static void test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit(void)
 {
@@ -449,6 +471,7 @@ int main(void)
     RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
     RUN_TEST(test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is);
+    RUN_TEST(test_a_motion_by_velocity_goes_on_evenly_after_a_silence);
     RUN_TEST(test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit);
     RUN_TEST(test_motor_ahead_after_a_pause_is_judged_by_the_speed_that_it_had);
     RUN_TEST(test_torque_stays_while_the_motor_turns_for_two_seconds_at_most);
