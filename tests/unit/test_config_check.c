@@ -5,6 +5,7 @@
 
 #include "cm1e/config.h"
 #include "config/clock_pulses.h"
+#include "config/io_types.h"
 #include "unity.h"
 
 static cm1e_bus_config_t config;
@@ -495,6 +496,27 @@ static void test_only_listed_axes_are_checked(void)
 }
 
 /* At a cycle time of 2 ms; ETG.2000, OpMode, and ETG.1000.4 for SYNC1. */
+static void test_the_range_of_a_signal_is_that_of_its_bits(void)
+{
+    for (int type = 0; type < CM1E_IO_TYPE_COUNT; type++)
+        for (unsigned bits = 1; bits <= 64; bits++) {
+            const cm1e_io_type_t t = (cm1e_io_type_t)type;
+            const bool is_signed = cm1e_io_types[type].is_signed;
+            const double end = ldexp(1, (int)bits - is_signed), least = is_signed ? -end : 0;
+            if (cm1e_io_types[type].is_real || t == CM1E_IO_BYTES)
+                continue;
+            TEST_ASSERT_TRUE(cm1e_io_fits(t, bits, least));
+            TEST_ASSERT_TRUE(cm1e_io_fits(t, bits, floor(nextafter(end, 0))));
+            TEST_ASSERT_FALSE(cm1e_io_fits(t, bits, end));
+            TEST_ASSERT_FALSE(cm1e_io_fits(t, bits, bits < 53 ? least - 1 : nextafter(least, -INFINITY)));
+            TEST_ASSERT_FALSE(cm1e_io_fits(t, bits, 0.5) || cm1e_io_fits(t, bits, NAN));
+        }
+    TEST_ASSERT_FALSE(cm1e_io_fits(CM1E_IO_BYTES, 8, 0));
+    TEST_ASSERT_TRUE(cm1e_io_fits(CM1E_IO_REAL, 32, 0.5) && cm1e_io_fits(CM1E_IO_LREAL, 64, 1e308));
+    TEST_ASSERT_TRUE(cm1e_io_fits(CM1E_IO_REAL, 32, -3.4028234e38));
+    TEST_ASSERT_FALSE(cm1e_io_fits(CM1E_IO_REAL, 32, 3.5e38) || cm1e_io_fits(CM1E_IO_LREAL, 64, INFINITY));
+}
+
 static void test_pulses_of_any_axis_need_clocks(void)
 {
     TEST_ASSERT_FALSE(cm1e_config_uses_clocks(&config));
@@ -583,6 +605,7 @@ int main(void)
     RUN_TEST(test_old_firmware_runs_at_1_ms_only);
     RUN_TEST(test_virtual_time_needs_the_simulated_segment);
     RUN_TEST(test_only_listed_axes_are_checked);
+    RUN_TEST(test_the_range_of_a_signal_is_that_of_its_bits);
     RUN_TEST(test_pulses_of_any_axis_need_clocks);
     RUN_TEST(test_the_pulses_of_a_mode);
     RUN_TEST(test_the_data_of_an_sdo_are_those_of_its_slave);
