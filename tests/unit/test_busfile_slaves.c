@@ -38,6 +38,7 @@ static const char everything[] =
     "      - {object: 0x8000:02, type: ULINT, value: 18446744073709551615}\n"
     "      - {object: 0x8000:03, type: REAL, value: -3.4028235e38}\n"
     "      - {object: 0x8000:04, type: REAL, value: 1e-45}\n"
+    "      - {object: 0x8000:05, type: LREAL, value: -0.1}\n"
     "    mapping:\n"
     "      - {pdo: 0x1A00, entries: [0x6000:11/16, gap/7, 0x6000:01/1]}\n"
     "      - {pdo: 0x1600, entries: [0x7000:11/255]}\n"
@@ -91,6 +92,7 @@ static void test_sdos_have_the_bits_of_their_values(void)
         {.index = 0x8000, .subindex = 2, .bytes = 8, .value = UINT64_MAX},
         {.index = 0x8000, .subindex = 3, .bytes = 4, .value = 0xFF7FFFFF}, /* the largest and the smallest REAL */
         {.index = 0x8000, .subindex = 4, .bytes = 4, .value = 1},
+        {.index = 0x8000, .subindex = 5, .bytes = 8, .value = 0xBFB999999999999A},
     };
     enum { EXPECTED = sizeof expected / sizeof expected[0] };
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(everything), diag.text);
@@ -240,6 +242,8 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
         {"sim: {device: digital}", "3:24", "neither inputs nor outputs"},
         {"sim: {device: coupler, inputs: 1}", "3:24", "which its device has not"},
         {"sim: {device: digital, inputs: 9}", "3:50", "1 ... 8"},
+        {"sim: {device: digital, outputs: 9}", "3:51", "1 ... 8"},
+        {"inputs: [{name: a, object: 0x6000:01, bits: 11889}]", "3:", "1 ... 11888"},
         {"sim: {device: digital, inputs: 1, wired_to: x}", "3:63", "expected the name of a slave of the list"},
         {"sim: {device: digital, outputs: 1, wired_to: x}", "3:64", "there are no inputs to wire"},
         {"name: a}\n  - {name: A, position: 4", "4:12", "is also the name of entry 1"},
