@@ -1,0 +1,167 @@
+/* A motor that has run ahead of its set-point in a pause, because its load is heavy (axis_pursuit.c). */
+#include "unity.h"
+
+#include "../support/axes_bench.h"
+
+enum { AXIS = 0, PAUSE = 15, LONGEST = 250 }; /* cycles */
+
+static const double VELOCITY = 4.0, TARGET = 6.0; /* u/s, u */
+
+void setUp(void) {}
+void tearDown(void) { axes_end(); }
+
+/** The load: the motor changes its velocity by no more than so much in a cycle. Counts, cycles. */
+static double hardest, place, speed, fastest, slowest;
+static double way; /* 1 or -1 */
+
+/** A servo that corrects its error in three cycles, as far as its torque allows. */
+static void turn(cm1e_bus_t *bus)
+{
+    const double wanted = ((double)bus->target_position - place) / 3.0;
+    speed += fmax(-hardest, fmin(hardest, wanted - speed));
+    place += speed;
+    fastest = fmax(fastest, way * speed);
+    slowest = fmin(slowest, way * speed);
+    bus->position = (int32_t)lround(place);
+    const int64_t unit = cm1e_firmware_info(bus->firmware)->velocity_in_counts_per_ms ? 1000 : 1;
+    bus->velocity_raw = (int32_t)lround(speed * 1e9 / (double)axes_bench.cycle_ns / (double)unit);
+}
+
+static double counts_of_cycle(void) { return VELOCITY * axes_axis(AXIS)->cycle_s * axes_axis(AXIS)->position.scale; }
+static bool under_way(void) { return axes_axis(AXIS)->setpoint.pursuit.under_way; }
+
+/** Cycles of the motion before; by how much the motor is ahead of the set-point. */
+static double ahead(void)
+{
+    return way * (place / axes_axis(AXIS)->position.scale - axes_info(AXIS).set_position) * 1e3 / VELOCITY;
+}
+
+/** In the middle of a motion, with a motor that has followed without a load so far. */
+static cm1e_command_id_t begin(double direction, double load)
+{
+    axes_begin(1);
+    way = direction;
+    hardest = 1e9;
+    speed = 0.0;
+    place = axes_motor(AXIS)->position;
+    axes_motor(AXIS)->world = turn;
+    axes_bench.witness[AXIS].strictness = AXES_UNWATCHED;
+    const cm1e_command_id_t id = axes_move_to(AXIS, way * TARGET, VELOCITY);
+    axes_cycles(500);
+    TEST_ASSERT_EQUAL_DOUBLE(way * VELOCITY, axes_info(AXIS).set_velocity);
+    hardest = load;
+    fastest = slowest = way * speed;
+    return id;
+}
+
+/** No frames for some cycles, and the program is late: the drive holds its last target. */
+static void pause_for(int cycles)
+{
+    for (int n = 0; n < cycles; n++)
+        turn(axes_motor(AXIS));
+    axes_motor(AXIS)->clock.virtual_now_ns += cycles * axes_bench.cycle_ns;
+    axes_inputs();
+    cm1e_axis_after_pause(axes_axis(AXIS), cycles * axes_bench.cycle_ns);
+    axes_outputs();
+}
+
+/** Until the set-point and the motor have met; returns the cycles. It never goes back, and never faster than before. */
+static int pursue(void)
+{
+    int cycles = 0;
+    double before = axes_info(AXIS).set_velocity;
+    for (; under_way(); cycles++) {
+        axes_cycles(1);
+        if (!under_way())
+            break;
+        const double velocity = way * axes_info(AXIS).set_velocity;
+        TEST_ASSERT_TRUE(velocity >= 0.0 && velocity <= fmin(VELOCITY, way * before) + 1e-9);
+        before = way * velocity;
+    }
+    return cycles;
+}
+
+static void test_the_set_point_goes_after_a_motor_that_has_run_ahead(void)
+{
+    for (double direction = -1.0; direction <= 1.0; direction += 2.0)
+        for (double load = 4.0; load < 10.0; load += 2.0) {
+            const cm1e_command_id_t id = begin(direction, load);
+            pause_for(PAUSE);
+            axes_cycles(1);
+            TEST_ASSERT_TRUE(under_way() && ahead() > 3.0);
+            TEST_ASSERT_EQUAL_DOUBLE(way * VELOCITY, axes_info(AXIS).set_velocity);
+            TEST_ASSERT_LESS_THAN_INT(60, pursue());
+            TEST_ASSERT_TRUE(fabs(ahead()) < 1.5);
+            axes_wait(AXIS, id, 5000);
+            TEST_ASSERT_EQUAL_DOUBLE(way * TARGET, axes_info(AXIS).set_position);
+            TEST_ASSERT_TRUE(fastest <= counts_of_cycle() * 1.01); /* it does not catch up afterwards */
+            TEST_ASSERT_TRUE(slowest >= counts_of_cycle() * -0.35); /* nor is it pulled back */
+        }
+}
+
+/** It stops within its last target: the motion begins anew at once. */
+static void test_a_motor_without_a_load_is_not_gone_after(void)
+{
+    const cm1e_command_id_t id = begin(1.0, 1e9);
+    pause_for(PAUSE);
+    TEST_ASSERT_FALSE(under_way());
+    axes_cycles(1);
+    TEST_ASSERT_FALSE(under_way());
+    TEST_ASSERT_TRUE(axes_info(AXIS).set_velocity < VELOCITY / 2.0);
+    axes_wait(AXIS, id, 5000);
+    TEST_ASSERT_EQUAL_DOUBLE(TARGET, axes_info(AXIS).set_position);
+}
+
+/** Its load moves it: the set-point does not go after it for ever. */
+static void test_a_motor_that_does_not_slow_down_is_gone_after_for_a_while(void)
+{
+    begin(1.0, 0.0);
+    pause_for(PAUSE);
+    axes_cycles(1);
+    TEST_ASSERT_TRUE(under_way());
+    TEST_ASSERT_INT_WITHIN(3, LONGEST, pursue());
+    TEST_ASSERT_TRUE(ahead() > PAUSE - 3);
+}
+
+/** MC_Stop does not wait for the motor, and is done at rest. */
+static void test_a_stop_meanwhile_stops_the_axis(void)
+{
+    begin(1.0, 4.0);
+    pause_for(PAUSE);
+    axes_cycles(5);
+    TEST_ASSERT_TRUE(under_way());
+    const cm1e_axis_command_t stop = {.kind = CM1E_COMMAND_STOP, .deceleration = 100.0};
+    const cm1e_command_id_t id = axes_command(AXIS, &stop);
+    axes_wait(AXIS, id, 300);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_info(AXIS).set_velocity);
+    TEST_ASSERT_TRUE(axes_info(AXIS).set_position < TARGET / 2.0);
+    axes_cycles(200);
+    TEST_ASSERT_TRUE(fabs(ahead()) < 1.0);
+}
+
+/** A stop under way begins anew at rest behind the pause, and would be done while the motor still turns. */
+static void test_a_stop_is_not_done_before_its_motor(void)
+{
+    begin(1.0, 4.0);
+    const cm1e_axis_command_t stop = {.kind = CM1E_COMMAND_STOP, .deceleration = 100.0};
+    const cm1e_command_id_t id = axes_command(AXIS, &stop);
+    axes_cycles(10);
+    pause_for(PAUSE);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, axes_status(AXIS, id).state);
+    int cycles = 0;
+    for (; axes_status(AXIS, id).state == CM1E_COMMAND_ACTIVE && cycles < 1000; cycles++)
+        axes_cycles(1);
+    TEST_ASSERT_LESS_THAN_INT(100, cycles);
+    TEST_ASSERT_TRUE(fabs(speed) < counts_of_cycle() / 4.0 && fabs(ahead()) < 1.5);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_set_point_goes_after_a_motor_that_has_run_ahead);
+    RUN_TEST(test_a_motor_without_a_load_is_not_gone_after);
+    RUN_TEST(test_a_motor_that_does_not_slow_down_is_gone_after_for_a_while);
+    RUN_TEST(test_a_stop_meanwhile_stops_the_axis);
+    RUN_TEST(test_a_stop_is_not_done_before_its_motor);
+    return UNITY_END();
+}
