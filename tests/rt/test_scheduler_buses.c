@@ -351,12 +351,12 @@ static struct {
     AXES_GROUP_REF_t reference;
     MC_AddAxisToGroup_t add[BUSES];
     MC_GroupEnable_t enable;
-    MC_MoveLinearAbsolute_t line;
+    MC_MoveLinearAbsolute_t line, behind;
     MC_GroupStop_t stop;
     MC_GroupHalt_t halt;
     MC_GroupInterrupt_t interrupt;
     MC_GroupContinue_t go_on;
-    int stop_at, halt_at, interrupt_at, go_on_at, rest_at; /* cycles; 0: never */
+    int stop_at, halt_at, behind_at, interrupt_at, go_on_at, rest_at; /* cycles; 0: never */
     bool rested;                   /* MC_GroupInterrupt was Done before MC_GroupContinue */
     cm1e_group_info_t info;
     cm1e_axis_info_t seen[BUSES];  /* in the last cycle of the program */
@@ -393,6 +393,8 @@ static void grouped_program(void *context)
     MC_GroupStop(&grouped.stop);
     grouped.halt.Execute = run.cycle == grouped.halt_at;
     MC_GroupHalt(&grouped.halt);
+    grouped.behind.Execute = grouped.behind_at && run.cycle >= grouped.behind_at;
+    MC_MoveLinearAbsolute(&grouped.behind);
     grouped.interrupt.Execute = run.cycle == grouped.interrupt_at;
     MC_GroupInterrupt(&grouped.interrupt);
     grouped.rested = grouped.rested || grouped.interrupt.Done;
@@ -419,6 +421,9 @@ static void play_group(int lost)
     grouped.interrupt.AxesGroup = grouped.go_on.AxesGroup = &grouped.reference;
     grouped.line = (MC_MoveLinearAbsolute_t){.AxesGroup = &grouped.reference, .Position = {10, 5}, .Velocity = 8,
                                              .Acceleration = 50, .Deceleration = 50};
+    grouped.behind = grouped.line;
+    grouped.behind.Position[A] = 2;
+    grouped.behind.BufferMode = mcBuffered;
     run.lost = lost;
     run.lose_at = lost ? 500 : 0;
     cm1e_scheduler_destroy(scheduler); /* that of prepare() has the other program */
@@ -521,6 +526,22 @@ START_TEST(test_in_a_gentle_stop_the_axes_that_are_heard_brake_with_their_limits
 }
 END_TEST
 
+/* What waits behind a halt goes on when the axis is back on the path. */
+START_TEST(test_what_waits_behind_a_gentle_halt_goes_on_from_the_path)
+{
+    static const int moments[] = {490, 505};
+    memset(&grouped, 0, sizeof grouped);
+    grouped.halt_at = moments[_i];
+    grouped.behind_at = grouped.halt_at + 3;
+    grouped.halt.Deceleration = 5;
+    play_group(2);
+    ck_assert(grouped.line.CommandAborted && grouped.behind.Done && grouped.info.state == CM1E_GROUP_STANDBY);
+    ck_assert_double_eq_tol(grouped.seen[A].set_position, 2.0, 1e-9);
+    ck_assert_double_eq_tol(grouped.seen[B].set_position, 5.0, 1e-9);
+    close_group();
+}
+END_TEST
+
 /* From cycle 549 to 595 the axis goes back by 0.06 u. Stop, halt and interruption come meanwhile. */
 START_TEST(test_an_axis_on_its_way_back_stops_too)
 {
@@ -605,6 +626,7 @@ int main(void)
     tcase_add_loop_test(all, test_in_an_interruption_no_axis_goes_back_to_the_path, 0, 5);
     tcase_add_loop_test(all, test_in_a_gentle_interruption_the_axes_that_are_heard_brake_with_their_limits, 0, 2);
     tcase_add_loop_test(all, test_in_a_gentle_stop_the_axes_that_are_heard_brake_with_their_limits, 0, 4);
+    tcase_add_loop_test(all, test_what_waits_behind_a_gentle_halt_goes_on_from_the_path, 0, 2);
     tcase_add_loop_test(all, test_an_axis_on_its_way_back_stops_too, 0, 3);
     tcase_add_test(all, test_a_lost_bus_stops_the_whole_group);
     Suite *suite = suite_create("scheduler with several buses");
