@@ -69,7 +69,7 @@ typedef enum fault_kind {
     FAULT_UNPLUG, FAULT_POWER_CYCLE, FAULT_FALL_BACK, FAULT_MOTOR_POWER, FAULT_ERROR, FAULT_OVER_TORQUE,
     FAULT_TEMPERATURE, FAULT_LOAD, FAULT_JUMP, FAULT_FREEZE, FAULT_RING, FAULT_CLOCK, FAULT_BRIDGE_ERROR,
     FAULT_BRIDGE_CABLE, FAULT_SWITCH, FAULT_EEPROM, FAULT_DETACH, FAULT_STRANGER, FAULT_SWAP, FAULT_EMERGENCY,
-    FAULT_INPUT, FAULT_MAILBOX, FAULT_KINDS
+    FAULT_INPUT, FAULT_MAILBOX, FAULT_SHOVE, FAULT_KINDS
 } fault_kind_t;
 
 /** One fault. What `value` is depends on the kind; see the table in scenario_fault.c. */
@@ -83,6 +83,7 @@ typedef struct scenario {
     uint64_t seed;                       /**< where it comes from; 0: written by hand */
     double cycles;                       /**< of the program, before the machine is brought back */
     double cycle_us, lost_limit, ring, clocks, io, overlap;
+    double analog;                       /**< channels of an analog terminal behind the others, where there are some; 0: none */
     double memory;                       /**< the allocation that fails in a set-up before the run; 0: none */
     int axis_count, step_count, fault_count;
     axis_spec_t axes[SCENARIO_AXES];
@@ -108,6 +109,11 @@ void scenario_beside(scenario_t *scenario);
 
 /** After scenario_beside(): backlash, late mailboxes, limit switches at a terminal, motors that move by themselves. */
 void scenario_plant(scenario_t *scenario);
+
+/* ---- scenario_shove.c -------------------------------------------------------------------------------------------- */
+
+/** After scenario_plant(): motors that turn when they get their torque. */
+void scenario_shove(scenario_t *scenario);
 
 /* ---- scenario_text.c --------------------------------------------------------------------------------------------- */
 

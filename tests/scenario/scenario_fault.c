@@ -54,6 +54,7 @@ static const fault_row_t rows[FAULT_KINDS] = {
                     "power-cycle %p 30;power-cycle %o 30;switches %p %i;switches %o %j", THE_NETWORK, 1, true, false, NULL},
     [FAULT_EMERGENCY] = {NULL, NULL, NOBODY, 0, false, true, NULL},
     [FAULT_MAILBOX] = {"quirk %p slow-mailbox %v", "quirk %p nothing", NOBODY, 0, false, false, NULL},
+    [FAULT_SHOVE] = {NULL, NULL, NOBODY, 0, false, true, NULL},
     [FAULT_INPUT] = {"input %t %n on", "input %t %n off", NOBODY, 0, false, false, NULL},
 };
 
@@ -114,6 +115,7 @@ static void begin_fault(run_t *run, const fault_t *fault)
     case FAULT_FREEZE: wire_lie(axis, true, fault->kind == FAULT_FREEZE, fault->value); break;
     case FAULT_STALL: wire_stall(run, fault->length); break;
     case FAULT_EMERGENCY: break;
+    case FAULT_SHOVE: wire_shove(run, axis, fault->value); break;
     case FAULT_FALL_BACK: wire_fall_back(run, axis->network, axis->position); break;
     default: order(run, fault, rows[(int)fault->kind].begin); break;
     }
@@ -229,7 +231,8 @@ static void note(run_t *run, const fault_t *fault)
         if (fault->kind == FAULT_JUMP && n == (int)fault->axis) /* without torque it is the new origin */
             axis->seen.kept = false;
         /* Nor can the master help that a motor behind a bridge misses targets, and then gets to the last one. */
-        if ((fault->kind == FAULT_LOAD || fault->kind == FAULT_BRIDGE_CABLE) && n == (int)fault->axis)
+        if ((fault->kind == FAULT_LOAD || fault->kind == FAULT_SHOVE || fault->kind == FAULT_BRIDGE_CABLE) &&
+            n == (int)fault->axis)
             axis->seen.pushed_until = end_of(fault);
         if (fault->kind == FAULT_BRIDGE_CABLE && n == (int)fault->axis) /* nobody sees how far it swings */
             axis->seen.unseen = true;
@@ -417,6 +420,7 @@ static bool may_stop(const run_t *run, const fault_t *fault, const machine_axis_
     case FAULT_BRIDGE_CABLE:
     case FAULT_SWITCH:
     case FAULT_LOAD:
+    case FAULT_SHOVE:
     case FAULT_JUMP:
     case FAULT_FREEZE: return same_slave && !of_bus;
     case FAULT_LOSE:
@@ -427,6 +431,18 @@ static bool may_stop(const run_t *run, const fault_t *fault, const machine_axis_
     case FAULT_COUNTER: return (int)fault->network == axis->network;
     default: return there->network == axis->network;
     }
+}
+
+bool fault_slows_mailbox(const run_t *run, const machine_axis_t *axis)
+{
+    for (int i = 0; i < run->scenario->fault_count; i++) {
+        const fault_t *fault = &run->scenario->faults[i];
+        const machine_axis_t *there = &run->axes[(int)fault->axis];
+        if (fault->kind == FAULT_MAILBOX && fault->at <= run->cycle && there->network == axis->network &&
+            there->position == axis->position)
+            return true;
+    }
+    return false;
 }
 
 bool fault_explains(const run_t *run, const machine_axis_t *axis, bool of_bus)

@@ -340,11 +340,11 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
     for (int i = window; i < seen_speeds; i++)
         before = fmax(before, seen->speeds[i]);
     const double gain = speed - before, noise = 1500 + 0.4 * SERVO_BANDWIDTH * slack_of(axis->spec);
-    if (gain / most - 1 > run->outcome->over_gain && most > 5 * noise)
-        run->outcome->over_gain = gain / most - 1;
     if (is_pushed(run, axis) || !axis->probe.torque_on || recoils(run, axis) || is_caught(run, axis) ||
         leaves_stop(run, axis))
         return;
+    if (gain / most - 1 > run->outcome->over_gain && most > 5 * noise)
+        run->outcome->over_gain = gain / most - 1;
     /* A motor that was held for a moment gets back to the speed that its set-point has by now, or a heavy load has run
      * on and comes back. Its maximum velocity holds all the same. */
     if (was_disturbed(run, seen))
@@ -514,10 +514,10 @@ static void judge_torque(run_t *run, machine_axis_t *axis)
                       cm1e_axis_state_name(axis->info.state), seen->off_cycles);
 }
 
-/** The master takes the torque off a motor that still turns, although it could brake it. */
+/** The master takes the torque off a motor that still turns, although it could brake it: it knows that it turns. */
 static void judge_let_go(run_t *run, machine_axis_t *axis)
 {
-    enum { ENABLED_BITS = 0x0F };
+    enum { ENABLED_BITS = 0x0F, UNKNOWN = 5 /* cycles of torque (docs/SAFETY.md) */ };
     witness_t *seen = &axis->seen;
     const unsigned told = axis->probe.controlword; /* 0: the drive is not in operation */
     const bool enabled = (told & ENABLED_BITS) == ENABLED_BITS, taken = seen->enabled && !enabled && told != 0;
@@ -526,7 +526,7 @@ static void judge_let_go(run_t *run, machine_axis_t *axis)
     seen->enabled = enabled;
     seen->had_torque = axis->probe.torque_on;
     const bool heard = seen->quiet >= cycles_of(run, QUIET_MS); /* else the drive may have swung meanwhile */
-    if (taken && heard && !recoils(run, axis) && had_torque && !axis->probe.torque_on && speed > LET_GO * axis->spec->velocity + LET_GO_SPEED)
+    if (taken && heard && seen->caught > UNKNOWN && !recoils(run, axis) && had_torque && !axis->probe.torque_on && speed > LET_GO * axis->spec->velocity + LET_GO_SPEED)
         scenario_fail(run, "let-go", "%s (%s): without torque at %.0f counts/s, error %04X, number %d", axis->name,
                       cm1e_axis_state_name(axis->info.state), speed, cm1e_error_id(axis->info.error), axis->info.error);
 }
@@ -653,6 +653,7 @@ void judge_cycle(run_t *run)
             continue;
         judge_bridge(run, axis);
         judge_load(run, axis);
+        judge_enable(run, axis);
         judge_still(run, axis);
         judge_speed(run, axis);
         judge_gain(run, axis);

@@ -98,7 +98,7 @@ static void describe_axis(const scenario_t *scenario, cm1e_axis_config_t *axis, 
 
 static int terminals_of(const run_t *run, int network, uint32_t motors)
 {
-    return network == 0 ? (int)run->scenario->io : motors == 0;
+    return network == 0 ? (int)run->scenario->io + (run->scenario->analog > 0) : motors == 0;
 }
 
 /** Optional slaves are behind all others. */
@@ -147,7 +147,7 @@ static bool add_axes(const run_t *run, cm1e_bus_config_t *config, int network)
     return true;
 }
 
-/** Digital terminals behind the motors of the first network. false: no memory. */
+/** Digital terminals behind the motors of the first network, and an analog one behind them. false: no memory. */
 static bool add_terminals(const run_t *run, cm1e_bus_config_t *config, int network)
 {
     const int terminals = terminals_of(run, network, run->fixed_motors[network]);
@@ -158,8 +158,9 @@ static bool add_terminals(const run_t *run, cm1e_bus_config_t *config, int netwo
         if (!slave)
             return false;
         slave->address = (uint16_t)(run->fixed_motors[network] + 1 + (uint32_t)i);
-        slave->sim.kind = CM1E_SIM_SLAVE_DIGITAL;
-        slave->sim.outputs = slave->sim.inputs = 4;
+        const bool analog = network == 0 && i == (int)run->scenario->io;
+        slave->sim.kind = analog ? CM1E_SIM_SLAVE_ANALOG : CM1E_SIM_SLAVE_DIGITAL;
+        slave->sim.outputs = slave->sim.inputs = (uint8_t)(analog ? run->scenario->analog : 4);
     }
     return true;
 }

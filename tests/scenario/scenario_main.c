@@ -129,7 +129,7 @@ static int play_sample(options_t *options)
 {
     static const uint64_t firsts[] = {1, UINT64_C(1000000000), UINT64_C(2000000000), UINT64_C(3000000000),
                                       UINT64_C(4000000000), UINT64_C(5000000000), UINT64_C(6000000000),
-                                      UINT64_C(7000000000), UINT64_C(8000000000)};
+                                      UINT64_C(7000000000), UINT64_C(8000000000), UINT64_C(9000000000)};
     enum { KINDS = sizeof firsts / sizeof firsts[0] };
     int failed = 0;
     options->count = (uint64_t)(FULL_COUNT / KINDS / slowness()) + 1;

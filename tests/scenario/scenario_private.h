@@ -51,6 +51,7 @@ typedef struct witness {
     bool pressed[SWITCHES];               /**< its limit switches at a terminal */
     int rest_cycles;                      /**< since it is to be at rest, and is */
     bool torque_on;                       /**< in the cycle before */
+    bool was_on;                          /**< MC_Power.Status was TRUE then */
     int quiet;                            /**< cycles since something disturbed it */
     int jolted;                           /**< cycles since any network had a bad cycle */
     int caught;                           /**< cycles since it was enabled while its shaft turned, or was lied about */
@@ -176,6 +177,8 @@ void fault_cycle(run_t *run);
 void fault_mend(run_t *run);
 /** One of the faults until now may be the reason why this axis stops. */
 bool fault_explains(const run_t *run, const machine_axis_t *axis, bool of_bus);
+/** The mailbox of its slave answers late, or did: a write may be on its way. */
+bool fault_slows_mailbox(const run_t *run, const machine_axis_t *axis);
 /** The limit switches at a terminal follow their shaft. */
 void fault_switches(run_t *run);
 /** Something is at this input of the terminal now; one of its inputs has changed within so many cycles. */
@@ -197,6 +200,8 @@ bool wire_watches(const machine_axis_t *axis);
 void wire_lie(const machine_axis_t *axis, bool on, bool freeze, double offset);
 void wire_forget(void);
 void wire_stall(run_t *run, double cycles);
+/** A motor without torque turns at this velocity from now on, counts/s. */
+void wire_shove(const run_t *run, const machine_axis_t *axis, double velocity);
 void wire_fall_back(run_t *run, int network, uint32_t position);
 
 /* ---- scenario_judge.c -------------------------------------------------------------------------------------------- */
@@ -212,6 +217,16 @@ void judge_end(run_t *run);
 bool at_rest(const machine_axis_t *axis);
 /** A turning shaft was enabled not long ago: the servo catches it, as hard as it can. */
 bool is_caught(const run_t *run, const machine_axis_t *axis);
+
+/* ---- scenario_analog.c ------------------------------------------------------------------------------------------- */
+
+/** What the program does with the analog terminal, and what it has to read there. */
+void analog_cycle(run_t *run);
+
+/* ---- scenario_judge_enable.c ------------------------------------------------------------------------------------- */
+
+/** MC_Power.Status is not TRUE before the motor rests. */
+void judge_enable(run_t *run, machine_axis_t *axis);
 /** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
 bool was_disturbed(const run_t *run, const witness_t *seen);
 

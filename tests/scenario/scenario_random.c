@@ -18,6 +18,7 @@ static const uint64_t close_from = UINT64_C(4000000000); /**< below, none of wha
 static const uint64_t ramp_from = UINT64_C(5000000000); /**< below, none of what make_ramp() adds */
 static const uint64_t varied_from = UINT64_C(6000000000); /**< from here on scenario_vary() in its place */
 static const uint64_t beside_from = UINT64_C(7000000000); /**< below, none of what scenario_beside() adds */
+static const uint64_t shove_from = UINT64_C(9000000000); /**< below, none of what scenario_shove() adds */
 static const uint64_t plant_from = UINT64_C(8000000000); /**< below, none of what scenario_plant() adds */
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */
@@ -564,6 +565,8 @@ void scenario_make(scenario_t *scenario, uint64_t seed)
         scenario_beside(scenario);
     if (seed >= plant_from)
         scenario_plant(scenario);
+    if (seed >= shove_from)
+        scenario_shove(scenario);
     qsort(scenario->steps, (size_t)scenario->step_count, sizeof(step_t), compare_times);
     qsort(scenario->faults, (size_t)scenario->fault_count, sizeof(fault_t), compare_times);
 }

@@ -56,6 +56,7 @@ static void one_cycle(void *context)
     fault_switches(run);
     fault_cycle(run);
     program_cycle(run);
+    analog_cycle(run);
     judge_cycle(run);
     if (run->cycle >= run->scenario->cycles)
         program_recover(run);

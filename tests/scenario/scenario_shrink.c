@@ -111,6 +111,7 @@ static bool simplify(scenario_t *scenario, const outcome_t *failure, unsigned li
 {
     bool simpler = plainer(scenario, failure, limit_s, &scenario->ring, 0);
     simpler = plainer(scenario, failure, limit_s, &scenario->clocks, 0) || simpler;
+    simpler = plainer(scenario, failure, limit_s, &scenario->analog, 0) || simpler;
     simpler = plainer(scenario, failure, limit_s, &scenario->io, 0) || simpler;
     for (int n = 0; n < scenario->axis_count; n++) {
         axis_spec_t *axis = &scenario->axes[n];

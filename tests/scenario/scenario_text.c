@@ -21,7 +21,8 @@ static const char *const mappings[] = {"dynamic", "csp", "csv", "profile", NULL}
 const char *const fault_names[FAULT_KINDS + 1] = {
     "lose", "lose-out", "lose-back", "corrupt", "delay", "counter", "stall", "unplug", "power-cycle", "fall-back",
     "motor-power", "error", "over-torque", "temperature", "load", "jump", "freeze", "ring", "clock", "bridge-error",
-    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", "emergency", "input", "mailbox", NULL};
+    "bridge-cable", "switch", "eeprom", "detach", "stranger", "swap", "emergency", "input", "mailbox", "shove",
+    NULL};
 
 const char *const scenario_blocks[] = {
     "MC_MoveAbsolute", "MC_MoveRelative", "MC_MoveAdditive", "MC_MoveVelocity", "MC_Halt", "MC_Stop", "MC_Power",
@@ -46,7 +47,8 @@ const char *const scenario_blocks[] = {
 
 static const field_t run_fields[] = {
     NUMBER(scenario_t, cycles), NUMBER(scenario_t, cycle_us), NUMBER(scenario_t, lost_limit), NUMBER(scenario_t, ring),
-    NUMBER(scenario_t, clocks), NUMBER(scenario_t, io), NUMBER(scenario_t, memory), NUMBER(scenario_t, overlap), END};
+    NUMBER(scenario_t, clocks), NUMBER(scenario_t, io), NUMBER(scenario_t, memory), NUMBER(scenario_t, overlap),
+    NUMBER(scenario_t, analog), END};
 static const field_t axis_fields[] = {
     WORD_OF(axis_spec_t, kind, kinds), NUMBER(axis_spec_t, network), NUMBER(axis_spec_t, channel),
     WORD_OF(axis_spec_t, firmware, firmwares), WORD_OF(axis_spec_t, mapping, mappings),

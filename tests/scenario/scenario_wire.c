@@ -11,6 +11,9 @@
 #include "cm1e/io.h"
 #include "nic/nic.h"
 #include "scenario_private.h"
+#include "sim/bridge_app.h"
+#include "sim/cia402_app.h"
+#include "sim/cm1e_app.h"
 #include "sim/esc_chip.h"
 #include "sim/segment.h"
 
@@ -183,6 +186,22 @@ void wire_stall(run_t *run, double cycles)
 {
     cm1e_clock_t *clock = cm1e_bus_clock(run->buses[0]);
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + (int64_t)(cycles * run->scenario->cycle_us * 1000));
+}
+
+void wire_shove(const run_t *run, const machine_axis_t *axis, double velocity)
+{
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(run->segments[axis->network], axis->position);
+    cm1e_sim_cm1e_t *drive = cm1e_sim_cm1e_of(slave);
+    cm1e_sim_cia402_t *other = cm1e_sim_cia402_of(slave);
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(slave);
+    if (axis->probe.torque_on)
+        return;
+    if (drive)
+        drive->mechanics.velocity = velocity;
+    else if (other)
+        other->mechanics.velocity = velocity / other->scale;
+    else if (bridge && axis->channel > 0)
+        bridge->axes[axis->channel - 1].mechanics.velocity = velocity / bridge->axes[axis->channel - 1].scale;
 }
 
 void wire_fall_back(run_t *run, int network, uint32_t position)

@@ -11,9 +11,10 @@ import tempfile
 from pathlib import Path
 
 PROGRAM = sys.argv[1]
-SEEDS = (1, 2, 7, 11, 1000000002, 2000000006, 6000000003, 7000000005, 8000000003)
+SEEDS = (1, 2, 7, 11, 1000000002, 2000000006, 6000000003, 7000000005, 8000000003, 9000000003)
 # Seeds with what scenario_random.c has for seeds from there on.
-MORE, WIDE, VARIED, BESIDE, PLANT, COUNT = 1000000000, 2000000000, 6000000000, 7000000000, 8000000000, 20
+MORE, WIDE, VARIED, BESIDE, PLANT, SHOVE = (billion * 1000000000 for billion in (1, 2, 6, 7, 8, 9))
+COUNT = 20
 # The judge takes a limit that the machine was not made for as a failure: a way to see that it can fail at all.
 SPOILED = ("run cycles=900 cycle_us=1000 lost_limit=3\n"
            "axis kind=cm1e counts_per_unit=1000 velocity=400000 acceleration=3e6 deceleration=3e6 jerk=1e8\n"
@@ -102,6 +103,14 @@ def check_plant():
         assert word not in run("--seed", PLANT - 1, "--write")[1], word
 
 
+def check_shove():
+    code, said = run("--seed", SHOVE, "--count", COUNT)
+    assert code == 0 and f"{COUNT} scenarios from seed {SHOVE} on: 0 failed" in said, said
+    texts = [run("--seed", SHOVE + number, "--write")[1] for number in range(COUNT)]
+    assert sum("kind=shove" in text for text in texts) > COUNT // 2, texts
+    assert "kind=shove" not in run("--seed", SHOVE - 1, "--write")[1]
+
+
 def check_refusals(folder):
     for text, words in (("axis kind=nonsense\n", "line 1"), ("run cycles=100 cycle_us=1000\n", "needs an axis"),
                         ("nonsense\n", "expected run"), ("run cycles=abc\n", "not one of this name")):
@@ -122,6 +131,7 @@ def main():
     check_varied()
     check_beside()
     check_plant()
+    check_shove()
     print("ok")
 
 
