@@ -364,15 +364,16 @@ static bool ramp_is_over(cm1e_axis_t *axis)
 }
 
 /* The motor has just got its torque. If it turns, the set-point goes with it and brakes, or stands if that cannot be.
- * Its velocity is known when two cycles in a row have shown it under torque, by numbers that agree. Behind a pause the
- * drive has braked it already, and a target that went to it now would drive it. A motor that is slow then may be one
- * that its servo just turns round. */
+ * Its velocity is known when two cycles in a row have shown it under torque, by numbers that agree. Behind a pause or a
+ * silence the drive has braked it already, and a target that went to it now would drive it. A motor that is slow then may
+ * be one that its servo just turns round. */
 static void brake_or_hold(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;
     const bool known = shows_motor(axis) && axis->drive.actual.contradictions == 0;
     const bool rests = known && fabs(axis_actual_velocity(axis)) <= slow_velocity(axis);
-    const bool never = paused(axis) || cm1e_drive_contradicts_itself(&axis->drive) ||
+    const bool unheard = paused(axis) || axis->silence.silent_before > CM1E_AXIS_RIDDEN_OUT_CYCLES;
+    const bool never = unheard || cm1e_drive_contradicts_itself(&axis->drive) ||
                        power->undecided >= longest_undecided;
     if (rests || (known && power->velocity != 0.0f) ? !brakes_first(axis, coasting_velocity(axis)) : never)
         hold_motor(axis, rests && power->undecided == 0 ? 0 : brake_ns);
