@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static void emit_members(st_t *st, type_t *type)
+static void emit_struct(st_t *st, type_t *type)
 {
     cm1e_st_put(st, "typedef struct %s {\n", type->c_name);
     bool empty = true;
@@ -165,7 +165,7 @@ void cm1e_st_emit_type(st_t *st, type_t *type)
             cm1e_st_emit_type(st, type->unit->object.base->type);
         for (var_t *var = type->members; var; var = var->next)
             cm1e_st_emit_type(st, var->type);
-        emit_members(st, type);
+        emit_struct(st, type);
         declare_init_function(st, type);
         if (type->kind == T_BLOCK && cm1e_st_has_edges(type->unit))
             emit_edges(st, type);
@@ -195,13 +195,37 @@ static void emit_default(st_t *st, const char *target, const type_t *type)
     }
 }
 
+static void emit_given(st_t *st, const char *target, type_t *type, const expr_t *initial);
+
+/** An instance gets the values of its type, and its FB_Init, once. */
+static bool has_instance(const type_t *type)
+{
+    if (type->kind == T_ARRAY)
+        return has_instance(type->element);
+    for (const var_t *var = type->kind == T_STRUCT ? type->members : NULL; var; var = var->next)
+        if (has_instance(var->type))
+            return true;
+    return type->kind == T_BLOCK;
+}
+
+/** A member has the value that its own declaration gives: a list of values replaces all of it. */
+static void emit_member(st_t *st, const char *target, const var_t *member, const expr_t *initial)
+{
+    const bool list = initial->kind == E_STRUCT_INIT || initial->kind == E_ARRAY_INIT;
+    if (list && member->initial && !has_instance(member->type)) {
+        cm1e_st_line(st, "memset(&%s, 0, sizeof %s);\n", target, target);
+        emit_default(st, target, member->type);
+    }
+    emit_given(st, target, member->type, initial);
+}
+
 static void emit_elements(st_t *st, const char *target, type_t *type, const expr_t *initial)
 {
     uint64_t at = 0;
     for (const arg_t *arg = initial->args; arg; arg = arg->next) {
         if (arg->value->kind != E_REPEAT) {
-            cm1e_st_emit_initial(st, cm1e_st_format(st->arena, "%s.at[%llu]", target, (unsigned long long)at++),
-                                 type->element, arg->value);
+            emit_given(st, cm1e_st_format(st->arena, "%s.at[%llu]", target, (unsigned long long)at++), type->element,
+                       arg->value);
             continue;
         }
         const unsigned n = ++st->temporaries;
@@ -209,7 +233,7 @@ static void emit_elements(st_t *st, const char *target, type_t *type, const expr
         cm1e_st_line(st, "for (size_t i%u = %llu; i%u < %llu; i%u++) {\n", n, (unsigned long long)at, n,
                      (unsigned long long)(at + times), n);
         st->indent++;
-        cm1e_st_emit_initial(st, cm1e_st_format(st->arena, "%s.at[i%u]", target, n), type->element, arg->value->b);
+        emit_given(st, cm1e_st_format(st->arena, "%s.at[i%u]", target, n), type->element, arg->value->b);
         st->indent--;
         cm1e_st_line(st, "}\n");
         at += times;
@@ -223,8 +247,8 @@ static void emit_given(st_t *st, const char *target, type_t *type, const expr_t 
         emit_elements(st, target, type, initial);
     } else if (initial->kind == E_STRUCT_INIT) {
         for (const arg_t *arg = initial->args; arg; arg = arg->next)
-            cm1e_st_emit_initial(st, cm1e_st_format(st->arena, "%s.%s", target, arg->parameter->c_name),
-                                 arg->parameter->type, arg->value);
+            emit_member(st, cm1e_st_format(st->arena, "%s.%s", target, arg->parameter->c_name), arg->parameter,
+                        arg->value);
     } else if (type->kind == T_STRING) {
         cm1e_st_line(st, "%s(%s.text, sizeof %s.text, ", cm1e_st_text_assign(type), target, target);
         cm1e_st_emit_text(st, initial);

@@ -90,6 +90,18 @@ END_PROGRAM
      {"Main.s1": 60, "Main.s2": 15, "Main.y[0]": 1, "Main.x[1]": 2, "Main.s3": 6, "Main.s4": 6, "Main.m[1,-1]": 9.0,
       "Main.m[1,1]": 11.0, "Main.m1[1,6]": 7.0, "Main.f.n": 10, "Main.o": 10, "Main.p[2].l[2]": 77,
       "Main.p[1].a": 5, "Main.s5": 14, "Main.s6": 24}),
+    # A list of values replaces that of the declaration; FB_Init is called once, whatever lists there are around it.
+    ("lists", """
+TYPE Point : STRUCT x : INT := 6; y : INT; END_STRUCT; END_TYPE
+FUNCTION_BLOCK Once VAR_INPUT x : INT := 3; END_VAR VAR_OUTPUT n : INT; END_VAR
+METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR n := n + 1; END_METHOD END_FUNCTION_BLOCK
+TYPE Held : STRUCT p : Point := (x := 7, y := 9); k : INT := 2; once : Once; END_STRUCT; END_TYPE
+FUNCTION_BLOCK Inits VAR_OUTPUT once : Once := (x := 5); h : Held := (k := 3); p : Point := (x := 2, y := 2); END_VAR END_FUNCTION_BLOCK
+PROGRAM Main VAR a : Inits; b : Inits := (h := (p := (y := 4), once := (x := 5)), once := (x := 7), p := (y := 1));
+  c : ARRAY[1..3] OF Once := [(x := 1), 2((x := 2))]; END_VAR END_PROGRAM
+""", 1, {"Main.a.h.k": 3, "Main.a.h.p.x": 7, "Main.a.h.p.y": 9, "Main.a.p.x": 2, "Main.b.h.p.x": 6, "Main.b.h.p.y": 4, "Main.b.p.x": 6,
+         "Main.b.p.y": 1, "Main.a.once.n": 1, "Main.b.once.n": 1, "Main.b.once.x": 7, "Main.b.h.once.n": 1, "Main.b.h.once.x": 5,
+         "Main.c[1].n": 1, "Main.c[3].n": 1, "Main.c[3].x": 2}),
     ("open_texts", """
 FUNCTION G : INT VAR_IN_OUT a : ARRAY[*] OF STRING(5); END_VAR a[1] := 'abcdefg'; G := LEN(a[2]); END_FUNCTION
 PROGRAM Main VAR x : ARRAY[1..3] OF STRING(5) := [3('ab')]; n : INT; END_VAR n := G(a := x); END_PROGRAM
