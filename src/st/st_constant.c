@@ -131,3 +131,19 @@ bool cm1e_st_check_integer(st_t *st, expr_t *expr, int64_t *value, const char *w
         cm1e_st_report(st, expr->place, "%s is an integer, not %s", what, cm1e_st_type_name(expr->type));
     return false;
 }
+
+void cm1e_st_fold_comparison(expr_t *expr)
+{
+    const constant_t *a = &expr->a->value, *b = &expr->b->value;
+    const type_kind_t kind = cm1e_st_plain_kind(expr->a->type);
+    if (!a->known || !b->known || kind > T_ANY_REAL || expr->a->impure || expr->b->impure)
+        return;
+    const bool floating = cm1e_st_is_floating(kind), above = cm1e_st_is_unsigned(kind) || cm1e_st_is_bits(kind);
+    const bool less = floating ? a->real < b->real
+        : above ? (uint64_t)a->integer < (uint64_t)b->integer : a->integer < b->integer;
+    const bool equal = floating ? a->real == b->real : a->integer == b->integer;
+    const bool more = floating ? a->real > b->real : !less && !equal;
+    const bool values[] = {[OP_EQ] = equal, [OP_NE] = !equal, [OP_LT] = less, [OP_GT] = more, [OP_LE] = less || equal,
+                           [OP_GE] = more || equal};
+    expr->value = (constant_t){.known = true, .integer = values[expr->op]};
+}

@@ -455,6 +455,7 @@ static void comparison(st_t *st, expr_t *expr)
     if (kind <= T_DT && kind != T_NONE)
         both_as(st, expr, kind);
     expr->type = st->elementary[T_BOOL];
+    cm1e_st_fold_comparison(expr);
 }
 
 /** + - * / with times: what comes out, T_NONE if nothing. */

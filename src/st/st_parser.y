@@ -396,16 +396,18 @@ static const char *missing_end(const yypcontext_t *context, yysymbol_kind_t foun
     return NULL;
 }
 
-/** An expression could go on here. */
-static bool is_behind_expression(const yypcontext_t *context)
+static bool is_expected(const yypcontext_t *context, yysymbol_kind_t symbol)
 {
     yysymbol_kind_t expected[YYNTOKENS];
     const int count = yypcontext_expected_tokens(context, expected, YYNTOKENS);
     bool is = false;
     for (int i = 0; i < count; i++)
-        is |= expected[i] == YYSYMBOL_MOD;
+        is |= expected[i] == symbol;
     return is;
 }
+
+/** An expression could go on here. */
+static bool is_behind_expression(const yypcontext_t *context) { return is_expected(context, YYSYMBOL_MOD); }
 
 static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing)
 {
@@ -426,6 +428,10 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
         snprintf(text, sizeof text, "; ARRAY[*] is for variables of VAR_IN_OUT only");
     if (strcmp(parsing->last, "&") == 0 && strcmp(parsing->before, "&") == 0)
         snprintf(text, sizeof text, "; AND is a single \"&\"");
+    if (strncasecmp(parsing->last, "VAR", 3) == 0 && strcmp(parsing->before, ";") == 0)
+        snprintf(text, sizeof text, "; variables are declared in front of the statements");
+    if (strlen(parsing->last) == 1 && strchr("+-*/", parsing->last[0]) && is_expected(context, YYSYMBOL_ASSIGN))
+        snprintf(text, sizeof text, "; a value is assigned by \":=\", as in x := x + 1");
     if (strcasecmp(parsing->last, "THEN") == 0)
         snprintf(text, sizeof text, "; THEN is that of IF or ELSIF");
     if (strcasecmp(parsing->before, "ELSEIF") == 0)

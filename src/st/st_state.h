@@ -166,6 +166,8 @@ static inline bool cm1e_st_integer_constant(st_t *st, expr_t *expr, int64_t *val
     return st->checker->integer_constant(st, expr, value, what);
 }
 void cm1e_st_fold(st_t *st, expr_t *expr);
+/** The value of a comparison of two numbers, times or enumerators that are known. */
+void cm1e_st_fold_comparison(expr_t *expr);
 
 /* st_call.c */
 /** The name of a program becomes its instance. */

@@ -84,7 +84,8 @@ VAR_GLOBAL g : INT := 3; over AT %MW20 : INT := 4; under AT %MB21 : BYTE := 7; E
 FUNCTION_BLOCK Reader VAR_INPUT CONSTANT most : INT := 3; END_VAR VAR_EXTERNAL read : INT; END_VAR
   METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; k : INT; END_VAR read := read * 10 + k; END_METHOD END_FUNCTION_BLOCK
 VAR_GLOBAL first1 : Reader(k := 1); read : INT := 9; second2 : Reader(k := 2); END_VAR
-VAR_GLOBAL CONSTANT KK : INT := 4; KK2 : INT := KK * 2 + 1; END_VAR
+VAR_GLOBAL CONSTANT KK : INT := 4; KK2 : INT := KK * 2 + 1; CLess : BOOL := KK < KK2;
+  CWide : BOOL := 18446744073709551615 > ULINT#1; CNan : BOOL := REAL#0.1 = LREAL#0.1 OR T#1s >= T#1001ms; CSame : BOOL := E_Color#Green <> E_Color#Red; END_VAR
 """
 VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Small; p : Point; x : Box; r : Row; " \
        "w : WORD; q : REF_TO INT; q2 : REF_TO Point; z : REFERENCE TO INT; zp : REFERENCE TO Point; k : Counter; o : Outer; t : TIME; l : LREAL; f : REAL; " \
@@ -265,6 +266,7 @@ CASES = [
     ("s := SEL(b, 'no', s); i := LEN(s); b := TRUE; s := SEL(G := b, IN0 := s, IN1 := CONCAT(s, '-yes')); y := MUX(1, \"a\", y, y2); "
      "s := CONCAT(s, MUX(n + 1, 'a', SEL(b, 'x', 'y')));", {"i": 2, "s": b"no-yesy", "y": ""}),
     ("d := UDINT_TO_DINT(SIZEOF(Point) * 1000 + SIZEOF(Plant.Inner.Hue) + SIZEOF(INT) * 10 + SIZEOF(E_Wide) * 100); i := UDINT_TO_INT(SIZEOF(r));", {"d": 4422, "i": 6}),
+    ("b := CLess AND CWide AND NOT CNan; w.0 := CLess; n := SEL(CSame, 1, 2);", {"b": 1, "w": 1, "n": 2}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
