@@ -285,6 +285,8 @@ static void to_string(st_t *st, const expr_t *expr)
         around(st, "st_text_of_bool(", expr->a, ")");
     else if (from == T_TIME)
         around(st, "st_text_of_time(", expr->a, ")");
+    else if (cm1e_st_is_time(from))
+        around(st, "st_text_of_date(", expr->a, from == T_DATE ? ", 1, 0)" : from == T_TOD ? ", 0, 1)" : ", 1, 1)");
     else if (cm1e_st_is_floating(from))
         around(st, "st_text_of_real(", expr->a, from == T_REAL ? ", 7)" : ", 15)");
     else if (cm1e_st_is_signed(from))
@@ -302,12 +304,28 @@ static void to_text(st_t *st, const expr_t *expr)
         cm1e_st_put(st, ".text)");
 }
 
+/** DATE and DT are seconds since 1970 where they become integers, TOD is milliseconds, as in TwinCAT and CODESYS. */
+static void with_date(st_t *st, const expr_t *expr)
+{
+    const type_kind_t from = expr->a->type->kind, to = expr->type->kind;
+    const char *name = expr->type->name;
+    if (cm1e_st_is_time(from))
+        around(st, cm1e_st_format(st->arena, "(%s)(", name), expr->a, from == T_TOD ? " / 1000000)" : " / 1000000000)");
+    else if (to == T_DT)
+        around(st, "((DT)", expr->a, " * 1000000000)");
+    else
+        around(st, to == T_TOD ? "st_time_of_day((TOD)" : "st_date_of((DATE)", expr->a,
+               to == T_TOD ? " * 1000000)" : " * 1000000000)");
+}
+
 /** TIME counts milliseconds where it becomes a number. */
 static void with_time(st_t *st, const expr_t *expr)
 {
     const type_kind_t from = expr->a->type->kind, to = expr->type->kind;
     const char *name = expr->type->name;
-    if (from == T_DT && to == T_DATE)
+    if (from != T_TIME && to != T_TIME && cm1e_st_is_time(from) != cm1e_st_is_time(to))
+        with_date(st, expr);
+    else if (from == T_DT && to == T_DATE)
         around(st, "st_date_of(", expr->a, ")");
     else if (from == T_DT)
         around(st, "st_time_of_day(", expr->a, ")");

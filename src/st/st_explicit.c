@@ -19,8 +19,11 @@ static bool is_possible(type_kind_t from, type_kind_t to)
     if (from == to)
         return true;
     if (from == T_STRING || to == T_STRING)
-        return from == T_STRING ? to_number || cm1e_st_is_bits(to) || to == T_TIME : from <= T_LREAL || from == T_TIME;
+        return from == T_STRING ? to_number || cm1e_st_is_bits(to) || to == T_TIME : from <= T_DT;
     if (cm1e_st_is_time(from) || cm1e_st_is_time(to)) {
+        const type_kind_t other = cm1e_st_is_time(from) ? to : from;
+        if (cm1e_st_is_integer(other) || (cm1e_st_is_bits(other) && other != T_BOOL))
+            return true;
         if (from == T_TIME || to == T_TIME)
             return from_number || to_number || cm1e_st_is_bits(from) || cm1e_st_is_bits(to);
         return (from == T_DT && (to == T_DATE || to == T_TOD)) || (from == T_DATE && to == T_DT);

@@ -401,6 +401,32 @@ ST_UNUSED static inline STRING_255 st_text_of_time(int64_t value)
                              (unsigned long long)(left / st_time_units[i].ns), st_time_units[i].name);
     return result;
 }
+/** The literal: D#2024-02-29, TOD#01:02:03.5, DT#2024-02-29-01:02:03, with a fraction where there is one. */
+ST_UNUSED static inline STRING_255 st_text_of_date(int64_t value, int date, int clock)
+{
+    STRING_255 result;
+    const int64_t of_day = st_time_of_day(value);
+    const int64_t days = value / ST_DAY - (value % ST_DAY < 0) + 719468; /* since 1 March of the year 0 */
+    const int64_t era = days / 146097, in_era = days % 146097; /* of 400 years */
+    const int64_t year = (in_era - in_era / 1460 + in_era / 36524 - in_era / 146096) / 365;
+    const int64_t day = in_era - (365 * year + year / 4 - year / 100), month = (5 * day + 2) / 153;
+    const int number = (int)(month < 10 ? month + 3 : month - 9);
+    int used = snprintf(result.text, sizeof result.text, "%s", date && clock ? "DT#" : date ? "D#" : "TOD#");
+    if (date)
+        used += snprintf(result.text + used, sizeof result.text - (size_t)used, "%lld-%02d-%02d%s",
+                         (long long)(era * 400 + year + (number <= 2)), number, (int)(day - (153 * month + 2) / 5 + 1),
+                         clock ? "-" : "");
+    if (clock)
+        used += snprintf(result.text + used, sizeof result.text - (size_t)used, "%02d:%02d:%02d",
+                         (int)(of_day / INT64_C(3600000000000)), (int)(of_day / INT64_C(60000000000) % 60),
+                         (int)(of_day / 1000000000 % 60));
+    if (clock && of_day % 1000000000 != 0) {
+        used += snprintf(result.text + used, sizeof result.text - (size_t)used, ".%09d", (int)(of_day % 1000000000));
+        while (result.text[used - 1] == '0')
+            result.text[--used] = '\0';
+    }
+    return result;
+}
 ST_UNUSED static inline STRING_255 st_text_of_bool(BOOL value)
 {
     return value ? (STRING_255){"TRUE"} : (STRING_255){"FALSE"};

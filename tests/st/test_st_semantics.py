@@ -267,6 +267,13 @@ CASES = [
      "s := CONCAT(s, MUX(n + 1, 'a', SEL(b, 'x', 'y')));", {"i": 2, "s": b"no-yesy", "y": ""}),
     ("d := UDINT_TO_DINT(SIZEOF(Point) * 1000 + SIZEOF(Plant.Inner.Hue) + SIZEOF(INT) * 10 + SIZEOF(E_Wide) * 100); i := UDINT_TO_INT(SIZEOF(r));", {"d": 4422, "i": 6}),
     ("b := CLess AND CWide AND NOT CNan; w.0 := CLess; n := SEL(CSame, 1, 2);", {"b": 1, "w": 1, "n": 2}),
+    ("s := DATE_TO_STRING(D#2024-02-29); y2 := DT_TO_WSTRING(DT#1998-02-13-14:20); b := TO_STRING(TOD#01:02:03.5) = 'TOD#01:02:03.5' AND "
+     "DT_TO_STRING(DT#1970-01-01-00:00:00 - T#1s) = 'DT#1969-12-31-23:59:59' AND DT_TO_STRING(DT#2000-03-01-00:00:00.000000001) = 'DT#2000-03-01-00:00:00.000000001' AND "
+     "LEN(DATE_TO_STRING(D#2262-01-01)) = 12; wlong := TIME_TO_WSTRING(T#1s); d := LEN(wlong);",
+     {"s": b"D#2024-02-", "y2": "DT#1998-02-13-14:20:00", "b": 1, "d": 4}),
+    ("d := DT_TO_DINT(DT#2020-01-01-12:00:00); i := TOD_TO_INT(TOD#00:00:30); b := UDINT_TO_DT(1577880000) = DT#2020-01-01-12:00:00 AND "
+     "DINT_TO_TOD(-1) = TOD#23:59:59.999 AND DINT_TO_DATE(100000) = D#1970-01-02 AND DATE_TO_DWORD(D#1970-01-02) = 86400;",
+     {"d": 1577880000, "i": 30000, "b": 1}),
     ("I := 1; if I = 1 then J := I + 1; end_if", {"i": 1, "j": 2}),
 ]
 # (statements, words of the fault): the line is that of the statement
