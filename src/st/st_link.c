@@ -61,6 +61,47 @@ static void inherit_vars(st_t *st, unit_t *unit)
     unit->type->members = unit->vars;
 }
 
+static void look_at_struct(const char *name, void *value, void *context)
+{
+    const type_t *type = value;
+    if (type->kind == T_STRUCT)
+        cm1e_near_look(context, name);
+}
+
+/** STRUCT EXTENDS: the members of the base stand first. */
+static void extend_struct(st_t *st, type_t *type, int depth)
+{
+    const char *name = type->base_name;
+    type_t *base = cm1e_st_lookup(st, st->types, type->scope, type->place, name);
+    type->base_name = NULL;
+    if (base && base->state == ST_BUSY) {
+        cm1e_st_report(st, type->place, "\"%s\" extends itself", type->name);
+        return;
+    }
+    if (!base || base->kind != T_STRUCT || base == type || depth == ST_DEPTH) {
+        cm1e_near_t near = {.word = name};
+        cm1e_st_map_each(st->types, look_at_struct, &near);
+        cm1e_st_report(st, type->place, "there is no structure \"%s\" that \"%s\" could extend%s", name, type->name,
+                       base == type ? "" : cm1e_st_meant(st, &near));
+        return;
+    }
+    type->state = ST_BUSY;
+    if (base->base_name)
+        extend_struct(st, base, depth + 1);
+    type->state = ST_NEW;
+    vars_t members = {0};
+    for (const var_t *var = base->members; var; var = var->next) {
+        var_t *copy = cm1e_st_take(st->arena, sizeof *copy);
+        *copy = *var;
+        copy->next = NULL;
+        ST_APPEND(members, copy);
+    }
+    if (!members.last)
+        return;
+    members.last->next = type->members;
+    type->members = members.first;
+}
+
 static void map_methods(st_t *st, unit_t *unit)
 {
     unit->object.names = cm1e_st_map_new(st->arena);
@@ -104,6 +145,9 @@ static void link_unit(st_t *st, unit_t *unit)
 void cm1e_st_link_objects(st_t *st)
 {
     int classes = 0;
+    for (type_t *type = st->tree.types; type; type = type->next)
+        if (type->base_name)
+            extend_struct(st, type, 0);
     for (unit_t *unit = st->tree.units; unit; unit = unit->next)
         if (unit->kind == U_BLOCK || unit->kind == U_PROGRAM || unit->kind == U_INTERFACE)
             link_unit(st, unit);

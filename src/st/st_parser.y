@@ -99,6 +99,13 @@ type_declaration: NAME ':' type initial ';' { cm1e_st_add_type(parsing, @1, $1, 
     | NAME ':' STRUCT members END_STRUCT {
         type_t *type = cm1e_st_type_node(ST, T_STRUCT, @1, $1);
         type->members = $4.first;
+        cm1e_st_add_type(parsing, @1, $1, type, NULL); }
+    | NAME NAME dotted ':' STRUCT members END_STRUCT { /* EXTENDS is a name here */
+        type_t *type = cm1e_st_type_node(ST, T_STRUCT, @1, $1);
+        type->members = $6.first;
+        type->base_name = $3;
+        if (strcasecmp($2, "EXTENDS") != 0)
+            cm1e_st_report(ST, @2, "\"%s\" cannot stand here; expected \":\" or EXTENDS", $2);
         cm1e_st_add_type(parsing, @1, $1, type, NULL); };
 base: %empty { $$ = NULL; } | NAME { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1); };
 enumerators: enumerator { $$ = (vars_t){$1, $1}; } | enumerators ',' enumerator { $$ = $1; ST_APPEND($$, $3); };

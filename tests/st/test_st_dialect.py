@@ -102,6 +102,14 @@ PROGRAM Main VAR a : Inits; b : Inits := (h := (p := (y := 4), once := (x := 5))
 """, 1, {"Main.a.h.k": 3, "Main.a.h.p.x": 7, "Main.a.h.p.y": 9, "Main.a.p.x": 2, "Main.b.h.p.x": 6, "Main.b.h.p.y": 4, "Main.b.p.x": 6,
          "Main.b.p.y": 1, "Main.a.once.n": 1, "Main.b.once.n": 1, "Main.b.once.x": 7, "Main.b.h.once.n": 1, "Main.b.h.once.x": 5,
          "Main.c[1].n": 1, "Main.c[3].n": 1, "Main.c[3].x": 2}),
+    ("structures", """
+TYPE ST_Last EXTENDS ST_Mid : STRUCT c : STRING := 'c'; END_STRUCT; ST_Mid EXTENDS ST_First : STRUCT b : INT := 5; END_STRUCT END_TYPE
+TYPE ST_First : STRUCT a : INT := 3; list : ARRAY[1..3] OF INT := [1, 2, 3]; END_STRUCT END_TYPE
+TYPE extends : STRUCT x : INT; END_STRUCT; More EXTENDS Empty : STRUCT x : INT; END_STRUCT; Empty : STRUCT END_STRUCT; END_TYPE
+NAMESPACE N TYPE In EXTENDS Base : STRUCT y : INT; END_STRUCT; Base : STRUCT x : INT := 8; END_STRUCT; END_TYPE END_NAMESPACE
+PROGRAM Main VAR o : ST_Last := (b := 4, list := [4, 5]); p : ST_Last; n : INT; size : UDINT; e : extends; i : N.In; m : More; END_VAR
+  n := p.list[2] + p.b + p.a; p := o; size := SIZEOF(p); e.x := 1; m.x := 2; END_PROGRAM
+""", 1, {"Main.n": 10, "Main.size": 92, "Main.p.list[2]": 5, "Main.p.b": 4, "Main.o.a": 3, "Main.o.c": b"c", "Main.i.x": 8}),
     ("open_texts", """
 FUNCTION G : INT VAR_IN_OUT a : ARRAY[*] OF STRING(5); END_VAR a[1] := 'abcdefg'; G := LEN(a[2]); END_FUNCTION
 PROGRAM Main VAR x : ARRAY[1..3] OF STRING(5) := [3('ab')]; n : INT; END_VAR n := G(a := x); END_PROGRAM
