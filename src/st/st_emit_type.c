@@ -5,8 +5,10 @@
 
 static void emit_struct(st_t *st, type_t *type)
 {
-    cm1e_st_put(st, "typedef struct %s {\n", type->c_name);
+    cm1e_st_put(st, "typedef %s %s {\n", type->overlay ? "union" : "struct", type->c_name);
     bool empty = true;
+    if (type->overlay) /* {0} makes all bytes of the first member 0 */
+        cm1e_st_put(st, "    uint8_t bytes[%llu];\n", (unsigned long long)type->size);
     if (type->kind == T_BLOCK && type->unit->object.has_class) {
         cm1e_st_put(st, "    uint32_t the_class;\n");
         empty = false;
@@ -108,7 +110,7 @@ static void emit_reference(st_t *st, type_t *type)
     while (to->kind == T_REF)
         to = to->element;
     if (to->kind == T_STRUCT || to->kind == T_BLOCK)
-        cm1e_st_put(st, "typedef struct %s %s;\n", to->c_name, to->c_name);
+        cm1e_st_put(st, "typedef %s %s %s;\n", to->overlay ? "union" : "struct", to->c_name, to->c_name);
     else
         cm1e_st_emit_type(st, to);
 }

@@ -9,6 +9,8 @@ static void initialise_struct(st_t *st, expr_t *initial, type_t *type)
         cm1e_st_report(st, initial->place, "%s has no members that could get values", cm1e_st_type_name(type));
         return;
     }
+    if (type->overlay && initial->args && initial->args->next)
+        cm1e_st_report(st, initial->args->next->place, "one member of a UNION gets a value: that is the value of all");
     for (arg_t *arg = initial->args; arg; arg = arg->next) {
         const char *hint, *ours = cm1e_st_alias(type->name, arg->name, &hint);
         arg->parameter = cm1e_st_member(type, ours ? ours : arg->name);

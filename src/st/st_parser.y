@@ -39,7 +39,7 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %token FOR "FOR" TO "TO" BY "BY" DO "DO" END_FOR "END_FOR" WHILE "WHILE" END_WHILE "END_WHILE"
 %token REPEAT "REPEAT" UNTIL "UNTIL" END_REPEAT "END_REPEAT" EXIT "EXIT" CONTINUE "CONTINUE" RETURN "RETURN"
 %token OR "OR" OR_ELSE "OR_ELSE" XOR "XOR" AND "AND" AND_THEN "AND_THEN" NOT "NOT" MOD "MOD" NULL_REF "NULL"
-%token TYPE "TYPE" END_TYPE "END_TYPE" STRUCT "STRUCT" END_STRUCT "END_STRUCT" ARRAY "ARRAY" STRING "STRING"
+%token TYPE "TYPE" END_TYPE "END_TYPE" STRUCT "STRUCT" END_STRUCT "END_STRUCT" END_UNION "END_UNION" ARRAY "ARRAY" STRING "STRING"
 %token WSTRING "WSTRING"
 %token REF_TO "REF_TO" POINTER_TO "POINTER TO" REFERENCE_TO "REFERENCE TO"
 %token FUNCTION "FUNCTION" END_FUNCTION "END_FUNCTION" FUNCTION_BLOCK "FUNCTION_BLOCK"
@@ -99,6 +99,13 @@ type_declaration: NAME ':' type initial ';' { cm1e_st_add_type(parsing, @1, $1, 
     | NAME ':' STRUCT members END_STRUCT {
         type_t *type = cm1e_st_type_node(ST, T_STRUCT, @1, $1);
         type->members = $4.first;
+        cm1e_st_add_type(parsing, @1, $1, type, NULL); }
+    | NAME ':' NAME members END_UNION { /* so is UNION */
+        type_t *type = cm1e_st_type_node(ST, T_STRUCT, @1, $1);
+        type->members = $4.first;
+        type->overlay = true;
+        if (strcasecmp($3, "UNION") != 0)
+            cm1e_st_report(ST, @5, "END_UNION cannot stand here; a UNION begins with UNION");
         cm1e_st_add_type(parsing, @1, $1, type, NULL); }
     | NAME NAME dotted ':' STRUCT members END_STRUCT { /* EXTENDS is a name here */
         type_t *type = cm1e_st_type_node(ST, T_STRUCT, @1, $1);

@@ -136,7 +136,7 @@ void cm1e_st_step(parsing_t *parsing, const char *text, size_t length, bool skip
 
 /* They are names wherever a name makes sense: programs have variables that are called step or reference. */
 static const char *const missing[] = {
-    "VAR_ACCESS", "VAR_CONFIG", "UNION", "GOTO", "JMP", "STEP", "INITIAL_STEP", "TRANSITION",
+    "VAR_ACCESS", "VAR_CONFIG", "GOTO", "JMP", "STEP", "INITIAL_STEP", "TRANSITION",
 };
 
 bool cm1e_st_begins_part(const parsing_t *parsing)

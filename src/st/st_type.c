@@ -133,6 +133,36 @@ void cm1e_st_inherit_initial(st_t *st, var_t *var)
     }
 }
 
+/** Whether any bits are a value of a type, so that it may be a member of a UNION. */
+static bool takes_any_bits(const type_t *type)
+{
+    if (type->kind == T_ARRAY)
+        return takes_any_bits(type->element);
+    for (const var_t *var = type->kind == T_STRUCT ? type->members : NULL; var; var = var->next)
+        if (var->initial || !takes_any_bits(var->type))
+            return false;
+    const bool number = cm1e_st_is_bits(type->kind) || cm1e_st_is_number(type->kind);
+    return type->kind == T_STRUCT || type->kind == T_TIME || type->kind == T_DT ||
+           (number && type->kind != T_BOOL && !type->ranged);
+}
+
+static void resolve_union(st_t *st, type_t *type)
+{
+    type->size = type->alignment = 1;
+    for (var_t *var = type->members; var; var = var->next) {
+        cm1e_st_inherit_initial(st, var);
+        var->type = cm1e_st_resolve(st, var->type);
+        if (var->type->kind != T_WRONG && (var->initial || !takes_any_bits(var->type)))
+            cm1e_st_report(st, var->place, "a UNION has numbers, BYTE ... LWORD, TIME and DT, and arrays and structures of "
+                           "these, without initial values: not all bits are a value of %s", var->initial ? "this" :
+                           cm1e_st_type_name(var->type));
+        const uint64_t align = var->type->alignment ? var->type->alignment : 1;
+        type->alignment = align > type->alignment ? align : type->alignment;
+        type->size = var->type->size > type->size ? var->type->size : type->size;
+    }
+    type->size = (type->size + type->alignment - 1) / type->alignment * type->alignment;
+}
+
 /** Sizes and alignments of the members, in the order of declaration, as C lays them out. */
 static void resolve_members(st_t *st, type_t *type)
 {
@@ -232,7 +262,7 @@ static type_t *resolve_new(st_t *st, type_t *type)
     case T_REF: result = resolve_reference(st, type); break;
     case T_ENUM: resolve_enum(st, type); break;
     case T_BLOCK: st->unit = type->unit; resolve_members(st, type); break;
-    case T_STRUCT: resolve_members(st, type); break;
+    case T_STRUCT: (type->overlay ? resolve_union : resolve_members)(st, type); break;
     default: break;
     }
     st->unit = unit;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""What TwinCAT and CODESYS have and the standard has not, or has since its 3rd edition: VAR_STAT and VAR_INST, ARRAY[*]. Programs by
-the rules of their manuals, and the values that their variables have then; what is refused is in test_st_errors.py.
+"""What TwinCAT and CODESYS have and the standard has not, or has since its 3rd edition: VAR_STAT and VAR_INST, ARRAY[*],
+STRUCT with EXTENDS, UNION; and lists of initial values. Programs by the rules of the manuals, and the values that their
+variables have then; what is refused is in test_st_errors.py.
 
 test_st_dialect.py BIN-DIRECTORY
 """
@@ -110,6 +111,18 @@ NAMESPACE N TYPE In EXTENDS Base : STRUCT y : INT; END_STRUCT; Base : STRUCT x :
 PROGRAM Main VAR o : ST_Last := (b := 4, list := [4, 5]); p : ST_Last; n : INT; size : UDINT; e : extends; i : N.In; m : More; END_VAR
   n := p.list[2] + p.b + p.a; p := o; size := SIZEOF(p); e.x := 1; m.x := 2; END_PROGRAM
 """, 1, {"Main.n": 10, "Main.size": 92, "Main.p.list[2]": 5, "Main.p.b": 4, "Main.o.a": 3, "Main.o.c": b"c", "Main.i.x": 8}),
+    ("unions", """
+TYPE U_Value : UNION d : DWORD; b : ARRAY[0..3] OF BYTE; r : REAL; parts : ST_Parts; END_UNION
+  ST_Parts : STRUCT low : WORD; high : INT; END_STRUCT; ST_Holds : STRUCT n : BYTE; u : U_Value; END_STRUCT END_TYPE
+FUNCTION F_Swap : DWORD VAR_INPUT x : DWORD; END_VAR VAR u, v : U_Value; i : INT; END_VAR
+  u.d := x; FOR i := 0 TO 3 DO v.b[3 - i] := u.b[i]; END_FOR F_Swap := v.d; END_FUNCTION
+FUNCTION_BLOCK FB_X VAR_INPUT u : U_Value := (b := [1, 2]); p : REF_TO U_Value; END_VAR IF p <> NULL THEN p^.b[3] := u.b[1]; END_IF END_FUNCTION_BLOCK
+PROGRAM Main VAR RETAIN kept : U_Value; END_VAR VAR union : BOOL; u : U_Value := (d := 16#01020304); s : DWORD; h, h2 : ST_Holds; f : FB_X;
+  m AT %MB0 : U_Value; w AT %MW2 : WORD; size : UDINT; END_VAR
+  s := F_Swap(u.d); kept.r := 1.0; u.parts.high := -2; h.u.d := 7; h2 := h; m.d := 16#12345678; union := m.parts.low.3; f(p := REF(h2.u));
+  size := SIZEOF(ST_Holds) * 10 + SIZEOF(u); END_PROGRAM
+""", 1, {"Main.s": 0x04030201, "Main.kept.d": 0x3F800000, "Main.u.d": 0xFFFE0304, "Main.u.b[0]": 4, "Main.h2.u.parts.low": 7, "Main.w": 0x1234,
+         "Main.f.u.d": 0x201, "Main.h2.u.d": 0x02000007, "Main.size": 84}),
     ("open_texts", """
 FUNCTION G : INT VAR_IN_OUT a : ARRAY[*] OF STRING(5); END_VAR a[1] := 'abcdefg'; G := LEN(a[2]); END_FUNCTION
 PROGRAM Main VAR x : ARRAY[1..3] OF STRING(5) := [3('ab')]; n : INT; END_VAR n := G(a := x); END_PROGRAM
