@@ -197,10 +197,8 @@ static int begin_live(trace_server_t **server, const recording_t *recording, con
         return EXIT_OK;
     if (trace_server_begin(server, recording, options->port, &diag) != CM1E_OK)
         return fail(&diag);
-    if (options->common.json)
-        print_json(json_pack("{s:s}", "url", trace_server_url(*server)));
-    else
-        printf("%s\n", trace_server_url(*server));
+    /* The result follows when the recording has ended, so a program has to be able to read this by itself: one line. */
+    printf(options->common.json ? "{\"url\": \"%s\"}\n" : "%s\n", trace_server_url(*server));
     fflush(stdout);
     return EXIT_OK;
 }

@@ -107,6 +107,11 @@ def check_protection():
             junk.sendall(b"\xff" * 200000)
             expect(status_of(url) == 200, "beside halves of requests and garbage")
         end_by_ctrl_c(child)
+        told = subprocess.run([CM1E, "trace", "--attach", str(process.pid), "--live", "--json", "--for", "0.1"],
+                              capture_output=True, text=True, timeout=20, env=ENVIRONMENT)
+        first, _, rest = told.stdout.partition("\n")
+        expect(told.returncode == 0 and ADDRESS.match(json.loads(first)["url"]) and json.loads(rest)["samples"] > 0,
+               "the address is one line of JSON, the result another document", told)
         with socket.create_server(("127.0.0.1", 0)) as other:
             in_use = other.getsockname()[1]
             for words, why in ((["--live=0"], "port"), (["--live=65536"], "port"), (["--live=x"], "port"),
