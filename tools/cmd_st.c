@@ -12,6 +12,7 @@
 #include "command.h"
 #include "core/json_text.h"
 #include "core/output.h"
+#include "end_signals.h"
 #include "files.h"
 #include "st/st.h"
 
@@ -114,23 +115,22 @@ static int compile(const char *c_file, const char *folder, const char *output)
     arguments[count] = NULL;
     int status = 0;
     fflush(NULL);
-    void (*const on_interrupt)(int) = signal(SIGINT, SIG_IGN); /* Ctrl-C ends the compiler, and what it left is removed */
     const pid_t child = fork();
     if (child == 0) {
-        signal(SIGINT, on_interrupt);
         execvp(arguments[0], (char *const *)(uintptr_t)arguments);
         _exit(127);
     }
-    const bool ended = child >= 0 && waitpid(child, &status, 0) == child;
-    signal(SIGINT, on_interrupt);
-    if (!ended) {
+    pid_t ended;
+    while ((ended = child < 0 ? -1 : waitpid(child, &status, 0)) < 0 && child > 0 && errno == EINTR)
+        kill(child, SIGTERM); /* the compiler removes its own files then */
+    if (ended < 0) {
         complain("the compiler %s cannot be started: %s", arguments[0], strerror(errno));
         return EXIT_FAILED;
     }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
         complain("there is no C compiler \"%s\"; install one (Debian: apt install gcc), or name it in the environment "
                  "variable CC", arguments[0]);
-    else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT)
+    else if (told_to_end() && !(WIFEXITED(status) && WEXITSTATUS(status) == 0))
         complain("interrupted: no program was made");
     else if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         complain("the compiler %s could not compile %s", arguments[0], c_file);
@@ -218,6 +218,7 @@ static int build(st_t *st, const st_options_t *options)
     }
     const char *target = realpath(output, place) ? place : output; /* a link stays a link */
     snprintf(folder, sizeof folder, "%s.XXXXXX", target);
+    catch_signals(); /* they end the compiler, and what is there by then is removed */
     if (!mkdtemp(folder)) {
         complain("%s cannot be written: %s", output, strerror(errno));
         return EXIT_FAILED;

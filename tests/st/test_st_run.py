@@ -319,6 +319,26 @@ def check_retain():
             faults.append("a refused file of RETAIN variables was changed")
     retained(8)
     check_owner_of_retain()
+    check_interrupted_build()
+
+
+def check_interrupted_build():
+    """A build that is interrupted while the compiler runs leaves nothing behind."""
+    with open("slow-cc", "w", encoding="ascii") as file:
+        file.write("#!/bin/sh\nexec sleep 60\n")
+    os.chmod("slow-cc", 0o755)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+        building = subprocess.Popen([os.path.join(BIN, "cm1e"), "st", "build", "retain.st", "-o", "stopped.so"], text=True,
+                                    stderr=subprocess.PIPE, env={**os.environ, "CC": os.path.abspath("slow-cc")})
+        end = time.monotonic() + 30
+        while not any(name.startswith("stopped.so") and os.listdir(name) for name in os.listdir()) and time.monotonic() < end:
+            time.sleep(0.02)
+        time.sleep(0.1)
+        building.send_signal(number)
+        text = building.communicate(timeout=30)[1]
+        left = [name for name in os.listdir() if name.startswith("stopped.so")]
+        if building.returncode != 1 or "interrupted: no program was made" not in text or left:
+            faults.append(f"a build after signal {number}: exit status {building.returncode}, {left}: {text}")
 
 
 def check_owner_of_retain():
