@@ -206,28 +206,27 @@ static bool unknown_in_program(st_t *st, expr_t *expr)
     return true;
 }
 
-static void member(st_t *st, expr_t *expr)
+/** A member that is found: where it lies, and whether it can be reached from here. */
+static void found_member(st_t *st, expr_t *expr, const type_t *type)
 {
-    if (of_program(st, expr))
-        return;
-    var_t *listed = cm1e_st_in_list(st, expr);
-    if (listed && !cm1e_st_find_var(st, expr->a->name)) {
+    expr->type = expr->var->type = cm1e_st_resolve(st, expr->var->type);
+    if (expr->var->in_memory) { /* THIS^.x of a program */
         expr->kind = E_NAME;
-        expr->name = cm1e_st_format(st->arena, "%s.%s", expr->a->name, expr->name);
-        expr->a = NULL;
-        name(st, expr);
+        cm1e_st_take_from_memory(st, expr);
         return;
     }
-    if (cm1e_st_view(st, expr) || cm1e_st_read_property(st, expr))
-        return;
-    if (unknown_in_program(st, expr))
-        return;
-    if (!expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name) &&
-        !cm1e_st_map_get(st->enumerators, expr->a->name) &&
-        cm1e_st_lookup(st, st->types, expr->scope, expr->place, expr->a->name)) {
-        enumerator_of(st, expr, expr->a->name);
-        return;
+    if (type->kind == T_BLOCK && expr->a->kind != E_THIS && expr->var->section != V_INPUT &&
+        expr->var->section != V_OUTPUT && !(expr->var->qualifiers & Q_PUBLIC)) {
+        cm1e_st_report(st, expr->place,
+                       "\"%s\" is within %s: from outside its inputs, outputs and VAR PUBLIC can be reached",
+                       expr->var->name, type->name);
+        set_wrong(st, expr);
     }
+}
+
+/** What the name before the point has a value for: a member of it, or a bit. */
+static void member_of_value(st_t *st, expr_t *expr)
+{
     cm1e_st_expression(st, expr->a);
     type_t *type = expr->a->type;
     expr->impure = expr->a->impure;
@@ -250,28 +249,38 @@ static void member(st_t *st, expr_t *expr)
     }
     const char *hint, *ours = cm1e_st_alias(type->name, expr->name, &hint);
     expr->var = cm1e_st_member(type, ours ? ours : expr->name);
-    if (!expr->var && hint) {
+    if (expr->var) {
+        found_member(st, expr, type);
+    } else if (hint) {
         cm1e_st_report(st, expr->place, "%s has no \"%s\": %s", type->name, expr->name, hint);
         set_wrong(st, expr);
-        return;
-    }
-    if (!expr->var) {
+    } else {
         unknown_member(st, expr, type);
-        return;
     }
-    expr->type = expr->var->type = cm1e_st_resolve(st, expr->var->type);
-    if (expr->var->in_memory) { /* THIS^.x of a program */
+}
+
+static void member(st_t *st, expr_t *expr)
+{
+    if (of_program(st, expr))
+        return;
+    var_t *listed = cm1e_st_in_list(st, expr);
+    if (listed && !cm1e_st_find_var(st, expr->a->name)) {
         expr->kind = E_NAME;
-        cm1e_st_take_from_memory(st, expr);
+        expr->name = cm1e_st_format(st->arena, "%s.%s", expr->a->name, expr->name);
+        expr->a = NULL;
+        name(st, expr);
         return;
     }
-    if (type->kind == T_BLOCK && expr->a->kind != E_THIS && expr->var->section != V_INPUT &&
-        expr->var->section != V_OUTPUT && !(expr->var->qualifiers & Q_PUBLIC)) {
-        cm1e_st_report(st, expr->place,
-                       "\"%s\" is within %s: from outside its inputs, outputs and VAR PUBLIC can be reached",
-                       expr->var->name, type->name);
-        set_wrong(st, expr);
-    }
+    if (cm1e_st_view(st, expr) || cm1e_st_read_property(st, expr))
+        return;
+    if (unknown_in_program(st, expr))
+        return;
+    if (!expr->bit && expr->a->kind == E_NAME && !cm1e_st_find_var(st, expr->a->name) &&
+        !cm1e_st_map_get(st->enumerators, expr->a->name) &&
+        cm1e_st_lookup(st, st->types, expr->scope, expr->place, expr->a->name))
+        enumerator_of(st, expr, expr->a->name);
+    else
+        member_of_value(st, expr);
 }
 
 static void element(st_t *st, expr_t *expr)
