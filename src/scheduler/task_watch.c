@@ -54,12 +54,24 @@ static void give_signal_back(void)
     pthread_mutex_unlock(&lock);
 }
 
-static void allow_signal(void)
+/** In this thread. true: it was allowed before. */
+static bool allow_signal(bool allowed)
 {
-    sigset_t set;
+    sigset_t set, kept;
     sigemptyset(&set);
     sigaddset(&set, own_signal());
-    pthread_sigmask(SIG_UNBLOCK, &set, NULL);
+    pthread_sigmask(allowed ? SIG_UNBLOCK : SIG_BLOCK, &set, &kept);
+    return sigismember(&kept, own_signal()) == 0;
+}
+
+/** What was taken for the watch, and opened. */
+static void give_back(const task_watch_t *watch)
+{
+    cm1e_in_task_watched(NULL);
+    allow_signal(watch->signal_allowed);
+    give_signal_back();
+    if (watch->state_file >= 0)
+        close(watch->state_file);
 }
 
 /* ---- the thread -------------------------------------------------------------------------------------------------- */
@@ -190,14 +202,11 @@ cm1e_error_t cm1e_task_watch_begin(task_watch_t *watch, task_list_t *tasks, cm1e
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The watch over the tasks cannot read processor times.");
     watch->state_file = open_state();
     take_signal();
-    allow_signal();
+    watch->signal_allowed = allow_signal(true);
     cm1e_in_task_watched(&tasks->leave);
     if (start(watch))
         return CM1E_OK;
-    cm1e_in_task_watched(NULL);
-    give_signal_back();
-    if (watch->state_file >= 0)
-        close(watch->state_file);
+    give_back(watch);
     return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No thread for the watch over the tasks. Without it a program "
                          "that does not return would take the set-points from the motors. Raise the limits of the "
                          "process (ulimit -u, memory), or set watchdog_cycles of its tasks to -1.");
@@ -217,8 +226,5 @@ void cm1e_task_watch_end(task_watch_t *watch)
     atomic_store(&watch->ends, true);
     pthread_join(watch->thread, NULL);
     watch->runs = false;
-    cm1e_in_task_watched(NULL);
-    give_signal_back();
-    if (watch->state_file >= 0)
-        close(watch->state_file);
+    give_back(watch);
 }

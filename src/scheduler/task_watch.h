@@ -23,6 +23,7 @@ typedef struct task_watch {
     task_list_t *tasks;
     pthread_t cycle, thread;
     bool runs;
+    bool signal_allowed;       /**< the thread of the cycle did not block the signal before */
     _Atomic bool ends;
     clockid_t clock;           /**< processor time of the thread of the cycle */
     int state_file;            /**< its state in /proc; -1: not known */

@@ -327,6 +327,29 @@ START_TEST(test_a_task_is_not_blamed_for_a_suspended_process)
 }
 END_TEST
 
+/** The signal of the watch belongs to the program again after the run, with its handler and its place in the mask. */
+START_TEST(test_the_signal_is_as_it_was_after_the_run)
+{
+    const int number = SIGRTMAX - 3;
+    sigset_t blocked, now;
+    struct sigaction action;
+    for (int how = SIG_BLOCK;; how = SIG_UNBLOCK) {
+        sigemptyset(&blocked);
+        sigaddset(&blocked, number);
+        pthread_sigmask(how, &blocked, NULL);
+        prepare(IN_TIME, CM1E_MAPPING_DYNAMIC, 20);
+        run(50 * MS);
+        machine_close(&t.machine);
+        pthread_sigmask(SIG_BLOCK, NULL, &now);
+        ck_assert_int_eq(sigismember(&now, number), how == SIG_BLOCK);
+        sigaction(number, NULL, &action);
+        ck_assert(action.sa_handler == SIG_DFL);
+        if (how == SIG_UNBLOCK)
+            return;
+    }
+}
+END_TEST
+
 START_TEST(test_a_limit_that_is_no_number_of_cycles_is_refused)
 {
     cm1e_diag_t diag = {0};
@@ -352,6 +375,7 @@ static Suite *make_suite(int part)
         tcase_add_test(all, test_after_a_reset_only_a_living_task_gives_the_axis_power);
         tcase_add_loop_test(all, test_without_a_limit_and_within_it_a_task_goes_on, 0, 2);
         tcase_add_test(all, test_a_task_is_not_blamed_for_a_suspended_process);
+        tcase_add_test(all, test_the_signal_is_as_it_was_after_the_run);
         tcase_add_test(all, test_a_limit_that_is_no_number_of_cycles_is_refused);
     }
     suite_add_tcase(suite, all);
