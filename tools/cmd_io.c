@@ -10,6 +10,7 @@
 #include "attach.h"
 #include "axis_run.h"
 #include "config/io_types.h"
+#include "config/switches.h"
 #include "device/device.h"
 #include "io_rows.h"
 
@@ -159,16 +160,11 @@ static void program(void *context)
 /** What the bus file has wired to an input of a motor. */
 static void say_switch(const cm1e_input_config_t *inputs, int number, char *text, size_t size)
 {
-    const struct {
-        int number;
-        const char *name;
-        bool closed;
-    } switches[] = {{inputs->home, "home switch", inputs->home_normally_closed},
-                    {inputs->limit_positive, "positive limit switch", inputs->limits_normally_closed},
-                    {inputs->limit_negative, "negative limit switch", inputs->limits_normally_closed}};
+    cm1e_switch_t switches[CM1E_SWITCHES];
+    cm1e_switches_of(inputs, switches);
     text[0] = 0;
-    for (size_t i = 0; i < sizeof switches / sizeof switches[0]; i++)
-        if (switches[i].number == number)
+    for (int i = 0; i < CM1E_SWITCHES; i++)
+        if (switches[i].input == number)
             io_add_switch(text, size, switches[i].name, switches[i].closed);
 }
 

@@ -4,6 +4,7 @@
 
 #include "bus/bus_internal.h"
 #include "bus/io_guest.h"
+#include "config/switches.h"
 
 /** What is told of one axis: "feed: input 11, home switch". */
 typedef struct use_text {
@@ -31,15 +32,10 @@ static bool is_signal(cm1e_bus_t *bus, const char *name, const cm1e_io_info_t *i
 
 static void say_switches(use_text_t *use, const cm1e_input_config_t *inputs, int number)
 {
-    const struct {
-        int number;
-        const char *name;
-        bool closed;
-    } switches[] = {{inputs->home, "home switch", inputs->home_normally_closed},
-                    {inputs->limit_positive, "positive limit switch", inputs->limits_normally_closed},
-                    {inputs->limit_negative, "negative limit switch", inputs->limits_normally_closed}};
-    for (size_t i = 0; i < sizeof switches / sizeof switches[0]; i++)
-        if (switches[i].number == number)
+    cm1e_switch_t switches[CM1E_SWITCHES];
+    cm1e_switches_of(inputs, switches);
+    for (int i = 0; i < CM1E_SWITCHES; i++)
+        if (switches[i].input == number)
             say(use, switches[i].closed ? ", %s (normally closed)" : ", %s", switches[i].name, 0);
 }
 

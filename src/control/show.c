@@ -6,6 +6,7 @@
 
 #include "cm1e/emergency.h"
 #include "cm1e/hot_connect.h"
+#include "config/switches.h"
 #include "core/json_text.h"
 
 enum { EVENTS_OF_REPLY = 256, EVENT_TEXT = 512 };
@@ -53,18 +54,13 @@ static json_t *limits_of(const view_t *view, uint32_t index)
 /** Inputs of the motor to which a switch is wired. */
 static json_t *switches_of(const cm1e_input_config_t *inputs)
 {
-    const struct {
-        int input;
-        const char *name;
-        bool closed;
-    } rows[] = {{inputs->home, "home switch", inputs->home_normally_closed},
-                {inputs->limit_positive, "positive limit switch", inputs->limits_normally_closed},
-                {inputs->limit_negative, "negative limit switch", inputs->limits_normally_closed}};
+    cm1e_switch_t switches[CM1E_SWITCHES];
     json_t *all = json_array();
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-        if (rows[i].input > 0)
-            json_array_append_new(all, json_pack("{s:i, s:s, s:b}", "input", rows[i].input, "name", rows[i].name,
-                                                 "normally_closed", rows[i].closed));
+    cm1e_switches_of(inputs, switches);
+    for (int i = 0; i < CM1E_SWITCHES; i++)
+        if (switches[i].input > 0)
+            json_array_append_new(all, json_pack("{s:i, s:s, s:b}", "input", switches[i].input, "name",
+                                                 switches[i].name, "normally_closed", switches[i].closed));
     return all;
 }
 
