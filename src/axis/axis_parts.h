@@ -154,7 +154,8 @@ typedef struct power {
     bool held : 1;                  /**< the set-point rests and the motor is to rest too, since `held_ms`: the torque
                                          is to go, or the axis to be taken over */
     uint8_t reset_state : 4;        /**< cm1e_command_state_t */
-    uint8_t undecided : 4;          /**< cycles with torque in which it was not known whether the motor turns */
+    uint8_t undecided : 4;          /**< cycles in which it was not known whether the motor rests: with torque that is
+                                         not taken over yet, else the last one */
     uint16_t held_ms;               /**< the lower bits of the time */
     cm1e_error_t reset_error;
     float velocity;                 /**< counts/s of the motor. Before the axis takes over: in the cycle before, 0

@@ -246,6 +246,8 @@ static double slow_velocity(const cm1e_axis_t *axis)
     return axis->limits.emergency.deceleration * fabs(axis->position.scale) * rests_in_s + noise;
 }
 
+static bool is_fast(const cm1e_axis_t *axis) { return fabs(axis_actual_velocity(axis)) > slow_velocity(axis); }
+
 /* counts/s; the least that tells this velocity, the one of the cycle before, what both come to in the next cycle, and
  * the way since then. So one untrue value turns nothing, and the motor is not driven where the drive brakes it
  * already. */
@@ -365,13 +367,13 @@ static bool ramp_is_over(cm1e_axis_t *axis)
 
 /* The motor has just got its torque. If it turns, the set-point goes with it and brakes, or stands if that cannot be.
  * Its velocity is known when two cycles in a row have shown it under torque, by numbers that agree. Behind a pause or a
- * silence the drive has braked it already, and a target that went to it now would drive it. A motor that is slow then may
- * be one that its servo just turns round. */
+ * silence the drive has braked it already, and a target that went to it now would drive it. A motor that is slow then, or
+ * was fast in the cycle before, may be one that its servo just turns round. */
 static void brake_or_hold(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;
     const bool known = shows_motor(axis) && axis->drive.actual.contradictions == 0;
-    const bool rests = known && fabs(axis_actual_velocity(axis)) <= slow_velocity(axis);
+    const bool rests = known && !is_fast(axis);
     const bool unheard = paused(axis) || axis->silence.silent_before > CM1E_AXIS_RIDDEN_OUT_CYCLES;
     const bool never = unheard || cm1e_drive_contradicts_itself(&axis->drive) ||
                        power->undecided >= longest_undecided;
@@ -421,7 +423,7 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
         axis->power.velocity = acting && shows_motor(axis) ? (float)axis_actual_velocity(axis) : 0.0f;
     const bool at_work = wanted && axis->power.energized;
     if (at_work || (axis_free(axis) ? !acting : !set_points_move(axis)))
-        axis->power.undecided = !at_work && !shows_motor(axis);
+        axis->power.undecided = !at_work && (!shows_motor(axis) || is_fast(axis));
 }
 
 void cm1e_axis_enable_step(cm1e_axis_t *axis)

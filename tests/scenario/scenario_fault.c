@@ -234,6 +234,8 @@ static void note(run_t *run, const fault_t *fault)
         if ((fault->kind == FAULT_LOAD || fault->kind == FAULT_SHOVE || fault->kind == FAULT_BRIDGE_CABLE) &&
             n == (int)fault->axis)
             axis->seen.pushed_until = end_of(fault);
+        if (fault->kind == FAULT_SHOVE && n == (int)fault->axis)
+            axis->seen.shoved_at = run->cycle;
         if (fault->kind == FAULT_BRIDGE_CABLE && n == (int)fault->axis) /* nobody sees how far it swings */
             axis->seen.unseen = true;
         if (fault->kind == FAULT_STALL) {

@@ -600,7 +600,7 @@ void judge_begin(run_t *run)
     for (int n = 0; n < run->scenario->axis_count; n++) {
         witness_t *seen = &run->axes[n].seen;
         *seen = (witness_t){.kept = true, .stalled = 1000000, .rung = 1000000, .caught = 1000000, .homing = 1000000,
-                            .stopped = 1000000, .quiet = 1000000, .jolted = 1000000, .pushed_until = -1000000};
+                            .stopped = 1000000, .quiet = 1000000, .jolted = 1000000, .pushed_until = -1000000, .shoved_at = -1000000};
         seen->by_steps = program_has(run->scenario, n, step_homings);
         seen->by_drive = program_has(run->scenario, n, drive_homings);
         seen->shifted = seen->by_steps || seen->by_drive || program_has(run->scenario, n, shifts);

@@ -14,7 +14,7 @@ bool moves_by_itself(const machine_axis_t *axis)
 /* Counts/s. The library takes a motor for one at rest whose positions change by no more than 3 counts within 20 ms. One that
  * breaks loose from its friction, and creeps to its target, gets so fast meanwhile. */
 #define CREEPING 500.0
-enum { SHOVED_CYCLES = 4000 };
+enum { LATE_CYCLES = 4000, TRANSFER_CYCLES = 60 }; /* of a write */
 
 /** Rules of the bridge's guide (cm1e/sim.h). An output may be written when the motor has lost its power; a motor that still
  *  turns gets a target that goes with it; one that stands behind its set-point by more than position_lag gets its own
@@ -27,7 +27,8 @@ static void judge_rules(run_t *run, machine_axis_t *axis)
     const unsigned insists = program_has(run->scenario, axis->number, mode_switches) ? CM1E_SIM_MODE_NO_WAY : 0u;
     const unsigned fails = fault_explains(run, axis, false) ? CM1E_SIM_MODE_IN_ERROR : 0u;
     /* The master saw it at rest when it wrote the mode, and somebody has shoved it since then. */
-    const bool shoved = run->cycle < axis->seen.pushed_until + SHOVED_CYCLES && fault_slows_mailbox(run, axis);
+    const int on_its_way = fault_slows_mailbox(run, axis) ? LATE_CYCLES : TRANSFER_CYCLES;
+    const bool shoved = run->cycle - axis->seen.shoved_at < on_its_way;
     const bool creeps = fabs(axis->probe.velocity_counts_per_s) < CREEPING;
     const unsigned stands = creeps || shoved ? axis->probe.broken_rules & CM1E_SIM_MODE_IN_MOTION : 0u; /* in this cycle */
     axis->seen.excused |= CM1E_SIM_OUTPUT_IN_VAIN | turns | lags | insists | fails | stands;

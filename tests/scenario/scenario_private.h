@@ -51,6 +51,7 @@ typedef struct witness {
     bool pressed[SWITCHES];               /**< its limit switches at a terminal */
     int rest_cycles;                      /**< since it is to be at rest, and is */
     bool torque_on;                       /**< in the cycle before */
+    int shoved_at;                        /**< cycle */
     bool was_on;                          /**< MC_Power.Status was TRUE then */
     int quiet;                            /**< cycles since something disturbed it */
     int jolted;                           /**< cycles since any network had a bad cycle */
