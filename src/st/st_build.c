@@ -164,6 +164,20 @@ static bool enter(st_t *st, map_t *map, const char *what, place_t place, const c
     return true;
 }
 
+type_t *cm1e_st_unnamed_enum(parsing_t *parsing, place_t place, vars_t enumerators, type_t *base)
+{
+    st_t *st = parsing->st;
+    type_t *type = cm1e_st_type_node(st, T_ENUM, place,
+                                     cm1e_st_format(st->arena, "unnamed.%u_%u_%u", place.file, place.line, place.column));
+    type->members = enumerators.first;
+    type->element = base;
+    type->unnamed = parsing->section != V_GLOBAL;
+    type->shown = cm1e_st_format(st->arena, "(%s%s)", enumerators.first->name, enumerators.first->next ? ", ..." : "");
+    type->next = st->tree.types;
+    st->tree.types = type;
+    return type;
+}
+
 void cm1e_st_add_type(parsing_t *parsing, place_t place, const char *name, type_t *type, expr_t *initial)
 {
     st_t *st = parsing->st;

@@ -90,10 +90,10 @@ static void map_names(st_t *st)
         map_vars(st, unit->names, unit->vars, unit->name);
     }
     for (type_t *type = st->tree.types; type; type = type->next) {
-        if (type->kind == T_ENUM)
+        if (type->kind == T_ENUM && !type->unnamed)
             map_enumerators(st, type);
         if (type->kind == T_STRUCT || type->kind == T_ENUM)
-            map_vars(st, cm1e_st_map_new(st->arena), type->members, type->name);
+            map_vars(st, cm1e_st_map_new(st->arena), type->members, cm1e_st_type_name(type));
     }
     for (unit_t *unit = st->tree.units; unit; unit = unit->next)
         if (cm1e_st_map_get(st->globals, unit->name))

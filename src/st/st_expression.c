@@ -45,6 +45,16 @@ static void use_enumerator(expr_t *expr, var_t *var)
     expr->value = var->value;
 }
 
+/** Of an enumeration that the unit, or the block of a method, has without a name; NULL: none. */
+static var_t *own_enumerator(const unit_t *unit, const char *name)
+{
+    var_t *found = NULL;
+    for (const var_t *var = unit ? unit->vars : NULL; var && !found; var = var->next)
+        if (var->type && var->type->kind == T_ENUM && var->type->unnamed)
+            found = cm1e_st_member(var->type, name);
+    return found || !unit ? found : own_enumerator(unit->object.owner, name);
+}
+
 static void name(st_t *st, expr_t *expr)
 {
     var_t *var = expr->var ? expr->var : cm1e_st_find_var(st, expr->name);
@@ -63,7 +73,9 @@ static void name(st_t *st, expr_t *expr)
         cm1e_st_take_from_memory(st, expr);
         return;
     }
-    var = cm1e_st_lookup(st, st->enumerators, expr->scope, expr->place, expr->name);
+    var = own_enumerator(st->unit, expr->name);
+    if (!var)
+        var = cm1e_st_lookup(st, st->enumerators, expr->scope, expr->place, expr->name);
     if (var && var->owner) {
         cm1e_st_resolve(st, var->owner);
         use_enumerator(expr, var);

@@ -54,7 +54,7 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %token CLASS "CLASS" END_CLASS "END_CLASS"
 %token NAMESPACE "NAMESPACE" END_NAMESPACE "END_NAMESPACE" USING "USING"
 %token <text> MODIFIER "ABSTRACT"
-%token CONFIGURATION "CONFIGURATION" END_CONFIGURATION "END_CONFIGURATION" RESOURCE "RESOURCE" ON "ON"
+%token CONFIGURATION "CONFIGURATION" END_CONFIGURATION "END_CONFIGURATION" RESOURCE "RESOURCE"
 %token END_RESOURCE "END_RESOURCE" TASK "TASK" WITH "WITH"
 %token ASSIGN ":=" REF_ASSIGN "REF=" SENDS "=>" LE "<=" GE ">=" NE "<>" POWER "**" RANGE ".."
 %left OR OR_ELSE
@@ -177,9 +177,8 @@ qualifiers: %empty { $$ = 0; } | qualifiers qualifier { $$ = $1 | $2; };
 qualifier: MODIFIER { $$ = ($1[1] | 0x20) == 'u' ? Q_PUBLIC : 0; } | CONSTANT { $$ = Q_CONSTANT; } | RETAIN { $$ = Q_RETAIN; } | NON_RETAIN { $$ = Q_NON_RETAIN; };
 declarations: %empty { $$ = (vars_t){0}; } | declarations declaration { $$ = $1; ST_JOIN($$, $2); };
 declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1, $2, $4, $5); }
-    | names address ':' '(' enumerators ')' initial ';' {
-        cm1e_st_report(ST, @4, "an enumeration needs a name here: declare it with TYPE ... END_TYPE");
-        $$ = (vars_t){0}; }
+    | names address ':' '(' enumerators ')' base initial ';' {
+        $$ = cm1e_st_vars(parsing, $1, $2, cm1e_st_unnamed_enum(parsing, @4, $5, $7), $8); }
     | names address ':' ARRAY '[' stars ']' OF type ';' {
         type_t *type = cm1e_st_type_node(ST, T_ARRAY, @4, NULL);
         type->open = true;
@@ -247,7 +246,10 @@ configuration: CONFIGURATION NAME { ST->tree.configuration = $2; ST->tree.config
     configuration_items END_CONFIGURATION;
 configuration_items: %empty | configuration_items configuration_item;
 configuration_item: globals | resource | task | instance;
-resource: RESOURCE NAME ON NAME resource_items END_RESOURCE;
+resource: RESOURCE NAME NAME NAME { /* ON is a name everywhere else: (Off, On) */
+        if (strcasecmp($3, "ON") != 0)
+            cm1e_st_report(ST, @3, "\"%s\" cannot stand here; expected ON", $3); }
+    resource_items END_RESOURCE;
 resource_items: %empty | resource_items resource_item;
 resource_item: globals | task | instance;
 task: TASK NAME '(' settings ')' ';' { cm1e_st_add_task(ST, @2, $2, $4); };

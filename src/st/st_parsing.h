@@ -84,6 +84,8 @@ void cm1e_st_edge(parsing_t *parsing, place_t place, const char *word, vars_t va
 /** After its branches are known: how deep a statement is nested. */
 void cm1e_st_deepen(st_t *st, stmt_t *stmt);
 var_t *cm1e_st_var_name(parsing_t *parsing, place_t place, const char *name);
+/** The type of "state : (Idle, Run)". */
+type_t *cm1e_st_unnamed_enum(parsing_t *parsing, place_t place, vars_t enumerators, type_t *base);
 void cm1e_st_add_type(parsing_t *parsing, place_t place, const char *name, type_t *type, expr_t *initial);
 void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const char *name, type_t *result,
                       vars_t vars, stmts_t body);

@@ -89,6 +89,7 @@ struct type {
     bool ranged;             /**< a subrange: `kind` is that of its base, its values are first ... last */
     int64_t first, last;
     var_t *members;          /**< of a STRUCT; enumerators of an ENUM; variables of a block */
+    bool unnamed;            /**< an ENUM within a declaration of variables: its unit alone knows its enumerators */
     bool overlay;            /**< UNION: a STRUCT whose members all begin at its first byte */
     const char *base_name;   /**< of a STRUCT: EXTENDS; NULL once it has the members of its base */
     unit_t *unit;            /**< of a block */

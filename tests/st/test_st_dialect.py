@@ -123,6 +123,17 @@ PROGRAM Main VAR RETAIN kept : U_Value; END_VAR VAR union : BOOL; u : U_Value :=
   size := SIZEOF(ST_Holds) * 10 + SIZEOF(u); END_PROGRAM
 """, 1, {"Main.s": 0x04030201, "Main.kept.d": 0x3F800000, "Main.u.d": 0xFFFE0304, "Main.u.b[0]": 4, "Main.h2.u.parts.low": 7, "Main.w": 0x1234,
          "Main.f.u.d": 0x201, "Main.h2.u.d": 0x02000007, "Main.size": 84}),
+    ("unnamed", """
+TYPE Other : (Idle := 9, Run); END_TYPE
+VAR_GLOBAL gMode : (Slow, Fast) := Fast; END_VAR
+FUNCTION_BLOCK FB_A VAR state : (Idle, Run, Done := 7) USINT := Run; END_VAR VAR_OUTPUT n : INT; END_VAR
+  METHOD Next VAR step : (One, Two) := Two; END_VAR IF step = Two THEN state := Done; END_IF END_METHOD
+  CASE state OF Idle: n := 1; Run: n := 2; Next(); Done: n := n + state; END_CASE END_FUNCTION_BLOCK
+FUNCTION_BLOCK FB_B EXTENDS FB_A VAR_STAT k : (Idle2, Run2) := Run2; END_VAR SUPER^(); IF state = Done AND k = Run2 THEN n := n + 100; END_IF
+  END_FUNCTION_BLOCK
+PROGRAM Main VAR a, b : FB_A; c : FB_B; o : Other := Idle; RETAIN1 : INT; END_VAR VAR RETAIN kept : (Off, On); END_VAR
+  a(); a(); b(); c(); kept := On; IF gMode = Fast THEN gMode := Slow; END_IF END_PROGRAM
+""", 1, {"Main.a.n": 9, "Main.a.state": 7, "Main.b.n": 2, "Main.c.n": 102, "Main.o": 9, "Main.kept": 1, "gMode": 0}),
     ("open_texts", """
 FUNCTION G : INT VAR_IN_OUT a : ARRAY[*] OF STRING(5); END_VAR a[1] := 'abcdefg'; G := LEN(a[2]); END_FUNCTION
 PROGRAM Main VAR x : ARRAY[1..3] OF STRING(5) := [3('ab')]; n : INT; END_VAR n := G(a := x); END_PROGRAM
