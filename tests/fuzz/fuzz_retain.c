@@ -55,12 +55,6 @@ static void write_file(const uint8_t *bytes, size_t size)
     fclose(file);
 }
 
-static void forget(st_retain_t *retain)
-{
-    free(retain->copy);
-    *retain = (st_retain_t){0};
-}
-
 bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool must)
 {
     static st_retain_t retain;
@@ -74,7 +68,7 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
         fuzz_use_text(diag.text);
         if (expected || values.number != 0x1111 || values.text[13] != 0x11)
             fuzz_fail("a good file is refused, or one that is refused has changed variables: %s", diag.text);
-        forget(&retain);
+        st_retain_end(&retain, &diag);
         return false;
     }
     if (expected && memcmp(expected, &values.number, 2) != 0)
