@@ -367,8 +367,8 @@ static bool ramp_is_over(cm1e_axis_t *axis)
 
 /* The motor has just got its torque. If it turns, the set-point goes with it and brakes, or stands if that cannot be.
  * Its velocity is known when two cycles in a row have shown it under torque, by numbers that agree. Behind a pause or a
- * silence the drive has braked it already, and a target that went to it now would drive it. A motor that is slow then, or
- * was fast in the cycle before, may be one that its servo just turns round. */
+ * silence the drive has braked it already, and a target that went to it now would drive it. A motor that is slow then,
+ * or was fast in the cycle before, may be one that its servo just turns round. */
 static void brake_or_hold(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;

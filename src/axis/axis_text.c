@@ -40,8 +40,8 @@ static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
 static void not_at_rest_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     snprintf(text, size,
-             "Axis \"%s\": the motor turned when it got its torque, and did not come to rest: %.6g u/s in the end. It was "
-             "let go. Look for a load that drives it, or a servo that swings; then reset the axis with MC_Reset.",
+             "Axis \"%s\": the motor turned when it got its torque, and did not come to rest: %.6g u/s in the end. It "
+             "was let go. Look for a load that drives it, or a servo that swings; then reset the axis with MC_Reset.",
              axis->config->name, axis->fault.value);
 }
 
