@@ -422,20 +422,23 @@ void watch_set_point(void)
     const bool by_ramp = axis->state == CM1E_AXIS_DISABLED && (!axis->drive.answered || !axis->power.energized);
     const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || by_ramp ||
                          (stop && axis->limits.software_limits) || watched.rough;
-    const bool hard = is_hard || watched.hard;
+    /* A motor that was ahead when it was heard again: the set-point goes after it. */
+    const bool hard = is_hard || watched.hard || axis_has_extra(axis, EXTRA_PURSUIT);
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
     const bool taken_over = watched.disabled && axis->state == CM1E_AXIS_STANDSTILL && v == 0.0 && a == 0.0 &&
                             cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) == 0.0;
     const bool goes_on = ours && watched.ours && !watched.lost && !taken_over;
     const double most_jerk = most->jerk + jerk_on_coupling(axis, &watched.on_coupling);
     if (axis->state == CM1E_AXIS_DISABLED && watched.disabled && !axis->power.energized && v != 0.0 &&
-        watched.velocity == 0.0) {
+        watched.velocity == 0.0 && !axis->silence.resumed) {
         const double motor = axis_actual_velocity(axis) / axis->position.scale;
         watched.ramps++;
         KEEPS(v * motor > 0.0 && fabs(v) <= fabs(motor) * slack, "it is braked from %.9g u/s, and turns at %.9g", v, motor);
     }
+    /* The motor turned by itself: the limits that the program has lowered were none for it. */
+    const double fastest = by_ramp && !axis->power.energized ? axis->limits.system.velocity : most->velocity;
     if (goes_on && !watched.rough) /* a hard one too */
-        KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
+        KEEPS(fabs(v) <= fastest * slack, "velocity %.12g, limit %.12g", v, fastest);
     if (goes_on && !hard && !watch_silence()) {
         const double way = cm1e_position_minus(axis->setpoint.position, watched.set) / axis->position.scale;
         const double jerk = fabs(a - watched.acceleration) / t, gain = fabs(v - watched.velocity);
