@@ -116,8 +116,8 @@ static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t si
     const bool fits = refused->velocity > 0.0 && refused->velocity <= most;
     const double one_count = 1.0 / fabs(axis->position.scale);
     if (drive_profiles(axis) && refused->velocity != 0.0 && fabs(refused->velocity) < 0.5 * one_count)
-        snprintf(text, size, "Axis \"%s\": velocity %.6g was commanded, which its drive rounds to 0 counts/s; from %.6g "
-                 "u/s on is right.", name, refused->velocity, 0.5 * one_count);
+        snprintf(text, size, "Axis \"%s\": velocity %.6g was commanded, which its drive rounds to 0 counts/s; from "
+                 "%.6g u/s on is right.", name, refused->velocity, 0.5 * one_count);
     else if (refused->kind == CM1E_COMMAND_MOVE_VELOCITY)
         snprintf(text, size, "Axis \"%s\": velocity %.6g was commanded; -%.6g ... %.6g u/s is right, but not 0.", name,
                  refused->velocity, most, most);
