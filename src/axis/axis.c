@@ -127,7 +127,7 @@ static void watch_lag(cm1e_axis_t *axis)
 {
     const bool own = axis_holds(axis) || set_points_move(axis);
     const bool blind_before = axis->silence.blind;
-    if (cm1e_axis_note_blind(axis, own && !axis->drive.feedback.fresh))
+    if (cm1e_axis_note_blind(axis, own && !axis->drive.feedback.fresh) || cm1e_axis_catches(axis))
         return;
     /* counts */
     const double lag = own ? cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) + cm1e_axis_ran_on(axis)

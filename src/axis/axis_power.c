@@ -308,7 +308,7 @@ static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b
 static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double slow)
 {
     const double speed = fabs(velocity), scale = fabs(axis->position.scale);
-    const bool goes_away = away * velocity > 0.0, caught = !axis->power.energized;
+    const bool goes_away = away * velocity > 0.0, caught = cm1e_axis_catches(axis);
     if (!goes_away)
         axis->power.velocity = fmaxf(axis->power.velocity, (float)speed);
     const double most = caught ? axis->limits.system.velocity * scale : 0.0;
@@ -401,6 +401,11 @@ static void take_over_or_brake(cm1e_axis_t *axis)
     }
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_NOT_AT_REST, axis_actual_velocity(axis) / axis->position.scale, 0.0);
     cm1e_axis_become_free(axis);
+}
+
+bool cm1e_axis_catches(const cm1e_axis_t *axis)
+{
+    return axis->state == CM1E_AXIS_DISABLED && axis_holds(axis) && !axis->power.energized;
 }
 
 bool cm1e_axis_swings(const cm1e_axis_t *axis) { return axis->power.held && axis_holds(axis); }
