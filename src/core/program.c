@@ -52,8 +52,8 @@ void cm1e_program_cure(char *text, size_t size)
                                      needed[i].name);
     cm1e_program_path(path, sizeof path);
     if (lacking[0])
-        snprintf(text, size, "Not even root has%s in this container or service: start that with what it lacks (docker run --network host "
-                 "--cap-add NET_RAW --cap-add SYS_NICE --cap-add IPC_LOCK)", lacking);
+        snprintf(text, size, "Not even root has%s in this container or service: start that with what it lacks "
+                 "(docker run --network host --cap-add NET_RAW --cap-add SYS_NICE --cap-add IPC_LOCK)", lacking);
     else
         snprintf(text, size, "Start the program with sudo, or give it the privileges once: sudo setcap "
                  "cap_net_raw,cap_sys_nice,cap_ipc_lock+ep %s", path);

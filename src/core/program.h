@@ -11,7 +11,7 @@
 void cm1e_program_name(char *text, size_t size);
 /** The path of its file, for a command that gives it a right; "<program>" if it is not known or too long. @rt block */
 void cm1e_program_path(char *path, size_t size);
-/** How this program gets the privileges for raw sockets, real-time priority and locked memory, as a sentence without its
+/** How this program gets the privileges for raw sockets, real-time priority and locked memory: a sentence without its
  *  point. In a container or service that lacks one, not even root has it, and a file with that capability does not
  *  start at all. @rt block */
 void cm1e_program_cure(char *text, size_t size);

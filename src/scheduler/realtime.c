@@ -90,8 +90,8 @@ static void advise(char *advice, size_t size, bool fifo, bool locked, int priori
     char cure[300];
     cm1e_program_cure(cure, sizeof cure);
     snprintf(advice, size,
-             "Not real time: %s%s%s refused. %s; or limits of the user in /etc/security/limits.conf: rtprio %d, memlock "
-             "unlimited (ulimit -r -l shows them).", fifo ? "" : "SCHED_FIFO", fifo || locked ? "" : " and ",
+             "Not real time: %s%s%s refused. %s; or limits of the user in /etc/security/limits.conf: rtprio %d, "
+             "memlock unlimited (ulimit -r -l shows them).", fifo ? "" : "SCHED_FIFO", fifo || locked ? "" : " and ",
              locked ? "" : "locked memory", cure, priority);
 }
 
