@@ -167,8 +167,8 @@ static bool enter(st_t *st, map_t *map, const char *what, place_t place, const c
 type_t *cm1e_st_unnamed_enum(parsing_t *parsing, place_t place, vars_t enumerators, type_t *base)
 {
     st_t *st = parsing->st;
-    type_t *type = cm1e_st_type_node(st, T_ENUM, place,
-                                     cm1e_st_format(st->arena, "unnamed.%u_%u_%u", place.file, place.line, place.column));
+    const char *name = cm1e_st_format(st->arena, "unnamed.%u_%u_%u", place.file, place.line, place.column);
+    type_t *type = cm1e_st_type_node(st, T_ENUM, place, name);
     type->members = enumerators.first;
     type->element = base;
     type->unnamed = parsing->section != V_GLOBAL;

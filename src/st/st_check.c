@@ -178,8 +178,8 @@ static void called_instance(st_t *st, const unit_t *unit)
     args_t none = {0};
     for (const instance_t *instance = st->tree.instances; instance; instance = instance->next)
         if (strcasecmp(instance->program_name, unit->name) == 0) {
-            cm1e_st_report(st, instance->place, "the program \"%s\" is called in the statements of another one: no task "
-                           "runs it, too. Remove it here, or the call", unit->name);
+            cm1e_st_report(st, instance->place, "the program \"%s\" is called in the statements of another one: no "
+                           "task runs it, too. Remove it here, or the call", unit->name);
             return;
         }
     cm1e_st_add_instance(st, unit->place, unit->name, NULL, unit->name, none);

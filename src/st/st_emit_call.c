@@ -30,8 +30,10 @@ void cm1e_st_emit_address(st_t *st, const expr_t *expr)
 static void emit_bounds(st_t *st, const type_t *array, bool last)
 {
     cm1e_st_put(st, ", {");
-    for (int i = 0; i < array->dimension_count; i++)
-        cm1e_st_put(st, "%s%lld", i ? ", " : "", (long long)(last ? array->dimensions[i].last : array->dimensions[i].first));
+    for (int i = 0; i < array->dimension_count; i++) {
+        const dimension_t *d = &array->dimensions[i];
+        cm1e_st_put(st, "%s%lld", i ? ", " : "", (long long)(last ? d->last : d->first));
+    }
     cm1e_st_put(st, "}");
 }
 

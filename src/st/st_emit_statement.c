@@ -66,8 +66,8 @@ static void emit_input(st_t *st, const arg_t *arg)
     cm1e_st_put(st, ";\n");
 }
 
-/** A value for VAR_IN_OUT CONSTANT, and the bounds of an array of any length, end with the call: methods that are called
- *  later do not see them. */
+/** A value for VAR_IN_OUT CONSTANT, and the bounds of an array of any length, end with the call: methods that are
+ *  called later do not see them. */
 static void emit_ends(st_t *st, const expr_t *call)
 {
     for (const arg_t *arg = call->args; arg; arg = arg->next)

@@ -73,7 +73,7 @@ expr_t *cm1e_st_qualified(st_t *st, place_t place, const char *text);
 arg_t *cm1e_st_arg(st_t *st, place_t place, const char *name, expr_t *value);
 stmt_t *cm1e_st_stmt(st_t *st, stmt_kind_t kind, place_t place, expr_t *value, stmts_t body);
 branch_t *cm1e_st_branch(st_t *st, place_t place, expr_t *condition, stmt_t *body);
-/** x S= condition and x R= condition (TwinCAT, CODESYS): IF condition THEN x := TRUE or FALSE; END_IF. */
+/** What x S= condition and x R= condition (TwinCAT, CODESYS) assign to x where the condition holds. */
 stmt_t *cm1e_st_latch(st_t *st, place_t place, expr_t *target, const char *word);
 /** Statements between labels become the branches of a CASE. */
 void cm1e_st_group_case(st_t *st, stmt_t *stmt, stmts_t items, stmts_t otherwise, bool has_else, place_t place);

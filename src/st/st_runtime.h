@@ -87,7 +87,8 @@ typedef struct st_open {
     int32_t first[4], last[4];
 } st_open_t;
 
-ST_UNUSED static inline size_t st_open_at(int64_t index, const st_open_t *array, int dimension, const char *file, int line)
+ST_UNUSED static inline size_t st_open_at(int64_t index, const st_open_t *array, int dimension, const char *file,
+                                                 int line)
 {
     return st_at(index, array->first[dimension], array->last[dimension], file, line);
 }

@@ -184,8 +184,8 @@ void cm1e_st_standard_names(void (*visit)(const char *name, void *context), void
 /* st_statement.c */
 void cm1e_st_statements(st_t *st, stmt_t *list);
 
-/** st_alias.c: our name of an input or member that TwinCAT or CODESYS call `name`, of a block or a standard function; NULL:
- *  there is none, `hint` may say what to do. */
+/** st_alias.c: our name of an input or member that TwinCAT or CODESYS call `name`, of a block or a standard function;
+ *  NULL: there is none, `hint` may say what to do. */
 const char *cm1e_st_alias(const char *block, const char *name, const char **hint);
 
 /** st_view.c: axis.NcToPlc.ActPos and the like: false: it is none. */

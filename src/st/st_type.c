@@ -96,8 +96,8 @@ static void look_at(const char *name, void *value, void *context)
 /** A type of the standard that this translator has not. */
 static bool is_missing(const char *name)
 {
-    return strcasecmp(name, "BIT") == 0 || strcasecmp(name, "CHAR") == 0 || strcasecmp(name, "WCHAR") == 0 || strcasecmp(name, "ANY") == 0 ||
-           strncasecmp(name, "ANY_", 4) == 0;
+    return strcasecmp(name, "BIT") == 0 || strcasecmp(name, "CHAR") == 0 || strcasecmp(name, "WCHAR") == 0 ||
+           strcasecmp(name, "ANY") == 0 || strncasecmp(name, "ANY_", 4) == 0;
 }
 
 static type_t *unknown(st_t *st, type_t *type)
@@ -153,8 +153,8 @@ static void resolve_union(st_t *st, type_t *type)
         cm1e_st_inherit_initial(st, var);
         var->type = cm1e_st_resolve(st, var->type);
         if (var->type->kind != T_WRONG && (var->initial || !takes_any_bits(var->type)))
-            cm1e_st_report(st, var->place, "a UNION has numbers, BYTE ... LWORD, TIME and DT, and arrays and structures of "
-                           "these, without initial values: not all bits are a value of %s", var->initial ? "this" :
+            cm1e_st_report(st, var->place, "a UNION has numbers, BYTE ... LWORD, TIME and DT, and arrays and "
+                           "structures of these, without initial values: not all bits are a value of %s", var->initial ? "this" :
                            cm1e_st_type_name(var->type));
         const uint64_t align = var->type->alignment ? var->type->alignment : 1;
         type->alignment = align > type->alignment ? align : type->alignment;
