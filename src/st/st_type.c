@@ -154,8 +154,8 @@ static void resolve_union(st_t *st, type_t *type)
         var->type = cm1e_st_resolve(st, var->type);
         if (var->type->kind != T_WRONG && (var->initial || !takes_any_bits(var->type)))
             cm1e_st_report(st, var->place, "a UNION has numbers, BYTE ... LWORD, TIME and DT, and arrays and "
-                           "structures of these, without initial values: not all bits are a value of %s", var->initial ? "this" :
-                           cm1e_st_type_name(var->type));
+                           "structures of these, without initial values: not all bits are a value of %s",
+                           var->initial ? "this" : cm1e_st_type_name(var->type));
         const uint64_t align = var->type->alignment ? var->type->alignment : 1;
         type->alignment = align > type->alignment ? align : type->alignment;
         type->size = var->type->size > type->size ? var->type->size : type->size;
