@@ -252,6 +252,12 @@ static void member_of_value(st_t *st, expr_t *expr)
         bit(st, expr);
         return;
     }
+    if (type->kind == T_ENUM && cm1e_st_member(type, expr->name)) {
+        cm1e_st_report(st, expr->place, "\"%s\" is the variable here; the enumerator is %s#%s",
+                       expr->a->name ? expr->a->name : "this", type->name, expr->name);
+        set_wrong(st, expr);
+        return;
+    }
     if (type->kind != T_STRUCT && type->kind != T_BLOCK) {
         cm1e_st_report(st, expr->place, "%s has no members%s", cm1e_st_type_name(type),
                        type->kind == T_REF ? "; write ^ in front of the point" : has_single_bits(type) ?
@@ -322,7 +328,8 @@ static void element(st_t *st, expr_t *expr)
     }
     if (type->kind != T_ARRAY || count != type->dimension_count) {
         if (type->kind == T_ARRAY)
-            cm1e_st_report(st, expr->place, "%s takes %d indices; found %d", type->name, type->dimension_count, count);
+            cm1e_st_report(st, expr->place, "%s takes %d %s; found %d", type->name, type->dimension_count,
+                           type->dimension_count == 1 ? "index" : "indices", count);
         else
             cm1e_st_report(st, expr->place, "%s is no array%s", cm1e_st_type_name(type), type->kind == T_STRING ?
                            "; MID(s, 1, n) is its character n" : "");
@@ -386,7 +393,9 @@ static void wrong_operands(st_t *st, expr_t *expr)
     else if ((cm1e_st_is_bits(ka) || cm1e_st_is_bits(kb)) && expr->op >= OP_ADD && expr->op <= OP_MOD)
         hint = "; bits are no number: convert them, as in WORD_TO_UINT(...)";
     else if (expr->op <= OP_AND_THEN || expr->op == OP_NOT)
-        hint = "; it is for BOOL, BYTE, WORD, DWORD and LWORD";
+        hint = ka == T_ANY_INT && expr->op == OP_NOT ? "; of how many bits is not known: write the type too, as in "
+                                                       "NOT WORD#16#1"
+                                                     : "; it is for BOOL, BYTE, WORD, DWORD and LWORD";
     if (expr->b) {
         char left[240], right[240];
         cm1e_st_report(st, expr->place, "%s %s %s is not defined%s%s%s", a, op, b, hint,

@@ -11,6 +11,7 @@
 #include "st/st_parsing.h"
 }
 %code {
+#include <ctype.h>
 #include <string.h>
 
 #define YYLLOC_DEFAULT(Current, Rhs, N) ((Current) = (N) ? YYRHSLOC(Rhs, 1) : YYRHSLOC(Rhs, 0))
@@ -67,7 +68,7 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %left POWER
 %precedence UNARY
 
-%type <expr> expr variable value constant_initial initial address label signed
+%type <expr> expr variable value constant_initial initial address label
 %type <arg> argument member_init element_init setting
 %type <args> arguments argument_list expr_list labels member_inits element_inits settings setting_list
 %type <stmts> stmts stmts_of_block case_items body latches
@@ -316,10 +317,7 @@ case_items: %empty { $$ = (stmts_t){0}; }
         $$ = $1; ST_APPEND($$, mark); };
 labels: label { arg_t *arg = cm1e_st_arg(ST, @1, NULL, $1); $$ = (args_t){arg, arg}; }
     | labels ',' label { arg_t *arg = cm1e_st_arg(ST, @3, NULL, $3); $$ = $1; ST_APPEND($$, arg); };
-label: signed { $$ = $1; }
-    | signed RANGE signed { $$ = cm1e_st_node(ST, E_REPEAT, @1, $1, $3); };
-signed: variable { $$ = $1; } | value { $$ = $1; }
-    | '-' LITERAL { $$ = cm1e_st_operation(ST, OP_NEGATE, @1, cm1e_st_literal(ST, @2, $2), NULL); };
+label: expr { $$ = $1; } | expr RANGE expr { $$ = cm1e_st_node(ST, E_REPEAT, @1, $1, $3); };
 
 /* ---- expressions ---- */
 variable: NAME { $$ = cm1e_st_named(ST, E_NAME, @1, NULL, $1); }
@@ -374,7 +372,24 @@ argument: expr { $$ = cm1e_st_arg(ST, @1, NULL, $1); }
 %%
 enum { SHOWN = 6 };
 
-/** "expected X, Y or Z": the words that could stand here. Of many only the semicolon is worth a word: it is missing. */
+/** The word that may be missing where many could stand: it ends what is there. NULL: none of these could. */
+static const char *missing_word(const yysymbol_kind_t *expected, int count)
+{
+    for (int i = 0; i < count; i++)
+        switch (expected[i]) {
+        case YYSYMBOL_THEN: return "THEN";
+        case YYSYMBOL_DO: return "DO";
+        case YYSYMBOL_OF: return "OF";
+        case YYSYMBOL_TO: return "TO";
+        case YYSYMBOL_END_REPEAT: return "END_REPEAT";
+        default:
+            if (strcmp(yysymbol_name(expected[i]), "';'") == 0)
+                return ";";
+        }
+    return NULL;
+}
+
+/** "expected X, Y or Z": the words that could stand here. Of many only the one that may be missing is worth a word. */
 static void expectations(const yypcontext_t *context, char *text, size_t size)
 {
     yysymbol_kind_t expected[YYNTOKENS];
@@ -388,9 +403,9 @@ static void expectations(const yypcontext_t *context, char *text, size_t size)
     for (int i = 0; i < count && count <= SHOWN && used < size; i++)
         used += (size_t)snprintf(text + used, size - used, "%s%s", i == 0 ? "; expected " : i == count - 1 ? " or " : ", ",
                                  yysymbol_name(expected[i]));
-    for (int i = 0; i < count && count > SHOWN; i++)
-        if (strcmp(yysymbol_name(expected[i]), "';'") == 0)
-            snprintf(text, size, "; is a \";\" missing before it?");
+    const char *missing = count > SHOWN ? missing_word(expected, count) : NULL;
+    if (missing)
+        snprintf(text, size, "; is a \"%s\" missing before it?", missing);
 }
 
 /** The end that is missing, if `found` ends what is around an IF, a loop or a CASE that is open; NULL: it does not. */
@@ -452,6 +467,10 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
         snprintf(text, sizeof text, "; THEN is that of IF or ELSIF");
     if (strcasecmp(parsing->before, "ELSEIF") == 0)
         snprintf(text, sizeof text, "; a further condition begins with ELSIF");
+    if (strcasecmp(parsing->before, "END") == 0)
+        snprintf(text, sizeof text, "; what ends a statement is one word, as END_IF");
+    if (strcmp(parsing->last, ",") == 0 && isdigit((unsigned char)parsing->before[0]) && is_behind_expression(context))
+        snprintf(text, sizeof text, "; a number has a point, as 1.5, and a list of values stands in [ ]");
     if (found == YYSYMBOL_YYEOF)
         cm1e_st_report(ST, *yypcontext_location(context), "the source ends here, before something is complete%s", text);
     else

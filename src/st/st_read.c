@@ -184,7 +184,10 @@ static const char *written_here(char character)
 
 void cm1e_st_bad_character(parsing_t *parsing, place_t place, char character)
 {
-    if (character > ' ' && character < 0x7F)
+    if (character == '%' && strcmp(parsing->before, ".") == 0)
+        cm1e_st_report(parsing->st, place, "parts of a value (.%%X3, .%%B1) are not supported: a single bit is "
+                       "value.3, and SHR and WORD_TO_BYTE give the rest");
+    else if (character > ' ' && character < 0x7F)
         cm1e_st_report(parsing->st, place, "\"%c\" is not a character of the language here%s", character,
                        written_here(character));
     else

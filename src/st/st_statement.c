@@ -21,6 +21,16 @@ static bool refer(st_t *st, stmt_t *stmt)
     return automatic;
 }
 
+/** How an error names what is assigned: x, list[...], pointer^. */
+static const char *shown(st_t *st, const expr_t *target)
+{
+    if (target->var || target->name)
+        return target->var ? target->var->name : target->name;
+    if (!target->a)
+        return "the variable";
+    return cm1e_st_format(st->arena, "%s%s", shown(st, target->a), target->kind == E_INDEX ? "[...]" : "^");
+}
+
 static void assign(st_t *st, stmt_t *stmt)
 {
     stmt->value->may_be_skipped = true;
@@ -38,8 +48,7 @@ static void assign(st_t *st, stmt_t *stmt)
         cm1e_st_report(st, stmt->place, "an instance of a function block cannot be assigned");
     if (target->type->open)
         cm1e_st_report(st, stmt->place, "an array of any length is assigned element by element");
-    stmt->value = cm1e_st_coerce(st, stmt->value, target->type,
-                                 target->var ? target->var->name : target->name ? target->name : "the variable");
+    stmt->value = cm1e_st_coerce(st, stmt->value, target->type, shown(st, target));
     if (stmt->value->impure && (target->kind == E_INDEX || target->kind == E_DEREF || target->kind == E_MEMBER))
         for (const expr_t *at = target; at; at = at->a)
             if (at->kind == E_DEREF || (at->kind == E_INDEX && !cm1e_st_is_fixed(at->args->value)))

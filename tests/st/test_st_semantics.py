@@ -121,6 +121,8 @@ CASES = [
     ("IF i = 1 THEN j := 1; ELSIF i = 0 THEN j := 2; ELSIF TRUE THEN j := 3; ELSE j := 4; END_IF;", {"j": 2}),
     ("i := 4; CASE i OF 1, 2: j := 1; 3..5, 9: j := 2; n := 7; ELSE j := 3; END_CASE", {"j": 2, "n": 7}),
     ("i := 6; CASE i OF 1, 2: j := 1; 3..5: j := 2; ELSE j := 3; n := 1; END_CASE", {"j": 3, "n": 1}),
+    ("i := 5; CASE i OF KK: j := 1; KK + 1: j := 2; KK + 2..2 * KK: j := 3; END_CASE", {"j": 2}),
+    ("i := 7; CASE i OF KK + 2..2 * KK: j := 3; -(KK): j := 4; END_CASE", {"j": 3}),
     ("i := -3; CASE i OF -5..-1: j := 1; END_CASE", {"j": 1}),
     ("i := 9; CASE i OF 1: j := 1; END_CASE", {"j": 0}),
     ("c := Green; CASE c OF Red: j := 1; E_Color#Green: j := 2; E_Color.Blue: j := 3; END_CASE", {"j": 2}),
