@@ -54,6 +54,9 @@ static expr_t *refuse(st_t *st, expr_t *expr, const type_t *type, const char *wh
     if ((from == T_ANY_INT && to <= T_LREAL && expr->value.known) || is_constant_enumerator(expr, to))
         cm1e_st_report(st, expr->place, "%s%lld is not a value of %s, which \"%s\" is",
                        expr->value.huge ? "(as LINT) " : "", (long long)expr->value.integer, type->name, what);
+    else if (to == T_TIME && (from == T_ANY_INT || from == T_ANY_REAL))
+        cm1e_st_report(st, expr->place, "\"%s\" is TIME, and this is %s: a time is written as T#1s500ms", what,
+                       cm1e_st_type_name(expr->type));
     else if (from == T_NONE)
         cm1e_st_report(st, expr->place, "this has no value, and \"%s\" is %s", what, cm1e_st_type_name(type));
     else if ((from <= T_DT || from == T_STRING) && (to <= T_DT || to == T_STRING) && (from != to || from == T_STRING))

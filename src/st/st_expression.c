@@ -229,9 +229,10 @@ static void found_member(st_t *st, expr_t *expr, const type_t *type)
     }
     if (type->kind == T_BLOCK && expr->a->kind != E_THIS && expr->var->section != V_INPUT &&
         expr->var->section != V_OUTPUT && !(expr->var->qualifiers & Q_PUBLIC)) {
-        cm1e_st_report(st, expr->place,
+        cm1e_st_report(st, expr->place, expr->var->section == V_IN_OUT ?
+                       "\"%s\" is a VAR_IN_OUT of %s: it gets its variable in the call, ...(%s := variable)" :
                        "\"%s\" is within %s: from outside its inputs, outputs and VAR PUBLIC can be reached",
-                       expr->var->name, type->name);
+                       expr->var->name, type->name, expr->var->name);
         set_wrong(st, expr);
     }
 }

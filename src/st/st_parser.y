@@ -467,6 +467,8 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing_t *parsing
         snprintf(text, sizeof text, "; THEN is that of IF or ELSIF");
     if (strcasecmp(parsing->before, "ELSEIF") == 0)
         snprintf(text, sizeof text, "; a further condition begins with ELSIF");
+    if (isalpha((unsigned char)parsing->last[0]) && is_expected(context, YYSYMBOL_END_VAR))
+        snprintf(text, sizeof text, "; expected END_VAR, or a name, which no word of the language is");
     if (strcasecmp(parsing->before, "END") == 0)
         snprintf(text, sizeof text, "; what ends a statement is one word, as END_IF");
     if (strcmp(parsing->last, ",") == 0 && isdigit((unsigned char)parsing->before[0]) && is_behind_expression(context))

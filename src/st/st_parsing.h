@@ -18,6 +18,7 @@ typedef struct parsing {
     int qualifiers;        /**< of the section of variables that is read */
     section_t section;
     bool heading;          /**< between the word that begins a block, a method ... and its first ";" or variable */
+    bool in_configuration; /**< where RESOURCE, TASK and WITH are no names */
     bool in_property;      /**< where GET and SET begin, and are no names */
     unit_t *methods;       /**< of the block that is read */
     object_t object;       /**< of its heading */

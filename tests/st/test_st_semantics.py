@@ -92,7 +92,7 @@ VARS = "i, j, n : INT; d : DINT; s : STRING(10); b : BOOL; c : E_Color; m : E_Sm
        "grid : ARRAY[1..2, 0..2] OF INT := [1, 2, 3, 2(9), 6]; u : USINT; a : ARRAY[1..KK] OF INT := [3(7)]; big : LINT; x64 : ULINT;" \
        "h : Percent; h2 : ARRAY[1..2] OF Percent; near : INT (-5..5) := 2; loop : INT (1..4); part : Part; five, five2 : Five; " \
        "e : Edges; e2 : Edges2; speed : Counter; idle : ARRAY[1..3] OF Idle; empty : ARRAY[1..3] OF Nothing; behind : BYTE := 7; late : Late(n := 5) := (a := 9); leaver : Leaver; made : Made; made2 : Made2(number := 3, who := 'abc'); sq : Plant.Square; pump : Pump; pump2 : Pump__Set; " \
-       "hue : Plant.Inner.Hue; f1 : ARRAY[1..2] OF BOOL; bit : Latched; setter : Setter; flags : E_Flags; long : STRING(255); wlong : WSTRING(255); y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
+       "hue : Plant.Inner.Hue; on : STRING; task, with, resource : INT; f1 : ARRAY[1..2] OF BOOL; bit : Latched; setter : Setter; flags : E_Flags; long : STRING(255); wlong : WSTRING(255); y : WSTRING(10); y2 : WSTRING := \"\u00e4$\"$20AC\";"
 # The literal of a time and its value, in both directions.
 TIMES = [("T#-106751d23h47m16s854ms775us808ns", -2**63), ("T#-106751d23h47m16s854ms775us807ns", 1 - 2**63),
          ("T#106751d23h47m16s854ms775us807ns", 2**63 - 1), ("T#0ms", 0), ("T#-1ns", -1), ("T#-1h500us", -3600000500000)]
@@ -121,6 +121,7 @@ CASES = [
     ("IF i = 1 THEN j := 1; ELSIF i = 0 THEN j := 2; ELSIF TRUE THEN j := 3; ELSE j := 4; END_IF;", {"j": 2}),
     ("i := 4; CASE i OF 1, 2: j := 1; 3..5, 9: j := 2; n := 7; ELSE j := 3; END_CASE", {"j": 2, "n": 7}),
     ("i := 6; CASE i OF 1, 2: j := 1; 3..5: j := 2; ELSE j := 3; n := 1; END_CASE", {"j": 3, "n": 1}),
+    ("on := STRING#'a$'b'; y := WSTRING#\"c$\"d\"; s := on; task := 3; with := task; resource := with; i := resource;", {"s": b"a'b", "y": 'c"d', "i": 3}),
     ("i := 5; CASE i OF KK: j := 1; KK + 1: j := 2; KK + 2..2 * KK: j := 3; END_CASE", {"j": 2}),
     ("i := 7; CASE i OF KK + 2..2 * KK: j := 3; -(KK): j := 4; END_CASE", {"j": 3}),
     ("i := -3; CASE i OF -5..-1: j := 1; END_CASE", {"j": 1}),
