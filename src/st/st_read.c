@@ -69,6 +69,18 @@ uint64_t cm1e_st_interface(void)
     return hash;
 }
 
+/** What the text is, if it is none of the language at all; NULL: nothing is known against it. */
+static const char *foreign(const char *text, size_t size)
+{
+    const size_t mark = size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+    if (size >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0))
+        return "this file is UTF-16: save it as UTF-8";
+    if (size > mark && text[mark] == '<')
+        return "this file is XML, and none of a TwinCAT project (.TcPOU, .TcGVL, .TcDUT, .TcIO): copy the Structured "
+               "Text out of it into a file of its own";
+    return NULL;
+}
+
 void cm1e_st_add_text(st_t *st, const char *name, const char *text, size_t size)
 {
     if (st->source_count == ST_SOURCES) {
@@ -78,8 +90,13 @@ void cm1e_st_add_text(st_t *st, const char *name, const char *text, size_t size)
     source_t *source = &st->sources[st->source_count++];
     *source = (source_t){.name = cm1e_st_copy(st->arena, name, strlen(name)), .size = size,
                          .text = cm1e_st_copy(st->arena, text, size)};
-    if (cm1e_st_is_twincat(text, size))
+    const char *why = foreign(text, size);
+    if (cm1e_st_is_twincat(text, size)) {
         cm1e_st_twincat(st, source);
+    } else if (why) {
+        cm1e_st_report(st, (place_t){.file = (uint16_t)(st->source_count - 1), .line = 1, .column = 1}, "%s", why);
+        source->size = 0; /* all further errors would follow from that */
+    }
 }
 
 cm1e_error_t cm1e_st_add_file(st_t *st, const char *path, cm1e_diag_t *diag)

@@ -380,6 +380,8 @@ SOURCES = [
     ("FUNCTION_BLOCK P VAR RETAIN t : INT; END_VAR END_FUNCTION_BLOCK", "1:29", ["VAR_IN_OUT"]),
     ("MC_Power", "1:1", ["cannot stand here"]),
     ("PROGRAM P VAR b : BOOL; END_VAR b := b.IF; END_PROGRAM", "1:40", ["expected a name, a number or a value of a type"]),
+    ("\xff\xfeP\0R\0O\0G\0", "1:1", ["UTF-16: save it as UTF-8"]),
+    ("<?xml version=\"1.0\"?>\n<project xmlns=\"http://www.plcopen.org/xml/tc6_0200\"/>", "1:1", ["XML, and none of a TwinCAT project"]),
     ("PROGRAM P VAR i := 1; END_VAR END_PROGRAM", "1:17", ["cannot stand here; expected AT, ',' or ':'"]),
     ("FUNCTION_BLOCK MC_Power END_FUNCTION_BLOCK", "1:16", ["already"]),
 ]
