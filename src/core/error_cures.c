@@ -114,7 +114,8 @@ static const struct {
     {CM1E_ERROR_GROUP_PATH, "give points within the limits, and an arc that goes through them"},
     {CM1E_ERROR_GROUP_TRANSITION, "give a transition mode that the block has"},
     {CM1E_ERROR_GROUP_COORD_SYSTEM, "use mcACS"},
-    {CM1E_ERROR_FB_AXIS_REF, "set the input Axis"},
+    {CM1E_ERROR_FB_AXIS_REF, "set the input Axis; in Structured Text an AXIS_REF in an array or a structure gets its "
+                             "axis by an assignment, list[1] := X"},
     {CM1E_ERROR_FB_AXIS_CHANGED, "keep Axis while the block is busy"},
     {CM1E_ERROR_FB_SECOND_POWER, "call one MC_Power per axis"},
     {CM1E_ERROR_FB_CAM_SWITCH, "correct the switch or track; the page of the block has the ranges"},

@@ -170,8 +170,12 @@ static void unknown_member(st_t *st, expr_t *expr, const type_t *type)
     for (const var_t *other = type->members; other; other = other->next)
         if (expr->a->kind == E_THIS || (other->section != V_LOCAL && other->section != V_TEMP))
             cm1e_near_look(&near, other->name);
-    cm1e_st_report(st, expr->place, "%s has no \"%s\"%s", type->name, expr->name,
-                   cm1e_near_text(&near, text, sizeof text));
+    if (type->kind == T_BLOCK && type->unit && cm1e_st_find_method(type->unit, expr->name))
+        cm1e_st_report(st, expr->place, "\"%s\" is a method of %s: it is called, %s(...)", expr->name, type->name,
+                       expr->name);
+    else
+        cm1e_st_report(st, expr->place, "%s has no \"%s\"%s", type->name, expr->name,
+                       cm1e_near_text(&near, text, sizeof text));
     set_wrong(st, expr);
 }
 

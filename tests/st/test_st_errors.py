@@ -272,6 +272,8 @@ SOURCES = [
     ("PROGRAM P VAR x : BOOL R_EDGE; END_VAR END_PROGRAM", "1:15", ["inputs of type BOOL"]),
     ("FUNCTION P VAR_INPUT x : BOOL F_EDGE; END_VAR END_FUNCTION", "1:22", ["inputs of type BOOL"]),
     ("PROGRAM P VAR_INPUT x : BOOL R_EDGE; END_VAR x := TRUE; END_PROGRAM", "1:46", ["not written"]),
+    ("FUNCTION_BLOCK F METHOD M : INT END_METHOD END_FUNCTION_BLOCK PROGRAM P VAR f : F; i : INT; END_VAR i := f.M; END_PROGRAM",
+     "1:108", ['"M" is a method of F: it is called, M(...)']),
     ("CLASS A VAR_INPUT i : INT; END_VAR END_CLASS", "1:19", ["no inputs and outputs"]),
     ("CLASS A VAR v : INT; END_VAR END_CLASS PROGRAM P VAR a : A; END_VAR a(); END_PROGRAM", "1:69", ["call a method"]),
     ("CLASS A VAR v : INT; END_VAR END_CLASS PROGRAM P VAR a : A; n : INT; END_VAR n := a.v; END_PROGRAM", "1:85",
