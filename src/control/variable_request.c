@@ -101,11 +101,10 @@ static void change(view_t *view, view_order_t *order)
     of->result = FORCING_DONE;
     of->forced.owner = view;
     of->forced.until_ns = cm1e_scheduler_time_ns(view->scheduler) + of->keep_ns;
-    if (of->release)
+    if (of->check)
+        of->result = of->release ? FORCING_DONE : cm1e_scheduler_would_take(view->scheduler, &of->forced, of->force);
+    else if (of->release)
         cm1e_scheduler_release(view->scheduler, &of->forced);
-    else if (of->check)
-        of->result = !of->force && cm1e_scheduler_is_forced(view->scheduler, of->forced.variable) ? FORCING_HELD
-                                                                                                 : FORCING_DONE;
     else if (of->force)
         of->result = cm1e_scheduler_force(view->scheduler, &of->forced);
     else

@@ -74,26 +74,31 @@ static forced_t *find_free(const forcing_parts_t *p)
     return free;
 }
 
+forcing_result_t cm1e_scheduler_would_take(cm1e_scheduler_t *scheduler, const forced_t *forced, bool force)
+{
+    const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
+    const forced_t *row = find(p.forcing, forced->variable);
+    if (p.ending)
+        return FORCING_ENDING;
+    if (force && find_taken(&p, forced))
+        return FORCING_TAKEN;
+    if (row)
+        return force && is_of(row, forced) ? FORCING_DONE : FORCING_HELD;
+    return force && !find_free(&p) ? FORCING_FULL : FORCING_DONE;
+}
+
 forcing_result_t cm1e_scheduler_force(cm1e_scheduler_t *scheduler, const forced_t *forced)
 {
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
+    const forcing_result_t result = cm1e_scheduler_would_take(scheduler, forced, true);
+    if (result == FORCING_TAKEN)
+        find_taken(&p, forced)->until_ns = forced->until_ns;
+    if (result != FORCING_DONE)
+        return result;
     forced_t *row = find(p.forcing, forced->variable);
     const bool renewed = row && memcmp(row->value.bytes, forced->value.bytes, sizeof row->value.bytes) == 0;
-    forced_t *taken = find_taken(&p, forced);
-    if (p.ending)
-        return FORCING_ENDING;
-    if (taken) {
-        taken->until_ns = forced->until_ns;
-        return FORCING_TAKEN;
-    }
-    if (row && !is_of(row, forced))
-        return FORCING_HELD;
     p.forcing->count += !row;
     row = row ? row : find_free(&p);
-    if (!row) {
-        p.forcing->count--;
-        return FORCING_FULL;
-    }
     *row = *forced;
     row->held = true;
     row->taken = false;
@@ -138,8 +143,9 @@ void cm1e_scheduler_release_all(cm1e_scheduler_t *scheduler, const void *owner, 
 forcing_result_t cm1e_scheduler_write(cm1e_scheduler_t *scheduler, uint32_t variable, const variable_value_t *value)
 {
     const forcing_parts_t p = cm1e_scheduler_forcing_parts(scheduler);
-    if (p.ending || find(p.forcing, variable))
-        return p.ending ? FORCING_ENDING : FORCING_HELD;
+    const forcing_result_t result = cm1e_scheduler_would_take(scheduler, &(forced_t){.variable = variable}, false);
+    if (result != FORCING_DONE)
+        return result;
     write_value(&p, variable, value);
     note(&p, WRITTEN, variable, value);
     return FORCING_DONE;

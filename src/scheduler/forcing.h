@@ -50,6 +50,9 @@ CM1E_GUEST_API void cm1e_scheduler_release_all(cm1e_scheduler_t *scheduler, cons
 /** Writes a variable once; the program may change it. */
 CM1E_GUEST_API forcing_result_t cm1e_scheduler_write(cm1e_scheduler_t *scheduler, uint32_t variable,
                                                      const variable_value_t *value);
+/** What cm1e_scheduler_force(), or cm1e_scheduler_write() of its variable, would return now; nothing changes. */
+CM1E_GUEST_API forcing_result_t cm1e_scheduler_would_take(cm1e_scheduler_t *scheduler, const forced_t *forced,
+                                                          bool force);
 /** Whether the variable of a row is forced. */
 CM1E_GUEST_API bool cm1e_scheduler_is_forced(const cm1e_scheduler_t *scheduler, uint32_t variable);
 /** Writes the rows that are forced to `rows`, and returns their number. */

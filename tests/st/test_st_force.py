@@ -259,6 +259,11 @@ def check_forced(run):
     run.var("set", "--allow-write", "Main.goal=8", "Main.n=3", status=1, says="is forced")
     expect(run.value("goal") != 8, "beside a forced variable none is written", run.value("goal"))
     run.var("force", "--allow-write", "Main.n=3", status=1, says="is forced")
+    run.var("force", "--allow-write", "Main.goal=8", "Main.n=3", status=1, says="is forced")
+    expect(run.value("goal") != 8, "beside what another one forces none is forced, however shortly", run.value("goal"))
+    with Client(os.path.join("run", f"cm1e-{run.process.pid}-0.sock")) as program:
+        program.ask("variable", name="Main.n", value=None, check=True)
+        expect(run.value("n") == 77, "a release that is only checked releases nothing", run.value("n"))
     window.send_signal(signal.SIGINT)
     expect(window.wait(10) == 0, "the window ends well")
     run.counts_again("Ctrl-C")
