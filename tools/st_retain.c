@@ -170,6 +170,10 @@ cm1e_error_t st_retain_begin(st_retain_t *retain, const st_program_t *program, c
     copy_out(retain);
     memcpy(retain->written, retain->copy, retain->size);
     retain->written[0] = (unsigned char)~retain->copy[0]; /* what the file has is not known to be this */
+    if (retain->file < 0) /* a file of a first run is this program's from here on too */
+        error = write_file(retain, diag);
+    if (error != CM1E_OK)
+        return error;
     retain->started = pthread_create(&retain->thread, NULL, write_copies, retain) == 0;
     return CM1E_OK;
 }

@@ -354,8 +354,25 @@ def check_owner_of_retain():
     if first.wait(30) != 0:
         faults.append(f"the run with the file of RETAIN variables ends with {first.returncode}")
     retained(10)
+    check_first_file_of_retain()
     os.mkfifo("fifo.retain")
     retained(0, "--retain", "fifo.retain", status=1, says="is not a regular file")
+
+
+def check_first_file_of_retain():
+    """In a first run the file is there, and the program's, before anything starts; one that was killed has no file."""
+    first = subprocess.Popen([os.path.join(BIN, "cm1e"), "run", "retain.so", "-b", "bus.yaml", "-s", "60", "--retain", "new.retain"], stdout=subprocess.DEVNULL)
+    end = time.monotonic() + 30
+    while not os.path.exists("new.retain") and time.monotonic() < end:
+        time.sleep(0.005)
+    with open("new.retain", "rb") as file:
+        begun = file.read()
+    if not begun.endswith(b"ab" + bytes(7) + b"\x05\0\0\0"):
+        faults.append(f"a first file of RETAIN variables does not begin with the initial values: {begun!r}")
+    retained(0, "--retain", "new.retain", status=1, says="a program that runs keeps its RETAIN variables in new.retain")
+    first.kill()
+    first.wait(30)
+    run("retain.so", "-s", "0.05", "--retain", "new.retain")
 
 
 def check_without_bus_file():
