@@ -41,20 +41,37 @@ void cm1e_program_path(char *path, size_t size)
         snprintf(path, size, "<program>");
 }
 
-void cm1e_program_cure(char *text, size_t size)
+static const struct { int number; const char *name; } privileges[] = {
+    {CAP_NET_RAW, "cap_net_raw"}, {CAP_SYS_NICE, "cap_sys_nice"}, {CAP_IPC_LOCK, "cap_ipc_lock"}};
+enum { PRIVILEGES = sizeof privileges / sizeof privileges[0] };
+_Static_assert(CM1E_PRIVILEGE_RAW == UINT64_C(1) << CAP_NET_RAW && CM1E_PRIVILEGE_LOCK == UINT64_C(1) << CAP_IPC_LOCK &&
+               CM1E_PRIVILEGE_PRIORITY == UINT64_C(1) << CAP_SYS_NICE, "numbers of the kernel");
+
+void cm1e_program_privileges(char text[CM1E_PRIVILEGES_TEXT], uint64_t set)
 {
-    static const struct { int capability; const char *name; } needed[] = {
-        {CAP_NET_RAW, "CAP_NET_RAW"}, {CAP_SYS_NICE, "CAP_SYS_NICE"}, {CAP_IPC_LOCK, "CAP_IPC_LOCK"}};
-    char path[160], lacking[64] = "";
-    for (size_t i = 0, used = 0; i < sizeof needed / sizeof needed[0]; i++)
-        if (prctl(PR_CAPBSET_READ, needed[i].capability) == 0)
-            used += (size_t)snprintf(lacking + used, sizeof lacking - used, "%s %s", used ? "," : "",
-                                     needed[i].name);
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < PRIVILEGES; i++)
+        if (set >> privileges[i].number & 1)
+            used += (size_t)snprintf(text + used, CM1E_PRIVILEGES_TEXT - used, "%s%s", used ? "," : "",
+                                     privileges[i].name);
+}
+
+void cm1e_program_cure(char *text, size_t size, uint64_t needed)
+{
+    char path[160], names[CM1E_PRIVILEGES_TEXT];
+    uint64_t permitted = 0;
+    for (int i = 0; i < PRIVILEGES; i++)
+        if (prctl(PR_CAPBSET_READ, privileges[i].number) != 0)
+            permitted |= UINT64_C(1) << privileges[i].number;
+    const uint64_t lacking = needed & ~permitted;
     cm1e_program_path(path, sizeof path);
-    if (lacking[0])
-        snprintf(text, size, "Not even root has%s in this container or service: start that with what it lacks "
-                 "(docker run --network host --cap-add NET_RAW --cap-add SYS_NICE --cap-add IPC_LOCK)", lacking);
+    cm1e_program_privileges(names, lacking ? lacking : permitted);
+    if (lacking)
+        snprintf(text, size, "Not even root has %s in this container or service: start that with it (docker run "
+                 "--network host --cap-add NET_RAW --cap-add SYS_NICE --cap-add IPC_LOCK; CapabilityBoundingSet of "
+                 "systemd)", names);
     else
-        snprintf(text, size, "Start the program with sudo, or give it the privileges once: sudo setcap "
-                 "cap_net_raw,cap_sys_nice,cap_ipc_lock+ep %s", path);
+        snprintf(text, size, "Start the program with sudo, or give it the privileges once: sudo setcap %s+ep %s", names,
+                 path);
 }

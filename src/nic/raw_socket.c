@@ -89,7 +89,7 @@ static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)
     if (why != EPERM && why != EACCES)
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "No packet socket: %s.", strerror(why));
     char cure[300];
-    cm1e_program_cure(cure, sizeof cure);
+    cm1e_program_cure(cure, sizeof cure, CM1E_PRIVILEGE_RAW);
     return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0,
                          "EtherCAT on a network interface needs the privilege CAP_NET_RAW. %s", cure);
 }

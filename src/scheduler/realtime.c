@@ -88,7 +88,8 @@ static void keep_awake(realtime_t *realtime)
 static void advise(char *advice, size_t size, bool fifo, bool locked, int priority)
 {
     char cure[300];
-    cm1e_program_cure(cure, sizeof cure);
+    cm1e_program_cure(cure, sizeof cure,
+                      (fifo ? 0 : CM1E_PRIVILEGE_PRIORITY) | (locked ? 0 : CM1E_PRIVILEGE_LOCK));
     snprintf(advice, size,
              "Not real time: %s%s%s refused. %s; or limits of the user in /etc/security/limits.conf: rtprio %d, "
              "memlock unlimited (ulimit -r -l shows them).", fifo ? "" : "SCHED_FIFO", fifo || locked ? "" : " and ",

@@ -59,7 +59,7 @@ FAULTS = [
      "hpet", "echo tsc"),
     ({"proc/self/status": "CapEff:\t0000000000000000\n"}, "privileges", "problem", "may not open raw sockets", "setcap"),
     ({"proc/self/status": "CapEff:\t0000000000000000\nCapBnd:\t00000000a80425fb\n"}, "privileges", "problem",
-     "may not open raw sockets", ""),  # a container of Docker: CAP_NET_RAW, but not CAP_SYS_NICE and CAP_IPC_LOCK
+     "may not open raw sockets", "setcap cap_net_raw+ep '"),  # Docker's default: no CAP_SYS_NICE, no CAP_IPC_LOCK
     ({NET + "flags": "0x1002"}, "link", "problem", "eth9 is down", "ip link set eth9 up"),
     ({NET + "carrier": "0"}, "link", "problem", "no link", ""),
     ({NET + "speed": "10"}, "link", "problem", "10 Mbit/s", "ethtool -s eth9"),
@@ -130,6 +130,14 @@ def check_faults():
         expect(parsed.returncode == 0, f"{changes}: the script is no shell: {parsed.stderr}{script}")
 
 
+def check_container():
+    """A privilege that root has in a container is none that it lacks; one that it lacks is given with the container."""
+    for permitted, lacks in (("00000000a80425fb", False), ("00000000a80405fb", True)):
+        found, = findings({"proc/self/status": f"CapEff:\t0000000000000000\nCapBnd:\t{permitted}\n"})
+        expect(("Not even root has cap_net_raw" in found["action"]) == lacks and ("cap_net_raw" in found["fix"]) != lacks,
+               f"the cure in a container: {found}")
+
+
 def check_network():
     good = subprocess.run([CM1E, "doctor", "-i", "sim", "--seconds", "0.2", "--json"], capture_output=True, text=True,
                           check=False, timeout=60)
@@ -149,5 +157,6 @@ def check_refusals():
 
 
 check_faults()
+check_container()
 check_network()
 check_refusals()

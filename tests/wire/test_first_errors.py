@@ -15,6 +15,7 @@ import wire  # noqa: E402
 IF = wire.MASTER_INTERFACE
 LINK = ["ip", "link", "set"]
 NOBODY = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--inh-caps=-all"]
+DOCKER = [*NOBODY, "--bounding-set=-sys_nice,-ipc_lock"]  # its default, and a user that is not root
 CONTAINER = ["setpriv", "--inh-caps=-all", "--bounding-set=-net_raw"]  # root without the capability
 BUS_FILE = f"""\
 bus: {{interface: {IF}}}
@@ -46,7 +47,8 @@ def wrong_interface(segment, cm1e):
         must_tell(segment, "no such interface", [cm1e, *command], 1, '"eth9"', f"There are: {IF}")
     for command in (["scan", "-i", IF], MOVE):
         must_tell(segment, "no right", [*NOBODY, cm1e, *command], 1, "CAP_NET_RAW", "sudo setcap cap_net_raw", cm1e)
-    must_tell(segment, "container", [*CONTAINER, cm1e, "scan", "-i", IF], 1, "Not even root has CAP_NET_RAW", "--cap-add NET_RAW")
+    must_tell(segment, "container", [*CONTAINER, cm1e, "scan", "-i", IF], 1, "Not even root has cap_net_raw ", "--cap-add NET_RAW")
+    must_tell(segment, "Docker", [*DOCKER, cm1e, "scan", "-i", IF], 1, f"sudo setcap cap_net_raw+ep {cm1e}")
     must_tell(segment, "no Ethernet", [cm1e, "scan", "-i", "lo"], 1, "is not Ethernet")
     must_tell(segment, "served sim", [cm1e, "sim", "-i", "sim"], 2, "on a network interface")
 

@@ -120,8 +120,6 @@ static void look_at_clock(doctor_t *doctor)
 
 /* ---- privileges ------------------------------------------------------------------------------------------------ */
 
-enum { CAPABILITY_NET_RAW = 13, CAPABILITY_IPC_LOCK = 14, CAPABILITY_SYS_NICE = 23 };
-
 /** A set of capabilities of this program, "CapEff:" or "CapBnd:"; `unknown` where the file does not say. */
 static uint64_t capabilities(const doctor_t *doctor, const char *set, uint64_t unknown)
 {
@@ -146,12 +144,13 @@ static bool limit_reached(__rlimit_resource_t resource, rlim_t wanted)
 static void look_at_privileges(doctor_t *doctor)
 {
     const uint64_t mask = capabilities(doctor, "CapEff:", 0), permitted = capabilities(doctor, "CapBnd:", UINT64_MAX);
-    const uint64_t needed = UINT64_C(1) << CAPABILITY_NET_RAW | UINT64_C(1) << CAPABILITY_IPC_LOCK |
-                            UINT64_C(1) << CAPABILITY_SYS_NICE;
-    const bool raw = mask >> CAPABILITY_NET_RAW & 1;
-    const bool priority = mask >> CAPABILITY_SYS_NICE & 1 || limit_reached(RLIMIT_RTPRIO, 80);
-    const bool memory = mask >> CAPABILITY_IPC_LOCK & 1 || limit_reached(RLIMIT_MEMLOCK, RLIM_INFINITY);
-    char program[PATH_MAX];
+    const bool raw = mask & CM1E_PRIVILEGE_RAW;
+    const bool priority = mask & CM1E_PRIVILEGE_PRIORITY || limit_reached(RLIMIT_RTPRIO, 80);
+    const bool memory = mask & CM1E_PRIVILEGE_LOCK || limit_reached(RLIMIT_MEMLOCK, RLIM_INFINITY);
+    const uint64_t missing = (raw ? 0 : CM1E_PRIVILEGE_RAW) | (priority ? 0 : CM1E_PRIVILEGE_PRIORITY) |
+                             (memory ? 0 : CM1E_PRIVILEGE_LOCK);
+    char program[PATH_MAX], names[CM1E_PRIVILEGES_TEXT], fix[400] = "";
+    char action[256] = "Give the rights to this program, and do it again after every build.";
     cm1e_program_path(program, sizeof program);
     if (raw && priority && memory) {
         doctor_find(doctor, FINDING_GOOD, group, "privileges", "raw sockets, real-time priority, locked memory");
@@ -163,12 +162,14 @@ static void look_at_privileges(doctor_t *doctor)
         doctor_find(doctor, raw ? FINDING_ADVICE : FINDING_PROBLEM, group, "privileges", "this program may not%s%s%s",
                     raw ? "" : " open raw sockets;", priority ? "" : " take a real-time priority;",
                     memory ? "" : " lock its memory;");
-    if ((permitted & needed) == needed)
-        doctor_advise(finding, why, "Give the rights to this program, and do it again after every build.",
-                      "setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep '%.300s'", program);
-    else /* a file with a capability that is not permitted does not start at all */
-        doctor_advise(finding, why, "Not even root has them in this container or service: start that with them "
-                      "(docker run --network host --cap-add NET_RAW --cap-add SYS_NICE --cap-add IPC_LOCK).", "%s", "");
+    cm1e_program_privileges(names, permitted);
+    if (missing & permitted) /* a file with a privilege that is not permitted does not start at all */
+        snprintf(fix, sizeof fix, "setcap %s+ep '%.300s'", names, program);
+    cm1e_program_privileges(names, missing & ~permitted);
+    if (names[0])
+        snprintf(action, sizeof action, "Not even root has %s in this container or service: start that with it (docker "
+                 "run --network host --cap-add NET_RAW --cap-add SYS_NICE --cap-add IPC_LOCK).", names);
+    doctor_advise(finding, why, action, "%s", fix);
 }
 
 void doctor_look_at_machine(doctor_t *doctor)
