@@ -308,7 +308,7 @@ static int64_t later(int64_t a_ns, int64_t b_ns) { return a_ns > b_ns ? a_ns : b
 static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double slow)
 {
     const double speed = fabs(velocity), scale = fabs(axis->position.scale);
-    const bool goes_away = away * velocity > 0.0, caught = cm1e_axis_catches(axis);
+    const bool goes_away = away * velocity > 0.0, caught = !axis->power.energized;
     if (!goes_away)
         axis->power.velocity = fmaxf(axis->power.velocity, (float)speed);
     const double most = caught ? axis->limits.system.velocity * scale : 0.0;
@@ -405,7 +405,8 @@ static void take_over_or_brake(cm1e_axis_t *axis)
 
 bool cm1e_axis_catches(const cm1e_axis_t *axis)
 {
-    return axis->state == CM1E_AXIS_DISABLED && axis_holds(axis) && !axis->power.energized;
+    return axis->state == CM1E_AXIS_DISABLED && axis_holds(axis) && !axis->power.energized &&
+           fabs(axis_actual_velocity(axis)) <= axis->power.velocity;
 }
 
 bool cm1e_axis_swings(const cm1e_axis_t *axis) { return axis->power.held && axis_holds(axis); }

@@ -28,8 +28,8 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
                           const cm1e_motion_limits_t *ramp);
 /** Begins the ramp of ErrorStop anew, from the actual position and velocity of the motor. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis);
-/** Whether the axis brings a motor to rest that turned when it got its torque, from a set-point that stands: it may be
- *  as far from there as it takes, and is let go if it runs away. @rt cycle */
+/** Whether a motor that turned when it got its torque is brought to rest by a set-point that stands: it has become no
+ *  faster since, and may be as far from there as it takes. @rt cycle */
 bool cm1e_axis_catches(const cm1e_axis_t *axis);
 /** Called when the set velocity falls by `velocity` (u/s) at once: the torque stays until the motor has had time to
  *  follow. */
