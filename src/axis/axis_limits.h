@@ -59,7 +59,7 @@ bool cm1e_axis_unknown_way_keeps(const cm1e_axis_t *axis, double lower, double u
 /** source_t.keeps of a profile. */
 bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper);
 
-/** Computes how far targets may change in a cycle (cm1e_drive_command_t). @rt init; after the limits */
+/** Computes how far targets may change in a cycle (cm1e_drive_command_t). @rt cycle; after the limits */
 void cm1e_axis_steps_init(cm1e_axis_t *axis);
 /** Puts the limits in force. Called when limits are written, and when positions get another meaning. */
 void cm1e_axis_apply_limits(cm1e_axis_t *axis);

@@ -156,6 +156,8 @@ typedef struct power {
     uint8_t reset_state : 4;        /**< cm1e_command_state_t */
     uint8_t undecided : 4;          /**< cycles in which it was not known whether the motor rests: with torque that is
                                          not taken over yet, else the last one */
+    uint8_t turning : 2;            /**< of a motor that turned when it got its torque: 1: it has gone away from the
+                                         set-point at rest; 2 and 3: for one and more cycles it has come back */
     uint16_t held_ms;               /**< the lower bits of the time */
     cm1e_error_t reset_error;
     float velocity;                 /**< counts/s of the motor. Before the axis takes over: in the cycle before, 0

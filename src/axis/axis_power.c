@@ -27,6 +27,7 @@
 #include "axis/axis_setpoint.h"
 #include "axis/axis_text.h"
 #include "core/clock.h"
+#include "core/extreme.h"
 #include "core/rare.h"
 
 /* At the end of a run, the time after which an offline drive counts as gone. */
@@ -35,6 +36,7 @@ static const int64_t brake_ns = 20 * MS_IN_NS;
 /* A motor that its emergency deceleration brings to rest in this time is about to rest: it follows its set-point. */
 static const double rests_in_s = 3e-3;
 static const double rest_counts = 50.0; /* tolerance, in counts of a CM1-E */
+enum { BACK = 3 }; /* power_t.turning */
 /* Cycles, at most 15. */
 static const unsigned longest_undecided = 10;
 /* A motor that does not come to rest by then is turned by something else than its ramp. */
@@ -295,6 +297,7 @@ static void take_over(cm1e_axis_t *axis)
     axis->homing_step.pushing = false;
     cm1e_axis_set_source(axis, &cm1e_source_hold);
     axis->power.energized = true;
+    cm1e_axis_steps_init(axis);
     cm1e_axis_apply_limits(axis); /* without torque it may have been turned past the end of the counts */
     cm1e_axis_go(axis, ON_POWER_ON);
 }
@@ -316,6 +319,12 @@ static bool runs_away(cm1e_axis_t *axis, double away, double velocity, double sl
            (!caught && fabs(away) > axis->limits.max_lag * scale);
 }
 
+/* counts; beyond the noise of a motor that follows its set-point. */
+static bool is_far(const cm1e_axis_t *axis, double away)
+{
+    return fabs(away) > slow_velocity(axis) * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts);
+}
+
 /* Whether the motor is given up: it turns on for too long, or runs away. */
 static bool swing_is_over(const cm1e_axis_t *axis)
 {
@@ -330,6 +339,33 @@ static bool shows_motor(const cm1e_axis_t *axis)
     return axis->drive.feedback.fresh && !axis->silence.frozen && !paused(axis);
 }
 
+/* Whether a motor that is caught has turned round, far from the set-point: it was too fast for its ramp, or its load is
+ * too heavy. Two cycles show it, so that one untrue position does not. */
+static bool comes_back(cm1e_axis_t *axis, double away, double velocity)
+{
+    power_t *power = &axis->power;
+    if (power->energized || !shows_motor(axis) || axis->drive.actual.contradictions > 0)
+        return false;
+    if (away * velocity > 0.0)
+        power->turning = power->turning > 0 || fabs(velocity) > slow_velocity(axis);
+    else if (power->turning > 0 && power->turning < BACK)
+        power->turning++;
+    return power->turning == BACK && is_far(axis, away);
+}
+
+/* Else it would be pulled back as hard as it was braked, to and fro. The target goes there no faster than a motor can
+ * (a rule of the bridge), though faster than its axis may be: it meets the motor. */
+static void go_to_motor(cm1e_axis_t *axis, double away)
+{
+    const double most = smaller(floor(cm1e_unit_peak_velocity(axis->config) * axis->cycle_s), INT32_MAX);
+    cm1e_axis_shift_set_point(axis, fmax(-most, fmin(away, most)));
+    cm1e_axis_hold_here(axis);
+    axis->drive.command.position_step = (int32_t)larger(most, axis->drive.command.position_step);
+    axis->power.brake_until_ns = later(axis->power.brake_until_ns, axis->now_ns + brake_ns);
+    if (fabs(away) <= most)
+        axis->power.turning = 0;
+}
+
 /* The set-point is at rest. The torque stays for a moment after the motor turned last: where a swinging load turns
  * round, it is slow too, but away from the set-point. A motor that something holds away from there rests all the same.
  * One that runs away is let go: its torque may be what drives it. */
@@ -342,16 +378,19 @@ static void wait_for_rest(cm1e_axis_t *axis)
     if (first) {
         power->held_ms = now_ms;
         power->velocity = (float)fabs(velocity);
+        power->turning = 0;
     }
     power->held = true;
+    cm1e_axis_steps_init(axis);
     if (!axis->drive.feedback.fresh || swing_is_over(axis))
         return;
     const double slow = slow_velocity(axis);
     const double away = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
     if (runs_away(axis, away, velocity, slow))
         power->held_ms = (uint16_t)(now_ms - longest_swing_ms);
-    else if (fabs(velocity) > slow ||
-             (unseen && fabs(away) > slow * rests_in_s + cm1e_axis_tolerance_counts(axis, rest_counts)))
+    else if (comes_back(axis, away, velocity))
+        go_to_motor(axis, away);
+    else if (fabs(velocity) > slow || (unseen && is_far(axis, away)))
         power->brake_until_ns = later(power->brake_until_ns, axis->now_ns + brake_ns);
 }
 

@@ -457,6 +457,46 @@ static void test_a_motor_that_does_not_rest_when_it_gets_its_torque_is_let_go(vo
     }
 }
 
+static double load_position, load_velocity; /* counts and ms */
+
+/** A load that is so heavy that all of the torque takes 300 ms for what it has; the servo is damped. */
+static void heavy_load(cm1e_bus_t *motor)
+{
+    const double most = 3.0, pull = 0.05 * (motor->target_position - load_position) - 0.4 * load_velocity;
+    if (motor->state == OPERATION_ENABLED)
+        load_velocity += fmax(-most, fmin(pull, most));
+    load_position += load_velocity;
+    motor->position = (int32_t)load_position;
+    motor->velocity_raw = (int32_t)(1000.0 * load_velocity);
+}
+
+/** A motor that its load turns faster than its axis may be, or too fast for its ramp: its servo brakes it as hard as it
+ *  can, and does not pull it back so. */
+static void test_a_motor_that_is_too_fast_to_be_caught_is_held_where_it_turns_round(void)
+{
+    for (int n = 0; n < 8; n++) {
+        const double sign = n & 1 ? -1.0 : 1.0;
+        bench_start();
+        bench_cycles(5);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING, false));
+        load_position = bus.position;
+        const double speed = 600.0 + 100.0 * n;
+        load_velocity = sign * speed;
+        bus.world = heavy_load;
+        bench_power(true);
+        int cycles = 0;
+        double back = 0.0;
+        while (!cm1e_axis_powered(axis) && cycles++ < 3000) {
+            bench_cycles(1);
+            back = fmin(back, sign * load_velocity);
+        }
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+        TEST_ASSERT_TRUE(back > -0.25 * speed);
+        TEST_ASSERT_LESS_THAN_INT(1000, cycles);
+        bus.world = NULL;
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -467,6 +507,7 @@ int main(void)
     RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
     RUN_TEST(test_a_silence_slows_an_axis_only_near_its_maximum_velocity);
     RUN_TEST(test_a_motor_that_does_not_rest_when_it_gets_its_torque_is_let_go);
+    RUN_TEST(test_a_motor_that_is_too_fast_to_be_caught_is_held_where_it_turns_round);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
     RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
