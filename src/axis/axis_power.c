@@ -464,8 +464,9 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
         cm1e_axis_become_free(axis);
     else if (!free && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque was lost during a ramp */
+    const bool mean = axis->silence.silent_before > 0; /* of all cycles of the silence, where positions tell it */
     if (axis_free(axis))
-        axis->power.velocity = acting && shows_motor(axis) ? (float)axis_actual_velocity(axis) : 0.0f;
+        axis->power.velocity = acting && shows_motor(axis) && !mean ? (float)axis_actual_velocity(axis) : 0.0f;
     const bool at_work = wanted && axis->power.energized;
     if (at_work || (axis_free(axis) ? !acting : !set_points_move(axis)))
         axis->power.undecided = !at_work && (!shows_motor(axis) || is_fast(axis));
