@@ -129,6 +129,10 @@ static void program(void *context)
     call_blocks();
     measure();
     watch();
+    if (step == STEP_PHASING && phasing.CommandAborted) { /* by a pause of the cycle: what is left is phased then */
+        step = STEP_GEAR_IN;
+        return;
+    }
     if (!step_is_done())
         return;
     step = (step_t)example_next_step(&example, marks, step, STEP_OFF);

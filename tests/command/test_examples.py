@@ -284,6 +284,26 @@ def check_electronic_gear():
     expect("phasing" in words and "reverse" in words, f"{name}: {words}")
 
 
+def check_gear_behind_pauses():
+    """A pause of the cycle aborts a phasing; what is left of it is phased then."""
+    example = subprocess.Popen([os.path.join(BIN, "10_electronic_gear")], stdout=subprocess.PIPE, text=True)
+    while not catches(example, signal.SIGINT):
+        time.sleep(0.02)
+    for _ in range(10):
+        time.sleep(0.3)
+        example.send_signal(signal.SIGSTOP)
+        time.sleep(0.01)
+        example.send_signal(signal.SIGCONT)
+    try:
+        printed = example.communicate(timeout=60)[0]
+    except subprocess.TimeoutExpired:
+        example.kill()
+        printed = "no end"
+    phased = re.findall(r"^(?:left|right) +-?[\d.]+ +(-?[\d.]+) +", printed, re.MULTILINE)
+    expect(example.returncode == 0 and len(phased) == 2 and all(abs(float(one)) <= 360 / 50000 for one in phased),
+           f"10_electronic_gear behind pauses: {example.returncode} {printed}")
+
+
 def check_flying_shear():
     name = "11_flying_shear"
     printed, traces, words = run_axes(name, "belt", "carriage")
@@ -508,8 +528,8 @@ def check_traces():
 def main():
     real_time.run_above_others()
     real_time.together(check_jog_panel_on_a_terminal, check_jog_panel_whose_terminal_goes, check_traces,
-                       check_interrupted, check_error_in_words, check_from_elsewhere, check_two_networks,
-                       check_service)
+                       check_interrupted, check_gear_behind_pauses, check_error_in_words, check_from_elsewhere,
+                       check_two_networks, check_service)
     real_time.end(faults, "the examples: their traces show what they are about")
 
 
