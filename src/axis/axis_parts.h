@@ -145,19 +145,19 @@ typedef struct guard {
 /** What MC_Power and MC_Reset command, and its progress. Written by axis_power.h, axis_power.c and axis_free.c. */
 typedef struct power {
     const void *owner;
-    bool claimed;                   /**< the program has called MC_Power: nobody else enables (axis_guest.h) */
     bool enable, enable_positive, enable_negative;
     bool energized;                 /**< the axis has taken over the enabled drive */
+    bool claimed : 1;               /**< the program has called MC_Power: nobody else enables (axis_guest.h) */
     bool shutting_down : 1;
     bool letting_go : 1;            /**< the torque goes first, also if power is wanted again by now */
     bool reset_sent : 1;
     bool held : 1;                  /**< the set-point rests and the motor is to rest too, since `held_ms`: the torque
                                          is to go, or the axis to be taken over */
+    uint8_t turning : 2;            /**< of a motor that turned when it got its torque: 1: it has gone away from the
+                                         set-point at rest; 2 and 3: for one and more cycles it has come back */
     uint8_t reset_state : 4;        /**< cm1e_command_state_t */
     uint8_t undecided : 4;          /**< cycles in which it was not known whether the motor rests: with torque that is
                                          not taken over yet, else the last one */
-    uint8_t turning : 2;            /**< of a motor that turned when it got its torque: 1: it has gone away from the
-                                         set-point at rest; 2 and 3: for one and more cycles it has come back */
     uint16_t held_ms;               /**< the lower bits of the time */
     cm1e_error_t reset_error;
     float velocity;                 /**< counts/s of the motor. Before the axis takes over: in the cycle before, 0
