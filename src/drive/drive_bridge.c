@@ -58,7 +58,7 @@ cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
 
 bool cm1e_drive_rests(const cm1e_drive_t *drive)
 {
-    return drive->behind && drive->now_ns - drive->behind->rest_since_ns >= drive->behind->rest_ns;
+    return drive->behind && drive->actual.sent_ns - drive->behind->rest_since_ns >= drive->behind->rest_ns;
 }
 
 static bool near(const cm1e_drive_bridge_t *behind, int32_t a, int32_t b)
@@ -67,7 +67,8 @@ static bool near(const cm1e_drive_bridge_t *behind, int32_t a, int32_t b)
     return way <= behind->rest_counts && way >= -behind->rest_counts;
 }
 
-/* A target that was just written will move the motor soon. */
+/* A target that was just written will move the motor soon. The time is that of the frames that brought the positions:
+ * around a pause of the cycle two of them may be 20 cycles apart, by number, and come from nearly the same moment. */
 static void watch_rest(cm1e_drive_t *drive)
 {
     cm1e_drive_bridge_t *behind = drive->behind;
@@ -76,7 +77,7 @@ static void watch_rest(cm1e_drive_t *drive)
         return;
     behind->rest_position = drive->feedback.position;
     behind->rest_target = drive->target.position;
-    behind->rest_since_ns = drive->now_ns;
+    behind->rest_since_ns = drive->actual.sent_ns;
 }
 
 /* The error is one of the motor and not of the bus. */
