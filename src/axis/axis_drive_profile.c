@@ -264,7 +264,7 @@ static bool rests_there(cm1e_axis_t *axis)
 {
     standstill_t *standstill = &axis->set_aside.driving->standstill;
     (void)cm1e_axis_is_at_standstill(axis, standstill); /* keeps since when */
-    return there(axis) && axis->now_ns - standstill->since_ns >= rest_ns;
+    return there(axis) && cm1e_axis_stood(axis, standstill) >= rest_ns;
 }
 
 static void arrived(cm1e_axis_t *axis)

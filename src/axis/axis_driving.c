@@ -15,9 +15,16 @@ bool cm1e_axis_acts_in(const cm1e_axis_t *axis, cm1e_mode_t mode)
     return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)mode;
 }
 
+/* By the frames that bring the positions: around a pause of the cycle two of them may be 50 cycles apart, by number,
+ * and come from nearly the same moment. */
+int64_t cm1e_axis_stood(const cm1e_axis_t *axis, const standstill_t *standstill)
+{
+    return cm1e_drive_sent_ns(&axis->drive) - standstill->since_ns;
+}
+
 void cm1e_axis_watch_standstill(const cm1e_axis_t *axis, standstill_t *standstill)
 {
-    *standstill = (standstill_t){axis->now_ns, axis->position.raw};
+    *standstill = (standstill_t){cm1e_drive_sent_ns(&axis->drive), axis->position.raw};
 }
 
 bool cm1e_axis_is_at_standstill(const cm1e_axis_t *axis, standstill_t *standstill)
@@ -25,7 +32,7 @@ bool cm1e_axis_is_at_standstill(const cm1e_axis_t *axis, standstill_t *standstil
     const int32_t moved = (int32_t)((uint32_t)axis->position.raw - (uint32_t)standstill->position);
     if (!axis->drive.feedback.online || (double)llabs(moved) > cm1e_axis_tolerance_counts(axis, standstill_counts))
         cm1e_axis_watch_standstill(axis, standstill);
-    return axis->now_ns - standstill->since_ns >= standstill_ns;
+    return cm1e_axis_stood(axis, standstill) >= standstill_ns;
 }
 
 int64_t cm1e_axis_halt_bound_ns(const cm1e_axis_t *axis, double braking_s, bool has_halt)

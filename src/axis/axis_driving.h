@@ -21,6 +21,8 @@ bool cm1e_axis_acts_in(const cm1e_axis_t *axis, cm1e_mode_t mode);
 void cm1e_axis_watch_standstill(const cm1e_axis_t *axis, standstill_t *standstill);
 /** Called in every cycle of the watch: whether the motor is at standstill. An offline drive shows none. */
 bool cm1e_axis_is_at_standstill(const cm1e_axis_t *axis, standstill_t *standstill);
+/** ns; how long the motor has not moved by then. */
+int64_t cm1e_axis_stood(const cm1e_axis_t *axis, const standstill_t *standstill);
 /** How long a halt may take whose deceleration takes `braking_s`. A motor with a halt bit gets twice that and a second.
  *  A motor without one, and a motor that nobody sees because the bus is gone, get little more than they need. */
 int64_t cm1e_axis_halt_bound_ns(const cm1e_axis_t *axis, double braking_s, bool has_halt);

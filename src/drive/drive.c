@@ -167,6 +167,8 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
                  (drive->fault.error == CM1E_OK || drive_fault_allows_ramp(drive->fault.error));
 }
 
+int64_t cm1e_drive_sent_ns(const cm1e_drive_t *drive) { return cm1e_bus_sent_ns(drive->bus); }
+
 /* Reports an error to a caller that requests torque where there will be none. */
 static void refuse_torque(cm1e_drive_t *drive)
 {

@@ -46,6 +46,8 @@ static inline bool cm1e_drive_contradicts_itself(const cm1e_drive_t *drive)
 {
     return drive->actual.contradictions >= 3;
 }
+/** Time of the last frame, by which a motor that shows the same position has stood there. @rt cycle */
+int64_t cm1e_drive_sent_ns(const cm1e_drive_t *drive);
 /** Called when frames were not sent in time: what goes into the next one was decided by inputs that are cycles old. The
  *  drive does not get its torque by it. @rt cycle */
 static inline void cm1e_drive_note_late(cm1e_drive_t *drive)

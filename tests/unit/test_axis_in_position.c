@@ -5,6 +5,8 @@
 
 #include "../support/axis_bench.h"
 #include "../support/axis_witness.h"
+#include "axis/axis_driving.h"
+#include "core/clock.h"
 
 /* The shaft behind the motor: no faster than `pace` counts a cycle, not beyond `stop`, and `off` counts beside its
  * target. Units of 50,000 counts; the default window is 10 counts, the default time 20 cycles. */
@@ -614,6 +616,17 @@ static void test_a_drive_that_never_says_that_it_is_there_is_an_error(void)
     }
 }
 
+/* Around a pause two frames may follow each other at once, many cycles apart by number. */
+static void test_a_pause_is_no_standstill(void)
+{
+    standstill_t standstill;
+    cm1e_axis_watch_standstill(axis, &standstill);
+    axis->now_ns += 60 * MS_IN_NS;
+    TEST_ASSERT_FALSE(cm1e_axis_is_at_standstill(axis, &standstill));
+    bus.clock.virtual_now_ns += 60 * MS_IN_NS;
+    TEST_ASSERT_TRUE(cm1e_axis_is_at_standstill(axis, &standstill));
+}
+
 /* Also where the profile is shorter than a cycle, the motor has its time to come to rest. */
 static void test_a_tiny_move_of_the_drive_has_that_time_too(void)
 {
@@ -666,6 +679,7 @@ int main(void)
     RUN_TEST(test_a_motor_that_turns_is_not_at_the_target_of_its_drive);
     RUN_TEST(test_a_motor_that_never_rests_at_the_target_of_its_drive_is_an_error);
     RUN_TEST(test_a_drive_that_never_says_that_it_is_there_is_an_error);
+    RUN_TEST(test_a_pause_is_no_standstill);
     RUN_TEST(test_a_tiny_move_of_the_drive_has_that_time_too);
     return UNITY_END();
 }
