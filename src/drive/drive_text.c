@@ -37,8 +37,9 @@ static const advice_t advices[] = {
     {CM1E_ERROR_DRIVE_POWER, "Motor power (24 V, statusword bit 4) is missing: check supply, fuse and emergency stop"},
     {CM1E_ERROR_DRIVE_ENABLE_LOST, "The drive dropped its torque without a fault. Check its watchdog, its power and "
                                    "whether another tool controls it"},
-    {CM1E_ERROR_DRIVE_ENABLE_TIMEOUT, "The drive stayed in the state named here although the next one was commanded. "
-                                      "Check motor power and whether another tool controls it"},
+    {CM1E_ERROR_DRIVE_ENABLE_TIMEOUT, "The drive stayed in the state named here although the next one was commanded, "
+                                      "or every cycle was too late to command it. Check motor power, whether another "
+                                      "tool controls it, and whether the cycles of this program are late"},
     {CM1E_ERROR_DRIVE_MODE_TIMEOUT, "Object 0x6061 does not show the mode that was commanded"},
     {CM1E_ERROR_DRIVE_MODE_LOST, "Object 0x6061 left the commanded mode by itself. Check whether another tool controls "
                                  "the drive"},

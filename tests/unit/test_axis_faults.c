@@ -497,6 +497,22 @@ static void test_a_motor_that_is_too_fast_to_be_caught_is_held_where_it_turns_ro
     }
 }
 
+/** No torque comes by a frame that is late, and the error says so. */
+static void test_where_every_cycle_is_late_no_drive_gets_its_torque(void)
+{
+    bench_start();
+    bench_power(true);
+    for (int n = 0; n < 2100 && bench_info().state == CM1E_AXIS_DISABLED; n++) {
+        bench_inputs();
+        cm1e_axis_after_pause(axis, 4000000);
+        bench_outputs();
+        TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+    }
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_ENABLE_TIMEOUT, bench_info().error);
+    bench_told("every cycle was too late to command it");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -507,6 +523,7 @@ int main(void)
     RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
     RUN_TEST(test_a_silence_slows_an_axis_only_near_its_maximum_velocity);
     RUN_TEST(test_a_motor_that_does_not_rest_when_it_gets_its_torque_is_let_go);
+    RUN_TEST(test_where_every_cycle_is_late_no_drive_gets_its_torque);
     RUN_TEST(test_a_motor_that_is_too_fast_to_be_caught_is_held_where_it_turns_round);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
     RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);
