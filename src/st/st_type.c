@@ -133,11 +133,14 @@ void cm1e_st_inherit_initial(st_t *st, var_t *var)
     }
 }
 
-/** Whether any bits are a value of a type, so that it may be a member of a UNION. */
+/** Whether any bits are a value of a type, so that it may be a member of a UNION. A structure of the library may be a
+ *  reference, as AXIS_REF. */
 static bool takes_any_bits(const type_t *type)
 {
     if (type->kind == T_ARRAY)
         return takes_any_bits(type->element);
+    if (type->kind == T_STRUCT && type->external)
+        return false;
     for (const var_t *var = type->kind == T_STRUCT ? type->members : NULL; var; var = var->next)
         if (var->initial || !takes_any_bits(var->type))
             return false;
