@@ -47,7 +47,8 @@ static void inherit_vars(st_t *st, unit_t *unit)
 {
     vars_t vars = {0};
     for (const var_t *var = unit->object.base->vars; var; var = var->next) {
-        if (var->section == V_TEMP || var->section == V_EXTERNAL)
+        const bool is_kept = var->global && var->global->keeper; /* VAR_STAT */
+        if (var->section == V_TEMP || (var->section == V_EXTERNAL && !is_kept))
             continue;
         var_t *copy = cm1e_st_take(st->arena, sizeof *copy);
         *copy = *var;

@@ -43,6 +43,12 @@ END_PROGRAM
 """, 2, {"FB_A.nCalls": 19, "FB_A.aBuf[3]": 19, "FB_A.M.nCalls": 8, "Main.n": 1, "Main.m": 5, "Main.o": 60, "Main.p": 2,
       "Main.a1.FB_A.M.nLast": 2, "Main.b.FB_B.M.nLast": 52, "Main.b.FB_A.M.nLast": 9, "Main.a1.FB_A.P.get.n": 4,
       "Main.a1.mine": 4, "FB_A.P.set.q": 8, "Main.s": b"xyy"}),
+    ("kept_of_a_base", """
+FUNCTION_BLOCK FB_A VAR_STAT n : INT; END_VAR VAR_STAT CONSTANT k : INT := 2; END_VAR n := n + 1; END_FUNCTION_BLOCK
+FUNCTION_BLOCK FB_B EXTENDS FB_A VAR_OUTPUT x : ARRAY[1..k] OF INT; END_VAR METHOD M n := n + 100; END_METHOD
+  SUPER^(); n := n + 10; M(); x[k] := n; END_FUNCTION_BLOCK
+PROGRAM Main VAR a : FB_A; b : FB_B; END_VAR a(); b(); END_PROGRAM
+""", 2, {"FB_A.n": 224, "Main.b.x[2]": 224}),
     ("open", """
 TYPE ST_P : STRUCT a : INT; l : ARRAY[2..4] OF INT := [7,8,9]; END_STRUCT END_TYPE
 VAR_GLOBAL CONSTANT gTab : ARRAY[-1..1] OF INT := [10, 20, 30]; END_VAR
