@@ -231,6 +231,12 @@ static void found_member(st_t *st, expr_t *expr, const type_t *type)
         cm1e_st_take_from_memory(st, expr);
         return;
     }
+    if (expr->a->kind == E_THIS && expr->var->section == V_EXTERNAL) { /* VAR_STAT, VAR_EXTERNAL: not in the instance */
+        expr->kind = E_NAME;
+        expr->a = NULL;
+        name(st, expr);
+        return;
+    }
     if (type->kind == T_BLOCK && expr->a->kind != E_THIS && expr->var->section != V_INPUT &&
         expr->var->section != V_OUTPUT && !(expr->var->qualifiers & Q_PUBLIC)) {
         cm1e_st_report(st, expr->place, expr->var->section == V_IN_OUT ?

@@ -49,6 +49,13 @@ FUNCTION_BLOCK FB_B EXTENDS FB_A VAR_OUTPUT x : ARRAY[1..k] OF INT; END_VAR METH
   SUPER^(); n := n + 10; M(); x[k] := n; END_FUNCTION_BLOCK
 PROGRAM Main VAR a : FB_A; b : FB_B; END_VAR a(); b(); END_PROGRAM
 """, 2, {"FB_A.n": 224, "Main.b.x[2]": 224}),
+    ("kept_by_this", """
+VAR_GLOBAL g : INT; END_VAR
+FUNCTION_BLOCK FB_A VAR_STAT n : INT := 2; list : ARRAY[1..2] OF INT; END_VAR VAR_STAT CONSTANT k : INT := 4; END_VAR
+  VAR_EXTERNAL g : INT; END_VAR METHOD M THIS^.list[2] := THIS^.k + THIS^.n; END_METHOD
+  THIS^.n := THIS^.n + 1; M(); THIS^.g := THIS^.list[2]; END_FUNCTION_BLOCK
+PROGRAM Main VAR a : FB_A; END_VAR a(); END_PROGRAM
+""", 1, {"FB_A.n": 3, "FB_A.list[2]": 7, "g": 7}),
     ("open", """
 TYPE ST_P : STRUCT a : INT; l : ARRAY[2..4] OF INT := [7,8,9]; END_STRUCT END_TYPE
 VAR_GLOBAL CONSTANT gTab : ARRAY[-1..1] OF INT := [10, 20, 30]; END_VAR
