@@ -203,7 +203,7 @@ static bool reference(st_t *st, expr_t *call)
     const expr_t *root = of;
     while ((root->kind == E_MEMBER || root->kind == E_INDEX) && root->a)
         root = root->a;
-    const var_t *var = root->kind == E_NAME ? root->var : NULL;
+    const var_t *var = root->kind == E_NAME && root->var && root->var->section != V_EXTERNAL ? root->var : NULL;
     if (of->type->open)
         return refuse(st, call, of, "a variable whose size is known");
     if (of->bit || (var && (var->section == V_TEMP || (var->unit && cm1e_st_is_function(var->unit))))) {

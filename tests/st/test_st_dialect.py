@@ -56,6 +56,11 @@ FUNCTION_BLOCK FB_A VAR_STAT n : INT := 2; list : ARRAY[1..2] OF INT; END_VAR VA
   THIS^.n := THIS^.n + 1; M(); THIS^.g := THIS^.list[2]; END_FUNCTION_BLOCK
 PROGRAM Main VAR a : FB_A; END_VAR a(); END_PROGRAM
 """, 1, {"FB_A.n": 3, "FB_A.list[2]": 7, "g": 7}),
+    ("references_to_kept", """
+FUNCTION_BLOCK FB_A METHOD M : INT VAR_INST c : INT := 3; q : REFERENCE TO INT; END_VAR VAR_STAT s : INT; END_VAR
+  VAR r : REF_TO INT; END_VAR r := REF(c); r^ := r^ + 1; r := ADR(s); r^ := 5; q REF= c; q := q + 10; M := c; END_METHOD END_FUNCTION_BLOCK
+PROGRAM Main VAR a : FB_A; n : INT; END_VAR n := a.M(); END_PROGRAM
+""", 1, {"Main.n": 14, "Main.a.FB_A.M.c": 14, "FB_A.M.s": 5}),
     ("open", """
 TYPE ST_P : STRUCT a : INT; l : ARRAY[2..4] OF INT := [7,8,9]; END_STRUCT END_TYPE
 VAR_GLOBAL CONSTANT gTab : ARRAY[-1..1] OF INT := [10, 20, 30]; END_VAR
