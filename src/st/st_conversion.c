@@ -42,8 +42,8 @@ const char *cm1e_st_hidden_enumerator(const type_t *type, const expr_t *expr, ch
     text[0] = '\0';
     for (const var_t *one = type->kind == T_ENUM && expr->kind == E_NAME ? type->members : NULL; one; one = one->next)
         if (strcasecmp(one->name, expr->name) == 0)
-            snprintf(text, size, "; \"%.60s\" is the variable here, the enumerator is %.60s#%.60s", expr->name,
-                     type->name, one->name);
+            snprintf(text, size, type->shown ? "; \"%.60s\" is the variable here, and hides the enumerator" :
+                     "; \"%.60s\" is the variable here, the enumerator is %.60s#%.60s", expr->name, type->name, one->name);
     return text;
 }
 

@@ -264,8 +264,9 @@ static void member_of_value(st_t *st, expr_t *expr)
         return;
     }
     if (type->kind == T_ENUM && cm1e_st_member(type, expr->name)) {
-        cm1e_st_report(st, expr->place, "\"%s\" is the variable here; the enumerator is %s#%s",
-                       expr->a->name ? expr->a->name : "this", type->name, expr->name);
+        cm1e_st_report(st, expr->place, "\"%s\" is the variable here; the enumerator is %s%s%s",
+                       expr->a->name ? expr->a->name : "this", type->shown ? "" : type->name, type->shown ? "" : "#",
+                       expr->name);
         set_wrong(st, expr);
         return;
     }
